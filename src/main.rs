@@ -1,0 +1,2 @@
+//! phicam
+fn main() {}
