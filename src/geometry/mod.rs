@@ -1,1 +1,17 @@
-//! Floor `geometry`.
+//! Floor 1: geometry. Directions, shapes with their own f64 arithmetic, and the one door to the BVH.
+//!
+//! Lengths are in the unit of the scene. A [`Shape`] knows everything that is asked of a surface without naming its
+//! kind: bounds, intersection, parametrisation, area element. Nothing above this floor may assume rectangles.
+
+mod basis;
+mod bvh;
+mod parallelogram;
+mod shape;
+mod sphere;
+
+pub use basis::Basis;
+pub use bvh::{Bvh, GeometryError, Hit};
+pub use glam::DVec3;
+pub use parallelogram::Parallelogram;
+pub use shape::{Ray, Shape, ShapeId, SurfacePoint};
+pub use sphere::{Facing, Sphere};

@@ -1,1 +1,3 @@
-//! Floor `matrix`.
+//! The matrix.
+/// Pixels × spots, W.
+pub type Matrix = nalgebra::DMatrix<f64>;

@@ -1,1 +1,252 @@
-//! stream
+//! Random numbers as a pure function of (seed, spot, pixel, sample block): the one door to generators.
+//!
+//! A [`Stream`] yields the sample points of one block. Which thread asks, and in which order the blocks are
+//! worked off, cannot change a bit of it. Two samplings are offered:
+//!
+//! * [`Sampling::Pcg`]: independent uniform numbers from `Pcg64Mcg`, plain Monte Carlo; error ∝ N^−½.
+//! * [`Sampling::Sobol`]: Owen-scrambled Sobol' points (Burley, *Practical hash-based Owen scrambling*, JCGT
+//!   9(4), 2020). Each block is a net of its own with a scramble of its own, so that the block means are
+//!   independent replicates and their spread is an honest error bar. Dimensions come in sets of four; within a
+//!   set the points are a joint four-dimensional sequence, between sets they are independently shuffled.
+
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+/// The points that a path is built from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sampling {
+    /// Independent uniform numbers.
+    Pcg,
+    /// Owen-scrambled Sobol' nets, one per block.
+    Sobol,
+}
+
+impl Sampling {
+    /// The name used on the command line and in the files of a run.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pcg => "pcg",
+            Self::Sobol => "sobol",
+        }
+    }
+}
+
+/// The largest number of points in one Sobol' block: the sequence repeats beyond 2¹⁶.
+pub const LARGEST_NET: u32 = 1 << 16;
+
+/// What a block of random numbers belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Key {
+    /// Seed of the run.
+    pub seed: u64,
+    /// Spot index, or [`Key::ALL_SPOTS`] where one set of points serves every spot.
+    pub spot: u32,
+    /// Pixel index.
+    pub pixel: u32,
+    /// Sample block.
+    pub block: u32,
+}
+
+impl Key {
+    /// Stands for the spot where all spots share the points.
+    pub const ALL_SPOTS: u32 = u32::MAX;
+
+    /// A well mixed 64-bit value of the key; different salts give unrelated values.
+    fn mixed(self, salt: u64) -> u64 {
+        let place = (u64::from(self.spot) << 32) | u64::from(self.pixel);
+        let mut state = split_mix(self.seed ^ salt);
+        state = split_mix(state ^ place);
+        split_mix(state ^ u64::from(self.block))
+    }
+}
+
+/// One step of SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a bijection of u64 that mixes every bit.
+fn split_mix(x: u64) -> u64 {
+    let mut z = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// The random numbers of one block.
+#[derive(Clone, Debug)]
+pub struct Stream {
+    uniform: Pcg64Mcg,
+    net: Option<Net>,
+}
+
+#[derive(Clone, Debug)]
+struct Net {
+    scramble: u32,
+    index: u32,
+    set: u32,
+}
+
+impl Stream {
+    /// Opens the stream of `key`.
+    pub fn new(sampling: Sampling, key: Key) -> Self {
+        let state = (u128::from(key.mixed(0x5048_4943)) << 64) | u128::from(key.mixed(0x414d_0001));
+        let uniform = Pcg64Mcg::from_seed(state.to_le_bytes());
+        let net = match sampling {
+            Sampling::Pcg => None,
+            Sampling::Sobol => Some(Net {
+                scramble: (key.mixed(0x534f_424f) >> 32) as u32,
+                index: 0,
+                set: 0,
+            }),
+        };
+        Self { uniform, net }
+    }
+
+    /// Moves to sample `index` of the block (0 … size − 1; Sobol': below [`LARGEST_NET`]). Samples must be
+    /// visited in growing order.
+    pub fn start(&mut self, index: u32) {
+        if let Some(net) = &mut self.net {
+            debug_assert!(index < LARGEST_NET);
+            net.index = index;
+            net.set = 0;
+        }
+    }
+
+    /// The next four dimensions of the current sample, each in [0, 1).
+    ///
+    /// The Sobol' generator gives 24 bits; the bits below are filled with independent uniform ones, which is
+    /// what Owen scrambling does to the digits that a finite net leaves free. No point sits on a lattice.
+    pub fn next_four(&mut self) -> [f64; 4] {
+        match &mut self.net {
+            None => std::array::from_fn(|_| unit(self.uniform.next_u64())),
+            Some(net) => {
+                let sets = sobol_burley::NUM_DIMENSION_SETS_4D;
+                let turn = (net.set / sets).wrapping_mul(0x9e37_79b9);
+                let coarse =
+                    sobol_burley::sample_4d(net.index, net.set % sets, net.scramble ^ turn);
+                net.set += 1;
+                coarse.map(|x| {
+                    let fine = unit(self.uniform.next_u64()) / f64::from(1u32 << 24);
+                    (f64::from(x) + fine).min(1.0 - f64::EPSILON)
+                })
+            }
+        }
+    }
+
+    /// One uniform number in [0, 1), outside the sample's dimensions.
+    pub fn uniform(&mut self) -> f64 {
+        unit(self.uniform.next_u64())
+    }
+}
+
+/// 53 random bits as a number in [0, 1).
+fn unit(bits: u64) -> f64 {
+    (bits >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn key(block: u32) -> Key {
+        Key {
+            seed: 1,
+            spot: 2,
+            pixel: 3,
+            block,
+        }
+    }
+
+    #[test]
+    fn a_stream_depends_on_every_part_of_its_key() {
+        let first = |k: Key, s| {
+            let mut stream = Stream::new(s, k);
+            stream.start(0);
+            stream.next_four()
+        };
+        for s in [Sampling::Pcg, Sampling::Sobol] {
+            let base = first(key(0), s);
+            assert_eq!(base, first(key(0), s));
+            assert_ne!(base, first(key(1), s));
+            assert_ne!(base, first(Key { seed: 2, ..key(0) }, s));
+            assert_ne!(base, first(Key { spot: 3, ..key(0) }, s));
+            assert_ne!(base, first(Key { pixel: 2, ..key(0) }, s));
+            // Spot and pixel must not be exchangeable.
+            assert_ne!(
+                first(
+                    Key {
+                        spot: 7,
+                        pixel: 9,
+                        ..key(0)
+                    },
+                    s
+                ),
+                first(
+                    Key {
+                        spot: 9,
+                        pixel: 7,
+                        ..key(0)
+                    },
+                    s
+                )
+            );
+        }
+    }
+
+    /// A net of 2^m points has exactly one point in every interval of length 2^−m, in each dimension, and one in
+    /// every elementary box of the first two dimensions.
+    #[test]
+    fn sobol_blocks_are_nets() {
+        let m = 256;
+        for block in 0..4 {
+            let mut stream = Stream::new(Sampling::Sobol, key(block));
+            let mut seen = [[false; 256]; 4];
+            let mut boxes = [false; 256];
+            for i in 0..m {
+                stream.start(i);
+                let x = stream.next_four();
+                for d in 0..4 {
+                    let cell = (x[d] * 256.0) as usize;
+                    assert!(
+                        !seen[d][cell],
+                        "dimension {d}: two points in interval {cell}"
+                    );
+                    seen[d][cell] = true;
+                }
+                let cell = (x[0] * 16.0) as usize * 16 + (x[1] * 16.0) as usize;
+                assert!(!boxes[cell]);
+                boxes[cell] = true;
+            }
+        }
+    }
+
+    /// Mean ½ and variance 1/12 within 4 standard errors; neighbouring keys uncorrelated.
+    #[test]
+    fn pcg_numbers_are_uniform_and_neighbouring_blocks_unrelated() {
+        let n = 40_000u32;
+        let (mut sum, mut square, mut product) = (0.0, 0.0, 0.0);
+        for block in 0..n {
+            let x = Stream::new(Sampling::Pcg, key(block)).next_four()[0];
+            let y = Stream::new(Sampling::Pcg, key(block + 1)).next_four()[0];
+            sum += x;
+            square += (x - 0.5) * (x - 0.5);
+            product += (x - 0.5) * (y - 0.5);
+        }
+        let n = f64::from(n);
+        assert!((sum / n - 0.5).abs() < 4.0 * (1.0 / 12.0 / n).sqrt());
+        // Var[(x − ½)²] = 1/80 − 1/144 = 1/180; Var[(x − ½)(y − ½)] = 1/144.
+        assert!((square / n - 1.0 / 12.0).abs() < 4.0 * (1.0 / 180.0 / n).sqrt());
+        assert!((product / n).abs() < 4.0 * (1.0 / 144.0 / n).sqrt());
+    }
+
+    /// The streams are pinned: a change of these numbers is a change of every rendered byte, and must be decided.
+    #[test]
+    fn the_streams_are_pinned() {
+        let mut pcg = Stream::new(Sampling::Pcg, key(0));
+        let mut sobol = Stream::new(Sampling::Sobol, key(0));
+        sobol.start(5);
+        let bits = |x: [f64; 4]| x.map(f64::to_bits);
+        assert_eq!(
+            (bits(pcg.next_four())[0], bits(sobol.next_four())[0]),
+            (PINNED_PCG, PINNED_SOBOL)
+        );
+    }
+    const PINNED_PCG: u64 = 4598364495060289958;
+    const PINNED_SOBOL: u64 = 4605239706447647378;
+}

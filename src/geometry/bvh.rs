@@ -1,0 +1,328 @@
+//! Which shape does a ray meet, and is a segment free? The one door to obvhs.
+//!
+//! Up to [`FLAT`] shapes are tested one by one; more stand behind obvhs' 8-wide compressed BVH. The tree works in f32
+//! on boxes only and decides nothing by itself: every intersection is computed in f64 on the shape. For that the boxes
+//! must hold whatever f32 does to the ray, and obvhs drops boxes that end nearer than 1e-4 along a unit direction. So
+//! the tree lives in a space in which the scene measures 1000, and every box is wider than its shape by 4e-3 there:
+//! 64 times the f32 spacing at 1000, and forty times obvhs' limit.
+
+use glam::Vec3A;
+use obvhs::BvhBuildParams;
+use obvhs::aabb::Aabb;
+use obvhs::cwbvh::{CwBvh, builder::build_cwbvh};
+use obvhs::ray::{Ray as TreeRay, RayHit};
+
+use super::{DVec3, Ray, Shape, ShapeId};
+
+/// Largest number of shapes tested one by one.
+const FLAT: usize = 16;
+/// Extent of the scene in the tree's space.
+const EXTENT: f64 = 1000.0;
+/// What each box is widened by in the tree's space.
+const PADDING: f32 = 4e-3;
+/// Coordinates beyond this (in scene units) are refused.
+const LARGEST: f64 = 1e12;
+
+/// Why no acceleration structure can be built.
+#[derive(Debug, thiserror::Error, PartialEq)]
+pub enum GeometryError {
+    /// A shape is not finite or far outside any bench.
+    #[error(
+        "surface {index} reaches to {reach:e}: coordinates must be finite and below 1e12 (choose a larger unit)"
+    )]
+    Unbounded {
+        /// Position of the shape in the list.
+        index: usize,
+        /// Largest coordinate.
+        reach: f64,
+    },
+}
+
+/// A ray's first intersection.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Which shape.
+    pub shape: ShapeId,
+    /// Distance along the ray.
+    pub t: f64,
+}
+
+/// All shapes of a scene, ready for ray queries.
+#[derive(Clone)]
+pub struct Bvh {
+    shapes: Vec<Shape>,
+    tree: Option<Tree>,
+}
+
+impl std::fmt::Debug for Bvh {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Bvh({} shapes)", self.shapes.len())
+    }
+}
+
+#[derive(Clone)]
+struct Tree {
+    cwbvh: CwBvh,
+    origin: DVec3,
+    scale: f64,
+}
+
+impl Bvh {
+    /// Builds the structure; shape ids are the positions in `shapes`.
+    ///
+    /// # Errors
+    /// [`GeometryError::Unbounded`] for coordinates that are not finite or beyond 1e12.
+    pub fn new(shapes: Vec<Shape>) -> Result<Self, GeometryError> {
+        for (index, shape) in shapes.iter().enumerate() {
+            let (lower, upper) = shape.bounds();
+            let reach = lower.abs().max(upper.abs()).max_element();
+            // A NaN fails the comparison too.
+            if !(reach <= LARGEST) || !lower.is_finite() || !upper.is_finite() {
+                return Err(GeometryError::Unbounded { index, reach });
+            }
+        }
+        let tree = (shapes.len() > FLAT).then(|| Tree::new(&shapes));
+        Ok(Self { shapes, tree })
+    }
+
+    /// The shapes, by id.
+    pub fn shapes(&self) -> &[Shape] {
+        &self.shapes
+    }
+
+    /// First shape met by `ray`, from either side; `from` is the shape that the ray starts on.
+    pub fn closest(&self, ray: &Ray, from: Option<ShapeId>) -> Option<Hit> {
+        let mut best: Option<Hit> = None;
+        let mut test = |id: usize, limit: f64| -> f64 {
+            let shape = id as ShapeId;
+            let short = Ray {
+                length: limit,
+                ..*ray
+            };
+            match self.shapes[id].intersect(&short, from == Some(shape)) {
+                // Of equal distances the lower id wins, whatever the order of traversal.
+                Some(t) if best.is_none_or(|b| t < b.t || (t <= b.t && shape < b.shape)) => {
+                    best = Some(Hit { shape, t });
+                    t
+                }
+                _ => limit,
+            }
+        };
+        match &self.tree {
+            None => {
+                let mut limit = ray.length;
+                for id in 0..self.shapes.len() {
+                    limit = test(id, limit);
+                }
+            }
+            Some(tree) => tree.closest(ray, |id| test(id, ray.length)),
+        }
+        best
+    }
+
+    /// Whether anything blocks the open segment `ray`, whose start and end lie on the shapes in `ends` (if on any).
+    pub fn blocked(&self, ray: &Ray, ends: [Option<ShapeId>; 2]) -> bool {
+        let blocks = |id: usize| {
+            let shape = Some(id as ShapeId);
+            self.shapes[id].blocks(ray, ends[0] == shape, ends[1] == shape)
+        };
+        match &self.tree {
+            None => (0..self.shapes.len()).any(blocks),
+            Some(tree) => tree.any(ray, blocks),
+        }
+    }
+}
+
+impl Tree {
+    fn new(shapes: &[Shape]) -> Self {
+        let bounds = shapes.iter().map(Shape::bounds);
+        let (lower, upper) = bounds
+            .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+            .unwrap_or((DVec3::ZERO, DVec3::ONE));
+        let scale = EXTENT / (upper - lower).max_element().max(f64::MIN_POSITIVE);
+        let boxes: Vec<Aabb> = shapes
+            .iter()
+            .map(|s| {
+                let (a, b) = s.bounds();
+                let low = ((a - lower) * scale).as_vec3a() - Vec3A::splat(PADDING);
+                let high = ((b - lower) * scale).as_vec3a() + Vec3A::splat(PADDING);
+                Aabb::new(low, high)
+            })
+            .collect();
+        let mut time = std::time::Duration::ZERO;
+        let cwbvh = build_cwbvh(&boxes, BvhBuildParams::medium_build(), &mut time);
+        Self {
+            cwbvh,
+            origin: lower,
+            scale,
+        }
+    }
+
+    /// The ray in the tree's space, started where it reaches the scene's bounding sphere (so that a camera far away does
+    /// not cost the f32 origin its digits), and how far that start was moved.
+    fn ray(&self, ray: &Ray) -> (TreeRay, f64) {
+        let local = (ray.origin - self.origin) * self.scale;
+        let to_centre = DVec3::splat(0.5 * EXTENT) - local;
+        let advance = (to_centre.dot(ray.direction) - EXTENT).max(0.0);
+        let length = (ray.length * self.scale - advance).max(0.0) + f64::from(PADDING);
+        let start = (local + ray.direction * advance).as_vec3a();
+        let ray = TreeRay::new(
+            start,
+            ray.direction.as_vec3a(),
+            0.0,
+            length.min(1e30) as f32,
+        );
+        (ray, advance)
+    }
+
+    /// Visits the shapes whose box the ray meets; `test` keeps the nearest hit in f64 and returns its distance.
+    fn closest(&self, ray: &Ray, mut test: impl FnMut(usize) -> f64) {
+        let (tree_ray, advance) = self.ray(ray);
+        let mut hit = RayHit::none();
+        self.cwbvh.ray_traverse(tree_ray, &mut hit, |_, primitive| {
+            let t = test(self.cwbvh.primitive_indices[primitive] as usize);
+            // Prune only what lies behind the padded box of the nearest hit so far.
+            ((t * self.scale - advance).min(1e30) as f32) + 4.0 * PADDING
+        });
+    }
+
+    fn any(&self, ray: &Ray, blocks: impl Fn(usize) -> bool) -> bool {
+        !self
+            .cwbvh
+            .ray_traverse_miss(self.ray(ray).0, |_, primitive| {
+                let id = self.cwbvh.primitive_indices[primitive] as usize;
+                if blocks(id) { 0.0 } else { f32::INFINITY }
+            })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Facing, Parallelogram, Sphere};
+    use crate::num::stream::{Key, Sampling, Stream};
+
+    fn numbers() -> impl FnMut() -> f64 {
+        let key = Key {
+            seed: 5,
+            spot: 0,
+            pixel: 0,
+            block: 0,
+        };
+        let mut stream = Stream::new(Sampling::Pcg, key);
+        move || stream.uniform()
+    }
+
+    /// Patches of all sizes (some flat along an axis), a cavity around them and a few balls.
+    fn clutter(scale: f64) -> Vec<Shape> {
+        let mut x = numbers();
+        let mut shapes: Vec<Shape> = (0..60)
+            .map(|i| {
+                let mut v = |s: f64| DVec3::new(x() - 0.5, x() - 0.5, x() - 0.5) * s * scale;
+                let (corner, mut u, w) = (v(10.0), v(3.0), v(3.0));
+                if i % 3 == 0 {
+                    u = DVec3::new(u.x, 0.0, 0.0);
+                }
+                let w = if i % 3 == 0 {
+                    DVec3::new(0.0, w.y, 0.0)
+                } else {
+                    w
+                };
+                Shape::Parallelogram(Parallelogram::new(corner, u, w).unwrap())
+            })
+            .collect();
+        for i in 0..4 {
+            let centre = DVec3::splat(f64::from(i) - 2.0) * scale;
+            shapes.push(Shape::Sphere(
+                Sphere::new(centre, 0.4 * scale, Facing::Outside).unwrap(),
+            ));
+        }
+        shapes.push(Shape::Sphere(
+            Sphere::new(DVec3::ZERO, 12.0 * scale, Facing::Inside).unwrap(),
+        ));
+        shapes
+    }
+
+    /// The tree must agree with the list on every ray: from surfaces, along axes, from far away, at three scales.
+    #[test]
+    fn the_tree_answers_as_the_list_does() {
+        for scale in [1e-3, 1.0, 1e4] {
+            let shapes = clutter(scale);
+            let list = Bvh {
+                shapes: shapes.clone(),
+                tree: None,
+            };
+            let tree = Bvh::new(shapes).unwrap();
+            assert!(tree.tree.is_some());
+            let mut x = numbers();
+            for i in 0..40_000 {
+                let from = (x() * 65.0) as u32;
+                let start = list.shapes[from as usize].at([x(), x()]).position;
+                let mut d = DVec3::new(x() - 0.5, x() - 0.5, x() - 0.5);
+                if i % 5 == 0 {
+                    d.x = 0.0;
+                    d.y = if i % 10 == 0 { 1e-9 } else { 0.0 };
+                }
+                let d = d.normalize();
+                let ray = Ray::new(start, d);
+                assert_eq!(
+                    list.closest(&ray, Some(from)),
+                    tree.closest(&ray, Some(from))
+                );
+                let away = Ray::new(start - d * 300.0 * scale, d);
+                assert_eq!(list.closest(&away, None), tree.closest(&away, None));
+                let to = (x() * 65.0) as u32;
+                let end = list.shapes[to as usize].at([x(), x()]).position;
+                let Some(segment) = Ray::between(start, end) else {
+                    continue;
+                };
+                let ends = [Some(from), Some(to)];
+                assert_eq!(list.blocked(&segment, ends), tree.blocked(&segment, ends));
+            }
+        }
+    }
+
+    /// Every ray from the middle of a closed box of six patches meets a wall, its edges and diagonals included.
+    #[test]
+    fn a_closed_box_does_not_leak() {
+        let e = [DVec3::X, DVec3::Y, DVec3::Z];
+        let mut shapes = Vec::new();
+        for i in 0..3 {
+            for corner in [DVec3::ZERO, e[i]] {
+                let patch = Parallelogram::new(corner, e[(i + 1) % 3], e[(i + 2) % 3]).unwrap();
+                shapes.push(Shape::Parallelogram(patch));
+            }
+        }
+        let bvh = Bvh::new(shapes).unwrap();
+        let mut x = numbers();
+        let centre = DVec3::splat(0.5);
+        for i in 0..200_000 {
+            // A third of the rays each at a diagonal, at an edge, anywhere.
+            let (a, b) = (x(), x());
+            let target = DVec3::new(a, [a, 1.0, b][i % 3], 1.0);
+            let ray = Ray::new(centre, (target - centre).normalize());
+            assert!(bvh.closest(&ray, None).is_some(), "leak towards {target}");
+        }
+    }
+
+    #[test]
+    fn hits_nearer_than_the_tree_can_see_are_found() {
+        let mut shapes = clutter(1.0);
+        let patch = Parallelogram::new(DVec3::new(20.0, 0.0, 1e-7), DVec3::X, DVec3::Y).unwrap();
+        shapes.push(Shape::Parallelogram(patch));
+        let bvh = Bvh::new(shapes).unwrap();
+        let hit = bvh
+            .closest(&Ray::new(DVec3::new(20.5, 0.5, 0.0), DVec3::Z), None)
+            .unwrap();
+        assert_eq!(hit.t, 1e-7);
+    }
+
+    #[test]
+    fn unbounded_shapes_are_refused() {
+        let far = Parallelogram::new(DVec3::splat(1e13), DVec3::X, DVec3::Y).unwrap();
+        assert!(matches!(
+            Bvh::new(vec![Shape::Parallelogram(far)]),
+            Err(GeometryError::Unbounded { index: 0, .. })
+        ));
+    }
+}

@@ -1,0 +1,149 @@
+//! Shapes: what a surface is made of.
+
+use super::{DVec3, Parallelogram, Sphere};
+
+/// Index of a shape in its [`Bvh`](super::Bvh).
+pub type ShapeId = u32;
+
+/// A ray: origin + t·direction for 0 < t < length, the direction a unit vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Start.
+    pub origin: DVec3,
+    /// Unit vector.
+    pub direction: DVec3,
+    /// Largest t; infinite for a half-line.
+    pub length: f64,
+}
+
+impl Ray {
+    /// The half-line from `origin` along the unit vector `direction`.
+    pub fn new(origin: DVec3, direction: DVec3) -> Self {
+        Self {
+            origin,
+            direction,
+            length: f64::INFINITY,
+        }
+    }
+
+    /// The segment from `a` to `b`; `None` if they coincide.
+    pub fn between(a: DVec3, b: DVec3) -> Option<Self> {
+        let length = (b - a).length();
+        (length > 0.0).then(|| Self {
+            origin: a,
+            direction: (b - a) / length,
+            length,
+        })
+    }
+}
+
+/// A point of a surface, exactly on it to f64 rounding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// Position.
+    pub position: DVec3,
+    /// Unit normal of the front.
+    pub normal: DVec3,
+    /// Parameters in [0, 1]².
+    pub uv: [f64; 2],
+}
+
+/// A surface's geometry. Every shape is one-sided in its optics (front: where the normal points) and opaque from
+/// both sides.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// A flat patch corner + a·u + b·v.
+    Parallelogram(Parallelogram),
+    /// A sphere seen from outside or from inside.
+    Sphere(Sphere),
+}
+
+impl Shape {
+    /// Smallest axis-aligned box: lower and upper corner.
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        match self {
+            Self::Parallelogram(p) => p.bounds(),
+            Self::Sphere(s) => s.bounds(),
+        }
+    }
+
+    /// Area, length².
+    pub fn area(&self) -> f64 {
+        match self {
+            Self::Parallelogram(p) => p.area(),
+            Self::Sphere(s) => s.area(),
+        }
+    }
+
+    /// Smallest t in (0, `ray.length`) at which the ray meets the shape from either side. `leaving`: the ray starts on
+    /// this very shape, so that the start itself is no hit.
+    pub fn intersect(&self, ray: &Ray, leaving: bool) -> Option<f64> {
+        match self {
+            Self::Parallelogram(p) => (!leaving).then(|| p.intersect(ray)).flatten(),
+            Self::Sphere(s) => s.intersect(ray, leaving),
+        }
+    }
+
+    /// Whether the shape blocks the open segment `ray`, of which the start (`leaves`) or the end (`arrives`) may lie
+    /// on the shape itself.
+    pub fn blocks(&self, ray: &Ray, leaves: bool, arrives: bool) -> bool {
+        match self {
+            Self::Parallelogram(p) => !leaves && !arrives && p.intersect(ray).is_some(),
+            Self::Sphere(s) => s.blocks(ray, leaves, arrives),
+        }
+    }
+
+    /// The point of the shape nearest to `p`, which must lie on it up to rounding: removes the rounding.
+    pub fn at_position(&self, p: DVec3) -> SurfacePoint {
+        match self {
+            Self::Parallelogram(s) => s.at_position(p),
+            Self::Sphere(s) => s.at_position(p),
+        }
+    }
+
+    /// The point with parameters `uv` in [0, 1]².
+    pub fn at(&self, uv: [f64; 2]) -> SurfacePoint {
+        match self {
+            Self::Parallelogram(p) => p.at(uv),
+            Self::Sphere(s) => s.at(uv),
+        }
+    }
+
+    /// The point straight above or below (x, y) along z; of several the one with the smallest z.
+    pub fn at_xy(&self, x: f64, y: f64) -> Option<SurfacePoint> {
+        match self {
+            Self::Parallelogram(p) => p.at_xy(x, y),
+            Self::Sphere(s) => s.at_xy(x, y),
+        }
+    }
+
+    /// Whether the whole shape lies in one plane: then no light travels between two points of it.
+    pub fn is_flat(&self) -> bool {
+        matches!(self, Self::Parallelogram(_))
+    }
+
+    /// Whether any point of the shape lies in front of the plane through `point` with normal `normal`, by more than
+    /// `slack`.
+    pub fn reaches_above(&self, point: DVec3, normal: DVec3, slack: f64) -> bool {
+        match self {
+            Self::Parallelogram(p) => p.corners().iter().any(|c| (*c - point).dot(normal) > slack),
+            Self::Sphere(s) => (s.centre - point).dot(normal) + s.radius > slack,
+        }
+    }
+
+    /// Points spread over the shape, its corners or extremes among them, for conservative tests of what it can see.
+    pub fn outline(&self) -> Vec<SurfacePoint> {
+        match self {
+            Self::Parallelogram(_) => [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+                .map(|uv| self.at(uv))
+                .to_vec(),
+            Self::Sphere(_) => {
+                let steps = [0.0, 0.25, 0.5, 0.75, 1.0];
+                steps
+                    .iter()
+                    .flat_map(|&u| steps.map(|v| self.at([u, v])))
+                    .collect()
+            }
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! The scenes that are compiled in, and reading of the others.
+
+use std::io::Read;
+
+use super::error::SceneError;
+
+/// A scene file larger than this is not one.
+const LARGEST_FILE: u64 = 64 << 20;
+
+/// A built-in scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Builtin {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is, in one line.
+    pub summary: &'static str,
+    /// The text of its scene file.
+    pub text: &'static str,
+}
+
+/// All built-in scenes.
+pub fn builtins() -> &'static [Builtin] {
+    &[
+        Builtin {
+            name: "bench",
+            summary: "the bench: 2 × 2 board, 120 staggered spots, half-width 3 in.",
+            text: include_str!("../../scenes/bench.toml"),
+        },
+        Builtin {
+            name: "thesis",
+            summary: "as published: 8 × 8 board, 120 staggered spots, half-width 6 in., wall extended",
+            text: include_str!("../../scenes/thesis.toml"),
+        },
+        Builtin {
+            name: "experiment",
+            summary: "the laboratory experiment: 252 spots 1 in. around the view, 64 × 64 pixels",
+            text: include_str!("../../scenes/experiment.toml"),
+        },
+        Builtin {
+            name: "furnace",
+            summary: "an integrating sphere, whose flux at every bounce count is known in closed form",
+            text: include_str!("../../scenes/furnace.toml"),
+        },
+    ]
+}
+
+/// Reads a scene file.
+pub(super) fn read(path: &str) -> Result<String, SceneError> {
+    let names = builtins().iter().map(|b| b.name);
+    let error = |cause: String, cure: String| SceneError {
+        source: path.to_owned(),
+        place: None,
+        cause,
+        cure,
+    };
+    let known = names.clone().collect::<Vec<_>>().join(", ");
+    let file = std::fs::File::open(path).map_err(|e| {
+        let near = names
+            .clone()
+            .find(|n| strsim::damerau_levenshtein(n, path) <= 2);
+        let cure = match near {
+            Some(n) => format!("did you mean the built-in scene `{n}`?"),
+            None => format!("give the path of a scene file, or a built-in scene: {known}"),
+        };
+        error(format!("cannot open this scene: {e}"), cure)
+    })?;
+    let mut bytes = Vec::new();
+    let cure = || format!("give the path of a TOML scene file, or a built-in scene: {known}");
+    file.take(LARGEST_FILE + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|e| error(format!("cannot read this scene: {e}"), cure()))?;
+    if bytes.len() as u64 > LARGEST_FILE {
+        return Err(error("the file is larger than 64 MiB".into(), cure()));
+    }
+    String::from_utf8(bytes).map_err(|_| error("the file is not UTF-8 text".into(), cure()))
+}

@@ -1,0 +1,177 @@
+//! The camera: an off-axis pinhole whose pixel grid covers a rectangle of the wall exactly.
+
+use super::error::{Fault, keys};
+use super::file::CameraTable;
+use super::surface::{Role, Surface};
+use crate::geometry::{DVec3, Parallelogram};
+
+/// More pixels than this are taken for a mistake.
+const MOST_PIXELS: u64 = 1 << 26;
+
+/// A pinhole of small area, parallel to the view's plane. Pixel p collects what passes through its footprint on that
+/// plane towards the pinhole: étendue E_p = ∫ A_lens·cosθ_cam dΩ over the footprint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// The pinhole.
+    pub position: DVec3,
+    /// Its area, length².
+    pub aperture_area: f64,
+    /// What the grid covers: u along the columns (+x), v along the rows (+y).
+    pub view: Parallelogram,
+    /// Pixels along x.
+    pub columns: usize,
+    /// Pixels along y.
+    pub rows: usize,
+}
+
+impl Camera {
+    /// Number of pixels; pixel index = column + row·columns.
+    pub fn pixels(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// The footprint of a pixel in the view's plane.
+    pub fn footprint(&self, pixel: usize) -> Footprint {
+        let u = self.view.u() / self.columns as f64;
+        let v = self.view.v() / self.rows as f64;
+        let [column, row] = [pixel % self.columns, pixel / self.columns];
+        let corner = self.view.corner() + u * column as f64 + v * row as f64;
+        Footprint {
+            corner,
+            u,
+            v,
+            area: self.view.area() / self.pixels() as f64,
+        }
+    }
+
+    /// The pixel whose footprint the line from the pinhole through `point` crosses, if any.
+    pub fn pixel_of(&self, point: DVec3) -> Option<usize> {
+        let normal = self.view.normal();
+        let direction = point - self.position;
+        let slope = normal.dot(direction);
+        if slope == 0.0 {
+            return None;
+        }
+        let t = normal.dot(self.view.corner() - self.position) / slope;
+        let [a, b] = self.view.coordinates(self.position + direction * t);
+        let inside = t > 0.0 && (0.0..1.0).contains(&a) && (0.0..1.0).contains(&b);
+        inside.then(|| {
+            let column = ((a * self.columns as f64) as usize).min(self.columns - 1);
+            let row = ((b * self.rows as f64) as usize).min(self.rows - 1);
+            column + row * self.columns
+        })
+    }
+
+    pub(super) fn from_table(table: &CameraTable, surfaces: &[Surface]) -> Result<Self, Fault> {
+        let refuse = |key, cause: String, cure: &str| {
+            Err(Fault::new(keys![key], cause, cure).within(keys!["camera"]))
+        };
+        let [columns, rows] = table.pixels;
+        let count = u64::from(columns) * u64::from(rows);
+        if count == 0 {
+            return refuse(
+                "pixels",
+                format!("{columns} × {rows} pixels"),
+                "use at least 1 × 1",
+            );
+        }
+        if count > MOST_PIXELS {
+            let cause = format!("{columns} × {rows} pixels are more than 2²⁶");
+            return refuse("pixels", cause, "use fewer");
+        }
+        if !(table.aperture_area > 0.0 && table.aperture_area.is_finite()) {
+            let cause = format!("aperture area {}", table.aperture_area);
+            return refuse("aperture_area", cause, "give a positive area in unit²");
+        }
+        if table.position.iter().any(|x| !x.is_finite()) {
+            return refuse(
+                "position",
+                "the camera's position is not finite".into(),
+                "use finite numbers",
+            );
+        }
+        let ([x0, x1], [y0, y1]) = (table.view.x, table.view.y);
+        if !(x0 < x1 && y0 < y1 && [x0, x1, y0, y1].iter().all(|c| c.is_finite())) {
+            let cause = format!("the view [{x0}, {x1}] × [{y0}, {y1}] has no area");
+            return refuse("view", cause, "give x and y as [lower, upper]");
+        }
+        let position = DVec3::from_array(table.position);
+        let Some(view) = view([x0, x1], [y0, y1], position, surfaces) else {
+            let cause = format!("the view [{x0}, {x1}] × [{y0}, {y1}] does not lie on the wall");
+            return refuse(
+                "view",
+                cause,
+                "keep it within a relay surface, or extend the wall",
+            );
+        };
+        if (position - view.corner()).dot(view.normal()) <= 0.0 {
+            return refuse(
+                "position",
+                "the camera stands behind the wall that it should see".into(),
+                "move it to the front (the side of u × v)",
+            );
+        }
+        Ok(Self {
+            position,
+            aperture_area: table.aperture_area,
+            view,
+            columns: columns as usize,
+            rows: rows as usize,
+        })
+    }
+}
+
+/// Where the lines of sight of one pixel cross the view's plane: corner + a·u + b·v.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Footprint {
+    /// Corner with the smallest x and y.
+    pub corner: DVec3,
+    /// Width along +x.
+    pub u: DVec3,
+    /// Height along +y.
+    pub v: DVec3,
+    /// Area, length².
+    pub area: f64,
+}
+
+impl Footprint {
+    /// The point with coordinates a, b ∈ [0, 1].
+    pub fn at(&self, [a, b]: [f64; 2]) -> DVec3 {
+        self.corner + self.u * a + self.v * b
+    }
+}
+
+/// The view as a patch of the relay's plane (of a curved relay: of its tangent plane at the view's centre), normal
+/// towards the relay's front. `None` unless the whole view has relay surface below it.
+fn view(x: [f64; 2], y: [f64; 2], camera: DVec3, surfaces: &[Surface]) -> Option<Parallelogram> {
+    let relays = || surfaces.iter().filter(|s| s.role == Role::Relay);
+    let (cx, cy) = (0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1]));
+    let centre = relays()
+        .filter_map(|s| s.shape.at_xy(cx, cy))
+        .min_by(|a, b| {
+            let distance = |p: DVec3| (p - camera).length_squared();
+            distance(a.position).total_cmp(&distance(b.position))
+        })?;
+    const STEPS: usize = 64;
+    for i in 0..=STEPS {
+        for j in 0..=STEPS {
+            let at = |c: [f64; 2], k: usize| c[0] + (c[1] - c[0]) * k as f64 / STEPS as f64;
+            if relays().all(|s| s.shape.at_xy(at(x, i), at(y, j)).is_none()) {
+                return None;
+            }
+        }
+    }
+    let n = centre.normal;
+    if n.z.abs() < 1e-9 {
+        return None;
+    }
+    let lift = |px: f64, py: f64| {
+        let dz = -(n.x * (px - cx) + n.y * (py - cy)) / n.z;
+        DVec3::new(px, py, centre.position.z + dz)
+    };
+    let corner = lift(x[0], y[0]);
+    let (u, v) = (lift(x[1], y[0]) - corner, lift(x[0], y[1]) - corner);
+    // u × v points along +z; where the wall's front is below, the patch is kept and its normal turned.
+    let patch = Parallelogram::new(corner, u, v)?;
+    Some(if n.z > 0.0 { patch } else { patch.turned() })
+}

@@ -1,0 +1,246 @@
+//! The scene file as written: TOML tables, strict, unchecked. [`Scene`](super::Scene) is what they mean.
+//!
+//! Unknown keys are errors. The doc comment of each field is the documentation of its key.
+
+use serde::de::{self, MapAccess, Visitor, value::MapAccessDeserializer};
+use serde::{Deserialize, Deserializer, Serialize};
+
+/// Three coordinates, in the scene's unit.
+pub(super) type Triple = [f64; 3];
+
+/// A whole scene file.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SceneFile {
+    /// Name of the scene.
+    pub name: String,
+    /// Length unit of every number in the file: m, cm, mm or in.
+    pub unit: UnitName,
+    /// Largest number of surfaces met between laser and camera (3: S1, S2, S3).
+    pub max_bounces: u32,
+    pub laser: LaserTable,
+    pub camera: CameraTable,
+    #[serde(default)]
+    pub surface: Vec<SurfaceTable>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum UnitName {
+    M,
+    Cm,
+    Mm,
+    In,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LaserTable {
+    /// Power that lands on the wall, W.
+    pub power: f64,
+    /// Wavelength, m (always metres).
+    pub wavelength: f64,
+    /// Where the beam starts.
+    pub position: Triple,
+    /// Diameter of the spot on the wall; 0 is an ideal spot. For a Gaussian the 1/e² diameter.
+    #[serde(default)]
+    pub spot_diameter: f64,
+    /// Irradiance over the spot: disc (uniform) or gaussian.
+    #[serde(default)]
+    pub profile: ProfileName,
+    pub spots: SpotsTable,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum ProfileName {
+    #[default]
+    Disc,
+    Gaussian,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum LayoutName {
+    Square,
+    Lines,
+    Grid,
+    Ring,
+    Random,
+    List,
+}
+
+/// The keys of every layout; which of them a layout takes is checked in `spots`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SpotsTable {
+    /// square, lines, grid, ring, random or list.
+    pub layout: LayoutName,
+    /// Centre on the wall (square, grid, ring, random).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub centre: Option<[f64; 2]>,
+    /// Half the side of the square (square, grid, random).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub half_width: Option<f64>,
+    /// Spots along each side (square, grid).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub per_side: Option<u32>,
+    /// Offsets cycled along each side (square, lines); [] or absent for none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stagger: Option<Vec<f64>>,
+    /// Straight lines of spots (lines).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lines: Option<Vec<LineTable>>,
+    /// Radius (ring).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radius: Option<f64>,
+    /// Number of spots (ring, random).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub count: Option<u32>,
+    /// Angle of the first spot from +x, degrees (ring); default 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start_angle: Option<f64>,
+    /// Seed of the places (random).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+    /// The spots themselves (list).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub points: Option<Vec<[f64; 2]>>,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LineTable {
+    pub from: [f64; 2],
+    pub to: [f64; 2],
+    /// Spots on the line, both ends included.
+    pub count: u32,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CameraTable {
+    /// The pinhole.
+    pub position: Triple,
+    /// Area of the aperture, unit²; it stands parallel to the wall.
+    pub aperture_area: f64,
+    /// Rectangle on the wall that the pixel grid covers exactly.
+    pub view: ViewTable,
+    /// Columns (along x) and rows (along y).
+    pub pixels: [u32; 2],
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ViewTable {
+    pub x: [f64; 2],
+    pub y: [f64; 2],
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum RoleName {
+    Relay,
+    Hidden,
+    Occluder,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SurfaceTable {
+    pub name: String,
+    /// relay (S1 and S3), hidden (S2, recovered) or occluder.
+    pub role: RoleName,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rectangle: Option<RectangleTable>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sphere: Option<SphereTable>,
+    pub material: MaterialTable,
+    /// Resolution of the matrix model and of the recovery along u and v (hidden surfaces).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elements: Option<[u32; 2]>,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RectangleTable {
+    pub corner: Triple,
+    /// First edge; the front normal is u × v.
+    pub u: Triple,
+    /// Second edge.
+    pub v: Triple,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SphereTable {
+    pub centre: Triple,
+    pub radius: f64,
+    /// The side that reflects: outside (a ball) or inside (a cavity).
+    pub face: FaceName,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum FaceName {
+    Outside,
+    Inside,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MaterialTable {
+    /// Albedo in [0, 1]: a number, or a table that says how it varies over the surface.
+    pub lambertian: AlbedoTable,
+}
+
+/// `0.8`, or one of the procedural textures.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+pub(super) enum AlbedoTable {
+    Constant(f64),
+    Varied(Box<VariedTable>),
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct VariedTable {
+    /// Checks along u and v; cell (0, 0), at the corner, is dark.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub checkerboard: Option<[u32; 2]>,
+    /// Albedo of the dark checks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dark: Option<f64>,
+    /// Albedo of the light checks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light: Option<f64>,
+    /// Albedo cell by cell: rows along v, from the corner; each row along u.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cells: Option<Vec<Vec<f64>>>,
+    /// Albedo that changes linearly along u, from the corner on: [start, end].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ramp: Option<[f64; 2]>,
+}
+
+impl<'de> Deserialize<'de> for AlbedoTable {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Albedo;
+        impl<'de> Visitor<'de> for Albedo {
+            type Value = AlbedoTable;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("an albedo: a number in [0, 1], or a table with `checkerboard`, `cells` or `ramp`")
+            }
+            fn visit_f64<E: de::Error>(self, x: f64) -> Result<AlbedoTable, E> {
+                Ok(AlbedoTable::Constant(x))
+            }
+            fn visit_i64<E: de::Error>(self, x: i64) -> Result<AlbedoTable, E> {
+                Ok(AlbedoTable::Constant(x as f64))
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<AlbedoTable, A::Error> {
+                let table = VariedTable::deserialize(MapAccessDeserializer::new(map))?;
+                Ok(AlbedoTable::Varied(Box::new(table)))
+            }
+        }
+        deserializer.deserialize_any(Albedo)
+    }
+}

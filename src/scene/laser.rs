@@ -1,0 +1,134 @@
+//! The laser and its spots.
+
+use super::error::{Fault, keys};
+use super::file::{LaserTable, ProfileName};
+use super::spots;
+use super::surface::{Role, Surface};
+use crate::geometry::{DVec3, ShapeId, SurfacePoint};
+
+/// How the power is spread over a spot, in the wall's plane around the target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Profile {
+    /// A point.
+    Ideal,
+    /// Uniform irradiance within `radius`.
+    Disc {
+        /// Half the spot's diameter.
+        radius: f64,
+    },
+    /// Irradiance ∝ exp(−2r²/w²).
+    Gaussian {
+        /// w: where the irradiance has fallen to 1/e².
+        radius: f64,
+    },
+}
+
+/// One laser spot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spot {
+    /// The point of the wall that the beam is aimed at.
+    pub target: SurfacePoint,
+    /// The relay surface it lies on.
+    pub surface: ShapeId,
+}
+
+/// The laser: one beam at a time, from `position` to each spot in turn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Laser {
+    /// Power that lands at a spot, W.
+    pub power: f64,
+    /// Wavelength, m.
+    pub wavelength: f64,
+    /// Where the beams start.
+    pub position: DVec3,
+    /// Spread of each spot.
+    pub profile: Profile,
+    /// Spots, in the order of the layout.
+    pub spots: Vec<Spot>,
+}
+
+impl Laser {
+    pub(super) fn from_table(table: &LaserTable, surfaces: &[Surface]) -> Result<Self, Fault> {
+        let within = |f: Fault| f.within(keys!["laser"]);
+        let refuse = |key, cause, cure| Err(within(Fault::new(keys![key], cause, cure)));
+        if !(table.power > 0.0 && table.power.is_finite()) {
+            return refuse(
+                "power",
+                format!("laser power {} W", table.power),
+                "give a positive power in W",
+            );
+        }
+        if !(table.wavelength > 0.0 && table.wavelength.is_finite()) {
+            let cause = format!("wavelength {} m", table.wavelength);
+            return refuse("wavelength", cause, "give it in metres, e.g. 632.8e-9");
+        }
+        let d = table.spot_diameter;
+        if !(d >= 0.0 && d.is_finite()) {
+            return refuse(
+                "spot_diameter",
+                format!("spot diameter {d}"),
+                "use 0 or more",
+            );
+        }
+        if table.position.iter().any(|x| !x.is_finite()) {
+            return refuse(
+                "position",
+                "the laser's position is not finite".into(),
+                "use finite numbers",
+            );
+        }
+        let profile = match table.profile {
+            _ if d == 0.0 => Profile::Ideal,
+            ProfileName::Disc => Profile::Disc { radius: 0.5 * d },
+            ProfileName::Gaussian => Profile::Gaussian { radius: 0.5 * d },
+        };
+        let position = DVec3::from_array(table.position);
+        let places = spots::places(&table.spots).map_err(|f| f.within(keys!["laser", "spots"]))?;
+        let spots = place(&places, position, surfaces)?;
+        Ok(Self {
+            power: table.power,
+            wavelength: table.wavelength,
+            position,
+            profile,
+            spots,
+        })
+    }
+}
+
+/// Puts every (x, y) on the relay surface above or below it; of several the one nearest to the laser.
+pub(super) fn place(
+    places: &[[f64; 2]],
+    laser: DVec3,
+    surfaces: &[Surface],
+) -> Result<Vec<Spot>, Fault> {
+    let fault = |cause: String, cure: &str| Err(Fault::new(keys!["laser", "spots"], cause, cure));
+    let mut spots = Vec::with_capacity(places.len());
+    for (i, &[x, y]) in places.iter().enumerate() {
+        let distance = |s: &Spot| (s.target.position - laser).length_squared();
+        let spot = surfaces
+            .iter()
+            .enumerate()
+            .filter(|(_, s)| s.role == Role::Relay)
+            .filter_map(|(id, s)| {
+                s.shape.at_xy(x, y).map(|target| Spot {
+                    target,
+                    surface: id as ShapeId,
+                })
+            })
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let Some(spot) = spot else {
+            return fault(
+                format!("spot {i} at ({x}, {y}) falls off every relay surface"),
+                "move or shrink the layout, or extend the wall",
+            );
+        };
+        if (laser - spot.target.position).dot(spot.target.normal) <= 0.0 {
+            return fault(
+                format!("the laser stands behind the surface that spot {i} at ({x}, {y}) lies on"),
+                "move laser.position to the front of the wall (the side of u × v)",
+            );
+        }
+        spots.push(spot);
+    }
+    Ok(spots)
+}

@@ -1,0 +1,346 @@
+//! Layouts of the laser spots on the wall.
+//!
+//! The order in which a layout lists its spots is the spot index everywhere.
+
+use super::error::{Fault, keys};
+use super::file::{LayoutName, LineTable, SpotsTable};
+use crate::num::stream::{Key, Sampling, Stream};
+
+/// More spots than this are taken for a mistake.
+const MOST: u64 = 1_000_000;
+
+/// The places (x, y) on the wall that `table` lists.
+pub(super) fn places(table: &SpotsTable) -> Result<Vec<[f64; 2]>, Fault> {
+    refuse_foreign_keys(table)?;
+    let places = match table.layout {
+        LayoutName::Square => {
+            let stagger = table.stagger.as_deref().unwrap_or(&[]);
+            square(
+                centre(table)?,
+                half_width(table)?,
+                per_side(table)?,
+                stagger,
+            )
+        }
+        LayoutName::Grid => grid(centre(table)?, half_width(table)?, per_side(table)?),
+        LayoutName::Ring => ring(
+            centre(table)?,
+            positive("radius", needed("radius", table.radius)?)?,
+            at_least("count", needed("count", table.count)?, 1)?,
+            table.start_angle.unwrap_or(0.0),
+        ),
+        LayoutName::Random => random(
+            centre(table)?,
+            half_width(table)?,
+            at_least("count", needed("count", table.count)?, 1)?,
+            needed("seed", table.seed)?,
+        ),
+        LayoutName::Lines => {
+            let table_lines = table.lines.as_deref().unwrap_or(&[]);
+            lines(table_lines, table.stagger.as_deref().unwrap_or(&[]))?
+        }
+        LayoutName::List => table.points.clone().unwrap_or_default(),
+    };
+    if places.is_empty() {
+        return Err(Fault::new(
+            keys![],
+            "the layout lists no spot",
+            "give it at least one (`points = [[x, y]]` for a list)",
+        ));
+    }
+    match places
+        .iter()
+        .position(|p| !(p[0].is_finite() && p[1].is_finite()))
+    {
+        Some(i) => Err(Fault::new(
+            keys![],
+            format!("spot {i} has no finite place"),
+            "use finite numbers",
+        )),
+        None => Ok(places),
+    }
+}
+
+/// Sides of a square in turn: bottom by growing x, right by growing y, top by falling x, left by falling y; `n` spots
+/// each, both ends included, corners repeated. Offset k mod m of `stagger` is added to the y of bottom and top and
+/// to the x of left and right.
+fn square([cx, cy]: [f64; 2], half: f64, n: u32, stagger: &[f64]) -> Vec<[f64; 2]> {
+    let step = |k: u32| 2.0 * half * f64::from(k) / f64::from(n - 1) - half;
+    let offset = |k: u32| {
+        if stagger.is_empty() {
+            0.0
+        } else {
+            stagger[k as usize % stagger.len()]
+        }
+    };
+    let side = |f: &dyn Fn(u32) -> [f64; 2]| (0..n).map(f).collect::<Vec<_>>();
+    [
+        side(&|k| [cx + step(k), cy - half + offset(k)]),
+        side(&|k| [cx + half + offset(k), cy + step(k)]),
+        side(&|k| [cx - step(k), cy + half + offset(k)]),
+        side(&|k| [cx - half + offset(k), cy - step(k)]),
+    ]
+    .concat()
+}
+
+/// n × n spots over a square, rows along +y, each row along +x.
+fn grid([cx, cy]: [f64; 2], half: f64, n: u32) -> Vec<[f64; 2]> {
+    let step = |k: u32| 2.0 * half * f64::from(k) / f64::from(n - 1) - half;
+    (0..n * n)
+        .map(|i| [cx + step(i % n), cy + step(i / n)])
+        .collect()
+}
+
+/// `count` spots around a circle, counter-clockwise from `start` degrees off +x.
+fn ring([cx, cy]: [f64; 2], radius: f64, count: u32, start: f64) -> Vec<[f64; 2]> {
+    (0..count)
+        .map(|k| {
+            let turn = f64::from(k) / f64::from(count) + start / 360.0;
+            let (sin, cos) = libm::sincos(std::f64::consts::TAU * turn);
+            [cx + radius * cos, cy + radius * sin]
+        })
+        .collect()
+}
+
+/// Independent uniform places in a square.
+fn random([cx, cy]: [f64; 2], half: f64, count: u32, seed: u64) -> Vec<[f64; 2]> {
+    let key = Key {
+        seed,
+        spot: Key::ALL_SPOTS,
+        pixel: 0,
+        block: 0,
+    };
+    let mut stream = Stream::new(Sampling::Pcg, key);
+    (0..count)
+        .map(|_| {
+            let u = stream.next_four();
+            [
+                cx + half * (2.0 * u[0] - 1.0),
+                cy + half * (2.0 * u[1] - 1.0),
+            ]
+        })
+        .collect()
+}
+
+/// Lines one after the other, each from its first to its last spot. Offset k mod m of `stagger` moves spot k of a line
+/// to its left.
+fn lines(lines: &[LineTable], stagger: &[f64]) -> Result<Vec<[f64; 2]>, Fault> {
+    let mut places = Vec::new();
+    for (i, line) in lines.iter().enumerate() {
+        let n = at_least("count", line.count, 1).map_err(|f| f.within(keys!["lines", i]))?;
+        let [dx, dy] = [line.to[0] - line.from[0], line.to[1] - line.from[1]];
+        let length = (dx * dx + dy * dy).sqrt();
+        if length <= 0.0 && n > 1 {
+            return Err(Fault::new(
+                keys!["lines", i],
+                format!("line {i} has {n} spots but no length"),
+                "give it two different ends",
+            ));
+        }
+        for k in 0..n {
+            let t = if n > 1 {
+                f64::from(k) / f64::from(n - 1)
+            } else {
+                0.0
+            };
+            let offset = match stagger {
+                [] => 0.0,
+                offsets => offsets[k as usize % offsets.len()] / length.max(f64::MIN_POSITIVE),
+            };
+            places.push([
+                line.from[0] + t * dx - offset * dy,
+                line.from[1] + t * dy + offset * dx,
+            ]);
+        }
+    }
+    Ok(places)
+}
+
+fn needed<T>(key: &'static str, value: Option<T>) -> Result<T, Fault> {
+    value.ok_or_else(|| {
+        let cause = format!("this layout needs `{key}`");
+        Fault::new(keys![], cause, format!("add `{key} = …` to [laser.spots]"))
+    })
+}
+
+fn centre(table: &SpotsTable) -> Result<[f64; 2], Fault> {
+    needed("centre", table.centre)
+}
+
+fn half_width(table: &SpotsTable) -> Result<f64, Fault> {
+    positive("half_width", needed("half_width", table.half_width)?)
+}
+
+fn per_side(table: &SpotsTable) -> Result<u32, Fault> {
+    let n = at_least("per_side", needed("per_side", table.per_side)?, 2)?;
+    let total = if table.layout == LayoutName::Grid {
+        u64::from(n) * u64::from(n)
+    } else {
+        4 * u64::from(n)
+    };
+    if total > MOST {
+        let cause = format!("{total} spots are more than {MOST}");
+        return Err(Fault::new(keys!["per_side"], cause, "use fewer"));
+    }
+    Ok(n)
+}
+
+fn positive(key: &'static str, x: f64) -> Result<f64, Fault> {
+    if x > 0.0 && x.is_finite() {
+        return Ok(x);
+    }
+    Err(Fault::new(
+        keys![key],
+        format!("`{key}` is {x}, not a positive length"),
+        "use a positive number",
+    ))
+}
+
+fn at_least(key: &'static str, n: u32, least: u32) -> Result<u32, Fault> {
+    if n >= least && u64::from(n) <= MOST {
+        return Ok(n);
+    }
+    let cure = format!("use a whole number from {least} to {MOST}");
+    Err(Fault::new(keys![key], format!("`{key}` is {n}"), cure))
+}
+
+/// A key that this layout would ignore is an error: it shows that something else was meant.
+fn refuse_foreign_keys(table: &SpotsTable) -> Result<(), Fault> {
+    use LayoutName::{Grid, Lines, List, Random, Ring, Square};
+    let given: [(&'static str, bool, &[LayoutName]); 10] = [
+        (
+            "centre",
+            table.centre.is_some(),
+            &[Square, Grid, Ring, Random],
+        ),
+        (
+            "half_width",
+            table.half_width.is_some(),
+            &[Square, Grid, Random],
+        ),
+        ("per_side", table.per_side.is_some(), &[Square, Grid]),
+        ("stagger", table.stagger.is_some(), &[Square, Lines]),
+        ("lines", table.lines.is_some(), &[Lines]),
+        ("radius", table.radius.is_some(), &[Ring]),
+        ("count", table.count.is_some(), &[Ring, Random]),
+        ("start_angle", table.start_angle.is_some(), &[Ring]),
+        ("seed", table.seed.is_some(), &[Random]),
+        ("points", table.points.is_some(), &[List]),
+    ];
+    for (key, is_given, layouts) in given {
+        if is_given && !layouts.contains(&table.layout) {
+            let layout = format!("{:?}", table.layout).to_lowercase();
+            let cause = format!("the layout `{layout}` has no `{key}`");
+            return Err(Fault::new(
+                keys![key],
+                cause,
+                format!("remove `{key}`, or choose another layout"),
+            ));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn layout(text: &str) -> Result<Vec<[f64; 2]>, Fault> {
+        places(&toml::from_str(text).unwrap())
+    }
+
+    /// The published order and offsets: o(i) = 0, −1, +1 for i mod 3 = 0, 1, 2, i from 1 along each side.
+    #[test]
+    fn the_square_is_the_published_one() {
+        let spots = layout(
+            "layout = 'square'\ncentre = [5, 4]\nhalf_width = 6\nper_side = 30\nstagger = [-1, 1, 0]",
+        )
+        .unwrap();
+        assert_eq!(spots.len(), 120);
+        let (h, n) = (6.0, 30usize);
+        let xs = |i: usize| 5.0 - h + 2.0 * h * (i as f64 - 1.0) / (n as f64 - 1.0);
+        let ys = |i: usize| 4.0 + h - 2.0 * h * (i as f64 - 1.0) / (n as f64 - 1.0);
+        let o = |i: usize| [0.0, -1.0, 1.0][i % 3];
+        for i in 1..=n {
+            let published = [
+                [xs(i), 4.0 - h + o(i)],
+                [5.0 + h + o(i), ys(n + 1 - i)],
+                [xs(n + 1 - i), 4.0 + h + o(i)],
+                [5.0 - h + o(i), ys(i)],
+            ];
+            for (side, want) in published.iter().enumerate() {
+                let got = spots[side * n + i - 1];
+                assert!((got[0] - want[0]).abs() < 1e-12 && (got[1] - want[1]).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn the_other_layouts_are_where_they_should_be() {
+        let grid =
+            layout("layout = 'grid'\ncentre = [1, 2]\nhalf_width = 1\nper_side = 3").unwrap();
+        assert_eq!(
+            (grid.len(), grid[0], grid[1], grid[8]),
+            (9, [0.0, 1.0], [1.0, 1.0], [2.0, 3.0])
+        );
+        let ring = layout("layout = 'ring'\ncentre = [1, 2]\nradius = 2\ncount = 4").unwrap();
+        for (got, want) in ring
+            .iter()
+            .zip([[3.0, 2.0], [1.0, 4.0], [-1.0, 2.0], [1.0, 0.0]])
+        {
+            assert!((got[0] - want[0]).abs() < 1e-12 && (got[1] - want[1]).abs() < 1e-12);
+        }
+        let lines = layout(
+            "layout = 'lines'\nstagger = [0, 0.5]\nlines = [{ from = [0, 0], to = [4, 0], count = 3 }]",
+        )
+        .unwrap();
+        assert_eq!(lines, [[0.0, 0.0], [2.0, 0.5], [4.0, 0.0]]);
+        let text = "layout = 'random'\ncentre = [1, 2]\nhalf_width = 3\ncount = 50\nseed = 4";
+        let random = layout(text).unwrap();
+        assert_eq!(random, layout(text).unwrap());
+        assert!(
+            random
+                .iter()
+                .all(|p| (p[0] - 1.0).abs() <= 3.0 && (p[1] - 2.0).abs() <= 3.0)
+        );
+        assert_eq!(
+            layout("layout = 'list'\npoints = [[1, 2]]").unwrap(),
+            [[1.0, 2.0]]
+        );
+    }
+
+    #[test]
+    fn nonsense_is_refused_with_its_key() {
+        for (text, word) in [
+            (
+                "layout = 'square'\ncentre = [1, 2]\nhalf_width = 1",
+                "per_side",
+            ),
+            (
+                "layout = 'square'\ncentre = [1, 2]\nhalf_width = 1\nper_side = 1",
+                "per_side",
+            ),
+            (
+                "layout = 'square'\ncentre = [1, 2]\nhalf_width = -1\nper_side = 4",
+                "half_width",
+            ),
+            (
+                "layout = 'square'\ncentre = [nan, 2]\nhalf_width = 1\nper_side = 4",
+                "finite",
+            ),
+            ("layout = 'list'\npoints = []", "no spot"),
+            ("layout = 'list'\npoints = [[1, 2]]\nseed = 3", "seed"),
+            (
+                "layout = 'grid'\ncentre = [1, 2]\nhalf_width = 1\nper_side = 4000000000",
+                "per_side",
+            ),
+            (
+                "layout = 'lines'\nlines = [{ from = [0, 0], to = [0, 0], count = 3 }]",
+                "length",
+            ),
+        ] {
+            let fault = layout(text).unwrap_err();
+            assert!(fault.cause.contains(word), "{text}: {}", fault.cause);
+        }
+    }
+}

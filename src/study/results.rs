@@ -1,0 +1,123 @@
+//! Plain results: what a run found, ready to be written in any form.
+
+use serde::Serialize;
+
+use crate::matrix::Matrix;
+use crate::scene::Scene;
+
+/// How a run was rendered.
+#[derive(Clone, Debug, Serialize)]
+pub struct Settings {
+    /// Version of phicam.
+    pub version: String,
+    /// `independent` or `shared`.
+    pub estimator: String,
+    /// `pcg` or `sobol`.
+    pub sampler: String,
+    /// Seed.
+    pub seed: u64,
+    /// Paths per pixel and spot (`independent`) or per pixel (`shared`).
+    pub samples: u64,
+    /// Independent replicates that the samples are divided into.
+    pub blocks: u32,
+}
+
+/// One entry of Φcam, traced and modelled.
+#[derive(Clone, Debug, Serialize)]
+pub struct Entry {
+    /// Pixel index.
+    pub pixel: usize,
+    /// Spot index.
+    pub spot: usize,
+    /// Traced flux, W.
+    pub traced: f64,
+    /// Modelled flux, W.
+    pub modelled: f64,
+    /// Standard normal deviate of the difference.
+    pub z: f64,
+}
+
+/// Traced against modelled Φcam.
+#[derive(Clone, Debug, Serialize)]
+pub struct Agreement {
+    /// Whether both tests pass at the significance level.
+    pub agrees: bool,
+    /// `physical` or `published`.
+    pub kernel: String,
+    /// How the model integrates: `centres` or `quadrature`.
+    pub integration: String,
+    /// Family-wise error rate of the verdict.
+    pub significance: f64,
+    /// Entries compared.
+    pub entries: usize,
+    /// Mean of z² over the entries: 1 on average if the model is right.
+    pub chi2_per_dof: f64,
+    /// Independent degrees of freedom of that mean.
+    pub dof: f64,
+    /// Its upper tail probability.
+    pub chi2_p: f64,
+    /// Largest |z|.
+    pub largest_z: f64,
+    /// Largest |z| that the significance level allows for this many entries (Šidák).
+    pub z_limit: f64,
+    /// Relative Frobenius difference ‖traced − modelled‖/‖modelled‖.
+    pub relative_difference: f64,
+    /// What the traced standard error alone makes of that: ‖stderr‖/‖modelled‖.
+    pub relative_noise: f64,
+    /// Discretisation bound of the model, relative Frobenius norm.
+    pub relative_discretisation: f64,
+    /// Best single scale of the model: traced ≈ scale · modelled.
+    pub best_scale: f64,
+    /// The entries with the largest |z|.
+    pub worst: Vec<Entry>,
+}
+
+/// A recovered hidden surface.
+#[derive(Clone, Debug, Serialize)]
+pub struct RecoveredObject {
+    /// Name of the hidden surface.
+    pub surface: String,
+    /// Method.
+    pub method: String,
+    /// Elements along u and v.
+    pub elements: [usize; 2],
+    /// Recovered reflectance of element iu + iv·nu.
+    pub reflectance: Vec<f64>,
+    /// True albedo of the elements.
+    pub truth: Vec<f64>,
+    /// (White − Black)/(White + Black); absent if the truth has no contrast.
+    pub mtf_raw: Option<f64>,
+    /// The same after stretching the recovered values to [0, 1].
+    pub mtf_normalized: Option<f64>,
+    /// Pearson correlation with the truth.
+    pub correlation: Option<f64>,
+    /// Root mean square error against the truth.
+    pub rmse: f64,
+    /// Parameter used and why, in words.
+    pub parameter: String,
+}
+
+/// Everything that `phicam run` found.
+#[derive(Clone, Debug)]
+pub struct RunResults {
+    /// The scene.
+    pub scene: Scene,
+    /// How it was rendered.
+    pub settings: Settings,
+    /// Traced Φcam, pixels × spots, W.
+    pub phi: Matrix,
+    /// Its standard error.
+    pub stderr: Matrix,
+    /// Light that met exactly n surfaces: (n, share of the total flux).
+    pub bounces: Vec<(u32, f64)>,
+    /// Modelled Φcam; absent where nothing is hidden.
+    pub model: Option<Matrix>,
+    /// z of every entry, the same shape.
+    pub z: Option<Matrix>,
+    /// The verdict.
+    pub agreement: Option<Agreement>,
+    /// Recovered objects, a method after the other.
+    pub recovered: Vec<RecoveredObject>,
+    /// Wall time of each stage, s.
+    pub times: Vec<(String, f64)>,
+}
