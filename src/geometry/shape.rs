@@ -131,6 +131,29 @@ impl Shape {
         }
     }
 
+    /// A ball around the shape: centre and radius.
+    pub fn circumsphere(&self) -> (DVec3, f64) {
+        match self {
+            Self::Parallelogram(p) => {
+                let centre = p.at([0.5, 0.5]).position;
+                let reach = |c: DVec3| (c - centre).length();
+                (
+                    centre,
+                    p.corners().into_iter().map(reach).fold(0.0, f64::max),
+                )
+            }
+            Self::Sphere(s) => (s.centre, s.radius),
+        }
+    }
+
+    /// Distance from `p` to the shape: exact for rectangles and spheres, an upper bound for skewed patches.
+    pub fn distance_to(&self, p: DVec3) -> f64 {
+        match self {
+            Self::Parallelogram(s) => (s.at_position(p).position - p).length(),
+            Self::Sphere(s) => ((p - s.centre).length() - s.radius).abs(),
+        }
+    }
+
     /// Points spread over the shape, its corners or extremes among them, for conservative tests of what it can see.
     pub fn outline(&self) -> Vec<SurfacePoint> {
         match self {

@@ -4,4 +4,5 @@ pub mod linalg;
 pub mod quadrature;
 pub mod statistics;
 pub mod stream;
+pub mod summation;
 pub mod warp;

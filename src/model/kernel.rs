@@ -1,0 +1,110 @@
+//! The two kernels of G12 and G23.
+
+use crate::geometry::DVec3;
+
+/// Which cosine is taken at S2.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernel {
+    /// What light does: cosθ_wall · cosθ_S2 / R².
+    Physical,
+    /// What the published simulation computes: cosθ_wall · √(½·|r⊥|²)/R / R², where r⊥ is the part of the line that is
+    /// perpendicular to S2's u axis (on the bench (y1 − y2, z2)) and √½ the cosine of the hinge angle. Only for
+    /// reproducing published curves: on the bench it misses the transport integral by a third.
+    Published,
+}
+
+/// A point of the hidden surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct HiddenPoint {
+    pub position: DVec3,
+    pub normal: DVec3,
+    /// Unit vector along u.
+    pub u_axis: DVec3,
+}
+
+impl Kernel {
+    /// The name used on the command line and in the files of a run.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Physical => "physical",
+            Self::Published => "published",
+        }
+    }
+
+    /// G between a wall point with its normal and a hidden point, length⁻²; 0 where one sees only the other's back.
+    pub(super) fn between(self, wall: DVec3, normal: DVec3, hidden: &HiddenPoint) -> f64 {
+        let r = hidden.position - wall;
+        let r2 = r.length_squared();
+        let at_wall = r.dot(normal).max(0.0);
+        let at_hidden = match self {
+            Self::Physical => (-r.dot(hidden.normal)).max(0.0),
+            Self::Published => {
+                (0.5 * (r - hidden.u_axis * r.dot(hidden.u_axis)).length_squared()).sqrt()
+            }
+        };
+        at_wall * at_hidden / (r2 * r2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On the bench both kernels are the formulas of the published study: z2·(15.5 − y)/√2/R⁴ and
+    /// z2·√(½((y − y2)² + z2²))/R⁴.
+    #[test]
+    fn the_bench_has_its_published_formulas() {
+        let h = 0.5f64.sqrt();
+        for (x, y, x2, d) in [
+            (1.0, 2.0, 3.25, 6.0),
+            (9.0, 10.0, 6.5, 9.5),
+            (5.0, 4.4, 5.0, 7.9),
+        ] {
+            let (y2, z2) = (15.5 - d * h, d * h);
+            let r2: f64 = (x - x2) * (x - x2) + (y - y2) * (y - y2) + z2 * z2;
+            let hidden = HiddenPoint {
+                position: DVec3::new(x2, y2, z2),
+                normal: DVec3::new(0.0, -h, -h),
+                u_axis: DVec3::X,
+            };
+            let wall = DVec3::new(x, y, 0.0);
+            let physical = Kernel::Physical.between(wall, DVec3::Z, &hidden);
+            let want = z2 * (15.5 - y) * h / (r2 * r2);
+            assert!(
+                (physical / want - 1.0).abs() < 1e-14,
+                "{physical} for {want}"
+            );
+            let published = Kernel::Published.between(wall, DVec3::Z, &hidden);
+            let want = z2 * (0.5 * ((y - y2) * (y - y2) + z2 * z2)).sqrt() / (r2 * r2);
+            assert!(
+                (published / want - 1.0).abs() < 1e-14,
+                "{published} for {want}"
+            );
+        }
+    }
+
+    #[test]
+    fn backs_see_nothing() {
+        let hidden = HiddenPoint {
+            position: DVec3::Z,
+            normal: DVec3::Z,
+            u_axis: DVec3::X,
+        };
+        assert_eq!(
+            Kernel::Physical.between(DVec3::ZERO, DVec3::Z, &hidden),
+            0.0
+        );
+        let hidden = HiddenPoint {
+            normal: -DVec3::Z,
+            ..hidden
+        };
+        assert_eq!(
+            Kernel::Physical.between(DVec3::ZERO, DVec3::Z, &hidden),
+            1.0
+        );
+        assert_eq!(
+            Kernel::Physical.between(DVec3::ZERO, -DVec3::Z, &hidden),
+            0.0
+        );
+    }
+}

@@ -1,0 +1,167 @@
+//! The matrices of the model, elements and pixels by their centres.
+
+use std::f64::consts::FRAC_1_PI;
+
+use super::kernel::{HiddenPoint, Kernel};
+use super::sight::{self, WallPoint};
+use crate::geometry::DVec3;
+use crate::matrix::Matrix;
+use crate::scene::{Scene, Surface};
+
+/// Why a scene has no matrix model.
+#[derive(Debug, thiserror::Error, PartialEq)]
+pub enum ModelError {
+    /// Nothing is hidden.
+    #[error(
+        "the scene has no hidden surface, so there is no matrix model (give one surface role = \"hidden\")"
+    )]
+    NothingHidden,
+    /// The matrices would be absurdly large.
+    #[error(
+        "{elements} elements make matrices of {entries:e} entries (use fewer elements, pixels or spots)"
+    )]
+    TooLarge {
+        /// Elements asked for.
+        elements: usize,
+        /// Entries of the largest matrix.
+        entries: f64,
+    },
+}
+
+/// How one hidden surface is divided.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ElementGrid {
+    /// Name of the surface.
+    pub surface: String,
+    /// Elements along u and v.
+    pub count: [usize; 2],
+    /// Index of its first element; element iu + iv·nu follows by that much.
+    pub first: usize,
+}
+
+impl ElementGrid {
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        self.count[0] * self.count[1]
+    }
+
+    /// Whether it has none (it never has).
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// The matrix model of a scene.
+#[derive(Clone, Debug)]
+pub struct MatrixModel {
+    /// Kernel of both matrices.
+    pub kernel: Kernel,
+    /// Hidden surfaces in file order.
+    pub grids: Vec<ElementGrid>,
+    /// Elements × spots, length⁻².
+    pub g12: Matrix,
+    /// Pixels × elements, length⁻².
+    pub g23: Matrix,
+    /// Albedo of each element at its centre.
+    pub albedo: Vec<f64>,
+    /// C, pixels × elements: E_p·(ρ3/π)·G23/π.
+    pub camera_side: Matrix,
+    /// D, elements × spots, W: Φlaser·(ρ1/π)·A_j·G12, so that Φcam[p,l] = Σ_j C[p,j]·ρ2_j·D[j,l].
+    pub laser_side: Matrix,
+}
+
+/// Entries that a matrix may have.
+const MOST_ENTRIES: f64 = 2e9;
+
+impl MatrixModel {
+    /// The model of `scene`; `elements` replaces the elements a side that the scene gives.
+    ///
+    /// # Errors
+    /// [`ModelError`] if nothing is hidden or the matrices would have more than 2e9 entries.
+    pub fn new(
+        scene: &Scene,
+        kernel: Kernel,
+        elements: Option<[usize; 2]>,
+    ) -> Result<Self, ModelError> {
+        let mut grids: Vec<ElementGrid> = Vec::new();
+        let mut count = 0;
+        for (_, surface) in scene.hidden() {
+            let grid = ElementGrid {
+                surface: surface.name.clone(),
+                count: elements.unwrap_or(surface.elements),
+                first: count,
+            };
+            count += grid.len();
+            grids.push(grid);
+        }
+        if count == 0 {
+            return Err(ModelError::NothingHidden);
+        }
+        let (pixels, spots) = (scene.camera.pixels(), scene.laser.spots.len());
+        let entries = count as f64 * pixels.max(spots) as f64;
+        if entries > MOST_ENTRIES {
+            return Err(ModelError::TooLarge {
+                elements: count,
+                entries,
+            });
+        }
+        let mut points = Vec::with_capacity(count);
+        let mut areas = Vec::with_capacity(count);
+        let mut albedo = Vec::with_capacity(count);
+        for ((_, surface), grid) in scene.hidden().zip(&grids) {
+            let [nu, nv] = grid.count;
+            for element in 0..grid.len() {
+                let uv = [
+                    ((element % nu) as f64 + 0.5) / nu as f64,
+                    ((element / nu) as f64 + 0.5) / nv as f64,
+                ];
+                points.push(hidden_point(surface, uv));
+                areas.push(surface.shape.area() / grid.len() as f64);
+                albedo.push(surface.albedo.albedo(uv));
+            }
+        }
+        let seen: Vec<WallPoint> = (0..pixels)
+            .map(|p| sight::seen(scene, p, [0.5, 0.5], 1.0))
+            .collect();
+        let lit: Vec<WallPoint> = (0..spots)
+            .map(|l| sight::lit(scene, l, DVec3::ZERO, 1.0))
+            .collect();
+        let g = |wall: &WallPoint, j: usize| kernel.between(wall.position, wall.normal, &points[j]);
+        let g23 = Matrix::from_fn(pixels, count, |p, j| g(&seen[p], j));
+        let g12 = Matrix::from_fn(count, spots, |j, l| g(&lit[l], j));
+        let camera_side = Matrix::from_fn(pixels, count, |p, j| {
+            seen[p].weight * g23[(p, j)] * FRAC_1_PI
+        });
+        let laser_side =
+            Matrix::from_fn(count, spots, |j, l| lit[l].weight * areas[j] * g12[(j, l)]);
+        Ok(Self {
+            kernel,
+            grids,
+            g12,
+            g23,
+            albedo,
+            camera_side,
+            laser_side,
+        })
+    }
+
+    /// Φcam, pixels × spots, W.
+    pub fn phi(&self) -> Matrix {
+        let mut lit = self.laser_side.clone();
+        for (mut row, rho) in lit.row_iter_mut().zip(&self.albedo) {
+            row *= *rho;
+        }
+        &self.camera_side * lit
+    }
+}
+
+/// The point of a hidden surface with parameters `uv`.
+pub(super) fn hidden_point(surface: &Surface, uv: [f64; 2]) -> HiddenPoint {
+    let point = surface.shape.at(uv);
+    let along = surface.shape.at([1.0, uv[1]]).position - surface.shape.at([0.0, uv[1]]).position;
+    HiddenPoint {
+        position: point.position,
+        normal: point.normal,
+        u_axis: along.normalize_or(DVec3::X),
+    }
+}

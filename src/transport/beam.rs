@@ -1,0 +1,86 @@
+//! Where the laser's light lands.
+
+use crate::geometry::{Basis, DVec3, Ray, ShapeId};
+use crate::num::warp;
+use crate::scene::{Profile, Scene};
+
+/// A point lit by the beam: the first surface in its way, seen from the front.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LitPoint {
+    pub position: DVec3,
+    pub normal: DVec3,
+    pub shape: ShapeId,
+    pub albedo: f64,
+}
+
+/// The beams to all spots.
+#[derive(Debug)]
+pub(super) struct Beams<'a> {
+    scene: &'a Scene,
+    /// Where the beam lands if it has no width.
+    ideal: Vec<Option<LitPoint>>,
+    /// Spots that a pixel may see directly.
+    in_view: Vec<bool>,
+}
+
+impl<'a> Beams<'a> {
+    pub(super) fn new(scene: &'a Scene) -> Self {
+        let spots = 0..scene.laser.spots.len();
+        let mut beams = Self {
+            scene,
+            ideal: Vec::new(),
+            in_view: Vec::new(),
+        };
+        if !beams.has_width() {
+            beams.ideal = spots
+                .clone()
+                .map(|l| beams.land(scene.laser.spots[l].target.position))
+                .collect();
+        }
+        beams.in_view = spots
+            .map(|l| match beams.ideal.get(l) {
+                Some(point) => point.is_some_and(|p| scene.camera.pixel_of(p.position).is_some()),
+                None => true,
+            })
+            .collect();
+        beams
+    }
+
+    /// Whether the lit point is spread over an area and has to be sampled.
+    pub(super) fn has_width(&self) -> bool {
+        self.scene.laser.profile != Profile::Ideal
+    }
+
+    /// Whether the camera may see the light of spot `l` directly.
+    pub(super) fn in_view(&self, spot: usize) -> bool {
+        self.in_view[spot]
+    }
+
+    /// A point lit by beam `spot`, distributed as its power: the irradiance integrates to Φlaser, so that each sample
+    /// carries all of it. `None` where the beam's ray lands nowhere or on a black back.
+    pub(super) fn point(&self, spot: usize, u: [f64; 2]) -> Option<LitPoint> {
+        let (offset, radius) = match self.scene.laser.profile {
+            Profile::Ideal => return self.ideal[spot],
+            Profile::Disc { radius } => (warp::disc(u), radius),
+            Profile::Gaussian { radius } => (warp::gaussian_spot(u), radius),
+        };
+        let target = &self.scene.laser.spots[spot].target;
+        let [x, y] = offset.map(|c| c * radius);
+        self.land(target.position + Basis::around(target.normal).to_world([x, y, 0.0]))
+    }
+
+    /// First hit of the ray from the laser through `aim`.
+    fn land(&self, aim: DVec3) -> Option<LitPoint> {
+        let from = self.scene.laser.position;
+        let direction = (aim - from).try_normalize()?;
+        let hit = self.scene.bvh().closest(&Ray::new(from, direction), None)?;
+        let surface = &self.scene.surfaces[hit.shape as usize];
+        let point = surface.shape.at_position(from + direction * hit.t);
+        (point.normal.dot(direction) < 0.0).then(|| LitPoint {
+            position: point.position,
+            normal: point.normal,
+            shape: hit.shape,
+            albedo: surface.albedo.albedo(point.uv),
+        })
+    }
+}

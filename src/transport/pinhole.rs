@@ -1,0 +1,49 @@
+//! The camera's end of a path.
+
+use crate::geometry::Ray;
+use crate::scene::{Camera, Scene};
+
+use super::beam::LitPoint;
+use super::walk::Vertex;
+
+/// What pixel `pixel` sees through the point (a, b) of its footprint, and the étendue that the sample stands for.
+///
+/// The flux into the pixel is Φ = ∫ L · A_lens·cosθ_cam dΩ; with the footprint's area as measure dΩ = cosθ_view dA/d², and
+/// the aperture is parallel to the view: both cosines are the same. A uniform point of the footprint therefore carries
+/// A_footprint · A_lens · cos²θ/d², d the distance to the footprint (not to what stands in front of it).
+pub(super) fn first_vertex(scene: &Scene, pixel: usize, ab: [f64; 2]) -> Option<Vertex> {
+    let camera = &scene.camera;
+    let footprint = camera.footprint(pixel);
+    let line = Ray::between(camera.position, footprint.at(ab))?;
+    let cos = camera.view.normal().dot(line.direction).abs();
+    let etendue = footprint.area * camera.aperture_area * cos * cos / (line.length * line.length);
+    let hit = scene
+        .bvh()
+        .closest(&Ray::new(line.origin, line.direction), None)?;
+    Vertex::arrive(
+        scene,
+        hit.shape,
+        line.origin + line.direction * hit.t,
+        line.direction,
+        etendue,
+    )
+}
+
+/// The flux of the lit point itself into whichever pixel sees it, per watt of laser power: (pixel, flux).
+///
+/// A point that scatters Φ has the radiant intensity Φ·(ρ/π)·cosθ; the aperture fills A_lens·cosθ_cam/d² of solid angle.
+pub(super) fn direct(scene: &Scene, lit: &LitPoint) -> Option<(usize, f64)> {
+    let camera: &Camera = &scene.camera;
+    let pixel = camera.pixel_of(lit.position)?;
+    let ray = Ray::between(lit.position, camera.position)?;
+    let cos_lit = lit.normal.dot(ray.direction);
+    let cos_camera = camera.view.normal().dot(ray.direction);
+    if cos_lit <= 0.0 || cos_camera <= 0.0 || scene.bvh().blocked(&ray, [Some(lit.shape), None]) {
+        return None;
+    }
+    let solid_angle = camera.aperture_area * cos_camera / (ray.length * ray.length);
+    Some((
+        pixel,
+        lit.albedo * std::f64::consts::FRAC_1_PI * cos_lit * solid_angle,
+    ))
+}

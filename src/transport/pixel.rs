@@ -1,0 +1,122 @@
+//! All paths of one pixel.
+
+use std::f64::consts::FRAC_1_PI;
+use std::ops::Range;
+
+use super::beam::{Beams, LitPoint};
+use super::form::form;
+use super::pinhole;
+use super::render::{Estimator, Plan};
+use super::walk::{Vertex, Walk};
+use crate::num::stream::{Key, Stream};
+use crate::scene::Scene;
+
+/// Traces pixels of one scene by one plan.
+#[derive(Debug)]
+pub(super) struct PixelTracer<'a> {
+    scene: &'a Scene,
+    plan: &'a Plan,
+    beams: Beams<'a>,
+    walk: Walk<'a>,
+}
+
+impl<'a> PixelTracer<'a> {
+    pub(super) fn new(scene: &'a Scene, plan: &'a Plan) -> Self {
+        Self {
+            scene,
+            plan,
+            beams: Beams::new(scene),
+            walk: Walk::new(scene),
+        }
+    }
+
+    /// Block sums \[block\]\[order · columns + column\] of a pixel for the given spots, W; order n − 1 holds the light that
+    /// met n surfaces.
+    pub(super) fn trace(&self, pixel: usize, spots: &Range<usize>) -> Vec<Vec<f64>> {
+        let columns = spots.len();
+        let orders = self.scene.max_bounces as usize;
+        (0..self.plan.budget.blocks)
+            .map(|block| {
+                let mut sums = vec![0.0; orders * columns];
+                match self.plan.estimator {
+                    Estimator::Shared => {
+                        self.block(pixel, block, Key::ALL_SPOTS, spots, columns, &mut sums);
+                    }
+                    Estimator::Independent => {
+                        for (l, spot) in spots.clone().enumerate() {
+                            let own = spot..spot + 1;
+                            self.block(pixel, block, spot as u32, &own, columns, &mut sums[l..]);
+                        }
+                    }
+                }
+                sums
+            })
+            .collect()
+    }
+
+    /// One block of paths that serve `spots`; entry (order, l) of the sums stands at order·columns + l.
+    fn block(
+        &self,
+        pixel: usize,
+        block: u32,
+        key_spot: u32,
+        spots: &Range<usize>,
+        columns: usize,
+        sums: &mut [f64],
+    ) {
+        let key = Key {
+            seed: self.plan.seed,
+            spot: key_spot,
+            pixel: pixel as u32,
+            block,
+        };
+        let mut stream = Stream::new(self.plan.sampling, key);
+        let power = self.scene.laser.power;
+        let vertices = self.scene.max_bounces - 1;
+        let second = self.beams.has_width() || self.walk.chooses();
+        let mut lit: Vec<Option<LitPoint>> = Vec::with_capacity(spots.len());
+        for index in 0..self.plan.budget.size {
+            stream.start(index);
+            let [a, b, u, v] = stream.next_four();
+            let [choice, _, s, t] = if second { stream.next_four() } else { [0.0; 4] };
+            if lit.is_empty() || self.beams.has_width() {
+                lit.clear();
+                lit.extend(spots.clone().map(|spot| self.beams.point(spot, [s, t])));
+            }
+            for (l, spot) in spots.clone().enumerate() {
+                let point = lit[l].filter(|_| self.beams.in_view(spot));
+                match point.and_then(|point| pinhole::direct(self.scene, &point)) {
+                    Some((seen_by, flux)) if seen_by == pixel => sums[l] += power * flux,
+                    _ => {}
+                }
+            }
+            let first = pinhole::first_vertex(self.scene, pixel, [a, b]);
+            self.walk
+                .run(first, vertices, [u, v], choice, &mut stream, |n, vertex| {
+                    let radiance = vertex.throughput * vertex.albedo * FRAC_1_PI * power;
+                    let row = &mut sums[n as usize * columns..];
+                    for (sum, point) in row.iter_mut().zip(&lit) {
+                        if let Some(point) = point {
+                            *sum += radiance * self.connect(vertex, point);
+                        }
+                    }
+                });
+        }
+    }
+
+    /// V·cosθ·cosθ′/d² · ρ/π between a vertex and the lit point.
+    fn connect(&self, vertex: &Vertex, lit: &LitPoint) -> f64 {
+        let ends = ((vertex.position, vertex.normal), (lit.position, lit.normal));
+        match form(ends.0, ends.1) {
+            Some((form, ray))
+                if !self
+                    .scene
+                    .bvh()
+                    .blocked(&ray, [Some(vertex.shape), Some(lit.shape)]) =>
+            {
+                form * lit.albedo * FRAC_1_PI
+            }
+            _ => 0.0,
+        }
+    }
+}
