@@ -4,7 +4,7 @@ use faer::linalg::solvers::{Llt, Qr};
 use faer::{MatRef, Side};
 use nalgebra::{DMatrix, DVector};
 
-use super::{LinalgError, Tolerance, kept, scaled, svd};
+use super::{LinalgError, Tolerance, cut, scaled, svd};
 
 /// Singular values below this fraction of σ₁ are not trusted after an unpivoted QR, whose error on numerically
 /// rank-deficient input is about 4e-14 σ₁ (measured): three digits are kept above that.
@@ -164,7 +164,7 @@ pub fn normal_triangle(
         }
         Err(_) => {
             let decomposed = svd(&g)?;
-            let (rank, _) = kept(decomposed.sigma.as_slice(), n, n, Tolerance::Auto)?;
+            let (rank, _) = cut(decomposed.sigma.as_slice(), n, n, Tolerance::Auto)?;
             let mut r = decomposed.vt.rows(0, rank).into_owned();
             let mut d = &r * moment;
             for k in 0..rank {
@@ -208,7 +208,7 @@ fn solve_by_svd(
     route: Route,
 ) -> Result<LeastSquares, LinalgError> {
     let decomposed = svd(a)?;
-    let (rank, cutoff) = kept(decomposed.sigma.as_slice(), rows, a.ncols(), tolerance)?;
+    let (rank, cutoff) = cut(decomposed.sigma.as_slice(), rows, a.ncols(), tolerance)?;
     let vt = decomposed.vt.rows(0, rank).into_owned();
     let mut along = decomposed.u.columns(0, rank).transpose() * b;
     for (x, &s) in along.iter_mut().zip(decomposed.sigma.iter()) {

@@ -135,7 +135,10 @@ fn scaled(a: &DMatrix<f64>) -> Result<(DMatrix<f64>, i32), LinalgError> {
 
 /// How many of the descending singular values survive `tolerance` for a rows × columns matrix, and the value at or
 /// below which they were cut (same unit as σ).
-fn kept(
+///
+/// # Errors
+/// [`LinalgError::Tolerance`], [`LinalgError::Rank`].
+pub fn cut(
     sigma: &[f64],
     rows: usize,
     columns: usize,

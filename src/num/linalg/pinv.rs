@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{LinalgError, Tolerance, kept, svd};
+use super::{LinalgError, Tolerance, cut, svd};
 
 /// A⁺ and how it was cut.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,7 +24,7 @@ pub struct Pinv {
 /// Those of [`svd`](svd()), [`LinalgError::Tolerance`], [`LinalgError::Rank`], and [`LinalgError::Overflow`] where 1/σ exceeds f64.
 pub fn pinv(a: &DMatrix<f64>, tolerance: Tolerance) -> Result<Pinv, LinalgError> {
     let decomposed = svd(a)?;
-    let (rank, cutoff) = kept(decomposed.sigma.as_slice(), a.nrows(), a.ncols(), tolerance)?;
+    let (rank, cutoff) = cut(decomposed.sigma.as_slice(), a.nrows(), a.ncols(), tolerance)?;
     let mut v = decomposed.vt.rows(0, rank).transpose();
     for (mut column, &s) in v.column_iter_mut().zip(decomposed.sigma.iter()) {
         // Division, not multiplication by 1/σ: 1/σ of a subnormal σ would overflow before the entry is small enough.
