@@ -1,1 +1,7 @@
-//! Floor `metrics`.
+//! Floor 5: how far two things are apart. Recovered reflectances against the true object, one matrix against another.
+
+mod distance;
+mod modulation;
+
+pub use distance::{correlation, relative_frobenius, rmse};
+pub use modulation::{mtf_normalized, mtf_raw};

@@ -1,1 +1,69 @@
-//! Floor `recovery`.
+//! Floor 5: from the photographs back to the hidden reflectance.
+//!
+//! The photographs are the p × l matrix Φ (pixels × laser spots). Light that meets the hidden surface once makes it
+//!
+//! > Φ\[p,l\] = Σ_j C\[p,j\] ρ_j D\[j,l\]
+//!
+//! with C (p × r) the way from element j to pixel p, D (r × l) the way from spot l to element j, and ρ the reflectances (albedos)
+//! of the r elements. Absolute scale is the caller's: it is folded into C and D. Nothing here knows what scene it inverts;
+//! it is given three matrices and, if there is one, the standard error of each entry of Φ.
+//!
+//! | method | estimate |
+//! | --- | --- |
+//! | [`Method::Pinv`] | X = Φ D⁺, divided by C entry by entry, mean over pixels: the published method |
+//! | [`Method::Tsvd`] | the same with D's small singular values left out, as many as the noise asks for |
+//! | [`Method::Tikhonov`] | the same with them damped, as much as the noise asks for |
+//! | [`Method::Joint`] | least squares over all pixels and spots at once; unbiased |
+//! | [`Method::JointBounded`] | the same under 0 ≤ ρ ≤ 1 |
+//!
+//! ```
+//! use nalgebra::DMatrix;
+//! use phicam::recovery::{Method, Options, Problem, recover};
+//!
+//! // Two elements seen by one pixel under three spots; the first element is white, the second black.
+//! let c = DMatrix::from_row_slice(1, 2, &[1.0, 2.0]);
+//! let d = DMatrix::from_row_slice(2, 3, &[3.0, 2.0, 1.0, 1.0, 2.0, 3.0]);
+//! let phi = DMatrix::from_row_slice(1, 3, &[3.0, 2.0, 1.0]);
+//! let found = recover(Method::Joint, &Problem::new(&phi, &c, &d, None)?, &Options::default())?;
+//! assert!((found.reflectance[0] - 1.0).abs() < 1e-12 && found.reflectance[1].abs() < 1e-12);
+//! # Ok::<(), phicam::recovery::RecoveryError>(())
+//! ```
+
+mod discrepancy;
+mod joint;
+mod joint_bounded;
+mod khatri_rao;
+mod method;
+mod outcome;
+mod pinv;
+mod pixelwise;
+mod problem;
+mod tikhonov;
+mod tsvd;
+mod weights;
+
+pub use method::{Method, UnknownMethod};
+pub use outcome::{Choice, Parameter, Recovered, Solver};
+pub use problem::{Options, Problem, RecoveryError};
+pub use weights::Weighting;
+
+/// Recovers the reflectances of the r elements by the method asked for.
+///
+/// # Errors
+/// [`RecoveryError`]: what is missing for the method (and how to supply it), or what the matrices do not allow.
+pub fn recover(
+    method: Method,
+    problem: &Problem<'_>,
+    options: &Options,
+) -> Result<Recovered, RecoveryError> {
+    match method {
+        Method::Pinv => pinv::recover(problem, options),
+        Method::Tsvd => tsvd::recover(problem, options),
+        Method::Tikhonov => tikhonov::recover(problem, options),
+        Method::Joint => joint::recover(problem, options),
+        Method::JointBounded => joint_bounded::recover(problem, options),
+    }
+}
+
+#[cfg(test)]
+mod bench;

@@ -1,0 +1,35 @@
+//! Ill-conditioned matrices for the tests.
+
+use nalgebra::DMatrix;
+
+/// Hilbert's matrix 1/(i + j + 1).
+pub(super) fn hilbert(m: usize, n: usize) -> DMatrix<f64> {
+    DMatrix::from_fn(m, n, |i, j| 1.0 / (i + j + 1) as f64)
+}
+
+/// The kernel cosθs·cosθd/R² of a bench with 120 spots on a square of the given half-width (lengths in inches) and 8 × 8 elements
+/// on a plane leaning 45° over the wall: 64 × 120, smooth and so numerically rank deficient.
+pub(super) fn bench_g12(half_width: f64) -> DMatrix<f64> {
+    let (cx, cy) = (5.0, 15.5 - 7.86764 * 2f64.sqrt());
+    let h = half_width;
+    DMatrix::from_fn(64, 120, |j, l| {
+        let d = 5.86764 + 4.0 * ((j / 8) as f64 + 0.5) / 8.0;
+        let (x2, y2, z2) = (
+            3.0 + 4.0 * ((j % 8) as f64 + 0.5) / 8.0,
+            15.5 - d / 2f64.sqrt(),
+            d / 2f64.sqrt(),
+        );
+        let (along, across) = (
+            2.0 * h * (l % 30) as f64 / 29.0 - h,
+            h + [-1.0, 1.0, 0.0][l % 3],
+        );
+        let (x1, y1) = match l / 30 {
+            0 => (cx + along, cy - across),
+            1 => (cx + across, cy + along),
+            2 => (cx - along, cy + across),
+            _ => (cx - across, cy - along),
+        };
+        let r2 = (x2 - x1) * (x2 - x1) + (y2 - y1) * (y2 - y1) + z2 * z2;
+        z2 * (15.5 - y1) / (2f64.sqrt() * r2 * r2)
+    })
+}

@@ -1,0 +1,164 @@
+//! Dense linear algebra: the one door to matrix decompositions.
+//!
+//! Matrices are [`nalgebra::DMatrix<f64>`] (column-major) on both sides of the door; behind it the decompositions are
+//! those of `faer`, on one thread so that their bits do not depend on the number of cores. What this door adds to them:
+//!
+//! * empty, NaN and infinite input is refused with an error ([`LinalgError`]), never looped over and never a panic;
+//! * the matrix is scaled by a power of two to a largest entry in [1, 2) first, so entries near 1e300 or 1e-160
+//!   lose nothing;
+//! * the singular value decomposition of a tall or wide matrix never goes through an unpivoted QR first, which
+//!   would blur the singular values near the rank by three digits;
+//! * every singular value decomposition checks itself afterwards (see [`svd`]).
+//!
+//! [`svd`]: svd()
+
+mod least_squares;
+mod pinv;
+mod svd;
+
+pub use least_squares::{LeastSquares, Route, Triangle, least_squares, normal_triangle, triangle};
+pub use pinv::{Pinv, pinv};
+pub use svd::{Svd, svd};
+
+use nalgebra::DMatrix;
+
+/// Where a numerical rank is cut: singular values at or below the cut count as zero.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Tolerance {
+    /// max(m, n) · eps · σ₁: what rounding of the entries alone can make of an exact zero.
+    #[default]
+    Auto,
+    /// The given fraction of σ₁, in [0, 1).
+    Relative(f64),
+    /// Keep exactly this many singular values, at least one.
+    Rank(usize),
+}
+
+/// Why a matrix cannot be decomposed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LinalgError {
+    /// A side of the matrix is zero.
+    #[error(
+        "the matrix is {rows} × {columns} and so has nothing to decompose; give it at least one row and one column"
+    )]
+    Empty {
+        /// Rows of the matrix.
+        rows: usize,
+        /// Columns of the matrix.
+        columns: usize,
+    },
+    /// An entry is NaN or infinite.
+    #[error(
+        "the entry in row {row}, column {column} is {value}; every entry must be finite, so remove or repair it first"
+    )]
+    NotFinite {
+        /// Row of the first such entry, from 0.
+        row: usize,
+        /// Column of the first such entry, from 0.
+        column: usize,
+        /// The entry.
+        value: f64,
+    },
+    /// Two operands do not fit.
+    #[error("{what}: expected {expected}, found {found}; check which matrix was given where")]
+    Shape {
+        /// What was compared.
+        what: &'static str,
+        /// The length needed.
+        expected: usize,
+        /// The length given.
+        found: usize,
+    },
+    /// A tolerance that no matrix can have.
+    #[error(
+        "a rank cut of {0} σ₁ has no meaning; choose a number from 0 up to, but not including, 1"
+    )]
+    Tolerance(f64),
+    /// A rank the matrix does not have.
+    #[error(
+        "rank {asked} was asked for, but the matrix has only {available} singular values above zero; choose 1 to {available}"
+    )]
+    Rank {
+        /// The rank asked for.
+        asked: usize,
+        /// How many non-zero singular values there are.
+        available: usize,
+    },
+    /// The iteration of the decomposition did not converge.
+    #[error(
+        "the singular value decomposition did not converge; scale rows and columns to comparable size and try again"
+    )]
+    NoConvergence,
+    /// The decomposition failed its own check.
+    #[error(
+        "the decomposition does not reproduce its matrix: {check} is off by {error:.1e} (relative), allowed {allowed:.1e}; \
+         please report the matrix as a bug"
+    )]
+    Inaccurate {
+        /// Which of the checks failed.
+        check: &'static str,
+        /// Its relative error.
+        error: f64,
+        /// The error that rounding can explain.
+        allowed: f64,
+    },
+    /// A result is beyond the range of f64.
+    #[error("{0} overflows the range of f64; scale the matrix to entries of ordinary size")]
+    Overflow(&'static str),
+}
+
+/// The matrix times 2^−e, its largest entry then in [1, 2), and e. A zero matrix has e = 0.
+fn scaled(a: &DMatrix<f64>) -> Result<(DMatrix<f64>, i32), LinalgError> {
+    if a.is_empty() {
+        return Err(LinalgError::Empty {
+            rows: a.nrows(),
+            columns: a.ncols(),
+        });
+    }
+    let mut largest = 0.0f64;
+    for (index, &value) in a.iter().enumerate() {
+        if !value.is_finite() {
+            return Err(LinalgError::NotFinite {
+                row: index % a.nrows(),
+                column: index / a.nrows(),
+                value,
+            });
+        }
+        largest = largest.max(value.abs());
+    }
+    if largest == 0.0 {
+        return Ok((a.clone(), 0));
+    }
+    let exponent = libm::ilogb(largest);
+    Ok((a.map(|value| libm::scalbn(value, -exponent)), exponent))
+}
+
+/// How many of the descending singular values survive `tolerance` for a rows × columns matrix, and the value at or
+/// below which they were cut (same unit as σ).
+///
+/// # Errors
+/// [`LinalgError::Tolerance`], [`LinalgError::Rank`].
+pub fn cut(
+    sigma: &[f64],
+    rows: usize,
+    columns: usize,
+    tolerance: Tolerance,
+) -> Result<(usize, f64), LinalgError> {
+    let first = sigma.first().copied().unwrap_or(0.0);
+    let cutoff = match tolerance {
+        Tolerance::Auto => rows.max(columns) as f64 * f64::EPSILON * first,
+        Tolerance::Relative(fraction) if (0.0..1.0).contains(&fraction) => fraction * first,
+        Tolerance::Relative(fraction) => return Err(LinalgError::Tolerance(fraction)),
+        Tolerance::Rank(asked) => {
+            let available = sigma.iter().filter(|&&s| s > 0.0).count();
+            if asked == 0 || asked > available {
+                return Err(LinalgError::Rank { asked, available });
+            }
+            return Ok((asked, sigma.get(asked).copied().unwrap_or(0.0)));
+        }
+    };
+    Ok((sigma.iter().take_while(|&&s| s > cutoff).count(), cutoff))
+}
+
+#[cfg(test)]
+mod kernel;

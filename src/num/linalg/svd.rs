@@ -1,0 +1,214 @@
+//! The thin singular value decomposition, scaled and checked.
+
+use faer::diag::Diag;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::svd::{ComputeSvdVectors, SvdParams, svd as faer_svd, svd_scratch};
+use faer::{Auto, Mat, MatRef, Par, Spec};
+use nalgebra::{DMatrix, DVector};
+
+use super::{LinalgError, scaled};
+
+/// A = U Σ Vᵀ, thin: k = min(m, n).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Svd {
+    /// Left singular vectors, m × k, orthonormal columns.
+    pub u: DMatrix<f64>,
+    /// Singular values, descending, ≥ 0, in the unit of A.
+    pub sigma: DVector<f64>,
+    /// Right singular vectors as rows, k × n.
+    pub vt: DMatrix<f64>,
+}
+
+/// The thin singular value decomposition of an m × n matrix.
+///
+/// Before it is returned it must reproduce the matrix to rounding: with N = max(m, n),
+///
+/// > |Σσ² − ‖A‖²| ≤ 10 N eps ‖A‖²,   ‖A − U Σ Vᵀ‖ ≤ 10 N eps ‖A‖   (Frobenius norms)
+///
+/// # Errors
+/// [`LinalgError::Empty`], [`LinalgError::NotFinite`], [`LinalgError::NoConvergence`], [`LinalgError::Inaccurate`] if
+/// a check fails, [`LinalgError::Overflow`] if a singular value exceeds f64.
+pub fn svd(a: &DMatrix<f64>) -> Result<Svd, LinalgError> {
+    let (scaled, exponent) = scaled(a)?;
+    let mut result = decompose(&scaled)?;
+    check(&scaled, &result)?;
+    result.sigma.apply(|s| *s = libm::scalbn(*s, exponent));
+    if result.sigma.iter().any(|s| !s.is_finite()) {
+        return Err(LinalgError::Overflow("the largest singular value"));
+    }
+    Ok(result)
+}
+
+fn decompose(a: &DMatrix<f64>) -> Result<Svd, LinalgError> {
+    let (m, n) = a.shape();
+    let k = m.min(n);
+    // A QR before the bidiagonalisation costs three digits where the matrix is numerically rank deficient.
+    let mut params = <SvdParams as Auto<f64>>::auto();
+    params.qr_ratio_threshold = f64::INFINITY;
+    let params: Spec<SvdParams, f64> = params.into();
+    let thin = ComputeSvdVectors::Thin;
+    let mut memory = MemBuffer::new(svd_scratch::<f64>(m, n, thin, thin, Par::Seq, params));
+    let mut u = Mat::<f64>::zeros(m, k);
+    let mut v = Mat::<f64>::zeros(n, k);
+    let mut sigma = Diag::<f64>::zeros(k);
+    faer_svd(
+        MatRef::from_column_major_slice(a.as_slice(), m, n),
+        sigma.as_mut(),
+        Some(u.as_mut()),
+        Some(v.as_mut()),
+        Par::Seq,
+        MemStack::new(&mut memory),
+        params,
+    )
+    .map_err(|_| LinalgError::NoConvergence)?;
+    Ok(Svd {
+        u: DMatrix::from_fn(m, k, |i, j| u[(i, j)]),
+        sigma: DVector::from_fn(k, |i, _| sigma[i]),
+        vt: DMatrix::from_fn(k, n, |i, j| v[(j, i)]),
+    })
+}
+
+/// The two a-posteriori checks of [`svd`] on the scaled matrix.
+fn check(a: &DMatrix<f64>, svd: &Svd) -> Result<(), LinalgError> {
+    let norm = a.norm();
+    if norm == 0.0 {
+        return Ok(());
+    }
+    let allowed = 10.0 * a.nrows().max(a.ncols()) as f64 * f64::EPSILON;
+    let pass = |check, error: f64| match error <= allowed {
+        true => Ok(()),
+        false => Err(LinalgError::Inaccurate {
+            check,
+            error,
+            allowed,
+        }),
+    };
+    pass(
+        "the sum of squared singular values",
+        (svd.sigma.norm_squared() / (norm * norm) - 1.0).abs(),
+    )?;
+    let mut scaled_u = svd.u.clone();
+    for (mut column, &s) in scaled_u.column_iter_mut().zip(svd.sigma.iter()) {
+        column *= s;
+    }
+    pass(
+        "the product of the factors",
+        (a - scaled_u * &svd.vt).norm() / norm,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::linalg::kernel::{bench_g12, hilbert};
+
+    fn orthonormality(svd: &Svd) -> f64 {
+        let k = svd.sigma.len();
+        let identity = DMatrix::<f64>::identity(k, k);
+        (svd.u.transpose() * &svd.u - &identity)
+            .amax()
+            .max((&svd.vt * svd.vt.transpose() - identity).amax())
+    }
+
+    #[test]
+    fn planted_diagonal_is_found_descending() {
+        let a = DMatrix::from_row_slice(2, 3, &[0.0, 3.0, 0.0, -7.0, 0.0, 0.0]);
+        let svd = svd(&a).unwrap();
+        assert!((svd.sigma[0] - 7.0).abs() < 1e-14 && (svd.sigma[1] - 3.0).abs() < 1e-14);
+        assert_eq!((svd.u.shape(), svd.vt.shape()), ((2, 2), (2, 3)));
+    }
+
+    #[test]
+    fn all_ones_has_one_singular_value() {
+        // 1·1ᵀ of 64 × 120: σ₁ = √(64·120), all others zero.
+        let svd = svd(&DMatrix::from_element(64, 120, 1.0)).unwrap();
+        let exact = 7680f64.sqrt();
+        assert!((svd.sigma[0] / exact - 1.0).abs() < 1e-14);
+        assert!(svd.sigma[1] < 120.0 * f64::EPSILON * exact);
+        assert!(orthonormality(&svd) < 1e-13);
+    }
+
+    #[test]
+    fn scale_is_a_power_of_two_and_costs_nothing() {
+        let a = bench_g12(3.0);
+        let base = svd(&a).unwrap();
+        for exponent in [980, -520, -900] {
+            let moved = svd(&a.map(|x| libm::scalbn(x, exponent))).unwrap();
+            assert_eq!(moved.u, base.u);
+            assert_eq!(moved.sigma, base.sigma.map(|s| libm::scalbn(s, exponent)));
+        }
+        for factor in [1e300, 1e-160] {
+            let moved = svd(&(&a * factor)).unwrap();
+            assert!((moved.sigma[0] / factor / base.sigma[0] - 1.0).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn ill_conditioned_matrices_keep_orthonormal_factors() {
+        for a in [
+            hilbert(12, 12),
+            hilbert(40, 9),
+            hilbert(9, 40),
+            bench_g12(3.0),
+            bench_g12(6.0),
+        ] {
+            assert!(orthonormality(&svd(&a).unwrap()) < 1e-13);
+        }
+        // The 12 × 12 Hilbert matrix: σ₁ = 1.7953720595619977 (its largest eigenvalue), determinant 2.6e-78.
+        let sigma = svd(&hilbert(12, 12)).unwrap().sigma;
+        assert!((sigma[0] - 1.795_372_059_561_997_7).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_wrong_factor_is_noticed() {
+        let a = bench_g12(3.0);
+        let mut wrong = decompose(&a).unwrap();
+        assert!(check(&a, &wrong).is_ok());
+        wrong.u[(3, 0)] += 1e-9;
+        assert!(matches!(
+            check(&a, &wrong),
+            Err(LinalgError::Inaccurate { .. })
+        ));
+        let mut wrong = decompose(&a).unwrap();
+        wrong.sigma[0] *= 1.0 + 1e-9;
+        assert!(matches!(
+            check(&a, &wrong),
+            Err(LinalgError::Inaccurate { .. })
+        ));
+    }
+
+    #[test]
+    fn bad_input_is_refused() {
+        let mut a = DMatrix::from_element(3, 4, 1.0);
+        a[(1, 2)] = f64::NAN;
+        assert!(matches!(
+            svd(&a),
+            Err(LinalgError::NotFinite {
+                row: 1,
+                column: 2,
+                ..
+            })
+        ));
+        a[(1, 2)] = f64::NEG_INFINITY;
+        assert!(matches!(
+            svd(&a),
+            Err(LinalgError::NotFinite {
+                row: 1,
+                column: 2,
+                ..
+            })
+        ));
+        assert_eq!(
+            svd(&DMatrix::zeros(0, 4)),
+            Err(LinalgError::Empty {
+                rows: 0,
+                columns: 4
+            })
+        );
+        assert!(matches!(
+            svd(&DMatrix::from_element(9, 9, f64::MAX)),
+            Err(LinalgError::Overflow(_))
+        ));
+        assert_eq!(svd(&DMatrix::zeros(3, 2)).unwrap().sigma, DVector::zeros(2));
+    }
+}

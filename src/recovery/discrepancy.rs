@@ -1,0 +1,184 @@
+//! Morozov's discrepancy principle with equivalent degrees of freedom.
+//!
+//! A regularised inverse with filter factors f_i maps Φ to Φ P, P = Σ f_i v_i v_iᵀ (v_i the right singular vectors of D). Of independent noise with
+//! variances σ²\[p,l\] it leaves over
+//!
+//! > target² = Σ_pl σ²\[p,l\] (1 − P_ll),
+//!
+//! exactly E‖N(1 − P)‖² where directions are kept or dropped, and for damped ones the equivalent-degrees-of-freedom form of it (Hall and Titterington 1987),
+//! whose root exists in expectation. ‖N(1 − P)‖² scatters about it by at most √(2 Σ σ⁴ (1 − P_ll)); two of those are allowed:
+//!
+//! > ‖Φ P − Φ‖² ≤ limit² = target² + 2 √(2 Σ σ⁴ (1 − P_ll))
+//!
+//! and the strongest regularisation that satisfies it is taken.
+
+use nalgebra::DMatrix;
+
+use super::{Choice, Method, Problem, RecoveryError};
+use crate::num::linalg::Svd;
+
+/// Everything of Φ and its noise that the residual depends on.
+pub(super) struct Discrepancy {
+    parameter: &'static str,
+    /// ‖Φ v_i‖², and what lies outside all v_i.
+    along: Vec<f64>,
+    outside: f64,
+    /// Σ σ² and Σ σ⁴ in all, and along each v_i: Σ_l (Σ_p σ²) v_il².
+    variance: f64,
+    variance_along: Vec<f64>,
+    fourth: f64,
+    fourth_along: Vec<f64>,
+}
+
+/// Squares of the three norms of [`Choice::Discrepancy`].
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Level {
+    residual: f64,
+    target: f64,
+    limit: f64,
+}
+
+impl Level {
+    pub(super) fn accepted(&self) -> bool {
+        self.residual <= self.limit
+    }
+
+    pub(super) fn choice(&self) -> Choice {
+        Choice::Discrepancy {
+            residual: self.residual.sqrt(),
+            target: self.target.sqrt(),
+            limit: self.limit.sqrt(),
+        }
+    }
+}
+
+impl Discrepancy {
+    /// For filters on the first `rank` singular directions. Errors name `parameter` as what could be given instead.
+    pub(super) fn new(
+        method: Method,
+        parameter: &'static str,
+        problem: &Problem<'_>,
+        laser: &Svd,
+        rank: usize,
+    ) -> Result<Self, RecoveryError> {
+        let stderr = problem
+            .noise()
+            .ok_or(RecoveryError::NoNoiseModel { method, parameter })?;
+        let vt = laser.vt.rows(0, rank);
+        let coordinates = problem.phi * vt.transpose();
+        let outside = (problem.phi - &coordinates * vt).norm_squared();
+        let powers = |exponent: i32| -> Vec<f64> {
+            stderr
+                .column_iter()
+                .map(|c| c.iter().map(|s| s.powi(exponent)).sum())
+                .collect()
+        };
+        let project = |per_spot: &[f64]| -> Vec<f64> {
+            vt.row_iter()
+                .map(|v| v.iter().zip(per_spot).map(|(v, s)| v * v * s).sum())
+                .collect()
+        };
+        let (second, fourth) = (powers(2), powers(4));
+        let all = Discrepancy {
+            parameter,
+            along: coordinates
+                .column_iter()
+                .map(|c| c.norm_squared())
+                .collect(),
+            outside,
+            variance: second.iter().sum(),
+            variance_along: project(&second),
+            fourth: fourth.iter().sum(),
+            fourth_along: project(&fourth),
+        };
+        let none = all.level(&vec![0.0; rank]);
+        if none.accepted() {
+            return Err(RecoveryError::NoSignal {
+                signal: none.residual.sqrt(),
+                limit: none.limit.sqrt(),
+                parameter,
+            });
+        }
+        Ok(all)
+    }
+
+    /// Residual, target and limit for filter factors in [0, 1].
+    pub(super) fn level(&self, filter: &[f64]) -> Level {
+        let left = |whole: f64, along: &[f64]| {
+            (whole - along.iter().zip(filter).map(|(x, f)| x * f).sum::<f64>()).max(0.0)
+        };
+        let missed: f64 = self
+            .along
+            .iter()
+            .zip(filter)
+            .map(|(z, f)| z * (1.0 - f) * (1.0 - f))
+            .sum();
+        let target = left(self.variance, &self.variance_along);
+        let limit = target + 2.0 * (2.0 * left(self.fourth, &self.fourth_along)).sqrt();
+        Level {
+            residual: self.outside + missed,
+            target,
+            limit,
+        }
+    }
+
+    /// The error where not even `weakest` is accepted.
+    pub(super) fn understated(&self, weakest: Level) -> RecoveryError {
+        RecoveryError::NoiseUnderstated {
+            residual: weakest.residual.sqrt(),
+            limit: weakest.limit.sqrt(),
+            parameter: self.parameter,
+        }
+    }
+}
+
+/// Filter factors σ²/(σ² + λ²).
+pub(super) fn damped(sigma: &[f64], lambda: f64) -> Vec<f64> {
+    sigma
+        .iter()
+        .map(|s| 1.0 / (1.0 + (lambda / s) * (lambda / s)))
+        .collect()
+}
+
+/// Filter factors of a truncation after `kept` of `rank`.
+pub(super) fn truncated(kept: usize, rank: usize) -> Vec<f64> {
+    (0..rank).map(|i| f64::from(u8::from(i < kept))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::bench::{Bench, normal_stream};
+    use super::*;
+    use crate::num::linalg::svd;
+
+    /// The target is the mean of ‖N(1 − P)‖² over noise, and two allowed deviations cover at least 95 of 100 draws.
+    #[test]
+    fn target_and_limit_describe_pure_noise() {
+        let bench = Bench::new(3.0, 4, 4);
+        let laser = svd(&bench.d).unwrap();
+        let stderr = DMatrix::from_fn(16, 120, |p, l| 1.0 + (p % 3) as f64 + (l % 4) as f64);
+        let mut normal = normal_stream(21);
+        let (trials, kept) = (400, 6);
+        let (mut sum, mut squares, mut inside) = (0.0, 0.0, 0);
+        let mut target = 0.0;
+        for _ in 0..trials {
+            let noise = stderr.map(|s| s * normal());
+            // A huge planted signal along v_1 keeps "no signal" away and is removed by P exactly.
+            let phi = &noise + DMatrix::from_element(16, 1, 1e6) * laser.vt.rows(0, 1);
+            let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+            let all = Discrepancy::new(Method::Tsvd, "rank", &problem, &laser, 16).unwrap();
+            let level = all.level(&truncated(kept, 16));
+            target = level.target;
+            sum += level.residual;
+            squares += level.residual * level.residual;
+            inside += usize::from(level.accepted());
+        }
+        let mean = sum / f64::from(trials);
+        let spread = (squares / f64::from(trials) - mean * mean).sqrt();
+        assert!(
+            (mean - target).abs() < 5.0 * spread / f64::from(trials).sqrt(),
+            "{mean} {target} {spread}"
+        );
+        assert!(inside >= 380, "{inside}");
+    }
+}

@@ -1,0 +1,194 @@
+//! The weighted least-squares operator over all pixels and spots, compressed.
+//!
+//! > minimise Σ_pl w_p v_l (Φ\[p,l\] − Σ_j C\[p,j\] ρ_j D\[j,l\])²
+//!
+//! Its matrix has a row for every (pixel, spot) and is the Khatri–Rao (column-wise Kronecker) product of C̃ = √W C and (D √V)ᵀ = D̃ᵀ. With
+//! C̃ = U_c Σ_c V_cᵀ and D̃ = U_d Σ_d V_dᵀ the sum above is, but for a constant,
+//!
+//! > Σ_ab (F\[a,b\] − Σ_j (Σ_c V_cᵀ)\[a,j\] (U_d Σ_d)\[j,b\] ρ_j)²,   F = U_cᵀ √W Φ √V V_d,
+//!
+//! so only rank(C̃)·rank(D̃) rows remain. Directions below the rounding of C̃ and D̃ are dropped.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{Problem, RecoveryError, Weighting, weights};
+use crate::num::linalg::{
+    LeastSquares, Route, Svd, Tolerance, Triangle, cut, least_squares, normal_triangle, svd,
+    triangle,
+};
+
+/// The problem after compression.
+pub(super) struct Operator {
+    form: Form,
+    elements: usize,
+    pub(super) weighting: Weighting,
+}
+
+enum Form {
+    /// The Khatri–Rao product of the small factors and the compressed Φ as one column.
+    Small { a: DMatrix<f64>, b: DVector<f64> },
+    /// From the Gram matrix (C̃ᵀC̃) ∘ (D̃D̃ᵀ), where the product is beyond the budget.
+    Normal(Triangle),
+}
+
+/// U_k, Σ_k V_kᵀ of a side, cut at its rounding.
+fn compress(side: &DMatrix<f64>, name: &'static str) -> Result<(Svd, usize), RecoveryError> {
+    let decomposed = svd(side)?;
+    let (rank, _) = cut(
+        decomposed.sigma.as_slice(),
+        side.nrows(),
+        side.ncols(),
+        Tolerance::Auto,
+    )?;
+    if rank == 0 {
+        Err(RecoveryError::RankZero { side: name })
+    } else {
+        Ok((decomposed, rank))
+    }
+}
+
+impl Operator {
+    /// Weighs and compresses; `budget` is the largest number of entries of the small Khatri–Rao product.
+    pub(super) fn new(problem: &Problem<'_>, budget: usize) -> Result<Self, RecoveryError> {
+        let weights = weights::fit(problem.stderr, problem.phi.nrows(), problem.phi.ncols());
+        let by_pixel = |m: &DMatrix<f64>| {
+            DMatrix::from_fn(m.nrows(), m.ncols(), |p, j| weights.pixels[p] * m[(p, j)])
+        };
+        let by_spot = |m: &DMatrix<f64>| {
+            DMatrix::from_fn(m.nrows(), m.ncols(), |j, l| m[(j, l)] * weights.spots[l])
+        };
+        let (c, d, phi) = (
+            by_pixel(problem.c),
+            by_spot(problem.d),
+            by_spot(&by_pixel(problem.phi)),
+        );
+        let (camera, rc) = compress(&c, "camera side C")?;
+        let (laser, rd) = compress(&d, "laser side D")?;
+        let elements = c.ncols();
+        let form = if rc.saturating_mul(rd).saturating_mul(elements) <= budget {
+            let left = |a: usize, j: usize| camera.sigma[a] * camera.vt[(a, j)];
+            let right = |j: usize, b: usize| laser.u[(j, b)] * laser.sigma[b];
+            let a = DMatrix::from_fn(rc * rd, elements, |row, j| {
+                left(row % rc, j) * right(j, row / rc)
+            });
+            let f = camera.u.columns(0, rc).transpose() * phi * laser.vt.rows(0, rd).transpose();
+            Form::Small {
+                a,
+                b: DVector::from_column_slice(f.as_slice()),
+            }
+        } else {
+            let gram = (c.transpose() * &c).component_mul(&(&d * d.transpose()));
+            let along = (c.transpose() * &phi).component_mul(&d);
+            Form::Normal(normal_triangle(
+                &gram,
+                &along.column_sum(),
+                phi.norm_squared(),
+            )?)
+        };
+        Ok(Operator {
+            form,
+            elements,
+            weighting: weights.weighting,
+        })
+    }
+
+    /// Rows of the matrix that is decomposed, by which an automatic rank cut is scaled.
+    pub(super) fn rows(&self) -> usize {
+        match &self.form {
+            Form::Small { a, .. } => a.nrows(),
+            Form::Normal(_) => self.elements,
+        }
+    }
+
+    /// The tolerance that can be kept: a Gram matrix holds only rounding below √(r eps) σ₁.
+    pub(super) fn tolerance(&self, asked: Tolerance) -> Tolerance {
+        let floor = (self.elements as f64 * f64::EPSILON).sqrt();
+        match (&self.form, asked) {
+            (Form::Normal(_), Tolerance::Auto) => Tolerance::Relative(floor),
+            (Form::Normal(_), Tolerance::Relative(x)) if x < floor => Tolerance::Relative(floor),
+            _ => asked,
+        }
+    }
+
+    /// The minimum-norm solution, singular values cut at [`Operator::tolerance`].
+    pub(super) fn solve(&self, tolerance: Tolerance) -> Result<LeastSquares, RecoveryError> {
+        let tolerance = self.tolerance(tolerance);
+        let solved = match &self.form {
+            Form::Small { a, b } => least_squares(a, b, tolerance)?,
+            Form::Normal(reduced) => reduced.solve(self.elements, tolerance, Route::Normal)?,
+        };
+        if solved.rank == 0 {
+            return Err(RecoveryError::RankZero {
+                side: "model C, D as a whole",
+            });
+        }
+        Ok(solved)
+    }
+
+    /// R and d of ‖R ρ − d‖, the same objective but for a constant.
+    pub(super) fn reduced(&self) -> Result<Triangle, RecoveryError> {
+        Ok(match &self.form {
+            Form::Small { a, b } => triangle(a, b)?,
+            Form::Normal(reduced) => reduced.clone(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::bench::{Bench, normal_stream};
+    use super::*;
+
+    /// The objective of the compressed problem and of the full sum differ by a constant: compare differences from ρ = 0.
+    #[test]
+    fn the_compressed_objective_is_the_full_one() {
+        let bench = Bench::new(3.0, 3, 3);
+        let mut normal = normal_stream(5);
+        let phi = bench
+            .phi(&bench.board(3))
+            .map(|x| x * (1.0 + 0.3 * normal()));
+        let stderr = DMatrix::from_fn(9, 120, |p, l| {
+            1e-13 * (1.0 + p as f64) * (1.0 + (l % 5) as f64)
+        });
+        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+        let full = |rho: &DVector<f64>| {
+            (phi.clone() - bench.phi(rho))
+                .component_div(&stderr)
+                .norm_squared()
+        };
+        for budget in [usize::MAX, 0] {
+            let reduced = Operator::new(&problem, budget).unwrap().reduced().unwrap();
+            let small = |rho: &DVector<f64>| (&reduced.r * rho - &reduced.d).norm_squared();
+            let zero = DVector::zeros(9);
+            for _ in 0..4 {
+                let rho = DVector::from_fn(9, |_, _| normal());
+                let (full, small) = (full(&rho) - full(&zero), small(&rho) - small(&zero));
+                assert!((full / small - 1.0).abs() < 1e-9, "{full} {small}");
+            }
+        }
+    }
+
+    #[test]
+    fn both_routes_solve_a_well_conditioned_problem_alike() {
+        let bench = Bench::new(6.0, 2, 4);
+        let mut normal = normal_stream(6);
+        let phi = bench
+            .phi(&bench.board(2))
+            .map(|x| x * (1.0 + 0.1 * normal()));
+        let problem = Problem::new(&phi, &bench.c, &bench.d, None).unwrap();
+        let small = Operator::new(&problem, usize::MAX)
+            .unwrap()
+            .solve(Tolerance::Auto)
+            .unwrap();
+        let normal = Operator::new(&problem, 0)
+            .unwrap()
+            .solve(Tolerance::Auto)
+            .unwrap();
+        assert_eq!((small.route, normal.route), (Route::Qr, Route::Normal));
+        let condition = small.sigma[0] / small.sigma[3];
+        assert!(
+            (small.solution - normal.solution).norm()
+                < 100.0 * f64::EPSILON * condition * condition
+        );
+    }
+}

@@ -1,0 +1,115 @@
+//! What a recovery returns.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{Method, Weighting};
+
+/// A regularisation parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Parameter {
+    /// The method has none.
+    None,
+    /// Singular directions kept.
+    Rank(usize),
+    /// Tikhonov's λ, as a fraction of D's largest singular value.
+    Damping(f64),
+}
+
+/// Why the parameter has its value. Norms are Frobenius norms over pixels and spots, W.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Choice {
+    /// The caller gave it.
+    Given,
+    /// The discrepancy principle: the strongest regularisation whose residual the noise explains.
+    Discrepancy {
+        /// ‖Φ P − Φ‖, what the regularised projector P leaves over.
+        residual: f64,
+        /// √E‖noise left over‖²: what noise alone should leave over, √Σ σ²\[p,l\] (1 − leverage_l).
+        target: f64,
+        /// The target two standard deviations of ‖noise‖² up: residuals to here are accepted.
+        limit: f64,
+    },
+    /// A numerical rank cut.
+    Tolerance {
+        /// Singular values at or below this count as zero, in the unit of the matrix decomposed.
+        cutoff: f64,
+    },
+    /// Nothing was cut and nothing chosen.
+    None,
+}
+
+/// How an iterative solver ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solver {
+    /// In its own words.
+    pub status: String,
+    /// Interior-point iterations.
+    pub iterations: u32,
+    /// Active-set steps after them.
+    pub refinements: usize,
+    /// The objective ½ Σ w_p v_l (Φ − C diag(ρ) D)², less what no ρ can change.
+    pub objective: f64,
+    /// Upper bound on the objective's distance from its minimum, same unit.
+    pub gap: f64,
+}
+
+/// Recovered reflectances and how they came about.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recovered {
+    /// ρ, one per element; not clipped, except by the bounds of `joint-bounded`.
+    pub reflectance: DVector<f64>,
+    /// Standard error of each reflectance as the noise model makes it; none without a noise model, and none under bounds.
+    pub standard_error: Option<DVector<f64>>,
+    /// Covariance of the reflectances (r × r), of `joint` with a noise model.
+    pub covariance: Option<DMatrix<f64>>,
+    /// The method used.
+    pub method: Method,
+    /// The regularisation used.
+    pub parameter: Parameter,
+    /// Why that one.
+    pub choice: Choice,
+    /// How the entries of Φ were weighted.
+    pub weighting: Weighting,
+    /// Singular values of the matrix inverted, descending: D for the methods that work pixel by pixel, the whole
+    /// (weighted) operator for the joint ones.
+    pub sigma: DVector<f64>,
+    /// Singular directions that were not dropped.
+    pub rank: usize,
+    /// Σ of the filter factors: `rank` where directions are kept or dropped, less where they are damped.
+    pub effective_rank: f64,
+    /// ‖Φ − C diag(ρ) D‖, Frobenius, W.
+    pub residual: f64,
+    /// The same over ‖Φ‖; zero where Φ is zero.
+    pub relative_residual: f64,
+    /// The iterative solver's report, of `joint-bounded`.
+    pub solver: Option<Solver>,
+}
+
+impl Recovered {
+    /// A recovery without parameter, weights or noise model, its residual measured.
+    pub(super) fn plain(
+        method: Method,
+        problem: &super::Problem<'_>,
+        reflectance: DVector<f64>,
+        sigma: DVector<f64>,
+        rank: usize,
+    ) -> Self {
+        let residual = problem.residual(&reflectance);
+        let whole = problem.phi.norm();
+        Recovered {
+            reflectance,
+            standard_error: None,
+            covariance: None,
+            method,
+            parameter: Parameter::None,
+            choice: Choice::None,
+            weighting: Weighting::Unweighted,
+            sigma,
+            rank,
+            effective_rank: rank as f64,
+            residual,
+            relative_residual: if whole > 0.0 { residual / whole } else { 0.0 },
+            solver: None,
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! The published reduction with D's small singular values damped: D^# = V diag(σ/(σ² + λ²)) Uᵀ.
+
+use super::discrepancy::{Discrepancy, damped};
+use super::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, pixelwise};
+use crate::num::linalg::{Tolerance, cut};
+
+/// Trial values of λ/σ₁ fall from 1e3 by this factor until one is accepted; bisection finds the rest.
+const STEP: f64 = 0.5;
+
+pub(super) fn recover(
+    problem: &Problem<'_>,
+    options: &Options,
+) -> Result<Recovered, RecoveryError> {
+    let method = Method::Tikhonov;
+    let laser = pixelwise::decompose(method, problem)?;
+    let (rank, cutoff) = cut(
+        laser.sigma.as_slice(),
+        problem.d.nrows(),
+        problem.d.ncols(),
+        Tolerance::Auto,
+    )?;
+    let sigma = &laser.sigma.as_slice()[..rank];
+    let first = sigma[0];
+    let (damping, choice) = match options.damping {
+        Some(value) if value.is_finite() && value >= 0.0 => (value, Choice::Given),
+        Some(value) => {
+            let cure = "give a fraction of the largest singular value, 0 or more";
+            return Err(RecoveryError::BadParameter {
+                method,
+                name: "damping",
+                value,
+                cure,
+            });
+        }
+        None => {
+            let rule = Discrepancy::new(method, "damping", problem, &laser, rank)?;
+            let level = |damping: f64| rule.level(&damped(sigma, damping * first));
+            let (mut high, mut low) = (1e3, 1e3);
+            while !level(low).accepted() {
+                high = low;
+                low *= STEP;
+                // Below the rank cut damping does nothing any more.
+                if low * first < 1e-3 * cutoff {
+                    return Err(rule.understated(level(0.0)));
+                }
+            }
+            while high / low > 1.0 + 1e-12 {
+                let middle = (high * low).sqrt();
+                if middle <= low || middle >= high {
+                    break;
+                }
+                if level(middle).accepted() {
+                    low = middle
+                } else {
+                    high = middle
+                }
+            }
+            (low, level(low).choice())
+        }
+    };
+    let filter = damped(sigma, damping * first);
+    let mut found = pixelwise::invert(
+        method,
+        problem,
+        &laser,
+        &filter,
+        Parameter::Damping(damping),
+    );
+    found.choice = choice;
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::super::bench::{Bench, normal_stream};
+    use super::*;
+    use crate::recovery::recover;
+
+    #[test]
+    fn the_chosen_damping_leaves_exactly_the_limit() {
+        let bench = Bench::new(3.0, 8, 16);
+        let exact = bench.phi(&bench.board(2));
+        for (seed, noise) in [(1, 1e-2), (2, 1e-4), (3, 1e-6)] {
+            let mut normal = normal_stream(seed);
+            let stderr = &exact * noise;
+            let phi = exact.zip_map(&stderr, |x, s| x + s * normal());
+            let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+            let found = recover(Method::Tikhonov, &problem, &Options::default()).unwrap();
+            let Choice::Discrepancy {
+                residual,
+                target,
+                limit,
+            } = found.choice
+            else {
+                panic!("{:?}", found.choice)
+            };
+            assert!(
+                (residual / limit - 1.0).abs() < 1e-9 && target < limit && limit < 1.03 * target,
+                "{residual:e} {limit:e} {target:e}"
+            );
+            assert!(found.effective_rank < found.rank as f64 && found.effective_rank > 1.0);
+        }
+    }
+
+    #[test]
+    fn it_solves_the_damped_normal_equations() {
+        // X (D Dᵀ + λ² 1) = Φ Dᵀ, the definition of Tikhonov's estimate.
+        let bench = Bench::new(6.0, 2, 3);
+        let mut normal = normal_stream(2);
+        let phi = bench
+            .phi(&bench.board(2))
+            .map(|x| x * (1.0 + 0.1 * normal()));
+        let options = Options {
+            damping: Some(0.02),
+            ..Options::default()
+        };
+        let found = recover(
+            Method::Tikhonov,
+            &Problem::new(&phi, &bench.c, &bench.d, None).unwrap(),
+            &options,
+        )
+        .unwrap();
+        let lambda = 0.02 * found.sigma[0];
+        let system = &bench.d * bench.d.transpose() + DMatrix::identity(4, 4) * (lambda * lambda);
+        let x = system
+            .lu()
+            .solve(&(&bench.d * phi.transpose()))
+            .unwrap()
+            .transpose();
+        for j in 0..4 {
+            let mean = (0..9).map(|p| x[(p, j)] / bench.c[(p, j)]).sum::<f64>() / 9.0;
+            assert!((found.reflectance[j] - mean).abs() < 1e-9);
+        }
+        assert_eq!(
+            (found.choice, found.parameter),
+            (Choice::Given, Parameter::Damping(0.02))
+        );
+    }
+
+    #[test]
+    fn no_damping_is_the_pseudo_inverse() {
+        let bench = Bench::new(6.0, 2, 3);
+        let phi = bench.phi(&bench.board(2));
+        let problem = Problem::new(&phi, &bench.c, &bench.d, None).unwrap();
+        let none = Options {
+            damping: Some(0.0),
+            ..Options::default()
+        };
+        let plain = recover(Method::Pinv, &problem, &none).unwrap();
+        assert_eq!(
+            recover(Method::Tikhonov, &problem, &none)
+                .unwrap()
+                .reflectance,
+            plain.reflectance
+        );
+    }
+
+    #[test]
+    fn bad_or_missing_parameters_are_refused() {
+        let bench = Bench::new(3.0, 2, 2);
+        let phi = bench.phi(&bench.board(2));
+        let problem = Problem::new(&phi, &bench.c, &bench.d, None).unwrap();
+        assert!(matches!(
+            recover(Method::Tikhonov, &problem, &Options::default()),
+            Err(RecoveryError::NoNoiseModel { .. })
+        ));
+        for damping in [-1.0, f64::NAN, f64::INFINITY] {
+            let options = Options {
+                damping: Some(damping),
+                ..Options::default()
+            };
+            assert!(matches!(
+                recover(Method::Tikhonov, &problem, &options),
+                Err(RecoveryError::BadParameter { .. })
+            ));
+        }
+    }
+}
