@@ -1,1 +1,204 @@
-//! The folder that a run leaves.
+//! Files that appear whole or not at all.
+//!
+//! A result that took hours must not be half a file because a disk filled up, and an older result must not be gone
+//! before the new one is safe. So every output is written under a temporary name in its own folder, flushed to the
+//! device, renamed over the final name (one step that a file system does entirely or not at all), and the folder is
+//! flushed so that the rename outlives a power cut.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+/// Why a file or a folder could not be written. Each message names the path, the cause and the cure.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// A folder on the way to the file does not exist.
+    #[error("cannot write {}: its folder does not exist; create the folder or choose another output", path.display())]
+    FolderMissing {
+        /// What was to be written.
+        path: PathBuf,
+    },
+    /// A file stands where a folder is needed.
+    #[error("{} is a file, not a folder; move it away or choose another output folder", path.display())]
+    NotAFolder {
+        /// What stands in the way.
+        path: PathBuf,
+    },
+    /// A folder, a device or a pipe stands where a file is to be written.
+    #[error("cannot write {}: it is there already and is no ordinary file; choose another file name", path.display())]
+    NotAFile {
+        /// What stands in the way.
+        path: PathBuf,
+    },
+    /// The system does not allow it.
+    #[error("cannot write {}: permission denied; make its folder writable for you or choose another output", path.display())]
+    Denied {
+        /// What was to be written.
+        path: PathBuf,
+    },
+    /// The file system is mounted read-only.
+    #[error("cannot write {}: its file system is read-only; choose an output on a writable one", path.display())]
+    ReadOnly {
+        /// What was to be written.
+        path: PathBuf,
+    },
+    /// The device or the quota is full.
+    #[error("cannot write {}: the disk or the quota is full; free some space or choose another output", path.display())]
+    Full {
+        /// What was to be written.
+        path: PathBuf,
+    },
+    /// Anything else.
+    #[error("cannot write {}: {source}; check the path and its device", path.display())]
+    Failed {
+        /// What was to be written.
+        path: PathBuf,
+        /// What the system or the writer of the contents said.
+        source: io::Error,
+    },
+}
+
+impl StoreError {
+    fn new(path: &Path, source: io::Error) -> Self {
+        let path = path.to_path_buf();
+        match source.kind() {
+            ErrorKind::NotFound => Self::FolderMissing { path },
+            ErrorKind::NotADirectory => Self::NotAFolder {
+                path: first_file_in(&path),
+            },
+            ErrorKind::IsADirectory => Self::NotAFile { path },
+            ErrorKind::PermissionDenied => Self::Denied { path },
+            ErrorKind::ReadOnlyFilesystem => Self::ReadOnly { path },
+            ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+                Self::Full { path }
+            }
+            _ => Self::Failed { path, source },
+        }
+    }
+}
+
+/// The outermost ancestor of `path` that exists and is no folder, else `path` itself.
+fn first_file_in(path: &Path) -> PathBuf {
+    let outermost = path
+        .ancestors()
+        .filter(|a| a.exists() && !a.is_dir())
+        .last();
+    outermost.unwrap_or(path).to_path_buf()
+}
+
+/// The folder that holds `path`; a bare file name lives in the current one.
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// A temporary file in `folder`, readable as any new file would be (a bare temporary file is private to its owner).
+fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".phicam-").suffix(".part");
+    #[cfg(unix)]
+    let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
+}
+
+/// Makes a rename inside `folder` durable. File systems that know no such thing are left alone.
+fn flush_folder(folder: &Path) -> io::Result<()> {
+    #[cfg(unix)]
+    match File::open(folder)?.sync_all() {
+        Err(e) if matches!(e.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => {}
+        other => return other,
+    }
+    Ok(())
+}
+
+/// Writes the file `path` whole or not at all: `contents` writes into a temporary file of the same folder, which then
+/// takes the name `path`, replacing what had it. If anything fails, what `path` held before is untouched and nothing is
+/// left behind. A symbolic link at `path` is itself replaced, never written through.
+///
+/// # Errors
+/// [`StoreError`] if the folder is missing or cannot be written, if something other than a file has the name, if the
+/// device is full, or if `contents` fails.
+pub fn write_whole(
+    path: &Path,
+    contents: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), StoreError> {
+    let obstacle = fs::metadata(path).is_ok_and(|there| !there.is_file());
+    if obstacle || path.file_name().is_none() {
+        return Err(StoreError::NotAFile {
+            path: path.to_path_buf(),
+        });
+    }
+    let folder = folder_of(path);
+    let write = || {
+        let mut writer = BufWriter::new(temporary(folder)?);
+        contents(&mut writer)?;
+        let file = writer
+            .into_inner()
+            .map_err(io::IntoInnerError::into_error)?;
+        file.as_file().sync_all()?;
+        file.persist(path).map_err(|e| e.error)?;
+        flush_folder(folder)
+    };
+    write().map_err(|e| StoreError::new(path, e))
+}
+
+/// Makes sure, before the long work starts, that files can be written into the folder `dir`: creates it and its parents
+/// where they are missing, and writes and removes a temporary file. If that fails, the folders it created are removed.
+///
+/// # Errors
+/// [`StoreError`] if a file stands in the way (it is not touched), or if the folder cannot be created or written.
+pub fn ensure_writable(dir: &Path) -> Result<(), StoreError> {
+    let mut created = Vec::new();
+    let outcome = create_folders(dir, &mut created).and_then(|()| probe(dir));
+    if outcome.is_err() {
+        for folder in created.iter().rev() {
+            let _ = fs::remove_dir(folder); // removes an empty folder only: nobody else's files are at stake
+        }
+    }
+    outcome
+}
+
+fn create_folders(dir: &Path, created: &mut Vec<PathBuf>) -> Result<(), StoreError> {
+    let mut ancestors: Vec<&Path> = dir
+        .ancestors()
+        .filter(|a| !a.as_os_str().is_empty())
+        .collect();
+    ancestors.reverse();
+    for folder in ancestors {
+        if folder.is_dir() {
+            continue;
+        }
+        match fs::create_dir(folder) {
+            Ok(()) => created.push(folder.to_path_buf()),
+            Err(_) if folder.is_dir() => {} // somebody else was faster
+            Err(e) if e.kind() == ErrorKind::AlreadyExists => {
+                return Err(StoreError::NotAFolder {
+                    path: folder.to_path_buf(),
+                });
+            }
+            Err(e) => return Err(StoreError::new(folder, e)),
+        }
+    }
+    Ok(())
+}
+
+/// Writes one block, so that a full disk shows now, and removes it.
+fn probe(dir: &Path) -> Result<(), StoreError> {
+    let dir = if dir.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        dir
+    };
+    let write = || {
+        let mut file = temporary(dir)?;
+        file.write_all(&[0; 4096])?;
+        file.as_file().sync_all()?;
+        file.close()
+    };
+    write().map_err(|e| StoreError::new(dir, e))
+}
+
+#[cfg(test)]
+mod tests;

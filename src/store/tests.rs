@@ -1,0 +1,118 @@
+use super::*;
+
+fn names(dir: &Path) -> Vec<String> {
+    let entries = fs::read_dir(dir).unwrap();
+    entries
+        .map(|e| e.unwrap().file_name().into_string().unwrap())
+        .collect()
+}
+
+#[test]
+fn a_file_appears_whole_and_replaces_its_predecessor() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("phi.npy");
+    write_whole(&path, |w| w.write_all(b"long first text")).unwrap();
+    write_whole(&path, |w| w.write_all(b"second")).unwrap();
+    assert_eq!(fs::read(&path).unwrap(), b"second");
+    assert_eq!(names(dir.path()), ["phi.npy"]);
+}
+
+#[test]
+fn a_failure_midway_leaves_the_predecessor_and_nothing_else() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("phi.npy");
+    write_whole(&path, |w| w.write_all(b"first")).unwrap();
+    let full = write_whole(&path, |w| {
+        w.write_all(&[1; 100_000])?;
+        Err(ErrorKind::StorageFull.into())
+    });
+    assert!(
+        matches!(&full, Err(StoreError::Full { path: p }) if *p == path),
+        "{full:?}"
+    );
+    assert!(full.unwrap_err().to_string().contains("free some space"));
+    assert_eq!(fs::read(&path).unwrap(), b"first");
+    assert_eq!(names(dir.path()), ["phi.npy"]);
+}
+
+#[test]
+fn the_causes_are_told_apart() {
+    let dir = tempfile::tempdir().unwrap();
+    let write = |path: &Path| write_whole(path, |w| w.write_all(b"x"));
+    let missing = write(&dir.path().join("nowhere/phi.npy"));
+    assert!(
+        matches!(missing, Err(StoreError::FolderMissing { .. })),
+        "{missing:?}"
+    );
+    let folder = write(dir.path());
+    assert!(
+        matches!(folder, Err(StoreError::NotAFile { .. })),
+        "{folder:?}"
+    );
+    let file = dir.path().join("file");
+    write(&file).unwrap();
+    let below = write(&file.join("phi.npy"));
+    assert!(
+        matches!(&below, Err(StoreError::NotAFolder { path }) if *path == file),
+        "{below:?}"
+    );
+    let kinds = |kind: ErrorKind| StoreError::new(&file, kind.into());
+    assert!(matches!(
+        kinds(ErrorKind::PermissionDenied),
+        StoreError::Denied { .. }
+    ));
+    assert!(matches!(
+        kinds(ErrorKind::ReadOnlyFilesystem),
+        StoreError::ReadOnly { .. }
+    ));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_device_is_never_replaced_and_a_file_is_readable_by_others() {
+    use std::os::unix::fs::{FileTypeExt, PermissionsExt};
+    // A socket stands for every device: a broken guard must not cost the machine its /dev/null.
+    let dir = tempfile::tempdir().unwrap();
+    let device = dir.path().join("socket");
+    let _listener = std::os::unix::net::UnixListener::bind(&device).unwrap();
+    let refused = write_whole(&device, |w| w.write_all(b"x"));
+    assert!(
+        matches!(refused, Err(StoreError::NotAFile { .. })),
+        "{refused:?}"
+    );
+    assert!(fs::metadata(&device).unwrap().file_type().is_socket());
+    let (ours, plain) = (dir.path().join("ours"), dir.path().join("plain"));
+    write_whole(&ours, |w| w.write_all(b"x")).unwrap();
+    fs::write(&plain, b"x").unwrap();
+    let mode = |p: &Path| fs::metadata(p).unwrap().permissions().mode();
+    assert_eq!(mode(&ours), mode(&plain));
+}
+
+#[test]
+fn ensure_writable_creates_parents_and_leaves_them_empty() {
+    let dir = tempfile::tempdir().unwrap();
+    let deep = dir.path().join("a/b/c");
+    ensure_writable(&deep).unwrap();
+    ensure_writable(&deep).unwrap();
+    assert!(names(&deep).is_empty());
+}
+
+#[test]
+fn ensure_writable_never_touches_a_file_and_cleans_up() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("file");
+    fs::write(&file, b"precious").unwrap();
+    for target in [
+        file.clone(),
+        file.join("below"),
+        dir.path().join("new/../file/below"),
+    ] {
+        let refused = ensure_writable(&target);
+        assert!(
+            matches!(refused, Err(StoreError::NotAFolder { .. })),
+            "{target:?}: {refused:?}"
+        );
+    }
+    assert_eq!(fs::read(&file).unwrap(), b"precious");
+    assert_eq!(names(dir.path()), ["file"]);
+}
