@@ -1,5 +1,15 @@
 //! Floor 6: studies. Experiments that compose the floors below and return plain results.
+//!
+//! * [`agree`]: traced against modelled Φcam, a verdict by test statistics.
+//! * [`validate`]: the same for a scene, the model computed on the way.
+//! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object.
 
+mod agreement;
+mod objects;
 mod results;
+mod validation;
 
+pub use agreement::{Errors, Evidence, Test, agree};
+pub use objects::{Attempt, Noise, recover_objects};
 pub use results::{Agreement, Entry, RecoveredObject, RunResults, Settings};
+pub use validation::{Integration, Validation, ValidationError, validate};

@@ -60,6 +60,8 @@ pub struct Agreement {
     pub largest_z: f64,
     /// Largest |z| that the significance level allows for this many entries (Šidák).
     pub z_limit: f64,
+    /// Probability of a |z| as large among all entries (Šidák).
+    pub largest_p: f64,
     /// Relative Frobenius difference ‖traced − modelled‖/‖modelled‖.
     pub relative_difference: f64,
     /// What the traced standard error alone makes of that: ‖stderr‖/‖modelled‖.

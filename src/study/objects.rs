@@ -1,0 +1,91 @@
+//! The hidden objects of a scene, recovered and measured.
+
+use crate::matrix::Matrix;
+use crate::metrics::{correlation, mtf_normalized, mtf_raw, rmse};
+use crate::model::MatrixModel;
+use crate::recovery::{
+    Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, recover,
+};
+
+use super::results::RecoveredObject;
+
+/// What a recovery is told of the noise in Φcam.
+#[derive(Clone, Copy, Debug)]
+pub enum Noise<'a> {
+    /// The standard error of each entry, W.
+    StandardError(&'a Matrix),
+    /// Nothing: methods that need it must be given their parameter.
+    Unknown,
+}
+
+/// One method's outcome on all hidden surfaces.
+#[derive(Debug)]
+pub struct Attempt {
+    /// The method.
+    pub method: Method,
+    /// One object per hidden surface, or why there is none.
+    pub outcome: Result<Vec<RecoveredObject>, RecoveryError>,
+}
+
+/// Recovers the hidden reflectance from `phi` (pixels × spots, W) by each of `methods`, and measures it against the true
+/// albedo at the element centres.
+pub fn recover_objects(
+    model: &MatrixModel,
+    phi: &Matrix,
+    noise: Noise<'_>,
+    methods: &[Method],
+    options: &Options,
+) -> Vec<Attempt> {
+    let stderr = match noise {
+        Noise::StandardError(stderr) => Some(stderr),
+        Noise::Unknown => None,
+    };
+    let attempt = |method: Method| {
+        let problem = Problem::new(phi, &model.camera_side, &model.laser_side, stderr)?;
+        recover(method, &problem, options).map(|found| objects(model, &found))
+    };
+    methods.iter().map(|&method| Attempt { method, outcome: attempt(method) }).collect()
+}
+
+fn objects(model: &MatrixModel, found: &Recovered) -> Vec<RecoveredObject> {
+    let cut = |grid: &crate::model::ElementGrid| {
+        let range = grid.first..grid.first + grid.len();
+        let reflectance = found.reflectance.as_slice()[range.clone()].to_vec();
+        let truth = model.albedo[range].to_vec();
+        RecoveredObject {
+            surface: grid.surface.clone(),
+            method: found.method.name().to_owned(),
+            elements: grid.count,
+            mtf_raw: mtf_raw(&reflectance, &truth),
+            mtf_normalized: mtf_normalized(&reflectance, &truth),
+            correlation: correlation(&reflectance, &truth),
+            rmse: rmse(&reflectance, &truth).unwrap_or(f64::NAN),
+            parameter: parameter(found),
+            reflectance,
+            truth,
+        }
+    };
+    model.grids.iter().map(cut).collect()
+}
+
+/// The regularisation used and why, in words.
+fn parameter(found: &Recovered) -> String {
+    let what = match found.parameter {
+        Parameter::None => format!("rank {}", found.rank),
+        Parameter::Rank(k) => format!("{k} singular directions"),
+        Parameter::Damping(lambda) => format!("damping {lambda:.2e} of σ1"),
+    };
+    let why = match found.choice {
+        Choice::Given => ", as given".to_owned(),
+        Choice::Discrepancy { residual, target, .. } => {
+            format!(", by the discrepancy principle (residual {residual:.3e} W, noise {target:.3e} W)")
+        }
+        Choice::Tolerance { cutoff } => format!(", cut at {cutoff:.2e}"),
+        Choice::None => String::new(),
+    };
+    let solver = match &found.solver {
+        Some(s) => format!("; {} after {} iterations, gap {:.1e}", s.status, s.iterations, s.gap),
+        None => String::new(),
+    };
+    what + &why + &solver
+}
