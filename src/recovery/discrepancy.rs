@@ -12,8 +12,6 @@
 //!
 //! and the strongest regularisation that satisfies it is taken.
 
-use nalgebra::DMatrix;
-
 use super::{Choice, Method, Problem, RecoveryError};
 use crate::num::linalg::Svd;
 
@@ -147,6 +145,8 @@ pub(super) fn truncated(kept: usize, rank: usize) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::DMatrix;
+
     use super::super::bench::{Bench, normal_stream};
     use super::*;
     use crate::num::linalg::svd;

@@ -30,6 +30,7 @@
 //! ```
 
 mod discrepancy;
+mod error;
 mod joint;
 mod joint_bounded;
 mod khatri_rao;
@@ -42,9 +43,10 @@ mod tikhonov;
 mod tsvd;
 mod weights;
 
+pub use error::RecoveryError;
 pub use method::{Method, UnknownMethod};
 pub use outcome::{Choice, Parameter, Recovered, Solver};
-pub use problem::{Options, Problem, RecoveryError};
+pub use problem::{Options, Problem};
 pub use weights::Weighting;
 
 /// Recovers the reflectances of the r elements by the method asked for.

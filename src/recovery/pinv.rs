@@ -52,8 +52,7 @@ mod tests {
         assert_eq!(found.rank, 9);
         assert!(
             (&found.reflectance - &board).amax() < 100.0 * f64::EPSILON * condition,
-            "{:e}",
-            condition
+            "{condition:e}"
         );
         assert!(found.relative_residual < 1e-12 && found.standard_error.is_none());
     }

@@ -1,9 +1,9 @@
-//! What is to be inverted, how, and what can be wrong with it.
+//! What is to be inverted, and how.
 
 use nalgebra::DMatrix;
 
-use crate::num::linalg::{LinalgError, Tolerance};
-use crate::num::quadratic::QuadraticError;
+use super::RecoveryError;
+use crate::num::linalg::Tolerance;
 
 /// Φ\[p,l\] = Σ_j C\[p,j\] ρ_j D\[j,l\] + noise, checked: shapes that fit, finite entries.
 #[derive(Debug, Clone, Copy)]
@@ -109,130 +109,6 @@ impl Default for Options {
             budget: 1 << 24,
         }
     }
-}
-
-/// Why nothing was recovered.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum RecoveryError {
-    /// Matrices that do not belong together.
-    #[error(
-        "{name} is {found_rows} × {found_columns}, but {rows} × {columns} is needed; \
-         phi is pixels × spots, c pixels × elements, d elements × spots, all of the same bench"
-    )]
-    Shape {
-        /// Which matrix.
-        name: &'static str,
-        /// Rows needed.
-        rows: usize,
-        /// Columns needed.
-        columns: usize,
-        /// Rows given.
-        found_rows: usize,
-        /// Columns given.
-        found_columns: usize,
-    },
-    /// An entry is NaN or infinite.
-    #[error(
-        "{name}[{row}, {column}] is {value}; photographs and model must be finite, so render or repair that entry first"
-    )]
-    NotFinite {
-        /// Which matrix.
-        name: &'static str,
-        /// Row, from 0.
-        row: usize,
-        /// Column, from 0.
-        column: usize,
-        /// The entry.
-        value: f64,
-    },
-    /// A standard error below zero.
-    #[error(
-        "the standard error of pixel {pixel}, spot {spot} is {value} W; standard errors are never negative, so check which file was given"
-    )]
-    NegativeStandardError {
-        /// Row, from 0.
-        pixel: usize,
-        /// Column, from 0.
-        spot: usize,
-        /// The entry, W.
-        value: f64,
-    },
-    /// A pixel that cannot see an element, where the method divides.
-    #[error(
-        "the model says that pixel {pixel} receives nothing from element {element}, and {method} divides by it; \
-         leave that pixel out, or use joint, which does not divide"
-    )]
-    Unseen {
-        /// The method's name.
-        method: super::Method,
-        /// Row of C, from 0.
-        pixel: usize,
-        /// Column of C, from 0.
-        element: usize,
-    },
-    /// Nothing of the model is left to invert.
-    #[error(
-        "the {side} has rank zero, so no photograph could tell elements apart; check that light reaches the hidden surface"
-    )]
-    RankZero {
-        /// Which side of the model.
-        side: &'static str,
-    },
-    /// A parameter without meaning.
-    #[error("{name} = {value} has no meaning for {method}; {cure}")]
-    BadParameter {
-        /// The method's name.
-        method: super::Method,
-        /// The parameter.
-        name: &'static str,
-        /// What was given.
-        value: f64,
-        /// What would do.
-        cure: &'static str,
-    },
-    /// No noise model and no parameter.
-    #[error(
-        "{method} needs to know the noise to choose its {parameter}; give the standard error of phi (phi.stderr.npy), \
-         or give the {parameter} yourself"
-    )]
-    NoNoiseModel {
-        /// The method's name.
-        method: super::Method,
-        /// What would have to be given.
-        parameter: &'static str,
-    },
-    /// The discrepancy principle has no answer: the data lie further from the model than the noise allows.
-    #[error(
-        "even with the least regularisation the residual is {residual:.3e} W where the noise allows {limit:.3e} W: the standard errors \
-         are too small or the model does not describe these photographs; correct either, or give the {parameter} yourself"
-    )]
-    NoiseUnderstated {
-        /// Frobenius norm of the residual, W.
-        residual: f64,
-        /// The largest norm that the noise explains, W.
-        limit: f64,
-        /// What would have to be given.
-        parameter: &'static str,
-    },
-    /// The discrepancy principle has no answer: the data are no more than noise.
-    #[error(
-        "the photographs ({signal:.3e} W in all) do not rise above their noise ({limit:.3e} W), so there is nothing to recover; \
-         take more samples, or give the {parameter} yourself"
-    )]
-    NoSignal {
-        /// Frobenius norm of Φ, W.
-        signal: f64,
-        /// The norm that noise alone explains, W.
-        limit: f64,
-        /// What would have to be given.
-        parameter: &'static str,
-    },
-    /// A decomposition failed.
-    #[error(transparent)]
-    Linalg(#[from] LinalgError),
-    /// The bounded solver failed.
-    #[error(transparent)]
-    Quadratic(#[from] QuadraticError),
 }
 
 #[cfg(test)]

@@ -50,9 +50,9 @@ pub(super) fn recover(
                     break;
                 }
                 if level(middle).accepted() {
-                    low = middle
+                    low = middle;
                 } else {
-                    high = middle
+                    high = middle;
                 }
             }
             (low, level(low).choice())

@@ -15,10 +15,12 @@
 mod least_squares;
 mod pinv;
 mod svd;
+mod triangle;
 
-pub use least_squares::{LeastSquares, Route, Triangle, least_squares, normal_triangle, triangle};
+pub use least_squares::{LeastSquares, Route, least_squares};
 pub use pinv::{Pinv, pinv};
 pub use svd::{Svd, svd};
+pub use triangle::{Triangle, normal_triangle, triangle};
 
 use nalgebra::DMatrix;
 

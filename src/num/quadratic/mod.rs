@@ -1,18 +1,14 @@
 //! Least squares in a box: the one door to the convex solver `clarabel`.
 
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::{
-    DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, ZeroConeT,
-};
+mod active_set;
+mod interior_point;
+
 use nalgebra::{DMatrix, DVector};
 
-use super::linalg::{LinalgError, Tolerance, least_squares};
+use super::linalg::LinalgError;
 
 /// Largest duality gap accepted, as a fraction of ½(‖d‖² + ‖R‖²).
 const GAP_ALLOWED: f64 = 1e-9;
-
-/// Floating-point operations that the active-set refinement may spend.
-const REFINEMENT_BUDGET: f64 = 1e11;
 
 /// The minimiser of ½‖R x − d‖² over 0 ≤ x ≤ 1.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,8 +110,8 @@ pub fn box_least_squares(
     let down = |x: f64| libm::scalbn(x, -exponent);
     let (r, d) = (r.map(down), d.map(down));
 
-    let (start, places, status, iterations) = interior_point(&r, &d)?;
-    let (solution, refinements) = refine(&r, &d, start, places)?;
+    let (start, places, status, iterations) = interior_point::solve(&r, &d)?;
+    let (solution, refinements) = active_set::refine(&r, &d, start, places)?;
     let residual = &r * &solution - &d;
     let gap = duality_gap(&r, &residual, &solution);
     let unit = 0.5 * (r.norm_squared() + d.norm_squared());
@@ -144,172 +140,6 @@ fn duality_gap(r: &DMatrix<f64>, residual: &DVector<f64>, x: &DVector<f64>) -> f
         .zip(x.iter())
         .map(|(g, x)| (g * x).max(-g * (1.0 - x)))
         .sum()
-}
-
-/// The interior-point solution clipped to the box, where each variable stands, the solver's status and iterations.
-#[allow(clippy::type_complexity)]
-fn interior_point(
-    r: &DMatrix<f64>,
-    d: &DVector<f64>,
-) -> Result<(DVector<f64>, Vec<Place>, String, u32), QuadraticError> {
-    let (k, n) = r.shape();
-    let lengths: Vec<f64> = r
-        .column_iter()
-        .map(|c| if c.norm() > 0.0 { c.norm() } else { 1.0 })
-        .collect();
-    let size = d.norm().max(lengths.iter().copied().fold(0.0, f64::max));
-    // Variables (x_j·length_j/size, y/size); rows: y − R x = −d, then −x ≤ 0, then x ≤ length/size.
-    let (mut row, mut column, mut value) = (Vec::new(), Vec::new(), Vec::new());
-    let mut put = |i, j, v: f64| {
-        if v != 0.0 {
-            row.push(i);
-            column.push(j);
-            value.push(v);
-        }
-    };
-    for j in 0..n {
-        for i in 0..k {
-            put(i, j, -r[(i, j)] / lengths[j]);
-        }
-        put(k + j, j, -1.0);
-        put(k + n + j, j, 1.0);
-    }
-    for i in 0..k {
-        put(i, n + i, 1.0);
-    }
-    let constraints = CscMatrix::new_from_triplets(k + 2 * n, n + k, row, column, value);
-    let on_y: Vec<usize> = (n..n + k).collect();
-    let cost = CscMatrix::new_from_triplets(n + k, n + k, on_y.clone(), on_y, vec![1.0; k]);
-    let linear = vec![0.0; n + k];
-    let upper = lengths.iter().map(|c| c / size);
-    let bounds: Vec<f64> = d
-        .iter()
-        .map(|x| -x / size)
-        .chain(std::iter::repeat_n(0.0, n))
-        .chain(upper)
-        .collect();
-    let settings = DefaultSettingsBuilder::default()
-        .verbose(false)
-        .max_threads(1)
-        .tol_gap_abs(1e-12)
-        .tol_gap_rel(1e-12)
-        .build()
-        .map_err(|e| QuadraticError::Refused(e.to_string()))?;
-    let cones = [ZeroConeT(k), NonnegativeConeT(2 * n)];
-    let mut solver = DefaultSolver::new(&cost, &linear, &constraints, &bounds, &cones, settings)
-        .map_err(|e| QuadraticError::Refused(e.to_string()))?;
-    solver.solve();
-    let found = &solver.solution;
-    let status = found.status.to_string();
-    let mut x = DVector::from_fn(n, |j, _| found.x[j] * size / lengths[j]);
-    if x.iter().any(|x| !x.is_finite()) {
-        return Err(QuadraticError::NotSolved {
-            status,
-            gap: f64::INFINITY,
-            allowed: GAP_ALLOWED,
-        });
-    }
-    // A bound holds where its multiplier outweighs the distance to it.
-    let places = (0..n)
-        .map(|j| match (found.z[k + j], found.z[k + n + j]) {
-            (z, _) if found.s[k + j] < z => Place::Lower,
-            (_, z) if found.s[k + n + j] < z => Place::Upper,
-            _ => Place::Free,
-        })
-        .collect();
-    x.apply(|x| *x = x.clamp(0.0, 1.0));
-    Ok((x, places, status, found.iterations))
-}
-
-/// Bounded-variable least squares from a given start. Stops at a point where all optimality conditions hold to
-/// rounding, or when its budget is spent; the objective never rises from the start's.
-fn refine(
-    r: &DMatrix<f64>,
-    d: &DVector<f64>,
-    start: DVector<f64>,
-    mut places: Vec<Place>,
-) -> Result<(DVector<f64>, usize), QuadraticError> {
-    let (k, n) = r.shape();
-    let lengths: Vec<f64> = r.column_iter().map(|c| c.norm()).collect();
-    let rounding = 4.0 * (k + n) as f64 * f64::EPSILON;
-    let objective = |x: &DVector<f64>| (r * x - d).norm();
-    let mut x = DVector::from_fn(n, |j, _| match places[j] {
-        Place::Free => start[j],
-        Place::Lower => 0.0,
-        Place::Upper => 1.0,
-    });
-    let allowed = ((REFINEMENT_BUDGET / (25.0 * (n as f64).powi(3))) as usize).min(3 * n + 10);
-    let mut released = None;
-    let mut banned = vec![false; n];
-    let mut steps = 0;
-    while steps < allowed {
-        steps += 1;
-        let free: Vec<usize> = (0..n)
-            .filter(|&j| places[j] == Place::Free && lengths[j] > 0.0)
-            .collect();
-        let mut stride = 1.0;
-        let mut blocked = None;
-        if !free.is_empty() {
-            let towards =
-                least_squares(&r.select_columns(&free), &(d - r * &x), Tolerance::Auto)?.solution;
-            for (&j, &step) in free.iter().zip(towards.iter()) {
-                let room = if step < 0.0 {
-                    x[j] / -step
-                } else {
-                    (1.0 - x[j]) / step
-                };
-                if step != 0.0 && room < stride {
-                    stride = room;
-                    blocked = Some((
-                        j,
-                        if step < 0.0 {
-                            Place::Lower
-                        } else {
-                            Place::Upper
-                        },
-                    ));
-                }
-            }
-            for (&j, &step) in free.iter().zip(towards.iter()) {
-                x[j] = (x[j] + stride * step).clamp(0.0, 1.0);
-            }
-        }
-        if let Some((j, place)) = blocked {
-            x[j] = if place == Place::Lower { 0.0 } else { 1.0 };
-            places[j] = place;
-            if stride > 0.0 {
-                banned.fill(false);
-            }
-            banned[j] |= released == Some(j) && stride == 0.0;
-            released = None;
-            continue;
-        }
-        if released.is_some() {
-            banned.fill(false);
-        }
-        let residual = r * &x - d;
-        let gradient = r.transpose() * &residual;
-        let unit = d.norm() + residual.norm();
-        released = (0..n)
-            .filter(|&j| !banned[j] && lengths[j] > 0.0)
-            .map(|j| match places[j] {
-                Place::Lower => (j, -gradient[j] / lengths[j]),
-                Place::Upper => (j, gradient[j] / lengths[j]),
-                Place::Free => (j, 0.0),
-            })
-            .filter(|&(_, pull)| pull > rounding * unit)
-            .max_by(|a, b| a.1.total_cmp(&b.1))
-            .map(|(j, _)| j);
-        match released {
-            Some(j) => places[j] = Place::Free,
-            None => break,
-        }
-    }
-    if objective(&x) <= objective(&start) * (1.0 + f64::EPSILON) + rounding * d.norm() {
-        Ok((x, steps))
-    } else {
-        Ok((start, steps))
-    }
 }
 
 #[cfg(test)]
@@ -358,18 +188,6 @@ mod tests {
                 "{factor}: {}",
                 found.gap
             );
-        }
-    }
-
-    #[test]
-    fn refinement_reaches_the_optimum_from_a_bad_start() {
-        let r = DMatrix::from_fn(12, 8, |i, j| (((i * 31 + j * 17) % 13) as f64 - 6.0) / 6.0);
-        let d = DVector::from_fn(12, |i, _| ((i * 7) % 5) as f64 - 1.0);
-        let reference = box_least_squares(&r, &d).unwrap();
-        for place in [Place::Free, Place::Lower, Place::Upper] {
-            let (x, _) = refine(&r, &d, DVector::from_element(8, 0.5), vec![place; 8]).unwrap();
-            assert!((&x - &reference.solution).amax() < 1e-12);
-            assert!(duality_gap(&r, &(&r * &x - &d), &x) < 1e-12);
         }
     }
 

@@ -1,0 +1,205 @@
+//! Orthogonal reduction of a least-squares problem to a square one, and the same from normal equations.
+
+use faer::linalg::solvers::{Llt, Qr};
+use faer::{MatRef, Side};
+use nalgebra::{DMatrix, DVector};
+
+use super::least_squares::solve_by_svd;
+use super::{LeastSquares, LinalgError, Route, Tolerance, cut, scaled, svd};
+
+/// The reduction of min ‖A x − b‖ for an m × n matrix to k = min(m, n) rows:
+/// ‖A x − b‖² = ‖R x − d‖² + rest² for every x.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Triangle {
+    /// R, k × n; upper triangular unless it comes from deficient normal equations.
+    pub r: DMatrix<f64>,
+    /// d, k entries.
+    pub d: DVector<f64>,
+    /// The part of ‖b‖ that no x can reach, ≥ 0.
+    pub rest: f64,
+}
+
+pub(super) fn same_length(
+    what: &'static str,
+    expected: usize,
+    found: usize,
+) -> Result<(), LinalgError> {
+    if expected == found {
+        Ok(())
+    } else {
+        Err(LinalgError::Shape {
+            what,
+            expected,
+            found,
+        })
+    }
+}
+
+/// The column b scaled, as a vector, and its exponent.
+pub(super) fn scaled_vector(b: &DVector<f64>) -> Result<(DVector<f64>, i32), LinalgError> {
+    let (matrix, exponent) = scaled(&DMatrix::from_column_slice(b.len(), 1, b.as_slice()))?;
+    Ok((matrix.column(0).into_owned(), exponent))
+}
+
+/// Householder QR of [A | b]: R, d = Qᵀb and what of b lies outside the range of A.
+///
+/// # Errors
+/// Empty or non-finite input, a b that has not as many entries as A has rows, overflow.
+pub fn triangle(a: &DMatrix<f64>, b: &DVector<f64>) -> Result<Triangle, LinalgError> {
+    same_length("entries of b against rows of A", a.nrows(), b.len())?;
+    let (m, n) = a.shape();
+    let (mut joined, a_exponent) = scaled(a)?;
+    let (b, b_exponent) = scaled_vector(b)?;
+    joined = joined.insert_column(n, 0.0);
+    joined.set_column(n, &b);
+    let qr = Qr::new(MatRef::from_column_major_slice(joined.as_slice(), m, n + 1));
+    let upper = qr.thin_R();
+    let k = m.min(n);
+    let entry = |i: usize, j: usize| if i <= j { upper[(i, j)] } else { 0.0 };
+    let result = Triangle {
+        r: DMatrix::from_fn(k, n, |i, j| libm::scalbn(entry(i, j), a_exponent)),
+        d: DVector::from_fn(k, |i, _| libm::scalbn(entry(i, n), b_exponent)),
+        rest: if m > n {
+            libm::scalbn(entry(n, n).abs(), b_exponent)
+        } else {
+            0.0
+        },
+    };
+    let finite = result
+        .r
+        .iter()
+        .chain(result.d.iter())
+        .all(|x| x.is_finite())
+        && result.rest.is_finite();
+    if finite {
+        Ok(result)
+    } else {
+        Err(LinalgError::Overflow("the triangular factor"))
+    }
+}
+
+/// The same reduction from the normal equations: `gram` = AᵀA (n × n, symmetric), `moment` = Aᵀb (n), `square` = ‖b‖².
+/// By Cholesky, G = LLᵀ, R = Lᵀ, d = L⁻¹Aᵀb; where G is not positive definite to rounding by its singular values.
+/// Solve the result with a [`Tolerance`] no tighter than √(n eps), below which a Gram matrix holds only rounding.
+///
+/// # Errors
+/// Empty, non-finite or non-square input, a `moment` of another length.
+pub fn normal_triangle(
+    gram: &DMatrix<f64>,
+    moment: &DVector<f64>,
+    square: f64,
+) -> Result<Triangle, LinalgError> {
+    let n = gram.nrows();
+    same_length(
+        "columns of the Gram matrix against its rows",
+        n,
+        gram.ncols(),
+    )?;
+    same_length(
+        "entries of Aᵀb against rows of the Gram matrix",
+        n,
+        moment.len(),
+    )?;
+    let (mut g, mut exponent) = scaled(gram)?;
+    if exponent % 2 != 0 {
+        // An even exponent has a square root that is a power of two as well.
+        g *= 2.0;
+        exponent -= 1;
+    }
+    let half = exponent / 2;
+    let (moment, moment_exponent) = scaled_vector(moment)?;
+    let (r, d) = match Llt::new(
+        MatRef::from_column_major_slice(g.as_slice(), n, n),
+        Side::Lower,
+    ) {
+        Ok(llt) => {
+            let l = llt.L();
+            let r = DMatrix::from_fn(n, n, |i, j| if i <= j { l[(j, i)] } else { 0.0 });
+            let mut d = moment;
+            for i in 0..n {
+                let known: f64 = (0..i).map(|k| r[(k, i)] * d[k]).sum();
+                d[i] = (d[i] - known) / r[(i, i)];
+            }
+            (r, d)
+        }
+        Err(_) => {
+            let decomposed = svd(&g)?;
+            let (rank, _) = cut(decomposed.sigma.as_slice(), n, n, Tolerance::Auto)?;
+            let mut r = decomposed.vt.rows(0, rank).into_owned();
+            let mut d = &r * moment;
+            for k in 0..rank {
+                let root = decomposed.sigma[k].sqrt();
+                r.row_mut(k).scale_mut(root);
+                d[k] /= root;
+            }
+            (r, d)
+        }
+    };
+    let d = d.map(|x| libm::scalbn(x, moment_exponent - half));
+    let rest = (square - d.norm_squared()).max(0.0).sqrt();
+    Ok(Triangle {
+        r: r.map(|x| libm::scalbn(x, half)),
+        d,
+        rest,
+    })
+}
+
+impl Triangle {
+    /// The minimum-norm solution of the reduced problem, `route` recorded as its origin.
+    ///
+    /// # Errors
+    /// Those of [`svd`](svd()) and of the tolerance.
+    pub fn solve(
+        &self,
+        rows: usize,
+        tolerance: Tolerance,
+        route: Route,
+    ) -> Result<LeastSquares, LinalgError> {
+        solve_by_svd(&self.r, &self.d, self.rest, rows, tolerance, route)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::linalg::kernel::{bench_g12, hilbert};
+
+    #[test]
+    fn the_triangle_keeps_every_distance() {
+        for a in [hilbert(30, 8), bench_g12(3.0).transpose(), hilbert(5, 9)] {
+            let b = DVector::from_fn(a.nrows(), |i, _| ((i * 5) % 7) as f64 - 3.0);
+            let t = triangle(&a, &b).unwrap();
+            for seed in 0..3 {
+                let x = DVector::from_fn(a.ncols(), |j, _| ((j * 3 + seed) % 5) as f64 - 2.0);
+                let direct = (&a * &x - &b).norm();
+                let reduced = libm::hypot((&t.r * &x - &t.d).norm(), t.rest);
+                assert!((direct / reduced - 1.0).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn both_reductions_are_the_same_problem() {
+        // Rᵀ R = Aᵀ A and Rᵀ d = Aᵀ b whichever way R was found.
+        let a = hilbert(30, 4);
+        let b = DVector::from_fn(30, |i, _| ((i * 5) % 7) as f64 - 3.0);
+        let (gram, moment) = (a.transpose() * &a, a.transpose() * &b);
+        let normal = normal_triangle(&gram, &moment, b.norm_squared()).unwrap();
+        for t in [triangle(&a, &b).unwrap(), normal] {
+            assert!((t.r.transpose() * &t.r - &gram).amax() < 1e-14 * gram.amax());
+            assert!((t.r.transpose() * &t.d - &moment).amax() < 1e-13 * moment.amax());
+            assert!((t.d.norm_squared() + t.rest * t.rest - b.norm_squared()).abs() < 1e-11);
+        }
+    }
+
+    #[test]
+    fn bad_input_is_refused() {
+        let a = DMatrix::from_element(3, 2, 1.0);
+        assert!(matches!(
+            triangle(&a, &DVector::zeros(2)),
+            Err(LinalgError::Shape { .. })
+        ));
+        assert!(triangle(&(a * f64::NAN), &DVector::zeros(3)).is_err());
+        assert!(normal_triangle(&DMatrix::zeros(2, 3), &DVector::zeros(2), 0.0).is_err());
+    }
+}

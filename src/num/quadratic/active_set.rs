@@ -1,0 +1,118 @@
+//! Bounded-variable least squares by active sets (Stark and Parker 1995).
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{Place, QuadraticError};
+use crate::num::linalg::{Tolerance, least_squares};
+
+/// Floating-point operations that the active-set refinement may spend.
+const REFINEMENT_BUDGET: f64 = 1e11;
+
+/// Bounded-variable least squares from a given start. Stops at a point where all optimality conditions hold to
+/// rounding, or when its budget is spent; the objective never rises from the start's.
+pub(super) fn refine(
+    r: &DMatrix<f64>,
+    d: &DVector<f64>,
+    start: DVector<f64>,
+    mut places: Vec<Place>,
+) -> Result<(DVector<f64>, usize), QuadraticError> {
+    let (k, n) = r.shape();
+    let lengths: Vec<f64> = r.column_iter().map(|c| c.norm()).collect();
+    let rounding = 4.0 * (k + n) as f64 * f64::EPSILON;
+    let objective = |x: &DVector<f64>| (r * x - d).norm();
+    let mut x = DVector::from_fn(n, |j, _| match places[j] {
+        Place::Free => start[j],
+        Place::Lower => 0.0,
+        Place::Upper => 1.0,
+    });
+    let allowed = ((REFINEMENT_BUDGET / (25.0 * (n as f64).powi(3))) as usize).min(3 * n + 10);
+    let mut released = None;
+    let mut banned = vec![false; n];
+    let mut steps = 0;
+    while steps < allowed {
+        steps += 1;
+        let free: Vec<usize> = (0..n)
+            .filter(|&j| places[j] == Place::Free && lengths[j] > 0.0)
+            .collect();
+        let mut stride = 1.0;
+        let mut blocked = None;
+        if !free.is_empty() {
+            let towards =
+                least_squares(&r.select_columns(&free), &(d - r * &x), Tolerance::Auto)?.solution;
+            for (&j, &step) in free.iter().zip(towards.iter()) {
+                let room = if step < 0.0 {
+                    x[j] / -step
+                } else {
+                    (1.0 - x[j]) / step
+                };
+                if step != 0.0 && room < stride {
+                    stride = room;
+                    blocked = Some((
+                        j,
+                        if step < 0.0 {
+                            Place::Lower
+                        } else {
+                            Place::Upper
+                        },
+                    ));
+                }
+            }
+            for (&j, &step) in free.iter().zip(towards.iter()) {
+                x[j] = (x[j] + stride * step).clamp(0.0, 1.0);
+            }
+        }
+        if let Some((j, place)) = blocked {
+            x[j] = if place == Place::Lower { 0.0 } else { 1.0 };
+            places[j] = place;
+            if stride > 0.0 {
+                banned.fill(false);
+            }
+            banned[j] |= released == Some(j) && stride == 0.0;
+            released = None;
+            continue;
+        }
+        if released.is_some() {
+            banned.fill(false);
+        }
+        let residual = r * &x - d;
+        let gradient = r.transpose() * &residual;
+        let unit = d.norm() + residual.norm();
+        released = (0..n)
+            .filter(|&j| !banned[j] && lengths[j] > 0.0)
+            .map(|j| match places[j] {
+                Place::Lower => (j, -gradient[j] / lengths[j]),
+                Place::Upper => (j, gradient[j] / lengths[j]),
+                Place::Free => (j, 0.0),
+            })
+            .filter(|&(_, pull)| pull > rounding * unit)
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(j, _)| j);
+        match released {
+            Some(j) => places[j] = Place::Free,
+            None => break,
+        }
+    }
+    if objective(&x) <= objective(&start) * (1.0 + f64::EPSILON) + rounding * d.norm() {
+        Ok((x, steps))
+    } else {
+        Ok((start, steps))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{box_least_squares, duality_gap};
+    use super::*;
+
+    #[test]
+    fn refinement_reaches_the_optimum_from_a_bad_start() {
+        let r = DMatrix::from_fn(12, 8, |i, j| (((i * 31 + j * 17) % 13) as f64 - 6.0) / 6.0);
+        let d = DVector::from_fn(12, |i, _| ((i * 7) % 5) as f64 - 1.0);
+        let reference = box_least_squares(&r, &d).unwrap();
+        for place in [Place::Free, Place::Lower, Place::Upper] {
+            let (x, _) = refine(&r, &d, DVector::from_element(8, 0.5), vec![place; 8]).unwrap();
+            assert!((&x - &reference.solution).amax() < 1e-12);
+            assert!(duality_gap(&r, &(&r * &x - &d), &x) < 1e-12);
+        }
+    }
+}

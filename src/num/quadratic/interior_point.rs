@@ -1,0 +1,84 @@
+//! The problem as the conic solver wants it.
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, ZeroConeT,
+};
+use nalgebra::{DMatrix, DVector};
+
+use super::{GAP_ALLOWED, Place, QuadraticError};
+
+/// The interior-point solution clipped to the box, where each variable stands, the solver's status and iterations.
+#[allow(clippy::type_complexity)]
+pub(super) fn solve(
+    r: &DMatrix<f64>,
+    d: &DVector<f64>,
+) -> Result<(DVector<f64>, Vec<Place>, String, u32), QuadraticError> {
+    let (k, n) = r.shape();
+    let lengths: Vec<f64> = r
+        .column_iter()
+        .map(|c| if c.norm() > 0.0 { c.norm() } else { 1.0 })
+        .collect();
+    let size = d.norm().max(lengths.iter().copied().fold(0.0, f64::max));
+    // Variables (x_j·length_j/size, y/size); rows: y − R x = −d, then −x ≤ 0, then x ≤ length/size.
+    let (mut row, mut column, mut value) = (Vec::new(), Vec::new(), Vec::new());
+    let mut put = |i, j, v: f64| {
+        if v != 0.0 {
+            row.push(i);
+            column.push(j);
+            value.push(v);
+        }
+    };
+    for j in 0..n {
+        for i in 0..k {
+            put(i, j, -r[(i, j)] / lengths[j]);
+        }
+        put(k + j, j, -1.0);
+        put(k + n + j, j, 1.0);
+    }
+    for i in 0..k {
+        put(i, n + i, 1.0);
+    }
+    let constraints = CscMatrix::new_from_triplets(k + 2 * n, n + k, row, column, value);
+    let on_y: Vec<usize> = (n..n + k).collect();
+    let cost = CscMatrix::new_from_triplets(n + k, n + k, on_y.clone(), on_y, vec![1.0; k]);
+    let linear = vec![0.0; n + k];
+    let upper = lengths.iter().map(|c| c / size);
+    let bounds: Vec<f64> = d
+        .iter()
+        .map(|x| -x / size)
+        .chain(std::iter::repeat_n(0.0, n))
+        .chain(upper)
+        .collect();
+    let settings = DefaultSettingsBuilder::default()
+        .verbose(false)
+        .max_threads(1)
+        .tol_gap_abs(1e-12)
+        .tol_gap_rel(1e-12)
+        .build()
+        .map_err(|e| QuadraticError::Refused(e.to_string()))?;
+    let cones = [ZeroConeT(k), NonnegativeConeT(2 * n)];
+    let mut solver = DefaultSolver::new(&cost, &linear, &constraints, &bounds, &cones, settings)
+        .map_err(|e| QuadraticError::Refused(e.to_string()))?;
+    solver.solve();
+    let found = &solver.solution;
+    let status = found.status.to_string();
+    let mut x = DVector::from_fn(n, |j, _| found.x[j] * size / lengths[j]);
+    if x.iter().any(|x| !x.is_finite()) {
+        return Err(QuadraticError::NotSolved {
+            status,
+            gap: f64::INFINITY,
+            allowed: GAP_ALLOWED,
+        });
+    }
+    // A bound holds where its multiplier outweighs the distance to it.
+    let places = (0..n)
+        .map(|j| match (found.z[k + j], found.z[k + n + j]) {
+            (z, _) if found.s[k + j] < z => Place::Lower,
+            (_, z) if found.s[k + n + j] < z => Place::Upper,
+            _ => Place::Free,
+        })
+        .collect();
+    x.apply(|x| *x = x.clamp(0.0, 1.0));
+    Ok((x, places, status, found.iterations))
+}
