@@ -73,7 +73,7 @@ pub fn agree(evidence: Evidence<'_>, test: Test) -> (Agreement, Matrix) {
     } as f64;
     let chi2_p = chi_square_sf(chi2_per_dof * dof, dof);
     let half = 0.5 * test.significance;
-    let largest_p = sidak_p(normal_two_sided(largest), entries as f64);
+    let largest_p = sidak_p(normal_two_sided(largest), entries as u64);
     let norm = model.norm().max(f64::MIN_POSITIVE);
     let agreement = Agreement {
         agrees: chi2_p >= half && largest_p >= half,
@@ -85,7 +85,7 @@ pub fn agree(evidence: Evidence<'_>, test: Test) -> (Agreement, Matrix) {
         dof,
         chi2_p,
         largest_z: largest,
-        z_limit: sidak_threshold(half, entries as f64),
+        z_limit: sidak_threshold(half, entries as u64),
         largest_p,
         relative_difference: (traced - model).norm() / norm,
         relative_noise: stderr.norm() / norm,

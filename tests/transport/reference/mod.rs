@@ -1,27 +1,25 @@
 //! An independent reference for Φcam of the bench: product Gauss–Legendre quadrature over every check of the board and
 //! every pixel's footprint, in the test's own code. Nothing here comes from the crate.
 
-#![allow(dead_code)]
-
 use std::f64::consts::PI;
 
 /// What the reference needs to know of a bench with a wall at z = 0 and a board hinged at y = 15.5 at 45°.
 #[derive(Clone)]
-pub struct Bench {
-    pub power: f64,
+pub(crate) struct Bench {
+    pub(crate) power: f64,
     pub wall_albedo: f64,
     /// Checks a side; check (0, 0), at x = 3, d = 5.86764, is dark (0), the others alternate (1).
-    pub checks: usize,
-    pub camera: [f64; 3],
-    pub aperture: f64,
-    pub view: [[f64; 2]; 2],
-    pub pixels: [usize; 2],
-    pub spots: Vec<[f64; 2]>,
+    pub(crate) checks: usize,
+    pub(crate) camera: [f64; 3],
+    pub(crate) aperture: f64,
+    pub(crate) view: [[f64; 2]; 2],
+    pub(crate) pixels: [usize; 2],
+    pub(crate) spots: Vec<[f64; 2]>,
 }
 
 impl Bench {
     /// The bench of the design with 4 × 30 staggered spots on a square of half-width `half`.
-    pub fn new(half: f64, checks: usize) -> Self {
+    pub(crate) fn new(half: f64, checks: usize) -> Self {
         let (cx, cy) = (5.0, 15.5 - 7.86764 * 2f64.sqrt());
         let n = 30;
         let at = |k: usize| -half + 2.0 * half * k as f64 / (n - 1) as f64;
@@ -52,7 +50,7 @@ impl Bench {
     }
 
     /// Φcam\[pixel\]\[spot\] in W with `n` nodes a side on each check and `m` on each footprint.
-    pub fn phi(&self, n: usize, m: usize) -> Vec<Vec<f64>> {
+    pub(crate) fn phi(&self, n: usize, m: usize) -> Vec<Vec<f64>> {
         let h = 0.5f64.sqrt();
         // Points of the light checks with weights in area; the normal of S2 is (0, −h, −h).
         let mut board = Vec::new();
@@ -119,7 +117,7 @@ impl Bench {
     }
 
     /// Φcam converged to 1e-12: more nodes change it by less.
-    pub fn converged(&self) -> Vec<Vec<f64>> {
+    pub(crate) fn converged(&self) -> Vec<Vec<f64>> {
         let n = if self.checks >= 8 { 6 } else { 14 };
         let (coarse, fine) = (self.phi(n, 3), self.phi(n + 2, 4));
         let change = relative_difference(&coarse, &fine);
@@ -132,7 +130,7 @@ impl Bench {
 }
 
 /// ‖a − b‖/‖b‖ in the Frobenius norm.
-pub fn relative_difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+pub(crate) fn relative_difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
     let (mut difference, mut norm) = (0.0, 0.0);
     for (x, y) in a.iter().flatten().zip(b.iter().flatten()) {
         difference += (x - y) * (x - y);
@@ -143,7 +141,7 @@ pub fn relative_difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
 
 /// Gauss–Legendre nodes and weights on [0, 1], by bisection of P_n between the interlacing roots of P_{n−1}: slow and
 /// unlike the crate's Newton iteration.
-pub fn gauss(n: usize) -> Vec<(f64, f64)> {
+pub(crate) fn gauss(n: usize) -> Vec<(f64, f64)> {
     fn p(n: usize, x: f64) -> f64 {
         let (mut a, mut b) = (1.0, x);
         if n == 0 {

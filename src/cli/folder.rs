@@ -1,0 +1,216 @@
+//! The folder of a run: what may be written into it, and what is read back from it.
+//!
+//! | file | content |
+//! | --- | --- |
+//! | scene.toml, run.json | the scene, whole; what was rendered and how |
+//! | frames/spot-NNNN.exr | one frame a spot |
+//! | phi.npy, phi.stderr.npy | Φcam and its standard error, pixels × spots, W |
+//! | partial/spot-NNNN.npy | finished spots of an unfinished run in f64: one column per bounce count, last the standard error |
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::failure::Failure;
+use super::output::Talk;
+use super::record::Record;
+use crate::film::{self, Channel, Frame, FrameMeta, frame_name};
+use crate::matrix::{Matrix, npy};
+use crate::scene::Scene;
+use crate::store::{ensure_writable, write_whole};
+use crate::transport::Traced;
+
+pub(super) const PHI: &str = "phi.npy";
+pub(super) const STDERR: &str = "phi.stderr.npy";
+const SCENE: &str = "scene.toml";
+
+/// What is kept of an earlier render into the same folder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Keep {
+    /// Nothing: all spots are rendered.
+    Nothing,
+    /// Other spots, and none of those asked for.
+    OtherSpots,
+    /// Every finished spot.
+    Finished,
+}
+
+/// An open run folder.
+#[derive(Debug)]
+pub(super) struct Folder {
+    pub path: PathBuf,
+}
+
+impl Folder {
+    /// Makes sure that the run `record` may be written to `path`, and that it can be. Nothing is changed before every check
+    /// has passed.
+    pub(super) fn open(path: &Path, scene: &Scene, record: &Record, keep: Keep, talk: Talk) -> Result<Self, Failure> {
+        let folder = Self { path: path.to_owned() };
+        folder.refuse_foreign(scene)?;
+        let earlier = Record::read(path)?;
+        let same = earlier.as_ref().is_some_and(|e| e.same_settings(record));
+        if let Some(e) = earlier.filter(|_| !same) {
+            if keep != Keep::Nothing {
+                let cause = format!("{} holds a run with other settings ({})", path.display(), e.settings());
+                return Err(Failure::new(cause, "use the same settings, or another folder (-o)"));
+            }
+            ensure_writable(path)?;
+            talk.say(format!("replacing the earlier run in {} ({})", path.display(), e.settings()));
+            folder.remove_frames()?;
+        } else {
+            ensure_writable(path)?;
+        }
+        if keep == Keep::Nothing {
+            folder.remove_partial()?;
+        }
+        ensure_writable(&folder.frames())?;
+        write_whole(&path.join(SCENE), |w| w.write_all(scene.text.as_bytes()))?;
+        Ok(folder)
+    }
+
+    /// A folder that holds another scene, or frames of unknown origin, is not written to.
+    pub(super) fn refuse_foreign(&self, scene: &Scene) -> Result<(), Failure> {
+        let path = self.path.display();
+        let cure = "choose another folder (-o), or remove this one";
+        if let Some(record) = Record::read(&self.path)? {
+            if record.scene_hash != scene.hash {
+                let cause = format!("{path} holds a run of another scene (`{}`)", record.scene);
+                return Err(Failure::new(cause, cure));
+            }
+            return Ok(());
+        }
+        if let Ok(text) = fs::read_to_string(self.path.join(SCENE)) {
+            let other = Scene::from_toml(SCENE, &text).is_ok_and(|s| s.hash != scene.hash);
+            if other {
+                return Err(Failure::new(format!("{path} belongs to another scene ({SCENE})"), cure));
+            }
+        }
+        let frames = fs::read_dir(self.frames()).is_ok_and(|mut d| d.next().is_some());
+        if frames || self.path.join(PHI).exists() {
+            let cause = format!("{path} holds frames or a {PHI}, but no {} that says of which scene", Record::FILE);
+            return Err(Failure::new(cause, cure));
+        }
+        Ok(())
+    }
+
+    pub(super) fn frames(&self) -> PathBuf {
+        self.path.join("frames")
+    }
+
+    fn partial(&self, spot: usize) -> PathBuf {
+        self.path.join("partial").join(format!("spot-{spot:04}.npy"))
+    }
+
+    /// Keeps a finished spot (column `column` of `traced`) until the run is complete.
+    pub(super) fn keep(&self, spot: usize, traced: &Traced, column: usize) -> Result<(), Failure> {
+        ensure_writable(&self.path.join("partial"))?;
+        let columns = traced.bounces.iter().chain([&traced.stderr]);
+        let columns: Vec<_> = columns.map(|m| m.column(column).into_owned()).collect();
+        Ok(npy::write(&self.partial(spot), &Matrix::from_columns(&columns))?)
+    }
+
+    /// A spot that was kept: one column per bounce count, then the standard error; `None` if it is not there or not whole.
+    pub(super) fn kept(&self, spot: usize, scene: &Scene) -> Option<Matrix> {
+        let matrix = npy::read_finite(&self.partial(spot)).ok()?;
+        let shape = (scene.camera.pixels(), scene.max_bounces as usize + 1);
+        (matrix.shape() == shape).then_some(matrix)
+    }
+
+    pub(super) fn remove_partial(&self) -> Result<(), Failure> {
+        remove_numbered(&self.path.join("partial"), "npy")
+    }
+
+    fn remove_frames(&self) -> Result<(), Failure> {
+        self.remove_partial()?;
+        remove_numbered(&self.frames(), "exr")?;
+        for name in [PHI, STDERR, Record::FILE] {
+            if let Err(e) = fs::remove_file(self.path.join(name)) {
+                if e.kind() != std::io::ErrorKind::NotFound {
+                    return Err(e.into());
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the frame of a spot from column `column` of `traced`.
+    pub(super) fn write_frame(&self, scene: &Scene, record: &Record, spot: usize, traced: &Traced, column: usize) -> Result<(), Failure> {
+        let channel = |name: String, m: &Matrix| Channel {
+            name,
+            values: m.column(column).iter().map(|x| *x as f32).collect(),
+        };
+        let mut channels = vec![
+            channel(film::frame::FLUX.into(), &traced.flux),
+            channel(film::frame::FLUX_STDERR.into(), &traced.stderr),
+        ];
+        for (n, m) in traced.bounces.iter().enumerate() {
+            channels.push(channel(film::frame::bounce_channel(n + 1), m));
+        }
+        let frame = Frame {
+            columns: scene.camera.columns,
+            rows: scene.camera.rows,
+            channels,
+            meta: FrameMeta {
+                scene_name: scene.name.clone(),
+                scene_hash: scene.hash.clone(),
+                unit: scene.unit.symbol().to_owned(),
+                spot_index: spot as u32,
+                spot_count: record.spots as u32,
+                spot_position: scene.laser.spots[spot].target.position.to_array(),
+                seed: record.seed,
+                samples: record.samples,
+                estimator: record.estimator.clone(),
+                sampler: record.sampler.clone(),
+                version: record.version.clone(),
+            },
+        };
+        Ok(film::exr::write(&self.frames().join(frame_name(spot as u32)), &frame)?)
+    }
+
+    /// Writes Φcam and its standard error.
+    pub(super) fn write_phi(&self, phi: &Matrix, stderr: &Matrix) -> Result<(), Failure> {
+        npy::write(&self.path.join(STDERR), stderr)?;
+        Ok(npy::write(&self.path.join(PHI), phi)?)
+    }
+}
+
+/// Removes the spot-NNNN files of `dir` with the given extension, and `dir` if that empties it.
+fn remove_numbered(dir: &Path, extension: &str) -> Result<(), Failure> {
+    let Ok(entries) = fs::read_dir(dir) else { return Ok(()) };
+    for path in entries.filter_map(Result::ok).map(|e| e.path()) {
+        let name = path.file_name().and_then(|n| n.to_str()).unwrap_or("");
+        let number = name.strip_prefix("spot-").and_then(|n| n.strip_suffix(extension));
+        let ours = number.and_then(|n| n.strip_suffix('.')).is_some_and(|n| {
+            !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit())
+        });
+        if ours {
+            fs::remove_file(&path)?;
+        }
+    }
+    // Anything else in it is not ours, and keeps it.
+    let _ = fs::remove_dir(dir);
+    Ok(())
+}
+
+/// The scene and the record of a finished run.
+pub(super) fn read_run(dir: &Path) -> Result<(Scene, Record), Failure> {
+    let record = Record::read(dir)?.ok_or_else(|| {
+        let cause = format!("{} is not the folder of a run: it has no {}", dir.display(), Record::FILE);
+        Failure::new(cause, "give a folder that `phicam run` or `phicam render` has written")
+    })?;
+    let path = dir.join(SCENE);
+    let scene = Scene::load(&path.to_string_lossy())?;
+    if scene.hash != record.scene_hash {
+        let cause = format!("{} is not the scene that {} was rendered from", path.display(), dir.display());
+        return Err(Failure::new(cause, "restore it, or render the changed scene into another folder"));
+    }
+    if record.finished < record.spots && !dir.join(PHI).exists() {
+        let cause = format!("{} holds {} of {} spots", dir.display(), record.finished, record.spots);
+        return Err(Failure::new(cause, "finish it with `phicam render --resume`"));
+    }
+    Ok((scene, record))
+}
+
+/// A matrix of the run, finite.
+pub(super) fn read_matrix(path: &Path) -> Result<Matrix, Failure> {
+    Ok(npy::read_finite(path)?)
+}

@@ -1,0 +1,54 @@
+//! `phicam model`: the matrices of the model.
+
+use std::path::Path;
+
+use super::args::ModelArgs;
+use super::failure::Failure;
+use super::folder::Folder;
+use super::output::{self, Talk};
+use super::{Outcome, settings};
+use crate::matrix::{Matrix, npy};
+use crate::model::{MatrixModel, converged};
+use crate::scene::Scene;
+use crate::store::ensure_writable;
+use crate::study::Integration;
+
+pub(super) fn execute(args: &ModelArgs, talk: Talk) -> Result<Outcome, Failure> {
+    let scene = Scene::load(&args.scene)?;
+    let kernel = settings::kernel(args.kernel);
+    let model = MatrixModel::new(&scene, kernel, args.elements)?;
+    Folder { path: args.output.clone() }.refuse_foreign(&scene)?;
+    talk.warn(&scene);
+    let (phi, how) = match settings::integration(args.integration) {
+        Integration::Centres => (model.phi(), "by centres".to_owned()),
+        Integration::Quadrature => {
+            let integral = converged(&scene, kernel)?;
+            let how = format!("by quadrature, last refinement {:.1e}", integral.change);
+            (integral.phi, how)
+        }
+    };
+    write(&args.output, &model, &phi)?;
+    let text = format!(
+        "{}: g12.npy {} × {}, g23.npy {} × {}, phi.npy {} × {} ({} kernel, {how})\n",
+        args.output.join("model").display(),
+        model.g12.nrows(),
+        model.g12.ncols(),
+        model.g23.nrows(),
+        model.g23.ncols(),
+        phi.nrows(),
+        phi.ncols(),
+        kernel.name(),
+    );
+    output::print(&text)?;
+    Ok(Outcome::Done)
+}
+
+/// Writes DIR/model/g12.npy, g23.npy and phi.npy.
+pub(super) fn write(dir: &Path, model: &MatrixModel, phi: &Matrix) -> Result<(), Failure> {
+    let folder = dir.join("model");
+    ensure_writable(&folder)?;
+    for (name, matrix) in [("g12.npy", &model.g12), ("g23.npy", &model.g23), ("phi.npy", phi)] {
+        npy::write(&folder.join(name), matrix)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,52 @@
+//! Standard output and standard error.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use super::failure::Failure;
+use crate::scene::Scene;
+use crate::store::write_whole;
+
+/// Whether remarks are wanted.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Talk {
+    pub quiet: bool,
+}
+
+impl Talk {
+    /// A remark on standard error.
+    pub(super) fn say(self, text: impl AsRef<str>) {
+        if !self.quiet {
+            eprintln!("{}", text.as_ref());
+        }
+    }
+
+    /// What is suspicious in a scene, once.
+    pub(super) fn warn(self, scene: &Scene) {
+        for warning in scene.warnings() {
+            self.say(format!("warning: {warning}"));
+        }
+    }
+}
+
+/// A result on standard output. A reader that has gone away (`| head`) is no error.
+pub(super) fn print(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(e.into()),
+        _ => Ok(()),
+    }
+}
+
+/// Writes text to a file, or prints it.
+pub(super) fn deliver(text: &str, file: Option<&Path>) -> Result<(), Failure> {
+    match file {
+        None => print(text),
+        Some(path) => Ok(write_whole(path, |w| w.write_all(text.as_bytes()))?),
+    }
+}
+
+/// A value as pretty JSON with a final newline.
+pub(super) fn json(value: &impl serde::Serialize) -> Result<String, Failure> {
+    Ok(serde_json::to_string_pretty(value)? + "\n")
+}

@@ -1,0 +1,108 @@
+//! `phicam recover`: the hidden reflectance from Φcam.
+
+use std::path::Path;
+
+use super::args::RecoverArgs;
+use super::failure::Failure;
+use super::folder::{self, PHI, STDERR};
+use super::output::{self, Talk};
+use super::{Outcome, settings};
+use crate::matrix::{Matrix, npy};
+use crate::model::MatrixModel;
+use crate::num::linalg::Tolerance;
+use crate::recovery::{Method, Options};
+use crate::report;
+use crate::store::{ensure_writable, write_whole};
+use crate::study::{Attempt, Noise, RecoveredObject, recover_objects};
+
+pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure> {
+    let methods: Vec<Method> = match args.method.as_slice() {
+        [] => Method::ALL.to_vec(),
+        names => names.iter().map(|n| n.parse()).collect::<Result<_, _>>()?,
+    };
+    let options = options(args)?;
+    let (scene, _) = folder::read_run(&args.dir)?;
+    let model = MatrixModel::new(&scene, settings::kernel(args.kernel), args.elements)?;
+    let phi = folder::read_matrix(args.phi.as_ref().unwrap_or(&args.dir.join(PHI)))?;
+    let stderr = match (&args.stderr, args.noise) {
+        (_, Some(noise)) => Some(phi.map(|x| x.abs() * noise)),
+        (Some(file), None) => Some(folder::read_matrix(file)?),
+        (None, None) if args.phi.is_none() => Some(folder::read_matrix(&args.dir.join(STDERR))?),
+        // Of a foreign Φcam nothing is known but what is said.
+        (None, None) => None,
+    };
+    let noise = stderr.as_ref().map_or(Noise::Unknown, Noise::StandardError);
+    let attempts = recover_objects(&model, &phi, noise, &methods, &options);
+    let single = methods.len() == 1;
+    let objects = collect(attempts, single, talk)?;
+    write(&args.dir, &objects)?;
+    let text = if args.json { output::json(&objects)? } else { report::recovery_table(&objects) };
+    output::print(&text)?;
+    Ok(Outcome::Done)
+}
+
+fn options(args: &RecoverArgs) -> Result<Options, Failure> {
+    if args.noise.is_some_and(|x| !(x > 0.0 && x.is_finite())) {
+        return Err(Failure::new("--noise is not a positive number", "give it relative to the flux, e.g. 0.01"));
+    }
+    let mut options = Options { rank: args.rank, damping: args.damping, ..Options::default() };
+    if let Some(tolerance) = args.tolerance {
+        options.tolerance = Tolerance::Relative(tolerance);
+    }
+    Ok(options)
+}
+
+/// The objects that were recovered. A method that cannot work is reported; if none can, or the only one asked for, that is
+/// the command's failure.
+pub(super) fn collect(attempts: Vec<Attempt>, strict: bool, talk: Talk) -> Result<Vec<RecoveredObject>, Failure> {
+    let mut objects = Vec::new();
+    for attempt in attempts {
+        match attempt.outcome {
+            Ok(found) => objects.extend(found),
+            Err(e) if strict => return Err(e.into()),
+            Err(e) => talk.say(format!("{}: {e}", attempt.method)),
+        }
+    }
+    if objects.is_empty() {
+        return Err(Failure::new("no method could recover anything", "see the reasons above"));
+    }
+    Ok(objects)
+}
+
+/// Writes DIR/recovered/METHOD.npy (nv × nu) and METHOD.png, and truth.npy and truth.png. Where several surfaces are hidden
+/// the names are METHOD-0, METHOD-1, … in file order.
+pub(super) fn write(dir: &Path, objects: &[RecoveredObject]) -> Result<(), Failure> {
+    let folder = dir.join("recovered");
+    ensure_writable(&folder)?;
+    let mut surfaces: Vec<&str> = objects.iter().map(|o| o.surface.as_str()).collect();
+    surfaces.sort_unstable();
+    surfaces.dedup();
+    let several = surfaces.len() > 1;
+    let mut seen: Vec<(&str, usize)> = Vec::new();
+    for object in objects {
+        let index = match seen.iter_mut().find(|(m, _)| *m == object.method) {
+            Some((_, n)) => {
+                *n += 1;
+                *n
+            }
+            None => {
+                seen.push((&object.method, 0));
+                0
+            }
+        };
+        let suffix = if several { format!("-{index}") } else { String::new() };
+        let named = [(object.method.as_str(), &object.reflectance), ("truth", &object.truth)];
+        for (name, values) in named {
+            let [nu, nv] = object.elements;
+            let path = folder.join(format!("{name}{suffix}"));
+            npy::write(&path.with_extension("npy"), &Matrix::from_row_slice(nv, nu, values))?;
+            let title = match name {
+                "truth" => format!("truth: {}", object.surface),
+                _ => format!("{name}: {}", object.surface),
+            };
+            let png = report::reflectance_png(&title, object.elements, values);
+            write_whole(&path.with_extension("png"), |w| w.write_all(&png))?;
+        }
+    }
+    Ok(())
+}

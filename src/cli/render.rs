@@ -1,0 +1,185 @@
+//! `phicam render`: frames and Φcam.
+
+use std::ops::Range;
+use std::path::Path;
+use std::time::Instant;
+
+use super::args::{RenderArgs, TraceArgs};
+use super::failure::Failure;
+use super::folder::{Folder, Keep};
+use super::interrupt::stop_flag;
+use super::output::{self, Talk};
+use super::record::Record;
+use super::{Outcome, progress, settings};
+use crate::matrix::Matrix;
+use crate::scene::Scene;
+use crate::transport::{Control, Estimator, Plan, Traced, render};
+
+pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure> {
+    let scene = Scene::load(&args.scene)?;
+    let total = scene.laser.spots.len();
+    let spots = args.spots.clone().unwrap_or(0..total);
+    if spots.end > total {
+        let cause = format!("--spots {}..{} asks for more than the {total} spots there are", spots.start, spots.end);
+        return Err(Failure::new(cause, format!("use a range within 0..{total}")));
+    }
+    let keep = match (args.resume, spots.len() < total) {
+        (true, _) => Keep::Finished,
+        (false, true) => Keep::OtherSpots,
+        (false, false) => Keep::Nothing,
+    };
+    let rendered = into_folder(&scene, &args.trace, spots, keep, &args.output, talk)?;
+    let record = &rendered.record;
+    if args.json {
+        output::print(&output::json(record)?)?;
+    } else {
+        let Record { finished, spots, seconds, .. } = record;
+        let what = match rendered.phi {
+            Some(_) => "frames, phi.npy and phi.stderr.npy".to_owned(),
+            None => "frames; phi.npy follows when every spot is there".to_owned(),
+        };
+        let place = args.output.display();
+        output::print(&format!("{place}: {finished} of {spots} spots in {seconds:.1} s ({}): {what}\n", record.settings()))?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// What a render left.
+#[derive(Debug)]
+pub(super) struct Rendered {
+    pub record: Record,
+    /// Every column of Φcam, if all spots are finished.
+    pub phi: Option<Traced>,
+}
+
+/// Renders `spots` into the run folder `path`, every finished spot safe on disk.
+pub(super) fn into_folder(
+    scene: &Scene,
+    args: &TraceArgs,
+    spots: Range<usize>,
+    keep: Keep,
+    path: &Path,
+    talk: Talk,
+) -> Result<Rendered, Failure> {
+    let plan = settings::plan(args, talk)?;
+    let pool = settings::pool(args.threads)?;
+    let threads = pool.current_num_threads();
+    let mut record = Record::new(scene, &plan, 0, threads, 0.0);
+    if keep == Keep::Finished {
+        if let Some(earlier) = Record::read(path)? {
+            record.seconds = earlier.seconds;
+        }
+    }
+    let folder = Folder::open(path, scene, &record, keep, talk)?;
+    talk.warn(scene);
+    record.write(path)?;
+    let todo: Vec<usize> = match keep {
+        Keep::Finished => spots.filter(|s| folder.kept(*s, scene).is_none()).collect(),
+        _ => spots.collect(),
+    };
+    let start = Instant::now();
+    let fresh = trace(scene, &plan, &todo, &folder, &record, &pool, talk);
+    record.seconds += start.elapsed().as_secs_f64();
+    let total = scene.laser.spots.len();
+    let phi = match fresh {
+        Ok(Some(traced)) if todo.len() == total => Some(traced),
+        Ok(_) => gather(scene, &folder),
+        Err(failure) => {
+            record.finished = (0..total).filter(|s| folder.kept(*s, scene).is_some()).count();
+            record.write(path)?;
+            return Err(match failure {
+                Failure::Stopped(_) => Failure::Stopped(format!(
+                    "{} of {total} spots are finished and kept in {}; go on with `phicam render --resume` and the same settings",
+                    record.finished,
+                    path.display()
+                )),
+                other => other,
+            });
+        }
+    };
+    record.finished = match &phi {
+        Some(_) => total,
+        None => (0..total).filter(|s| folder.kept(*s, scene).is_some()).count(),
+    };
+    if let Some(traced) = &phi {
+        folder.write_phi(&traced.flux, &traced.stderr)?;
+        record.write(path)?;
+        folder.remove_partial()?;
+    } else {
+        record.write(path)?;
+    }
+    Ok(Rendered { record, phi })
+}
+
+/// Traces the spots of `todo`; frames and kept columns are written as soon as they are finished. Returns what was traced if
+/// it was everything at once.
+fn trace(
+    scene: &Scene,
+    plan: &Plan,
+    todo: &[usize],
+    folder: &Folder,
+    record: &Record,
+    pool: &rayon::ThreadPool,
+    talk: Talk,
+) -> Result<Option<Traced>, Failure> {
+    let pixels = scene.camera.pixels() as u64;
+    let per_pixel = match plan.estimator {
+        Estimator::Independent => todo.len() as u64,
+        Estimator::Shared => u64::from(!todo.is_empty()),
+    };
+    let bar = progress::paths(talk, &format!("tracing {}", scene.name), pixels * plan.budget.samples() * per_pixel);
+    let tick = |paths| bar.inc(paths);
+    let control = Control { progress: &tick, stop: stop_flag() };
+    let stopped = || Failure::Stopped(String::new());
+    let mut all: Vec<Traced> = Vec::new();
+    for range in batches(todo, plan.estimator) {
+        let traced = pool.install(|| render(scene, plan, range.clone(), control)).ok_or_else(stopped)?;
+        for (column, spot) in range.clone().enumerate() {
+            folder.write_frame(scene, record, spot, &traced, column)?;
+            folder.keep(spot, &traced, column)?;
+        }
+        all.push(traced);
+    }
+    bar.finish_and_clear();
+    Ok(join(all))
+}
+
+/// Runs of neighbouring spots to be traced together: one spot each where nothing is shared, as many as possible where paths
+/// serve all spots.
+fn batches(todo: &[usize], estimator: Estimator) -> Vec<Range<usize>> {
+    let mut ranges: Vec<Range<usize>> = Vec::new();
+    for &spot in todo {
+        match ranges.last_mut() {
+            Some(last) if last.end == spot && estimator == Estimator::Shared => last.end = spot + 1,
+            _ => ranges.push(spot..spot + 1),
+        }
+    }
+    ranges
+}
+
+/// Columns side by side.
+fn join(parts: Vec<Traced>) -> Option<Traced> {
+    let orders = parts.first()?.bounces.len();
+    let beside = |f: &dyn Fn(&Traced) -> &Matrix| {
+        let columns: Vec<_> =
+            parts.iter().flat_map(|t| f(t).column_iter().map(|c| c.into_owned()).collect::<Vec<_>>()).collect();
+        Matrix::from_columns(&columns)
+    };
+    Some(Traced {
+        bounces: (0..orders).map(|n| beside(&|t| &t.bounces[n])).collect(),
+        flux: beside(&|t| &t.flux),
+        stderr: beside(&|t| &t.stderr),
+    })
+}
+
+/// All columns from what was kept of each spot, if every spot is there.
+fn gather(scene: &Scene, folder: &Folder) -> Option<Traced> {
+    let orders = scene.max_bounces as usize;
+    let spots = 0..scene.laser.spots.len();
+    let kept: Vec<Matrix> = spots.map(|s| folder.kept(s, scene)).collect::<Option<_>>()?;
+    let pick = |n: usize| Matrix::from_columns(&kept.iter().map(|m| m.column(n)).collect::<Vec<_>>());
+    let bounces: Vec<Matrix> = (0..orders).map(pick).collect();
+    // The same order of additions as in the tracer, so that the bits are the same.
+    let flux = Matrix::from_fn(kept[0].nrows(), kept.len(), |p, l| bounces.iter().map(|b| b[(p, l)]).sum());
+    Some(Traced { flux, stderr: pick(orders), bounces })
+}

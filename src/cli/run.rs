@@ -1,0 +1,127 @@
+//! `phicam run`: the main job from end to end.
+
+use std::time::Instant;
+
+use super::args::RunArgs;
+use super::failure::Failure;
+use super::folder::Keep;
+use super::output::{self, Talk};
+use super::render::{self, Rendered};
+use super::{Outcome, model, recover, settings, validate};
+use crate::film;
+use crate::matrix::Matrix;
+use crate::metrics::relative_frobenius;
+use crate::model::MatrixModel;
+use crate::recovery::{Method, Options};
+use crate::report;
+use crate::scene::Scene;
+use crate::store::write_whole;
+use crate::study::{self, Noise, RunResults};
+
+pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
+    let scene = Scene::load(&args.scene)?;
+    let mut clock = Clock::start();
+    let plan = settings::plan(&args.trace, Talk { quiet: true })?;
+    let test = settings::test(&args.test, &plan)?;
+    let spots = 0..scene.laser.spots.len();
+    let Rendered { record, phi } =
+        render::into_folder(&scene, &args.trace, spots, Keep::Nothing, &args.output, talk)?;
+    let Some(traced) = phi else {
+        return Err(Failure::new("not every spot was rendered", "run again"));
+    };
+    clock.lap("render");
+
+    talk.say("stacking the frames");
+    refuse_unfaithful_frames(&args.output, &traced.flux)?;
+    clock.lap("stack");
+
+    let total: f64 = traced.flux.sum();
+    let share = |m: &Matrix| if total > 0.0 { m.sum() / total } else { 0.0 };
+    let bounces = (1..).zip(&traced.bounces).map(|(n, m)| (n, share(m))).collect();
+    let mut results = RunResults {
+        settings: record.to_settings(),
+        phi: traced.flux,
+        stderr: traced.stderr,
+        bounces,
+        model: None,
+        z: None,
+        agreement: None,
+        recovered: Vec::new(),
+        times: Vec::new(),
+        scene,
+    };
+    if results.scene.hidden().next().is_some() {
+        compare_and_recover(&mut results, args, test, &mut clock, talk)?;
+    }
+
+    talk.say("writing the report");
+    results.times = clock.laps;
+    let path = |name| args.output.join(name);
+    let summary = report::summary_json(&results);
+    write_whole(&path("summary.json"), |w| w.write_all(summary.as_bytes()))?;
+    let page = report::run_html(&results);
+    write_whole(&path("report.html"), |w| w.write_all(page.as_bytes()))?;
+    let text = match args.json {
+        true => summary,
+        false => report::summary_table(&results) + &format!("\n  everything is in {}, the report in report.html\n", args.output.display()),
+    };
+    output::print(&text)?;
+    Ok(results.agreement.as_ref().map_or(Outcome::Done, validate::outcome))
+}
+
+/// Model, verdict and recoveries.
+fn compare_and_recover(
+    results: &mut RunResults,
+    args: &RunArgs,
+    test: study::Test,
+    clock: &mut Clock,
+    talk: Talk,
+) -> Result<(), Failure> {
+    let kernel = settings::kernel(args.test.kernel);
+    let integration = settings::integration(args.test.integration);
+    talk.say("computing the model and comparing");
+    let matrices = MatrixModel::new(&results.scene, kernel, None)?;
+    let found = study::validate(&results.scene, &results.phi, &results.stderr, kernel, integration, test)?;
+    model::write(&args.output, &matrices, &found.model)?;
+    results.model = Some(found.model);
+    results.z = Some(found.z);
+    results.agreement = Some(found.agreement);
+    clock.lap("model and validate");
+
+    talk.say("recovering the object");
+    let noise = Noise::StandardError(&results.stderr);
+    let attempts = study::recover_objects(&matrices, &results.phi, noise, &Method::ALL, &Options::default());
+    results.recovered = recover::collect(attempts, false, talk)?;
+    recover::write(&args.output, &results.recovered)?;
+    clock.lap("recover");
+    Ok(())
+}
+
+/// The frames must hold Φcam to f32 rounding: what is read back is compared with what was traced.
+fn refuse_unfaithful_frames(dir: &std::path::Path, flux: &Matrix) -> Result<(), Failure> {
+    let stacked = film::stack(dir)?;
+    // Rounding to f32 is off by at most 2⁻²⁴ of each entry, so also of the norm.
+    let off = relative_frobenius(&stacked.phi, flux).unwrap_or(0.0);
+    if off > f64::from(f32::EPSILON) {
+        let cause = format!("the frames in {} differ from what was traced by {off:.1e}", dir.display());
+        return Err(Failure::new(cause, "check the disk, and run again"));
+    }
+    Ok(())
+}
+
+/// Wall time of each stage.
+struct Clock {
+    last: Instant,
+    laps: Vec<(String, f64)>,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Self { last: Instant::now(), laps: Vec::new() }
+    }
+
+    fn lap(&mut self, stage: &str) {
+        self.laps.push((stage.to_owned(), self.last.elapsed().as_secs_f64()));
+        self.last = Instant::now();
+    }
+}

@@ -1,0 +1,75 @@
+//! Checked settings from raw arguments.
+
+use rayon::ThreadPool;
+
+use super::args::{EstimatorName, IntegrationName, KernelName, SamplerName, TestArgs, TraceArgs};
+use super::failure::Failure;
+use super::output::Talk;
+use crate::model::Kernel;
+use crate::num::stream::Sampling;
+use crate::study::{Errors, Integration, Test};
+use crate::transport::{Budget, Estimator, Plan};
+
+/// The plan that the arguments describe; a rounded number of samples is said.
+pub(super) fn plan(args: &TraceArgs, talk: Talk) -> Result<Plan, Failure> {
+    let estimator = match args.estimator {
+        EstimatorName::Independent => Estimator::Independent,
+        EstimatorName::Shared => Estimator::Shared,
+    };
+    let sampling = match args.sampler {
+        SamplerName::Pcg => Sampling::Pcg,
+        SamplerName::Sobol => Sampling::Sobol,
+    };
+    let budget = Budget::new(args.samples, sampling).ok_or_else(|| {
+        let cause = format!("--samples {} is not a number of paths that can be traced", args.samples);
+        Failure::new(cause, "use at least 1 and at most 2⁴⁰")
+    })?;
+    if budget.samples() != args.samples {
+        talk.say(format!(
+            "{} samples rounded up to {}: {} blocks of {}",
+            args.samples,
+            budget.samples(),
+            budget.blocks,
+            budget.size
+        ));
+    }
+    Ok(Plan { estimator, sampling, seed: args.seed, budget })
+}
+
+/// The threads to work with.
+pub(super) fn pool(threads: Option<usize>) -> Result<ThreadPool, Failure> {
+    if threads.is_some_and(|n| !(1..=4096).contains(&n)) {
+        return Err(Failure::new("--threads is out of range", "use 1 to 4096, or leave it out"));
+    }
+    Ok(rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?)
+}
+
+pub(super) fn kernel(name: KernelName) -> Kernel {
+    match name {
+        KernelName::Physical => Kernel::Physical,
+        KernelName::Published => Kernel::Published,
+    }
+}
+
+pub(super) fn integration(name: IntegrationName) -> Integration {
+    match name {
+        IntegrationName::Centres => Integration::Centres,
+        IntegrationName::Quadrature => Integration::Quadrature,
+    }
+}
+
+/// The test for a run traced by `plan`.
+pub(super) fn test(args: &TestArgs, plan: &Plan) -> Result<Test, Failure> {
+    if !(args.significance > 0.0 && args.significance < 1.0) {
+        let cause = format!("--significance {} is not a probability", args.significance);
+        return Err(Failure::new(cause, "use a number between 0 and 1, e.g. 0.001"));
+    }
+    Ok(Test {
+        significance: args.significance,
+        replicates: plan.budget.blocks,
+        errors: match plan.estimator {
+            Estimator::Independent => Errors::Independent,
+            Estimator::Shared => Errors::WithinRows,
+        },
+    })
+}
