@@ -8,12 +8,21 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{GAP_ALLOWED, Place, QuadraticError};
 
-/// The interior-point solution clipped to the box, where each variable stands, the solver's status and iterations.
-#[allow(clippy::type_complexity)]
-pub(super) fn solve(
-    r: &DMatrix<f64>,
-    d: &DVector<f64>,
-) -> Result<(DVector<f64>, Vec<Place>, String, u32), QuadraticError> {
+/// Where the interior-point solver ended.
+pub(super) struct Interior {
+    /// x, clipped to the box.
+    pub(super) x: DVector<f64>,
+    /// Which bounds hold.
+    pub(super) places: Vec<Place>,
+    /// Its residual variables y, a dual certificate.
+    pub(super) y: DVector<f64>,
+    /// Its own word on the result.
+    pub(super) status: String,
+    pub(super) iterations: u32,
+}
+
+/// Solves min ½yᵀy, y = R x − d, 0 ≤ x ≤ 1 to the solver's own tolerance.
+pub(super) fn solve(r: &DMatrix<f64>, d: &DVector<f64>) -> Result<Interior, QuadraticError> {
     let (k, n) = r.shape();
     let lengths: Vec<f64> = r
         .column_iter()
@@ -80,5 +89,12 @@ pub(super) fn solve(
         })
         .collect();
     x.apply(|x| *x = x.clamp(0.0, 1.0));
-    Ok((x, places, status, found.iterations))
+    let y = DVector::from_fn(k, |i, _| found.x[n + i] * size);
+    Ok(Interior {
+        x,
+        places,
+        y,
+        status,
+        iterations: found.iterations,
+    })
 }
