@@ -25,9 +25,8 @@ pub fn correlation(a: &[f64], b: &[f64]) -> Option<f64> {
     let centred = |values: &[f64]| {
         let (unit, _) = scaled(values.iter().copied())?;
         let mean = unit.iter().sum::<f64>() / unit.len() as f64;
-        // A constant has no correlation, whatever its mean was rounded to.
-        let varies = unit.iter().any(|x| *x != unit[0]);
-        varies.then(|| unit.iter().map(|x| x - mean).collect::<Vec<f64>>())
+        // The scaled entries of a constant are all 1 or all −1, so its deviations are exactly 0 and the ratio below is not finite.
+        Some(unit.iter().map(|x| x - mean).collect::<Vec<f64>>())
     };
     let (a, b) = (centred(a)?, centred(b)?);
     let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();

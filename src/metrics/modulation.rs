@@ -104,6 +104,7 @@ mod tests {
 
     #[test]
     fn grey_truth_splits_at_mid_range() {
+        assert_eq!(mtf_raw(&[1.0, 3.0, 6.0], &[0.0, 0.5, 1.0]), Some(0.5));
         // Middle of [0.2, 0.8] is 0.5: light are 0.6 and 0.8, so W = 4.5, B = 1.5.
         let truth = [0.2, 0.4, 0.6, 0.8];
         assert!((mtf_raw(&[1.0, 2.0, 3.0, 6.0], &truth).unwrap() - 3.0 / 6.0).abs() < 1e-15);

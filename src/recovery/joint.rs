@@ -91,7 +91,7 @@ mod tests {
         let mut normal = normal_stream(3);
         let trials = 300;
         let (mut mean, mut chi2) = (DVector::zeros(16), 0.0);
-        let mut sd = DVector::zeros(16);
+        let (mut sd, mut spread) = (DVector::zeros(16), DVector::zeros(16));
         for _ in 0..trials {
             let phi = exact.zip_map(&stderr, |x, s| x + s * normal());
             let found = recover(
@@ -105,6 +105,7 @@ mod tests {
             let covariance = found.covariance.unwrap();
             sd = found.standard_error.unwrap();
             mean += &error / f64::from(trials);
+            spread += error.component_div(&sd).map(|z| z * z) / f64::from(trials);
             // Scaled to a correlation matrix: the covariance itself is badly scaled for Cholesky.
             let correlation = DMatrix::from_fn(16, 16, |i, j| covariance[(i, j)] / (sd[i] * sd[j]));
             let z = error.component_div(&sd);
@@ -115,7 +116,33 @@ mod tests {
             (chi2 - 1.0).abs() < 5.0 * (2.0f64 / (300.0 * 16.0)).sqrt(),
             "{chi2}"
         );
+        assert!(
+            spread
+                .iter()
+                .all(|s| (s - 1.0).abs() < 5.0 * (2.0f64 / 300.0).sqrt()),
+            "{spread}"
+        );
         assert!(mean.component_div(&sd).amax() * 300f64.sqrt() < 5.0);
+    }
+
+    #[test]
+    fn the_gram_route_keeps_to_what_a_gram_matrix_knows() {
+        let bench = Bench::new(3.0, 8, 8);
+        let board = bench.board(2);
+        let phi = bench.phi(&board);
+        let problem = Problem::new(&phi, &bench.c, &bench.d, None).unwrap();
+        let gram = Options {
+            budget: 0,
+            ..Options::default()
+        };
+        let found = recover(Method::Joint, &problem, &gram).unwrap();
+        // Kept directions lie above √(64 eps) = 1.2e-7 of σ₁, where rounding of Gram matrix and moment stays small.
+        assert!(found.sigma[found.rank - 1] > 1.1e-7 * found.sigma[0] && found.rank < 63);
+        assert!(
+            found.reflectance.amax() < 3.0 && found.relative_residual < 1e-6,
+            "{:e}",
+            found.relative_residual
+        );
     }
 
     #[test]

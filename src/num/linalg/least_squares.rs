@@ -148,6 +148,13 @@ mod tests {
         let a = DMatrix::from_element(3, 2, 1.0);
         let solved = least_squares(&a, &DVector::from_element(3, 2.0), Tolerance::Auto).unwrap();
         assert_eq!((solved.route, solved.rank), (Route::Svd, 1));
+        // Hilbert's 30 × 12: condition 1e15, nowhere exactly zero.
+        let near = least_squares(
+            &hilbert(30, 12),
+            &DVector::from_element(30, 1.0),
+            Tolerance::Auto,
+        );
+        assert_eq!(near.unwrap().route, Route::Svd);
         assert!((solved.solution - DVector::from_element(2, 1.0)).norm() < 1e-14);
         let normal = normal_triangle(
             &DMatrix::from_element(2, 2, 3.0),

@@ -160,6 +160,22 @@ mod tests {
     }
 
     #[test]
+    fn a_tall_smooth_kernel_keeps_its_tail_small() {
+        // Analytic kernel: exact singular values fall below 1e-25 σ₁ by the 60th. Rounding of the entries lifts them to about
+        // eps/√1024 each; an unpivoted QR first would make it 6e-15.
+        let kernel = |i: usize, j: usize| 3.0 * (i as f64 / 1024.0 - j as f64 / 120.0);
+        let tall = DMatrix::from_fn(1024, 120, |i, j| (1.0 + kernel(i, j).powi(2)).powi(-2));
+        for a in [tall.transpose(), tall] {
+            let sigma = svd(&a).unwrap().sigma;
+            assert!(
+                sigma[60] < f64::EPSILON * sigma[0],
+                "{:e}",
+                sigma[60] / sigma[0]
+            );
+        }
+    }
+
+    #[test]
     fn a_wrong_factor_is_noticed() {
         let a = bench_g12(3.0);
         let mut wrong = decompose(&a).unwrap();

@@ -70,9 +70,12 @@ enum Place {
 ///
 /// with R's columns scaled to unit length. Its answer tells which bounds hold; an active-set refinement (Stark and
 /// Parker's bounded-variable least squares, started there) then solves for the rest by QR to full precision, never
-/// raising the objective. With g = Rᵀ(R x − d) the returned gap is
+/// raising the objective. The returned gap is the least that three dual points ν prove by weak duality, with g = Rᵀν:
 ///
-/// > f(x) − f* ≤ Σ_j max(g_j x_j, −g_j (1 − x_j)).
+/// > f(x) − f* ≤ ½‖R x − d − ν‖² + Σ_j max(g_j x_j, −g_j (1 − x_j)),
+///
+/// ν the residual R x − d, its part orthogonal to the columns of the variables between their bounds (which rounding of a
+/// large d disturbs least), and the solver's own y.
 ///
 /// # Errors
 /// Empty or non-finite input, shapes that do not fit, or a gap above 1e-9 · ½(‖d‖² + ‖R‖²).
@@ -110,14 +113,18 @@ pub fn box_least_squares(
     let down = |x: f64| libm::scalbn(x, -exponent);
     let (r, d) = (r.map(down), d.map(down));
 
-    let (start, places, status, iterations) = interior_point::solve(&r, &d)?;
-    let (solution, refinements) = active_set::refine(&r, &d, start, places)?;
+    let start = interior_point::solve(&r, &d)?;
+    let (solution, refinements) = active_set::refine(&r, &d, start.x, start.places)?;
     let residual = &r * &solution - &d;
-    let gap = duality_gap(&r, &residual, &solution);
+    let orthogonal = active_set::orthogonal_to_free(&r, &residual, &solution)?;
+    let gap = [&residual, &orthogonal, &start.y]
+        .map(|dual| duality_gap(&r, &residual, dual, &solution))
+        .into_iter()
+        .fold(f64::INFINITY, f64::min);
     let unit = 0.5 * (r.norm_squared() + d.norm_squared());
     if gap.is_nan() || gap > GAP_ALLOWED * unit {
         return Err(QuadraticError::NotSolved {
-            status,
+            status: start.status,
             gap: gap / unit,
             allowed: GAP_ALLOWED,
         });
@@ -125,21 +132,28 @@ pub fn box_least_squares(
     let up = |x: f64| libm::scalbn(x, 2 * exponent);
     Ok(BoxSolution {
         solution,
-        status,
-        iterations,
+        status: start.status,
+        iterations: start.iterations,
         refinements,
         objective: up(0.5 * residual.norm_squared()),
         gap: up(gap),
     })
 }
 
-fn duality_gap(r: &DMatrix<f64>, residual: &DVector<f64>, x: &DVector<f64>) -> f64 {
-    let gradient = r.transpose() * residual;
-    gradient
+/// The bound on f(x) − f* that the dual point ν proves; NaN where ν is.
+fn duality_gap(
+    r: &DMatrix<f64>,
+    residual: &DVector<f64>,
+    dual: &DVector<f64>,
+    x: &DVector<f64>,
+) -> f64 {
+    let gradient = r.transpose() * dual;
+    let bounds: f64 = gradient
         .iter()
         .zip(x.iter())
         .map(|(g, x)| (g * x).max(-g * (1.0 - x)))
-        .sum()
+        .sum();
+    0.5 * (residual - dual).norm_squared() + bounds
 }
 
 #[cfg(test)]
@@ -189,6 +203,26 @@ mod tests {
                 found.gap
             );
         }
+    }
+
+    #[test]
+    fn every_dual_point_bounds_the_distance_from_the_minimum() {
+        let r = DMatrix::from_fn(9, 6, |i, j| (((i * 31 + j * 17) % 13) as f64 - 6.0) / 6.0);
+        let d = DVector::from_fn(9, |i, _| ((i * 7) % 5) as f64 - 1.0);
+        let least = box_least_squares(&r, &d).unwrap();
+        for k in 0..50 {
+            let number = |i: usize| ((k * 29 + i * 53) % 97) as f64 / 96.0;
+            let x = DVector::from_fn(6, |j, _| number(j));
+            let dual = DVector::from_fn(9, |i, _| 4.0 * number(i + 6) - 2.0);
+            let residual = &r * &x - &d;
+            let excess = 0.5 * residual.norm_squared() - least.objective;
+            for dual in [&dual, &residual] {
+                assert!(duality_gap(&r, &residual, dual, &x) >= excess - 1e-12);
+            }
+        }
+        // At the minimum the residual's own bound is tight.
+        let residual = &r * &least.solution - &d;
+        assert!(duality_gap(&r, &residual, &residual, &least.solution) < 1e-12);
     }
 
     #[test]

@@ -75,8 +75,7 @@ fn log_gamma_ratio(a: f64) -> f64 {
         return ln_gamma(a + 0.5) - ln_gamma(a);
     }
     let w = 1.0 / (a * a);
-    0.5 * libm::log(a)
-        + (-1.0 / 8.0 + w * (1.0 / 192.0 + w * (-1.0 / 640.0 + w * 17.0 / 14336.0))) / a
+    0.5 * libm::log(a) + (-1.0 / 8.0 + w * (1.0 / 192.0 - w / 640.0)) / a
 }
 
 /// The continued fraction of the incomplete beta function by Lentz's method: I_x(a, b) = x^a (1 − x)^b/(a B(a, b)) times this,
