@@ -186,7 +186,7 @@ pub(super) struct ValidateArgs {
 pub(super) struct RecoverArgs {
     /// Folder of a run
     pub dir: PathBuf,
-    /// Methods, separated by commas: pinv, tsvd, tikhonov, joint, joint-bounded; all unless given
+    /// Methods, separated by commas: pinv, tsvd, tikhonov, joint-unbounded, joint; all unless given
     #[arg(long, value_delimiter = ',', value_name = "METHOD")]
     pub method: Vec<String>,
     /// Φcam to invert, pixels × spots in W, in place of DIR/phi.npy

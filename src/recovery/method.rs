@@ -12,10 +12,10 @@ pub enum Method {
     Tsvd,
     /// Tikhonov damping of the laser side, mean over pixels.
     Tikhonov,
-    /// Least squares over all pixels and spots.
+    /// Least squares over all pixels and spots, reflectances unbounded.
+    JointUnbounded,
+    /// The same with reflectances between 0 and 1, which every surface obeys.
     Joint,
-    /// The same with reflectances between 0 and 1.
-    JointBounded,
 }
 
 impl Method {
@@ -24,8 +24,8 @@ impl Method {
         Method::Pinv,
         Method::Tsvd,
         Method::Tikhonov,
+        Method::JointUnbounded,
         Method::Joint,
-        Method::JointBounded,
     ];
 
     /// The names of all methods, in the order of [`Method::ALL`].
@@ -39,8 +39,8 @@ impl Method {
             Method::Pinv => "pinv",
             Method::Tsvd => "tsvd",
             Method::Tikhonov => "tikhonov",
+            Method::JointUnbounded => "joint-unbounded",
             Method::Joint => "joint",
-            Method::JointBounded => "joint-bounded",
         }
     }
 }
@@ -78,7 +78,7 @@ mod tests {
         }
         let said = "lsqr".parse::<Method>().unwrap_err().to_string();
         assert!(
-            said.contains("lsqr") && said.contains("pinv, tsvd, tikhonov, joint, joint-bounded"),
+            said.contains("lsqr") && said.contains("pinv, tsvd, tikhonov, joint-unbounded, joint"),
             "{said}"
         );
     }

@@ -13,8 +13,8 @@
 //! | [`Method::Pinv`] | X = Φ D⁺, divided by C entry by entry, mean over pixels: the published method |
 //! | [`Method::Tsvd`] | the same with D's small singular values left out, as many as the noise asks for |
 //! | [`Method::Tikhonov`] | the same with them damped, as much as the noise asks for |
-//! | [`Method::Joint`] | least squares over all pixels and spots at once; unbiased |
-//! | [`Method::JointBounded`] | the same under 0 ≤ ρ ≤ 1 |
+//! | [`Method::JointUnbounded`] | least squares over all pixels and spots at once; unbiased |
+//! | [`Method::Joint`] | the same under 0 ≤ ρ ≤ 1 |
 //!
 //! ```
 //! use nalgebra::DMatrix;
@@ -24,7 +24,7 @@
 //! let c = DMatrix::from_row_slice(1, 2, &[1.0, 2.0]);
 //! let d = DMatrix::from_row_slice(2, 3, &[3.0, 2.0, 1.0, 1.0, 2.0, 3.0]);
 //! let phi = DMatrix::from_row_slice(1, 3, &[3.0, 2.0, 1.0]);
-//! let found = recover(Method::Joint, &Problem::new(&phi, &c, &d, None)?, &Options::default())?;
+//! let found = recover(Method::JointUnbounded, &Problem::new(&phi, &c, &d, None)?, &Options::default())?;
 //! assert!((found.reflectance[0] - 1.0).abs() < 1e-12 && found.reflectance[1].abs() < 1e-12);
 //! # Ok::<(), phicam::recovery::RecoveryError>(())
 //! ```
@@ -32,7 +32,7 @@
 mod discrepancy;
 mod error;
 mod joint;
-mod joint_bounded;
+mod joint_unbounded;
 mod khatri_rao;
 mod method;
 mod outcome;
@@ -62,8 +62,8 @@ pub fn recover(
         Method::Pinv => pinv::recover(problem, options),
         Method::Tsvd => tsvd::recover(problem, options),
         Method::Tikhonov => tikhonov::recover(problem, options),
+        Method::JointUnbounded => joint_unbounded::recover(problem, options),
         Method::Joint => joint::recover(problem, options),
-        Method::JointBounded => joint_bounded::recover(problem, options),
     }
 }
 

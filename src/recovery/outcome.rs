@@ -56,11 +56,11 @@ pub struct Solver {
 /// Recovered reflectances and how they came about.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recovered {
-    /// ρ, one per element; not clipped, except by the bounds of `joint-bounded`.
+    /// ρ, one per element; not clipped, except by the bounds of `joint`.
     pub reflectance: DVector<f64>,
     /// Standard error of each reflectance as the noise model makes it; none without a noise model, and none under bounds.
     pub standard_error: Option<DVector<f64>>,
-    /// Covariance of the reflectances (r × r), of `joint` with a noise model.
+    /// Covariance of the reflectances (r × r), of `joint-unbounded` with a noise model.
     pub covariance: Option<DMatrix<f64>>,
     /// The method used.
     pub method: Method,
@@ -81,7 +81,7 @@ pub struct Recovered {
     pub residual: f64,
     /// The same over ‖Φ‖; zero where Φ is zero.
     pub relative_residual: f64,
-    /// The iterative solver's report, of `joint-bounded`.
+    /// The iterative solver's report, of `joint`.
     pub solver: Option<Solver>,
 }
 

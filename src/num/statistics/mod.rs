@@ -1,13 +1,11 @@
-//! Statistics of agreement: tail probabilities, the test of a whole family, running moments. The one door to crate `statrs`.
+//! Statistics of agreement: tail probabilities and the test of a whole family. The one door to crate `statrs`.
 
 mod chi_square;
 mod family;
-mod moments;
 mod normal;
 mod student;
 
 pub use chi_square::chi_square_sf;
 pub use family::{sidak_p, sidak_threshold};
-pub use moments::Moments;
 pub use normal::normal_two_sided;
 pub use student::student_to_normal;

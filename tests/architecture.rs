@@ -1,0 +1,239 @@
+//! The invariants of the house, read from its sources. They are written down in `src/lib.rs`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Floors from the ground up; a floor may import what stands before it, never what stands after or beside it.
+const FLOORS: [&[&str]; 9] = [
+    &["num"],
+    &["geometry"],
+    &["scene"],
+    &["film", "matrix", "store"],
+    &["transport", "model", "sensor"],
+    &["recovery", "metrics"],
+    &["study"],
+    &["report"],
+    &["cli"],
+];
+
+/// Imports beside the arrows: files of one floor that build on each other.
+const BESIDE: [(&str, &str); 3] = [("film", "matrix"), ("film", "store"), ("matrix", "store")];
+
+/// Foreign crates and the one place that may name them.
+const DOORS: [(&str, &[&str]); 14] = [
+    ("obvhs", &["geometry/bvh"]),
+    ("exr", &["film/exr"]),
+    ("faer", &["num/linalg"]),
+    ("clarabel", &["num/quadratic"]),
+    ("statrs", &["num/statistics"]),
+    ("rand", &["num/stream"]),
+    ("rand_pcg", &["num/stream"]),
+    ("sobol_burley", &["num/stream"]),
+    ("npyz", &["matrix/npy"]),
+    ("png", &["report"]),
+    ("embedded_graphics", &["report"]),
+    ("toml", &["scene"]),
+    ("clap", &["cli"]),
+    ("indicatif", &["cli"]),
+];
+
+struct Source {
+    /// Below `src`, with forward slashes.
+    path: String,
+    /// Without comments, strings kept.
+    code: String,
+}
+
+impl Source {
+    fn floor(&self) -> &str {
+        self.path.split(['/', '.']).next().unwrap_or("")
+    }
+}
+
+fn sources() -> Vec<Source> {
+    fn walk(dir: &Path, found: &mut Vec<PathBuf>) {
+        for entry in fs::read_dir(dir).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                walk(&path, found);
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                found.push(path);
+            }
+        }
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut paths = Vec::new();
+    walk(&root, &mut paths);
+    assert!(paths.len() > 50, "only {} sources found", paths.len());
+    paths
+        .into_iter()
+        .map(|p| {
+            let text = fs::read_to_string(&p).unwrap();
+            let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
+            Source {
+                path: p.strip_prefix(&root).unwrap().to_string_lossy().replace('\\', "/"),
+                code: code.collect::<Vec<_>>().join("\n"),
+            }
+        })
+        .collect()
+}
+
+/// Floors that the code names: after `crate::` or `phicam::`, alone or in the first level of a braced list.
+fn imports(code: &str) -> Vec<String> {
+    let ident = |s: &str| s.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+    let mut found = Vec::new();
+    for marker in ["crate::", "phicam::"] {
+        for (at, _) in code.match_indices(marker) {
+            let rest = &code[at + marker.len()..];
+            match rest.strip_prefix('{') {
+                None => found.push(ident(rest)),
+                Some(list) => {
+                    let mut depth = 1;
+                    let mut start = true;
+                    for (i, c) in list.char_indices() {
+                        match c {
+                            '{' => depth += 1,
+                            '}' => depth -= 1,
+                            ',' if depth == 1 => start = true,
+                            c if start && depth == 1 && !c.is_whitespace() => {
+                                found.push(ident(&list[i..]));
+                                start = false;
+                            }
+                            _ => {}
+                        }
+                        if depth == 0 {
+                            break;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    found
+}
+
+/// Whether `code` names the crate `name` in a path.
+fn names_crate(code: &str, name: &str) -> bool {
+    let pattern = format!("{name}::");
+    code.match_indices(&pattern).any(|(at, _)| {
+        !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':')
+    })
+}
+
+fn level(floor: &str) -> Option<usize> {
+    FLOORS.iter().position(|names| names.contains(&floor))
+}
+
+#[test]
+fn arrows_point_down() {
+    let mut wrong = Vec::new();
+    for source in sources() {
+        let Some(own) = level(source.floor()) else { continue };
+        for import in imports(&source.code) {
+            let Some(other) = level(&import) else { continue };
+            let beside = BESIDE.contains(&(source.floor(), import.as_str()));
+            if import != source.floor() && other >= own && !beside {
+                wrong.push(format!("{} imports {import}", source.path));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn every_file_belongs_to_a_floor() {
+    for source in sources() {
+        let known = level(source.floor()).is_some() || ["lib", "main"].contains(&source.floor());
+        assert!(known, "{} is on no floor", source.path);
+    }
+}
+
+/// Invariant 1: transport knows random streams and warps, model knows quadrature; neither knows the other.
+#[test]
+fn two_witnesses() {
+    for source in sources() {
+        let forbidden: &[&str] = match source.floor() {
+            "transport" => &["model", "quadrature"],
+            "model" => &["transport", "stream", "warp", "Stream", "summation"],
+            _ => continue,
+        };
+        let words: Vec<&str> = source.code.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+        for word in forbidden {
+            assert!(!words.contains(word), "{} names `{word}`", source.path);
+        }
+    }
+}
+
+/// Invariant 2: recovery sees numbers and matrices only.
+#[test]
+fn blind_recovery() {
+    let own = |name: &str| ["num", "matrix", "recovery"].contains(&name);
+    for source in sources().iter().filter(|s| s.floor() == "recovery") {
+        for import in imports(&source.code) {
+            assert!(own(&import) || level(&import).is_none(), "{} imports {import}", source.path);
+        }
+    }
+}
+
+/// Invariant 3: one door per foreign crate, and matrix decompositions only in `num/linalg`.
+#[test]
+fn one_door_per_crate() {
+    for source in sources() {
+        for (name, doors) in DOORS {
+            let inside = doors.iter().any(|d| source.path.starts_with(d));
+            assert!(inside || !names_crate(&source.code, name), "{} names crate {name}", source.path);
+        }
+        if !source.path.starts_with("num/linalg") {
+            for call in [".svd(", ".pseudo_inverse(", ".qr()", ".lu()", ".cholesky(", ".symmetric_eigen("] {
+                let ours = source.code.contains(call);
+                assert!(!ours, "{} calls {call}…) outside num/linalg", source.path);
+            }
+        }
+    }
+    for (name, doors) in DOORS {
+        let used = sources().iter().any(|s| {
+            doors.iter().any(|d| s.path.starts_with(d)) && names_crate(&s.code, name)
+        });
+        assert!(used, "crate {name} is not used behind its door");
+    }
+}
+
+/// Invariant 4: below the command line nothing asks which thread it runs on, what time it is, or for entropy, so a random
+/// number can only be a function of its key.
+#[test]
+fn random_numbers_are_functions_of_their_key() {
+    let sources_of_chance = [
+        "current_thread_index", "thread::current", "SystemTime", "Instant::now", "from_rng", "thread_rng",
+        "from_os_rng", "SysRng", "RandomState", "env::var",
+    ];
+    for source in sources().iter().filter(|s| !["cli", "main"].contains(&s.floor())) {
+        for word in sources_of_chance {
+            assert!(!source.code.contains(word), "{} uses {word}", source.path);
+        }
+    }
+}
+
+/// Only `cli` prints, reads the environment or ends the process.
+#[test]
+fn the_library_is_silent() {
+    for source in sources().iter().filter(|s| !["cli", "main"].contains(&s.floor())) {
+        for word in ["println!", "eprintln!", "print!(", "process::exit", "std::env"] {
+            assert!(!source.code.contains(word), "{} uses {word}", source.path);
+        }
+    }
+}
+
+/// `f64::sin` and its kin call the system's C library, whose bits differ between machines; `libm` does not.
+#[test]
+fn transcendental_functions_are_the_portable_ones() {
+    let floors = ["num", "geometry", "scene", "film", "matrix", "transport", "model", "recovery", "metrics", "study"];
+    for source in sources().iter().filter(|s| floors.contains(&s.floor())) {
+        let shipped = source.code.split("#[cfg(test)]").next().unwrap_or("");
+        if source.path.contains("test") || source.path.contains("bench") {
+            continue;
+        }
+        for call in [".sin(", ".cos(", ".tan(", ".exp(", ".ln(", ".powf(", ".atan2(", ".acos(", ".sin_cos(", ".log10(", ".powi("] {
+            assert!(!shipped.contains(call), "{} calls {call}…)", source.path);
+        }
+    }
+}
