@@ -77,9 +77,21 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_inside() {
-        assert_eq!(ticks(0.0, 15.5, 8), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0, 14.0]);
-        assert_eq!(ticks(-0.3, 0.2, 5), [-0.3, -0.2, -0.1, 0.0, 0.1, 0.2].map(|x: f64| (x * 10.0).round() * 0.1));
-        for (low, high) in [(0.0, 0.0), (0.0, f64::INFINITY), (f64::NAN, 1.0), (-1e308, 1e308), (5.0, 1.0)] {
+        assert_eq!(
+            ticks(0.0, 15.5, 8),
+            [0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0, 14.0]
+        );
+        assert_eq!(
+            ticks(-0.3, 0.2, 5),
+            [-0.3, -0.2, -0.1, 0.0, 0.1, 0.2].map(|x: f64| (x * 10.0).round() * 0.1)
+        );
+        for (low, high) in [
+            (0.0, 0.0),
+            (0.0, f64::INFINITY),
+            (f64::NAN, 1.0),
+            (-1e308, 1e308),
+            (5.0, 1.0),
+        ] {
             assert!(ticks(low, high, 5).is_empty(), "{low} {high}");
         }
         for (low, high) in [(1e300, 1.1e300), (-1e-300, 1e-300), (1.0, 1.0 + 1e-15)] {

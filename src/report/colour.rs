@@ -187,7 +187,11 @@ mod tests {
         let luminance = |c: Rgb| {
             let linear = c.map(|x| {
                 let x = f64::from(x) / 255.0;
-                if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
+                if x <= 0.04045 {
+                    x / 12.92
+                } else {
+                    ((x + 0.055) / 1.055).powf(2.4)
+                }
             });
             0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
         };
@@ -226,7 +230,10 @@ mod tests {
         ] {
             let scale = Scale::sequential(&values);
             let [low, high] = scale.range();
-            assert!(low < high && low.is_finite() && high.is_finite(), "{values:?}");
+            assert!(
+                low < high && low.is_finite() && high.is_finite(),
+                "{values:?}"
+            );
             for v in values.iter().filter(|v| v.is_finite()) {
                 assert_ne!(scale.colour(*v), scale.above().0, "{values:?}");
                 assert_ne!(scale.colour(*v), scale.below().0, "{values:?}");

@@ -13,6 +13,8 @@ mod label;
 mod page;
 mod picture;
 mod projection;
+#[cfg(test)]
+mod sample;
 mod summary;
 mod svg;
 mod verdict;

@@ -36,12 +36,19 @@ pub(super) fn shortened(text: &str, most: usize) -> String {
     if text.chars().count() <= most {
         return text.to_owned();
     }
-    text.chars().take(most.saturating_sub(1)).chain(['…']).collect()
+    text.chars()
+        .take(most.saturating_sub(1))
+        .chain(['…'])
+        .collect()
 }
 
 /// A coordinate with two decimals; always finite and within ±1e6, which no drawing reaches.
 pub(super) fn number(x: f64) -> String {
-    let x = if x.is_finite() { x.clamp(-1e6, 1e6) } else { 0.0 };
+    let x = if x.is_finite() {
+        x.clamp(-1e6, 1e6)
+    } else {
+        0.0
+    };
     let text = format!("{x:.2}");
     match text.trim_end_matches('0').trim_end_matches('.') {
         "-0" => "0".to_owned(),
@@ -84,7 +91,10 @@ impl Svg {
     /// A circle.
     pub(super) fn circle(&mut self, [x, y]: [f64; 2], r: f64, style: &str) {
         let (x, y, r) = (number(x), number(y), number(r));
-        let _ = writeln!(self.text, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" {style}/>");
+        let _ = writeln!(
+            self.text,
+            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" {style}/>"
+        );
     }
 
     /// A rectangle from its upper left corner.
@@ -99,7 +109,11 @@ impl Svg {
     /// Text, escaped here.
     pub(super) fn text(&mut self, [x, y]: [f64; 2], style: &str, text: &str) {
         let (x, y) = (number(x), number(y));
-        let _ = writeln!(self.text, "<text x=\"{x}\" y=\"{y}\" {style}>{}</text>", escape(text));
+        let _ = writeln!(
+            self.text,
+            "<text x=\"{x}\" y=\"{y}\" {style}>{}</text>",
+            escape(text)
+        );
     }
 }
 
@@ -123,7 +137,10 @@ pub(super) fn well_formed(markup: &str) -> Result<(), String> {
         text.match_indices('&').all(|(i, _)| {
             let tail = &text[i + 1..];
             tail.find(';').is_some_and(|end| {
-                end > 0 && tail[..end].chars().all(|c| c.is_ascii_alphanumeric() || c == '#')
+                end > 0
+                    && tail[..end]
+                        .chars()
+                        .all(|c| c.is_ascii_alphanumeric() || c == '#')
             })
         })
     };
@@ -144,12 +161,23 @@ pub(super) fn well_formed(markup: &str) -> Result<(), String> {
             return Err(format!("bare < or & in tag {tag:?}"));
         }
         let attributes: String = tag.split('"').step_by(2).collect();
-        let unquoted = attributes.split_whitespace().skip(1).any(|a| a.contains('=') && !a.ends_with('=') && !a.contains("=/"));
+        let unquoted = attributes
+            .split_whitespace()
+            .skip(1)
+            .any(|a| a.contains('=') && !a.ends_with('=') && !a.contains("=/"));
         if unquoted {
             return Err(format!("unquoted attribute in {tag:?}"));
         }
-        let name = tag.trim_start_matches('/').split([' ', '\n', '/']).next().unwrap_or("");
-        if tag.starts_with('!') || tag.starts_with('?') || tag.ends_with('/') || void.contains(&name) {
+        let name = tag
+            .trim_start_matches('/')
+            .split([' ', '\n', '/'])
+            .next()
+            .unwrap_or("");
+        if tag.starts_with('!')
+            || tag.starts_with('?')
+            || tag.ends_with('/')
+            || void.contains(&name)
+        {
             continue;
         }
         if tag.starts_with('/') {
@@ -165,7 +193,11 @@ pub(super) fn well_formed(markup: &str) -> Result<(), String> {
             }
         }
     }
-    if open.is_empty() { Ok(()) } else { Err(format!("left open: {open:?}")) }
+    if open.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("left open: {open:?}"))
+    }
 }
 
 #[cfg(test)]
@@ -193,7 +225,15 @@ mod tests {
     #[test]
     fn the_checker_tells_good_from_bad() {
         assert!(well_formed("<a b=\"c\">x &amp; y<d/></a>").is_ok());
-        for bad in ["<a>", "<a></b>", "<a>&</a>", "<a b=c></a>", "<a b=\"<\"></a>", "<a> > </a>", "</a>"] {
+        for bad in [
+            "<a>",
+            "<a></b>",
+            "<a>&</a>",
+            "<a b=c></a>",
+            "<a b=\"<\"></a>",
+            "<a> > </a>",
+            "</a>",
+        ] {
             assert!(well_formed(bad).is_err(), "{bad}");
         }
     }
