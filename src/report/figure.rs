@@ -9,6 +9,10 @@ use super::svg::{Svg, escape, number};
 /// Length of a picture's longer side on the page, px.
 const SIDE: f64 = 240.0;
 
+/// Frames and recoveries are shown with at most this many pixels a side, Φcam with twice as many. A picture of that
+/// size that cannot be compressed takes 0.26 MB (Φcam 1.05 MB): 3 frames, 3 maps and 16 recoveries stay below 10 MB.
+pub(super) const MOST: usize = 256;
+
 /// How a matrix that is too large for the page is made smaller; the data stay as they are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reduction {
@@ -64,6 +68,20 @@ pub(super) fn reduced(
     )
 }
 
+/// A note of what was done to a matrix for display.
+pub(super) fn note(text: Option<String>) -> String {
+    text.map_or(String::new(), |t| {
+        format!("<p class=\"note\">{}.</p>\n", escape(&capital(&t)))
+    })
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters
+        .next()
+        .map_or(String::new(), |c| c.to_uppercase().chain(letters).collect())
+}
+
 fn data_uri(panel: &Panel, scale: &Scale) -> Result<String, String> {
     let png = panel.plain_png(scale).map_err(|e| e.to_string())?;
     Ok(format!(
@@ -72,17 +90,35 @@ fn data_uri(panel: &Panel, scale: &Scale) -> Result<String, String> {
     ))
 }
 
+/// The shape of an entry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Entries {
+    /// As wide as high: pixels, elements.
+    Square,
+    /// Whatever fills the figure: rows and columns have nothing in common.
+    Stretched,
+}
+
 /// A figure with its caption: first index to the right, second upwards. `ends` are the last indices of the matrix
 /// before any reduction; `more` is HTML below the title.
-pub(super) fn figure(panel: &Panel, ends: [usize; 2], scale: &Scale, more: &str) -> String {
+pub(super) fn figure(
+    panel: &Panel,
+    ends: [usize; 2],
+    entries: Entries,
+    scale: &Scale,
+    more: &str,
+) -> String {
     let uri = match data_uri(panel, scale) {
         Ok(uri) => uri,
         Err(e) => return format!("<p>{}: {}</p>\n", escape(&panel.title), escape(&e)),
     };
     let [nu, nv] = panel.size.map(|n| n.max(1) as f64);
     // A strip of a picture is widened until it can be seen; its entries are then no squares.
-    let [w, h] = [nu, nv].map(|n| (SIDE * n / nu.max(nv)).max(40.0));
-    let (left, top) = (30.0, 6.0);
+    let [w, h] = match entries {
+        Entries::Square => [nu, nv].map(|n| (SIDE * n / nu.max(nv)).max(40.0)),
+        Entries::Stretched => [SIDE; 2],
+    };
+    let (left, top) = (42.0, 6.0);
     let mut svg = Svg::default();
     let (full, tall) = (number(left + SIDE + 6.0), number(top + h + 24.0));
     svg.raw(&format!(
@@ -102,32 +138,32 @@ pub(super) fn figure(panel: &Panel, ends: [usize; 2], scale: &Scale, more: &str)
         [w, h],
         "fill=\"none\" stroke=\"currentColor\" stroke-opacity=\"0.5\"",
     );
-    let small = "class=\"t\"";
+    let small = "font-size=\"11\" fill=\"currentColor\"";
     let [across, up] = &panel.axes;
     let y = top + h + 15.0;
     svg.text([left, y], small, "0");
     svg.text(
         [left + 0.5 * w, y],
-        "class=\"t\" text-anchor=\"middle\"",
+        "font-size=\"11\" fill=\"currentColor\" text-anchor=\"middle\"",
         &format!("{across} →"),
     );
     if w > 80.0 {
         svg.text(
             [left + w, y],
-            "class=\"t\" text-anchor=\"end\"",
+            "font-size=\"11\" fill=\"currentColor\" text-anchor=\"end\"",
             &ends[0].to_string(),
         );
     }
     let middle = top + 0.5 * h;
     let turn = format!(
-        "class=\"t\" text-anchor=\"middle\" transform=\"rotate(-90 18 {})\"",
+        "font-size=\"11\" fill=\"currentColor\" text-anchor=\"middle\" transform=\"rotate(-90 26 {})\"",
         number(middle)
     );
-    svg.text([18.0, middle], &turn, &format!("{up} →"));
+    svg.text([26.0, middle], &turn, &format!("{up} →"));
     if h > 80.0 {
         svg.text(
             [left - 4.0, top + 9.0],
-            "class=\"t\" text-anchor=\"end\"",
+            "font-size=\"11\" fill=\"currentColor\" text-anchor=\"end\"",
             &ends[1].to_string(),
         );
     }
@@ -155,21 +191,29 @@ pub(super) fn legend(scale: &Scale, unit: &str, panels: &[Panel]) -> String {
         return String::new();
     };
     let mut svg = Svg::default();
-    svg.raw("<svg class=\"legend\" viewBox=\"0 0 400 40\" width=\"400\" height=\"40\" role=\"img\" aria-label=\"colour scale\">");
+    svg.raw("<svg class=\"legend\" viewBox=\"0 0 480 40\" width=\"480\" height=\"40\" role=\"img\" aria-label=\"colour scale\">");
     svg.raw(&format!(
-        "<image x=\"30\" y=\"2\" width=\"300\" height=\"14\" preserveAspectRatio=\"none\" href=\"{uri}\"/>"
+        "<image x=\"42\" y=\"2\" width=\"300\" height=\"14\" preserveAspectRatio=\"none\" href=\"{uri}\"/>"
     ));
     svg.rect(
-        [30.0, 2.0],
+        [42.0, 2.0],
         [300.0, 14.0],
         "fill=\"none\" stroke=\"currentColor\" stroke-opacity=\"0.5\"",
     );
     for (t, text) in bar_ticks(scale) {
-        let x = 30.0 + 300.0 * t;
+        let x = 42.0 + 300.0 * t;
         svg.line([x, 16.0], [x, 21.0], "stroke=\"currentColor\"");
-        svg.text([x, 34.0], "class=\"t\" text-anchor=\"middle\"", &text);
+        svg.text(
+            [x, 34.0],
+            "font-size=\"11\" fill=\"currentColor\" text-anchor=\"middle\"",
+            &text,
+        );
     }
-    svg.text([340.0, 14.0], "class=\"t\"", unit);
+    svg.text(
+        [352.0, 14.0],
+        "font-size=\"11\" fill=\"currentColor\"",
+        unit,
+    );
     svg.raw("</svg>");
     let mut html = format!("<div class=\"scale\">{}", svg.text);
     for ([r, g, b], text) in legend_lines(scale, panels) {
@@ -234,7 +278,8 @@ mod tests {
     fn figures_are_well_formed_whatever_the_title() {
         let panel = Panel::elements("<&\"ü", [2, 1], vec![0.0, f64::NAN]);
         let scale = Scale::reflectance();
-        let html = figure(&panel, [1, 0], &scale, "") + &legend(&scale, "W", &[panel]);
+        let html =
+            figure(&panel, [1, 0], Entries::Square, &scale, "") + &legend(&scale, "W", &[panel]);
         well_formed(&html).unwrap();
     }
 }

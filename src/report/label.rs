@@ -16,6 +16,7 @@ type Area = [f64; 4];
 pub(super) struct Labels {
     frame: Area,
     taken: Vec<Area>,
+    marks: Vec<Area>,
 }
 
 impl Labels {
@@ -24,12 +25,13 @@ impl Labels {
         Self {
             frame: [x, y, x + w, y + h],
             taken: Vec::new(),
+            marks: Vec::new(),
         }
     }
 
     /// Asks labels to stay off an area, if they can.
     pub(super) fn avoid(&mut self, area: Area) {
-        self.taken.push(area);
+        self.marks.push(area);
     }
 
     /// Writes `text` as near to `anchor` as is free, in `colour` with a white halo; from farther away with a thin line.
@@ -55,9 +57,9 @@ impl Labels {
                     (d, [left, top, left + width, top + SIZE])
                 })
             });
-        // First of the least overlap: distances grow, so the nearest free place wins.
+        // A long way to the label is worth no more than a few marks left free.
         let best = candidates
-            .map(|(d, area)| (self.cost(area), d, area))
+            .map(|(d, area)| (self.cost(area) + 2.0 * d, d, area))
             .min_by(|a, b| a.0.total_cmp(&b.0));
         let Some((_, distance, area)) = best else {
             return;
@@ -79,15 +81,13 @@ impl Labels {
         self.taken.push(area);
     }
 
-    /// Area covered twice, plus area outside the frame counted ten times.
+    /// Area shared with marks, plus a hundred times that outside the frame or shared with other labels.
     fn cost(&self, area: Area) -> f64 {
         let size = (area[2] - area[0]) * (area[3] - area[1]);
         let outside = size - overlap(area, self.frame);
         let padded = [area[0] - 3.0, area[1] - 2.0, area[2] + 3.0, area[3] + 2.0];
-        let covered: f64 = self.taken.iter().map(|t| overlap(padded, *t)).sum();
-        // Below a hundredth of a square pixel there is no overlap but rounding.
-        let cost = covered + 10.0 * outside;
-        if cost < 0.01 { 0.0 } else { cost }
+        let shared = |with: &[Area]| with.iter().map(|t| overlap(padded, *t)).sum::<f64>();
+        shared(&self.marks) + 100.0 * (shared(&self.taken) + outside)
     }
 }
 

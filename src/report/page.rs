@@ -5,20 +5,16 @@ use std::collections::BTreeSet;
 use super::axis::significant;
 use super::colour::Scale;
 use super::drawing::bench_svg;
-use super::figure::{Reduction, figure, legend, reduced};
+use super::figure::{Entries, MOST, Reduction, figure, legend, note, reduced};
+use super::gallery::recoveries;
 use super::picture::Panel;
 use super::summary::facts;
 use super::svg::{escape, number};
 use super::verdict::verdict;
 use crate::matrix::Matrix;
 use crate::scene::{Scene, builtins};
-use crate::study::{RecoveredObject, RunResults};
+use crate::study::RunResults;
 
-/// Frames and recoveries are shown with at most this many pixels a side, Φcam with twice as many. A picture of that
-/// size that cannot be compressed takes 0.26 MB (Φcam 1.05 MB): 3 frames, 3 maps and 16 recoveries stay below 10 MB.
-const MOST: usize = 256;
-/// More recoveries than this are listed, not shown.
-const MOST_PICTURES: usize = 16;
 /// More of the scene's text than this is left out, bytes.
 const MOST_TEXT: usize = 200_000;
 
@@ -55,20 +51,6 @@ pub fn run_html(results: &RunResults) -> String {
     html.push_str(&settings(results));
     html.push_str("</body>\n</html>\n");
     html
-}
-
-/// A note of what was done to a matrix for display.
-fn note(text: Option<String>) -> String {
-    text.map_or(String::new(), |t| {
-        format!("<p class=\"note\">{}.</p>\n", escape(&capital(&t)))
-    })
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters
-        .next()
-        .map_or(String::new(), |c| c.to_uppercase().chain(letters).collect())
 }
 
 /// The photographs of the first, the middle and the last spot.
@@ -113,7 +95,10 @@ fn frames(results: &RunResults) -> String {
         .collect();
     let scale = Scale::sequential(panels.iter().flat_map(|p| &p.values));
     let ends = size.map(|n| n.saturating_sub(1));
-    let figures: String = panels.iter().map(|p| figure(p, ends, &scale, "")).collect();
+    let figures: String = panels
+        .iter()
+        .map(|p| figure(p, ends, Entries::Square, &scale, ""))
+        .collect();
     format!(
         "<h2>Frames</h2>\n<p>What the camera records for the first, the middle and the last laser spot: flux into each \
          pixel. One scale for all, from the smallest to the largest value shown.</p>\n\
@@ -154,7 +139,7 @@ fn matrices(results: &RunResults) -> String {
     let scale = Scale::sequential(panels.iter().flat_map(|p| &p.values));
     let figures: String = panels
         .iter()
-        .map(|p| figure(p, ends(&results.phi), &scale, ""))
+        .map(|p| figure(p, ends(&results.phi), Entries::Stretched, &scale, ""))
         .collect();
     format!(
         "<h2>The matrix Φcam</h2>\n<p>Flux into every pixel (upwards: column + row · {} columns) for every spot (to the \
@@ -177,7 +162,7 @@ fn deviations(results: &RunResults) -> String {
             "<h2>Traced minus modelled</h2>\n<p>z: the difference of every entry in units of its standard error. If the \
              model is right it is noise, without pattern, and stays within ±{}.</p>\n<div class=\"row\">\n{}</div>\n{}{}",
             significant(shown, 2),
-            figure(&panel, ends(z), &scale, ""),
+            figure(&panel, ends(z), Entries::Stretched, &scale, ""),
             legend(&scale, "standard errors", &[panel]),
             note(said)
         ));
@@ -207,88 +192,6 @@ fn cells(row: &[String]) -> String {
         .map(|c| format!("<td class=\"n\">{}</td>", escape(c)))
         .collect();
     format!("<tr>{cells}</tr>\n")
-}
-
-fn optional(x: Option<f64>) -> String {
-    x.map_or("–".to_owned(), |x| significant(x, 3))
-}
-
-/// Recovered objects, surface by surface, beside the truth.
-fn recoveries(results: &RunResults) -> String {
-    let mut html = String::new();
-    let mut left = MOST_PICTURES;
-    let groups = results
-        .recovered
-        .chunk_by(|a, b| a.surface == b.surface && a.elements == b.elements);
-    for group in groups {
-        let first = &group[0];
-        let [nu, nv] = first.elements;
-        let scale = Scale::reflectance();
-        let picture = |title: &str, values: &[f64]| {
-            let value = |i: usize, j: usize| values.get(i + j * nu).copied().unwrap_or(f64::NAN);
-            reduced(
-                title.to_owned(),
-                ["iu", "iv"],
-                [nu, nv],
-                MOST,
-                Reduction::Mean,
-                value,
-            )
-        };
-        let (truth, said) = picture("truth", &first.truth);
-        let last = [nu, nv].map(|n| n.saturating_sub(1));
-        let mut figures = figure(&truth, last, &scale, "");
-        let mut panels = vec![truth];
-        let mut table = String::new();
-        for (k, r) in group.iter().enumerate() {
-            if k < left {
-                let (panel, _) = picture(&r.method, &r.reflectance);
-                let more = format!(
-                    "<br>MTF {} raw, {} normalized",
-                    optional(r.mtf_raw),
-                    optional(r.mtf_normalized)
-                );
-                figures.push_str(&figure(&panel, last, &scale, &more));
-                panels.push(panel);
-            }
-            table.push_str(&recovery_row(r));
-        }
-        let unseen = group.len().saturating_sub(left);
-        left -= left.min(group.len());
-        let more = (unseen > 0)
-            .then(|| format!("{unseen} of these recoveries are listed without a picture"));
-        html.push_str(&format!(
-            "<h2>Recovered: {}</h2>\n<p>Reflectance of {nu} × {nv} elements, black 0, white 1, the same grey scale for \
-             all.</p>\n<div class=\"row\">\n{figures}</div>\n{}{}{}<div class=\"wide\"><table>\n<tr><th>method</th>\
-             <th class=\"n\">MTF raw</th><th class=\"n\">MTF normalized</th><th class=\"n\">correlation</th>\
-             <th class=\"n\">RMSE</th><th>parameter</th></tr>\n{table}</table></div>\n\
-             <p class=\"note\">MTF: (white − black)/(white + black) over the elements that are white and black in truth; \
-             raw as recovered, normalized after stretching the recovered values to 0…1.</p>\n",
-            escape(&first.surface),
-            legend(&scale, "reflectance", &panels),
-            note(said),
-            note(more)
-        ));
-    }
-    html
-}
-
-fn recovery_row(r: &RecoveredObject) -> String {
-    let numbers = [
-        optional(r.mtf_raw),
-        optional(r.mtf_normalized),
-        optional(r.correlation),
-        significant(r.rmse, 3),
-    ];
-    let numbers: String = numbers
-        .iter()
-        .map(|c| format!("<td class=\"n\">{}</td>", escape(c)))
-        .collect();
-    format!(
-        "<tr><td>{}</td>{numbers}<td>{}</td></tr>\n",
-        escape(&r.method),
-        escape(&r.parameter)
-    )
 }
 
 /// Light by the number of surfaces it met.

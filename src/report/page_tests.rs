@@ -11,7 +11,7 @@ fn needs_no_network(html: &str) {
         assert!(!style_and_markup.contains(word), "{word}");
     }
     for link in style_and_markup.split("href=\"").skip(1) {
-        assert!(link.starts_with("data:image/png;base64,"), "{:.40}", link);
+        assert!(link.starts_with("data:image/png;base64,"), "{link:.40}");
     }
 }
 

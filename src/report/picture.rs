@@ -100,7 +100,12 @@ pub fn colour_png(
         .map(|(_, t)| 26 + 7 * t.chars().count())
         .max();
     let least = MARGIN + (BAR[0] + 60).max(longest.unwrap_or(0)) + MARGIN;
-    let (places, [width, height]) = arrange(panels);
+    let lines = panels
+        .iter()
+        .map(|p| title_lines(p).len())
+        .max()
+        .unwrap_or(0);
+    let (places, [width, height]) = arrange(panels, lines);
     let width = width
         .max(least)
         .max(2 * MARGIN + (10 * title.chars().count()).min(ROW));
@@ -112,7 +117,8 @@ pub fn colour_png(
         canvas.text([MARGIN, MARGIN + 24 * i], Type::Large, line);
     }
     for (panel, [x, y]) in panels.iter().zip(places) {
-        draw(&mut canvas, panel, [x, top + y], scale);
+        let offset = lines - title_lines(panel).len();
+        draw(&mut canvas, panel, [x, top + y + 18 * offset], scale);
     }
     bar(&mut canvas, [MARGIN, legend], scale, unit);
     for (i, (colour, text)) in lettering.iter().enumerate() {
@@ -124,19 +130,24 @@ pub fn colour_png(
     canvas.png()
 }
 
-/// Width that a panel takes, its title beside its picture.
-fn cell(panel: &Panel) -> [usize; 2] {
+/// The title of a panel in lines that are no wider than its picture.
+fn title_lines(panel: &Panel) -> Vec<String> {
+    wrapped(&panel.title, panel.pixels()[0].max(150) / 7)
+}
+
+/// Width and height that a panel takes when every title has `lines` lines.
+fn cell(panel: &Panel, lines: usize) -> [usize; 2] {
     let [w, h] = panel.pixels();
     let w = w.max(150);
-    [AXIS + w, h + 18 * wrapped(&panel.title, w / 7).len() + 28]
+    [AXIS + w, h + 18 * lines + 28]
 }
 
 /// Upper left corner of each panel in rows of at most [`ROW`], and the size of it all.
-fn arrange(panels: &[Panel]) -> (Vec<[usize; 2]>, [usize; 2]) {
+fn arrange(panels: &[Panel], lines: usize) -> (Vec<[usize; 2]>, [usize; 2]) {
     let (mut x, mut y, mut row, mut right) = (MARGIN, 0, 0, 0);
     let mut places = Vec::with_capacity(panels.len());
     for panel in panels {
-        let [w, h] = cell(panel);
+        let [w, h] = cell(panel, lines);
         if x > MARGIN && x + w > ROW {
             (x, y, row) = (MARGIN, y + row + 14, 0);
         }
@@ -150,7 +161,7 @@ fn arrange(panels: &[Panel]) -> (Vec<[usize; 2]>, [usize; 2]) {
 
 fn draw(canvas: &mut Canvas, panel: &Panel, [x, y]: [usize; 2], scale: &Scale) {
     let [w, h] = panel.pixels();
-    let lines = wrapped(&panel.title, w.max(150) / 7);
+    let lines = title_lines(panel);
     for (i, line) in lines.iter().enumerate() {
         canvas.text([x + AXIS, y + 18 * i], Type::Small, line);
     }
@@ -203,7 +214,7 @@ pub(super) fn bar_ticks(scale: &Scale) -> Vec<(f64, String)> {
     }
     let inner = ticks(low, high, 3)
         .into_iter()
-        .filter(|x| (0.25..0.75).contains(&along(*x)));
+        .filter(|x| (0.3..0.7).contains(&along(*x)));
     let inner: Vec<f64> = inner.take(1).collect();
     let ends = [(0.0, significant(low, 3)), (1.0, significant(high, 3))];
     let mut all = inner
@@ -227,7 +238,11 @@ pub(super) fn legend_lines(scale: &Scale, panels: &[Panel]) -> Vec<([u8; 3], Str
     let outside = |(colour, name), side: &str, limit: f64, n: usize| {
         let text = format!(
             "{name}: {side} {}, clipped in the picture only ({})",
-            significant(limit, 3),
+            if fixed {
+                tick(limit)
+            } else {
+                significant(limit, 3)
+            },
             count(n)
         );
         (fixed || n > 0).then_some((colour, text))
@@ -251,11 +266,13 @@ pub(super) fn legend_lines(scale: &Scale, panels: &[Panel]) -> Vec<([u8; 3], Str
     .collect()
 }
 
-/// `text` in lines of at most `width` characters, broken at spaces where there are any.
+/// `text` in lines of at most `width` characters, broken at spaces (but not at no-break
+/// spaces) where there are any.
 pub(super) fn wrapped(text: &str, width: usize) -> Vec<String> {
     let width = width.max(8);
     let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
+    let space = |c: char| c.is_whitespace() && c != '\u{a0}';
+    for word in text.split(space).filter(|w| !w.is_empty()) {
         let mut word: Vec<char> = word.chars().collect();
         let room = lines
             .last()

@@ -116,7 +116,7 @@ pub fn summary_table(results: &RunResults) -> String {
 pub(super) fn facts(results: &RunResults) -> Vec<(&'static str, String)> {
     let (s, scene) = (&results.settings, &results.scene);
     let hash: String = scene.hash.chars().take(12).collect();
-    let percent = |x: f64| format!("{} %", significant(100.0 * x, 3));
+    let percent = |x: f64| format!("{}\u{a0}%", significant(100.0 * x, 3));
     let mut facts = vec![
         (
             "scene",
@@ -141,7 +141,7 @@ pub(super) fn facts(results: &RunResults) -> Vec<(&'static str, String)> {
     facts.push((
         "flux",
         format!(
-            "{} W over all pixels and spots{noise}",
+            "{}\u{a0}W over all pixels and spots{noise}",
             significant(results.phi.sum(), 3)
         ),
     ));
@@ -184,9 +184,9 @@ pub(super) fn facts(results: &RunResults) -> Vec<(&'static str, String)> {
         let each = results
             .times
             .iter()
-            .map(|(stage, t)| format!("{stage} {} s", significant(*t, 2)));
+            .map(|(stage, t)| format!("{stage} {}\u{a0}s", significant(*t, 2)));
         let each = each.collect::<Vec<_>>().join(", ");
-        facts.push(("time", format!("{} s: {each}", significant(total, 2))));
+        facts.push(("time", format!("{}\u{a0}s: {each}", significant(total, 2))));
     }
     facts
 }

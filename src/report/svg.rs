@@ -154,7 +154,7 @@ pub(super) fn well_formed(markup: &str) -> Result<(), String> {
             quote ^= c == '"';
             c == '>' && !quote
         });
-        let end = end.ok_or_else(|| format!("a tag that does not end: {:.60}", rest))?;
+        let end = end.ok_or_else(|| format!("a tag that does not end: {rest:.60}"))?;
         let tag = &rest[..end];
         rest = &rest[end + 1..];
         if tag.contains('<') || !entity(tag) || tag.matches('"').count() % 2 == 1 {
