@@ -1,1 +1,30 @@
-//! Floor `report`.
+//! Floor 7: the report. Results in, bytes out: nothing here computes physics, prints or touches the file system.
+//!
+//! [`bench_svg`] draws a scene to scale; [`grey_png`] and [`colour_png`] turn matrices into pictures with a legend;
+//! [`summary_json`] and [`summary_table`] say in short what a run found, and [`run_html`] shows it on one
+//! self-contained page. Pictures clip at the ends of their scale and say so; numbers are never clipped.
+
+mod axis;
+mod canvas;
+mod colour;
+mod drawing;
+mod figure;
+mod gallery;
+mod key;
+mod label;
+mod mark;
+mod page;
+mod picture;
+mod projection;
+#[cfg(test)]
+mod sample;
+mod summary;
+mod svg;
+mod verdict;
+
+pub use canvas::PictureError;
+pub use colour::{Map, Rgb, Scale};
+pub use drawing::bench_svg;
+pub use page::run_html;
+pub use picture::{Panel, colour_png, grey_png};
+pub use summary::{summary_json, summary_table};

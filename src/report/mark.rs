@@ -1,0 +1,316 @@
+//! Marks of the drawing: surfaces, view, lines, spots, and everything's name.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use super::axis::tick;
+use super::label::Labels;
+use super::projection::{Projection, View};
+use super::svg::{Close, Svg, ink, number};
+use crate::geometry::{DVec3, Shape};
+use crate::scene::{Role, Scene, Surface, Texture};
+
+/// More spots than this are thinned out.
+pub(super) const MOST_SPOTS: usize = 20_000;
+/// A texture is drawn with at most this many cells a side.
+const MOST_CELLS: usize = 64;
+
+/// The ink of a role.
+pub(super) fn colour(role: Role) -> &'static str {
+    match role {
+        Role::Relay => ink::BLACK,
+        Role::Hidden => ink::BLUE,
+        Role::Occluder => ink::PURPLE,
+    }
+}
+
+/// A surface with ticks on its front; the hidden one from above with its albedo.
+pub(super) fn surface(svg: &mut Svg, surface: &Surface, p: &Projection) {
+    let ink = colour(surface.role);
+    let fill = match surface.role {
+        Role::Relay => "fill=\"#808080\" fill-opacity=\"0.08\"",
+        Role::Hidden => "fill=\"none\"",
+        Role::Occluder => "fill=\"#a5467d\" fill-opacity=\"0.15\"",
+    };
+    let style = format!("{fill} stroke=\"{ink}\" stroke-width=\"2.2\" stroke-linejoin=\"round\"");
+    let fronts: Vec<(DVec3, DVec3)> = match &surface.shape {
+        Shape::Parallelogram(patch) => {
+            if surface.role == Role::Hidden && p.view == View::Above {
+                texture(svg, surface, p);
+            }
+            svg.path(&patch.corners().map(|c| p.at(c)), Close::Yes, &style);
+            let along = [1.0, 3.0, 5.0].map(|k| k / 6.0);
+            let both = along.into_iter().flat_map(|t| [[t, 0.5], [0.5, t]]);
+            both.map(|uv| patch.at(uv))
+                .map(|s| (s.position, s.normal))
+                .collect()
+        }
+        Shape::Sphere(sphere) => {
+            svg.circle(p.at(sphere.centre), sphere.radius * p.scale, &style);
+            let ways = [
+                DVec3::X,
+                DVec3::Y,
+                DVec3::Z,
+                DVec3::NEG_X,
+                DVec3::NEG_Y,
+                DVec3::NEG_Z,
+            ];
+            let rim = ways.map(|w| surface.shape.at_position(sphere.centre + w * sphere.radius));
+            rim.map(|s| (s.position, s.normal)).to_vec()
+        }
+    };
+    let style = format!("fill=\"none\" stroke=\"{ink}\" stroke-width=\"1.2\"");
+    for (position, normal) in fronts {
+        let [x, y] = p.at(position);
+        let [dx, dy] = p.direction(normal);
+        if dx * dx + dy * dy > 0.04 {
+            svg.line([x, y], [x + 9.0 * dx, y + 9.0 * dy], &style);
+        }
+    }
+}
+
+/// The albedo as greys, one path for all cells of one grey.
+fn texture(svg: &mut Svg, surface: &Surface, p: &Projection) {
+    let cells = match &surface.albedo {
+        Texture::Ramp(_) => [32, 1],
+        other => other.smooth_cells().map(|n| n.min(MOST_CELLS)),
+    };
+    let mut greys: BTreeMap<u8, String> = BTreeMap::new();
+    for iv in 0..cells[1] {
+        for iu in 0..cells[0] {
+            let uv = |a: f64, b: f64| {
+                [
+                    (iu as f64 + a) / cells[0] as f64,
+                    (iv as f64 + b) / cells[1] as f64,
+                ]
+            };
+            let grey = (255.0 * surface.albedo.albedo(uv(0.5, 0.5))).round() as u8;
+            let d = greys.entry(grey).or_default();
+            for (i, (a, b)) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+                .into_iter()
+                .enumerate()
+            {
+                let [x, y] = p.at(surface.shape.at(uv(a, b)).position);
+                let _ = write!(
+                    d,
+                    "{}{} {}",
+                    if i == 0 { 'M' } else { 'L' },
+                    number(x),
+                    number(y)
+                );
+            }
+            d.push('Z');
+        }
+    }
+    for (grey, d) in greys {
+        let c = format!("#{grey:02x}{grey:02x}{grey:02x}");
+        svg.raw(&format!(
+            "<path d=\"{d}\" fill=\"{c}\" stroke=\"{c}\" stroke-width=\"0.3\"/>"
+        ));
+    }
+}
+
+/// The camera's view with its pixel grid where that is not too fine.
+pub(super) fn view(svg: &mut Svg, scene: &Scene, p: &Projection) {
+    let camera = &scene.camera;
+    let at = |a: f64, b: f64| p.at(camera.view.at([a, b]).position);
+    let outline = [at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)];
+    let grid = format!(
+        "fill=\"none\" stroke=\"{}\" stroke-width=\"0.4\"",
+        ink::GREEN
+    );
+    if p.view == View::Above {
+        let fine = |e: DVec3, n: usize| e.length() * p.scale / (n as f64) < 3.0;
+        let [u, v] = [camera.view.u(), camera.view.v()];
+        for i in 1..if fine(u, camera.columns) {
+            0
+        } else {
+            camera.columns
+        } {
+            let t = i as f64 / camera.columns as f64;
+            svg.line(at(t, 0.0), at(t, 1.0), &grid);
+        }
+        for j in 1..if fine(v, camera.rows) { 0 } else { camera.rows } {
+            let t = j as f64 / camera.rows as f64;
+            svg.line(at(0.0, t), at(1.0, t), &grid);
+        }
+    }
+    let width = if p.view == View::Above { 1.8 } else { 10.0 };
+    let style = format!(
+        "fill=\"none\" stroke=\"{}\" stroke-width=\"{width}\"",
+        ink::GREEN
+    );
+    svg.path(&outline, Close::Yes, &style);
+}
+
+/// A few beams, the edges of the camera's sight, and one way of the light around the corner.
+pub(super) fn lines(svg: &mut Svg, scene: &Scene, p: &Projection) {
+    let spots = &scene.laser.spots;
+    let beam = format!(
+        "fill=\"none\" stroke=\"{}\" stroke-width=\"0.9\" stroke-opacity=\"0.6\"",
+        ink::VERMILLION
+    );
+    for spot in spots.iter().step_by(spots.len().div_ceil(6).max(1)) {
+        svg.line(
+            p.at(scene.laser.position),
+            p.at(spot.target.position),
+            &beam,
+        );
+    }
+    let sight = format!(
+        "fill=\"none\" stroke=\"{}\" stroke-width=\"0.9\" stroke-dasharray=\"5 3\"",
+        ink::GREEN
+    );
+    for corner in scene.camera.view.corners() {
+        svg.line(p.at(scene.camera.position), p.at(corner), &sight);
+    }
+    let centre = scene.camera.view.at([0.5, 0.5]).position;
+    if let (Some(spot), Some((_, hidden))) = (spots.first(), scene.hidden().next()) {
+        let way = [
+            spot.target.position,
+            hidden.shape.at([0.5, 0.5]).position,
+            centre,
+        ]
+        .map(|q| p.at(q));
+        svg.path(
+            &way,
+            Close::No,
+            &format!(
+                "fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"",
+                ink::BLUE
+            ),
+        );
+    }
+}
+
+/// All spots, as one path of dots.
+pub(super) fn spots(svg: &mut Svg, scene: &Scene, p: &Projection, labels: &mut Labels) {
+    let spots = &scene.laser.spots;
+    let mut d = String::new();
+    for spot in spots
+        .iter()
+        .step_by(spots.len().div_ceil(MOST_SPOTS).max(1))
+    {
+        let [x, y] = p.at(spot.target.position);
+        let _ = write!(d, "M{} {}h.01", number(x), number(y));
+        if spots.len() <= 1000 {
+            labels.avoid([x - 2.0, y - 2.0, x + 2.0, y + 2.0]);
+        }
+    }
+    for (stroke, width) in [("#ffffff", 6.0), (ink::VERMILLION, 4.2)] {
+        svg.raw(&format!(
+            "<path d=\"{d}\" fill=\"none\" stroke=\"{stroke}\" stroke-width=\"{width}\" stroke-linecap=\"round\"/>"
+        ));
+    }
+}
+
+/// Devices (or arrows towards them) and the names of everything.
+pub(super) fn names(svg: &mut Svg, scene: &Scene, p: &Projection, labels: &mut Labels) {
+    let [laser, camera] = [scene.laser.position, scene.camera.position];
+    let place = |q: DVec3| format!("({}, {}, {})", tick(q.x), tick(q.y), tick(q.z));
+    let devices = if laser == camera {
+        vec![(
+            laser,
+            format!("laser and camera {}", place(laser)),
+            ink::VERMILLION,
+        )]
+    } else {
+        vec![
+            (laser, format!("laser {}", place(laser)), ink::VERMILLION),
+            (camera, format!("camera {}", place(camera)), ink::GREEN),
+        ]
+    };
+    // A flat surface seen on edge is a line: its box would keep labels off for nothing.
+    for s in scene
+        .surfaces
+        .iter()
+        .filter(|s| s.role != Role::Relay && (p.view == View::Above || !s.shape.is_flat()))
+    {
+        labels.avoid(area(
+            &s.shape
+                .outline()
+                .iter()
+                .map(|q| p.at(q.position))
+                .collect::<Vec<_>>(),
+        ));
+    }
+    labels.avoid(area(&scene.camera.view.corners().map(|c| p.at(c))));
+    let mut anchors = Vec::new();
+    for (position, text, ink) in devices {
+        let anchor = match p.exit(position) {
+            None => {
+                let [x, y] = p.at(position);
+                let style = format!("fill=\"{ink}\" stroke=\"#ffffff\" stroke-width=\"1.2\"");
+                svg.path(
+                    &[[x, y - 7.0], [x + 7.0, y], [x, y + 7.0], [x - 7.0, y]],
+                    Close::Yes,
+                    &style,
+                );
+                [x, y]
+            }
+            Some((edge, way)) => arrow(svg, edge, way, ink),
+        };
+        labels.avoid([
+            anchor[0] - 7.0,
+            anchor[1] - 7.0,
+            anchor[0] + 7.0,
+            anchor[1] + 7.0,
+        ]);
+        anchors.push((anchor, ink, text));
+    }
+    for (anchor, ink, text) in anchors {
+        labels.place(svg, anchor, ink, &text);
+    }
+    if let Some(spot) = scene.laser.spots.first() {
+        labels.place(svg, p.at(spot.target.position), ink::VERMILLION, "spot 0");
+    }
+    for s in &scene.surfaces {
+        let corner = match (&s.shape, s.role) {
+            (Shape::Sphere(sphere), _) => sphere.centre + DVec3::new(0.0, 0.6, 0.8) * sphere.radius,
+            (shape, Role::Relay) => shape.at([0.97, 0.08]).position,
+            (shape, _) => shape.at([1.0, 0.5]).position,
+        };
+        let [x, y] = p.at(corner);
+        let size = p.size();
+        let anchor = [
+            x.clamp(p.corner[0], p.corner[0] + size[0]),
+            y.clamp(p.corner[1], p.corner[1] + size[1]),
+        ];
+        labels.place(svg, anchor, colour(s.role), &s.name);
+    }
+    labels.place(
+        svg,
+        p.at(scene.camera.view.at([1.0, 1.0]).position),
+        ink::GREEN,
+        "view",
+    );
+}
+
+/// The smallest upright rectangle around points.
+fn area(points: &[[f64; 2]]) -> [f64; 4] {
+    let start = [
+        f64::INFINITY,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NEG_INFINITY,
+    ];
+    points.iter().fold(start, |a, [x, y]| {
+        [a[0].min(*x), a[1].min(*y), a[2].max(*x), a[3].max(*y)]
+    })
+}
+
+/// An arrow that ends at the frame; returns where it starts.
+fn arrow(svg: &mut Svg, [x, y]: [f64; 2], [dx, dy]: [f64; 2], ink: &str) -> [f64; 2] {
+    let back = |t: f64, side: f64| [x - t * dx - side * dy, y - t * dy + side * dx];
+    svg.line(
+        back(26.0, 0.0),
+        back(6.0, 0.0),
+        &format!("stroke=\"{ink}\" stroke-width=\"2.4\""),
+    );
+    svg.path(
+        &[back(0.0, 0.0), back(10.0, 5.0), back(10.0, -5.0)],
+        Close::Yes,
+        &format!("fill=\"{ink}\""),
+    );
+    back(14.0, 0.0)
+}

@@ -1,0 +1,107 @@
+use super::super::sample::{bare, of, run, whole};
+use super::super::svg::well_formed;
+use super::*;
+
+/// No address but those of the SVG name space and of data.
+fn needs_no_network(html: &str) {
+    let style_and_markup = html.replace("http://www.w3.org/2000/svg", "");
+    for word in [
+        "http://", "https://", "src=\"", "@import", "<link", "<script",
+    ] {
+        assert!(!style_and_markup.contains(word), "{word}");
+    }
+    for link in style_and_markup.split("href=\"").skip(1) {
+        assert!(link.starts_with("data:image/png;base64,"), "{link:.40}");
+    }
+}
+
+#[test]
+fn a_whole_run_makes_a_whole_page() {
+    let html = run_html(&run("bench"));
+    well_formed(&html).unwrap();
+    needs_no_network(&html);
+    for text in [
+        "Traced and physical model agree",
+        "spot 119 at",
+        "Φcam, modelled",
+        "Recovered: object",
+        "joint-bounded",
+        "phicam run bench -o out --estimator independent --sampler pcg --samples 4096 --seed 18446744073709551615",
+        "phicam validate out --kernel physical",
+    ] {
+        assert!(html.contains(text), "{text}");
+    }
+    // Three frames, two matrices with one legend each set, z, truth and five recoveries.
+    assert_eq!(html.matches("<figure>").count(), 3 + 2 + 1 + 1 + 5);
+    assert!(html.len() < 1_000_000, "{}", html.len());
+}
+
+#[test]
+fn a_run_without_model_makes_a_page_too() {
+    let html = run_html(&bare("furnace"));
+    well_formed(&html).unwrap();
+    needs_no_network(&html);
+    assert!(html.contains("No model to compare with"));
+    assert!(!html.contains("modelled") && !html.contains("Recovered"));
+}
+
+#[test]
+fn odd_names_stay_text() {
+    let text = include_str!("../../scenes/bench.toml")
+        .replace("name = \"bench\"", "name = '<script>&\"ü'")
+        .replace("name = \"object\"", "name = '</text><&\"ü'");
+    let mut results = whole(of(Scene::from_toml("odd", &text).unwrap()));
+    results.recovered[0].parameter = "</table><b>&".into();
+    results.settings.version = "<i>".into();
+    let html = run_html(&results);
+    well_formed(&html).unwrap();
+    needs_no_network(&html);
+    // A scene that is not built in is repeated from its file, never by its name.
+    assert!(html.contains("phicam run scene.toml"));
+}
+
+#[test]
+fn a_built_in_name_with_other_content_is_repeated_from_its_file() {
+    let text = include_str!("../../scenes/bench.toml").replace("power = 5.0e-3", "power = 6.0e-3");
+    let html = run_html(&of(Scene::from_toml("x", &text).unwrap()));
+    assert!(html.contains("phicam run scene.toml"));
+}
+
+#[test]
+fn large_and_broken_matrices_keep_the_page_small_and_whole() {
+    let mut results = run("experiment");
+    // Noise cannot be compressed: the worst case for the page's size.
+    let mut state = 1u64;
+    let mut noise = move || {
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (state >> 33) as f64
+    };
+    for matrix in [
+        Some(&mut results.phi),
+        results.model.as_mut(),
+        results.z.as_mut(),
+    ]
+    .into_iter()
+    .flatten()
+    {
+        for x in matrix.iter_mut() {
+            *x = noise();
+        }
+    }
+    results.phi[(5, 5)] = f64::NAN;
+    results.phi[(6, 5)] = f64::INFINITY;
+    for r in &mut results.recovered {
+        r.elements = [1024, 1024];
+        r.reflectance = (0..1 << 20).map(|_| noise()).collect();
+        r.mtf_raw = Some(f64::NAN);
+    }
+    let html = run_html(&results);
+    well_formed(&html).unwrap();
+    assert!(html.len() < 10_000_000, "{}", html.len());
+    assert!(
+        html.contains("For display only, each pixel of the picture is the mean of 1 × 8 entries")
+    );
+    assert!(html.contains("middle one of 1 × 8"));
+}

@@ -1,0 +1,240 @@
+//! SVG text: escaping, numbers, elements.
+
+use std::fmt::Write;
+
+/// Okabe and Ito's colours, told apart by every kind of colour vision.
+pub(super) mod ink {
+    pub(in super::super) const BLACK: &str = "#222222";
+    pub(in super::super) const GREY: &str = "#6b6b6b";
+    pub(in super::super) const PALE: &str = "#d0d0d0";
+    pub(in super::super) const BLUE: &str = "#0072b2";
+    pub(in super::super) const GREEN: &str = "#009e73";
+    pub(in super::super) const VERMILLION: &str = "#d55e00";
+    pub(in super::super) const PURPLE: &str = "#a5467d";
+}
+
+/// `text` for XML and HTML, as content or as a quoted attribute. Characters that XML 1.0 cannot hold become U+FFFD.
+pub(super) fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&#39;"),
+            '\t' | '\n' => out.push(c),
+            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => out.push('\u{fffd}'),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// At most `most` characters of `text`, the rest as an ellipsis.
+pub(super) fn shortened(text: &str, most: usize) -> String {
+    if text.chars().count() <= most {
+        return text.to_owned();
+    }
+    text.chars()
+        .take(most.saturating_sub(1))
+        .chain(['…'])
+        .collect()
+}
+
+/// A coordinate with two decimals; always finite and within ±1e6, which no drawing reaches.
+pub(super) fn number(x: f64) -> String {
+    let x = if x.is_finite() {
+        x.clamp(-1e6, 1e6)
+    } else {
+        0.0
+    };
+    let text = format!("{x:.2}");
+    match text.trim_end_matches('0').trim_end_matches('.') {
+        "-0" => "0".to_owned(),
+        short => short.to_owned(),
+    }
+}
+
+/// A growing SVG fragment.
+#[derive(Default)]
+pub(super) struct Svg {
+    /// The elements so far.
+    pub text: String,
+}
+
+impl Svg {
+    /// Appends raw markup.
+    pub(super) fn raw(&mut self, markup: &str) {
+        self.text.push_str(markup);
+        self.text.push('\n');
+    }
+
+    /// A polyline (or, with `close`, polygon) with the given presentation attributes.
+    pub(super) fn path(&mut self, points: &[[f64; 2]], close: Close, style: &str) {
+        let mut d = String::new();
+        for (i, [x, y]) in points.iter().enumerate() {
+            let command = if i == 0 { 'M' } else { 'L' };
+            let _ = write!(d, "{command}{} {}", number(*x), number(*y));
+        }
+        if close == Close::Yes {
+            d.push('Z');
+        }
+        let _ = writeln!(self.text, "<path d=\"{d}\" {style}/>");
+    }
+
+    /// A line.
+    pub(super) fn line(&mut self, a: [f64; 2], b: [f64; 2], style: &str) {
+        self.path(&[a, b], Close::No, style);
+    }
+
+    /// A circle.
+    pub(super) fn circle(&mut self, [x, y]: [f64; 2], r: f64, style: &str) {
+        let (x, y, r) = (number(x), number(y), number(r));
+        let _ = writeln!(
+            self.text,
+            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" {style}/>"
+        );
+    }
+
+    /// A rectangle from its upper left corner.
+    pub(super) fn rect(&mut self, [x, y]: [f64; 2], [w, h]: [f64; 2], style: &str) {
+        let [x, y, w, h] = [x, y, w.max(0.0), h.max(0.0)].map(number);
+        let _ = writeln!(
+            self.text,
+            "<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" {style}/>"
+        );
+    }
+
+    /// Text, escaped here.
+    pub(super) fn text(&mut self, [x, y]: [f64; 2], style: &str, text: &str) {
+        let (x, y) = (number(x), number(y));
+        let _ = writeln!(
+            self.text,
+            "<text x=\"{x}\" y=\"{y}\" {style}>{}</text>",
+            escape(text)
+        );
+    }
+}
+
+/// Whether a path returns to its start.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Close {
+    /// Polygon.
+    Yes,
+    /// Polyline.
+    No,
+}
+
+/// Whether markup is well formed: tags nest, attributes are quoted, no bare `&` or `<`. Void HTML elements count as
+/// closed. Enough for what this floor writes.
+#[cfg(test)]
+pub(super) fn well_formed(markup: &str) -> Result<(), String> {
+    let void = ["meta", "br", "hr", "img", "link"];
+    let mut open: Vec<&str> = Vec::new();
+    let mut rest = markup;
+    let entity = |text: &str| {
+        text.match_indices('&').all(|(i, _)| {
+            let tail = &text[i + 1..];
+            tail.find(';').is_some_and(|end| {
+                end > 0
+                    && tail[..end]
+                        .chars()
+                        .all(|c| c.is_ascii_alphanumeric() || c == '#')
+            })
+        })
+    };
+    while let Some(start) = rest.find('<') {
+        if !entity(&rest[..start]) || rest[..start].contains('>') {
+            return Err(format!("bare & or > in {:?}", &rest[..start]));
+        }
+        rest = &rest[start + 1..];
+        let mut quote = false;
+        let end = rest.find(|c: char| {
+            quote ^= c == '"';
+            c == '>' && !quote
+        });
+        let end = end.ok_or_else(|| format!("a tag that does not end: {rest:.60}"))?;
+        let tag = &rest[..end];
+        rest = &rest[end + 1..];
+        if tag.contains('<') || !entity(tag) || tag.matches('"').count() % 2 == 1 {
+            return Err(format!("bare < or & in tag {tag:?}"));
+        }
+        let attributes: String = tag.split('"').step_by(2).collect();
+        let unquoted = attributes
+            .split_whitespace()
+            .skip(1)
+            .any(|a| a.contains('=') && !a.ends_with('=') && !a.contains("=/"));
+        if unquoted {
+            return Err(format!("unquoted attribute in {tag:?}"));
+        }
+        let name = tag
+            .trim_start_matches('/')
+            .split([' ', '\n', '/'])
+            .next()
+            .unwrap_or("");
+        if tag.starts_with('!')
+            || tag.starts_with('?')
+            || tag.ends_with('/')
+            || void.contains(&name)
+        {
+            continue;
+        }
+        if tag.starts_with('/') {
+            match open.pop() {
+                Some(last) if last == name => {}
+                other => return Err(format!("</{name}> closes {other:?}")),
+            }
+        } else {
+            open.push(name);
+            if name == "style" {
+                let close = rest.find("</style>").ok_or("style does not end")?;
+                rest = &rest[close..];
+            }
+        }
+    }
+    if open.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("left open: {open:?}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_cannot_become_markup() {
+        assert_eq!(escape("<&\"'>ü\u{1}"), "&lt;&amp;&quot;&#39;&gt;ü\u{fffd}");
+        let mut svg = Svg::default();
+        svg.text([0.0, 1.0], "fill=\"#000\"", "</text><script>&");
+        assert!(well_formed(&svg.text).is_ok());
+        assert!(!svg.text.contains("<script"));
+    }
+
+    #[test]
+    fn numbers_are_short_and_finite() {
+        assert_eq!(number(1.50), "1.5");
+        assert_eq!(number(-0.001), "0");
+        assert_eq!(number(100.0), "100");
+        assert_eq!(number(f64::NAN), "0");
+        assert_eq!(number(f64::INFINITY), "0");
+    }
+
+    #[test]
+    fn the_checker_tells_good_from_bad() {
+        assert!(well_formed("<a b=\"c\">x &amp; y<d/></a>").is_ok());
+        for bad in [
+            "<a>",
+            "<a></b>",
+            "<a>&</a>",
+            "<a b=c></a>",
+            "<a b=\"<\"></a>",
+            "<a> > </a>",
+            "</a>",
+        ] {
+            assert!(well_formed(bad).is_err(), "{bad}");
+        }
+    }
+}
