@@ -71,7 +71,11 @@ fn sources() -> Vec<Source> {
             let text = fs::read_to_string(&p).unwrap();
             let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
             Source {
-                path: p.strip_prefix(&root).unwrap().to_string_lossy().replace('\\', "/"),
+                path: p
+                    .strip_prefix(&root)
+                    .unwrap()
+                    .to_string_lossy()
+                    .replace('\\', "/"),
                 code: code.collect::<Vec<_>>().join("\n"),
             }
         })
@@ -80,7 +84,11 @@ fn sources() -> Vec<Source> {
 
 /// Floors that the code names: after `crate::` or `phicam::`, alone or in the first level of a braced list.
 fn imports(code: &str) -> Vec<String> {
-    let ident = |s: &str| s.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+    let ident = |s: &str| {
+        s.chars()
+            .take_while(|c| c.is_alphanumeric() || *c == '_')
+            .collect::<String>()
+    };
     let mut found = Vec::new();
     for marker in ["crate::", "phicam::"] {
         for (at, _) in code.match_indices(marker) {
@@ -115,9 +123,8 @@ fn imports(code: &str) -> Vec<String> {
 /// Whether `code` names the crate `name` in a path.
 fn names_crate(code: &str, name: &str) -> bool {
     let pattern = format!("{name}::");
-    code.match_indices(&pattern).any(|(at, _)| {
-        !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':')
-    })
+    code.match_indices(&pattern)
+        .any(|(at, _)| !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':'))
 }
 
 fn level(floor: &str) -> Option<usize> {
@@ -128,9 +135,13 @@ fn level(floor: &str) -> Option<usize> {
 fn arrows_point_down() {
     let mut wrong = Vec::new();
     for source in sources() {
-        let Some(own) = level(source.floor()) else { continue };
+        let Some(own) = level(source.floor()) else {
+            continue;
+        };
         for import in imports(&source.code) {
-            let Some(other) = level(&import) else { continue };
+            let Some(other) = level(&import) else {
+                continue;
+            };
             let beside = BESIDE.contains(&(source.floor(), import.as_str()));
             if import != source.floor() && other >= own && !beside {
                 wrong.push(format!("{} imports {import}", source.path));
@@ -157,7 +168,10 @@ fn two_witnesses() {
             "model" => &["transport", "stream", "warp", "Stream", "summation"],
             _ => continue,
         };
-        let words: Vec<&str> = source.code.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+        let words: Vec<&str> = source
+            .code
+            .split(|c: char| !c.is_alphanumeric() && c != '_')
+            .collect();
         for word in forbidden {
             assert!(!words.contains(word), "{} names `{word}`", source.path);
         }
@@ -170,7 +184,11 @@ fn blind_recovery() {
     let own = |name: &str| ["num", "matrix", "recovery"].contains(&name);
     for source in sources().iter().filter(|s| s.floor() == "recovery") {
         for import in imports(&source.code) {
-            assert!(own(&import) || level(&import).is_none(), "{} imports {import}", source.path);
+            assert!(
+                own(&import) || level(&import).is_none(),
+                "{} imports {import}",
+                source.path
+            );
         }
     }
 }
@@ -181,19 +199,30 @@ fn one_door_per_crate() {
     for source in sources() {
         for (name, doors) in DOORS {
             let inside = doors.iter().any(|d| source.path.starts_with(d));
-            assert!(inside || !names_crate(&source.code, name), "{} names crate {name}", source.path);
+            assert!(
+                inside || !names_crate(&source.code, name),
+                "{} names crate {name}",
+                source.path
+            );
         }
         if !source.path.starts_with("num/linalg") {
-            for call in [".svd(", ".pseudo_inverse(", ".qr()", ".lu()", ".cholesky(", ".symmetric_eigen("] {
+            for call in [
+                ".svd(",
+                ".pseudo_inverse(",
+                ".qr()",
+                ".lu()",
+                ".cholesky(",
+                ".symmetric_eigen(",
+            ] {
                 let ours = source.code.contains(call);
                 assert!(!ours, "{} calls {call}…) outside num/linalg", source.path);
             }
         }
     }
     for (name, doors) in DOORS {
-        let used = sources().iter().any(|s| {
-            doors.iter().any(|d| s.path.starts_with(d)) && names_crate(&s.code, name)
-        });
+        let used = sources()
+            .iter()
+            .any(|s| doors.iter().any(|d| s.path.starts_with(d)) && names_crate(&s.code, name));
         assert!(used, "crate {name} is not used behind its door");
     }
 }
@@ -203,10 +232,21 @@ fn one_door_per_crate() {
 #[test]
 fn random_numbers_are_functions_of_their_key() {
     let sources_of_chance = [
-        "current_thread_index", "thread::current", "SystemTime", "Instant::now", "from_rng", "thread_rng",
-        "from_os_rng", "SysRng", "RandomState", "env::var",
+        "current_thread_index",
+        "thread::current",
+        "SystemTime",
+        "Instant::now",
+        "from_rng",
+        "thread_rng",
+        "from_os_rng",
+        "SysRng",
+        "RandomState",
+        "env::var",
     ];
-    for source in sources().iter().filter(|s| !["cli", "main"].contains(&s.floor())) {
+    for source in sources()
+        .iter()
+        .filter(|s| !["cli", "main"].contains(&s.floor()))
+    {
         for word in sources_of_chance {
             assert!(!source.code.contains(word), "{} uses {word}", source.path);
         }
@@ -216,8 +256,17 @@ fn random_numbers_are_functions_of_their_key() {
 /// Only `cli` prints, reads the environment or ends the process.
 #[test]
 fn the_library_is_silent() {
-    for source in sources().iter().filter(|s| !["cli", "main"].contains(&s.floor())) {
-        for word in ["println!", "eprintln!", "print!(", "process::exit", "std::env"] {
+    for source in sources()
+        .iter()
+        .filter(|s| !["cli", "main"].contains(&s.floor()))
+    {
+        for word in [
+            "println!",
+            "eprintln!",
+            "print!(",
+            "process::exit",
+            "std::env",
+        ] {
             assert!(!source.code.contains(word), "{} uses {word}", source.path);
         }
     }
@@ -226,13 +275,36 @@ fn the_library_is_silent() {
 /// `f64::sin` and its kin call the system's C library, whose bits differ between machines; `libm` does not.
 #[test]
 fn transcendental_functions_are_the_portable_ones() {
-    let floors = ["num", "geometry", "scene", "film", "matrix", "transport", "model", "recovery", "metrics", "study"];
+    let floors = [
+        "num",
+        "geometry",
+        "scene",
+        "film",
+        "matrix",
+        "transport",
+        "model",
+        "recovery",
+        "metrics",
+        "study",
+    ];
     for source in sources().iter().filter(|s| floors.contains(&s.floor())) {
         let shipped = source.code.split("#[cfg(test)]").next().unwrap_or("");
         if source.path.contains("test") || source.path.contains("bench") {
             continue;
         }
-        for call in [".sin(", ".cos(", ".tan(", ".exp(", ".ln(", ".powf(", ".atan2(", ".acos(", ".sin_cos(", ".log10(", ".powi("] {
+        for call in [
+            ".sin(",
+            ".cos(",
+            ".tan(",
+            ".exp(",
+            ".ln(",
+            ".powf(",
+            ".atan2(",
+            ".acos(",
+            ".sin_cos(",
+            ".log10(",
+            ".powi(",
+        ] {
             assert!(!shipped.contains(call), "{} calls {call}…)", source.path);
         }
     }

@@ -8,7 +8,9 @@ use clap::{Args as Arguments, Parser, Subcommand, ValueEnum};
 /// phicam: a physically based renderer for indirect photography, and the laboratory around it.
 #[derive(Debug, Parser)]
 #[command(version, about, max_term_width = 100, propagate_version = true)]
-#[command(after_help = "Exit codes: 0 done, 1 traced and modelled disagree, 2 error, 130 stopped by Ctrl-C.")]
+#[command(
+    after_help = "Exit codes: 0 done, 1 traced and modelled disagree, 2 error, 130 stopped by Ctrl-C."
+)]
 pub(super) struct Args {
     /// No progress and no remarks on standard error
     #[arg(long, short, global = true)]
@@ -253,7 +255,9 @@ pub(super) enum SceneCommand {
 
 /// "A..B" with A < B.
 fn spot_range(text: &str) -> Result<Range<usize>, String> {
-    let parts = text.split_once("..").and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
+    let parts = text
+        .split_once("..")
+        .and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
     match parts {
         Some((a, b)) if a < b => Ok(a..b),
         _ => Err("write it as A..B with A < B, e.g. 0..30 for the first thirty".to_owned()),
@@ -273,7 +277,9 @@ fn elements(text: &str) -> Result<[usize; 2], String> {
 /// "DX,DY", finite.
 fn shift(text: &str) -> Result<[f64; 2], String> {
     let number = |s: &str| s.trim().parse().ok().filter(|x: &f64| x.is_finite());
-    let parts = text.split_once(',').and_then(|(a, b)| Some([number(a)?, number(b)?]));
+    let parts = text
+        .split_once(',')
+        .and_then(|(a, b)| Some([number(a)?, number(b)?]));
     parts.ok_or_else(|| "write it as DX,DY, e.g. 0.05,0".to_owned())
 }
 

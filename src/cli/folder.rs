@@ -43,18 +43,37 @@ pub(super) struct Folder {
 impl Folder {
     /// Makes sure that the run `record` may be written to `path`, and that it can be. Nothing is changed before every check
     /// has passed.
-    pub(super) fn open(path: &Path, scene: &Scene, record: &Record, keep: Keep, talk: Talk) -> Result<Self, Failure> {
-        let folder = Self { path: path.to_owned() };
+    pub(super) fn open(
+        path: &Path,
+        scene: &Scene,
+        record: &Record,
+        keep: Keep,
+        talk: Talk,
+    ) -> Result<Self, Failure> {
+        let folder = Self {
+            path: path.to_owned(),
+        };
         folder.refuse_foreign(scene)?;
         let earlier = Record::read(path)?;
         let same = earlier.as_ref().is_some_and(|e| e.same_settings(record));
         if let Some(e) = earlier.filter(|_| !same) {
             if keep != Keep::Nothing {
-                let cause = format!("{} holds a run with other settings ({})", path.display(), e.settings());
-                return Err(Failure::new(cause, "use the same settings, or another folder (-o)"));
+                let cause = format!(
+                    "{} holds a run with other settings ({})",
+                    path.display(),
+                    e.settings()
+                );
+                return Err(Failure::new(
+                    cause,
+                    "use the same settings, or another folder (-o)",
+                ));
             }
             ensure_writable(path)?;
-            talk.say(format!("replacing the earlier run in {} ({})", path.display(), e.settings()));
+            talk.say(format!(
+                "replacing the earlier run in {} ({})",
+                path.display(),
+                e.settings()
+            ));
             folder.remove_frames()?;
         } else {
             ensure_writable(path)?;
@@ -81,12 +100,18 @@ impl Folder {
         if let Ok(text) = fs::read_to_string(self.path.join(SCENE)) {
             let other = Scene::from_toml(SCENE, &text).is_ok_and(|s| s.hash != scene.hash);
             if other {
-                return Err(Failure::new(format!("{path} belongs to another scene ({SCENE})"), cure));
+                return Err(Failure::new(
+                    format!("{path} belongs to another scene ({SCENE})"),
+                    cure,
+                ));
             }
         }
         let frames = fs::read_dir(self.frames()).is_ok_and(|mut d| d.next().is_some());
         if frames || self.path.join(PHI).exists() {
-            let cause = format!("{path} holds frames or a {PHI}, but no {} that says of which scene", Record::FILE);
+            let cause = format!(
+                "{path} holds frames or a {PHI}, but no {} that says of which scene",
+                Record::FILE
+            );
             return Err(Failure::new(cause, cure));
         }
         Ok(())
@@ -97,7 +122,9 @@ impl Folder {
     }
 
     fn partial(&self, spot: usize) -> PathBuf {
-        self.path.join("partial").join(format!("spot-{spot:04}.npy"))
+        self.path
+            .join("partial")
+            .join(format!("spot-{spot:04}.npy"))
     }
 
     /// Keeps a finished spot (column `column` of `traced`) until the run is complete.
@@ -105,7 +132,10 @@ impl Folder {
         ensure_writable(&self.path.join("partial"))?;
         let columns = traced.bounces.iter().chain([&traced.stderr]);
         let columns: Vec<_> = columns.map(|m| m.column(column).into_owned()).collect();
-        Ok(npy::write(&self.partial(spot), &Matrix::from_columns(&columns))?)
+        Ok(npy::write(
+            &self.partial(spot),
+            &Matrix::from_columns(&columns),
+        )?)
     }
 
     /// A spot that was kept: one column per bounce count, then the standard error; `None` if it is not there or not whole.
@@ -123,17 +153,23 @@ impl Folder {
         self.remove_partial()?;
         remove_numbered(&self.frames(), "exr")?;
         for name in [PHI, STDERR, Record::FILE] {
-            if let Err(e) = fs::remove_file(self.path.join(name)) {
-                if e.kind() != std::io::ErrorKind::NotFound {
-                    return Err(e.into());
-                }
+            match fs::remove_file(self.path.join(name)) {
+                Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(e.into()),
+                _ => {}
             }
         }
         Ok(())
     }
 
     /// Writes the frame of a spot from column `column` of `traced`.
-    pub(super) fn write_frame(&self, scene: &Scene, record: &Record, spot: usize, traced: &Traced, column: usize) -> Result<(), Failure> {
+    pub(super) fn write_frame(
+        &self,
+        scene: &Scene,
+        record: &Record,
+        spot: usize,
+        traced: &Traced,
+        column: usize,
+    ) -> Result<(), Failure> {
         let channel = |name: String, m: &Matrix| Channel {
             name,
             values: m.column(column).iter().map(|x| *x as f32).collect(),
@@ -163,7 +199,10 @@ impl Folder {
                 version: record.version.clone(),
             },
         };
-        Ok(film::exr::write(&self.frames().join(frame_name(spot as u32)), &frame)?)
+        Ok(film::exr::write(
+            &self.frames().join(frame_name(spot as u32)),
+            &frame,
+        )?)
     }
 
     /// Writes Φcam and its standard error.
@@ -175,13 +214,17 @@ impl Folder {
 
 /// Removes the spot-NNNN files of `dir` with the given extension, and `dir` if that empties it.
 fn remove_numbered(dir: &Path, extension: &str) -> Result<(), Failure> {
-    let Ok(entries) = fs::read_dir(dir) else { return Ok(()) };
+    let Ok(entries) = fs::read_dir(dir) else {
+        return Ok(());
+    };
     for path in entries.filter_map(Result::ok).map(|e| e.path()) {
         let name = path.file_name().and_then(|n| n.to_str()).unwrap_or("");
-        let number = name.strip_prefix("spot-").and_then(|n| n.strip_suffix(extension));
-        let ours = number.and_then(|n| n.strip_suffix('.')).is_some_and(|n| {
-            !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit())
-        });
+        let number = name
+            .strip_prefix("spot-")
+            .and_then(|n| n.strip_suffix(extension));
+        let ours = number
+            .and_then(|n| n.strip_suffix('.'))
+            .is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()));
         if ours {
             fs::remove_file(&path)?;
         }
@@ -194,18 +237,40 @@ fn remove_numbered(dir: &Path, extension: &str) -> Result<(), Failure> {
 /// The scene and the record of a finished run.
 pub(super) fn read_run(dir: &Path) -> Result<(Scene, Record), Failure> {
     let record = Record::read(dir)?.ok_or_else(|| {
-        let cause = format!("{} is not the folder of a run: it has no {}", dir.display(), Record::FILE);
-        Failure::new(cause, "give a folder that `phicam run` or `phicam render` has written")
+        let cause = format!(
+            "{} is not the folder of a run: it has no {}",
+            dir.display(),
+            Record::FILE
+        );
+        Failure::new(
+            cause,
+            "give a folder that `phicam run` or `phicam render` has written",
+        )
     })?;
     let path = dir.join(SCENE);
     let scene = Scene::load(&path.to_string_lossy())?;
     if scene.hash != record.scene_hash {
-        let cause = format!("{} is not the scene that {} was rendered from", path.display(), dir.display());
-        return Err(Failure::new(cause, "restore it, or render the changed scene into another folder"));
+        let cause = format!(
+            "{} is not the scene that {} was rendered from",
+            path.display(),
+            dir.display()
+        );
+        return Err(Failure::new(
+            cause,
+            "restore it, or render the changed scene into another folder",
+        ));
     }
     if record.finished < record.spots && !dir.join(PHI).exists() {
-        let cause = format!("{} holds {} of {} spots", dir.display(), record.finished, record.spots);
-        return Err(Failure::new(cause, "finish it with `phicam render --resume`"));
+        let cause = format!(
+            "{} holds {} of {} spots",
+            dir.display(),
+            record.finished,
+            record.spots
+        );
+        return Err(Failure::new(
+            cause,
+            "finish it with `phicam render --resume`",
+        ));
     }
     Ok((scene, record))
 }

@@ -27,7 +27,6 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use args::{Args, Command};
-use failure::Failure;
 use output::Talk;
 
 /// How a command ended, if it did not fail.

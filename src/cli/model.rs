@@ -17,7 +17,10 @@ pub(super) fn execute(args: &ModelArgs, talk: Talk) -> Result<Outcome, Failure> 
     let scene = Scene::load(&args.scene)?;
     let kernel = settings::kernel(args.kernel);
     let model = MatrixModel::new(&scene, kernel, args.elements)?;
-    Folder { path: args.output.clone() }.refuse_foreign(&scene)?;
+    Folder {
+        path: args.output.clone(),
+    }
+    .refuse_foreign(&scene)?;
     talk.warn(&scene);
     let (phi, how) = match settings::integration(args.integration) {
         Integration::Centres => (model.phi(), "by centres".to_owned()),
@@ -47,7 +50,11 @@ pub(super) fn execute(args: &ModelArgs, talk: Talk) -> Result<Outcome, Failure> 
 pub(super) fn write(dir: &Path, model: &MatrixModel, phi: &Matrix) -> Result<(), Failure> {
     let folder = dir.join("model");
     ensure_writable(&folder)?;
-    for (name, matrix) in [("g12.npy", &model.g12), ("g23.npy", &model.g23), ("phi.npy", phi)] {
+    for (name, matrix) in [
+        ("g12.npy", &model.g12),
+        ("g23.npy", &model.g23),
+        ("phi.npy", phi),
+    ] {
         npy::write(&folder.join(name), matrix)?;
     }
     Ok(())

@@ -8,7 +8,11 @@ use super::output::Talk;
 
 /// A bar that counts `total` paths; silent with `--quiet` or where standard error is no terminal.
 pub(super) fn paths(talk: Talk, what: &str, total: u64) -> ProgressBar {
-    let target = if talk.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let target = if talk.quiet {
+        ProgressDrawTarget::hidden()
+    } else {
+        ProgressDrawTarget::stderr()
+    };
     let bar = ProgressBar::with_draw_target(Some(total), target);
     let template = "{msg} {wide_bar} {percent:>3} %  {eta} left, {si} paths/s";
     if let Ok(style) = ProgressStyle::with_template(template) {

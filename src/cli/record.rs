@@ -35,7 +35,13 @@ pub(super) struct Record {
 impl Record {
     pub(super) const FILE: &'static str = "run.json";
 
-    pub(super) fn new(scene: &Scene, plan: &Plan, finished: usize, threads: usize, seconds: f64) -> Self {
+    pub(super) fn new(
+        scene: &Scene,
+        plan: &Plan,
+        finished: usize,
+        threads: usize,
+        seconds: f64,
+    ) -> Self {
         Self {
             version: version().to_owned(),
             scene: scene.name.clone(),
@@ -62,7 +68,10 @@ impl Record {
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             Err(e) => {
                 let cause = format!("cannot read {}: {e}", path.display());
-                return Err(Failure::new(cause, "make it readable, or choose another folder"));
+                return Err(Failure::new(
+                    cause,
+                    "make it readable, or choose another folder",
+                ));
             }
         };
         serde_json::from_slice(&bytes).map(Some).map_err(|e| {
@@ -73,7 +82,9 @@ impl Record {
 
     pub(super) fn write(&self, dir: &Path) -> Result<(), Failure> {
         let text = super::output::json(self)?;
-        Ok(write_whole(&dir.join(Self::FILE), |w| w.write_all(text.as_bytes()))?)
+        Ok(write_whole(&dir.join(Self::FILE), |w| {
+            w.write_all(text.as_bytes())
+        })?)
     }
 
     /// Whether the same scene was rendered by the same plan and program.
@@ -87,14 +98,23 @@ impl Record {
 
     /// Seed, samples, estimator and sampler in words.
     pub(super) fn settings(&self) -> String {
-        let Self { seed, samples, estimator, sampler, .. } = self;
+        let Self {
+            seed,
+            samples,
+            estimator,
+            sampler,
+            ..
+        } = self;
         format!("{estimator}, {sampler}, {samples} samples, seed {seed}")
     }
 
     /// The plan that was rendered.
     pub(super) fn plan(&self) -> Result<Plan, Failure> {
         let unknown = |what: &str| {
-            let cause = format!("{} names a {what} that this version does not know", Self::FILE);
+            let cause = format!(
+                "{} names a {what} that this version does not know",
+                Self::FILE
+            );
             Failure::new(cause, "use the version of phicam that rendered it")
         };
         let estimator = [Estimator::Independent, Estimator::Shared]
@@ -108,7 +128,12 @@ impl Record {
         let budget = Budget::new(self.samples, sampling)
             .filter(|b| b.blocks == self.blocks && b.samples() == self.samples)
             .ok_or_else(|| unknown("division into blocks"))?;
-        Ok(Plan { estimator, sampling, seed: self.seed, budget })
+        Ok(Plan {
+            estimator,
+            sampling,
+            seed: self.seed,
+            budget,
+        })
     }
 
     pub(super) fn to_settings(&self) -> Settings {

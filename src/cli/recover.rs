@@ -11,7 +11,7 @@ use crate::matrix::{Matrix, npy};
 use crate::model::MatrixModel;
 use crate::num::linalg::Tolerance;
 use crate::recovery::{Method, Options};
-use crate::report;
+use crate::report::{self, Panel};
 use crate::store::{ensure_writable, write_whole};
 use crate::study::{Attempt, Noise, RecoveredObject, recover_objects};
 
@@ -36,16 +36,27 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
     let single = methods.len() == 1;
     let objects = collect(attempts, single, talk)?;
     write(&args.dir, &objects)?;
-    let text = if args.json { output::json(&objects)? } else { report::recovery_table(&objects) };
+    let text = if args.json {
+        output::json(&objects)?
+    } else {
+        report::recovery_table(&objects)
+    };
     output::print(&text)?;
     Ok(Outcome::Done)
 }
 
 fn options(args: &RecoverArgs) -> Result<Options, Failure> {
     if args.noise.is_some_and(|x| !(x > 0.0 && x.is_finite())) {
-        return Err(Failure::new("--noise is not a positive number", "give it relative to the flux, e.g. 0.01"));
+        return Err(Failure::new(
+            "--noise is not a positive number",
+            "give it relative to the flux, e.g. 0.01",
+        ));
     }
-    let mut options = Options { rank: args.rank, damping: args.damping, ..Options::default() };
+    let mut options = Options {
+        rank: args.rank,
+        damping: args.damping,
+        ..Options::default()
+    };
     if let Some(tolerance) = args.tolerance {
         options.tolerance = Tolerance::Relative(tolerance);
     }
@@ -54,7 +65,11 @@ fn options(args: &RecoverArgs) -> Result<Options, Failure> {
 
 /// The objects that were recovered. A method that cannot work is reported; if none can, or the only one asked for, that is
 /// the command's failure.
-pub(super) fn collect(attempts: Vec<Attempt>, strict: bool, talk: Talk) -> Result<Vec<RecoveredObject>, Failure> {
+pub(super) fn collect(
+    attempts: Vec<Attempt>,
+    strict: bool,
+    talk: Talk,
+) -> Result<Vec<RecoveredObject>, Failure> {
     let mut objects = Vec::new();
     for attempt in attempts {
         match attempt.outcome {
@@ -64,7 +79,10 @@ pub(super) fn collect(attempts: Vec<Attempt>, strict: bool, talk: Talk) -> Resul
         }
     }
     if objects.is_empty() {
-        return Err(Failure::new("no method could recover anything", "see the reasons above"));
+        return Err(Failure::new(
+            "no method could recover anything",
+            "see the reasons above",
+        ));
     }
     Ok(objects)
 }
@@ -90,17 +108,28 @@ pub(super) fn write(dir: &Path, objects: &[RecoveredObject]) -> Result<(), Failu
                 0
             }
         };
-        let suffix = if several { format!("-{index}") } else { String::new() };
-        let named = [(object.method.as_str(), &object.reflectance), ("truth", &object.truth)];
+        let suffix = if several {
+            format!("-{index}")
+        } else {
+            String::new()
+        };
+        let named = [
+            (object.method.as_str(), &object.reflectance),
+            ("truth", &object.truth),
+        ];
         for (name, values) in named {
             let [nu, nv] = object.elements;
             let path = folder.join(format!("{name}{suffix}"));
-            npy::write(&path.with_extension("npy"), &Matrix::from_row_slice(nv, nu, values))?;
+            npy::write(
+                &path.with_extension("npy"),
+                &Matrix::from_row_slice(nv, nu, values),
+            )?;
             let title = match name {
                 "truth" => format!("truth: {}", object.surface),
                 _ => format!("{name}: {}", object.surface),
             };
-            let png = report::reflectance_png(&title, object.elements, values);
+            let panel = Panel::elements(name, object.elements, values.clone());
+            let png = report::grey_png(&title, &[panel])?;
             write_whole(&path.with_extension("png"), |w| w.write_all(&png))?;
         }
     }

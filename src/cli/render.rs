@@ -20,8 +20,14 @@ pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure>
     let total = scene.laser.spots.len();
     let spots = args.spots.clone().unwrap_or(0..total);
     if spots.end > total {
-        let cause = format!("--spots {}..{} asks for more than the {total} spots there are", spots.start, spots.end);
-        return Err(Failure::new(cause, format!("use a range within 0..{total}")));
+        let cause = format!(
+            "--spots {}..{} asks for more than the {total} spots there are",
+            spots.start, spots.end
+        );
+        return Err(Failure::new(
+            cause,
+            format!("use a range within 0..{total}"),
+        ));
     }
     let keep = match (args.resume, spots.len() < total) {
         (true, _) => Keep::Finished,
@@ -33,13 +39,21 @@ pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure>
     if args.json {
         output::print(&output::json(record)?)?;
     } else {
-        let Record { finished, spots, seconds, .. } = record;
+        let Record {
+            finished,
+            spots,
+            seconds,
+            ..
+        } = record;
         let what = match rendered.phi {
             Some(_) => "frames, phi.npy and phi.stderr.npy".to_owned(),
             None => "frames; phi.npy follows when every spot is there".to_owned(),
         };
         let place = args.output.display();
-        output::print(&format!("{place}: {finished} of {spots} spots in {seconds:.1} s ({}): {what}\n", record.settings()))?;
+        output::print(&format!(
+            "{place}: {finished} of {spots} spots in {seconds:.1} s ({}): {what}\n",
+            record.settings()
+        ))?;
     }
     Ok(Outcome::Done)
 }
@@ -65,10 +79,10 @@ pub(super) fn into_folder(
     let pool = settings::pool(args.threads)?;
     let threads = pool.current_num_threads();
     let mut record = Record::new(scene, &plan, 0, threads, 0.0);
-    if keep == Keep::Finished {
-        if let Some(earlier) = Record::read(path)? {
-            record.seconds = earlier.seconds;
-        }
+    if keep == Keep::Finished
+        && let Some(earlier) = Record::read(path)?
+    {
+        record.seconds = earlier.seconds;
     }
     let folder = Folder::open(path, scene, &record, keep, talk)?;
     talk.warn(scene);
@@ -85,7 +99,9 @@ pub(super) fn into_folder(
         Ok(Some(traced)) if todo.len() == total => Some(traced),
         Ok(_) => gather(scene, &folder),
         Err(failure) => {
-            record.finished = (0..total).filter(|s| folder.kept(*s, scene).is_some()).count();
+            record.finished = (0..total)
+                .filter(|s| folder.kept(*s, scene).is_some())
+                .count();
             record.write(path)?;
             return Err(match failure {
                 Failure::Stopped(_) => Failure::Stopped(format!(
@@ -99,7 +115,9 @@ pub(super) fn into_folder(
     };
     record.finished = match &phi {
         Some(_) => total,
-        None => (0..total).filter(|s| folder.kept(*s, scene).is_some()).count(),
+        None => (0..total)
+            .filter(|s| folder.kept(*s, scene).is_some())
+            .count(),
     };
     if let Some(traced) = &phi {
         folder.write_phi(&traced.flux, &traced.stderr)?;
@@ -127,13 +145,22 @@ fn trace(
         Estimator::Independent => todo.len() as u64,
         Estimator::Shared => u64::from(!todo.is_empty()),
     };
-    let bar = progress::paths(talk, &format!("tracing {}", scene.name), pixels * plan.budget.samples() * per_pixel);
+    let bar = progress::paths(
+        talk,
+        &format!("tracing {}", scene.name),
+        pixels * plan.budget.samples() * per_pixel,
+    );
     let tick = |paths| bar.inc(paths);
-    let control = Control { progress: &tick, stop: stop_flag() };
+    let control = Control {
+        progress: &tick,
+        stop: stop_flag(),
+    };
     let stopped = || Failure::Stopped(String::new());
     let mut all: Vec<Traced> = Vec::new();
     for range in batches(todo, plan.estimator) {
-        let traced = pool.install(|| render(scene, plan, range.clone(), control)).ok_or_else(stopped)?;
+        let traced = pool
+            .install(|| render(scene, plan, range.clone(), control))
+            .ok_or_else(stopped)?;
         for (column, spot) in range.clone().enumerate() {
             folder.write_frame(scene, record, spot, &traced, column)?;
             folder.keep(spot, &traced, column)?;
@@ -161,8 +188,14 @@ fn batches(todo: &[usize], estimator: Estimator) -> Vec<Range<usize>> {
 fn join(parts: Vec<Traced>) -> Option<Traced> {
     let orders = parts.first()?.bounces.len();
     let beside = |f: &dyn Fn(&Traced) -> &Matrix| {
-        let columns: Vec<_> =
-            parts.iter().flat_map(|t| f(t).column_iter().map(|c| c.into_owned()).collect::<Vec<_>>()).collect();
+        let columns: Vec<_> = parts
+            .iter()
+            .flat_map(|t| {
+                f(t).column_iter()
+                    .map(|c| c.into_owned())
+                    .collect::<Vec<_>>()
+            })
+            .collect();
         Matrix::from_columns(&columns)
     };
     Some(Traced {
@@ -176,10 +209,19 @@ fn join(parts: Vec<Traced>) -> Option<Traced> {
 fn gather(scene: &Scene, folder: &Folder) -> Option<Traced> {
     let orders = scene.max_bounces as usize;
     let spots = 0..scene.laser.spots.len();
-    let kept: Vec<Matrix> = spots.map(|s| folder.kept(s, scene)).collect::<Option<_>>()?;
-    let pick = |n: usize| Matrix::from_columns(&kept.iter().map(|m| m.column(n)).collect::<Vec<_>>());
+    let kept: Vec<Matrix> = spots
+        .map(|s| folder.kept(s, scene))
+        .collect::<Option<_>>()?;
+    let pick =
+        |n: usize| Matrix::from_columns(&kept.iter().map(|m| m.column(n)).collect::<Vec<_>>());
     let bounces: Vec<Matrix> = (0..orders).map(pick).collect();
     // The same order of additions as in the tracer, so that the bits are the same.
-    let flux = Matrix::from_fn(kept[0].nrows(), kept.len(), |p, l| bounces.iter().map(|b| b[(p, l)]).sum());
-    Some(Traced { flux, stderr: pick(orders), bounces })
+    let flux = Matrix::from_fn(kept[0].nrows(), kept.len(), |p, l| {
+        bounces.iter().map(|b| b[(p, l)]).sum()
+    });
+    Some(Traced {
+        flux,
+        stderr: pick(orders),
+        bounces,
+    })
 }

@@ -24,8 +24,14 @@ pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
     let plan = settings::plan(&args.trace, Talk { quiet: true })?;
     let test = settings::test(&args.test, &plan)?;
     let spots = 0..scene.laser.spots.len();
-    let Rendered { record, phi } =
-        render::into_folder(&scene, &args.trace, spots, Keep::Nothing, &args.output, talk)?;
+    let Rendered { record, phi } = render::into_folder(
+        &scene,
+        &args.trace,
+        spots,
+        Keep::Nothing,
+        &args.output,
+        talk,
+    )?;
     let Some(traced) = phi else {
         return Err(Failure::new("not every spot was rendered", "run again"));
     };
@@ -37,7 +43,10 @@ pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
 
     let total: f64 = traced.flux.sum();
     let share = |m: &Matrix| if total > 0.0 { m.sum() / total } else { 0.0 };
-    let bounces = (1..).zip(&traced.bounces).map(|(n, m)| (n, share(m))).collect();
+    let bounces = (1..)
+        .zip(&traced.bounces)
+        .map(|(n, m)| (n, share(m)))
+        .collect();
     let mut results = RunResults {
         settings: record.to_settings(),
         phi: traced.flux,
@@ -63,10 +72,19 @@ pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
     write_whole(&path("report.html"), |w| w.write_all(page.as_bytes()))?;
     let text = match args.json {
         true => summary,
-        false => report::summary_table(&results) + &format!("\n  everything is in {}, the report in report.html\n", args.output.display()),
+        false => {
+            report::summary_table(&results)
+                + &format!(
+                    "\n  everything is in {}, the report in report.html\n",
+                    args.output.display()
+                )
+        }
     };
     output::print(&text)?;
-    Ok(results.agreement.as_ref().map_or(Outcome::Done, validate::outcome))
+    Ok(results
+        .agreement
+        .as_ref()
+        .map_or(Outcome::Done, validate::outcome))
 }
 
 /// Model, verdict and recoveries.
@@ -81,7 +99,14 @@ fn compare_and_recover(
     let integration = settings::integration(args.test.integration);
     talk.say("computing the model and comparing");
     let matrices = MatrixModel::new(&results.scene, kernel, None)?;
-    let found = study::validate(&results.scene, &results.phi, &results.stderr, kernel, integration, test)?;
+    let found = study::validate(
+        &results.scene,
+        &results.phi,
+        &results.stderr,
+        kernel,
+        integration,
+        test,
+    )?;
     model::write(&args.output, &matrices, &found.model)?;
     results.model = Some(found.model);
     results.z = Some(found.z);
@@ -90,7 +115,13 @@ fn compare_and_recover(
 
     talk.say("recovering the object");
     let noise = Noise::StandardError(&results.stderr);
-    let attempts = study::recover_objects(&matrices, &results.phi, noise, &Method::ALL, &Options::default());
+    let attempts = study::recover_objects(
+        &matrices,
+        &results.phi,
+        noise,
+        &Method::ALL,
+        &Options::default(),
+    );
     results.recovered = recover::collect(attempts, false, talk)?;
     recover::write(&args.output, &results.recovered)?;
     clock.lap("recover");
@@ -103,7 +134,10 @@ fn refuse_unfaithful_frames(dir: &std::path::Path, flux: &Matrix) -> Result<(), 
     // Rounding to f32 is off by at most 2⁻²⁴ of each entry, so also of the norm.
     let off = relative_frobenius(&stacked.phi, flux).unwrap_or(0.0);
     if off > f64::from(f32::EPSILON) {
-        let cause = format!("the frames in {} differ from what was traced by {off:.1e}", dir.display());
+        let cause = format!(
+            "the frames in {} differ from what was traced by {off:.1e}",
+            dir.display()
+        );
         return Err(Failure::new(cause, "check the disk, and run again"));
     }
     Ok(())
@@ -117,11 +151,15 @@ struct Clock {
 
 impl Clock {
     fn start() -> Self {
-        Self { last: Instant::now(), laps: Vec::new() }
+        Self {
+            last: Instant::now(),
+            laps: Vec::new(),
+        }
     }
 
     fn lap(&mut self, stage: &str) {
-        self.laps.push((stage.to_owned(), self.last.elapsed().as_secs_f64()));
+        self.laps
+            .push((stage.to_owned(), self.last.elapsed().as_secs_f64()));
         self.last = Instant::now();
     }
 }

@@ -21,7 +21,10 @@ pub(super) fn plan(args: &TraceArgs, talk: Talk) -> Result<Plan, Failure> {
         SamplerName::Sobol => Sampling::Sobol,
     };
     let budget = Budget::new(args.samples, sampling).ok_or_else(|| {
-        let cause = format!("--samples {} is not a number of paths that can be traced", args.samples);
+        let cause = format!(
+            "--samples {} is not a number of paths that can be traced",
+            args.samples
+        );
         Failure::new(cause, "use at least 1 and at most 2⁴⁰")
     })?;
     if budget.samples() != args.samples {
@@ -33,15 +36,25 @@ pub(super) fn plan(args: &TraceArgs, talk: Talk) -> Result<Plan, Failure> {
             budget.size
         ));
     }
-    Ok(Plan { estimator, sampling, seed: args.seed, budget })
+    Ok(Plan {
+        estimator,
+        sampling,
+        seed: args.seed,
+        budget,
+    })
 }
 
 /// The threads to work with.
 pub(super) fn pool(threads: Option<usize>) -> Result<ThreadPool, Failure> {
     if threads.is_some_and(|n| !(1..=4096).contains(&n)) {
-        return Err(Failure::new("--threads is out of range", "use 1 to 4096, or leave it out"));
+        return Err(Failure::new(
+            "--threads is out of range",
+            "use 1 to 4096, or leave it out",
+        ));
     }
-    Ok(rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?)
+    Ok(rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.unwrap_or(0))
+        .build()?)
 }
 
 pub(super) fn kernel(name: KernelName) -> Kernel {
@@ -62,7 +75,10 @@ pub(super) fn integration(name: IntegrationName) -> Integration {
 pub(super) fn test(args: &TestArgs, plan: &Plan) -> Result<Test, Failure> {
     if !(args.significance > 0.0 && args.significance < 1.0) {
         let cause = format!("--significance {} is not a probability", args.significance);
-        return Err(Failure::new(cause, "use a number between 0 and 1, e.g. 0.001"));
+        return Err(Failure::new(
+            cause,
+            "use a number between 0 and 1, e.g. 0.001",
+        ));
     }
     Ok(Test {
         significance: args.significance,

@@ -1,7 +1,5 @@
 //! `phicam validate`: traced against modelled.
 
-use std::fmt::Write as _;
-
 use super::args::ValidateArgs;
 use super::failure::Failure;
 use super::folder::{self, PHI, STDERR};
@@ -26,30 +24,20 @@ pub(super) fn execute(args: &ValidateArgs, _: Talk) -> Result<Outcome, Failure> 
     let kernel = settings::kernel(args.test.kernel);
     let integration = settings::integration(args.test.integration);
     let found = validate(&scene, &phi, &stderr, kernel, integration, test)?;
-    let text = if args.json { output::json(&found.agreement)? } else { table(&found.agreement) };
+    let text = if args.json {
+        output::json(&found.agreement)?
+    } else {
+        report::verdict_table(&found.agreement)
+    };
     output::print(&text)?;
     Ok(outcome(&found.agreement))
 }
 
 /// Exit code of a verdict.
 pub(super) fn outcome(agreement: &Agreement) -> Outcome {
-    if agreement.agrees { Outcome::Done } else { Outcome::Disagreed }
-}
-
-fn table(a: &Agreement) -> String {
-    let mut text = report::verdict_sentence(a) + "\n\n";
-    for (name, value) in report::agreement_rows(a) {
-        let _ = writeln!(text, "  {name:<34} {value}");
+    if agreement.agrees {
+        Outcome::Done
+    } else {
+        Outcome::Disagreed
     }
-    if !a.agrees {
-        text += "\n  worst entries      pixel   spot      traced W    modelled W        z\n";
-        for e in &a.worst {
-            let _ = writeln!(
-                text,
-                "                    {:>6} {:>6} {:>13.6e} {:>13.6e} {:>8.2}",
-                e.pixel, e.spot, e.traced, e.modelled, e.z
-            );
-        }
-    }
-    text
 }

@@ -76,8 +76,8 @@ impl Bvh {
         for (index, shape) in shapes.iter().enumerate() {
             let (lower, upper) = shape.bounds();
             let reach = lower.abs().max(upper.abs()).max_element();
-            // A NaN fails the comparison too.
-            if !(reach <= LARGEST) || !lower.is_finite() || !upper.is_finite() {
+            let finite = lower.is_finite() && upper.is_finite();
+            if !finite || reach > LARGEST {
                 return Err(GeometryError::Unbounded { index, reach });
             }
         }

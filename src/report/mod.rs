@@ -1,7 +1,7 @@
 //! Floor 7: the report. Results in, bytes out: nothing here computes physics, prints or touches the file system.
 //!
 //! [`bench_svg`] draws a scene to scale; [`grey_png`] and [`colour_png`] turn matrices into pictures with a legend;
-//! [`summary_json`] and [`summary_table`] say in short what a run found, and [`run_html`] shows it on one
+//! [`summary_json`], [`summary_table`] and their kin say in short what was found, and [`run_html`] shows it on one
 //! self-contained page. Pictures clip at the ends of their scale and say so; numbers are never clipped.
 
 mod axis;
@@ -20,6 +20,7 @@ mod projection;
 mod sample;
 mod summary;
 mod svg;
+mod table;
 mod verdict;
 
 pub use canvas::PictureError;
@@ -27,4 +28,5 @@ pub use colour::{Map, Rgb, Scale};
 pub use drawing::bench_svg;
 pub use page::run_html;
 pub use picture::{Panel, colour_png, grey_png};
-pub use summary::{summary_json, summary_table};
+pub use summary::summary_json;
+pub use table::{recovery_table, summary_table, verdict_table};

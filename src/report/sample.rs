@@ -66,6 +66,7 @@ pub(super) fn whole(mut run: RunResults) -> RunResults {
         dof: 30720.0,
         chi2_p: 0.36,
         largest_z: 4.1,
+        largest_p: 0.3,
         z_limit: 4.74,
         relative_difference: 1.1e-3,
         relative_noise: 1e-3,

@@ -1,7 +1,7 @@
 //! The verdict of a run in one sentence.
 
 use super::axis::significant;
-use crate::study::RunResults;
+use crate::study::{Agreement, RunResults};
 
 /// What the agreement test says, with its numbers; `DISAGREE` in capitals where it fails.
 pub(super) fn verdict(results: &RunResults) -> String {
@@ -11,6 +11,11 @@ pub(super) fn verdict(results: &RunResults) -> String {
             None => "no model to compare with: the scene hides nothing".to_owned(),
         };
     };
+    sentence(a)
+}
+
+/// The sentence for one agreement test.
+pub(super) fn sentence(a: &Agreement) -> String {
     let word = if a.agrees { "agree" } else { "DISAGREE" };
     format!(
         "traced and {} model {word}: χ²/dof {} over {} entries, largest |z| {} of {} allowed",

@@ -171,11 +171,11 @@ pub(super) fn warnings(scene: &Scene) -> Vec<Warning> {
         found.push(Warning::NothingHidden);
     }
     for surface in &scene.surfaces {
-        if let Shape::Parallelogram(p) = &surface.shape {
-            if p.skew().abs() > 1e-6 {
-                let angle = libm::acos(p.skew()).to_degrees();
-                found.push(Warning::Skewed(surface.name.clone(), angle));
-            }
+        if let Shape::Parallelogram(p) = &surface.shape
+            && p.skew().abs() > 1e-6
+        {
+            let angle = libm::acos(p.skew()).to_degrees();
+            found.push(Warning::Skewed(surface.name.clone(), angle));
         }
         let [cu, cv] = surface.albedo.smooth_cells();
         let [nu, nv] = surface.elements;

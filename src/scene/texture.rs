@@ -120,7 +120,7 @@ impl Texture {
         let [dark, light] = [value("dark", table.dark)?, value("light", table.light)?];
         let [nu, nv] = [nu as usize, nv as usize];
         let check = |i: usize| {
-            if (i % nu + i / nu) % 2 == 0 {
+            if (i % nu + i / nu).is_multiple_of(2) {
                 dark
             } else {
                 light

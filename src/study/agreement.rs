@@ -1,7 +1,9 @@
 //! Do two matrices agree within the error bars of one of them?
 
 use crate::matrix::Matrix;
-use crate::num::statistics::{chi_square_sf, normal_two_sided, sidak_p, sidak_threshold, student_to_normal};
+use crate::num::statistics::{
+    chi_square_sf, normal_two_sided, sidak_p, sidak_threshold, student_to_normal,
+};
 
 use super::results::{Agreement, Entry};
 
@@ -55,14 +57,23 @@ const WORST: usize = 10;
 ///
 /// Entries whose standard error is 0 (light that never varies, or never arrives) are compared to rounding.
 pub fn agree(evidence: Evidence<'_>, test: Test) -> (Agreement, Matrix) {
-    let Evidence { traced, stderr, model, bound } = evidence;
+    let Evidence {
+        traced,
+        stderr,
+        model,
+        bound,
+    } = evidence;
     let freedom = f64::from(test.replicates.max(2) - 1);
     let z = Matrix::from_fn(traced.nrows(), traced.ncols(), |p, l| {
         let at = (p, l);
         let difference = traced[at] - model[at];
         let beyond = (difference.abs() - bound.map_or(0.0, |b| b[at])).max(0.0);
         let scale = stderr[at].max(ROUNDING * (traced[at].abs() + model[at].abs()));
-        if beyond == 0.0 { 0.0 } else { student_to_normal(beyond / scale, freedom).copysign(difference) }
+        if beyond == 0.0 {
+            0.0
+        } else {
+            student_to_normal(beyond / scale, freedom).copysign(difference)
+        }
     });
     let entries = z.len();
     let largest = z.amax();
@@ -127,12 +138,22 @@ mod tests {
         for p in 0..ROWS {
             for l in 0..COLUMNS {
                 let spot = if shared { 0 } else { l as u32 };
-                let mut stream = Stream::new(Sampling::Pcg, Key { seed, spot, pixel: p as u32, block: 0 });
+                let mut stream = Stream::new(
+                    Sampling::Pcg,
+                    Key {
+                        seed,
+                        spot,
+                        pixel: p as u32,
+                        block: 0,
+                    },
+                );
                 let replicates: Vec<f64> = (0..REPLICATES)
                     .map(|_| {
                         // Box–Muller.
                         let [a, b, ..] = stream.next_four();
-                        1.0 + 0.04 * (-2.0 * (1.0 - a).ln()).sqrt() * (std::f64::consts::TAU * b).cos()
+                        1.0 + 0.04
+                            * (-2.0 * (1.0 - a).ln()).sqrt()
+                            * (std::f64::consts::TAU * b).cos()
                     })
                     .collect();
                 let (mean, error) = crate::num::summation::mean_and_stderr(&replicates);
@@ -143,28 +164,57 @@ mod tests {
         (traced, stderr)
     }
 
-    fn verdict(seed: u64, model: f64, bound: Option<f64>, errors: Errors, significance: f64) -> Agreement {
+    fn verdict(
+        seed: u64,
+        model: f64,
+        bound: Option<f64>,
+        errors: Errors,
+        significance: f64,
+    ) -> Agreement {
         let (traced, stderr) = sample(seed, errors == Errors::WithinRows);
         let model = Matrix::from_element(ROWS, COLUMNS, model);
         let bound = bound.map(|b| Matrix::from_element(ROWS, COLUMNS, b));
-        let evidence = Evidence { traced: &traced, stderr: &stderr, model: &model, bound: bound.as_ref() };
-        agree(evidence, Test { significance, replicates: REPLICATES, errors }).0
+        let evidence = Evidence {
+            traced: &traced,
+            stderr: &stderr,
+            model: &model,
+            bound: bound.as_ref(),
+        };
+        agree(
+            evidence,
+            Test {
+                significance,
+                replicates: REPLICATES,
+                errors,
+            },
+        )
+        .0
     }
 
     /// False alarms on a right model: 400 trials at 10 % give 40 ± 6; 99.9 % of the binomial lies in 21 … 61. Under
     /// correlation the test may only be more cautious.
     #[test]
     fn false_alarms_come_at_the_stated_rate() {
-        let alarms = |errors| (0..400).filter(|s| !verdict(*s, 1.0, None, errors, 0.1).agrees).count();
+        let alarms = |errors| {
+            (0..400)
+                .filter(|s| !verdict(*s, 1.0, None, errors, 0.1).agrees)
+                .count()
+        };
         let independent = alarms(Errors::Independent);
-        assert!((21..=61).contains(&independent), "{independent} of 400 at 10 %");
+        assert!(
+            (21..=61).contains(&independent),
+            "{independent} of 400 at 10 %"
+        );
         let shared = alarms(Errors::WithinRows);
         assert!(shared <= 61, "{shared} of 400 at 10 %");
     }
 
     #[test]
     fn chi_square_is_one_per_degree_of_freedom() {
-        let mean = (0..20).map(|s| verdict(s, 1.0, None, Errors::Independent, 0.01).chi2_per_dof).sum::<f64>() / 20.0;
+        let mean = (0..20)
+            .map(|s| verdict(s, 1.0, None, Errors::Independent, 0.01).chi2_per_dof)
+            .sum::<f64>()
+            / 20.0;
         // 24 000 values of z², each of variance 2: standard error 0.009.
         assert!((mean - 1.0).abs() < 0.04, "{mean}");
     }
@@ -182,15 +232,37 @@ mod tests {
     fn entries_without_error_are_compared_to_rounding() {
         let traced = Matrix::from_element(2, 2, 1.0);
         let zero = Matrix::zeros(2, 2);
-        let test = Test { significance: 0.01, replicates: 32, errors: Errors::Independent };
-        for (value, agrees) in [(1.0, true), (1.0 + 2e-16, true), (1.0 + 1e-10, false), (0.0, false)] {
+        let test = Test {
+            significance: 0.01,
+            replicates: 32,
+            errors: Errors::Independent,
+        };
+        for (value, agrees) in [
+            (1.0, true),
+            (1.0 + 2e-16, true),
+            (1.0 + 1e-10, false),
+            (0.0, false),
+        ] {
             let model = Matrix::from_element(2, 2, value);
-            let evidence = Evidence { traced: &traced, stderr: &zero, model: &model, bound: None };
+            let evidence = Evidence {
+                traced: &traced,
+                stderr: &zero,
+                model: &model,
+                bound: None,
+            };
             let (verdict, z) = agree(evidence, test);
             assert_eq!(verdict.agrees, agrees, "{value}");
             assert!(z.iter().all(|z| z.is_finite()));
         }
-        let (nothing, _) = agree(Evidence { traced: &zero, stderr: &zero, model: &zero, bound: None }, test);
+        let (nothing, _) = agree(
+            Evidence {
+                traced: &zero,
+                stderr: &zero,
+                model: &zero,
+                bound: None,
+            },
+            test,
+        );
         assert!(nothing.agrees);
     }
 }

@@ -44,7 +44,13 @@ pub fn recover_objects(
         let problem = Problem::new(phi, &model.camera_side, &model.laser_side, stderr)?;
         recover(method, &problem, options).map(|found| objects(model, &found))
     };
-    methods.iter().map(|&method| Attempt { method, outcome: attempt(method) }).collect()
+    methods
+        .iter()
+        .map(|&method| Attempt {
+            method,
+            outcome: attempt(method),
+        })
+        .collect()
 }
 
 fn objects(model: &MatrixModel, found: &Recovered) -> Vec<RecoveredObject> {
@@ -77,14 +83,21 @@ fn parameter(found: &Recovered) -> String {
     };
     let why = match found.choice {
         Choice::Given => ", as given".to_owned(),
-        Choice::Discrepancy { residual, target, .. } => {
-            format!(", by the discrepancy principle (residual {residual:.3e} W, noise {target:.3e} W)")
+        Choice::Discrepancy {
+            residual, target, ..
+        } => {
+            format!(
+                ", by the discrepancy principle (residual {residual:.3e} W, noise {target:.3e} W)"
+            )
         }
         Choice::Tolerance { cutoff } => format!(", cut at {cutoff:.2e}"),
         Choice::None => String::new(),
     };
     let solver = match &found.solver {
-        Some(s) => format!("; {} after {} iterations, gap {:.1e}", s.status, s.iterations, s.gap),
+        Some(s) => format!(
+            "; {} after {} iterations, gap {:.1e}",
+            s.status, s.iterations, s.gap
+        ),
         None => String::new(),
     };
     what + &why + &solver

@@ -75,7 +75,12 @@ pub fn validate(
     let (rows, columns) = (scene.camera.pixels(), scene.laser.spots.len());
     for (found_rows, found_columns) in [traced.shape(), stderr.shape()] {
         if (found_rows, found_columns) != (rows, columns) {
-            return Err(ValidationError::Shape { rows, columns, found_rows, found_columns });
+            return Err(ValidationError::Shape {
+                rows,
+                columns,
+                found_rows,
+                found_columns,
+            });
         }
     }
     let integral = converged(scene, kernel)?;
@@ -87,9 +92,18 @@ pub fn validate(
             (centres, Some(bound))
         }
     };
-    let evidence = Evidence { traced, stderr, model: &model, bound: bound.as_ref() };
+    let evidence = Evidence {
+        traced,
+        stderr,
+        model: &model,
+        bound: bound.as_ref(),
+    };
     let (mut agreement, z) = agree(evidence, test);
     kernel.name().clone_into(&mut agreement.kernel);
     integration.name().clone_into(&mut agreement.integration);
-    Ok(Validation { agreement, z, model })
+    Ok(Validation {
+        agreement,
+        z,
+        model,
+    })
 }

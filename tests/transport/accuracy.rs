@@ -15,7 +15,10 @@ fn shared_sobol_is_within_3e_4_of_the_thesis_integral() {
     assert!(error <= 3e-4, "relative Frobenius error {error:e}");
     // The replicates know the error: within a third of it, 256 rows of 120 correlated entries considered.
     let claimed = traced.stderr.norm() / truth.norm();
-    assert!((error / claimed - 1.0).abs() < 0.33, "{error:e}, claimed {claimed:e}");
+    assert!(
+        (error / claimed - 1.0).abs() < 0.33,
+        "{error:e}, claimed {claimed:e}"
+    );
 }
 
 #[test]
@@ -39,7 +42,10 @@ fn independent_sobol_has_honest_error_bars() {
 fn slope(points: &[(f64, f64)]) -> f64 {
     let logs: Vec<(f64, f64)> = points.iter().map(|(n, e)| (n.ln(), e.ln())).collect();
     let n = logs.len() as f64;
-    let (mx, my) = (logs.iter().map(|p| p.0).sum::<f64>() / n, logs.iter().map(|p| p.1).sum::<f64>() / n);
+    let (mx, my) = (
+        logs.iter().map(|p| p.0).sum::<f64>() / n,
+        logs.iter().map(|p| p.1).sum::<f64>() / n,
+    );
     let xy: f64 = logs.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum();
     xy / logs.iter().map(|p| (p.0 - mx) * (p.0 - mx)).sum::<f64>()
 }
@@ -67,15 +73,26 @@ fn a_wide_spot_is_the_mean_over_its_disc() {
     let mut truth = vec![vec![0.0; spots.len()]; 256];
     for (r2, weight) in crate::reference::gauss(3) {
         for k in 0..16 {
-            let (r, phi) = (0.25 * r2.sqrt(), std::f64::consts::TAU * f64::from(k) / 16.0);
-            bench.spots = spots.iter().map(|s| [s[0] + r * phi.cos(), s[1] + r * phi.sin()]).collect();
+            let (r, phi) = (
+                0.25 * r2.sqrt(),
+                std::f64::consts::TAU * f64::from(k) / 16.0,
+            );
+            bench.spots = spots
+                .iter()
+                .map(|s| [s[0] + r * phi.cos(), s[1] + r * phi.sin()])
+                .collect();
             for (sum, row) in truth.iter_mut().zip(bench.phi(10, 3)) {
-                sum.iter_mut().zip(row).for_each(|(s, x)| *s += weight / 16.0 * x);
+                sum.iter_mut()
+                    .zip(row)
+                    .for_each(|(s, x)| *s += weight / 16.0 * x);
             }
         }
     }
     let scene = builtin("bench", &[("spot_diameter = 0.0", "spot_diameter = 0.5")]);
-    for way in [Way(Shared, Sampling::Sobol, 4, 4096), Way(Independent, Sampling::Pcg, 4, 128)] {
+    for way in [
+        Way(Shared, Sampling::Sobol, 4, 4096),
+        Way(Independent, Sampling::Pcg, 4, 128),
+    ] {
         let traced = trace(&scene, way);
         let verdict = compare(&traced, &matrix(&truth), way);
         assert!(verdict.agrees, "{verdict:?}");

@@ -29,9 +29,15 @@ fn furnace_etendue(column: usize, row: usize) -> f64 {
 /// Φcam_n = Φ·aⁿ·E_p/(4π²R²): the derivation stands in scenes/furnace.toml.
 #[test]
 fn the_furnace_glows_as_an_integrating_sphere() {
-    for (a, changes) in [(0.8f64, vec![]), (0.5, vec![("lambertian = 0.8", "lambertian = 0.5")])] {
+    for (a, changes) in [
+        (0.8f64, vec![]),
+        (0.5, vec![("lambertian = 0.8", "lambertian = 0.5")]),
+    ] {
         let scene = builtin("furnace", &changes);
-        for way in [Way(Independent, Sampling::Pcg, 1, 512), Way(Shared, Sampling::Sobol, 1, 512)] {
+        for way in [
+            Way(Independent, Sampling::Pcg, 1, 512),
+            Way(Shared, Sampling::Sobol, 1, 512),
+        ] {
             let traced = trace(&scene, way);
             let orders: f64 = (2..=8).map(|n| a.powi(n)).sum();
             let truth = Matrix::from_fn(16, 3, |p, _| {
@@ -102,7 +108,10 @@ fn two_bounces_follow_the_inverse_square_law() {
         }
         sum * 2.0 * 0.4 / PI * 0.7 / PI
     });
-    for way in [Way(Shared, Sampling::Sobol, 1, 2048), Way(Independent, Sampling::Pcg, 1, 2048)] {
+    for way in [
+        Way(Shared, Sampling::Sobol, 1, 2048),
+        Way(Independent, Sampling::Pcg, 1, 2048),
+    ] {
         let verdict = compare(&trace(&scene, way), &truth, way);
         assert!(verdict.agrees, "{verdict:?}");
     }
@@ -116,16 +125,25 @@ fn a_spot_in_the_view_is_seen_directly() {
     let scene = builtin(
         "bench",
         &[
-            (square, "layout = \"list\"\npoints = [[3.3, 2.8], [6.45, 5.9]]"),
+            (
+                square,
+                "layout = \"list\"\npoints = [[3.3, 2.8], [6.45, 5.9]]",
+            ),
             ("         # offsets cycled along each side", ""),
             ("max_bounces = 3 ", "max_bounces = 1 "),
         ],
     );
     let traced = trace(&scene, Way(Independent, Sampling::Pcg, 1, 32));
-    for (l, (x, y, pixel)) in [(3.3f64, 2.8f64, 0usize), (6.45, 5.9, 255)].into_iter().enumerate() {
+    for (l, (x, y, pixel)) in [(3.3f64, 2.8f64, 0usize), (6.45, 5.9, 255)]
+        .into_iter()
+        .enumerate()
+    {
         let d2 = (x + 20.0) * (x + 20.0) + (y - 10.0) * (y - 10.0) + 225.0;
         let flux = 5e-3 * 0.8 / PI * 0.05 * 225.0 / (d2 * d2);
         assert!((traced.flux[(pixel, l)] / flux - 1.0).abs() < 1e-12);
-        assert!((traced.flux.column(l).sum() / flux - 1.0).abs() < 1e-12, "light in other pixels");
+        assert!(
+            (traced.flux.column(l).sum() / flux - 1.0).abs() < 1e-12,
+            "light in other pixels"
+        );
     }
 }

@@ -65,11 +65,23 @@ fn flux_is_linear_in_power_and_albedos() {
     let object = bench(&[("light = 1.0", "light = 0.5")]);
     assert!(base.bounces[2].amax() > 0.0 && base.bounces[4].amax() > 0.0);
     for (n, by_wall, by_object) in [(3, 0.25, 0.5), (5, 0.125, 0.25)] {
-        assert_eq!(wall.bounces[n - 1], &base.bounces[n - 1] * by_wall, "{n} bounces, wall");
-        assert_eq!(object.bounces[n - 1], &base.bounces[n - 1] * by_object, "{n} bounces, object");
+        assert_eq!(
+            wall.bounces[n - 1],
+            &base.bounces[n - 1] * by_wall,
+            "{n} bounces, wall"
+        );
+        assert_eq!(
+            object.bounces[n - 1],
+            &base.bounces[n - 1] * by_object,
+            "{n} bounces, object"
+        );
     }
     for n in [1, 2, 4] {
-        assert_eq!(base.bounces[n - 1].amax(), 0.0, "{n} bounces on a bench of two planes");
+        assert_eq!(
+            base.bounces[n - 1].amax(),
+            0.0,
+            "{n} bounces on a bench of two planes"
+        );
     }
 }
 
@@ -80,11 +92,20 @@ fn spot_and_pixel_can_be_exchanged() {
     let scene = |spot: [f64; 2], pixel: [f64; 2]| {
         let s = 5e-4;
         let [x, y] = pixel;
-        let view = format!("view = {{ x = [{}, {}], y = [{}, {}] }}", x - s, x + s, y - s, y + s);
+        let view = format!(
+            "view = {{ x = [{}, {}], y = [{}, {}] }}",
+            x - s,
+            x + s,
+            y - s,
+            y + s
+        );
         let mut text = shelf(&[]).text;
         let start = text.find("layout = ").unwrap();
         let end = text.find("[camera]").unwrap();
-        text.replace_range(start..end, &format!("layout = \"list\"\npoints = [{spot:?}]\n"));
+        text.replace_range(
+            start..end,
+            &format!("layout = \"list\"\npoints = [{spot:?}]\n"),
+        );
         let text = text
             .replacen("view = { x = [3.25, 6.5], y = [2.75, 6.0] }", &view, 1)
             .replacen("pixels = [4, 4]", "pixels = [1, 1]", 1);
@@ -114,14 +135,22 @@ fn hidden_faces_that_overlap_are_not_counted_twice() {
         let at = |d: f64, lift: f64| [0.0, 15.5 - d * h + lift * h, d * h + lift * h];
         let corner = at(7.86764 - 2.0 * shrink, 0.6);
         let v = [0.0, -4.0 * shrink * h, 4.0 * shrink * h];
-        let text = builtin("bench", &[]).text
-            .replacen("lambertian = { checkerboard = [2, 2], dark = 0.0, light = 1.0 }", &format!("lambertian = {front}"), 1)
+        let text = builtin("bench", &[])
+            .text
+            .replacen(
+                "lambertian = { checkerboard = [2, 2], dark = 0.0, light = 1.0 }",
+                &format!("lambertian = {front}"),
+                1,
+            )
             .replacen("per_side = 30", "per_side = 3", 1)
             .replacen("pixels = [16, 16]", "pixels = [3, 3]", 1)
             + &format!(
                 "[[surface]]\nname = \"back\"\nrole = \"hidden\"\nelements = [2, 2]\nmaterial = {{ lambertian = {back} }}\n\
                  rectangle = {{ corner = [{}, {}, {}], u = [{}, 0, 0], v = {v:?} }}\n",
-                5.0 - 2.0 * shrink, corner[1], corner[2], 4.0 * shrink
+                5.0 - 2.0 * shrink,
+                corner[1],
+                corner[2],
+                4.0 * shrink
             );
         Scene::from_toml("overlap", &text).unwrap()
     };
@@ -136,7 +165,9 @@ fn hidden_faces_that_overlap_are_not_counted_twice() {
     let behind = trace(&with_back("0.0", "0.9", 2.0), way(5));
     assert!(behind.flux.sum() > 0.1 * parts.flux.sum());
     parts.flux += &behind.flux;
-    parts.stderr = parts.stderr.zip_map(&behind.stderr, |a, b| (a * a + b * b).sqrt());
+    parts.stderr = parts
+        .stderr
+        .zip_map(&behind.stderr, |a, b| (a * a + b * b).sqrt());
     assert_same(&both, &parts, "parts");
 }
 
@@ -148,7 +179,10 @@ fn bits_do_not_depend_on_threads_or_spot_ranges() {
         for sampling in [Sampling::Pcg, Sampling::Sobol] {
             let way = Way(estimator, sampling, 9, 64);
             let on = |threads| {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                let pool = rayon::ThreadPoolBuilder::new()
+                    .num_threads(threads)
+                    .build()
+                    .unwrap();
                 pool.install(|| trace(&scene, way))
             };
             let one = on(1);
@@ -166,17 +200,23 @@ fn bits_do_not_depend_on_threads_or_spot_ranges() {
 /// A beam that something stands in lights that, and no longer the wall; pixels whose sight is blocked see what blocks it.
 #[test]
 fn what_stands_in_the_way_stops_the_light() {
-    let black = "[[surface]]\nname = \"screen\"\nrole = \"occluder\"\nmaterial = { lambertian = 0.0 }\n";
+    let black =
+        "[[surface]]\nname = \"screen\"\nrole = \"occluder\"\nmaterial = { lambertian = 0.0 }\n";
     let add = |rectangle: &str| {
         let text = builtin("bench", &[]).text + black + rectangle;
         Scene::from_toml("screen", &text).unwrap()
     };
     let way = Way(Independent, Sampling::Pcg, 1, 32);
     // Right in front of the laser, which stands where the camera stands: everything is dark.
-    let dark = trace_spots(&add("rectangle = { corner = [-19, 0, 5], u = [0, 0, 15], v = [0, 20, 0] }"), way, 0..3);
+    let dark = trace_spots(
+        &add("rectangle = { corner = [-19, 0, 5], u = [0, 0, 15], v = [0, 20, 0] }"),
+        way,
+        0..3,
+    );
     assert_eq!(dark.flux.amax(), 0.0);
     // On the left half of the view, close to the wall and below every other line.
-    let half = add("rectangle = { corner = [3.25, 2.75, 1e-6], u = [1.625, 0, 0], v = [0, 3.25, 0] }");
+    let half =
+        add("rectangle = { corner = [3.25, 2.75, 1e-6], u = [1.625, 0, 0], v = [0, 3.25, 0] }");
     let traced = trace_spots(&half, way, 0..3);
     for p in 0..256 {
         let covered = p % 16 < 8;

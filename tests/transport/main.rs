@@ -21,13 +21,21 @@ struct Way(Estimator, Sampling, u64, u64);
 impl Way {
     fn plan(self) -> Plan {
         let Self(estimator, sampling, seed, samples) = self;
-        Plan { estimator, sampling, seed, budget: Budget::new(samples, sampling).unwrap() }
+        Plan {
+            estimator,
+            sampling,
+            seed,
+            budget: Budget::new(samples, sampling).unwrap(),
+        }
     }
 }
 
 fn trace_spots(scene: &Scene, way: Way, spots: Range<usize>) -> Traced {
     let stop = AtomicBool::new(false);
-    let control = Control { progress: &|_| (), stop: &stop };
+    let control = Control {
+        progress: &|_| (),
+        stop: &stop,
+    };
     render(scene, &way.plan(), spots, control).unwrap()
 }
 
@@ -50,17 +58,35 @@ fn compare(traced: &Traced, truth: &Matrix, way: Way) -> Agreement {
         Estimator::Independent => Errors::Independent,
         Estimator::Shared => Errors::WithinRows,
     };
-    let test = Test { significance: 1e-4, replicates: way.plan().budget.blocks, errors };
-    let evidence = Evidence { traced: &traced.flux, stderr: &traced.stderr, model: truth, bound: None };
+    let test = Test {
+        significance: 1e-4,
+        replicates: way.plan().budget.blocks,
+        errors,
+    };
+    let evidence = Evidence {
+        traced: &traced.flux,
+        stderr: &traced.stderr,
+        model: truth,
+        bound: None,
+    };
     agree(evidence, test).0
 }
 
 /// Two independent renders of the same truth: the differences against their joint standard error.
 fn assert_same(a: &Traced, b: &Traced, what: &str) {
     let stderr = a.stderr.zip_map(&b.stderr, |x, y| (x * x + y * y).sqrt());
-    let evidence = Evidence { traced: &a.flux, stderr: &stderr, model: &b.flux, bound: None };
+    let evidence = Evidence {
+        traced: &a.flux,
+        stderr: &stderr,
+        model: &b.flux,
+        bound: None,
+    };
     // Two sets of 32 replicates: at least 31 degrees of freedom (Welch); rows may be correlated.
-    let test = Test { significance: 1e-4, replicates: 32, errors: Errors::WithinRows };
+    let test = Test {
+        significance: 1e-4,
+        replicates: 32,
+        errors: Errors::WithinRows,
+    };
     let verdict = agree(evidence, test).0;
     assert!(verdict.agrees, "{what}: {verdict:?}");
     assert!(a.flux.sum() > 0.0, "{what}: no light at all");

@@ -166,9 +166,9 @@ pub(crate) fn gauss(n: usize) -> Vec<(f64, f64)> {
                 for _ in 0..200 {
                     let mid = 0.5 * (lo + hi);
                     if p(m, mid).signum() == sign {
-                        lo = mid
+                        lo = mid;
                     } else {
-                        hi = mid
+                        hi = mid;
                     }
                 }
                 0.5 * (lo + hi)
