@@ -1,4 +1,118 @@
-//! phicam: a physically based Monte Carlo renderer for indirect photography and the laboratory around it.
+//! phicam: a physically based Monte Carlo renderer for *indirect photography*, and the laboratory around it.
+//!
+//! # The experiment
+//!
+//! A laser spot on a matt wall (S1) lights a surface that nobody can see (S2): it leans over the wall around a corner.
+//! The light comes back to the wall (S3), where a pinhole camera photographs it. The camera has no line of sight to the
+//! hidden surface; all it sees is a faint glow on the wall, which changes a little with the spot. One photograph per
+//! laser spot, stacked as columns, is the matrix \[Φcam\], pixels × spots.
+//!
+//! ```text
+//!        laser, camera
+//!             *                      S2, hidden
+//!              \ \                  /
+//!               \  \               /  ← reflectance to be recovered
+//!                \   \            /
+//!   ______________\____\_________/
+//!                S1    S3      hinge
+//! ```
+//!
+//! A matrix model says what that matrix should be, with absolute scale and no free factor:
+//!
+//! > Φcam\[p,l\] = Φlaser · E_p · (ρ3/π) · (ρ1/π) · Σ_j G23\[p,j\] · (ρ2_j/π) · A_j · G12\[j,l\]
+//!
+//! and inverting it gives ρ2, the picture of what was hidden. phicam *traces* the light without knowing that model,
+//! writes the frames that the camera would store, stacks them, tests with statistics whether model and transport
+//! agree, and recovers the hidden reflectance.
+//!
+//! | symbol | meaning | shape, unit |
+//! | --- | --- | --- |
+//! | p, r, l | camera pixels, resolution elements on S2, laser spots | counts |
+//! | Φlaser | laser power that lands on the wall at the spot | W |
+//! | ρ1, ρ2, ρ3 | albedo of the wall at the spot, of S2, of the wall in view; a Lambertian BRDF is ρ/π | 1; sr⁻¹ |
+//! | G12 | cosθs12 · cosθd12 / R12² between spot and element | r × l, length⁻² |
+//! | G23 | cosθs23 · cosθd23 / R23² between element and the wall point that the pixel sees | p × r, length⁻² |
+//! | A_j | area of a resolution element | length² |
+//! | E_p | étendue of pixel p: A_lens · cosθcam · Ω_p, Ω_p its solid angle seen from the pinhole | length² sr |
+//! | Φcam | flux into each pixel for each spot | p × l, W |
+//!
+//! # The house
+//!
+//! Arrows point down only: a floor imports what is below it.
+//!
+//! ```text
+//!    9  main.rs                      parse → run → exit code
+//!    8  cli/         arguments, checked settings, progress, one file per subcommand; the only floor that prints
+//!    7  report/      results → json, svg, png, html: results in, bytes out
+//!    6  study/       experiments that compose the floors below: validation, recovered objects
+//!    5  recovery/    Φcam → reflectance              metrics/   how far two things are apart
+//!    4  transport/   the path tracer → Φcam          model/     G12, G23 → Φcam
+//!    3  film/        frames, EXR                     matrix/    pixels × spots, .npy        store  whole files
+//!    2  scene/       laser, surface, texture, camera, scene file
+//!    1  geometry/    basis, shapes, BVH
+//!    0  num/         streams (random and Sobol'), warps, quadrature, statistics, linear algebra, summation
+//! ```
+//!
+//! Invariants, each kept by a test that reads the sources (`tests/architecture.rs`):
+//!
+//! 1. **Two witnesses.** [`transport`] and [`model`] never import each other. The model knows quadrature only, the
+//!    tracer knows random streams and warps only. If they shared code, their agreement would prove nothing.
+//! 2. **Blind recovery.** [`recovery`] imports [`num`] and [`matrix`] only; it never learns what scene it inverts.
+//! 3. **One door per foreign crate**: obvhs only in `geometry/bvh`, exr only in `film/exr`, matrix decompositions only in
+//!    [`num::linalg`], random generators only in [`num::stream`], the argument parser only in [`cli`].
+//! 4. **A random number is a function of (seed, spot, pixel, sample block)**, never of the thread or the order. The same
+//!    seed gives the same bytes.
+//!
+//! Rays travel in f32 inside the BVH only; every intersection, and every point that enters a radiometric term, is computed
+//! in f64 on its own shape, and every sum is f64 along a fixed tree.
+//!
+//! # A toy run
+//!
+//! The bench with four spots, traced and modelled:
+//!
+//! ```
+//! use std::sync::atomic::AtomicBool;
+//! use phicam::model::Kernel;
+//! use phicam::num::stream::Sampling;
+//! use phicam::scene::Scene;
+//! use phicam::study::{Errors, Integration, Test, validate};
+//! use phicam::transport::{Budget, Control, Estimator, Plan, render};
+//!
+//! let text = Scene::load("bench")?.text.replace("per_side = 30", "per_side = 2");
+//! let scene = Scene::from_toml("toy", &text)?;
+//!
+//! // Trace: 8 spots, 256 pixels, 64 paths for each pair.
+//! let plan = Plan {
+//!     estimator: Estimator::Independent,
+//!     sampling: Sampling::Pcg,
+//!     seed: 1,
+//!     budget: Budget::new(64, Sampling::Pcg).unwrap(),
+//! };
+//! let stop = AtomicBool::new(false);
+//! let control = Control { progress: &|_| (), stop: &stop };
+//! let traced = render(&scene, &plan, 0..scene.laser.spots.len(), control).unwrap();
+//!
+//! // Test against the model: within the error bars at a significance of 0.1 %.
+//! let test = Test { significance: 1e-3, replicates: plan.budget.blocks, errors: Errors::Independent };
+//! let verdict =
+//!     validate(&scene, &traced.flux, &traced.stderr, Kernel::Physical, Integration::Centres, test)?;
+//! assert!(verdict.agreement.agrees);
+//!
+//! // The kernel of the published simulation is not what light does.
+//! let verdict =
+//!     validate(&scene, &traced.flux, &traced.stderr, Kernel::Published, Integration::Centres, test)?;
+//! assert!(!verdict.agreement.agrees);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Where to read on
+//!
+//! * [`scene`]: what a scene is, and its file format key by key.
+//! * [`transport`]: the integral that is estimated, and how.
+//! * [`model`]: the matrices, and what they leave out.
+//! * [`study`]: what "agree" means.
+//! * [`recovery`]: the methods.
+//! * [`cli`]: what a run leaves on disk.
 
 pub mod cli;
 pub mod film;

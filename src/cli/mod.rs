@@ -1,7 +1,19 @@
 //! Floor 8: the command line. The only floor that prints, reads the environment and decides exit codes.
 //!
-//! Raw arguments ([`args`]) become checked settings, then one file per subcommand does its work with the floors below.
+//! Raw arguments become checked settings, then one file per subcommand does its work with the floors below.
 //! Results go to standard output, talk and progress to standard error.
+//!
+//! What a run leaves in its folder:
+//!
+//! | file | content |
+//! | --- | --- |
+//! | `scene.toml`, `run.json` | the scene, whole; version, scene hash, seed, samples, estimator, threads, time |
+//! | `frames/spot-0000.exr` | one frame a spot, f32: `flux`, `flux.stderr`, and `flux.bN` for light that met N surfaces, W |
+//! | `phi.npy`, `phi.stderr.npy` | Φcam and its standard error, f64, (pixels, spots), C order, W |
+//! | `model/g12.npy`, `g23.npy`, `phi.npy` | the analytic side |
+//! | `recovered/METHOD.npy`, `.png` | recovered reflectance, (nv, nu); `truth` beside it |
+//! | `summary.json`, `report.html` | what was found |
+//! | `partial/` | finished spots of an unfinished run; gone when it is complete |
 //!
 //! Exit codes: 0 done (and agreed), 1 traced and modelled disagree, 2 error, 130 stopped by Ctrl-C with what is finished
 //! kept.

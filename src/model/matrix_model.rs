@@ -66,7 +66,7 @@ pub struct MatrixModel {
     pub albedo: Vec<f64>,
     /// C, pixels × elements: E_p·(ρ3/π)·G23/π.
     pub camera_side: Matrix,
-    /// D, elements × spots, W: Φlaser·(ρ1/π)·A_j·G12, so that Φcam[p,l] = Σ_j C[p,j]·ρ2_j·D[j,l].
+    /// D, elements × spots, W: Φlaser·(ρ1/π)·A_j·G12, so that Φcam\[p,l\] = Σ_j C\[p,j\]·ρ2_j·D\[j,l\].
     pub laser_side: Matrix,
 }
 

@@ -2,10 +2,55 @@
 //! describes them, and the scenes that are built in.
 //!
 //! A [`Scene`] that exists is consistent: its spots and its view lie on relay surfaces, nothing has zero area, albedos
-//! are in [0, 1], and the camera does not see a hidden face. What is merely suspicious is told by [`Scene::warnings`].
+//! are in \[0, 1\], and the camera does not see a hidden face. What is merely suspicious is told by [`Scene::warnings`].
 //!
 //! All lengths are in the scene's [`Unit`]. Transport does not depend on it: étendue (length²) and form factors
 //! (length⁻²) cancel, and fluxes are in W.
+//!
+//! # The scene file
+//!
+//! TOML; unknown keys are errors. `phicam scene export bench` writes one out as a start.
+//!
+//! | key | meaning |
+//! | --- | --- |
+//! | `name` | name of the scene |
+//! | `unit` | length unit of every number in the file: `m`, `cm`, `mm`, `in` |
+//! | `max_bounces` | largest number of surfaces met between laser and camera, 1 to 1000 |
+//! | `laser.power` | power that lands at the spot, W |
+//! | `laser.wavelength` | m, whatever the unit |
+//! | `laser.position` | where the beams start |
+//! | `laser.spot_diameter` | diameter of the spot on the wall; 0 (default) is an ideal spot |
+//! | `laser.profile` | `disc` (default): uniform irradiance; `gaussian`: the diameter is 1/e² |
+//! | `laser.spots` | the layout, below |
+//! | `camera.position` | the pinhole |
+//! | `camera.aperture_area` | unit²; aperture and image plane are parallel to the wall |
+//! | `camera.view` | `{ x = [a, b], y = [c, d] }`: rectangle on the wall that the pixel grid covers exactly |
+//! | `camera.pixels` | columns (x) and rows (y) |
+//! | `surface.name`, `surface.role` | `relay` (S1 and S3), `hidden` (S2, recovered), `occluder` |
+//! | `surface.rectangle` | `{ corner, u, v }`; the front is the side of u × v |
+//! | `surface.sphere` | `{ centre, radius, face = "outside" or "inside" }` (not for hidden surfaces) |
+//! | `surface.material` | `{ lambertian = ρ }` with ρ a number, or one of the tables below |
+//! | `surface.elements` | elements along u and v (hidden surfaces only) |
+//!
+//! Surfaces reflect from their front; their back is black; both sides are opaque.
+//!
+//! Albedo tables: `{ checkerboard = [nu, nv], dark = …, light = … }` with cell (0, 0), at the corner, dark;
+//! `{ cells = [[…], …] }` with rows along v, each along u; `{ ramp = [start, end] }` along u.
+//!
+//! Layouts, in the order in which they list their spots:
+//!
+//! | `layout` | keys | spots |
+//! | --- | --- | --- |
+//! | `square` | `centre`, `half_width`, `per_side`, `stagger` | bottom side by growing x, right by growing y, top by falling x, left by falling y; `per_side` each, corners repeated; stagger entry k mod m offsets bottom and top in y, left and right in x |
+//! | `grid` | `centre`, `half_width`, `per_side` | rows along +y, each along +x |
+//! | `ring` | `centre`, `radius`, `count`, `start_angle` | counter-clockwise from `start_angle` degrees off +x |
+//! | `lines` | `lines = [{ from, to, count }, …]`, `stagger` | line after line, ends included; stagger moves to the left of the line |
+//! | `random` | `centre`, `half_width`, `count`, `seed` | uniform in the square |
+//! | `list` | `points = [[x, y], …]` | as listed |
+//!
+//! A spot or view given by (x, y) lies on the relay surface straight above or below it along z: of several the spot takes
+//! the one nearest to the laser, the view the one nearest to the camera. The view's plane is that relay's plane; of a curved relay it is the
+//! tangent plane at the view's centre. Pixel index = column + row·columns, columns along +x and rows along +y of the view.
 
 mod builtin;
 mod camera;

@@ -3,9 +3,11 @@
 //!
 //! Φcam[p, l] is the flux that pixel p receives when the laser lights spot l:
 //!
-//!     Φ = Σ_n ∫ E(x₁) · [ Π_{k=1}^{n−2} f_r(x_k) G(x_k, x_{k+1}) ] · f_r(x_{n−1}) G(x_{n−1}, s) · Φlaser · f_r(s) dx₁ … dx_{n−1} ds,
+//! ```text
+//! Φ = Σ_n ∫ E(x₁) · [ Π_{k=1}^{n−2} f_r(x_k) G(x_k, x_{k+1}) ] · f_r(x_{n−1}) G(x_{n−1}, s) · Φlaser f_r(s) dx₁ … dx_{n−1} dP(s)
+//! ```
 //!
-//! x₁ what the camera sees, s the point where the beam lands, G = V·cosθ·cosθ′/d² with the visibility V, f_r = ρ/π, E the
+//! x₁ what the camera sees, s the point where the beam lands (dP its share of the power), G = V·cosθ·cosθ′/d² with the visibility V, f_r = ρ/π, E the
 //! étendue per unit of footprint area, and n the number of surfaces met. Paths start at the camera; at each vertex the spot
 //! is connected explicitly (it is far too small to be hit), and the path goes on by sampling the hidden surfaces' area
 //! or the cosine lobe, weighted against each other by the density of their mixture (the balance heuristic).
