@@ -87,51 +87,48 @@ pub(super) fn collect(
     Ok(objects)
 }
 
-/// Writes DIR/recovered/METHOD.npy (nv × nu) and METHOD.png, and truth.npy and truth.png. Where several surfaces are hidden
-/// the names are METHOD-0, METHOD-1, … in file order.
+/// Writes DIR/recovered/METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png, and overview.png with all of them side
+/// by side. Where several surfaces are hidden the names are METHOD-0, METHOD-1, … in file order.
 pub(super) fn write(dir: &Path, objects: &[RecoveredObject]) -> Result<(), Failure> {
     let folder = dir.join("recovered");
     ensure_writable(&folder)?;
-    let mut surfaces: Vec<&str> = objects.iter().map(|o| o.surface.as_str()).collect();
-    surfaces.sort_unstable();
-    surfaces.dedup();
-    let several = surfaces.len() > 1;
-    let mut seen: Vec<(&str, usize)> = Vec::new();
+    let mut surfaces: Vec<&str> = Vec::new();
     for object in objects {
-        let index = match seen.iter_mut().find(|(m, _)| *m == object.method) {
-            Some((_, n)) => {
-                *n += 1;
-                *n
-            }
-            None => {
-                seen.push((&object.method, 0));
-                0
-            }
-        };
-        let suffix = if several {
-            format!("-{index}")
+        if !surfaces.contains(&object.surface.as_str()) {
+            surfaces.push(&object.surface);
+        }
+    }
+    for (i, surface) in surfaces.iter().enumerate() {
+        let suffix = if surfaces.len() > 1 {
+            format!("-{i}")
         } else {
             String::new()
         };
-        let named = [
-            (object.method.as_str(), &object.reflectance),
-            ("truth", &object.truth),
-        ];
-        for (name, values) in named {
+        let mut panels = Vec::new();
+        for object in objects.iter().filter(|o| o.surface == *surface) {
             let [nu, nv] = object.elements;
-            let path = folder.join(format!("{name}{suffix}"));
-            npy::write(
-                &path.with_extension("npy"),
-                &Matrix::from_row_slice(nv, nu, values),
-            )?;
-            let title = match name {
-                "truth" => format!("truth: {}", object.surface),
-                _ => format!("{name}: {}", object.surface),
-            };
-            let panel = Panel::elements(name, object.elements, values.clone());
-            let png = report::grey_png(&title, &[panel])?;
-            write_whole(&path.with_extension("png"), |w| w.write_all(&png))?;
+            let method = (object.method.as_str(), &object.reflectance);
+            let truth = panels.is_empty().then_some(("truth", &object.truth));
+            for (name, values) in truth.into_iter().chain([method]) {
+                let path = folder.join(format!("{name}{suffix}"));
+                npy::write(
+                    &path.with_extension("npy"),
+                    &Matrix::from_row_slice(nv, nu, values),
+                )?;
+                let panel = Panel::elements(name, object.elements, values.clone());
+                write_png(&path, surface, std::slice::from_ref(&panel))?;
+                panels.push(panel);
+            }
         }
+        write_png(&folder.join(format!("overview{suffix}")), surface, &panels)?;
     }
     Ok(())
+}
+
+/// Writes `path`.png: panels on one fixed grey scale.
+fn write_png(path: &Path, title: &str, panels: &[Panel]) -> Result<(), Failure> {
+    let png = report::grey_png(title, panels)?;
+    Ok(write_whole(&path.with_extension("png"), |w| {
+        w.write_all(&png)
+    })?)
 }

@@ -14,8 +14,8 @@ use obvhs::ray::{Ray as TreeRay, RayHit};
 
 use super::{DVec3, Ray, Shape, ShapeId};
 
-/// Largest number of shapes tested one by one.
-const FLAT: usize = 16;
+/// Largest number of shapes tested one by one: from there on the tree is faster (`benches/rays.rs`).
+const FLAT: usize = 8;
 /// Extent of the scene in the tree's space.
 const EXTENT: f64 = 1000.0;
 /// What each box is widened by in the tree's space.
@@ -90,32 +90,32 @@ impl Bvh {
         &self.shapes
     }
 
-    /// First shape met by `ray`, from either side; `from` is the shape that the ray starts on.
+    /// First shape met by `ray`, from either side; `from` is the shape that the ray starts on. Of equal distances the lower
+    /// id wins, whatever the order of the search.
     pub fn closest(&self, ray: &Ray, from: Option<ShapeId>) -> Option<Hit> {
         let mut best: Option<Hit> = None;
-        let mut test = |id: usize, limit: f64| -> f64 {
+        let mut rest = *ray;
+        let intersect = |id: usize, rest: &Ray| {
             let shape = id as ShapeId;
-            let short = Ray {
-                length: limit,
-                ..*ray
-            };
-            match self.shapes[id].intersect(&short, from == Some(shape)) {
-                // Of equal distances the lower id wins, whatever the order of traversal.
-                Some(t) if best.is_none_or(|b| t < b.t || (t <= b.t && shape < b.shape)) => {
-                    best = Some(Hit { shape, t });
-                    t
-                }
-                _ => limit,
-            }
+            let t = self.shapes[id].intersect(rest, from == Some(shape));
+            t.map(|t| Hit { shape, t })
         };
         match &self.tree {
             None => {
-                let mut limit = ray.length;
                 for id in 0..self.shapes.len() {
-                    limit = test(id, limit);
+                    if let Some(hit) = intersect(id, &rest) {
+                        rest.length = hit.t;
+                        best = Some(hit);
+                    }
                 }
             }
-            Some(tree) => tree.closest(ray, |id| test(id, ray.length)),
+            Some(tree) => tree.closest(ray, |id| {
+                let nearer = |h: &Hit| best.is_none_or(|b| (h.t, h.shape) < (b.t, b.shape));
+                if let Some(hit) = intersect(id, ray).filter(nearer) {
+                    best = Some(hit);
+                }
+                best.map_or(ray.length, |b| b.t)
+            }),
         }
         best
     }
