@@ -8,7 +8,7 @@ use super::folder::Folder;
 use super::output::{self, Talk};
 use super::{Outcome, settings};
 use crate::matrix::{Matrix, npy};
-use crate::model::{MatrixModel, converged};
+use crate::model::{Extent, MatrixModel, converged};
 use crate::scene::Scene;
 use crate::store::ensure_writable;
 use crate::study::Integration;
@@ -25,7 +25,7 @@ pub(super) fn execute(args: &ModelArgs, talk: Talk) -> Result<Outcome, Failure> 
     let (phi, how) = match settings::integration(args.integration) {
         Integration::Centres => (model.phi(), "by centres".to_owned()),
         Integration::Quadrature => {
-            let integral = converged(&scene, kernel)?;
+            let integral = converged(&scene, kernel, Extent::FULL)?;
             let how = format!("by quadrature, last refinement {:.1e}", integral.change);
             (integral.phi, how)
         }

@@ -1,7 +1,9 @@
 //! The three-bounce integral itself, by quadrature over spots, hidden surfaces and footprints.
 
+use std::f64::consts::FRAC_1_PI;
+
 use super::ModelError;
-use super::kernel::Kernel;
+use super::kernel::{HiddenPoint, Kernel};
 use super::matrix_model::hidden_point;
 use super::sight::{self, WallPoint};
 use crate::geometry::Basis;
@@ -14,30 +16,60 @@ use crate::scene::{Profile, Scene};
 pub struct Converged {
     /// Pixels × spots, W.
     pub phi: Matrix,
-    /// Relative Frobenius change at the last refinement: a bound on the error of the step before.
+    /// What the last refinement changed in each entry, W: an estimate of the error of the step before, and far more than
+    /// that of `phi` itself where the rule converges at all.
+    pub bound: Matrix,
+    /// Relative Frobenius norm of that change.
     pub change: f64,
-    /// Nodes a side on each smooth cell of a hidden surface.
-    pub hidden_nodes: usize,
-    /// Nodes a side on each pixel's footprint.
-    pub footprint_nodes: usize,
+}
+
+/// Whether a quantity is taken at its centre or integrated over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Take {
+    /// One point in the middle, as the matrix model has it.
+    Centre,
+    /// Quadrature over all of it.
+    Integral,
+}
+
+/// What the three-bounce integral is integrated over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Extent {
+    /// Elements of the hidden surfaces, with the albedo at their centres; or the surfaces with the albedo as it varies.
+    pub elements: Take,
+    /// Pixels' footprints.
+    pub footprints: Take,
+    /// Spots' profiles.
+    pub spots: Take,
+}
+
+impl Extent {
+    /// Everything integrated.
+    pub const FULL: Self = Self {
+        elements: Take::Integral,
+        footprints: Take::Integral,
+        spots: Take::Integral,
+    };
 }
 
 /// Refinement stops below this relative change.
 const TARGET: f64 = 1e-10;
 /// Nodes on all hidden surfaces together beyond which no finer rule is tried.
 const MOST_NODES: usize = 400_000;
+/// Nodes a side of a footprint beyond which no finer rule is tried.
+const MOST_FOOTPRINT_NODES: usize = 8;
 /// Nodes handled at once.
 const CHUNK: usize = 4096;
 /// The Gaussian profile is cut at this many of its 1/e² radii, beyond which lies e^−32 of the power.
 const GAUSSIAN_REACH: f64 = 4.0;
 
-/// The matrix model's integral with everything integrated: Gauss–Legendre over each smooth texture cell of each hidden
-/// surface, over each footprint and over each spot's profile, refined together until Φcam changes by less than 1e-10.
-/// As in the matrix model there is no occlusion and light meets three surfaces.
+/// The matrix model's integral: Gauss–Legendre over each smooth texture cell of each hidden surface, over each footprint and
+/// over each spot's profile, as far as `extent` asks for it, refined together until Φcam changes by less than 1e-10 or the
+/// rules are as large as they may be. As in the matrix model there is no occlusion and light meets three surfaces.
 ///
 /// # Errors
 /// [`ModelError::NothingHidden`].
-pub fn converged(scene: &Scene, kernel: Kernel) -> Result<Converged, ModelError> {
+pub fn converged(scene: &Scene, kernel: Kernel, extent: Extent) -> Result<Converged, ModelError> {
     let cells: usize = scene
         .hidden()
         .map(|(_, s)| s.albedo.smooth_cells().iter().product::<usize>())
@@ -45,89 +77,107 @@ pub fn converged(scene: &Scene, kernel: Kernel) -> Result<Converged, ModelError>
     if cells == 0 {
         return Err(ModelError::NothingHidden);
     }
-    let finest = ((MOST_NODES / cells) as f64).sqrt() as usize;
-    let (mut hidden, mut footprint, mut spread) = (2.min(finest.max(1)), 1, 2);
-    let mut phi = integrate(scene, kernel, hidden, footprint, spread);
+    let finest = (((MOST_NODES / cells) as f64).sqrt() as usize).max(1);
+    let mut nodes = Nodes {
+        extent,
+        hidden: 2.min(finest),
+        footprint: 1,
+        spread: 2,
+    };
+    let mut phi = integrate(scene, kernel, nodes);
     loop {
-        let finer = (hidden + 2 + hidden / 4).min(finest.max(1));
-        let next = integrate(scene, kernel, finer, footprint + 1, spread + 2);
-        let change = (&next - &phi).norm() / next.norm().max(f64::MIN_POSITIVE);
-        let exhausted = finer == hidden || footprint >= 8;
-        (phi, hidden, footprint, spread) = (next, finer, footprint + 1, spread + 2);
+        let finer = Nodes {
+            extent,
+            hidden: (nodes.hidden + 2 + nodes.hidden / 4).min(finest),
+            footprint: nodes.footprint + 1,
+            spread: nodes.spread + 2,
+        };
+        let next = integrate(scene, kernel, finer);
+        let bound = (&next - &phi).abs();
+        let change = bound.norm() / next.norm().max(f64::MIN_POSITIVE);
+        let exhausted = finer.hidden == nodes.hidden || finer.footprint >= MOST_FOOTPRINT_NODES;
         if change < TARGET || exhausted {
             return Ok(Converged {
-                phi,
+                phi: next,
+                bound,
                 change,
-                hidden_nodes: hidden,
-                footprint_nodes: footprint,
             });
         }
+        (phi, nodes) = (next, finer);
     }
 }
 
-/// One quadrature with the given nodes a side.
-fn integrate(
-    scene: &Scene,
-    kernel: Kernel,
+/// Nodes a side of each rule.
+#[derive(Clone, Copy)]
+struct Nodes {
+    extent: Extent,
     hidden: usize,
     footprint: usize,
     spread: usize,
-) -> Matrix {
+}
+
+/// One quadrature: Φ = Σ_q C\[p,q\]·D\[q,l\] over the nodes q of the hidden surfaces, in chunks.
+fn integrate(scene: &Scene, kernel: Kernel, nodes: Nodes) -> Matrix {
     let (pixels, spots) = (scene.camera.pixels(), scene.laser.spots.len());
-    let seen: Vec<Vec<WallPoint>> = (0..pixels)
-        .map(|p| {
-            plane_nodes(footprint)
-                .map(|(ab, w)| sight::seen(scene, p, ab, w))
-                .collect()
-        })
-        .collect();
-    let lit: Vec<Vec<WallPoint>> = (0..spots)
-        .map(|l| {
-            let basis = Basis::around(scene.laser.spots[l].target.normal);
-            profile_nodes(scene.laser.profile, spread)
-                .into_iter()
-                .map(|([x, y], w)| sight::lit(scene, l, basis.to_world([x, y, 0.0]), w))
-                .collect()
-        })
-        .collect();
+    let footprint = match nodes.extent.footprints {
+        Take::Centre => 1,
+        Take::Integral => nodes.footprint,
+    };
+    let seen = |p| {
+        let nodes = plane_nodes(footprint);
+        nodes
+            .map(|(ab, w)| sight::seen(scene, p, ab, w))
+            .collect::<Vec<_>>()
+    };
+    let seen: Vec<Vec<WallPoint>> = (0..pixels).map(seen).collect();
+    let profile = match nodes.extent.spots {
+        Take::Centre => Profile::Ideal,
+        Take::Integral => scene.laser.profile,
+    };
+    let offsets = profile_nodes(profile, nodes.spread);
+    let lit = |l: usize| {
+        let basis = Basis::around(scene.laser.spots[l].target.normal);
+        let lit =
+            |([x, y], w): &([f64; 2], f64)| sight::lit(scene, l, basis.to_world([*x, *y, 0.0]), *w);
+        offsets.iter().map(lit).collect::<Vec<_>>()
+    };
+    let lit: Vec<Vec<WallPoint>> = (0..spots).map(lit).collect();
+    let side =
+        |walls: &[WallPoint], point| walls.iter().map(|w| w.towards(kernel, point)).sum::<f64>();
     let mut phi = Matrix::zeros(pixels, spots);
-    let mut nodes = Vec::with_capacity(CHUNK);
-    let mut add = |nodes: &mut Vec<_>| {
-        let side = |walls: &[WallPoint], point| {
-            walls.iter().map(|w| w.towards(kernel, point)).sum::<f64>()
-        };
-        let camera = Matrix::from_fn(pixels, nodes.len(), |p, q| {
-            let (point, _): &(_, f64) = &nodes[q];
-            side(&seen[p], point)
-        });
-        let laser = Matrix::from_fn(nodes.len(), spots, |q, l| {
-            nodes[q].1 * side(&lit[l], &nodes[q].0)
+    for chunk in hidden_nodes(scene, nodes).chunks(CHUNK) {
+        let camera = Matrix::from_fn(pixels, chunk.len(), |p, q| side(&seen[p], &chunk[q].0));
+        let laser = Matrix::from_fn(chunk.len(), spots, |q, l| {
+            chunk[q].1 * side(&lit[l], &chunk[q].0)
         });
         phi.gemm(1.0, &camera, &laser, 1.0);
-        nodes.clear();
-    };
+    }
+    phi
+}
+
+/// Points of the hidden surfaces with area · albedo/π.
+fn hidden_nodes(scene: &Scene, nodes: Nodes) -> Vec<(HiddenPoint, f64)> {
+    let mut found = Vec::new();
     for (_, surface) in scene.hidden() {
-        let [nu, nv] = surface.albedo.smooth_cells();
+        let ([nu, nv], rule) = match nodes.extent.elements {
+            Take::Centre => (surface.elements, 1),
+            Take::Integral => (surface.albedo.smooth_cells(), nodes.hidden),
+        };
         let area = surface.shape.area() / (nu * nv) as f64;
         for cell in 0..nu * nv {
-            if surface.albedo.cell_mean(cell) <= 0.0 {
-                continue;
-            }
-            for ([a, b], w) in plane_nodes(hidden) {
+            for ([a, b], w) in plane_nodes(rule) {
                 let uv = [
                     ((cell % nu) as f64 + a) / nu as f64,
                     ((cell / nu) as f64 + b) / nv as f64,
                 ];
-                let weight = w * area * surface.albedo.albedo(uv) * std::f64::consts::FRAC_1_PI;
-                nodes.push((hidden_point(surface, uv), weight));
-                if nodes.len() == CHUNK {
-                    add(&mut nodes);
+                let albedo = surface.albedo.albedo(uv);
+                if albedo > 0.0 {
+                    found.push((hidden_point(surface, uv), w * area * albedo * FRAC_1_PI));
                 }
             }
         }
     }
-    add(&mut nodes);
-    phi
+    found
 }
 
 /// Product rule on the unit square; the weights add up to 1.

@@ -11,6 +11,6 @@ mod kernel;
 mod matrix_model;
 mod sight;
 
-pub use converged::{Converged, converged};
+pub use converged::{Converged, Extent, Take, converged};
 pub use kernel::Kernel;
 pub use matrix_model::{ElementGrid, MatrixModel, ModelError};

@@ -1,7 +1,7 @@
 //! Traced Φcam against the matrix model of its scene.
 
 use crate::matrix::Matrix;
-use crate::model::{Kernel, MatrixModel, ModelError, converged};
+use crate::model::{Extent, Kernel, MatrixModel, ModelError, converged};
 use crate::scene::Scene;
 
 use super::agreement::{Evidence, Test, agree};
@@ -12,7 +12,7 @@ use super::results::Agreement;
 pub enum Integration {
     /// Elements, pixels and spots by their centres; how far that is from the integral is the bound of each entry.
     Centres,
-    /// Converged quadrature over elements, footprints and spots; no bound is needed.
+    /// Converged quadrature over elements, footprints and spots; the bound is what its last refinement changed.
     Quadrature,
 }
 
@@ -83,20 +83,20 @@ pub fn validate(
             });
         }
     }
-    let integral = converged(scene, kernel)?;
+    let integral = converged(scene, kernel, Extent::FULL)?;
     let (model, bound) = match integration {
-        Integration::Quadrature => (integral.phi, None),
+        Integration::Quadrature => (integral.phi, integral.bound),
         Integration::Centres => {
             let centres = MatrixModel::new(scene, kernel, None)?.phi();
-            let bound = (&centres - integral.phi).abs();
-            (centres, Some(bound))
+            let bound = (&centres - integral.phi).abs() + integral.bound;
+            (centres, bound)
         }
     };
     let evidence = Evidence {
         traced,
         stderr,
         model: &model,
-        bound: bound.as_ref(),
+        bound: Some(&bound),
     };
     let (mut agreement, z) = agree(evidence, test);
     kernel.name().clone_into(&mut agreement.kernel);

@@ -1,8 +1,9 @@
-//! The tracer against an independent quadrature, closed forms and the laws of light transport.
+//! Tracer and model against an independent quadrature, closed forms and the laws of light transport.
 
 mod accuracy;
 mod closed_forms;
 mod laws;
+mod model;
 mod reference;
 
 use std::ops::Range;
