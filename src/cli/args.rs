@@ -35,6 +35,8 @@ pub(super) enum Command {
     Recover(RecoverArgs),
     /// List, check, draw or export scenes
     Scene(SceneArgs),
+    /// Experiments around a scene
+    Study(StudyArgs),
 }
 
 /// What has to be traced.
@@ -251,6 +253,42 @@ pub(super) enum SceneCommand {
         #[arg(long, short)]
         output: Option<PathBuf>,
     },
+}
+
+#[derive(Debug, Arguments)]
+pub(super) struct StudyArgs {
+    #[command(subcommand)]
+    pub command: StudyCommand,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum StudyCommand {
+    /// What the matrix model leaves out, cause by cause: table, JSON, CSV, figure
+    Budget(BudgetArgs),
+}
+
+#[derive(Debug, Arguments)]
+pub(super) struct BudgetArgs {
+    /// Built-in scene or path of a scene file
+    pub scene: String,
+    /// Folder for budget.json, budget.csv and budget.svg
+    #[arg(long, short, default_value = "out/budget")]
+    pub output: PathBuf,
+    /// Paths per pixel of the precise renders, all together
+    #[arg(long, default_value_t = 16384)]
+    pub samples: u64,
+    /// Paths per pixel and spot of the run that is taken apart
+    #[arg(long, default_value_t = 512)]
+    pub run_samples: u64,
+    /// Seed of everything
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Threads; all cores unless given
+    #[arg(long)]
+    pub threads: Option<usize>,
+    /// Print budget.json instead of the table
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// "A..B" with A < B.

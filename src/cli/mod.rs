@@ -32,6 +32,7 @@ mod run;
 mod scene;
 mod settings;
 mod stack;
+mod study;
 mod validate;
 
 use std::process::ExitCode;
@@ -60,6 +61,7 @@ pub fn main() -> ExitCode {
         Command::Validate(a) => validate::execute(a, talk),
         Command::Recover(a) => recover::execute(a, talk),
         Command::Scene(a) => scene::execute(a, talk),
+        Command::Study(a) => study::execute(a, talk),
     };
     match result {
         Ok(Outcome::Done) => ExitCode::SUCCESS,

@@ -5,6 +5,7 @@
 //! self-contained page. Pictures clip at the ends of their scale and say so; numbers are never clipped.
 
 mod axis;
+mod budget;
 mod canvas;
 mod colour;
 mod drawing;
@@ -23,6 +24,7 @@ mod svg;
 mod table;
 mod verdict;
 
+pub use budget::{budget_csv, budget_svg, budget_table};
 pub use canvas::PictureError;
 pub use colour::{Map, Rgb, Scale};
 pub use drawing::bench_svg;

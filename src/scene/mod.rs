@@ -62,6 +62,7 @@ mod parse;
 mod spots;
 mod surface;
 mod texture;
+mod variants;
 
 use sha2::{Digest, Sha256};
 
@@ -146,24 +147,6 @@ impl Scene {
     pub fn from_toml(source: &str, text: &str) -> Result<Self, SceneError> {
         let file = parse::parse(source, text)?;
         Self::assemble(&file, text).map_err(|fault| parse::locate(source, text, fault))
-    }
-
-    /// The same scene with every spot moved by (dx, dy) on the wall.
-    ///
-    /// # Errors
-    /// [`SceneError`] if a spot leaves the wall.
-    pub fn with_shifted_spots(&self, [dx, dy]: [f64; 2]) -> Result<Self, SceneError> {
-        let places: Vec<[f64; 2]> = self
-            .laser
-            .spots
-            .iter()
-            .map(|s| [s.target.position.x + dx, s.target.position.y + dy])
-            .collect();
-        let spots = laser::place(&places, self.laser.position, &self.surfaces)
-            .map_err(|fault| parse::locate(&self.name, &self.text, fault))?;
-        let mut scene = self.clone();
-        scene.laser.spots = spots;
-        Ok(scene)
     }
 
     fn assemble(file: &SceneFile, text: &str) -> Result<Self, Fault> {

@@ -2,14 +2,19 @@
 //!
 //! * [`agree`]: traced against modelled Φcam, a verdict by test statistics.
 //! * [`validate`]: the same for a scene, the model computed on the way.
+//! * [`error_budget`]: the difference between frames and model taken apart into its causes.
 //! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object.
 
 mod agreement;
+mod budget;
+mod ensemble;
 mod objects;
 mod results;
 mod validation;
 
 pub use agreement::{Errors, Evidence, Test, agree};
+pub use budget::{BudgetError, BudgetPlan, Closure, ErrorBudget, Term, error_budget};
+pub use ensemble::Estimate;
 pub use objects::{Attempt, Noise, recover_objects};
 pub use results::{Agreement, Entry, RecoveredObject, RunResults, Settings};
 pub use validation::{Integration, Validation, ValidationError, validate};

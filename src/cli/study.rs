@@ -1,0 +1,66 @@
+//! `phicam study`: experiments around a scene.
+
+use std::path::Path;
+
+use super::args::{BudgetArgs, StudyArgs, StudyCommand};
+use super::failure::Failure;
+use super::interrupt::stop_flag;
+use super::output::{self, Talk};
+use super::{Outcome, progress, settings};
+use crate::report;
+use crate::scene::Scene;
+use crate::store::{ensure_writable, write_whole};
+use crate::study::{BudgetPlan, error_budget};
+use crate::transport::Control;
+
+pub(super) fn execute(args: &StudyArgs, talk: Talk) -> Result<Outcome, Failure> {
+    match &args.command {
+        StudyCommand::Budget(a) => budget(a, talk),
+    }
+}
+
+fn budget(args: &BudgetArgs, talk: Talk) -> Result<Outcome, Failure> {
+    let scene = Scene::load(&args.scene)?;
+    let pool = settings::pool(args.threads)?;
+    ensure_writable(&args.output)?;
+    talk.warn(&scene);
+    let plan = BudgetPlan {
+        seed: args.seed,
+        ensemble_samples: args.samples,
+        run_samples: args.run_samples,
+    };
+    let pixels = scene.camera.pixels() as u64;
+    let total = pixels * (args.samples + args.run_samples * scene.laser.spots.len() as u64);
+    let bar = progress::paths(talk, &format!("budget of {}", scene.name), total);
+    let tick = |paths| bar.inc(paths);
+    let control = Control {
+        progress: &tick,
+        stop: stop_flag(),
+    };
+    let found = pool.install(|| error_budget(&scene, plan, control))?;
+    bar.finish_and_clear();
+    let Some(found) = found else {
+        return Err(Failure::Stopped(
+            "nothing was written; run it again".to_owned(),
+        ));
+    };
+    let json = output::json(&found)?;
+    write(&args.output.join("budget.json"), &json)?;
+    write(&args.output.join("budget.csv"), &report::budget_csv(&found))?;
+    write(&args.output.join("budget.svg"), &report::budget_svg(&found))?;
+    let text = if args.json {
+        json
+    } else {
+        report::budget_table(&found)
+    };
+    output::print(&text)?;
+    Ok(if found.closure.closes {
+        Outcome::Done
+    } else {
+        Outcome::Disagreed
+    })
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    Ok(write_whole(path, |w| w.write_all(text.as_bytes()))?)
+}
