@@ -265,6 +265,42 @@ pub(super) struct StudyArgs {
 pub(super) enum StudyCommand {
     /// What the matrix model leaves out, cause by cause: table, JSON, CSV, figure
     Budget(BudgetArgs),
+    /// How small a model error validate detects, and how often it errs: table and JSON
+    Power(PowerArgs),
+}
+
+#[derive(Debug, Arguments)]
+pub(super) struct PowerArgs {
+    /// Built-in scene or path of a scene file
+    #[arg(default_value = "bench")]
+    pub scene: String,
+    /// Folder for power.json
+    #[arg(long, short, default_value = "out/power")]
+    pub output: PathBuf,
+    /// Estimators, separated by commas; both unless given
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub estimator: Vec<EstimatorName>,
+    /// Where random numbers come from
+    #[arg(long, value_enum, default_value_t = SamplerName::Sobol)]
+    pub sampler: SamplerName,
+    /// Numbers of paths, separated by commas
+    #[arg(long, value_delimiter = ',', default_value = "64,256")]
+    pub samples: Vec<u64>,
+    /// Renders of each kind
+    #[arg(long, default_value_t = 40, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    pub seeds: u64,
+    /// First seed
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Probability of rejecting a right model
+    #[arg(long, default_value_t = 0.01)]
+    pub significance: f64,
+    /// Threads; all cores unless given
+    #[arg(long)]
+    pub threads: Option<usize>,
+    /// Print power.json instead of the table
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Arguments)]

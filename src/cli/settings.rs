@@ -12,14 +12,7 @@ use crate::transport::{Budget, Estimator, Plan};
 
 /// The plan that the arguments describe; a rounded number of samples is said.
 pub(super) fn plan(args: &TraceArgs, talk: Talk) -> Result<Plan, Failure> {
-    let estimator = match args.estimator {
-        EstimatorName::Independent => Estimator::Independent,
-        EstimatorName::Shared => Estimator::Shared,
-    };
-    let sampling = match args.sampler {
-        SamplerName::Pcg => Sampling::Pcg,
-        SamplerName::Sobol => Sampling::Sobol,
-    };
+    let (estimator, sampling) = (estimator(args.estimator), sampling(args.sampler));
     let budget = Budget::new(args.samples, sampling).ok_or_else(|| {
         let cause = format!(
             "--samples {} is not a number of paths that can be traced",
@@ -42,6 +35,32 @@ pub(super) fn plan(args: &TraceArgs, talk: Talk) -> Result<Plan, Failure> {
         seed: args.seed,
         budget,
     })
+}
+
+pub(super) fn estimator(name: EstimatorName) -> Estimator {
+    match name {
+        EstimatorName::Independent => Estimator::Independent,
+        EstimatorName::Shared => Estimator::Shared,
+    }
+}
+
+pub(super) fn sampling(name: SamplerName) -> Sampling {
+    match name {
+        SamplerName::Pcg => Sampling::Pcg,
+        SamplerName::Sobol => Sampling::Sobol,
+    }
+}
+
+/// A significance level strictly between 0 and 1.
+pub(super) fn significance(level: f64) -> Result<f64, Failure> {
+    if level > 0.0 && level < 1.0 {
+        return Ok(level);
+    }
+    let cause = format!("--significance {level} is not a probability");
+    Err(Failure::new(
+        cause,
+        "use a number between 0 and 1, e.g. 0.001",
+    ))
 }
 
 /// The threads to work with.
@@ -73,15 +92,8 @@ pub(super) fn integration(name: IntegrationName) -> Integration {
 
 /// The test for a run traced by `plan`.
 pub(super) fn test(args: &TestArgs, plan: &Plan) -> Result<Test, Failure> {
-    if !(args.significance > 0.0 && args.significance < 1.0) {
-        let cause = format!("--significance {} is not a probability", args.significance);
-        return Err(Failure::new(
-            cause,
-            "use a number between 0 and 1, e.g. 0.001",
-        ));
-    }
     Ok(Test {
-        significance: args.significance,
+        significance: significance(args.significance)?,
         replicates: plan.budget.blocks,
         errors: match plan.estimator {
             Estimator::Independent => Errors::Independent,

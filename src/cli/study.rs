@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::args::{BudgetArgs, StudyArgs, StudyCommand};
+use super::args::{BudgetArgs, PowerArgs, StudyArgs, StudyCommand};
 use super::failure::Failure;
 use super::interrupt::stop_flag;
 use super::output::{self, Talk};
@@ -10,12 +10,13 @@ use super::{Outcome, progress, settings};
 use crate::report;
 use crate::scene::Scene;
 use crate::store::{ensure_writable, write_whole};
-use crate::study::{BudgetPlan, error_budget};
-use crate::transport::Control;
+use crate::study::{self, BudgetPlan, PowerPlan, error_budget};
+use crate::transport::{Control, Estimator};
 
 pub(super) fn execute(args: &StudyArgs, talk: Talk) -> Result<Outcome, Failure> {
     match &args.command {
         StudyCommand::Budget(a) => budget(a, talk),
+        StudyCommand::Power(a) => power(a, talk),
     }
 }
 
@@ -59,6 +60,50 @@ fn budget(args: &BudgetArgs, talk: Talk) -> Result<Outcome, Failure> {
     } else {
         Outcome::Disagreed
     })
+}
+
+fn power(args: &PowerArgs, talk: Talk) -> Result<Outcome, Failure> {
+    let scene = Scene::load(&args.scene)?;
+    let pool = settings::pool(args.threads)?;
+    let plan = PowerPlan {
+        estimators: match args.estimator.as_slice() {
+            [] => vec![Estimator::Independent, Estimator::Shared],
+            names => names.iter().map(|n| settings::estimator(*n)).collect(),
+        },
+        sampling: settings::sampling(args.sampler),
+        samples: args.samples.clone(),
+        seeds: args.seeds,
+        first_seed: args.seed,
+        significance: settings::significance(args.significance)?,
+    };
+    ensure_writable(&args.output)?;
+    talk.warn(&scene);
+    let spots = scene.laser.spots.len() as u64;
+    let per_seed = |e: &Estimator| if *e == Estimator::Shared { 1 } else { spots };
+    let kinds: u64 = plan.estimators.iter().map(per_seed).sum();
+    let paths: u64 =
+        plan.samples.iter().sum::<u64>() * plan.seeds * kinds * scene.camera.pixels() as u64;
+    let bar = progress::paths(talk, &format!("power on {}", scene.name), paths);
+    let tick = |paths| bar.inc(paths);
+    let control = Control {
+        progress: &tick,
+        stop: stop_flag(),
+    };
+    let found = pool.install(|| study::power(&scene, &plan, control))?;
+    bar.finish_and_clear();
+    let Some(found) = found else {
+        return Err(Failure::Stopped(
+            "nothing was written; run it again".to_owned(),
+        ));
+    };
+    let json = output::json(&found)?;
+    write(&args.output.join("power.json"), &json)?;
+    output::print(&if args.json {
+        json
+    } else {
+        report::power_table(&found)
+    })?;
+    Ok(Outcome::Done)
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Failure> {

@@ -16,6 +16,7 @@ mod label;
 mod mark;
 mod page;
 mod picture;
+mod power;
 mod projection;
 #[cfg(test)]
 mod sample;
@@ -30,5 +31,6 @@ pub use colour::{Map, Rgb, Scale};
 pub use drawing::bench_svg;
 pub use page::run_html;
 pub use picture::{Panel, colour_png, grey_png};
+pub use power::power_table;
 pub use summary::summary_json;
 pub use table::{recovery_table, summary_table, verdict_table};

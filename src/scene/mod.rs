@@ -95,6 +95,16 @@ pub enum Unit {
 }
 
 impl Unit {
+    /// How many of it make an inch of 25.4 mm.
+    pub fn per_inch(self) -> f64 {
+        match self {
+            Self::Metre => 0.0254,
+            Self::Centimetre => 2.54,
+            Self::Millimetre => 25.4,
+            Self::Inch => 1.0,
+        }
+    }
+
     /// Its symbol: m, cm, mm, in.
     pub fn symbol(self) -> &'static str {
         match self {

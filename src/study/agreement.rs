@@ -4,6 +4,7 @@ use crate::matrix::Matrix;
 use crate::num::statistics::{
     chi_square_sf, normal_two_sided, sidak_p, sidak_threshold, student_to_normal,
 };
+use crate::num::summation::mean_and_stderr;
 
 use super::results::{Agreement, Entry};
 
@@ -52,8 +53,8 @@ const WORST: usize = 10;
 /// model| first. Two tests share the significance level equally:
 ///
 /// * the largest |z| against the Šidák limit for all entries;
-/// * χ² = Σz². Under [`Errors::WithinRows`] the z of a row may move together; the mean of z² then scatters at most
-///   like that of as many independent entries as there are rows, which is what it is tested as.
+/// * χ² = Σz². Under [`Errors::WithinRows`] the z of a row move together, but rows are independent: the scatter of the row sums
+///   tells how many independent entries Σz² amounts to (Satterthwaite), between the number of rows and that of entries.
 ///
 /// Entries whose standard error is 0 (light that never varies, or never arrives) are compared to rounding.
 pub fn agree(evidence: Evidence<'_>, test: Test) -> (Agreement, Matrix) {
@@ -79,9 +80,9 @@ pub fn agree(evidence: Evidence<'_>, test: Test) -> (Agreement, Matrix) {
     let largest = z.amax();
     let chi2_per_dof = z.norm_squared() / entries as f64;
     let dof = match test.errors {
-        Errors::Independent => entries,
-        Errors::WithinRows => z.nrows(),
-    } as f64;
+        Errors::Independent => entries as f64,
+        Errors::WithinRows => effective_freedom(&z),
+    };
     let chi2_p = chi_square_sf(chi2_per_dof * dof, dof);
     let half = 0.5 * test.significance;
     let largest_p = sidak_p(normal_two_sided(largest), entries as u64);
@@ -105,6 +106,26 @@ pub fn agree(evidence: Evidence<'_>, test: Test) -> (Agreement, Matrix) {
         worst: worst(&z, traced, model),
     };
     (agreement, z)
+}
+
+/// Fewer rows than this do not tell their own scatter.
+const ENOUGH_ROWS: usize = 16;
+
+/// ν such that Σz² has the mean and the variance of (entries/ν)·χ²_ν if the model is right: ν = 2·entries²/Var Σz², the
+/// variance estimated from the scatter of the row sums. With too few rows, their number, which is the least it can be.
+fn effective_freedom(z: &Matrix) -> f64 {
+    let (rows, entries) = (z.nrows() as f64, z.len() as f64);
+    if z.nrows() < ENOUGH_ROWS {
+        return rows;
+    }
+    let sums: Vec<f64> = z.row_iter().map(|r| r.norm_squared()).collect();
+    let (_, stderr) = mean_and_stderr(&sums);
+    let variance = stderr * stderr * rows * rows;
+    if variance > 0.0 {
+        (2.0 * entries * entries / variance).clamp(rows, entries)
+    } else {
+        rows
+    }
 }
 
 /// The entries with the largest |z|, largest first.
@@ -156,7 +177,7 @@ mod tests {
                             * (std::f64::consts::TAU * b).cos()
                     })
                     .collect();
-                let (mean, error) = crate::num::summation::mean_and_stderr(&replicates);
+                let (mean, error) = mean_and_stderr(&replicates);
                 traced[(p, l)] = mean;
                 stderr[(p, l)] = error;
             }
@@ -191,8 +212,8 @@ mod tests {
         .0
     }
 
-    /// False alarms on a right model: 400 trials at 10 % give 40 ± 6; 99.9 % of the binomial lies in 21 … 61. Under
-    /// correlation the test may only be more cautious.
+    /// False alarms on a right model: 400 trials at 10 % give 40 ± 6; 99.9 % of the binomial lies in 21 … 61. The share of
+    /// the largest |z| (5 %) shrinks with the correlation, to 5 % in 30 where rows are all one: 5.2 % remain, 6 … 37.
     #[test]
     fn false_alarms_come_at_the_stated_rate() {
         let alarms = |errors| {
@@ -206,7 +227,7 @@ mod tests {
             "{independent} of 400 at 10 %"
         );
         let shared = alarms(Errors::WithinRows);
-        assert!(shared <= 61, "{shared} of 400 at 10 %");
+        assert!((6..=37).contains(&shared), "{shared} of 400 at 5.2 %");
     }
 
     #[test]

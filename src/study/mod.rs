@@ -3,12 +3,14 @@
 //! * [`agree`]: traced against modelled Φcam, a verdict by test statistics.
 //! * [`validate`]: the same for a scene, the model computed on the way.
 //! * [`error_budget`]: the difference between frames and model taken apart into its causes.
+//! * [`power`]: what [`validate`] detects, and how often it errs.
 //! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object.
 
 mod agreement;
 mod budget;
 mod ensemble;
 mod objects;
+mod power;
 mod results;
 mod validation;
 
@@ -16,5 +18,6 @@ pub use agreement::{Errors, Evidence, Test, agree};
 pub use budget::{BudgetError, BudgetPlan, Closure, ErrorBudget, Term, error_budget};
 pub use ensemble::Estimate;
 pub use objects::{Attempt, Noise, recover_objects};
+pub use power::{Detection, Power, PowerError, PowerPlan, PowerRow, power};
 pub use results::{Agreement, Entry, RecoveredObject, RunResults, Settings};
 pub use validation::{Integration, Validation, ValidationError, validate};

@@ -2,7 +2,7 @@
 //! independently (design of the project, section 1).
 
 use phicam::matrix::Matrix;
-use phicam::model::{Extent, Kernel, MatrixModel, Take, converged};
+use phicam::model::{Extent, Kernel, Take, converged};
 use phicam::scene::Scene;
 
 use crate::reference::Bench;

@@ -1,10 +1,12 @@
 //! Statistics of agreement: tail probabilities and the test of a whole family. The one door to crate `statrs`.
 
+mod binomial;
 mod chi_square;
 mod family;
 mod normal;
 mod student;
 
+pub use binomial::binomial_interval;
 pub use chi_square::chi_square_sf;
 pub use family::{sidak_p, sidak_threshold};
 pub use normal::normal_two_sided;
