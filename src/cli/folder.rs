@@ -21,7 +21,7 @@ use crate::transport::Traced;
 
 pub(super) const PHI: &str = "phi.npy";
 pub(super) const STDERR: &str = "phi.stderr.npy";
-const SCENE: &str = "scene.toml";
+pub(super) const SCENE: &str = "scene.toml";
 
 /// What is kept of an earlier render into the same folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -232,50 +232,4 @@ fn remove_numbered(dir: &Path, extension: &str) -> Result<(), Failure> {
     // Anything else in it is not ours, and keeps it.
     let _ = fs::remove_dir(dir);
     Ok(())
-}
-
-/// The scene and the record of a finished run.
-pub(super) fn read_run(dir: &Path) -> Result<(Scene, Record), Failure> {
-    let record = Record::read(dir)?.ok_or_else(|| {
-        let cause = format!(
-            "{} is not the folder of a run: it has no {}",
-            dir.display(),
-            Record::FILE
-        );
-        Failure::new(
-            cause,
-            "give a folder that `phicam run` or `phicam render` has written",
-        )
-    })?;
-    let path = dir.join(SCENE);
-    let scene = Scene::load(&path.to_string_lossy())?;
-    if scene.hash != record.scene_hash {
-        let cause = format!(
-            "{} is not the scene that {} was rendered from",
-            path.display(),
-            dir.display()
-        );
-        return Err(Failure::new(
-            cause,
-            "restore it, or render the changed scene into another folder",
-        ));
-    }
-    if record.finished < record.spots && !dir.join(PHI).exists() {
-        let cause = format!(
-            "{} holds {} of {} spots",
-            dir.display(),
-            record.finished,
-            record.spots
-        );
-        return Err(Failure::new(
-            cause,
-            "finish it with `phicam render --resume`",
-        ));
-    }
-    Ok((scene, record))
-}
-
-/// A matrix of the run, finite.
-pub(super) fn read_matrix(path: &Path) -> Result<Matrix, Failure> {
-    Ok(npy::read_finite(path)?)
 }

@@ -8,6 +8,7 @@
 
 mod args;
 mod failure;
+mod finished;
 mod folder;
 mod interrupt;
 mod model;
