@@ -16,7 +16,7 @@ use super::record::Record;
 use crate::film::{self, Channel, Frame, FrameMeta, frame_name};
 use crate::matrix::{Matrix, npy};
 use crate::scene::Scene;
-use crate::store::{ensure_writable, write_whole};
+use crate::store::{StoreError, ensure_writable, write_whole};
 use crate::transport::Traced;
 
 pub(super) const PHI: &str = "phi.npy";
@@ -82,12 +82,14 @@ impl Folder {
             folder.remove_partial()?;
         }
         ensure_writable(&folder.frames())?;
-        write_whole(&path.join(SCENE), |w| w.write_all(scene.text.as_bytes()))?;
+        folder.write_scene(scene)?;
         Ok(folder)
     }
 
-    /// A folder that holds another scene, or frames of unknown origin, is not written to.
+    /// A folder that holds another scene, or frames of unknown origin, or something else under the name of an output, is not
+    /// written to.
     pub(super) fn refuse_foreign(&self, scene: &Scene) -> Result<(), Failure> {
+        self.refuse_obstacles()?;
         let path = self.path.display();
         let cure = "choose another folder (-o), or remove this one";
         if let Some(record) = Record::read(&self.path)? {
@@ -97,9 +99,10 @@ impl Folder {
             }
             return Ok(());
         }
-        if let Ok(text) = fs::read_to_string(self.path.join(SCENE)) {
-            let other = Scene::from_toml(SCENE, &text).is_ok_and(|s| s.hash != scene.hash);
-            if other {
+        if let Ok(bytes) = fs::read(self.path.join(SCENE)) {
+            // What cannot be read as a scene is not this one either.
+            let text = String::from_utf8_lossy(&bytes);
+            if !Scene::from_toml(SCENE, &text).is_ok_and(|s| s.hash == scene.hash) {
                 return Err(Failure::new(
                     format!("{path} belongs to another scene ({SCENE})"),
                     cure,
@@ -115,6 +118,37 @@ impl Folder {
             return Err(Failure::new(cause, cure));
         }
         Ok(())
+    }
+
+    /// What stands where a folder or a file of a run has to stand shows before the long work, not after it.
+    fn refuse_obstacles(&self) -> Result<(), Failure> {
+        for name in ["frames", "partial", "model", "recovered"] {
+            let path = self.path.join(name);
+            if path.exists() && !path.is_dir() {
+                return Err(StoreError::NotAFolder { path }.into());
+            }
+        }
+        for name in [
+            SCENE,
+            PHI,
+            STDERR,
+            Record::FILE,
+            "summary.json",
+            "report.html",
+        ] {
+            let path = self.path.join(name);
+            if path.exists() && !path.is_file() {
+                return Err(StoreError::NotAFile { path }.into());
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the scene, whole.
+    pub(super) fn write_scene(&self, scene: &Scene) -> Result<(), Failure> {
+        Ok(write_whole(&self.path.join(SCENE), |w| {
+            w.write_all(scene.text.as_bytes())
+        })?)
     }
 
     pub(super) fn frames(&self) -> PathBuf {
