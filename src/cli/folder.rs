@@ -7,6 +7,7 @@
 //! | phi.npy, phi.stderr.npy | Φcam and its standard error, pixels × spots, W |
 //! | partial/spot-NNNN.npy | finished spots of an unfinished run in f64: one column per bounce count, last the standard error |
 
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -15,12 +16,15 @@ use super::output::Talk;
 use super::record::Record;
 use crate::film::{self, Channel, Frame, FrameMeta, frame_name};
 use crate::matrix::{Matrix, npy};
+use crate::recovery::Method;
 use crate::scene::Scene;
 use crate::store::{StoreError, ensure_writable, write_whole};
 use crate::transport::Traced;
 
 pub(super) const PHI: &str = "phi.npy";
 pub(super) const STDERR: &str = "phi.stderr.npy";
+pub(super) const SUMMARY: &str = "summary.json";
+pub(super) const REPORT: &str = "report.html";
 pub(super) const SCENE: &str = "scene.toml";
 
 /// What is kept of an earlier render into the same folder.
@@ -128,14 +132,7 @@ impl Folder {
                 return Err(StoreError::NotAFolder { path }.into());
             }
         }
-        for name in [
-            SCENE,
-            PHI,
-            STDERR,
-            Record::FILE,
-            "summary.json",
-            "report.html",
-        ] {
+        for name in [SCENE, PHI, STDERR, Record::FILE, SUMMARY, REPORT] {
             let path = self.path.join(name);
             if path.exists() && !path.is_file() {
                 return Err(StoreError::NotAFile { path }.into());
@@ -183,10 +180,12 @@ impl Folder {
         remove_numbered(&self.path.join("partial"), "npy")
     }
 
+    /// Removes what was rendered, and what was found from it.
     fn remove_frames(&self) -> Result<(), Failure> {
         self.remove_partial()?;
         remove_numbered(&self.frames(), "exr")?;
-        for name in [PHI, STDERR, Record::FILE] {
+        remove_recovered(&self.path.join("recovered"))?;
+        for name in [PHI, STDERR, Record::FILE, SUMMARY, REPORT] {
             match fs::remove_file(self.path.join(name)) {
                 Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(e.into()),
                 _ => {}
@@ -248,18 +247,31 @@ impl Folder {
 
 /// Removes the spot-NNNN files of `dir` with the given extension, and `dir` if that empties it.
 fn remove_numbered(dir: &Path, extension: &str) -> Result<(), Failure> {
+    remove_files(dir, |stem, ext| {
+        let number = stem.strip_prefix("spot-").unwrap_or("");
+        ext == extension && !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit())
+    })
+}
+
+/// Removes the matrices and pictures METHOD.npy, METHOD-0.png, … and those of the truth from `dir`, and `dir` if that
+/// empties it.
+fn remove_recovered(dir: &Path) -> Result<(), Failure> {
+    remove_files(dir, |stem, ext| {
+        let name = stem.trim_end_matches(|c: char| c.is_ascii_digit());
+        let name = name.strip_suffix('-').unwrap_or(name);
+        let known = name == "truth" || name.parse::<Method>().is_ok();
+        known && matches!(ext, "npy" | "png")
+    })
+}
+
+/// Removes the files of `dir` that are `ours` by stem and extension, and `dir` if that empties it.
+fn remove_files(dir: &Path, ours: impl Fn(&str, &str) -> bool) -> Result<(), Failure> {
     let Ok(entries) = fs::read_dir(dir) else {
         return Ok(());
     };
     for path in entries.filter_map(Result::ok).map(|e| e.path()) {
-        let name = path.file_name().and_then(|n| n.to_str()).unwrap_or("");
-        let number = name
-            .strip_prefix("spot-")
-            .and_then(|n| n.strip_suffix(extension));
-        let ours = number
-            .and_then(|n| n.strip_suffix('.'))
-            .is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()));
-        if ours {
+        let part = |s: Option<&OsStr>| s.and_then(OsStr::to_str).unwrap_or("").to_owned();
+        if ours(&part(path.file_stem()), &part(path.extension())) {
             fs::remove_file(&path)?;
         }
     }

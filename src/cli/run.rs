@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::args::RunArgs;
 use super::failure::Failure;
-use super::folder::Keep;
+use super::folder::{Keep, REPORT, SUMMARY};
 use super::output::{self, Talk};
 use super::render::{self, Rendered};
 use super::{Outcome, model, recover, settings, validate};
@@ -67,9 +67,9 @@ pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
     results.times = clock.laps;
     let path = |name| args.output.join(name);
     let summary = report::summary_json(&results);
-    write_whole(&path("summary.json"), |w| w.write_all(summary.as_bytes()))?;
+    write_whole(&path(SUMMARY), |w| w.write_all(summary.as_bytes()))?;
     let page = report::run_html(&results);
-    write_whole(&path("report.html"), |w| w.write_all(page.as_bytes()))?;
+    write_whole(&path(REPORT), |w| w.write_all(page.as_bytes()))?;
     let text = match args.json {
         true => summary,
         false => {
