@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 
 use crate::workspace::{Workspace, assert_same};
 
-/// Starts a render of the tiny scene into `cut`, sends SIGINT as soon as its second frame is on disk, and returns the exit
+/// Starts a render of the tiny scene into `cut`, sends `signal` as soon as its second frame is on disk, and returns the exit
 /// code and standard error.
-fn interrupted(workspace: &Workspace, samples: u64) -> (Option<i32>, String) {
+fn interrupted(workspace: &Workspace, samples: u64, signal: &str) -> (Option<i32>, String) {
     let child = Command::new(env!("CARGO_BIN_EXE_phicam"))
         .args(["render", "tiny.toml", "-o", "cut", "--samples"])
         .arg(samples.to_string())
@@ -23,7 +23,7 @@ fn interrupted(workspace: &Workspace, samples: u64) -> (Option<i32>, String) {
         std::thread::sleep(Duration::from_millis(1));
     }
     // A process that has ended is not reaped before `wait_with_output`, so its id is nobody else's.
-    let signal = format!("kill -INT {}", child.id());
+    let signal = format!("kill -{signal} {}", child.id());
     let sent = Command::new("sh").args(["-c", &signal]).status();
     assert!(sent.expect("a shell").success());
     let output = child.wait_with_output().expect("it ends");
@@ -36,7 +36,7 @@ fn ctrl_c_keeps_what_is_finished_and_resume_gives_the_same_bytes() {
     let mut samples = 1 << 15;
     let (workspace, words) = loop {
         let workspace = Workspace::with_scenes();
-        let (code, words) = interrupted(&workspace, samples);
+        let (code, words) = interrupted(&workspace, samples, "INT");
         match code {
             // The machine was quicker than the signal: a longer render.
             Some(0) if samples < 1 << 22 => samples *= 4,
@@ -66,6 +66,44 @@ fn ctrl_c_keeps_what_is_finished_and_resume_gives_the_same_bytes() {
     // What the run is called differs only in its times.
     assert!(cut.remove("run.json").is_some() && whole.remove("run.json").is_some());
     assert_same(&cut, &whole, "resumed and straight");
+}
+
+#[test]
+fn a_killed_render_is_resumed_too() {
+    let mut samples = 1 << 15;
+    let workspace = loop {
+        let workspace = Workspace::with_scenes();
+        match interrupted(&workspace, samples, "KILL") {
+            (Some(0), _) if samples < 1 << 22 => samples *= 4,
+            (None, _) => break workspace,
+            (code, words) => panic!("exit code {code:?} after SIGKILL: {words}"),
+        }
+    };
+    let line = format!("render tiny.toml --samples {samples} -o");
+    let _ = workspace.phicam(&format!("{line} cut --resume")).exits(0);
+    let _ = workspace.phicam(&format!("{line} whole")).exits(0);
+    let [mut cut, mut whole] = ["cut", "whole"].map(|dir| workspace.contents(dir));
+    assert!(cut.remove("run.json").is_some() && whole.remove("run.json").is_some());
+    // A process that is killed cannot clear away the file it was writing.
+    cut.retain(|name, _| !name.ends_with(".part"));
+    assert_same(&cut, &whole, "resumed and straight");
+}
+
+#[test]
+fn nothing_is_traced_again_when_all_is_there() {
+    let workspace = Workspace::with_scenes();
+    let line = "render tiny.toml -o done --samples 32";
+    let _ = workspace.phicam(line).exits(0);
+    let whole = workspace.contents("done");
+    let ended = workspace.phicam(&format!("{line} --resume")).exits(0);
+    assert!(ended.stdout.contains("8 of 8 spots"), "{}", ended.account());
+    // The record has the times, so that not even it was written again.
+    assert_same(&whole, &workspace.contents("done"), "resumed");
+    // A frame that is gone, or not whole, is made again.
+    let frame = "done/frames/spot-0003.exr";
+    workspace.write(frame, &workspace.read(frame)[..200]);
+    let _ = workspace.phicam(&format!("{line} --resume")).exits(0);
+    assert_eq!(workspace.read(frame), whole["frames/spot-0003.exr"]);
 }
 
 #[test]

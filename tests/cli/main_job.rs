@@ -210,6 +210,44 @@ fn a_wrong_model_ends_with_exit_code_one_and_all_files() {
 }
 
 #[test]
+fn a_render_with_another_seed_leaves_no_result_of_the_earlier_run() {
+    let workspace = Workspace::with_scenes();
+    let _ = workspace.phicam("run small.toml --samples 64").exits(0);
+    workspace.write("out/notes.txt", "mine");
+    workspace.write("out/recovered/notes.txt", "mine");
+    let line = "render small.toml -o out --samples 64 --seed 2";
+    let _ = workspace.phicam(line).exits(0);
+    let mut names: Vec<String> = workspace.contents("out").into_keys().collect();
+    names.retain(|n| !n.starts_with("frames/spot-") && !n.starts_with("model/"));
+    // The model is that of the scene, which is the same; what is not the program's own stays.
+    let left = [
+        "frames/",
+        "notes.txt",
+        "phi.npy",
+        "phi.stderr.npy",
+        "recovered/",
+        "recovered/notes.txt",
+        "run.json",
+        "scene.toml",
+    ];
+    assert_eq!(names, left);
+}
+
+#[test]
+fn light_beyond_the_range_of_a_frame_is_no_infinity() {
+    let workspace = Workspace::with_scenes();
+    let bright = workspace.text("tiny.toml").replace("5.0e-3", "1.0e300");
+    workspace.write("bright.toml", bright);
+    let ended = workspace
+        .phicam("render bright.toml -o out --samples 32")
+        .exits(2);
+    for word in ["f32", "W", "lower the laser's power"] {
+        assert!(ended.stderr.contains(word), "{}", ended.account());
+    }
+    assert!(!workspace.contents("out").keys().any(|n| n.ends_with("exr")));
+}
+
+#[test]
 fn another_seed_replaces_the_run_wholly() {
     let workspace = Workspace::with_scenes();
     let _ = workspace
