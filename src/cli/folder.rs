@@ -86,6 +86,9 @@ impl Folder {
             folder.remove_partial()?;
         }
         ensure_writable(&folder.frames())?;
+        for dir in [path, &folder.frames()] {
+            remove_files(dir, |_, _| false)?;
+        }
         folder.write_scene(scene)?;
         Ok(folder)
     }
@@ -250,7 +253,10 @@ fn remove_numbered(dir: &Path, extension: &str) -> Result<(), Failure> {
     remove_files(dir, |stem, ext| {
         let number = stem.strip_prefix("spot-").unwrap_or("");
         ext == extension && !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit())
-    })
+    })?;
+    // Anything else in it is not ours, and keeps it.
+    let _ = fs::remove_dir(dir);
+    Ok(())
 }
 
 /// Removes the matrices and pictures METHOD.npy, METHOD-0.png, … and those of the truth from `dir`, and `dir` if that
@@ -261,21 +267,23 @@ fn remove_recovered(dir: &Path) -> Result<(), Failure> {
         let name = name.strip_suffix('-').unwrap_or(name);
         let known = name == "truth" || name.parse::<Method>().is_ok();
         known && matches!(ext, "npy" | "png")
-    })
+    })?;
+    let _ = fs::remove_dir(dir);
+    Ok(())
 }
 
-/// Removes the files of `dir` that are `ours` by stem and extension, and `dir` if that empties it.
+/// Removes the files of `dir` that are `ours` by stem and extension, and what a killed process was writing there.
 fn remove_files(dir: &Path, ours: impl Fn(&str, &str) -> bool) -> Result<(), Failure> {
     let Ok(entries) = fs::read_dir(dir) else {
         return Ok(());
     };
     for path in entries.filter_map(Result::ok).map(|e| e.path()) {
         let part = |s: Option<&OsStr>| s.and_then(OsStr::to_str).unwrap_or("").to_owned();
-        if ours(&part(path.file_stem()), &part(path.extension())) {
+        let (stem, ext) = (part(path.file_stem()), part(path.extension()));
+        let unfinished = stem.starts_with(".phicam-") && ext == "part";
+        if unfinished || ours(&stem, &ext) {
             fs::remove_file(&path)?;
         }
     }
-    // Anything else in it is not ours, and keeps it.
-    let _ = fs::remove_dir(dir);
     Ok(())
 }
