@@ -123,6 +123,19 @@ fn without_a_noise_model_a_method_says_what_it_needs() {
 }
 
 #[test]
+fn if_no_method_can_work_each_says_why() {
+    let workspace = with_run();
+    let line = "recover done --method tsvd,tikhonov --phi done/model/phi.npy";
+    let words = ["tsvd: tsvd needs", "tikhonov: tikhonov needs", "cure: "];
+    workspace.refuses(line, &words);
+    workspace.refuses(&format!("--quiet {line}"), &words);
+    // One that can work is enough; the other is a remark.
+    let line = line.replace("tikhonov", "joint");
+    let ended = workspace.phicam(&line).exits(0);
+    assert!(ended.stderr.contains("tsvd needs"), "{}", ended.account());
+}
+
+#[test]
 fn all_methods_unless_some_are_named() {
     let workspace = with_run();
     let names = |found: &[serde_json::Value]| -> Vec<String> {
