@@ -128,11 +128,20 @@ fn compare_and_recover(
     Ok(())
 }
 
+/// Below 1.2e-38 numbers of f32 lose their digits; a frame whose brightest pixel is fainter than this has such in it.
+const FAINTEST: f64 = 1e-30;
+
 /// The frames must hold Φcam to f32 rounding: what is read back is compared with what was traced.
 fn refuse_unfaithful_frames(dir: &std::path::Path, flux: &Matrix) -> Result<(), Failure> {
     let stacked = film::stack(dir)?;
     // Rounding to f32 is off by at most 2⁻²⁴ of each entry, so also of the norm.
     let off = relative_frobenius(&stacked.phi, flux).unwrap_or(0.0);
+    let most = flux.amax();
+    if off > f64::from(f32::EPSILON) && most < FAINTEST {
+        let cause =
+            format!("a flux of at most {most:.1e} W is too faint for the f32 of the frames");
+        return Err(Failure::new(cause, "raise the laser's power in the scene"));
+    }
     if off > f64::from(f32::EPSILON) {
         let cause = format!(
             "the frames in {} differ from what was traced by {off:.1e}",
