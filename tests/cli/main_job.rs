@@ -248,6 +248,19 @@ fn light_beyond_the_range_of_a_frame_is_no_infinity() {
 }
 
 #[test]
+fn light_too_faint_for_a_frame_is_not_blamed_on_the_disk() {
+    let workspace = Workspace::with_scenes();
+    let faint = workspace.text("tiny.toml").replace("5.0e-3", "1.0e-35");
+    workspace.write("faint.toml", faint);
+    let ended = workspace
+        .phicam("run faint.toml -o out --samples 32")
+        .exits(2);
+    for word in ["too faint", "f32", "raise the laser's power"] {
+        assert!(ended.stderr.contains(word), "{}", ended.account());
+    }
+}
+
+#[test]
 fn another_seed_replaces_the_run_wholly() {
     let workspace = Workspace::with_scenes();
     let _ = workspace
