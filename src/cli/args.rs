@@ -49,13 +49,13 @@ pub(super) struct TraceArgs {
     #[arg(long, value_enum, default_value_t = SamplerName::Sobol)]
     pub sampler: SamplerName,
     /// Paths per pixel and spot (independent) or per pixel (shared); rounded up to whole blocks
-    #[arg(long, default_value_t = 512)]
+    #[arg(long, default_value_t = 512, allow_negative_numbers = true)]
     pub samples: u64,
     /// Seed: the same seed gives the same bytes
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     pub seed: u64,
     /// Threads; all cores unless given. Does not change a byte of the result
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub threads: Option<usize>,
 }
 
@@ -165,7 +165,7 @@ pub(super) struct TestArgs {
     #[arg(long, value_enum, default_value_t = IntegrationName::Centres)]
     pub integration: IntegrationName,
     /// Probability of rejecting a right model
-    #[arg(long, default_value_t = 1e-3)]
+    #[arg(long, default_value_t = 1e-3, allow_negative_numbers = true)]
     pub significance: f64,
 }
 
@@ -200,7 +200,7 @@ pub(super) struct RecoverArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "noise")]
     pub stderr: Option<PathBuf>,
     /// Noise model: standard deviation of each entry relative to its value, in place of a standard error
-    #[arg(long, value_name = "RELATIVE")]
+    #[arg(long, value_name = "RELATIVE", allow_negative_numbers = true)]
     pub noise: Option<f64>,
     /// Kernel of the model that is inverted
     #[arg(long, value_enum, default_value_t = KernelName::Physical)]
@@ -209,13 +209,13 @@ pub(super) struct RecoverArgs {
     #[arg(long, value_name = "N", value_parser = elements)]
     pub elements: Option<[usize; 2]>,
     /// Singular directions that tsvd keeps, in place of the discrepancy principle
-    #[arg(long, value_name = "K")]
+    #[arg(long, value_name = "K", allow_negative_numbers = true)]
     pub rank: Option<usize>,
     /// Damping of tikhonov relative to σ1, in place of the discrepancy principle
-    #[arg(long, value_name = "LAMBDA")]
+    #[arg(long, value_name = "LAMBDA", allow_negative_numbers = true)]
     pub damping: Option<f64>,
     /// Relative singular value below which pinv and joint cut; max(size)·eps unless given
-    #[arg(long, value_name = "RELATIVE")]
+    #[arg(long, value_name = "RELATIVE", allow_negative_numbers = true)]
     pub tolerance: Option<f64>,
     /// Print the results as JSON
     #[arg(long)]

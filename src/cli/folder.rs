@@ -7,6 +7,7 @@
 //! | phi.npy, phi.stderr.npy | Φcam and its standard error, pixels × spots, W |
 //! | partial/spot-NNNN.npy | finished spots of an unfinished run in f64: one column per bounce count, last the standard error |
 
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -15,13 +16,16 @@ use super::output::Talk;
 use super::record::Record;
 use crate::film::{self, Channel, Frame, FrameMeta, frame_name};
 use crate::matrix::{Matrix, npy};
+use crate::recovery::Method;
 use crate::scene::Scene;
-use crate::store::{ensure_writable, write_whole};
+use crate::store::{StoreError, ensure_writable, write_whole};
 use crate::transport::Traced;
 
 pub(super) const PHI: &str = "phi.npy";
 pub(super) const STDERR: &str = "phi.stderr.npy";
-const SCENE: &str = "scene.toml";
+pub(super) const SUMMARY: &str = "summary.json";
+pub(super) const REPORT: &str = "report.html";
+pub(super) const SCENE: &str = "scene.toml";
 
 /// What is kept of an earlier render into the same folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,12 +86,17 @@ impl Folder {
             folder.remove_partial()?;
         }
         ensure_writable(&folder.frames())?;
-        write_whole(&path.join(SCENE), |w| w.write_all(scene.text.as_bytes()))?;
+        for dir in [path, &folder.frames()] {
+            remove_files(dir, |_, _| false)?;
+        }
+        folder.write_scene(scene)?;
         Ok(folder)
     }
 
-    /// A folder that holds another scene, or frames of unknown origin, is not written to.
+    /// A folder that holds another scene, or frames of unknown origin, or something else under the name of an output, is not
+    /// written to.
     pub(super) fn refuse_foreign(&self, scene: &Scene) -> Result<(), Failure> {
+        self.refuse_obstacles()?;
         let path = self.path.display();
         let cure = "choose another folder (-o), or remove this one";
         if let Some(record) = Record::read(&self.path)? {
@@ -97,9 +106,10 @@ impl Folder {
             }
             return Ok(());
         }
-        if let Ok(text) = fs::read_to_string(self.path.join(SCENE)) {
-            let other = Scene::from_toml(SCENE, &text).is_ok_and(|s| s.hash != scene.hash);
-            if other {
+        if let Ok(bytes) = fs::read(self.path.join(SCENE)) {
+            // What cannot be read as a scene is not this one either.
+            let text = String::from_utf8_lossy(&bytes);
+            if !Scene::from_toml(SCENE, &text).is_ok_and(|s| s.hash == scene.hash) {
                 return Err(Failure::new(
                     format!("{path} belongs to another scene ({SCENE})"),
                     cure,
@@ -115,6 +125,30 @@ impl Folder {
             return Err(Failure::new(cause, cure));
         }
         Ok(())
+    }
+
+    /// What stands where a folder or a file of a run has to stand shows before the long work, not after it.
+    fn refuse_obstacles(&self) -> Result<(), Failure> {
+        for name in ["frames", "partial", "model", "recovered"] {
+            let path = self.path.join(name);
+            if path.exists() && !path.is_dir() {
+                return Err(StoreError::NotAFolder { path }.into());
+            }
+        }
+        for name in [SCENE, PHI, STDERR, Record::FILE, SUMMARY, REPORT] {
+            let path = self.path.join(name);
+            if path.exists() && !path.is_file() {
+                return Err(StoreError::NotAFile { path }.into());
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the scene, whole.
+    pub(super) fn write_scene(&self, scene: &Scene) -> Result<(), Failure> {
+        Ok(write_whole(&self.path.join(SCENE), |w| {
+            w.write_all(scene.text.as_bytes())
+        })?)
     }
 
     pub(super) fn frames(&self) -> PathBuf {
@@ -149,10 +183,12 @@ impl Folder {
         remove_numbered(&self.path.join("partial"), "npy")
     }
 
+    /// Removes what was rendered, and what was found from it.
     fn remove_frames(&self) -> Result<(), Failure> {
         self.remove_partial()?;
         remove_numbered(&self.frames(), "exr")?;
-        for name in [PHI, STDERR, Record::FILE] {
+        remove_recovered(&self.path.join("recovered"))?;
+        for name in [PHI, STDERR, Record::FILE, SUMMARY, REPORT] {
             match fs::remove_file(self.path.join(name)) {
                 Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(e.into()),
                 _ => {}
@@ -214,68 +250,40 @@ impl Folder {
 
 /// Removes the spot-NNNN files of `dir` with the given extension, and `dir` if that empties it.
 fn remove_numbered(dir: &Path, extension: &str) -> Result<(), Failure> {
-    let Ok(entries) = fs::read_dir(dir) else {
-        return Ok(());
-    };
-    for path in entries.filter_map(Result::ok).map(|e| e.path()) {
-        let name = path.file_name().and_then(|n| n.to_str()).unwrap_or("");
-        let number = name
-            .strip_prefix("spot-")
-            .and_then(|n| n.strip_suffix(extension));
-        let ours = number
-            .and_then(|n| n.strip_suffix('.'))
-            .is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()));
-        if ours {
-            fs::remove_file(&path)?;
-        }
-    }
+    remove_files(dir, |stem, ext| {
+        let number = stem.strip_prefix("spot-").unwrap_or("");
+        ext == extension && !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit())
+    })?;
     // Anything else in it is not ours, and keeps it.
     let _ = fs::remove_dir(dir);
     Ok(())
 }
 
-/// The scene and the record of a finished run.
-pub(super) fn read_run(dir: &Path) -> Result<(Scene, Record), Failure> {
-    let record = Record::read(dir)?.ok_or_else(|| {
-        let cause = format!(
-            "{} is not the folder of a run: it has no {}",
-            dir.display(),
-            Record::FILE
-        );
-        Failure::new(
-            cause,
-            "give a folder that `phicam run` or `phicam render` has written",
-        )
+/// Removes the matrices and pictures METHOD.npy, METHOD-0.png, … and those of the truth from `dir`, and `dir` if that
+/// empties it.
+fn remove_recovered(dir: &Path) -> Result<(), Failure> {
+    remove_files(dir, |stem, ext| {
+        let name = stem.trim_end_matches(|c: char| c.is_ascii_digit());
+        let name = name.strip_suffix('-').unwrap_or(name);
+        let known = name == "truth" || name.parse::<Method>().is_ok();
+        known && matches!(ext, "npy" | "png")
     })?;
-    let path = dir.join(SCENE);
-    let scene = Scene::load(&path.to_string_lossy())?;
-    if scene.hash != record.scene_hash {
-        let cause = format!(
-            "{} is not the scene that {} was rendered from",
-            path.display(),
-            dir.display()
-        );
-        return Err(Failure::new(
-            cause,
-            "restore it, or render the changed scene into another folder",
-        ));
-    }
-    if record.finished < record.spots && !dir.join(PHI).exists() {
-        let cause = format!(
-            "{} holds {} of {} spots",
-            dir.display(),
-            record.finished,
-            record.spots
-        );
-        return Err(Failure::new(
-            cause,
-            "finish it with `phicam render --resume`",
-        ));
-    }
-    Ok((scene, record))
+    let _ = fs::remove_dir(dir);
+    Ok(())
 }
 
-/// A matrix of the run, finite.
-pub(super) fn read_matrix(path: &Path) -> Result<Matrix, Failure> {
-    Ok(npy::read_finite(path)?)
+/// Removes the files of `dir` that are `ours` by stem and extension, and what a killed process was writing there.
+fn remove_files(dir: &Path, ours: impl Fn(&str, &str) -> bool) -> Result<(), Failure> {
+    let Ok(entries) = fs::read_dir(dir) else {
+        return Ok(());
+    };
+    for path in entries.filter_map(Result::ok).map(|e| e.path()) {
+        let part = |s: Option<&OsStr>| s.and_then(OsStr::to_str).unwrap_or("").to_owned();
+        let (stem, ext) = (part(path.file_stem()), part(path.extension()));
+        let unfinished = stem.starts_with(".phicam-") && ext == "part";
+        if unfinished || ours(&stem, &ext) {
+            fs::remove_file(&path)?;
+        }
+    }
+    Ok(())
 }

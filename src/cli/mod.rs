@@ -20,6 +20,7 @@
 
 mod args;
 mod failure;
+mod finished;
 mod folder;
 mod interrupt;
 mod model;

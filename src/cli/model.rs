@@ -17,10 +17,11 @@ pub(super) fn execute(args: &ModelArgs, talk: Talk) -> Result<Outcome, Failure> 
     let scene = Scene::load(&args.scene)?;
     let kernel = settings::kernel(args.kernel);
     let model = MatrixModel::new(&scene, kernel, args.elements)?;
-    Folder {
+    let folder = Folder {
         path: args.output.clone(),
-    }
-    .refuse_foreign(&scene)?;
+    };
+    folder.refuse_foreign(&scene)?;
+    ensure_writable(&args.output)?;
     talk.warn(&scene);
     let (phi, how) = match settings::integration(args.integration) {
         Integration::Centres => (model.phi(), "by centres".to_owned()),
@@ -30,6 +31,8 @@ pub(super) fn execute(args: &ModelArgs, talk: Talk) -> Result<Outcome, Failure> 
             (integral.phi, how)
         }
     };
+    // Which scene the matrices are of: nothing else in the folder says so if nothing is rendered into it.
+    folder.write_scene(&scene)?;
     write(&args.output, &model, &phi)?;
     let text = format!(
         "{}: g12.npy {} × {}, g23.npy {} × {}, phi.npy {} × {} ({} kernel, {how})\n",

@@ -1,5 +1,6 @@
 //! run.json: what was rendered, and how.
 
+use std::io::ErrorKind;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -65,7 +66,10 @@ impl Record {
         let path = dir.join(Self::FILE);
         let bytes = match std::fs::read(&path) {
             Ok(bytes) => bytes,
-            Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            // Neither a folder that is not there nor a file in its place holds a run.
+            Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+                return Ok(None);
+            }
             Err(e) => {
                 let cause = format!("cannot read {}: {e}", path.display());
                 return Err(Failure::new(

@@ -1,10 +1,12 @@
 //! `phicam recover`: the hidden reflectance from Φcam.
 
+use std::fmt::Display;
 use std::path::Path;
 
 use super::args::RecoverArgs;
 use super::failure::Failure;
-use super::folder::{self, PHI, STDERR};
+use super::finished::{read_matrix, read_run, read_stderr};
+use super::folder::{PHI, STDERR};
 use super::output::{self, Talk};
 use super::{Outcome, settings};
 use crate::matrix::{Matrix, npy};
@@ -21,16 +23,16 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
         names => names.iter().map(|n| n.parse()).collect::<Result<_, _>>()?,
     };
     let options = options(args)?;
-    let (scene, _) = folder::read_run(&args.dir)?;
-    let model = MatrixModel::new(&scene, settings::kernel(args.kernel), args.elements)?;
-    let phi = folder::read_matrix(args.phi.as_ref().unwrap_or(&args.dir.join(PHI)))?;
+    let (scene, _) = read_run(&args.dir)?;
+    let phi = read_matrix(args.phi.as_ref().unwrap_or(&args.dir.join(PHI)), &scene)?;
     let stderr = match (&args.stderr, args.noise) {
         (_, Some(noise)) => Some(phi.map(|x| x.abs() * noise)),
-        (Some(file), None) => Some(folder::read_matrix(file)?),
-        (None, None) if args.phi.is_none() => Some(folder::read_matrix(&args.dir.join(STDERR))?),
+        (Some(file), None) => Some(read_stderr(file, &scene)?),
+        (None, None) if args.phi.is_none() => Some(read_stderr(&args.dir.join(STDERR), &scene)?),
         // Of a foreign Φcam nothing is known but what is said.
         (None, None) => None,
     };
+    let model = MatrixModel::new(&scene, settings::kernel(args.kernel), args.elements)?;
     let noise = stderr.as_ref().map_or(Noise::Unknown, Noise::StandardError);
     let attempts = recover_objects(&model, &phi, noise, &methods, &options);
     let single = methods.len() == 1;
@@ -46,12 +48,27 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
 }
 
 fn options(args: &RecoverArgs) -> Result<Options, Failure> {
-    if args.noise.is_some_and(|x| !(x > 0.0 && x.is_finite())) {
-        return Err(Failure::new(
-            "--noise is not a positive number",
-            "give it relative to the flux, e.g. 0.01",
-        ));
-    }
+    let positive = |x: f64| x > 0.0 && x.is_finite();
+    let fraction = |x: f64| (0.0..1.0).contains(&x);
+    within(
+        "--noise",
+        args.noise,
+        positive,
+        "positive: relative to the flux, e.g. 0.01",
+    )?;
+    within(
+        "--damping",
+        args.damping,
+        |x| x >= 0.0 && x.is_finite(),
+        "0 or more: a fraction of σ1",
+    )?;
+    within(
+        "--tolerance",
+        args.tolerance,
+        fraction,
+        "0 or more and below 1: a fraction of σ1",
+    )?;
+    within("--rank", args.rank, |k| k > 0, "at least 1")?;
     let mut options = Options {
         rank: args.rank,
         damping: args.damping,
@@ -63,6 +80,22 @@ fn options(args: &RecoverArgs) -> Result<Options, Failure> {
     Ok(options)
 }
 
+/// Refuses a given value that is not `allowed`; `range` says in words what is.
+fn within<T: Copy + Display>(
+    name: &str,
+    given: Option<T>,
+    allowed: impl Fn(T) -> bool,
+    range: &str,
+) -> Result<(), Failure> {
+    match given {
+        Some(value) if !allowed(value) => Err(Failure::new(
+            format!("{name} {value} has no meaning"),
+            format!("use a number that is {range}"),
+        )),
+        _ => Ok(()),
+    }
+}
+
 /// The objects that were recovered. A method that cannot work is reported; if none can, or the only one asked for, that is
 /// the command's failure.
 pub(super) fn collect(
@@ -71,18 +104,26 @@ pub(super) fn collect(
     talk: Talk,
 ) -> Result<Vec<RecoveredObject>, Failure> {
     let mut objects = Vec::new();
+    let mut reasons = Vec::new();
     for attempt in attempts {
         match attempt.outcome {
             Ok(found) => objects.extend(found),
             Err(e) if strict => return Err(e.into()),
-            Err(e) => talk.say(format!("{}: {e}", attempt.method)),
+            Err(e) => reasons.push(format!("{}: {e}", attempt.method)),
         }
     }
     if objects.is_empty() {
+        let cause = format!(
+            "no method could recover anything\n  {}",
+            reasons.join("\n  ")
+        );
         return Err(Failure::new(
-            "no method could recover anything",
-            "see the reasons above",
+            cause,
+            "see the reason of each, or choose one with --method",
         ));
+    }
+    for reason in reasons {
+        talk.say(reason);
     }
     Ok(objects)
 }

@@ -6,11 +6,13 @@ use std::time::Instant;
 
 use super::args::{RenderArgs, TraceArgs};
 use super::failure::Failure;
-use super::folder::{Folder, Keep};
+use super::finished::read_matrix;
+use super::folder::{Folder, Keep, PHI, STDERR};
 use super::interrupt::stop_flag;
 use super::output::{self, Talk};
 use super::record::Record;
 use super::{Outcome, progress, settings};
+use crate::film;
 use crate::matrix::Matrix;
 use crate::scene::Scene;
 use crate::transport::{Control, Estimator, Plan, Traced, render};
@@ -34,20 +36,30 @@ pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure>
         (false, true) => Keep::OtherSpots,
         (false, false) => Keep::Nothing,
     };
-    let rendered = into_folder(&scene, &args.trace, spots, keep, &args.output, talk)?;
-    let record = &rendered.record;
+    let complete = match keep {
+        Keep::Finished => complete(&scene, &args.trace, &args.output)?,
+        _ => None,
+    };
+    let (record, phi) = match complete {
+        Some(record) => (record, true),
+        None => {
+            let rendered = into_folder(&scene, &args.trace, spots, keep, &args.output, talk)?;
+            (rendered.record, rendered.phi.is_some())
+        }
+    };
     if args.json {
-        output::print(&output::json(record)?)?;
+        output::print(&output::json(&record)?)?;
     } else {
         let Record {
             finished,
             spots,
             seconds,
             ..
-        } = record;
-        let what = match rendered.phi {
-            Some(_) => "frames, phi.npy and phi.stderr.npy".to_owned(),
-            None => "frames; phi.npy follows when every spot is there".to_owned(),
+        } = &record;
+        let what = if phi {
+            "frames, phi.npy and phi.stderr.npy"
+        } else {
+            "frames; phi.npy follows when every spot is there"
         };
         let place = args.output.display();
         output::print(&format!(
@@ -56,6 +68,21 @@ pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure>
         ))?;
     }
     Ok(Outcome::Done)
+}
+
+/// The record of the run in `path` if this very run is there whole, so that nothing is left to resume.
+fn complete(scene: &Scene, args: &TraceArgs, path: &Path) -> Result<Option<Record>, Failure> {
+    let plan = settings::plan(args, Talk { quiet: true })?;
+    let asked = Record::new(scene, &plan, 0, 0, 0.0);
+    let record = Record::read(path)?
+        .filter(|earlier| earlier.same_settings(&asked) && earlier.finished == earlier.spots);
+    let whole = || {
+        [PHI, STDERR]
+            .iter()
+            .all(|name| read_matrix(&path.join(name), scene).is_ok())
+            && film::stack(path).is_ok()
+    };
+    Ok(record.filter(|_| whole()))
 }
 
 /// What a render left.
@@ -161,6 +188,7 @@ fn trace(
         let traced = pool
             .install(|| render(scene, plan, range.clone(), control))
             .ok_or_else(stopped)?;
+        refuse_beyond_f32(&traced)?;
         for (column, spot) in range.clone().enumerate() {
             folder.write_frame(scene, record, spot, &traced, column)?;
             folder.keep(spot, &traced, column)?;
@@ -169,6 +197,16 @@ fn trace(
     }
     bar.finish_and_clear();
     Ok(join(all))
+}
+
+/// Frames hold f32: a flux beyond its range would be stored as infinity.
+fn refuse_beyond_f32(traced: &Traced) -> Result<(), Failure> {
+    let most = traced.flux.amax().max(traced.stderr.amax());
+    if most <= f64::from(f32::MAX) {
+        return Ok(());
+    }
+    let cause = format!("a flux of {most:.1e} W is more than the f32 of a frame can hold");
+    Err(Failure::new(cause, "lower the laser's power in the scene"))
 }
 
 /// Runs of neighbouring spots to be traced together: one spot each where nothing is shared, as many as possible where paths

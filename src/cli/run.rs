@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::args::RunArgs;
 use super::failure::Failure;
-use super::folder::Keep;
+use super::folder::{Keep, REPORT, SUMMARY};
 use super::output::{self, Talk};
 use super::render::{self, Rendered};
 use super::{Outcome, model, recover, settings, validate};
@@ -67,9 +67,9 @@ pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
     results.times = clock.laps;
     let path = |name| args.output.join(name);
     let summary = report::summary_json(&results);
-    write_whole(&path("summary.json"), |w| w.write_all(summary.as_bytes()))?;
+    write_whole(&path(SUMMARY), |w| w.write_all(summary.as_bytes()))?;
     let page = report::run_html(&results);
-    write_whole(&path("report.html"), |w| w.write_all(page.as_bytes()))?;
+    write_whole(&path(REPORT), |w| w.write_all(page.as_bytes()))?;
     let text = match args.json {
         true => summary,
         false => {
@@ -128,19 +128,28 @@ fn compare_and_recover(
     Ok(())
 }
 
+/// Below 1.2e-38 numbers of f32 lose their digits; a frame whose brightest pixel is fainter than this has such in it.
+const FAINTEST: f64 = 1e-30;
+
 /// The frames must hold Φcam to f32 rounding: what is read back is compared with what was traced.
 fn refuse_unfaithful_frames(dir: &std::path::Path, flux: &Matrix) -> Result<(), Failure> {
     let stacked = film::stack(dir)?;
     // Rounding to f32 is off by at most 2⁻²⁴ of each entry, so also of the norm.
     let off = relative_frobenius(&stacked.phi, flux).unwrap_or(0.0);
-    if off > f64::from(f32::EPSILON) {
-        let cause = format!(
-            "the frames in {} differ from what was traced by {off:.1e}",
-            dir.display()
-        );
-        return Err(Failure::new(cause, "check the disk, and run again"));
+    if off <= f64::from(f32::EPSILON) {
+        return Ok(());
     }
-    Ok(())
+    let most = flux.amax();
+    if most < FAINTEST {
+        let cause =
+            format!("a flux of at most {most:.1e} W is too faint for the f32 of the frames");
+        return Err(Failure::new(cause, "raise the laser's power in the scene"));
+    }
+    let cause = format!(
+        "the frames in {} differ from what was traced by {off:.1e}",
+        dir.display()
+    );
+    Err(Failure::new(cause, "check the disk, and run again"))
 }
 
 /// Wall time of each stage.

@@ -2,7 +2,8 @@
 
 use super::args::ValidateArgs;
 use super::failure::Failure;
-use super::folder::{self, PHI, STDERR};
+use super::finished::{read_matrix, read_run, read_stderr};
+use super::folder::{PHI, STDERR};
 use super::output::{self, Talk};
 use super::{Outcome, settings};
 use crate::report;
@@ -10,7 +11,9 @@ use crate::scene::Scene;
 use crate::study::{Agreement, validate};
 
 pub(super) fn execute(args: &ValidateArgs, _: Talk) -> Result<Outcome, Failure> {
-    let (own, record) = folder::read_run(&args.dir)?;
+    let (own, record) = read_run(&args.dir)?;
+    let phi = read_matrix(&args.dir.join(PHI), &own)?;
+    let stderr = read_stderr(&args.dir.join(STDERR), &own)?;
     let mut scene = match &args.against {
         Some(other) => Scene::load(other)?,
         None => own,
@@ -19,8 +22,6 @@ pub(super) fn execute(args: &ValidateArgs, _: Talk) -> Result<Outcome, Failure> 
         scene = scene.with_shifted_spots(by)?;
     }
     let test = settings::test(&args.test, &record.plan()?)?;
-    let phi = folder::read_matrix(&args.dir.join(PHI))?;
-    let stderr = folder::read_matrix(&args.dir.join(STDERR))?;
     let kernel = settings::kernel(args.test.kernel);
     let integration = settings::integration(args.test.integration);
     let found = validate(&scene, &phi, &stderr, kernel, integration, test)?;

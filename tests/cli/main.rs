@@ -1,0 +1,15 @@
+//! The `phicam` command as its user meets it: the binary is run, its exit code, its words and its files are looked at.
+
+mod bad_folders;
+mod bad_frames;
+mod bad_scenes;
+mod bad_settings;
+mod interruption;
+mod main_job;
+mod recovery;
+mod reproducibility;
+mod scenes;
+mod small_scene;
+mod stacking;
+mod verdict;
+mod workspace;

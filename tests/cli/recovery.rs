@@ -1,0 +1,183 @@
+//! `phicam recover`: methods, settings and files.
+
+use crate::workspace::{Ended, Workspace};
+
+fn with_run() -> Workspace {
+    let workspace = Workspace::with_scenes();
+    let _ = workspace.phicam("render small.toml -o done").exits(0);
+    let _ = workspace.phicam("model small.toml -o done").exits(0);
+    workspace
+}
+
+/// The results of `recover … --json`.
+fn objects(ended: Ended) -> Vec<serde_json::Value> {
+    let ended = ended.exits(0);
+    serde_json::from_str(&ended.stdout).unwrap_or_else(|e| panic!("{e}: {}", ended.account()))
+}
+
+#[test]
+fn a_method_writes_its_matrix_and_its_picture() {
+    let workspace = with_run();
+    let ended = workspace.phicam("recover done --method joint").exits(0);
+    for word in ["joint", "MTF raw", "object, 8 × 8 elements"] {
+        assert!(
+            ended.stdout.contains(word),
+            "no `{word}` in {}",
+            ended.account()
+        );
+    }
+    let names: Vec<String> = workspace.contents("done/recovered").into_keys().collect();
+    assert_eq!(names, ["joint.npy", "joint.png", "truth.npy", "truth.png"]);
+    let joint = workspace.matrix("done/recovered/joint.npy");
+    assert_eq!(joint.shape(), (8, 8));
+    assert!(joint.iter().all(|x| (0.0..=1.0).contains(x)), "{joint}");
+    // Cell (0, 0) of the 2 × 2 board is dark, its neighbours are light: element (iu, iv) is row iv, column iu.
+    let truth = workspace.matrix("done/recovered/truth.npy");
+    for iv in 0..8 {
+        for iu in 0..8 {
+            let light = (iu < 4) != (iv < 4);
+            assert_eq!(truth[(iv, iu)], f64::from(u8::from(light)), "({iu}, {iv})");
+        }
+    }
+}
+
+#[test]
+fn rows_of_the_file_are_rows_of_elements() {
+    let workspace = with_run();
+    let found = objects(workspace.phicam("recover done --method joint --elements 6x4 --json"));
+    assert_eq!(found[0]["elements"], serde_json::json!([6, 4]));
+    let joint = workspace.matrix("done/recovered/joint.npy");
+    assert_eq!(joint.shape(), (4, 6), "(nv, nu)");
+    for (i, x) in found[0]["reflectance"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .enumerate()
+    {
+        assert_eq!(x.as_f64().unwrap(), joint[(i / 6, i % 6)], "element {i}");
+    }
+}
+
+#[test]
+fn fewer_elements() {
+    let workspace = with_run();
+    let _ = workspace
+        .phicam("recover done --method joint --elements 4x4")
+        .exits(0);
+    assert_eq!(workspace.matrix("done/recovered/joint.npy").shape(), (4, 4));
+    assert_eq!(workspace.matrix("done/recovered/truth.npy").shape(), (4, 4));
+}
+
+#[test]
+fn the_model_s_own_matrix_gives_the_truth_back() {
+    let workspace = with_run();
+    let line = "recover done --method joint --phi done/model/phi.npy --json";
+    let found = objects(workspace.phicam(line));
+    let raw = found[0]["mtf_raw"].as_f64().unwrap();
+    assert!(raw > 0.99, "{raw}");
+    assert!(found[0]["rmse"].as_f64().unwrap() < 1e-3, "{}", found[0]);
+}
+
+#[test]
+fn a_parameter_can_be_given() {
+    let workspace = with_run();
+    let line = "recover done --method tsvd --rank 5 --phi done/model/phi.npy --json";
+    let found = objects(workspace.phicam(line));
+    assert!(
+        found[0]["parameter"].as_str().unwrap().contains('5'),
+        "{}",
+        found[0]
+    );
+    let line = "recover done --method tikhonov --damping 0.01 --phi done/model/phi.npy --json";
+    let found = objects(workspace.phicam(line));
+    let parameter = found[0]["parameter"].as_str().unwrap();
+    assert!(
+        parameter.contains("0.01") || parameter.contains("1.00e-2"),
+        "{parameter}"
+    );
+    let names = workspace.contents("done/recovered");
+    for name in ["tsvd.npy", "tsvd.png", "tikhonov.npy", "tikhonov.png"] {
+        assert!(names.contains_key(name), "no {name}");
+    }
+    // Another parameter, another result.
+    let of = |rank: usize| {
+        let _ = workspace
+            .phicam(&format!("recover done --method tsvd --rank {rank}"))
+            .exits(0);
+        workspace.matrix("done/recovered/tsvd.npy")
+    };
+    assert_ne!(of(2), of(6));
+}
+
+#[test]
+fn without_a_noise_model_a_method_says_what_it_needs() {
+    let workspace = with_run();
+    for method in ["tsvd", "tikhonov"] {
+        let line = format!("recover done --method {method} --phi done/model/phi.npy");
+        workspace.refuses(&line, &[method, "noise", "standard error", "give"]);
+        let _ = workspace.phicam(&format!("{line} --noise 0.001")).exits(0);
+        let _ = workspace
+            .phicam(&format!("{line} --stderr done/phi.stderr.npy"))
+            .exits(0);
+    }
+}
+
+#[test]
+fn if_no_method_can_work_each_says_why() {
+    let workspace = with_run();
+    let line = "recover done --method tsvd,tikhonov --phi done/model/phi.npy";
+    let words = ["tsvd: tsvd needs", "tikhonov: tikhonov needs", "cure: "];
+    workspace.refuses(line, &words);
+    workspace.refuses(&format!("--quiet {line}"), &words);
+    // One that can work is enough; the other is a remark.
+    let line = line.replace("tikhonov", "joint");
+    let ended = workspace.phicam(&line).exits(0);
+    assert!(ended.stderr.contains("tsvd needs"), "{}", ended.account());
+}
+
+#[test]
+fn all_methods_unless_some_are_named() {
+    let workspace = with_run();
+    let names = |found: &[serde_json::Value]| -> Vec<String> {
+        found
+            .iter()
+            .map(|f| f["method"].as_str().unwrap().to_owned())
+            .collect()
+    };
+    let all = objects(workspace.phicam("recover done --json"));
+    assert_eq!(
+        names(&all),
+        ["pinv", "tsvd", "tikhonov", "joint-unbounded", "joint"]
+    );
+    let two = objects(workspace.phicam("recover done --method joint,pinv --json"));
+    assert_eq!(names(&two), ["joint", "pinv"]);
+}
+
+#[test]
+fn a_foreign_matrix_of_another_shape_is_refused() {
+    let workspace = with_run();
+    let _ = workspace
+        .phicam("render tiny.toml -o other --samples 32")
+        .exits(0);
+    for line in [
+        "recover done --phi other/phi.npy",
+        "-q recover done --phi other/phi.npy",
+        "recover done --method joint --phi other/phi.npy",
+        "recover done --stderr other/phi.npy",
+    ] {
+        workspace.refuses(line, &["other/phi.npy", "6 × 8", "64", "24"]);
+    }
+    workspace.refuses("recover done --phi nowhere.npy", &["nowhere.npy"]);
+    workspace.refuses("recover done --phi small.toml", &["small.toml"]);
+}
+
+#[test]
+fn what_the_run_has_left_is_not_touched() {
+    let workspace = with_run();
+    let mut before = workspace.contents("done");
+    let _ = workspace.phicam("recover done").exits(0);
+    let mut after = workspace.contents("done");
+    before.retain(|name, _| !name.starts_with("recovered"));
+    after.retain(|name, _| !name.starts_with("recovered"));
+    crate::workspace::assert_same(&before, &after, "recover");
+}

@@ -1,0 +1,138 @@
+//! A folder of its own to run the program in.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use phicam::matrix::{Matrix, npy};
+
+/// A temporary folder, the working directory of every command run in it.
+pub(crate) struct Workspace {
+    dir: tempfile::TempDir,
+}
+
+/// How a command ended.
+#[must_use]
+pub(crate) struct Ended {
+    line: String,
+    pub code: i32,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+/// Every file below a folder with its bytes; folders have no bytes and a name that ends in `/`.
+pub(crate) type Contents = BTreeMap<String, Vec<u8>>;
+
+impl Workspace {
+    pub(crate) fn new() -> Self {
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        Self { dir }
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.dir.path().join(name)
+    }
+
+    pub(crate) fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
+        fs::write(self.path(name), bytes).unwrap_or_else(|e| panic!("{name}: {e}"));
+    }
+
+    pub(crate) fn read(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    }
+
+    pub(crate) fn text(&self, name: &str) -> String {
+        String::from_utf8(self.read(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    }
+
+    pub(crate) fn json(&self, name: &str) -> serde_json::Value {
+        serde_json::from_str(&self.text(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    }
+
+    pub(crate) fn matrix(&self, name: &str) -> Matrix {
+        npy::read_finite(&self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    }
+
+    /// Runs `phicam` with the words of `line`. A panic of the program fails the test, whatever else it expects.
+    pub(crate) fn phicam(&self, line: &str) -> Ended {
+        let output = assert_cmd::cargo::cargo_bin_cmd!("phicam")
+            .args(line.split_whitespace())
+            .current_dir(self.dir.path())
+            .timeout(Duration::from_secs(120))
+            .output()
+            .expect("the program starts");
+        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        let ended = Ended {
+            line: line.to_owned(),
+            code: output.status.code().unwrap_or(-1),
+            stdout: text(&output.stdout),
+            stderr: text(&output.stderr),
+        };
+        assert!(!ended.stderr.contains("panicked"), "{}", ended.account());
+        assert!(ended.code >= 0, "ended by a signal: {}", ended.account());
+        ended
+    }
+
+    /// Runs a command that must be refused: exit code 2, every one of `words` on standard error, nothing on standard
+    /// output, and not a byte of the workspace changed.
+    pub(crate) fn refuses(&self, line: &str, words: &[&str]) {
+        let before = self.contents("");
+        let ended = self.phicam(line).exits(2);
+        for word in words {
+            assert!(
+                ended.stderr.contains(word),
+                "no `{word}` in {}",
+                ended.account()
+            );
+        }
+        assert_eq!(ended.stdout, "", "{}", ended.account());
+        assert_same(&before, &self.contents(""), line);
+    }
+
+    /// Every file below `folder`; an empty list if there is no such folder.
+    pub(crate) fn contents(&self, folder: &str) -> Contents {
+        fn walk(root: &Path, dir: &Path, found: &mut Contents) {
+            for entry in fs::read_dir(dir).into_iter().flatten() {
+                let path = entry.expect("a folder's entry").path();
+                let name = path.strip_prefix(root).expect("it is below").display();
+                if path.is_dir() {
+                    found.insert(format!("{name}/"), Vec::new());
+                    walk(root, &path, found);
+                } else {
+                    found.insert(name.to_string(), fs::read(&path).expect("a file"));
+                }
+            }
+        }
+        let root = self.path(folder);
+        let mut found = Contents::new();
+        walk(&root, &root, &mut found);
+        found
+    }
+}
+
+/// Two folders hold the same files with the same bytes; says which differ.
+pub(crate) fn assert_same(a: &Contents, b: &Contents, what: &str) {
+    let differ: Vec<&String> = a
+        .keys()
+        .chain(b.keys())
+        .filter(|name| a.get(*name) != b.get(*name))
+        .collect();
+    assert!(differ.is_empty(), "{what}: {differ:?} differ");
+}
+
+impl Ended {
+    /// The command ended with `code`.
+    pub(crate) fn exits(self, code: i32) -> Self {
+        assert_eq!(self.code, code, "{}", self.account());
+        self
+    }
+
+    /// What happened, for a failing test.
+    pub(crate) fn account(&self) -> String {
+        format!(
+            "`phicam {}`, exit code {}\n--- standard output\n{}\n--- standard error\n{}",
+            self.line, self.code, self.stdout, self.stderr
+        )
+    }
+}
