@@ -188,7 +188,7 @@ pub(super) struct ValidateArgs {
 
 #[derive(Debug, Arguments)]
 pub(super) struct RecoverArgs {
-    /// Folder of a run
+    /// Folder of a run; with --phi a folder with a scene.toml is enough
     pub dir: PathBuf,
     /// Methods, separated by commas: pinv, tsvd, tikhonov, joint-unbounded, joint; all unless given
     #[arg(long, value_delimiter = ',', value_name = "METHOD")]

@@ -3,6 +3,8 @@
 use std::error::Error;
 use std::fmt::Write as _;
 
+use super::output::complain;
+
 /// Why a command ended without its result.
 #[derive(Debug)]
 pub(super) enum Failure {
@@ -27,8 +29,8 @@ impl Failure {
 
     pub(super) fn report(&self) {
         match self {
-            Self::Error(message) => eprintln!("error: {message}"),
-            Self::Stopped(message) => eprintln!("stopped: {message}"),
+            Self::Error(message) => complain(&format!("error: {message}")),
+            Self::Stopped(message) => complain(&format!("stopped: {message}")),
         }
     }
 }

@@ -85,6 +85,7 @@ impl Folder {
         if keep == Keep::Nothing {
             folder.remove_partial()?;
         }
+        record.write(path)?;
         ensure_writable(&folder.frames())?;
         for dir in [path, &folder.frames()] {
             remove_files(dir, |_, _| false)?;
@@ -116,8 +117,9 @@ impl Folder {
                 ));
             }
         }
-        let frames = fs::read_dir(self.frames()).is_ok_and(|mut d| d.next().is_some());
-        if frames || self.path.join(PHI).exists() {
+        let holds =
+            |dir: &str| fs::read_dir(self.path.join(dir)).is_ok_and(|mut d| d.next().is_some());
+        if holds("frames") || holds("partial") || self.path.join(PHI).exists() {
             let cause = format!(
                 "{path} holds frames or a {PHI}, but no {} that says of which scene",
                 Record::FILE
@@ -172,11 +174,14 @@ impl Folder {
         )?)
     }
 
-    /// A spot that was kept: one column per bounce count, then the standard error; `None` if it is not there or not whole.
-    pub(super) fn kept(&self, spot: usize, scene: &Scene) -> Option<Matrix> {
+    /// A finished spot of the run `record`: one column per bounce count, then the standard error; `None` unless both this and
+    /// its frame are there and whole.
+    pub(super) fn kept(&self, spot: usize, scene: &Scene, record: &Record) -> Option<Matrix> {
         let matrix = npy::read_finite(&self.partial(spot)).ok()?;
         let shape = (scene.camera.pixels(), scene.max_bounces as usize + 1);
-        (matrix.shape() == shape).then_some(matrix)
+        let frame = film::exr::read(&self.frames().join(frame_name(spot as u32))).ok()?;
+        let own = frame.meta == meta(scene, record, spot);
+        (own && matrix.shape() == shape).then_some(matrix)
     }
 
     pub(super) fn remove_partial(&self) -> Result<(), Failure> {
@@ -221,19 +226,7 @@ impl Folder {
             columns: scene.camera.columns,
             rows: scene.camera.rows,
             channels,
-            meta: FrameMeta {
-                scene_name: scene.name.clone(),
-                scene_hash: scene.hash.clone(),
-                unit: scene.unit.symbol().to_owned(),
-                spot_index: spot as u32,
-                spot_count: record.spots as u32,
-                spot_position: scene.laser.spots[spot].target.position.to_array(),
-                seed: record.seed,
-                samples: record.samples,
-                estimator: record.estimator.clone(),
-                sampler: record.sampler.clone(),
-                version: record.version.clone(),
-            },
+            meta: meta(scene, record, spot),
         };
         Ok(film::exr::write(
             &self.frames().join(frame_name(spot as u32)),
@@ -245,6 +238,23 @@ impl Folder {
     pub(super) fn write_phi(&self, phi: &Matrix, stderr: &Matrix) -> Result<(), Failure> {
         npy::write(&self.path.join(STDERR), stderr)?;
         Ok(npy::write(&self.path.join(PHI), phi)?)
+    }
+}
+
+/// What the frame of `spot` says of its origin.
+fn meta(scene: &Scene, record: &Record, spot: usize) -> FrameMeta {
+    FrameMeta {
+        scene_name: scene.name.clone(),
+        scene_hash: scene.hash.clone(),
+        unit: scene.unit.symbol().to_owned(),
+        spot_index: spot as u32,
+        spot_count: record.spots as u32,
+        spot_position: scene.laser.spots[spot].target.position.to_array(),
+        seed: record.seed,
+        samples: record.samples,
+        estimator: record.estimator.clone(),
+        sampler: record.sampler.clone(),
+        version: record.version.clone(),
     }
 }
 
@@ -265,7 +275,7 @@ fn remove_recovered(dir: &Path) -> Result<(), Failure> {
     remove_files(dir, |stem, ext| {
         let name = stem.trim_end_matches(|c: char| c.is_ascii_digit());
         let name = name.strip_suffix('-').unwrap_or(name);
-        let known = name == "truth" || name.parse::<Method>().is_ok();
+        let known = ["truth", "overview"].contains(&name) || name.parse::<Method>().is_ok();
         known && matches!(ext, "npy" | "png")
     })?;
     let _ = fs::remove_dir(dir);

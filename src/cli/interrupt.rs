@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 static STOP: AtomicBool = AtomicBool::new(false);
 
-/// The flag that Ctrl-C sets; a second Ctrl-C ends the process at once. What is finished is on disk by then.
+/// The flag that Ctrl-C and SIGTERM set; a second Ctrl-C ends the process at once. What is finished is on disk by then.
 pub(super) fn stop_flag() -> &'static AtomicBool {
     static ONCE: std::sync::Once = std::sync::Once::new();
     ONCE.call_once(|| {

@@ -17,7 +17,7 @@ impl Talk {
     /// A remark on standard error.
     pub(super) fn say(self, text: impl AsRef<str>) {
         if !self.quiet {
-            eprintln!("{}", text.as_ref());
+            complain(text.as_ref());
         }
     }
 
@@ -27,6 +27,11 @@ impl Talk {
             self.say(format!("warning: {warning}"));
         }
     }
+}
+
+/// A line on standard error. That nobody reads it is no reason to stop.
+pub(super) fn complain(text: &str) {
+    let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
 /// A result on standard output. A reader that has gone away (`| head`) is no error.

@@ -6,14 +6,16 @@ use std::path::Path;
 use super::args::RecoverArgs;
 use super::failure::Failure;
 use super::finished::{read_matrix, read_run, read_stderr};
-use super::folder::{PHI, STDERR};
+use super::folder::{PHI, SCENE, STDERR};
 use super::output::{self, Talk};
+use super::record::Record;
 use super::{Outcome, settings};
 use crate::matrix::{Matrix, npy};
 use crate::model::MatrixModel;
 use crate::num::linalg::Tolerance;
 use crate::recovery::{Method, Options};
 use crate::report::{self, Panel};
+use crate::scene::Scene;
 use crate::store::{ensure_writable, write_whole};
 use crate::study::{Attempt, Noise, RecoveredObject, recover_objects};
 
@@ -23,14 +25,24 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
         names => names.iter().map(|n| n.parse()).collect::<Result<_, _>>()?,
     };
     let options = options(args)?;
-    let (scene, _) = read_run(&args.dir)?;
+    // Measured photographs come without a run: a scene.toml is enough for them.
+    let measured = args.phi.is_some() && !args.dir.join(Record::FILE).exists();
+    let scene = match measured {
+        true => Scene::load(&args.dir.join(SCENE).to_string_lossy())?,
+        false => read_run(&args.dir)?.0,
+    };
     let phi = read_matrix(args.phi.as_ref().unwrap_or(&args.dir.join(PHI)), &scene)?;
     let stderr = match (&args.stderr, args.noise) {
         (_, Some(noise)) => Some(phi.map(|x| x.abs() * noise)),
         (Some(file), None) => Some(read_stderr(file, &scene)?),
         (None, None) if args.phi.is_none() => Some(read_stderr(&args.dir.join(STDERR), &scene)?),
         // Of a foreign Φcam nothing is known but what is said.
-        (None, None) => None,
+        (None, None) => {
+            talk.say(
+                "no noise model is given (--noise or --stderr): joint weights all entries alike",
+            );
+            None
+        }
     };
     let model = MatrixModel::new(&scene, settings::kernel(args.kernel), args.elements)?;
     let noise = stderr.as_ref().map_or(Noise::Unknown, Noise::StandardError);

@@ -37,8 +37,8 @@ pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure>
         (false, false) => Keep::Nothing,
     };
     let complete = match keep {
-        Keep::Finished => complete(&scene, &args.trace, &args.output)?,
-        _ => None,
+        Keep::Nothing => None,
+        _ => complete(&scene, &args.trace, &args.output)?,
     };
     let (record, phi) = match complete {
         Some(record) => (record, true),
@@ -111,41 +111,34 @@ pub(super) fn into_folder(
     {
         record.seconds = earlier.seconds;
     }
+    refuse_too_large(scene)?;
     let folder = Folder::open(path, scene, &record, keep, talk)?;
     talk.warn(scene);
-    record.write(path)?;
     let todo: Vec<usize> = match keep {
-        Keep::Finished => spots.filter(|s| folder.kept(*s, scene).is_none()).collect(),
+        Keep::Finished => spots
+            .filter(|s| folder.kept(*s, scene, &record).is_none())
+            .collect(),
         _ => spots.collect(),
     };
     let start = Instant::now();
-    let fresh = trace(scene, &plan, &todo, &folder, &record, &pool, talk);
+    let traced = trace(scene, &plan, &todo, &folder, &record, &pool, talk);
     record.seconds += start.elapsed().as_secs_f64();
     let total = scene.laser.spots.len();
-    let phi = match fresh {
-        Ok(Some(traced)) if todo.len() == total => Some(traced),
-        Ok(_) => gather(scene, &folder),
-        Err(failure) => {
-            record.finished = (0..total)
-                .filter(|s| folder.kept(*s, scene).is_some())
-                .count();
-            record.write(path)?;
-            return Err(match failure {
-                Failure::Stopped(_) => Failure::Stopped(format!(
-                    "{} of {total} spots are finished and kept in {}; go on with `phicam render --resume` and the same settings",
-                    record.finished,
-                    path.display()
-                )),
-                other => other,
-            });
-        }
-    };
-    record.finished = match &phi {
-        Some(_) => total,
-        None => (0..total)
-            .filter(|s| folder.kept(*s, scene).is_some())
-            .count(),
-    };
+    record.finished = (0..total)
+        .filter(|s| folder.kept(*s, scene, &record).is_some())
+        .count();
+    if let Err(failure) = traced {
+        record.write(path)?;
+        return Err(match failure {
+            Failure::Stopped(_) => Failure::Stopped(format!(
+                "{} of {total} spots are finished and kept in {}; go on with `phicam render --resume` and the same settings",
+                record.finished,
+                path.display()
+            )),
+            other => other,
+        });
+    }
+    let phi = gather(scene, &folder, &record);
     if let Some(traced) = &phi {
         folder.write_phi(&traced.flux, &traced.stderr)?;
         record.write(path)?;
@@ -156,8 +149,7 @@ pub(super) fn into_folder(
     Ok(Rendered { record, phi })
 }
 
-/// Traces the spots of `todo`; frames and kept columns are written as soon as they are finished. Returns what was traced if
-/// it was everything at once.
+/// Traces the spots of `todo`; frames and kept columns are written as soon as they are finished.
 fn trace(
     scene: &Scene,
     plan: &Plan,
@@ -166,7 +158,7 @@ fn trace(
     record: &Record,
     pool: &rayon::ThreadPool,
     talk: Talk,
-) -> Result<Option<Traced>, Failure> {
+) -> Result<(), Failure> {
     let pixels = scene.camera.pixels() as u64;
     let per_pixel = match plan.estimator {
         Estimator::Independent => todo.len() as u64,
@@ -183,7 +175,6 @@ fn trace(
         stop: stop_flag(),
     };
     let stopped = || Failure::Stopped(String::new());
-    let mut all: Vec<Traced> = Vec::new();
     for range in batches(todo, plan.estimator) {
         let traced = pool
             .install(|| render(scene, plan, range.clone(), control))
@@ -193,10 +184,33 @@ fn trace(
             folder.write_frame(scene, record, spot, &traced, column)?;
             folder.keep(spot, &traced, column)?;
         }
-        all.push(traced);
     }
     bar.finish_and_clear();
-    Ok(join(all))
+    Ok(())
+}
+
+/// Bytes that Φcam with all its bounce counts may take in memory.
+const MOST_BYTES: f64 = 16.0 * 1024.0 * 1024.0 * 1024.0;
+
+/// What will not fit in the end is refused at the start.
+fn refuse_too_large(scene: &Scene) -> Result<(), Failure> {
+    let (pixels, spots) = (scene.camera.pixels() as f64, scene.laser.spots.len() as f64);
+    let channels = f64::from(scene.max_bounces) + 2.0;
+    let (frame, matrix) = (4.0 * pixels * channels, 8.0 * pixels * spots * channels);
+    if frame <= film::exr::PIXEL_BYTES_MAX as f64 && matrix <= MOST_BYTES {
+        return Ok(());
+    }
+    let gib = |bytes: f64| bytes / 1024.0 / 1024.0 / 1024.0;
+    let cause = format!(
+        "{pixels} pixels × {spots} spots with {} bounce counts take {:.1} GiB of memory and {:.2} GiB a frame",
+        scene.max_bounces,
+        gib(matrix),
+        gib(frame)
+    );
+    Err(Failure::new(
+        cause,
+        "use fewer pixels, spots or max_bounces: at most 16 GiB and 1 GiB a frame",
+    ))
 }
 
 /// Frames hold f32: a flux beyond its range would be stored as infinity.
@@ -222,33 +236,12 @@ fn batches(todo: &[usize], estimator: Estimator) -> Vec<Range<usize>> {
     ranges
 }
 
-/// Columns side by side.
-fn join(parts: Vec<Traced>) -> Option<Traced> {
-    let orders = parts.first()?.bounces.len();
-    let beside = |f: &dyn Fn(&Traced) -> &Matrix| {
-        let columns: Vec<_> = parts
-            .iter()
-            .flat_map(|t| {
-                f(t).column_iter()
-                    .map(|c| c.into_owned())
-                    .collect::<Vec<_>>()
-            })
-            .collect();
-        Matrix::from_columns(&columns)
-    };
-    Some(Traced {
-        bounces: (0..orders).map(|n| beside(&|t| &t.bounces[n])).collect(),
-        flux: beside(&|t| &t.flux),
-        stderr: beside(&|t| &t.stderr),
-    })
-}
-
 /// All columns from what was kept of each spot, if every spot is there.
-fn gather(scene: &Scene, folder: &Folder) -> Option<Traced> {
+fn gather(scene: &Scene, folder: &Folder, record: &Record) -> Option<Traced> {
     let orders = scene.max_bounces as usize;
     let spots = 0..scene.laser.spots.len();
     let kept: Vec<Matrix> = spots
-        .map(|s| folder.kept(s, scene))
+        .map(|s| folder.kept(s, scene, record))
         .collect::<Option<_>>()?;
     let pick =
         |n: usize| Matrix::from_columns(&kept.iter().map(|m| m.column(n)).collect::<Vec<_>>());

@@ -1,11 +1,14 @@
 //! `phicam run`: the main job from end to end.
 
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use super::args::RunArgs;
 use super::failure::Failure;
 use super::folder::{Keep, REPORT, SUMMARY};
+use super::interrupt::stop_flag;
 use super::output::{self, Talk};
+use super::record::Record;
 use super::render::{self, Rendered};
 use super::{Outcome, model, recover, settings, validate};
 use crate::film;
@@ -22,24 +25,26 @@ pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
     let scene = Scene::load(&args.scene)?;
     let mut clock = Clock::start();
     let plan = settings::plan(&args.trace, Talk { quiet: true })?;
-    let test = settings::test(&args.test, &plan)?;
+    let test = settings::test(&args.test, &plan, talk)?;
     let spots = 0..scene.laser.spots.len();
-    let Rendered { record, phi } = render::into_folder(
-        &scene,
-        &args.trace,
-        spots,
-        Keep::Nothing,
-        &args.output,
-        talk,
-    )?;
+    let asked = Record::new(&scene, &plan, 0, 0, 0.0);
+    let keep = match Record::read(&args.output)? {
+        Some(earlier) if earlier.same_settings(&asked) && earlier.finished < earlier.spots => {
+            talk.say("going on with the unfinished run");
+            Keep::Finished
+        }
+        _ => Keep::Nothing,
+    };
+    let Rendered { record, phi } =
+        render::into_folder(&scene, &args.trace, spots, keep, &args.output, talk)?;
     let Some(traced) = phi else {
         return Err(Failure::new("not every spot was rendered", "run again"));
     };
-    clock.lap("render");
+    clock.lap("render")?;
 
     talk.say("stacking the frames");
     refuse_unfaithful_frames(&args.output, &traced.flux)?;
-    clock.lap("stack");
+    clock.lap("stack")?;
 
     let total: f64 = traced.flux.sum();
     let share = |m: &Matrix| if total > 0.0 { m.sum() / total } else { 0.0 };
@@ -111,7 +116,7 @@ fn compare_and_recover(
     results.model = Some(found.model);
     results.z = Some(found.z);
     results.agreement = Some(found.agreement);
-    clock.lap("model and validate");
+    clock.lap("model and validate")?;
 
     talk.say("recovering the object");
     let noise = Noise::StandardError(&results.stderr);
@@ -124,7 +129,7 @@ fn compare_and_recover(
     );
     results.recovered = recover::collect(attempts, false, talk)?;
     recover::write(&args.output, &results.recovered)?;
-    clock.lap("recover");
+    clock.lap("recover")?;
     Ok(())
 }
 
@@ -166,9 +171,15 @@ impl Clock {
         }
     }
 
-    fn lap(&mut self, stage: &str) {
+    /// Ends a stage; the place where Ctrl-C is obeyed after the tracing.
+    fn lap(&mut self, stage: &str) -> Result<(), Failure> {
         self.laps
             .push((stage.to_owned(), self.last.elapsed().as_secs_f64()));
         self.last = Instant::now();
+        if stop_flag().load(Ordering::Relaxed) {
+            let kept = "frames and phi.npy are finished; `phicam validate` and `phicam recover` go on from there";
+            return Err(Failure::Stopped(kept.to_owned()));
+        }
+        Ok(())
     }
 }

@@ -90,8 +90,17 @@ pub(super) fn integration(name: IntegrationName) -> Integration {
     }
 }
 
+/// Paths a block from which on its mean is taken as normally distributed.
+const ENOUGH_PATHS: u32 = 4;
+
 /// The test for a run traced by `plan`.
-pub(super) fn test(args: &TestArgs, plan: &Plan) -> Result<Test, Failure> {
+pub(super) fn test(args: &TestArgs, plan: &Plan, talk: Talk) -> Result<Test, Failure> {
+    if plan.budget.size < ENOUGH_PATHS {
+        talk.say(format!(
+            "warning: {} paths a block are few for normal block means: the verdict's significance is only approximate",
+            plan.budget.size
+        ));
+    }
     Ok(Test {
         significance: significance(args.significance)?,
         replicates: plan.budget.blocks,

@@ -1,26 +1,60 @@
 //! `phicam stack`: Φcam from the frames alone.
 
+use std::path::Path;
+
 use super::Outcome;
 use super::args::StackArgs;
 use super::failure::Failure;
 use super::folder::{PHI, STDERR};
 use super::output::{self, Talk};
 use crate::film;
-use crate::matrix::npy;
+use crate::matrix::{Matrix, npy};
 use crate::store::ensure_writable;
 
 pub(super) fn execute(args: &StackArgs, _: Talk) -> Result<Outcome, Failure> {
     let stack = film::stack(&args.dir)?;
     let dir = args.output.as_ref().unwrap_or(&args.dir);
     ensure_writable(dir)?;
-    npy::write(&dir.join(STDERR), &stack.stderr)?;
-    npy::write(&dir.join(PHI), &stack.phi)?;
+    let precision = if refuse_other(&dir.join(PHI), &stack.phi)? == Found::Exact {
+        "left as it is: the frames agree with it, and it holds more digits than they do"
+    } else {
+        npy::write(&dir.join(STDERR), &stack.stderr)?;
+        npy::write(&dir.join(PHI), &stack.phi)?;
+        "to the f32 precision of the frames"
+    };
     let (pixels, spots) = stack.phi.shape();
-    let text = format!(
-        "{}: {pixels} pixels × {spots} spots of scene `{}` (f32 precision of the frames)\n",
+    output::print(&format!(
+        "{}: {pixels} pixels × {spots} spots of scene `{}`, {precision}\n",
         dir.join(PHI).display(),
         stack.run.scene_name
-    );
-    output::print(&text)?;
+    ))?;
     Ok(Outcome::Done)
+}
+
+#[derive(PartialEq, Eq)]
+enum Found {
+    Nothing,
+    Exact,
+}
+
+/// Whether there is a Φcam that rounds to `stacked`, which is then the better one; another one is not overwritten.
+fn refuse_other(path: &Path, stacked: &Matrix) -> Result<Found, Failure> {
+    if !path.exists() {
+        return Ok(Found::Nothing);
+    }
+    let cure = "give another folder with -o, or remove it";
+    let there = npy::read(path).map_err(|e| Failure::new(e.to_string(), cure))?;
+    let rounds = there.shape() == stacked.shape()
+        && there
+            .iter()
+            .zip(stacked.iter())
+            .all(|(a, b)| f64::from(*a as f32) == *b);
+    if !rounds {
+        let cause = format!(
+            "{} is there already and is not what the frames hold",
+            path.display()
+        );
+        return Err(Failure::new(cause, cure));
+    }
+    Ok(Found::Exact)
 }

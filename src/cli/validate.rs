@@ -10,7 +10,7 @@ use crate::report;
 use crate::scene::Scene;
 use crate::study::{Agreement, validate};
 
-pub(super) fn execute(args: &ValidateArgs, _: Talk) -> Result<Outcome, Failure> {
+pub(super) fn execute(args: &ValidateArgs, talk: Talk) -> Result<Outcome, Failure> {
     let (own, record) = read_run(&args.dir)?;
     let phi = read_matrix(&args.dir.join(PHI), &own)?;
     let stderr = read_stderr(&args.dir.join(STDERR), &own)?;
@@ -21,7 +21,7 @@ pub(super) fn execute(args: &ValidateArgs, _: Talk) -> Result<Outcome, Failure> 
     if let Some(by) = args.shift_spots {
         scene = scene.with_shifted_spots(by)?;
     }
-    let test = settings::test(&args.test, &record.plan()?)?;
+    let test = settings::test(&args.test, &record.plan()?, talk)?;
     let kernel = settings::kernel(args.test.kernel);
     let integration = settings::integration(args.test.integration);
     let found = validate(&scene, &phi, &stderr, kernel, integration, test)?;

@@ -20,6 +20,8 @@ const FLAT: usize = 8;
 const EXTENT: f64 = 1000.0;
 /// What each box is widened by in the tree's space.
 const PADDING: f32 = 4e-3;
+/// Hits are at one place if their distances differ by no more than this, relative to the lengths involved.
+const TIE: f64 = 1e-12;
 /// Coordinates beyond this (in scene units) are refused.
 const LARGEST: f64 = 1e12;
 
@@ -90,34 +92,51 @@ impl Bvh {
         &self.shapes
     }
 
-    /// First shape met by `ray`, from either side; `from` is the shape that the ray starts on. Of equal distances the lower
-    /// id wins, whatever the order of the search.
+    /// First shape met by `ray`, from either side; `from` is the shape that the ray starts on. Where two shapes are met at one
+    /// place (a panel of two faces back to back), the one that shows its front wins, then the one with the lower id,
+    /// whatever the order of the search.
     pub fn closest(&self, ray: &Ray, from: Option<ShapeId>) -> Option<Hit> {
         let mut best: Option<Hit> = None;
-        let mut rest = *ray;
-        let intersect = |id: usize, rest: &Ray| {
+        let slack = |t: f64| TIE * (t + ray.origin.abs().max_element());
+        let mut meet = |id: usize| -> f64 {
             let shape = id as ShapeId;
-            let t = self.shapes[id].intersect(rest, from == Some(shape));
-            t.map(|t| Hit { shape, t })
-        };
-        match &self.tree {
-            None => {
-                for id in 0..self.shapes.len() {
-                    if let Some(hit) = intersect(id, &rest) {
-                        rest.length = hit.t;
-                        best = Some(hit);
-                    }
-                }
-            }
-            Some(tree) => tree.closest(ray, |id| {
-                let nearer = |h: &Hit| best.is_none_or(|b| (h.t, h.shape) < (b.t, b.shape));
-                if let Some(hit) = intersect(id, ray).filter(nearer) {
+            let limit = best.map_or(ray.length, |b| (b.t + slack(b.t)).min(ray.length));
+            let rest = Ray {
+                length: limit,
+                ..*ray
+            };
+            if let Some(t) = self.shapes[id].intersect(&rest, from == Some(shape)) {
+                let hit = Hit { shape, t };
+                if best.is_none_or(|b| self.before(ray, hit, b, slack(t))) {
                     best = Some(hit);
                 }
-                best.map_or(ray.length, |b| b.t)
+            }
+            best.map_or(ray.length, |b| b.t)
+        };
+        match &self.tree {
+            None => (0..self.shapes.len()).for_each(|id| {
+                meet(id);
             }),
+            Some(tree) => tree.closest(ray, meet),
         }
         best
+    }
+
+    /// Whether hit `a` comes before hit `b`.
+    fn before(&self, ray: &Ray, a: Hit, b: Hit, slack: f64) -> bool {
+        if (a.t - b.t).abs() > slack {
+            return a.t < b.t;
+        }
+        let front = |hit: Hit| {
+            let shape = &self.shapes[hit.shape as usize];
+            let point = shape.at_position(ray.origin + ray.direction * hit.t);
+            point.normal.dot(ray.direction) < 0.0
+        };
+        match (front(a), front(b)) {
+            (true, false) => true,
+            (false, true) => false,
+            _ => a.shape < b.shape,
+        }
     }
 
     /// Whether anything blocks the open segment `ray`, whose start and end lie on the shapes in `ends` (if on any).

@@ -102,19 +102,59 @@ impl Parallelogram {
         self.at(self.coordinates(p).map(|x| x.clamp(0.0, 1.0)))
     }
 
-    /// Intersection with the plane inside the patch: t = n·(corner − o)/(n·d).
+    /// Intersection with the plane inside the patch: t = n·(corner − o)/(n·d). A ray that starts in the plane (to rounding)
+    /// does not meet it.
     pub fn intersect(&self, ray: &Ray) -> Option<f64> {
-        let t = self.plane_distance(ray)?;
+        let slope = self.normal.dot(ray.direction);
+        let height = self.height(ray.origin)?;
+        let t = -height / slope;
+        // A slope of 0 gives an infinite t, which no length exceeds.
         if !(t > 0.0 && t < ray.length) {
             return None;
         }
         contains(self.coordinates(ray.origin + ray.direction * t)).then_some(t)
     }
 
-    /// t at which the ray's line meets the patch's plane, wherever in it; `None` if parallel.
-    pub fn plane_distance(&self, ray: &Ray) -> Option<f64> {
-        let slope = self.normal.dot(ray.direction);
-        (slope != 0.0).then(|| self.normal.dot(self.corner - ray.origin) / slope)
+    /// Whether the patch stands between the two ends of the segment. A segment that starts or ends in the patch's plane (to
+    /// rounding) is not cut by it: a point on a seam is not hidden by the neighbour, nor by what stands edge-on at its foot.
+    pub fn blocks(&self, segment: &Ray) -> bool {
+        let end = segment.origin + segment.direction * segment.length;
+        self.height(end).is_some() && self.intersect(segment).is_some()
+    }
+
+    /// Signed distance n·(p − corner) from the plane; `None` if that is no more than rounding.
+    fn height(&self, p: DVec3) -> Option<f64> {
+        const ROUNDING: f64 = 1e-12;
+        let height = self.normal.dot(p - self.corner);
+        let reach = p.abs().max_element() + self.corner.abs().max_element();
+        (height.abs() > ROUNDING * reach).then_some(height)
+    }
+
+    /// Whether the two patches lie in one plane (to a billionth of their size) and have more than an edge in common.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        const SLACK: f64 = 1e-9;
+        let size = |p: &Self| p.u.length() + p.v.length();
+        let slack = SLACK * (size(self) + size(other));
+        let above = |c: &DVec3| self.normal.dot(*c - self.corner).abs() > slack;
+        if other.corners().iter().any(above) {
+            return false;
+        }
+        // Two convex figures are apart if some edge of either separates them.
+        let separates = |edge: DVec3| {
+            let axis = edge.cross(self.normal).normalize_or_zero();
+            let range = |p: &Self| {
+                let along = p.corners().map(|c| c.dot(axis));
+                (
+                    along.into_iter().fold(f64::INFINITY, f64::min),
+                    along.into_iter().fold(f64::NEG_INFINITY, f64::max),
+                )
+            };
+            let ((a, b), (c, d)) = (range(self), range(other));
+            b.min(d) - a.max(c) <= slack
+        };
+        ![self.u, self.v, other.u, other.v]
+            .into_iter()
+            .any(separates)
     }
 
     /// The point above (x, y) along z, if the patch has one.
@@ -218,6 +258,44 @@ mod tests {
                 })
                 .is_none()
         );
+    }
+
+    /// A wall of two tiles: a spot exactly on the seam is free from everywhere in front, however t rounds.
+    #[test]
+    fn a_point_on_a_seam_is_not_blocked_by_the_neighbour() {
+        let tile = |x: f64| {
+            let corner = DVec3::new(x, 0.0, 0.1);
+            Parallelogram::new(corner, DVec3::X * 5.0, DVec3::new(0.0, 15.5, 0.3)).unwrap()
+        };
+        let (left, right) = (tile(0.0), tile(5.0));
+        for i in 0..2000 {
+            let k = f64::from(i);
+            let seam = left.at([1.0, (k * 0.618).fract()]).position;
+            let from = DVec3::new(10.0 * (k * 0.31).fract(), 15.0 * (k * 0.77).fract(), 4.0);
+            assert!(!right.blocks(&Ray::between(from, seam).unwrap()));
+            assert!(!right.blocks(&Ray::between(seam, from).unwrap()));
+            let behind = Ray::between(from, DVec3::new(7.0, 7.0, -1.0)).unwrap();
+            assert!(right.blocks(&behind) || left.blocks(&behind));
+        }
+    }
+
+    #[test]
+    fn overlap_is_more_than_an_edge_in_one_plane() {
+        let square = |x: f64, y: f64, z: f64| {
+            Parallelogram::new(DVec3::new(x, y, z), DVec3::X, DVec3::new(0.2, 1.0, 0.0)).unwrap()
+        };
+        let base = square(0.0, 0.0, 0.0);
+        assert!(base.overlaps(&base) && base.overlaps(&base.turned()));
+        assert!(base.overlaps(&square(0.9, 0.0, 0.0)) && square(0.9, 0.0, 0.0).overlaps(&base));
+        assert!(
+            !base.overlaps(&square(1.0, 0.0, 0.0)),
+            "neighbours share an edge"
+        );
+        assert!(!base.overlaps(&square(0.0, 0.0, 1e-6)), "lifted");
+        // The bounding boxes share [1, 1.2] × [0, 0.1], where the slanted square is not: its edge is x = 1 + y/5.
+        let corner = DVec3::new(1.05, 0.0, 0.0);
+        let low = Parallelogram::new(corner, DVec3::X, DVec3::Y * 0.1).unwrap();
+        assert!(!base.overlaps(&low) && !low.overlaps(&base));
     }
 
     #[test]

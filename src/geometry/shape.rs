@@ -88,7 +88,7 @@ impl Shape {
     /// on the shape itself.
     pub fn blocks(&self, ray: &Ray, leaves: bool, arrives: bool) -> bool {
         match self {
-            Self::Parallelogram(p) => !leaves && !arrives && p.intersect(ray).is_some(),
+            Self::Parallelogram(p) => !leaves && !arrives && p.blocks(ray),
             Self::Sphere(s) => s.blocks(ray, leaves, arrives),
         }
     }
@@ -109,10 +109,10 @@ impl Shape {
         }
     }
 
-    /// The point straight above or below (x, y) along z; of several the one with the smallest z.
-    pub fn at_xy(&self, x: f64, y: f64) -> Option<SurfacePoint> {
+    /// The points straight above or below (x, y) along z, by growing z.
+    pub fn at_xy(&self, x: f64, y: f64) -> Vec<SurfacePoint> {
         match self {
-            Self::Parallelogram(p) => p.at_xy(x, y),
+            Self::Parallelogram(p) => p.at_xy(x, y).into_iter().collect(),
             Self::Sphere(s) => s.at_xy(x, y),
         }
     }

@@ -73,11 +73,15 @@ impl Sphere {
         self.point((p - self.centre).try_normalize().unwrap_or(DVec3::Z))
     }
 
-    /// The lower point above or below (x, y).
-    pub fn at_xy(&self, x: f64, y: f64) -> Option<SurfacePoint> {
+    /// The lower and the upper point above or below (x, y), if it is within the radius.
+    pub fn at_xy(&self, x: f64, y: f64) -> Vec<SurfacePoint> {
         let [dx, dy] = [x - self.centre.x, y - self.centre.y];
         let height2 = self.radius * self.radius - dx * dx - dy * dy;
-        (height2 >= 0.0).then(|| self.point(DVec3::new(dx, dy, -height2.sqrt()) / self.radius))
+        if height2 < 0.0 {
+            return Vec::new();
+        }
+        let point = |dz: f64| self.point(DVec3::new(dx, dy, dz) / self.radius);
+        vec![point(-height2.sqrt()), point(height2.sqrt())]
     }
 
     /// Both roots of |o + t·d − c|² = r², ascending, without cancellation.
@@ -132,7 +136,7 @@ mod tests {
     #[test]
     fn chords_have_their_closed_length() {
         let s = cavity();
-        let start = s.at_xy(0.0, 0.0).unwrap();
+        let start = s.at_xy(0.0, 0.0)[0];
         assert!((start.position - DVec3::ZERO).length() < 1e-15);
         assert!((start.normal - DVec3::Z).length() < 1e-15);
         for theta in [0.0f64, 0.3, 1.0, 1.5] {

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_1_PI;
 
 use super::kernel::{HiddenPoint, Kernel};
-use crate::geometry::{DVec3, Ray};
+use crate::geometry::{DVec3, Ray, SurfacePoint};
 use crate::scene::{Role, Scene, Surface};
 
 /// A point of the wall that a line of sight ends on, or that the laser lights.
@@ -46,23 +46,46 @@ pub(super) fn seen(scene: &Scene, pixel: usize, ab: [f64; 2], share: f64) -> Wal
             weight: 0.0,
         },
         Some((t, surface)) => {
-            lambertian(surface, camera.position + direction * t, direction, etendue)
+            let point = surface.shape.at_position(camera.position + direction * t);
+            lambertian(surface, &point, direction, etendue)
         }
     }
 }
 
-/// The wall at `offset` from the target of spot `spot`, lit by `share` of the laser's power.
+/// The wall where the beam that is aimed at `offset` from the target of spot `spot` meets it, lit by `share` of the laser's
+/// power. Its weight is 0 where the beam misses the wall.
 pub(super) fn lit(scene: &Scene, spot: usize, offset: DVec3, share: f64) -> WallPoint {
     let laser = &scene.laser;
-    let spot = &laser.spots[spot];
-    let surface = &scene.surfaces[spot.surface as usize];
-    let aim = spot.target.position + offset;
-    lambertian(surface, aim, aim - laser.position, share * laser.power)
+    let target = &laser.spots[spot].target;
+    let surface = &scene.surfaces[laser.spots[spot].surface as usize];
+    let aim = target.position + offset;
+    let direction = (aim - laser.position).normalize_or_zero();
+    if offset == DVec3::ZERO {
+        return lambertian(surface, target, direction, share * laser.power);
+    }
+    match surface
+        .shape
+        .intersect(&Ray::new(laser.position, direction), false)
+    {
+        None => WallPoint {
+            position: aim,
+            normal: target.normal,
+            weight: 0.0,
+        },
+        Some(t) => {
+            let point = surface.shape.at_position(laser.position + direction * t);
+            lambertian(surface, &point, direction, share * laser.power)
+        }
+    }
 }
 
 /// A Lambertian wall point met along `direction`: its weight is `received`·ρ/π, and 0 on the back.
-fn lambertian(surface: &Surface, position: DVec3, direction: DVec3, received: f64) -> WallPoint {
-    let point = surface.shape.at_position(position);
+fn lambertian(
+    surface: &Surface,
+    point: &SurfacePoint,
+    direction: DVec3,
+    received: f64,
+) -> WallPoint {
     let front = point.normal.dot(direction) < 0.0;
     let albedo = if front {
         surface.albedo.albedo(point.uv)

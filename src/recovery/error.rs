@@ -50,6 +50,16 @@ pub enum RecoveryError {
         /// The entry, W.
         value: f64,
     },
+    /// More elements than the joint methods can hold.
+    #[error(
+        "{elements} elements are more than the {most} that the joint methods can hold; use fewer (--elements), or pinv"
+    )]
+    TooManyElements {
+        /// Elements of the model.
+        elements: usize,
+        /// The limit.
+        most: usize,
+    },
     /// A pixel that cannot see an element, where the method divides.
     #[error(
         "the model says that pixel {pixel} receives nothing from element {element}, and {method} divides by it; \

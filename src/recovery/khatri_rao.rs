@@ -17,6 +17,9 @@ use crate::num::linalg::{
     triangle,
 };
 
+/// Elements whose Gram matrix (and its few copies) is still formed: 512 MiB each.
+const MOST_ELEMENTS: usize = 8192;
+
 /// The problem after compression.
 pub(super) struct Operator {
     form: Form,
@@ -50,6 +53,12 @@ fn compress(side: &DMatrix<f64>, name: &'static str) -> Result<(Svd, usize), Rec
 impl Operator {
     /// Weighs and compresses; `budget` is the largest number of entries of the small Khatri–Rao product.
     pub(super) fn new(problem: &Problem<'_>, budget: usize) -> Result<Self, RecoveryError> {
+        if problem.c.ncols() > MOST_ELEMENTS {
+            return Err(RecoveryError::TooManyElements {
+                elements: problem.c.ncols(),
+                most: MOST_ELEMENTS,
+            });
+        }
         let weights = weights::fit(problem.stderr, problem.phi.nrows(), problem.phi.ncols());
         let by_pixel = |m: &DMatrix<f64>| {
             DMatrix::from_fn(m.nrows(), m.ncols(), |p, j| weights.pixels[p] * m[(p, j)])

@@ -3,7 +3,7 @@
 use super::error::{Fault, keys};
 use super::file::CameraTable;
 use super::surface::{Role, Surface};
-use crate::geometry::{DVec3, Parallelogram};
+use crate::geometry::{DVec3, Parallelogram, SurfacePoint};
 
 /// More pixels than this are taken for a mistake.
 const MOST_PIXELS: u64 = 1 << 26;
@@ -96,21 +96,22 @@ impl Camera {
             return refuse("view", cause, "give x and y as [lower, upper]");
         }
         let position = DVec3::from_array(table.position);
-        let Some(view) = view([x0, x1], [y0, y1], position, surfaces) else {
-            let cause = format!("the view [{x0}, {x1}] × [{y0}, {y1}] does not lie on the wall");
-            return refuse(
-                "view",
-                cause,
-                "keep it within a relay surface, or extend the wall",
-            );
-        };
-        if (position - view.corner()).dot(view.normal()) <= 0.0 {
-            return refuse(
-                "position",
-                "the camera stands behind the wall that it should see".into(),
-                "move it to the front (the side of u × v)",
-            );
-        }
+        let view = view([x0, x1], [y0, y1], position, surfaces).map_err(|e| {
+            let at = format!("the view [{x0}, {x1}] × [{y0}, {y1}]");
+            let fault = match e {
+                NoView::OffTheWall => Fault::new(
+                    keys!["view"],
+                    format!("{at} does not lie on the wall"),
+                    "keep it within a relay surface, or extend the wall",
+                ),
+                NoView::Behind => Fault::new(
+                    keys!["position"],
+                    format!("the camera stands behind the wall on which {at} lies"),
+                    "move it to the front (the side of u × v)",
+                ),
+            };
+            fault.within(keys!["camera"])
+        })?;
         Ok(Self {
             position,
             aperture_area: table.aperture_area,
@@ -141,29 +142,39 @@ impl Footprint {
     }
 }
 
+/// Why a camera has no view.
+enum NoView {
+    /// Some of it has no relay surface below it.
+    OffTheWall,
+    /// The camera is on the back of the relay.
+    Behind,
+}
+
 /// The view as a patch of the relay's plane (of a curved relay: of its tangent plane at the view's centre), normal
-/// towards the relay's front. `None` unless the whole view has relay surface below it.
-fn view(x: [f64; 2], y: [f64; 2], camera: DVec3, surfaces: &[Surface]) -> Option<Parallelogram> {
+/// towards the relay's front.
+fn view(
+    x: [f64; 2],
+    y: [f64; 2],
+    camera: DVec3,
+    surfaces: &[Surface],
+) -> Result<Parallelogram, NoView> {
     let relays = || surfaces.iter().filter(|s| s.role == Role::Relay);
-    let (cx, cy) = (0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1]));
-    let centre = relays()
-        .filter_map(|s| s.shape.at_xy(cx, cy))
-        .min_by(|a, b| {
-            let distance = |p: DVec3| (p - camera).length_squared();
-            distance(a.position).total_cmp(&distance(b.position))
-        })?;
     const STEPS: usize = 64;
-    for i in 0..=STEPS {
-        for j in 0..=STEPS {
-            let at = |c: [f64; 2], k: usize| c[0] + (c[1] - c[0]) * k as f64 / STEPS as f64;
-            if relays().all(|s| s.shape.at_xy(at(x, i), at(y, j)).is_none()) {
-                return None;
-            }
+    let at = |c: [f64; 2], k: usize| c[0] + (c[1] - c[0]) * k as f64 / STEPS as f64;
+    for (i, j) in (0..=STEPS).flat_map(|i| (0..=STEPS).map(move |j| (i, j))) {
+        if relays().all(|s| s.shape.at_xy(at(x, i), at(y, j)).is_empty()) {
+            return Err(NoView::OffTheWall);
         }
     }
+    let (cx, cy) = (0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1]));
+    let distance = |p: &SurfacePoint| (p.position - camera).length_squared();
+    let centre = relays()
+        .filter_map(|s| s.facing_at_xy(cx, cy, camera))
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        .ok_or(NoView::Behind)?;
     let n = centre.normal;
     if n.z.abs() < 1e-9 {
-        return None;
+        return Err(NoView::OffTheWall);
     }
     let lift = |px: f64, py: f64| {
         let dz = -(n.x * (px - cx) + n.y * (py - cy)) / n.z;
@@ -171,7 +182,7 @@ fn view(x: [f64; 2], y: [f64; 2], camera: DVec3, surfaces: &[Surface]) -> Option
     };
     let corner = lift(x[0], y[0]);
     let (u, v) = (lift(x[1], y[0]) - corner, lift(x[0], y[1]) - corner);
+    let patch = Parallelogram::new(corner, u, v).ok_or(NoView::OffTheWall)?;
     // u × v points along +z; where the wall's front is below, the patch is kept and its normal turned.
-    let patch = Parallelogram::new(corner, u, v)?;
-    Some(if n.z > 0.0 { patch } else { patch.turned() })
+    Ok(if n.z > 0.0 { patch } else { patch.turned() })
 }

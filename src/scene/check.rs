@@ -6,7 +6,7 @@ use super::error::{Fault, keys};
 use super::laser::Profile;
 use super::surface::{Role, Surface};
 use super::{Scene, Texture};
-use crate::geometry::{DVec3, Ray, Shape, ShapeId, SurfacePoint};
+use crate::geometry::{Basis, DVec3, Ray, Shape, ShapeId, SurfacePoint};
 
 /// Something suspicious in a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +29,8 @@ pub enum Warning {
     ElementsAcrossCells(String),
     /// Spots whose line to the hidden surface is blocked for every element.
     SpotsShadowed(Vec<usize>),
+    /// Spots of which a part falls beside the wall and is lost.
+    SpotsOverhang(Vec<usize>),
 }
 
 impl fmt::Display for Warning {
@@ -83,6 +85,13 @@ impl fmt::Display for Warning {
                 f,
                 "elements of `{name}` straddle the edges of its texture: the model takes the albedo at their centres"
             ),
+            Self::SpotsOverhang(spots) => {
+                write!(
+                    f,
+                    "{} hanging over the wall's edge: what falls beside it is lost",
+                    Spots(spots)
+                )
+            }
             Self::SpotsShadowed(spots) => {
                 write!(
                     f,
@@ -128,13 +137,11 @@ impl fmt::Display for Spots<'_> {
     }
 }
 
-/// Points of a hidden surface at which visibility is tested: the centres of a 9 × 9 grid and the corners.
-fn probes(surface: &Surface) -> Vec<SurfacePoint> {
-    const N: usize = 9;
-    let centre = |i: usize| (i as f64 + 0.5) / N as f64;
-    (0..N * N)
-        .map(|i| surface.shape.at([centre(i % N), centre(i / N)]))
-        .chain(surface.shape.outline())
+/// Points of a hidden surface at which visibility is tested: the centres of an n × n grid.
+fn probes(surface: &Surface, n: usize) -> Vec<SurfacePoint> {
+    let centre = |i: usize| (i as f64 + 0.5) / n as f64;
+    (0..n * n)
+        .map(|i| surface.shape.at([centre(i % n), centre(i / n)]))
         .collect()
 }
 
@@ -142,10 +149,14 @@ fn free(scene: &Scene, from: DVec3, on: Option<ShapeId>, to: DVec3, at: ShapeId)
     Ray::between(from, to).is_some_and(|ray| !scene.bvh().blocked(&ray, [on, Some(at)]))
 }
 
-/// A camera in front of a hidden surface with a free line to it contradicts the experiment.
+/// Probes a side for the camera's line of sight, and for each spot's.
+const CAMERA_PROBES: usize = 33;
+const SPOT_PROBES: usize = 9;
+
+/// A camera in front of a hidden surface with a free line to any of 33 × 33 points of it contradicts the experiment.
 pub(super) fn refuse_visible_hidden_face(scene: &Scene) -> Result<(), Fault> {
     for (id, surface) in scene.hidden() {
-        let sees = probes(surface).into_iter().any(|p| {
+        let sees = probes(surface, CAMERA_PROBES).into_iter().any(|p| {
             let camera = scene.camera.position;
             (camera - p.position).dot(p.normal) > 0.0
                 && free(scene, camera, None, p.position, id as ShapeId)
@@ -198,50 +209,50 @@ fn spots(scene: &Scene, found: &mut Vec<Warning>) {
     };
     let mut in_view = Vec::new();
     let mut shadowed = Vec::new();
+    let mut overhanging = Vec::new();
     let mut blocked: Vec<(String, Vec<usize>)> = Vec::new();
-    let [w, h] = [
-        scene.camera.view.u().length(),
-        scene.camera.view.v().length(),
-    ];
+    let view = &scene.camera.view;
+    let [w, h] = [view.u().length(), view.v().length()];
+    let hidden: Vec<(ShapeId, Vec<SurfacePoint>)> = scene
+        .hidden()
+        .map(|(id, s)| (id as ShapeId, probes(s, SPOT_PROBES)))
+        .collect();
     for (i, spot) in laser.spots.iter().enumerate() {
         let target = spot.target.position;
-        let [a, b] = scene.camera.view.coordinates(target);
+        let [a, b] = view.coordinates(target);
         let near = |x: f64, side: f64| x * side >= -reach && (x - 1.0) * side <= reach;
         if near(a, w) && near(b, h) {
             in_view.push(i);
         }
-        if let Some(ray) = Ray::between(laser.position, target) {
-            let stops = scene
+        if reach > 0.0 && rim_leaves(scene, &spot.target, reach) {
+            overhanging.push(i);
+        }
+        let beam = Ray::between(laser.position, target);
+        let stop = beam.and_then(|ray| {
+            scene
                 .bvh()
                 .closest(&ray, None)
-                .filter(|hit| hit.shape != spot.surface && hit.t < ray.length * (1.0 - 1e-9));
-            if let Some(hit) = stops {
-                let name = &scene.surfaces[hit.shape as usize].name;
-                match blocked.iter_mut().find(|(n, _)| n == name) {
-                    Some((_, list)) => list.push(i),
-                    None => blocked.push((name.clone(), vec![i])),
-                }
-                continue;
-            }
-        }
-        let hidden: Vec<_> = scene.hidden().collect();
-        let facing = |p: &SurfacePoint| (target - p.position).dot(p.normal) > 0.0;
-        let lights = hidden.iter().any(|(id, s)| {
-            probes(s).iter().any(|p| {
-                facing(p)
-                    && free(
-                        scene,
-                        target,
-                        Some(spot.surface),
-                        p.position,
-                        *id as ShapeId,
-                    )
-            })
+                .filter(|hit| hit.t < ray.length * (1.0 - 1e-9))
         });
-        let faces = hidden.iter().any(|(_, s)| probes(s).iter().any(facing));
-        if !lights && faces {
+        if let Some(hit) = stop {
+            let name = &scene.surfaces[hit.shape as usize].name;
+            match blocked.iter_mut().find(|(n, _)| n == name) {
+                Some((_, list)) => list.push(i),
+                None => blocked.push((name.clone(), vec![i])),
+            }
+            continue;
+        }
+        let facing = |p: &&SurfacePoint| (target - p.position).dot(p.normal) > 0.0;
+        let mut faced = hidden
+            .iter()
+            .flat_map(|(id, points)| points.iter().filter(facing).map(move |p| (id, p)));
+        let faces = faced.clone().next().is_some();
+        if faces && !faced.any(|(id, p)| free(scene, target, Some(spot.surface), p.position, *id)) {
             shadowed.push(i);
         }
+    }
+    if !overhanging.is_empty() {
+        found.push(Warning::SpotsOverhang(overhanging));
     }
     if !in_view.is_empty() {
         found.push(Warning::SpotsInView(in_view));
@@ -269,6 +280,19 @@ fn spots(scene: &Scene, found: &mut Vec<Warning>) {
     }
 }
 
+/// Whether part of a spot's rim has no relay surface below it.
+fn rim_leaves(scene: &Scene, target: &SurfacePoint, radius: f64) -> bool {
+    let basis = Basis::around(target.normal);
+    (0..16).any(|k| {
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(k) / 16.0);
+        let p = target.position + basis.to_world([radius * cos, radius * sin, 0.0]);
+        let relays = scene.surfaces.iter().filter(|s| s.role == Role::Relay);
+        relays
+            .into_iter()
+            .all(|s| s.shape.at_xy(p.x, p.y).is_empty())
+    })
+}
+
 fn pixels(scene: &Scene, found: &mut Vec<Warning>) {
     let camera = &scene.camera;
     let mut blocked: Vec<(ShapeId, usize)> = Vec::new();
@@ -281,7 +305,12 @@ fn pixels(scene: &Scene, found: &mut Vec<Warning>) {
             .bvh()
             .closest(&Ray::new(ray.origin, ray.direction), None);
         let Some(hit) = stop else { continue };
-        if scene.surfaces[hit.shape as usize].role != Role::Relay {
+        let surface = &scene.surfaces[hit.shape as usize];
+        let point = surface
+            .shape
+            .at_position(ray.origin + ray.direction * hit.t);
+        let front = point.normal.dot(ray.direction) < 0.0;
+        if surface.role != Role::Relay || !front {
             match blocked.iter_mut().find(|(s, _)| *s == hit.shape) {
                 Some((_, count)) => *count += 1,
                 None => blocked.push((hit.shape, 1)),

@@ -95,40 +95,49 @@ impl Laser {
     }
 }
 
-/// Puts every (x, y) on the relay surface above or below it; of several the one nearest to the laser.
+/// Puts every (x, y) on the relay surface above or below it that shows its front to the laser: of several the nearest.
 pub(super) fn place(
     places: &[[f64; 2]],
     laser: DVec3,
     surfaces: &[Surface],
 ) -> Result<Vec<Spot>, Fault> {
-    let fault = |cause: String, cure: &str| Err(Fault::new(keys!["laser", "spots"], cause, cure));
     let mut spots = Vec::with_capacity(places.len());
     for (i, &[x, y]) in places.iter().enumerate() {
-        let distance = |s: &Spot| (s.target.position - laser).length_squared();
-        let spot = surfaces
-            .iter()
-            .enumerate()
-            .filter(|(_, s)| s.role == Role::Relay)
+        let relays = || {
+            surfaces
+                .iter()
+                .enumerate()
+                .filter(|(_, s)| s.role == Role::Relay)
+        };
+        let nearest = relays()
             .filter_map(|(id, s)| {
-                s.shape.at_xy(x, y).map(|target| Spot {
+                let target = s.facing_at_xy(x, y, laser)?;
+                Some(Spot {
                     target,
                     surface: id as ShapeId,
                 })
             })
-            .min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let Some(spot) = spot else {
-            return fault(
+            .min_by(|a, b| {
+                let distance = |s: &Spot| (s.target.position - laser).length_squared();
+                distance(a).total_cmp(&distance(b))
+            });
+        let (cause, cure) = match nearest {
+            Some(spot) => {
+                spots.push(spot);
+                continue;
+            }
+            None if relays().all(|(_, s)| s.shape.at_xy(x, y).is_empty()) => (
                 format!("spot {i} at ({x}, {y}) falls off every relay surface"),
                 "move or shrink the layout, or extend the wall",
-            );
-        };
-        if (laser - spot.target.position).dot(spot.target.normal) <= 0.0 {
-            return fault(
-                format!("the laser stands behind the surface that spot {i} at ({x}, {y}) lies on"),
+            ),
+            None => (
+                format!(
+                    "the laser stands behind (or in the plane of) the surface that spot {i} at ({x}, {y}) lies on"
+                ),
                 "move laser.position to the front of the wall (the side of u × v)",
-            );
-        }
-        spots.push(spot);
+            ),
+        };
+        return Err(Fault::new(keys!["laser", "spots"], cause, cure));
     }
     Ok(spots)
 }

@@ -2,7 +2,8 @@
 //! describes them, and the scenes that are built in.
 //!
 //! A [`Scene`] that exists is consistent: its spots and its view lie on relay surfaces, nothing has zero area, albedos
-//! are in \[0, 1\], and the camera does not see a hidden face. What is merely suspicious is told by [`Scene::warnings`].
+//! are in \[0, 1\], no two surfaces lie in one place facing the same way, and the camera does not see a hidden face (sampled at
+//! 33 × 33 points of it). What is merely suspicious is told by [`Scene::warnings`].
 //!
 //! All lengths are in the scene's [`Unit`]. Transport does not depend on it: étendue (length²) and form factors
 //! (length⁻²) cancel, and fluxes are in W.
@@ -48,8 +49,9 @@
 //! | `random` | `centre`, `half_width`, `count`, `seed` | uniform in the square |
 //! | `list` | `points = [[x, y], …]` | as listed |
 //!
-//! A spot or view given by (x, y) lies on the relay surface straight above or below it along z: of several the spot takes
-//! the one nearest to the laser, the view the one nearest to the camera. The view's plane is that relay's plane; of a curved relay it is the
+//! A spot or view given by (x, y) lies on the relay surface straight above or below it along z: of several that show their
+//! front the spot takes the one nearest to the laser, the view the one nearest to the camera (inside a cavity, the lower point). Of a wide spot what falls beside
+//! the wall is lost. The view's plane is that relay's plane; of a curved relay it is the
 //! tangent plane at the view's centre. Pixel index = column + row·columns, columns along +x and rows along +y of the view.
 
 mod builtin;

@@ -7,7 +7,7 @@ use super::file::{LayoutName, LineTable, SpotsTable};
 use crate::num::stream::{Key, Sampling, Stream};
 
 /// More spots than this are taken for a mistake.
-const MOST: u64 = 1_000_000;
+const MOST: u64 = 100_000;
 
 /// The places (x, y) on the wall that `table` lists.
 pub(super) fn places(table: &SpotsTable) -> Result<Vec<[f64; 2]>, Fault> {
@@ -41,6 +41,9 @@ pub(super) fn places(table: &SpotsTable) -> Result<Vec<[f64; 2]>, Fault> {
         }
         LayoutName::List => table.points.clone().unwrap_or_default(),
     };
+    if places.len() as u64 > MOST {
+        return Err(too_many(places.len() as u64));
+    }
     if places.is_empty() {
         return Err(Fault::new(
             keys![],
@@ -104,10 +107,11 @@ fn ring([cx, cy]: [f64; 2], radius: f64, count: u32, start: f64) -> Vec<[f64; 2]
 
 /// Independent uniform places in a square.
 fn random([cx, cy]: [f64; 2], half: f64, count: u32, seed: u64) -> Vec<[f64; 2]> {
+    // No pixel has this index: the places are independent of every path of a render with the same seed.
     let key = Key {
         seed,
         spot: Key::ALL_SPOTS,
-        pixel: 0,
+        pixel: u32::MAX,
         block: 0,
     };
     let mut stream = Stream::new(Sampling::Pcg, key);
@@ -128,6 +132,9 @@ fn lines(lines: &[LineTable], stagger: &[f64]) -> Result<Vec<[f64; 2]>, Fault> {
     let mut places = Vec::new();
     for (i, line) in lines.iter().enumerate() {
         let n = at_least("count", line.count, 1).map_err(|f| f.within(keys!["lines", i]))?;
+        if places.len() as u64 + u64::from(n) > MOST {
+            return Err(too_many(places.len() as u64 + u64::from(n)));
+        }
         let [dx, dy] = [line.to[0] - line.from[0], line.to[1] - line.from[1]];
         let length = (dx * dx + dy * dy).sqrt();
         if length <= 0.0 && n > 1 {
@@ -156,6 +163,14 @@ fn lines(lines: &[LineTable], stagger: &[f64]) -> Result<Vec<[f64; 2]>, Fault> {
     Ok(places)
 }
 
+fn too_many(spots: u64) -> Fault {
+    Fault::new(
+        keys![],
+        format!("{spots} spots are more than {MOST}"),
+        "use fewer",
+    )
+}
+
 fn needed<T>(key: &'static str, value: Option<T>) -> Result<T, Fault> {
     value.ok_or_else(|| {
         let cause = format!("this layout needs `{key}`");
@@ -179,8 +194,7 @@ fn per_side(table: &SpotsTable) -> Result<u32, Fault> {
         4 * u64::from(n)
     };
     if total > MOST {
-        let cause = format!("{total} spots are more than {MOST}");
-        return Err(Fault::new(keys!["per_side"], cause, "use fewer"));
+        return Err(too_many(total).within(keys!["per_side"]));
     }
     Ok(n)
 }

@@ -3,7 +3,7 @@
 use super::error::{Fault, keys};
 use super::file::{FaceName, RoleName, SurfaceTable};
 use super::texture::Texture;
-use crate::geometry::{DVec3, Facing, Parallelogram, Shape, Sphere};
+use crate::geometry::{DVec3, Facing, Parallelogram, Shape, Sphere, SurfacePoint};
 
 /// More elements along a side than this are taken for a mistake.
 const MOST_ELEMENTS: u32 = 1024;
@@ -49,6 +49,7 @@ pub(super) fn from_tables(tables: &[SurfaceTable]) -> Result<Vec<Surface>, Fault
         }
         surfaces.push(surface);
     }
+    refuse_coincident(&surfaces)?;
     if !surfaces.iter().any(|s| s.role == Role::Relay) {
         return Err(Fault::new(
             keys!["surface"],
@@ -59,7 +60,37 @@ pub(super) fn from_tables(tables: &[SurfaceTable]) -> Result<Vec<Surface>, Fault
     Ok(surfaces)
 }
 
+/// Two surfaces in one place that face the same way: it would be up to rounding which of them the light meets. Back to back
+/// they make a panel with two faces, and edge to edge a larger surface.
+fn refuse_coincident(surfaces: &[Surface]) -> Result<(), Fault> {
+    for (i, a) in surfaces.iter().enumerate() {
+        for (j, b) in surfaces.iter().enumerate().skip(i + 1) {
+            let coincide = match (&a.shape, &b.shape) {
+                (Shape::Parallelogram(p), Shape::Parallelogram(q)) => {
+                    p.normal().dot(q.normal()) > 0.0 && p.overlaps(q)
+                }
+                (p, q) => p == q,
+            };
+            if coincide {
+                let cause = format!(
+                    "`{}` lies in the plane of `{}` and overlaps it",
+                    b.name, a.name
+                );
+                let cure = "lift one of them by a little, leave a hole in the other, or paint it as a texture";
+                return Err(Fault::new(keys!["surface", j], cause, cure));
+            }
+        }
+    }
+    Ok(())
+}
+
 impl Surface {
+    /// The point above or below (x, y) that shows its front to `device`; of a sphere's two the lower one.
+    pub(super) fn facing_at_xy(&self, x: f64, y: f64, device: DVec3) -> Option<SurfacePoint> {
+        let mut points = self.shape.at_xy(x, y).into_iter();
+        points.find(|p| (device - p.position).dot(p.normal) > 0.0)
+    }
+
     fn from_table(table: &SurfaceTable) -> Result<Self, Fault> {
         if table.name.trim().is_empty() {
             return Err(Fault::new(

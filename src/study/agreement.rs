@@ -86,7 +86,9 @@ pub fn agree(evidence: Evidence<'_>, test: Test) -> (Agreement, Matrix) {
     let chi2_p = chi_square_sf(chi2_per_dof * dof, dof);
     let half = 0.5 * test.significance;
     let largest_p = sidak_p(normal_two_sided(largest), entries as u64);
-    let norm = model.norm().max(f64::MIN_POSITIVE);
+    // Relative to a dark model everything is unbounded, but nothing remains nothing.
+    let norm = model.norm();
+    let relative = |x: f64| if x > 0.0 { x / norm } else { 0.0 };
     let agreement = Agreement {
         agrees: chi2_p >= half && largest_p >= half,
         kernel: String::new(),
@@ -99,10 +101,14 @@ pub fn agree(evidence: Evidence<'_>, test: Test) -> (Agreement, Matrix) {
         largest_z: largest,
         z_limit: sidak_threshold(half, entries as u64),
         largest_p,
-        relative_difference: (traced - model).norm() / norm,
-        relative_noise: stderr.norm() / norm,
-        relative_discretisation: bound.map_or(0.0, |b| b.norm() / norm),
-        best_scale: traced.dot(model) / (norm * norm),
+        relative_difference: relative((traced - model).norm()),
+        relative_noise: relative(stderr.norm()),
+        relative_discretisation: bound.map_or(0.0, |b| relative(b.norm())),
+        best_scale: if norm > 0.0 {
+            traced.dot(model) / (norm * norm)
+        } else {
+            1.0
+        },
         worst: worst(&z, traced, model),
     };
     (agreement, z)

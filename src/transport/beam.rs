@@ -32,10 +32,7 @@ impl<'a> Beams<'a> {
             in_view: Vec::new(),
         };
         if !beams.has_width() {
-            beams.ideal = spots
-                .clone()
-                .map(|l| beams.land(scene.laser.spots[l].target.position))
-                .collect();
+            beams.ideal = spots.clone().map(|l| beams.ideal_spot(l)).collect();
         }
         beams.in_view = spots
             .map(|l| match beams.ideal.get(l) {
@@ -67,6 +64,23 @@ impl<'a> Beams<'a> {
         let target = &self.scene.laser.spots[spot].target;
         let [x, y] = offset.map(|c| c * radius);
         self.land(target.position + Basis::around(target.normal).to_world([x, y, 0.0]))
+    }
+
+    /// Where a beam without width lands: exactly on its target, unless something stands in its way.
+    fn ideal_spot(&self, spot: usize) -> Option<LitPoint> {
+        let spot = &self.scene.laser.spots[spot];
+        let target = &spot.target;
+        let ray = Ray::between(self.scene.laser.position, target.position)?;
+        if self.scene.bvh().blocked(&ray, [None, Some(spot.surface)]) {
+            return self.land(target.position);
+        }
+        let surface = &self.scene.surfaces[spot.surface as usize];
+        (target.normal.dot(ray.direction) < 0.0).then(|| LitPoint {
+            position: target.position,
+            normal: target.normal,
+            shape: spot.surface,
+            albedo: surface.albedo.albedo(target.uv),
+        })
     }
 
     /// First hit of the ray from the laser through `aim`.

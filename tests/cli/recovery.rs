@@ -27,7 +27,14 @@ fn a_method_writes_its_matrix_and_its_picture() {
         );
     }
     let names: Vec<String> = workspace.contents("done/recovered").into_keys().collect();
-    assert_eq!(names, ["joint.npy", "joint.png", "truth.npy", "truth.png"]);
+    let written = [
+        "joint.npy",
+        "joint.png",
+        "overview.png",
+        "truth.npy",
+        "truth.png",
+    ];
+    assert_eq!(names, written);
     let joint = workspace.matrix("done/recovered/joint.npy");
     assert_eq!(joint.shape(), (8, 8));
     assert!(joint.iter().all(|x| (0.0..=1.0).contains(x)), "{joint}");

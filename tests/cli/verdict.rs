@@ -69,7 +69,8 @@ fn light_agrees_with_the_physical_model() {
         (number(&value, "chi2_per_dof") - 1.0).abs() < 0.18,
         "{value}"
     );
-    assert_eq!(number(&value, "relative_discretisation"), 0.0);
+    // The bound is what the last refinement changed: below the 1e-10 at which refinement stops.
+    assert!(number(&value, "relative_discretisation") < 1e-10, "{value}");
 }
 
 #[test]
