@@ -146,7 +146,7 @@ impl Shape {
         }
     }
 
-    /// Distance from `p` to the shape: exact for rectangles and spheres, an upper bound for skewed patches.
+    /// Distance from `p` to the shape: exact for rectangles and spheres; a skewed patch may be nearer than this says.
     pub fn distance_to(&self, p: DVec3) -> f64 {
         match self {
             Self::Parallelogram(s) => (s.at_position(p).position - p).length(),

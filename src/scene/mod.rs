@@ -65,16 +65,17 @@ mod spots;
 mod surface;
 mod texture;
 mod variants;
+mod warning;
 
 use sha2::{Digest, Sha256};
 
 pub use builtin::{Builtin, builtins};
 pub use camera::Camera;
-pub use check::Warning;
 pub use error::{Place, SceneError};
 pub use laser::{Laser, Profile, Spot};
 pub use surface::{Role, Surface};
 pub use texture::{Cells, Texture};
+pub use warning::Warning;
 
 use crate::geometry::{Bvh, Shape};
 use error::{Fault, keys};

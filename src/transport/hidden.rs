@@ -64,11 +64,6 @@ impl HiddenArea {
         Self { surfaces, of_shape }
     }
 
-    /// Whether there is anything to sample.
-    pub(super) fn is_empty(&self) -> bool {
-        self.surfaces.is_empty()
-    }
-
     /// Whether `shape` is sampled.
     pub(super) fn contains(&self, shape: ShapeId) -> bool {
         self.of_shape[shape as usize].is_some()

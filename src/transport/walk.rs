@@ -199,7 +199,7 @@ fn strategy(scene: &Scene, hidden: &HiddenArea, s: usize) -> Strategy {
             sees_other = true;
         }
     }
-    match (sees_hidden && !hidden.is_empty(), sees_other) {
+    match (sees_hidden, sees_other) {
         (false, false) => Strategy::End,
         (false, true) => Strategy::Cosine,
         (true, false) if all_far => Strategy::Area,

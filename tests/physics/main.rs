@@ -4,6 +4,7 @@ mod accuracy;
 mod closed_forms;
 mod laws;
 mod model;
+mod obstacles;
 mod reference;
 
 use std::ops::Range;

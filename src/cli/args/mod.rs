@@ -1,9 +1,16 @@
 //! Raw arguments, as clap reads them.
 
+mod study;
+mod value;
+
 use std::ops::Range;
 use std::path::PathBuf;
 
 use clap::{Args as Arguments, Parser, Subcommand, ValueEnum};
+
+use value::{elements, shift, spot_range};
+
+pub(in crate::cli) use study::{BudgetArgs, PowerArgs, StudyArgs, StudyCommand};
 
 /// phicam: a physically based renderer for indirect photography, and the laboratory around it.
 #[derive(Debug, Parser)]
@@ -11,7 +18,7 @@ use clap::{Args as Arguments, Parser, Subcommand, ValueEnum};
 #[command(
     after_help = "Exit codes: 0 done, 1 traced and modelled disagree, 2 error, 130 stopped by Ctrl-C."
 )]
-pub(super) struct Args {
+pub(in crate::cli) struct Args {
     /// No progress and no remarks on standard error
     #[arg(long, short, global = true)]
     pub quiet: bool,
@@ -20,7 +27,7 @@ pub(super) struct Args {
 }
 
 #[derive(Debug, Subcommand)]
-pub(super) enum Command {
+pub(in crate::cli) enum Command {
     /// The main job: render, stack, model, validate, recover, report
     Run(RunArgs),
     /// Trace Φcam: one EXR frame per spot, and phi.npy
@@ -41,7 +48,7 @@ pub(super) enum Command {
 
 /// What has to be traced.
 #[derive(Debug, Arguments)]
-pub(super) struct TraceArgs {
+pub(in crate::cli) struct TraceArgs {
     /// Which paths are shared
     #[arg(long, value_enum, default_value_t = EstimatorName::Independent)]
     pub estimator: EstimatorName,
@@ -60,7 +67,7 @@ pub(super) struct TraceArgs {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum EstimatorName {
+pub(in crate::cli) enum EstimatorName {
     /// Every (pixel, spot) entry has its own paths
     Independent,
     /// The paths of a pixel serve all spots
@@ -68,7 +75,7 @@ pub(super) enum EstimatorName {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum SamplerName {
+pub(in crate::cli) enum SamplerName {
     /// Independent random numbers
     Pcg,
     /// Owen-scrambled Sobol' points
@@ -76,7 +83,7 @@ pub(super) enum SamplerName {
 }
 
 #[derive(Debug, Arguments)]
-pub(super) struct RunArgs {
+pub(in crate::cli) struct RunArgs {
     /// Built-in scene or path of a scene file
     #[arg(default_value = "bench")]
     pub scene: String,
@@ -93,7 +100,7 @@ pub(super) struct RunArgs {
 }
 
 #[derive(Debug, Arguments)]
-pub(super) struct RenderArgs {
+pub(in crate::cli) struct RenderArgs {
     /// Built-in scene or path of a scene file
     pub scene: String,
     /// Output folder
@@ -113,7 +120,7 @@ pub(super) struct RenderArgs {
 }
 
 #[derive(Debug, Arguments)]
-pub(super) struct StackArgs {
+pub(in crate::cli) struct StackArgs {
     /// Folder of a run, or of its frames
     pub dir: PathBuf,
     /// Folder to write phi.npy and phi.stderr.npy to; DIR unless given
@@ -122,7 +129,7 @@ pub(super) struct StackArgs {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum KernelName {
+pub(in crate::cli) enum KernelName {
     /// The true cosine at the hidden surface
     Physical,
     /// The one in the published simulation
@@ -130,7 +137,7 @@ pub(super) enum KernelName {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum IntegrationName {
+pub(in crate::cli) enum IntegrationName {
     /// Elements, pixels and spots by their centres, with a bound on what that leaves out
     Centres,
     /// Converged quadrature over elements, footprints and spots
@@ -138,7 +145,7 @@ pub(super) enum IntegrationName {
 }
 
 #[derive(Debug, Arguments)]
-pub(super) struct ModelArgs {
+pub(in crate::cli) struct ModelArgs {
     /// Built-in scene or path of a scene file
     pub scene: String,
     /// Output folder; the matrices go to its folder model/
@@ -157,7 +164,7 @@ pub(super) struct ModelArgs {
 
 /// How traced and modelled are compared.
 #[derive(Debug, Arguments)]
-pub(super) struct TestArgs {
+pub(in crate::cli) struct TestArgs {
     /// Kernel of the model
     #[arg(long, value_enum, default_value_t = KernelName::Physical)]
     pub kernel: KernelName,
@@ -170,7 +177,7 @@ pub(super) struct TestArgs {
 }
 
 #[derive(Debug, Arguments)]
-pub(super) struct ValidateArgs {
+pub(in crate::cli) struct ValidateArgs {
     /// Folder of a run
     pub dir: PathBuf,
     #[command(flatten)]
@@ -187,7 +194,7 @@ pub(super) struct ValidateArgs {
 }
 
 #[derive(Debug, Arguments)]
-pub(super) struct RecoverArgs {
+pub(in crate::cli) struct RecoverArgs {
     /// Folder of a run; with --phi a folder with a scene.toml is enough
     pub dir: PathBuf,
     /// Methods, separated by commas: pinv, tsvd, tikhonov, joint-unbounded, joint; all unless given
@@ -223,13 +230,13 @@ pub(super) struct RecoverArgs {
 }
 
 #[derive(Debug, Arguments)]
-pub(super) struct SceneArgs {
+pub(in crate::cli) struct SceneArgs {
     #[command(subcommand)]
     pub command: SceneCommand,
 }
 
 #[derive(Debug, Subcommand)]
-pub(super) enum SceneCommand {
+pub(in crate::cli) enum SceneCommand {
     /// List the built-in scenes
     List,
     /// Say what is wrong (exit 2) or suspicious in a scene
@@ -255,108 +262,6 @@ pub(super) enum SceneCommand {
     },
 }
 
-#[derive(Debug, Arguments)]
-pub(super) struct StudyArgs {
-    #[command(subcommand)]
-    pub command: StudyCommand,
-}
-
-#[derive(Debug, Subcommand)]
-pub(super) enum StudyCommand {
-    /// What the matrix model leaves out, cause by cause: table, JSON, CSV, figure
-    Budget(BudgetArgs),
-    /// How small a model error validate detects, and how often it errs: table and JSON
-    Power(PowerArgs),
-}
-
-#[derive(Debug, Arguments)]
-pub(super) struct PowerArgs {
-    /// Built-in scene or path of a scene file
-    #[arg(default_value = "bench")]
-    pub scene: String,
-    /// Folder for power.json
-    #[arg(long, short, default_value = "out/power")]
-    pub output: PathBuf,
-    /// Estimators, separated by commas; both unless given
-    #[arg(long, value_enum, value_delimiter = ',')]
-    pub estimator: Vec<EstimatorName>,
-    /// Where random numbers come from
-    #[arg(long, value_enum, default_value_t = SamplerName::Sobol)]
-    pub sampler: SamplerName,
-    /// Numbers of paths, separated by commas
-    #[arg(long, value_delimiter = ',', default_value = "64,256")]
-    pub samples: Vec<u64>,
-    /// Renders of each kind
-    #[arg(long, default_value_t = 40, value_parser = clap::value_parser!(u64).range(1..=100_000))]
-    pub seeds: u64,
-    /// First seed
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
-    /// Probability of rejecting a right model
-    #[arg(long, default_value_t = 0.01)]
-    pub significance: f64,
-    /// Threads; all cores unless given
-    #[arg(long)]
-    pub threads: Option<usize>,
-    /// Print power.json instead of the table
-    #[arg(long)]
-    pub json: bool,
-}
-
-#[derive(Debug, Arguments)]
-pub(super) struct BudgetArgs {
-    /// Built-in scene or path of a scene file
-    pub scene: String,
-    /// Folder for budget.json, budget.csv and budget.svg
-    #[arg(long, short, default_value = "out/budget")]
-    pub output: PathBuf,
-    /// Paths per pixel of the precise renders, all together
-    #[arg(long, default_value_t = 16384)]
-    pub samples: u64,
-    /// Paths per pixel and spot of the run that is taken apart
-    #[arg(long, default_value_t = 512)]
-    pub run_samples: u64,
-    /// Seed of everything
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
-    /// Threads; all cores unless given
-    #[arg(long)]
-    pub threads: Option<usize>,
-    /// Print budget.json instead of the table
-    #[arg(long)]
-    pub json: bool,
-}
-
-/// "A..B" with A < B.
-fn spot_range(text: &str) -> Result<Range<usize>, String> {
-    let parts = text
-        .split_once("..")
-        .and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
-    match parts {
-        Some((a, b)) if a < b => Ok(a..b),
-        _ => Err("write it as A..B with A < B, e.g. 0..30 for the first thirty".to_owned()),
-    }
-}
-
-/// "N" or "NxM", both from 1 to 1024.
-fn elements(text: &str) -> Result<[usize; 2], String> {
-    let side = |s: &str| s.parse().ok().filter(|n| (1..=1024).contains(n));
-    let parts = match text.split_once('x') {
-        None => side(text).map(|n| [n, n]),
-        Some((a, b)) => side(a).zip(side(b)).map(|(a, b)| [a, b]),
-    };
-    parts.ok_or_else(|| "write it as 8 or 8x6, 1 to 1024 a side".to_owned())
-}
-
-/// "DX,DY", finite.
-fn shift(text: &str) -> Result<[f64; 2], String> {
-    let number = |s: &str| s.trim().parse().ok().filter(|x: &f64| x.is_finite());
-    let parts = text
-        .split_once(',')
-        .and_then(|(a, b)| Some([number(a)?, number(b)?]));
-    parts.ok_or_else(|| "write it as DX,DY, e.g. 0.05,0".to_owned())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -365,22 +270,5 @@ mod tests {
     #[test]
     fn the_arguments_are_consistent() {
         Args::command().debug_assert();
-    }
-
-    #[test]
-    fn ranges_elements_and_shifts_are_strict() {
-        assert_eq!(spot_range("3..7"), Ok(3..7));
-        assert_eq!(elements("8"), Ok([8, 8]));
-        assert_eq!(elements("8x6"), Ok([8, 6]));
-        assert_eq!(shift("-0.05, 1e-3"), Ok([-0.05, 1e-3]));
-        for bad in ["7..3", "3..3", "3", "a..b", "-1..2"] {
-            assert!(spot_range(bad).is_err(), "{bad}");
-        }
-        for bad in ["0", "8x0", "2000", "x", ""] {
-            assert!(elements(bad).is_err(), "{bad}");
-        }
-        for bad in ["1", "nan,0", "1,inf", ""] {
-            assert!(shift(bad).is_err(), "{bad}");
-        }
     }
 }

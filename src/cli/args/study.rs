@@ -1,0 +1,79 @@
+//! Arguments of `phicam study`.
+
+use std::path::PathBuf;
+
+use clap::{Args as Arguments, Subcommand};
+
+use super::{EstimatorName, SamplerName};
+
+#[derive(Debug, Arguments)]
+pub(in crate::cli) struct StudyArgs {
+    #[command(subcommand)]
+    pub command: StudyCommand,
+}
+
+#[derive(Debug, Subcommand)]
+pub(in crate::cli) enum StudyCommand {
+    /// What the matrix model leaves out, cause by cause: table, JSON, CSV, figure
+    Budget(BudgetArgs),
+    /// How small a model error validate detects, and how often it errs: table and JSON
+    Power(PowerArgs),
+}
+
+#[derive(Debug, Arguments)]
+pub(in crate::cli) struct PowerArgs {
+    /// Built-in scene or path of a scene file
+    #[arg(default_value = "bench")]
+    pub scene: String,
+    /// Folder for power.json
+    #[arg(long, short, default_value = "out/power")]
+    pub output: PathBuf,
+    /// Estimators, separated by commas; both unless given
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub estimator: Vec<EstimatorName>,
+    /// Where random numbers come from
+    #[arg(long, value_enum, default_value_t = SamplerName::Sobol)]
+    pub sampler: SamplerName,
+    /// Numbers of paths, separated by commas
+    #[arg(long, value_delimiter = ',', default_value = "64,256")]
+    pub samples: Vec<u64>,
+    /// Renders of each kind
+    #[arg(long, default_value_t = 40, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    pub seeds: u64,
+    /// First seed
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Probability of rejecting a right model
+    #[arg(long, default_value_t = 0.01)]
+    pub significance: f64,
+    /// Threads; all cores unless given
+    #[arg(long)]
+    pub threads: Option<usize>,
+    /// Print power.json instead of the table
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Arguments)]
+pub(in crate::cli) struct BudgetArgs {
+    /// Built-in scene or path of a scene file
+    pub scene: String,
+    /// Folder for budget.json, budget.csv and budget.svg
+    #[arg(long, short, default_value = "out/budget")]
+    pub output: PathBuf,
+    /// Paths per pixel of the precise renders, all together
+    #[arg(long, default_value_t = 16384)]
+    pub samples: u64,
+    /// Paths per pixel and spot of the run that is taken apart
+    #[arg(long, default_value_t = 512)]
+    pub run_samples: u64,
+    /// Seed of everything
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Threads; all cores unless given
+    #[arg(long)]
+    pub threads: Option<usize>,
+    /// Print budget.json instead of the table
+    #[arg(long)]
+    pub json: bool,
+}

@@ -1,0 +1,55 @@
+//! Values with a grammar of their own.
+
+use std::ops::Range;
+
+/// "A..B" with A < B.
+pub(super) fn spot_range(text: &str) -> Result<Range<usize>, String> {
+    let parts = text
+        .split_once("..")
+        .and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
+    match parts {
+        Some((a, b)) if a < b => Ok(a..b),
+        _ => Err("write it as A..B with A < B, e.g. 0..30 for the first thirty".to_owned()),
+    }
+}
+
+/// "N" or "NxM", both from 1 to 1024.
+pub(super) fn elements(text: &str) -> Result<[usize; 2], String> {
+    let side = |s: &str| s.parse().ok().filter(|n| (1..=1024).contains(n));
+    let parts = match text.split_once('x') {
+        None => side(text).map(|n| [n, n]),
+        Some((a, b)) => side(a).zip(side(b)).map(|(a, b)| [a, b]),
+    };
+    parts.ok_or_else(|| "write it as 8 or 8x6, 1 to 1024 a side".to_owned())
+}
+
+/// "DX,DY", finite.
+pub(super) fn shift(text: &str) -> Result<[f64; 2], String> {
+    let number = |s: &str| s.trim().parse().ok().filter(|x: &f64| x.is_finite());
+    let parts = text
+        .split_once(',')
+        .and_then(|(a, b)| Some([number(a)?, number(b)?]));
+    parts.ok_or_else(|| "write it as DX,DY, e.g. 0.05,0".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_elements_and_shifts_are_strict() {
+        assert_eq!(spot_range("3..7"), Ok(3..7));
+        assert_eq!(elements("8"), Ok([8, 8]));
+        assert_eq!(elements("8x6"), Ok([8, 6]));
+        assert_eq!(shift("-0.05, 1e-3"), Ok([-0.05, 1e-3]));
+        for bad in ["7..3", "3..3", "3", "a..b", "-1..2"] {
+            assert!(spot_range(bad).is_err(), "{bad}");
+        }
+        for bad in ["0", "8x0", "2000", "x", ""] {
+            assert!(elements(bad).is_err(), "{bad}");
+        }
+        for bad in ["1", "nan,0", "1,inf", ""] {
+            assert!(shift(bad).is_err(), "{bad}");
+        }
+    }
+}

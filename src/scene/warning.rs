@@ -1,0 +1,132 @@
+//! What is suspicious in a scene, though not wrong.
+
+use std::fmt;
+
+/// Something suspicious in a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Warning {
+    /// No surface is hidden: there is nothing to model or recover.
+    NothingHidden,
+    /// Spots that lie in the camera's view, so that the camera sees them directly.
+    SpotsInView(Vec<usize>),
+    /// Spots that the beam does not reach, and the surface that stops it.
+    BeamBlocked(Vec<usize>, String),
+    /// Pixels whose line of sight to the wall is blocked, how many, and the surface that does it.
+    PixelsBlocked(usize, String),
+    /// Spots from which no element of the hidden surface can be lit: they lie behind its plane.
+    SpotsBehind(Vec<usize>, String),
+    /// Part of the view lies behind the hidden surface's plane and sees nothing of it.
+    ViewBehind(String),
+    /// Edges that are not perpendicular: (surface, angle in degrees).
+    Skewed(String, f64),
+    /// Elements that straddle the edges of a texture's cells.
+    ElementsAcrossCells(String),
+    /// Spots whose line to the hidden surface is blocked for every element.
+    SpotsShadowed(Vec<usize>),
+    /// Spots of which a part falls beside the wall and is lost.
+    SpotsOverhang(Vec<usize>),
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NothingHidden => {
+                write!(
+                    f,
+                    "no surface is hidden: frames can be rendered, but there is nothing to model or recover"
+                )
+            }
+            Self::SpotsInView(spots) => {
+                write!(
+                    f,
+                    "{} in the camera's view: the camera sees the direct light",
+                    Spots(spots)
+                )
+            }
+            Self::BeamBlocked(spots, by) => {
+                write!(
+                    f,
+                    "the beam to {} is stopped by `{by}`: the light lands there instead",
+                    Spots(spots)
+                )
+            }
+            Self::PixelsBlocked(count, by) => {
+                write!(
+                    f,
+                    "the line of sight of {count} pixels is blocked by `{by}`: they see it instead of the wall"
+                )
+            }
+            Self::SpotsBehind(spots, hidden) => {
+                write!(
+                    f,
+                    "{} behind the plane of `{hidden}` and cannot light it",
+                    Spots(spots)
+                )
+            }
+            Self::ViewBehind(hidden) => {
+                write!(
+                    f,
+                    "part of the view lies behind the plane of `{hidden}` and receives nothing from it"
+                )
+            }
+            Self::Skewed(name, angle) => {
+                write!(
+                    f,
+                    "the edges of `{name}` meet at {angle:.3}°: it is taken as the parallelogram it is"
+                )
+            }
+            Self::ElementsAcrossCells(name) => write!(
+                f,
+                "elements of `{name}` straddle the edges of its texture: the model takes the albedo at their centres"
+            ),
+            Self::SpotsOverhang(spots) => {
+                write!(
+                    f,
+                    "{} hanging over the wall's edge: what falls beside it is lost",
+                    Spots(spots)
+                )
+            }
+            Self::SpotsShadowed(spots) => {
+                write!(
+                    f,
+                    "{} lit, but every line from there to the hidden elements is blocked",
+                    Spots(spots)
+                )
+            }
+        }
+    }
+}
+
+/// "spot 3 lies", "spots 3, 7–9 lie": compactly, at most a dozen ranges.
+struct Spots<'a>(&'a [usize]);
+
+impl fmt::Display for Spots<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut ranges: Vec<(usize, usize)> = Vec::new();
+        for &s in self.0 {
+            match ranges.last_mut() {
+                Some((_, end)) if *end + 1 == s => *end = s,
+                _ => ranges.push((s, s)),
+            }
+        }
+        let more = ranges.len() > 12;
+        let text: Vec<String> = ranges
+            .iter()
+            .take(12)
+            .map(|(a, b)| {
+                if a == b {
+                    a.to_string()
+                } else {
+                    format!("{a}–{b}")
+                }
+            })
+            .collect();
+        let noun = if self.0.len() == 1 { "spot" } else { "spots" };
+        write!(
+            f,
+            "{noun} {}{}",
+            text.join(", "),
+            if more { ", …" } else { "" }
+        )
+    }
+}
