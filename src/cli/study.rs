@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::args::{BudgetArgs, PowerArgs, StudyArgs, StudyCommand};
+use super::args::{BudgetArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs};
 use super::failure::Failure;
 use super::interrupt::stop_flag;
 use super::output::{self, Talk};
@@ -17,6 +17,7 @@ pub(super) fn execute(args: &StudyArgs, talk: Talk) -> Result<Outcome, Failure> 
     match &args.command {
         StudyCommand::Budget(a) => budget(a, talk),
         StudyCommand::Power(a) => power(a, talk),
+        StudyCommand::Tolerance(a) => tolerance(a, talk),
     }
 }
 
@@ -102,6 +103,41 @@ fn power(args: &PowerArgs, talk: Talk) -> Result<Outcome, Failure> {
         json
     } else {
         report::power_table(&found)
+    })?;
+    Ok(Outcome::Done)
+}
+
+fn tolerance(args: &ToleranceArgs, talk: Talk) -> Result<Outcome, Failure> {
+    let scene = Scene::load(&args.scene)?;
+    if !(args.noise > 0.0 && args.noise < 1.0) {
+        let cause = format!("--noise {} is not a relative noise", args.noise);
+        return Err(Failure::new(
+            cause,
+            "use a number between 0 and 1, e.g. 0.01",
+        ));
+    }
+    ensure_writable(&args.output)?;
+    talk.warn(&scene);
+    let bar = progress::steps(talk, &format!("tolerance of {}", scene.name));
+    let found = study::tolerance(&scene, args.noise, &|done, all| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    })?;
+    bar.finish_and_clear();
+    let json = output::json(&found)?;
+    write(&args.output.join("tolerance.json"), &json)?;
+    write(
+        &args.output.join("tolerance.csv"),
+        &report::tolerance_csv(&found),
+    )?;
+    write(
+        &args.output.join("tolerance.svg"),
+        &report::tolerance_svg(&found),
+    )?;
+    output::print(&if args.json {
+        json
+    } else {
+        report::tolerance_table(&found)
     })?;
     Ok(Outcome::Done)
 }

@@ -1,5 +1,7 @@
 //! Flat patches.
 
+use glam::DAffine3;
+
 use super::{DVec3, Ray, SurfacePoint};
 
 /// The patch corner + a·u + b·v, a, b ∈ [0, 1]; its front normal is along u × v.
@@ -45,6 +47,14 @@ impl Parallelogram {
             normal: -self.normal,
             ..self
         }
+    }
+
+    /// The patch after an affine motion, its front kept; `None` if that leaves no area.
+    pub fn moved(&self, motion: &DAffine3) -> Option<Self> {
+        let v = |d| motion.transform_vector3(d);
+        let moved = Self::new(motion.transform_point3(self.corner), v(self.u), v(self.v))?;
+        let turned = self.u.cross(self.v).dot(self.normal) < 0.0;
+        Some(if turned { moved.turned() } else { moved })
     }
 
     /// Corner at (a, b) = (0, 0).

@@ -1,5 +1,7 @@
 //! Shapes: what a surface is made of.
 
+use glam::DAffine3;
+
 use super::{DVec3, Parallelogram, Sphere};
 
 /// Index of a shape in its [`Bvh`](super::Bvh).
@@ -128,6 +130,17 @@ impl Shape {
         match self {
             Self::Parallelogram(p) => p.corners().iter().any(|c| (*c - point).dot(normal) > slack),
             Self::Sphere(s) => (s.centre - point).dot(normal) + s.radius > slack,
+        }
+    }
+
+    /// The shape after a rigid motion; `None` if that leaves no proper shape.
+    pub fn moved(&self, motion: &DAffine3) -> Option<Self> {
+        match self {
+            Self::Parallelogram(p) => p.moved(motion).map(Self::Parallelogram),
+            Self::Sphere(s) => {
+                let centre = motion.transform_point3(s.centre);
+                Sphere::new(centre, s.radius, s.facing).map(Self::Sphere)
+            }
         }
     }
 

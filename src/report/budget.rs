@@ -1,6 +1,7 @@
 //! The error budget as text and as a figure.
 
 use super::axis::significant;
+use super::chart::superscript;
 use super::svg::{Close, Svg, escape, ink};
 use crate::study::{ErrorBudget, Estimate, Term};
 
@@ -200,13 +201,4 @@ fn whisker(svg: &mut Svg, [a, b]: [f64; 2], y: f64) {
     for x in [a, b] {
         svg.line([x, y - 3.0], [x, y + 3.0], style);
     }
-}
-
-/// A whole number in superscript digits.
-fn superscript(n: i32) -> String {
-    let digits = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    n.to_string()
-        .chars()
-        .map(|c| c.to_digit(10).map_or('⁻', |d| digits[d as usize]))
-        .collect()
 }

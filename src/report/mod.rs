@@ -7,6 +7,7 @@
 mod axis;
 mod budget;
 mod canvas;
+mod chart;
 mod colour;
 mod drawing;
 mod figure;
@@ -23,6 +24,7 @@ mod sample;
 mod summary;
 mod svg;
 mod table;
+mod tolerance;
 mod verdict;
 
 pub use budget::{budget_csv, budget_svg, budget_table};
@@ -34,3 +36,4 @@ pub use picture::{Panel, colour_png, grey_png};
 pub use power::power_table;
 pub use summary::summary_json;
 pub use table::{recovery_table, summary_table, verdict_table};
+pub use tolerance::{tolerance_csv, tolerance_svg, tolerance_table};

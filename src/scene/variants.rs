@@ -1,8 +1,12 @@
 //! Scenes that differ from a given one in a single respect, for studies. Their hash and text remain the original's.
 
+use glam::DAffine3;
+
+use super::error::{Fault, keys};
 use super::laser;
 use super::parse;
 use super::{Role, Scene, SceneError, Texture};
+use crate::geometry::{Bvh, DVec3, Facing, Shape, Sphere};
 
 impl Scene {
     /// The same scene with every spot moved by (dx, dy) on the wall.
@@ -10,16 +14,18 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] if a spot leaves the wall.
     pub fn with_shifted_spots(&self, [dx, dy]: [f64; 2]) -> Result<Self, SceneError> {
-        let places: Vec<[f64; 2]> = self
-            .laser
-            .spots
-            .iter()
-            .map(|s| [s.target.position.x + dx, s.target.position.y + dy])
-            .collect();
-        let spots = laser::place(&places, self.laser.position, &self.surfaces)
-            .map_err(|fault| parse::locate(&self.name, &self.text, fault))?;
+        let shift = |s: &laser::Spot| [s.target.position.x + dx, s.target.position.y + dy];
+        self.with_spots_at(&self.laser.spots.iter().map(shift).collect::<Vec<_>>())
+    }
+
+    /// The same scene with spots at the given (x, y).
+    ///
+    /// # Errors
+    /// [`SceneError`] if a spot is not on the wall.
+    pub fn with_spots_at(&self, places: &[[f64; 2]]) -> Result<Self, SceneError> {
         let mut scene = self.clone();
-        scene.laser.spots = spots;
+        scene.laser.spots = laser::place(places, self.laser.position, &self.surfaces)
+            .map_err(|fault| self.locate(fault))?;
         Ok(scene)
     }
 
@@ -54,4 +60,86 @@ impl Scene {
         }
         scene
     }
+
+    /// The same scene with the hidden surfaces moved by a rigid motion.
+    ///
+    /// # Errors
+    /// [`SceneError`] if that leaves no proper shape.
+    pub fn with_moved_hidden(&self, motion: &DAffine3) -> Result<Self, SceneError> {
+        let mut scene = self.clone();
+        for surface in &mut scene.surfaces {
+            if surface.role == Role::Hidden {
+                surface.shape = surface
+                    .shape
+                    .moved(motion)
+                    .ok_or_else(|| self.locate(no_shape()))?;
+            }
+        }
+        scene.rebuilt()
+    }
+
+    /// The same scene with the camera's view moved by (dx, dy) in its plane.
+    pub fn with_shifted_view(&self, [dx, dy]: [f64; 2]) -> Self {
+        let mut scene = self.clone();
+        let n = self.camera.view.normal();
+        let dz = -(n.x * dx + n.y * dy) / n.z;
+        let motion = DAffine3::from_translation(DVec3::new(dx, dy, dz));
+        if let Some(view) = self.camera.view.moved(&motion) {
+            scene.camera.view = view;
+        }
+        scene
+    }
+
+    /// The same scene with the pinhole moved by `by`; the view stays.
+    pub fn with_moved_camera(&self, by: DVec3) -> Self {
+        let mut scene = self.clone();
+        scene.camera.position += by;
+        scene
+    }
+
+    /// The same scene with each flat relay bent to a sphere that touches it at its centre and stands off by `sagitta` (towards
+    /// the front) at half its longer edge: R = D²/(8·sagitta). Spots stay at their (x, y).
+    ///
+    /// # Errors
+    /// [`SceneError`] if a spot is not on the bent wall.
+    pub fn with_bent_relay(&self, sagitta: f64) -> Result<Self, SceneError> {
+        let mut scene = self.clone();
+        for surface in &mut scene.surfaces {
+            if let (Role::Relay, Shape::Parallelogram(p)) = (surface.role, &surface.shape) {
+                let edge = p.u().length().max(p.v().length());
+                let radius = edge * edge / (8.0 * sagitta);
+                let centre = p.at([0.5, 0.5]).position + p.normal() * radius;
+                let bent = Sphere::new(centre, radius, Facing::Inside);
+                surface.shape = bent
+                    .map(Shape::Sphere)
+                    .ok_or_else(|| self.locate(no_shape()))?;
+                // A sphere has other parameters: what varies over the wall would end up elsewhere.
+                let cells: usize = surface.albedo.smooth_cells().iter().product();
+                let sum: f64 = (0..cells).map(|c| surface.albedo.cell_mean(c)).sum();
+                surface.albedo = Texture::Constant(sum / cells as f64);
+            }
+        }
+        scene.rebuilt()?.with_shifted_spots([0.0, 0.0])
+    }
+
+    fn rebuilt(mut self) -> Result<Self, SceneError> {
+        let shapes = self.surfaces.iter().map(|s| s.shape.clone()).collect();
+        self.bvh = Bvh::new(shapes).map_err(|e| {
+            let fault = Fault::new(keys!["surface"], e.to_string(), "check the coordinates");
+            self.locate(fault)
+        })?;
+        Ok(self)
+    }
+
+    fn locate(&self, fault: Fault) -> SceneError {
+        parse::locate(&self.name, &self.text, fault)
+    }
+}
+
+fn no_shape() -> Fault {
+    Fault::new(
+        keys!["surface"],
+        "the surface has no proper shape there",
+        "move it by less",
+    )
 }

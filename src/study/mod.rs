@@ -4,6 +4,7 @@
 //! * [`validate`]: the same for a scene, the model computed on the way.
 //! * [`error_budget`]: the difference between frames and model taken apart into its causes.
 //! * [`power`]: what [`validate`] detects, and how often it errs.
+//! * [`tolerance`](fn@tolerance): how wrong the assumed geometry may be.
 //! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object.
 
 mod agreement;
@@ -12,6 +13,7 @@ mod ensemble;
 mod objects;
 mod power;
 mod results;
+mod tolerance;
 mod validation;
 
 pub use agreement::{Errors, Evidence, Test, agree};
@@ -20,4 +22,5 @@ pub use ensemble::Estimate;
 pub use objects::{Attempt, Noise, recover_objects};
 pub use power::{Detection, Power, PowerError, PowerPlan, PowerRow, power};
 pub use results::{Agreement, Entry, RecoveredObject, RunResults, Settings};
+pub use tolerance::{Misplacement, Sensitivity, Tolerance, tolerance};
 pub use validation::{Integration, Validation, ValidationError, validate};

@@ -10,7 +10,7 @@ use clap::{Args as Arguments, Parser, Subcommand, ValueEnum};
 
 use value::{elements, shift, spot_range};
 
-pub(in crate::cli) use study::{BudgetArgs, PowerArgs, StudyArgs, StudyCommand};
+pub(in crate::cli) use study::{BudgetArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs};
 
 /// phicam: a physically based renderer for indirect photography, and the laboratory around it.
 #[derive(Debug, Parser)]

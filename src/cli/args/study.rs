@@ -18,6 +18,24 @@ pub(in crate::cli) enum StudyCommand {
     Budget(BudgetArgs),
     /// How small a model error validate detects, and how often it errs: table and JSON
     Power(PowerArgs),
+    /// How wrong the assumed geometry may be: table, JSON, CSV, figure
+    Tolerance(ToleranceArgs),
+}
+
+#[derive(Debug, Arguments)]
+pub(in crate::cli) struct ToleranceArgs {
+    /// Built-in scene or path of a scene file
+    #[arg(default_value = "bench")]
+    pub scene: String,
+    /// Folder for tolerance.json, tolerance.csv and tolerance.svg
+    #[arg(long, short, default_value = "out/tolerance")]
+    pub output: PathBuf,
+    /// Noise of the photographs, relative to each entry
+    #[arg(long, default_value_t = 0.01)]
+    pub noise: f64,
+    /// Print tolerance.json instead of the table
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Arguments)]

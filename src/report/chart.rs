@@ -1,0 +1,178 @@
+//! Line charts.
+
+use super::axis::{tick, ticks};
+use super::svg::{Close, Svg, escape, ink};
+
+/// How an axis runs.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Run {
+    Linear,
+    Logarithmic,
+}
+
+/// An axis: its run, its ends and what it shows.
+pub(super) struct Axis {
+    pub run: Run,
+    pub ends: [f64; 2],
+    pub title: String,
+}
+
+impl Axis {
+    /// A logarithmic axis around the positive values, from decade to decade.
+    pub(super) fn decades(values: impl Iterator<Item = f64>, title: impl Into<String>) -> Self {
+        let positive = values.filter(|x| *x > 0.0 && x.is_finite());
+        let (low, high) = positive.fold((f64::INFINITY, 0.0f64), |(l, h), x| (l.min(x), h.max(x)));
+        let (low, high) = if high > 0.0 { (low, high) } else { (0.1, 1.0) };
+        let (a, b) = (libm::log10(low).floor(), libm::log10(high).ceil());
+        let ends = [libm::pow(10.0, a), libm::pow(10.0, b.max(a + 1.0))];
+        Self {
+            run: Run::Logarithmic,
+            ends,
+            title: title.into(),
+        }
+    }
+
+    /// Position of x between the ends, 0 to 1; `None` where the axis does not reach.
+    fn fraction(&self, x: f64) -> Option<f64> {
+        let [a, b] = self.ends;
+        let t = match self.run {
+            Run::Linear => (x - a) / (b - a),
+            Run::Logarithmic if x > 0.0 => libm::log(x / a) / libm::log(b / a),
+            Run::Logarithmic => return None,
+        };
+        (-1e-9..=1.0 + 1e-9).contains(&t).then_some(t)
+    }
+
+    fn ticks(&self) -> Vec<(f64, String)> {
+        let [a, b] = self.ends;
+        match self.run {
+            Run::Linear => ticks(a, b, 6).into_iter().map(|x| (x, tick(x))).collect(),
+            Run::Logarithmic => {
+                let (low, high) = (libm::log10(a).round() as i32, libm::log10(b).round() as i32);
+                (low..=high)
+                    .map(|d| {
+                        (
+                            libm::pow(10.0, f64::from(d)),
+                            format!("10{}", superscript(d)),
+                        )
+                    })
+                    .collect()
+            }
+        }
+    }
+}
+
+/// A line with its name.
+pub(super) struct Series {
+    pub name: String,
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Inks and dashes that can be told apart without colour.
+const INKS: [&str; 6] = [
+    ink::BLUE,
+    ink::VERMILLION,
+    ink::GREEN,
+    ink::PURPLE,
+    ink::BLACK,
+    ink::GREY,
+];
+const DASHES: [&str; 3] = ["", "7 3", "2 3"];
+
+/// The look of series `i`.
+pub(super) fn style(i: usize) -> String {
+    let (colour, dash) = (INKS[i % INKS.len()], DASHES[i / INKS.len() % DASHES.len()]);
+    format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.8\" stroke-dasharray=\"{dash}\"")
+}
+
+/// Draws a panel with its axes, grid and lines; `corner` is the upper left corner of the plotting area, `size` its width and
+/// height. Points beyond the axes are left out, and the line is broken there.
+pub(super) fn panel(
+    svg: &mut Svg,
+    corner: [f64; 2],
+    size: [f64; 2],
+    [x, y]: [&Axis; 2],
+    series: &[Series],
+) {
+    let [left, top] = corner;
+    let [width, height] = size;
+    let at_x = |t: f64| left + width * t;
+    let at_y = |t: f64| top + height * (1.0 - t);
+    let pale = format!("stroke=\"{}\"", ink::PALE);
+    for (value, text) in x.ticks() {
+        if let Some(t) = x.fraction(value) {
+            svg.line([at_x(t), top], [at_x(t), top + height], &pale);
+            svg.text(
+                [at_x(t), top + height + 18.0],
+                "text-anchor=\"middle\" fill=\"#6b6b6b\"",
+                &text,
+            );
+        }
+    }
+    for (value, text) in y.ticks() {
+        if let Some(t) = y.fraction(value) {
+            svg.line([left, at_y(t)], [left + width, at_y(t)], &pale);
+            svg.text(
+                [left - 8.0, at_y(t) + 4.0],
+                "text-anchor=\"end\" fill=\"#6b6b6b\"",
+                &text,
+            );
+        }
+    }
+    svg.rect(corner, size, "fill=\"none\" stroke=\"#222222\"");
+    let middle = "text-anchor=\"middle\" fill=\"#222222\"";
+    svg.text([left + 0.5 * width, top + height + 40.0], middle, &x.title);
+    let (tx, ty) = (left - 52.0, top + 0.5 * height);
+    svg.raw(&format!(
+        "<text transform=\"translate({tx} {ty}) rotate(-90)\" {middle}>{}</text>",
+        escape(&y.title)
+    ));
+    for (i, s) in series.iter().enumerate() {
+        let place = |p: &[f64; 2]| Some([at_x(x.fraction(p[0])?), at_y(y.fraction(p[1])?)]);
+        let placed: Vec<Option<[f64; 2]>> = s.points.iter().map(place).collect();
+        for run in placed.split(Option::is_none) {
+            let run: Vec<[f64; 2]> = run.iter().flatten().copied().collect();
+            if run.len() > 1 {
+                svg.path(&run, Close::No, &style(i));
+            }
+            for p in run {
+                svg.circle(p, 2.2, &format!("fill=\"{}\"", INKS[i % INKS.len()]));
+            }
+        }
+    }
+}
+
+/// The names of the series, one below the other.
+pub(super) fn legend(svg: &mut Svg, [x, y]: [f64; 2], series: &[Series]) {
+    for (i, s) in series.iter().enumerate() {
+        let y = y + 20.0 * i as f64;
+        svg.line([x, y], [x + 30.0, y], &style(i));
+        svg.text([x + 38.0, y + 4.0], "fill=\"#222222\"", &s.name);
+    }
+}
+
+/// A whole number in superscript digits.
+pub(super) fn superscript(n: i32) -> String {
+    let digits = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    n.to_string()
+        .chars()
+        .map(|c| c.to_digit(10).map_or('⁻', |d| digits[d as usize]))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decades_span_the_values_and_place_them() {
+        let axis = Axis::decades([3e-4, 0.02, 0.0, f64::NAN].into_iter(), "");
+        assert!(
+            (axis.ends[0] / 1e-4 - 1.0).abs() < 1e-12 && (axis.ends[1] / 0.1 - 1.0).abs() < 1e-12
+        );
+        assert!((axis.fraction(1e-3).unwrap() - 1.0 / 3.0).abs() < 1e-12);
+        assert_eq!((axis.fraction(0.0), axis.fraction(1.0)), (None, None));
+        assert_eq!(axis.ticks().len(), 4);
+        assert_eq!(superscript(-12), "⁻¹²");
+    }
+}

@@ -1,0 +1,364 @@
+//! How wrong may the assumed geometry be?
+//!
+//! The bench stands as the scene says; the model that inverts its photographs is of a bench that is slightly off. Photographs
+//! are the converged three-bounce integral with relative normal noise; the method is `joint`.
+
+use glam::{DAffine3, DQuat};
+use serde::Serialize;
+
+use crate::geometry::{DVec3, Shape};
+use crate::matrix::Matrix;
+use crate::metrics::mtf_raw;
+use crate::model::{Extent, Kernel, MatrixModel, ModelError, converged};
+use crate::num::stream::{Key, Sampling, Stream};
+use crate::num::summation::tree_sum;
+use crate::num::warp;
+use crate::recovery::{Method, Options, Problem, recover};
+use crate::scene::{Role, Scene, SceneError};
+
+/// What is assumed wrongly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Misplaced {
+    HingeAngle,
+    HiddenAlongNormal,
+    HiddenAlongU,
+    HiddenAlongV,
+    SpotsX,
+    SpotsY,
+    SpotsRandom,
+    ViewX,
+    ViewY,
+    CameraAlong,
+    CameraAcross,
+    WallBent,
+}
+
+impl Misplaced {
+    const ALL: [Self; 12] = [
+        Self::HingeAngle,
+        Self::HiddenAlongNormal,
+        Self::HiddenAlongU,
+        Self::HiddenAlongV,
+        Self::SpotsX,
+        Self::SpotsY,
+        Self::SpotsRandom,
+        Self::ViewX,
+        Self::ViewY,
+        Self::CameraAlong,
+        Self::CameraAcross,
+        Self::WallBent,
+    ];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::HingeAngle => "hinge angle",
+            Self::HiddenAlongNormal => "S2 along its normal",
+            Self::HiddenAlongU => "S2 along u",
+            Self::HiddenAlongV => "S2 along v",
+            Self::SpotsX => "all spots, x",
+            Self::SpotsY => "all spots, y",
+            Self::SpotsRandom => "each spot, random (rms)",
+            Self::ViewX => "view, x",
+            Self::ViewY => "view, y",
+            Self::CameraAlong => "camera, along its sight",
+            Self::CameraAcross => "camera, across its sight",
+            Self::WallBent => "wall bent (sagitta)",
+        }
+    }
+
+    /// The scene with this misplaced by `size` (degrees for the angle, else the scene's unit); `None` if the scene has no such
+    /// thing.
+    fn apply(self, scene: &Scene, size: f64) -> Result<Option<Scene>, SceneError> {
+        let Some((_, hidden)) = scene.hidden().next() else {
+            return Ok(None);
+        };
+        let centre = hidden.shape.at([0.5, 0.5]);
+        let along = |a: [f64; 2], b: [f64; 2]| {
+            (hidden.shape.at(b).position - hidden.shape.at(a).position).normalize_or_zero()
+        };
+        let moved = |by: DVec3| {
+            scene
+                .with_moved_hidden(&DAffine3::from_translation(by * size))
+                .map(Some)
+        };
+        let sight = (scene.camera.view.corners()[0] - scene.camera.position).normalize_or_zero();
+        match self {
+            Self::HingeAngle => match hinge(scene) {
+                None => Ok(None),
+                Some((point, axis)) => {
+                    let turn = DQuat::from_axis_angle(axis, size.to_radians());
+                    let motion = DAffine3::from_translation(point)
+                        * DAffine3::from_quat(turn)
+                        * DAffine3::from_translation(-point);
+                    scene.with_moved_hidden(&motion).map(Some)
+                }
+            },
+            Self::HiddenAlongNormal => moved(centre.normal),
+            Self::HiddenAlongU => moved(along([0.0, 0.5], [1.0, 0.5])),
+            Self::HiddenAlongV => moved(along([0.5, 0.0], [0.5, 1.0])),
+            Self::SpotsX => scene.with_shifted_spots([size, 0.0]).map(Some),
+            Self::SpotsY => scene.with_shifted_spots([0.0, size]).map(Some),
+            Self::SpotsRandom => {
+                let mut normal = normal(7);
+                let places: Vec<[f64; 2]> = scene
+                    .laser
+                    .spots
+                    .iter()
+                    .map(|s| {
+                        let [a, b] = normal();
+                        let r = size * std::f64::consts::FRAC_1_SQRT_2;
+                        [s.target.position.x + r * a, s.target.position.y + r * b]
+                    })
+                    .collect();
+                scene.with_spots_at(&places).map(Some)
+            }
+            Self::ViewX => Ok(Some(scene.with_shifted_view([size, 0.0]))),
+            Self::ViewY => Ok(Some(scene.with_shifted_view([0.0, size]))),
+            Self::CameraAlong => Ok(Some(scene.with_moved_camera(sight * size))),
+            Self::CameraAcross => {
+                let across = sight.cross(scene.camera.view.normal()).normalize_or_zero();
+                Ok(Some(scene.with_moved_camera(across * size)))
+            }
+            Self::WallBent => {
+                let upward = scene.surfaces.iter().all(|s| {
+                    s.role != Role::Relay
+                        || matches!(&s.shape, Shape::Parallelogram(p) if p.normal().z > 0.0)
+                });
+                if upward {
+                    scene.with_bent_relay(size).map(Some)
+                } else {
+                    Ok(None)
+                }
+            }
+        }
+    }
+}
+
+/// A point and the direction of the line in which the planes of the first hidden surface and of the wall meet.
+fn hinge(scene: &Scene) -> Option<(DVec3, DVec3)> {
+    let (_, hidden) = scene.hidden().next()?;
+    let wall = scene.surfaces.iter().find(|s| s.role == Role::Relay)?;
+    let (a, b) = (hidden.shape.at([0.5, 0.5]), wall.shape.at([0.5, 0.5]));
+    let axis = a.normal.cross(b.normal);
+    let square = axis.length_squared();
+    if square < 1e-12 {
+        return None;
+    }
+    let (da, db) = (a.normal.dot(a.position), b.normal.dot(b.position));
+    let point = (b.normal.cross(axis) * da + axis.cross(a.normal) * db) / square;
+    Some((point, axis.normalize()))
+}
+
+/// Pairs of independent standard normal numbers.
+fn normal(seed: u64) -> impl FnMut() -> [f64; 2] {
+    let key = Key {
+        seed,
+        spot: Key::ALL_SPOTS,
+        pixel: u32::MAX,
+        block: 1,
+    };
+    let mut stream = Stream::new(Sampling::Pcg, key);
+    // The Gaussian beam's 1/e² radius is two standard deviations.
+    move || {
+        let [a, b, ..] = stream.next_four();
+        warp::gaussian_spot([a, b]).map(|x| 2.0 * x)
+    }
+}
+
+/// What a misplacement of one size does.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Misplacement {
+    /// Degrees, or the scene's unit of length.
+    pub size: f64,
+    /// ‖Φ(misplaced) − Φ‖/‖Φ‖.
+    pub change: f64,
+    /// The same after the best single scale.
+    pub after_scale: f64,
+    /// Mean raw MTF of the recovery with the misplaced model; absent where the object has no contrast.
+    pub mtf: Option<f64>,
+}
+
+/// One thing that is assumed wrongly.
+#[derive(Clone, Debug, Serialize)]
+pub struct Sensitivity {
+    /// What.
+    pub name: String,
+    /// Unit of the sizes: `deg` or the scene's.
+    pub unit: String,
+    /// By growing size. Sizes that the scene does not allow (a spot off the wall) are left out.
+    pub rows: Vec<Misplacement>,
+    /// The size at which the MTF falls to half of that without error; absent if it does not, or was lost before.
+    pub lost_at: Option<f64>,
+}
+
+/// The study of a scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct Tolerance {
+    /// Name of the scene.
+    pub scene: String,
+    /// Its hash.
+    pub scene_hash: String,
+    /// Noise of the photographs, relative to each entry.
+    pub noise: f64,
+    /// Raw MTF with the right geometry.
+    pub mtf: Option<f64>,
+    /// Each thing.
+    pub parameters: Vec<Sensitivity>,
+}
+
+/// Sizes from 1e-4 to 1 inch (or degree), three to a decade and a half.
+const SIZES: [f64; 9] = [1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0];
+/// Noisy photographs whose recoveries are averaged.
+const DRAWS: u64 = 4;
+
+/// Misplaces one thing after the other. `progress` is told how many of how many are done.
+///
+/// # Errors
+/// [`ModelError`] if nothing is hidden.
+pub fn tolerance(
+    scene: &Scene,
+    noise: f64,
+    progress: &dyn Fn(usize, usize),
+) -> Result<Tolerance, ModelError> {
+    let truth = converged(scene, Kernel::Physical, Extent::FULL)?.phi;
+    let photographs: Vec<(Matrix, Matrix)> = (0..DRAWS)
+        .map(|seed| {
+            let mut normal = normal(seed);
+            let stderr = truth.map(|x| x * noise);
+            (truth.zip_map(&stderr, |x, s| x + s * normal()[0]), stderr)
+        })
+        .collect();
+    let mtf = |assumed: &Scene| -> Result<Option<f64>, ModelError> {
+        let model = MatrixModel::new(assumed, Kernel::Physical, None)?;
+        let found: Vec<Option<f64>> = photographs
+            .iter()
+            .map(|(phi, stderr)| {
+                let problem =
+                    Problem::new(phi, &model.camera_side, &model.laser_side, Some(stderr)).ok()?;
+                let found = recover(Method::Joint, &problem, &Options::default()).ok()?;
+                mtf_raw(found.reflectance.as_slice(), &model.albedo)
+            })
+            .collect();
+        let found: Option<Vec<f64>> = found.into_iter().collect();
+        Ok(found.map(|m| tree_sum(&m) / m.len() as f64))
+    };
+    let right = mtf(scene)?;
+    let mut parameters = Vec::new();
+    for (done, what) in Misplaced::ALL.into_iter().enumerate() {
+        progress(done, Misplaced::ALL.len());
+        let unit = if what == Misplaced::HingeAngle {
+            1.0
+        } else {
+            scene.unit.per_inch()
+        };
+        let mut rows = Vec::new();
+        for size in SIZES.map(|s| s * unit) {
+            // A misplacement that the wall does not allow is no misplacement of this bench.
+            let Ok(Some(wrong)) = what.apply(scene, size) else {
+                continue;
+            };
+            let phi = converged(&wrong, Kernel::Physical, Extent::FULL)?.phi;
+            let scale = phi.dot(&truth) / phi.norm_squared().max(f64::MIN_POSITIVE);
+            rows.push(Misplacement {
+                size,
+                change: (&phi - &truth).norm() / truth.norm(),
+                after_scale: (&phi * scale - &truth).norm() / truth.norm(),
+                mtf: mtf(&wrong)?,
+            });
+        }
+        if !rows.is_empty() {
+            let unit = if what == Misplaced::HingeAngle {
+                "deg"
+            } else {
+                scene.unit.symbol()
+            };
+            let lost_at = lost_at(right, &rows);
+            parameters.push(Sensitivity {
+                name: what.name().to_owned(),
+                unit: unit.to_owned(),
+                rows,
+                lost_at,
+            });
+        }
+    }
+    progress(Misplaced::ALL.len(), Misplaced::ALL.len());
+    Ok(Tolerance {
+        scene: scene.name.clone(),
+        scene_hash: scene.hash.clone(),
+        noise,
+        mtf: right,
+        parameters,
+    })
+}
+
+/// Below this an MTF shows no pattern.
+const PATTERN: f64 = 0.5;
+
+/// Where the MTF first falls through half of its undisturbed value, interpolated in log size.
+fn lost_at(right: Option<f64>, rows: &[Misplacement]) -> Option<f64> {
+    let right = right.filter(|m| *m >= PATTERN)?;
+    let limit = PATTERN * right;
+    let mut before = (rows.first()?.size * 0.1, right);
+    for row in rows {
+        let mtf = row.mtf?;
+        if mtf < limit {
+            let t = (before.1 - limit) / (before.1 - mtf);
+            return Some(libm::exp(
+                libm::log(before.0) + t * libm::log(row.size / before.0),
+            ));
+        }
+        before = (row.size, mtf);
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On the bench the planes meet at y = 15.5, z = 0, along x.
+    #[test]
+    fn the_hinge_of_the_bench_is_where_it_is() {
+        let (point, axis) = hinge(&Scene::load("bench").unwrap()).unwrap();
+        assert!((point.y - 15.5).abs() < 1e-12 && point.z.abs() < 1e-12);
+        assert!((axis.x.abs() - 1.0).abs() < 1e-12);
+    }
+
+    /// Every misplacement changes Φcam in proportion to its size where it is small.
+    #[test]
+    fn small_misplacements_act_in_proportion() {
+        let scene = Scene::load("bench").unwrap();
+        let truth = converged(&scene, Kernel::Physical, Extent::FULL)
+            .unwrap()
+            .phi;
+        for what in Misplaced::ALL {
+            let change = |size: f64| {
+                let wrong = what.apply(&scene, size).unwrap().unwrap();
+                let phi = converged(&wrong, Kernel::Physical, Extent::FULL)
+                    .unwrap()
+                    .phi;
+                (phi - &truth).norm() / truth.norm()
+            };
+            let (small, twice) = (change(1e-3), change(2e-3));
+            assert!(small > 1e-7, "{what:?}: {small:e}");
+            assert!(
+                (twice / small - 2.0).abs() < 0.01,
+                "{what:?}: {small:e}, {twice:e}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_limit_is_interpolated_in_log_size() {
+        let row = |size, mtf| Misplacement {
+            size,
+            change: 0.0,
+            after_scale: 0.0,
+            mtf: Some(mtf),
+        };
+        let rows = [row(0.01, 1.0), row(0.1, 0.75), row(1.0, 0.25)];
+        assert!((lost_at(Some(1.0), &rows).unwrap() / 0.1f64.sqrt() - 1.0).abs() < 1e-12);
+        assert_eq!(lost_at(Some(1.0), &rows[..2]), None);
+        assert_eq!(lost_at(Some(0.3), &rows), None);
+    }
+}
