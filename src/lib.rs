@@ -44,7 +44,7 @@
 //!    9  main.rs                      parse → run → exit code
 //!    8  cli/         arguments, checked settings, progress, one file per subcommand; the only floor that prints
 //!    7  report/      results → json, svg, png, html: results in, bytes out
-//!    6  study/       experiments that compose the floors below: validation, recovered objects
+//!    6  study/       experiments that compose the floors below: validation, recovered objects, budget, tolerance, power
 //!    5  recovery/    Φcam → reflectance              metrics/   how far two things are apart
 //!    4  transport/   the path tracer → Φcam          model/     G12, G23 → Φcam
 //!    3  film/        frames, EXR                     matrix/    pixels × spots, .npy        store  whole files

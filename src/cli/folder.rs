@@ -242,7 +242,7 @@ impl Folder {
 }
 
 /// What the frame of `spot` says of its origin.
-fn meta(scene: &Scene, record: &Record, spot: usize) -> FrameMeta {
+pub(super) fn meta(scene: &Scene, record: &Record, spot: usize) -> FrameMeta {
     FrameMeta {
         scene_name: scene.name.clone(),
         scene_hash: scene.hash.clone(),

@@ -1,13 +1,20 @@
 //! `phicam validate`: traced against modelled.
 
+use std::path::Path;
+
 use super::args::ValidateArgs;
 use super::failure::Failure;
 use super::finished::{read_matrix, read_run, read_stderr};
-use super::folder::{PHI, STDERR};
+use super::folder::{self, PHI, STDERR};
 use super::output::{self, Talk};
+use super::record::Record;
 use super::{Outcome, settings};
-use crate::report;
+use crate::film::{self, Channel, Frame};
+use crate::matrix::Matrix;
+use crate::num::statistics::normal_two_sided;
+use crate::report::{self, Panel, Scale};
 use crate::scene::Scene;
+use crate::store::{ensure_writable, write_whole};
 use crate::study::{Agreement, validate};
 
 pub(super) fn execute(args: &ValidateArgs, talk: Talk) -> Result<Outcome, Failure> {
@@ -25,6 +32,13 @@ pub(super) fn execute(args: &ValidateArgs, talk: Talk) -> Result<Outcome, Failur
     let kernel = settings::kernel(args.test.kernel);
     let integration = settings::integration(args.test.integration);
     let found = validate(&scene, &phi, &stderr, kernel, integration, test)?;
+    if !found.agreement.agrees {
+        write_map(&args.dir, &scene, &record, &found.z)?;
+        talk.say(format!(
+            "the probability of each entry is mapped in {}, pixels upwards and spots to the right",
+            args.dir.join(MAP).join("p.exr").display()
+        ));
+    }
     let text = if args.json {
         output::json(&found.agreement)?
     } else {
@@ -41,4 +55,43 @@ pub(super) fn outcome(agreement: &Agreement) -> Outcome {
     } else {
         Outcome::Disagreed
     }
+}
+
+/// Folder of the map.
+const MAP: &str = "validation";
+
+/// Writes validation/p.exr (channels `p`, two-sided probability of each entry, and `z`; a row of pixels per matrix row, spots
+/// along it) and validation/p.png (−log10 p).
+fn write_map(dir: &Path, scene: &Scene, record: &Record, z: &Matrix) -> Result<(), Failure> {
+    let folder = dir.join(MAP);
+    ensure_writable(&folder)?;
+    let (rows, columns) = z.shape();
+    // By rows: column + row·columns, as a frame has it.
+    let map =
+        |f: &dyn Fn(f64) -> f64| -> Vec<f64> { z.transpose().iter().map(|z| f(*z)).collect() };
+    let channel = |name: &str, values: Vec<f64>| Channel {
+        name: name.to_owned(),
+        values: values.into_iter().map(|x| x as f32).collect(),
+    };
+    let frame = Frame {
+        columns,
+        rows,
+        channels: vec![
+            channel("p", map(&normal_two_sided)),
+            channel("z", map(&|z| z)),
+        ],
+        meta: folder::meta(scene, record, 0),
+    };
+    film::exr::write(&folder.join("p.exr"), &frame)?;
+    let smallest = f64::MIN_POSITIVE;
+    let surprise = map(&|z| -libm::log10(normal_two_sided(z).max(smallest)));
+    let scale = Scale::sequential(&surprise);
+    let panel = Panel {
+        title: "probability of each entry if the model is right".to_owned(),
+        size: [columns, rows],
+        values: surprise,
+        axes: ["spot", "pixel"].map(str::to_owned),
+    };
+    let png = report::colour_png(&scene.name, &[panel], &scale, "−log10 p")?;
+    Ok(write_whole(&folder.join("p.png"), |w| w.write_all(&png))?)
 }

@@ -11,5 +11,6 @@ mod reproducibility;
 mod scenes;
 mod small_scene;
 mod stacking;
+mod studies;
 mod verdict;
 mod workspace;

@@ -6,6 +6,7 @@ mod laws;
 mod model;
 mod obstacles;
 mod reference;
+mod studies;
 
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;

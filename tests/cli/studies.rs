@@ -1,0 +1,109 @@
+//! `phicam study`: files, tables, refusals.
+
+use crate::workspace::Workspace;
+
+#[test]
+fn a_budget_is_a_table_a_figure_and_json() {
+    let workspace = Workspace::with_scenes();
+    let ended = workspace
+        .phicam("study budget tiny.toml -o b --samples 512 --run-samples 64")
+        .exits(0);
+    for word in [
+        "element area",
+        "5 bounces",
+        "Monte Carlo itself",
+        "the parts add up",
+    ] {
+        assert!(
+            ended.stdout.contains(word),
+            "no `{word}`: {}",
+            ended.account()
+        );
+    }
+    let json = workspace.json("b/budget.json");
+    assert_eq!(json["closure"]["closes"], true, "{json}");
+    let terms = json["terms"].as_array().unwrap().len();
+    // A header and a line a term.
+    assert_eq!(workspace.text("b/budget.csv").lines().count(), terms + 1);
+    let figure = workspace.text("b/budget.svg");
+    assert!(figure.contains("<svg") && !figure.contains("NaN") && figure.contains("5 bounces"));
+}
+
+#[test]
+fn tolerance_is_a_table_a_figure_and_json() {
+    let workspace = Workspace::with_scenes();
+    let ended = workspace.phicam("study tolerance small.toml -o t").exits(0);
+    for word in ["hinge angle", "wall bent", "pattern lost"] {
+        assert!(
+            ended.stdout.contains(word),
+            "no `{word}`: {}",
+            ended.account()
+        );
+    }
+    let json = workspace.json("t/tolerance.json");
+    assert_eq!(json["parameters"].as_array().unwrap().len(), 12);
+    assert!(workspace.text("t/tolerance.svg").contains("hinge angle"));
+    assert!(workspace.text("t/tolerance.csv").lines().count() > 60);
+    workspace.refuses(
+        "study tolerance small.toml -o u --noise 0",
+        &["--noise", "cure"],
+    );
+}
+
+#[test]
+fn power_is_a_table_and_json() {
+    let workspace = Workspace::with_scenes();
+    let line = "study power tiny.toml -o p --seeds 4 --samples 32,64 --json";
+    let json: serde_json::Value =
+        serde_json::from_str(&workspace.phicam(line).exits(0).stdout).unwrap();
+    // Two estimators at two numbers of samples.
+    assert_eq!(json["rows"].as_array().unwrap().len(), 4);
+    assert_eq!(json, workspace.json("p/power.json"));
+    workspace.refuses(
+        "study power tiny.toml -o q --significance 1.5",
+        &["--significance", "cure"],
+    );
+    workspace.refuses("study power tiny.toml -o q --seeds 0", &["--seeds"]);
+}
+
+#[test]
+fn nothing_hidden_is_nothing_to_study() {
+    let workspace = Workspace::new();
+    for study in ["budget", "tolerance", "power"] {
+        let ended = workspace
+            .phicam(&format!("study {study} furnace -o f"))
+            .exits(2);
+        assert!(ended.stderr.contains("hidden"), "{}", ended.account());
+    }
+}
+
+/// A rejected model leaves its map: an EXR whose z is the table's, and a picture.
+#[test]
+fn a_disagreement_is_mapped() {
+    let workspace = Workspace::with_scenes();
+    let _ = workspace
+        .phicam("render small.toml -o done --samples 256")
+        .exits(0);
+    let _ = workspace.phicam("validate done").exits(0);
+    assert!(!workspace.path("done/validation").exists());
+    let line = "validate done --kernel published --json";
+    let json: serde_json::Value =
+        serde_json::from_str(&workspace.phicam(line).exits(1).stdout).unwrap();
+    let map = phicam::film::exr::read(&workspace.path("done/validation/p.exr")).unwrap();
+    assert_eq!(
+        (map.columns, map.rows),
+        (24, 64),
+        "spots along, pixels down"
+    );
+    let worst = &json["worst"][0];
+    let at = |key: &str| usize::try_from(worst[key].as_u64().unwrap()).unwrap();
+    let z = map.channel("z").unwrap()[at("spot") + at("pixel") * 24];
+    assert_eq!(z, worst["z"].as_f64().unwrap() as f32);
+    let p = map.channel("p").unwrap();
+    assert!(p.iter().all(|p| (0.0..=1.0).contains(p)));
+    assert!(
+        workspace
+            .read("done/validation/p.png")
+            .starts_with(b"\x89PNG")
+    );
+}
