@@ -7,7 +7,7 @@
 writes phi.npy, pixels x spots in W (f64; pixel = column + row * columns, row 0 at the lowest y, column 0 at the lowest x),
 and phi.stderr.npy, its standard error. The scale is absolute: nothing is fitted. `scene(spot)` below returns the Mitsuba
 dictionary: a program of your own calls mi.set_variant(...), imports this file and passes it to mi.load_dict. Written for
-Mitsuba 3.9 (3.6 and later should do).
+Mitsuba 3.9 (3.6 to 3.8 were seen to work, too, and with LLVM 14 and 15, which 3.9 finds too old).
 
 How the scene is translated
   Surfaces   A parallelogram is a `rectangle` under an affine map, a sphere a `sphere`. `diffuse` is one-sided: the front
@@ -20,8 +20,8 @@ How the scene is translated
              that it lies on. An ideal spot becomes a disk of 1e-4 of the scene's extent; the bias from its size is of the
              order of (radius / distance)^2, some 1e-8. A spot of finite size that falls on one flat surface of one albedo is a
              `disk` (uniform), or a `rectangle` with a bitmap (Gaussian, cut at 3 w: 4e-6 of its power is moved inwards).
-             Any other is 256 ideal ones of equal power, each where the beam lands: shadow edges across a spot are
-             resolved to about a percent of its power. The emitter lies LIFT above the surface (5e-6 of the extent).
+             Any other is 1024 ideal ones of equal power, each where the beam lands: edges across it are resolved
+             to about 0.5 % of its power, and where the camera sees such a spot itself, to a few % of an edge pixel's light. The emitter lies LIFT above the surface (5e-6 of the extent).
   Bounces    phicam counts the surfaces between laser and camera, the spot's included; Mitsuba counts the edges of a path from
              emitter to camera, and its emitter is the spot: max_depth is the same number.
 
@@ -32,7 +32,9 @@ spread of independent samples; below some hundred contributing samples an entry 
 """
 
 import argparse
+import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 try:
@@ -257,20 +259,18 @@ def render(spot, spp, seed, max_bounces):
 # ---- Command line -------------------------------------------------------------------------------------------------------
 
 
-def choose(variant):
-    """llvm_ad_rgb where the LLVM library is found, else scalar_rgb, which is some hundred times slower."""
-    if variant:
-        try:
-            mi.set_variant(variant)
-        except (ImportError, ValueError) as e:
-            sys.exit(f"{e}")
-        return
-    try:
-        mi.set_variant("llvm_ad_rgb")
-        dr.eval(dr.arange(mi.Float, 2) + 1)
-    except Exception:  # what a missing LLVM raises differs between versions
-        mi.set_variant("scalar_rgb")
-        print("LLVM not found (DRJIT_LIBLLVM_PATH names it): using scalar_rgb, which is slow", file=sys.stderr)
+def choose(spot):
+    """llvm_ad_rgb where it works, else scalar_rgb, which is some hundred times slower.
+
+    Dr.Jit finds the LLVM library by itself (or in DRJIT_LIBLLVM_PATH), but aborts the process where that is too old for
+    it: so the attempt is made in a process of its own.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        trial = ["--variant", "llvm_ad_rgb", "--spp", "2", "--spots", f"{spot}..{spot + 1}", "-o", f"{folder}/phi.npy"]
+        if subprocess.run([sys.executable, __file__, *trial], capture_output=True).returncode == 0:
+            return "llvm_ad_rgb"
+    print("llvm_ad_rgb does not work here (is LLVM installed and recent?): using scalar_rgb, slow", file=sys.stderr)
+    return "scalar_rgb"
 
 
 def main():
@@ -294,14 +294,18 @@ def main():
     parser.add_argument("--spp", type=at_least(2), default=4096, help="samples per pixel and spot (4096)")
     parser.add_argument("--seed", type=at_least(0), default=1)
     parser.add_argument("--max-bounces", type=at_least(1), default=MAX_BOUNCES, help=f"surfaces met ({MAX_BOUNCES})")
-    parser.add_argument("--variant", help="Mitsuba variant: llvm_ad_rgb, scalar_rgb, cuda_ad_rgb")
+    parser.add_argument("--variant", help="Mitsuba variant: llvm_ad_rgb (default where it works), scalar_rgb, cuda_ad_rgb")
     args = parser.parse_args()
-    choose(args.variant)
+    try:
+        mi.set_variant(args.variant or choose(args.spots[0]))
+    except (ImportError, ValueError) as e:
+        sys.exit(f"{args.variant}: {e}")
     columns = []
     for spot in args.spots:
-        print(f"\rspot {spot} ({len(columns) + 1} of {len(args.spots)})", end="", file=sys.stderr, flush=True)
+        if sys.stderr.isatty():
+            print(f"\rspot {spot} ({len(columns) + 1} of {len(args.spots)}) ", end="", file=sys.stderr, flush=True)
         columns.append(render(spot, args.spp, args.seed, args.max_bounces))
-    print(f"\rMitsuba {mi.__version__}, {mi.variant()}: {len(columns)} spots done", file=sys.stderr)
+    print(f"Mitsuba {mi.__version__}, {mi.variant()}: {len(columns)} spots done", file=sys.stderr)
     phi, stderr = (np.ascontiguousarray(np.stack(c, axis=1)) for c in zip(*columns))
     np.save(args.output.with_suffix(".npy"), phi)
     np.save(args.output.with_suffix(".stderr.npy"), stderr)

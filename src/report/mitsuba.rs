@@ -13,7 +13,7 @@ const PROGRAM: &str = include_str!("mitsuba.py");
 /// Where the scene stands in the program.
 const MARK: &str = "# @scene@\n";
 /// A spot that does not fall whole on one flat surface of one albedo is SIDE² points of equal power.
-const SIDE: usize = 16;
+const SIDE: usize = 32;
 /// A Gaussian ends here, in units of its radius w: exp(−2·3²) = 1.5e-8 of the peak.
 const CUT: f64 = 3.0;
 
@@ -216,3 +216,7 @@ fn grid(n: usize) -> impl Iterator<Item = [f64; 2]> {
     let middle = move |i: usize| (i as f64 + 0.5) / n as f64;
     (0..n * n).map(move |k| [middle(k % n), middle(k / n)])
 }
+
+#[cfg(test)]
+#[path = "mitsuba_tests.rs"]
+mod tests;
