@@ -275,15 +275,15 @@ def choose(spot):
 
 def main():
     def spot_range(text):
-        a, b = (int(x) for x in text.split(".."))
-        if not 0 <= a < b <= len(SPOTS):
-            raise ValueError
-        return range(a, b)
+        a, dots, b = text.partition("..")
+        if not (dots and a.isdecimal() and b.isdecimal() and int(a) < int(b) <= len(SPOTS)):
+            raise argparse.ArgumentTypeError(f"write A..B with A < B <= {len(SPOTS)}, the number of spots")
+        return range(int(a), int(b))
 
     def at_least(least):
         def number(text):
-            if int(text) < least:
-                raise ValueError
+            if not text.isdecimal() or int(text) < least:
+                raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {least} on")
             return int(text)
 
         return number

@@ -138,6 +138,9 @@ fn checks(cells: &Cells) -> Option<[f64; 2]> {
     (n > 1 && cells.albedo.iter().enumerate().all(alternate)).then_some([dark, light])
 }
 
+/// A map of the unit square.
+type Warp = fn(warp::Point2) -> warp::Point2;
+
 /// Where a ray of the beam lands.
 struct Landing {
     shape: ShapeId,
@@ -181,7 +184,7 @@ fn spot(scene: &Scene, spot: &Spot) -> String {
         )
     };
     let centre = aim([0.0, 0.0], 0.0);
-    let (kind, radius, reach, map): (_, _, _, fn([f64; 2]) -> [f64; 2]) = match profile {
+    let (kind, radius, reach, map): (_, _, _, Warp) = match profile {
         Profile::Ideal => {
             let at = centre.map_or(String::new(), |at| entry("point", &at, 1.0));
             return format!("    [{at}],\n");
