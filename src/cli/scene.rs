@@ -18,8 +18,18 @@ pub(super) fn execute(args: &SceneArgs, talk: Talk) -> Result<Outcome, Failure> 
             talk.warn(&scene);
             output::deliver(&report::bench_svg(&scene), output.as_deref())?;
         }
-        SceneCommand::Export { scene, output } => {
-            output::deliver(&Scene::load(scene)?.text, output.as_deref())?;
+        SceneCommand::Export {
+            scene,
+            mitsuba,
+            output,
+        } => {
+            let scene = Scene::load(scene)?;
+            let text = if *mitsuba {
+                report::mitsuba_script(&scene)
+            } else {
+                scene.text
+            };
+            output::deliver(&text, output.as_deref())?;
         }
     }
     Ok(Outcome::Done)

@@ -256,6 +256,9 @@ pub(in crate::cli) enum SceneCommand {
     Export {
         /// Built-in scene or path of a scene file
         scene: String,
+        /// A Python program instead, that renders the same Φcam with Mitsuba 3
+        #[arg(long)]
+        mitsuba: bool,
         /// File to write; standard output unless given
         #[arg(long, short)]
         output: Option<PathBuf>,
