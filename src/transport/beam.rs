@@ -19,7 +19,7 @@ pub(super) struct Beams<'a> {
     scene: &'a Scene,
     /// Where the beam lands if it has no width.
     ideal: Vec<Option<LitPoint>>,
-    /// Spots that a pixel may see directly.
+    /// Spots without width that a pixel may see directly.
     in_view: Vec<bool>,
 }
 
@@ -34,11 +34,10 @@ impl<'a> Beams<'a> {
         if !beams.has_width() {
             beams.ideal = spots.clone().map(|l| beams.ideal_spot(l)).collect();
         }
-        beams.in_view = spots
-            .map(|l| match beams.ideal.get(l) {
-                Some(point) => point.is_some_and(|p| scene.camera.pixel_of(p.position).is_some()),
-                None => true,
-            })
+        beams.in_view = beams
+            .ideal
+            .iter()
+            .map(|point| point.is_some_and(|p| scene.camera.pixel_of(p.position).is_some()))
             .collect();
         beams
     }
@@ -48,9 +47,12 @@ impl<'a> Beams<'a> {
         self.scene.laser.profile != Profile::Ideal
     }
 
-    /// Whether the camera may see the light of spot `l` directly.
-    pub(super) fn in_view(&self, spot: usize) -> bool {
-        self.in_view[spot]
+    /// The point where the beam of a spot without width lands, if a pixel may see it directly.
+    pub(super) fn point_in_view(&self, spot: usize) -> Option<LitPoint> {
+        match self.in_view.get(spot) {
+            Some(true) => self.ideal[spot],
+            _ => None,
+        }
     }
 
     /// A point lit by beam `spot`, distributed as its power: the irradiance integrates to Φlaser, so that each sample
@@ -64,6 +66,41 @@ impl<'a> Beams<'a> {
         let target = &self.scene.laser.spots[spot].target;
         let [x, y] = offset.map(|c| c * radius);
         self.land(target.position + Basis::around(target.normal).to_world([x, y, 0.0]))
+    }
+
+    /// Irradiance (W/area, per watt of power) that the beam of a wide spot makes at a point of the scene, seen from its front:
+    /// 0 where the beam does not reach.
+    ///
+    /// The beam's rays carry f(o) per area of the plane through the target, o the offset there. Seen from the laser that plane and the
+    /// surface at x share solid angles, dω = cosθ_plane dA_plane/d_plane² = cosθ_x dA_x/d_x², so
+    /// E(x) = f(o) · (cosθ_x/d_x²)·(d_plane²/cosθ_plane), if nothing stands between.
+    pub(super) fn irradiance(&self, spot: usize, x: (DVec3, DVec3), shape: ShapeId) -> f64 {
+        let density: fn([f64; 2]) -> f64 = match self.scene.laser.profile {
+            Profile::Ideal => return 0.0,
+            Profile::Disc { .. } => warp::disc_density,
+            Profile::Gaussian { .. } => warp::gaussian_spot_density,
+        };
+        let (Profile::Disc { radius } | Profile::Gaussian { radius }) = self.scene.laser.profile
+        else {
+            return 0.0;
+        };
+        let target = &self.scene.laser.spots[spot].target;
+        let Some(ray) = Ray::between(self.scene.laser.position, x.0) else {
+            return 0.0;
+        };
+        let (cos_plane, cos_x) = (-target.normal.dot(ray.direction), -x.1.dot(ray.direction));
+        if cos_plane <= 0.0 || cos_x <= 0.0 {
+            return 0.0;
+        }
+        let to_plane = target.normal.dot(ray.origin - target.position) / cos_plane;
+        let offset = ray.origin + ray.direction * to_plane - target.position;
+        let basis = Basis::around(target.normal);
+        let f = density([basis.s.dot(offset) / radius, basis.t.dot(offset) / radius])
+            / (radius * radius);
+        if f <= 0.0 || self.scene.bvh().blocked(&ray, [None, Some(shape)]) {
+            return 0.0;
+        }
+        f * cos_x / (ray.length * ray.length) * to_plane * to_plane / cos_plane
     }
 
     /// Where a beam without width lands: exactly on its target, unless something stands in its way.

@@ -83,14 +83,10 @@ impl<'a> PixelTracer<'a> {
                 lit.clear();
                 lit.extend(spots.clone().map(|spot| self.beams.point(spot, [s, t])));
             }
-            for (l, spot) in spots.clone().enumerate() {
-                let point = lit[l].filter(|_| self.beams.in_view(spot));
-                match point.and_then(|point| pinhole::direct(self.scene, &point)) {
-                    Some((seen_by, flux)) if seen_by == pixel => sums[l] += power * flux,
-                    _ => {}
-                }
-            }
             let first = pinhole::first_vertex(self.scene, pixel, [a, b]);
+            for (l, spot) in spots.clone().enumerate() {
+                sums[l] += power * self.direct(spot, pixel, first.as_ref());
+            }
             self.walk
                 .run(first, vertices, [u, v], choice, &mut stream, |n, vertex| {
                     let radiance = vertex.throughput * vertex.albedo * FRAC_1_PI * power;
@@ -102,6 +98,19 @@ impl<'a> PixelTracer<'a> {
                     }
                 });
         }
+    }
+
+    /// Light of the spot itself, one surface met, per watt of power: a spot without width as a point, a wide one where the line of
+    /// sight meets it.
+    fn direct(&self, spot: usize, pixel: usize, first: Option<&Vertex>) -> f64 {
+        if let Some(point) = self.beams.point_in_view(spot) {
+            let seen = pinhole::direct(self.scene, &point).filter(|(by, _)| *by == pixel);
+            return seen.map_or(0.0, |(_, flux)| flux);
+        }
+        first.filter(|_| self.beams.has_width()).map_or(0.0, |x| {
+            let irradiance = self.beams.irradiance(spot, (x.position, x.normal), x.shape);
+            x.throughput * x.albedo * FRAC_1_PI * irradiance
+        })
     }
 
     /// V·cosθ·cosθ′/d² · ρ/π between a vertex and the lit point.

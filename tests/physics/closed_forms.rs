@@ -147,3 +147,68 @@ fn a_spot_in_the_view_is_seen_directly() {
         );
     }
 }
+
+/// A Gaussian spot beside the view: its tail lights the wall in view by Φ·2/(πw²)·exp(−2r²/w²), down to a millionth of the
+/// middle, and every pixel's share is its own integral. A disc in view is uniform inside its edge.
+#[test]
+fn wide_spots_are_seen_directly_down_to_their_tails() {
+    let square = "layout = \"square\"\ncentre = [5.0, 4.373476808130942]\nhalf_width = 3.0\nper_side = 30\n\
+        stagger = [-1.0, 1.0, 0.0]";
+    let (sx, sy) = (2.5f64, 2.4f64);
+    for (profile, diameter) in [("gaussian", 1.2f64), ("disc", 3.0)] {
+        let wide = format!("spot_diameter = {diameter}");
+        let name = format!("profile = \"{profile}\"");
+        let scene = builtin(
+            "bench",
+            &[
+                (square, "layout = \"list\"\npoints = [[2.5, 2.4]]"),
+                ("         # offsets cycled along each side", ""),
+                ("max_bounces = 3 ", "max_bounces = 1 "),
+                ("spot_diameter = 0.0", &wide),
+                ("profile = \"disc\"", &name),
+            ],
+        );
+        let w = 0.5 * diameter;
+        let truth = Matrix::from_fn(256, 1, |p, _| {
+            let mut sum = 0.0;
+            let nodes = if profile == "disc" { 40 } else { 8 };
+            for (a, wa) in gauss(nodes) {
+                for (b, wb) in gauss(nodes) {
+                    let x = 3.25 + ((p % 16) as f64 + a) * 3.25 / 16.0;
+                    let y = 2.75 + ((p / 16) as f64 + b) * 3.25 / 16.0;
+                    let r2 = ((x - sx) * (x - sx) + (y - sy) * (y - sy)) / (w * w);
+                    let irradiance = match profile {
+                        "disc" if r2 <= 1.0 => 1.0 / (PI * w * w),
+                        "disc" => 0.0,
+                        _ => 2.0 / (PI * w * w) * (-2.0 * r2).exp(),
+                    };
+                    let d2 = (x + 20.0) * (x + 20.0) + (y - 10.0) * (y - 10.0) + 225.0;
+                    sum += wa * wb * irradiance * 0.05 * 225.0 / (d2 * d2)
+                        * (3.25f64 / 16.0)
+                        * (3.25 / 16.0);
+                }
+            }
+            5e-3 * 0.8 / PI * sum
+        });
+        let way = Way(Independent, Sampling::Sobol, 1, 4096);
+        let traced = trace(&scene, way);
+        if profile == "gaussian" {
+            // Each pixel within its own error bar, which is small against its own flux however faint that is.
+            let verdict = compare(&traced, &truth, way);
+            assert!(verdict.agrees, "{verdict:?}");
+            let relative = traced.stderr.component_div(&truth).amax();
+            assert!(
+                relative < 0.05,
+                "a pixel known to {relative} of itself only"
+            );
+        } else {
+            // Pixels cut by the disc's edge to what 40 nodes a side resolve.
+            let off = (&traced.flux - &truth).amax();
+            assert!(off < 0.05 * truth.amax(), "{off:e} of {:e}", truth.amax());
+        }
+        assert!(
+            (traced.flux.sum() / truth.sum() - 1.0).abs() < 2e-3,
+            "{profile}"
+        );
+    }
+}
