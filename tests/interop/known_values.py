@@ -215,18 +215,18 @@ def hidden_face(face="face", cuts_a=(), cuts_b=(), fp_cuts=((), ()), share=mpf(1
 def clipped(scene, pixel, spot, n, face, bounds):
     """∫_footprint étendue ∫ G·G over rectangles of a face parallel to the wall z = 0.
 
-    `bounds(scene, s)`: the edges 2q of what the wall point x projects onto the face, at 2q − x, and the rectangle that s does.
+    `bounds(scene, s)`: the edges m of what a wall point x projects onto the face, to m − kx, that k, and the spot's rectangle.
     The footprint is divided where an edge that moves with x meets one that does not."""
     wall, f = scene.surface["wall"], scene.surface[face]
     s, z = wall.above(*scene.spots[spot]), f.corner[2]
     corner, far = f.corner, f.at(1, 1)
     outer = [sorted((corner[i], far[i])) for i in (0, 1)]
-    moving, fixed = bounds(scene, s)
-    # An edge m − x of the moving rectangle meets a fixed edge q at x = m − q.
-    cuts = tuple([m - q for m in moving[i] for q in (*outer[i], *fixed[i])] for i in (0, 1))
+    moving, k, fixed = bounds(scene, s)
+    # An edge m − kx of the moving rectangle meets a fixed edge q at x = (m − q)/k.
+    cuts = tuple([(m - q) / k for m in moving[i] for q in (*outer[i], *fixed[i])] for i in (0, 1))
     total = mpf(0)
     for x, e in scene.footprint(pixel, wall, max(4, n // 2), cuts):
-        seen = [[moving[i][0] - x[i], moving[i][1] - x[i]] for i in (0, 1)]
+        seen = [[m - k * x[i] for m in moving[i]] for i in (0, 1)]
         for sign, parts in rectangles(bounds, outer, seen, fixed):
             sides = []
             for i in (0, 1):
@@ -239,7 +239,6 @@ def clipped(scene, pixel, spot, n, face, bounds):
 
 
 def hole(scene, s):
-    """Edges 2a of what is seen through the hole, before x is taken off; and the spot's own rectangle."""
     a = [scene.surface["screen, below"].corner[0], scene.surface["screen, right"].corner[0]]
     below = scene.surface["screen, below"]
     b = [below.at(1, 1)[1], scene.surface["screen, above"].corner[1]]
@@ -254,10 +253,9 @@ def front_shadow(scene, s):
 
 
 def shadow(sides, ratio, s):
-    """Central projection from (x, z = 0): q ↦ x + ratio·(q − x). Here ratio = 2, so the image is 2q − x."""
-    assert ratio == 2
-    moving = [[2 * q for q in side] for side in sides]
-    return moving, [[m - s[i] for m in moving[i]] for i in (0, 1)]
+    """Central projection from a point x of z = 0: q ↦ x + ratio·(q − x) = ratio·q − k·x, k = ratio − 1."""
+    moving, k = [[ratio * q for q in side] for side in sides], ratio - 1
+    return moving, k, [[m - k * s[i] for m in moving[i]] for i in (0, 1)]
 
 
 def rectangles(bounds, outer, seen, fixed):

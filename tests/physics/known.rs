@@ -25,8 +25,8 @@ const REPLICATES: u32 = 64;
 /// Paths in each replicate of a pilot.
 const PILOT: u32 = 1 << 9;
 /// What the variance that the pilot saw is multiplied by. From 64 replicates it is known to 18 %, from the same number in
-/// the render again; a factor of 2 is four such errors away.
-const MARGIN: f64 = 2.0;
+/// the render again: 1.5 is two such errors away.
+const MARGIN: f64 = 1.5;
 /// Renders, each with a seed of its own, from whose spread the error of a single order of bounces comes.
 const SEEDS: u64 = 32;
 /// Paths in each replicate beyond which a scene counts as too noisy for a test.
@@ -120,7 +120,7 @@ fn budget(scene: &Scene, way: (Estimator, Sampling)) -> Budget {
         .fold(0.0, f64::max);
     let size = (needed * MARGIN * f64::from(PILOT))
         .ceil()
-        .clamp(64.0, MOST) as u32;
+        .clamp(f64::from(PILOT), MOST) as u32;
     match way.1 {
         Sampling::Pcg => Budget {
             blocks: REPLICATES,
