@@ -22,6 +22,9 @@ pub(super) struct SceneFile {
     pub camera: CameraTable,
     #[serde(default)]
     pub surface: Vec<SurfaceTable>,
+    /// Exact answers. They do not change the light, so they stay out of the hash, which is taken from what is serialised.
+    #[serde(default, skip_serializing)]
+    pub known: Vec<KnownTable>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
@@ -159,6 +162,19 @@ pub(super) struct SurfaceTable {
     /// Resolution of the matrix model and of the recovery along u and v (hidden surfaces).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub elements: Option<[u32; 2]>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct KnownTable {
+    /// Pixel index.
+    pub pixel: u64,
+    /// Spot index.
+    pub spot: u64,
+    /// Exact flux into the pixel, W.
+    pub flux: f64,
+    /// Only light that met exactly so many surfaces; absent: all light.
+    pub bounces: Option<u32>,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize)]

@@ -32,8 +32,14 @@
 //! | `surface.sphere` | `{ centre, radius, face = "outside" or "inside" }` (not for hidden surfaces) |
 //! | `surface.material` | `{ lambertian = ρ }` with ρ a number, or one of the tables below |
 //! | `surface.elements` | elements along u and v (hidden surfaces only) |
+//! | `known.pixel`, `known.spot` | `[[known]]`, optional, any number: an entry of Φcam whose exact value is known |
+//! | `known.flux` | the exact flux into that pixel when that spot is lit, W |
+//! | `known.bounces` | only light that met exactly so many surfaces; absent: all light of up to `max_bounces` |
 //!
 //! Surfaces reflect from their front; their back is black; both sides are opaque.
+//!
+//! Known answers are for tests and for checks of one's own; they change neither the light nor the scene's hash. The
+//! scenes below `scenes/known/` of the repository state theirs, with the derivation in their headers.
 //!
 //! Albedo tables: `{ checkerboard = [nu, nv], dark = …, light = … }` with cell (0, 0), at the corner, dark;
 //! `{ cells = [[…], …] }` with rows along v, each along u; `{ ramp = [start, end] }` along u.
@@ -59,6 +65,7 @@ mod camera;
 mod check;
 mod error;
 mod file;
+mod known;
 mod laser;
 mod parse;
 mod spots;
@@ -72,6 +79,7 @@ use sha2::{Digest, Sha256};
 pub use builtin::{Builtin, builtins};
 pub use camera::Camera;
 pub use error::{Place, SceneError};
+pub use known::Known;
 pub use laser::{Laser, Profile, Spot};
 pub use surface::{Role, Surface};
 pub use texture::{Cells, Texture};
@@ -134,6 +142,8 @@ pub struct Scene {
     pub camera: Camera,
     /// Surfaces; their positions are the shape ids of [`Scene::bvh`].
     pub surfaces: Vec<Surface>,
+    /// Exact answers that the scene states; empty for most.
+    pub known: Vec<Known>,
     /// The text that the scene was read from.
     pub text: String,
     /// SHA-256 (hex) of the scene's content: comments and spelling of numbers do not change it.
@@ -183,6 +193,12 @@ impl Scene {
             .map_err(|e| Fault::new(keys!["surface"], e.to_string(), "check the coordinates"))?;
         let laser = Laser::from_table(&file.laser, &surfaces)?;
         let camera = Camera::from_table(&file.camera, &surfaces)?;
+        let known = Known::from_tables(
+            &file.known,
+            camera.pixels(),
+            laser.spots.len(),
+            file.max_bounces,
+        )?;
         let json = serde_json::to_vec(file)
             .map_err(|e| Fault::new(keys![], e.to_string(), "use finite numbers only"))?;
         let hash = Sha256::digest(json)
@@ -201,6 +217,7 @@ impl Scene {
             laser,
             camera,
             surfaces,
+            known,
             text: text.to_owned(),
             hash,
             bvh,

@@ -1,0 +1,177 @@
+//! The scenes of `scenes/known/`, against the answers that they state themselves.
+//!
+//! Each answer was computed outside of this crate; the derivation stands in the scene's header, and
+//! `tests/interop/known_values.py` repeats it from the scene's own numbers.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use phicam::num::stream::Sampling;
+use phicam::num::summation::mean_and_stderr;
+use phicam::scene::{Known, Scene};
+use phicam::transport::Estimator::{self, Independent, Shared};
+use phicam::transport::{Budget, Control, Plan, Traced, render};
+use rayon::prelude::*;
+
+/// Fewest scenes that must be found, so that a moved folder does not pass for agreement.
+const FEWEST: usize = 12;
+/// Largest standard error, relative to the known flux.
+const PRECISION: f64 = 1e-3;
+/// Largest |z|.
+const LARGEST_Z: f64 = 4.0;
+/// Replicates of a pilot, and at least of a render.
+const REPLICATES: u32 = 64;
+/// Paths in each replicate of a pilot.
+const PILOT: u32 = 1 << 9;
+/// What the variance that the pilot saw is multiplied by. From 64 replicates it is known to 18 %, from the same number in
+/// the render again: 1.5 is two such errors away.
+const MARGIN: f64 = 1.5;
+/// Renders, each with a seed of its own, from whose spread the error of a single order of bounces comes.
+const SEEDS: u64 = 32;
+/// Paths in each replicate beyond which a scene counts as too noisy for a test.
+const MOST: f64 = (1u32 << 20) as f64;
+/// What a mean of equal samples may be off by: 2²⁴ additions of f64 in sequence, the roundings random (2¹² · 2⁻⁵³ ≈ 5e-13);
+/// the known values are printed with 16 digits.
+const ROUNDING: f64 = 1e-12;
+
+fn scenes() -> Vec<(PathBuf, Scene)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/known");
+    let mut paths: Vec<PathBuf> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
+        .collect();
+    paths.sort();
+    assert!(paths.len() >= FEWEST, "only {} known scenes", paths.len());
+    paths
+        .into_iter()
+        .map(|path| {
+            let scene = Scene::load(path.to_str().unwrap()).unwrap_or_else(|e| panic!("{e}"));
+            (path, scene)
+        })
+        .collect()
+}
+
+fn trace(scene: &Scene, plan: &Plan) -> Traced {
+    let stop = AtomicBool::new(false);
+    let control = Control {
+        progress: &|_| (),
+        stop: &stop,
+    };
+    render(scene, plan, 0..scene.laser.spots.len(), control).unwrap()
+}
+
+/// Estimates of all known answers of a scene: (value, standard error), in the file's order.
+fn estimate(
+    scene: &Scene,
+    way: (Estimator, Sampling),
+    seed: u64,
+    budget: Budget,
+) -> Vec<(f64, f64)> {
+    let plan = |seed, budget| Plan {
+        estimator: way.0,
+        sampling: way.1,
+        seed,
+        budget,
+    };
+    let all = || trace(scene, &plan(seed, budget));
+    // One order of bounces carries no error of its own: it comes from renders of the same size in all.
+    let orders = || -> Vec<_> {
+        let part = Budget {
+            blocks: budget.blocks.div_ceil(SEEDS as u32),
+            ..budget
+        };
+        (0..SEEDS)
+            .map(|k| trace(scene, &plan(seed + 1 + k, part)))
+            .collect()
+    };
+    let total = scene.known.iter().any(|k| k.bounces.is_none()).then(all);
+    let by_order = scene.known.iter().any(|k| k.bounces.is_some()).then(orders);
+    let of = |known: &Known| {
+        let at = (known.pixel, known.spot);
+        match (known.bounces, &total, &by_order) {
+            (Some(n), _, Some(renders)) => {
+                let values: Vec<f64> = renders
+                    .iter()
+                    .map(|r| r.bounces[n as usize - 1][at])
+                    .collect();
+                mean_and_stderr(&values)
+            }
+            (None, Some(render), _) => (render.flux[at], render.stderr[at]),
+            _ => unreachable!(),
+        }
+    };
+    scene.known.iter().map(of).collect()
+}
+
+/// The budget with which every answer is known to [`PRECISION`], from a pilot's variance.
+fn budget(scene: &Scene, way: (Estimator, Sampling)) -> Budget {
+    let pilot = Budget {
+        blocks: REPLICATES,
+        size: PILOT,
+    };
+    let needed = scene
+        .known
+        .iter()
+        .zip(estimate(scene, way, 1000, pilot))
+        .filter(|(known, _)| known.flux > 0.0)
+        .map(|(known, (_, stderr))| (stderr / known.flux / PRECISION).powi(2))
+        .fold(0.0, f64::max);
+    let size = (needed * MARGIN * f64::from(PILOT))
+        .ceil()
+        .clamp(f64::from(PILOT), MOST) as u32;
+    match way.1 {
+        Sampling::Pcg => Budget {
+            blocks: REPLICATES,
+            size,
+        },
+        Sampling::Sobol => {
+            let net = size.next_power_of_two().min(1 << 16);
+            Budget {
+                blocks: size.div_ceil(net) * REPLICATES,
+                size: net,
+            }
+        }
+    }
+}
+
+/// What is wrong with the answers of one scene.
+fn faults(path: &Path, scene: &Scene, way: (Estimator, Sampling)) -> Vec<String> {
+    let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+    if scene.known.is_empty() {
+        return vec![format!("{name} states no answer")];
+    }
+    let budget = budget(scene, way);
+    let found = estimate(scene, way, 1, budget);
+    let fault = |(known, (value, stderr)): (&Known, &(f64, f64))| {
+        let z = (value - known.flux) / (stderr + ROUNDING * known.flux);
+        let right = if known.flux == 0.0 {
+            *value == 0.0
+        } else {
+            z.abs() <= LARGEST_Z && *stderr <= PRECISION * known.flux
+        };
+        (!right).then(|| {
+            format!("{name}: {known:?}, traced {value:e} ± {stderr:e}, z = {z:.2}, {budget:?}")
+        })
+    };
+    scene.known.iter().zip(&found).filter_map(fault).collect()
+}
+
+fn all_agree(way: (Estimator, Sampling)) {
+    let faults: Vec<String> = scenes()
+        .par_iter()
+        .flat_map(|(path, scene)| faults(path, scene, way))
+        .collect();
+    assert!(faults.is_empty(), "{way:?}\n{}", faults.join("\n"));
+}
+
+#[test]
+fn known_scenes_have_their_answers_under_independent_pcg() {
+    all_agree((Independent, Sampling::Pcg));
+}
+
+#[test]
+fn known_scenes_have_their_answers_under_shared_sobol() {
+    all_agree((Shared, Sampling::Sobol));
+}
