@@ -1,6 +1,6 @@
 //! The camera's end of a path.
 
-use crate::geometry::Ray;
+use crate::geometry::{DVec3, Ray};
 use crate::scene::{Camera, Scene};
 
 use super::beam::LitPoint;
@@ -46,4 +46,27 @@ pub(super) fn direct(scene: &Scene, lit: &LitPoint) -> Option<(usize, f64)> {
         pixel,
         lit.albedo * std::f64::consts::FRAC_1_PI * cos_lit * solid_angle,
     ))
+}
+
+/// Density, per unit area at x, of what a uniform point of a pixel's footprint makes the pinhole see:
+/// 1/A_footprint · (cosθ_x/d_x²)·(d_view²/cosθ_view), x seen from its front.
+pub(super) fn density(scene: &Scene, x: (DVec3, DVec3)) -> f64 {
+    let camera = &scene.camera;
+    let Some(line) = Ray::between(camera.position, x.0) else {
+        return 0.0;
+    };
+    let (cos_x, cos_view) = (
+        -x.1.dot(line.direction),
+        -camera.view.normal().dot(line.direction),
+    );
+    if cos_x <= 0.0 || cos_view <= 0.0 {
+        return 0.0;
+    }
+    let to_view = camera
+        .view
+        .normal()
+        .dot(camera.position - camera.view.corner())
+        / cos_view;
+    let footprint = camera.view.area() / camera.pixels() as f64;
+    cos_x * to_view * to_view / (line.length * line.length * cos_view * footprint)
 }

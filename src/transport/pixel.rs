@@ -85,7 +85,7 @@ impl<'a> PixelTracer<'a> {
             }
             let first = pinhole::first_vertex(self.scene, pixel, [a, b]);
             for (l, spot) in spots.clone().enumerate() {
-                sums[l] += power * self.direct(spot, pixel, first.as_ref());
+                sums[l] += power * self.direct(spot, pixel, first.as_ref(), lit[l].as_ref());
             }
             self.walk
                 .run(first, vertices, [u, v], choice, &mut stream, |n, vertex| {
@@ -100,17 +100,40 @@ impl<'a> PixelTracer<'a> {
         }
     }
 
-    /// Light of the spot itself, one surface met, per watt of power: a spot without width as a point, a wide one where the line of
-    /// sight meets it.
-    fn direct(&self, spot: usize, pixel: usize, first: Option<&Vertex>) -> f64 {
-        if let Some(point) = self.beams.point_in_view(spot) {
-            let seen = pinhole::direct(self.scene, &point).filter(|(by, _)| *by == pixel);
-            return seen.map_or(0.0, |(_, flux)| flux);
+    /// Light of the spot itself, one surface met, per watt of power. A spot without width is a point. A wide one is found in two
+    /// ways, weighted against each other by their densities at the point found (the balance heuristic): where the line of
+    /// sight meets it, which finds the faintest tail, and from the beam, which finds a spot however small.
+    fn direct(
+        &self,
+        spot: usize,
+        pixel: usize,
+        first: Option<&Vertex>,
+        lit: Option<&LitPoint>,
+    ) -> f64 {
+        if !self.beams.has_width() {
+            let point = self.beams.point_in_view(spot);
+            let seen = point.and_then(|point| pinhole::direct(self.scene, &point));
+            return seen
+                .filter(|(by, _)| *by == pixel)
+                .map_or(0.0, |(_, flux)| flux);
         }
-        first.filter(|_| self.beams.has_width()).map_or(0.0, |x| {
-            let irradiance = self.beams.irradiance(spot, (x.position, x.normal), x.shape);
-            x.throughput * x.albedo * FRAC_1_PI * irradiance
-        })
+        let by_sight = first.map_or(0.0, |x| {
+            let at = (x.position, x.normal);
+            let irradiance = self.beams.irradiance(spot, at, x.shape);
+            if irradiance <= 0.0 {
+                return 0.0;
+            }
+            let seen = pinhole::density(self.scene, at);
+            x.throughput * x.albedo * FRAC_1_PI * irradiance * seen / (seen + irradiance)
+        });
+        let by_beam = lit.and_then(|point| {
+            let (by, flux) = pinhole::direct(self.scene, point)?;
+            let at = (point.position, point.normal);
+            let irradiance = self.beams.irradiance(spot, at, point.shape);
+            let seen = pinhole::density(self.scene, at);
+            (by == pixel && irradiance > 0.0).then(|| flux * irradiance / (seen + irradiance))
+        });
+        by_sight + by_beam.unwrap_or(0.0)
     }
 
     /// V·cosθ·cosθ′/d² · ρ/π between a vertex and the lit point.
