@@ -29,8 +29,8 @@ const PILOT: u32 = 1 << 9;
 const MARGIN: f64 = 1.5;
 /// Renders, each with a seed of its own, from whose spread the error of a single order of bounces comes.
 const SEEDS: u64 = 32;
-/// Paths in each replicate beyond which a scene counts as too noisy for a test.
-const MOST: f64 = (1u32 << 20) as f64;
+/// Paths in each replicate beyond which a scene is too noisy: the noisiest needs 2.9e5 of them.
+const MOST: f64 = (1u32 << 19) as f64;
 /// What a mean of equal samples may be off by: 2²⁴ additions of f64 in sequence, the roundings random (2¹² · 2⁻⁵³ ≈ 5e-13);
 /// the known values are printed with 16 digits.
 const ROUNDING: f64 = 1e-12;
@@ -105,8 +105,9 @@ fn estimate(
     scene.known.iter().map(of).collect()
 }
 
-/// The budget with which every answer is known to [`PRECISION`], from a pilot's variance.
-fn budget(scene: &Scene, way: (Estimator, Sampling)) -> Budget {
+/// The budget with which every answer is known to [`PRECISION`], from a pilot's variance; `None` if that takes more than
+/// [`MOST`] paths.
+fn budget(scene: &Scene, way: (Estimator, Sampling)) -> Option<Budget> {
     let pilot = Budget {
         blocks: REPLICATES,
         size: PILOT,
@@ -118,10 +119,12 @@ fn budget(scene: &Scene, way: (Estimator, Sampling)) -> Budget {
         .filter(|(known, _)| known.flux > 0.0)
         .map(|(known, (_, stderr))| (stderr / known.flux / PRECISION).powi(2))
         .fold(0.0, f64::max);
-    let size = (needed * MARGIN * f64::from(PILOT))
-        .ceil()
-        .clamp(f64::from(PILOT), MOST) as u32;
-    match way.1 {
+    let size = (needed * MARGIN * f64::from(PILOT)).ceil();
+    if size > MOST {
+        return None;
+    }
+    let size = (size as u32).max(PILOT);
+    Some(match way.1 {
         Sampling::Pcg => Budget {
             blocks: REPLICATES,
             size,
@@ -133,7 +136,7 @@ fn budget(scene: &Scene, way: (Estimator, Sampling)) -> Budget {
                 size: net,
             }
         }
-    }
+    })
 }
 
 /// What is wrong with the answers of one scene.
@@ -142,7 +145,9 @@ fn faults(path: &Path, scene: &Scene, way: (Estimator, Sampling)) -> Vec<String>
     if scene.known.is_empty() {
         return vec![format!("{name} states no answer")];
     }
-    let budget = budget(scene, way);
+    let Some(budget) = budget(scene, way) else {
+        return vec![format!("{name}: too noisy under {way:?}")];
+    };
     let found = estimate(scene, way, 1, budget);
     let fault = |(known, (value, stderr)): (&Known, &(f64, f64))| {
         let z = (value - known.flux) / (stderr + ROUNDING * known.flux);
