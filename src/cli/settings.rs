@@ -18,7 +18,7 @@ pub(super) fn plan(args: &TraceArgs, talk: Talk) -> Result<Plan, Failure> {
             "--samples {} is not a number of paths that can be traced",
             args.samples
         );
-        Failure::new(cause, "use at least 1 and at most 2⁴⁰")
+        Failure::new(cause, "use at least 1 and at most 2³²")
     })?;
     if budget.samples() != args.samples {
         talk.say(format!(

@@ -23,7 +23,7 @@ pub enum ModelError {
     TooLarge {
         /// Elements asked for.
         elements: usize,
-        /// Entries of the largest matrix.
+        /// Entries of all matrices.
         entries: f64,
     },
 }
@@ -70,14 +70,14 @@ pub struct MatrixModel {
     pub laser_side: Matrix,
 }
 
-/// Entries that a matrix may have.
-const MOST_ENTRIES: f64 = 2e9;
+/// Entries that all matrices of a model together may have: 8 GB.
+const MOST_ENTRIES: f64 = 1e9;
 
 impl MatrixModel {
     /// The model of `scene`; `elements` replaces the elements a side that the scene gives.
     ///
     /// # Errors
-    /// [`ModelError`] if nothing is hidden or the matrices would have more than 2e9 entries.
+    /// [`ModelError`] if nothing is hidden or the matrices would have more than 1e9 entries in all.
     pub fn new(
         scene: &Scene,
         kernel: Kernel,
@@ -98,7 +98,7 @@ impl MatrixModel {
             return Err(ModelError::NothingHidden);
         }
         let (pixels, spots) = (scene.camera.pixels(), scene.laser.spots.len());
-        let entries = count as f64 * pixels.max(spots) as f64;
+        let entries = 2.0 * count as f64 * (pixels + spots) as f64 + pixels as f64 * spots as f64;
         if entries > MOST_ENTRIES {
             return Err(ModelError::TooLarge {
                 elements: count,

@@ -84,7 +84,7 @@ pub enum PowerError {
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// Not a number of paths.
-    #[error("{0} samples cannot be traced (use 1 to 2⁴⁰)")]
+    #[error("{0} samples cannot be traced (use 1 to 2³²)")]
     Samples(u64),
 }
 

@@ -45,9 +45,9 @@ const REPLICATES: u64 = 32;
 
 impl Budget {
     /// At least `samples` paths, rounded up to whole blocks: 32 of them; with Sobol' points a block is a power of two
-    /// (a net), at most 2¹⁶, and more blocks follow beyond that. `None` for no samples or more than 2⁴⁰.
+    /// (a net), at most 2¹⁶, and more blocks follow beyond that. `None` for no samples or more than 2³².
     pub fn new(samples: u64, sampling: Sampling) -> Option<Self> {
-        if samples == 0 || samples > 1 << 40 {
+        if samples == 0 || samples > 1 << 32 {
             return None;
         }
         let size = samples.div_ceil(REPLICATES);
