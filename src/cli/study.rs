@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::args::{BudgetArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs};
+use super::args::{BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs};
 use super::failure::Failure;
 use super::interrupt::stop_flag;
 use super::output::{self, Talk};
@@ -18,6 +18,7 @@ pub(super) fn execute(args: &StudyArgs, talk: Talk) -> Result<Outcome, Failure> 
         StudyCommand::Budget(a) => budget(a, talk),
         StudyCommand::Power(a) => power(a, talk),
         StudyCommand::Tolerance(a) => tolerance(a, talk),
+        StudyCommand::Convergence(a) => convergence(a, talk),
     }
 }
 
@@ -138,6 +139,41 @@ fn tolerance(args: &ToleranceArgs, talk: Talk) -> Result<Outcome, Failure> {
         json
     } else {
         report::tolerance_table(&found)
+    })?;
+    Ok(Outcome::Done)
+}
+
+fn convergence(args: &ConvergenceArgs, talk: Talk) -> Result<Outcome, Failure> {
+    let scene = Scene::load(&args.scene)?;
+    let pool = settings::pool(args.threads)?;
+    ensure_writable(&args.output)?;
+    let spots = scene.laser.spots.len() as u64;
+    let each = args.samples.iter().fold(0u64, |a, b| a.saturating_add(*b));
+    // Both samplers, under both estimators.
+    let paths = each.saturating_mul(2 * scene.camera.pixels() as u64 * (spots + 1));
+    let bar = progress::paths(talk, &format!("convergence on {}", scene.name), paths);
+    let tick = |paths| bar.inc(paths);
+    let control = Control {
+        progress: &tick,
+        stop: stop_flag(),
+    };
+    let found = pool.install(|| study::convergence(&scene, &args.samples, args.seed, control))?;
+    bar.finish_and_clear();
+    let Some(found) = found else {
+        return Err(Failure::Stopped(
+            "nothing was written; run it again".to_owned(),
+        ));
+    };
+    let json = output::json(&found)?;
+    write(&args.output.join("convergence.json"), &json)?;
+    write(
+        &args.output.join("convergence.svg"),
+        &report::convergence_svg(&found),
+    )?;
+    output::print(&if args.json {
+        json
+    } else {
+        report::convergence_table(&found)
     })?;
     Ok(Outcome::Done)
 }

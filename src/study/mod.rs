@@ -3,12 +3,14 @@
 //! * [`agree`]: traced against modelled Φcam, a verdict by test statistics.
 //! * [`validate`]: the same for a scene, the model computed on the way.
 //! * [`error_budget`]: the difference between frames and model taken apart into its causes.
-//! * [`power`]: what [`validate`] detects, and how often it errs.
+//! * [`convergence`](fn@convergence): how fast the error of each estimator falls.
+//! * [`power`](fn@power): what [`validate`] detects, and how often it errs.
 //! * [`tolerance`](fn@tolerance): how wrong the assumed geometry may be.
 //! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object.
 
 mod agreement;
 mod budget;
+mod convergence;
 mod ensemble;
 mod objects;
 mod power;
@@ -18,6 +20,7 @@ mod validation;
 
 pub use agreement::{Errors, Evidence, Test, agree};
 pub use budget::{BudgetError, BudgetPlan, Closure, ErrorBudget, Term, error_budget};
+pub use convergence::{Convergence, ConvergenceError, Curve, Step, convergence};
 pub use ensemble::Estimate;
 pub use objects::{Attempt, Noise, recover_objects};
 pub use power::{Detection, Power, PowerError, PowerPlan, PowerRow, power};

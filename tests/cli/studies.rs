@@ -67,9 +67,27 @@ fn power_is_a_table_and_json() {
 }
 
 #[test]
+fn convergence_is_a_table_a_figure_and_json() {
+    let workspace = Workspace::with_scenes();
+    let line = "study convergence small.toml -o c --samples 64,256,1024 --json";
+    let json: serde_json::Value =
+        serde_json::from_str(&workspace.phicam(line).exits(0).stdout).unwrap();
+    assert_eq!(json, workspace.json("c/convergence.json"));
+    let slope = |i: usize| json["curves"][i]["slope"].as_f64().unwrap();
+    // Independent PCG over 1536 entries: each error is known to 1.8 %, the slope over ln 16 to 0.01.
+    assert!((slope(0) + 0.5).abs() < 0.05, "{json}");
+    assert!(slope(1) < -0.75, "{json}");
+    assert!(workspace.text("c/convergence.svg").contains("slope"));
+    let one = workspace
+        .phicam("study convergence small.toml -o d --samples 64")
+        .exits(2);
+    assert!(one.stderr.contains("two different"), "{}", one.account());
+}
+
+#[test]
 fn nothing_hidden_is_nothing_to_study() {
     let workspace = Workspace::new();
-    for study in ["budget", "tolerance", "power"] {
+    for study in ["budget", "tolerance", "power", "convergence"] {
         let ended = workspace
             .phicam(&format!("study {study} furnace -o f"))
             .exits(2);

@@ -10,7 +10,9 @@ use clap::{Args as Arguments, Parser, Subcommand, ValueEnum};
 
 use value::{elements, shift, spot_range};
 
-pub(in crate::cli) use study::{BudgetArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs};
+pub(in crate::cli) use study::{
+    BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs,
+};
 
 /// phicam: a physically based renderer for indirect photography, and the laboratory around it.
 #[derive(Debug, Parser)]

@@ -20,6 +20,30 @@ pub(in crate::cli) enum StudyCommand {
     Power(PowerArgs),
     /// How wrong the assumed geometry may be: table, JSON, CSV, figure
     Tolerance(ToleranceArgs),
+    /// How fast the error of each estimator falls: table, JSON, figure
+    Convergence(ConvergenceArgs),
+}
+
+#[derive(Debug, Arguments)]
+pub(in crate::cli) struct ConvergenceArgs {
+    /// Built-in scene or path of a scene file
+    #[arg(default_value = "thesis")]
+    pub scene: String,
+    /// Folder for convergence.json and convergence.svg
+    #[arg(long, short, default_value = "out/convergence")]
+    pub output: PathBuf,
+    /// Numbers of paths, separated by commas
+    #[arg(long, value_delimiter = ',', default_value = "64,128,256,512,1024")]
+    pub samples: Vec<u64>,
+    /// Seed
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Threads; all cores unless given
+    #[arg(long)]
+    pub threads: Option<usize>,
+    /// Print convergence.json instead of the table
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Arguments)]
