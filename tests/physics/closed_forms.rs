@@ -169,11 +169,11 @@ fn wide_spots_are_seen_directly_down_to_their_tails() {
             ],
         );
         let w = 0.5 * diameter;
+        let rule = gauss(if profile == "disc" { 40 } else { 8 });
         let truth = Matrix::from_fn(256, 1, |p, _| {
             let mut sum = 0.0;
-            let nodes = if profile == "disc" { 40 } else { 8 };
-            for (a, wa) in gauss(nodes) {
-                for (b, wb) in gauss(nodes) {
+            for (a, wa) in &rule {
+                for (b, wb) in &rule {
                     let x = 3.25 + ((p % 16) as f64 + a) * 3.25 / 16.0;
                     let y = 2.75 + ((p / 16) as f64 + b) * 3.25 / 16.0;
                     let r2 = ((x - sx) * (x - sx) + (y - sy) * (y - sy)) / (w * w);
