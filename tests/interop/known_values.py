@@ -296,7 +296,7 @@ def cut_spot(scene, pixel, spot, bounces, n):
 
 
 def blocked_camera(scene, pixel, spot, bounces, n):
-    wall, lit, edge = (scene.surface[k] for k in ("wall", "patch", "edge"))
+    wall, lit, edge = (scene.surface[k] for k in ("wall", ["patch", "patch above"][spot], "edge"))
     s = lit.above(*scene.spots[spot])
     (x0, x1), (y0, y1) = scene.box(pixel)
     c, far = scene.camera, edge.at(1, 1)
