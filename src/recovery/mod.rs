@@ -29,25 +29,19 @@
 //! # Ok::<(), phicam::recovery::RecoveryError>(())
 //! ```
 
-mod discrepancy;
 mod error;
 mod joint;
-mod joint_unbounded;
-mod khatri_rao;
 mod method;
 mod outcome;
-mod pinv;
 mod pixelwise;
 mod problem;
-mod tikhonov;
-mod tsvd;
-mod weights;
+mod rule;
 
 pub use error::RecoveryError;
+pub use joint::Weighting;
 pub use method::{Method, UnknownMethod};
 pub use outcome::{Choice, Parameter, Recovered, Solver};
 pub use problem::{Options, Problem};
-pub use weights::Weighting;
 
 /// Recovers the reflectances of the r elements by the method asked for.
 ///
@@ -59,11 +53,11 @@ pub fn recover(
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
     match method {
-        Method::Pinv => pinv::recover(problem, options),
-        Method::Tsvd => tsvd::recover(problem, options),
-        Method::Tikhonov => tikhonov::recover(problem, options),
-        Method::JointUnbounded => joint_unbounded::recover(problem, options),
-        Method::Joint => joint::recover(problem, options),
+        Method::Pinv => pixelwise::pinv::recover(problem, options),
+        Method::Tsvd => pixelwise::tsvd::recover(problem, options),
+        Method::Tikhonov => pixelwise::tikhonov::recover(problem, options),
+        Method::JointUnbounded => joint::unbounded::recover(problem, options),
+        Method::Joint => joint::bounded::recover(problem, options),
     }
 }
 

@@ -1,20 +1,21 @@
 //! The published method: Φ D⁺ ÷ C, mean over pixels.
 
-use super::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, pixelwise};
+use super::{decompose, invert};
 use crate::num::linalg::cut;
+use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
 
-pub(super) fn recover(
+pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
-    let laser = pixelwise::decompose(Method::Pinv, problem)?;
+    let laser = decompose(Method::Pinv, problem)?;
     let (rank, cutoff) = cut(
         laser.sigma.as_slice(),
         problem.d.nrows(),
         problem.d.ncols(),
         options.tolerance,
     )?;
-    let mut found = pixelwise::invert(
+    let mut found = invert(
         Method::Pinv,
         problem,
         &laser,
@@ -32,9 +33,9 @@ pub(super) fn recover(
 mod tests {
     use nalgebra::{DMatrix, DVector};
 
-    use super::super::bench::{Bench, normal_stream};
-    use super::super::{Method, Options, Problem, RecoveryError, recover};
     use crate::num::linalg::{Tolerance, pinv};
+    use crate::recovery::bench::{Bench, normal_stream};
+    use crate::recovery::{Method, Options, Problem, RecoveryError, recover};
 
     #[test]
     fn a_planted_board_is_recovered_exactly_without_noise() {

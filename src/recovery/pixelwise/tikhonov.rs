@@ -1,18 +1,19 @@
 //! The published reduction with D's small singular values damped: D^# = V diag(σ/(σ² + λ²)) Uᵀ.
 
-use super::discrepancy::{Discrepancy, damped};
-use super::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, pixelwise};
+use super::{decompose, invert};
 use crate::num::linalg::{Tolerance, cut};
+use crate::recovery::rule::discrepancy::{Discrepancy, damped};
+use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
 
 /// Trial values of λ/σ₁ fall from 1e3 by this factor until one is accepted; bisection finds the rest.
 const STEP: f64 = 0.5;
 
-pub(super) fn recover(
+pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
     let method = Method::Tikhonov;
-    let laser = pixelwise::decompose(method, problem)?;
+    let laser = decompose(method, problem)?;
     let (rank, cutoff) = cut(
         laser.sigma.as_slice(),
         problem.d.nrows(),
@@ -59,7 +60,7 @@ pub(super) fn recover(
         }
     };
     let filter = damped(sigma, damping * first);
-    let mut found = pixelwise::invert(
+    let mut found = invert(
         method,
         problem,
         &laser,
@@ -74,8 +75,8 @@ pub(super) fn recover(
 mod tests {
     use nalgebra::DMatrix;
 
-    use super::super::bench::{Bench, normal_stream};
     use super::*;
+    use crate::recovery::bench::{Bench, normal_stream};
     use crate::recovery::recover;
 
     #[test]

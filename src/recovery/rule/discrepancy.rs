@@ -12,11 +12,11 @@
 //!
 //! and the strongest regularisation that satisfies it is taken.
 
-use super::{Choice, Method, Problem, RecoveryError};
 use crate::num::linalg::Svd;
+use crate::recovery::{Choice, Method, Problem, RecoveryError};
 
 /// Everything of Φ and its noise that the residual depends on.
-pub(super) struct Discrepancy {
+pub(in crate::recovery) struct Discrepancy {
     parameter: &'static str,
     /// ‖Φ v_i‖², and what lies outside all v_i.
     along: Vec<f64>,
@@ -30,18 +30,18 @@ pub(super) struct Discrepancy {
 
 /// Squares of the three norms of [`Choice::Discrepancy`].
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Level {
+pub(in crate::recovery) struct Level {
     residual: f64,
     target: f64,
     limit: f64,
 }
 
 impl Level {
-    pub(super) fn accepted(&self) -> bool {
+    pub(in crate::recovery) fn accepted(&self) -> bool {
         self.residual <= self.limit
     }
 
-    pub(super) fn choice(&self) -> Choice {
+    pub(in crate::recovery) fn choice(&self) -> Choice {
         Choice::Discrepancy {
             residual: self.residual.sqrt(),
             target: self.target.sqrt(),
@@ -52,7 +52,7 @@ impl Level {
 
 impl Discrepancy {
     /// For filters on the first `rank` singular directions. Errors name `parameter` as what could be given instead.
-    pub(super) fn new(
+    pub(in crate::recovery) fn new(
         method: Method,
         parameter: &'static str,
         problem: &Problem<'_>,
@@ -101,7 +101,7 @@ impl Discrepancy {
     }
 
     /// Residual, target and limit for filter factors in [0, 1].
-    pub(super) fn level(&self, filter: &[f64]) -> Level {
+    pub(in crate::recovery) fn level(&self, filter: &[f64]) -> Level {
         let left = |whole: f64, along: &[f64]| {
             (whole - along.iter().zip(filter).map(|(x, f)| x * f).sum::<f64>()).max(0.0)
         };
@@ -121,7 +121,7 @@ impl Discrepancy {
     }
 
     /// The error where not even `weakest` is accepted.
-    pub(super) fn understated(&self, weakest: Level) -> RecoveryError {
+    pub(in crate::recovery) fn understated(&self, weakest: Level) -> RecoveryError {
         RecoveryError::NoiseUnderstated {
             residual: weakest.residual.sqrt(),
             limit: weakest.limit.sqrt(),
@@ -131,7 +131,7 @@ impl Discrepancy {
 }
 
 /// Filter factors σ²/(σ² + λ²).
-pub(super) fn damped(sigma: &[f64], lambda: f64) -> Vec<f64> {
+pub(in crate::recovery) fn damped(sigma: &[f64], lambda: f64) -> Vec<f64> {
     sigma
         .iter()
         .map(|s| 1.0 / (1.0 + (lambda / s) * (lambda / s)))
@@ -139,7 +139,7 @@ pub(super) fn damped(sigma: &[f64], lambda: f64) -> Vec<f64> {
 }
 
 /// Filter factors of a truncation after `kept` of `rank`.
-pub(super) fn truncated(kept: usize, rank: usize) -> Vec<f64> {
+pub(in crate::recovery) fn truncated(kept: usize, rank: usize) -> Vec<f64> {
     (0..rank).map(|i| f64::from(u8::from(i < kept))).collect()
 }
 
@@ -147,9 +147,9 @@ pub(super) fn truncated(kept: usize, rank: usize) -> Vec<f64> {
 mod tests {
     use nalgebra::DMatrix;
 
-    use super::super::bench::{Bench, normal_stream};
     use super::*;
     use crate::num::linalg::svd;
+    use crate::recovery::bench::{Bench, normal_stream};
 
     /// The target is the mean of ‖N(1 − P)‖² over noise, and two allowed deviations cover at least 95 of 100 draws.
     #[test]

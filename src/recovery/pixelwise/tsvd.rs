@@ -1,15 +1,16 @@
 //! The published reduction with D's small singular values left out.
 
-use super::discrepancy::{Discrepancy, truncated};
-use super::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, pixelwise};
+use super::{decompose, invert};
 use crate::num::linalg::{Tolerance, cut};
+use crate::recovery::rule::discrepancy::{Discrepancy, truncated};
+use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
 
-pub(super) fn recover(
+pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
     let method = Method::Tsvd;
-    let laser = pixelwise::decompose(method, problem)?;
+    let laser = decompose(method, problem)?;
     let (shape, sigma) = (problem.d.shape(), laser.sigma.as_slice());
     let (rank, choice) = match options.rank {
         Some(rank) => (
@@ -26,7 +27,7 @@ pub(super) fn recover(
             (kept, level(kept).choice())
         }
     };
-    let mut found = pixelwise::invert(
+    let mut found = invert(
         method,
         problem,
         &laser,
@@ -39,8 +40,8 @@ pub(super) fn recover(
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::{Bench, normal_stream};
     use super::*;
+    use crate::recovery::bench::{Bench, normal_stream};
     use crate::recovery::recover;
 
     #[test]

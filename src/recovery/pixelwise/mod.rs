@@ -2,13 +2,17 @@
 //!
 //! > X = Φ D^#  (p × r),   ρ_j = (1/p) Σ_p X\[p,j\]/C\[p,j\]
 
+pub(super) mod pinv;
+pub(super) mod tikhonov;
+pub(super) mod tsvd;
+
 use nalgebra::{DMatrix, DVector};
 
-use super::{Method, Parameter, Problem, Recovered, RecoveryError};
 use crate::num::linalg::{Svd, svd};
+use crate::recovery::{Method, Parameter, Problem, Recovered, RecoveryError};
 
 /// The laser side decomposed, and the check that C can be divided by.
-pub(super) fn decompose(method: Method, problem: &Problem<'_>) -> Result<Svd, RecoveryError> {
+fn decompose(method: Method, problem: &Problem<'_>) -> Result<Svd, RecoveryError> {
     if let Some(at) = problem.c.iter().position(|&x| x == 0.0) {
         let pixels = problem.c.nrows();
         return Err(RecoveryError::Unseen {
@@ -27,7 +31,7 @@ pub(super) fn decompose(method: Method, problem: &Problem<'_>) -> Result<Svd, Re
 }
 
 /// The recovery through D^# = V diag(f/σ) Uᵀ with filter factors f (as many as are kept, descending σ).
-pub(super) fn invert(
+fn invert(
     method: Method,
     problem: &Problem<'_>,
     laser: &Svd,

@@ -11,11 +11,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Problem, RecoveryError, Weighting, weights};
+use super::{Weighting, weights};
 use crate::num::linalg::{
     LeastSquares, Route, Svd, Tolerance, Triangle, cut, least_squares, normal_triangle, svd,
     triangle,
 };
+use crate::recovery::{Problem, RecoveryError};
 
 /// Elements whose Gram matrix (and its few copies) is still formed: 512 MiB each.
 const MOST_ELEMENTS: usize = 8192;
@@ -145,8 +146,8 @@ impl Operator {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::{Bench, normal_stream};
     use super::*;
+    use crate::recovery::bench::{Bench, normal_stream};
 
     /// The objective of the compressed problem and of the full sum differ by a constant: compare differences from ρ = 0.
     #[test]

@@ -1,11 +1,13 @@
 //! Least squares over all pixels and spots with reflectances that a surface can have, 0 ≤ ρ ≤ 1.
 
 use super::khatri_rao::Operator;
-use super::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, Solver};
 use crate::num::linalg::{Svd, Tolerance, cut, svd};
 use crate::num::quadratic::box_least_squares;
+use crate::recovery::{
+    Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, Solver,
+};
 
-pub(super) fn recover(
+pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
@@ -48,8 +50,8 @@ pub(super) fn recover(
 
 #[cfg(test)]
 mod tests {
-    use super::super::bench::{Bench, modulation, normal_stream};
     use super::*;
+    use crate::recovery::bench::{Bench, modulation, normal_stream};
     use crate::recovery::recover;
 
     #[test]

@@ -4,10 +4,10 @@
 //! covariance under the noise model is (KᵀWK)⁻¹, K the Khatri–Rao product.
 
 use super::khatri_rao::Operator;
-use super::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
 use crate::num::linalg::Tolerance;
+use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
 
-pub(super) fn recover(
+pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
@@ -42,8 +42,8 @@ pub(super) fn recover(
 mod tests {
     use nalgebra::{DMatrix, DVector};
 
-    use super::super::bench::{Bench, modulation, normal_stream};
     use super::*;
+    use crate::recovery::bench::{Bench, modulation, normal_stream};
     use crate::recovery::{Weighting, recover};
 
     #[test]
