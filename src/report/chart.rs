@@ -85,6 +85,22 @@ pub(super) fn style(i: usize) -> String {
     format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.8\" stroke-dasharray=\"{dash}\"")
 }
 
+/// A white sheet of that size with its title and, below, a note in grey. Close it with `</svg>`.
+pub(super) fn sheet([width, height]: [u32; 2], title: &str, note: &str) -> Svg {
+    let mut svg = Svg::default();
+    svg.raw(&format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" \
+         font-size=\"13\" role=\"img\" aria-label=\"{}\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>",
+        escape(title)
+    ));
+    let bold = "font-weight=\"bold\" font-size=\"16\" fill=\"#222222\"";
+    svg.text([16.0, 28.0], bold, title);
+    if !note.is_empty() {
+        svg.text([16.0, 48.0], &format!("fill=\"{}\"", ink::GREY), note);
+    }
+    svg
+}
+
 /// Draws a panel with its axes, grid and lines; `corner` is the upper left corner of the plotting area, `size` its width and
 /// height. Points beyond the axes are left out, and the line is broken there.
 pub(super) fn panel(

@@ -1,8 +1,7 @@
 //! The convergence study as text and as a figure.
 
 use super::axis::significant;
-use super::chart::{Axis, Series, legend, panel};
-use super::svg::{Svg, escape};
+use super::chart::{Axis, Series, legend, panel, sheet};
 use crate::study::Convergence;
 
 /// The study as plain text: one line per number of paths, and the slope of each curve.
@@ -53,18 +52,8 @@ pub fn convergence_svg(study: &Convergence) -> String {
         "paths per pixel (shared) or per pixel and spot (independent)",
     );
     let y = Axis::decades(points().map(|p| p[1]), "‖Φ̂ − Φ‖ / ‖Φ‖");
-    let mut svg = Svg::default();
-    svg.raw(&format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 900 440\" font-family=\"sans-serif\" font-size=\"13\" \
-         role=\"img\" aria-label=\"Convergence on {}\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>",
-        escape(&study.scene)
-    ));
-    let bold = "font-weight=\"bold\" font-size=\"16\" fill=\"#222222\"";
-    svg.text(
-        [16.0, 28.0],
-        bold,
-        &format!("How fast the error falls: {}", study.scene),
-    );
+    let title = format!("How fast the error falls: {}", study.scene);
+    let mut svg = sheet([900, 440], &title, "");
     panel(&mut svg, [80.0, 50.0], [520.0, 320.0], [&x, &y], &series);
     legend(&mut svg, [626.0, 64.0], &series);
     svg.raw("</svg>\n");

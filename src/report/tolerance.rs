@@ -1,8 +1,7 @@
 //! The tolerance study as text and as a figure.
 
 use super::axis::significant;
-use super::chart::{Axis, Run, Series, legend, panel};
-use super::svg::{Svg, escape};
+use super::chart::{Axis, Run, Series, legend, panel, sheet};
 use crate::study::{Sensitivity, Tolerance};
 
 /// The study as plain text of at most 80 columns: for each thing the change of Φcam per unit where it is small, the size at which
@@ -99,23 +98,12 @@ pub fn tolerance_svg(study: &Tolerance) -> String {
             })
             .collect()
     };
-    let mut svg = Svg::default();
-    svg.raw(&format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 900 760\" font-family=\"sans-serif\" font-size=\"13\" \
-         role=\"img\" aria-label=\"Tolerance of {}\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>",
-        escape(&study.scene)
-    ));
-    let bold = "font-weight=\"bold\" font-size=\"16\" fill=\"#222222\"";
-    svg.text(
-        [16.0, 28.0],
-        bold,
-        &format!("How wrong the assumed geometry may be: {}", study.scene),
-    );
+    let title = format!("How wrong the assumed geometry may be: {}", study.scene);
     let note = format!(
         "photographs with {} relative noise, recovered by joint",
         significant(study.noise, 2)
     );
-    svg.text([16.0, 48.0], "fill=\"#6b6b6b\"", &note);
+    let mut svg = sheet([900, 760], &title, &note);
     let change = Axis::decades(rows().map(|r| r.change), "‖ΔΦcam‖ / ‖Φcam‖");
     let mtf = Axis {
         run: Run::Linear,

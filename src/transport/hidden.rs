@@ -191,6 +191,39 @@ mod tests {
         );
     }
 
+    /// The way back from a point to the unit square, by the definition of the two distribution functions: the share of the
+    /// surfaces, rows and cells before the point, and of its own as far as it lies in.
+    #[test]
+    fn points_return_to_their_place_in_the_square() {
+        let scene = scene();
+        let hidden = HiddenArea::new(&scene);
+        let along = |cdf: &[f64], x: f64| {
+            let n = (cdf.len() - 1) as f64;
+            let i = ((x * n) as usize).min(cdf.len() - 2);
+            cdf[i] + (x * n - i as f64) * (cdf[i + 1] - cdf[i])
+        };
+        let key = Key {
+            seed: 4,
+            spot: 0,
+            pixel: 0,
+            block: 0,
+        };
+        let mut stream = Stream::new(Sampling::Pcg, key);
+        for _ in 0..5000 {
+            let u = stream.next_four();
+            let (shape, p) = hidden.sample(&scene, [u[0], u[1]]);
+            let s = &hidden.surfaces[hidden.of_shape[shape as usize].unwrap()];
+            let row = ((p.uv[1] * s.count[1] as f64) as usize).min(s.count[1] - 1);
+            let back = [
+                s.before + s.share * along(&s.columns[row], p.uv[0]),
+                along(&s.rows, p.uv[1]),
+            ];
+            for d in 0..2 {
+                assert!((back[d] - u[d]).abs() < 1e-12, "{u:?} -> {back:?}");
+            }
+        }
+    }
+
     /// The map is continuous and onto: equal steps in u give points whose cell index never falls, and the ends of the
     /// unit interval stay inside.
     #[test]

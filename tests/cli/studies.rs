@@ -67,6 +67,19 @@ fn power_is_a_table_and_json() {
 }
 
 #[test]
+fn absurd_numbers_of_paths_are_refused() {
+    let workspace = Workspace::with_scenes();
+    let most = u64::MAX;
+    for line in [
+        format!("study budget tiny.toml -o q --samples {most} --run-samples {most}"),
+        format!("study power tiny.toml -o q --samples {most},{most}"),
+        format!("study convergence tiny.toml -o q --samples {most},{most}"),
+    ] {
+        workspace.refuses(&line, &["2³²"]);
+    }
+}
+
+#[test]
 fn convergence_is_a_table_a_figure_and_json() {
     let workspace = Workspace::with_scenes();
     let line = "study convergence small.toml -o c --samples 64,256,1024 --json";

@@ -95,7 +95,7 @@ pub enum BudgetError {
     #[error("no light reaches the camera by three bounces (see `phicam scene check`)")]
     Dark,
     /// Too few samples for the ensemble.
-    #[error("{0} samples cannot be divided into renders of an ensemble (use at least 1)")]
+    #[error("{0} samples cannot be divided into renders of an ensemble (use 1 to 2³²)")]
     Samples(u64),
 }
 

@@ -1,0 +1,139 @@
+//! `phicam study`: experiments around a scene.
+
+mod findings;
+
+use super::args::{BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs};
+use super::failure::Failure;
+use super::output::Talk;
+use super::{Outcome, progress, settings};
+use crate::report;
+use crate::scene::Scene;
+use crate::store::ensure_writable;
+use crate::study::{self, BudgetPlan, PowerPlan, error_budget};
+use crate::transport::Estimator;
+use findings::{Findings, traced};
+
+pub(in crate::cli) fn execute(args: &StudyArgs, talk: Talk) -> Result<Outcome, Failure> {
+    match &args.command {
+        StudyCommand::Budget(a) => budget(a, talk),
+        StudyCommand::Power(a) => power(a, talk),
+        StudyCommand::Tolerance(a) => tolerance(a, talk),
+        StudyCommand::Convergence(a) => convergence(a, talk),
+    }
+}
+
+/// Paths that `scene` needs: `shared` of them per pixel and `independent` ones per pixel and spot. A number too large to count
+/// is as good as any other for a progress bar; the study itself refuses it.
+fn paths(scene: &Scene, shared: u64, independent: u64) -> u64 {
+    independent
+        .saturating_mul(scene.laser.spots.len() as u64)
+        .saturating_add(shared)
+        .saturating_mul(scene.camera.pixels() as u64)
+}
+
+fn sum(samples: &[u64]) -> u64 {
+    samples.iter().fold(0, |a, b| a.saturating_add(*b))
+}
+
+fn budget(args: &BudgetArgs, talk: Talk) -> Result<Outcome, Failure> {
+    let scene = Scene::load(&args.scene)?;
+    let pool = settings::pool(args.threads)?;
+    ensure_writable(&args.output)?;
+    talk.warn(&scene);
+    let plan = BudgetPlan {
+        seed: args.seed,
+        ensemble_samples: args.samples,
+        run_samples: args.run_samples,
+    };
+    let work = (
+        &*format!("budget of {}", scene.name),
+        paths(&scene, args.samples, args.run_samples),
+    );
+    let found = traced(talk, &pool, work, |control| {
+        error_budget(&scene, plan, control)
+    })?;
+    Findings::new("budget", &found, report::budget_table(&found))?
+        .with("budget.csv", report::budget_csv(&found))
+        .with("budget.svg", report::budget_svg(&found))
+        .deliver(&args.output, args.json)?;
+    Ok(if found.closure.closes {
+        Outcome::Done
+    } else {
+        Outcome::Disagreed
+    })
+}
+
+fn power(args: &PowerArgs, talk: Talk) -> Result<Outcome, Failure> {
+    let scene = Scene::load(&args.scene)?;
+    let pool = settings::pool(args.threads)?;
+    let plan = PowerPlan {
+        estimators: match args.estimator.as_slice() {
+            [] => vec![Estimator::Independent, Estimator::Shared],
+            names => names.iter().map(|n| settings::estimator(*n)).collect(),
+        },
+        sampling: settings::sampling(args.sampler),
+        samples: args.samples.clone(),
+        seeds: args.seeds,
+        first_seed: args.seed,
+        significance: settings::significance(args.significance)?,
+    };
+    ensure_writable(&args.output)?;
+    talk.warn(&scene);
+    let each = sum(&plan.samples).saturating_mul(plan.seeds);
+    let of = |kind| plan.estimators.iter().filter(|e| **e == kind).count() as u64;
+    let total = paths(
+        &scene,
+        each.saturating_mul(of(Estimator::Shared)),
+        each.saturating_mul(of(Estimator::Independent)),
+    );
+    let work = (&*format!("power on {}", scene.name), total);
+    let found = traced(talk, &pool, work, |control| {
+        study::power(&scene, &plan, control)
+    })?;
+    Findings::new("power", &found, report::power_table(&found))?
+        .deliver(&args.output, args.json)?;
+    Ok(Outcome::Done)
+}
+
+fn tolerance(args: &ToleranceArgs, talk: Talk) -> Result<Outcome, Failure> {
+    let scene = Scene::load(&args.scene)?;
+    if !(args.noise > 0.0 && args.noise < 1.0) {
+        let cause = format!("--noise {} is not a relative noise", args.noise);
+        return Err(Failure::new(
+            cause,
+            "use a number between 0 and 1, e.g. 0.01",
+        ));
+    }
+    ensure_writable(&args.output)?;
+    talk.warn(&scene);
+    let bar = progress::steps(talk, &format!("tolerance of {}", scene.name));
+    let found = study::tolerance(&scene, args.noise, &|done, all| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    })?;
+    bar.finish_and_clear();
+    Findings::new("tolerance", &found, report::tolerance_table(&found))?
+        .with("tolerance.csv", report::tolerance_csv(&found))
+        .with("tolerance.svg", report::tolerance_svg(&found))
+        .deliver(&args.output, args.json)?;
+    Ok(Outcome::Done)
+}
+
+fn convergence(args: &ConvergenceArgs, talk: Talk) -> Result<Outcome, Failure> {
+    let scene = Scene::load(&args.scene)?;
+    let pool = settings::pool(args.threads)?;
+    ensure_writable(&args.output)?;
+    // Both samplers, under both estimators.
+    let each = sum(&args.samples).saturating_mul(2);
+    let work = (
+        &*format!("convergence on {}", scene.name),
+        paths(&scene, each, each),
+    );
+    let found = traced(talk, &pool, work, |control| {
+        study::convergence(&scene, &args.samples, args.seed, control)
+    })?;
+    Findings::new("convergence", &found, report::convergence_table(&found))?
+        .with("convergence.svg", report::convergence_svg(&found))
+        .deliver(&args.output, args.json)?;
+    Ok(Outcome::Done)
+}
