@@ -13,13 +13,7 @@ use crate::transport::{Budget, Estimator, Plan};
 /// The plan that the arguments describe; a rounded number of samples is said.
 pub(super) fn plan(args: &TraceArgs, talk: Talk) -> Result<Plan, Failure> {
     let (estimator, sampling) = (estimator(args.estimator), sampling(args.sampler));
-    let budget = Budget::new(args.samples, sampling).ok_or_else(|| {
-        let cause = format!(
-            "--samples {} is not a number of paths that can be traced",
-            args.samples
-        );
-        Failure::new(cause, "use at least 1 and at most 2³²")
-    })?;
+    let budget = budget("--samples", args.samples, sampling)?;
     if budget.samples() != args.samples {
         talk.say(format!(
             "{} samples rounded up to {}: {} blocks of {}",
@@ -34,6 +28,14 @@ pub(super) fn plan(args: &TraceArgs, talk: Talk) -> Result<Plan, Failure> {
         sampling,
         seed: args.seed,
         budget,
+    })
+}
+
+/// `samples` in blocks; `flag` names it where that cannot be.
+pub(super) fn budget(flag: &str, samples: u64, sampling: Sampling) -> Result<Budget, Failure> {
+    Budget::new(samples, sampling).ok_or_else(|| {
+        let cause = format!("{flag} {samples} is not a number of paths that can be traced");
+        Failure::new(cause, "use at least 1 and at most 2³²")
     })
 }
 

@@ -6,6 +6,7 @@ use super::args::{BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyComman
 use super::failure::Failure;
 use super::output::Talk;
 use super::{Outcome, progress, settings};
+use crate::num::stream::Sampling;
 use crate::report;
 use crate::scene::Scene;
 use crate::store::ensure_writable;
@@ -31,13 +32,24 @@ fn paths(scene: &Scene, shared: u64, independent: u64) -> u64 {
         .saturating_mul(scene.camera.pixels() as u64)
 }
 
-fn sum(samples: &[u64]) -> u64 {
-    samples.iter().fold(0, |a, b| a.saturating_add(*b))
+/// The sum of numbers of paths, each of which can be traced.
+fn sum(flag: &str, samples: &[u64]) -> Result<u64, Failure> {
+    let mut all = 0u64;
+    for &n in samples {
+        settings::budget(flag, n, Sampling::Sobol)?;
+        all = all.saturating_add(n);
+    }
+    Ok(all)
 }
 
 fn budget(args: &BudgetArgs, talk: Talk) -> Result<Outcome, Failure> {
     let scene = Scene::load(&args.scene)?;
     let pool = settings::pool(args.threads)?;
+    let total = paths(
+        &scene,
+        sum("--samples", &[args.samples])?,
+        sum("--run-samples", &[args.run_samples])?,
+    );
     ensure_writable(&args.output)?;
     talk.warn(&scene);
     let plan = BudgetPlan {
@@ -45,10 +57,7 @@ fn budget(args: &BudgetArgs, talk: Talk) -> Result<Outcome, Failure> {
         ensemble_samples: args.samples,
         run_samples: args.run_samples,
     };
-    let work = (
-        &*format!("budget of {}", scene.name),
-        paths(&scene, args.samples, args.run_samples),
-    );
+    let work = (&*format!("budget of {}", scene.name), total);
     let found = traced(talk, &pool, work, |control| {
         error_budget(&scene, plan, control)
     })?;
@@ -77,9 +86,9 @@ fn power(args: &PowerArgs, talk: Talk) -> Result<Outcome, Failure> {
         first_seed: args.seed,
         significance: settings::significance(args.significance)?,
     };
+    let each = sum("--samples", &plan.samples)?.saturating_mul(plan.seeds);
     ensure_writable(&args.output)?;
     talk.warn(&scene);
-    let each = sum(&plan.samples).saturating_mul(plan.seeds);
     let of = |kind| plan.estimators.iter().filter(|e| **e == kind).count() as u64;
     let total = paths(
         &scene,
@@ -122,9 +131,9 @@ fn tolerance(args: &ToleranceArgs, talk: Talk) -> Result<Outcome, Failure> {
 fn convergence(args: &ConvergenceArgs, talk: Talk) -> Result<Outcome, Failure> {
     let scene = Scene::load(&args.scene)?;
     let pool = settings::pool(args.threads)?;
-    ensure_writable(&args.output)?;
     // Both samplers, under both estimators.
-    let each = sum(&args.samples).saturating_mul(2);
+    let each = sum("--samples", &args.samples)?.saturating_mul(2);
+    ensure_writable(&args.output)?;
     let work = (
         &*format!("convergence on {}", scene.name),
         paths(&scene, each, each),
