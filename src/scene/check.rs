@@ -1,7 +1,7 @@
 //! What is wrong or suspicious in how the parts of a scene stand to each other.
 
 use super::error::{Fault, keys};
-use super::laser::Profile;
+use super::laser::{Profile, Spot};
 use super::surface::{Role, Surface};
 use super::warning::Warning;
 use super::{Scene, Texture};
@@ -81,17 +81,13 @@ fn spots(scene: &Scene, found: &mut Vec<Warning>) {
     let mut shadowed = Vec::new();
     let mut overhanging = Vec::new();
     let mut blocked: Vec<(String, Vec<usize>)> = Vec::new();
-    let view = &scene.camera.view;
-    let [w, h] = [view.u().length(), view.v().length()];
     let hidden: Vec<(ShapeId, Vec<SurfacePoint>)> = scene
         .hidden()
         .map(|(id, s)| (id as ShapeId, probes(s, SPOT_PROBES)))
         .collect();
     for (i, spot) in laser.spots.iter().enumerate() {
         let target = spot.target.position;
-        let [a, b] = view.coordinates(target);
-        let near = |x: f64, side: f64| x * side >= -reach && (x - 1.0) * side <= reach;
-        if near(a, w) && near(b, h) {
+        if in_view_of(scene, spot, reach) {
             in_view.push(i);
         }
         if reach > 0.0 && rim_leaves(scene, &spot.target, reach) {
@@ -148,6 +144,26 @@ fn spots(scene: &Scene, found: &mut Vec<Warning>) {
             found.push(Warning::ViewBehind(surface.name.clone()));
         }
     }
+}
+
+/// Whether the camera may see a spot of radius `reach` directly: its line of sight crosses the view's rectangle (or passes it no further
+/// away than the spot reaches), meets the front, and, for a point, nothing on its way.
+fn in_view_of(scene: &Scene, spot: &Spot, reach: f64) -> bool {
+    let (camera, target) = (&scene.camera, &spot.target);
+    let view = &camera.view;
+    let sight = target.position - camera.position;
+    let (forward, facing) = (-view.normal().dot(sight), -target.normal.dot(sight));
+    if forward <= 0.0 || facing <= 0.0 {
+        return false;
+    }
+    let to_view = view.normal().dot(camera.position - view.corner()) / forward;
+    let [a, b] = view.coordinates(camera.position + sight * to_view);
+    let near = |x: f64, side: f64| x * side >= -reach && (x - 1.0) * side <= reach;
+    near(a, view.u().length())
+        && near(b, view.v().length())
+        && (reach > 0.0
+            || Ray::between(target.position, camera.position)
+                .is_some_and(|ray| !scene.bvh().blocked(&ray, [Some(spot.surface), None])))
 }
 
 /// Whether part of a spot's rim has no relay surface below it.

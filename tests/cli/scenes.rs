@@ -66,6 +66,29 @@ fn check_names_a_spot_in_the_view() {
     );
 }
 
+/// The spots of `parallel-squares` lie above the view's rectangle but on the square that the camera does not look at, and those
+/// behind an occluder are out of its sight.
+#[test]
+fn check_names_no_spot_that_the_camera_cannot_see() {
+    let workspace = Workspace::new();
+    let known = include_str!("../../scenes/known/parallel-squares.toml");
+    workspace.write("squares.toml", known);
+    let text = workspace.phicam("scene check squares.toml").exits(0).stdout;
+    assert!(!text.contains("camera's view"), "{text}");
+    // Half way from the camera (−20, 10, 15) to the spot (5, 4, 0): (−7.5, 7, 7.5), off the beam from (−20, 9, 15).
+    let beside = with_points_and_surface("[[5.0, 4.0]]", &baffle([-7.6, 6.9, 7.5], 0.2)).replacen(
+        "position = [-20.0, 10.0, 15.0]",
+        "position = [-20.0, 9.0, 15.0]",
+        1,
+    );
+    workspace.write("hidden-spot.toml", beside);
+    let text = workspace
+        .phicam("scene check hidden-spot.toml")
+        .exits(0)
+        .stdout;
+    assert!(!text.contains("camera's view: "), "{text}");
+}
+
 #[test]
 fn check_names_a_blocked_beam() {
     // Nine tenths of the way from the laser (−20, 10, 15) to spot 0 at (1, 1, 0) is (−1.1, 1.9, 1.5).
