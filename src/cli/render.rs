@@ -124,9 +124,8 @@ pub(super) fn into_folder(
     let traced = trace(scene, &plan, &todo, &folder, &record, &pool, talk);
     record.seconds += start.elapsed().as_secs_f64();
     let total = scene.laser.spots.len();
-    record.finished = (0..total)
-        .filter(|s| folder.kept(*s, scene, &record).is_some())
-        .count();
+    let kept: Vec<Option<Matrix>> = (0..total).map(|s| folder.kept(s, scene, &record)).collect();
+    record.finished = kept.iter().flatten().count();
     if let Err(failure) = traced {
         record.write(path)?;
         return Err(match failure {
@@ -138,7 +137,7 @@ pub(super) fn into_folder(
             other => other,
         });
     }
-    let phi = gather(scene, &folder, &record);
+    let phi = gather(scene, kept);
     if let Some(traced) = &phi {
         folder.write_phi(&traced.flux, &traced.stderr)?;
         record.write(path)?;
@@ -237,12 +236,9 @@ fn batches(todo: &[usize], estimator: Estimator) -> Vec<Range<usize>> {
 }
 
 /// All columns from what was kept of each spot, if every spot is there.
-fn gather(scene: &Scene, folder: &Folder, record: &Record) -> Option<Traced> {
+fn gather(scene: &Scene, kept: Vec<Option<Matrix>>) -> Option<Traced> {
     let orders = scene.max_bounces as usize;
-    let spots = 0..scene.laser.spots.len();
-    let kept: Vec<Matrix> = spots
-        .map(|s| folder.kept(s, scene, record))
-        .collect::<Option<_>>()?;
+    let kept: Vec<Matrix> = kept.into_iter().collect::<Option<_>>()?;
     let pick =
         |n: usize| Matrix::from_columns(&kept.iter().map(|m| m.column(n)).collect::<Vec<_>>());
     let bounces: Vec<Matrix> = (0..orders).map(pick).collect();
