@@ -9,8 +9,10 @@
 
 use std::ffi::OsStr;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use super::expose;
 use super::failure::Failure;
 use super::output::Talk;
 use super::record::Record;
@@ -193,13 +195,8 @@ impl Folder {
         self.remove_partial()?;
         remove_numbered(&self.frames(), "exr")?;
         remove_recovered(&self.path.join("recovered"))?;
-        for name in [PHI, STDERR, Record::FILE, SUMMARY, REPORT] {
-            match fs::remove_file(self.path.join(name)) {
-                Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(e.into()),
-                _ => {}
-            }
-        }
-        Ok(())
+        remove_exposed(&self.path.join(expose::FOLDER))?;
+        remove_named(&self.path, &[PHI, STDERR, Record::FILE, SUMMARY, REPORT])
     }
 
     /// Writes the frame of a spot from column `column` of `traced`.
@@ -266,6 +263,29 @@ fn remove_numbered(dir: &Path, extension: &str) -> Result<(), Failure> {
     })?;
     // Anything else in it is not ours, and keeps it.
     let _ = fs::remove_dir(dir);
+    Ok(())
+}
+
+/// Removes the photographs of `phicam expose` from `dir`, and `dir` if that empties it.
+pub(super) fn remove_exposed(dir: &Path) -> Result<(), Failure> {
+    let counts = dir.join(expose::COUNTS);
+    remove_numbered(&counts, "exr")?;
+    remove_numbered(&counts, "png")?;
+    remove_named(dir, &[PHI, STDERR, expose::SATURATED, expose::EXPOSURE])?;
+    let _ = fs::remove_dir(dir);
+    Ok(())
+}
+
+/// Removes the files of `dir` with these names, where they are there.
+fn remove_named(dir: &Path, names: &[&str]) -> Result<(), Failure> {
+    for name in names {
+        match fs::remove_file(dir.join(name)) {
+            Err(e) if !matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+                return Err(e.into());
+            }
+            _ => {}
+        }
+    }
     Ok(())
 }
 
