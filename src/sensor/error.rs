@@ -35,7 +35,7 @@ pub enum SensorError {
     Wavelength(f64),
     /// A flux that cannot be.
     #[error(
-        "the flux into pixel {pixel} for spot {spot} is {value} W; only finite fluxes of 0 or more can be photographed: give the clean flux of a render"
+        "the flux into pixel {pixel} for spot {spot} is {value:e} W; only finite fluxes of 0 or more can be photographed: give the clean flux of a render"
     )]
     Flux {
         /// Pixel index.

@@ -443,3 +443,35 @@ fn what_stands_in_the_beam_is_lit_in_place_of_the_wall() {
     }
     assert!(met > 10 && met < free.len(), "{met}");
 }
+
+/// Entries have noise of their own; only the dark frames of a pixel are shared, so that two spots correlate by their part of the variance.
+#[test]
+fn spots_share_their_dark_frames_and_nothing_else() {
+    let figures = *Sensor::builtin(SensorModel::Dslr).figures();
+    let pixels = 100_000;
+    let watts = photon_energy(WAVELENGTH) / figures.quantum_efficiency;
+    let flux = Matrix::from_element(pixels, 2, 100.0 * watts);
+    for (dark_frames, shared) in [(0, 0.0), (1, 1.0)] {
+        let exposure = Exposure::new(&[1.0], 1, dark_frames).unwrap();
+        let exposed = expose(figures, &flux, &exposure, 11);
+        // Electrons²: read noise and rounding in both, shot noise of the light only in one.
+        let rest = 17.63f64.powi(2) + 4.1 * 4.1 / 12.0 + 0.5;
+        let correlation = shared * rest / (rest + 100.0 + shared * rest);
+        let z = |p: usize, l: usize| {
+            (exposed.flux[(p, l)] - flux[(p, l)] - (1.0 - shared) * 0.5 * watts)
+                / exposed.stderr[(p, l)]
+        };
+        let found = (0..pixels).map(|p| z(p, 0) * z(p, 1)).sum::<f64>() / pixels as f64;
+        // Var(xy) = 1 + r² for normal numbers of correlation r.
+        let error = ((1.0 + correlation * correlation) / pixels as f64).sqrt();
+        let off = (found - correlation) / error;
+        assert!(
+            normal_two_sided(off) > SIGNIFICANCE,
+            "{found} of {correlation}"
+        );
+        // Neighbouring pixels have nothing in common.
+        let found =
+            (1..pixels).map(|p| z(p, 0) * z(p - 1, 0)).sum::<f64>() / (pixels as f64).sqrt();
+        assert!(normal_two_sided(found) > SIGNIFICANCE, "{found}");
+    }
+}
