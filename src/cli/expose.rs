@@ -19,10 +19,11 @@ use super::finished::{read_matrix, read_run};
 use super::folder::{self, PHI, STDERR};
 use super::output::{self, Talk};
 use super::record::{Record, version};
+use super::stale::remove_exposed;
 use crate::film::{self, Channel, Frame, frame_name};
 use crate::matrix::{Matrix, npy};
 use crate::report;
-use crate::scene::{Glare, Scene, SensorModel, SensorSettings, Spread};
+use crate::scene::{Glare, Quantity, Scene, SensorModel, SensorSettings, Spread};
 use crate::sensor::{
     Exposed, Exposure, Figures, Light, Range, Sensor, Summary, builtin_summary, glare,
     glare_to_signal,
@@ -164,7 +165,7 @@ fn model(name: &str) -> Result<SensorModel, Failure> {
 
 /// A glare whose fraction may come from the command line.
 fn checked(glare: Glare) -> Result<Glare, Failure> {
-    match crate::scene::Quantity::GlareFraction.refuses(glare.fraction) {
+    match Quantity::GlareFraction.refuses(glare.fraction) {
         None => Ok(glare),
         Some(range) => Err(Failure::new(
             format!("--glare {} has no meaning", glare.fraction),
@@ -221,7 +222,7 @@ fn write(
 ) -> Result<(), Failure> {
     let counts = out.join(COUNTS);
     ensure_writable(&counts)?;
-    folder::remove_exposed(out)?;
+    remove_exposed(out)?;
     ensure_writable(&counts)?;
     let (pixels, spots) = exposed.flux.shape();
     for spot in 0..spots {

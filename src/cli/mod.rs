@@ -35,6 +35,7 @@ mod run;
 mod scene;
 mod settings;
 mod stack;
+mod stale;
 mod study;
 mod validate;
 
