@@ -13,12 +13,14 @@
 //! | `model/g12.npy`, `g23.npy`, `phi.npy` | the analytic side |
 //! | `recovered/METHOD.npy`, `.png` | recovered reflectance, (nv, nu); `truth` beside it |
 //! | `summary.json`, `report.html` | what was found |
+//! | `exposed/` | what `phicam expose` made of it: `phi.npy`, `phi.stderr.npy`, `saturated.npy`, `counts/`, `exposure.json` |
 //! | `partial/` | finished spots of an unfinished run; gone when it is complete |
 //!
 //! Exit codes: 0 done (and agreed), 1 traced and modelled disagree, 2 error, 130 stopped by Ctrl-C with what is finished
 //! kept.
 
 mod args;
+mod expose;
 mod failure;
 mod finished;
 mod folder;
@@ -33,6 +35,7 @@ mod run;
 mod scene;
 mod settings;
 mod stack;
+mod stale;
 mod study;
 mod validate;
 
@@ -61,6 +64,7 @@ pub fn main() -> ExitCode {
         Command::Model(a) => model::execute(a, talk),
         Command::Validate(a) => validate::execute(a, talk),
         Command::Recover(a) => recover::execute(a, talk),
+        Command::Expose(a) => expose::execute(a, talk),
         Command::Scene(a) => scene::execute(a, talk),
         Command::Study(a) => study::execute(a, talk),
     };

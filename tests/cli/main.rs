@@ -4,6 +4,7 @@ mod bad_folders;
 mod bad_frames;
 mod bad_scenes;
 mod bad_settings;
+mod exposing;
 mod interruption;
 mod main_job;
 mod recovery;

@@ -7,6 +7,7 @@ mod laws;
 mod model;
 mod obstacles;
 mod reference;
+mod sensor;
 mod studies;
 
 use std::ops::Range;

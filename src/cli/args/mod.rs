@@ -1,5 +1,6 @@
 //! Raw arguments, as clap reads them.
 
+mod expose;
 mod study;
 mod value;
 
@@ -10,6 +11,7 @@ use clap::{Args as Arguments, Parser, Subcommand, ValueEnum};
 
 use value::{elements, shift, spot_range};
 
+pub(in crate::cli) use expose::ExposeArgs;
 pub(in crate::cli) use study::{
     BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs,
 };
@@ -42,6 +44,8 @@ pub(in crate::cli) enum Command {
     Validate(ValidateArgs),
     /// Recover the hidden reflectance from Φcam
     Recover(RecoverArgs),
+    /// Photograph the clean flux with a sensor: shot noise, read noise, glare, converter
+    Expose(ExposeArgs),
     /// List, check, draw or export scenes
     Scene(SceneArgs),
     /// Experiments around a scene
