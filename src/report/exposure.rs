@@ -6,7 +6,7 @@ use crate::sensor::Summary;
 
 /// What an exposure came to, as plain text of at most 80 columns; `times` in s, the longest first.
 pub fn exposure_table(summary: &Summary, times: &[f64]) -> String {
-    let ratio = |x: Option<f64>| x.map_or("no noise".to_owned(), |x| significant(x, 3));
+    let ratio = |x: Option<f64>| x.map_or("–".to_owned(), |x| significant(x, 3));
     let share = |n: usize| {
         let part = 100.0 * n as f64 / summary.entries as f64;
         format!("{n} of {} ({} %)", summary.entries, significant(part, 3))
@@ -81,7 +81,7 @@ mod tests {
         assert!(table.lines().all(|l| l.chars().count() <= 80), "{table}");
         for words in [
             "3072000 of 30720000 (10.0 %)",
-            "12.3 on average, no noise",
+            "12.3 on average, – at most",
             "0.0100 s: ",
         ] {
             assert!(table.contains(words), "no `{words}` in {table}");

@@ -21,7 +21,7 @@ pub struct Summary {
     pub floored: usize,
     /// Entries taken from each exposure time, the longest first.
     pub taken: Vec<usize>,
-    /// Signal (the clean flux) over standard deviation, mean over the entries; `None` without noise.
+    /// Signal (the clean flux) over standard deviation, mean over the entries within range; `None` without such entries or without noise.
     pub snr_mean: Option<f64>,
     /// The largest of them.
     pub snr_max: Option<f64>,
@@ -32,12 +32,12 @@ impl Summary {
     pub fn new(sensor: &Sensor, light: &Light<'_>, exposure: &Exposure, exposed: &Exposed) -> Self {
         let electrons = sensor.expected(light, exposure).electrons;
         let (pixels, spots) = light.shape();
-        let snr: Vec<f64> = (0..spots)
-            .flat_map(|spot| (0..pixels).map(move |pixel| (pixel, spot)))
-            .map(|(p, l)| light.signal(p, l) / exposed.stderr[(p, l)])
-            .filter(|ratio| ratio.is_finite())
+        let within = |at: &usize| exposed.range[*at] == Range::Within;
+        let snr: Vec<f64> = (0..pixels * spots)
+            .filter(within)
+            .map(|at| light.signal(at % pixels, at / pixels) / exposed.stderr[at])
             .collect();
-        let noisy = exposed.stderr.iter().all(|s| *s > 0.0);
+        let noisy = exposed.stderr.iter().all(|s| *s > 0.0) && !snr.is_empty();
         Self {
             entries: pixels * spots,
             electrons_mean: electrons.mean(),

@@ -173,6 +173,7 @@ fn saturation_is_marked_counted_and_refused_if_asked() {
     assert_eq!(workspace.matrix("done/exposed/saturated.npy").sum(), 48.0);
     let account = workspace.json("done/exposed/exposure.json");
     assert_eq!(account["result"]["saturated"], 48);
+    assert!(account["result"]["snr_mean"].is_null());
     // A shorter time in a series holds them.
     let _ = workspace
         .phicam("expose done --sensor machine-vision --brackets 1000,0.001 --strict")
