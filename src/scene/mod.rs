@@ -68,7 +68,7 @@ mod file;
 mod known;
 mod laser;
 mod parse;
-mod spots;
+pub mod spots;
 mod surface;
 mod texture;
 mod variants;

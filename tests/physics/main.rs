@@ -5,6 +5,7 @@ mod closed_forms;
 mod known;
 mod laws;
 mod model;
+mod noise;
 mod obstacles;
 mod reference;
 mod studies;

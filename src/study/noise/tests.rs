@@ -1,0 +1,121 @@
+use super::*;
+
+fn small() -> (Scene, NoisePlan) {
+    let text = Scene::load("bench").unwrap().text;
+    let text = text.replace("pixels = [16, 16]", "pixels = [4, 4]");
+    let scene = Scene::from_toml("small", &text.replace("per_side = 30", "per_side = 6")).unwrap();
+    let plan = NoisePlan {
+        boards: vec![2, 4],
+        elements: vec![2, 4],
+        methods: vec![Method::Pinv, Method::Tikhonov, Method::Joint],
+        kernel: Kernel::Physical,
+        axis: NoiseAxis::Relative,
+        levels: vec![1e-6, 1e-3, 1.0],
+        seeds: 5,
+        first_seed: 3,
+    };
+    (scene, plan)
+}
+
+fn run(
+    scene: &Scene,
+    plan: &NoisePlan,
+    known: &[Trial],
+    most: usize,
+) -> (Option<NoiseStudy>, Vec<Trial>) {
+    let stop = AtomicBool::new(false);
+    let mut kept = Vec::new();
+    let mut keep = |new: &[Trial]| {
+        kept.extend_from_slice(new);
+        if kept.len() >= most {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    let study = noise(scene, plan, known, &stop, &mut keep).unwrap();
+    (study, kept)
+}
+
+/// Boards of 4 checks have no place on 2 elements: (2, 2), (2, 4), (4, 4).
+#[test]
+fn trials_do_not_depend_on_threads_and_going_on_gives_what_running_through_gives() {
+    let (scene, plan) = small();
+    assert_eq!(plan.trials(), 3 * 3 * 5 * 3);
+    let pool = |n| {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(n)
+            .build()
+            .unwrap()
+    };
+    let (through, all) = pool(1).install(|| run(&scene, &plan, &[], usize::MAX));
+    assert_eq!(all.len(), plan.trials());
+    let (none, part) = pool(3).install(|| run(&scene, &plan, &[], 10));
+    assert!(none.is_none() && part.len() >= 10 && part.len() < all.len());
+    let (resumed, rest) = pool(3).install(|| run(&scene, &plan, &part, usize::MAX));
+    assert_eq!(rest.len(), all.len() - part.len());
+    let text = |trials: &[Trial]| write_ledger("", trials);
+    assert_eq!(text(&all), text(&[part, rest].concat()));
+    let json = |study: &Option<NoiseStudy>| serde_json::to_string(study.as_ref().unwrap()).unwrap();
+    assert_eq!(json(&through), json(&resumed));
+}
+
+/// A level, a seed or a method more: what is there is kept, and only the new is computed.
+#[test]
+fn a_larger_plan_goes_on_from_a_smaller_one() {
+    let (scene, plan) = small();
+    let less = NoisePlan {
+        levels: vec![1e-6, 1.0],
+        seeds: 3,
+        methods: vec![Method::Pinv],
+        ..plan.clone()
+    };
+    let (_, part) = run(&scene, &less, &[], usize::MAX);
+    let (_, rest) = run(&scene, &plan, &part, usize::MAX);
+    assert_eq!(part.len() + rest.len(), plan.trials());
+    // And the smaller plan finds its own curves among the larger one's trials.
+    let (straight, _) = run(&scene, &less, &[], usize::MAX);
+    let (found, none) = run(&scene, &less, &[part, rest].concat(), usize::MAX);
+    assert!(none.is_empty());
+    let json = |study: Option<NoiseStudy>| serde_json::to_string(&study.unwrap()).unwrap();
+    assert_eq!(json(found), json(straight));
+}
+
+/// The unbounded pseudo-inverse is linear and unbiased here (2 × 2 elements have full rank), so its error grows in proportion to the noise, draw by draw.
+#[test]
+fn the_error_of_a_linear_method_is_proportional_to_the_noise() {
+    let (scene, plan) = small();
+    let plan = NoisePlan {
+        boards: vec![2],
+        elements: vec![2],
+        methods: vec![Method::Pinv],
+        levels: vec![1e-5, 1e-3],
+        ..plan
+    };
+    let (study, _) = run(&scene, &plan, &[], usize::MAX);
+    let points = &study.unwrap().curves[0].points;
+    let [quiet, loud] = [0, 1].map(|i: usize| points[i].rmse.unwrap());
+    assert!(
+        (loud.mean / quiet.mean / 100.0 - 1.0).abs() < 1e-6,
+        "{quiet:?} {loud:?}"
+    );
+    assert!(quiet.mean > 0.0 && quiet.draws == 5);
+}
+
+#[test]
+fn a_plan_without_object_is_refused() {
+    let (scene, plan) = small();
+    let plan = NoisePlan {
+        boards: vec![3],
+        ..plan
+    };
+    let stop = AtomicBool::new(false);
+    let refused = noise(
+        &scene,
+        &plan,
+        &[],
+        &stop,
+        &mut |_| ControlFlow::Continue(()),
+    );
+    assert!(matches!(refused, Err(NoiseError::NoObject)));
+}
