@@ -34,6 +34,8 @@ mod scene;
 mod settings;
 mod stack;
 mod study;
+mod study_indicator;
+mod study_noise;
 mod validate;
 
 use std::process::ExitCode;

@@ -6,7 +6,7 @@ use super::args::{BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyComman
 use super::failure::Failure;
 use super::interrupt::stop_flag;
 use super::output::{self, Talk};
-use super::{Outcome, progress, settings};
+use super::{Outcome, progress, settings, study_indicator, study_noise};
 use crate::report;
 use crate::scene::Scene;
 use crate::store::{ensure_writable, write_whole};
@@ -19,6 +19,8 @@ pub(super) fn execute(args: &StudyArgs, talk: Talk) -> Result<Outcome, Failure> 
         StudyCommand::Power(a) => power(a, talk),
         StudyCommand::Tolerance(a) => tolerance(a, talk),
         StudyCommand::Convergence(a) => convergence(a, talk),
+        StudyCommand::Noise(a) => study_noise::execute(a, talk),
+        StudyCommand::Indicator(a) => study_indicator::execute(a, talk),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Raw arguments, as clap reads them.
 
 mod study;
+mod sweep;
 mod value;
 
 use std::ops::Range;
@@ -13,6 +14,7 @@ use value::{elements, shift, spot_range};
 pub(in crate::cli) use study::{
     BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs,
 };
+pub(in crate::cli) use sweep::{IndicatorArgs, NoiseArgs};
 
 /// phicam: a physically based renderer for indirect photography, and the laboratory around it.
 #[derive(Debug, Parser)]
