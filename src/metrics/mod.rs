@@ -5,5 +5,5 @@ mod modulation;
 mod rank;
 
 pub use distance::{correlation, relative_frobenius, rmse};
-pub use modulation::{mtf_normalized, mtf_raw};
+pub use modulation::{light_and_dark, mtf_normalized, mtf_raw};
 pub use rank::rank_correlation;

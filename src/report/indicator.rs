@@ -17,14 +17,19 @@ pub fn indicator_table(study: &Indicator) -> String {
     );
     for n in &study.noisy {
         out += &format!(
-            "\nunder noise, {}: {} points predicted, {} of them within three standard errors of {} draws (largest {}, p {})\n",
-            n.method,
-            n.compared,
-            n.within_three,
-            study.seeds,
-            significant(n.largest_z, 3),
-            significant(n.largest_p, 2)
+            "\nunder noise, {}: {} points predicted",
+            n.method, n.compared
         );
+        if n.compared > 0 {
+            out += &format!(
+                ", {} within three standard errors of {} draws (largest {}, p {})",
+                n.within_three,
+                study.seeds,
+                significant(n.largest_z, 3),
+                significant(n.largest_p, 2)
+            );
+        }
+        out += "\n";
         for (count, why) in [
             (
                 n.undefined,
@@ -48,14 +53,14 @@ pub fn indicator_table(study: &Indicator) -> String {
 }
 
 fn coefficients(all: &[Coefficients]) -> String {
-    let number = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{x:.4}"));
+    let number = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{x:.6}"));
     let mut out = format!(
-        "{:<34} {:>8} {:>9} {:>7}\n",
+        "{:<34} {:>9} {:>9} {:>7}\n",
         "", "Pearson", "Spearman", "of"
     );
     for c in all {
         out += &format!(
-            "{:<34} {:>8} {:>9} {:>7}\n",
+            "{:<34} {:>9} {:>9} {:>7}\n",
             c.indicator,
             number(c.pearson),
             number(c.spearman),

@@ -127,13 +127,13 @@ fn level(lost: Lost) -> String {
         Lost::At(level) => significant(level, 2),
         Lost::Before => "always".to_owned(),
         Lost::Never => "never".to_owned(),
-        Lost::Unknown => "–".to_owned(),
+        Lost::Unknown => "undefined".to_owned(),
     }
 }
 
 /// The curves as comma-separated values with a header line.
 pub fn noise_csv(study: &NoiseStudy) -> String {
-    let mut out = "board,elements,method,noise,draws,failed".to_owned();
+    let mut out = "board,elements,method,noise,draws,failed,denominator_spread".to_owned();
     for m in Measure::ALL {
         let name = m.name().replace('-', "_");
         out += &format!(",{name},{name}_deviation,{name}_stderr");
@@ -143,8 +143,14 @@ pub fn noise_csv(study: &NoiseStudy) -> String {
     for c in &study.curves {
         for p in &c.points {
             out += &format!(
-                "{},{},{},{:e},{},{}",
-                c.board, c.elements, c.method, p.level, p.draws, p.failed
+                "{},{},{},{:e},{},{},{}",
+                c.board,
+                c.elements,
+                c.method,
+                p.level,
+                p.draws,
+                p.failed,
+                number(p.denominator_spread)
             );
             for m in Measure::ALL {
                 let s = m.of(p);

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod closed_forms;
+mod indicator;
 mod known;
 mod laws;
 mod model;

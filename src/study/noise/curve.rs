@@ -5,6 +5,9 @@ use serde::Serialize;
 use super::trial::{Measures, Trial};
 use crate::num::summation::{mean_and_stderr, tree_sum};
 
+/// Relative spread of a denominator above which the mean of a ratio is not spoken of: the next terms of its expansion are then some 3·0.1⁴ of it.
+pub(in super::super) const MOST_SPREAD: f64 = 0.1;
+
 /// Mean and spread of a measure over the draws in which it is defined.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
@@ -50,6 +53,8 @@ pub struct Point {
     pub failure: Option<String>,
     /// Raw MTF.
     pub mtf_raw: Option<Spread>,
+    /// Standard deviation of its denominator W + B over the draws, relative to the mean; absent for a single draw.
+    pub denominator_spread: Option<f64>,
     /// Normalized MTF.
     pub mtf_normalized: Option<Spread>,
     /// Correlation with the truth.
@@ -65,6 +70,7 @@ impl Point {
         let spread = |f: fn(&Measures) -> Option<f64>| {
             Spread::of(&good().filter_map(f).collect::<Vec<f64>>())
         };
+        let denominator = spread(|m| m.light_plus_dark);
         let failure = trials.iter().find_map(|t| t.outcome.as_ref().err());
         Self {
             level,
@@ -72,6 +78,7 @@ impl Point {
             failed: trials.len() - good().count(),
             failure: failure.cloned(),
             mtf_raw: spread(|m| m.mtf_raw),
+            denominator_spread: denominator.and_then(|s| Some(s.deviation? / s.mean.abs())),
             mtf_normalized: spread(|m| m.mtf_normalized),
             correlation: spread(|m| m.correlation),
             rmse: spread(|m| m.rmse),
@@ -89,7 +96,8 @@ pub enum Lost {
     Before,
     /// It is not below the limit at any level.
     Never,
-    /// The method failed in some draw before the limit was reached, so the mean over all draws is not known.
+    /// Before the limit was reached the method failed in some draw, or (raw MTF) the denominator W + B began to spread by more than a tenth, so that there is no
+    /// mean to speak of.
     Unknown,
 }
 

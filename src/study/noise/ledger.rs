@@ -5,8 +5,7 @@
 
 use super::trial::{Measures, Trial};
 
-const COLUMNS: &str =
-    "board,elements,method,noise,seed,mtf_raw,mtf_normalized,correlation,rmse,failure";
+const COLUMNS: &str = "board,elements,method,noise,seed,mtf_raw,light_plus_dark,mtf_normalized,correlation,rmse,failure";
 
 /// Why a ledger cannot be gone on with.
 #[derive(Debug, PartialEq, thiserror::Error)]
@@ -42,11 +41,18 @@ pub fn write_ledger(study: &str, trials: &[Trial]) -> String {
         );
         let rest = match &t.outcome {
             Ok(m) => {
-                let found = [m.mtf_raw, m.mtf_normalized, m.correlation, m.rmse].map(number);
+                let found = [
+                    m.mtf_raw,
+                    m.light_plus_dark,
+                    m.mtf_normalized,
+                    m.correlation,
+                    m.rmse,
+                ]
+                .map(number);
                 format!("{},", found.join(","))
             }
             Err(why) => format!(
-                ",,,,\"{}\"",
+                ",,,,,\"{}\"",
                 why.replace('"', "'").replace(['\n', '\r'], " ")
             ),
         };
@@ -80,7 +86,7 @@ pub fn read_ledger(study: &str, text: &str) -> Result<Vec<Trial>, LedgerError> {
 }
 
 fn trial(line: &str) -> Option<Trial> {
-    let parts: Vec<&str> = line.splitn(10, ',').collect();
+    let parts: Vec<&str> = line.splitn(11, ',').collect();
     let [
         board,
         elements,
@@ -88,6 +94,7 @@ fn trial(line: &str) -> Option<Trial> {
         level,
         seed,
         raw,
+        sum,
         normalized,
         correlation,
         rmse,
@@ -101,6 +108,7 @@ fn trial(line: &str) -> Option<Trial> {
     let outcome = match failure {
         "" => Ok(Measures {
             mtf_raw: number(raw)?,
+            light_plus_dark: number(sum)?,
             mtf_normalized: number(normalized)?,
             correlation: number(correlation)?,
             rmse: number(rmse)?,
@@ -125,6 +133,7 @@ mod tests {
     fn trials() -> Vec<Trial> {
         let measures = Measures {
             mtf_raw: Some(0.1 + 0.2),
+            light_plus_dark: Some(-1e300),
             mtf_normalized: Some(-1.0 / 3.0),
             correlation: None,
             rmse: Some(5e-324),

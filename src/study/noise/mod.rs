@@ -4,6 +4,9 @@
 //! inverts this very model: what is lost is lost to noise, and to what the method does even without it. Each draw of the noise is recovered by
 //! every method.
 //!
+//! A method that is linear and unbiased keeps its mean raw MTF however loud the noise: what grows is the spread. And a ratio whose denominator W + B comes near 0
+//! has no mean. Both are why the normalized MTF, which lies between −1 and 1, and the root mean square error stand beside it; see [`Lost::Unknown`].
+//!
 //! Where the bound of Cramér and Rao, √(tr CRB/r), is to stand beside the root mean square error, [`Point`] is the place: it is a function of the
 //! model and of the level's standard errors alone.
 
@@ -25,6 +28,7 @@ use crate::recovery::Method;
 use crate::scene::Scene;
 
 pub use axis::NoiseAxis;
+pub(super) use curve::MOST_SPREAD;
 pub use curve::{Lost, Point, Spread};
 pub use ledger::{LedgerError, read_ledger, write_ledger};
 pub use render::{RenderNoise, render_noise};
@@ -261,12 +265,14 @@ fn curve(
         Point::of(*level, &here)
     };
     let points: Vec<Point> = plan.levels.iter().map(point).collect();
-    let lost = |f: fn(&Point) -> Option<Spread>| {
+    let lost = |f: &dyn Fn(&Point) -> Option<Spread>| {
         let mean = |p: &Point| f(p).filter(|s| s.draws == p.draws).map(|s| s.mean);
         let curve: Vec<_> = points.iter().map(|p| (p.level, mean(p))).collect();
         LIMITS.map(|limit| curve::lost(&curve, limit))
     };
-    let (lost_raw, lost_normalized) = (lost(|p| p.mtf_raw), lost(|p| p.mtf_normalized));
+    let narrow = |p: &Point| p.denominator_spread.is_none_or(|s| s <= MOST_SPREAD);
+    let lost_raw = lost(&|p| p.mtf_raw.filter(|_| narrow(p)));
+    let lost_normalized = lost(&|p| p.mtf_normalized);
     NoiseCurve {
         board,
         elements,

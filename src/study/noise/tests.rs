@@ -119,3 +119,23 @@ fn a_plan_without_object_is_refused() {
     );
     assert!(matches!(refused, Err(NoiseError::NoObject)));
 }
+
+/// Least squares without bounds is unbiased: its mean raw MTF does not fall, but the denominator's spread grows until no mean is spoken of.
+#[test]
+fn a_mean_of_wild_ratios_is_not_spoken_of() {
+    let (scene, plan) = small();
+    let plan = NoisePlan {
+        boards: vec![4],
+        elements: vec![4],
+        methods: vec![Method::JointUnbounded],
+        levels: vec![1e-7, 0.1, 1.0],
+        seeds: 20,
+        ..plan
+    };
+    let (study, _) = run(&scene, &plan, &[], usize::MAX);
+    let curve = &study.unwrap().curves[0];
+    let [quiet, loud] = [0, 2].map(|i: usize| curve.points[i].denominator_spread.unwrap());
+    assert!(quiet < 1e-3 && loud > 0.1, "{quiet} {loud}");
+    assert_eq!(curve.lost_raw[1], Lost::Unknown, "{curve:?}");
+    assert!(matches!(curve.lost_normalized[1], Lost::At(_)), "{curve:?}");
+}

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use crate::metrics::{correlation, mtf_normalized, mtf_raw, rmse};
+use crate::metrics::{correlation, light_and_dark, mtf_normalized, mtf_raw, rmse};
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Options, Problem, recover};
 
@@ -30,6 +30,8 @@ pub struct Trial {
 pub struct Measures {
     /// (White − Black)/(White + Black) of the recovered values.
     pub mtf_raw: Option<f64>,
+    /// White + Black, its denominator.
+    pub light_plus_dark: Option<f64>,
     /// The same after the recovered values have been stretched to [0, 1].
     pub mtf_normalized: Option<f64>,
     /// Pearson's correlation with the truth.
@@ -54,6 +56,7 @@ pub(super) fn measure(
 fn measures(found: &[f64], truth: &[f64]) -> Measures {
     Measures {
         mtf_raw: mtf_raw(found, truth),
+        light_plus_dark: light_and_dark(found, truth).map(|(light, dark)| light + dark),
         mtf_normalized: mtf_normalized(found, truth),
         correlation: correlation(found, truth),
         rmse: rmse(found, truth),
