@@ -18,7 +18,7 @@ use crate::store::ensure_writable;
 use crate::study::{self, NoiseAxis, NoisePlan, RenderNoise, Trial, read_ledger, write_ledger};
 use crate::transport::{Budget, Control};
 
-/// Finished trials are on disk at least this often.
+/// Finished trials are on disk from the first few on, and at least this often.
 const KEEP_EVERY: Duration = Duration::from_secs(5);
 
 pub(super) fn execute(args: &NoiseArgs, talk: Talk) -> Result<Outcome, Failure> {
@@ -47,14 +47,14 @@ pub(super) fn execute(args: &NoiseArgs, talk: Talk) -> Result<Outcome, Failure> 
 
     let mut trials = known.clone();
     let mut failed = None;
-    let mut last = Instant::now();
+    let mut last: Option<Instant> = None;
     let bar = progress::steps(talk, &format!("noise on {}", scene.name));
     bar.set_length(plan.trials() as u64);
     let mut keep = |new: &[Trial]| {
         trials.extend_from_slice(new);
         bar.inc(new.len() as u64);
-        if last.elapsed() >= KEEP_EVERY {
-            last = Instant::now();
+        if last.is_none_or(|l| l.elapsed() >= KEEP_EVERY) {
+            last = Some(Instant::now());
             if let Err(failure) = output::deliver(&write_ledger(&name, &trials), Some(&path)) {
                 failed = Some(failure);
                 return ControlFlow::Break(());

@@ -196,3 +196,43 @@ fn indicator_is_a_table_a_figure_and_json() {
     let figure = workspace.text("i/indicator.svg");
     assert!(figure.contains("condition number") && !figure.contains("NaN"));
 }
+
+/// Ctrl-C as soon as the first trials are on disk: exit code 130, they are kept, and the same command goes on from them.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_the_finished_trials() {
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+
+    let workspace = Workspace::with_scenes();
+    let child = Command::new(env!("CARGO_BIN_EXE_phicam"))
+        .args(NOISE.split_whitespace())
+        .args(["-o", "cut", "--seeds", "50000"])
+        .current_dir(workspace.path(""))
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let start = Instant::now();
+    while !workspace.path("cut/noise.csv").exists() && start.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    // A process that has ended is not reaped before `wait_with_output`, so its id is nobody else's.
+    let signal = format!("kill -INT {}", child.id());
+    let sent = Command::new("sh").args(["-c", &signal]).status();
+    assert!(sent.expect("a shell").success());
+    let output = child.wait_with_output().expect("it ends");
+    let words = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(130), "{words}");
+    for word in ["stopped", "kept in cut", "same command"] {
+        assert!(words.contains(word), "no `{word}` in {words}");
+    }
+    assert!(!workspace.path("cut/noise.json").exists());
+    let kept = workspace.text("cut/noise.csv").lines().count() - 2;
+    assert!(kept > 0);
+    let ended = workspace
+        .phicam(&format!("{NOISE} -o cut --seeds 2"))
+        .exits(0);
+    let going_on = format!("going on from {kept} trials");
+    assert!(ended.stderr.contains(&going_on), "{}", ended.account());
+}
