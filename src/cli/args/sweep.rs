@@ -90,8 +90,8 @@ pub(in crate::cli) struct IndicatorArgs {
         allow_negative_numbers = true
     )]
     pub noise: Vec<f64>,
-    /// Under noise only each so manyth configuration
-    #[arg(long, default_value_t = 61, value_parser = clap::value_parser!(u64).range(1..))]
+    /// Under noise every N-th configuration only
+    #[arg(long, value_name = "N", default_value_t = 61, value_parser = clap::value_parser!(u64).range(1..))]
     pub every: u64,
     /// Draws of the noise
     #[arg(long, default_value_t = 50, value_parser = clap::value_parser!(u64).range(2..=100_000))]

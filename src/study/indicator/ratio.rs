@@ -56,7 +56,7 @@ impl Pair {
     /// experiment meets it, and the expansion is what is measured; beyond [`MOST_SPREAD`] there is `None`.
     pub(super) fn modulation(&self) -> Option<Modulation> {
         // Not a number is no small spread either.
-        if !(self.spread() <= MOST_SPREAD) {
+        if self.spread() > MOST_SPREAD || self.spread().is_nan() {
             return None;
         }
         let [n, d] = self.means;
