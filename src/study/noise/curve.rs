@@ -96,8 +96,8 @@ pub enum Lost {
     Before,
     /// It is not below the limit at any level.
     Never,
-    /// Before the limit was reached the method failed in some draw, or (raw MTF) the denominator W + B began to spread by more than a tenth, so that there is no
-    /// mean to speak of.
+    /// Before the limit was reached the method failed in some draw, or the mean is not known to a tenth, or (raw MTF) the denominator W + B
+    /// spreads by more than a tenth, so that there is no mean to speak of.
     Unknown,
 }
 

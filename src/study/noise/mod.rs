@@ -139,6 +139,8 @@ pub enum NoiseError {
     NoObject,
 }
 
+/// Standard error above which a mean MTF is not held against a limit: a mean that strays has not fallen.
+const MOST_STDERR: f64 = 0.1;
 /// Draws worked off between two calls of `keep`.
 const CHUNK: usize = 32;
 
@@ -266,7 +268,11 @@ fn curve(
     };
     let points: Vec<Point> = plan.levels.iter().map(point).collect();
     let lost = |f: &dyn Fn(&Point) -> Option<Spread>| {
-        let mean = |p: &Point| f(p).filter(|s| s.draws == p.draws).map(|s| s.mean);
+        let known = |s: &Spread| s.stderr.is_none_or(|e| e <= MOST_STDERR);
+        let mean = |p: &Point| {
+            let spread = f(p).filter(|s| s.draws == p.draws);
+            spread.filter(known).map(|s| s.mean)
+        };
         let curve: Vec<_> = points.iter().map(|p| (p.level, mean(p))).collect();
         LIMITS.map(|limit| curve::lost(&curve, limit))
     };

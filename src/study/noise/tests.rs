@@ -139,3 +139,49 @@ fn a_mean_of_wild_ratios_is_not_spoken_of() {
     assert_eq!(curve.lost_raw[1], Lost::Unknown, "{curve:?}");
     assert!(matches!(curve.lost_normalized[1], Lost::At(_)), "{curve:?}");
 }
+
+/// Draws that stray widely around a true mean of 1, at a well determined denominator: that their mean happens to lie at 0.2 is no loss.
+#[test]
+fn a_mean_that_strays_has_not_fallen() {
+    let (_, plan) = small();
+    let plan = NoisePlan {
+        boards: vec![2],
+        elements: vec![4],
+        methods: vec![Method::JointUnbounded],
+        levels: vec![1e-3, 1.0],
+        seeds: 4,
+        ..plan
+    };
+    let trial = |level, seed, mtf| Trial {
+        board: 2,
+        elements: 4,
+        method: Method::JointUnbounded,
+        level,
+        seed,
+        outcome: Ok(Measures {
+            mtf_raw: Some(mtf),
+            light_plus_dark: Some(1.0),
+            mtf_normalized: Some(mtf / 10.0),
+            correlation: None,
+            rmse: None,
+        }),
+    };
+    let curve = |loud: [f64; 4]| {
+        let quiet = (0..4).map(|k| trial(1e-3, plan.first_seed + k, 1.0));
+        let loud = (0..4).map(|k| trial(1.0, plan.first_seed + k, loud[k as usize]));
+        curve(
+            &plan,
+            [2, 4],
+            Method::JointUnbounded,
+            &quiet.chain(loud).collect::<Vec<_>>(),
+        )
+    };
+    assert_eq!(curve([9.0, -9.0, 5.0, -4.2]).lost_raw, [Lost::Unknown; 2]);
+    let fallen = curve([0.25, 0.15, 0.2, 0.2]);
+    // From 1 to 0.2 over three decades: 0.9 lies an eighth of the way.
+    let Lost::At(level) = fallen.lost_raw[0] else {
+        panic!("{fallen:?}")
+    };
+    assert!((level / 1e-3 / libm::exp10(3.0 / 8.0) - 1.0).abs() < 1e-12);
+    assert_eq!(fallen.lost_normalized, [Lost::Before; 2]);
+}
