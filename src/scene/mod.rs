@@ -93,7 +93,7 @@ mod laser;
 mod parse;
 mod quantity;
 mod sensor;
-mod spots;
+pub mod spots;
 mod surface;
 mod texture;
 mod variants;

@@ -6,12 +6,17 @@
 //! * [`convergence`](fn@convergence): how fast the error of each estimator falls.
 //! * [`power`](fn@power): what [`validate`] detects, and how often it errs.
 //! * [`tolerance`](fn@tolerance): how wrong the assumed geometry may be.
+//! * [`indicator`](fn@indicator): what predicts how well the published inversion works.
+//! * [`noise`](fn@noise): how much noise each recovery bears.
 //! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object.
 
 mod agreement;
 mod budget;
 mod convergence;
+mod deviate;
 mod ensemble;
+mod indicator;
+mod noise;
 mod objects;
 mod power;
 mod results;
@@ -22,6 +27,14 @@ pub use agreement::{Errors, Evidence, Test, agree};
 pub use budget::{BudgetError, BudgetPlan, Closure, ErrorBudget, Term, error_budget};
 pub use convergence::{Convergence, ConvergenceError, Curve, Step, convergence};
 pub use ensemble::Estimate;
+pub use indicator::{
+    Coefficients, Comparison, Configuration, Indicator, IndicatorError, IndicatorPlan, Layout,
+    NoisyOutcome, NoisyPoint, NoisySummary, indicator,
+};
+pub use noise::{
+    LIMITS, LedgerError, Lost, Measures, NoiseAxis, NoiseCurve, NoiseError, NoisePlan, NoiseStudy,
+    Point, RenderNoise, Spread, Trial, noise, read_ledger, render_noise, write_ledger,
+};
 pub use objects::{Attempt, Noise, recover_objects};
 pub use power::{Detection, Power, PowerError, PowerPlan, PowerRow, power};
 pub use results::{Agreement, Entry, RecoveredObject, RunResults, Settings};

@@ -13,5 +13,6 @@ mod scenes;
 mod small_scene;
 mod stacking;
 mod studies;
+mod sweeps;
 mod verdict;
 mod workspace;

@@ -2,9 +2,11 @@
 
 mod accuracy;
 mod closed_forms;
+mod indicator;
 mod known;
 mod laws;
 mod model;
+mod noise;
 mod obstacles;
 mod reference;
 mod sensor;

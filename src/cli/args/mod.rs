@@ -2,6 +2,7 @@
 
 mod expose;
 mod study;
+mod sweep;
 mod value;
 
 use std::ops::Range;
@@ -15,6 +16,7 @@ pub(in crate::cli) use expose::ExposeArgs;
 pub(in crate::cli) use study::{
     BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs,
 };
+pub(in crate::cli) use sweep::{IndicatorArgs, NoiseArgs};
 
 /// phicam: a physically based renderer for indirect photography, and the laboratory around it.
 #[derive(Debug, Parser)]

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args as Arguments, Subcommand};
 
+use super::sweep::{IndicatorArgs, NoiseArgs};
 use super::{EstimatorName, SamplerName};
 
 #[derive(Debug, Arguments)]
@@ -22,6 +23,10 @@ pub(in crate::cli) enum StudyCommand {
     Tolerance(ToleranceArgs),
     /// How fast the error of each estimator falls: table, JSON, figure
     Convergence(ConvergenceArgs),
+    /// How much noise each recovery bears: table, JSON, CSV, figures; a rerun goes on where the last one stopped
+    Noise(NoiseArgs),
+    /// What predicts the modulation of the published inversion: table, JSON, CSV, figure
+    Indicator(IndicatorArgs),
 }
 
 #[derive(Debug, Arguments)]
