@@ -2,7 +2,7 @@
 
 use super::khatri_rao::Operator;
 use crate::num::linalg::{Svd, Tolerance, cut, svd};
-use crate::num::quadratic::box_least_squares;
+use crate::num::quadratic::{Bounds, box_least_squares};
 use crate::recovery::{
     Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, Solver,
 };
@@ -32,7 +32,9 @@ pub(in crate::recovery) fn recover(
     for (mut row, &s) in strong.row_iter_mut().zip(sigma.iter()) {
         row *= s;
     }
-    let solved = box_least_squares(&strong, &(u.columns(0, rows).transpose() * &reduced.d))?;
+    let data = u.columns(0, rows).transpose() * &reduced.d;
+    let bounds = Bounds::all(problem.c.ncols(), 0.0, 1.0);
+    let solved = box_least_squares(&strong, &data, &bounds)?;
     let mut found = Recovered::plain(Method::Joint, problem, solved.solution, sigma, rank);
     if rank < problem.c.ncols() {
         (found.parameter, found.choice) = (Parameter::Rank(rank), Choice::Tolerance { cutoff });
