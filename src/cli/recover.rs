@@ -13,7 +13,7 @@ use super::{Outcome, settings};
 use crate::matrix::{Matrix, npy};
 use crate::model::MatrixModel;
 use crate::num::linalg::Tolerance;
-use crate::recovery::{Method, Options};
+use crate::recovery::{Method, Nuisance, Options};
 use crate::report::{self, Panel};
 use crate::scene::Scene;
 use crate::store::{ensure_writable, write_whole};
@@ -21,7 +21,7 @@ use crate::study::{Attempt, Noise, RecoveredObject, recover_objects};
 
 pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure> {
     let methods: Vec<Method> = match args.method.as_slice() {
-        [] => Method::ALL.to_vec(),
+        [] => Method::USUAL.to_vec(),
         names => names.iter().map(|n| n.parse()).collect::<Result<_, _>>()?,
     };
     let options = options(args)?;
@@ -46,7 +46,7 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
     };
     let model = MatrixModel::new(&scene, settings::kernel(args.kernel), args.elements)?;
     let noise = stderr.as_ref().map_or(Noise::Unknown, Noise::StandardError);
-    let attempts = recover_objects(&model, &phi, noise, &methods, &options);
+    let attempts = recover_objects(&model, &phi, noise, Nuisance::default(), &methods, &options);
     let single = methods.len() == 1;
     let objects = collect(attempts, single, talk)?;
     write(&args.dir, &objects)?;

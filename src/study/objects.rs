@@ -4,7 +4,7 @@ use crate::matrix::Matrix;
 use crate::metrics::{correlation, mtf_normalized, mtf_raw, rmse};
 use crate::model::MatrixModel;
 use crate::recovery::{
-    Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, recover,
+    Choice, Method, Nuisance, Options, Parameter, Problem, Recovered, RecoveryError, recover,
 };
 
 use super::results::RecoveredObject;
@@ -28,11 +28,12 @@ pub struct Attempt {
 }
 
 /// Recovers the hidden reflectance from `phi` (pixels × spots, W) by each of `methods`, and measures it against the true
-/// albedo at the element centres.
+/// albedo at the element centres. `nuisance` is what else the photographs hold.
 pub fn recover_objects(
     model: &MatrixModel,
     phi: &Matrix,
     noise: Noise<'_>,
+    nuisance: Nuisance<'_>,
     methods: &[Method],
     options: &Options,
 ) -> Vec<Attempt> {
@@ -40,8 +41,11 @@ pub fn recover_objects(
         Noise::StandardError(stderr) => Some(stderr),
         Noise::Unknown => None,
     };
+    let grids: Vec<[usize; 2]> = model.grids.iter().map(|grid| grid.count).collect();
     let attempt = |method: Method| {
-        let problem = Problem::new(phi, &model.camera_side, &model.laser_side, stderr)?;
+        let problem = Problem::new(phi, &model.camera_side, &model.laser_side, stderr)?
+            .with_grids(&grids)?
+            .with_nuisance(nuisance)?;
         recover(method, &problem, options).map(|found| objects(model, &found))
     };
     methods
@@ -80,6 +84,8 @@ fn parameter(found: &Recovered) -> String {
         Parameter::None => format!("rank {}", found.rank),
         Parameter::Rank(k) => format!("{k} singular directions"),
         Parameter::Damping(lambda) => format!("damping {lambda:.2e} of σ1"),
+        Parameter::TotalVariation(lambda) => format!("total variation {lambda:.2e} of σ1²"),
+        Parameter::Levels([dark, light]) => format!("levels {dark:.3} and {light:.3}"),
     };
     let why = match found.choice {
         Choice::Given => ", as given".to_owned(),
@@ -90,6 +96,12 @@ fn parameter(found: &Recovered) -> String {
                 ", by the discrepancy principle (residual {residual:.3e} W, noise {target:.3e} W)"
             )
         }
+        Choice::JointDiscrepancy {
+            residual, target, ..
+        } => {
+            format!(", by the discrepancy principle (χ² {residual:.1}, noise {target:.1})")
+        }
+        Choice::Estimated => ", estimated".to_owned(),
         Choice::Tolerance { cutoff } => format!(", cut at {cutoff:.2e}"),
         Choice::None => String::new(),
     };

@@ -3,10 +3,13 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{Place, QuadraticError};
-use crate::num::linalg::{Tolerance, least_squares};
+use crate::num::linalg::{Tolerance, least_squares, triangle};
 
 /// Floating-point operations that the active-set refinement may spend.
 const REFINEMENT_BUDGET: f64 = 1e11;
+
+/// A pivot below this fraction of the largest makes columns dependent.
+const PIVOT: f64 = 1e-11;
 
 /// Bounded-variable least squares, 0 ≤ x ≤ u, from a given start. Stops at a point where all optimality conditions hold to
 /// rounding, or when its budget is spent; the objective never rises from the start's.
@@ -37,10 +40,9 @@ pub(super) fn refine(
         let mut stride = 1.0;
         let mut blocked = None;
         if !free.is_empty() {
-            // A singular value decomposition of k × f, with its vectors.
+            // The singular value decomposition of k × f, with its vectors, that it may take.
             spent += 25.0 * (k * free.len() * k.min(free.len())) as f64;
-            let towards =
-                least_squares(&r.select_columns(&free), &(d - r * &x), Tolerance::Auto)?.solution;
+            let towards = solve(&r.select_columns(&free), &(d - r * &x))?;
             for (&j, &step) in free.iter().zip(towards.iter()) {
                 let room = if step < 0.0 {
                     x[j] / -step
@@ -119,6 +121,14 @@ pub(super) fn orthogonal_to_free(
     orthogonal_to(r, residual, &free)
 }
 
+/// Least squares by QR; by singular values where the columns are dependent to rounding.
+fn solve(columns: &DMatrix<f64>, b: &DVector<f64>) -> Result<DVector<f64>, QuadraticError> {
+    match triangle(columns, b)?.substitute(PIVOT) {
+        Some(x) => Ok(x),
+        None => Ok(least_squares(columns, b, Tolerance::Auto)?.solution),
+    }
+}
+
 fn orthogonal_to(
     r: &DMatrix<f64>,
     residual: &DVector<f64>,
@@ -128,7 +138,7 @@ fn orthogonal_to(
         return Ok(residual.clone());
     }
     let columns = r.select_columns(free);
-    let within = least_squares(&columns, residual, Tolerance::Auto)?.solution;
+    let within = solve(&columns, residual)?;
     Ok(residual - columns * within)
 }
 

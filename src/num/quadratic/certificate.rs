@@ -1,6 +1,6 @@
 //! How far above its minimum an objective can be, proved by weak duality.
 //!
-//! For f(x) = ½‖R x − d‖² on 0 ≤ x ≤ u, any ν with g = Rᵀν proves
+//! For f(x) = ½‖R x − d‖² + cᵀx on 0 ≤ x ≤ u, any ν with g = Rᵀν + c proves
 //!
 //! > f(x) − f* ≤ ½‖R x − d − ν‖² + Σ_j max(g_j x_j, −g_j (u_j − x_j)).
 //!
@@ -17,6 +17,7 @@ use crate::num::linalg::{Tolerance, least_squares};
 pub(super) fn gap(
     r: &DMatrix<f64>,
     residual: &DVector<f64>,
+    linear: &DVector<f64>,
     duals: [&DVector<f64>; 3],
     upper: &DVector<f64>,
     x: &DVector<f64>,
@@ -25,7 +26,7 @@ pub(super) fn gap(
     let least = |duals: &[DVector<f64>]| {
         duals
             .iter()
-            .map(|dual| duality_gap(r, residual, dual, upper, x))
+            .map(|dual| duality_gap(r, residual, linear, dual, upper, x))
             .fold(f64::INFINITY, f64::min)
     };
     let duals = duals.map(Clone::clone);
@@ -49,7 +50,7 @@ pub(super) fn gap(
             continue;
         }
         for dual in &duals {
-            let gradient = r.transpose() * dual;
+            let gradient = r.transpose() * dual + linear;
             let need = open
                 .iter()
                 .map(|&j| -gradient[j] / lift[j])
@@ -65,11 +66,12 @@ pub(super) fn gap(
 fn duality_gap(
     r: &DMatrix<f64>,
     residual: &DVector<f64>,
+    linear: &DVector<f64>,
     dual: &DVector<f64>,
     upper: &DVector<f64>,
     x: &DVector<f64>,
 ) -> f64 {
-    let gradient = r.transpose() * dual;
+    let gradient = r.transpose() * dual + linear;
     let bounds: f64 = (0..x.len())
         .map(|j| match gradient[j] {
             0.0 => 0.0,
@@ -89,6 +91,7 @@ mod tests {
     fn every_dual_point_bounds_the_distance_from_the_minimum() {
         let r = DMatrix::from_fn(9, 6, |i, j| (((i * 31 + j * 17) % 13) as f64 - 6.0) / 6.0);
         let d = DVector::from_fn(9, |i, _| ((i * 7) % 5) as f64 - 1.0);
+        let none = DVector::zeros(6);
         for top in [1.0, f64::INFINITY] {
             let upper = DVector::from_fn(6, |j, _| if j % 2 == 0 { top } else { 1.0 });
             let bounds = Bounds {
@@ -103,7 +106,7 @@ mod tests {
                 let residual = &r * &x - &d;
                 let excess = 0.5 * residual.norm_squared() - least.objective;
                 for dual in [&dual, &residual] {
-                    let proved = gap(&r, &residual, [dual; 3], &upper, &x).unwrap();
+                    let proved = gap(&r, &residual, &none, [dual; 3], &upper, &x).unwrap();
                     assert!(
                         proved.is_finite() && proved >= excess - 1e-12,
                         "{proved} {excess}"
@@ -112,7 +115,15 @@ mod tests {
             }
             // At the minimum the residual's own bound is tight.
             let residual = &r * &least.solution - &d;
-            let proved = gap(&r, &residual, [&residual; 3], &upper, &least.solution).unwrap();
+            let proved = gap(
+                &r,
+                &residual,
+                &none,
+                [&residual; 3],
+                &upper,
+                &least.solution,
+            )
+            .unwrap();
             assert!(proved < 1e-12, "{proved}");
         }
     }

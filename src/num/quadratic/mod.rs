@@ -2,7 +2,12 @@
 
 mod active_set;
 mod certificate;
+mod differences;
+mod extent;
 mod interior_point;
+
+pub use differences::{Fused, fused_least_squares};
+pub use extent::extent;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -169,6 +174,7 @@ pub fn box_least_squares(
     let gap = certificate::gap(
         &r,
         &residual,
+        &DVector::zeros(n),
         [&residual, &orthogonal, &start.y],
         &width,
         &x,
