@@ -269,10 +269,14 @@ fn remove_numbered(dir: &Path, extension: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Removes the matrices and pictures METHOD.npy, METHOD-0.png, … and those of the truth from `dir`, and `dir` if that
+/// Removes the matrices and pictures METHOD.npy, METHOD-0.png, METHOD.lower.npy, … and those of the truth from `dir`, and `dir` if that
 /// empties it.
 fn remove_recovered(dir: &Path) -> Result<(), Failure> {
     remove_files(dir, |stem, ext| {
+        let stem = [".lower", ".upper"]
+            .iter()
+            .find_map(|end| stem.strip_suffix(end))
+            .unwrap_or(stem);
         let name = stem.trim_end_matches(|c: char| c.is_ascii_digit());
         let name = name.strip_suffix('-').unwrap_or(name);
         let known = ["truth", "overview"].contains(&name) || name.parse::<Method>().is_ok();

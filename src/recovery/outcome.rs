@@ -64,8 +64,8 @@ pub struct Solver {
     pub refinements: usize,
     /// The objective ½ Σ w_p v_l (Φ − C diag(ρ) D)², less what no ρ can change; of `joint-tv` with its penalty.
     pub objective: f64,
-    /// Upper bound on the objective's distance from its minimum, same unit. Of `joint-two-valued`: from the minimum over all reflectances between the
-    /// levels, which no pattern of two values can undercut; how much of it another pattern could gain is not known.
+    /// Upper bound on the objective's distance from its minimum, same unit. Of `joint-two-valued`: from a bound that no
+    /// pattern of two values can undercut; zero says that the pattern is the best of all.
     pub gap: f64,
 }
 

@@ -24,6 +24,6 @@ pub use convergence::{Convergence, ConvergenceError, Curve, Step, convergence};
 pub use ensemble::Estimate;
 pub use objects::{Attempt, Noise, recover_objects};
 pub use power::{Detection, Power, PowerError, PowerPlan, PowerRow, power};
-pub use results::{Agreement, Entry, RecoveredObject, RunResults, Settings};
+pub use results::{Agreement, Entry, ObjectBands, RecoveredObject, RunResults, Settings};
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, tolerance};
 pub use validation::{Integration, Validation, ValidationError, validate};

@@ -22,7 +22,6 @@ pub(super) fn gap(
     upper: &DVector<f64>,
     x: &DVector<f64>,
 ) -> Result<f64, QuadraticError> {
-    let n = r.ncols();
     let least = |duals: &[DVector<f64>]| {
         duals
             .iter()
@@ -34,32 +33,58 @@ pub(super) fn gap(
     if upper.iter().all(|u| u.is_finite()) {
         return Ok(plain);
     }
-    // Columns of zero have no gradient, and none to move.
-    let open: Vec<usize> = (0..n)
-        .filter(|&j| upper[j] == f64::INFINITY && r.column(j).amax() > 0.0)
-        .collect();
-    let ones = DVector::from_element(n, 1.0);
-    let directions = [
-        r * &ones,
-        least_squares(&r.transpose(), &ones, Tolerance::Auto)?.solution,
-    ];
     let mut moved = Vec::new();
-    for h in &directions {
-        let lift = r.transpose() * h;
-        if open.iter().any(|&j| lift[j] <= 0.0) {
-            continue;
-        }
+    for lift in Lift::all(r, upper)? {
         for dual in &duals {
-            let gradient = r.transpose() * dual + linear;
-            let need = open
-                .iter()
-                .map(|&j| -gradient[j] / lift[j])
-                .fold(0.0, f64::max);
-            // Twice the need, so that rounding of the moved gradient does not undo it.
-            moved.push(dual + h * (2.0 * need));
+            moved.push(lift.apply(r, linear, dual));
         }
     }
     Ok(plain.min(least(&moved)))
+}
+
+/// A direction h with Rᵀh > 0 on all columns without an upper bound.
+pub(super) struct Lift {
+    h: DVector<f64>,
+    open: Vec<usize>,
+}
+
+impl Lift {
+    /// Those of the two that serve; columns of zero need none.
+    pub(super) fn all(r: &DMatrix<f64>, upper: &DVector<f64>) -> Result<Vec<Self>, QuadraticError> {
+        let n = r.ncols();
+        let open: Vec<usize> = (0..n)
+            .filter(|&j| upper[j] == f64::INFINITY && r.column(j).amax() > 0.0)
+            .collect();
+        let ones = DVector::from_element(n, 1.0);
+        let directions = [
+            r * &ones,
+            least_squares(&r.transpose(), &ones, Tolerance::Auto)?.solution,
+        ];
+        let serves = |h: &DVector<f64>| open.iter().all(|&j| r.column(j).dot(h) > 0.0);
+        Ok(directions
+            .into_iter()
+            .filter(serves)
+            .map(|h| Lift {
+                h,
+                open: open.clone(),
+            })
+            .collect())
+    }
+
+    /// The dual point moved until Rᵀν + c ≥ 0 on those columns: by twice the need, so that rounding does not undo it.
+    pub(super) fn apply(
+        &self,
+        r: &DMatrix<f64>,
+        linear: &DVector<f64>,
+        dual: &DVector<f64>,
+    ) -> DVector<f64> {
+        let need = |&j: &usize| {
+            let column = r.column(j);
+            -(column.dot(dual) + linear[j]) / column.dot(&self.h)
+        };
+        let most = self.open.iter().map(need).fold(0.0, f64::max);
+        dual + &self.h * (2.0 * most)
+    }
 }
 
 /// The bound on f(x) − f* that the dual point ν proves.

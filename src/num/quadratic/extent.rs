@@ -6,6 +6,7 @@ use clarabel::solver::{
 };
 use nalgebra::{DMatrix, DVector};
 
+use super::certificate::Lift;
 use super::{Bounds, QuadraticError};
 
 /// The least and the largest x_j among all l ≤ x ≤ u with ‖R x − d‖² ≤ ‖R x̂ − d‖² + slack, x̂ = `best` being one of them.
@@ -30,17 +31,28 @@ pub fn extent(
     let residual = r * best - d;
     let radius = (residual.norm_squared() + slack).sqrt();
     let mut ends = [bounds.lower[j], bounds.upper[j]];
+    let lifts = match bounds.upper.iter().all(|u| u.is_finite()) {
+        true => Vec::new(),
+        false => Lift::all(r, &bounds.upper)?,
+    };
     for (end, sign) in ends.iter_mut().zip([1.0, -1.0]) {
+        let mut towards = DVector::zeros(best.len());
+        towards[j] = sign;
+        let proves = |z: &DVector<f64>| {
+            let h = r.transpose() * z + &towards;
+            let within: f64 = (0..best.len())
+                .map(|i| match h[i] {
+                    0.0 => 0.0,
+                    h => (h * (bounds.lower[i] - best[i])).min(h * (bounds.upper[i] - best[i])),
+                })
+                .sum();
+            within + z.dot(&residual) - radius * z.norm()
+        };
         let z = multipliers(r, &residual, radius, bounds, best, (j, sign))?;
-        let mut h = r.transpose() * &z;
-        h[j] += sign;
-        let within: f64 = (0..best.len())
-            .map(|i| match h[i] {
-                0.0 => 0.0,
-                h => (h * (bounds.lower[i] - best[i])).min(h * (bounds.upper[i] - best[i])),
-            })
-            .sum();
-        let proved = best[j] + sign * (within + z.dot(&residual) - radius * z.norm());
+        let moved = lifts
+            .iter()
+            .map(|lift| proves(&lift.apply(r, &towards, &z)));
+        let proved = best[j] + sign * moved.fold(proves(&z), f64::max);
         *end = match sign > 0.0 {
             true => end.max(proved),
             false => end.min(proved),
@@ -130,10 +142,10 @@ mod tests {
         let r = DMatrix::from_row_slice(3, 2, &[40.0, 10.0, -5.0, 30.0, 2.0, 8.0]);
         let exact = DVector::from_row_slice(&[0.4, 0.6]);
         let d = &r * &exact + DVector::from_row_slice(&[0.1, -0.2, 0.3]);
-        let bounds = Bounds::all(2, 0.0, 1.0);
-        let best = box_least_squares(&r, &d, &bounds).unwrap().solution;
         let inverse = (r.transpose() * &r).try_inverse().unwrap();
-        for j in 0..2 {
+        for (j, top) in [(0, 1.0), (1, 1.0), (0, f64::INFINITY), (1, f64::INFINITY)] {
+            let bounds = Bounds::all(2, 0.0, top);
+            let best = box_least_squares(&r, &d, &bounds).unwrap().solution;
             let [lower, upper] = extent(&r, &d, &bounds, &best, 3.84, j).unwrap();
             let half = (3.84 * inverse[(j, j)]).sqrt();
             assert!((lower - (best[j] - half)).abs() < 1e-7, "{lower} {half}");

@@ -12,9 +12,13 @@ pub use extent::extent;
 use nalgebra::{DMatrix, DVector};
 
 use super::linalg::LinalgError;
+use interior_point::Interior;
 
 /// Largest duality gap accepted, as a fraction of ½(‖d‖² + ‖R‖²).
 const GAP_ALLOWED: f64 = 1e-9;
+
+/// Largest duality gap accepted of a start near the minimum, as a fraction of the objective.
+const NEAR_ALLOWED: f64 = 1e-6;
 
 /// The bounds of the variables, l ≤ x ≤ u: l finite, u finite or infinite, l ≤ u.
 #[derive(Debug, Clone, PartialEq)]
@@ -118,87 +122,149 @@ pub fn box_least_squares(
     d: &DVector<f64>,
     bounds: &Bounds,
 ) -> Result<BoxSolution, QuadraticError> {
-    let (k, n) = r.shape();
-    if r.is_empty() {
-        return Err(LinalgError::Empty {
-            rows: k,
-            columns: n,
-        }
-        .into());
+    let scaled = Scaled::new(r, d, bounds)?;
+    let start = interior_point::solve(&scaled.r, &scaled.d, &scaled.width)?;
+    scaled.finish(bounds, start)
+}
+
+/// The same from a point near the minimum, by active sets alone; from anew where their gap is above 1e-6 of the objective.
+///
+/// # Errors
+/// Those of [`box_least_squares`]; a `start` that has not as many entries as R has columns.
+pub fn box_least_squares_from(
+    r: &DMatrix<f64>,
+    d: &DVector<f64>,
+    bounds: &Bounds,
+    start: &DVector<f64>,
+) -> Result<BoxSolution, QuadraticError> {
+    let scaled = Scaled::new(r, d, bounds)?;
+    same(
+        "entries of the start against columns of R",
+        r.ncols(),
+        start.len(),
+    )?;
+    let x = DVector::from_fn(start.len(), |j, _| {
+        (start[j] - bounds.lower[j]).clamp(0.0, scaled.width[j])
+    });
+    let place = |j: usize| match x[j] {
+        0.0 => Place::Lower,
+        x if x == scaled.width[j] => Place::Upper,
+        _ => Place::Free,
+    };
+    let near = Interior {
+        places: (0..x.len()).map(place).collect(),
+        y: &scaled.r * &x - &scaled.d,
+        x,
+        status: "started near".to_owned(),
+        iterations: 0,
+    };
+    match scaled.finish(bounds, near) {
+        Ok(found) if found.gap <= NEAR_ALLOWED * found.objective => Ok(found),
+        _ => box_least_squares(r, d, bounds),
     }
-    let lengths = [
-        ("entries of d against rows of R", k, d.len()),
-        ("lower bounds against columns of R", n, bounds.lower.len()),
-        ("upper bounds against columns of R", n, bounds.upper.len()),
-    ];
-    for (what, expected, found) in lengths {
-        if expected != found {
-            return Err(LinalgError::Shape {
-                what,
-                expected,
-                found,
+}
+
+fn same(what: &'static str, expected: usize, found: usize) -> Result<(), QuadraticError> {
+    match expected == found {
+        true => Ok(()),
+        false => Err(LinalgError::Shape {
+            what,
+            expected,
+            found,
+        }
+        .into()),
+    }
+}
+
+/// The problem for x − l, its largest entry in [1, 2).
+struct Scaled {
+    r: DMatrix<f64>,
+    d: DVector<f64>,
+    /// u − l.
+    width: DVector<f64>,
+    exponent: i32,
+}
+
+impl Scaled {
+    fn new(r: &DMatrix<f64>, d: &DVector<f64>, bounds: &Bounds) -> Result<Self, QuadraticError> {
+        let (k, n) = r.shape();
+        if r.is_empty() {
+            return Err(LinalgError::Empty {
+                rows: k,
+                columns: n,
             }
             .into());
         }
-    }
-    if let Some(at) = r.iter().chain(d.iter()).position(|x| !x.is_finite()) {
-        let value = if at < k * n { r[at] } else { d[at - k * n] };
-        return Err(LinalgError::NotFinite {
-            row: at % k,
-            column: at / k,
-            value,
+        same("entries of d against rows of R", k, d.len())?;
+        same("lower bounds against columns of R", n, bounds.lower.len())?;
+        same("upper bounds against columns of R", n, bounds.upper.len())?;
+        if let Some(at) = r.iter().chain(d.iter()).position(|x| !x.is_finite()) {
+            let value = if at < k * n { r[at] } else { d[at - k * n] };
+            return Err(LinalgError::NotFinite {
+                row: at % k,
+                column: at / k,
+                value,
+            }
+            .into());
         }
-        .into());
+        let width = &bounds.upper - &bounds.lower;
+        if let Some(variable) =
+            (0..n).find(|&j| !bounds.lower[j].is_finite() || width[j].is_nan() || width[j] < 0.0)
+        {
+            return Err(QuadraticError::Bounds {
+                variable,
+                lower: bounds.lower[variable],
+                upper: bounds.upper[variable],
+            });
+        }
+        let d = d - r * &bounds.lower;
+        let scale = r.amax().max(d.amax());
+        let exponent = if scale > 0.0 { libm::ilogb(scale) } else { 0 };
+        let down = |x: f64| libm::scalbn(x, -exponent);
+        Ok(Scaled {
+            r: r.map(down),
+            d: d.map(down),
+            width,
+            exponent,
+        })
     }
-    let width = &bounds.upper - &bounds.lower;
-    if let Some(variable) =
-        (0..n).find(|&j| !bounds.lower[j].is_finite() || width[j].is_nan() || width[j] < 0.0)
-    {
-        return Err(QuadraticError::Bounds {
-            variable,
-            lower: bounds.lower[variable],
-            upper: bounds.upper[variable],
-        });
-    }
-    // From here on x stands for x − l.
-    let d = d - r * &bounds.lower;
-    let scale = r.amax().max(d.amax());
-    let exponent = if scale > 0.0 { libm::ilogb(scale) } else { 0 };
-    let down = |x: f64| libm::scalbn(x, -exponent);
-    let (r, d) = (r.map(down), d.map(down));
 
-    let start = interior_point::solve(&r, &d, &width)?;
-    let (x, refinements) = active_set::refine(&r, &d, &width, start.x, start.places)?;
-    let residual = &r * &x - &d;
-    let orthogonal = active_set::orthogonal_to_free(&r, &residual, &width, &x)?;
-    let gap = certificate::gap(
-        &r,
-        &residual,
-        &DVector::zeros(n),
-        [&residual, &orthogonal, &start.y],
-        &width,
-        &x,
-    )?;
-    let unit = 0.5 * (r.norm_squared() + d.norm_squared());
-    if gap.is_nan() || gap > GAP_ALLOWED * unit {
-        return Err(QuadraticError::NotSolved {
-            status: start.status,
-            gap: gap / unit,
-            allowed: GAP_ALLOWED,
+    /// Refines and certifies.
+    fn finish(&self, bounds: &Bounds, start: Interior) -> Result<BoxSolution, QuadraticError> {
+        let Scaled { r, d, width, .. } = self;
+        let n = r.ncols();
+        let (x, refinements) = active_set::refine(r, d, width, start.x, start.places)?;
+        let residual = r * &x - d;
+        let orthogonal = active_set::orthogonal_to_free(r, &residual, width, &x)?;
+        let gap = certificate::gap(
+            r,
+            &residual,
+            &DVector::zeros(n),
+            [&residual, &orthogonal, &start.y],
+            width,
+            &x,
+        )?;
+        let unit = 0.5 * (r.norm_squared() + d.norm_squared());
+        if gap.is_nan() || gap > GAP_ALLOWED * unit {
+            return Err(QuadraticError::NotSolved {
+                status: start.status,
+                gap: gap / unit,
+                allowed: GAP_ALLOWED,
+            });
+        }
+        let up = |x: f64| libm::scalbn(x, 2 * self.exponent);
+        let solution = DVector::from_fn(n, |j, _| {
+            (x[j] + bounds.lower[j]).clamp(bounds.lower[j], bounds.upper[j])
         });
+        Ok(BoxSolution {
+            solution,
+            status: start.status,
+            iterations: start.iterations,
+            refinements,
+            objective: up(0.5 * residual.norm_squared()),
+            gap: up(gap),
+        })
     }
-    let up = |x: f64| libm::scalbn(x, 2 * exponent);
-    let solution = DVector::from_fn(n, |j, _| {
-        (x[j] + bounds.lower[j]).clamp(bounds.lower[j], bounds.upper[j])
-    });
-    Ok(BoxSolution {
-        solution,
-        status: start.status,
-        iterations: start.iterations,
-        refinements,
-        objective: up(0.5 * residual.norm_squared()),
-        gap: up(gap),
-    })
 }
 
 #[cfg(test)]

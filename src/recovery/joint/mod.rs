@@ -1,6 +1,7 @@
 //! Methods over all pixels and spots at once.
 
 pub(super) mod bounded;
+mod branch;
 mod cramer_rao;
 mod khatri_rao;
 mod nuisance;

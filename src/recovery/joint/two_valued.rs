@@ -1,15 +1,17 @@
 //! Least squares over all pixels and spots with reflectances of two values only, ρ_j ∈ {dark, light}.
 //!
-//! A combinatorial problem: what is found is a pattern that no change of one or two elements improves, the best from several starts, and not proved the
-//! best of all. Starts are the minimiser over all 0 ≤ ρ ≤ 1, cut at several thresholds. From each, the change of one or two elements that lowers
-//! ‖R ρ − d‖ most is made until none lowers it. Where the levels are not given they are the best for each pattern (least squares in [0, 1]), found anew whenever
-//! no change is left, until nothing moves. Misfits are norms of R ρ − d itself, never differences of Gram products, which would lose what little noise
-//! leaves.
+//! A combinatorial problem, searched in two ways. Descent: from the minimiser over all 0 ≤ ρ ≤ 1, cut at several thresholds, the change of one or two elements
+//! that lowers ‖R ρ − d‖ most is made until none lowers it. Branch and bound ([`super::branch`]): with the levels held, elements are put to one level after the
+//! other, and what relaxation shows to be hopeless is left out; it ends with a proof or after a fixed number of relaxations. Where the levels are not given
+//! they are the best for each pattern (least squares in [0, 1]), found anew after every search, until nothing improves. Misfits are norms of R ρ − d itself,
+//! never differences of Gram products, which would lose what little noise leaves.
 //!
-//! The reported gap is to the minimum over all reflectances between the levels (in [0, 1] where these are estimated): no pattern can lie below it.
+//! So the result is a pattern that no change of one or two elements improves, and not always the best of all. The reported gap says how far it can be above
+//! that: with given levels above what branch and bound left open (zero: proved best), with estimated ones above the minimum over all 0 ≤ ρ ≤ 1.
 
 use nalgebra::{DMatrix, DVector};
 
+use super::branch;
 use super::reduced::Reduced;
 use crate::num::quadratic::{Bounds, box_least_squares};
 use crate::recovery::{
@@ -20,6 +22,10 @@ use crate::recovery::{
 const STARTS: usize = 12;
 /// Above this many elements pairs are not tried: their number times the rows is the cost of one step.
 const MOST_PAIRED: usize = 512;
+/// Searches by branch and bound, each with the levels of the best pattern so far.
+const ROUNDS: usize = 5;
+/// Levels that differ by less, relative to the light one, are searched with once.
+const SAME: f64 = 1e-3;
 /// A change must lower ‖R ρ − d‖² by more than this fraction, or rounding would go round in circles.
 const WORTH: f64 = 1e-10;
 
@@ -68,11 +74,47 @@ pub(in crate::recovery) fn recover(
             best = Some(found);
         }
     }
-    let Some(best) = best else {
+    let Some(mut best) = best else {
         return Err(RecoveryError::RankZero {
             side: "model C, D as a whole",
         });
     };
+    let mut bound = relaxed.objective - relaxed.gap;
+    // Levels yet to be searched with, last first.
+    let mut trials = match given {
+        Some(levels) => vec![levels],
+        None if top == 1.0 => vec![[relaxed.solution.min(), relaxed.solution.max()], [0.0, 1.0]],
+        None => vec![[relaxed.solution.min(), relaxed.solution.max()]],
+    };
+    let mut tried: Vec<[f64; 2]> = Vec::new();
+    for _ in 0..ROUNDS {
+        let Some(levels) = trials.pop() else { break };
+        let near = |old: &[f64; 2]| {
+            (old[0] - levels[0]).abs() + (old[1] - levels[1]).abs() < SAME * levels[1]
+        };
+        if levels[0] >= levels[1] || tried.iter().any(near) {
+            continue;
+        }
+        tried.push(levels);
+        // Misfits at other levels than a pattern's best do not compare.
+        let known = match given {
+            Some(_) => 0.5 * best.misfit,
+            None => f64::INFINITY,
+        };
+        let searched = branch::search(&reduced.r, &reduced.d, levels, &relaxed.solution, known)?;
+        if given.is_some() {
+            bound = bound.max(searched.bound);
+        }
+        let Some(light) = searched.light else {
+            continue;
+        };
+        let found = search.descend(light, &mut changes)?;
+        if found.misfit < best.misfit * (1.0 - WORTH) {
+            best = found;
+            let [a, b] = best.levels;
+            trials.push([a.min(b), a.max(b)]);
+        }
+    }
     let objective = 0.5 * best.misfit;
     let mut recovered = reduced.finish(method, problem, options, best.values())?;
     let levels = [recovered.reflectance.min(), recovered.reflectance.max()];
@@ -86,7 +128,7 @@ pub(in crate::recovery) fn recover(
         iterations: relaxed.iterations,
         refinements: changes,
         objective,
-        gap: (objective - (relaxed.objective - relaxed.gap)).max(0.0),
+        gap: (objective - bound).max(0.0),
     });
     Ok(recovered)
 }
@@ -233,4 +275,79 @@ fn thresholds(relaxed: &DVector<f64>) -> Vec<Vec<bool>> {
         }
     }
     starts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recovery::bench::{Bench, normal_stream};
+    use crate::recovery::recover;
+
+    fn noisy(bench: &Bench, truth: &DVector<f64>, noise: f64, seed: u64) -> [DMatrix<f64>; 2] {
+        let exact = bench.phi(truth);
+        let stderr = &exact * noise;
+        let mut normal = normal_stream(seed);
+        [exact.zip_map(&stderr, |x, s| x + s * normal()), stderr]
+    }
+
+    /// At this noise the bounded fit leaves a tenth of the contrast (see `bounded`); that there are two values only gives all of it back.
+    #[test]
+    fn a_fine_board_is_recovered_whole() {
+        let bench = Bench::new(6.0, 8, 16);
+        let board = bench.board(4);
+        for seed in 1000..1002 {
+            let [phi, stderr] = noisy(&bench, &board, 1e-4, seed);
+            let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+            let found = recover(Method::JointTwoValued, &problem, &Options::default()).unwrap();
+            assert!((&found.reflectance - &board).amax() < 1e-3, "{seed}");
+            // 64 residuals of unit variance: χ² within five deviations of 64.
+            let solver = found.solver.unwrap();
+            assert!(
+                (2.0 * solver.objective - 64.0).abs() < 5.0 * 128f64.sqrt(),
+                "{solver:?}"
+            );
+            assert!(solver.gap <= solver.objective);
+        }
+    }
+
+    /// With the levels given, branch and bound ends with a proof: gap zero. Grey levels are estimated as well.
+    #[test]
+    fn levels_are_kept_or_estimated() {
+        let bench = Bench::new(6.0, 4, 8);
+        let grey = bench.board(4).map(|x| 0.3 + 0.4 * x);
+        let [phi, stderr] = noisy(&bench, &grey, 1e-5, 4);
+        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+        let given = Options {
+            levels: Some([0.3, 0.7]),
+            ..Options::default()
+        };
+        let found = recover(Method::JointTwoValued, &problem, &given).unwrap();
+        assert!((&found.reflectance - &grey).amax() < 1e-15);
+        assert_eq!(
+            (found.choice, found.parameter),
+            (Choice::Given, Parameter::Levels([0.3, 0.7]))
+        );
+        assert!(found.solver.unwrap().gap < 1e-9);
+        let found = recover(Method::JointTwoValued, &problem, &Options::default()).unwrap();
+        assert_eq!(found.choice, Choice::Estimated);
+        assert!(
+            (&found.reflectance - &grey).amax() < 1e-3,
+            "{}",
+            found.reflectance
+        );
+        for levels in [
+            [0.5, 0.5],
+            [0.7, 0.3],
+            [-0.1, 1.0],
+            [0.0, 1.1],
+            [f64::NAN, 1.0],
+        ] {
+            let options = Options {
+                levels: Some(levels),
+                ..Options::default()
+            };
+            let error = recover(Method::JointTwoValued, &problem, &options).unwrap_err();
+            assert!(matches!(error, RecoveryError::BadParameter { .. }));
+        }
+    }
 }
