@@ -5,8 +5,9 @@ use nalgebra::{DMatrix, DVector};
 use crate::num::linalg::{Tolerance, least_squares};
 use crate::num::quadratic::{Bounds, QuadraticError, box_least_squares_from};
 
-/// Relaxations solved before the search gives up.
-const NODES: usize = 1500;
+/// Searches for a pattern within these multiples of the relaxation's objective, one after the other, and the relaxations that each may solve: without a good
+/// pattern known, a search that goes down first would spend itself where nothing fits any more.
+const SEARCHES: [(f64, usize); 3] = [(4.0, 800), (64.0, 200), (f64::INFINITY, 100)];
 /// Nearer to a level than this fraction of their distance is at it.
 const AT: f64 = 1e-7;
 /// A pattern must be better by more than this fraction of the objective.
@@ -28,14 +29,36 @@ struct Node {
 }
 
 /// The best pattern x_j ∈ {dark, light}, depth first: the relaxation to dark ≤ x ≤ light bounds a node from below, of the variables at no level the clearest case
-/// is put to its nearer level first, to the other later. Nodes whose bound reaches `incumbent` (½‖R x − d‖² of a known pattern)
-/// hold nothing better. Ends when no node is left, and the bound is then the minimum itself, or after a fixed number of relaxations.
+/// is put to its nearer level first, to the other later. Nodes whose bound reaches `incumbent` (½‖R x − d‖² of a known pattern) hold nothing better.
+/// Ends when no node is left, and the bound is then the minimum itself, or after a fixed number of relaxations.
 pub(super) fn search(
+    r: &DMatrix<f64>,
+    d: &DVector<f64>,
+    levels: [f64; 2],
+    relaxed: &DVector<f64>,
+    incumbent: f64,
+) -> Result<Searched, QuadraticError> {
+    let n = r.ncols();
+    let root = box_least_squares_from(r, d, &Bounds::all(n, levels[0], levels[1]), relaxed)?;
+    let mut bound = 0.0f64;
+    for (factor, nodes) in SEARCHES {
+        let cutoff = factor * root.objective;
+        let searched = within(r, d, levels, &root.solution, (cutoff.min(incumbent), nodes))?;
+        bound = bound.max(searched.bound);
+        if searched.light.is_some() || cutoff >= incumbent {
+            return Ok(Searched { bound, ..searched });
+        }
+    }
+    Ok(Searched { light: None, bound })
+}
+
+/// The same for patterns below `incumbent` alone, by at most so many relaxations.
+fn within(
     r: &DMatrix<f64>,
     d: &DVector<f64>,
     [dark, light]: [f64; 2],
     relaxed: &DVector<f64>,
-    incumbent: f64,
+    (incumbent, nodes): (f64, usize),
 ) -> Result<Searched, QuadraticError> {
     let n = r.ncols();
     let width = light - dark;
@@ -51,7 +74,7 @@ pub(super) fn search(
         if node.bound >= best * (1.0 - WORTH) {
             continue;
         }
-        if solved == NODES {
+        if solved == nodes {
             open.push(node);
             break;
         }
