@@ -39,7 +39,7 @@ pub enum Choice {
         residual: f64,
         /// Its mean for noise alone: degrees of freedom that ρ leaves over.
         target: f64,
-        /// The target two standard deviations of χ² up.
+        /// The target four standard deviations of χ² up: an unpenalised fit beyond it is refused.
         limit: f64,
     },
     /// Estimated together with the reflectances.

@@ -238,7 +238,7 @@ fn bands_are_files_of_their_own() {
 #[test]
 fn every_method_can_be_asked_for() {
     let workspace = with_run();
-    let line = "recover done --method nnls,joint-tv,joint-two-valued --elements 4x4";
+    let line = "recover done --method nnls,joint-tv,joint-two-valued --phi done/model/phi.npy --noise 0.001";
     let _ = workspace.phicam(line).exits(0);
     let names = workspace.contents("done/recovered");
     for name in ["nnls.npy", "joint-tv.npy", "joint-two-valued.npy"] {

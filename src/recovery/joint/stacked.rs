@@ -77,12 +77,14 @@ pub(super) fn stack(
     let kinds = own.len();
     if !nuisance.background {
         let mut rows = Rows::new(elements + 1);
-        for l in 0..spots {
-            let block = DMatrix::from_fn(pixels, kinds + elements + 1, |p, k| match own.get(k) {
+        let frame = |l: usize| {
+            DMatrix::from_fn(pixels, kinds + elements + 1, |p, k| match own.get(k) {
                 Some(value) => value(p, l) / lengths[k][l],
                 None => data(p, l, k - kinds),
-            });
-            rows.push(eliminate(&reduce(&block)?, kinds)?.0)?;
+            })
+        };
+        for block in (0..spots).map(frame) {
+            rows.push(eliminate(&reduce(&block)?, kinds)?.remaining)?;
         }
         return Ok(Stacked {
             triangle: rows.finish()?,
@@ -101,9 +103,13 @@ pub(super) fn stack(
             },
             k => data(p, l, k - 1 - terms),
         });
-        rows.push(eliminate(&reduce(&block)?, 1)?.0)?;
+        rows.push(eliminate(&reduce(&block)?, 1)?.remaining)?;
     }
-    let (remaining, inverse, top) = eliminate(&rows.finish()?.joined(), terms)?;
+    let Eliminated {
+        remaining,
+        inverse,
+        top,
+    } = eliminate(&rows.finish()?.joined(), terms)?;
     let mut last = Rows::new(elements + 1);
     last.push(remaining)?;
     let coupled = (terms > 0).then(|| Coupled {
@@ -181,19 +187,26 @@ fn reduce(block: &DMatrix<f64>) -> Result<DMatrix<f64>, RecoveryError> {
     Ok(triangle(&a, &b)?.joined())
 }
 
-/// Takes the first `lead` columns out of the rows of a triangle: the rows that they cannot change, their pseudo-inverse on the others, and the others.
-fn eliminate(
-    rows: &DMatrix<f64>,
-    lead: usize,
-) -> Result<(DMatrix<f64>, DMatrix<f64>, DMatrix<f64>), RecoveryError> {
+/// Rows of a triangle after its first columns were taken out.
+struct Eliminated {
+    /// Those that the first columns cannot change.
+    remaining: DMatrix<f64>,
+    /// The pseudo-inverse of the first columns on the others,
+    inverse: DMatrix<f64>,
+    /// and the others.
+    top: DMatrix<f64>,
+}
+
+/// Takes the first `lead` columns out.
+fn eliminate(rows: &DMatrix<f64>, lead: usize) -> Result<Eliminated, RecoveryError> {
     let others = rows.ncols() - lead;
     let top = lead.min(rows.nrows());
     if top == 0 {
-        return Ok((
-            rows.clone(),
-            DMatrix::zeros(0, 0),
-            DMatrix::zeros(0, others),
-        ));
+        return Ok(Eliminated {
+            remaining: rows.clone(),
+            inverse: DMatrix::zeros(0, 0),
+            top: DMatrix::zeros(0, others),
+        });
     }
     let corner = svd(&rows.view((0, 0), (top, lead)).into_owned())?;
     let rank = corner.sigma.iter().take_while(|&&s| s > DEPENDENT).count();
@@ -209,5 +222,9 @@ fn eliminate(
     for (mut column, &s) in inverse.column_iter_mut().zip(corner.sigma.iter()) {
         column /= s;
     }
-    Ok((remaining, inverse, turned.rows(0, rank).into_owned()))
+    Ok(Eliminated {
+        remaining,
+        inverse,
+        top: turned.rows(0, rank).into_owned(),
+    })
 }

@@ -14,7 +14,8 @@
 //!
 //! dof(λ) the number of patches of one value strictly between the bounds (Tibshirani and Taylor 2012). No deviation is allowed on top: two of them,
 //! 2 √(2 k), are negligible against the thousands of residuals of the methods that work pixel by pixel, but a third of the few tens here, and
-//! a λ that spends them flattens the pattern. Where the unpenalised fit (λ = 0) is above the target already, but not by more than those two, it is kept.
+//! a λ that spends them flattens the pattern. Where the unpenalised fit (λ = 0) is above the target already, but by no more than four, it is kept;
+//! where it is above that, the noise is understated.
 
 use super::reduced::{Reduced, report};
 use crate::num::quadratic::{Bounds, Fused, box_least_squares, fused_least_squares};
@@ -25,6 +26,8 @@ use crate::recovery::{
 /// Trial values of λ/σ₁² fall from 1 by this factor until one is accepted, and bisection goes on to within this of the answer.
 const STEP: f64 = 0.1;
 const NEAR: f64 = 1.02;
+/// Standard deviations of χ² above its mean, √(2 target) each, beyond which noise does not explain a residual.
+const DEVIATIONS: f64 = 4.0;
 /// The smallest λ/σ₁² tried: some roundings.
 const LEAST: f64 = 1e-24;
 
@@ -104,7 +107,7 @@ impl Search<'_> {
         Ok(Level {
             residual: (r * &fused.found.solution - d).norm_squared(),
             target,
-            limit: target + 2.0 * (2.0 * target).sqrt(),
+            limit: target + DEVIATIONS * (2.0 * target).sqrt(),
         })
     }
 
