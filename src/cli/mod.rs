@@ -30,6 +30,7 @@ mod output;
 mod progress;
 mod record;
 mod recover;
+mod recover_options;
 mod render;
 mod run;
 mod scene;

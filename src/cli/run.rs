@@ -15,7 +15,7 @@ use crate::film;
 use crate::matrix::Matrix;
 use crate::metrics::relative_frobenius;
 use crate::model::MatrixModel;
-use crate::recovery::{Method, Options};
+use crate::recovery::{Method, Nuisance, Options};
 use crate::report;
 use crate::scene::Scene;
 use crate::store::write_whole;
@@ -124,7 +124,8 @@ fn compare_and_recover(
         &matrices,
         &results.phi,
         noise,
-        &Method::ALL,
+        Nuisance::default(),
+        &Method::USUAL,
         &Options::default(),
     );
     results.recovered = recover::collect(attempts, false, talk)?;

@@ -117,6 +117,17 @@ pub enum RecoveryError {
         /// What would have to be given.
         parameter: &'static str,
     },
+    /// The same of weighted joint residuals.
+    #[error(
+        "even with the least regularisation the weighted residual is {residual:.3e} where the noise allows {limit:.3e}: the standard errors \
+         are too small or the model does not describe these photographs; correct either, or give the total variation's weight yourself"
+    )]
+    JointNoiseUnderstated {
+        /// ‖R ρ − d‖², in variances of the noise.
+        residual: f64,
+        /// The largest that the noise explains.
+        limit: f64,
+    },
     /// The discrepancy principle has no answer: the data are no more than noise.
     #[error(
         "the photographs ({signal:.3e} W in all) do not rise above their noise ({limit:.3e} W), so there is nothing to recover; \
@@ -129,6 +140,35 @@ pub enum RecoveryError {
         limit: f64,
         /// What would have to be given.
         parameter: &'static str,
+    },
+    /// Grids that do not make up the elements.
+    #[error(
+        "the grids have {found} elements, the model has {elements}; give [nu, nv] of every hidden surface of the model, in its order"
+    )]
+    Grids {
+        /// Elements of the model.
+        elements: usize,
+        /// Σ nu·nv.
+        found: usize,
+    },
+    /// Something that the method cannot do.
+    #[error("{method} {what}; {cure}")]
+    NotForMethod {
+        /// The method's name.
+        method: Method,
+        /// What it cannot do, or lacks.
+        what: &'static str,
+        /// What would do.
+        cure: &'static str,
+    },
+    /// A free scale, and nothing to scale.
+    #[error(
+        "with a free scale the brightest element is the unit, but no element comes out bright (the largest is {largest:.1e}); \
+         check that the photographs hold light of the hidden surface, or give the scale"
+    )]
+    NoScale {
+        /// The largest estimate of s ρ.
+        largest: f64,
     },
     /// A decomposition failed.
     #[error(transparent)]

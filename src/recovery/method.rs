@@ -16,11 +16,29 @@ pub enum Method {
     JointUnbounded,
     /// The same with reflectances between 0 and 1, which every surface obeys.
     Joint,
+    /// The same with reflectances of 0 or more, without an upper bound.
+    Nnls,
+    /// `joint` with a penalty on differences between neighbours.
+    JointTv,
+    /// The same with reflectances of two values only.
+    JointTwoValued,
 }
 
 impl Method {
     /// Every method, simplest first.
-    pub const ALL: [Method; 5] = [
+    pub const ALL: [Method; 8] = [
+        Method::Pinv,
+        Method::Tsvd,
+        Method::Tikhonov,
+        Method::JointUnbounded,
+        Method::Joint,
+        Method::Nnls,
+        Method::JointTv,
+        Method::JointTwoValued,
+    ];
+
+    /// The methods that a run tries unless told otherwise.
+    pub const USUAL: [Method; 5] = [
         Method::Pinv,
         Method::Tsvd,
         Method::Tikhonov,
@@ -29,8 +47,13 @@ impl Method {
     ];
 
     /// The names of all methods, in the order of [`Method::ALL`].
-    pub fn names() -> [&'static str; 5] {
+    pub fn names() -> [&'static str; Method::ALL.len()] {
         Method::ALL.map(Method::name)
+    }
+
+    /// Whether the method works on all pixels and spots at once, and so can estimate nuisance terms.
+    pub(super) fn is_joint(self) -> bool {
+        !matches!(self, Method::Pinv | Method::Tsvd | Method::Tikhonov)
     }
 
     /// The name by which the method is asked for and by which its files are called.
@@ -41,6 +64,9 @@ impl Method {
             Method::Tikhonov => "tikhonov",
             Method::JointUnbounded => "joint-unbounded",
             Method::Joint => "joint",
+            Method::Nnls => "nnls",
+            Method::JointTv => "joint-tv",
+            Method::JointTwoValued => "joint-two-valued",
         }
     }
 }

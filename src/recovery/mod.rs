@@ -15,6 +15,12 @@
 //! | [`Method::Tikhonov`] | the same with them damped, as much as the noise asks for |
 //! | [`Method::JointUnbounded`] | least squares over all pixels and spots at once; unbiased |
 //! | [`Method::Joint`] | the same under 0 ≤ ρ ≤ 1 |
+//! | [`Method::Nnls`] | the same under 0 ≤ ρ |
+//! | [`Method::JointTv`] | `joint` with λ Σ \|ρ_i − ρ_j\| over neighbours i, j: patches of one value |
+//! | [`Method::JointTwoValued`] | `joint` with two reflectances only, given or estimated |
+//!
+//! The joint methods can estimate other light of known form with the reflectances ([`Nuisance`]). [`cramer_rao`] says what no unbiased estimate can
+//! undercut; [`Bands`] what a recovery knows of itself.
 //!
 //! ```
 //! use nalgebra::DMatrix;
@@ -29,6 +35,7 @@
 //! # Ok::<(), phicam::recovery::RecoveryError>(())
 //! ```
 
+mod bands;
 mod error;
 mod joint;
 mod method;
@@ -37,11 +44,12 @@ mod pixelwise;
 mod problem;
 mod rule;
 
+pub use bands::{BandKind, Bands};
 pub use error::RecoveryError;
-pub use joint::Weighting;
+pub use joint::{CramerRao, Estimated, Nuisance, Weighting, cramer_rao};
 pub use method::{Method, UnknownMethod};
 pub use outcome::{Choice, Parameter, Recovered, Solver};
-pub use problem::{Options, Problem};
+pub use problem::{Options, Problem, WeightRule};
 
 /// Recovers the reflectances of the r elements by the method asked for.
 ///
@@ -52,13 +60,29 @@ pub fn recover(
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
-    match method {
+    if problem.nuisance.is_some() && !method.is_joint() {
+        return Err(RecoveryError::NotForMethod {
+            method,
+            what: "does not estimate frame constants, backgrounds, glare or scale",
+            cure: "use a joint method, or subtract them first",
+        });
+    }
+    if let Some(confidence) = options.bands {
+        bands::allowed(method, confidence)?;
+    }
+    let mut found = match method {
         Method::Pinv => pixelwise::pinv::recover(problem, options),
         Method::Tsvd => pixelwise::tsvd::recover(problem, options),
         Method::Tikhonov => pixelwise::tikhonov::recover(problem, options),
         Method::JointUnbounded => joint::unbounded::recover(problem, options),
-        Method::Joint => joint::bounded::recover(problem, options),
+        Method::Joint | Method::Nnls => joint::bounded::recover(method, problem, options),
+        Method::JointTv => joint::total_variation::recover(problem, options),
+        Method::JointTwoValued => joint::two_valued::recover(problem, options),
+    }?;
+    if let (Some(confidence), None) = (options.bands, &found.bands) {
+        found.bands = Some(bands::gaussian(&found, confidence)?);
     }
+    Ok(found)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Method, Weighting};
+use super::{Bands, Estimated, Method, Weighting};
 
 /// A regularisation parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,6 +13,10 @@ pub enum Parameter {
     Rank(usize),
     /// Tikhonov's λ, as a fraction of D's largest singular value.
     Damping(f64),
+    /// λ of the total variation, as a fraction of the largest squared singular value of the weighted operator.
+    TotalVariation(f64),
+    /// The two reflectances.
+    Levels([f64; 2]),
 }
 
 /// Why the parameter has its value. Norms are Frobenius norms over pixels and spots, W.
@@ -29,6 +33,17 @@ pub enum Choice {
         /// The target two standard deviations of ‖noise‖² up: residuals to here are accepted.
         limit: f64,
     },
+    /// The same of weighted joint residuals, without unit: what the reduced problem leaves over, in standard deviations.
+    JointDiscrepancy {
+        /// ‖R ρ − d‖².
+        residual: f64,
+        /// Its mean for noise alone: degrees of freedom that ρ leaves over.
+        target: f64,
+        /// The target four standard deviations of χ² up: an unpenalised fit beyond it is refused.
+        limit: f64,
+    },
+    /// Estimated together with the reflectances.
+    Estimated,
     /// A numerical rank cut.
     Tolerance {
         /// Singular values at or below this count as zero, in the unit of the matrix decomposed.
@@ -47,9 +62,10 @@ pub struct Solver {
     pub iterations: u32,
     /// Active-set steps after them.
     pub refinements: usize,
-    /// The objective ½ Σ w_p v_l (Φ − C diag(ρ) D)², less what no ρ can change.
+    /// The objective ½ Σ w_p v_l (Φ − C diag(ρ) D)², less what no ρ can change; of `joint-tv` with its penalty.
     pub objective: f64,
-    /// Upper bound on the objective's distance from its minimum, same unit.
+    /// Upper bound on the objective's distance from its minimum, same unit. Of `joint-two-valued`: from a bound that no
+    /// pattern of two values can undercut; zero says that the pattern is the best of all.
     pub gap: f64,
 }
 
@@ -81,8 +97,12 @@ pub struct Recovered {
     pub residual: f64,
     /// The same over ‖Φ‖; zero where Φ is zero.
     pub relative_residual: f64,
-    /// The iterative solver's report, of `joint`.
+    /// The iterative solver's report, of the bounded methods.
     pub solver: Option<Solver>,
+    /// What was estimated beside the reflectances, where it was asked for.
+    pub nuisance: Option<Estimated>,
+    /// Bands around the reflectances, where they were asked for.
+    pub bands: Option<Bands>,
 }
 
 impl Recovered {
@@ -110,6 +130,8 @@ impl Recovered {
             residual,
             relative_residual: if whole > 0.0 { residual / whole } else { 0.0 },
             solver: None,
+            nuisance: None,
+            bands: None,
         }
     }
 }

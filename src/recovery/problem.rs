@@ -1,8 +1,8 @@
 //! What is to be inverted, and how.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
-use super::RecoveryError;
+use super::{Nuisance, RecoveryError};
 use crate::num::linalg::Tolerance;
 
 /// Φ\[p,l\] = Σ_j C\[p,j\] ρ_j D\[j,l\] + noise, checked: shapes that fit, finite entries.
@@ -12,6 +12,8 @@ pub struct Problem<'a> {
     pub(super) c: &'a DMatrix<f64>,
     pub(super) d: &'a DMatrix<f64>,
     pub(super) stderr: Option<&'a DMatrix<f64>>,
+    pub(super) grids: Option<&'a [[usize; 2]]>,
+    pub(super) nuisance: Nuisance<'a>,
 }
 
 impl<'a> Problem<'a> {
@@ -68,7 +70,59 @@ impl<'a> Problem<'a> {
                 });
             }
         }
-        Ok(Problem { phi, c, d, stderr })
+        Ok(Problem {
+            phi,
+            c,
+            d,
+            stderr,
+            grids: None,
+            nuisance: Nuisance::default(),
+        })
+    }
+
+    /// The same with the neighbours of each element known: one grid \[nu, nv\] a hidden surface, in the order of the elements; element iu + iv·nu of a
+    /// grid follows its first.
+    ///
+    /// # Errors
+    /// [`RecoveryError::Grids`] unless Σ nu·nv is the number of elements.
+    pub fn with_grids(self, grids: &'a [[usize; 2]]) -> Result<Self, RecoveryError> {
+        let (elements, found) = (self.c.ncols(), grids.iter().map(|[u, v]| u * v).sum());
+        if elements != found {
+            return Err(RecoveryError::Grids { elements, found });
+        }
+        Ok(Problem {
+            grids: Some(grids),
+            ..self
+        })
+    }
+
+    /// The same with terms of unknown size to be estimated together with the reflectances; the joint methods can.
+    ///
+    /// # Errors
+    /// [`RecoveryError::Shape`] or [`RecoveryError::NotFinite`] of a glare pattern.
+    pub fn with_nuisance(self, nuisance: Nuisance<'a>) -> Result<Self, RecoveryError> {
+        if let Some(pattern) = nuisance.glare {
+            let (rows, columns) = self.phi.shape();
+            let (found_rows, found_columns) = pattern.shape();
+            if (found_rows, found_columns) != (rows, columns) {
+                return Err(RecoveryError::Shape {
+                    name: "the glare pattern (pixels × spots)",
+                    rows,
+                    columns,
+                    found_rows,
+                    found_columns,
+                });
+            }
+            if let Some(at) = pattern.iter().position(|x| !x.is_finite()) {
+                return Err(RecoveryError::NotFinite {
+                    name: "the glare pattern",
+                    row: at % rows,
+                    column: at / rows,
+                    value: pattern[at],
+                });
+            }
+        }
+        Ok(Problem { nuisance, ..self })
     }
 
     /// The standard errors, where they are given and not all zero.
@@ -76,14 +130,29 @@ impl<'a> Problem<'a> {
         self.stderr.filter(|s| s.iter().any(|&x| x > 0.0))
     }
 
-    /// ‖Φ − C diag(ρ) D‖, Frobenius, W.
-    pub(super) fn residual(&self, reflectance: &nalgebra::DVector<f64>) -> f64 {
+    /// C diag(ρ) D, W.
+    pub(super) fn light(&self, reflectance: &DVector<f64>) -> DMatrix<f64> {
         let mut left = self.c.clone();
         for (mut column, &rho) in left.column_iter_mut().zip(reflectance.iter()) {
             column *= rho;
         }
-        (self.phi - left * self.d).norm()
+        left * self.d
     }
+
+    /// ‖Φ − C diag(ρ) D‖, Frobenius, W.
+    pub(super) fn residual(&self, reflectance: &DVector<f64>) -> f64 {
+        (self.phi - self.light(reflectance)).norm()
+    }
+}
+
+/// By what the joint methods weigh the entries of Φ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum WeightRule {
+    /// By the noise: separable weights fitted to 1/σ², where standard errors are given.
+    #[default]
+    Noise,
+    /// All alike.
+    Unweighted,
 }
 
 /// Choices of the methods; the default leaves each to its own rule.
@@ -98,6 +167,14 @@ pub struct Options {
     /// Largest number of entries of the compressed Khatri–Rao product that `joint` forms (8 bytes each, up to three copies);
     /// above it the Gram matrix is used, whose condition is squared.
     pub budget: usize,
+    /// Weights of the joint methods.
+    pub weighting: WeightRule,
+    /// The strength λ of `joint-tv` as a fraction of σ₁², σ₁ the largest singular value of the weighted operator; by the discrepancy principle where not given.
+    pub total_variation: Option<f64>,
+    /// The reflectances \[dark, light\] of `joint-two-valued`; estimated with the pattern where not given.
+    pub levels: Option<[f64; 2]>,
+    /// Confidence level, in (0, 1), of the bands to be computed ([`Bands`](super::Bands)); none where not given.
+    pub bands: Option<f64>,
 }
 
 impl Default for Options {
@@ -107,6 +184,10 @@ impl Default for Options {
             rank: None,
             damping: None,
             budget: 1 << 24,
+            weighting: WeightRule::Noise,
+            total_variation: None,
+            levels: None,
+            bands: None,
         }
     }
 }

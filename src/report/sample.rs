@@ -120,6 +120,7 @@ pub(super) fn whole(mut run: RunResults) -> RunResults {
                 rmse: 0.05,
                 parameter: "λ 1.3e-15 by the discrepancy principle from the standard error of Φcam"
                     .into(),
+                bands: None,
             });
         }
     }

@@ -37,6 +37,6 @@ pub use noise::{
 };
 pub use objects::{Attempt, Noise, recover_objects};
 pub use power::{Detection, Power, PowerError, PowerPlan, PowerRow, power};
-pub use results::{Agreement, Entry, RecoveredObject, RunResults, Settings};
+pub use results::{Agreement, Entry, ObjectBands, RecoveredObject, RunResults, Settings};
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, tolerance};
 pub use validation::{Integration, Validation, ValidationError, validate};

@@ -97,6 +97,22 @@ pub struct RecoveredObject {
     pub rmse: f64,
     /// Parameter used and why, in words.
     pub parameter: String,
+    /// Bands around the reflectances, where they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bands: Option<ObjectBands>,
+}
+
+/// Intervals of the elements of a recovered surface.
+#[derive(Clone, Debug, Serialize)]
+pub struct ObjectBands {
+    /// Probability that each alone shall cover.
+    pub confidence: f64,
+    /// What they are: `gaussian`, `gaussian-around-mean` (the bias is left out) or `profile`.
+    pub kind: String,
+    /// Lower limits.
+    pub lower: Vec<f64>,
+    /// Upper limits.
+    pub upper: Vec<f64>,
 }
 
 /// Everything that `phicam run` found.

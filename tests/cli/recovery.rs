@@ -1,5 +1,7 @@
 //! `phicam recover`: methods, settings and files.
 
+use phicam::matrix::npy;
+
 use crate::workspace::{Ended, Workspace};
 
 fn with_run() -> Workspace {
@@ -158,6 +160,90 @@ fn all_methods_unless_some_are_named() {
     );
     let two = objects(workspace.phicam("recover done --method joint,pinv --json"));
     assert_eq!(names(&two), ["joint", "pinv"]);
+}
+
+#[test]
+fn other_light_is_estimated_with_the_object() {
+    let workspace = with_run();
+    let model = workspace.matrix("done/model/phi.npy");
+    // A constant of each frame a hundred times the light, and a factor.
+    let spoilt =
+        model.map_with_location(|_, l, x| 2.5 * x + 100.0 * model.amax() * (1.0 + l as f64));
+    npy::write(&workspace.path("spoilt.npy"), &spoilt).unwrap();
+    let line = "recover done --phi spoilt.npy --frame-constant --free-scale --method joint --json";
+    let found = objects(workspace.phicam(line));
+    assert!(found[0]["mtf_raw"].as_f64().unwrap() > 0.99, "{}", found[0]);
+    let words = found[0]["parameter"].as_str().unwrap();
+    assert!(
+        words.contains("scale 2.500") && words.contains("frame constant"),
+        "{words}"
+    );
+    // Methods that cannot are remarks beside one that can, and refused alone.
+    let line = "recover done --phi spoilt.npy --frame-constant --noise 0.01";
+    let ended = workspace.phicam(line).exits(0);
+    assert!(
+        ended.stderr.contains("pinv does not estimate"),
+        "{}",
+        ended.account()
+    );
+    workspace.refuses(
+        &format!("{line} --method pinv"),
+        &["--frame-constant", "joint", "cure: "],
+    );
+    workspace.refuses("recover done --tv 0.1", &["--tv", "joint-tv"]);
+    workspace.refuses(
+        "recover done --levels 0,1 --method joint",
+        &["--levels", "joint-two-valued"],
+    );
+    workspace.refuses(
+        "recover done --method joint-two-valued --levels 1,0",
+        &["DARK < LIGHT"],
+    );
+    workspace.refuses(
+        "recover done --weighting none --method pinv",
+        &["--weighting none"],
+    );
+    workspace.refuses(
+        "recover done --method joint --glare-pattern no.npy",
+        &["no.npy"],
+    );
+    workspace.refuses(
+        "recover done --method joint --bands 95",
+        &["--bands 95", "0.95"],
+    );
+    workspace.refuses(
+        "recover done --method joint-tv --bands 0.95",
+        &["joint-tv has no bands"],
+    );
+}
+
+#[test]
+fn bands_are_files_of_their_own() {
+    let workspace = with_run();
+    let line = "recover done --method joint-unbounded,joint --elements 2x2 --bands 0.9 --json";
+    let found = objects(workspace.phicam(line));
+    for (object, kind) in found.iter().zip(["gaussian", "profile"]) {
+        assert_eq!(object["bands"]["kind"], kind);
+        let name = object["method"].as_str().unwrap();
+        let of = |end: &str| workspace.matrix(&format!("done/recovered/{name}{end}.npy"));
+        let (lower, upper) = (of(".lower"), of(".upper"));
+        assert_eq!(lower.shape(), (2, 2));
+        let middle = of("");
+        for at in 0..4 {
+            assert!(lower[at] <= middle[at] && middle[at] <= upper[at], "{name}");
+        }
+    }
+}
+
+#[test]
+fn every_method_can_be_asked_for() {
+    let workspace = with_run();
+    let line = "recover done --method nnls,joint-tv,joint-two-valued --phi done/model/phi.npy --noise 0.001";
+    let _ = workspace.phicam(line).exits(0);
+    let names = workspace.contents("done/recovered");
+    for name in ["nnls.npy", "joint-tv.npy", "joint-two-valued.npy"] {
+        assert!(names.contains_key(name), "no {name}");
+    }
 }
 
 #[test]

@@ -145,7 +145,9 @@ fn fixed(pilot: &Recovered) -> Options {
     match pilot.parameter {
         Parameter::Rank(rank) => options.rank = Some(rank),
         Parameter::Damping(damping) => options.damping = Some(damping),
-        Parameter::None => {}
+        Parameter::TotalVariation(strength) => options.total_variation = Some(strength),
+        // Levels are found with the pattern: nothing to hold.
+        Parameter::Levels(_) | Parameter::None => {}
     }
     options
 }
