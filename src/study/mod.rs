@@ -6,7 +6,7 @@
 //! * [`convergence`](fn@convergence): how fast the error of each estimator falls.
 //! * [`power`](fn@power): what [`validate`] detects, and how often it errs.
 //! * [`tolerance`](fn@tolerance): how wrong the assumed geometry may be.
-//! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object.
+//! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object; [`picard`] shows what of it noise leaves.
 
 mod agreement;
 mod budget;
@@ -22,7 +22,7 @@ pub use agreement::{Errors, Evidence, Test, agree};
 pub use budget::{BudgetError, BudgetPlan, Closure, ErrorBudget, Term, error_budget};
 pub use convergence::{Convergence, ConvergenceError, Curve, Step, convergence};
 pub use ensemble::Estimate;
-pub use objects::{Attempt, Noise, recover_objects};
+pub use objects::{Attempt, Noise, picard, recover_objects};
 pub use power::{Detection, Power, PowerError, PowerPlan, PowerRow, power};
 pub use results::{Agreement, Entry, RecoveredObject, RunResults, Settings};
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, tolerance};

@@ -1,0 +1,140 @@
+//! Inverses that exist from one side only.
+//!
+//! * left: D_L = (DᵀD)⁻¹Dᵀ, D_L D = 1, where the columns of D (spots) are independent, so with no more spots than elements;
+//! * right: D_R = Dᵀ(DDᵀ)⁻¹, D D_R = 1, where its rows (elements) are, so with no more elements than spots.
+//!
+//! Neither product is formed, which would square the condition: with the pivoted QR of the tall one of D and Dᵀ, D P = Q R, the inverse is
+//! P R⁻¹Qᵀ. Both are D⁺ where they exist; unlike `pinv` these methods refuse where they do not.
+
+use nalgebra::DMatrix;
+
+use super::{Inverse, decompose};
+use crate::num::linalg::{cut, pivoted_qr};
+use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
+
+pub(in crate::recovery) fn left(
+    problem: &Problem<'_>,
+    options: &Options,
+) -> Result<Recovered, RecoveryError> {
+    let spots = problem.d.ncols();
+    recover(Method::LeftInverse, problem, options, spots, |problem| {
+        // X = Φ D_L: D_L itself is needed first.
+        let sharp = pivoted_qr(problem.d)?.basic(
+            spots,
+            &DMatrix::identity(problem.d.nrows(), problem.d.nrows()),
+        )?;
+        Ok((problem.phi * &sharp, sharp))
+    })
+}
+
+pub(in crate::recovery) fn right(
+    problem: &Problem<'_>,
+    options: &Options,
+) -> Result<Recovered, RecoveryError> {
+    let (elements, spots) = problem.d.shape();
+    recover(
+        Method::RightInverse,
+        problem,
+        options,
+        elements,
+        |problem| {
+            // X D = Φ in the least-squares sense: Dᵀ Xᵀ = Φᵀ, solved for Φᵀ and for the unit matrix.
+            let qr = pivoted_qr(&problem.d.transpose())?;
+            let solve = |b: &DMatrix<f64>| qr.basic(elements, b).map(|x| x.transpose());
+            Ok((
+                solve(&problem.phi.transpose())?,
+                solve(&DMatrix::identity(spots, spots))?,
+            ))
+        },
+    )
+}
+
+/// X and D^#.
+type Applied = Result<(DMatrix<f64>, DMatrix<f64>), RecoveryError>;
+
+fn recover(
+    method: Method,
+    problem: &Problem<'_>,
+    options: &Options,
+    needed: usize,
+    apply: impl Fn(&Problem<'_>) -> Applied,
+) -> Result<Recovered, RecoveryError> {
+    let laser = decompose(method, problem)?;
+    let (rows, columns) = problem.d.shape();
+    let (rank, cutoff) = cut(laser.sigma.as_slice(), rows, columns, options.tolerance)?;
+    if rank < needed {
+        return Err(RecoveryError::NotFullRank {
+            method,
+            rank,
+            needed,
+            elements: rows,
+            spots: columns,
+        });
+    }
+    let (x, sharp) = apply(problem)?;
+    let inverse = Inverse::explicit(problem, x, sharp, laser, rank);
+    let why = (Parameter::Rank(rank), Choice::Tolerance { cutoff });
+    inverse.recovered(method, problem, options, why)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::linalg::{Tolerance, pinv};
+    use crate::recovery::bench::Bench;
+    use crate::recovery::recover as by_method;
+
+    /// The laws D_L D = 1 and D D_R = 1 and, both being D⁺, the four Penrose conditions, through the map Φ → X of the method itself:
+    /// with C = 1 and one pixel, Φ = e_l gives row l of D^#.
+    #[test]
+    fn each_inverts_from_its_side() {
+        let bench = Bench::new(6.0, 3, 1);
+        let wide = bench.d.clone();
+        let few = wide.columns(0, 120).select_columns(&[0, 17, 45, 90]);
+        for (method, d) in [(Method::RightInverse, wide), (Method::LeftInverse, few)] {
+            let (elements, spots) = d.shape();
+            let c = DMatrix::from_element(1, elements, 1.0);
+            let mut sharp = DMatrix::zeros(spots, elements);
+            for l in 0..spots {
+                let phi = DMatrix::from_fn(1, spots, |_, i| f64::from(u8::from(i == l)));
+                let problem = Problem::new(&phi, &c, &d, None).unwrap();
+                let found = by_method(method, &problem, &Options::default()).unwrap();
+                sharp.row_mut(l).copy_from(&found.reflectance.transpose());
+            }
+            let known = pinv(&d, Tolerance::Auto).unwrap();
+            let rounding = 100.0 * f64::EPSILON * known.sigma[0] / known.sigma[known.rank - 1];
+            let [ds, sd] = [&d * &sharp, &sharp * &d];
+            let identity = match method {
+                Method::LeftInverse => &sd,
+                _ => &ds,
+            };
+            let size = identity.nrows();
+            assert!((identity - DMatrix::identity(size, size)).amax() < rounding);
+            assert!((&ds - ds.transpose()).amax() < rounding);
+            assert!((&sd - sd.transpose()).amax() < rounding);
+            assert!((&ds * &d - &d).norm() < rounding * d.norm());
+            assert!((&sd * &sharp - &sharp).norm() < rounding * sharp.norm());
+            assert!((sharp - &known.matrix).norm() < rounding * known.matrix.norm());
+        }
+    }
+
+    #[test]
+    fn where_the_rank_does_not_allow_it_they_say_so() {
+        let bench = Bench::new(3.0, 8, 2);
+        let phi = bench.phi(&bench.board(2));
+        let problem = Problem::new(&phi, &bench.c, &bench.d, None).unwrap();
+        // 64 elements under 120 spots: never a left inverse; a right one only if no direction is lost in rounding.
+        for (method, needed) in [(Method::LeftInverse, 120), (Method::RightInverse, 64)] {
+            let error = by_method(method, &problem, &Options::default()).unwrap_err();
+            let said = error.to_string();
+            assert!(
+                matches!(error, RecoveryError::NotFullRank { needed: n, rank, .. } if n == needed && rank < 64),
+                "{said}"
+            );
+            assert!(
+                said.contains("pinv") && said.contains("120 spots"),
+                "{said}"
+            );
+        }
+    }
+}
