@@ -3,7 +3,7 @@
 use crate::workspace::{Workspace, assert_same};
 
 /// Names that the design promises for a run with a hidden object, frames aside.
-const FILES: [&str; 19] = [
+const FILES: [&str; 24] = [
     "scene.toml",
     "run.json",
     "phi.npy",
@@ -13,12 +13,17 @@ const FILES: [&str; 19] = [
     "model/phi.npy",
     "recovered/pinv.npy",
     "recovered/pinv.png",
+    "recovered/pinv.stderr.npy",
+    "recovered/pinv.covariance.npy",
+    "recovered/pinv.resolution.npy",
     "recovered/tsvd.npy",
     "recovered/tsvd.png",
     "recovered/tikhonov.npy",
     "recovered/tikhonov.png",
     "recovered/joint.npy",
     "recovered/joint.png",
+    "recovered/picard.csv",
+    "recovered/picard.svg",
     "recovered/truth.npy",
     "recovered/truth.png",
     "summary.json",
