@@ -13,18 +13,21 @@ use super::{Outcome, settings};
 use crate::matrix::{Matrix, npy};
 use crate::model::MatrixModel;
 use crate::num::linalg::Tolerance;
-use crate::recovery::{Method, Options, Picard, Rule};
+use crate::recovery::{Method, Options, Picard, Rule, Uncertainty};
 use crate::report::{self, Panel};
 use crate::scene::Scene;
 use crate::store::{ensure_writable, write_whole};
 use crate::study::{Attempt, Noise, RecoveredObject, picard, recover_objects};
+
+/// Elements whose covariance and resolution are still written: 32 MiB each.
+const MOST_CORRELATED: usize = 2048;
 
 pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure> {
     let methods: Vec<Method> = match args.method.as_slice() {
         [] => Method::USUAL.to_vec(),
         names => names.iter().map(|n| n.parse()).collect::<Result<_, _>>()?,
     };
-    let options = options(args)?;
+    let mut options = options(args)?;
     // Measured photographs come without a run: a scene.toml is enough for them.
     let measured = args.phi.is_some() && !args.dir.join(Record::FILE).exists();
     let scene = match measured {
@@ -46,6 +49,7 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
     };
     let model = MatrixModel::new(&scene, settings::kernel(args.kernel), args.elements)?;
     let noise = stderr.as_ref().map_or(Noise::Unknown, Noise::StandardError);
+    options.uncertainty = uncertainty(&model, talk);
     let attempts = recover_objects(&model, &phi, noise, &methods, &options);
     let single = methods.len() == 1;
     let objects = collect(attempts, single, talk)?;
@@ -57,6 +61,17 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
     };
     output::print(&text)?;
     Ok(Outcome::Done)
+}
+
+/// How much of the uncertainty fits the elements of the model.
+pub(super) fn uncertainty(model: &MatrixModel, talk: Talk) -> Uncertainty {
+    if model.laser_side.nrows() <= MOST_CORRELATED {
+        return Uncertainty::Full;
+    }
+    talk.say(format!(
+        "more than {MOST_CORRELATED} elements: no covariance and no resolution of the methods that work pixel by pixel"
+    ));
+    Uncertainty::StandardError
 }
 
 fn options(args: &RecoverArgs) -> Result<Options, Failure> {

@@ -124,13 +124,11 @@ fn compare_and_recover(
     }
     talk.say("recovering the object");
     let noise = Noise::StandardError(&results.stderr);
-    let attempts = study::recover_objects(
-        &matrices,
-        &results.phi,
-        noise,
-        &Method::USUAL,
-        &Options::default(),
-    );
+    let options = Options {
+        uncertainty: recover::uncertainty(&matrices, talk),
+        ..Options::default()
+    };
+    let attempts = study::recover_objects(&matrices, &results.phi, noise, &Method::USUAL, &options);
     results.recovered = recover::collect(attempts, false, talk)?;
     let picard = study::picard(&matrices, &results.phi, noise)?;
     recover::write(&args.output, &results.recovered, &picard)?;

@@ -50,9 +50,9 @@ pub enum RecoveryError {
         /// The entry, W.
         value: f64,
     },
-    /// More elements than the joint methods can hold.
+    /// More elements than the joint methods or `tikhonov-gradient` can hold.
     #[error(
-        "{elements} elements are more than the {most} that the joint methods can hold; use fewer (--elements), or pinv"
+        "{elements} elements are more than the {most} that this method can hold; use fewer (--elements), or pinv"
     )]
     TooManyElements {
         /// Elements of the model.

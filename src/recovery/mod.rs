@@ -54,6 +54,7 @@ pub use picard::{Picard, picard};
 pub use problem::{Options, Problem, Uncertainty};
 pub use rule::Rule;
 
+use pixelwise::one_sided::Side;
 use pixelwise::rdivide::Solution;
 
 /// Recovers the reflectances of the r elements by the method asked for.
@@ -68,8 +69,8 @@ pub fn recover(
     problem.refuse_darkness()?;
     match method {
         Method::Pinv => pixelwise::pinv::recover(problem, options),
-        Method::LeftInverse => pixelwise::one_sided::left(problem, options),
-        Method::RightInverse => pixelwise::one_sided::right(problem, options),
+        Method::LeftInverse => pixelwise::one_sided::recover(problem, options, Side::Left),
+        Method::RightInverse => pixelwise::one_sided::recover(problem, options, Side::Right),
         Method::Rdivide => pixelwise::rdivide::recover(problem, options, Solution::Basic),
         Method::RdivideMinNorm => {
             pixelwise::rdivide::recover(problem, options, Solution::LeastNorm)

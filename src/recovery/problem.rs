@@ -120,13 +120,14 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// How much of the noise's effect is computed, where a noise model is given.
+/// How much the methods that work pixel by pixel tell of their uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Uncertainty {
-    /// Standard errors and their covariance matrix: about l·(p·k² + k·r²) operations for p pixels, l spots, r elements, k the few numerical ranks of 1/C.
+    /// All: standard errors, their covariance matrix and the resolution matrix, r × r each; about p·r² + l·(p·k² + k·r²) operations for p pixels,
+    /// l spots, r elements and k the few numerical ranks of 1/C.
     #[default]
     Full,
-    /// Standard errors alone: p·l·r operations.
+    /// Standard errors alone: p·l·r operations and no matrix of elements × elements.
     StandardError,
 }
 
@@ -142,7 +143,7 @@ pub struct Options {
     pub damping: Option<f64>,
     /// How `tsvd`, `tikhonov` and `tikhonov-gradient` choose what is not given.
     pub rule: Rule,
-    /// How much of the uncertainty the methods that work pixel by pixel compute.
+    /// How much the methods that work pixel by pixel tell of their uncertainty.
     pub uncertainty: Uncertainty,
     /// Largest number of entries of the compressed Khatri–Rao product that `joint` forms (8 bytes each, up to three copies);
     /// above it the Gram matrix is used, whose condition is squared.

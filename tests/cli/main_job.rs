@@ -239,6 +239,23 @@ fn a_render_with_another_seed_leaves_no_result_of_the_earlier_run() {
 }
 
 #[test]
+fn a_black_object_is_found_black_and_no_error() {
+    let workspace = Workspace::with_scenes();
+    let black = workspace
+        .text("tiny.toml")
+        .replace("light = 1.0", "light = 0.0");
+    workspace.write("black.toml", black);
+    let ended = workspace.phicam("run black.toml --samples 64").exits(0);
+    assert!(
+        ended.stderr.contains("nothing to recover"),
+        "{}",
+        ended.account()
+    );
+    let summary = workspace.json("out/summary.json");
+    assert_eq!(summary["recovered"], serde_json::json!([]));
+}
+
+#[test]
 fn light_beyond_the_range_of_a_frame_is_no_infinity() {
     let workspace = Workspace::with_scenes();
     let bright = workspace.text("tiny.toml").replace("5.0e-3", "1.0e60");

@@ -19,11 +19,19 @@ use super::{Inverse, Spectrum, damping, decompose};
 use crate::num::linalg::{Tolerance, complement, cut, svd};
 use crate::recovery::{Method, Options, Parameter, Problem, Recovered, RecoveryError};
 
+/// Elements whose modes, a matrix of elements × elements, are still formed: 512 MiB.
+const MOST_ELEMENTS: usize = 8192;
+
 pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
     let method = Method::TikhonovGradient;
+    let elements = problem.d.nrows();
+    if elements > MOST_ELEMENTS {
+        let most = MOST_ELEMENTS;
+        return Err(RecoveryError::TooManyElements { elements, most });
+    }
     decompose(method, problem)?;
     let grids = problem.grids.unwrap_or_default();
     if grids.iter().all(|[nu, nv]| nu * nv == 1) {
@@ -32,7 +40,7 @@ pub(in crate::recovery) fn recover(
     let spectrum = spectrum(problem, grids)?;
     let (damping, choice) = damping::choose(method, problem, options, &spectrum)?;
     let filter = spectrum.damped(damping * spectrum.sigma.first().unwrap_or(&0.0));
-    let inverse = Inverse::filtered(problem, &spectrum, &filter);
+    let inverse = Inverse::filtered(problem, options, &spectrum, &filter);
     inverse.recovered(
         method,
         problem,

@@ -17,8 +17,10 @@ pub(super) use spectrum::Spectrum;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::num::linalg::{Svd, svd};
-use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
+use crate::num::linalg::{LinalgError, Svd, svd};
+use crate::recovery::{
+    Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, Uncertainty,
+};
 
 /// The laser side decomposed, and the check that C can be divided by.
 fn decompose(method: Method, problem: &Problem<'_>) -> Result<Svd, RecoveryError> {
@@ -45,8 +47,8 @@ struct Inverse {
     x: DMatrix<f64>,
     /// D^#, l × r.
     sharp: DMatrix<f64>,
-    /// D D^#, r × r.
-    product: DMatrix<f64>,
+    /// D D^#, r × r, where the resolution is asked for.
+    product: Option<DMatrix<f64>>,
     /// Singular values of what was inverted.
     sigma: DVector<f64>,
     /// Directions that were not dropped.
@@ -57,34 +59,41 @@ struct Inverse {
 
 impl Inverse {
     /// Through filter factors on the first directions of a spectrum.
-    fn filtered(problem: &Problem<'_>, spectrum: &Spectrum, filter: &[f64]) -> Self {
+    fn filtered(
+        problem: &Problem<'_>,
+        options: &Options,
+        spectrum: &Spectrum,
+        filter: &[f64],
+    ) -> Self {
         let sharp = spectrum.inverse(filter);
         Inverse {
             x: problem.phi * &sharp,
             sharp,
-            product: spectrum.product(filter),
+            product: whole(options).then(|| spectrum.product(filter)),
             sigma: DVector::from_column_slice(&spectrum.sigma),
             rank: filter.len(),
             effective_rank: filter.iter().sum(),
         }
     }
 
-    /// From X and D^# themselves, of the given rank.
-    fn explicit(
+    /// From a solver of X D = B for any B (rows of l entries), which D^# answers for the unit matrix; of the given rank.
+    fn solved(
         problem: &Problem<'_>,
-        x: DMatrix<f64>,
-        sharp: DMatrix<f64>,
-        laser: Svd,
+        options: &Options,
+        sigma: DVector<f64>,
         rank: usize,
-    ) -> Self {
-        Inverse {
-            x,
-            product: problem.d * &sharp,
+        solve: impl Fn(&DMatrix<f64>) -> Result<DMatrix<f64>, LinalgError>,
+    ) -> Result<Self, RecoveryError> {
+        let spots = problem.d.ncols();
+        let sharp = solve(&DMatrix::identity(spots, spots))?;
+        Ok(Inverse {
+            x: solve(problem.phi)?,
+            product: whole(options).then(|| problem.d * &sharp),
             sharp,
-            sigma: laser.sigma,
+            sigma,
             rank,
             effective_rank: rank as f64,
-        }
+        })
     }
 
     /// Divided by C and averaged over the pixels, with uncertainty and resolution.
@@ -100,16 +109,21 @@ impl Inverse {
         let mut found = Recovered::plain(method, problem, reflectance, self.sigma, self.rank);
         (found.parameter, found.choice) = (parameter, choice);
         found.effective_rank = self.effective_rank;
-        found.resolution = Some(uncertainty::resolution(problem.c, &self.product));
+        found.resolution = self.product.map(|m| uncertainty::resolution(problem.c, &m));
         if let Some(stderr) = problem.noise() {
             let errors = uncertainty::standard_error(stderr, &self.sharp, problem.c);
             found.standard_error = Some(errors);
-            if options.uncertainty == crate::recovery::Uncertainty::Full {
+            if whole(options) {
                 found.covariance = Some(uncertainty::covariance(stderr, &self.sharp, problem.c)?);
             }
         }
         Ok(found)
     }
+}
+
+/// Whether matrices of elements × elements are asked for.
+fn whole(options: &Options) -> bool {
+    options.uncertainty == Uncertainty::Full
 }
 
 fn mean_over_pixels(x: &DMatrix<f64>, divisor: f64) -> DVector<f64> {

@@ -3,8 +3,8 @@
 //! * left: D_L = (DᵀD)⁻¹Dᵀ, D_L D = 1, where the columns of D (spots) are independent, so with no more spots than elements;
 //! * right: D_R = Dᵀ(DDᵀ)⁻¹, D D_R = 1, where its rows (elements) are, so with no more elements than spots.
 //!
-//! Neither product is formed, which would square the condition: with the pivoted QR of the tall one of D and Dᵀ, D P = Q R, the inverse is
-//! P R⁻¹Qᵀ. Both are D⁺ where they exist; unlike `pinv` these methods refuse where they do not.
+//! Neither product is formed, which would square the condition. Both are D⁺ where they exist, D_L giving the one exact solution of X D = Φ of least
+//! norm and D_R the one solution of least squares, and both come from the pivoted QR of Dᵀ; unlike `pinv` these methods refuse where they do not exist.
 
 use nalgebra::DMatrix;
 
@@ -12,67 +12,43 @@ use super::{Inverse, decompose};
 use crate::num::linalg::{cut, pivoted_qr};
 use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
 
-pub(in crate::recovery) fn left(
-    problem: &Problem<'_>,
-    options: &Options,
-) -> Result<Recovered, RecoveryError> {
-    let spots = problem.d.ncols();
-    recover(Method::LeftInverse, problem, options, spots, |problem| {
-        // X = Φ D_L: D_L itself is needed first.
-        let sharp = pivoted_qr(problem.d)?.basic(
-            spots,
-            &DMatrix::identity(problem.d.nrows(), problem.d.nrows()),
-        )?;
-        Ok((problem.phi * &sharp, sharp))
-    })
+/// From which side D is inverted.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(in crate::recovery) enum Side {
+    Left,
+    Right,
 }
 
-pub(in crate::recovery) fn right(
+pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
     options: &Options,
+    side: Side,
 ) -> Result<Recovered, RecoveryError> {
     let (elements, spots) = problem.d.shape();
-    recover(
-        Method::RightInverse,
-        problem,
-        options,
-        elements,
-        |problem| {
-            // X D = Φ in the least-squares sense: Dᵀ Xᵀ = Φᵀ, solved for Φᵀ and for the unit matrix.
-            let qr = pivoted_qr(&problem.d.transpose())?;
-            let solve = |b: &DMatrix<f64>| qr.basic(elements, b).map(|x| x.transpose());
-            Ok((
-                solve(&problem.phi.transpose())?,
-                solve(&DMatrix::identity(spots, spots))?,
-            ))
-        },
-    )
-}
-
-/// X and D^#.
-type Applied = Result<(DMatrix<f64>, DMatrix<f64>), RecoveryError>;
-
-fn recover(
-    method: Method,
-    problem: &Problem<'_>,
-    options: &Options,
-    needed: usize,
-    apply: impl Fn(&Problem<'_>) -> Applied,
-) -> Result<Recovered, RecoveryError> {
+    let (method, needed) = match side {
+        Side::Left => (Method::LeftInverse, spots),
+        Side::Right => (Method::RightInverse, elements),
+    };
     let laser = decompose(method, problem)?;
-    let (rows, columns) = problem.d.shape();
-    let (rank, cutoff) = cut(laser.sigma.as_slice(), rows, columns, options.tolerance)?;
+    let (rank, cutoff) = cut(laser.sigma.as_slice(), elements, spots, options.tolerance)?;
     if rank < needed {
         return Err(RecoveryError::NotFullRank {
             method,
             rank,
             needed,
-            elements: rows,
-            spots: columns,
+            elements,
+            spots,
         });
     }
-    let (x, sharp) = apply(problem)?;
-    let inverse = Inverse::explicit(problem, x, sharp, laser, rank);
+    let qr = pivoted_qr(&problem.d.transpose())?;
+    let solve = |b: &DMatrix<f64>| {
+        let x = match side {
+            Side::Left => qr.minimum_norm(rank, &b.transpose()),
+            Side::Right => qr.basic(rank, &b.transpose()),
+        };
+        x.map(|x| x.transpose())
+    };
+    let inverse = Inverse::solved(problem, options, laser.sigma, rank, solve)?;
     let why = (Parameter::Rank(rank), Choice::Tolerance { cutoff });
     inverse.recovered(method, problem, options, why)
 }

@@ -15,7 +15,8 @@ pub(in crate::recovery) fn recover(
         Tolerance::Rank(_) => Choice::Given,
         _ => Choice::Tolerance { cutoff },
     };
-    let inverse = Inverse::filtered(problem, &Spectrum::of(&laser, rank), &vec![1.0; rank]);
+    let spectrum = Spectrum::of(&laser, rank);
+    let inverse = Inverse::filtered(problem, options, &spectrum, &vec![1.0; rank]);
     inverse.recovered(
         Method::Pinv,
         problem,

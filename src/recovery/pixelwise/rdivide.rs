@@ -36,17 +36,14 @@ pub(in crate::recovery) fn recover(
         Tolerance::Rank(_) => Choice::Given,
         _ => Choice::Tolerance { cutoff },
     };
-    let solve = |b: DMatrix<f64>| {
+    let solve = |b: &DMatrix<f64>| {
         let x = match solution {
-            Solution::Basic => qr.basic(rank, &b),
-            Solution::LeastNorm => qr.minimum_norm(rank, &b),
+            Solution::Basic => qr.basic(rank, &b.transpose()),
+            Solution::LeastNorm => qr.minimum_norm(rank, &b.transpose()),
         };
         x.map(|x| x.transpose())
     };
-    let x = solve(problem.phi.transpose())?;
-    let spots = problem.d.ncols();
-    let sharp = solve(DMatrix::identity(spots, spots))?;
-    let inverse = Inverse::explicit(problem, x, sharp, laser, rank);
+    let inverse = Inverse::solved(problem, options, laser.sigma, rank, solve)?;
     inverse.recovered(method, problem, options, (Parameter::Rank(rank), choice))
 }
 

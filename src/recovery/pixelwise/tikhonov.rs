@@ -15,7 +15,7 @@ pub(in crate::recovery) fn recover(
     let spectrum = Spectrum::of(&laser, rank);
     let (damping, choice) = damping::choose(method, problem, options, &spectrum)?;
     let filter = spectrum.damped(damping * spectrum.sigma[0]);
-    let inverse = Inverse::filtered(problem, &spectrum, &filter);
+    let inverse = Inverse::filtered(problem, options, &spectrum, &filter);
     inverse.recovered(
         method,
         problem,

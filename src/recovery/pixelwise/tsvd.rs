@@ -26,7 +26,7 @@ pub(in crate::recovery) fn recover(
             (spectrum, rank, choice)
         }
     };
-    let inverse = Inverse::filtered(problem, &spectrum, &vec![1.0; rank]);
+    let inverse = Inverse::filtered(problem, options, &spectrum, &vec![1.0; rank]);
     inverse.recovered(METHOD, problem, options, (Parameter::Rank(rank), choice))
 }
 
