@@ -11,18 +11,21 @@ use super::record::Record;
 use super::{Outcome, recover_options, settings};
 use crate::matrix::{Matrix, npy};
 use crate::model::MatrixModel;
-use crate::recovery::{Method, Nuisance};
+use crate::recovery::{Method, Nuisance, Picard, Uncertainty};
 use crate::report::{self, Panel};
 use crate::scene::Scene;
 use crate::store::{ensure_writable, write_whole};
-use crate::study::{Attempt, Noise, RecoveredObject, recover_objects};
+use crate::study::{Attempt, Noise, RecoveredObject, picard, recover_objects};
+
+/// Elements whose covariance and resolution are still written: 32 MiB each.
+const MOST_CORRELATED: usize = 2048;
 
 pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure> {
     let methods: Vec<Method> = match args.method.as_slice() {
         [] => Method::USUAL.to_vec(),
         names => names.iter().map(|n| n.parse()).collect::<Result<_, _>>()?,
     };
-    let options = recover_options::checked(args, &methods)?;
+    let mut options = recover_options::checked(args, &methods)?;
     // Measured photographs come without a run: a scene.toml is enough for them.
     let measured = args.phi.is_some() && !args.dir.join(Record::FILE).exists();
     let scene = match measured {
@@ -54,10 +57,11 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
         glare: glare.as_ref(),
         free_scale: args.joint.free_scale,
     };
+    options.uncertainty = uncertainty(&model, talk);
     let attempts = recover_objects(&model, &phi, noise, nuisance, &methods, &options);
     let single = methods.len() == 1;
     let objects = collect(attempts, single, talk)?;
-    write(&args.dir, &objects)?;
+    write(&args.dir, &objects, &picard(&model, &phi, noise)?)?;
     let text = if args.json {
         output::json(&objects)?
     } else {
@@ -65,6 +69,17 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
     };
     output::print(&text)?;
     Ok(Outcome::Done)
+}
+
+/// How much of the uncertainty fits the elements of the model.
+pub(super) fn uncertainty(model: &MatrixModel, talk: Talk) -> Uncertainty {
+    if model.laser_side.nrows() <= MOST_CORRELATED {
+        return Uncertainty::Full;
+    }
+    talk.say(format!(
+        "more than {MOST_CORRELATED} elements: no covariance and no resolution of the methods that work pixel by pixel"
+    ));
+    Uncertainty::StandardError
 }
 
 /// The objects that were recovered. A method that cannot work is reported; if none can, or the only one asked for, that is
@@ -99,11 +114,23 @@ pub(super) fn collect(
     Ok(objects)
 }
 
-/// Writes DIR/recovered/METHOD.npy (nv × nu) and METHOD.png, METHOD.lower.npy and METHOD.upper.npy where bands were asked for, truth.npy and truth.png, and overview.png with all of them side
-/// by side. Where several surfaces are hidden the names are METHOD-0, METHOD-1, … in file order.
-pub(super) fn write(dir: &Path, objects: &[RecoveredObject]) -> Result<(), Failure> {
+/// Writes DIR/recovered/METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png, and overview.png with all of them side
+/// by side; what is known of the uncertainty in METHOD.stderr.npy (nv × nu), METHOD.covariance.npy and METHOD.resolution.npy (own elements ×
+/// elements of all surfaces), METHOD.lower.npy and METHOD.upper.npy where bands were asked for; picard.csv and picard.svg. Where several surfaces are hidden the names are METHOD-0, METHOD-1, … in file order.
+pub(super) fn write(
+    dir: &Path,
+    objects: &[RecoveredObject],
+    picard: &Picard,
+) -> Result<(), Failure> {
     let folder = dir.join("recovered");
     ensure_writable(&folder)?;
+    let texts = [
+        ("picard.csv", report::picard_csv(picard)),
+        ("picard.svg", report::picard_svg(picard)),
+    ];
+    for (name, text) in texts {
+        write_whole(&folder.join(name), |w| w.write_all(text.as_bytes()))?;
+    }
     let mut surfaces: Vec<&str> = Vec::new();
     for object in objects {
         if !surfaces.contains(&object.surface.as_str()) {
@@ -137,8 +164,29 @@ pub(super) fn write(dir: &Path, objects: &[RecoveredObject]) -> Result<(), Failu
                 let path = folder.join(format!("{}{suffix}.{end}.npy", object.method));
                 npy::write(&path, &Matrix::from_row_slice(nv, nu, values))?;
             }
+            write_uncertainty(&folder, &format!("{}{suffix}", object.method), object)?;
         }
         write_png(&folder.join(format!("overview{suffix}")), surface, &panels)?;
+    }
+    Ok(())
+}
+
+/// Writes `name`.stderr.npy, `name`.covariance.npy and `name`.resolution.npy, and removes those of an earlier recovery that are not known now.
+fn write_uncertainty(folder: &Path, name: &str, object: &RecoveredObject) -> Result<(), Failure> {
+    let [nu, nv] = object.elements;
+    let stderr = object.standard_error.as_ref();
+    let matrices = [
+        ("stderr", stderr.map(|s| Matrix::from_row_slice(nv, nu, s))),
+        ("covariance", object.covariance.clone()),
+        ("resolution", object.resolution.clone()),
+    ];
+    for (what, matrix) in matrices {
+        let path = folder.join(format!("{name}.{what}.npy"));
+        match matrix {
+            Some(matrix) => npy::write(&path, &matrix)?,
+            None if path.exists() => std::fs::remove_file(&path)?,
+            None => {}
+        }
     }
     Ok(())
 }

@@ -2,10 +2,10 @@
 
 use std::fmt::Display;
 
-use super::args::{RecoverArgs, WeightingName};
+use super::args::{RecoverArgs, RuleName, WeightingName};
 use super::failure::Failure;
 use crate::num::linalg::Tolerance;
-use crate::recovery::{Method, Options, WeightRule};
+use crate::recovery::{Method, Options, Rule, WeightRule};
 
 /// The options that the arguments describe, for `methods`.
 pub(super) fn checked(args: &RecoverArgs, methods: &[Method]) -> Result<Options, Failure> {
@@ -46,6 +46,11 @@ pub(super) fn checked(args: &RecoverArgs, methods: &[Method]) -> Result<Options,
     let mut options = Options {
         rank: args.rank,
         damping: args.damping,
+        rule: match args.rule {
+            RuleName::Discrepancy => Rule::Discrepancy,
+            RuleName::Gcv => Rule::Gcv,
+            RuleName::LCurve => Rule::LCurve,
+        },
         total_variation: args.joint.tv,
         levels: args.joint.levels,
         bands: args.bands,

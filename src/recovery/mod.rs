@@ -11,8 +11,13 @@
 //! | method | estimate |
 //! | --- | --- |
 //! | [`Method::Pinv`] | X = Φ D⁺, divided by C entry by entry, mean over pixels: the published method |
-//! | [`Method::Tsvd`] | the same with D's small singular values left out, as many as the noise asks for |
-//! | [`Method::Tikhonov`] | the same with them damped, as much as the noise asks for |
+//! | [`Method::LeftInverse`] | the same with (DᵀD)⁻¹Dᵀ; only where the spots' patterns are independent |
+//! | [`Method::RightInverse`] | the same with Dᵀ(DDᵀ)⁻¹; only where the elements' patterns are independent |
+//! | [`Method::Rdivide`] | X = Φ/D as MATLAB divides: pivoted QR, basic solution, at most rank elements not zero |
+//! | [`Method::RdivideMinNorm`] | X = Φ/D as Octave divides: pivoted QR, solution of least norm |
+//! | [`Method::Tsvd`] | X = Φ D⁺ with D's small singular values left out, as many as the [`Rule`] asks for |
+//! | [`Method::Tikhonov`] | the same with them damped, as much as the [`Rule`] asks for |
+//! | [`Method::TikhonovGradient`] | the same with differences between neighbouring elements damped in place of the values |
 //! | [`Method::JointUnbounded`] | least squares over all pixels and spots at once; unbiased |
 //! | [`Method::Joint`] | the same under 0 ≤ ρ ≤ 1 |
 //! | [`Method::Nnls`] | the same under 0 ≤ ρ |
@@ -21,6 +26,9 @@
 //!
 //! The joint methods can estimate other light of known form with the reflectances ([`Nuisance`]). [`cramer_rao`] says what no unbiased estimate can
 //! undercut; [`Bands`] what a recovery knows of itself.
+//!
+//! All but the last are linear in Φ: with a noise model they carry the covariance that it makes of their noise, and always the resolution matrix
+//! of what they make of the truth. [`picard`](picard()) shows which singular directions rise above the noise.
 //!
 //! ```
 //! use nalgebra::DMatrix;
@@ -40,6 +48,7 @@ mod error;
 mod joint;
 mod method;
 mod outcome;
+mod picard;
 mod pixelwise;
 mod problem;
 mod rule;
@@ -49,7 +58,12 @@ pub use error::RecoveryError;
 pub use joint::{CramerRao, Estimated, Nuisance, Weighting, cramer_rao};
 pub use method::{Method, UnknownMethod};
 pub use outcome::{Choice, Parameter, Recovered, Solver};
-pub use problem::{Options, Problem, WeightRule};
+pub use picard::{Picard, picard};
+pub use problem::{Options, Problem, Uncertainty, WeightRule};
+pub use rule::Rule;
+
+use pixelwise::one_sided::Side;
+use pixelwise::rdivide::Solution;
 
 /// Recovers the reflectances of the r elements by the method asked for.
 ///
@@ -60,6 +74,7 @@ pub fn recover(
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
+    problem.refuse_darkness()?;
     if problem.nuisance.is_some() && !method.is_joint() {
         return Err(RecoveryError::NotForMethod {
             method,
@@ -72,8 +87,15 @@ pub fn recover(
     }
     let mut found = match method {
         Method::Pinv => pixelwise::pinv::recover(problem, options),
+        Method::LeftInverse => pixelwise::one_sided::recover(problem, options, Side::Left),
+        Method::RightInverse => pixelwise::one_sided::recover(problem, options, Side::Right),
+        Method::Rdivide => pixelwise::rdivide::recover(problem, options, Solution::Basic),
+        Method::RdivideMinNorm => {
+            pixelwise::rdivide::recover(problem, options, Solution::LeastNorm)
+        }
         Method::Tsvd => pixelwise::tsvd::recover(problem, options),
         Method::Tikhonov => pixelwise::tikhonov::recover(problem, options),
+        Method::TikhonovGradient => pixelwise::gradient::recover(problem, options),
         Method::JointUnbounded => joint::unbounded::recover(problem, options),
         Method::Joint | Method::Nnls => joint::bounded::recover(method, problem, options),
         Method::JointTv => joint::total_variation::recover(problem, options),

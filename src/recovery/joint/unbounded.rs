@@ -29,6 +29,7 @@ pub(in crate::recovery) fn recover(
             .axpy(-1.0 / largest, &solved.solution, 1.0);
         *of_x = &slope * &*of_x * slope.transpose() / (largest * largest);
     }
+    let resolution = solved.vt.tr_mul(&solved.vt);
     let mut found = finish(
         Method::JointUnbounded,
         problem,
@@ -52,6 +53,7 @@ pub(in crate::recovery) fn recover(
         .as_ref()
         .map(|c| c.diagonal().map(|x| x.max(0.0).sqrt()));
     found.covariance = covariance;
+    found.resolution = Some(resolution);
     Ok(found)
 }
 
