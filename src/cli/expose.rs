@@ -154,7 +154,7 @@ fn settings(args: &ExposeArgs, scene: &Scene) -> Result<SensorSettings, Failure>
     })
 }
 
-fn model(name: &str) -> Result<SensorModel, Failure> {
+pub(super) fn model(name: &str) -> Result<SensorModel, Failure> {
     let found = SensorModel::ALL.into_iter().find(|m| m.name() == name);
     found.ok_or_else(|| {
         let names: Vec<&str> = SensorModel::ALL.iter().map(|m| m.name()).collect();

@@ -2,9 +2,8 @@
 
 use crate::matrix::Matrix;
 use crate::num::stream::{Key, Sampling, Stream};
-use crate::num::warp;
 
-/// One standard normal number for each entry of Φcam (pixels × spots), by the transformation of Box and Muller: a function of seed, spot and
+/// One standard normal number for each entry of Φcam (pixels × spots), a function of seed, spot and
 /// pixel alone, and of a block that no render reaches.
 pub(super) fn normal_deviates(seed: u64, pixels: usize, spots: usize) -> Matrix {
     Matrix::from_fn(pixels, spots, |pixel, spot| {
@@ -14,9 +13,7 @@ pub(super) fn normal_deviates(seed: u64, pixels: usize, spots: usize) -> Matrix 
             pixel: pixel as u32,
             block: u32::MAX,
         };
-        let [a, b, ..] = Stream::new(Sampling::Pcg, key).next_four();
-        // The Gaussian beam's 1/e² radius is two standard deviations.
-        2.0 * warp::gaussian_spot([a, b])[0]
+        Stream::new(Sampling::Pcg, key).normal()
     })
 }
 

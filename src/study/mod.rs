@@ -6,6 +6,8 @@
 //! * [`convergence`](fn@convergence): how fast the error of each estimator falls.
 //! * [`power`](fn@power): what [`validate`] detects, and how often it errs.
 //! * [`tolerance`](fn@tolerance): how wrong the assumed geometry may be.
+//! * [`coverage`](fn@coverage): how often the bands of recovered reflectances cover the truth.
+//! * [`experiment`](fn@experiment): the failed laboratory experiment, re-enacted.
 //! * [`indicator`](fn@indicator): what predicts how well the published inversion works.
 //! * [`noise`](fn@noise): how much noise each recovery bears.
 //! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object; [`picard`] shows what of it noise leaves.
@@ -13,8 +15,10 @@
 mod agreement;
 mod budget;
 mod convergence;
+mod coverage;
 mod deviate;
 mod ensemble;
+mod experiment;
 mod indicator;
 mod noise;
 mod objects;
@@ -26,7 +30,11 @@ mod validation;
 pub use agreement::{Errors, Evidence, Test, agree};
 pub use budget::{BudgetError, BudgetPlan, Closure, ErrorBudget, Term, error_budget};
 pub use convergence::{Convergence, ConvergenceError, Curve, Step, convergence};
+pub use coverage::{Coverage, CoveragePlan, CoverageRow, coverage};
 pub use ensemble::Estimate;
+pub use experiment::{
+    Experiment, ExperimentError, ExperimentPlan, Reading, Setting, Threshold, experiment,
+};
 pub use indicator::{
     Coefficients, Comparison, Configuration, Indicator, IndicatorError, IndicatorPlan, Layout,
     NoisyOutcome, NoisyPoint, NoisySummary, indicator,

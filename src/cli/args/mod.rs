@@ -1,6 +1,7 @@
 //! Raw arguments, as clap reads them.
 
 mod expose;
+mod laboratory;
 mod study;
 mod sweep;
 mod value;
@@ -13,6 +14,7 @@ use clap::{Args as Arguments, Parser, Subcommand, ValueEnum};
 use value::{elements, levels, shift, spot_range};
 
 pub(in crate::cli) use expose::ExposeArgs;
+pub(in crate::cli) use laboratory::{CoverageArgs, ExperimentArgs};
 pub(in crate::cli) use study::{
     BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs,
 };

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args as Arguments, Subcommand};
 
+use super::laboratory::{CoverageArgs, ExperimentArgs};
 use super::sweep::{IndicatorArgs, NoiseArgs};
 use super::{EstimatorName, SamplerName};
 
@@ -27,6 +28,10 @@ pub(in crate::cli) enum StudyCommand {
     Noise(NoiseArgs),
     /// What predicts the modulation of the published inversion: table, JSON, CSV, figure
     Indicator(IndicatorArgs),
+    /// How often bands around recovered reflectances cover the truth: table and JSON
+    Coverage(CoverageArgs),
+    /// The failed laboratory experiment with a real sensor and glare: findings in words, tables, JSON, CSV, figure
+    Experiment(ExperimentArgs),
 }
 
 #[derive(Debug, Arguments)]

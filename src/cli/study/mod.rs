@@ -1,5 +1,7 @@
 //! `phicam study`: experiments around a scene.
 
+mod coverage;
+mod experiment;
 mod findings;
 mod indicator;
 mod noise;
@@ -24,6 +26,8 @@ pub(in crate::cli) fn execute(args: &StudyArgs, talk: Talk) -> Result<Outcome, F
         StudyCommand::Convergence(a) => convergence(a, talk),
         StudyCommand::Noise(a) => noise::execute(a, talk),
         StudyCommand::Indicator(a) => indicator::execute(a, talk),
+        StudyCommand::Coverage(a) => coverage::execute(a, talk),
+        StudyCommand::Experiment(a) => experiment::execute(a, talk),
     }
 }
 

@@ -281,7 +281,7 @@ mod tests {
             problem.with_grids(&[[2, 3]]),
             Err(RecoveryError::Grids {
                 elements: 4,
-                found: 6
+                covered: 6
             })
         ));
         let problem = problem.with_grids(&[[2, 2]]).unwrap();

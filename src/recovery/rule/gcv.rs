@@ -137,7 +137,7 @@ mod tests {
                         damping: Some(x * factor),
                         ..Options::default()
                     },
-                    crate::recovery::Parameter::None => panic!("no parameter"),
+                    other => panic!("{other:?} of {method}"),
                 };
                 let (_, residual, freedom) = score(method, &other);
                 assert!(residual / freedom >= said / left * (1.0 - 1e-9), "{method}");
@@ -160,7 +160,7 @@ mod tests {
                 damping: Some(x),
                 ..Options::default()
             },
-            crate::recovery::Parameter::None => Options::default(),
+            _ => Options::default(),
         };
         // Whatever its rows, C with one relative profile c̄ leaves D^# the same but for scale: X = ρ ∘ C for one pixel.
         let pixels = problem.c.nrows() as f64;
