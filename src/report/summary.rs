@@ -19,7 +19,7 @@ pub fn summary_json(results: &RunResults) -> String {
             "rmse": r.rmse,
             "parameter": r.parameter,
             "effective_rank": r.effective_rank,
-            "standard_error": r.standard_error.as_ref().map(|s| root_mean_square(s)),
+            "rms_standard_error": r.standard_error.as_ref().map(|s| root_mean_square(s)),
         })
     };
     let bounces = results

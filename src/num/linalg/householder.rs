@@ -43,9 +43,9 @@ pub(super) fn reduce(
         v[0] -= diagonal;
         if diagonal != 0.0 {
             v.normalize_mut();
-            for j in i + 1..n {
+            for (j, left) in left.iter_mut().enumerate().skip(i + 1) {
                 reflect(&mut a, j, i, &v);
-                left[j] = a.column(j).rows_range(i + 1..).norm_squared();
+                *left = a.column(j).rows_range(i + 1..).norm_squared();
             }
             a.column_mut(i).rows_range_mut(i + 1..).fill(0.0);
             a[(i, i)] = diagonal;

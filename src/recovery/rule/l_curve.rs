@@ -3,10 +3,8 @@
 //! Over log ‖residual‖ the curve log ‖solution‖ is steep where noise is amplified and flat where signal is lost; the parameter at the corner between is
 //! taken. It needs no noise model.
 //!
-//! * damping: the point of largest curvature, a = ½ log ‖Φ P − Φ‖², b = ½ log ‖X‖² as functions of t = log λ between the smallest and the largest
-//!   singular value,
-//!   > κ = (a′b″ − a″b′)/(a′² + b′²)^{3/2},
-//!   with the derivatives in closed form from f = σ²/(σ² + λ²), df/dt = −2 f (1 − f);
+//! * damping: the point of largest curvature κ = (a′b″ − a″b′)/(a′² + b′²)^{3/2}, a = ½ log ‖Φ P − Φ‖² and b = ½ log ‖X‖² as functions of t = log λ
+//!   between the smallest and the largest singular value, with the derivatives in closed form from f = σ²/(σ² + λ²), df/dt = −2 f (1 − f);
 //! * truncation, whose curve is a row of points P_k: the vertex of the sharpest triangle (P_j, P_k, P_n), j < k < n, n the last point, among those
 //!   that turn the way of an L by more than π/8 (Castellanos, Gómez and Guerra 2002).
 
