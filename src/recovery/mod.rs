@@ -29,7 +29,7 @@
 //! | 6, 4 × 4, 1e-4 | 0.755 | 0.938 | 0.895 | 1.000 |
 //! | 3, 2 × 2, 0.1 | 0.820 | 0.947 | 0.865 | 0.999 |
 //! | 3, 2 × 2, 0.01 | 0.918 | 0.994 | 0.986 | 1.000 |
-//! | 3, 4 × 4, 1e-4 | 0.559 | 0.752 | 0.591 | TWO34 |
+//! | 3, 4 × 4, 1e-4 | 0.559 | 0.752 | 0.591 | 0.846 |
 //!
 //! The joint methods can estimate other light of known form with the reflectances ([`Nuisance`]). [`cramer_rao`] says what no unbiased estimate can
 //! undercut; [`Bands`] what a recovery knows of itself.
