@@ -1,4 +1,18 @@
 //! Bands around recovered reflectances, and how often they cover.
+//!
+//! Measured: share of 4 × 4 elements of a board of levels 0.1 and 0.9 within their 95 % bands, 200 seeds, 120 spots at half-width 6, 8 × 8 pixels, normal noise
+//! relative to each entry. (Errors of the elements of a seed go together, so the shares scatter by about 1.5 %.)
+//!
+//! | method | kind | noise 1e-2 | noise 1e-3 | mean width at 1e-3 |
+//! | --- | --- | --- | --- | --- |
+//! | `joint-unbounded` | Gaussian | 0.939 | 0.939 | 0.62 |
+//! | `pinv` | Gaussian | 0.947 | 0.947 | 1.2 |
+//! | `joint` | profile | 0.998 | 0.988 | 0.19 |
+//! | `nnls` | profile | 0.996 | 0.984 | 0.22 |
+//! | `tsvd` | Gaussian around its mean | 0.008 | 0.108 | 0.016 |
+//! | `tikhonov` | Gaussian around its mean | 0.038 | 0.003 | 0.015 |
+//!
+//! Regularised methods are biased by far more than their noise: their bands say how well the estimate repeats, not where the reflectance is.
 
 use nalgebra::{DMatrix, DVector};
 

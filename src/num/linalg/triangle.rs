@@ -224,12 +224,16 @@ mod tests {
 
     #[test]
     fn substitution_solves_what_has_one_solution() {
-        // Planted x; two equal columns have no unique one.
+        // Planted x; two parallel columns have no unique one.
         let a = hilbert(30, 5);
         let x = DVector::from_row_slice(&[1.0, -2.0, 3.0, 0.5, 0.0]);
         let found = triangle(&a, &(&a * &x)).unwrap().substitute(1e-12);
         assert!((found.unwrap() - x).amax() < 1e-9);
-        let twice = DMatrix::from_fn(4, 2, |i, _| 1.0 + i as f64);
+        // Columns t and t/3, parallel but for some roundings.
+        let off = |i: usize, j: usize| 1.0 + 1e-14 * (i * j % 2) as f64;
+        let twice = DMatrix::from_fn(4, 2, |i, j| {
+            off(i, j) * (1.1 + i as f64).sqrt() / (1 + 2 * j) as f64
+        });
         let b = DVector::from_element(4, 1.0);
         assert_eq!(triangle(&twice, &b).unwrap().substitute(1e-12), None);
         let wide = triangle(

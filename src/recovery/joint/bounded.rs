@@ -82,6 +82,26 @@ mod tests {
         }
     }
 
+    /// 0.967 and 0.947 were measured over 20 seeds; the standard deviation of one seed is about 0.04.
+    #[test]
+    fn a_board_of_two_checks_survives_a_tenth_of_noise() {
+        for half_width in [6.0, 3.0] {
+            let bench = Bench::new(half_width, 8, 16);
+            let board = bench.board(2);
+            let exact = bench.phi(&board);
+            let stderr = &exact * 0.1;
+            let mtf = |seed| {
+                let mut normal = normal_stream(seed);
+                let phi = exact.zip_map(&stderr, |x, s| x + s * normal());
+                let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+                let found = recover(Method::Joint, &problem, &Options::default()).unwrap();
+                modulation(&found.reflectance, &board)
+            };
+            let mean = (1000..1020).map(mtf).sum::<f64>() / 20.0;
+            assert!(mean >= 0.9, "{half_width}: {mean}");
+        }
+    }
+
     /// In units of the noise the data are 1e8 here, their misfit some units: the solver's relative tolerance alone would
     /// stop where the misfit is still wrong in its first digit.
     #[test]
