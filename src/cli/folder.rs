@@ -269,14 +269,17 @@ fn remove_numbered(dir: &Path, extension: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Removes the matrices and pictures METHOD.npy, METHOD-0.png, … and those of the truth from `dir`, and `dir` if that
+/// Removes the matrices and pictures METHOD.npy, METHOD-0.png, METHOD.covariance.npy, … and those of the truth from `dir`, and `dir` if that
 /// empties it.
 fn remove_recovered(dir: &Path) -> Result<(), Failure> {
     remove_files(dir, |stem, ext| {
-        let name = stem.trim_end_matches(|c: char| c.is_ascii_digit());
+        let (name, what) = stem.split_once('.').unwrap_or((stem, ""));
+        let name = name.trim_end_matches(|c: char| c.is_ascii_digit());
         let name = name.strip_suffix('-').unwrap_or(name);
-        let known = ["truth", "overview"].contains(&name) || name.parse::<Method>().is_ok();
-        known && matches!(ext, "npy" | "png")
+        let known =
+            ["truth", "overview", "picard"].contains(&name) || name.parse::<Method>().is_ok();
+        let ours = known && ["", "stderr", "covariance", "resolution"].contains(&what);
+        ours && matches!(ext, "npy" | "png" | "csv" | "svg")
     })?;
     let _ = fs::remove_dir(dir);
     Ok(())

@@ -12,6 +12,9 @@
 //! | `phi.npy`, `phi.stderr.npy` | Φcam and its standard error, f64, (pixels, spots), C order, W |
 //! | `model/g12.npy`, `g23.npy`, `phi.npy` | the analytic side |
 //! | `recovered/METHOD.npy`, `.png` | recovered reflectance, (nv, nu); `truth` beside it |
+//! | `recovered/METHOD.stderr.npy` | its standard error, (nv, nu), where the noise is known |
+//! | `recovered/METHOD.covariance.npy`, `METHOD.resolution.npy` | covariance and resolution matrix of a linear method, elements × elements of all surfaces |
+//! | `recovered/picard.csv`, `.svg` | signal and noise in each singular direction of the laser side |
 //! | `summary.json`, `report.html` | what was found |
 //! | `partial/` | finished spots of an unfinished run; gone when it is complete |
 //!

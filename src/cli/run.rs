@@ -118,17 +118,20 @@ fn compare_and_recover(
     results.agreement = Some(found.agreement);
     clock.lap("model and validate")?;
 
+    if results.phi.iter().all(|&x| x == 0.0) {
+        talk.say("no light reached the camera: there is nothing to recover");
+        return Ok(());
+    }
     talk.say("recovering the object");
     let noise = Noise::StandardError(&results.stderr);
-    let attempts = study::recover_objects(
-        &matrices,
-        &results.phi,
-        noise,
-        &Method::ALL,
-        &Options::default(),
-    );
+    let options = Options {
+        uncertainty: recover::uncertainty(&matrices, talk),
+        ..Options::default()
+    };
+    let attempts = study::recover_objects(&matrices, &results.phi, noise, &Method::USUAL, &options);
     results.recovered = recover::collect(attempts, false, talk)?;
-    recover::write(&args.output, &results.recovered)?;
+    let picard = study::picard(&matrices, &results.phi, noise)?;
+    recover::write(&args.output, &results.recovered, &picard)?;
     clock.lap("recover")?;
     Ok(())
 }

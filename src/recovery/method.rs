@@ -8,10 +8,20 @@ use std::str::FromStr;
 pub enum Method {
     /// Moore–Penrose inverse of the laser side, mean over pixels.
     Pinv,
+    /// (DᵀD)⁻¹Dᵀ of the laser side where its columns are independent, mean over pixels.
+    LeftInverse,
+    /// Dᵀ(DDᵀ)⁻¹ of the laser side where its rows are independent, mean over pixels.
+    RightInverse,
+    /// Φ/D by pivoted QR, basic solution, mean over pixels: what MATLAB's `/` does.
+    Rdivide,
+    /// Φ/D by pivoted QR, solution of least norm, mean over pixels: what Octave's `/` does.
+    RdivideMinNorm,
     /// Truncated singular value decomposition of the laser side, mean over pixels.
     Tsvd,
     /// Tikhonov damping of the laser side, mean over pixels.
     Tikhonov,
+    /// Tikhonov damping of the differences between neighbouring elements, mean over pixels.
+    TikhonovGradient,
     /// Least squares over all pixels and spots, reflectances unbounded.
     JointUnbounded,
     /// The same with reflectances between 0 and 1, which every surface obeys.
@@ -20,7 +30,21 @@ pub enum Method {
 
 impl Method {
     /// Every method, simplest first.
-    pub const ALL: [Method; 5] = [
+    pub const ALL: [Method; 10] = [
+        Method::Pinv,
+        Method::LeftInverse,
+        Method::RightInverse,
+        Method::Rdivide,
+        Method::RdivideMinNorm,
+        Method::Tsvd,
+        Method::Tikhonov,
+        Method::TikhonovGradient,
+        Method::JointUnbounded,
+        Method::Joint,
+    ];
+
+    /// The methods that are tried where none is named, simplest first.
+    pub const USUAL: [Method; 5] = [
         Method::Pinv,
         Method::Tsvd,
         Method::Tikhonov,
@@ -29,7 +53,7 @@ impl Method {
     ];
 
     /// The names of all methods, in the order of [`Method::ALL`].
-    pub fn names() -> [&'static str; 5] {
+    pub fn names() -> [&'static str; Method::ALL.len()] {
         Method::ALL.map(Method::name)
     }
 
@@ -37,8 +61,13 @@ impl Method {
     pub fn name(self) -> &'static str {
         match self {
             Method::Pinv => "pinv",
+            Method::LeftInverse => "left-inverse",
+            Method::RightInverse => "right-inverse",
+            Method::Rdivide => "rdivide",
+            Method::RdivideMinNorm => "rdivide-min-norm",
             Method::Tsvd => "tsvd",
             Method::Tikhonov => "tikhonov",
+            Method::TikhonovGradient => "tikhonov-gradient",
             Method::JointUnbounded => "joint-unbounded",
             Method::Joint => "joint",
         }
@@ -78,8 +107,11 @@ mod tests {
         }
         let said = "lsqr".parse::<Method>().unwrap_err().to_string();
         assert!(
-            said.contains("lsqr") && said.contains("pinv, tsvd, tikhonov, joint-unbounded, joint"),
+            said.contains("lsqr")
+                && Method::ALL.iter().all(|m| said.contains(m.name()))
+                && said.contains("tikhonov-gradient, joint-unbounded, joint"),
             "{said}"
         );
+        assert!(Method::USUAL.iter().all(|m| Method::ALL.contains(m)));
     }
 }

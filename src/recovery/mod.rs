@@ -11,10 +11,18 @@
 //! | method | estimate |
 //! | --- | --- |
 //! | [`Method::Pinv`] | X = Φ D⁺, divided by C entry by entry, mean over pixels: the published method |
-//! | [`Method::Tsvd`] | the same with D's small singular values left out, as many as the noise asks for |
-//! | [`Method::Tikhonov`] | the same with them damped, as much as the noise asks for |
+//! | [`Method::LeftInverse`] | the same with (DᵀD)⁻¹Dᵀ; only where the spots' patterns are independent |
+//! | [`Method::RightInverse`] | the same with Dᵀ(DDᵀ)⁻¹; only where the elements' patterns are independent |
+//! | [`Method::Rdivide`] | X = Φ/D as MATLAB divides: pivoted QR, basic solution, at most rank elements not zero |
+//! | [`Method::RdivideMinNorm`] | X = Φ/D as Octave divides: pivoted QR, solution of least norm |
+//! | [`Method::Tsvd`] | X = Φ D⁺ with D's small singular values left out, as many as the [`Rule`] asks for |
+//! | [`Method::Tikhonov`] | the same with them damped, as much as the [`Rule`] asks for |
+//! | [`Method::TikhonovGradient`] | the same with differences between neighbouring elements damped in place of the values |
 //! | [`Method::JointUnbounded`] | least squares over all pixels and spots at once; unbiased |
 //! | [`Method::Joint`] | the same under 0 ≤ ρ ≤ 1 |
+//!
+//! All but the last are linear in Φ: with a noise model they carry the covariance that it makes of their noise, and always the resolution matrix
+//! of what they make of the truth. [`picard`](picard()) shows which singular directions rise above the noise.
 //!
 //! ```
 //! use nalgebra::DMatrix;
@@ -33,6 +41,7 @@ mod error;
 mod joint;
 mod method;
 mod outcome;
+mod picard;
 mod pixelwise;
 mod problem;
 mod rule;
@@ -41,7 +50,12 @@ pub use error::RecoveryError;
 pub use joint::Weighting;
 pub use method::{Method, UnknownMethod};
 pub use outcome::{Choice, Parameter, Recovered, Solver};
-pub use problem::{Options, Problem};
+pub use picard::{Picard, picard};
+pub use problem::{Options, Problem, Uncertainty};
+pub use rule::Rule;
+
+use pixelwise::one_sided::Side;
+use pixelwise::rdivide::Solution;
 
 /// Recovers the reflectances of the r elements by the method asked for.
 ///
@@ -52,10 +66,18 @@ pub fn recover(
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
+    problem.refuse_darkness()?;
     match method {
         Method::Pinv => pixelwise::pinv::recover(problem, options),
+        Method::LeftInverse => pixelwise::one_sided::recover(problem, options, Side::Left),
+        Method::RightInverse => pixelwise::one_sided::recover(problem, options, Side::Right),
+        Method::Rdivide => pixelwise::rdivide::recover(problem, options, Solution::Basic),
+        Method::RdivideMinNorm => {
+            pixelwise::rdivide::recover(problem, options, Solution::LeastNorm)
+        }
         Method::Tsvd => pixelwise::tsvd::recover(problem, options),
         Method::Tikhonov => pixelwise::tikhonov::recover(problem, options),
+        Method::TikhonovGradient => pixelwise::gradient::recover(problem, options),
         Method::JointUnbounded => joint::unbounded::recover(problem, options),
         Method::Joint => joint::bounded::recover(problem, options),
     }

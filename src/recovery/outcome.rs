@@ -11,7 +11,7 @@ pub enum Parameter {
     None,
     /// Singular directions kept.
     Rank(usize),
-    /// Tikhonov's λ, as a fraction of D's largest singular value.
+    /// Tikhonov's λ, as a fraction of the largest singular value: of D, or of the standard form of `tikhonov-gradient`.
     Damping(f64),
 }
 
@@ -28,6 +28,25 @@ pub enum Choice {
         target: f64,
         /// The target two standard deviations of ‖noise‖² up: residuals to here are accepted.
         limit: f64,
+    },
+    /// Generalised cross-validation: the least predicted error.
+    Gcv {
+        /// ‖Φ P − Φ‖, what the regularised projector P leaves over.
+        residual: f64,
+        /// Degrees of freedom that P leaves in each pixel's row, l − tr P.
+        freedom: f64,
+        /// The root of the score V: the error with which an entry is predicted from the others, W.
+        predicted: f64,
+    },
+    /// The corner of the L-curve.
+    LCurve {
+        /// ‖Φ P − Φ‖.
+        residual: f64,
+        /// What is weighed against it: ‖X‖ (C times ρ), or the norm of the differences, of `tikhonov-gradient`.
+        penalty: f64,
+        /// How sharp the corner is: the curvature of the log–log curve where directions are damped, the angle by which it turns (rad) where they
+        /// are left out.
+        turn: f64,
     },
     /// A numerical rank cut.
     Tolerance {
@@ -60,8 +79,11 @@ pub struct Recovered {
     pub reflectance: DVector<f64>,
     /// Standard error of each reflectance as the noise model makes it; none without a noise model, and none under bounds.
     pub standard_error: Option<DVector<f64>>,
-    /// Covariance of the reflectances (r × r), of `joint-unbounded` with a noise model.
+    /// Covariance of the reflectances (r × r) as the noise model makes it: of every method without bounds.
     pub covariance: Option<DMatrix<f64>>,
+    /// The resolution matrix R (r × r) of E ρ̂ = R ρ, of every method without bounds: (R − 1) ρ is the bias, column k the image of element k alone. It
+    /// takes the parameter as given, not as chosen from the data.
+    pub resolution: Option<DMatrix<f64>>,
     /// The method used.
     pub method: Method,
     /// The regularisation used.
@@ -70,8 +92,8 @@ pub struct Recovered {
     pub choice: Choice,
     /// How the entries of Φ were weighted.
     pub weighting: Weighting,
-    /// Singular values of the matrix inverted, descending: D for the methods that work pixel by pixel, the whole
-    /// (weighted) operator for the joint ones.
+    /// Singular values of the matrix inverted, descending: D for the methods that work pixel by pixel (its standard form for `tikhonov-gradient`),
+    /// the whole (weighted) operator for the joint ones.
     pub sigma: DVector<f64>,
     /// Singular directions that were not dropped.
     pub rank: usize,
@@ -100,6 +122,7 @@ impl Recovered {
             reflectance,
             standard_error: None,
             covariance: None,
+            resolution: None,
             method,
             parameter: Parameter::None,
             choice: Choice::None,

@@ -20,6 +20,7 @@ mod mark;
 mod mitsuba;
 mod noise;
 mod page;
+mod picard;
 mod picture;
 mod power;
 mod projection;
@@ -40,6 +41,7 @@ pub use indicator::{indicator_csv, indicator_noise_csv, indicator_svg, indicator
 pub use mitsuba::mitsuba_script;
 pub use noise::{Measure, noise_csv, noise_svg, noise_table};
 pub use page::run_html;
+pub use picard::{picard_csv, picard_svg};
 pub use picture::{Panel, colour_png, grey_png};
 pub use power::power_table;
 pub use summary::summary_json;

@@ -4,7 +4,7 @@ use crate::matrix::Matrix;
 use crate::metrics::{correlation, mtf_normalized, mtf_raw, rmse};
 use crate::model::MatrixModel;
 use crate::recovery::{
-    Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, recover,
+    self, Choice, Method, Options, Parameter, Picard, Problem, Recovered, RecoveryError, recover,
 };
 
 use super::results::RecoveredObject;
@@ -36,12 +36,9 @@ pub fn recover_objects(
     methods: &[Method],
     options: &Options,
 ) -> Vec<Attempt> {
-    let stderr = match noise {
-        Noise::StandardError(stderr) => Some(stderr),
-        Noise::Unknown => None,
-    };
+    let grids: Vec<[usize; 2]> = model.grids.iter().map(|grid| grid.count).collect();
     let attempt = |method: Method| {
-        let problem = Problem::new(phi, &model.camera_side, &model.laser_side, stderr)?;
+        let problem = problem(model, phi, noise)?.with_grids(&grids)?;
         recover(method, &problem, options).map(|found| objects(model, &found))
     };
     methods
@@ -53,11 +50,36 @@ pub fn recover_objects(
         .collect()
 }
 
+/// Φ in the singular directions of the model's laser side: see [`recovery::picard`].
+///
+/// # Errors
+/// Those of [`recovery::picard`].
+pub fn picard(
+    model: &MatrixModel,
+    phi: &Matrix,
+    noise: Noise<'_>,
+) -> Result<Picard, RecoveryError> {
+    recovery::picard(&problem(model, phi, noise)?)
+}
+
+fn problem<'a>(
+    model: &'a MatrixModel,
+    phi: &'a Matrix,
+    noise: Noise<'a>,
+) -> Result<Problem<'a>, RecoveryError> {
+    let stderr = match noise {
+        Noise::StandardError(stderr) => Some(stderr),
+        Noise::Unknown => None,
+    };
+    Problem::new(phi, &model.camera_side, &model.laser_side, stderr)
+}
+
 fn objects(model: &MatrixModel, found: &Recovered) -> Vec<RecoveredObject> {
     let cut = |grid: &crate::model::ElementGrid| {
         let range = grid.first..grid.first + grid.len();
         let reflectance = found.reflectance.as_slice()[range.clone()].to_vec();
-        let truth = model.albedo[range].to_vec();
+        let truth = model.albedo[range.clone()].to_vec();
+        let own = |m: &Matrix| m.rows(range.start, range.len()).into_owned();
         RecoveredObject {
             surface: grid.surface.clone(),
             method: found.method.name().to_owned(),
@@ -67,6 +89,13 @@ fn objects(model: &MatrixModel, found: &Recovered) -> Vec<RecoveredObject> {
             correlation: correlation(&reflectance, &truth),
             rmse: rmse(&reflectance, &truth).unwrap_or(f64::NAN),
             parameter: parameter(found),
+            standard_error: found
+                .standard_error
+                .as_ref()
+                .map(|s| s.as_slice()[range.clone()].to_vec()),
+            effective_rank: found.effective_rank,
+            covariance: found.covariance.as_ref().map(own),
+            resolution: found.resolution.as_ref().map(own),
             reflectance,
             truth,
         }
@@ -89,6 +118,16 @@ fn parameter(found: &Recovered) -> String {
             format!(
                 ", by the discrepancy principle (residual {residual:.3e} W, noise {target:.3e} W)"
             )
+        }
+        Choice::Gcv {
+            freedom, predicted, ..
+        } => {
+            format!(
+                ", by generalised cross-validation (entries predicted to {predicted:.3e} W, {freedom:.1} degrees of freedom left)"
+            )
+        }
+        Choice::LCurve { residual, turn, .. } => {
+            format!(", at the corner of the L-curve (residual {residual:.3e} W, turn {turn:.2})")
         }
         Choice::Tolerance { cutoff } => format!(", cut at {cutoff:.2e}"),
         Choice::None => String::new(),

@@ -97,6 +97,16 @@ pub struct RecoveredObject {
     pub rmse: f64,
     /// Parameter used and why, in words.
     pub parameter: String,
+    /// Standard error of each reflectance; absent without a noise model and under bounds.
+    pub standard_error: Option<Vec<f64>>,
+    /// Directions that the method resolves: trace of its resolution matrix.
+    pub effective_rank: f64,
+    /// Covariance of its elements (rows) with those of all hidden surfaces (columns, in file order).
+    #[serde(skip)]
+    pub covariance: Option<Matrix>,
+    /// Its rows of the resolution matrix: what each of its elements shows of the elements of all hidden surfaces.
+    #[serde(skip)]
+    pub resolution: Option<Matrix>,
 }
 
 /// Everything that `phicam run` found.

@@ -2,6 +2,7 @@
 
 mod bad_folders;
 mod bad_frames;
+mod bad_recoveries;
 mod bad_scenes;
 mod bad_settings;
 mod interruption;

@@ -31,6 +31,8 @@ fn a_method_writes_its_matrix_and_its_picture() {
         "joint.npy",
         "joint.png",
         "overview.png",
+        "picard.csv",
+        "picard.svg",
         "truth.npy",
         "truth.png",
     ];
@@ -143,7 +145,7 @@ fn if_no_method_can_work_each_says_why() {
 }
 
 #[test]
-fn all_methods_unless_some_are_named() {
+fn the_usual_methods_unless_some_are_named() {
     let workspace = with_run();
     let names = |found: &[serde_json::Value]| -> Vec<String> {
         found
@@ -158,6 +160,97 @@ fn all_methods_unless_some_are_named() {
     );
     let two = objects(workspace.phicam("recover done --method joint,pinv --json"));
     assert_eq!(names(&two), ["joint", "pinv"]);
+}
+
+#[test]
+fn every_method_can_be_named() {
+    let workspace = with_run();
+    for method in phicam::recovery::Method::ALL {
+        // 24 spots: 36 elements for the inverse from the left, 4 for all others.
+        let elements = match method {
+            phicam::recovery::Method::LeftInverse => "6 --tolerance 1e-17",
+            _ => "2",
+        };
+        let line =
+            format!("recover done --method {method} --elements {elements} --rule gcv --json");
+        let found = objects(workspace.phicam(&line));
+        assert_eq!(found[0]["method"], method.name());
+        assert!(found[0]["effective_rank"].as_f64().unwrap() > 0.5);
+    }
+}
+
+#[test]
+fn a_linear_method_writes_its_uncertainty() {
+    let workspace = with_run();
+    let line = "recover done --method pinv,tikhonov-gradient,joint-unbounded,joint --elements 4x2 --damping 0.01";
+    let found = objects(workspace.phicam(&format!("{line} --json")));
+    for (object, method) in found
+        .iter()
+        .zip(["pinv", "tikhonov-gradient", "joint-unbounded"])
+    {
+        let read = |what: &str| workspace.matrix(&format!("done/recovered/{method}.{what}.npy"));
+        let (stderr, covariance) = (read("stderr"), read("covariance"));
+        assert_eq!((stderr.shape(), covariance.shape()), ((2, 4), (8, 8)));
+        for i in 0..8 {
+            let said = object["standard_error"][i].as_f64().unwrap();
+            assert_eq!(said, stderr[(i / 4, i % 4)]);
+            assert!((covariance[(i, i)].sqrt() / said - 1.0).abs() < 1e-9);
+        }
+        let resolution = read("resolution");
+        let rank = object["effective_rank"].as_f64().unwrap();
+        assert!((resolution.trace() - rank).abs() < 1e-6 && rank < 8.0 + 1e-9);
+    }
+    let names = workspace.contents("done/recovered");
+    assert!(
+        !names
+            .keys()
+            .any(|n| n.starts_with("joint.") && n.contains("stderr"))
+    );
+    assert!(found[3]["standard_error"].is_null());
+    // Without a noise model only the resolution is known: what the earlier call said is gone.
+    let _ = workspace
+        .phicam("recover done --method pinv --phi done/model/phi.npy --elements 4x2")
+        .exits(0);
+    let names = workspace.contents("done/recovered");
+    assert!(!names.contains_key("pinv.stderr.npy") && !names.contains_key("pinv.covariance.npy"));
+    assert!(names.contains_key("pinv.resolution.npy"));
+}
+
+#[test]
+fn picard_data_are_written() {
+    let workspace = with_run();
+    let _ = workspace.phicam("recover done --method pinv").exits(0);
+    let table = workspace.text("done/recovered/picard.csv");
+    let mut lines = table.lines();
+    assert_eq!(lines.next(), Some("direction,sigma,coefficient_W,noise_W"));
+    // 24 spots, 64 elements: 24 directions, singular values falling.
+    let rows: Vec<Vec<f64>> = lines
+        .map(|line| line.split(',').map(|x| x.parse().unwrap()).collect())
+        .collect();
+    assert_eq!(rows.len(), 24);
+    assert!(rows.windows(2).all(|w| w[1][1] <= w[0][1]));
+    // The traced signal rises above its noise in the first direction, and nothing does in the last.
+    assert!(rows[0][2] > 100.0 * rows[0][3] && rows[23][2] < 2.0 * rows[23][3]);
+    let figure = workspace.text("done/recovered/picard.svg");
+    assert!(figure.contains("noise in direction i") && figure.ends_with("</svg>\n"));
+}
+
+#[test]
+fn rules_without_a_noise_model() {
+    let workspace = with_run();
+    for (rule, words) in [
+        ("gcv", "generalised cross-validation"),
+        ("l-curve", "corner of the L-curve"),
+    ] {
+        for method in ["tsvd", "tikhonov", "tikhonov-gradient"] {
+            let line =
+                format!("recover done --method {method} --rule {rule} --phi done/phi.npy --json");
+            let found = objects(workspace.phicam(&line));
+            let parameter = found[0]["parameter"].as_str().unwrap();
+            assert!(parameter.contains(words), "{method}: {parameter}");
+        }
+    }
+    workspace.refuses("recover done --rule best", &["best", "gcv", "l-curve"]);
 }
 
 #[test]

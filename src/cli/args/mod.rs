@@ -197,11 +197,22 @@ pub(in crate::cli) struct ValidateArgs {
     pub json: bool,
 }
 
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(in crate::cli) enum RuleName {
+    /// The strongest regularisation whose residual the noise explains
+    Discrepancy,
+    /// Generalised cross-validation; needs no noise model
+    Gcv,
+    /// The corner of the L-curve; needs no noise model
+    LCurve,
+}
+
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct RecoverArgs {
     /// Folder of a run; with --phi a folder with a scene.toml is enough
     pub dir: PathBuf,
-    /// Methods, separated by commas: pinv, tsvd, tikhonov, joint-unbounded, joint; all unless given
+    /// Methods, separated by commas: pinv, left-inverse, right-inverse, rdivide, rdivide-min-norm, tsvd, tikhonov, tikhonov-gradient,
+    /// joint-unbounded, joint; pinv, tsvd, tikhonov, joint-unbounded and joint unless given
     #[arg(long, value_delimiter = ',', value_name = "METHOD")]
     pub method: Vec<String>,
     /// Φcam to invert, pixels × spots in W, in place of DIR/phi.npy
@@ -219,13 +230,16 @@ pub(in crate::cli) struct RecoverArgs {
     /// Elements along u and v, in place of the scene's: N or NxM
     #[arg(long, value_name = "N", value_parser = elements)]
     pub elements: Option<[usize; 2]>,
-    /// Singular directions that tsvd keeps, in place of the discrepancy principle
+    /// How tsvd, tikhonov and tikhonov-gradient choose their parameter
+    #[arg(long, value_enum, default_value_t = RuleName::Discrepancy)]
+    pub rule: RuleName,
+    /// Singular directions that tsvd keeps, in place of the rule's choice
     #[arg(long, value_name = "K", allow_negative_numbers = true)]
     pub rank: Option<usize>,
-    /// Damping of tikhonov relative to σ1, in place of the discrepancy principle
+    /// Damping of tikhonov and tikhonov-gradient relative to σ1, in place of the rule's choice
     #[arg(long, value_name = "LAMBDA", allow_negative_numbers = true)]
     pub damping: Option<f64>,
-    /// Relative singular value below which pinv and joint cut; max(size)·eps unless given
+    /// Relative singular value below which pinv, the divisions and joint-unbounded cut; max(size)·eps unless given
     #[arg(long, value_name = "RELATIVE", allow_negative_numbers = true)]
     pub tolerance: Option<f64>,
     /// Print the results as JSON

@@ -15,6 +15,7 @@ pub(in crate::recovery) fn recover(
     let solved = operator.solve(options.tolerance)?;
     let elements = problem.c.ncols();
     let covariance = problem.noise().map(|_| solved.covariance());
+    let resolution = solved.vt.tr_mul(&solved.vt);
     let mut found = Recovered::plain(
         Method::JointUnbounded,
         problem,
@@ -35,6 +36,7 @@ pub(in crate::recovery) fn recover(
     found.weighting = operator.weighting;
     found.standard_error = covariance.as_ref().map(|c| c.diagonal().map(f64::sqrt));
     found.covariance = covariance;
+    found.resolution = Some(resolution);
     Ok(found)
 }
 
