@@ -99,8 +99,10 @@ fn compare(
     plan: &IndicatorPlan,
 ) -> Result<NoisyOutcome, RecoveryError> {
     let stderr = exact.map(|x| noise * x.abs());
+    let grids: Vec<[usize; 2]> = model.grids.iter().map(|grid| grid.count).collect();
     let invert = |phi: &Matrix, options: &Options| -> Result<Recovered, RecoveryError> {
         let problem = Problem::new(phi, &model.camera_side, &model.laser_side, Some(&stderr))?;
+        let problem = problem.with_grids(&grids)?;
         recover(method, &problem, options)
     };
     let photograph = |seed| NoiseAxis::Relative.photograph(exact, noise, seed).phi;

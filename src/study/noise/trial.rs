@@ -52,7 +52,9 @@ pub(super) fn measure(
         uncertainty: Uncertainty::StandardError,
         ..Options::default()
     };
+    let grids: Vec<[usize; 2]> = model.grids.iter().map(|grid| grid.count).collect();
     let found = Problem::new(phi, &model.camera_side, &model.laser_side, Some(stderr))
+        .and_then(|problem| problem.with_grids(&grids))
         .and_then(|problem| recover(method, &problem, &options))
         .map_err(|e| e.to_string())?;
     Ok(measures(found.reflectance.as_slice(), &model.albedo))
