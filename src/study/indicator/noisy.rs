@@ -8,7 +8,9 @@ use super::ratio::Pair;
 use crate::matrix::Matrix;
 use crate::metrics::mtf_raw;
 use crate::model::MatrixModel;
-use crate::recovery::{Method, Options, Parameter, Problem, Recovered, RecoveryError, recover};
+use crate::recovery::{
+    Method, Options, Parameter, Problem, Recovered, RecoveryError, Uncertainty, recover,
+};
 use crate::study::noise::{NoiseAxis, Spread};
 
 /// One method at one noise on one configuration.
@@ -97,8 +99,10 @@ fn compare(
     plan: &IndicatorPlan,
 ) -> Result<NoisyOutcome, RecoveryError> {
     let stderr = exact.map(|x| noise * x.abs());
+    let grids: Vec<[usize; 2]> = model.grids.iter().map(|grid| grid.count).collect();
     let invert = |phi: &Matrix, options: &Options| -> Result<Recovered, RecoveryError> {
         let problem = Problem::new(phi, &model.camera_side, &model.laser_side, Some(&stderr))?;
+        let problem = problem.with_grids(&grids)?;
         recover(method, &problem, options)
     };
     let photograph = |seed| NoiseAxis::Relative.photograph(exact, noise, seed).phi;
@@ -119,6 +123,11 @@ fn compare(
     let spread = pair.spread();
     let Some(predicted) = pair.modulation() else {
         return Ok(NoisyOutcome::Undefined { spread });
+    };
+    // Of the draws the reflectances alone are measured.
+    let options = Options {
+        uncertainty: Uncertainty::StandardError,
+        ..options
     };
     let mut values = Vec::new();
     for seed in (0..plan.seeds).map(|k| plan.first_seed.wrapping_add(k)) {

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use crate::metrics::{correlation, light_and_dark, mtf_normalized, mtf_raw, rmse};
 use crate::model::MatrixModel;
-use crate::recovery::{Method, Options, Problem, recover};
+use crate::recovery::{Method, Options, Problem, Uncertainty, recover};
 
 use super::axis::Photographs;
 
@@ -47,8 +47,15 @@ pub(super) fn measure(
     method: Method,
 ) -> Result<Measures, String> {
     let Photographs { phi, stderr } = photographs;
+    // The reflectances alone are measured.
+    let options = Options {
+        uncertainty: Uncertainty::StandardError,
+        ..Options::default()
+    };
+    let grids: Vec<[usize; 2]> = model.grids.iter().map(|grid| grid.count).collect();
     let found = Problem::new(phi, &model.camera_side, &model.laser_side, Some(stderr))
-        .and_then(|problem| recover(method, &problem, &Options::default()))
+        .and_then(|problem| problem.with_grids(&grids))
+        .and_then(|problem| recover(method, &problem, &options))
         .map_err(|e| e.to_string())?;
     Ok(measures(found.reflectance.as_slice(), &model.albedo))
 }
