@@ -4,19 +4,19 @@ use super::axis::significant;
 use super::chart::{Axis, Run, Series, legend, panel, sheet};
 use crate::study::{Experiment, Setting, Spread};
 
-/// The findings in words, then the raw modulation of every analysis, one table by glare and one by exposure.
+/// The findings in words, then the normalized modulation of every analysis, one table by glare and one by exposure.
 pub fn experiment_table(study: &Experiment) -> String {
     let mut out = format!("{}\n", wrapped(&study.words, 100));
     let glare = |s: &Setting| significant(s.glare, 2);
     out += &block(
         &study.by_glare,
-        "raw modulation by glare over signal, at the longest exposure",
+        "normalized modulation by glare over signal, at the longest exposure",
         glare,
     );
     let exposure = |s: &Setting| format!("{} s", significant(s.exposure, 2));
     out += &block(
         &study.by_exposure,
-        "raw modulation by exposure of a frame, glare as strong as the signal",
+        "normalized modulation by exposure of a frame, glare as strong as the signal",
         exposure,
     );
     out
@@ -35,14 +35,8 @@ fn block(settings: &[Setting], title: &str, head: impl Fn(&Setting) -> String) -
         for i in 0..of[0].readings.len() {
             out += &format!("{:<32}", of[0].readings[i].analysis);
             for s in &of {
-                let mtf = s.readings[i]
-                    .mtf
-                    .map_or("–".to_owned(), |m| format!("{:.2}", m.mean));
-                let mtf = if mtf.len() > 8 {
-                    significant(s.readings[i].mtf.map_or(0.0, |m| m.mean), 2)
-                } else {
-                    mtf
-                };
+                let mtf = s.readings[i].mtf_normalized;
+                let mtf = mtf.map_or("–".to_owned(), |m| format!("{:.2}", m.mean));
                 out += &format!(" {mtf:>8}");
             }
             out.push('\n');
@@ -112,20 +106,17 @@ pub fn experiment_csv(study: &Experiment) -> String {
     out
 }
 
-/// The study as a figure: raw modulation against glare and against exposure, one line an analysis, a column of panels a spread.
+/// The study as a figure: normalized modulation against glare and against exposure, one line an analysis, a column of panels a spread.
 pub fn experiment_svg(study: &Experiment) -> String {
     let title = format!("The experiment, again: {}", study.scene);
-    let note = format!(
-        "sensor {}, mean over {} seeds; modulation beyond the axis is left out",
-        study.sensor, study.seeds
-    );
+    let note = format!("sensor {}, mean over {} seeds", study.sensor, study.seeds);
     let columns = spreads(&study.by_glare);
     let width = 250 + 400 * columns.len().max(1) as u32;
     let mut svg = sheet([width, 760], &title, &note);
     let modulation = || Axis {
         run: Run::Linear,
-        ends: [-0.2, 1.05],
-        title: "raw modulation".to_owned(),
+        ends: [-0.4, 1.0],
+        title: "normalized modulation".to_owned(),
     };
     for (k, spread) in columns.iter().enumerate() {
         let left = 80.0 + 400.0 * k as f64;
@@ -167,7 +158,7 @@ fn lines(settings: &[&Setting], x: fn(&Setting) -> f64) -> Vec<Series> {
             name: settings[0].readings[i].analysis.clone(),
             points: settings
                 .iter()
-                .filter_map(|s| Some([x(s), s.readings[i].mtf?.mean]))
+                .filter_map(|s| Some([x(s), s.readings[i].mtf_normalized?.mean]))
                 .collect(),
         })
         .collect()

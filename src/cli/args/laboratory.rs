@@ -19,7 +19,7 @@ pub(in crate::cli) struct ExperimentArgs {
     #[arg(
         long,
         value_delimiter = ',',
-        default_value = "0,0.1,0.3,1,3,10",
+        default_value = "0,0.1,1,3,10",
         allow_negative_numbers = true
     )]
     pub glares: Vec<f64>,
@@ -27,7 +27,7 @@ pub(in crate::cli) struct ExperimentArgs {
     #[arg(
         long,
         value_delimiter = ',',
-        default_value = "0.0001,0.001,0.003,0.01,0.03,0.1,0.3,1",
+        default_value = "0.0001,0.001,0.003,0.01,0.1,1",
         allow_negative_numbers = true
     )]
     pub exposures: Vec<f64>,
@@ -41,7 +41,7 @@ pub(in crate::cli) struct ExperimentArgs {
     #[arg(long, default_value_t = 512)]
     pub samples: u64,
     /// Draws of the sensor's noise
-    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub seeds: u64,
     /// Seed of the tracer and first one of the sensor
     #[arg(long, default_value_t = 1)]

@@ -317,7 +317,7 @@ fn setting(
                 mtf_normalized: of(|f| f.mtf_normalized),
                 correlation: of(|f| f.correlation),
                 failed: reasons().count() as u64,
-                reason: reasons().last().cloned(),
+                reason: reasons().next_back().cloned(),
             }
         })
         .collect();

@@ -15,9 +15,9 @@ pub struct Reading {
     pub mtf_normalized: Option<Spread>,
     /// Pearson correlation with the true albedos.
     pub correlation: Option<Spread>,
-    /// Seeds for which the analysis failed, with the last reason.
+    /// Seeds for which the analysis failed.
     pub failed: u64,
-    /// That reason.
+    /// Why the last of them did.
     pub reason: Option<String>,
 }
 
@@ -49,7 +49,7 @@ pub struct Threshold {
     pub analysis: String,
     /// How the glare is spread.
     pub spread: String,
-    /// Largest glare over signal up to which the mean raw modulation stays at or above [`Experiment::READABLE`]; none where the least
+    /// Largest glare over signal up to which the mean normalized modulation stays at or above [`Experiment::READABLE`]; none where the least
     /// glare of the study is too much.
     pub glare: Option<f64>,
     /// Shortest exposure, s, from which on it stays there with glare as strong as the signal; none where no exposure of the study is enough.
@@ -83,6 +83,7 @@ pub struct Experiment {
 }
 
 impl Experiment {
-    /// Raw modulation from which on the board counts as read.
+    /// Normalized modulation from which on the board counts as read. The raw one of a method whose W + B may come near zero is no measure: it
+    /// grows without bound where nothing is left of the picture.
     pub const READABLE: f64 = 0.5;
 }

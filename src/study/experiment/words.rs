@@ -2,95 +2,133 @@
 
 use super::results::{Experiment, Reading, Setting, Threshold};
 
-/// One paragraph. `board` describes the object.
-pub(super) fn words(found: &Experiment, board: &str) -> String {
+/// One paragraph. `object` names what is hidden.
+pub(super) fn words(found: &Experiment, object: &str) -> String {
     let mut text = format!(
-        "An average pixel gets {} from {board}; {} times as much light enters the lens straight from the laser spot, so a lens that \
+        "An average pixel gets {} from {object}; {} times as much light enters the lens straight from the laser spot, so a lens that \
          scatters {} of it over the image makes glare as strong as the signal.",
         watts(found.signal),
         round(found.direct_over_signal),
         percent(1.0 / found.direct_over_signal),
     );
-    let equal = found
-        .by_glare
-        .iter()
-        .filter(|s| s.spread == found.by_glare[0].spread)
-        .min_by(|a, b| off(a.glare).total_cmp(&off(b.glare)));
-    if let Some(setting) = equal {
-        text += &format!(
-            " At glare {} times the signal, frames of {} and {} electrons of signal a pixel, the published analysis finds a modulation of {}",
-            round(setting.glare),
-            seconds(setting.exposure),
-            round(setting.electrons),
-            mtf(setting.readings.first()),
+    for spread in spreads(found) {
+        let of = || found.by_glare.iter().filter(move |s| s.spread == spread);
+        text += &equal(
+            of().min_by(|a, b| off(a.glare).total_cmp(&off(b.glare))),
+            spread,
         );
-        let best = setting
-            .readings
-            .iter()
-            .filter_map(|r| Some((r, r.mtf?.mean)))
-            .max_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((best, _)) = best {
-            text += &format!(
-                "; the best of the others, `{}`, {}",
-                best.analysis,
-                mtf(Some(best))
-            );
-        }
-        text.push('.');
-        let bare = found
-            .by_glare
-            .iter()
-            .find(|s| s.glare <= 0.0)
-            .and_then(|s| s.readings.first());
-        if let Some(bare) = bare {
-            text += &format!(
-                " Without any glare the published analysis finds {}",
-                mtf(Some(bare))
-            );
-            text += match bare.mtf {
-                Some(m) if m.mean.abs() < Experiment::READABLE => {
-                    ": glare alone is not what makes it fail."
-                }
-                _ => ".",
-            };
-        }
     }
-    let reads = |f: &dyn Fn(&Threshold) -> Option<String>| -> Vec<String> {
-        found.thresholds.iter().filter_map(f).collect()
-    };
-    let glare = reads(&|t| {
-        let most = t.glare?;
-        Some(format!(
-            "`{}` ({} glare) to {} times",
-            t.analysis,
-            t.spread,
-            round(most)
-        ))
-    });
-    text += &match glare.is_empty() {
-        true => " No analysis reads the board at any glare of this study.".to_owned(),
-        false => format!(
-            " The board is readable (modulation {} and more) up to a glare over signal of: {}.",
-            Experiment::READABLE,
-            glare.join(", ")
-        ),
-    };
-    let exposure = reads(&|t| {
-        let least = t.exposure?;
-        Some(format!(
-            "`{}` ({} glare) from {}",
-            t.analysis,
-            t.spread,
-            seconds(least)
-        ))
-    });
-    if !exposure.is_empty() {
+    if let Some(bare) = found.by_glare.iter().find(|s| s.glare <= 0.0) {
         text += &format!(
-            " With glare as strong as the signal it becomes readable by: {}.",
-            exposure.join(", ")
+            " Without any glare the published analysis finds {}",
+            mtf(bare.readings.first())
         );
+        text += match bare.readings.first().and_then(|r| r.mtf_normalized) {
+            Some(m) if m.mean < Experiment::READABLE => ": glare alone is not what makes it fail.",
+            _ => ".",
+        };
+    }
+    for spread in spreads(found) {
+        text += &reach(found, spread);
     }
     text
+}
+
+/// The photographs with glare as strong as the signal: the published analysis and the best one.
+fn equal(setting: Option<&Setting>, spread: &str) -> String {
+    let Some(setting) = setting else {
+        return String::new();
+    };
+    let mut text = format!(
+        " With {spread} glare of {} times the signal ({} of exposure a frame, {} electrons of signal a pixel) the published analysis finds a \
+         normalized modulation of {}",
+        round(setting.glare),
+        seconds(setting.exposure),
+        round(setting.electrons),
+        mtf(setting.readings.first()),
+    );
+    let best = setting
+        .readings
+        .iter()
+        .filter_map(|r| Some((r, r.mtf_normalized?.mean)))
+        .max_by(|a, b| a.1.total_cmp(&b.1));
+    if let Some((best, _)) = best {
+        text += &format!(", `{}` {}", best.analysis, mtf(Some(best)));
+    }
+    text + "."
+}
+
+/// What reads the board under one spread of glare, and from which exposure on.
+fn reach(found: &Experiment, spread: &str) -> String {
+    let own: Vec<&Threshold> = found
+        .thresholds
+        .iter()
+        .filter(|t| t.spread == spread)
+        .collect();
+    let most = found
+        .by_glare
+        .iter()
+        .filter(|s| s.spread == spread)
+        .map(|s| s.glare)
+        .fold(0.0, f64::max);
+    let names = |keep: &dyn Fn(&Threshold) -> Option<String>| -> String {
+        own.iter()
+            .filter_map(|t| keep(t))
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let always = names(&|t| (t.glare? >= most).then(|| format!("`{}`", t.analysis)));
+    let some = names(&|t| {
+        let glare = t.glare.filter(|g| *g < most)?;
+        Some(format!("`{}` ({})", t.analysis, round(glare)))
+    });
+    let never = names(&|t| t.glare.is_none().then(|| format!("`{}`", t.analysis)));
+    let mut text = format!(
+        " Under {spread} glare the board is readable (normalized modulation {} and more)",
+        Experiment::READABLE
+    );
+    for (list, what) in [
+        (
+            always,
+            format!(
+                "up to the strongest studied, {} times the signal, by",
+                round(most)
+            ),
+        ),
+        (
+            some,
+            "up to the glare over signal in brackets by".to_owned(),
+        ),
+        (never, "at no glare by".to_owned()),
+    ] {
+        if !list.is_empty() {
+            text += &format!(" {what} {list};");
+        }
+    }
+    let first = own
+        .iter()
+        .filter_map(|t| Some((t, t.exposure?)))
+        .min_by(|a, b| a.1.total_cmp(&b.1));
+    text += &match first {
+        Some((t, exposure)) => format!(
+            " with glare as strong as the signal it needs single frames of at least {}, by `{}`.",
+            seconds(exposure),
+            t.analysis
+        ),
+        None => " with glare as strong as the signal no exposure of single frames makes it so."
+            .to_owned(),
+    };
+    text
+}
+
+fn spreads(found: &Experiment) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for s in &found.by_glare {
+        if !names.contains(&s.spread.as_str()) {
+            names.push(&s.spread);
+        }
+    }
+    names
 }
 
 /// Distance of a ratio from 1, in the logarithm.
@@ -103,7 +141,7 @@ fn off(ratio: f64) -> f64 {
 }
 
 fn mtf(reading: Option<&Reading>) -> String {
-    match reading.and_then(|r| r.mtf) {
+    match reading.and_then(|r| r.mtf_normalized) {
         Some(m) => match m.deviation {
             Some(deviation) => format!("{} ± {}", round(m.mean), round(deviation)),
             None => round(m.mean),
@@ -151,7 +189,7 @@ fn watts(x: f64) -> String {
     format!("{} {unit}", round(scale * x))
 }
 
-/// Largest glare and shortest exposure at which each analysis reads the board, by interpolation in the logarithm of the mean raw modulation
+/// Largest glare and shortest exposure at which each analysis reads the board, by interpolation of the mean normalized modulation over the logarithm
 /// between neighbouring settings.
 pub(super) fn thresholds(by_glare: &[Setting], by_exposure: &[Setting]) -> Vec<Threshold> {
     let mut found = Vec::new();
@@ -175,7 +213,11 @@ pub(super) fn thresholds(by_glare: &[Setting], by_exposure: &[Setting]) -> Vec<T
             .or(exposures.first())
             .map_or(0, |s| s.readings.len());
         for i in 0..count {
-            let mean = |s: &Setting| s.readings[i].mtf.map_or(f64::NEG_INFINITY, |m| m.mean);
+            let mean = |s: &Setting| {
+                s.readings[i]
+                    .mtf_normalized
+                    .map_or(f64::NEG_INFINITY, |m| m.mean)
+            };
             let line = |settings: &[Setting], x: fn(&Setting) -> f64| -> Vec<[f64; 2]> {
                 settings.iter().map(|s| [x(s), mean(s)]).collect()
             };
