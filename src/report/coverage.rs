@@ -37,7 +37,10 @@ pub fn coverage_table(study: &Coverage) -> String {
             plain(row.width)
         );
         if let Some(reason) = &row.reason {
-            reasons += &format!("{}: {reason}\n", row.method);
+            reasons += &format!(
+                "{}: {} of {} seeds gave nothing: {reason}\n",
+                row.method, row.failed, study.seeds
+            );
         }
     }
     if !reasons.is_empty() {

@@ -32,7 +32,9 @@ pub struct CoverageRow {
     pub method: String,
     /// What its bands are, in words; none where it has none.
     pub bands: Option<String>,
-    /// Share of elements whose true albedo lies in its band, over all seeds.
+    /// Seeds for which the method gave nothing; they are left out.
+    pub failed: usize,
+    /// Share of elements whose true albedo lies in its band, over all other seeds.
     pub covered: Option<f64>,
     /// Standard error of that share, from the spread over seeds: the elements of one recovery are correlated.
     pub stderr: Option<f64>,
@@ -42,7 +44,7 @@ pub struct CoverageRow {
     pub bias: Option<f64>,
     /// Mean width of the bands.
     pub width: Option<f64>,
-    /// Why there are none.
+    /// Why the last of the failed seeds gave nothing.
     pub reason: Option<String>,
 }
 
@@ -153,6 +155,7 @@ fn row(method: Method, truth: &[f64], trials: Vec<Result<Trial, RecoveryError>>)
     let mut row = CoverageRow {
         method: method.name().to_owned(),
         bands: None,
+        failed: 0,
         covered: None,
         stderr: None,
         least: None,
@@ -160,13 +163,11 @@ fn row(method: Method, truth: &[f64], trials: Vec<Result<Trial, RecoveryError>>)
         width: None,
         reason: None,
     };
-    let trials: Vec<Trial> = match trials.into_iter().collect() {
-        Ok(trials) => trials,
-        Err(e) => {
-            row.reason = Some(e.to_string());
-            return row;
-        }
-    };
+    let all = trials.len();
+    let reasons = trials.iter().filter_map(|t| t.as_ref().err());
+    row.reason = reasons.map(RecoveryError::to_string).next_back();
+    let trials: Vec<Trial> = trials.into_iter().flatten().collect();
+    row.failed = all - trials.len();
     let Some(first) = trials.first() else {
         return row;
     };

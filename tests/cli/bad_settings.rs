@@ -140,7 +140,7 @@ fn of_recovery() {
 #[test]
 fn of_the_command_itself() {
     refuses_each(&[
-        ("study noise", &["study", "Usage: phicam"]),
+        ("study weather", &["study", "Usage: phicam"]),
         ("render tiny.toml", &["--output", "Usage: phicam render"]),
         ("scene draw bench", &["draw", "scene"]),
         (

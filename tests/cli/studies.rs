@@ -138,3 +138,65 @@ fn a_disagreement_is_mapped() {
             .starts_with(b"\x89PNG")
     );
 }
+
+#[test]
+fn the_experiment_is_told_in_words_tables_and_a_figure() {
+    let workspace = Workspace::with_scenes();
+    let line = "study experiment small.toml -o e --glares 1 --exposures 1 --seeds 2 --samples 64 --frames 2";
+    let ended = workspace.phicam(line).exits(0);
+    for word in [
+        "the published analysis finds",
+        "joint, glare pattern",
+        "normalized modulation by exposure",
+    ] {
+        assert!(ended.stdout.contains(word), "{word}: {}", ended.account());
+    }
+    let json = workspace.json("e/experiment.json");
+    // Two spreads of the glare.
+    assert_eq!(json["by_glare"].as_array().unwrap().len(), 2);
+    let readings = json["by_glare"][0]["readings"].as_array().unwrap().len();
+    // A header, then a line for every reading of 4 settings.
+    let lines = workspace.text("e/experiment.csv").lines().count();
+    assert_eq!(lines, 1 + 4 * readings);
+    let figure = workspace.text("e/experiment.svg");
+    assert!(figure.contains("glare over signal") && !figure.contains("NaN"));
+    let again = workspace
+        .phicam(&format!("{line} --threads 1 --json"))
+        .exits(0);
+    let again: serde_json::Value = serde_json::from_str(&again.stdout).unwrap();
+    assert_eq!(again, json, "threads change nothing");
+    for (wrong, words) in [
+        ("--glares 1,0", ["--glares", "grow"]),
+        ("--glares -1", ["--glares", "0 or more"]),
+        ("--exposures 0", ["--exposures", "above 0"]),
+        ("--falloff 0", ["--falloff", "above 0"]),
+        ("--sensor eye", ["eye", "machine-vision"]),
+        ("--samples 0", ["--samples", "at least 1"]),
+    ] {
+        workspace.refuses(&format!("study experiment small.toml -o f {wrong}"), &words);
+    }
+}
+
+#[test]
+fn coverage_is_a_table_and_json() {
+    let workspace = Workspace::with_scenes();
+    let line = "study coverage small.toml -o c --elements 4 --seeds 20 --method pinv,tsvd,joint-tv";
+    let ended = workspace.phicam(line).exits(0);
+    for word in ["unbiased", "bias left out", "joint-tv has no bands"] {
+        assert!(ended.stdout.contains(word), "{word}: {}", ended.account());
+    }
+    let json = workspace.json("c/coverage.json");
+    assert_eq!(json["rows"].as_array().unwrap().len(), 3);
+    assert!(json["rows"][0]["covered"].as_f64().unwrap() > 0.8);
+    for (wrong, word) in [
+        ("--noise 0", "--noise"),
+        ("--confidence 1", "--confidence"),
+        ("--elements 0", "--elements"),
+        ("--method best", "best"),
+    ] {
+        workspace.refuses(
+            &format!("study coverage small.toml -o d {wrong}"),
+            &[word, "cure"],
+        );
+    }
+}

@@ -4,6 +4,7 @@ mod accuracy;
 mod closed_forms;
 mod indicator;
 mod known;
+mod laboratory;
 mod laws;
 mod model;
 mod noise;
