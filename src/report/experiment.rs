@@ -111,7 +111,7 @@ pub fn experiment_svg(study: &Experiment) -> String {
     let title = format!("The experiment, again: {}", study.scene);
     let note = format!("sensor {}, mean over {} seeds", study.sensor, study.seeds);
     let columns = spreads(&study.by_glare);
-    let width = 250 + 400 * columns.len().max(1) as u32;
+    let width = 330 + 400 * columns.len().max(1) as u32;
     let mut svg = sheet([width, 760], &title, &note);
     let modulation = || Axis {
         run: Run::Linear,
