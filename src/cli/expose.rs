@@ -225,7 +225,7 @@ fn remark_dark(result: &Summary, exposed: &Exposed, talk: Talk) {
     }
     if result.common * exposed.flux.ncols() as f64 > 0.1 {
         talk.say(format!(
-            "warning: {:.0} % of the variance is that of the dark frames, which all spots of a pixel share, and recover takes entries as independent; \
+            "warning: {:.2} % of the variance is that of the dark frames, which all spots of a pixel share, and recover takes entries as independent; \
              take more --dark-frames, or recover with --background",
             100.0 * result.common
         ));

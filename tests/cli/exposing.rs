@@ -216,6 +216,14 @@ fn light_that_stays_and_noise_that_is_shared_are_said() {
         let ended = workspace.phicam(&line).exits(0);
         assert!(ended.stderr.contains(words), "{}", ended.account());
     }
+    // Read noise, dark current and rounding of one frame, electrons², over those of each entry.
+    let electrons = 0.79 * 1e-3 * 632.8e-9 / (6.626_070_15e-34 * 299_792_458.0);
+    let dark = 12.6 * 12.6 + 0.080 * 1e-3 + 1.413 * 1.413 / 12.0;
+    let stderr = workspace.matrix("done/exposed/phi.stderr.npy");
+    let share = stderr.map(|s| dark / (s * electrons).powi(2)).mean();
+    let account = workspace.json("done/exposed/exposure.json");
+    let found = account["result"]["common"].as_f64().unwrap();
+    assert!((found / share - 1.0).abs() < 1e-9, "{found} {share}");
     let quiet = workspace
         .phicam("expose done --sensor ccd --exposure 0.001 --dark-frames 2000")
         .exits(0);
