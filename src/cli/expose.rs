@@ -86,6 +86,7 @@ pub(super) fn execute(args: &ExposeArgs, talk: Talk) -> Result<Outcome, Failure>
     let exposed = sensor.expose(&light, &exposure, args.seed)?;
     let result = Summary::new(&sensor, &light, &exposure, &exposed);
     remark(&result, args.strict, talk)?;
+    remark_dark(&result, &exposed, talk);
     let account = Account {
         version: version().to_owned(),
         scene: scene.name.clone(),
@@ -211,6 +212,24 @@ fn remark(result: &Summary, strict: bool, talk: Talk) -> Result<(), Failure> {
         talk.say("warning: no entry rises above its noise; expose longer or average more frames");
     }
     Ok(())
+}
+
+/// What of the frames without laser a recovery has to know.
+fn remark_dark(result: &Summary, exposed: &Exposed, talk: Talk) {
+    if result.pedestal > 0.1 * exposed.stderr.mean() {
+        talk.say(format!(
+            "warning: {:.2e} W of dark current and ambient light stay in every entry; subtract --dark-frames, \
+             or recover with --background",
+            result.pedestal
+        ));
+    }
+    if result.common * exposed.flux.ncols() as f64 > 0.1 {
+        talk.say(format!(
+            "warning: {:.2} % of the variance is that of the dark frames, which all spots of a pixel share, and recover takes entries as independent; \
+             take more --dark-frames, or recover with --background",
+            100.0 * result.common
+        ));
+    }
 }
 
 fn write(

@@ -3,19 +3,21 @@
 use std::path::Path;
 
 use super::args::RecoverArgs;
+use super::expose::SATURATED;
 use super::failure::Failure;
 use super::finished::{read_matrix, read_run, read_stderr};
 use super::folder::{PHI, SCENE, STDERR};
 use super::output::{self, Talk};
 use super::record::Record;
+use super::stale::remove_named;
 use super::{Outcome, recover_options, settings};
 use crate::matrix::{Matrix, npy};
 use crate::model::MatrixModel;
-use crate::recovery::{Method, Nuisance, Picard, Uncertainty};
+use crate::recovery::{Directions, Method, Nuisance, Picard, Uncertainty};
 use crate::report::{self, Panel};
 use crate::scene::Scene;
 use crate::store::{ensure_writable, write_whole};
-use crate::study::{Attempt, Noise, RecoveredObject, picard, recover_objects};
+use crate::study::{Attempt, Noise, RecoveredObject, picards, recover_objects};
 
 /// Elements whose covariance and resolution are still written: 32 MiB each.
 const MOST_CORRELATED: usize = 2048;
@@ -26,6 +28,7 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
         names => names.iter().map(|n| n.parse()).collect::<Result<_, _>>()?,
     };
     let mut options = recover_options::checked(args, &methods)?;
+    refuse_repetition(&methods)?;
     // Measured photographs come without a run: a scene.toml is enough for them.
     let measured = args.phi.is_some() && !args.dir.join(Record::FILE).exists();
     let scene = match measured {
@@ -33,6 +36,9 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
         false => read_run(&args.dir)?.0,
     };
     let phi = read_matrix(args.phi.as_ref().unwrap_or(&args.dir.join(PHI)), &scene)?;
+    if let (Some(file), false) = (&args.phi, args.keep_clipped) {
+        refuse_clipped(file, &scene)?;
+    }
     let stderr = match (&args.stderr, args.noise) {
         (_, Some(noise)) => Some(phi.map(|x| x.abs() * noise)),
         (Some(file), None) => Some(read_stderr(file, &scene)?),
@@ -61,7 +67,8 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
     let attempts = recover_objects(&model, &phi, noise, nuisance, &methods, &options);
     let single = methods.len() == 1;
     let objects = collect(attempts, single, talk)?;
-    write(&args.dir, &objects, &picard(&model, &phi, noise)?)?;
+    let picards = picards(&model, &phi, noise, nuisance, &methods, &options)?;
+    write(&args.dir, &objects, &picards)?;
     let text = if args.json {
         output::json(&objects)?
     } else {
@@ -69,6 +76,39 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
     };
     output::print(&text)?;
     Ok(Outcome::Done)
+}
+
+fn refuse_repetition(methods: &[Method]) -> Result<(), Failure> {
+    let repeated = (1..methods.len()).find(|k| methods[..*k].contains(&methods[*k]));
+    match repeated {
+        None => Ok(()),
+        Some(k) => Err(Failure::new(
+            format!("--method names {} twice", methods[k]),
+            "name each once: their files would overwrite each other",
+        )),
+    }
+}
+
+/// Refuses photographs of `phicam expose` whose values mean nothing in places: they are too low or too high by nobody knows how much, and no standard
+/// error says so.
+fn refuse_clipped(phi: &Path, scene: &Scene) -> Result<(), Failure> {
+    let mask = phi.with_file_name(SATURATED);
+    if !mask.exists() {
+        return Ok(());
+    }
+    let marked = read_matrix(&mask, scene)?;
+    match marked.iter().filter(|x| **x != 0.0).count() {
+        0 => Ok(()),
+        n => Err(Failure::new(
+            format!(
+                "{n} of {} entries of {} are saturated or cut off, says {}: neither their values nor their standard errors mean anything",
+                marked.len(),
+                phi.display(),
+                mask.display()
+            ),
+            "expose for a shorter time or in --brackets; --keep-clipped takes them as they are",
+        )),
+    }
 }
 
 /// How much of the uncertainty fits the elements of the model.
@@ -116,20 +156,29 @@ pub(super) fn collect(
 
 /// Writes DIR/recovered/METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png, and overview.png with all of them side
 /// by side; what is known of the uncertainty in METHOD.stderr.npy (nv × nu), METHOD.covariance.npy and METHOD.resolution.npy (own elements ×
-/// elements of all surfaces), METHOD.lower.npy and METHOD.upper.npy where bands were asked for; picard.csv and picard.svg. Where several surfaces are hidden the names are METHOD-0, METHOD-1, … in file order.
+/// elements of all surfaces), METHOD.bias.npy (nv × nu), METHOD.lower.npy and METHOD.upper.npy where bands were asked for; NAME.csv and NAME.svg of each of
+/// `picards`, and no others. Where several surfaces are hidden the names are METHOD-0, METHOD-1, … in file order.
 pub(super) fn write(
     dir: &Path,
     objects: &[RecoveredObject],
-    picard: &Picard,
+    picards: &[Picard],
 ) -> Result<(), Failure> {
     let folder = dir.join("recovered");
     ensure_writable(&folder)?;
-    let texts = [
-        ("picard.csv", report::picard_csv(picard)),
-        ("picard.svg", report::picard_svg(picard)),
-    ];
-    for (name, text) in texts {
-        write_whole(&folder.join(name), |w| w.write_all(text.as_bytes()))?;
+    remove_named(&folder, &["picard-joint.csv", "picard-joint.svg"])?;
+    for picard in picards {
+        let name = match picard.directions {
+            Directions::LaserSide => "picard",
+            Directions::Joint | Directions::JointWeighted => "picard-joint",
+        };
+        let texts = [
+            ("csv", report::picard_csv(picard)),
+            ("svg", report::picard_svg(picard)),
+        ];
+        for (extension, text) in texts {
+            let path = folder.join(format!("{name}.{extension}"));
+            write_whole(&path, |w| w.write_all(text.as_bytes()))?;
+        }
     }
     let mut surfaces: Vec<&str> = Vec::new();
     for object in objects {
@@ -158,12 +207,6 @@ pub(super) fn write(
                 write_png(&path, surface, std::slice::from_ref(&panel))?;
                 panels.push(panel);
             }
-            let bands = object.bands.as_ref();
-            let limits = bands.map(|b| [("lower", &b.lower), ("upper", &b.upper)]);
-            for (end, values) in limits.into_iter().flatten() {
-                let path = folder.join(format!("{}{suffix}.{end}.npy", object.method));
-                npy::write(&path, &Matrix::from_row_slice(nv, nu, values))?;
-            }
             write_uncertainty(&folder, &format!("{}{suffix}", object.method), object)?;
         }
         write_png(&folder.join(format!("overview{suffix}")), surface, &panels)?;
@@ -171,12 +214,16 @@ pub(super) fn write(
     Ok(())
 }
 
-/// Writes `name`.stderr.npy, `name`.covariance.npy and `name`.resolution.npy, and removes those of an earlier recovery that are not known now.
+/// Writes `name`.stderr.npy, `name`.covariance.npy, `name`.resolution.npy, `name`.bias.npy, `name`.lower.npy and `name`.upper.npy, and removes those of an earlier recovery that are not known now.
 fn write_uncertainty(folder: &Path, name: &str, object: &RecoveredObject) -> Result<(), Failure> {
     let [nu, nv] = object.elements;
-    let stderr = object.standard_error.as_ref();
+    let picture = |values: &Vec<f64>| Matrix::from_row_slice(nv, nu, values);
+    let bands = object.bands.as_ref();
     let matrices = [
-        ("stderr", stderr.map(|s| Matrix::from_row_slice(nv, nu, s))),
+        ("stderr", object.standard_error.as_ref().map(picture)),
+        ("bias", object.bias.as_ref().map(picture)),
+        ("lower", bands.map(|b| picture(&b.lower))),
+        ("upper", bands.map(|b| picture(&b.upper))),
         ("covariance", object.covariance.clone()),
         ("resolution", object.resolution.clone()),
     ];

@@ -93,7 +93,19 @@ fn used(args: &RecoverArgs, methods: &[Method]) -> Result<(), Failure> {
         Method::JointTv,
         Method::JointTwoValued,
     ];
-    let needs: [(&str, bool, &[Method]); 7] = [
+    let damped = [Method::Tikhonov, Method::TikhonovGradient];
+    let cutting = [
+        Method::Pinv,
+        Method::LeftInverse,
+        Method::RightInverse,
+        Method::Rdivide,
+        Method::RdivideMinNorm,
+        Method::JointUnbounded,
+    ];
+    let needs: [(&str, bool, &[Method]); 10] = [
+        ("--rank", args.rank.is_some(), &[Method::Tsvd]),
+        ("--damping", args.damping.is_some(), &damped),
+        ("--tolerance", args.tolerance.is_some(), &cutting),
         ("--tv", joint.tv.is_some(), &[Method::JointTv]),
         (
             "--levels",

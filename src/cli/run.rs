@@ -137,8 +137,15 @@ fn compare_and_recover(
         &options,
     );
     results.recovered = recover::collect(attempts, false, talk)?;
-    let picard = study::picard(&matrices, &results.phi, noise)?;
-    recover::write(&args.output, &results.recovered, &picard)?;
+    let picards = study::picards(
+        &matrices,
+        &results.phi,
+        noise,
+        Nuisance::default(),
+        &Method::USUAL,
+        &options,
+    )?;
+    recover::write(&args.output, &results.recovered, &picards)?;
     clock.lap("recover")?;
     Ok(())
 }

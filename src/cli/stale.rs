@@ -51,10 +51,19 @@ pub(super) fn remove_recovered(dir: &Path) -> Result<(), Failure> {
         let (name, what) = stem.split_once('.').unwrap_or((stem, ""));
         let name = name.trim_end_matches(|c: char| c.is_ascii_digit());
         let name = name.strip_suffix('-').unwrap_or(name);
-        let known =
-            ["truth", "overview", "picard"].contains(&name) || name.parse::<Method>().is_ok();
-        let ours =
-            known && ["", "stderr", "covariance", "resolution", "lower", "upper"].contains(&what);
+        let known = ["truth", "overview", "picard", "picard-joint"].contains(&name)
+            || name.parse::<Method>().is_ok();
+        let ours = known
+            && [
+                "",
+                "stderr",
+                "covariance",
+                "resolution",
+                "bias",
+                "lower",
+                "upper",
+            ]
+            .contains(&what);
         ours && matches!(ext, "npy" | "png" | "csv" | "svg")
     })?;
     let _ = fs::remove_dir(dir);

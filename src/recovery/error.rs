@@ -4,6 +4,14 @@ use super::{Method, Rule};
 use crate::num::linalg::LinalgError;
 use crate::num::quadratic::QuadraticError;
 
+/// The way out by another rule, of the methods that have one.
+fn other_rules(method: Method) -> &'static str {
+    match method {
+        Method::JointTv => "or ",
+        _ => "choose by a rule that needs none (gcv, l-curve), or ",
+    }
+}
+
 /// Why nothing was recovered.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RecoveryError {
@@ -36,6 +44,16 @@ pub enum RecoveryError {
         /// Column, from 0.
         column: usize,
         /// The entry.
+        value: f64,
+    },
+    /// Entries whose squares no number holds.
+    #[error(
+        "{name} has entries of the size {value:e}, whose squares leave the range of numbers; give them in the unit that they are documented in"
+    )]
+    OutOfScale {
+        /// Which matrix.
+        name: &'static str,
+        /// The largest entry of it, or the least standard error.
         value: f64,
     },
     /// A standard error below zero.
@@ -96,7 +114,7 @@ pub enum RecoveryError {
     /// No noise model and no parameter.
     #[error(
         "{method} needs to know the noise to choose its {parameter}; give the standard error of phi (phi.stderr.npy), \
-         choose by a rule that needs none (gcv, l-curve), or give the {parameter} yourself"
+         {}give the {parameter} yourself", other_rules(*method)
     )]
     NoNoiseModel {
         /// The method's name.
@@ -107,7 +125,7 @@ pub enum RecoveryError {
     /// A noise model that says there is no noise.
     #[error(
         "every standard error is zero, and {method} chooses its {parameter} by how much noise there is; give the true standard error of phi, \
-         choose by a rule that needs none (gcv, l-curve), or give the {parameter} yourself"
+         {}give the {parameter} yourself", other_rules(*method)
     )]
     NoNoise {
         /// The method's name.
@@ -158,7 +176,7 @@ pub enum RecoveryError {
     },
     /// A method that compares neighbours was told of none.
     #[error(
-        "{method} compares neighbouring elements and knows of none; give the element grids (Problem::with_grids), one of more than one element among them, \
+        "{method} compares neighbouring elements and knows of none; give element grids of which one has more than one element, \
          or use tikhonov"
     )]
     NoGrids {

@@ -67,7 +67,7 @@ impl Method {
     }
 
     /// Whether the method works on all pixels and spots at once, and so can estimate nuisance terms.
-    pub(super) fn is_joint(self) -> bool {
+    pub fn is_joint(self) -> bool {
         matches!(
             self,
             Method::JointUnbounded

@@ -39,8 +39,9 @@
 //! The joint methods can estimate other light of known form with the reflectances ([`Nuisance`]). [`cramer_rao`] says what no unbiased estimate can
 //! undercut; [`Bands`] what a recovery knows of itself.
 //!
-//! All but the last are linear in Φ: with a noise model they carry the covariance that it makes of their noise, and always the resolution matrix
-//! of what they make of the truth. [`picard`](picard()) shows which singular directions rise above the noise.
+//! Those up to [`Method::JointUnbounded`] are linear in Φ: with a noise model they carry the covariance that it makes of their noise, and always the resolution matrix
+//! of what they make of the truth, from which their bias follows ([`Recovered::bias`]). [`picard`](picard()) and [`picard_joint`] show which singular
+//! directions rise above the noise.
 //!
 //! ```
 //! use nalgebra::DMatrix;
@@ -67,10 +68,10 @@ mod rule;
 
 pub use bands::{BandKind, Bands};
 pub use error::RecoveryError;
-pub use joint::{CramerRao, Estimated, Nuisance, Weighting, cramer_rao};
+pub use joint::{CramerRao, Estimated, Nuisance, Weighting, cramer_rao, picard_joint};
 pub use method::{Method, UnknownMethod};
 pub use outcome::{Choice, Parameter, Recovered, Solver};
-pub use picard::{Picard, picard};
+pub use picard::{Directions, Picard, picard};
 pub use problem::{Options, Problem, Uncertainty, WeightRule};
 pub use rule::Rule;
 

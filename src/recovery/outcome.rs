@@ -128,6 +128,17 @@ pub struct Recovered {
 }
 
 impl Recovered {
+    /// The bias (R − 1) ρ that regularisation gives an estimate of the reflectances `truth`; none without a resolution matrix, with a free scale, or for
+    /// another number of elements. Of dropped directions ρ̂ itself knows nothing: put it in place of the truth, and the bias of `tsvd` comes out near zero.
+    pub fn bias(&self, truth: &[f64]) -> Option<DVector<f64>> {
+        let scaled = self.nuisance.as_ref().is_some_and(|n| n.scale.is_some());
+        let resolution = self.resolution.as_ref()?;
+        (!scaled && truth.len() == resolution.ncols()).then(|| {
+            let truth = DVector::from_column_slice(truth);
+            resolution * &truth - truth
+        })
+    }
+
     /// A recovery without parameter, weights or noise model, its residual measured.
     pub(super) fn plain(
         method: Method,

@@ -5,15 +5,28 @@ use nalgebra::DVector;
 use super::{Problem, RecoveryError};
 use crate::num::linalg::svd;
 
-/// The data in the singular directions of the laser side D = U Σ Vᵀ: an inverse divides each by its σ_i, so a direction is of use only while its
-/// coefficient lies above the noise. Root mean squares over the pixels.
+/// Whose singular directions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Directions {
+    /// The laser side's; root mean squares over the pixels, W.
+    LaserSide,
+    /// Those of the joint operator, all entries weighted alike; W.
+    Joint,
+    /// Those of the joint operator weighted by the noise; about standard deviations.
+    JointWeighted,
+}
+
+/// The data in singular directions. Of the laser side D = U Σ Vᵀ ([`picard`]): an inverse divides each by its σ_i, so a direction is of use only while its
+/// coefficient lies above the noise. Root mean squares over the pixels. Of the joint operator: [`picard_joint`](super::picard_joint).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picard {
-    /// Singular values of D, descending; C times D is in W.
+    /// Whose directions, and so the unit.
+    pub directions: Directions,
+    /// Singular values of D, descending; C times D is in W. Or those of the joint operator.
     pub sigma: DVector<f64>,
-    /// √((1/p) Σ_p (Φ v_i)_p²), W.
+    /// √((1/p) Σ_p (Φ v_i)_p²), W. Or |⟨u_i, √W Φ⟩|.
     pub coefficient: DVector<f64>,
-    /// What noise alone makes of it, √((1/p) Σ_pl σ²\[p,l\] v_il²), W; none without a noise model.
+    /// What noise alone makes of it, √((1/p) Σ_pl σ²\[p,l\] v_il²), W, or √(Σ_pl u_i\[p,l\]² w\[p,l\] σ²\[p,l\]); none without a noise model.
     pub noise: Option<DVector<f64>>,
 }
 
@@ -47,6 +60,7 @@ pub fn picard(problem: &Problem<'_>) -> Result<Picard, RecoveryError> {
         (squares * variance).map(root_mean_square)
     });
     Ok(Picard {
+        directions: Directions::LaserSide,
         sigma: laser.sigma,
         coefficient,
         noise,

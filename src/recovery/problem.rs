@@ -21,7 +21,7 @@ impl<'a> Problem<'a> {
     /// and the standard errors of the entries of Φ (same shape, W) where they are known. The errors of different entries are taken as independent.
     ///
     /// # Errors
-    /// [`RecoveryError::Shape`], [`RecoveryError::NotFinite`], [`RecoveryError::NegativeStandardError`].
+    /// [`RecoveryError::Shape`], [`RecoveryError::NotFinite`], [`RecoveryError::OutOfScale`], [`RecoveryError::NegativeStandardError`].
     pub fn new(
         phi: &'a DMatrix<f64>,
         c: &'a DMatrix<f64>,
@@ -59,9 +59,13 @@ impl<'a> Problem<'a> {
                     value: matrix[at],
                 });
             }
+            refuse_scale(name, matrix.amax())?;
         }
         if let Some(stderr) = stderr {
             expect("stderr", stderr, pixels, spots)?;
+            // Each entry is divided by its own, so that the least counts as well as the largest.
+            let positive = stderr.iter().copied().filter(|x| *x > 0.0);
+            refuse_scale("stderr", positive.fold(0.0, least))?;
             if let Some(at) = stderr.iter().position(|&x| x < 0.0) {
                 return Err(RecoveryError::NegativeStandardError {
                     pixel: at % pixels,
@@ -102,7 +106,7 @@ impl<'a> Problem<'a> {
     /// The same with terms of unknown size to be estimated together with the reflectances; the joint methods can.
     ///
     /// # Errors
-    /// [`RecoveryError::Shape`] or [`RecoveryError::NotFinite`] of a glare pattern.
+    /// [`RecoveryError::Shape`], [`RecoveryError::NotFinite`] or [`RecoveryError::OutOfScale`] of a glare pattern.
     pub fn with_nuisance(self, nuisance: Nuisance<'a>) -> Result<Self, RecoveryError> {
         if let Some(pattern) = nuisance.glare {
             let (rows, columns) = self.phi.shape();
@@ -124,6 +128,7 @@ impl<'a> Problem<'a> {
                     value: pattern[at],
                 });
             }
+            refuse_scale("the glare pattern", pattern.amax())?;
         }
         Ok(Problem { nuisance, ..self })
     }
@@ -154,6 +159,22 @@ impl<'a> Problem<'a> {
     pub(super) fn residual(&self, reflectance: &DVector<f64>) -> f64 {
         (self.phi - self.light(reflectance)).norm()
     }
+}
+
+/// Sizes whose squares, and products of squares of two matrices, stay well within f64.
+const SCALE: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
+
+/// Refuses a matrix by the size of an entry that decides its scale; zero has none.
+fn refuse_scale(name: &'static str, value: f64) -> Result<(), RecoveryError> {
+    match value == 0.0 || SCALE.contains(&value) {
+        true => Ok(()),
+        false => Err(RecoveryError::OutOfScale { name, value }),
+    }
+}
+
+/// The lesser of two numbers, where 0 stands for none yet.
+fn least(least: f64, x: f64) -> f64 {
+    if least > 0.0 { least.min(x) } else { x }
 }
 
 /// By what the joint methods weigh the entries of Φ.
@@ -268,6 +289,35 @@ mod tests {
                 ..
             }
         ));
+    }
+
+    /// Squares of such numbers overflow or vanish: residuals became NaN, and limits zero.
+    #[test]
+    fn numbers_whose_squares_leave_f64_are_refused() {
+        for which in 0..4 {
+            for factor in [1e300, 1e160, 1e-160, 1e-310] {
+                let mut all = matrices();
+                all[which] *= factor;
+                let [phi, c, d, stderr] = &all;
+                let error = Problem::new(phi, c, d, Some(stderr)).unwrap_err();
+                assert!(matches!(error, RecoveryError::OutOfScale { .. }), "{error}");
+            }
+        }
+        let [phi, c, d, mut stderr] = matrices();
+        stderr[(1, 2)] = 1e-300;
+        let error = Problem::new(&phi, &c, &d, Some(&stderr)).unwrap_err();
+        assert!(matches!(
+            error,
+            RecoveryError::OutOfScale { name: "stderr", .. }
+        ));
+        let pattern = &phi * 1e200;
+        let nuisance = Nuisance {
+            glare: Some(&pattern),
+            ..Nuisance::default()
+        };
+        let problem = Problem::new(&phi, &c, &d, None).unwrap();
+        assert!(problem.with_nuisance(nuisance).is_err());
+        assert!(Problem::new(&(phi * 0.0), &c, &d, Some(&(stderr * 0.0))).is_ok());
     }
 
     #[test]

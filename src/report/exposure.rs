@@ -74,6 +74,8 @@ mod tests {
             saturated: 3_072_000,
             floored: 12,
             taken: vec![27_648_000, 3_072_000],
+            pedestal: 0.0,
+            common: 0.0,
             snr_mean: Some(12.345),
             snr_max: None,
         };

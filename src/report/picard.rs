@@ -2,11 +2,16 @@
 
 use super::chart::{Axis, Run, Series, legend, panel};
 use super::svg::Svg;
-use crate::recovery::Picard;
+use crate::recovery::{Directions, Picard};
 
-/// One line per singular direction: its number from 1, σ, coefficient (W), noise level (W; empty where the noise is not known).
+/// One line per singular direction: its number from 1, σ, coefficient and noise level (in W but for weighted directions; empty where the noise is not
+/// known).
 pub fn picard_csv(picard: &Picard) -> String {
-    let mut out = String::from("direction,sigma,coefficient_W,noise_W\n");
+    let head = match picard.directions {
+        Directions::LaserSide | Directions::Joint => "direction,sigma,coefficient_W,noise_W\n",
+        Directions::JointWeighted => "direction,sigma,coefficient,noise\n",
+    };
+    let mut out = String::from(head);
     for (i, (sigma, coefficient)) in picard
         .sigma
         .iter()
@@ -34,7 +39,21 @@ pub fn picard_svg(picard: &Picard) -> String {
             .collect(),
     };
     let (sigma, coefficient) = (picard.sigma.as_slice(), picard.coefficient.as_slice());
-    let scale = coefficient[0] / sigma[0];
+    let (title_x, title_y) = match picard.directions {
+        Directions::LaserSide => (
+            "singular direction i of the laser side",
+            "root mean square over the pixels, W",
+        ),
+        Directions::Joint => ("singular direction i of all pixels and spots", "W"),
+        Directions::JointWeighted => (
+            "singular direction i of all pixels and spots, weighted",
+            "standard deviations of the noise, about",
+        ),
+    };
+    let scale = match coefficient[0] / sigma[0] {
+        scale if scale > 0.0 => scale,
+        _ => 1.0,
+    };
     let mut series = vec![
         curve("data in direction i", coefficient, 1.0),
         curve("singular value σᵢ, scaled", sigma, scale),
@@ -45,10 +64,10 @@ pub fn picard_svg(picard: &Picard) -> String {
     let x = Axis {
         run: Run::Linear,
         ends: [0.0, (sigma.len() + 1) as f64],
-        title: "singular direction i of the laser side".to_owned(),
+        title: title_x.to_owned(),
     };
     let values = series.iter().flat_map(|s| &s.points).map(|p| p[1]);
-    let y = Axis::decades(values, "root mean square over the pixels, W");
+    let y = Axis::decades(values, title_y);
     let mut svg = Svg::default();
     svg.raw(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 900 440\" font-family=\"sans-serif\" font-size=\"13\" \
@@ -71,10 +90,26 @@ mod tests {
 
     fn sample(noise: Option<DVector<f64>>) -> Picard {
         Picard {
+            directions: Directions::LaserSide,
             sigma: DVector::from_row_slice(&[2.0, 1e-3, 1e-9]),
             coefficient: DVector::from_row_slice(&[4e-12, 3e-15, 0.0]),
             noise,
         }
+    }
+
+    /// Data without any light along the first direction are no reason for a figure without singular values.
+    #[test]
+    fn a_first_coefficient_of_zero() {
+        let picard = Picard {
+            directions: Directions::JointWeighted,
+            coefficient: DVector::zeros(3),
+            ..sample(None)
+        };
+        let svg = picard_svg(&picard);
+        assert!(
+            !svg.contains("NaN") && !svg.contains("inf") && svg.contains("standard deviations")
+        );
+        assert!(picard_csv(&picard).starts_with("direction,sigma,coefficient,noise\n"));
     }
 
     #[test]

@@ -122,6 +122,7 @@ pub(super) fn whole(mut run: RunResults) -> RunResults {
                     .into(),
                 bands: None,
                 standard_error: None,
+                bias: None,
                 effective_rank: 4.0,
                 covariance: None,
                 resolution: None,

@@ -107,7 +107,7 @@ pub use error::{Place, SceneError};
 pub use known::Known;
 pub use laser::{Laser, Profile, Spot};
 pub use quantity::Quantity;
-pub use sensor::{Glare, SensorModel, SensorSettings, Spread};
+pub use sensor::{Glare, MOST_BRACKETS, SensorModel, SensorSettings, Spread};
 pub use surface::{Role, Surface};
 pub use texture::{Cells, Texture};
 pub use warning::Warning;

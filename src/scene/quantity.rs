@@ -64,7 +64,10 @@ impl Quantity {
                 (0.0..=16.0).contains(&value),
                 "1 to 16 bits, or 0 for no converter",
             ),
-            Self::Offset => (not_negative, "0 or more counts"),
+            Self::Offset => (
+                (0.0..=65535.0).contains(&value),
+                "0 or more counts, up to 65535",
+            ),
             Self::RelativeNoise => (
                 (0.0..1.0).contains(&value),
                 "0 or more and below 1: relative to each entry, e.g. 0.01",
@@ -77,7 +80,10 @@ impl Quantity {
                 (0.0..=1.0).contains(&value),
                 "0 to 1: a part of the flux entering the lens",
             ),
-            Self::GlareFalloff => (positive, "a positive length in the scene's unit"),
+            Self::GlareFalloff => (
+                (1e-60..=1e60).contains(&value),
+                "a positive length in the scene's unit, 1e-60 to 1e60",
+            ),
         };
         (!allowed).then_some(range)
     }

@@ -93,7 +93,7 @@ pub struct SensorSettings {
 }
 
 /// Most exposure times of one series.
-const MOST_BRACKETS: usize = 16;
+pub const MOST_BRACKETS: usize = 16;
 
 impl SensorSettings {
     /// Checks every value; `None` if all make sense, else the keys to blame below the table, cause and cure.

@@ -1,6 +1,6 @@
 //! What a sensor cannot photograph.
 
-use crate::scene::Quantity;
+use crate::scene::{MOST_BRACKETS, Quantity};
 
 /// Why an exposure makes no sense. Each message names cause and cure.
 #[derive(Clone, Copy, Debug, thiserror::Error, PartialEq)]
@@ -28,6 +28,33 @@ pub enum SensorError {
     /// No exposure time.
     #[error("no exposure time is given; give one, or several for a series")]
     NoTime,
+    /// More exposure times than a series has.
+    #[error("a series of {0} exposure times is too long; give 1 to {most}", most = MOST_BRACKETS)]
+    ManyTimes(usize),
+    /// Light that makes more electrons than a number holds.
+    #[error(
+        "an exposure of {time:e} s with the ambient light and dark current given makes more electrons than a number holds; \
+         expose for a shorter time, or lower those"
+    )]
+    Overflow {
+        /// The longest exposure time, s.
+        time: f64,
+    },
+    /// Figures that leave nothing but infinities.
+    #[error(
+        "pixel {pixel}, spot {spot} comes out as {flux} W with a standard deviation of {stderr} W; figures of the sensor or the exposure time are \
+         beyond all measure: check gain, read_noise, dark_current, quantum_efficiency and exposure"
+    )]
+    Unbounded {
+        /// Pixel index.
+        pixel: usize,
+        /// Spot index.
+        spot: usize,
+        /// What was measured, W.
+        flux: f64,
+        /// Its standard deviation, W.
+        stderr: f64,
+    },
     /// A wavelength that light cannot have.
     #[error(
         "a wavelength of {0} m has no photons; give a positive number of metres, e.g. 632.8e-9"

@@ -67,7 +67,7 @@ impl Sensor {
     /// their error is common to a row.
     ///
     /// # Errors
-    /// [`SensorError::Flux`] if a flux gives more electrons than a number can hold.
+    /// [`SensorError::Overflow`] where there are more electrons than a number holds, [`SensorError::Unbounded`] where what comes out is infinite.
     pub fn expose(
         &self,
         light: &Light<'_>,
@@ -76,7 +76,7 @@ impl Sensor {
     ) -> Result<Exposed, SensorError> {
         let (pixels, spots) = light.shape();
         let laws = Law::of(self.figures(), light, exposure);
-        refuse_overflow(light, &laws)?;
+        refuse_overflow(light, &laws, exposure)?;
         let chain = Chain {
             figures: self.figures(),
             exposure,
@@ -94,7 +94,7 @@ impl Sensor {
         let entries = || columns.iter().flat_map(|c| &c.entries);
         let matrix =
             |values: &mut dyn Iterator<Item = f64>| Matrix::from_iterator(pixels, spots, values);
-        Ok(Exposed {
+        refuse_infinities(Exposed {
             flux: matrix(&mut entries().map(|e| e.0)),
             stderr: matrix(&mut entries().map(|e| e.1)),
             counts: (0..laws.len())
@@ -106,19 +106,34 @@ impl Sensor {
     }
 }
 
-fn refuse_overflow(light: &Light<'_>, laws: &[Law]) -> Result<(), SensorError> {
+fn refuse_overflow(
+    light: &Light<'_>,
+    laws: &[Law],
+    exposure: &Exposure,
+) -> Result<(), SensorError> {
     let (pixels, spots) = light.shape();
-    for (spot, pixel) in (0..spots).flat_map(|s| (0..pixels).map(move |p| (s, p))) {
-        let flux = light.of_laser(pixel, spot);
-        if !laws[0].electrons(flux).is_finite() {
-            return Err(SensorError::Flux {
-                pixel,
-                spot,
-                value: flux,
-            });
-        }
+    let mut entries = (0..spots).flat_map(|s| (0..pixels).map(move |p| (s, p)));
+    let bounded = |(spot, pixel)| laws[0].electrons(light.of_laser(pixel, spot)).is_finite();
+    match entries.all(bounded) {
+        true => Ok(()),
+        false => Err(SensorError::Overflow {
+            time: exposure.times()[0],
+        }),
     }
-    Ok(())
+}
+
+fn refuse_infinities(exposed: Exposed) -> Result<Exposed, SensorError> {
+    let pixels = exposed.flux.nrows();
+    let mut entries = exposed.flux.iter().zip(&exposed.stderr);
+    match entries.position(|(x, s)| !(x.is_finite() && s.is_finite())) {
+        None => Ok(exposed),
+        Some(at) => Err(SensorError::Unbounded {
+            pixel: at % pixels,
+            spot: at / pixels,
+            flux: exposed.flux[at],
+            stderr: exposed.stderr[at],
+        }),
+    }
 }
 
 /// A sensor at work.

@@ -3,7 +3,7 @@
 use super::error::{SensorError, check};
 use crate::matrix::Matrix;
 use crate::num::units::photon_energy;
-use crate::scene::Quantity;
+use crate::scene::{MOST_BRACKETS, Quantity};
 
 /// The light that falls on the sensor.
 #[derive(Clone, Copy, Debug)]
@@ -109,10 +109,13 @@ impl Exposure {
     /// `frames` frames of each of the exposure times (s), and as many times `dark_frames` without the laser.
     ///
     /// # Errors
-    /// [`SensorError::NoTime`], [`SensorError::Figure`].
+    /// [`SensorError::NoTime`], [`SensorError::ManyTimes`], [`SensorError::Figure`].
     pub fn new(times: &[f64], frames: u32, dark_frames: u32) -> Result<Self, SensorError> {
         if times.is_empty() {
             return Err(SensorError::NoTime);
+        }
+        if times.len() > MOST_BRACKETS {
+            return Err(SensorError::ManyTimes(times.len()));
         }
         for time in times {
             check(Quantity::Exposure, *time)?;

@@ -100,6 +100,19 @@ impl Law {
         }
     }
 
+    /// What stays in the linearised flux without light of the laser, W.
+    pub(super) fn pedestal(&self) -> f64 {
+        self.mean(0.0)
+    }
+
+    /// The variance that the dark frames bring in, W²: one error for all spots of a pixel.
+    pub(super) fn common(&self) -> f64 {
+        match self.dark_frames {
+            0 => 0.0,
+            frames => self.averaged(self.dark, frames) / (self.response * self.response),
+        }
+    }
+
     /// Standard deviation of the linearised flux, W.
     pub(super) fn deviation(&self, flux: f64) -> f64 {
         let dark = match self.dark_frames {

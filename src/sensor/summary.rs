@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::expose::{Exposed, Range};
 use super::exposure::{Exposure, Light};
 use super::figures::Sensor;
+use super::law::Law;
 
 /// What photographs came to.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -21,6 +22,10 @@ pub struct Summary {
     pub floored: usize,
     /// Entries taken from each exposure time, the longest first.
     pub taken: Vec<usize>,
+    /// Dark current and ambient light that stay in every entry because no dark frames were subtracted, W.
+    pub pedestal: f64,
+    /// Part of the variance that comes from the dark frames, mean over the entries: an error that all spots of a pixel have in common.
+    pub common: f64,
     /// Signal (the clean flux) over standard deviation, mean over the entries within range; `None` without such entries or without noise.
     pub snr_mean: Option<f64>,
     /// The largest of them.
@@ -37,6 +42,14 @@ impl Summary {
             .filter(within)
             .map(|at| light.signal(at % pixels, at / pixels) / exposed.stderr[at])
             .collect();
+        let laws = Law::of(sensor.figures(), light, exposure);
+        let shares = (exposed.bracket.iter().zip(&exposed.stderr)).map(|(k, s)| {
+            if *s > 0.0 {
+                laws[*k].common() / (s * s)
+            } else {
+                0.0
+            }
+        });
         let noisy = exposed.stderr.iter().all(|s| *s > 0.0) && !snr.is_empty();
         Self {
             entries: pixels * spots,
@@ -47,6 +60,8 @@ impl Summary {
             taken: (0..exposure.times().len())
                 .map(|k| exposed.bracket.iter().filter(|b| **b == k).count())
                 .collect(),
+            pedestal: laws[0].pedestal(),
+            common: shares.sum::<f64>() / (pixels * spots) as f64,
             snr_mean: noisy.then(|| snr.iter().sum::<f64>() / snr.len() as f64),
             snr_max: noisy.then(|| snr.iter().copied().fold(0.0, f64::max)),
         }

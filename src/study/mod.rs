@@ -10,7 +10,7 @@
 //! * [`experiment`](fn@experiment): the failed laboratory experiment, re-enacted.
 //! * [`indicator`](fn@indicator): what predicts how well the published inversion works.
 //! * [`noise`](fn@noise): how much noise each recovery bears.
-//! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object; [`picard`] shows what of it noise leaves.
+//! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object; [`picards`] show what of it noise leaves.
 
 mod agreement;
 mod budget;
@@ -43,7 +43,7 @@ pub use noise::{
     LIMITS, LedgerError, Lost, Measures, NoiseAxis, NoiseCurve, NoiseError, NoisePlan, NoiseStudy,
     Point, RenderNoise, Spread, Trial, noise, read_ledger, render_noise, write_ledger,
 };
-pub use objects::{Attempt, Noise, picard, recover_objects};
+pub use objects::{Attempt, Noise, picards, recover_objects};
 pub use power::{Detection, Power, PowerError, PowerPlan, PowerRow, power};
 pub use results::{Agreement, Entry, ObjectBands, RecoveredObject, RunResults, Settings};
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, tolerance};

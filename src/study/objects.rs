@@ -56,16 +56,28 @@ pub fn recover_objects(
         .collect()
 }
 
-/// Φ in the singular directions of the model's laser side: see [`recovery::picard`].
+/// Φ in the singular directions of the model's laser side, and, where one of `methods` works on all pixels and spots at once, in those of
+/// the joint operator: see [`recovery::picard`] and [`recovery::picard_joint`].
 ///
 /// # Errors
-/// Those of [`recovery::picard`].
-pub fn picard(
+/// Those of both, but not where there are too many elements for a joint method: then it is left out.
+pub fn picards(
     model: &MatrixModel,
     phi: &Matrix,
     noise: Noise<'_>,
-) -> Result<Picard, RecoveryError> {
-    recovery::picard(&problem(model, phi, noise)?)
+    nuisance: Nuisance<'_>,
+    methods: &[Method],
+    options: &Options,
+) -> Result<Vec<Picard>, RecoveryError> {
+    let problem = problem(model, phi, noise)?;
+    let mut found = vec![recovery::picard(&problem)?];
+    if methods.iter().any(|m| m.is_joint()) {
+        match recovery::picard_joint(&problem.with_nuisance(nuisance)?, options) {
+            Err(RecoveryError::TooManyElements { .. }) => {}
+            joint => found.push(joint?),
+        }
+    }
+    Ok(found)
 }
 
 fn problem<'a>(
@@ -81,6 +93,7 @@ fn problem<'a>(
 }
 
 fn objects(model: &MatrixModel, found: &Recovered) -> Vec<RecoveredObject> {
+    let bias = found.bias(&model.albedo);
     let cut = |grid: &crate::model::ElementGrid| {
         let range = grid.first..grid.first + grid.len();
         let reflectance = found.reflectance.as_slice()[range.clone()].to_vec();
@@ -103,6 +116,7 @@ fn objects(model: &MatrixModel, found: &Recovered) -> Vec<RecoveredObject> {
                 .standard_error
                 .as_ref()
                 .map(|s| s.as_slice()[range.clone()].to_vec()),
+            bias: bias.as_ref().map(|b| b.as_slice()[range.clone()].to_vec()),
             effective_rank: found.effective_rank,
             covariance: found.covariance.as_ref().map(own),
             resolution: found.resolution.as_ref().map(own),

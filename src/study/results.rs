@@ -102,6 +102,9 @@ pub struct RecoveredObject {
     pub bands: Option<ObjectBands>,
     /// Standard error of each reflectance; absent without a noise model and under bounds.
     pub standard_error: Option<Vec<f64>>,
+    /// What regularisation alone adds to the truth, (R − 1) ρ with ρ the scene's; absent under bounds and with a free scale.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bias: Option<Vec<f64>>,
     /// Directions that the method resolves: trace of its resolution matrix.
     pub effective_rank: f64,
     /// Covariance of its elements (rows) with those of all hidden surfaces (columns, in file order).

@@ -78,6 +78,58 @@ fn no_noise_where_noise_is_asked_for() {
     }
 }
 
+/// `joint-tv` has no other rule: none is offered.
+#[test]
+fn a_total_variation_without_noise() {
+    let workspace = measured();
+    write(&workspace, "phi.npy", 6, 1e-12, (0, 0, 2e-12));
+    write(&workspace, "errors.npy", 6, 0.0, (0, 0, 0.0));
+    write(&workspace, "some.npy", 6, 1e-14, (0, 0, 1e-14));
+    let line = "recover bench --phi phi.npy --method joint-tv";
+    for (rest, word) in [
+        ("", "needs to know the noise"),
+        ("--stderr errors.npy", "every standard error is zero"),
+        (
+            "--stderr some.npy --weighting none",
+            "leave the weighting to the noise",
+        ),
+    ] {
+        let ended = workspace.phicam(&format!("{line} {rest}")).exits(2);
+        assert!(ended.stderr.contains(word), "{}", ended.account());
+        assert!(!ended.stderr.contains("gcv"), "{}", ended.account());
+    }
+}
+
+/// Residuals of such numbers are NaN, and their limits zero.
+#[test]
+fn numbers_that_cannot_be_squared() {
+    let workspace = measured();
+    write(&workspace, "phi.npy", 6, 1e-12, (0, 0, 1e300));
+    every_method_refuses(&workspace, "", &["phi", "1e300", "range"]);
+    write(&workspace, "phi.npy", 6, 1e-12, (0, 0, 2e-12));
+    write(&workspace, "errors.npy", 6, 1e-14, (1, 1, 1e-300));
+    every_method_refuses(
+        &workspace,
+        "--stderr errors.npy",
+        &["stderr", "1e-300", "range"],
+    );
+}
+
+#[test]
+fn settings_that_no_method_asked_for_takes() {
+    let workspace = measured();
+    write(&workspace, "phi.npy", 6, 1e-12, (0, 0, 2e-12));
+    for (rest, setting, method) in [
+        ("--method pinv --rank 3", "--rank", "tsvd"),
+        ("--method pinv --damping 0.1", "--damping", "tikhonov"),
+        ("--method tsvd,joint --tolerance 0.1", "--tolerance", "pinv"),
+        ("--method pinv,joint,pinv", "pinv twice", "once"),
+    ] {
+        let line = format!("recover bench --phi phi.npy --elements 2 {rest}");
+        workspace.refuses(&line, &[setting, method]);
+    }
+}
+
 #[test]
 fn photographs_that_are_black() {
     let workspace = measured();

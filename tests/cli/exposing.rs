@@ -181,6 +181,82 @@ fn saturation_is_marked_counted_and_refused_if_asked() {
     assert_eq!(workspace.matrix("done/exposed/saturated.npy").sum(), 0.0);
 }
 
+/// A saturated entry is wrong by more than its standard error says.
+#[test]
+fn clipped_photographs_are_not_recovered_from_in_silence() {
+    let workspace = with_run();
+    let _ = workspace
+        .phicam("expose done --sensor machine-vision --exposure 1000")
+        .exits(0);
+    let line = "recover done --phi done/exposed/phi.npy --stderr done/exposed/phi.stderr.npy --elements 2 --method pinv";
+    let words = [
+        "48 of 48 entries",
+        "saturated.npy",
+        "--brackets",
+        "--keep-clipped",
+    ];
+    workspace.refuses(line, &words);
+    let _ = workspace.phicam(&format!("{line} --keep-clipped")).exits(0);
+    workspace.refuses("recover done --keep-clipped", &["--phi"]);
+    let _ = workspace
+        .phicam("expose done --sensor machine-vision --exposure 0.001")
+        .exits(0);
+    let _ = workspace.phicam(line).exits(0);
+}
+
+/// What dark frames leave or bring in is said where it matters.
+#[test]
+fn light_that_stays_and_noise_that_is_shared_are_said() {
+    let workspace = with_run();
+    for (rest, words) in [
+        ("--ambient 1e-12", "stay in every entry"),
+        ("--dark-frames 1", "all spots of a pixel share"),
+    ] {
+        let line = format!("expose done --sensor ccd --exposure 0.001 {rest}");
+        let ended = workspace.phicam(&line).exits(0);
+        assert!(ended.stderr.contains(words), "{}", ended.account());
+    }
+    // Read noise, dark current and rounding of one frame, electrons², over those of each entry.
+    let electrons = 0.79 * 1e-3 * 632.8e-9 / (6.626_070_15e-34 * 299_792_458.0);
+    let dark = 12.6 * 12.6 + 0.080 * 1e-3 + 1.413 * 1.413 / 12.0;
+    let stderr = workspace.matrix("done/exposed/phi.stderr.npy");
+    let share = stderr.map(|s| dark / (s * electrons).powi(2)).mean();
+    let account = workspace.json("done/exposed/exposure.json");
+    let found = account["result"]["common"].as_f64().unwrap();
+    assert!((found / share - 1.0).abs() < 1e-9, "{found} {share}");
+    let quiet = workspace
+        .phicam("expose done --sensor ccd --exposure 0.001 --dark-frames 2000")
+        .exits(0);
+    assert!(!quiet.stderr.contains("warning"), "{}", quiet.account());
+}
+
+#[test]
+fn figures_beyond_all_measure_are_refused() {
+    let workspace = with_run();
+    for (table, words) in [
+        ("gain = 1e-308", ["inf W", "gain"]),
+        ("read_noise = 1e200", ["standard deviation", "read_noise"]),
+        ("offset = 1e308", ["offset", "65535"]),
+        (
+            "glare = { fraction = 1, spread = { falloff = 1e-300 } }",
+            ["falloff", "length"],
+        ),
+    ] {
+        set_sensor(&workspace, table);
+        workspace.refuses("expose done", &words);
+    }
+    set_sensor(&workspace, "model = \"ccd\"");
+    let many = vec!["1"; 17].join(",");
+    workspace.refuses(
+        &format!("expose done --sensor ccd --brackets {many}"),
+        &["17 exposure times", "1 to 16"],
+    );
+    workspace.refuses(
+        "expose done --sensor ccd --exposure 1e308",
+        &["1e308 s", "electrons", "shorter"],
+    );
+}
+
 #[test]
 fn bad_settings_are_refused_before_anything_is_written() {
     let workspace = with_run();

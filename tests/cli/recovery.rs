@@ -33,6 +33,8 @@ fn a_method_writes_its_matrix_and_its_picture() {
         "joint.npy",
         "joint.png",
         "overview.png",
+        "picard-joint.csv",
+        "picard-joint.svg",
         "picard.csv",
         "picard.svg",
         "truth.npy",
@@ -366,4 +368,40 @@ fn what_the_run_has_left_is_not_touched() {
     before.retain(|name, _| !name.starts_with("recovered"));
     after.retain(|name, _| !name.starts_with("recovered"));
     crate::workspace::assert_same(&before, &after, "recover");
+}
+
+/// What an earlier recovery left and this one does not know is gone; Picard data and biases are there.
+#[test]
+fn files_of_an_earlier_recovery_do_not_stay_beside_those_of_a_later() {
+    let workspace = Workspace::with_scenes();
+    let _ = workspace
+        .phicam("render tiny.toml -o done --samples 32")
+        .exits(0);
+    let line = "recover done --elements 2 --method pinv,joint-unbounded,joint";
+    let _ = workspace.phicam(&format!("{line} --bands 0.9")).exits(0);
+    let names = |w: &Workspace| w.contents("done/recovered");
+    let found = names(&workspace);
+    for name in [
+        "pinv.lower.npy",
+        "joint.upper.npy",
+        "pinv.bias.npy",
+        "joint-unbounded.bias.npy",
+        "picard-joint.csv",
+        "picard-joint.svg",
+    ] {
+        assert!(found.contains_key(name), "no {name}");
+    }
+    assert!(!found.contains_key("joint.bias.npy"));
+    let bias = workspace.matrix("done/recovered/joint-unbounded.bias.npy");
+    assert!(bias.shape() == (2, 2) && bias.amax() < 1e-6, "{bias}");
+    let _ = workspace.phicam(line).exits(0);
+    let left = names(&workspace);
+    assert!(
+        left.keys()
+            .all(|n| !n.contains("lower") && !n.contains("upper"))
+    );
+    let _ = workspace
+        .phicam("recover done --elements 2 --method pinv")
+        .exits(0);
+    assert!(!names(&workspace).contains_key("picard-joint.csv"));
 }

@@ -230,6 +230,9 @@ pub(in crate::cli) struct RecoverArgs {
     /// Noise model: standard deviation of each entry relative to its value, in place of a standard error
     #[arg(long, value_name = "RELATIVE", allow_negative_numbers = true)]
     pub noise: Option<f64>,
+    /// Use entries that `expose` has marked as saturated or cut off beside the --phi file (saturated.npy) as if they were right
+    #[arg(long, requires = "phi")]
+    pub keep_clipped: bool,
     /// Kernel of the model that is inverted
     #[arg(long, value_enum, default_value_t = KernelName::Physical)]
     pub kernel: KernelName,

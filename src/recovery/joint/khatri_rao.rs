@@ -31,9 +31,24 @@ pub(super) struct Operator {
     form: Form,
     elements: usize,
     weights: Weights,
-    /// Weighted and projected sides: C̃ and D̃.
-    sides: Option<(DMatrix<f64>, DMatrix<f64>)>,
+    sides: Option<Sides>,
     pub(super) weighting: Weighting,
+}
+
+/// Weighted and projected sides: C̃ = U T, U orthonormal, and D̃.
+struct Sides {
+    u: DMatrix<f64>,
+    t: DMatrix<f64>,
+    d: DMatrix<f64>,
+}
+
+/// v_k/s_k as columns, r × rank.
+fn towards(solved: &LeastSquares) -> DMatrix<f64> {
+    let mut towards = solved.vt.transpose();
+    for (mut column, &s) in towards.column_iter_mut().zip(solved.sigma.iter()) {
+        column /= s;
+    }
+    towards
 }
 
 enum Form {
@@ -136,11 +151,11 @@ impl Operator {
         let (camera, rc) = compress(&c, before.0, "camera side C")?;
         let (laser, rd) = compress(&d, before.1, "laser side D")?;
         let elements = c.ncols();
+        let t = DMatrix::from_fn(rc, elements, |a, j| camera.sigma[a] * camera.vt[(a, j)]);
         let form = if rc.saturating_mul(rd).saturating_mul(elements) <= options.budget {
-            let left = |a: usize, j: usize| camera.sigma[a] * camera.vt[(a, j)];
             let right = |j: usize, b: usize| laser.u[(j, b)] * laser.sigma[b];
             let a = DMatrix::from_fn(rc * rd, elements, |row, j| {
-                left(row % rc, j) * right(j, row / rc)
+                t[(row % rc, j)] * right(j, row / rc)
             });
             let f = camera.u.columns(0, rc).transpose() * phi * laser.vt.rows(0, rd).transpose();
             Form::Small {
@@ -161,7 +176,11 @@ impl Operator {
             elements,
             weighting: weights.weighting,
             weights,
-            sides: Some((c, d)),
+            sides: Some(Sides {
+                u: camera.u.columns(0, rc).into_owned(),
+                t,
+                d,
+            }),
         })
     }
 
@@ -193,36 +212,51 @@ impl Operator {
 
     /// Covariance of the solution as the standard errors make it, whether or not the weights are theirs:
     ///
-    /// > (KᵀWK)⁺ KᵀW Σ W K (KᵀWK)⁺ = Σ_kk' v_k (1/s_k) (Σ_pl u_k\[p,l\] u_k'\[p,l\] w_p v_l σ²\[p,l\]) (1/s_k') v_k'ᵀ,
+    /// > (KᵀWK)⁺ KᵀW Σ W K (KᵀWK)⁺ = Σ_kk' v_k (1/s_k) N_kk' (1/s_k') v_k'ᵀ,
     ///
-    /// u_k = √W K v_k/s_k the left singular vectors as pixels × spots. Where the weights are the entries' own it is (KᵀWK)⁺; none without a noise model,
-    /// and none for unweighted rows with glare patterns.
+    /// N that of [`Operator::noise`]. Where the weights are the entries' own it is (KᵀWK)⁺.
     pub(super) fn covariance(
         &self,
         problem: &Problem<'_>,
         solved: &LeastSquares,
     ) -> Option<DMatrix<f64>> {
+        let towards = towards(solved);
+        Some(&towards * self.noise(problem, solved)? * towards.transpose())
+    }
+
+    /// Covariance of the data along the left singular vectors, as the standard errors make it, rank × rank:
+    ///
+    /// > N_kk' = Σ_pl u_k\[p,l\] u_k'\[p,l\] w_p v_l σ²\[p,l\],   u_k = √W K v_k/s_k as pixels × spots.
+    ///
+    /// The unit matrix where the weights are the entries' own; none without a noise model, and none for unweighted rows with glare patterns.
+    /// C̃ = U T with few (c) orthonormal columns to rounding, so that the sums over pixels cost l·(p·c² + c·k·(r + c + k)) operations and not l·p·k·(r + k).
+    pub(super) fn noise(
+        &self,
+        problem: &Problem<'_>,
+        solved: &LeastSquares,
+    ) -> Option<DMatrix<f64>> {
         let stderr = problem.noise()?;
-        let Some((c, d)) = &self.sides else {
-            return (self.weighting == Weighting::EntryByEntry).then(|| solved.covariance());
+        let Some(Sides { u, t, d }) = &self.sides else {
+            return (self.weighting == Weighting::EntryByEntry)
+                .then(|| DMatrix::identity(solved.rank, solved.rank));
         };
-        let mut towards = solved.vt.transpose();
-        for (mut column, &s) in towards.column_iter_mut().zip(solved.sigma.iter()) {
-            column /= s;
-        }
-        let mut middle = DMatrix::zeros(solved.rank, solved.rank);
+        let towards = towards(solved);
+        let mut sum = DMatrix::zeros(solved.rank, solved.rank);
         for l in 0..d.ncols() {
             let mut lit = towards.clone();
             for (mut row, &x) in lit.row_iter_mut().zip(d.column(l).iter()) {
                 row *= x;
             }
-            let mut block = c * lit;
-            for (p, mut row) in block.row_iter_mut().enumerate() {
+            let along = t * lit;
+            let mut noise = u.clone();
+            for (p, mut row) in noise.row_iter_mut().enumerate() {
                 row *= self.weights.pixels[p] * self.weights.spots[l] * stderr[(p, l)];
             }
-            middle += block.transpose() * block;
+            // Products of transposed copies: nalgebra blocks those, and not tr_mul.
+            let weighted = noise.transpose() * &noise * &along;
+            sum.gemm(1.0, &along.transpose(), &weighted, 1.0);
         }
-        Some(&towards * middle * towards.transpose())
+        Some(sum)
     }
 
     /// Rows of the matrix that is decomposed, by which an automatic rank cut is scaled.

@@ -5,6 +5,7 @@ mod branch;
 mod cramer_rao;
 mod khatri_rao;
 mod nuisance;
+mod picard;
 mod reduced;
 mod stacked;
 pub(super) mod total_variation;
@@ -14,4 +15,5 @@ mod weights;
 
 pub use cramer_rao::{CramerRao, cramer_rao};
 pub use nuisance::{Estimated, Nuisance};
+pub use picard::picard_joint;
 pub use weights::Weighting;

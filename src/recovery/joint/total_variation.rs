@@ -40,7 +40,7 @@ pub(in crate::recovery) fn recover(
     let grids = problem.grids.ok_or(RecoveryError::NotForMethod {
         method,
         what: "needs to know which elements are neighbours",
-        cure: "give the grids of the elements (Problem::with_grids), or use joint",
+        cure: "give the grids of the elements, or use joint",
     })?;
     let search = Search {
         pairs: neighbours(grids),
@@ -59,10 +59,18 @@ pub(in crate::recovery) fn recover(
                 cure: "give a fraction of the largest squared singular value, 0 or more",
             });
         }
-        None if problem.noise().is_none() || options.weighting == WeightRule::Unweighted => {
-            return Err(RecoveryError::NoNoiseModel {
+        None if options.weighting == WeightRule::Unweighted => {
+            return Err(RecoveryError::NotForMethod {
                 method,
-                parameter: "total variation's weight",
+                what: "chooses its total variation's weight by residuals in units of the noise",
+                cure: "leave the weighting to the noise, or give the weight yourself",
+            });
+        }
+        None if problem.noise().is_none() => {
+            let parameter = "total variation's weight";
+            return Err(match problem.stderr {
+                Some(_) => RecoveryError::NoNoise { method, parameter },
+                None => RecoveryError::NoNoiseModel { method, parameter },
             });
         }
         None => search.largest()?,

@@ -243,7 +243,7 @@ mod tests {
             let error = by_method(Method::TikhonovGradient, &problem, &given(0.1)).unwrap_err();
             assert!(
                 matches!(error, RecoveryError::NoGrids { .. })
-                    && error.to_string().contains("with_grids"),
+                    && error.to_string().contains("element grids"),
                 "{error}"
             );
         }

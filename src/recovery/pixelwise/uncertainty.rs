@@ -50,8 +50,9 @@ pub(super) fn covariance(
         for (mut column, &x) in along.column_iter_mut().zip(inverse.iter()) {
             column *= x;
         }
-        let weighted = noise.tr_mul(&noise) * &along;
-        sum.gemm_tr(1.0, &along, &weighted, 1.0);
+        // Products of transposed copies: nalgebra blocks those, and not tr_mul.
+        let weighted = noise.transpose() * &noise * &along;
+        sum.gemm(1.0, &along.transpose(), &weighted, 1.0);
     }
     let pixels = pixels as f64;
     Ok(DMatrix::from_fn(elements, elements, |j, k| {
@@ -62,7 +63,7 @@ pub(super) fn covariance(
 
 /// The resolution matrix R of E ρ̂ = R ρ, r × r: R_jk = (D D^#)_kj · (1/p) Σ_p C\[p,k\]/C\[p,j\]. Cost p·r².
 pub(super) fn resolution(c: &DMatrix<f64>, product: &DMatrix<f64>) -> DMatrix<f64> {
-    let share = c.map(|x| 1.0 / x).tr_mul(c) / c.nrows() as f64;
+    let share = c.map(|x| 1.0 / x).transpose() * c / c.nrows() as f64;
     share.component_mul(&product.transpose())
 }
 
