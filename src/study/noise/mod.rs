@@ -26,7 +26,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::model::{Kernel, MatrixModel, ModelError};
+use crate::model::{MatrixModel, ModelError};
 use crate::recovery::Method;
 use crate::scene::Scene;
 

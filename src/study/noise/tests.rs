@@ -1,4 +1,5 @@
 use super::*;
+use crate::model::Kernel;
 use crate::scene::{SensorModel, Spread};
 use crate::sensor::Sensor;
 
