@@ -87,26 +87,10 @@ pub fn noise_table(study: &NoiseStudy) -> String {
         }
         out += "\n";
     }
-    if study
-        .curves
-        .iter()
-        .any(|c| c.points.iter().any(|p| p.failed > 0))
-    {
-        out += "\n";
-        for c in &study.curves {
-            for p in c.points.iter().filter(|p| p.failed > 0) {
-                out += &format!(
-                    "{} × {} checks, {}, {}: {} of {} draws gave nothing: {}\n",
-                    c.board,
-                    c.board,
-                    c.method,
-                    significant(p.level, 2),
-                    p.failed,
-                    p.draws,
-                    p.failure.as_deref().unwrap_or("")
-                );
-            }
-        }
+    out += "always: below at the quietest level already; never: not below at any; undefined: before that some draw gave nothing, or no mean is known\n";
+    let failed: Vec<String> = study.curves.iter().filter_map(failure).collect();
+    if !failed.is_empty() {
+        out += &format!("\n{}", failed.concat());
     }
     if !study.render_noise.is_empty() {
         out +=
@@ -122,6 +106,21 @@ pub fn noise_table(study: &NoiseStudy) -> String {
         }
     }
     out + &best_table(study)
+}
+
+/// Draws from which a method gave nothing, with the quietest level of them and what it said there.
+fn failure(c: &NoiseCurve) -> Option<String> {
+    let first = c.points.iter().find(|p| p.failed > 0)?;
+    let sum = |f: fn(&Point) -> usize| c.points.iter().map(f).sum::<usize>();
+    let (board, elements) = (c.board, c.elements);
+    Some(format!(
+        "{board} × {board} checks, {elements} × {elements} elements, {}: {} of {} draws gave nothing, from {} on: {}\n",
+        c.method,
+        sum(|p| p.failed),
+        sum(|p| p.draws),
+        significant(first.level, 2),
+        first.failure.as_deref().unwrap_or("")
+    ))
 }
 
 /// The best method of each object, its noise and its distance from the bound.
@@ -162,7 +161,7 @@ fn best_table(study: &NoiseStudy) -> String {
             figure(*rmse_over_bound, 2)
         );
     }
-    out + "`to`: it has not fallen there, but beyond no level was studied or no mean is known. RMSE over elements and draws; CRB: √(trace/elements) of the\n\
+    out + "`to`: it has not fallen there, but beyond no level was studied or no mean is known (or it is above 1.1). RMSE over elements and draws; CRB: √(trace/elements) of the\n\
            Cramér–Rao bound of unbiased recoveries, which methods that use bounds or two values can undercut.\n"
 }
 

@@ -160,9 +160,15 @@ pub(super) fn lost(curve: &[(f64, Option<f64>)], limit: f64, spacing: Spacing) -
     }
 }
 
-/// Up to which level the mean of such a curve stays at or above `limit`; `None` if it is not there at the quietest.
+/// Up to which level the mean of such a curve stays at or above `limit`; `None` if it is not there at the quietest. A mean as far above 1 as `limit` is
+/// below is none to speak of: it is that of a recovery with negative values.
 pub(super) fn held(curve: &[(f64, Option<f64>)], limit: f64, spacing: Spacing) -> Option<Held> {
-    if let Lost::At(level) = lost(curve, limit, spacing) {
+    let trusted = |mean: &f64| *mean <= 2.0 - limit;
+    let curve: Vec<(f64, Option<f64>)> = curve
+        .iter()
+        .map(|(level, mean)| (*level, mean.filter(trusted)))
+        .collect();
+    if let Lost::At(level) = lost(&curve, limit, spacing) {
         let reach = Reach::Falls;
         return Some(Held { level, reach });
     }
@@ -245,6 +251,8 @@ mod tests {
         let high = (1e-4, Some(1.0));
         assert_eq!(held(&[high, (1e-2, Some(0.9))]), at_least(1e-2));
         assert_eq!(held(&[high, (1e-2, None)]), at_least(1e-4));
+        let wild = [high, (1e-2, Some(1.2)), (1.0, Some(0.1))];
+        assert_eq!(held(&wild), at_least(1e-4));
         assert_eq!(held(&[(1e-4, Some(0.8)), (1e-2, Some(1.0))]), None);
         assert_eq!(held(&[(1e-4, None)]), None);
     }

@@ -59,7 +59,8 @@ pub struct NoiseCurve {
     pub lost_raw: [Lost; 2],
     /// The same of the normalized MTF.
     pub lost_normalized: [Lost; 2],
-    /// Up to which level the mean raw MTF stays at or above the first of [`LIMITS`]; none where it is not there at the quietest.
+    /// Up to which level the mean raw MTF stays at or above the first of [`LIMITS`], m, and not above 2 − m, where dark would come out below 0; none
+    /// where it is not there at the quietest.
     pub held: Option<Held>,
 }
 

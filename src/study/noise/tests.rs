@@ -280,3 +280,45 @@ fn a_mean_that_strays_has_not_fallen() {
     assert!((level / 1e-3 / libm::exp10(3.0 / 8.0) - 1.0).abs() < 1e-12);
     assert_eq!(fallen.lost_normalized, [Lost::Before; 2]);
 }
+
+/// With photons the modulation rises: from 0.8 at 1e4 to 1 at 1e6, so from 1e5 on it is 0.9 or more, whatever it is again with very few.
+#[test]
+fn more_photons_are_less_noise() {
+    let (_, plan) = small();
+    let mut plan = NoisePlan {
+        axis: NoiseAxis::Photons,
+        methods: vec![Method::Joint],
+        levels: vec![1e6, 1.0, 1e4, 1e2, 1e8],
+        seeds: 1,
+        ..plan
+    };
+    plan.levels.sort_by(|a, b| plan.axis.quiet_first(*a, *b));
+    let mtf = |level: f64| match level {
+        1e4 => 0.8,
+        1e2 => 0.2,
+        _ => 1.0,
+    };
+    let trials = plan.levels.iter().map(|level| Trial {
+        board: 2,
+        elements: 4,
+        method: Method::Joint,
+        level: *level,
+        seed: plan.first_seed,
+        outcome: Ok(Measures {
+            mtf_raw: Some(mtf(*level)),
+            light_plus_dark: Some(1.0),
+            mtf_normalized: Some(0.0),
+            correlation: None,
+            rmse: Some(1.0),
+        }),
+    });
+    let trials: Vec<Trial> = trials.collect();
+    let found = curve(&plan, [2, 4], Method::Joint, (&trials, &[None; 5]));
+    let [Lost::At(high), Lost::At(low)] = found.lost_raw else {
+        panic!("{found:?}")
+    };
+    // 0.5 lies half way from 0.8 at 1e4 to 0.2 at 1e2.
+    assert!((high / 1e5 - 1.0).abs() < 1e-12 && (low / 1e3 - 1.0).abs() < 1e-12);
+    assert_eq!(found.held.unwrap().level, high);
+    assert_eq!(found.lost_normalized, [Lost::Before; 2]);
+}
