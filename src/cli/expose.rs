@@ -164,6 +164,29 @@ pub(super) fn model(name: &str) -> Result<SensorModel, Failure> {
     })
 }
 
+/// The sensor of a study, and its name: the built-in one asked for, or that of the scene, or the CCD.
+pub(super) fn studied(name: Option<&str>, scene: &Scene) -> Result<(Sensor, String), Failure> {
+    Ok(match (name, &scene.sensor) {
+        (Some(name), _) => (Sensor::builtin(model(name)?), name.to_owned()),
+        (None, Some(own)) => (Sensor::from_settings(own)?, format!("of {}", scene.name)),
+        (None, None) => (
+            Sensor::builtin(SensorModel::Ccd),
+            SensorModel::Ccd.name().to_owned(),
+        ),
+    })
+}
+
+/// Refuses a `--falloff` that is no distance.
+pub(super) fn falloff(given: f64) -> Result<(), Failure> {
+    match given > 0.0 && given.is_finite() {
+        true => Ok(()),
+        false => Err(Failure::new(
+            format!("--falloff {given} is no distance"),
+            "use a length above 0 in the scene's unit",
+        )),
+    }
+}
+
 /// A glare whose fraction may come from the command line.
 fn checked(glare: Glare) -> Result<Glare, Failure> {
     match Quantity::GlareFraction.refuses(glare.fraction) {

@@ -32,6 +32,24 @@ impl Axis {
         }
     }
 
+    /// A linear axis from the least to the greatest of the values.
+    pub(super) fn around(values: impl Iterator<Item = f64>, title: impl Into<String>) -> Self {
+        let finite = values.filter(|x| x.is_finite());
+        let ends = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| {
+            [l.min(x), h.max(x)]
+        });
+        let ends = match ends {
+            [low, high] if low < high => ends,
+            [low, _] if low.is_finite() => [low - 1.0, low + 1.0],
+            _ => [0.0, 1.0],
+        };
+        Self {
+            run: Run::Linear,
+            ends,
+            title: title.into(),
+        }
+    }
+
     /// Position of x between the ends, 0 to 1; `None` where the axis does not reach.
     fn fraction(&self, x: f64) -> Option<f64> {
         let [a, b] = self.ends;
@@ -63,8 +81,8 @@ impl Axis {
     }
 }
 
-/// Named decades of a logarithmic axis.
-const MOST_DECADES: i32 = 9;
+/// Named decades of a logarithmic axis: as many as have room side by side on the narrowest panel, 250 px.
+const MOST_DECADES: i32 = 7;
 
 /// A line with its name.
 pub(super) struct Series {
@@ -240,5 +258,8 @@ mod tests {
         assert_eq!((axis.fraction(0.0), axis.fraction(1.0)), (None, None));
         assert_eq!(axis.ticks().len(), 4);
         assert_eq!(superscript(-12), "⁻¹²");
+        let ends = |values: &[f64]| Axis::around(values.iter().copied(), "").ends;
+        assert_eq!(ends(&[24.0, 4.0, f64::NAN, 8.0]), [4.0, 24.0]);
+        assert_eq!((ends(&[8.0]), ends(&[])), ([7.0, 9.0], [0.0, 1.0]));
     }
 }

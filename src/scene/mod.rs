@@ -53,7 +53,7 @@
 //! | `full_well` | electrons that a pixel holds; `inf` for no limit |
 //! | `read_noise` | electrons, root mean square, per frame |
 //! | `gain` | electrons per count |
-//! | `bits` | bits of the converter, 1 to 16; 0 for none: counts are then neither rounded nor limited |
+//! | `bits` | bits of the converter, 1 to 24; 0 for none: counts are then neither rounded nor limited |
 //! | `offset` | counts of a pixel without electrons; below 0 counts a converter cuts off |
 //! | `shot_noise` | `true`, or `false` for exactly the mean number of electrons |
 //! | `relative_noise` | each finished entry is multiplied by 1 + σ·N(0, 1): the published percent error |

@@ -61,8 +61,8 @@ impl Quantity {
             Self::ReadNoise => (not_negative, "0 or more electrons"),
             Self::Gain => (positive, "a positive number of electrons per count"),
             Self::Bits => (
-                (0.0..=16.0).contains(&value),
-                "1 to 16 bits, or 0 for no converter",
+                (0.0..=24.0).contains(&value),
+                "1 to 24 bits, or 0 for no converter",
             ),
             Self::Offset => (
                 (0.0..=65535.0).contains(&value),

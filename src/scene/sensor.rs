@@ -245,7 +245,7 @@ mod tests {
             ("full_well = nan", "NaN", "positive"),
             ("read_noise = inf", "inf", "0 or more"),
             ("gain = 0", "gain = 0", "per count"),
-            ("bits = 17", "bits = 17", "1 to 16"),
+            ("bits = 25", "bits = 25", "1 to 24"),
             ("bits = -1", "invalid value", ""),
             ("offset = -5", "-5", "0 or more"),
             ("relative_noise = 1", "relative_noise = 1", "below 1"),

@@ -40,6 +40,7 @@ mod error;
 mod expose;
 mod exposure;
 mod figures;
+mod filling;
 mod glare;
 mod law;
 mod setup;

@@ -40,8 +40,9 @@ pub use indicator::{
     NoisyOutcome, NoisyPoint, NoisySummary, indicator,
 };
 pub use noise::{
-    LIMITS, LedgerError, Lost, Measures, NoiseAxis, NoiseCurve, NoiseError, NoisePlan, NoiseStudy,
-    Point, RenderNoise, Spread, Trial, noise, read_ledger, render_noise, write_ledger,
+    Best, Held, LIMITS, LedgerError, Lost, Measures, NamedSensor, NoiseAxis, NoiseCurve,
+    NoiseError, NoisePlan, NoiseStudy, Point, Reach, RenderNoise, Spacing, Spread, Trial, noise,
+    read_ledger, render_noise, write_ledger,
 };
 pub use objects::{Attempt, Noise, picards, recover_objects};
 pub use power::{Detection, Power, PowerError, PowerPlan, PowerRow, power};

@@ -75,6 +75,41 @@ fn noise_goes_on_where_it_was_left() {
     assert!(workspace.text("whole/noise.csv").contains("4.2e-1"));
 }
 
+/// Every axis says in table, JSON, CSV and figure what its levels are.
+#[test]
+fn every_axis_of_noise_names_its_levels() {
+    let workspace = Workspace::with_scenes();
+    for (axis, column, title) in [
+        ("photons", "photons_per_pixel", "photons per pixel"),
+        ("exposure", "exposure_s", "exposure of a frame / s"),
+        ("glare", "glare_over_signal", "glare over signal, even"),
+        ("bits", "bits", "bits of the converter"),
+    ] {
+        let line = "study noise small.toml --boards 2 --elements 2 --method pinv,joint --seeds 2";
+        let ended = workspace
+            .phicam(&format!("{line} --axis {axis} -o {axis}"))
+            .exits(0);
+        let table = &ended.stdout;
+        assert!(
+            table.contains(title) && table.contains("the best method"),
+            "{table}"
+        );
+        let curves = workspace.text(&format!("{axis}/noise-curves.csv"));
+        let header = curves.lines().next().unwrap();
+        assert!(header.split(',').any(|name| name == column), "{header}");
+        let json = workspace.json(&format!("{axis}/noise.json"));
+        assert_eq!(json["best"].as_array().unwrap().len(), 1, "{json}");
+        assert!(
+            json["curves"][0]["points"][0]["cramer_rao"]
+                .as_f64()
+                .unwrap()
+                > 0.0
+        );
+        let figure = workspace.text(&format!("{axis}/noise-rmse.svg"));
+        assert!(figure.contains(title) && figure.contains("Cramér–Rao") && !figure.contains("NaN"));
+    }
+}
+
 #[test]
 fn noise_of_another_study_is_not_mixed_in() {
     let workspace = Workspace::with_scenes();
@@ -84,6 +119,20 @@ fn noise_of_another_study_is_not_mixed_in() {
     let other = format!("{NOISE} -o n --seeds 1 --kernel published");
     workspace.refuses(&other, &["another study", "published kernel", "(-o)"]);
     workspace.refuses("study noise tiny.toml -o n", &["another study"]);
+    let photons = format!("{NOISE} -o n --seeds 1 --axis photons").replace("1e-6,0.01", "1e6");
+    workspace.refuses(&photons, &["another study", "photons axis"]);
+    let glare = |rest: &str| {
+        let line = format!("{NOISE} --seeds 1 -o g --axis glare {rest}");
+        line.replace("1e-6,0.01", "0.01")
+    };
+    let _ = workspace.phicam(&glare("--sensor ccd")).exits(0);
+    let _ = workspace.phicam(&glare("--sensor ccd")).exits(0);
+    for (rest, word) in [
+        ("--sensor dslr", "sensor dslr"),
+        ("--falloff 2", "falling off over 2e0"),
+    ] {
+        workspace.refuses(&glare(rest), &["another study", word, "(-o)"]);
+    }
     let text = workspace.text("n/noise.csv");
     workspace.write("n/noise.csv", text.replace("pinv", "pinw"));
     workspace.refuses(
@@ -102,6 +151,38 @@ fn bad_sweeps_are_refused() {
             ["--noise -1", "cure"],
         ),
         ("noise small.toml -o n --noise nan", ["--noise NaN", "cure"]),
+        (
+            "noise small.toml -o n --axis photons --noise 0",
+            ["--noise 0", "above 0"],
+        ),
+        (
+            "noise small.toml -o n --axis bits --levels 8.5",
+            ["--noise 8.5", "from 4 to 24"],
+        ),
+        (
+            "noise small.toml -o n --axis bits --sensor ccd",
+            ["--sensor", "--axis exposure or glare"],
+        ),
+        (
+            "noise small.toml -o n --axis exposure --falloff 1",
+            ["--falloff", "--axis glare"],
+        ),
+        (
+            "noise small.toml -o n --axis glare --falloff -1",
+            ["--falloff -1", "above 0"],
+        ),
+        (
+            "noise small.toml -o n --axis glare --sensor eye",
+            ["`eye`", "use one of"],
+        ),
+        (
+            "noise small.toml -o n --axis exposure --noise 1e30",
+            ["saturates", "use exposures below"],
+        ),
+        (
+            "noise small.toml -o n --axis bits --render-samples 16",
+            ["axis bits", "--render-samples"],
+        ),
         ("noise small.toml -o n --boards 1", ["--boards 1", "cure"]),
         (
             "noise small.toml -o n --elements 0",

@@ -18,7 +18,7 @@ pub(in crate::cli) use laboratory::{CoverageArgs, ExperimentArgs};
 pub(in crate::cli) use study::{
     BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs,
 };
-pub(in crate::cli) use sweep::{IndicatorArgs, NoiseArgs};
+pub(in crate::cli) use sweep::{AxisName, IndicatorArgs, NoiseArgs};
 
 /// phicam: a physically based renderer for indirect photography, and the laboratory around it.
 #[derive(Debug, Parser)]

@@ -2,9 +2,24 @@
 
 use std::path::PathBuf;
 
-use clap::Args as Arguments;
+use clap::{Args as Arguments, ValueEnum};
 
 use super::KernelName;
+
+/// What `study noise` varies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum AxisName {
+    /// Noise relative to each entry
+    Relative,
+    /// Photons per pixel and frame: shot noise alone
+    Photons,
+    /// Seconds that a sensor's frame takes; one dark frame is subtracted
+    Exposure,
+    /// Glare over signal, photographed by a sensor and left in
+    Glare,
+    /// Bits of a converter, nothing else being noisy
+    Bits,
+}
 
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct NoiseArgs {
@@ -30,9 +45,25 @@ pub(in crate::cli) struct NoiseArgs {
     /// Kernel of both the photographs and the inversion
     #[arg(long, value_enum, default_value_t = KernelName::Physical)]
     pub kernel: KernelName,
-    /// Levels of noise relative to each entry, separated by commas; 1e-12 to 1 by decades unless given
-    #[arg(long, value_delimiter = ',', allow_negative_numbers = true)]
+    /// What is varied
+    #[arg(long, value_enum, default_value_t = AxisName::Relative)]
+    pub axis: AxisName,
+    /// Levels on the axis, separated by commas; unless given relative noise 1e-12 to 1 and 1 to 1e20 photons by decades, exposures over six decades up to
+    /// what the sensor bears, glare 1e-4 to 100 times the signal by half decades, 4 to 24 bits
+    #[arg(
+        long,
+        visible_alias = "levels",
+        value_delimiter = ',',
+        allow_negative_numbers = true
+    )]
     pub noise: Vec<f64>,
+    /// Built-in sensor (ideal, ccd, dslr, machine-vision) of the axes exposure and glare; that of the scene's [sensor] table unless given, or ccd if it
+    /// has none
+    #[arg(long)]
+    pub sensor: Option<String>,
+    /// Distance, in the scene's unit, at which glare has halved, on the axis glare; spread evenly unless given
+    #[arg(long, allow_negative_numbers = true)]
+    pub falloff: Option<f64>,
     /// Draws of the noise at each level
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub seeds: u64,

@@ -8,8 +8,7 @@ use crate::cli::output::Talk;
 use crate::cli::{Outcome, progress, settings};
 use crate::num::stream::Sampling;
 use crate::report;
-use crate::scene::{Scene, SensorModel};
-use crate::sensor::Sensor;
+use crate::scene::Scene;
 use crate::store::ensure_writable;
 use crate::study::{self, ExperimentPlan};
 
@@ -39,13 +38,7 @@ pub(super) fn execute(args: &ExperimentArgs, talk: Talk) -> Result<Outcome, Fail
 
 fn plan(args: &ExperimentArgs, scene: &Scene) -> Result<ExperimentPlan, Failure> {
     settings::budget("--samples", args.samples, Sampling::Sobol)?;
-    if !(args.falloff > 0.0 && args.falloff.is_finite()) {
-        let cause = format!("--falloff {} is no distance", args.falloff);
-        return Err(Failure::new(
-            cause,
-            "use a length above 0 in the scene's unit",
-        ));
-    }
+    expose::falloff(args.falloff)?;
     for (name, list, least) in [
         ("--glares", &args.glares, 0.0),
         ("--exposures", &args.exposures, f64::MIN_POSITIVE),
@@ -66,14 +59,7 @@ fn plan(args: &ExperimentArgs, scene: &Scene) -> Result<ExperimentPlan, Failure>
             ));
         }
     }
-    let (sensor, sensor_name) = match (&args.sensor, &scene.sensor) {
-        (Some(name), _) => (Sensor::builtin(expose::model(name)?), name.clone()),
-        (None, Some(own)) => (Sensor::from_settings(own)?, format!("of {}", scene.name)),
-        (None, None) => (
-            Sensor::builtin(SensorModel::Ccd),
-            SensorModel::Ccd.name().to_owned(),
-        ),
-    };
+    let (sensor, sensor_name) = expose::studied(args.sensor.as_deref(), scene)?;
     Ok(ExperimentPlan {
         sensor,
         sensor_name,

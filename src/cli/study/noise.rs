@@ -7,7 +7,8 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::findings::Findings;
-use crate::cli::args::NoiseArgs;
+use crate::cli::args::{AxisName, NoiseArgs};
+use crate::cli::expose;
 use crate::cli::failure::Failure;
 use crate::cli::interrupt::stop_flag;
 use crate::cli::output::{self, Talk};
@@ -15,9 +16,11 @@ use crate::cli::{Outcome, progress, settings};
 use crate::num::stream::Sampling;
 use crate::recovery::Method;
 use crate::report::{self, Measure};
-use crate::scene::Scene;
+use crate::scene::{Scene, Spread};
 use crate::store::ensure_writable;
-use crate::study::{self, NoiseAxis, NoisePlan, RenderNoise, Trial, read_ledger, write_ledger};
+use crate::study::{
+    self, NamedSensor, NoiseAxis, NoisePlan, RenderNoise, Trial, read_ledger, write_ledger,
+};
 use crate::transport::Control;
 
 /// Finished trials are on disk from the first few on, and at least this often.
@@ -25,7 +28,7 @@ const KEEP_EVERY: Duration = Duration::from_secs(5);
 
 pub(super) fn execute(args: &NoiseArgs, talk: Talk) -> Result<Outcome, Failure> {
     let scene = Scene::load(&args.scene)?;
-    let plan = plan(args)?;
+    let plan = plan(args, &scene)?;
     let pool = settings::pool(args.threads)?;
     for &samples in &args.render_samples {
         settings::budget("--render-samples", samples, Sampling::Sobol)?;
@@ -76,7 +79,7 @@ pub(super) fn execute(args: &NoiseArgs, talk: Talk) -> Result<Outcome, Failure> 
     let mut found = found.ok_or_else(kept)?;
     if !args.render_samples.is_empty() {
         found.render_noise = pool
-            .install(|| render_noise(&scene, args, talk))
+            .install(|| render_noise(&scene, &plan.axis, args, talk))
             .ok_or_else(kept)?;
     }
 
@@ -90,30 +93,79 @@ pub(super) fn execute(args: &NoiseArgs, talk: Talk) -> Result<Outcome, Failure> 
     Ok(Outcome::Done)
 }
 
-fn plan(args: &NoiseArgs) -> Result<NoisePlan, Failure> {
-    let axis = NoiseAxis::Relative;
-    let mut levels = match args.noise.as_slice() {
-        [] => axis.levels(),
-        given => given.to_vec(),
-    };
-    if let Some((level, cure)) = levels.iter().find_map(|l| Some((l, axis.refuses(*l)?))) {
+fn plan(args: &NoiseArgs, scene: &Scene) -> Result<NoisePlan, Failure> {
+    let axis = axis(args, scene)?;
+    if let Some((level, cure)) = args.noise.iter().find_map(|l| Some((l, axis.refuses(*l)?))) {
         return Err(Failure::new(
-            format!("--noise {level} has no meaning here"),
+            format!("--noise {level} has no meaning on the axis {}", axis.name()),
             cure,
         ));
     }
-    levels.sort_by(f64::total_cmp);
-    levels.dedup();
-    Ok(NoisePlan {
+    if !args.render_samples.is_empty() && axis.of_relative(1.0).is_none() {
+        return Err(Failure::new(
+            format!(
+                "the noise of renders has no place on the axis {}",
+                axis.name()
+            ),
+            "use --axis relative or photons, or leave out --render-samples",
+        ));
+    }
+    let mut plan = NoisePlan {
         boards: sides("--boards", &args.boards, 2)?,
         elements: sides("--elements", &args.elements, 1)?,
         methods: methods(&args.method)?,
         kernel: settings::kernel(args.kernel),
         axis,
-        levels,
+        levels: args.noise.clone(),
         seeds: args.seeds,
         first_seed: args.seed,
-    })
+    };
+    if plan.levels.is_empty() {
+        plan.levels = plan.default_levels(scene)?;
+    }
+    plan.levels.sort_by(|a, b| plan.axis.quiet_first(*a, *b));
+    plan.levels.dedup();
+    Ok(plan)
+}
+
+/// The axis, with its sensor where it has one.
+fn axis(args: &NoiseArgs, scene: &Scene) -> Result<NoiseAxis, Failure> {
+    let without = |option: &str, given: bool, axes: &str| match given {
+        false => Ok(()),
+        true => Err(Failure::new(
+            format!("{option} has no meaning on this axis"),
+            format!("leave it out, or use {axes}"),
+        )),
+    };
+    if args.axis != AxisName::Glare {
+        without("--falloff", args.falloff.is_some(), "--axis glare")?;
+    }
+    let camera = || {
+        let (sensor, name) = expose::studied(args.sensor.as_deref(), scene)?;
+        Ok::<_, Failure>(NamedSensor { name, sensor })
+    };
+    let plain = match args.axis {
+        AxisName::Relative => NoiseAxis::Relative,
+        AxisName::Photons => NoiseAxis::Photons,
+        AxisName::Bits => NoiseAxis::Bits,
+        AxisName::Exposure => return Ok(NoiseAxis::Exposure(camera()?)),
+        AxisName::Glare => {
+            let spread = match args.falloff {
+                None => Spread::Uniform,
+                Some(d0) => {
+                    expose::falloff(d0)?;
+                    Spread::Falloff(d0)
+                }
+            };
+            return Ok(NoiseAxis::Glare(camera()?, spread));
+        }
+    };
+    without(
+        "--sensor",
+        args.sensor.is_some(),
+        "--axis exposure or glare",
+    )?;
+    Ok(plain)
 }
 
 /// Numbers of checks or elements a side, sorted, each once.
@@ -159,14 +211,19 @@ fn known(path: &Path, name: &str) -> Result<Vec<Trial>, Failure> {
 }
 
 /// Renders a few spots; `None` if stopped.
-fn render_noise(scene: &Scene, args: &NoiseArgs, talk: Talk) -> Option<Vec<RenderNoise>> {
+fn render_noise(
+    scene: &Scene,
+    axis: &NoiseAxis,
+    args: &NoiseArgs,
+    talk: Talk,
+) -> Option<Vec<RenderNoise>> {
     let bar = progress::steps(talk, "noise of renders");
     let tick = |_| bar.tick();
     let control = Control {
         progress: &tick,
         stop: stop_flag(),
     };
-    let found = study::render_noise(scene, &args.render_samples, args.seed, control);
+    let found = study::render_noise(scene, axis, &args.render_samples, args.seed, control);
     bar.finish_and_clear();
     found
 }

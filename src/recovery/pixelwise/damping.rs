@@ -7,6 +7,8 @@ use crate::recovery::{Choice, Method, Options, Problem, RecoveryError};
 
 /// Trial values of λ/σ₁ fall from 1e3 by this factor until one is accepted; bisection finds the rest.
 const STEP: f64 = 0.5;
+/// Below this fraction of the last singular value kept, with room for a STEP, damping does nothing: (λ/σ)² is lost in the rounding of 1 + (λ/σ)².
+const NOTHING: f64 = 4e-9;
 
 /// λ as a fraction of the spectrum's largest singular value, and why.
 pub(super) fn choose(
@@ -62,8 +64,7 @@ fn by_discrepancy(
     while !level(low).accepted() {
         high = low;
         low *= STEP;
-        // Far below the last direction kept damping does nothing any more.
-        if low * first < 1e-3 * last {
+        if low * first < NOTHING * last {
             return Err(rule.understated(level(0.0)));
         }
     }

@@ -56,6 +56,28 @@ mod tests {
         }
     }
 
+    /// Noise so small beside the signal in every direction that even σ_last/1000 damps too much: what is left of the signal is (λ/σ)⁴ of its square.
+    #[test]
+    fn the_damping_is_as_small_as_the_noise_asks_for() {
+        let bench = Bench::new(6.0, 2, 8);
+        let exact = bench.phi(&bench.board(2));
+        for (seed, noise) in [(1, 1e-8), (2, 1e-10), (3, 1e-12)] {
+            let (phi, stderr) = relative_noise(&exact, noise, seed);
+            let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+            let found = recover(Method::Tikhonov, &problem, &Options::default()).unwrap();
+            let Choice::Discrepancy {
+                residual, limit, ..
+            } = found.choice
+            else {
+                panic!("{:?}", found.choice)
+            };
+            assert!(
+                residual <= limit && residual > 0.98 * limit,
+                "{noise:e}: {residual:e} {limit:e}"
+            );
+        }
+    }
+
     #[test]
     fn it_solves_the_damped_normal_equations() {
         // X (D Dᵀ + λ² 1) = Φ Dᵀ, the definition of Tikhonov's estimate.

@@ -72,11 +72,6 @@ pub enum ExperimentError {
     List(&'static str),
 }
 
-/// A photograph of the longest bearable exposure fills the fullest pixel to this share of what it holds.
-const FILLED: f64 = 0.5;
-/// Exposure of a sensor without limits, s.
-const UNLIMITED: f64 = 1.0;
-
 /// Re-enacts the experiment of `scene`. `steps` hears how many of all photograph series are read. `Ok(None)` if stopped.
 ///
 /// # Errors
@@ -212,7 +207,10 @@ fn works(scene: &Scene, plan: &ExperimentPlan, signal: &Matrix) -> Vec<Work> {
             spread: *spread,
             ratio,
             fraction,
-            time: share * longest(&plan.sensor, brightest, scene.laser.wavelength),
+            time: share
+                * plan
+                    .sensor
+                    .longest_exposure(brightest, scene.laser.wavelength),
             glare,
             pattern: pattern.clone(),
             frames,
@@ -227,21 +225,6 @@ fn works(scene: &Scene, plan: &ExperimentPlan, signal: &Matrix) -> Vec<Work> {
         .iter()
         .flat_map(|p| plan.exposures.iter().map(move |t| work(p, 1.0, *t, 1)));
     by_glare.chain(by_exposure).collect()
-}
-
-/// The exposure, s, that fills a pixel of flux `brightest` (W) to [`FILLED`] of what well and converter hold.
-fn longest(sensor: &Sensor, brightest: f64, wavelength: f64) -> f64 {
-    let figures = sensor.figures();
-    let most = figures
-        .full_well
-        .min((figures.top() - figures.offset) * figures.gain);
-    let rate = figures.quantum_efficiency * brightest
-        / crate::num::units::photon_energy(wavelength)
-        + figures.dark_current;
-    match most.is_finite() {
-        true => FILLED * most / rate,
-        false => UNLIMITED,
-    }
 }
 
 /// What one seed gives.

@@ -11,7 +11,7 @@ use crate::model::MatrixModel;
 use crate::recovery::{
     Method, Options, Parameter, Problem, Recovered, RecoveryError, Uncertainty, recover,
 };
-use crate::study::noise::{NoiseAxis, Spread};
+use crate::study::noise::{Spread, relative};
 
 /// One method at one noise on one configuration.
 #[derive(Clone, Debug, Serialize)]
@@ -105,7 +105,7 @@ fn compare(
         let problem = problem.with_grids(&grids)?;
         recover(method, &problem, options)
     };
-    let photograph = |seed| NoiseAxis::Relative.photograph(exact, noise, seed).phi;
+    let photograph = |seed| relative(exact, noise, seed).phi;
     // A parameter that is chosen from the data makes a method non-linear: one draw outside the sample fixes it.
     let pilot = invert(
         &photograph(plan.first_seed.wrapping_add(plan.seeds)),

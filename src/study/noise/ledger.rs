@@ -5,7 +5,7 @@
 
 use super::trial::{Measures, Trial};
 
-const COLUMNS: &str = "board,elements,method,noise,seed,mtf_raw,light_plus_dark,mtf_normalized,correlation,rmse,failure";
+const COLUMNS: &str = "board,elements,method,level,seed,mtf_raw,light_plus_dark,mtf_normalized,correlation,rmse,failure";
 
 /// Why a ledger cannot be gone on with.
 #[derive(Debug, PartialEq, thiserror::Error)]

@@ -7,13 +7,17 @@
 //! A method that is linear and unbiased keeps its mean raw MTF however loud the noise: what grows is the spread. And a ratio whose denominator W + B comes near 0
 //! has no mean. Both are why the normalized MTF, which lies between −1 and 1, and the root mean square error stand beside it; see [`Lost::Unknown`].
 //!
-//! Where the bound of Cramér and Rao, √(tr CRB/r), is to stand beside the root mean square error, [`Point`] is the place: it is a function of the
-//! model and of the level's standard errors alone.
+//! Beside the error stands the bound of Cramér and Rao, √(tr CRB/r): what no unbiased recovery undercuts. Methods that are told more than the photographs
+//! (bounds, two values) do; what bound holds for them is not known, so the ratio of the error to this one is all that is given.
 
 mod axis;
+mod best;
+mod bound;
 mod curve;
 mod ledger;
+mod plan;
 mod render;
+mod stage;
 mod trial;
 
 use std::ops::ControlFlow;
@@ -22,66 +26,23 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::matrix::Matrix;
-use crate::model::{Kernel, MatrixModel, ModelError};
+use crate::model::{MatrixModel, ModelError};
 use crate::recovery::Method;
 use crate::scene::Scene;
 
-pub use axis::NoiseAxis;
+use best::best;
+use bound::bounds;
+use stage::Stage;
+
+pub use axis::{NamedSensor, NoiseAxis, Spacing};
+pub use best::Best;
 pub(super) use curve::MOST_SPREAD;
-pub use curve::{Lost, Point, Spread};
+pub use curve::{Held, Lost, Point, Reach, Spread};
 pub use ledger::{LedgerError, read_ledger, write_ledger};
+pub use plan::NoisePlan;
 pub use render::{RenderNoise, render_noise};
+pub(super) use stage::relative;
 pub use trial::{Measures, Trial};
-
-/// What is studied.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NoisePlan {
-    /// Checks a side of the objects.
-    pub boards: Vec<usize>,
-    /// Elements a side of the recoveries; those that a board does not divide are left out with it.
-    pub elements: Vec<usize>,
-    /// The methods.
-    pub methods: Vec<Method>,
-    /// Kernel of the data and of the inversion.
-    pub kernel: Kernel,
-    /// What is varied.
-    pub axis: NoiseAxis,
-    /// Its levels, from quiet to loud.
-    pub levels: Vec<f64>,
-    /// Draws of the noise.
-    pub seeds: u64,
-    /// Seed of the first.
-    pub first_seed: u64,
-}
-
-impl NoisePlan {
-    /// What trials have to share to belong to one study, in words: program, scene, kernel and axis.
-    pub fn study(&self, scene: &Scene) -> String {
-        format!(
-            "phicam {} study noise of scene {} ({}), {} kernel, {} axis",
-            env!("CARGO_PKG_VERSION"),
-            scene.name.replace(['\n', '\r'], " "),
-            scene.hash,
-            self.kernel.name(),
-            self.axis.name()
-        )
-    }
-
-    /// Objects with the elements that they are recovered at.
-    fn objects(&self) -> Vec<[usize; 2]> {
-        let pairs = self
-            .boards
-            .iter()
-            .flat_map(|b| self.elements.iter().map(|e| [*b, *e]));
-        pairs.filter(|[b, e]| e % b == 0).collect()
-    }
-
-    /// Recoveries of the whole study.
-    pub fn trials(&self) -> usize {
-        self.objects().len() * self.levels.len() * self.seeds as usize * self.methods.len()
-    }
-}
 
 /// One method on one object.
 #[derive(Clone, Debug, Serialize)]
@@ -98,6 +59,9 @@ pub struct NoiseCurve {
     pub lost_raw: [Lost; 2],
     /// The same of the normalized MTF.
     pub lost_normalized: [Lost; 2],
+    /// Up to which level the mean raw MTF stays at or above the first of [`LIMITS`], m, and not above 2 − m, where dark would come out below 0; none
+    /// where it is not there at the quietest.
+    pub held: Option<Held>,
 }
 
 /// The modulations whose loss is told.
@@ -114,15 +78,25 @@ pub struct NoiseStudy {
     pub kernel: String,
     /// What was varied.
     pub axis: String,
-    /// What a level is.
+    /// What a level is, with its unit.
     pub axis_title: String,
+    /// The header of a level in comma-separated values.
+    pub axis_column: String,
+    /// How levels are spaced.
+    pub axis_spacing: Spacing,
+    /// What was done to the photographs, and what the recovery was told, in words.
+    pub axis_words: String,
+    /// The sensor, on axes that have one.
+    pub sensor: Option<String>,
     /// Draws of the noise.
     pub seeds: u64,
     /// Seed of the first.
     pub first_seed: u64,
     /// One for each object, elements and method.
     pub curves: Vec<NoiseCurve>,
-    /// Where the noise of renders lies on the axis of relative noise, if it was measured.
+    /// The best method for each object and elements.
+    pub best: Vec<Best>,
+    /// Where the noise of renders lies on the axis, if it was measured.
     pub render_noise: Vec<RenderNoise>,
 }
 
@@ -137,6 +111,24 @@ pub enum NoiseError {
         "no number of elements is a multiple of a number of checks, so there is no object to study (use e.g. 2 checks and 8 elements)"
     )]
     NoObject,
+    /// No light.
+    #[error("no light from the object reaches the camera (see `phicam scene check`)")]
+    Dark,
+    /// No glare to be had.
+    #[error(
+        "no light enters the lens straight from any spot, so there is no glare to study (let the camera face the wall where the spots are)"
+    )]
+    NoGlare,
+    /// Nothing but saturated pixels.
+    #[error(
+        "an exposure of {exposure:e} s saturates the brightest pixel; use exposures below {most:.3e} s"
+    )]
+    Saturated {
+        /// The exposure, s.
+        exposure: f64,
+        /// What fills the brightest pixel, s.
+        most: f64,
+    },
 }
 
 /// Standard error above which a mean MTF is not held against a limit: a mean that strays has not fallen.
@@ -160,15 +152,15 @@ pub fn noise(
     if objects.is_empty() {
         return Err(NoiseError::NoObject);
     }
+    plan.refuse_saturation(scene)?;
     let mut known: Vec<Trial> = known.to_vec();
     known.sort_by(Trial::order);
+    let mut curves = Vec::new();
+    let mut winners = Vec::new();
     for &[board, elements] in &objects {
-        let model = MatrixModel::new(
-            &scene.with_checkerboard(board),
-            plan.kernel,
-            Some([elements; 2]),
-        )?;
+        let model = plan.model(scene, [board, elements])?;
         let exact = model.phi();
+        let stage = Stage::new(&plan.axis, scene, &exact)?;
         let draws: Vec<(f64, u64)> = plan
             .levels
             .iter()
@@ -180,7 +172,7 @@ pub fn noise(
                 board,
                 elements,
                 model: &model,
-                exact: &exact,
+                stage: &stage,
             };
             let found: Vec<Option<Vec<Trial>>> = chunk
                 .par_iter()
@@ -195,20 +187,25 @@ pub fn noise(
                 return Ok(None);
             }
         }
+        let bounds = bounds(&plan.axis, &stage, (&model, &exact), &plan.levels);
+        let own = |m: &Method| curve(plan, [board, elements], *m, (&known, &bounds));
+        curves.extend(plan.methods.iter().map(own));
+        winners.push(best(&plan.axis, [board, elements], &curves));
     }
-    let curves = objects
-        .iter()
-        .flat_map(|o| plan.methods.iter().map(|m| curve(plan, *o, *m, &known)))
-        .collect();
     Ok(Some(NoiseStudy {
         scene: scene.name.clone(),
         scene_hash: scene.hash.clone(),
         kernel: plan.kernel.name().to_owned(),
         axis: plan.axis.name().to_owned(),
         axis_title: plan.axis.title().to_owned(),
+        axis_column: plan.axis.column().to_owned(),
+        axis_spacing: plan.axis.spacing(),
+        axis_words: plan.axis.words().to_owned(),
+        sensor: plan.axis.sensor().map(str::to_owned),
         seeds: plan.seeds,
         first_seed: plan.first_seed,
         curves,
+        best: winners,
         render_noise: Vec::new(),
     }))
 }
@@ -219,7 +216,7 @@ struct Bench<'a> {
     board: usize,
     elements: usize,
     model: &'a MatrixModel,
-    exact: &'a Matrix,
+    stage: &'a Stage<'a>,
 }
 
 impl Bench<'_> {
@@ -238,19 +235,24 @@ impl Bench<'_> {
         if open.is_empty() {
             return open;
         }
-        let photographs = self.plan.axis.photograph(self.exact, level, seed);
+        let photographs = self.stage.photograph(level, seed);
         for trial in &mut open {
-            trial.outcome = trial::measure(self.model, &photographs, trial.method);
+            let measured = |p| trial::measure(self.model, p, trial.method);
+            trial.outcome = photographs
+                .as_ref()
+                .map_err(String::clone)
+                .and_then(measured);
         }
         open
     }
 }
 
+/// `bounds` are those of Cramér and Rao at the plan's levels.
 fn curve(
     plan: &NoisePlan,
     [board, elements]: [usize; 2],
     method: Method,
-    trials: &[Trial],
+    (trials, bounds): (&[Trial], &[Option<f64>]),
 ) -> NoiseCurve {
     let seeds = 0..plan.seeds;
     let asked = |t: &&Trial| {
@@ -258,27 +260,29 @@ fn curve(
             && seeds.contains(&t.seed.wrapping_sub(plan.first_seed))
     };
     let own: Vec<&Trial> = trials.iter().filter(asked).collect();
-    let point = |level: &f64| {
+    let point = |(level, bound): (&f64, &Option<f64>)| {
         let here: Vec<&Trial> = own
             .iter()
             .copied()
             .filter(|t| t.level.total_cmp(level).is_eq())
             .collect();
-        Point::of(*level, &here)
+        Point::of(*level, &here, *bound)
     };
-    let points: Vec<Point> = plan.levels.iter().map(point).collect();
-    let lost = |f: &dyn Fn(&Point) -> Option<Spread>| {
+    let points: Vec<Point> = plan.levels.iter().zip(bounds).map(point).collect();
+    let means = |f: &dyn Fn(&Point) -> Option<Spread>| -> Vec<(f64, Option<f64>)> {
         let known = |s: &Spread| s.stderr.is_none_or(|e| e <= MOST_STDERR);
         let mean = |p: &Point| {
             let spread = f(p).filter(|s| s.draws == p.draws);
             spread.filter(known).map(|s| s.mean)
         };
-        let curve: Vec<_> = points.iter().map(|p| (p.level, mean(p))).collect();
-        LIMITS.map(|limit| curve::lost(&curve, limit))
+        points.iter().map(|p| (p.level, mean(p))).collect()
     };
     let narrow = |p: &Point| p.denominator_spread.is_none_or(|s| s <= MOST_SPREAD);
-    let lost_raw = lost(&|p| p.mtf_raw.filter(|_| narrow(p)));
-    let lost_normalized = lost(&|p| p.mtf_normalized);
+    let raw = means(&|p| p.mtf_raw.filter(|_| narrow(p)));
+    let normalized = means(&|p| p.mtf_normalized);
+    let spacing = plan.axis.spacing();
+    let lost = |curve: &[_]| LIMITS.map(|limit| curve::lost(curve, limit, spacing));
+    let (lost_raw, lost_normalized) = (lost(&raw), lost(&normalized));
     NoiseCurve {
         board,
         elements,
@@ -286,6 +290,7 @@ fn curve(
         points,
         lost_raw,
         lost_normalized,
+        held: curve::held(&raw, LIMITS[0], spacing),
     }
 }
 

@@ -1,7 +1,8 @@
-//! Where the noise of a render lies on the axis of relative noise.
+//! Where the noise of a render lies on an axis.
 
 use serde::Serialize;
 
+use super::NoiseAxis;
 use crate::num::stream::Sampling;
 use crate::scene::Scene;
 use crate::transport::{Budget, Control, Estimator, Plan, render};
@@ -16,6 +17,8 @@ pub struct RenderNoise {
     /// √(mean of (standard error/flux)²) over the lit entries of the spots rendered. Under `shared` the errors of a row are correlated, so that
     /// no method feels them as it feels independent noise of the same size.
     pub noise: f64,
+    /// The level at which an entry of mean flux is as noisy; none on axes where that is not the whole of the noise.
+    pub level: Option<f64>,
 }
 
 /// Spots rendered, spread over the layout.
@@ -24,6 +27,7 @@ const SPOTS: usize = 4;
 /// Renders a few spots by both estimators (Sobol' points) with each number of paths. `None` if stopped, or for a number of paths that cannot be traced.
 pub fn render_noise(
     scene: &Scene,
+    axis: &NoiseAxis,
     samples: &[u64],
     seed: u64,
     control: Control<'_>,
@@ -47,11 +51,12 @@ pub fn render_noise(
                 let lit = entries.filter(|(flux, _)| **flux > 0.0);
                 squares.extend(lit.map(|(flux, stderr)| (stderr / flux) * (stderr / flux)));
             }
-            let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+            let noise = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
             marks.push(RenderNoise {
                 estimator: estimator.name().to_owned(),
                 samples: budget.samples(),
-                noise: mean.sqrt(),
+                noise,
+                level: axis.of_relative(noise),
             });
         }
     }

@@ -6,7 +6,7 @@ use crate::metrics::{correlation, light_and_dark, mtf_normalized, mtf_raw, rmse}
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Options, Problem, Uncertainty, recover};
 
-use super::axis::Photographs;
+use super::stage::Photographs;
 
 /// What one method made of one draw of the noise.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,0 +1,132 @@
+//! The method that goes furthest.
+
+use serde::Serialize;
+
+use super::NoiseCurve;
+use super::axis::{NoiseAxis, Spacing};
+use super::curve::{Held, Point, Reach};
+
+/// Of one object and its elements the method that holds its mean raw MTF at or above the first of [`LIMITS`](super::LIMITS) up to the loudest noise; of equals the one with
+/// the smaller root mean square error there.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Best {
+    /// Checks a side of the object.
+    pub board: usize,
+    /// Elements a side of the recovery.
+    pub elements: usize,
+    /// The method; none where no method reaches the limit at the quietest level.
+    pub method: Option<String>,
+    /// The level up to which it holds.
+    pub level: Option<f64>,
+    /// Whether it falls there.
+    pub reach: Option<Reach>,
+    /// Root mean square error at that level, over elements and draws.
+    pub rmse: Option<f64>,
+    /// The same over the bound of Cramér and Rao.
+    pub rmse_over_bound: Option<f64>,
+}
+
+/// The best of the `curves` of one object.
+pub(super) fn best(axis: &NoiseAxis, [board, elements]: [usize; 2], curves: &[NoiseCurve]) -> Best {
+    let own = curves
+        .iter()
+        .filter(|c| (c.board, c.elements) == (board, elements));
+    let found = own
+        .filter_map(|c| {
+            let held = c.held?;
+            let at = |f: fn(&Point) -> Option<f64>| between(axis.spacing(), &c.points, held, f);
+            Some((
+                c,
+                held,
+                at(|p| p.rmse_over_draws),
+                at(|p| p.rmse_over_bound),
+            ))
+        })
+        // The first of equals stays.
+        .reduce(|best, next| {
+            let further = axis.quiet_first(next.1.level, best.1.level);
+            let error = |e: Option<f64>| e.unwrap_or(f64::INFINITY);
+            let nearer = error(next.2).total_cmp(&error(best.2));
+            match further.then(nearer.reverse()).is_gt() {
+                true => next,
+                false => best,
+            }
+        });
+    Best {
+        board,
+        elements,
+        method: found.map(|(c, ..)| c.method.clone()),
+        level: found.map(|(_, held, ..)| held.level),
+        reach: found.map(|(_, held, ..)| held.reach),
+        rmse: found.and_then(|f| f.2),
+        rmse_over_bound: found.and_then(|f| f.3),
+    }
+}
+
+/// A positive quantity at a level between those studied: by interpolation in its logarithm.
+fn between(
+    spacing: Spacing,
+    points: &[Point],
+    held: Held,
+    of: impl Fn(&Point) -> Option<f64>,
+) -> Option<f64> {
+    if let Some(p) = points.iter().find(|p| p.level == held.level) {
+        return of(p);
+    }
+    let pair = points.windows(2).find(|w| {
+        let (a, b) = (w[0].level - held.level, w[1].level - held.level);
+        a * b < 0.0
+    })?;
+    let [low, high] = [of(&pair[0])?, of(&pair[1])?].map(libm::log);
+    let t = spacing.fraction([pair[0].level, pair[1].level], held.level);
+    let value = libm::exp(low + t * (high - low));
+    value.is_finite().then_some(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::noise::{LIMITS, Lost};
+
+    fn curve(method: &str, held: Option<(f64, Reach)>, errors: [f64; 2]) -> NoiseCurve {
+        let point = |level, error: f64| Point {
+            rmse_over_draws: Some(error),
+            rmse_over_bound: Some(2.0 * error),
+            ..Point::of(level, &[], None)
+        };
+        NoiseCurve {
+            board: 2,
+            elements: 8,
+            method: method.to_owned(),
+            points: vec![point(1e-4, errors[0]), point(1e-2, errors[1])],
+            lost_raw: [Lost::Unknown; LIMITS.len()],
+            lost_normalized: [Lost::Unknown; LIMITS.len()],
+            held: held.map(|(level, reach)| Held { level, reach }),
+        }
+    }
+
+    /// By hand: half way between 1e-4 and 1e-2 lies 1e-3, and between the errors 0.01 and 0.09 lies 0.03.
+    #[test]
+    fn the_furthest_wins_and_of_equals_the_nearest() {
+        let curves = [
+            curve("never", None, [1.0, 1.0]),
+            curve("early", Some((1e-4, Reach::Falls)), [0.001, 0.001]),
+            curve("coarse", Some((1e-3, Reach::Falls)), [0.04, 0.09]),
+            curve("fine", Some((1e-3, Reach::AtLeast)), [0.01, 0.09]),
+        ];
+        let found = best(&NoiseAxis::Relative, [2, 8], &curves);
+        assert_eq!(found.method.as_deref(), Some("fine"));
+        assert_eq!(
+            (found.level, found.reach),
+            (Some(1e-3), Some(Reach::AtLeast))
+        );
+        assert!((found.rmse.unwrap() / 0.03 - 1.0).abs() < 1e-12);
+        assert!((found.rmse_over_bound.unwrap() / 0.06 - 1.0).abs() < 1e-12);
+        // Where few photons are loud the one that does with least wins.
+        assert_eq!(
+            best(&NoiseAxis::Photons, [2, 8], &curves).method.as_deref(),
+            Some("early")
+        );
+        assert_eq!(best(&NoiseAxis::Relative, [4, 8], &curves).method, None);
+    }
+}

@@ -1,0 +1,109 @@
+//! What is studied.
+
+use super::{NoiseAxis, NoiseError};
+use crate::model::{Kernel, MatrixModel, ModelError};
+use crate::recovery::Method;
+use crate::scene::Scene;
+
+/// What is studied.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoisePlan {
+    /// Checks a side of the objects.
+    pub boards: Vec<usize>,
+    /// Elements a side of the recoveries; those that a board does not divide are left out with it.
+    pub elements: Vec<usize>,
+    /// The methods.
+    pub methods: Vec<Method>,
+    /// Kernel of the data and of the inversion.
+    pub kernel: Kernel,
+    /// What is varied.
+    pub axis: NoiseAxis,
+    /// Its levels, from quiet to loud ([`NoiseAxis::quiet_first`]).
+    pub levels: Vec<f64>,
+    /// Draws of the noise.
+    pub seeds: u64,
+    /// Seed of the first.
+    pub first_seed: u64,
+}
+
+impl NoisePlan {
+    /// What trials have to share to belong to one study, in words: program, scene, kernel, axis and sensor.
+    pub fn study(&self, scene: &Scene) -> String {
+        format!(
+            "phicam {} study noise of scene {} ({}), {} kernel, {}",
+            env!("CARGO_PKG_VERSION"),
+            scene.name.replace(['\n', '\r'], " "),
+            scene.hash,
+            self.kernel.name(),
+            self.axis.identity()
+        )
+    }
+
+    /// The levels of a plan that names none, from quiet to loud.
+    ///
+    /// # Errors
+    /// [`NoiseError`], where they depend on the brightest object.
+    pub fn default_levels(&self, scene: &Scene) -> Result<Vec<f64>, NoiseError> {
+        let longest = match &self.axis {
+            NoiseAxis::Exposure(camera) => {
+                let brightest = self.brightest(scene)?;
+                camera
+                    .sensor
+                    .longest_exposure(brightest, scene.laser.wavelength)
+            }
+            _ => 1.0,
+        };
+        Ok(self.axis.levels(longest))
+    }
+
+    /// The brightest entry of all objects, W.
+    fn brightest(&self, scene: &Scene) -> Result<f64, NoiseError> {
+        let mut brightest = 0.0f64;
+        for object in self.objects() {
+            brightest = brightest.max(self.model(scene, object)?.phi().max());
+        }
+        match brightest > 0.0 {
+            true => Ok(brightest),
+            false => Err(NoiseError::Dark),
+        }
+    }
+
+    /// What an object's light is, and what it is recovered with.
+    pub(super) fn model(
+        &self,
+        scene: &Scene,
+        [board, elements]: [usize; 2],
+    ) -> Result<MatrixModel, ModelError> {
+        let scene = scene.with_checkerboard(board);
+        MatrixModel::new(&scene, self.kernel, Some([elements; 2]))
+    }
+
+    /// Refuses exposures that saturate whatever the noise.
+    pub(super) fn refuse_saturation(&self, scene: &Scene) -> Result<(), NoiseError> {
+        let NoiseAxis::Exposure(camera) = &self.axis else {
+            return Ok(());
+        };
+        let brightest = self.brightest(scene)?;
+        let most = camera
+            .sensor
+            .saturating_exposure(brightest, scene.laser.wavelength);
+        match self.levels.iter().find(|level| **level > most) {
+            Some(&exposure) => Err(NoiseError::Saturated { exposure, most }),
+            None => Ok(()),
+        }
+    }
+
+    /// Objects with the elements that they are recovered at.
+    pub(super) fn objects(&self) -> Vec<[usize; 2]> {
+        let pairs = self
+            .boards
+            .iter()
+            .flat_map(|b| self.elements.iter().map(|e| [*b, *e]));
+        pairs.filter(|[b, e]| e % b == 0).collect()
+    }
+
+    /// Recoveries of the whole study.
+    pub fn trials(&self) -> usize {
+        self.objects().len() * self.levels.len() * self.seeds as usize * self.methods.len()
+    }
+}
