@@ -6,6 +6,7 @@
 
 mod analysis;
 mod results;
+mod series;
 mod words;
 
 use std::sync::atomic::Ordering;
@@ -16,13 +17,12 @@ use super::Spread;
 use crate::matrix::Matrix;
 use crate::model::{Kernel, MatrixModel, ModelError};
 use crate::num::stream::Sampling;
-use crate::scene::{Glare, Scene, Spread as GlareSpread};
-use crate::sensor::{
-    Exposed, Exposure, Light, Sensor, SensorError, entering_lens, glare, glare_to_signal,
-};
+use crate::scene::{Scene, Spread as GlareSpread};
+use crate::sensor::{Sensor, SensorError, entering_lens};
 use crate::transport::{Budget, Control, Estimator, Plan, render};
-use analysis::{ANALYSES, Figures, Laboratory, Photographs};
+use analysis::{ANALYSES, Figures, Laboratory};
 pub use results::{Experiment, Reading, Setting, Threshold};
+use series::{Seed, Series};
 
 /// How the experiment is re-enacted.
 #[derive(Clone, Debug)]
@@ -108,7 +108,7 @@ pub fn experiment(
     if direct <= 0.0 {
         return Err(ExperimentError::NoGlare);
     }
-    let work = works(scene, plan, &signal);
+    let work = series::all(scene, plan, &signal);
     let all = work.len() * plan.seeds as usize;
     let done = std::sync::atomic::AtomicUsize::new(0);
     let mut settings = Vec::with_capacity(work.len());
@@ -119,7 +119,7 @@ pub fn experiment(
                 if control.stop.load(Ordering::Relaxed) {
                     return Ok(None);
                 }
-                let seed = seed(
+                let seed = series::read(
                     scene,
                     plan,
                     &laboratory,
@@ -171,113 +171,9 @@ fn object(scene: &Scene) -> String {
     names.join(" and ")
 }
 
-/// One series of photographs.
-struct Work {
-    spread: GlareSpread,
-    ratio: f64,
-    fraction: f64,
-    /// Light of the laser that the lens scatters, pixels × spots, W.
-    glare: Matrix,
-    /// The same for the whole of the light that enters.
-    pattern: Matrix,
-    time: f64,
-    frames: u32,
-}
-
-/// First the settings of growing glare, even and falling off, then those of growing exposure.
-fn works(scene: &Scene, plan: &ExperimentPlan, signal: &Matrix) -> Vec<Work> {
-    let spreads = [GlareSpread::Uniform, GlareSpread::Falloff(plan.falloff)];
-    let patterns = spreads.map(|spread| {
-        (
-            spread,
-            glare(
-                scene,
-                Glare {
-                    fraction: 1.0,
-                    spread,
-                },
-            ),
-        )
-    });
-    let work = |(spread, pattern): &(GlareSpread, Matrix), ratio: f64, share: f64, frames| {
-        let fraction = ratio / glare_to_signal(pattern, signal);
-        let glare = pattern * fraction;
-        let brightest = (signal + &glare).max();
-        Work {
-            spread: *spread,
-            ratio,
-            fraction,
-            time: share
-                * plan
-                    .sensor
-                    .longest_exposure(brightest, scene.laser.wavelength),
-            glare,
-            pattern: pattern.clone(),
-            frames,
-        }
-    };
-    let by_glare = patterns.iter().flat_map(|p| {
-        plan.glares
-            .iter()
-            .map(move |g| work(p, *g, 1.0, plan.frames))
-    });
-    let by_exposure = patterns
-        .iter()
-        .flat_map(|p| plan.exposures.iter().map(move |t| work(p, 1.0, *t, 1)));
-    by_glare.chain(by_exposure).collect()
-}
-
-/// What one seed gives.
-struct Seed {
-    saturated: usize,
-    noise: f64,
-    figures: Vec<Result<Figures, String>>,
-}
-
-fn seed(
-    scene: &Scene,
-    plan: &ExperimentPlan,
-    laboratory: &Laboratory,
-    work: &Work,
-    signal: &Matrix,
-    seed: u64,
-) -> Result<Seed, ExperimentError> {
-    let exposure = Exposure::new(&[work.time], work.frames, work.frames)?;
-    let wavelength = scene.laser.wavelength;
-    let expose = |light: &Matrix, seed: u64| -> Result<Exposed, SensorError> {
-        let light = Light::new(light, wavelength)?.with_glare(&work.glare)?;
-        plan.sensor.expose(&light, &exposure, seed)
-    };
-    let taken = expose(signal, seed.wrapping_mul(2))?;
-    let covered = expose(
-        &Matrix::zeros(signal.nrows(), signal.ncols()),
-        seed.wrapping_mul(2).wrapping_add(1),
-    )?;
-    let saturated = taken.count(crate::sensor::Range::Saturated);
-    let noise = taken.stderr.norm() / signal.norm();
-    let photographs = |e: Exposed| Photographs {
-        flux: e.flux,
-        stderr: e.stderr,
-    };
-    let (taken, covered) = (photographs(taken), photographs(covered));
-    let figures = ANALYSES
-        .iter()
-        .map(|a| {
-            laboratory
-                .read(a, &taken, &covered, &work.pattern)
-                .map_err(|e| e.to_string())
-        })
-        .collect();
-    Ok(Seed {
-        saturated,
-        noise,
-        figures,
-    })
-}
-
 fn setting(
     scene: &Scene,
-    work: &Work,
+    work: &Series,
     signal: &Matrix,
     seeds: &[Seed],
     plan: &ExperimentPlan,
