@@ -20,7 +20,7 @@ pub struct Best {
     pub level: Option<f64>,
     /// Whether it falls there.
     pub reach: Option<Reach>,
-    /// Root mean square error at that level, over elements and draws.
+    /// Root mean square error at that level, over elements and draws; between two levels its square is interpolated.
     pub rmse: Option<f64>,
     /// The same over the bound of Cramér and Rao.
     pub rmse_over_bound: Option<f64>,
@@ -34,13 +34,10 @@ pub(super) fn best(axis: &NoiseAxis, [board, elements]: [usize; 2], curves: &[No
     let found = own
         .filter_map(|c| {
             let held = c.held?;
-            let at = |f: fn(&Point) -> Option<f64>| between(axis.spacing(), &c.points, held, f);
-            Some((
-                c,
-                held,
-                at(|p| p.rmse_over_draws),
-                at(|p| p.rmse_over_bound),
-            ))
+            let at = |of, means| between(axis.spacing(), &c.points, held, of, means);
+            let rmse = at(|p| p.rmse_over_draws, Means::Squares);
+            let bound = at(|p| p.cramer_rao, Means::Logarithms);
+            Some((c, held, rmse, rmse.and_then(|e| Some(e / bound?))))
         })
         // The first of equals stays.
         .reduce(|best, next| {
@@ -63,12 +60,22 @@ pub(super) fn best(axis: &NoiseAxis, [board, elements]: [usize; 2], curves: &[No
     }
 }
 
-/// A positive quantity at a level between those studied: by interpolation in its logarithm.
+/// What is interpolated.
+#[derive(Clone, Copy)]
+enum Means {
+    /// Squares: right where between two levels ever more draws fail, as the mean modulation is interpolated too.
+    Squares,
+    /// Logarithms: right for powers of the level.
+    Logarithms,
+}
+
+/// A positive quantity at a level between those studied.
 fn between(
     spacing: Spacing,
     points: &[Point],
     held: Held,
-    of: impl Fn(&Point) -> Option<f64>,
+    of: fn(&Point) -> Option<f64>,
+    means: Means,
 ) -> Option<f64> {
     if let Some(p) = points.iter().find(|p| p.level == held.level) {
         return of(p);
@@ -77,9 +84,17 @@ fn between(
         let (a, b) = (w[0].level - held.level, w[1].level - held.level);
         a * b < 0.0
     })?;
-    let [low, high] = [of(&pair[0])?, of(&pair[1])?].map(libm::log);
+    let [a, b] = [of(&pair[0])?, of(&pair[1])?];
     let t = spacing.fraction([pair[0].level, pair[1].level], held.level);
-    let value = libm::exp(low + t * (high - low));
+    let value = match means {
+        // Over the larger, whose square may overflow.
+        Means::Squares => {
+            let most = a.max(b);
+            let square = |x: f64| (x / most) * (x / most);
+            most * ((1.0 - t) * square(a) + t * square(b)).sqrt()
+        }
+        Means::Logarithms => libm::exp((1.0 - t) * libm::log(a) + t * libm::log(b)),
+    };
     value.is_finite().then_some(value)
 }
 
@@ -91,8 +106,7 @@ mod tests {
     fn curve(method: &str, held: Option<(f64, Reach)>, errors: [f64; 2]) -> NoiseCurve {
         let point = |level, error: f64| Point {
             rmse_over_draws: Some(error),
-            rmse_over_bound: Some(2.0 * error),
-            ..Point::of(level, &[], None)
+            ..Point::of(level, &[], Some(10.0 * level))
         };
         NoiseCurve {
             board: 2,
@@ -105,14 +119,14 @@ mod tests {
         }
     }
 
-    /// By hand: half way between 1e-4 and 1e-2 lies 1e-3, and between the errors 0.01 and 0.09 lies 0.03.
+    /// By hand: 1e-3 is half way from 1e-4 to 1e-2; the error there √((0.01² + 0.07²)/2) = 0.05, the bound, ten times the level, 0.01.
     #[test]
     fn the_furthest_wins_and_of_equals_the_nearest() {
         let curves = [
             curve("never", None, [1.0, 1.0]),
             curve("early", Some((1e-4, Reach::Falls)), [0.001, 0.001]),
             curve("coarse", Some((1e-3, Reach::Falls)), [0.04, 0.09]),
-            curve("fine", Some((1e-3, Reach::AtLeast)), [0.01, 0.09]),
+            curve("fine", Some((1e-3, Reach::AtLeast)), [0.01, 0.07]),
         ];
         let found = best(&NoiseAxis::Relative, [2, 8], &curves);
         assert_eq!(found.method.as_deref(), Some("fine"));
@@ -120,8 +134,8 @@ mod tests {
             (found.level, found.reach),
             (Some(1e-3), Some(Reach::AtLeast))
         );
-        assert!((found.rmse.unwrap() / 0.03 - 1.0).abs() < 1e-12);
-        assert!((found.rmse_over_bound.unwrap() / 0.06 - 1.0).abs() < 1e-12);
+        assert!((found.rmse.unwrap() / 0.05 - 1.0).abs() < 1e-12);
+        assert!((found.rmse_over_bound.unwrap() / 5.0 - 1.0).abs() < 1e-12);
         // Where few photons are loud the one that does with least wins.
         assert_eq!(
             best(&NoiseAxis::Photons, [2, 8], &curves).method.as_deref(),
