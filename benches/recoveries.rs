@@ -17,7 +17,7 @@ fn recoveries(c: &mut Criterion) {
         let stderr = phi.map(|x| 1e-3 * x);
         let problem = Problem::new(&phi, &model.camera_side, &model.laser_side, Some(&stderr))
             .expect("matrices of one bench");
-        for method in Method::ALL {
+        for method in Method::USUAL {
             group.bench_function(BenchmarkId::new(method.name(), side), |b| {
                 b.iter(|| recover(method, black_box(&problem), &Options::default()));
             });

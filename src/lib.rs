@@ -46,11 +46,11 @@
 //!    7  report/      results → json, svg, png, html: results in, bytes out
 //!    6  study/       experiments that compose the floors below: validation, recovered objects, budget, tolerance, power
 //!    5  recovery/    Φcam → reflectance              metrics/   how far two things are apart
-//!    4  transport/   the path tracer → Φcam          model/     G12, G23 → Φcam
+//!    4  transport/   the path tracer → Φcam          model/     G12, G23 → Φcam             sensor/  flux → electrons → counts
 //!    3  film/        frames, EXR                     matrix/    pixels × spots, .npy        store  whole files
 //!    2  scene/       laser, surface, texture, camera, scene file
 //!    1  geometry/    basis, shapes, BVH
-//!    0  num/         streams (random and Sobol'), warps, quadrature, statistics, linear algebra, summation
+//!    0  num/         constants, streams (random and Sobol'), warps, quadrature, statistics, linear algebra, summation
 //! ```
 //!
 //! Invariants, each kept by a test that reads the sources (`tests/architecture.rs`):
@@ -110,6 +110,7 @@
 //! * [`scene`]: what a scene is, and its file format key by key.
 //! * [`transport`]: the integral that is estimated, and how.
 //! * [`model`]: the matrices, and what they leave out.
+//! * [`sensor`]: from the flux to what a camera stores, and its noise.
 //! * [`study`]: what "agree" means.
 //! * [`recovery`]: the methods.
 //! * [`cli`]: what a run leaves on disk.
@@ -124,6 +125,7 @@ pub mod num;
 pub mod recovery;
 pub mod report;
 pub mod scene;
+pub mod sensor;
 pub mod store;
 pub mod study;
 pub mod transport;

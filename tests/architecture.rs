@@ -292,6 +292,7 @@ fn transcendental_functions_are_the_portable_ones() {
         "matrix",
         "transport",
         "model",
+        "sensor",
         "recovery",
         "metrics",
         "study",

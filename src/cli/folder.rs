@@ -7,16 +7,16 @@
 //! | phi.npy, phi.stderr.npy | Φcam and its standard error, pixels × spots, W |
 //! | partial/spot-NNNN.npy | finished spots of an unfinished run in f64: one column per bounce count, last the standard error |
 
-use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::expose;
 use super::failure::Failure;
 use super::output::Talk;
 use super::record::Record;
+use super::stale::{remove_exposed, remove_files, remove_named, remove_numbered, remove_recovered};
 use crate::film::{self, Channel, Frame, FrameMeta, frame_name};
 use crate::matrix::{Matrix, npy};
-use crate::recovery::Method;
 use crate::scene::Scene;
 use crate::store::{StoreError, ensure_writable, write_whole};
 use crate::transport::Traced;
@@ -193,13 +193,8 @@ impl Folder {
         self.remove_partial()?;
         remove_numbered(&self.frames(), "exr")?;
         remove_recovered(&self.path.join("recovered"))?;
-        for name in [PHI, STDERR, Record::FILE, SUMMARY, REPORT] {
-            match fs::remove_file(self.path.join(name)) {
-                Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(e.into()),
-                _ => {}
-            }
-        }
-        Ok(())
+        remove_exposed(&self.path.join(expose::FOLDER))?;
+        remove_named(&self.path, &[PHI, STDERR, Record::FILE, SUMMARY, REPORT])
     }
 
     /// Writes the frame of a spot from column `column` of `traced`.
@@ -256,44 +251,4 @@ pub(super) fn meta(scene: &Scene, record: &Record, spot: usize) -> FrameMeta {
         sampler: record.sampler.clone(),
         version: record.version.clone(),
     }
-}
-
-/// Removes the spot-NNNN files of `dir` with the given extension, and `dir` if that empties it.
-fn remove_numbered(dir: &Path, extension: &str) -> Result<(), Failure> {
-    remove_files(dir, |stem, ext| {
-        let number = stem.strip_prefix("spot-").unwrap_or("");
-        ext == extension && !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit())
-    })?;
-    // Anything else in it is not ours, and keeps it.
-    let _ = fs::remove_dir(dir);
-    Ok(())
-}
-
-/// Removes the matrices and pictures METHOD.npy, METHOD-0.png, … and those of the truth from `dir`, and `dir` if that
-/// empties it.
-fn remove_recovered(dir: &Path) -> Result<(), Failure> {
-    remove_files(dir, |stem, ext| {
-        let name = stem.trim_end_matches(|c: char| c.is_ascii_digit());
-        let name = name.strip_suffix('-').unwrap_or(name);
-        let known = ["truth", "overview"].contains(&name) || name.parse::<Method>().is_ok();
-        known && matches!(ext, "npy" | "png")
-    })?;
-    let _ = fs::remove_dir(dir);
-    Ok(())
-}
-
-/// Removes the files of `dir` that are `ours` by stem and extension, and what a killed process was writing there.
-fn remove_files(dir: &Path, ours: impl Fn(&str, &str) -> bool) -> Result<(), Failure> {
-    let Ok(entries) = fs::read_dir(dir) else {
-        return Ok(());
-    };
-    for path in entries.filter_map(Result::ok).map(|e| e.path()) {
-        let part = |s: Option<&OsStr>| s.and_then(OsStr::to_str).unwrap_or("").to_owned();
-        let (stem, ext) = (part(path.file_stem()), part(path.extension()));
-        let unfinished = stem.starts_with(".phicam-") && ext == "part";
-        if unfinished || ours(&stem, &ext) {
-            fs::remove_file(&path)?;
-        }
-    }
-    Ok(())
 }

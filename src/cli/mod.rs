@@ -12,13 +12,18 @@
 //! | `phi.npy`, `phi.stderr.npy` | Φcam and its standard error, f64, (pixels, spots), C order, W |
 //! | `model/g12.npy`, `g23.npy`, `phi.npy` | the analytic side |
 //! | `recovered/METHOD.npy`, `.png` | recovered reflectance, (nv, nu); `truth` beside it |
+//! | `recovered/METHOD.stderr.npy` | its standard error, (nv, nu), where the noise is known |
+//! | `recovered/METHOD.covariance.npy`, `METHOD.resolution.npy` | covariance and resolution matrix of a linear method, elements × elements of all surfaces |
+//! | `recovered/picard.csv`, `.svg` | signal and noise in each singular direction of the laser side |
 //! | `summary.json`, `report.html` | what was found |
+//! | `exposed/` | what `phicam expose` made of it: `phi.npy`, `phi.stderr.npy`, `saturated.npy`, `counts/`, `exposure.json` |
 //! | `partial/` | finished spots of an unfinished run; gone when it is complete |
 //!
 //! Exit codes: 0 done (and agreed), 1 traced and modelled disagree, 2 error, 130 stopped by Ctrl-C with what is finished
 //! kept.
 
 mod args;
+mod expose;
 mod failure;
 mod finished;
 mod folder;
@@ -28,11 +33,13 @@ mod output;
 mod progress;
 mod record;
 mod recover;
+mod recover_options;
 mod render;
 mod run;
 mod scene;
 mod settings;
 mod stack;
+mod stale;
 mod study;
 mod validate;
 
@@ -61,6 +68,7 @@ pub fn main() -> ExitCode {
         Command::Model(a) => model::execute(a, talk),
         Command::Validate(a) => validate::execute(a, talk),
         Command::Recover(a) => recover::execute(a, talk),
+        Command::Expose(a) => expose::execute(a, talk),
         Command::Scene(a) => scene::execute(a, talk),
         Command::Study(a) => study::execute(a, talk),
     };

@@ -1,6 +1,5 @@
 //! `phicam recover`: the hidden reflectance from Φcam.
 
-use std::fmt::Display;
 use std::path::Path;
 
 use super::args::RecoverArgs;
@@ -9,22 +8,24 @@ use super::finished::{read_matrix, read_run, read_stderr};
 use super::folder::{PHI, SCENE, STDERR};
 use super::output::{self, Talk};
 use super::record::Record;
-use super::{Outcome, settings};
+use super::{Outcome, recover_options, settings};
 use crate::matrix::{Matrix, npy};
 use crate::model::MatrixModel;
-use crate::num::linalg::Tolerance;
-use crate::recovery::{Method, Options};
+use crate::recovery::{Method, Nuisance, Picard, Uncertainty};
 use crate::report::{self, Panel};
 use crate::scene::Scene;
 use crate::store::{ensure_writable, write_whole};
-use crate::study::{Attempt, Noise, RecoveredObject, recover_objects};
+use crate::study::{Attempt, Noise, RecoveredObject, picard, recover_objects};
+
+/// Elements whose covariance and resolution are still written: 32 MiB each.
+const MOST_CORRELATED: usize = 2048;
 
 pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure> {
     let methods: Vec<Method> = match args.method.as_slice() {
-        [] => Method::ALL.to_vec(),
+        [] => Method::USUAL.to_vec(),
         names => names.iter().map(|n| n.parse()).collect::<Result<_, _>>()?,
     };
-    let options = options(args)?;
+    let mut options = recover_options::checked(args, &methods)?;
     // Measured photographs come without a run: a scene.toml is enough for them.
     let measured = args.phi.is_some() && !args.dir.join(Record::FILE).exists();
     let scene = match measured {
@@ -46,10 +47,21 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
     };
     let model = MatrixModel::new(&scene, settings::kernel(args.kernel), args.elements)?;
     let noise = stderr.as_ref().map_or(Noise::Unknown, Noise::StandardError);
-    let attempts = recover_objects(&model, &phi, noise, &methods, &options);
+    let glare = match &args.joint.glare_pattern {
+        Some(file) => Some(read_matrix(file, &scene)?),
+        None => None,
+    };
+    let nuisance = Nuisance {
+        frame_constant: args.joint.frame_constant,
+        background: args.joint.background,
+        glare: glare.as_ref(),
+        free_scale: args.joint.free_scale,
+    };
+    options.uncertainty = uncertainty(&model, talk);
+    let attempts = recover_objects(&model, &phi, noise, nuisance, &methods, &options);
     let single = methods.len() == 1;
     let objects = collect(attempts, single, talk)?;
-    write(&args.dir, &objects)?;
+    write(&args.dir, &objects, &picard(&model, &phi, noise)?)?;
     let text = if args.json {
         output::json(&objects)?
     } else {
@@ -59,53 +71,15 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
     Ok(Outcome::Done)
 }
 
-fn options(args: &RecoverArgs) -> Result<Options, Failure> {
-    let positive = |x: f64| x > 0.0 && x.is_finite();
-    let fraction = |x: f64| (0.0..1.0).contains(&x);
-    within(
-        "--noise",
-        args.noise,
-        positive,
-        "positive: relative to the flux, e.g. 0.01",
-    )?;
-    within(
-        "--damping",
-        args.damping,
-        |x| x >= 0.0 && x.is_finite(),
-        "0 or more: a fraction of σ1",
-    )?;
-    within(
-        "--tolerance",
-        args.tolerance,
-        fraction,
-        "0 or more and below 1: a fraction of σ1",
-    )?;
-    within("--rank", args.rank, |k| k > 0, "at least 1")?;
-    let mut options = Options {
-        rank: args.rank,
-        damping: args.damping,
-        ..Options::default()
-    };
-    if let Some(tolerance) = args.tolerance {
-        options.tolerance = Tolerance::Relative(tolerance);
+/// How much of the uncertainty fits the elements of the model.
+pub(super) fn uncertainty(model: &MatrixModel, talk: Talk) -> Uncertainty {
+    if model.laser_side.nrows() <= MOST_CORRELATED {
+        return Uncertainty::Full;
     }
-    Ok(options)
-}
-
-/// Refuses a given value that is not `allowed`; `range` says in words what is.
-fn within<T: Copy + Display>(
-    name: &str,
-    given: Option<T>,
-    allowed: impl Fn(T) -> bool,
-    range: &str,
-) -> Result<(), Failure> {
-    match given {
-        Some(value) if !allowed(value) => Err(Failure::new(
-            format!("{name} {value} has no meaning"),
-            format!("use a number that is {range}"),
-        )),
-        _ => Ok(()),
-    }
+    talk.say(format!(
+        "more than {MOST_CORRELATED} elements: no covariance and no resolution of the methods that work pixel by pixel"
+    ));
+    Uncertainty::StandardError
 }
 
 /// The objects that were recovered. A method that cannot work is reported; if none can, or the only one asked for, that is
@@ -141,10 +115,22 @@ pub(super) fn collect(
 }
 
 /// Writes DIR/recovered/METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png, and overview.png with all of them side
-/// by side. Where several surfaces are hidden the names are METHOD-0, METHOD-1, … in file order.
-pub(super) fn write(dir: &Path, objects: &[RecoveredObject]) -> Result<(), Failure> {
+/// by side; what is known of the uncertainty in METHOD.stderr.npy (nv × nu), METHOD.covariance.npy and METHOD.resolution.npy (own elements ×
+/// elements of all surfaces), METHOD.lower.npy and METHOD.upper.npy where bands were asked for; picard.csv and picard.svg. Where several surfaces are hidden the names are METHOD-0, METHOD-1, … in file order.
+pub(super) fn write(
+    dir: &Path,
+    objects: &[RecoveredObject],
+    picard: &Picard,
+) -> Result<(), Failure> {
     let folder = dir.join("recovered");
     ensure_writable(&folder)?;
+    let texts = [
+        ("picard.csv", report::picard_csv(picard)),
+        ("picard.svg", report::picard_svg(picard)),
+    ];
+    for (name, text) in texts {
+        write_whole(&folder.join(name), |w| w.write_all(text.as_bytes()))?;
+    }
     let mut surfaces: Vec<&str> = Vec::new();
     for object in objects {
         if !surfaces.contains(&object.surface.as_str()) {
@@ -172,8 +158,35 @@ pub(super) fn write(dir: &Path, objects: &[RecoveredObject]) -> Result<(), Failu
                 write_png(&path, surface, std::slice::from_ref(&panel))?;
                 panels.push(panel);
             }
+            let bands = object.bands.as_ref();
+            let limits = bands.map(|b| [("lower", &b.lower), ("upper", &b.upper)]);
+            for (end, values) in limits.into_iter().flatten() {
+                let path = folder.join(format!("{}{suffix}.{end}.npy", object.method));
+                npy::write(&path, &Matrix::from_row_slice(nv, nu, values))?;
+            }
+            write_uncertainty(&folder, &format!("{}{suffix}", object.method), object)?;
         }
         write_png(&folder.join(format!("overview{suffix}")), surface, &panels)?;
+    }
+    Ok(())
+}
+
+/// Writes `name`.stderr.npy, `name`.covariance.npy and `name`.resolution.npy, and removes those of an earlier recovery that are not known now.
+fn write_uncertainty(folder: &Path, name: &str, object: &RecoveredObject) -> Result<(), Failure> {
+    let [nu, nv] = object.elements;
+    let stderr = object.standard_error.as_ref();
+    let matrices = [
+        ("stderr", stderr.map(|s| Matrix::from_row_slice(nv, nu, s))),
+        ("covariance", object.covariance.clone()),
+        ("resolution", object.resolution.clone()),
+    ];
+    for (what, matrix) in matrices {
+        let path = folder.join(format!("{name}.{what}.npy"));
+        match matrix {
+            Some(matrix) => npy::write(&path, &matrix)?,
+            None if path.exists() => std::fs::remove_file(&path)?,
+            None => {}
+        }
     }
     Ok(())
 }

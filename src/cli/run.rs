@@ -15,7 +15,7 @@ use crate::film;
 use crate::matrix::Matrix;
 use crate::metrics::relative_frobenius;
 use crate::model::MatrixModel;
-use crate::recovery::{Method, Options};
+use crate::recovery::{Method, Nuisance, Options};
 use crate::report;
 use crate::scene::Scene;
 use crate::store::write_whole;
@@ -118,17 +118,27 @@ fn compare_and_recover(
     results.agreement = Some(found.agreement);
     clock.lap("model and validate")?;
 
+    if results.phi.iter().all(|&x| x == 0.0) {
+        talk.say("no light reached the camera: there is nothing to recover");
+        return Ok(());
+    }
     talk.say("recovering the object");
     let noise = Noise::StandardError(&results.stderr);
+    let options = Options {
+        uncertainty: recover::uncertainty(&matrices, talk),
+        ..Options::default()
+    };
     let attempts = study::recover_objects(
         &matrices,
         &results.phi,
         noise,
-        &Method::ALL,
-        &Options::default(),
+        Nuisance::default(),
+        &Method::USUAL,
+        &options,
     );
     results.recovered = recover::collect(attempts, false, talk)?;
-    recover::write(&args.output, &results.recovered)?;
+    let picard = study::picard(&matrices, &results.phi, noise)?;
+    recover::write(&args.output, &results.recovered, &picard)?;
     clock.lap("recover")?;
     Ok(())
 }

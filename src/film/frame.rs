@@ -5,6 +5,10 @@ pub const FLUX: &str = "flux";
 /// Channel of the standard error of [`FLUX`], W.
 pub const FLUX_STDERR: &str = "flux.stderr";
 
+/// Channel of the counts of a sensor: what its converter gave, averaged over frames; no unit. With several exposure times `counts.0`,
+/// `counts.1`, …, the longest first.
+pub const COUNTS: &str = "counts";
+
 /// Name of the channel that holds the part of the flux that met `bounces` surfaces between laser and camera, W:
 /// `flux.b3` for three.
 ///
@@ -42,9 +46,9 @@ pub struct Frame {
 /// One quantity over all pixels of a frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Channel {
-    /// [`FLUX`], [`FLUX_STDERR`], a [`bounce_channel`], or another; 1 to 255 bytes of printable ASCII.
+    /// [`FLUX`], [`FLUX_STDERR`], a [`bounce_channel`], [`COUNTS`], or another; 1 to 255 bytes of printable ASCII.
     pub name: String,
-    /// One value a pixel, W, by pixel index.
+    /// One value a pixel, by pixel index; fluxes in W.
     pub values: Vec<f32>,
 }
 

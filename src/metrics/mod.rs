@@ -2,6 +2,8 @@
 
 mod distance;
 mod modulation;
+mod rank;
 
 pub use distance::{correlation, relative_frobenius, rmse};
-pub use modulation::{mtf_normalized, mtf_raw};
+pub use modulation::{light_and_dark, mtf_normalized, mtf_raw};
+pub use rank::rank_correlation;

@@ -8,8 +8,8 @@
 //! Two conventions exist and are kept apart by name: [`mtf_raw`] is the equation, [`mtf_normalized`] what the published code
 //! computes, which stretches the recovered values to [0, 1] first and so hides any loss of contrast that all elements share.
 
-/// Means over light and dark elements; `None` where nothing can be said.
-fn light_and_dark(recovered: &[f64], truth: &[f64]) -> Option<(f64, f64)> {
+/// W and B: the means of the recovered values over light and dark elements. `None` as for [`mtf_raw`], but W + B may be 0.
+pub fn light_and_dark(recovered: &[f64], truth: &[f64]) -> Option<(f64, f64)> {
     if recovered.len() != truth.len() || !recovered.iter().chain(truth).all(|x| x.is_finite()) {
         return None;
     }

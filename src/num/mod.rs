@@ -1,9 +1,11 @@
-//! Floor 0: numbers. Random and low-discrepancy streams, warps, quadrature, statistics, linear algebra.
+//! Floor 0: numbers. Constants, random and low-discrepancy streams, warps, quadrature, statistics, linear algebra.
 
 pub mod linalg;
+pub mod poisson;
 pub mod quadratic;
 pub mod quadrature;
 pub mod statistics;
 pub mod stream;
 pub mod summation;
+pub mod units;
 pub mod warp;

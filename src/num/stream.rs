@@ -12,6 +12,8 @@
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
+use super::{poisson, warp};
+
 /// The points that a path is built from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sampling {
@@ -132,6 +134,21 @@ impl Stream {
     /// One uniform number in [0, 1), outside the sample's dimensions.
     pub fn uniform(&mut self) -> f64 {
         unit(self.uniform.next_u64())
+    }
+
+    /// One number with the standard normal distribution (Box and Muller; its tail ends at 8.5), outside the sample's dimensions.
+    pub fn normal(&mut self) -> f64 {
+        // The Gaussian spot of 1/e² radius 1 has a standard deviation of ½ along each axis.
+        2.0 * warp::gaussian_spot([self.uniform(), self.uniform()])[0]
+    }
+
+    /// One number with the Poisson distribution of `mean` (finite, 0 or more), outside the sample's dimensions: exact up to means of
+    /// [`LARGEST_EXACT_MEAN`](poisson::LARGEST_EXACT_MEAN), normal beyond.
+    pub fn poisson(&mut self, mean: f64) -> f64 {
+        if mean > poisson::LARGEST_EXACT_MEAN {
+            return (mean + mean.sqrt() * self.normal()).round();
+        }
+        poisson::draw(mean, &mut || self.uniform())
     }
 }
 

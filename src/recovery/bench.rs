@@ -73,6 +73,18 @@ impl Bench {
     }
 }
 
+/// Φ with independent normal noise of standard error `level` times each entry, and those standard errors.
+pub(super) fn relative_noise(
+    exact: &DMatrix<f64>,
+    level: f64,
+    seed: u64,
+) -> (DMatrix<f64>, DMatrix<f64>) {
+    let mut normal = normal_stream(seed);
+    let stderr = exact * level;
+    let phi = exact.zip_map(&stderr, |x, s| x + s * normal());
+    (phi, stderr)
+}
+
 /// Modulation (W − B)/(W + B) of recovered values over the light and dark elements of a 0/1 board.
 pub(super) fn modulation(found: &DVector<f64>, board: &DVector<f64>) -> f64 {
     let light = found.dot(board) / board.sum();

@@ -1,6 +1,6 @@
 //! What can be wrong with a recovery.
 
-use super::Method;
+use super::{Method, Rule};
 use crate::num::linalg::LinalgError;
 use crate::num::quadratic::QuadraticError;
 
@@ -50,9 +50,9 @@ pub enum RecoveryError {
         /// The entry, W.
         value: f64,
     },
-    /// More elements than the joint methods can hold.
+    /// More elements than the joint methods or `tikhonov-gradient` can hold.
     #[error(
-        "{elements} elements are more than the {most} that the joint methods can hold; use fewer (--elements), or pinv"
+        "{elements} elements are more than the {most} that this method can hold; use fewer (--elements), or pinv"
     )]
     TooManyElements {
         /// Elements of the model.
@@ -96,7 +96,7 @@ pub enum RecoveryError {
     /// No noise model and no parameter.
     #[error(
         "{method} needs to know the noise to choose its {parameter}; give the standard error of phi (phi.stderr.npy), \
-         or give the {parameter} yourself"
+         choose by a rule that needs none (gcv, l-curve), or give the {parameter} yourself"
     )]
     NoNoiseModel {
         /// The method's name.
@@ -104,6 +104,72 @@ pub enum RecoveryError {
         /// What would have to be given.
         parameter: &'static str,
     },
+    /// A noise model that says there is no noise.
+    #[error(
+        "every standard error is zero, and {method} chooses its {parameter} by how much noise there is; give the true standard error of phi, \
+         choose by a rule that needs none (gcv, l-curve), or give the {parameter} yourself"
+    )]
+    NoNoise {
+        /// The method's name.
+        method: Method,
+        /// What would have to be given.
+        parameter: &'static str,
+    },
+    /// A rule that has no answer for these data.
+    #[error(
+        "the {rule} rule finds no {parameter} for {method}: its curve has no corner, or no spot is left to predict; \
+         choose by another rule, or give the {parameter} yourself"
+    )]
+    Undecided {
+        /// The method's name.
+        method: Method,
+        /// The rule.
+        rule: Rule,
+        /// What would have to be given.
+        parameter: &'static str,
+    },
+    /// An inverse that does not exist.
+    #[error(
+        "{method} does not exist: the laser side ({elements} elements × {spots} spots) has numerical rank {rank} where {needed} is needed; \
+         use {}, or pinv, which needs no full rank",
+        if spots < elements { "as many spots as elements or more for the right inverse" } else { "fewer elements for the right inverse" }
+    )]
+    NotFullRank {
+        /// The method's name.
+        method: Method,
+        /// Numerical rank of D.
+        rank: usize,
+        /// The rank needed.
+        needed: usize,
+        /// Rows of D.
+        elements: usize,
+        /// Columns of D.
+        spots: usize,
+    },
+    /// Grids that are not those of the elements.
+    #[error(
+        "the element grids hold {covered} elements (each at least one), but the model has {elements}; give nu and nv of every hidden surface in order"
+    )]
+    Grids {
+        /// Elements of the grids.
+        covered: usize,
+        /// Elements of the model.
+        elements: usize,
+    },
+    /// A method that compares neighbours was told of none.
+    #[error(
+        "{method} compares neighbouring elements and knows of none; give the element grids (Problem::with_grids), one of more than one element among them, \
+         or use tikhonov"
+    )]
+    NoGrids {
+        /// The method's name.
+        method: Method,
+    },
+    /// Nothing was photographed.
+    #[error(
+        "every entry of phi is zero: no light reached the camera, so there is nothing to recover; check the laser, the albedos and that the right file was given"
+    )]
+    Dark,
     /// The discrepancy principle has no answer: the data lie further from the model than the noise allows.
     #[error(
         "even with the least regularisation the residual is {residual:.3e} W where the noise allows {limit:.3e} W: the standard errors \
@@ -117,6 +183,17 @@ pub enum RecoveryError {
         /// What would have to be given.
         parameter: &'static str,
     },
+    /// The same of weighted joint residuals.
+    #[error(
+        "even with the least regularisation the weighted residual is {residual:.3e} where the noise allows {limit:.3e}: the standard errors \
+         are too small or the model does not describe these photographs; correct either, or give the total variation's weight yourself"
+    )]
+    JointNoiseUnderstated {
+        /// ‖R ρ − d‖², in variances of the noise.
+        residual: f64,
+        /// The largest that the noise explains.
+        limit: f64,
+    },
     /// The discrepancy principle has no answer: the data are no more than noise.
     #[error(
         "the photographs ({signal:.3e} W in all) do not rise above their noise ({limit:.3e} W), so there is nothing to recover; \
@@ -129,6 +206,25 @@ pub enum RecoveryError {
         limit: f64,
         /// What would have to be given.
         parameter: &'static str,
+    },
+    /// Something that the method cannot do.
+    #[error("{method} {what}; {cure}")]
+    NotForMethod {
+        /// The method's name.
+        method: Method,
+        /// What it cannot do, or lacks.
+        what: &'static str,
+        /// What would do.
+        cure: &'static str,
+    },
+    /// A free scale, and nothing to scale.
+    #[error(
+        "with a free scale the brightest element is the unit, but no element comes out bright (the largest is {largest:.1e}); \
+         check that the photographs hold light of the hidden surface, or give the scale"
+    )]
+    NoScale {
+        /// The largest estimate of s ρ.
+        largest: f64,
     },
     /// A decomposition failed.
     #[error(transparent)]

@@ -8,19 +8,52 @@ use std::str::FromStr;
 pub enum Method {
     /// Moore–Penrose inverse of the laser side, mean over pixels.
     Pinv,
+    /// (DᵀD)⁻¹Dᵀ of the laser side where its columns are independent, mean over pixels.
+    LeftInverse,
+    /// Dᵀ(DDᵀ)⁻¹ of the laser side where its rows are independent, mean over pixels.
+    RightInverse,
+    /// Φ/D by pivoted QR, basic solution, mean over pixels: what MATLAB's `/` does.
+    Rdivide,
+    /// Φ/D by pivoted QR, solution of least norm, mean over pixels: what Octave's `/` does.
+    RdivideMinNorm,
     /// Truncated singular value decomposition of the laser side, mean over pixels.
     Tsvd,
     /// Tikhonov damping of the laser side, mean over pixels.
     Tikhonov,
+    /// Tikhonov damping of the differences between neighbouring elements, mean over pixels.
+    TikhonovGradient,
     /// Least squares over all pixels and spots, reflectances unbounded.
     JointUnbounded,
     /// The same with reflectances between 0 and 1, which every surface obeys.
     Joint,
+    /// The same with reflectances of 0 or more, without an upper bound.
+    Nnls,
+    /// `joint` with a penalty on differences between neighbours.
+    JointTv,
+    /// The same with reflectances of two values only.
+    JointTwoValued,
 }
 
 impl Method {
     /// Every method, simplest first.
-    pub const ALL: [Method; 5] = [
+    pub const ALL: [Method; 13] = [
+        Method::Pinv,
+        Method::LeftInverse,
+        Method::RightInverse,
+        Method::Rdivide,
+        Method::RdivideMinNorm,
+        Method::Tsvd,
+        Method::Tikhonov,
+        Method::TikhonovGradient,
+        Method::JointUnbounded,
+        Method::Joint,
+        Method::Nnls,
+        Method::JointTv,
+        Method::JointTwoValued,
+    ];
+
+    /// The methods that are tried where none is named, simplest first.
+    pub const USUAL: [Method; 5] = [
         Method::Pinv,
         Method::Tsvd,
         Method::Tikhonov,
@@ -29,18 +62,38 @@ impl Method {
     ];
 
     /// The names of all methods, in the order of [`Method::ALL`].
-    pub fn names() -> [&'static str; 5] {
+    pub fn names() -> [&'static str; Method::ALL.len()] {
         Method::ALL.map(Method::name)
+    }
+
+    /// Whether the method works on all pixels and spots at once, and so can estimate nuisance terms.
+    pub(super) fn is_joint(self) -> bool {
+        matches!(
+            self,
+            Method::JointUnbounded
+                | Method::Joint
+                | Method::Nnls
+                | Method::JointTv
+                | Method::JointTwoValued
+        )
     }
 
     /// The name by which the method is asked for and by which its files are called.
     pub fn name(self) -> &'static str {
         match self {
             Method::Pinv => "pinv",
+            Method::LeftInverse => "left-inverse",
+            Method::RightInverse => "right-inverse",
+            Method::Rdivide => "rdivide",
+            Method::RdivideMinNorm => "rdivide-min-norm",
             Method::Tsvd => "tsvd",
             Method::Tikhonov => "tikhonov",
+            Method::TikhonovGradient => "tikhonov-gradient",
             Method::JointUnbounded => "joint-unbounded",
             Method::Joint => "joint",
+            Method::Nnls => "nnls",
+            Method::JointTv => "joint-tv",
+            Method::JointTwoValued => "joint-two-valued",
         }
     }
 }
@@ -78,8 +131,11 @@ mod tests {
         }
         let said = "lsqr".parse::<Method>().unwrap_err().to_string();
         assert!(
-            said.contains("lsqr") && said.contains("pinv, tsvd, tikhonov, joint-unbounded, joint"),
+            said.contains("lsqr")
+                && Method::ALL.iter().all(|m| said.contains(m.name()))
+                && said.contains("tikhonov-gradient, joint-unbounded, joint"),
             "{said}"
         );
+        assert!(Method::USUAL.iter().all(|m| Method::ALL.contains(m)));
     }
 }

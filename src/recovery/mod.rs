@@ -11,10 +11,36 @@
 //! | method | estimate |
 //! | --- | --- |
 //! | [`Method::Pinv`] | X = Φ D⁺, divided by C entry by entry, mean over pixels: the published method |
-//! | [`Method::Tsvd`] | the same with D's small singular values left out, as many as the noise asks for |
-//! | [`Method::Tikhonov`] | the same with them damped, as much as the noise asks for |
+//! | [`Method::LeftInverse`] | the same with (DᵀD)⁻¹Dᵀ; only where the spots' patterns are independent |
+//! | [`Method::RightInverse`] | the same with Dᵀ(DDᵀ)⁻¹; only where the elements' patterns are independent |
+//! | [`Method::Rdivide`] | X = Φ/D as MATLAB divides: pivoted QR, basic solution, at most rank elements not zero |
+//! | [`Method::RdivideMinNorm`] | X = Φ/D as Octave divides: pivoted QR, solution of least norm |
+//! | [`Method::Tsvd`] | X = Φ D⁺ with D's small singular values left out, as many as the [`Rule`] asks for |
+//! | [`Method::Tikhonov`] | the same with them damped, as much as the [`Rule`] asks for |
+//! | [`Method::TikhonovGradient`] | the same with differences between neighbouring elements damped in place of the values |
 //! | [`Method::JointUnbounded`] | least squares over all pixels and spots at once; unbiased |
 //! | [`Method::Joint`] | the same under 0 ≤ ρ ≤ 1 |
+//! | [`Method::Nnls`] | the same under 0 ≤ ρ |
+//! | [`Method::JointTv`] | `joint` with λ Σ \|ρ_i − ρ_j\| over neighbours i, j: patches of one value |
+//! | [`Method::JointTwoValued`] | `joint` with two reflectances only, given or estimated |
+//!
+//! Measured: raw MTF of boards on 8 × 8 elements, 16 × 16 pixels, 120 staggered spots, relative normal noise; mean of 20 seeds (`joint-two-valued`: 6).
+//! At levels 0 and 1 the bounds say more than a total variation does; where only two values are possible, knowing that says most.
+//!
+//! | half-width, board, noise | `nnls` | `joint` | `joint-tv` | `joint-two-valued` |
+//! | --- | --- | --- | --- | --- |
+//! | 6, 2 × 2, 0.1 | 0.849 | 0.967 | 0.942 | 0.979 |
+//! | 6, 2 × 2, 0.01 | 0.844 | 0.996 | 0.994 | 1.000 |
+//! | 6, 4 × 4, 1e-4 | 0.755 | 0.938 | 0.895 | 1.000 |
+//! | 3, 2 × 2, 0.1 | 0.820 | 0.947 | 0.863 | 0.999 |
+//! | 3, 2 × 2, 0.01 | 0.918 | 0.994 | 0.985 | 1.000 |
+//! | 3, 4 × 4, 1e-4 | 0.559 | 0.752 | 0.606 | 0.846 |
+//!
+//! The joint methods can estimate other light of known form with the reflectances ([`Nuisance`]). [`cramer_rao`] says what no unbiased estimate can
+//! undercut; [`Bands`] what a recovery knows of itself.
+//!
+//! All but the last are linear in Φ: with a noise model they carry the covariance that it makes of their noise, and always the resolution matrix
+//! of what they make of the truth. [`picard`](picard()) shows which singular directions rise above the noise.
 //!
 //! ```
 //! use nalgebra::DMatrix;
@@ -29,19 +55,27 @@
 //! # Ok::<(), phicam::recovery::RecoveryError>(())
 //! ```
 
+mod bands;
 mod error;
 mod joint;
 mod method;
 mod outcome;
+mod picard;
 mod pixelwise;
 mod problem;
 mod rule;
 
+pub use bands::{BandKind, Bands};
 pub use error::RecoveryError;
-pub use joint::Weighting;
+pub use joint::{CramerRao, Estimated, Nuisance, Weighting, cramer_rao};
 pub use method::{Method, UnknownMethod};
 pub use outcome::{Choice, Parameter, Recovered, Solver};
-pub use problem::{Options, Problem};
+pub use picard::{Picard, picard};
+pub use problem::{Options, Problem, Uncertainty, WeightRule};
+pub use rule::Rule;
+
+use pixelwise::one_sided::Side;
+use pixelwise::rdivide::Solution;
 
 /// Recovers the reflectances of the r elements by the method asked for.
 ///
@@ -52,13 +86,37 @@ pub fn recover(
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
-    match method {
+    problem.refuse_darkness()?;
+    if problem.nuisance.is_some() && !method.is_joint() {
+        return Err(RecoveryError::NotForMethod {
+            method,
+            what: "does not estimate frame constants, backgrounds, glare or scale",
+            cure: "use a joint method, or subtract them first",
+        });
+    }
+    if let Some(confidence) = options.bands {
+        bands::allowed(method, confidence)?;
+    }
+    let mut found = match method {
         Method::Pinv => pixelwise::pinv::recover(problem, options),
+        Method::LeftInverse => pixelwise::one_sided::recover(problem, options, Side::Left),
+        Method::RightInverse => pixelwise::one_sided::recover(problem, options, Side::Right),
+        Method::Rdivide => pixelwise::rdivide::recover(problem, options, Solution::Basic),
+        Method::RdivideMinNorm => {
+            pixelwise::rdivide::recover(problem, options, Solution::LeastNorm)
+        }
         Method::Tsvd => pixelwise::tsvd::recover(problem, options),
         Method::Tikhonov => pixelwise::tikhonov::recover(problem, options),
+        Method::TikhonovGradient => pixelwise::gradient::recover(problem, options),
         Method::JointUnbounded => joint::unbounded::recover(problem, options),
-        Method::Joint => joint::bounded::recover(problem, options),
+        Method::Joint | Method::Nnls => joint::bounded::recover(method, problem, options),
+        Method::JointTv => joint::total_variation::recover(problem, options),
+        Method::JointTwoValued => joint::two_valued::recover(problem, options),
+    }?;
+    if let (Some(confidence), None) = (options.bands, &found.bands) {
+        found.bands = Some(bands::gaussian(&found, confidence)?);
     }
+    Ok(found)
 }
 
 #[cfg(test)]

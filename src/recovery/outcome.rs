@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Method, Weighting};
+use super::{Bands, Estimated, Method, Weighting};
 
 /// A regularisation parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,8 +11,12 @@ pub enum Parameter {
     None,
     /// Singular directions kept.
     Rank(usize),
-    /// Tikhonov's λ, as a fraction of D's largest singular value.
+    /// Tikhonov's λ, as a fraction of the largest singular value: of D, or of the standard form of `tikhonov-gradient`.
     Damping(f64),
+    /// λ of the total variation, as a fraction of the largest squared singular value of the weighted operator.
+    TotalVariation(f64),
+    /// The two reflectances.
+    Levels([f64; 2]),
 }
 
 /// Why the parameter has its value. Norms are Frobenius norms over pixels and spots, W.
@@ -28,6 +32,36 @@ pub enum Choice {
         target: f64,
         /// The target two standard deviations of ‖noise‖² up: residuals to here are accepted.
         limit: f64,
+    },
+    /// The same of weighted joint residuals, without unit: what the reduced problem leaves over, in standard deviations.
+    JointDiscrepancy {
+        /// ‖R ρ − d‖².
+        residual: f64,
+        /// Its mean for noise alone: degrees of freedom that ρ leaves over.
+        target: f64,
+        /// The target four standard deviations of χ² up: an unpenalised fit beyond it is refused.
+        limit: f64,
+    },
+    /// Estimated together with the reflectances.
+    Estimated,
+    /// Generalised cross-validation: the least predicted error.
+    Gcv {
+        /// ‖Φ P − Φ‖, what the regularised projector P leaves over.
+        residual: f64,
+        /// Degrees of freedom that P leaves in each pixel's row, l − tr P.
+        freedom: f64,
+        /// The root of the score V: the error with which an entry is predicted from the others, W.
+        predicted: f64,
+    },
+    /// The corner of the L-curve.
+    LCurve {
+        /// ‖Φ P − Φ‖.
+        residual: f64,
+        /// What is weighed against it: ‖X‖ (C times ρ), or the norm of the differences, of `tikhonov-gradient`.
+        penalty: f64,
+        /// How sharp the corner is: the curvature of the log–log curve where directions are damped, the angle by which it turns (rad) where they
+        /// are left out.
+        turn: f64,
     },
     /// A numerical rank cut.
     Tolerance {
@@ -47,9 +81,10 @@ pub struct Solver {
     pub iterations: u32,
     /// Active-set steps after them.
     pub refinements: usize,
-    /// The objective ½ Σ w_p v_l (Φ − C diag(ρ) D)², less what no ρ can change.
+    /// The objective ½ Σ w_p v_l (Φ − C diag(ρ) D)², less what no ρ can change; of `joint-tv` with its penalty.
     pub objective: f64,
-    /// Upper bound on the objective's distance from its minimum, same unit.
+    /// Upper bound on the objective's distance from its minimum, same unit. Of `joint-two-valued`: from a bound that no
+    /// pattern of two values can undercut; zero says that the pattern is the best of all.
     pub gap: f64,
 }
 
@@ -60,8 +95,11 @@ pub struct Recovered {
     pub reflectance: DVector<f64>,
     /// Standard error of each reflectance as the noise model makes it; none without a noise model, and none under bounds.
     pub standard_error: Option<DVector<f64>>,
-    /// Covariance of the reflectances (r × r), of `joint-unbounded` with a noise model.
+    /// Covariance of the reflectances (r × r) as the noise model makes it: of every method without bounds.
     pub covariance: Option<DMatrix<f64>>,
+    /// The resolution matrix R (r × r) of E ρ̂ = R ρ, of every method without bounds: (R − 1) ρ is the bias, column k the image of element k alone. It
+    /// takes the parameter as given, not as chosen from the data.
+    pub resolution: Option<DMatrix<f64>>,
     /// The method used.
     pub method: Method,
     /// The regularisation used.
@@ -70,8 +108,8 @@ pub struct Recovered {
     pub choice: Choice,
     /// How the entries of Φ were weighted.
     pub weighting: Weighting,
-    /// Singular values of the matrix inverted, descending: D for the methods that work pixel by pixel, the whole
-    /// (weighted) operator for the joint ones.
+    /// Singular values of the matrix inverted, descending: D for the methods that work pixel by pixel (its standard form for `tikhonov-gradient`),
+    /// the whole (weighted) operator for the joint ones.
     pub sigma: DVector<f64>,
     /// Singular directions that were not dropped.
     pub rank: usize,
@@ -81,8 +119,12 @@ pub struct Recovered {
     pub residual: f64,
     /// The same over ‖Φ‖; zero where Φ is zero.
     pub relative_residual: f64,
-    /// The iterative solver's report, of `joint`.
+    /// The iterative solver's report, of the bounded methods.
     pub solver: Option<Solver>,
+    /// What was estimated beside the reflectances, where it was asked for.
+    pub nuisance: Option<Estimated>,
+    /// Bands around the reflectances, where they were asked for.
+    pub bands: Option<Bands>,
 }
 
 impl Recovered {
@@ -100,6 +142,7 @@ impl Recovered {
             reflectance,
             standard_error: None,
             covariance: None,
+            resolution: None,
             method,
             parameter: Parameter::None,
             choice: Choice::None,
@@ -110,6 +153,8 @@ impl Recovered {
             residual,
             relative_residual: if whole > 0.0 { residual / whole } else { 0.0 },
             solver: None,
+            nuisance: None,
+            bands: None,
         }
     }
 }

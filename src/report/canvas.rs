@@ -170,6 +170,26 @@ impl DrawTarget for Canvas {
     }
 }
 
+/// A 16-bit grey picture as PNG bytes, `pixels` row by row from the top.
+///
+/// # Errors
+/// [`PictureError`].
+pub(super) fn grey16([width, height]: [usize; 2], pixels: &[u16]) -> Result<Vec<u8>, PictureError> {
+    let [w, h] = [width, height].map(u32::try_from);
+    let (Ok(w), Ok(h)) = (w, h) else {
+        return Err(PictureError::TooLarge(width, height));
+    };
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, w, h);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::Sixteen);
+    let mut writer = encoder.write_header()?;
+    let data: Vec<u8> = pixels.iter().flat_map(|p| p.to_be_bytes()).collect();
+    writer.write_image_data(&data)?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
 /// Width, height and RGB pixels of a PNG.
 #[cfg(test)]
 pub(super) fn decoded(bytes: &[u8]) -> (usize, usize, Vec<u8>) {

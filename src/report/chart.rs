@@ -49,18 +49,22 @@ impl Axis {
             Run::Linear => ticks(a, b, 6).into_iter().map(|x| (x, tick(x))).collect(),
             Run::Logarithmic => {
                 let (low, high) = (libm::log10(a).round() as i32, libm::log10(b).round() as i32);
+                // Every decade has its line, and as many of them a name as have room.
+                let each = (high - low + MOST_DECADES) / MOST_DECADES;
+                let name = |d: i32| match d.rem_euclid(each.max(1)) {
+                    0 => format!("10{}", superscript(d)),
+                    _ => String::new(),
+                };
                 (low..=high)
-                    .map(|d| {
-                        (
-                            libm::pow(10.0, f64::from(d)),
-                            format!("10{}", superscript(d)),
-                        )
-                    })
+                    .map(|d| (libm::pow(10.0, f64::from(d)), name(d)))
                     .collect()
             }
         }
     }
 }
+
+/// Named decades of a logarithmic axis.
+const MOST_DECADES: i32 = 9;
 
 /// A line with its name.
 pub(super) struct Series {
@@ -101,15 +105,74 @@ pub(super) fn sheet([width, height]: [u32; 2], title: &str, note: &str) -> Svg {
     svg
 }
 
+/// Where a plotting area lies: its upper left corner, its width and height.
+#[derive(Clone, Copy)]
+struct Area {
+    corner: [f64; 2],
+    size: [f64; 2],
+}
+
+impl Area {
+    /// Where a point lies; `None` where the axes do not reach.
+    fn place(&self, [x, y]: [&Axis; 2], point: &[f64; 2]) -> Option<[f64; 2]> {
+        let (tx, ty) = (x.fraction(point[0])?, y.fraction(point[1])?);
+        Some([
+            self.corner[0] + self.size[0] * tx,
+            self.corner[1] + self.size[1] * (1.0 - ty),
+        ])
+    }
+}
+
 /// Draws a panel with its axes, grid and lines; `corner` is the upper left corner of the plotting area, `size` its width and
 /// height. Points beyond the axes are left out, and the line is broken there.
 pub(super) fn panel(
     svg: &mut Svg,
     corner: [f64; 2],
     size: [f64; 2],
-    [x, y]: [&Axis; 2],
+    axes: [&Axis; 2],
     series: &[Series],
 ) {
+    let area = Area { corner, size };
+    frame(svg, area, axes);
+    for (i, s) in series.iter().enumerate() {
+        let placed: Vec<Option<[f64; 2]>> = s.points.iter().map(|p| area.place(axes, p)).collect();
+        for run in placed.split(Option::is_none) {
+            let run: Vec<[f64; 2]> = run.iter().flatten().copied().collect();
+            if run.len() > 1 {
+                svg.path(&run, Close::No, &style(i));
+            }
+            for p in run {
+                svg.circle(p, 2.2, &format!("fill=\"{}\"", INKS[i % INKS.len()]));
+            }
+        }
+    }
+}
+
+/// Draws a panel with its axes, grid and points without lines; points beyond the axes are left out. Returns how many.
+pub(super) fn scatter(
+    svg: &mut Svg,
+    corner: [f64; 2],
+    size: [f64; 2],
+    axes: [&Axis; 2],
+    series: &[Series],
+) -> usize {
+    let area = Area { corner, size };
+    frame(svg, area, axes);
+    let mut beyond = 0;
+    for (i, s) in series.iter().enumerate() {
+        let dot = format!("fill=\"{}\" fill-opacity=\"0.5\"", INKS[i % INKS.len()]);
+        for point in &s.points {
+            match area.place(axes, point) {
+                Some(p) => svg.circle(p, 1.8, &dot),
+                None => beyond += 1,
+            }
+        }
+    }
+    beyond
+}
+
+/// Grid, ticks, titles and border.
+fn frame(svg: &mut Svg, Area { corner, size }: Area, [x, y]: [&Axis; 2]) {
     let [left, top] = corner;
     let [width, height] = size;
     let at_x = |t: f64| left + width * t;
@@ -143,19 +206,6 @@ pub(super) fn panel(
         "<text transform=\"translate({tx} {ty}) rotate(-90)\" {middle}>{}</text>",
         escape(&y.title)
     ));
-    for (i, s) in series.iter().enumerate() {
-        let place = |p: &[f64; 2]| Some([at_x(x.fraction(p[0])?), at_y(y.fraction(p[1])?)]);
-        let placed: Vec<Option<[f64; 2]>> = s.points.iter().map(place).collect();
-        for run in placed.split(Option::is_none) {
-            let run: Vec<[f64; 2]> = run.iter().flatten().copied().collect();
-            if run.len() > 1 {
-                svg.path(&run, Close::No, &style(i));
-            }
-            for p in run {
-                svg.circle(p, 2.2, &format!("fill=\"{}\"", INKS[i % INKS.len()]));
-            }
-        }
-    }
 }
 
 /// The names of the series, one below the other.

@@ -120,6 +120,11 @@ pub(super) fn whole(mut run: RunResults) -> RunResults {
                 rmse: 0.05,
                 parameter: "λ 1.3e-15 by the discrepancy principle from the standard error of Φcam"
                     .into(),
+                bands: None,
+                standard_error: None,
+                effective_rank: 4.0,
+                covariance: None,
+                resolution: None,
             });
         }
     }

@@ -18,6 +18,8 @@ pub fn summary_json(results: &RunResults) -> String {
             "correlation": r.correlation,
             "rmse": r.rmse,
             "parameter": r.parameter,
+            "effective_rank": r.effective_rank,
+            "rms_standard_error": r.standard_error.as_ref().map(|s| root_mean_square(s)),
         })
     };
     let bounces = results
@@ -50,6 +52,10 @@ pub fn summary_json(results: &RunResults) -> String {
     });
     // A `Value` always has a JSON text.
     format!("{value:#}\n")
+}
+
+fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|x| x * x).sum::<f64>() / values.len() as f64).sqrt()
 }
 
 /// ‖standard error‖/‖Φcam‖; `None` where there is no light.

@@ -5,6 +5,8 @@
 use serde::de::{self, MapAccess, Visitor, value::MapAccessDeserializer};
 use serde::{Deserialize, Deserializer, Serialize};
 
+use super::sensor::SensorSettings;
+
 /// Three coordinates, in the scene's unit.
 pub(super) type Triple = [f64; 3];
 
@@ -25,6 +27,9 @@ pub(super) struct SceneFile {
     /// Exact answers. They do not change the light, so they stay out of the hash, which is taken from what is serialised.
     #[serde(default, skip_serializing)]
     pub known: Vec<KnownTable>,
+    /// How the light is photographed. It does not change the light either.
+    #[serde(default, skip_serializing)]
+    pub sensor: Option<SensorSettings>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]

@@ -35,11 +35,34 @@
 //! | `known.pixel`, `known.spot` | `[[known]]`, optional, any number: an entry of Φcam whose exact value is known |
 //! | `known.flux` | the exact flux into that pixel when that spot is lit, W |
 //! | `known.bounces` | only light that met exactly so many surfaces; absent: all light of up to `max_bounces` |
+//! | `sensor` | `[sensor]`, optional: how the frames are photographed, below |
 //!
 //! Surfaces reflect from their front; their back is black; both sides are opaque.
 //!
 //! Known answers are for tests and for checks of one's own; they change neither the light nor the scene's hash. The
 //! scenes below `scenes/known/` of the repository state theirs, with the derivation in their headers.
+//!
+//! The sensor is for `phicam expose`; it does not change the hash either, so it may be edited in the folder of a finished run. Every key
+//! is optional; without `model` the others change the ideal sensor, which then has shot noise.
+//!
+//! | `[sensor]` | meaning |
+//! | --- | --- |
+//! | `model` | built-in sensor: `ideal`, `ccd`, `dslr`, `machine-vision`; their figures are in [`crate::sensor`] |
+//! | `quantum_efficiency` | electrons per photon of the laser's wavelength, above 0 and up to 1 |
+//! | `dark_current` | electrons per second and pixel |
+//! | `full_well` | electrons that a pixel holds; `inf` for no limit |
+//! | `read_noise` | electrons, root mean square, per frame |
+//! | `gain` | electrons per count |
+//! | `bits` | bits of the converter, 1 to 16; 0 for none: counts are then neither rounded nor limited |
+//! | `offset` | counts of a pixel without electrons; below 0 counts a converter cuts off |
+//! | `shot_noise` | `true`, or `false` for exactly the mean number of electrons |
+//! | `relative_noise` | each finished entry is multiplied by 1 + σ·N(0, 1): the published percent error |
+//! | `exposure` | time of a frame, s; default 1 |
+//! | `frames` | frames averaged; default 1 |
+//! | `dark_frames` | frames of the same time without laser, averaged and subtracted; default 0: only the offset is |
+//! | `brackets` | exposure times of a series in place of `exposure`, up to 16, s: of each entry the longest unsaturated one counts |
+//! | `ambient` | ambient light, W into each pixel |
+//! | `glare` | `{ fraction, spread }`: the part of the spot's light entering the lens that is scattered over the image, `"uniform"` or `{ falloff = d0 }` ∝ 1/(1 + (d/d0)²) at the distance d from the spot on the view's plane |
 //!
 //! Albedo tables: `{ checkerboard = [nu, nv], dark = …, light = … }` with cell (0, 0), at the corner, dark;
 //! `{ cells = [[…], …] }` with rows along v, each along u; `{ ramp = [start, end] }` along u.
@@ -68,7 +91,9 @@ mod file;
 mod known;
 mod laser;
 mod parse;
-mod spots;
+mod quantity;
+mod sensor;
+pub mod spots;
 mod surface;
 mod texture;
 mod variants;
@@ -81,6 +106,8 @@ pub use camera::Camera;
 pub use error::{Place, SceneError};
 pub use known::Known;
 pub use laser::{Laser, Profile, Spot};
+pub use quantity::Quantity;
+pub use sensor::{Glare, SensorModel, SensorSettings, Spread};
 pub use surface::{Role, Surface};
 pub use texture::{Cells, Texture};
 pub use warning::Warning;
@@ -144,6 +171,8 @@ pub struct Scene {
     pub surfaces: Vec<Surface>,
     /// Exact answers that the scene states; empty for most.
     pub known: Vec<Known>,
+    /// The sensor and its exposure, where the scene states them.
+    pub sensor: Option<SensorSettings>,
     /// The text that the scene was read from.
     pub text: String,
     /// SHA-256 (hex) of the scene's content: comments and spelling of numbers do not change it.
@@ -199,6 +228,11 @@ impl Scene {
             laser.spots.len(),
             file.max_bounces,
         )?;
+        let sensor = file
+            .sensor
+            .clone()
+            .map(SensorSettings::checked)
+            .transpose()?;
         let json = serde_json::to_vec(file)
             .map_err(|e| Fault::new(keys![], e.to_string(), "use finite numbers only"))?;
         let hash = Sha256::digest(json)
@@ -218,6 +252,7 @@ impl Scene {
             camera,
             surfaces,
             known,
+            sensor,
             text: text.to_owned(),
             hash,
             bvh,

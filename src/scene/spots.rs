@@ -67,7 +67,7 @@ pub(super) fn places(table: &SpotsTable) -> Result<Vec<[f64; 2]>, Fault> {
 /// Sides of a square in turn: bottom by growing x, right by growing y, top by falling x, left by falling y; `n` spots
 /// each, both ends included, corners repeated. Offset k mod m of `stagger` is added to the y of bottom and top and
 /// to the x of left and right.
-fn square([cx, cy]: [f64; 2], half: f64, n: u32, stagger: &[f64]) -> Vec<[f64; 2]> {
+pub fn square([cx, cy]: [f64; 2], half: f64, n: u32, stagger: &[f64]) -> Vec<[f64; 2]> {
     let step = |k: u32| 2.0 * half * f64::from(k) / f64::from(n - 1) - half;
     let offset = |k: u32| {
         if stagger.is_empty() {
@@ -87,7 +87,7 @@ fn square([cx, cy]: [f64; 2], half: f64, n: u32, stagger: &[f64]) -> Vec<[f64; 2
 }
 
 /// n × n spots over a square, rows along +y, each row along +x.
-fn grid([cx, cy]: [f64; 2], half: f64, n: u32) -> Vec<[f64; 2]> {
+pub fn grid([cx, cy]: [f64; 2], half: f64, n: u32) -> Vec<[f64; 2]> {
     let step = |k: u32| 2.0 * half * f64::from(k) / f64::from(n - 1) - half;
     (0..n * n)
         .map(|i| [cx + step(i % n), cy + step(i / n)])
@@ -95,7 +95,7 @@ fn grid([cx, cy]: [f64; 2], half: f64, n: u32) -> Vec<[f64; 2]> {
 }
 
 /// `count` spots around a circle, counter-clockwise from `start` degrees off +x.
-fn ring([cx, cy]: [f64; 2], radius: f64, count: u32, start: f64) -> Vec<[f64; 2]> {
+pub fn ring([cx, cy]: [f64; 2], radius: f64, count: u32, start: f64) -> Vec<[f64; 2]> {
     (0..count)
         .map(|k| {
             let turn = f64::from(k) / f64::from(count) + start / 360.0;
@@ -106,7 +106,7 @@ fn ring([cx, cy]: [f64; 2], radius: f64, count: u32, start: f64) -> Vec<[f64; 2]
 }
 
 /// Independent uniform places in a square.
-fn random([cx, cy]: [f64; 2], half: f64, count: u32, seed: u64) -> Vec<[f64; 2]> {
+pub fn random([cx, cy]: [f64; 2], half: f64, count: u32, seed: u64) -> Vec<[f64; 2]> {
     // No pixel has this index: the places are independent of every path of a render with the same seed.
     let key = Key {
         seed,

@@ -5,8 +5,8 @@ use glam::DAffine3;
 use super::error::{Fault, keys};
 use super::laser;
 use super::parse;
-use super::{Role, Scene, SceneError, Texture};
-use crate::geometry::{Bvh, DVec3, Facing, Shape, Sphere};
+use super::{Cells, Role, Scene, SceneError, Texture};
+use crate::geometry::{Bvh, DVec3, Facing, Parallelogram, Shape, Sphere};
 
 impl Scene {
     /// The same scene with every spot moved by (dx, dy) on the wall.
@@ -53,12 +53,47 @@ impl Scene {
         let mut scene = self.clone();
         for surface in &mut scene.surfaces {
             if surface.role == Role::Hidden {
-                let cells: usize = surface.albedo.smooth_cells().iter().product();
-                let sum: f64 = (0..cells).map(|c| surface.albedo.cell_mean(c)).sum();
-                surface.albedo = Texture::Constant(sum / cells as f64);
+                surface.albedo = mean_albedo(&surface.albedo);
             }
         }
         scene
+    }
+
+    /// The same scene with each hidden surface a checkerboard of `checks` × `checks` checks of albedo 0 and 1, the one at its
+    /// corner dark.
+    pub fn with_checkerboard(&self, checks: usize) -> Self {
+        let mut scene = self.clone();
+        let check = |i: usize| f64::from(u8::from((i % checks + i / checks) % 2 == 1));
+        for surface in &mut scene.surfaces {
+            if surface.role == Role::Hidden {
+                surface.albedo = Texture::Cells(Cells {
+                    count: [checks; 2],
+                    albedo: (0..checks * checks).map(check).collect(),
+                });
+            }
+        }
+        scene
+    }
+
+    /// The same scene with each flat relay surface reaching further by `margin` on all four sides. An albedo that varies over it becomes its mean,
+    /// for the cells would be elsewhere.
+    ///
+    /// # Errors
+    /// [`SceneError`] if that leaves no proper shape.
+    pub fn with_extended_relay(&self, margin: f64) -> Result<Self, SceneError> {
+        let mut scene = self.clone();
+        for surface in &mut scene.surfaces {
+            if let (Role::Relay, Shape::Parallelogram(p)) = (surface.role, &surface.shape) {
+                let [du, dv] = [p.u(), p.v()].map(|edge| edge.normalize_or_zero() * margin);
+                let wide =
+                    Parallelogram::new(p.corner() - du - dv, p.u() + du * 2.0, p.v() + dv * 2.0);
+                surface.shape = wide
+                    .map(Shape::Parallelogram)
+                    .ok_or_else(|| self.locate(no_shape()))?;
+                surface.albedo = mean_albedo(&surface.albedo);
+            }
+        }
+        scene.rebuilt()
     }
 
     /// The same scene with the hidden surfaces moved by a rigid motion.
@@ -114,9 +149,7 @@ impl Scene {
                     .map(Shape::Sphere)
                     .ok_or_else(|| self.locate(no_shape()))?;
                 // A sphere has other parameters: what varies over the wall would end up elsewhere.
-                let cells: usize = surface.albedo.smooth_cells().iter().product();
-                let sum: f64 = (0..cells).map(|c| surface.albedo.cell_mean(c)).sum();
-                surface.albedo = Texture::Constant(sum / cells as f64);
+                surface.albedo = mean_albedo(&surface.albedo);
             }
         }
         scene.rebuilt()?.with_shifted_spots([0.0, 0.0])
@@ -136,10 +169,51 @@ impl Scene {
     }
 }
 
+/// The mean of an albedo over its surface.
+fn mean_albedo(albedo: &Texture) -> Texture {
+    let cells: usize = albedo.smooth_cells().iter().product();
+    let sum: f64 = (0..cells).map(|c| albedo.cell_mean(c)).sum();
+    Texture::Constant(sum / cells as f64)
+}
+
 fn no_shape() -> Fault {
     Fault::new(
         keys!["surface"],
         "the surface has no proper shape there",
         "move it by less",
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_checkerboard_is_that_of_a_scene_file() {
+        let bench = Scene::load("bench").unwrap();
+        let own = bench
+            .text
+            .replace("checkerboard = [2, 2]", "checkerboard = [4, 4]");
+        let own = Scene::from_toml("own", &own).unwrap();
+        let albedo = |scene: &Scene| scene.hidden().next().unwrap().1.albedo.clone();
+        assert_eq!(albedo(&bench.with_checkerboard(4)), albedo(&own));
+        assert_ne!(albedo(&bench), albedo(&own));
+    }
+
+    /// The bench's wall ends at x = 0 and 11.5, y = 0 and 15.5; albedo 0.8.
+    #[test]
+    fn an_extended_wall_holds_spots_beyond_the_old_one() {
+        let bench = Scene::load("bench").unwrap();
+        let corners = [[-2.9, -2.9], [14.4, -2.9], [14.4, 18.4], [-2.9, 18.4]];
+        assert!(bench.with_spots_at(&corners).is_err());
+        let wide = bench.with_extended_relay(3.0).unwrap();
+        let lit = wide.with_spots_at(&corners).unwrap();
+        for (spot, corner) in lit.laser.spots.iter().zip(corners) {
+            let at = spot.target.position;
+            assert!((at.x - corner[0]).abs() < 1e-12 && (at.y - corner[1]).abs() < 1e-12);
+            assert_eq!(at.z, 0.0);
+        }
+        assert!(wide.with_spots_at(&[[-3.1, 0.0]]).is_err());
+        assert_eq!(wide.surfaces[0].albedo, Texture::Constant(0.8));
+    }
 }

@@ -6,12 +6,21 @@
 //! * [`convergence`](fn@convergence): how fast the error of each estimator falls.
 //! * [`power`](fn@power): what [`validate`] detects, and how often it errs.
 //! * [`tolerance`](fn@tolerance): how wrong the assumed geometry may be.
-//! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object.
+//! * [`coverage`](fn@coverage): how often the bands of recovered reflectances cover the truth.
+//! * [`experiment`](fn@experiment): the failed laboratory experiment, re-enacted.
+//! * [`indicator`](fn@indicator): what predicts how well the published inversion works.
+//! * [`noise`](fn@noise): how much noise each recovery bears.
+//! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object; [`picard`] shows what of it noise leaves.
 
 mod agreement;
 mod budget;
 mod convergence;
+mod coverage;
+mod deviate;
 mod ensemble;
+mod experiment;
+mod indicator;
+mod noise;
 mod objects;
 mod power;
 mod results;
@@ -21,9 +30,21 @@ mod validation;
 pub use agreement::{Errors, Evidence, Test, agree};
 pub use budget::{BudgetError, BudgetPlan, Closure, ErrorBudget, Term, error_budget};
 pub use convergence::{Convergence, ConvergenceError, Curve, Step, convergence};
+pub use coverage::{Coverage, CoveragePlan, CoverageRow, coverage};
 pub use ensemble::Estimate;
-pub use objects::{Attempt, Noise, recover_objects};
+pub use experiment::{
+    Experiment, ExperimentError, ExperimentPlan, Reading, Setting, Threshold, experiment,
+};
+pub use indicator::{
+    Coefficients, Comparison, Configuration, Indicator, IndicatorError, IndicatorPlan, Layout,
+    NoisyOutcome, NoisyPoint, NoisySummary, indicator,
+};
+pub use noise::{
+    LIMITS, LedgerError, Lost, Measures, NoiseAxis, NoiseCurve, NoiseError, NoisePlan, NoiseStudy,
+    Point, RenderNoise, Spread, Trial, noise, read_ledger, render_noise, write_ledger,
+};
+pub use objects::{Attempt, Noise, picard, recover_objects};
 pub use power::{Detection, Power, PowerError, PowerPlan, PowerRow, power};
-pub use results::{Agreement, Entry, RecoveredObject, RunResults, Settings};
+pub use results::{Agreement, Entry, ObjectBands, RecoveredObject, RunResults, Settings};
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, tolerance};
 pub use validation::{Integration, Validation, ValidationError, validate};

@@ -1,13 +1,16 @@
 //! The hidden objects of a scene, recovered and measured.
 
+use std::ops::Range;
+
 use crate::matrix::Matrix;
 use crate::metrics::{correlation, mtf_normalized, mtf_raw, rmse};
 use crate::model::MatrixModel;
 use crate::recovery::{
-    Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, recover,
+    self, BandKind, Bands, Choice, Estimated, Method, Nuisance, Options, Parameter, Picard,
+    Problem, Recovered, RecoveryError, recover,
 };
 
-use super::results::RecoveredObject;
+use super::results::{ObjectBands, RecoveredObject};
 
 /// What a recovery is told of the noise in Φcam.
 #[derive(Clone, Copy, Debug)]
@@ -28,20 +31,20 @@ pub struct Attempt {
 }
 
 /// Recovers the hidden reflectance from `phi` (pixels × spots, W) by each of `methods`, and measures it against the true
-/// albedo at the element centres.
+/// albedo at the element centres. `nuisance` is what else the photographs hold.
 pub fn recover_objects(
     model: &MatrixModel,
     phi: &Matrix,
     noise: Noise<'_>,
+    nuisance: Nuisance<'_>,
     methods: &[Method],
     options: &Options,
 ) -> Vec<Attempt> {
-    let stderr = match noise {
-        Noise::StandardError(stderr) => Some(stderr),
-        Noise::Unknown => None,
-    };
+    let grids: Vec<[usize; 2]> = model.grids.iter().map(|grid| grid.count).collect();
     let attempt = |method: Method| {
-        let problem = Problem::new(phi, &model.camera_side, &model.laser_side, stderr)?;
+        let problem = problem(model, phi, noise)?
+            .with_grids(&grids)?
+            .with_nuisance(nuisance)?;
         recover(method, &problem, options).map(|found| objects(model, &found))
     };
     methods
@@ -53,11 +56,36 @@ pub fn recover_objects(
         .collect()
 }
 
+/// Φ in the singular directions of the model's laser side: see [`recovery::picard`].
+///
+/// # Errors
+/// Those of [`recovery::picard`].
+pub fn picard(
+    model: &MatrixModel,
+    phi: &Matrix,
+    noise: Noise<'_>,
+) -> Result<Picard, RecoveryError> {
+    recovery::picard(&problem(model, phi, noise)?)
+}
+
+fn problem<'a>(
+    model: &'a MatrixModel,
+    phi: &'a Matrix,
+    noise: Noise<'a>,
+) -> Result<Problem<'a>, RecoveryError> {
+    let stderr = match noise {
+        Noise::StandardError(stderr) => Some(stderr),
+        Noise::Unknown => None,
+    };
+    Problem::new(phi, &model.camera_side, &model.laser_side, stderr)
+}
+
 fn objects(model: &MatrixModel, found: &Recovered) -> Vec<RecoveredObject> {
     let cut = |grid: &crate::model::ElementGrid| {
         let range = grid.first..grid.first + grid.len();
         let reflectance = found.reflectance.as_slice()[range.clone()].to_vec();
-        let truth = model.albedo[range].to_vec();
+        let truth = model.albedo[range.clone()].to_vec();
+        let own = |m: &Matrix| m.rows(range.start, range.len()).into_owned();
         RecoveredObject {
             surface: grid.surface.clone(),
             method: found.method.name().to_owned(),
@@ -67,11 +95,37 @@ fn objects(model: &MatrixModel, found: &Recovered) -> Vec<RecoveredObject> {
             correlation: correlation(&reflectance, &truth),
             rmse: rmse(&reflectance, &truth).unwrap_or(f64::NAN),
             parameter: parameter(found),
+            bands: found
+                .bands
+                .as_ref()
+                .map(|bands| object_bands(bands, range.clone())),
+            standard_error: found
+                .standard_error
+                .as_ref()
+                .map(|s| s.as_slice()[range.clone()].to_vec()),
+            effective_rank: found.effective_rank,
+            covariance: found.covariance.as_ref().map(own),
+            resolution: found.resolution.as_ref().map(own),
             reflectance,
             truth,
         }
     };
     model.grids.iter().map(cut).collect()
+}
+
+fn object_bands(bands: &Bands, range: Range<usize>) -> ObjectBands {
+    let kind = match bands.kind {
+        BandKind::Gaussian => "gaussian",
+        BandKind::GaussianAroundMean => "gaussian-around-mean",
+        BandKind::Profile => "profile",
+    };
+    let intervals = &bands.intervals[range];
+    ObjectBands {
+        confidence: bands.confidence,
+        kind: kind.to_owned(),
+        lower: intervals.iter().map(|i| i[0]).collect(),
+        upper: intervals.iter().map(|i| i[1]).collect(),
+    }
 }
 
 /// The regularisation used and why, in words.
@@ -80,6 +134,8 @@ fn parameter(found: &Recovered) -> String {
         Parameter::None => format!("rank {}", found.rank),
         Parameter::Rank(k) => format!("{k} singular directions"),
         Parameter::Damping(lambda) => format!("damping {lambda:.2e} of σ1"),
+        Parameter::TotalVariation(lambda) => format!("total variation {lambda:.2e} of σ1²"),
+        Parameter::Levels([dark, light]) => format!("levels {dark:.3} and {light:.3}"),
     };
     let why = match found.choice {
         Choice::Given => ", as given".to_owned(),
@@ -89,6 +145,22 @@ fn parameter(found: &Recovered) -> String {
             format!(
                 ", by the discrepancy principle (residual {residual:.3e} W, noise {target:.3e} W)"
             )
+        }
+        Choice::JointDiscrepancy {
+            residual, target, ..
+        } => {
+            format!(", by the discrepancy principle (χ² {residual:.1}, noise {target:.1})")
+        }
+        Choice::Estimated => ", estimated".to_owned(),
+        Choice::Gcv {
+            freedom, predicted, ..
+        } => {
+            format!(
+                ", by generalised cross-validation (entries predicted to {predicted:.3e} W, {freedom:.1} degrees of freedom left)"
+            )
+        }
+        Choice::LCurve { residual, turn, .. } => {
+            format!(", at the corner of the L-curve (residual {residual:.3e} W, turn {turn:.2})")
         }
         Choice::Tolerance { cutoff } => format!(", cut at {cutoff:.2e}"),
         Choice::None => String::new(),
@@ -100,5 +172,25 @@ fn parameter(found: &Recovered) -> String {
         ),
         None => String::new(),
     };
-    what + &why + &solver
+    let estimated = found.nuisance.as_ref().map_or(String::new(), estimated);
+    what + &why + &solver + &estimated
+}
+
+/// What was estimated beside the reflectances, in words: means over frames or pixels.
+fn estimated(nuisance: &Estimated) -> String {
+    let mut words = String::new();
+    let terms = [
+        ("frame constant", &nuisance.frame_constant, " W"),
+        ("background", &nuisance.background, " W"),
+        ("glare", &nuisance.glare, ""),
+    ];
+    for (name, values, unit) in terms {
+        if let Some(values) = values {
+            words += &format!("; {name} {:.3e}{unit} on average", values.mean());
+        }
+    }
+    if let Some(scale) = nuisance.scale {
+        words += &format!("; scale {scale:.4}");
+    }
+    words
 }

@@ -97,6 +97,32 @@ pub struct RecoveredObject {
     pub rmse: f64,
     /// Parameter used and why, in words.
     pub parameter: String,
+    /// Bands around the reflectances, where they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bands: Option<ObjectBands>,
+    /// Standard error of each reflectance; absent without a noise model and under bounds.
+    pub standard_error: Option<Vec<f64>>,
+    /// Directions that the method resolves: trace of its resolution matrix.
+    pub effective_rank: f64,
+    /// Covariance of its elements (rows) with those of all hidden surfaces (columns, in file order).
+    #[serde(skip)]
+    pub covariance: Option<Matrix>,
+    /// Its rows of the resolution matrix: what each of its elements shows of the elements of all hidden surfaces.
+    #[serde(skip)]
+    pub resolution: Option<Matrix>,
+}
+
+/// Intervals of the elements of a recovered surface.
+#[derive(Clone, Debug, Serialize)]
+pub struct ObjectBands {
+    /// Probability that each alone shall cover.
+    pub confidence: f64,
+    /// What they are: `gaussian`, `gaussian-around-mean` (the bias is left out) or `profile`.
+    pub kind: String,
+    /// Lower limits.
+    pub lower: Vec<f64>,
+    /// Upper limits.
+    pub upper: Vec<f64>,
 }
 
 /// Everything that `phicam run` found.

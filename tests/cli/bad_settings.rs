@@ -98,7 +98,10 @@ fn of_recovery() {
     refuses_each(&[
         (
             "recover done --method best",
-            &["\"best\"", "pinv, tsvd, tikhonov, joint-unbounded, joint"],
+            &[
+                "\"best\"",
+                "rdivide-min-norm, tsvd, tikhonov, tikhonov-gradient, joint-unbounded, joint",
+            ],
         ),
         (
             "recover done --method pinv,best",

@@ -2,8 +2,10 @@
 
 mod bad_folders;
 mod bad_frames;
+mod bad_recoveries;
 mod bad_scenes;
 mod bad_settings;
+mod exposing;
 mod interruption;
 mod main_job;
 mod recovery;
@@ -12,5 +14,6 @@ mod scenes;
 mod small_scene;
 mod stacking;
 mod studies;
+mod sweeps;
 mod verdict;
 mod workspace;

@@ -3,7 +3,7 @@
 use crate::workspace::{Workspace, assert_same};
 
 /// Names that the design promises for a run with a hidden object, frames aside.
-const FILES: [&str; 19] = [
+const FILES: [&str; 24] = [
     "scene.toml",
     "run.json",
     "phi.npy",
@@ -13,12 +13,17 @@ const FILES: [&str; 19] = [
     "model/phi.npy",
     "recovered/pinv.npy",
     "recovered/pinv.png",
+    "recovered/pinv.stderr.npy",
+    "recovered/pinv.covariance.npy",
+    "recovered/pinv.resolution.npy",
     "recovered/tsvd.npy",
     "recovered/tsvd.png",
     "recovered/tikhonov.npy",
     "recovered/tikhonov.png",
     "recovered/joint.npy",
     "recovered/joint.png",
+    "recovered/picard.csv",
+    "recovered/picard.svg",
     "recovered/truth.npy",
     "recovered/truth.png",
     "summary.json",
@@ -231,6 +236,23 @@ fn a_render_with_another_seed_leaves_no_result_of_the_earlier_run() {
         "scene.toml",
     ];
     assert_eq!(names, left);
+}
+
+#[test]
+fn a_black_object_is_found_black_and_no_error() {
+    let workspace = Workspace::with_scenes();
+    let black = workspace
+        .text("tiny.toml")
+        .replace("light = 1.0", "light = 0.0");
+    workspace.write("black.toml", black);
+    let ended = workspace.phicam("run black.toml --samples 64").exits(0);
+    assert!(
+        ended.stderr.contains("nothing to recover"),
+        "{}",
+        ended.account()
+    );
+    let summary = workspace.json("out/summary.json");
+    assert_eq!(summary["recovered"], serde_json::json!([]));
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! `phicam recover`: methods, settings and files.
 
+use phicam::matrix::npy;
+
 use crate::workspace::{Ended, Workspace};
 
 fn with_run() -> Workspace {
@@ -31,6 +33,8 @@ fn a_method_writes_its_matrix_and_its_picture() {
         "joint.npy",
         "joint.png",
         "overview.png",
+        "picard.csv",
+        "picard.svg",
         "truth.npy",
         "truth.png",
     ];
@@ -143,7 +147,7 @@ fn if_no_method_can_work_each_says_why() {
 }
 
 #[test]
-fn all_methods_unless_some_are_named() {
+fn the_usual_methods_unless_some_are_named() {
     let workspace = with_run();
     let names = |found: &[serde_json::Value]| -> Vec<String> {
         found
@@ -158,6 +162,181 @@ fn all_methods_unless_some_are_named() {
     );
     let two = objects(workspace.phicam("recover done --method joint,pinv --json"));
     assert_eq!(names(&two), ["joint", "pinv"]);
+}
+
+#[test]
+fn other_light_is_estimated_with_the_object() {
+    let workspace = with_run();
+    let model = workspace.matrix("done/model/phi.npy");
+    // A constant of each frame a hundred times the light, and a factor.
+    let spoilt =
+        model.map_with_location(|_, l, x| 2.5 * x + 100.0 * model.amax() * (1.0 + l as f64));
+    npy::write(&workspace.path("spoilt.npy"), &spoilt).unwrap();
+    let line = "recover done --phi spoilt.npy --frame-constant --free-scale --method joint --json";
+    let found = objects(workspace.phicam(line));
+    assert!(found[0]["mtf_raw"].as_f64().unwrap() > 0.99, "{}", found[0]);
+    let words = found[0]["parameter"].as_str().unwrap();
+    assert!(
+        words.contains("scale 2.500") && words.contains("frame constant"),
+        "{words}"
+    );
+    // Methods that cannot are remarks beside one that can, and refused alone.
+    let line = "recover done --phi spoilt.npy --frame-constant --noise 0.01";
+    let ended = workspace.phicam(line).exits(0);
+    assert!(
+        ended.stderr.contains("pinv does not estimate"),
+        "{}",
+        ended.account()
+    );
+    workspace.refuses(
+        &format!("{line} --method pinv"),
+        &["--frame-constant", "joint", "cure: "],
+    );
+    workspace.refuses("recover done --tv 0.1", &["--tv", "joint-tv"]);
+    workspace.refuses(
+        "recover done --levels 0,1 --method joint",
+        &["--levels", "joint-two-valued"],
+    );
+    workspace.refuses(
+        "recover done --method joint-two-valued --levels 1,0",
+        &["DARK < LIGHT"],
+    );
+    workspace.refuses(
+        "recover done --weighting none --method pinv",
+        &["--weighting none"],
+    );
+    workspace.refuses(
+        "recover done --method joint --glare-pattern no.npy",
+        &["no.npy"],
+    );
+    workspace.refuses(
+        "recover done --method joint --bands 95",
+        &["--bands 95", "0.95"],
+    );
+    workspace.refuses(
+        "recover done --method joint-tv --bands 0.95",
+        &["joint-tv has no bands"],
+    );
+}
+
+#[test]
+fn bands_are_files_of_their_own() {
+    let workspace = with_run();
+    let line = "recover done --method joint-unbounded,joint --elements 2x2 --bands 0.9 --json";
+    let found = objects(workspace.phicam(line));
+    for (object, kind) in found.iter().zip(["gaussian", "profile"]) {
+        assert_eq!(object["bands"]["kind"], kind);
+        let name = object["method"].as_str().unwrap();
+        let of = |end: &str| workspace.matrix(&format!("done/recovered/{name}{end}.npy"));
+        let (lower, upper) = (of(".lower"), of(".upper"));
+        assert_eq!(lower.shape(), (2, 2));
+        let middle = of("");
+        for at in 0..4 {
+            assert!(lower[at] <= middle[at] && middle[at] <= upper[at], "{name}");
+        }
+    }
+}
+
+#[test]
+fn every_method_can_be_asked_for() {
+    let workspace = with_run();
+    let line = "recover done --method nnls,joint-tv,joint-two-valued --phi done/model/phi.npy --noise 0.001";
+    let _ = workspace.phicam(line).exits(0);
+    let names = workspace.contents("done/recovered");
+    for name in ["nnls.npy", "joint-tv.npy", "joint-two-valued.npy"] {
+        assert!(names.contains_key(name), "no {name}");
+    }
+}
+
+#[test]
+fn every_method_can_be_named() {
+    let workspace = with_run();
+    for method in phicam::recovery::Method::ALL {
+        // 24 spots: 36 elements for the inverse from the left, 4 for all others.
+        let elements = match method {
+            phicam::recovery::Method::LeftInverse => "6 --tolerance 1e-17",
+            _ => "2",
+        };
+        let line =
+            format!("recover done --method {method} --elements {elements} --rule gcv --json");
+        let found = objects(workspace.phicam(&line));
+        assert_eq!(found[0]["method"], method.name());
+        assert!(found[0]["effective_rank"].as_f64().unwrap() > 0.5);
+    }
+}
+
+#[test]
+fn a_linear_method_writes_its_uncertainty() {
+    let workspace = with_run();
+    let line = "recover done --method pinv,tikhonov-gradient,joint-unbounded,joint --elements 4x2 --damping 0.01";
+    let found = objects(workspace.phicam(&format!("{line} --json")));
+    for (object, method) in found
+        .iter()
+        .zip(["pinv", "tikhonov-gradient", "joint-unbounded"])
+    {
+        let read = |what: &str| workspace.matrix(&format!("done/recovered/{method}.{what}.npy"));
+        let (stderr, covariance) = (read("stderr"), read("covariance"));
+        assert_eq!((stderr.shape(), covariance.shape()), ((2, 4), (8, 8)));
+        for i in 0..8 {
+            let said = object["standard_error"][i].as_f64().unwrap();
+            assert_eq!(said, stderr[(i / 4, i % 4)]);
+            assert!((covariance[(i, i)].sqrt() / said - 1.0).abs() < 1e-9);
+        }
+        let resolution = read("resolution");
+        let rank = object["effective_rank"].as_f64().unwrap();
+        assert!((resolution.trace() - rank).abs() < 1e-6 && rank < 8.0 + 1e-9);
+    }
+    let names = workspace.contents("done/recovered");
+    assert!(
+        !names
+            .keys()
+            .any(|n| n.starts_with("joint.") && n.contains("stderr"))
+    );
+    assert!(found[3]["standard_error"].is_null());
+    // Without a noise model only the resolution is known: what the earlier call said is gone.
+    let _ = workspace
+        .phicam("recover done --method pinv --phi done/model/phi.npy --elements 4x2")
+        .exits(0);
+    let names = workspace.contents("done/recovered");
+    assert!(!names.contains_key("pinv.stderr.npy") && !names.contains_key("pinv.covariance.npy"));
+    assert!(names.contains_key("pinv.resolution.npy"));
+}
+
+#[test]
+fn picard_data_are_written() {
+    let workspace = with_run();
+    let _ = workspace.phicam("recover done --method pinv").exits(0);
+    let table = workspace.text("done/recovered/picard.csv");
+    let mut lines = table.lines();
+    assert_eq!(lines.next(), Some("direction,sigma,coefficient_W,noise_W"));
+    // 24 spots, 64 elements: 24 directions, singular values falling.
+    let rows: Vec<Vec<f64>> = lines
+        .map(|line| line.split(',').map(|x| x.parse().unwrap()).collect())
+        .collect();
+    assert_eq!(rows.len(), 24);
+    assert!(rows.windows(2).all(|w| w[1][1] <= w[0][1]));
+    // The traced signal rises above its noise in the first direction, and nothing does in the last.
+    assert!(rows[0][2] > 100.0 * rows[0][3] && rows[23][2] < 2.0 * rows[23][3]);
+    let figure = workspace.text("done/recovered/picard.svg");
+    assert!(figure.contains("noise in direction i") && figure.ends_with("</svg>\n"));
+}
+
+#[test]
+fn rules_without_a_noise_model() {
+    let workspace = with_run();
+    for (rule, words) in [
+        ("gcv", "generalised cross-validation"),
+        ("l-curve", "corner of the L-curve"),
+    ] {
+        for method in ["tsvd", "tikhonov", "tikhonov-gradient"] {
+            let line =
+                format!("recover done --method {method} --rule {rule} --phi done/phi.npy --json");
+            let found = objects(workspace.phicam(&line));
+            let parameter = found[0]["parameter"].as_str().unwrap();
+            assert!(parameter.contains(words), "{method}: {parameter}");
+        }
+    }
+    workspace.refuses("recover done --rule best", &["best", "gcv", "l-curve"]);
 }
 
 #[test]

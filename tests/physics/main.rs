@@ -2,11 +2,14 @@
 
 mod accuracy;
 mod closed_forms;
+mod indicator;
 mod known;
 mod laws;
 mod model;
+mod noise;
 mod obstacles;
 mod reference;
+mod sensor;
 mod studies;
 
 use std::ops::Range;

@@ -1,6 +1,9 @@
 //! Raw arguments, as clap reads them.
 
+mod expose;
+mod laboratory;
 mod study;
+mod sweep;
 mod value;
 
 use std::ops::Range;
@@ -8,11 +11,14 @@ use std::path::PathBuf;
 
 use clap::{Args as Arguments, Parser, Subcommand, ValueEnum};
 
-use value::{elements, shift, spot_range};
+use value::{elements, levels, shift, spot_range};
 
+pub(in crate::cli) use expose::ExposeArgs;
+pub(in crate::cli) use laboratory::{CoverageArgs, ExperimentArgs};
 pub(in crate::cli) use study::{
     BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs,
 };
+pub(in crate::cli) use sweep::{IndicatorArgs, NoiseArgs};
 
 /// phicam: a physically based renderer for indirect photography, and the laboratory around it.
 #[derive(Debug, Parser)]
@@ -42,6 +48,8 @@ pub(in crate::cli) enum Command {
     Validate(ValidateArgs),
     /// Recover the hidden reflectance from Φcam
     Recover(RecoverArgs),
+    /// Photograph the clean flux with a sensor: shot noise, read noise, glare, converter
+    Expose(ExposeArgs),
     /// List, check, draw or export scenes
     Scene(SceneArgs),
     /// Experiments around a scene
@@ -195,11 +203,22 @@ pub(in crate::cli) struct ValidateArgs {
     pub json: bool,
 }
 
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(in crate::cli) enum RuleName {
+    /// The strongest regularisation whose residual the noise explains
+    Discrepancy,
+    /// Generalised cross-validation; needs no noise model
+    Gcv,
+    /// The corner of the L-curve; needs no noise model
+    LCurve,
+}
+
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct RecoverArgs {
     /// Folder of a run; with --phi a folder with a scene.toml is enough
     pub dir: PathBuf,
-    /// Methods, separated by commas: pinv, tsvd, tikhonov, joint-unbounded, joint; all unless given
+    /// Methods, separated by commas: pinv, left-inverse, right-inverse, rdivide, rdivide-min-norm, tsvd, tikhonov, tikhonov-gradient,
+    /// joint-unbounded, joint, nnls, joint-tv, joint-two-valued; pinv, tsvd, tikhonov, joint-unbounded and joint unless given
     #[arg(long, value_delimiter = ',', value_name = "METHOD")]
     pub method: Vec<String>,
     /// Φcam to invert, pixels × spots in W, in place of DIR/phi.npy
@@ -217,18 +236,60 @@ pub(in crate::cli) struct RecoverArgs {
     /// Elements along u and v, in place of the scene's: N or NxM
     #[arg(long, value_name = "N", value_parser = elements)]
     pub elements: Option<[usize; 2]>,
-    /// Singular directions that tsvd keeps, in place of the discrepancy principle
+    /// How tsvd, tikhonov and tikhonov-gradient choose their parameter
+    #[arg(long, value_enum, default_value_t = RuleName::Discrepancy)]
+    pub rule: RuleName,
+    /// Singular directions that tsvd keeps, in place of the rule's choice
     #[arg(long, value_name = "K", allow_negative_numbers = true)]
     pub rank: Option<usize>,
-    /// Damping of tikhonov relative to σ1, in place of the discrepancy principle
+    /// Damping of tikhonov and tikhonov-gradient relative to σ1, in place of the rule's choice
     #[arg(long, value_name = "LAMBDA", allow_negative_numbers = true)]
     pub damping: Option<f64>,
-    /// Relative singular value below which pinv and joint cut; max(size)·eps unless given
+    /// Relative singular value below which pinv, the divisions and joint-unbounded cut; max(size)·eps unless given
     #[arg(long, value_name = "RELATIVE", allow_negative_numbers = true)]
     pub tolerance: Option<f64>,
+    #[command(flatten)]
+    pub joint: JointArgs,
+    /// Bands that cover each element with this probability: METHOD.lower.npy and METHOD.upper.npy
+    #[arg(long, value_name = "LEVEL", allow_negative_numbers = true)]
+    pub bands: Option<f64>,
     /// Print the results as JSON
     #[arg(long)]
     pub json: bool,
+}
+
+/// What the methods over all pixels and spots can do besides.
+#[derive(Debug, Arguments)]
+pub(in crate::cli) struct JointArgs {
+    /// By what the joint methods weigh the entries of Φcam
+    #[arg(long, value_enum, default_value_t = WeightingName::Noise)]
+    pub weighting: WeightingName,
+    /// Weight of joint-tv's total variation relative to σ1², in place of the discrepancy principle
+    #[arg(long, value_name = "LAMBDA", allow_negative_numbers = true)]
+    pub tv: Option<f64>,
+    /// The two reflectances of joint-two-valued, estimated unless given: DARK,LIGHT
+    #[arg(long, value_name = "DARK,LIGHT", value_parser = levels, allow_hyphen_values = true)]
+    pub levels: Option<[f64; 2]>,
+    /// Estimate a constant of each frame with the reflectances
+    #[arg(long)]
+    pub frame_constant: bool,
+    /// Estimate an image that is the same in all frames
+    #[arg(long)]
+    pub background: bool,
+    /// Estimate one factor of all photographs; the brightest element is the unit then
+    #[arg(long)]
+    pub free_scale: bool,
+    /// Estimate the strength of this pattern in each frame: pixels × spots
+    #[arg(long, value_name = "FILE")]
+    pub glare_pattern: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum WeightingName {
+    /// By the noise, where it is known
+    Noise,
+    /// All alike
+    None,
 }
 
 #[derive(Debug, Arguments)]

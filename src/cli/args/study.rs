@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args as Arguments, Subcommand};
 
+use super::laboratory::{CoverageArgs, ExperimentArgs};
+use super::sweep::{IndicatorArgs, NoiseArgs};
 use super::{EstimatorName, SamplerName};
 
 #[derive(Debug, Arguments)]
@@ -22,6 +24,14 @@ pub(in crate::cli) enum StudyCommand {
     Tolerance(ToleranceArgs),
     /// How fast the error of each estimator falls: table, JSON, figure
     Convergence(ConvergenceArgs),
+    /// How much noise each recovery bears: table, JSON, CSV, figures; a rerun goes on where the last one stopped
+    Noise(NoiseArgs),
+    /// What predicts the modulation of the published inversion: table, JSON, CSV, figure
+    Indicator(IndicatorArgs),
+    /// How often bands around recovered reflectances cover the truth: table and JSON
+    Coverage(CoverageArgs),
+    /// The failed laboratory experiment with a real sensor and glare: findings in words, tables, JSON, CSV, figure
+    Experiment(ExperimentArgs),
 }
 
 #[derive(Debug, Arguments)]

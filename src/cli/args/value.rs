@@ -32,6 +32,16 @@ pub(super) fn shift(text: &str) -> Result<[f64; 2], String> {
     parts.ok_or_else(|| "write it as DX,DY, e.g. 0.05,0".to_owned())
 }
 
+/// "DARK,LIGHT", 0 ≤ DARK < LIGHT ≤ 1.
+pub(super) fn levels(text: &str) -> Result<[f64; 2], String> {
+    let parts = text
+        .split_once(',')
+        .and_then(|(a, b)| Some([a.trim().parse().ok()?, b.trim().parse().ok()?]));
+    parts
+        .filter(|[dark, light]: &[f64; 2]| 0.0 <= *dark && dark < light && *light <= 1.0)
+        .ok_or_else(|| "write it as DARK,LIGHT with 0 ≤ DARK < LIGHT ≤ 1, e.g. 0.05,0.9".to_owned())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -50,6 +60,10 @@ mod tests {
         }
         for bad in ["1", "nan,0", "1,inf", ""] {
             assert!(shift(bad).is_err(), "{bad}");
+        }
+        assert_eq!(levels("0.1, 1"), Ok([0.1, 1.0]));
+        for bad in ["1,0", "0.5", "0,nan", "-0.1,1", "0,1.5", "0.5,0.5"] {
+            assert!(levels(bad).is_err(), "{bad}");
         }
     }
 }

@@ -61,5 +61,27 @@ pub(super) fn traced<T: Send, E: Error + Send>(
     };
     let found = pool.install(|| study(control))?;
     bar.finish_and_clear();
-    found.ok_or_else(|| Failure::Stopped("nothing was written; run it again".to_owned()))
+    found.ok_or_else(nothing)
+}
+
+/// Runs a study that counts its steps, with a progress bar called `what`; `Ok(None)` is Ctrl-C.
+pub(super) fn stepped<T: Send, E: Error + Send>(
+    talk: Talk,
+    pool: &ThreadPool,
+    what: &str,
+    study: impl FnOnce(&(dyn Fn(usize, usize) + Sync)) -> Result<Option<T>, E> + Send,
+) -> Result<T, Failure> {
+    let bar = progress::steps(talk, what);
+    let tick = |done: usize, all: usize| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    };
+    let found = pool.install(|| study(&tick))?;
+    bar.finish_and_clear();
+    found.ok_or_else(nothing)
+}
+
+/// Ctrl-C before anything was written.
+fn nothing() -> Failure {
+    Failure::Stopped("nothing was written; run it again".to_owned())
 }

@@ -1,6 +1,10 @@
 //! `phicam study`: experiments around a scene.
 
+mod coverage;
+mod experiment;
 mod findings;
+mod indicator;
+mod noise;
 
 use super::args::{BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs};
 use super::failure::Failure;
@@ -20,6 +24,10 @@ pub(in crate::cli) fn execute(args: &StudyArgs, talk: Talk) -> Result<Outcome, F
         StudyCommand::Power(a) => power(a, talk),
         StudyCommand::Tolerance(a) => tolerance(a, talk),
         StudyCommand::Convergence(a) => convergence(a, talk),
+        StudyCommand::Noise(a) => noise::execute(a, talk),
+        StudyCommand::Indicator(a) => indicator::execute(a, talk),
+        StudyCommand::Coverage(a) => coverage::execute(a, talk),
+        StudyCommand::Experiment(a) => experiment::execute(a, talk),
     }
 }
 

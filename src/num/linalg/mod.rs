@@ -1,24 +1,29 @@
 //! Dense linear algebra: the one door to matrix decompositions.
 //!
 //! Matrices are [`nalgebra::DMatrix<f64>`] (column-major) on both sides of the door; behind it the decompositions are
-//! those of `faer`, on one thread so that their bits do not depend on the number of cores. What this door adds to them:
+//! those of `faer` (and Householder reductions of its own, [`pivoted_qr`](pivoted_qr()) and [`complement`](complement())), on one thread so that their bits do not depend on
+//! the number of cores. What this door adds to them:
 //!
 //! * empty, NaN and infinite input is refused with an error ([`LinalgError`]), never looped over and never a panic;
 //! * the matrix is scaled by a power of two to a largest entry in [1, 2) first, so entries near 1e300 or 1e-160
 //!   lose nothing;
 //! * the singular value decomposition of a tall or wide matrix never goes through an unpivoted QR first, which
 //!   would blur the singular values near the rank by three digits;
-//! * every singular value decomposition checks itself afterwards (see [`svd`]).
+//! * every singular value decomposition and every pivoted QR checks itself afterwards (see [`svd`]).
 //!
 //! [`svd`]: svd()
 
+mod householder;
 mod least_squares;
 mod pinv;
+mod pivoted_qr;
 mod svd;
 mod triangle;
 
+pub use householder::{Complement, complement};
 pub use least_squares::{LeastSquares, Route, least_squares};
 pub use pinv::{Pinv, pinv};
+pub use pivoted_qr::{PivotedQr, pivoted_qr};
 pub use svd::{Svd, svd};
 pub use triangle::{Triangle, normal_triangle, triangle};
 

@@ -145,6 +145,36 @@ pub fn normal_triangle(
 }
 
 impl Triangle {
+    /// [R | d] above the row (0 | rest): an (k + 1) × (n + 1) matrix whose distances are those of [A | b].
+    pub fn joined(&self) -> DMatrix<f64> {
+        let (k, n) = self.r.shape();
+        DMatrix::from_fn(k + 1, n + 1, |i, j| match (i < k, j < n) {
+            (true, true) => self.r[(i, j)],
+            (true, false) => self.d[i],
+            (false, true) => 0.0,
+            (false, false) => self.rest,
+        })
+    }
+
+    /// x by back substitution, of a triangle from [`triangle`]; none where a pivot is below `trust` times the largest, so that the
+    /// solution is not unique to rounding.
+    pub fn substitute(&self, trust: f64) -> Option<DVector<f64>> {
+        let (k, n) = self.r.shape();
+        let largest = (0..k).map(|i| self.r[(i, i)].abs()).fold(0.0, f64::max);
+        if k < n || (0..n).any(|i| self.r[(i, i)].abs() <= trust * largest) {
+            return None;
+        }
+        let mut x = self.d.clone();
+        for i in (0..n).rev() {
+            x[i] /= self.r[(i, i)];
+            let known = x[i];
+            for above in 0..i {
+                x[above] -= self.r[(above, i)] * known;
+            }
+        }
+        x.iter().all(|x| x.is_finite()).then_some(x)
+    }
+
     /// The minimum-norm solution of the reduced problem, `route` recorded as its origin.
     ///
     /// # Errors
@@ -190,6 +220,27 @@ mod tests {
             assert!((t.r.transpose() * &t.d - &moment).amax() < 1e-13 * moment.amax());
             assert!((t.d.norm_squared() + t.rest * t.rest - b.norm_squared()).abs() < 1e-11);
         }
+    }
+
+    #[test]
+    fn substitution_solves_what_has_one_solution() {
+        // Planted x; two parallel columns have no unique one.
+        let a = hilbert(30, 5);
+        let x = DVector::from_row_slice(&[1.0, -2.0, 3.0, 0.5, 0.0]);
+        let found = triangle(&a, &(&a * &x)).unwrap().substitute(1e-12);
+        assert!((found.unwrap() - x).amax() < 1e-9);
+        // Columns t and t/3, parallel but for some roundings.
+        let off = |i: usize, j: usize| 1.0 + 1e-14 * (i * j % 2) as f64;
+        let twice = DMatrix::from_fn(4, 2, |i, j| {
+            off(i, j) * (1.1 + i as f64).sqrt() / (1 + 2 * j) as f64
+        });
+        let b = DVector::from_element(4, 1.0);
+        assert_eq!(triangle(&twice, &b).unwrap().substitute(1e-12), None);
+        let wide = triangle(
+            &DMatrix::from_element(1, 3, 1.0),
+            &DVector::from_element(1, 1.0),
+        );
+        assert_eq!(wide.unwrap().substitute(1e-12), None);
     }
 
     #[test]

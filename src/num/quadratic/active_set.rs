@@ -3,16 +3,20 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{Place, QuadraticError};
-use crate::num::linalg::{Tolerance, least_squares};
+use crate::num::linalg::{Tolerance, least_squares, triangle};
 
 /// Floating-point operations that the active-set refinement may spend.
 const REFINEMENT_BUDGET: f64 = 1e11;
 
-/// Bounded-variable least squares from a given start. Stops at a point where all optimality conditions hold to
+/// A pivot below this fraction of the largest makes columns dependent.
+const PIVOT: f64 = 1e-11;
+
+/// Bounded-variable least squares, 0 ≤ x ≤ u, from a given start. Stops at a point where all optimality conditions hold to
 /// rounding, or when its budget is spent; the objective never rises from the start's.
 pub(super) fn refine(
     r: &DMatrix<f64>,
     d: &DVector<f64>,
+    upper: &DVector<f64>,
     start: DVector<f64>,
     mut places: Vec<Place>,
 ) -> Result<(DVector<f64>, usize), QuadraticError> {
@@ -23,7 +27,7 @@ pub(super) fn refine(
     let mut x = DVector::from_fn(n, |j, _| match places[j] {
         Place::Free => start[j],
         Place::Lower => 0.0,
-        Place::Upper => 1.0,
+        Place::Upper => upper[j],
     });
     let mut released = None;
     let mut banned = vec![false; n];
@@ -36,15 +40,14 @@ pub(super) fn refine(
         let mut stride = 1.0;
         let mut blocked = None;
         if !free.is_empty() {
-            // A singular value decomposition of k × f, with its vectors.
+            // The singular value decomposition of k × f, with its vectors, that it may take.
             spent += 25.0 * (k * free.len() * k.min(free.len())) as f64;
-            let towards =
-                least_squares(&r.select_columns(&free), &(d - r * &x), Tolerance::Auto)?.solution;
+            let towards = solve(&r.select_columns(&free), &(d - r * &x))?;
             for (&j, &step) in free.iter().zip(towards.iter()) {
                 let room = if step < 0.0 {
                     x[j] / -step
                 } else {
-                    (1.0 - x[j]) / step
+                    (upper[j] - x[j]) / step
                 };
                 if step != 0.0 && room < stride {
                     stride = room;
@@ -59,11 +62,11 @@ pub(super) fn refine(
                 }
             }
             for (&j, &step) in free.iter().zip(towards.iter()) {
-                x[j] = (x[j] + stride * step).clamp(0.0, 1.0);
+                x[j] = (x[j] + stride * step).clamp(0.0, upper[j]);
             }
         }
         if let Some((j, place)) = blocked {
-            x[j] = if place == Place::Lower { 0.0 } else { 1.0 };
+            x[j] = if place == Place::Lower { 0.0 } else { upper[j] };
             places[j] = place;
             if stride > 0.0 {
                 banned.fill(false);
@@ -109,10 +112,21 @@ pub(super) fn refine(
 pub(super) fn orthogonal_to_free(
     r: &DMatrix<f64>,
     residual: &DVector<f64>,
+    upper: &DVector<f64>,
     x: &DVector<f64>,
 ) -> Result<DVector<f64>, QuadraticError> {
-    let free: Vec<usize> = (0..x.len()).filter(|&j| x[j] > 0.0 && x[j] < 1.0).collect();
+    let free: Vec<usize> = (0..x.len())
+        .filter(|&j| x[j] > 0.0 && x[j] < upper[j])
+        .collect();
     orthogonal_to(r, residual, &free)
+}
+
+/// Least squares by QR; by singular values where the columns are dependent to rounding.
+fn solve(columns: &DMatrix<f64>, b: &DVector<f64>) -> Result<DVector<f64>, QuadraticError> {
+    match triangle(columns, b)?.substitute(PIVOT) {
+        Some(x) => Ok(x),
+        None => Ok(least_squares(columns, b, Tolerance::Auto)?.solution),
+    }
 }
 
 fn orthogonal_to(
@@ -124,24 +138,25 @@ fn orthogonal_to(
         return Ok(residual.clone());
     }
     let columns = r.select_columns(free);
-    let within = least_squares(&columns, residual, Tolerance::Auto)?.solution;
+    let within = solve(&columns, residual)?;
     Ok(residual - columns * within)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{box_least_squares, duality_gap};
+    use super::super::{Bounds, box_least_squares};
     use super::*;
 
     #[test]
     fn refinement_reaches_the_optimum_from_a_bad_start() {
         let r = DMatrix::from_fn(12, 8, |i, j| (((i * 31 + j * 17) % 13) as f64 - 6.0) / 6.0);
         let d = DVector::from_fn(12, |i, _| ((i * 7) % 5) as f64 - 1.0);
-        let reference = box_least_squares(&r, &d).unwrap();
+        let bounds = Bounds::all(8, 0.0, 1.0);
+        let reference = box_least_squares(&r, &d, &bounds).unwrap();
         for place in [Place::Free, Place::Lower, Place::Upper] {
-            let (x, _) = refine(&r, &d, DVector::from_element(8, 0.5), vec![place; 8]).unwrap();
+            let start = DVector::from_element(8, 0.5);
+            let (x, _) = refine(&r, &d, &bounds.upper, start, vec![place; 8]).unwrap();
             assert!((&x - &reference.solution).amax() < 1e-12);
-            assert!(duality_gap(&r, &(&r * &x - &d), &(&r * &x - &d), &x) < 1e-12);
         }
     }
 }

@@ -21,15 +21,20 @@ pub(super) struct Interior {
     pub(super) iterations: u32,
 }
 
-/// Solves min ½yᵀy, y = R x − d, 0 ≤ x ≤ 1 to the solver's own tolerance.
-pub(super) fn solve(r: &DMatrix<f64>, d: &DVector<f64>) -> Result<Interior, QuadraticError> {
+/// Solves min ½yᵀy, y = R x − d, 0 ≤ x ≤ u to the solver's own tolerance; an infinite u_j is no constraint.
+pub(super) fn solve(
+    r: &DMatrix<f64>,
+    d: &DVector<f64>,
+    upper: &DVector<f64>,
+) -> Result<Interior, QuadraticError> {
     let (k, n) = r.shape();
     let lengths: Vec<f64> = r
         .column_iter()
         .map(|c| if c.norm() > 0.0 { c.norm() } else { 1.0 })
         .collect();
     let size = d.norm().max(lengths.iter().copied().fold(0.0, f64::max));
-    // Variables (x_j·length_j/size, y/size); rows: y − R x = −d, then −x ≤ 0, then x ≤ length/size.
+    // Variables (x_j·length_j/size, y/size); rows: y − R x = −d, then −x ≤ 0, then x ≤ u·length/size where u is finite.
+    let closed: Vec<usize> = (0..n).filter(|&j| upper[j].is_finite()).collect();
     let (mut row, mut column, mut value) = (Vec::new(), Vec::new(), Vec::new());
     let mut put = |i, j, v: f64| {
         if v != 0.0 {
@@ -43,21 +48,23 @@ pub(super) fn solve(r: &DMatrix<f64>, d: &DVector<f64>) -> Result<Interior, Quad
             put(i, j, -r[(i, j)] / lengths[j]);
         }
         put(k + j, j, -1.0);
-        put(k + n + j, j, 1.0);
+    }
+    for (i, &j) in closed.iter().enumerate() {
+        put(k + n + i, j, 1.0);
     }
     for i in 0..k {
         put(i, n + i, 1.0);
     }
-    let constraints = CscMatrix::new_from_triplets(k + 2 * n, n + k, row, column, value);
+    let constraints = CscMatrix::new_from_triplets(k + n + closed.len(), n + k, row, column, value);
     let on_y: Vec<usize> = (n..n + k).collect();
     let cost = CscMatrix::new_from_triplets(n + k, n + k, on_y.clone(), on_y, vec![1.0; k]);
     let linear = vec![0.0; n + k];
-    let upper = lengths.iter().map(|c| c / size);
+    let ceilings = closed.iter().map(|&j| upper[j] * lengths[j] / size);
     let bounds: Vec<f64> = d
         .iter()
         .map(|x| -x / size)
         .chain(std::iter::repeat_n(0.0, n))
-        .chain(upper)
+        .chain(ceilings)
         .collect();
     let settings = DefaultSettingsBuilder::default()
         .verbose(false)
@@ -66,7 +73,7 @@ pub(super) fn solve(r: &DMatrix<f64>, d: &DVector<f64>) -> Result<Interior, Quad
         .tol_gap_rel(1e-12)
         .build()
         .map_err(|e| QuadraticError::Refused(e.to_string()))?;
-    let cones = [ZeroConeT(k), NonnegativeConeT(2 * n)];
+    let cones = [ZeroConeT(k), NonnegativeConeT(n + closed.len())];
     let mut solver = DefaultSolver::new(&cost, &linear, &constraints, &bounds, &cones, settings)
         .map_err(|e| QuadraticError::Refused(e.to_string()))?;
     solver.solve();
@@ -81,14 +88,24 @@ pub(super) fn solve(r: &DMatrix<f64>, d: &DVector<f64>) -> Result<Interior, Quad
         });
     }
     // A bound holds where its multiplier outweighs the distance to it.
-    let places = (0..n)
-        .map(|j| match (found.z[k + j], found.z[k + n + j]) {
-            (z, _) if found.s[k + j] < z => Place::Lower,
-            (_, z) if found.s[k + n + j] < z => Place::Upper,
-            _ => Place::Free,
+    let holds = |row: usize| found.s[row] < found.z[row];
+    let mut places: Vec<Place> = (0..n)
+        .map(|j| {
+            if holds(k + j) {
+                Place::Lower
+            } else {
+                Place::Free
+            }
         })
         .collect();
-    x.apply(|x| *x = x.clamp(0.0, 1.0));
+    for (i, &j) in closed.iter().enumerate() {
+        if places[j] == Place::Free && holds(k + n + i) {
+            places[j] = Place::Upper;
+        }
+    }
+    for (x, &u) in x.iter_mut().zip(upper.iter()) {
+        *x = x.clamp(0.0, u);
+    }
     let y = DVector::from_fn(k, |i, _| found.x[n + i] * size);
     Ok(Interior {
         x,
@@ -117,7 +134,7 @@ mod tests {
             r[(i, j)] = v;
         }
         let d = DVector::from_row_slice(&[1.0, -1.0, 3.0, 0.5]);
-        let found = solve(&r, &d).unwrap();
+        let found = solve(&r, &d, &DVector::from_element(4, 1.0)).unwrap();
         let exact = DVector::from_row_slice(&[0.0, 0.5, 1.0, 0.5]);
         // Its gap of 1e-12 of the data lets x stray by some 1e-6.
         assert!((&found.x - &exact).amax() < 1e-5, "{}", found.x);

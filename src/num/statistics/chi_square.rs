@@ -48,7 +48,7 @@ fn temme(a: f64, x: f64) -> f64 {
 }
 
 /// μ − ln(1 + μ), without cancellation near 0.
-fn excess(mu: f64) -> f64 {
+pub(in crate::num) fn excess(mu: f64) -> f64 {
     if mu.abs() > 0.1 {
         return mu - libm::log1p(mu);
     }

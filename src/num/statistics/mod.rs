@@ -8,6 +8,7 @@ mod student;
 
 pub use binomial::binomial_interval;
 pub use chi_square::chi_square_sf;
+pub(super) use chi_square::excess;
 pub use family::{sidak_p, sidak_threshold};
 pub use normal::normal_two_sided;
 pub use student::student_to_normal;

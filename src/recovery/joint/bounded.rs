@@ -1,50 +1,37 @@
-//! Least squares over all pixels and spots with reflectances that a surface can have, 0 ≤ ρ ≤ 1.
+//! Least squares over all pixels and spots with reflectances that a surface can have: 0 ≤ ρ ≤ 1 (`joint`), or ρ ≥ 0 alone (`nnls`).
 
-use super::khatri_rao::Operator;
-use crate::num::linalg::{Svd, Tolerance, cut, svd};
-use crate::num::quadratic::box_least_squares;
-use crate::recovery::{
-    Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, Solver,
-};
+use super::reduced::{Reduced, report};
+use crate::num::quadratic::{Bounds, box_least_squares};
+use crate::recovery::{Method, Options, Problem, Recovered, RecoveryError, bands};
 
+/// `method` is [`Method::Joint`] or [`Method::Nnls`].
 pub(in crate::recovery) fn recover(
+    method: Method,
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
-    let operator = Operator::new(problem, options.budget)?;
-    let reduced = operator.reduced()?;
-    let Svd { u, sigma, vt } = svd(&reduced.r)?;
-    let tolerance = operator.tolerance(Tolerance::Auto);
-    let (rank, cutoff) = cut(
-        sigma.as_slice(),
-        operator.rows(),
-        problem.c.ncols(),
-        tolerance,
-    )?;
-    if rank == 0 {
-        return Err(RecoveryError::RankZero {
-            side: "model C, D as a whole",
-        });
-    }
-    // Directions below one rounding of the strongest carry nothing: k rows Σ_k V_kᵀ stand for R.
-    let (rows, _) = cut(sigma.as_slice(), 1, 1, Tolerance::Relative(f64::EPSILON))?;
-    let mut strong = vt.rows(0, rows).into_owned();
-    for (mut row, &s) in strong.row_iter_mut().zip(sigma.iter()) {
-        row *= s;
-    }
-    let solved = box_least_squares(&strong, &(u.columns(0, rows).transpose() * &reduced.d))?;
-    let mut found = Recovered::plain(Method::Joint, problem, solved.solution, sigma, rank);
-    if rank < problem.c.ncols() {
-        (found.parameter, found.choice) = (Parameter::Rank(rank), Choice::Tolerance { cutoff });
-    }
-    found.weighting = operator.weighting;
-    found.solver = Some(Solver {
-        status: solved.status,
-        iterations: solved.iterations,
-        refinements: solved.refinements,
-        objective: solved.objective,
-        gap: solved.gap,
-    });
+    let reduced = Reduced::new(problem, options)?;
+    let bounds = match method {
+        Method::Nnls => Bounds::all(problem.c.ncols(), 0.0, f64::INFINITY),
+        _ => reduced.bounds(problem),
+    };
+    let solved = box_least_squares(&reduced.r, &reduced.d, &bounds)?;
+    let asked = match options.bands {
+        Some(confidence) => {
+            bands::profile_allowed(method, problem, options)?;
+            Some(bands::profile(
+                &reduced.r,
+                &reduced.d,
+                &bounds,
+                &solved.solution,
+                confidence,
+            )?)
+        }
+        None => None,
+    };
+    let mut found = reduced.finish(method, problem, options, solved.solution.clone())?;
+    found.solver = Some(report(&solved));
+    found.bands = asked;
     Ok(found)
 }
 
@@ -92,6 +79,26 @@ mod tests {
                 assert!(solver.gap <= 1e-9 * solver.objective, "{solver:?}");
                 assert!(found.reflectance.iter().all(|x| (0.0..=1.0).contains(x)));
             }
+        }
+    }
+
+    /// 0.967 and 0.947 were measured over 20 seeds; the standard deviation of one seed is about 0.04.
+    #[test]
+    fn a_board_of_two_checks_survives_a_tenth_of_noise() {
+        for half_width in [6.0, 3.0] {
+            let bench = Bench::new(half_width, 8, 16);
+            let board = bench.board(2);
+            let exact = bench.phi(&board);
+            let stderr = &exact * 0.1;
+            let mtf = |seed| {
+                let mut normal = normal_stream(seed);
+                let phi = exact.zip_map(&stderr, |x, s| x + s * normal());
+                let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+                let found = recover(Method::Joint, &problem, &Options::default()).unwrap();
+                modulation(&found.reflectance, &board)
+            };
+            let mean = (1000..1020).map(mtf).sum::<f64>() / 20.0;
+            assert!(mean >= 0.9, "{half_width}: {mean}");
         }
     }
 

@@ -7,16 +7,21 @@
 //!
 //! > Σ_ab (F\[a,b\] − Σ_j (Σ_c V_cᵀ)\[a,j\] (U_d Σ_d)\[j,b\] ρ_j)²,   F = U_cᵀ √W Φ √V V_d,
 //!
-//! so only rank(C̃)·rank(D̃) rows remain. Directions below the rounding of C̃ and D̃ are dropped.
+//! so only rank(C̃)·rank(D̃) rows remain. Directions below the rounding of C̃ and D̃ are dropped. Frame constants and a background are projected out of
+//! both sides first ([`super::nuisance`]); with glare patterns there is no such product, and the rows are stacked instead ([`super::stacked`]),
+//! each with its own weight.
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Weighting, weights};
+use super::Weighting;
+use super::nuisance::{Estimated, estimate, unit, without_left, without_right};
+use super::stacked::{Coupled, stack};
+use super::weights::{self, Weights};
 use crate::num::linalg::{
     LeastSquares, Route, Svd, Tolerance, Triangle, cut, least_squares, normal_triangle, svd,
     triangle,
 };
-use crate::recovery::{Problem, RecoveryError};
+use crate::recovery::{Options, Problem, RecoveryError, WeightRule};
 
 /// Elements whose Gram matrix (and its few copies) is still formed: 512 MiB each.
 const MOST_ELEMENTS: usize = 8192;
@@ -25,6 +30,9 @@ const MOST_ELEMENTS: usize = 8192;
 pub(super) struct Operator {
     form: Form,
     elements: usize,
+    weights: Weights,
+    /// Weighted and projected sides: C̃ and D̃.
+    sides: Option<(DMatrix<f64>, DMatrix<f64>)>,
     pub(super) weighting: Weighting,
 }
 
@@ -33,10 +41,20 @@ enum Form {
     Small { a: DMatrix<f64>, b: DVector<f64> },
     /// From the Gram matrix (C̃ᵀC̃) ∘ (D̃D̃ᵀ), where the product is beyond the budget.
     Normal(Triangle),
+    /// Row by row, each with its own weight.
+    Stacked {
+        triangle: Triangle,
+        coupled: Option<Coupled>,
+        rows: usize,
+    },
 }
 
-/// U_k, Σ_k V_kᵀ of a side, cut at its rounding.
-fn compress(side: &DMatrix<f64>, name: &'static str) -> Result<(Svd, usize), RecoveryError> {
+/// U_k, Σ_k V_kᵀ of a side, cut at its rounding; `before` is its norm before anything was projected out of it.
+fn compress(
+    side: &DMatrix<f64>,
+    before: f64,
+    name: &'static str,
+) -> Result<(Svd, usize), RecoveryError> {
     let decomposed = svd(side)?;
     let (rank, _) = cut(
         decomposed.sigma.as_slice(),
@@ -44,6 +62,16 @@ fn compress(side: &DMatrix<f64>, name: &'static str) -> Result<(Svd, usize), Rec
         side.ncols(),
         Tolerance::Auto,
     )?;
+    let rounding = side.nrows().max(side.ncols()) as f64 * f64::EPSILON * before;
+    let rank = match side.norm() < 0.999 * before {
+        true => decomposed
+            .sigma
+            .iter()
+            .take(rank)
+            .filter(|&&s| s > rounding)
+            .count(),
+        false => rank,
+    };
     if rank == 0 {
         Err(RecoveryError::RankZero { side: name })
     } else {
@@ -52,30 +80,63 @@ fn compress(side: &DMatrix<f64>, name: &'static str) -> Result<(Svd, usize), Rec
 }
 
 impl Operator {
-    /// Weighs and compresses; `budget` is the largest number of entries of the small Khatri–Rao product.
-    pub(super) fn new(problem: &Problem<'_>, budget: usize) -> Result<Self, RecoveryError> {
+    /// Weighs, eliminates what is not asked about, and compresses.
+    pub(super) fn new(problem: &Problem<'_>, options: &Options) -> Result<Self, RecoveryError> {
         if problem.c.ncols() > MOST_ELEMENTS {
             return Err(RecoveryError::TooManyElements {
                 elements: problem.c.ncols(),
                 most: MOST_ELEMENTS,
             });
         }
-        let weights = weights::fit(problem.stderr, problem.phi.nrows(), problem.phi.ncols());
+        let (pixels, spots) = problem.phi.shape();
+        let known = match options.weighting {
+            WeightRule::Noise => problem.noise(),
+            WeightRule::Unweighted => None,
+        };
+        let weights = weights::fit(known, pixels, spots);
+        if problem.nuisance.glare.is_some() {
+            let stacked = stack(problem, |p, l| weights.root(known, p, l))?;
+            return Ok(Operator {
+                form: Form::Stacked {
+                    triangle: stacked.triangle,
+                    coupled: stacked.coupled,
+                    rows: pixels * spots,
+                },
+                elements: problem.c.ncols(),
+                sides: None,
+                weighting: match known {
+                    Some(_) => Weighting::EntryByEntry,
+                    None => Weighting::Unweighted,
+                },
+                weights,
+            });
+        }
         let by_pixel = |m: &DMatrix<f64>| {
             DMatrix::from_fn(m.nrows(), m.ncols(), |p, j| weights.pixels[p] * m[(p, j)])
         };
         let by_spot = |m: &DMatrix<f64>| {
             DMatrix::from_fn(m.nrows(), m.ncols(), |j, l| m[(j, l)] * weights.spots[l])
         };
-        let (c, d, phi) = (
+        let (mut c, mut d, mut phi) = (
             by_pixel(problem.c),
             by_spot(problem.d),
             by_spot(&by_pixel(problem.phi)),
         );
-        let (camera, rc) = compress(&c, "camera side C")?;
-        let (laser, rd) = compress(&d, "laser side D")?;
+        let before = (c.norm(), d.norm());
+        if problem.nuisance.frame_constant {
+            let u = unit(&weights.pixels);
+            without_left(&mut c, &u);
+            without_left(&mut phi, &u);
+        }
+        if problem.nuisance.background {
+            let v = unit(&weights.spots);
+            without_right(&mut d, &v);
+            without_right(&mut phi, &v);
+        }
+        let (camera, rc) = compress(&c, before.0, "camera side C")?;
+        let (laser, rd) = compress(&d, before.1, "laser side D")?;
         let elements = c.ncols();
-        let form = if rc.saturating_mul(rd).saturating_mul(elements) <= budget {
+        let form = if rc.saturating_mul(rd).saturating_mul(elements) <= options.budget {
             let left = |a: usize, j: usize| camera.sigma[a] * camera.vt[(a, j)];
             let right = |j: usize, b: usize| laser.u[(j, b)] * laser.sigma[b];
             let a = DMatrix::from_fn(rc * rd, elements, |row, j| {
@@ -99,7 +160,69 @@ impl Operator {
             form,
             elements,
             weighting: weights.weighting,
+            weights,
+            sides: Some((c, d)),
         })
+    }
+
+    /// The nuisance terms that go with `seen` = s ρ.
+    pub(super) fn nuisances(
+        &self,
+        problem: &Problem<'_>,
+        options: &Options,
+        seen: &DVector<f64>,
+    ) -> Result<Estimated, RecoveryError> {
+        let left = problem.phi - problem.light(seen);
+        let known = match options.weighting {
+            WeightRule::Noise => problem.noise(),
+            WeightRule::Unweighted => None,
+        };
+        match &self.form {
+            Form::Stacked { coupled, .. } => estimate(
+                &problem.nuisance,
+                &left,
+                |p, l| self.weights.root(known, p, l),
+                coupled.as_ref().map(|c| (c, seen)),
+            ),
+            _ => {
+                let root = |p: usize, l: usize| self.weights.pixels[p] * self.weights.spots[l];
+                estimate(&problem.nuisance, &left, root, None)
+            }
+        }
+    }
+
+    /// Covariance of the solution as the standard errors make it, whether or not the weights are theirs:
+    ///
+    /// > (KᵀWK)⁺ KᵀW Σ W K (KᵀWK)⁺ = Σ_kk' v_k (1/s_k) (Σ_pl u_k\[p,l\] u_k'\[p,l\] w_p v_l σ²\[p,l\]) (1/s_k') v_k'ᵀ,
+    ///
+    /// u_k = √W K v_k/s_k the left singular vectors as pixels × spots. Where the weights are the entries' own it is (KᵀWK)⁺; none without a noise model,
+    /// and none for unweighted rows with glare patterns.
+    pub(super) fn covariance(
+        &self,
+        problem: &Problem<'_>,
+        solved: &LeastSquares,
+    ) -> Option<DMatrix<f64>> {
+        let stderr = problem.noise()?;
+        let Some((c, d)) = &self.sides else {
+            return (self.weighting == Weighting::EntryByEntry).then(|| solved.covariance());
+        };
+        let mut towards = solved.vt.transpose();
+        for (mut column, &s) in towards.column_iter_mut().zip(solved.sigma.iter()) {
+            column /= s;
+        }
+        let mut middle = DMatrix::zeros(solved.rank, solved.rank);
+        for l in 0..d.ncols() {
+            let mut lit = towards.clone();
+            for (mut row, &x) in lit.row_iter_mut().zip(d.column(l).iter()) {
+                row *= x;
+            }
+            let mut block = c * lit;
+            for (p, mut row) in block.row_iter_mut().enumerate() {
+                row *= self.weights.pixels[p] * self.weights.spots[l] * stderr[(p, l)];
+            }
+            middle += block.transpose() * block;
+        }
+        Some(&towards * middle * towards.transpose())
     }
 
     /// Rows of the matrix that is decomposed, by which an automatic rank cut is scaled.
@@ -107,6 +230,7 @@ impl Operator {
         match &self.form {
             Form::Small { a, .. } => a.nrows(),
             Form::Normal(_) => self.elements,
+            Form::Stacked { rows, .. } => *rows,
         }
     }
 
@@ -126,6 +250,7 @@ impl Operator {
         let solved = match &self.form {
             Form::Small { a, b } => least_squares(a, b, tolerance)?,
             Form::Normal(reduced) => reduced.solve(self.elements, tolerance, Route::Normal)?,
+            Form::Stacked { triangle, rows, .. } => triangle.solve(*rows, tolerance, Route::Qr)?,
         };
         if solved.rank == 0 {
             return Err(RecoveryError::RankZero {
@@ -140,65 +265,10 @@ impl Operator {
         Ok(match &self.form {
             Form::Small { a, b } => triangle(a, b)?,
             Form::Normal(reduced) => reduced.clone(),
+            Form::Stacked { triangle, .. } => triangle.clone(),
         })
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::recovery::bench::{Bench, normal_stream};
-
-    /// The objective of the compressed problem and of the full sum differ by a constant: compare differences from ρ = 0.
-    #[test]
-    fn the_compressed_objective_is_the_full_one() {
-        let bench = Bench::new(3.0, 3, 3);
-        let mut normal = normal_stream(5);
-        let phi = bench
-            .phi(&bench.board(3))
-            .map(|x| x * (1.0 + 0.3 * normal()));
-        let stderr = DMatrix::from_fn(9, 120, |p, l| {
-            1e-13 * (1.0 + p as f64) * (1.0 + (l % 5) as f64)
-        });
-        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
-        let full = |rho: &DVector<f64>| {
-            (phi.clone() - bench.phi(rho))
-                .component_div(&stderr)
-                .norm_squared()
-        };
-        for budget in [usize::MAX, 0] {
-            let reduced = Operator::new(&problem, budget).unwrap().reduced().unwrap();
-            let small = |rho: &DVector<f64>| (&reduced.r * rho - &reduced.d).norm_squared();
-            let zero = DVector::zeros(9);
-            for _ in 0..4 {
-                let rho = DVector::from_fn(9, |_, _| normal());
-                let (full, small) = (full(&rho) - full(&zero), small(&rho) - small(&zero));
-                assert!((full / small - 1.0).abs() < 1e-9, "{full} {small}");
-            }
-        }
-    }
-
-    #[test]
-    fn both_routes_solve_a_well_conditioned_problem_alike() {
-        let bench = Bench::new(6.0, 2, 4);
-        let mut normal = normal_stream(6);
-        let phi = bench
-            .phi(&bench.board(2))
-            .map(|x| x * (1.0 + 0.1 * normal()));
-        let problem = Problem::new(&phi, &bench.c, &bench.d, None).unwrap();
-        let small = Operator::new(&problem, usize::MAX)
-            .unwrap()
-            .solve(Tolerance::Auto)
-            .unwrap();
-        let normal = Operator::new(&problem, 0)
-            .unwrap()
-            .solve(Tolerance::Auto)
-            .unwrap();
-        assert_eq!((small.route, normal.route), (Route::Qr, Route::Normal));
-        let condition = small.sigma[0] / small.sigma[3];
-        assert!(
-            (small.solution - normal.solution).norm()
-                < 100.0 * f64::EPSILON * condition * condition
-        );
-    }
-}
+mod tests;

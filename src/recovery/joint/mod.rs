@@ -1,8 +1,17 @@
 //! Methods over all pixels and spots at once.
 
 pub(super) mod bounded;
+mod branch;
+mod cramer_rao;
 mod khatri_rao;
+mod nuisance;
+mod reduced;
+mod stacked;
+pub(super) mod total_variation;
+pub(super) mod two_valued;
 pub(super) mod unbounded;
 mod weights;
 
+pub use cramer_rao::{CramerRao, cramer_rao};
+pub use nuisance::{Estimated, Nuisance};
 pub use weights::Weighting;

@@ -1,9 +1,15 @@
 //! Least squares over all pixels and spots at once.
 //!
 //! ρ̂ = argmin Σ w_p v_l (Φ − C diag(ρ) D)², of minimum norm where that is not unique. Unbiased wherever the model has full rank; its
-//! covariance under the noise model is (KᵀWK)⁻¹, K the Khatri–Rao product.
+//! covariance under the noise model Σ is (KᵀWK)⁻¹ KᵀWΣWK (KᵀWK)⁻¹, K the Khatri–Rao product, and (KᵀWK)⁻¹ where W = Σ⁻¹.
+//!
+//! With a free scale ρ̂ = x̂/x̂_m, m the brightest element; its covariance is then that of first order in the noise, (1 − ρ̂ e_mᵀ) Cov(x̂) (1 − e_m ρ̂ᵀ)/x̂_m²,
+//! and element m, the unit, has none.
+
+use nalgebra::DMatrix;
 
 use super::khatri_rao::Operator;
+use super::reduced::finish;
 use crate::num::linalg::Tolerance;
 use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
 
@@ -11,17 +17,28 @@ pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
-    let operator = Operator::new(problem, options.budget)?;
+    let operator = Operator::new(problem, options)?;
     let solved = operator.solve(options.tolerance)?;
     let elements = problem.c.ncols();
-    let covariance = problem.noise().map(|_| solved.covariance());
-    let mut found = Recovered::plain(
+    let mut covariance = operator.covariance(problem, &solved);
+    if let (true, Some(of_x)) = (problem.nuisance.free_scale, covariance.as_mut()) {
+        let (m, largest) = solved.solution.argmax();
+        let mut slope = DMatrix::identity(elements, elements);
+        slope
+            .column_mut(m)
+            .axpy(-1.0 / largest, &solved.solution, 1.0);
+        *of_x = &slope * &*of_x * slope.transpose() / (largest * largest);
+    }
+    let resolution = solved.vt.tr_mul(&solved.vt);
+    let mut found = finish(
         Method::JointUnbounded,
         problem,
+        options,
+        &operator,
         solved.solution,
         solved.sigma,
         solved.rank,
-    );
+    )?;
     (found.parameter, found.choice) = match options.tolerance {
         Tolerance::Rank(rank) => (Parameter::Rank(rank), Choice::Given),
         _ if solved.rank < elements => (
@@ -32,9 +49,11 @@ pub(in crate::recovery) fn recover(
         ),
         _ => (Parameter::None, Choice::None),
     };
-    found.weighting = operator.weighting;
-    found.standard_error = covariance.as_ref().map(|c| c.diagonal().map(f64::sqrt));
+    found.standard_error = covariance
+        .as_ref()
+        .map(|c| c.diagonal().map(|x| x.max(0.0).sqrt()));
     found.covariance = covariance;
+    found.resolution = Some(resolution);
     Ok(found)
 }
 

@@ -9,9 +9,11 @@ pub enum Weighting {
     Unweighted,
     /// By w_p v_l, fitted to 1/σ².
     Separable {
-        /// Root mean square of ln σ\[p,l\] about the fit: 0 where σ² is separable, and then the weights are exact and the covariance is too.
+        /// Root mean square of ln σ\[p,l\] about the fit: 0 where σ² is separable, and then no weights are more efficient.
         misfit: f64,
     },
+    /// By 1/σ²\[p,l\] itself; where σ is zero, by the separable fit.
+    EntryByEntry,
 }
 
 /// √w_p and √v_l with w_p v_l ≈ 1/σ²\[p,l\].
@@ -20,6 +22,16 @@ pub(super) struct Weights {
     pub(super) pixels: Vec<f64>,
     pub(super) spots: Vec<f64>,
     pub(super) weighting: Weighting,
+}
+
+impl Weights {
+    /// 1/σ\[p,l\], where σ is known and not zero; else the separable fit.
+    pub(super) fn root(&self, stderr: Option<&DMatrix<f64>>, p: usize, l: usize) -> f64 {
+        match stderr.map(|s| s[(p, l)]) {
+            Some(s) if s > 0.0 => 1.0 / s,
+            _ => self.pixels[p] * self.spots[l],
+        }
+    }
 }
 
 /// The rank-one fit of 1/σ² in the logarithm,

@@ -1,15 +1,26 @@
-//! What `pinv`, `tsvd` and `tikhonov` share: a generalised inverse D^# of the laser side, pixel by pixel.
+//! What the linear methods share: a generalised inverse D^# (l × r) of the laser side, pixel by pixel.
 //!
 //! > X = Φ D^#  (p × r),   ρ_j = (1/p) Σ_p X\[p,j\]/C\[p,j\]
 
+mod damping;
+pub(super) mod gradient;
+mod laplacian;
+pub(super) mod one_sided;
 pub(super) mod pinv;
+pub(super) mod rdivide;
+mod spectrum;
 pub(super) mod tikhonov;
 pub(super) mod tsvd;
+mod uncertainty;
+
+pub(super) use spectrum::Spectrum;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::num::linalg::{Svd, svd};
-use crate::recovery::{Method, Parameter, Problem, Recovered, RecoveryError};
+use crate::num::linalg::{LinalgError, Svd, svd};
+use crate::recovery::{
+    Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, Uncertainty,
+};
 
 /// The laser side decomposed, and the check that C can be divided by.
 fn decompose(method: Method, problem: &Problem<'_>) -> Result<Svd, RecoveryError> {
@@ -30,33 +41,89 @@ fn decompose(method: Method, problem: &Problem<'_>) -> Result<Svd, RecoveryError
     Ok(decomposed)
 }
 
-/// The recovery through D^# = V diag(f/σ) Uᵀ with filter factors f (as many as are kept, descending σ).
-fn invert(
-    method: Method,
-    problem: &Problem<'_>,
-    laser: &Svd,
-    filter: &[f64],
-    parameter: Parameter,
-) -> Recovered {
-    let rank = filter.len();
-    let mut v = laser.vt.rows(0, rank).transpose();
-    for ((mut column, &f), &s) in v.column_iter_mut().zip(filter).zip(laser.sigma.iter()) {
-        column.apply(|x| *x = *x / s * f);
+/// A generalised inverse of the laser side, applied.
+struct Inverse {
+    /// X = Φ D^#, p × r.
+    x: DMatrix<f64>,
+    /// D^#, l × r.
+    sharp: DMatrix<f64>,
+    /// D D^#, r × r, where the resolution is asked for.
+    product: Option<DMatrix<f64>>,
+    /// Singular values of what was inverted.
+    sigma: DVector<f64>,
+    /// Directions that were not dropped.
+    rank: usize,
+    /// tr D D^#.
+    effective_rank: f64,
+}
+
+impl Inverse {
+    /// Through filter factors on the first directions of a spectrum.
+    fn filtered(
+        problem: &Problem<'_>,
+        options: &Options,
+        spectrum: &Spectrum,
+        filter: &[f64],
+    ) -> Self {
+        let sharp = spectrum.inverse(filter);
+        Inverse {
+            x: problem.phi * &sharp,
+            sharp,
+            product: whole(options).then(|| spectrum.product(filter)),
+            sigma: DVector::from_column_slice(&spectrum.sigma),
+            rank: filter.len(),
+            effective_rank: filter.iter().sum(),
+        }
     }
-    let inverse = v * laser.u.columns(0, rank).transpose();
-    let pixels = problem.phi.nrows() as f64;
-    let x = problem.phi * &inverse;
-    let reflectance = mean_over_pixels(&x.component_div(problem.c), pixels);
-    let mut found = Recovered::plain(method, problem, reflectance, laser.sigma.clone(), rank);
-    found.parameter = parameter;
-    found.effective_rank = filter.iter().sum();
-    // Independent entries: var ρ_j = Σ_p Σ_l σ²[p,l] (D^#[l,j] / (p C[p,j]))².
-    found.standard_error = problem.noise().map(|stderr| {
-        let squares = |m: &DMatrix<f64>| m.component_mul(m);
-        let ratio = (squares(stderr) * squares(&inverse)).component_div(&squares(problem.c));
-        mean_over_pixels(&ratio, pixels * pixels).map(f64::sqrt)
-    });
-    found
+
+    /// From a solver of X D = B for any B (rows of l entries), which D^# answers for the unit matrix; of the given rank.
+    fn solved(
+        problem: &Problem<'_>,
+        options: &Options,
+        sigma: DVector<f64>,
+        rank: usize,
+        solve: impl Fn(&DMatrix<f64>) -> Result<DMatrix<f64>, LinalgError>,
+    ) -> Result<Self, RecoveryError> {
+        let spots = problem.d.ncols();
+        let sharp = solve(&DMatrix::identity(spots, spots))?;
+        Ok(Inverse {
+            x: solve(problem.phi)?,
+            product: whole(options).then(|| problem.d * &sharp),
+            sharp,
+            sigma,
+            rank,
+            effective_rank: rank as f64,
+        })
+    }
+
+    /// Divided by C and averaged over the pixels, with uncertainty and resolution.
+    fn recovered(
+        self,
+        method: Method,
+        problem: &Problem<'_>,
+        options: &Options,
+        (parameter, choice): (Parameter, Choice),
+    ) -> Result<Recovered, RecoveryError> {
+        let pixels = problem.phi.nrows() as f64;
+        let reflectance = mean_over_pixels(&self.x.component_div(problem.c), pixels);
+        let mut found = Recovered::plain(method, problem, reflectance, self.sigma, self.rank);
+        (found.parameter, found.choice) = (parameter, choice);
+        found.effective_rank = self.effective_rank;
+        found.resolution = self.product.map(|m| uncertainty::resolution(problem.c, &m));
+        if let Some(stderr) = problem.noise() {
+            let errors = uncertainty::standard_error(stderr, &self.sharp, problem.c);
+            found.standard_error = Some(errors);
+            if whole(options) {
+                found.covariance = Some(uncertainty::covariance(stderr, &self.sharp, problem.c)?);
+            }
+        }
+        Ok(found)
+    }
+}
+
+/// Whether matrices of elements × elements are asked for.
+fn whole(options: &Options) -> bool {
+    options.uncertainty == Uncertainty::Full
 }
 
 fn mean_over_pixels(x: &DMatrix<f64>, divisor: f64) -> DVector<f64> {

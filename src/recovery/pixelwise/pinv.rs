@@ -1,7 +1,7 @@
 //! The published method: Φ D⁺ ÷ C, mean over pixels.
 
-use super::{decompose, invert};
-use crate::num::linalg::cut;
+use super::{Inverse, Spectrum, decompose};
+use crate::num::linalg::{Tolerance, cut};
 use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
 
 pub(in crate::recovery) fn recover(
@@ -9,24 +9,20 @@ pub(in crate::recovery) fn recover(
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
     let laser = decompose(Method::Pinv, problem)?;
-    let (rank, cutoff) = cut(
-        laser.sigma.as_slice(),
-        problem.d.nrows(),
-        problem.d.ncols(),
-        options.tolerance,
-    )?;
-    let mut found = invert(
-        Method::Pinv,
-        problem,
-        &laser,
-        &vec![1.0; rank],
-        Parameter::Rank(rank),
-    );
-    found.choice = match options.tolerance {
-        crate::num::linalg::Tolerance::Rank(_) => Choice::Given,
+    let (rows, columns) = problem.d.shape();
+    let (rank, cutoff) = cut(laser.sigma.as_slice(), rows, columns, options.tolerance)?;
+    let choice = match options.tolerance {
+        Tolerance::Rank(_) => Choice::Given,
         _ => Choice::Tolerance { cutoff },
     };
-    Ok(found)
+    let spectrum = Spectrum::of(&laser, rank);
+    let inverse = Inverse::filtered(problem, options, &spectrum, &vec![1.0; rank]);
+    inverse.recovered(
+        Method::Pinv,
+        problem,
+        options,
+        (Parameter::Rank(rank), choice),
+    )
 }
 
 #[cfg(test)]

@@ -1,12 +1,8 @@
 //! The published reduction with D's small singular values damped: D^# = V diag(σ/(σ² + λ²)) Uᵀ.
 
-use super::{decompose, invert};
+use super::{Inverse, Spectrum, damping, decompose};
 use crate::num::linalg::{Tolerance, cut};
-use crate::recovery::rule::discrepancy::{Discrepancy, damped};
-use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
-
-/// Trial values of λ/σ₁ fall from 1e3 by this factor until one is accepted; bisection finds the rest.
-const STEP: f64 = 0.5;
+use crate::recovery::{Method, Options, Parameter, Problem, Recovered, RecoveryError};
 
 pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
@@ -14,61 +10,18 @@ pub(in crate::recovery) fn recover(
 ) -> Result<Recovered, RecoveryError> {
     let method = Method::Tikhonov;
     let laser = decompose(method, problem)?;
-    let (rank, cutoff) = cut(
-        laser.sigma.as_slice(),
-        problem.d.nrows(),
-        problem.d.ncols(),
-        Tolerance::Auto,
-    )?;
-    let sigma = &laser.sigma.as_slice()[..rank];
-    let first = sigma[0];
-    let (damping, choice) = match options.damping {
-        Some(value) if value.is_finite() && value >= 0.0 => (value, Choice::Given),
-        Some(value) => {
-            let cure = "give a fraction of the largest singular value, 0 or more";
-            return Err(RecoveryError::BadParameter {
-                method,
-                name: "damping",
-                value,
-                cure,
-            });
-        }
-        None => {
-            let rule = Discrepancy::new(method, "damping", problem, &laser, rank)?;
-            let level = |damping: f64| rule.level(&damped(sigma, damping * first));
-            let (mut high, mut low) = (1e3, 1e3);
-            while !level(low).accepted() {
-                high = low;
-                low *= STEP;
-                // Below the rank cut damping does nothing any more.
-                if low * first < 1e-3 * cutoff {
-                    return Err(rule.understated(level(0.0)));
-                }
-            }
-            while high / low > 1.0 + 1e-12 {
-                let middle = (high * low).sqrt();
-                if middle <= low || middle >= high {
-                    break;
-                }
-                if level(middle).accepted() {
-                    low = middle;
-                } else {
-                    high = middle;
-                }
-            }
-            (low, level(low).choice())
-        }
-    };
-    let filter = damped(sigma, damping * first);
-    let mut found = invert(
+    let (rows, columns) = problem.d.shape();
+    let (rank, _) = cut(laser.sigma.as_slice(), rows, columns, Tolerance::Auto)?;
+    let spectrum = Spectrum::of(&laser, rank);
+    let (damping, choice) = damping::choose(method, problem, options, &spectrum)?;
+    let filter = spectrum.damped(damping * spectrum.sigma[0]);
+    let inverse = Inverse::filtered(problem, options, &spectrum, &filter);
+    inverse.recovered(
         method,
         problem,
-        &laser,
-        &filter,
-        Parameter::Damping(damping),
-    );
-    found.choice = choice;
-    Ok(found)
+        options,
+        (Parameter::Damping(damping), choice),
+    )
 }
 
 #[cfg(test)]
@@ -76,17 +29,15 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::recovery::bench::{Bench, normal_stream};
-    use crate::recovery::recover;
+    use crate::recovery::bench::{Bench, relative_noise};
+    use crate::recovery::{Choice, recover};
 
     #[test]
     fn the_chosen_damping_leaves_exactly_the_limit() {
         let bench = Bench::new(3.0, 8, 16);
         let exact = bench.phi(&bench.board(2));
         for (seed, noise) in [(1, 1e-2), (2, 1e-4), (3, 1e-6)] {
-            let mut normal = normal_stream(seed);
-            let stderr = &exact * noise;
-            let phi = exact.zip_map(&stderr, |x, s| x + s * normal());
+            let (phi, stderr) = relative_noise(&exact, noise, seed);
             let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
             let found = recover(Method::Tikhonov, &problem, &Options::default()).unwrap();
             let Choice::Discrepancy {
@@ -109,10 +60,7 @@ mod tests {
     fn it_solves_the_damped_normal_equations() {
         // X (D Dᵀ + λ² 1) = Φ Dᵀ, the definition of Tikhonov's estimate.
         let bench = Bench::new(6.0, 2, 3);
-        let mut normal = normal_stream(2);
-        let phi = bench
-            .phi(&bench.board(2))
-            .map(|x| x * (1.0 + 0.1 * normal()));
+        let (phi, _) = relative_noise(&bench.phi(&bench.board(2)), 0.1, 2);
         let options = Options {
             damping: Some(0.02),
             ..Options::default()

@@ -1,47 +1,66 @@
 //! The published reduction with D's small singular values left out.
 
-use super::{decompose, invert};
+use super::{Inverse, Spectrum, decompose};
 use crate::num::linalg::{Tolerance, cut};
-use crate::recovery::rule::discrepancy::{Discrepancy, truncated};
+use crate::recovery::rule::discrepancy::Discrepancy;
+use crate::recovery::rule::{Data, Rule};
 use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
+
+const METHOD: Method = Method::Tsvd;
 
 pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
-    let method = Method::Tsvd;
-    let laser = decompose(method, problem)?;
-    let (shape, sigma) = (problem.d.shape(), laser.sigma.as_slice());
-    let (rank, choice) = match options.rank {
-        Some(rank) => (
-            cut(sigma, shape.0, shape.1, Tolerance::Rank(rank))?.0,
-            Choice::Given,
-        ),
+    let laser = decompose(METHOD, problem)?;
+    let (rows, columns) = problem.d.shape();
+    let most = |tolerance| cut(laser.sigma.as_slice(), rows, columns, tolerance);
+    let (spectrum, rank, choice) = match options.rank {
+        Some(rank) => {
+            let (rank, _) = most(Tolerance::Rank(rank))?;
+            (Spectrum::of(&laser, rank), rank, Choice::Given)
+        }
         None => {
-            let (most, _) = cut(sigma, shape.0, shape.1, Tolerance::Auto)?;
-            let rule = Discrepancy::new(method, "rank", problem, &laser, most)?;
-            let level = |kept| rule.level(&truncated(kept, most));
-            let kept = (1..=most)
-                .find(|&kept| level(kept).accepted())
-                .ok_or_else(|| rule.understated(level(most)))?;
-            (kept, level(kept).choice())
+            let spectrum = Spectrum::of(&laser, most(Tolerance::Auto)?.0);
+            let (rank, choice) = choose(problem, options.rule, &spectrum)?;
+            (spectrum, rank, choice)
         }
     };
-    let mut found = invert(
-        method,
-        problem,
-        &laser,
-        &vec![1.0; rank],
-        Parameter::Rank(rank),
-    );
-    found.choice = choice;
-    Ok(found)
+    let inverse = Inverse::filtered(problem, options, &spectrum, &vec![1.0; rank]);
+    inverse.recovered(METHOD, problem, options, (Parameter::Rank(rank), choice))
+}
+
+/// How many directions the rule keeps, and why.
+fn choose(
+    problem: &Problem<'_>,
+    rule: Rule,
+    spectrum: &Spectrum,
+) -> Result<(usize, Choice), RecoveryError> {
+    let undecided = RecoveryError::Undecided {
+        method: METHOD,
+        rule,
+        parameter: "rank",
+    };
+    match rule {
+        Rule::Discrepancy => {
+            let rule = Discrepancy::new(METHOD, "rank", problem, spectrum)?;
+            let level = |kept| rule.level(&spectrum.truncated(kept));
+            let kept = (1..=spectrum.len())
+                .find(|&kept| level(kept).accepted())
+                .ok_or_else(|| rule.understated(level(spectrum.len())))?;
+            Ok((kept, level(kept).choice()))
+        }
+        Rule::Gcv => Data::new(problem, spectrum).kept_by_gcv().ok_or(undecided),
+        Rule::LCurve => Data::new(problem, spectrum)
+            .kept_by_l_curve()
+            .ok_or(undecided),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recovery::bench::{Bench, normal_stream};
+    use crate::recovery::bench::{Bench, relative_noise};
     use crate::recovery::recover;
 
     #[test]
@@ -49,9 +68,7 @@ mod tests {
         let bench = Bench::new(3.0, 8, 16);
         let exact = bench.phi(&bench.board(2));
         for (seed, noise) in [(1, 1e-2), (2, 1e-4), (3, 1e-6)] {
-            let mut normal = normal_stream(seed);
-            let stderr = &exact * noise;
-            let phi = exact.zip_map(&stderr, |x, s| x + s * normal());
+            let (phi, stderr) = relative_noise(&exact, noise, seed);
             let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
             let found = recover(Method::Tsvd, &problem, &Options::default()).unwrap();
             let Choice::Discrepancy {
@@ -90,9 +107,7 @@ mod tests {
         let ranks: Vec<usize> = [1e-1, 1e-3, 1e-5, 1e-7]
             .into_iter()
             .map(|noise| {
-                let mut normal = normal_stream(4);
-                let stderr = &exact * noise;
-                let phi = exact.zip_map(&stderr, |x, s| x + s * normal());
+                let (phi, stderr) = relative_noise(&exact, noise, 4);
                 recover(
                     Method::Tsvd,
                     &Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap(),
@@ -127,14 +142,13 @@ mod tests {
         );
         assert!(matches!(
             try_with(&exact, Some(&(&exact * 0.0)), Options::default()),
-            RecoveryError::NoNoiseModel { .. }
+            RecoveryError::NoNoise { .. }
         ));
         assert!(matches!(
             try_with(&exact, Some(&(&exact * 10.0)), Options::default()),
             RecoveryError::NoSignal { .. }
         ));
-        let mut normal = normal_stream(8);
-        let noisy = exact.map(|x| x * (1.0 + 1e-2 * normal()));
+        let (noisy, _) = relative_noise(&exact, 1e-2, 8);
         assert!(matches!(
             try_with(&noisy, Some(&(&exact * 1e-3)), Options::default()),
             RecoveryError::NoiseUnderstated { .. }

@@ -12,15 +12,14 @@
 //!
 //! and the strongest regularisation that satisfies it is taken.
 
-use crate::num::linalg::Svd;
+use super::Data;
+use crate::recovery::pixelwise::Spectrum;
 use crate::recovery::{Choice, Method, Problem, RecoveryError};
 
 /// Everything of Φ and its noise that the residual depends on.
-pub(in crate::recovery) struct Discrepancy {
+pub(in crate::recovery) struct Discrepancy<'s> {
     parameter: &'static str,
-    /// ‖Φ v_i‖², and what lies outside all v_i.
-    along: Vec<f64>,
-    outside: f64,
+    data: Data<'s>,
     /// Σ σ² and Σ σ⁴ in all, and along each v_i: Σ_l (Σ_p σ²) v_il².
     variance: f64,
     variance_along: Vec<f64>,
@@ -50,21 +49,19 @@ impl Level {
     }
 }
 
-impl Discrepancy {
-    /// For filters on the first `rank` singular directions. Errors name `parameter` as what could be given instead.
+impl<'s> Discrepancy<'s> {
+    /// For filters on the directions of `spectrum`. Errors name `parameter` as what could be given instead.
     pub(in crate::recovery) fn new(
         method: Method,
         parameter: &'static str,
         problem: &Problem<'_>,
-        laser: &Svd,
-        rank: usize,
+        spectrum: &'s Spectrum,
     ) -> Result<Self, RecoveryError> {
-        let stderr = problem
-            .noise()
-            .ok_or(RecoveryError::NoNoiseModel { method, parameter })?;
-        let vt = laser.vt.rows(0, rank);
-        let coordinates = problem.phi * vt.transpose();
-        let outside = (problem.phi - &coordinates * vt).norm_squared();
+        let stderr = match (problem.noise(), problem.stderr) {
+            (Some(stderr), _) => stderr,
+            (None, Some(_)) => return Err(RecoveryError::NoNoise { method, parameter }),
+            (None, None) => return Err(RecoveryError::NoNoiseModel { method, parameter }),
+        };
         let powers = |exponent: i32| -> Vec<f64> {
             stderr
                 .column_iter()
@@ -72,24 +69,22 @@ impl Discrepancy {
                 .collect()
         };
         let project = |per_spot: &[f64]| -> Vec<f64> {
-            vt.row_iter()
+            spectrum
+                .data
+                .row_iter()
                 .map(|v| v.iter().zip(per_spot).map(|(v, s)| v * v * s).sum())
                 .collect()
         };
         let (second, fourth) = (powers(2), powers(4));
         let all = Discrepancy {
             parameter,
-            along: coordinates
-                .column_iter()
-                .map(|c| c.norm_squared())
-                .collect(),
-            outside,
+            data: Data::new(problem, spectrum),
             variance: second.iter().sum(),
             variance_along: project(&second),
             fourth: fourth.iter().sum(),
             fourth_along: project(&fourth),
         };
-        let none = all.level(&vec![0.0; rank]);
+        let none = all.level(&vec![0.0; spectrum.len()]);
         if none.accepted() {
             return Err(RecoveryError::NoSignal {
                 signal: none.residual.sqrt(),
@@ -105,16 +100,10 @@ impl Discrepancy {
         let left = |whole: f64, along: &[f64]| {
             (whole - along.iter().zip(filter).map(|(x, f)| x * f).sum::<f64>()).max(0.0)
         };
-        let missed: f64 = self
-            .along
-            .iter()
-            .zip(filter)
-            .map(|(z, f)| z * (1.0 - f) * (1.0 - f))
-            .sum();
         let target = left(self.variance, &self.variance_along);
         let limit = target + 2.0 * (2.0 * left(self.fourth, &self.fourth_along)).sqrt();
         Level {
-            residual: self.outside + missed,
+            residual: self.data.residual(filter),
             target,
             limit,
         }
@@ -130,19 +119,6 @@ impl Discrepancy {
     }
 }
 
-/// Filter factors σ²/(σ² + λ²).
-pub(in crate::recovery) fn damped(sigma: &[f64], lambda: f64) -> Vec<f64> {
-    sigma
-        .iter()
-        .map(|s| 1.0 / (1.0 + (lambda / s) * (lambda / s)))
-        .collect()
-}
-
-/// Filter factors of a truncation after `kept` of `rank`.
-pub(in crate::recovery) fn truncated(kept: usize, rank: usize) -> Vec<f64> {
-    (0..rank).map(|i| f64::from(u8::from(i < kept))).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use nalgebra::DMatrix;
@@ -156,6 +132,7 @@ mod tests {
     fn target_and_limit_describe_pure_noise() {
         let bench = Bench::new(3.0, 4, 4);
         let laser = svd(&bench.d).unwrap();
+        let spectrum = Spectrum::of(&laser, 16);
         let stderr = DMatrix::from_fn(16, 120, |p, l| 1.0 + (p % 3) as f64 + (l % 4) as f64);
         let mut normal = normal_stream(21);
         let (trials, kept) = (400, 6);
@@ -166,8 +143,8 @@ mod tests {
             // A huge planted signal along v_1 keeps "no signal" away and is removed by P exactly.
             let phi = &noise + DMatrix::from_element(16, 1, 1e6) * laser.vt.rows(0, 1);
             let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
-            let all = Discrepancy::new(Method::Tsvd, "rank", &problem, &laser, 16).unwrap();
-            let level = all.level(&truncated(kept, 16));
+            let all = Discrepancy::new(Method::Tsvd, "rank", &problem, &spectrum).unwrap();
+            let level = all.level(&spectrum.truncated(kept));
             target = level.target;
             sum += level.residual;
             squares += level.residual * level.residual;

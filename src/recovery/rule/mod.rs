@@ -1,3 +1,87 @@
 //! Rules that choose a regularisation parameter from the data and what is known of their noise.
 
 pub(super) mod discrepancy;
+pub(super) mod gcv;
+pub(super) mod l_curve;
+mod search;
+
+use std::fmt;
+
+use super::Problem;
+use super::pixelwise::Spectrum;
+
+/// How the parameter of `tsvd`, `tikhonov` and `tikhonov-gradient` is chosen where it is not given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Rule {
+    /// Morozov's discrepancy principle: the strongest regularisation whose residual the noise explains. Needs the standard errors of Φ.
+    #[default]
+    Discrepancy,
+    /// Generalised cross-validation: the regularisation that best predicts entries left out. Needs no noise model; takes the errors as equal
+    /// and independent.
+    Gcv,
+    /// The corner of the L-curve, log ‖solution‖ over log ‖residual‖. Needs no noise model.
+    LCurve,
+}
+
+impl Rule {
+    /// Every rule.
+    pub const ALL: [Rule; 3] = [Rule::Discrepancy, Rule::Gcv, Rule::LCurve];
+
+    /// The name by which it is asked for.
+    pub fn name(self) -> &'static str {
+        match self {
+            Rule::Discrepancy => "discrepancy",
+            Rule::Gcv => "gcv",
+            Rule::LCurve => "l-curve",
+        }
+    }
+}
+
+impl fmt::Display for Rule {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// Φ in the directions of a spectrum: all that residual and solution depend on.
+pub(in crate::recovery) struct Data<'s> {
+    spectrum: &'s Spectrum,
+    /// ‖Φ v_i‖², and what lies outside all v_i.
+    along: Vec<f64>,
+    outside: f64,
+    /// Rows and columns of Φ.
+    pixels: f64,
+    spots: f64,
+}
+
+impl<'s> Data<'s> {
+    pub(in crate::recovery) fn new(problem: &Problem<'_>, spectrum: &'s Spectrum) -> Self {
+        let coordinates = problem.phi * spectrum.data.transpose();
+        Data {
+            spectrum,
+            outside: (problem.phi - &coordinates * &spectrum.data).norm_squared(),
+            along: coordinates
+                .column_iter()
+                .map(|c| c.norm_squared())
+                .collect(),
+            pixels: problem.phi.nrows() as f64,
+            spots: problem.phi.ncols() as f64,
+        }
+    }
+
+    /// ‖Φ P − Φ‖² for filter factors f_i on all directions, P = Σ f_i v_i v_iᵀ.
+    fn residual(&self, filter: &[f64]) -> f64 {
+        let missed = self.along.iter().zip(filter);
+        self.outside + missed.map(|(z, f)| z * (1.0 - f) * (1.0 - f)).sum::<f64>()
+    }
+
+    /// Square of what is penalised: ‖X‖², or ‖X diag(c̄)⁻¹ Lᵀ‖² of `tikhonov-gradient`; Σ (f_i/σ_i)² ‖Φ v_i‖² over the directions that are filtered.
+    fn penalty(&self, filter: &[f64]) -> f64 {
+        let free = self.spectrum.free;
+        let directions = self.along[free..].iter().zip(&filter[free..]);
+        directions
+            .zip(self.spectrum.filtered())
+            .map(|((z, f), s)| z * (f / s) * (f / s))
+            .sum()
+    }
+}

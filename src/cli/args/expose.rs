@@ -1,0 +1,57 @@
+//! Arguments of `phicam expose`.
+
+use std::path::PathBuf;
+
+use clap::Args as Arguments;
+
+#[derive(Debug, Arguments)]
+pub(in crate::cli) struct ExposeArgs {
+    /// Folder of a finished run
+    #[arg(required_unless_present = "list")]
+    pub dir: Option<PathBuf>,
+    /// Folder to write to; DIR/exposed unless given
+    #[arg(long, short)]
+    pub output: Option<PathBuf>,
+    /// Built-in sensor in place of the scene's figures: ideal, ccd, dslr, machine-vision
+    #[arg(long, value_name = "NAME")]
+    pub sensor: Option<String>,
+    /// Exposure time of a frame, s
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub exposure: Option<f64>,
+    /// Frames averaged
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub frames: Option<u32>,
+    /// Frames without laser, averaged and subtracted
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub dark_frames: Option<u32>,
+    /// Exposure times of a series, separated by commas, s
+    #[arg(
+        long,
+        value_name = "S,…",
+        value_delimiter = ',',
+        conflicts_with = "exposure",
+        allow_negative_numbers = true
+    )]
+    pub brackets: Vec<f64>,
+    /// Multiply each finished entry by 1 + NOISE·N(0, 1)
+    #[arg(long, value_name = "NOISE", allow_negative_numbers = true)]
+    pub noise: Option<f64>,
+    /// Part of the spot's light entering the lens that is scattered, evenly unless the scene says otherwise
+    #[arg(long, value_name = "FRACTION", allow_negative_numbers = true)]
+    pub glare: Option<f64>,
+    /// Ambient light, W into each pixel
+    #[arg(long, value_name = "W", allow_negative_numbers = true)]
+    pub ambient: Option<f64>,
+    /// Seed: the same seed gives the same bytes
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
+    pub seed: u64,
+    /// Refuse photographs with saturated or cut-off entries
+    #[arg(long)]
+    pub strict: bool,
+    /// Print exposure.json instead of the table
+    #[arg(long)]
+    pub json: bool,
+    /// List the built-in sensors, and do nothing else
+    #[arg(long)]
+    pub list: bool,
+}

@@ -1,0 +1,295 @@
+//! `phicam expose`: what a camera makes of the clean flux of a finished run.
+//!
+//! | file | content |
+//! | --- | --- |
+//! | phi.npy, phi.stderr.npy | linearised flux and its standard deviation, pixels × spots, W |
+//! | saturated.npy | 1 where an entry is saturated in every exposure, −1 where the converter cut it off below, else 0 |
+//! | counts/spot-NNNN.exr, .png | mean counts, a channel for each exposure time; the longest as 16-bit grey |
+//! | exposure.json | sensor, exposure, what came of it |
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::Outcome;
+use super::args::ExposeArgs;
+use super::failure::Failure;
+use super::finished::{read_matrix, read_run};
+use super::folder::{self, PHI, STDERR};
+use super::output::{self, Talk};
+use super::record::{Record, version};
+use super::stale::remove_exposed;
+use crate::film::{self, Channel, Frame, frame_name};
+use crate::matrix::{Matrix, npy};
+use crate::report;
+use crate::scene::{Glare, Quantity, Scene, SensorModel, SensorSettings, Spread};
+use crate::sensor::{
+    Exposed, Exposure, Figures, Light, Range, Sensor, Summary, builtin_summary, glare,
+    glare_to_signal,
+};
+use crate::store::{StoreError, ensure_writable, write_whole};
+
+pub(super) const FOLDER: &str = "exposed";
+pub(super) const EXPOSURE: &str = "exposure.json";
+pub(super) const SATURATED: &str = "saturated.npy";
+pub(super) const COUNTS: &str = "counts";
+
+/// exposure.json.
+#[derive(Debug, Serialize)]
+struct Account {
+    version: String,
+    scene: String,
+    scene_hash: String,
+    seed: u64,
+    sensor: Figures,
+    wavelength: f64,
+    /// s, the longest first.
+    times: Vec<f64>,
+    frames: u32,
+    dark_frames: u32,
+    /// W into each pixel.
+    ambient: f64,
+    glare_fraction: f64,
+    /// Sum of the glare over that of the signal.
+    glare_to_signal: f64,
+    result: Summary,
+}
+
+pub(super) fn execute(args: &ExposeArgs, talk: Talk) -> Result<Outcome, Failure> {
+    let dir = match &args.dir {
+        Some(dir) if !args.list => dir,
+        _ => return output::print(&list()).map(|()| Outcome::Done),
+    };
+    let (scene, record) = read_run(dir)?;
+    let settings = settings(args, &scene)?;
+    let sensor = Sensor::from_settings(&settings)?;
+    let exposure = Exposure::from_settings(&settings)?;
+    let phi = read_matrix(&dir.join(PHI), &scene)?;
+    let scattered = match settings.glare {
+        Some(g) => glare(&scene, checked(g)?),
+        None => Matrix::zeros(phi.nrows(), phi.ncols()),
+    };
+    let ambient = settings.ambient.unwrap_or(0.0);
+    let light = Light::new(&phi, scene.laser.wavelength)?
+        .with_glare(&scattered)?
+        .with_ambient(ambient)?;
+    if phi.max() <= 0.0 {
+        let cause = format!("{} is dark in every pixel", dir.join(PHI).display());
+        return Err(Failure::new(
+            cause,
+            "render a scene whose light reaches the camera",
+        ));
+    }
+    let out = args.output.clone().unwrap_or_else(|| dir.join(FOLDER));
+    refuse_obstacles(&out)?;
+    let exposed = sensor.expose(&light, &exposure, args.seed)?;
+    let result = Summary::new(&sensor, &light, &exposure, &exposed);
+    remark(&result, args.strict, talk)?;
+    let account = Account {
+        version: version().to_owned(),
+        scene: scene.name.clone(),
+        scene_hash: scene.hash.clone(),
+        seed: args.seed,
+        sensor: *sensor.figures(),
+        wavelength: scene.laser.wavelength,
+        times: exposure.times().to_vec(),
+        frames: exposure.frames(),
+        dark_frames: exposure.dark_frames(),
+        ambient,
+        glare_fraction: settings.glare.map_or(0.0, |g| g.fraction),
+        glare_to_signal: glare_to_signal(&scattered, &phi),
+        result,
+    };
+    let json = output::json(&account)?;
+    write(&out, &exposed, (&scene, &record), &sensor, &json)?;
+    output::print(&if args.json {
+        json
+    } else {
+        report::exposure_table(&account.result, &account.times)
+    })?;
+    Ok(Outcome::Done)
+}
+
+/// The scene's settings with those of the command line in their place.
+fn settings(args: &ExposeArgs, scene: &Scene) -> Result<SensorSettings, Failure> {
+    let of_scene = scene.sensor.clone();
+    if of_scene.is_none() && args.sensor.is_none() {
+        let cause = format!("scene `{}` has no [sensor] table", scene.name);
+        return Err(Failure::new(
+            cause,
+            "add one to scene.toml, or name a built-in sensor with --sensor (see phicam expose --list)",
+        ));
+    }
+    let given = of_scene.unwrap_or_default();
+    let base = match &args.sensor {
+        None => given,
+        Some(name) => SensorSettings {
+            model: Some(model(name)?),
+            exposure: given.exposure,
+            frames: given.frames,
+            dark_frames: given.dark_frames,
+            brackets: given.brackets,
+            ambient: given.ambient,
+            glare: given.glare,
+            ..SensorSettings::default()
+        },
+    };
+    let spread = base.glare.map_or(Spread::Uniform, |g| g.spread);
+    let of_line = |fraction| Glare { fraction, spread };
+    let brackets = match (args.brackets.as_slice(), args.exposure) {
+        ([], None) => base.brackets,
+        ([], Some(_)) => None,
+        (times, _) => Some(times.to_vec()),
+    };
+    Ok(SensorSettings {
+        exposure: args.exposure.or(base.exposure),
+        frames: args.frames.or(base.frames),
+        dark_frames: args.dark_frames.or(base.dark_frames),
+        relative_noise: args.noise.or(base.relative_noise),
+        ambient: args.ambient.or(base.ambient),
+        glare: args.glare.map(of_line).or(base.glare),
+        brackets,
+        ..base
+    })
+}
+
+pub(super) fn model(name: &str) -> Result<SensorModel, Failure> {
+    let found = SensorModel::ALL.into_iter().find(|m| m.name() == name);
+    found.ok_or_else(|| {
+        let names: Vec<&str> = SensorModel::ALL.iter().map(|m| m.name()).collect();
+        let cure = format!("use one of {}", names.join(", "));
+        Failure::new(format!("there is no built-in sensor `{name}`"), cure)
+    })
+}
+
+/// A glare whose fraction may come from the command line.
+fn checked(glare: Glare) -> Result<Glare, Failure> {
+    match Quantity::GlareFraction.refuses(glare.fraction) {
+        None => Ok(glare),
+        Some(range) => Err(Failure::new(
+            format!("--glare {} has no meaning", glare.fraction),
+            format!("use {range}"),
+        )),
+    }
+}
+
+/// What stands in the way of an output shows before anything is written. The folder of a run is not overwritten.
+fn refuse_obstacles(out: &Path) -> Result<(), Failure> {
+    if out.join(Record::FILE).exists() {
+        let cause = format!(
+            "{} is the folder of a run, with its clean flux",
+            out.display()
+        );
+        return Err(Failure::new(cause, "choose another folder (-o)"));
+    }
+    let counts = out.join(COUNTS);
+    if counts.exists() && !counts.is_dir() {
+        return Err(StoreError::NotAFolder { path: counts }.into());
+    }
+    for name in [PHI, STDERR, SATURATED, EXPOSURE] {
+        let path = out.join(name);
+        if path.exists() && !path.is_file() {
+            return Err(StoreError::NotAFile { path }.into());
+        }
+    }
+    Ok(())
+}
+
+/// What is wrong with the photographs.
+fn remark(result: &Summary, strict: bool, talk: Talk) -> Result<(), Failure> {
+    let (entries, saturated, floored) = (result.entries, result.saturated, result.floored);
+    let cause = format!("{saturated} of {entries} entries are saturated, {floored} cut off below");
+    let cure = "expose for a shorter time or in --brackets; a larger `offset` keeps counts above 0";
+    if saturated + floored > 0 {
+        if strict {
+            return Err(Failure::new(cause, cure));
+        }
+        talk.say(format!("warning: {cause}, see {SATURATED}; {cure}"));
+    }
+    if result.snr_max.is_some_and(|snr| snr < 1.0) {
+        talk.say("warning: no entry rises above its noise; expose longer or average more frames");
+    }
+    Ok(())
+}
+
+fn write(
+    out: &Path,
+    exposed: &Exposed,
+    (scene, record): (&Scene, &Record),
+    sensor: &Sensor,
+    json: &str,
+) -> Result<(), Failure> {
+    let counts = out.join(COUNTS);
+    ensure_writable(&counts)?;
+    remove_exposed(out)?;
+    ensure_writable(&counts)?;
+    let (pixels, spots) = exposed.flux.shape();
+    for spot in 0..spots {
+        write_counts(&counts, exposed, (scene, record), sensor, spot)?;
+    }
+    let mask = Matrix::from_iterator(
+        pixels,
+        spots,
+        exposed.range.iter().map(|range| match range {
+            Range::Within => 0.0,
+            Range::Saturated => 1.0,
+            Range::Floored => -1.0,
+        }),
+    );
+    npy::write(&out.join(SATURATED), &mask)?;
+    npy::write(&out.join(STDERR), &exposed.stderr)?;
+    npy::write(&out.join(PHI), &exposed.flux)?;
+    Ok(write_whole(&out.join(EXPOSURE), |w| {
+        w.write_all(json.as_bytes())
+    })?)
+}
+
+/// The frame of one spot: its counts at each exposure time as EXR, those of the longest as PNG.
+fn write_counts(
+    folder: &Path,
+    exposed: &Exposed,
+    (scene, record): (&Scene, &Record),
+    sensor: &Sensor,
+    spot: usize,
+) -> Result<(), Failure> {
+    let single = exposed.counts.len() == 1;
+    let channel = |(k, counts): (usize, &Matrix)| Channel {
+        name: match single {
+            true => film::frame::COUNTS.to_owned(),
+            false => format!("{}.{k}", film::frame::COUNTS),
+        },
+        values: counts.column(spot).iter().map(|x| *x as f32).collect(),
+    };
+    let frame = Frame {
+        columns: scene.camera.columns,
+        rows: scene.camera.rows,
+        channels: exposed.counts.iter().enumerate().map(channel).collect(),
+        meta: folder::meta(scene, record, spot),
+    };
+    let path: PathBuf = folder.join(frame_name(spot as u32));
+    film::exr::write(&path, &frame)?;
+    let values: Vec<f64> = exposed.counts[0].column(spot).iter().copied().collect();
+    let white = match sensor.figures().bits {
+        Some(_) => 65535.0,
+        None => exposed.counts[0].max(),
+    };
+    let png = report::counts_png([frame.columns, frame.rows], &values, white)?;
+    Ok(write_whole(&path.with_extension("png"), |w| {
+        w.write_all(&png)
+    })?)
+}
+
+fn list() -> String {
+    SensorModel::ALL.iter().fold(String::new(), |mut text, m| {
+        let f = *Sensor::builtin(*m).figures();
+        let _ = writeln!(text, "{:<15} {}", m.name(), builtin_summary(*m));
+        let bits = f.bits.map_or("no converter".to_owned(), |b| format!("{b} bits"));
+        let _ = writeln!(
+            text,
+            "{:<15} QE {}, {} e-/s dark, full well {} e-, read noise {:.1} e-, {} e- per count, {bits}",
+            "", f.quantum_efficiency, f.dark_current, f.full_well, f.read_noise, f.gain
+        );
+        text
+    })
+}

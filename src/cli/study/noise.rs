@@ -1,0 +1,172 @@
+//! `phicam study noise`: every method under growing noise, gone on with where it was left.
+
+use std::fs;
+use std::io::ErrorKind;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use super::findings::Findings;
+use crate::cli::args::NoiseArgs;
+use crate::cli::failure::Failure;
+use crate::cli::interrupt::stop_flag;
+use crate::cli::output::{self, Talk};
+use crate::cli::{Outcome, progress, settings};
+use crate::num::stream::Sampling;
+use crate::recovery::Method;
+use crate::report::{self, Measure};
+use crate::scene::Scene;
+use crate::store::ensure_writable;
+use crate::study::{self, NoiseAxis, NoisePlan, RenderNoise, Trial, read_ledger, write_ledger};
+use crate::transport::Control;
+
+/// Finished trials are on disk from the first few on, and at least this often.
+const KEEP_EVERY: Duration = Duration::from_secs(5);
+
+pub(super) fn execute(args: &NoiseArgs, talk: Talk) -> Result<Outcome, Failure> {
+    let scene = Scene::load(&args.scene)?;
+    let plan = plan(args)?;
+    let pool = settings::pool(args.threads)?;
+    for &samples in &args.render_samples {
+        settings::budget("--render-samples", samples, Sampling::Sobol)?;
+    }
+    let path = args.output.join("noise.csv");
+    let name = plan.study(&scene);
+    let known = known(&path, &name)?;
+    ensure_writable(&args.output)?;
+    talk.warn(&scene);
+    if !known.is_empty() {
+        talk.say(format!(
+            "going on from {} trials in {}",
+            known.len(),
+            path.display()
+        ));
+    }
+
+    let mut trials = known.clone();
+    let mut failed = None;
+    let mut last: Option<Instant> = None;
+    let bar = progress::steps(talk, &format!("noise on {}", scene.name));
+    bar.set_length(plan.trials() as u64);
+    let mut keep = |new: &[Trial]| {
+        trials.extend_from_slice(new);
+        bar.inc(new.len() as u64);
+        if last.is_none_or(|l| l.elapsed() >= KEEP_EVERY) {
+            last = Some(Instant::now());
+            if let Err(failure) = output::deliver(&write_ledger(&name, &trials), Some(&path)) {
+                failed = Some(failure);
+                return ControlFlow::Break(());
+            }
+        }
+        ControlFlow::Continue(())
+    };
+    let found = pool.install(|| study::noise(&scene, &plan, &known, stop_flag(), &mut keep))?;
+    bar.finish_and_clear();
+    if let Some(failure) = failed {
+        return Err(failure);
+    }
+    output::deliver(&write_ledger(&name, &trials), Some(&path))?;
+    let kept = || {
+        Failure::Stopped(format!(
+            "{} trials are finished and kept in {}; go on with the same command",
+            trials.len(),
+            path.display()
+        ))
+    };
+    let mut found = found.ok_or_else(kept)?;
+    if !args.render_samples.is_empty() {
+        found.render_noise = pool
+            .install(|| render_noise(&scene, args, talk))
+            .ok_or_else(kept)?;
+    }
+
+    let mut findings = Findings::new("noise", &found, report::noise_table(&found))?
+        .with("noise-curves.csv", report::noise_csv(&found));
+    for measure in Measure::ALL {
+        let figure = report::noise_svg(&found, measure);
+        findings = findings.with(&format!("noise-{}.svg", measure.name()), figure);
+    }
+    findings.deliver(&args.output, args.json)?;
+    Ok(Outcome::Done)
+}
+
+fn plan(args: &NoiseArgs) -> Result<NoisePlan, Failure> {
+    let axis = NoiseAxis::Relative;
+    let mut levels = match args.noise.as_slice() {
+        [] => axis.levels(),
+        given => given.to_vec(),
+    };
+    if let Some((level, cure)) = levels.iter().find_map(|l| Some((l, axis.refuses(*l)?))) {
+        return Err(Failure::new(
+            format!("--noise {level} has no meaning here"),
+            cure,
+        ));
+    }
+    levels.sort_by(f64::total_cmp);
+    levels.dedup();
+    Ok(NoisePlan {
+        boards: sides("--boards", &args.boards, 2)?,
+        elements: sides("--elements", &args.elements, 1)?,
+        methods: methods(&args.method)?,
+        kernel: settings::kernel(args.kernel),
+        axis,
+        levels,
+        seeds: args.seeds,
+        first_seed: args.seed,
+    })
+}
+
+/// Numbers of checks or elements a side, sorted, each once.
+pub(super) fn sides(option: &str, given: &[usize], least: usize) -> Result<Vec<usize>, Failure> {
+    if let Some(bad) = given.iter().find(|n| !(least..=1024).contains(*n)) {
+        return Err(Failure::new(
+            format!("{option} {bad} is out of range"),
+            format!("use whole numbers from {least} to 1024"),
+        ));
+    }
+    let mut sides = given.to_vec();
+    sides.sort_unstable();
+    sides.dedup();
+    Ok(sides)
+}
+
+/// Methods by name, each once, in the order of [`Method::ALL`].
+pub(super) fn methods(names: &[String]) -> Result<Vec<Method>, Failure> {
+    let asked: Vec<Method> = names.iter().map(|n| n.parse()).collect::<Result<_, _>>()?;
+    Ok(Method::ALL
+        .into_iter()
+        .filter(|m| asked.contains(m))
+        .collect())
+}
+
+/// The trials that an earlier run of this study has finished.
+fn known(path: &Path, name: &str) -> Result<Vec<Trial>, Failure> {
+    let text = match fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(e) if e.kind() == ErrorKind::NotFound || e.kind() == ErrorKind::NotADirectory => {
+            return Ok(Vec::new());
+        }
+        Err(e) => {
+            let cause = format!("cannot read {}: {e}", path.display());
+            return Err(Failure::new(
+                cause,
+                "make it readable, or choose another folder (-o)",
+            ));
+        }
+    };
+    read_ledger(name, &text)
+        .map_err(|e| Failure::Error(format!("cannot go on from {}: {e}", path.display())))
+}
+
+/// Renders a few spots; `None` if stopped.
+fn render_noise(scene: &Scene, args: &NoiseArgs, talk: Talk) -> Option<Vec<RenderNoise>> {
+    let bar = progress::steps(talk, "noise of renders");
+    let tick = |_| bar.tick();
+    let control = Control {
+        progress: &tick,
+        stop: stop_flag(),
+    };
+    let found = study::render_noise(scene, &args.render_samples, args.seed, control);
+    bar.finish_and_clear();
+    found
+}

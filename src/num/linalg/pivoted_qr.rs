@@ -1,0 +1,296 @@
+//! QR with column pivoting, and the two solutions of a rank-deficient system that rest on it.
+//!
+//! Businger and Golub's Householder reduction (1965): at every step the column with the largest part left is taken next. The columns' remaining
+//! norms are summed anew at every step, not downdated, so the choice and the diagonal of R hold to rounding however deficient the matrix is;
+//! faer's own pivoted QR updates them by differences and its diagonal then need not fall.
+
+use nalgebra::DMatrix;
+
+use super::householder::{Pivoting, reduce};
+use super::{LinalgError, Tolerance, cut, scaled};
+
+/// A P = Q R with |R₁₁| ≥ |R₂₂| ≥ …, thin: k = min(m, n).
+#[derive(Debug, Clone, PartialEq)]
+pub struct PivotedQr {
+    /// Q, m × k, orthonormal columns.
+    pub q: DMatrix<f64>,
+    /// Column i of A P is column `order[i]` of A.
+    pub order: Vec<usize>,
+    /// R times 2^−exponent, k × n, upper trapezoidal.
+    r: DMatrix<f64>,
+    exponent: i32,
+}
+
+/// The pivoted QR of an m × n matrix.
+///
+/// Before it is returned it must reproduce the matrix to rounding, ‖A P − Q R‖ ≤ 10 N eps ‖A‖ with N = max(m, n), and Q must be orthonormal,
+/// ‖QᵀQ − 1‖ ≤ 10 N eps √k (Frobenius norms).
+///
+/// # Errors
+/// [`LinalgError::Empty`], [`LinalgError::NotFinite`], [`LinalgError::Inaccurate`] if a check fails.
+pub fn pivoted_qr(a: &DMatrix<f64>) -> Result<PivotedQr, LinalgError> {
+    let (scaled, exponent) = scaled(a)?;
+    let (reflections, r, order) = reduce(scaled.clone(), Pivoting::Largest);
+    let result = PivotedQr {
+        q: reflections.thin(),
+        order,
+        r,
+        exponent,
+    };
+    check(&scaled, &result)?;
+    Ok(result)
+}
+
+/// The two a-posteriori checks of [`pivoted_qr`] on the scaled matrix.
+fn check(a: &DMatrix<f64>, qr: &PivotedQr) -> Result<(), LinalgError> {
+    let allowed = 10.0 * a.nrows().max(a.ncols()) as f64 * f64::EPSILON;
+    let pass = |check, error: f64| match error <= allowed {
+        true => Ok(()),
+        false => Err(LinalgError::Inaccurate {
+            check,
+            error,
+            allowed,
+        }),
+    };
+    let k = qr.q.ncols();
+    let off = (qr.q.transpose() * &qr.q - DMatrix::identity(k, k)).norm();
+    pass("the orthogonality of Q", off / (k as f64).sqrt())?;
+    let norm = a.norm();
+    if norm == 0.0 {
+        return Ok(());
+    }
+    let off = (a.select_columns(&qr.order) - &qr.q * &qr.r).norm();
+    pass("the product of the factors", off / norm)
+}
+
+impl PivotedQr {
+    /// |R₁₁|, |R₂₂|, … in the unit of A.
+    pub fn diagonal(&self) -> Vec<f64> {
+        let unscaled = |x| libm::scalbn(x, self.exponent);
+        self.scaled_diagonal().into_iter().map(unscaled).collect()
+    }
+
+    fn scaled_diagonal(&self) -> Vec<f64> {
+        (0..self.q.ncols()).map(|i| self.r[(i, i)].abs()).collect()
+    }
+
+    /// How many diagonal entries of R survive `tolerance`, and the value at or below which they were cut. [`Tolerance::Auto`] is
+    /// max(m, n) · eps · |R₁₁|, the tolerance that MATLAB's `\` and `/` name in their warning of rank deficiency.
+    ///
+    /// # Errors
+    /// [`LinalgError::Tolerance`], [`LinalgError::Rank`].
+    pub fn rank(&self, tolerance: Tolerance) -> Result<(usize, f64), LinalgError> {
+        let diagonal = self.scaled_diagonal();
+        let (rank, cutoff) = cut(&diagonal, self.q.nrows(), self.r.ncols(), tolerance)?;
+        Ok((rank, libm::scalbn(cutoff, self.exponent)))
+    }
+
+    /// The basic solution of min ‖A X − B‖ (B m × c, X n × c) with the first `rank` columns of A P: all other rows of X are zero.
+    ///
+    /// # Errors
+    /// A B of other rows than A, not finite or empty; a rank that R does not have; overflow.
+    pub fn basic(&self, rank: usize, b: &DMatrix<f64>) -> Result<DMatrix<f64>, LinalgError> {
+        let (along, exponent) = self.along(rank, b)?;
+        let head = self.r.view((0, 0), (rank, rank));
+        let solved = head.solve_upper_triangular(&along);
+        let mut x = DMatrix::zeros(self.order.len(), b.ncols());
+        x.rows_mut(0, rank)
+            .copy_from(&solved.ok_or(self.deficient(rank))?);
+        self.unscaled(x, exponent)
+    }
+
+    /// The solution of least norm of the same system, R beyond row `rank` taken as zero: by a complete orthogonal decomposition
+    /// \[R₁₁ R₁₂\] = Sᵀ Zᵀ, X = P Z S⁻ᵀ Qᵀ B, as LAPACK's `gelsy`.
+    ///
+    /// # Errors
+    /// Those of [`PivotedQr::basic`].
+    pub fn minimum_norm(&self, rank: usize, b: &DMatrix<f64>) -> Result<DMatrix<f64>, LinalgError> {
+        let (along, exponent) = self.along(rank, b)?;
+        let (z, s, _) = reduce(self.r.rows(0, rank).transpose(), Pivoting::Never);
+        let solved = s.tr_solve_upper_triangular(&along);
+        self.unscaled(z.thin() * solved.ok_or(self.deficient(rank))?, exponent)
+    }
+
+    /// The first `rank` rows of QᵀB, scaled, and the exponent taken out.
+    fn along(&self, rank: usize, b: &DMatrix<f64>) -> Result<(DMatrix<f64>, i32), LinalgError> {
+        super::triangle::same_length("rows of B against rows of A", self.q.nrows(), b.nrows())?;
+        if rank == 0 || rank > self.q.ncols() {
+            return Err(self.deficient(rank));
+        }
+        let (b, exponent) = scaled(b)?;
+        Ok((self.q.columns(0, rank).transpose() * b, exponent))
+    }
+
+    fn deficient(&self, asked: usize) -> LinalgError {
+        let available = self.scaled_diagonal().iter().filter(|&&x| x > 0.0).count();
+        LinalgError::Rank { asked, available }
+    }
+
+    /// Rows back in the order of A's columns, scales put back.
+    fn unscaled(&self, x: DMatrix<f64>, exponent: i32) -> Result<DMatrix<f64>, LinalgError> {
+        let mut result = DMatrix::zeros(x.nrows(), x.ncols());
+        for (row, &place) in self.order.iter().enumerate() {
+            let scaled = x
+                .row(row)
+                .map(|x| libm::scalbn(x, exponent - self.exponent));
+            result.row_mut(place).copy_from(&scaled);
+        }
+        match result.iter().all(|x| x.is_finite()) {
+            true => Ok(result),
+            false => Err(LinalgError::Overflow("the solution of the linear system")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::linalg::kernel::{bench_g12, hilbert, kahan};
+    use crate::num::linalg::{pinv, svd};
+
+    #[test]
+    fn the_diagonal_falls_and_the_factors_return_the_matrix() {
+        for a in [
+            hilbert(12, 12),
+            hilbert(40, 9),
+            hilbert(9, 40),
+            bench_g12(3.0),
+            bench_g12(3.0).transpose(),
+            bench_g12(6.0),
+            kahan(90, 1.2),
+            DMatrix::from_element(64, 120, 1.0),
+            DMatrix::zeros(3, 5),
+        ] {
+            let qr = pivoted_qr(&a).unwrap();
+            let diagonal = qr.diagonal();
+            assert!(
+                diagonal
+                    .windows(2)
+                    .all(|d| d[1] <= d[0] * (1.0 + 8.0 * f64::EPSILON)),
+                "{diagonal:?}"
+            );
+            let mut order = qr.order.clone();
+            order.sort_unstable();
+            assert!(order.into_iter().eq(0..a.ncols()));
+            assert!((0..qr.r.nrows()).all(|i| (0..i).all(|j| qr.r[(i, j)] == 0.0)));
+            // |R₁₁| is the largest column norm.
+            let longest = a.column_iter().map(|c| c.norm()).fold(0.0, f64::max);
+            assert!((diagonal[0] - longest).abs() <= 1e-14 * longest);
+        }
+    }
+
+    /// Kahan's matrix is triangular, its columns fall by a hair in norm, and its last singular value lies far below its last diagonal
+    /// entry: with pivoting nothing moves, so R is the matrix itself. The diagonal therefore overstates: |R_nn| ≥ σ_n, known from theory.
+    #[test]
+    fn kahans_matrix_is_its_own_factor() {
+        let a = kahan(60, 1.2);
+        let qr = pivoted_qr(&a).unwrap();
+        assert_eq!(qr.order, (0..60).collect::<Vec<_>>());
+        for (i, d) in qr.diagonal().into_iter().enumerate() {
+            assert!((d / a[(i, i)] - 1.0).abs() < 1e-12);
+        }
+        let last = svd(&a).unwrap().sigma[59];
+        assert!(qr.diagonal()[59] > 100.0 * last, "{last:e}");
+    }
+
+    #[test]
+    fn both_solutions_of_a_hand_made_system() {
+        // 2 x₁ + x₂ + 0 x₃ = 4 twice: the first column is the longest, so the basic solution is (2, 0, 0); least norm is 4 (2, 1, 0)/5.
+        let a = DMatrix::from_row_slice(2, 3, &[2.0, 1.0, 0.0, 2.0, 1.0, 0.0]);
+        let b = DMatrix::from_element(2, 1, 4.0);
+        let qr = pivoted_qr(&a).unwrap();
+        assert_eq!(qr.rank(Tolerance::Auto).unwrap().0, 1);
+        let basic = qr.basic(1, &b).unwrap();
+        assert!((basic - DMatrix::from_row_slice(3, 1, &[2.0, 0.0, 0.0])).amax() < 1e-15);
+        let least = qr.minimum_norm(1, &b).unwrap();
+        assert!((least - DMatrix::from_row_slice(3, 1, &[1.6, 0.8, 0.0])).amax() < 1e-15);
+    }
+
+    #[test]
+    fn the_two_solutions_have_one_residual() {
+        for a in [bench_g12(3.0).transpose(), bench_g12(6.0), hilbert(30, 12)] {
+            let qr = pivoted_qr(&a).unwrap();
+            let (rank, cutoff) = qr.rank(Tolerance::Relative(1e-8)).unwrap();
+            assert!(cutoff > 0.0 && rank < a.ncols());
+            let b = DMatrix::from_fn(a.nrows(), 2, |i, j| ((i * 7 + j * 3) % 5) as f64 - 2.0);
+            let (basic, least) = (
+                qr.basic(rank, &b).unwrap(),
+                qr.minimum_norm(rank, &b).unwrap(),
+            );
+            let used = basic.row_iter().filter(|row| row.amax() > 0.0).count();
+            assert!(used <= rank && least.norm() < basic.norm());
+            // What the cut leaves of A enters by the solution's size.
+            let [one, other] = [&basic, &least].map(|x| (&a * x - &b).norm());
+            assert!(
+                (one - other).abs() <= 100.0 * cutoff * basic.norm(),
+                "{one} {other}"
+            );
+        }
+    }
+
+    #[test]
+    fn least_norm_is_the_moore_penrose_inverse() {
+        // Where the rank is plain both decompositions see the same.
+        for a in [
+            hilbert(6, 9),
+            hilbert(9, 6),
+            DMatrix::from_element(5, 7, 2.0),
+        ] {
+            let qr = pivoted_qr(&a).unwrap();
+            let (rank, _) = qr.rank(Tolerance::Auto).unwrap();
+            let known = pinv(&a, Tolerance::Auto).unwrap();
+            assert_eq!(rank, known.rank);
+            let identity = DMatrix::identity(a.nrows(), a.nrows());
+            let found = qr.minimum_norm(rank, &identity).unwrap();
+            let condition = known.sigma[0] / known.sigma[rank - 1];
+            let error = (found - &known.matrix).norm() / known.matrix.norm();
+            assert!(error < 100.0 * f64::EPSILON * condition, "{error:e}");
+        }
+    }
+
+    #[test]
+    fn scale_does_not_matter() {
+        let a = hilbert(9, 6);
+        let b = &a * DMatrix::from_element(6, 1, 1.0);
+        for factor in [1e300, 1e-300] {
+            let qr = pivoted_qr(&(&a * factor)).unwrap();
+            assert_eq!(qr.order, pivoted_qr(&a).unwrap().order);
+            for x in [
+                qr.basic(6, &(&b * factor)).unwrap(),
+                qr.minimum_norm(6, &(&b * factor)).unwrap(),
+            ] {
+                assert!((x - DMatrix::from_element(6, 1, 1.0)).amax() < 1e-8);
+            }
+        }
+    }
+
+    #[test]
+    fn bad_input_and_wrong_factors_are_noticed() {
+        let mut a = bench_g12(3.0);
+        let qr = pivoted_qr(&a).unwrap();
+        let (scaled, _) = scaled(&a).unwrap();
+        let mut wrong = qr.clone();
+        wrong.r[(0, 5)] *= 1.0 + 1e-9;
+        assert!(matches!(
+            check(&scaled, &wrong),
+            Err(LinalgError::Inaccurate { .. })
+        ));
+        let mut wrong = qr.clone();
+        wrong.q[(3, 0)] += 1e-9;
+        assert!(matches!(
+            check(&scaled, &wrong),
+            Err(LinalgError::Inaccurate { .. })
+        ));
+        assert!(matches!(
+            qr.basic(1, &DMatrix::zeros(3, 1)),
+            Err(LinalgError::Shape { .. })
+        ));
+        for rank in [0, 65] {
+            let refused = qr.minimum_norm(rank, &DMatrix::zeros(64, 1));
+            assert!(matches!(refused, Err(LinalgError::Rank { .. })));
+        }
+        a[(1, 2)] = f64::NAN;
+        assert!(matches!(pivoted_qr(&a), Err(LinalgError::NotFinite { .. })));
+        assert!(pivoted_qr(&DMatrix::zeros(0, 2)).is_err());
+    }
+}

@@ -1,0 +1,57 @@
+use super::super::box_least_squares;
+use super::*;
+
+#[test]
+fn two_values_approach_each_other_by_the_penalty() {
+    // min ½(x − 0.2)² + ½(y − 0.8)² + λ|x − y|: (0.2 + λ, 0.8 − λ) while λ < 0.3, then both 0.5.
+    let r = DMatrix::identity(2, 2);
+    let d = DVector::from_row_slice(&[0.2, 0.8]);
+    let bounds = Bounds::all(2, 0.0, 1.0);
+    for (lambda, exact, sets) in [
+        (0.0, [0.2, 0.8], 2),
+        (0.1, [0.3, 0.7], 2),
+        (0.5, [0.5, 0.5], 1),
+    ] {
+        let found = fused_least_squares(&r, &d, &bounds, &[[0, 1]], lambda, &d).unwrap();
+        let error = (&found.found.solution - DVector::from_row_slice(&exact)).amax();
+        assert!(
+            error < 1e-12 && found.free_sets == sets,
+            "{lambda}: {found:?}"
+        );
+        assert!(found.found.gap < 1e-9);
+    }
+}
+
+/// Every point of a fine grid lies above the minimum less its gap, and some near it.
+#[test]
+fn no_point_of_a_grid_is_better() {
+    let r = DMatrix::from_row_slice(
+        4,
+        3,
+        &[3.0, 1.0, 0.5, -1.0, 2.0, 0.3, 0.2, 0.7, 2.0, 1.0, 1.0, 1.0],
+    );
+    let d = DVector::from_row_slice(&[2.5, 1.0, -0.3, 4.0]);
+    let pairs = [[0, 1], [1, 2]];
+    for upper in [1.0, f64::INFINITY] {
+        let bounds = Bounds::all(3, 0.0, upper);
+        let start = box_least_squares(&r, &d, &bounds).unwrap().solution;
+        let found = fused_least_squares(&r, &d, &bounds, &pairs, 0.4, &start).unwrap();
+        let f = |x: &DVector<f64>| {
+            0.5 * (&r * x - &d).norm_squared() + 0.4 * ((x[0] - x[1]).abs() + (x[1] - x[2]).abs())
+        };
+        assert!((f(&found.found.solution) - found.found.objective).abs() < 1e-12);
+        let mut least = f64::INFINITY;
+        for at in 0..101usize.pow(3) {
+            let number = |i: u32| (at / 101usize.pow(i) % 101) as f64 / 100.0;
+            let x = DVector::from_fn(3, |i, _| {
+                number(i as u32) * if upper == 1.0 { 1.0 } else { 1.5 }
+            });
+            least = least.min(f(&x));
+        }
+        assert!(least >= found.found.objective - found.found.gap - 1e-12);
+        assert!(
+            least < found.found.objective + 1e-2 && found.found.gap < 1e-8,
+            "{found:?} {least}"
+        );
+    }
+}

@@ -1,0 +1,174 @@
+//! What photographs hold beside the light of the hidden surface, of known form and unknown size.
+//!
+//! > Φ\[p,l\] = s Σ_j C\[p,j\] ρ_j D\[j,l\] + b_l + a_p + g_l P\[p,l\] + noise
+//!
+//! Everything but ρ enters linearly once s ρ is one unknown, so it is eliminated exactly (variable projection), never guessed first.
+//! With weights w_p v_l the constants b_l are all matrices u b'ᵀ of the weighted problem, u_p = √w_p, and the background all a' vᵀ, v_l = √v_l; what
+//! either cannot reach is the tensor product of what is orthogonal to u and what is orthogonal to v. So both at once are eliminated by
+//!
+//! > C̃ → (1 − û ûᵀ) C̃,   D̃ → D̃ (1 − v̂ v̂ᵀ),   Φ̃ → (1 − û ûᵀ) Φ̃ (1 − v̂ v̂ᵀ)
+//!
+//! and the product form stays. A glare pattern that differs from spot to spot has no such form: [`super::stacked`].
+
+use nalgebra::{DMatrix, DVector};
+
+use super::stacked::Coupled;
+use crate::num::linalg::{Tolerance, least_squares};
+use crate::recovery::RecoveryError;
+
+/// What is estimated with the reflectances, by every joint method. Nothing unless asked for.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Nuisance<'a> {
+    /// A constant of each frame, b_l: an offset of the sensor, light that fills the view evenly.
+    pub frame_constant: bool,
+    /// An image that is the same in all frames, a_p: ambient light.
+    pub background: bool,
+    /// A pattern P\[p,l\] (pixels × spots, any unit) whose strength g_l in each frame is unknown: glare of the spot.
+    pub glare: Option<&'a DMatrix<f64>>,
+    /// One unknown factor s of the whole model. Only s ρ is seen, so by convention **the brightest element has ρ = 1**; a surface without
+    /// a white element is recovered relative to its brightest. Bounds from above mean nothing then: `joint` keeps ρ ≥ 0 alone.
+    pub free_scale: bool,
+}
+
+impl Nuisance<'_> {
+    /// Whether anything is asked for.
+    pub(in crate::recovery) fn is_some(&self) -> bool {
+        *self != Nuisance::default()
+    }
+}
+
+/// The estimated sizes; each is there if it was asked for.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Estimated {
+    /// b_l, W. Where a background is estimated too, the common level of all entries is counted here: Σ_p w_p a_p = 0.
+    pub frame_constant: Option<DVector<f64>>,
+    /// a_p, W.
+    pub background: Option<DVector<f64>>,
+    /// g_l, W per unit of the pattern; zero for a frame whose pattern the other terms contain.
+    pub glare: Option<DVector<f64>>,
+    /// s.
+    pub scale: Option<f64>,
+}
+
+impl Estimated {
+    /// Their light without the factor s, pixels × spots, W.
+    pub(in crate::recovery) fn light(
+        &self,
+        nuisance: &Nuisance<'_>,
+        pixels: usize,
+        spots: usize,
+    ) -> DMatrix<f64> {
+        let entry =
+            |values: &Option<DVector<f64>>, at: usize| values.as_ref().map_or(0.0, |v| v[at]);
+        DMatrix::from_fn(pixels, spots, |p, l| {
+            let pattern = nuisance.glare.map_or(0.0, |pattern| pattern[(p, l)]);
+            entry(&self.frame_constant, l)
+                + entry(&self.background, p)
+                + entry(&self.glare, l) * pattern
+        })
+    }
+}
+
+/// û, the unit vector along the roots of the weights of one side.
+pub(super) fn unit(roots: &[f64]) -> DVector<f64> {
+    DVector::from_column_slice(roots).normalize()
+}
+
+/// (1 − û ûᵀ) m, twice: once leaves rounding of the size of what was removed.
+pub(super) fn without_left(m: &mut DMatrix<f64>, u: &DVector<f64>) {
+    for _ in 0..2 {
+        let along = u.transpose() * &*m;
+        m.ger(-1.0, u, &along.transpose(), 1.0);
+    }
+}
+
+/// m (1 − v̂ v̂ᵀ), likewise.
+pub(super) fn without_right(m: &mut DMatrix<f64>, v: &DVector<f64>) {
+    for _ in 0..2 {
+        let along = &*m * v;
+        m.ger(-1.0, &along, v, 1.0);
+    }
+}
+
+/// The sizes that fit best, in the weighted sum of squares, what the surface's light leaves over (`left`, pixels × spots). `root`(p, l) is the
+/// square root of the weight; `coupled` the solution of the terms of single frames where a background ties them together.
+pub(super) fn estimate(
+    nuisance: &Nuisance<'_>,
+    left: &DMatrix<f64>,
+    root: impl Fn(usize, usize) -> f64,
+    coupled: Option<(&Coupled, &DVector<f64>)>,
+) -> Result<Estimated, RecoveryError> {
+    let (pixels, spots) = left.shape();
+    let weight = |p: usize, l: usize| root(p, l) * root(p, l);
+    let mut constant = nuisance.frame_constant.then(|| DVector::zeros(spots));
+    let mut glare = nuisance.glare.map(|_| DVector::zeros(spots));
+    if let Some((coupled, rho)) = coupled {
+        let sizes = coupled.solve(rho);
+        if let Some(b) = constant.as_mut() {
+            b.copy_from(&sizes.rows(0, spots));
+        }
+        if let Some(g) = glare.as_mut() {
+            g.copy_from(&sizes.rows(sizes.len() - spots, spots));
+        }
+    } else if let Some(pattern) = nuisance.glare {
+        for l in 0..spots {
+            let ones = usize::from(nuisance.frame_constant);
+            let mut columns = DMatrix::from_fn(pixels, ones + 1, |p, k| {
+                root(p, l) * if k < ones { 1.0 } else { pattern[(p, l)] }
+            });
+            let lengths: Vec<f64> = columns.column_iter().map(|c| nonzero(c.norm())).collect();
+            for (mut column, length) in columns.column_iter_mut().zip(&lengths) {
+                column /= *length;
+            }
+            let data = DVector::from_fn(pixels, |p, _| root(p, l) * left[(p, l)]);
+            if columns.amax() == 0.0 {
+                continue;
+            }
+            let sizes = least_squares(&columns, &data, Tolerance::Relative(1e-12))?.solution;
+            if let Some(b) = constant.as_mut() {
+                b[l] = sizes[0] / lengths[0];
+            }
+            if let Some(g) = glare.as_mut() {
+                g[l] = sizes[ones] / lengths[ones];
+            }
+        }
+    } else if let Some(b) = constant.as_mut() {
+        for l in 0..spots {
+            b[l] = mean((0..pixels).map(|p| (weight(p, l), left[(p, l)])));
+        }
+    }
+    let mut found = Estimated {
+        frame_constant: constant,
+        background: None,
+        glare,
+        scale: None,
+    };
+    if nuisance.background {
+        let rest = left - found.light(nuisance, pixels, spots);
+        let mut a = DVector::from_fn(pixels, |p, _| {
+            mean((0..spots).map(|l| (weight(p, l), rest[(p, l)])))
+        });
+        if let Some(b) = found.frame_constant.as_mut() {
+            let common = mean((0..pixels).map(|p| (weight(p, 0), a[p])));
+            a.add_scalar_mut(-common);
+            b.add_scalar_mut(common);
+        }
+        found.background = Some(a);
+    }
+    Ok(found)
+}
+
+fn nonzero(x: f64) -> f64 {
+    if x > 0.0 { x } else { 1.0 }
+}
+
+/// The weighted mean of (weight, value) pairs.
+fn mean(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let (weights, sum) = pairs.fold((0.0, 0.0), |(weights, sum), (w, x)| {
+        (weights + w, sum + w * x)
+    });
+    sum / weights
+}
+
+#[cfg(test)]
+mod tests;

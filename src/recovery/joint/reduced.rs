@@ -1,0 +1,145 @@
+//! What the bounded methods share: the operator reduced to as many rows as it has directions, and the way back to reflectances.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::khatri_rao::Operator;
+use crate::num::linalg::{Svd, Tolerance, cut, svd};
+use crate::num::quadratic::{Bounds, BoxSolution};
+use crate::recovery::{
+    Choice, Estimated, Method, Options, Parameter, Problem, Recovered, RecoveryError, Solver,
+};
+
+/// ½‖R x − d‖² is the objective but for a constant, x = s ρ.
+pub(super) struct Reduced {
+    operator: Operator,
+    pub(super) r: DMatrix<f64>,
+    pub(super) d: DVector<f64>,
+    pub(super) sigma: DVector<f64>,
+    pub(super) rank: usize,
+    cutoff: f64,
+}
+
+impl Reduced {
+    pub(super) fn new(problem: &Problem<'_>, options: &Options) -> Result<Self, RecoveryError> {
+        let operator = Operator::new(problem, options)?;
+        let reduced = operator.reduced()?;
+        let Svd { u, sigma, vt } = svd(&reduced.r)?;
+        let tolerance = operator.tolerance(Tolerance::Auto);
+        let (rank, cutoff) = cut(
+            sigma.as_slice(),
+            operator.rows(),
+            problem.c.ncols(),
+            tolerance,
+        )?;
+        if rank == 0 {
+            return Err(RecoveryError::RankZero {
+                side: "model C, D as a whole",
+            });
+        }
+        // Directions below one rounding of the strongest carry nothing: k rows Σ_k V_kᵀ stand for R.
+        let (rows, _) = cut(sigma.as_slice(), 1, 1, Tolerance::Relative(f64::EPSILON))?;
+        let mut strong = vt.rows(0, rows).into_owned();
+        for (mut row, &s) in strong.row_iter_mut().zip(sigma.iter()) {
+            row *= s;
+        }
+        let d = u.columns(0, rows).transpose() * &reduced.d;
+        Ok(Reduced {
+            operator,
+            r: strong,
+            d,
+            sigma,
+            rank,
+            cutoff,
+        })
+    }
+
+    /// What s ρ can be: 0 to 1, or from 0 on where the scale is free.
+    pub(super) fn bounds(&self, problem: &Problem<'_>) -> Bounds {
+        let upper = if problem.nuisance.free_scale {
+            f64::INFINITY
+        } else {
+            1.0
+        };
+        Bounds::all(self.r.ncols(), 0.0, upper)
+    }
+
+    /// The recovery from x = s ρ, a rank cut recorded.
+    pub(super) fn finish(
+        &self,
+        method: Method,
+        problem: &Problem<'_>,
+        options: &Options,
+        x: DVector<f64>,
+    ) -> Result<Recovered, RecoveryError> {
+        let mut found = finish(
+            method,
+            problem,
+            options,
+            &self.operator,
+            x,
+            self.sigma.clone(),
+            self.rank,
+        )?;
+        if self.rank < problem.c.ncols() {
+            (found.parameter, found.choice) = (
+                Parameter::Rank(self.rank),
+                Choice::Tolerance {
+                    cutoff: self.cutoff,
+                },
+            );
+        }
+        Ok(found)
+    }
+}
+
+/// The report of a box solver.
+pub(super) fn report(solved: &BoxSolution) -> Solver {
+    Solver {
+        status: solved.status.clone(),
+        iterations: solved.iterations,
+        refinements: solved.refinements,
+        objective: solved.objective,
+        gap: solved.gap,
+    }
+}
+
+/// The recovery from x = s ρ: scale by the brightest element where that is the convention, nuisance terms, residual with them.
+pub(super) fn finish(
+    method: Method,
+    problem: &Problem<'_>,
+    options: &Options,
+    operator: &Operator,
+    x: DVector<f64>,
+    sigma: DVector<f64>,
+    rank: usize,
+) -> Result<Recovered, RecoveryError> {
+    let nuisance = &problem.nuisance;
+    let mut found = Recovered::plain(method, problem, x.clone(), sigma, rank);
+    found.weighting = operator.weighting;
+    if !nuisance.is_some() {
+        return Ok(found);
+    }
+    let mut estimated = operator.nuisances(problem, options, &x)?;
+    let (pixels, spots) = problem.phi.shape();
+    let left = problem.phi - problem.light(&x) - estimated.light(nuisance, pixels, spots);
+    found.residual = left.norm();
+    let whole = problem.phi.norm();
+    found.relative_residual = if whole > 0.0 {
+        found.residual / whole
+    } else {
+        0.0
+    };
+    if nuisance.free_scale {
+        let largest = x.max();
+        if largest <= 0.0 {
+            return Err(RecoveryError::NoScale { largest });
+        }
+        found.reflectance = x / largest;
+        estimated = Estimated {
+            scale: Some(largest),
+            ..estimated
+        };
+    }
+    found.nuisance = Some(estimated);
+    Ok(found)
+}

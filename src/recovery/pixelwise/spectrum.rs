@@ -1,0 +1,84 @@
+//! A generalised inverse as a sum over singular directions, each with a filter factor.
+//!
+//! > D^# = Σ_i f_i v_i s_iᵀ
+//!
+//! with orthonormal v_i in the space of the spots. Of D = U Σ Vᵀ itself v_i are its right singular vectors and s_i = u_i/σ_i; a penalty other
+//! than the norm of X has directions of its own.
+
+use nalgebra::DMatrix;
+
+use crate::num::linalg::Svd;
+
+/// The directions, in the order in which they are kept.
+pub(in crate::recovery) struct Spectrum {
+    /// v_i as rows, k × l, orthonormal.
+    pub(in crate::recovery) data: DMatrix<f64>,
+    /// D v_i as rows, k × r.
+    pub(in crate::recovery) image: DMatrix<f64>,
+    /// s_i as rows, k × r.
+    pub(in crate::recovery) solution: DMatrix<f64>,
+    /// Singular values of the directions after the free ones, descending; those beyond k were dropped.
+    pub(in crate::recovery) sigma: Vec<f64>,
+    /// How many directions come first that no penalty reaches.
+    pub(in crate::recovery) free: usize,
+}
+
+impl Spectrum {
+    /// Of D itself, its first `rank` directions.
+    pub(in crate::recovery) fn of(laser: &Svd, rank: usize) -> Self {
+        let left = |factor: &dyn Fn(f64) -> f64| {
+            DMatrix::from_fn(rank, laser.u.nrows(), |i, j| {
+                laser.u[(j, i)] * factor(laser.sigma[i])
+            })
+        };
+        Spectrum {
+            data: laser.vt.rows(0, rank).into_owned(),
+            image: left(&|s| s),
+            solution: left(&|s| 1.0 / s),
+            sigma: laser.sigma.as_slice().to_vec(),
+            free: 0,
+        }
+    }
+
+    /// Directions in all.
+    pub(in crate::recovery) fn len(&self) -> usize {
+        self.data.nrows()
+    }
+
+    /// Singular values that are filtered.
+    pub(in crate::recovery) fn filtered(&self) -> &[f64] {
+        &self.sigma[..self.len() - self.free]
+    }
+
+    /// Filter factors σ²/(σ² + λ²); 1 for the free directions.
+    pub(in crate::recovery) fn damped(&self, lambda: f64) -> Vec<f64> {
+        let damped = |s: &f64| 1.0 / (1.0 + (lambda / s) * (lambda / s));
+        let free = std::iter::repeat_n(1.0, self.free);
+        free.chain(self.filtered().iter().map(damped)).collect()
+    }
+
+    /// Filter factors of a truncation after `kept` directions.
+    pub(in crate::recovery) fn truncated(&self, kept: usize) -> Vec<f64> {
+        (0..self.len())
+            .map(|i| f64::from(u8::from(i < kept)))
+            .collect()
+    }
+
+    /// D^#, l × r, from the filter factors of the first directions.
+    pub(in crate::recovery) fn inverse(&self, filter: &[f64]) -> DMatrix<f64> {
+        self.data.rows(0, filter.len()).transpose() * self.weighted(filter)
+    }
+
+    /// D D^#, r × r.
+    pub(in crate::recovery) fn product(&self, filter: &[f64]) -> DMatrix<f64> {
+        self.image.rows(0, filter.len()).transpose() * self.weighted(filter)
+    }
+
+    fn weighted(&self, filter: &[f64]) -> DMatrix<f64> {
+        let mut weighted = self.solution.rows(0, filter.len()).into_owned();
+        for (mut row, &f) in weighted.row_iter_mut().zip(filter) {
+            row *= f;
+        }
+        weighted
+    }
+}

@@ -1,0 +1,199 @@
+//! What noise and regularisation do to the mean over pixels ρ̂_j = (1/p) Σ_pl Φ\[p,l\] D^#\[l,j\]/C\[p,j\].
+
+use nalgebra::{DMatrix, DVector};
+
+use super::mean_over_pixels;
+use crate::num::linalg::{LinalgError, Tolerance, cut, svd};
+
+/// Standard errors for independent entries: var ρ̂_j = Σ_pl σ²\[p,l\] (D^#\[l,j\]/(p C\[p,j\]))². Cost p·l·r.
+pub(super) fn standard_error(
+    stderr: &DMatrix<f64>,
+    sharp: &DMatrix<f64>,
+    c: &DMatrix<f64>,
+) -> DVector<f64> {
+    let squares = |m: &DMatrix<f64>| m.component_mul(m);
+    let pixels = c.nrows() as f64;
+    let ratio = (squares(stderr) * squares(sharp)).component_div(&squares(c));
+    mean_over_pixels(&ratio, pixels * pixels).map(f64::sqrt)
+}
+
+/// The covariance matrix for independent entries, r × r:
+///
+/// > cov_jk = (1/p²) Σ_l D^#\[l,j\] D^#\[l,k\] Σ_p σ²\[p,l\]/(C\[p,j\] C\[p,k\])
+///
+/// The sums as they stand cost p·l·r². 1/C is smooth in p and j, so its columns, scaled to norm 1, are U T with few (k) orthonormal columns to
+/// rounding, and Σ_p σ² … = Tᵀ (Uᵀ diag(σ²_l) U) T: l·(p·k² + k²·r + k·r²) operations.
+pub(super) fn covariance(
+    stderr: &DMatrix<f64>,
+    sharp: &DMatrix<f64>,
+    c: &DMatrix<f64>,
+) -> Result<DMatrix<f64>, LinalgError> {
+    let (pixels, elements) = c.shape();
+    let mut over_c = c.map(|x| 1.0 / x);
+    let norms: Vec<f64> = over_c.column_iter().map(|column| column.norm()).collect();
+    for (mut column, &norm) in over_c.column_iter_mut().zip(&norms) {
+        column /= norm;
+    }
+    let smooth = svd(&over_c)?;
+    let (rank, _) = cut(smooth.sigma.as_slice(), pixels, elements, Tolerance::Auto)?;
+    let mut t = smooth.vt.rows(0, rank).into_owned();
+    for (mut row, &s) in t.row_iter_mut().zip(smooth.sigma.iter()) {
+        row *= s;
+    }
+    let mut sum = DMatrix::zeros(elements, elements);
+    for (errors, inverse) in stderr.column_iter().zip(sharp.row_iter()) {
+        let mut noise = smooth.u.columns(0, rank).into_owned();
+        for (mut row, &s) in noise.row_iter_mut().zip(errors.iter()) {
+            row *= s;
+        }
+        let mut along = t.clone();
+        for (mut column, &x) in along.column_iter_mut().zip(inverse.iter()) {
+            column *= x;
+        }
+        let weighted = noise.tr_mul(&noise) * &along;
+        sum.gemm_tr(1.0, &along, &weighted, 1.0);
+    }
+    let pixels = pixels as f64;
+    Ok(DMatrix::from_fn(elements, elements, |j, k| {
+        // Both halves are the same sum; their mean is symmetric to the last bit.
+        0.5 * (sum[(j, k)] + sum[(k, j)]) * (norms[j] / pixels) * (norms[k] / pixels)
+    }))
+}
+
+/// The resolution matrix R of E ρ̂ = R ρ, r × r: R_jk = (D D^#)_kj · (1/p) Σ_p C\[p,k\]/C\[p,j\]. Cost p·r².
+pub(super) fn resolution(c: &DMatrix<f64>, product: &DMatrix<f64>) -> DMatrix<f64> {
+    let share = c.map(|x| 1.0 / x).tr_mul(c) / c.nrows() as f64;
+    share.component_mul(&product.transpose())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recovery::bench::{Bench, normal_stream, relative_noise};
+    use crate::recovery::{Method, Options, Problem, Uncertainty, recover};
+
+    /// Every linear method that 2 × 2 elements and 120 spots allow, with a parameter.
+    const METHODS: [Method; 7] = [
+        Method::Pinv,
+        Method::RightInverse,
+        Method::Rdivide,
+        Method::RdivideMinNorm,
+        Method::Tsvd,
+        Method::Tikhonov,
+        Method::TikhonovGradient,
+    ];
+
+    fn options() -> Options {
+        Options {
+            rank: Some(3),
+            damping: Some(0.05),
+            ..Options::default()
+        }
+    }
+
+    fn uneven(bench: &Bench) -> DMatrix<f64> {
+        let (pixels, spots) = (bench.c.nrows(), bench.d.ncols());
+        DMatrix::from_fn(pixels, spots, |p, l| {
+            1e-14 * (1.0 + ((p * 5 + l * 3) % 11) as f64)
+        })
+    }
+
+    #[test]
+    fn the_covariance_is_its_definition() {
+        let bench = Bench::new(3.0, 3, 4);
+        let stderr = uneven(&bench);
+        let sharp = DMatrix::from_fn(120, 9, |l, j| ((l * 7 + j * 5) % 13) as f64 - 6.0);
+        let found = covariance(&stderr, &sharp, &bench.c).unwrap();
+        for j in 0..9 {
+            for k in 0..9 {
+                let mut sum = 0.0;
+                for p in 0..16 {
+                    for l in 0..120 {
+                        sum += stderr[(p, l)].powi(2) * sharp[(l, j)] * sharp[(l, k)]
+                            / (bench.c[(p, j)] * bench.c[(p, k)]);
+                    }
+                }
+                let scale = (found[(j, j)] * found[(k, k)]).sqrt();
+                assert!((found[(j, k)] - sum / 256.0).abs() < 1e-12 * scale);
+            }
+        }
+        let errors = standard_error(&stderr, &sharp, &bench.c);
+        let diagonal = found.diagonal().map(f64::sqrt);
+        assert!((diagonal.component_div(&errors)).add_scalar(-1.0).amax() < 1e-12);
+    }
+
+    /// z² = (ρ̂ − Rρ)ᵀ cov⁻¹ (ρ̂ − Rρ) is χ² of as many degrees as the covariance has rank, for every method.
+    #[test]
+    fn noise_spreads_the_estimate_by_its_covariance() {
+        let bench = Bench::new(6.0, 2, 3);
+        let board = bench.board(2);
+        let exact = bench.phi(&board);
+        let stderr = uneven(&bench);
+        for method in METHODS {
+            let mut normal = normal_stream(17);
+            let trials = 400;
+            let (mut sum, mut degrees) = (0.0, 0);
+            for _ in 0..trials {
+                let phi = exact.zip_map(&stderr, |x, s| x + s * normal());
+                let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr))
+                    .and_then(|p| p.with_grids(&[[2, 2]]))
+                    .unwrap();
+                let found = recover(method, &problem, &options()).unwrap();
+                let error = &found.reflectance - found.resolution.unwrap() * &board;
+                let errors = found.standard_error.unwrap();
+                let covariance = found.covariance.unwrap();
+                let correlation = DMatrix::from_fn(4, 4, |j, k| {
+                    covariance[(j, k)] / (errors[j].max(1e-300) * errors[k].max(1e-300))
+                });
+                let z = error.zip_map(&errors, |e, s| if s > 0.0 { e / s } else { 0.0 });
+                let eigen = svd(&correlation).unwrap();
+                let (rank, _) =
+                    cut(eigen.sigma.as_slice(), 4, 4, Tolerance::Relative(1e-9)).unwrap();
+                degrees = rank;
+                for i in 0..rank {
+                    sum += (eigen.vt.row(i) * &z)[0].powi(2) / eigen.sigma[i];
+                }
+            }
+            // χ² of T·k degrees over T·k: five standard deviations √(2/(T k)).
+            let all = f64::from(trials) * degrees as f64;
+            let mean = sum / all;
+            assert!(
+                degrees >= 3 && (mean - 1.0).abs() < 5.0 * (2.0 / all).sqrt(),
+                "{method}: {mean} with {degrees} degrees"
+            );
+        }
+    }
+
+    /// Column k of R is what a unit of reflectance in element k alone gives, by the map itself.
+    #[test]
+    fn the_resolution_is_the_response_to_one_element() {
+        let bench = Bench::new(6.0, 2, 3);
+        for method in METHODS.into_iter().chain([Method::JointUnbounded]) {
+            for k in 0..4 {
+                let one = DVector::from_fn(4, |j, _| f64::from(u8::from(j == k)));
+                let phi = bench.phi(&one);
+                let problem = Problem::new(&phi, &bench.c, &bench.d, None)
+                    .and_then(|p| p.with_grids(&[[2, 2]]))
+                    .unwrap();
+                let found = recover(method, &problem, &options()).unwrap();
+                let resolution = found.resolution.unwrap();
+                let error = (resolution.column(k) - &found.reflectance).amax();
+                assert!(error < 1e-10, "{method}, element {k}: {error:e}");
+                assert!((resolution.trace() - found.effective_rank).abs() < 1e-10);
+            }
+        }
+    }
+
+    #[test]
+    fn the_covariance_can_be_left_out() {
+        let bench = Bench::new(6.0, 2, 3);
+        let (phi, stderr) = relative_noise(&bench.phi(&bench.board(2)), 1e-3, 2);
+        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+        let options = Options {
+            uncertainty: Uncertainty::StandardError,
+            ..Options::default()
+        };
+        let found = recover(Method::Pinv, &problem, &options).unwrap();
+        assert!(found.covariance.is_none() && found.standard_error.is_some());
+    }
+}

@@ -1,0 +1,291 @@
+//! The `[sensor]` table: how the clean flux is to be photographed. What it means stands on the floor of the sensor.
+
+use serde::Deserialize;
+
+use super::error::{Fault, keys};
+use super::quantity::Quantity;
+
+/// A sensor that is built in.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum SensorModel {
+    /// Without any noise or limit.
+    Ideal,
+    /// A cooled scientific CCD.
+    Ccd,
+    /// An ordinary digital single-lens reflex camera.
+    Dslr,
+    /// An industrial CMOS camera.
+    MachineVision,
+}
+
+impl SensorModel {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Ideal, Self::Ccd, Self::Dslr, Self::MachineVision];
+
+    /// Its name in scene files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ideal => "ideal",
+            Self::Ccd => "ccd",
+            Self::Dslr => "dslr",
+            Self::MachineVision => "machine-vision",
+        }
+    }
+}
+
+/// How scattered light is spread over the image.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(rename_all = "lowercase")]
+pub enum Spread {
+    /// Every pixel gets the same.
+    Uniform,
+    /// ∝ 1/(1 + (d/d0)²), d the distance from the image of the spot on the view's plane, d0 this length.
+    Falloff(f64),
+}
+
+/// Veiling glare: a part of the light that comes from the spot straight into the lens is scattered over the image.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Glare {
+    /// Part of the flux entering the lens, 0 to 1.
+    pub fraction: f64,
+    /// Where it goes.
+    pub spread: Spread,
+}
+
+/// What a scene file says of the sensor and its exposure; `None` where it says nothing. Every value is in its [`Quantity`]'s range.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct SensorSettings {
+    /// The built-in sensor that the other figures change.
+    pub model: Option<SensorModel>,
+    /// Electrons per photon.
+    pub quantum_efficiency: Option<f64>,
+    /// Electrons per second and pixel.
+    pub dark_current: Option<f64>,
+    /// Electrons a pixel can hold.
+    pub full_well: Option<f64>,
+    /// Electrons, root mean square.
+    pub read_noise: Option<f64>,
+    /// Electrons per count.
+    pub gain: Option<f64>,
+    /// Bits of the converter; 0 for none.
+    pub bits: Option<u32>,
+    /// Counts of a pixel without electrons.
+    pub offset: Option<f64>,
+    /// Standard deviation of the factor on each finished entry.
+    pub relative_noise: Option<f64>,
+    /// Whether photons and dark electrons come at random.
+    pub shot_noise: Option<bool>,
+    /// Exposure time, s.
+    pub exposure: Option<f64>,
+    /// Frames averaged.
+    pub frames: Option<u32>,
+    /// Frames without laser, averaged and subtracted.
+    pub dark_frames: Option<u32>,
+    /// Exposure times in place of one, s.
+    pub brackets: Option<Vec<f64>>,
+    /// Ambient light, W into each pixel.
+    pub ambient: Option<f64>,
+    /// Veiling glare.
+    pub glare: Option<Glare>,
+}
+
+/// Most exposure times of one series.
+const MOST_BRACKETS: usize = 16;
+
+impl SensorSettings {
+    /// Checks every value; `None` if all make sense, else the keys to blame below the table, cause and cure.
+    fn fault(&self) -> Option<Fault> {
+        let number = |quantity: Quantity, value: Option<f64>| Some((quantity, value?));
+        let whole = |quantity, value: Option<u32>| number(quantity, value.map(f64::from));
+        let refused = [
+            number(Quantity::QuantumEfficiency, self.quantum_efficiency),
+            number(Quantity::DarkCurrent, self.dark_current),
+            number(Quantity::FullWell, self.full_well),
+            number(Quantity::ReadNoise, self.read_noise),
+            number(Quantity::Gain, self.gain),
+            whole(Quantity::Bits, self.bits),
+            number(Quantity::Offset, self.offset),
+            number(Quantity::RelativeNoise, self.relative_noise),
+            number(Quantity::Exposure, self.exposure),
+            whole(Quantity::Frames, self.frames),
+            whole(Quantity::DarkFrames, self.dark_frames),
+            number(Quantity::Ambient, self.ambient),
+        ]
+        .into_iter()
+        .flatten()
+        .find_map(|(quantity, value)| blame(quantity, value, []));
+        refused
+            .or_else(|| self.glare.as_ref().and_then(glare_fault))
+            .or_else(|| {
+                self.brackets
+                    .as_ref()
+                    .and_then(|times| brackets_fault(times))
+            })
+            .or_else(|| {
+                let twice = self.exposure.is_some() && self.brackets.is_some();
+                twice.then(|| {
+                    Fault::new(
+                        keys!["brackets"],
+                        "both `exposure` and `brackets` are given",
+                        "keep one: brackets are the exposure times of a series",
+                    )
+                })
+            })
+    }
+
+    /// The settings of a scene, checked.
+    pub(super) fn checked(self) -> Result<Self, Fault> {
+        match self.fault() {
+            None => Ok(self),
+            Some(fault) => Err(fault.within(keys!["sensor"])),
+        }
+    }
+}
+
+fn blame(
+    quantity: Quantity,
+    value: f64,
+    outer: impl IntoIterator<Item = super::error::Step>,
+) -> Option<Fault> {
+    let key = quantity.key();
+    let range = quantity.refuses(value)?;
+    Some(
+        Fault::new(
+            keys![key],
+            format!("{key} = {value}"),
+            format!("use {range}"),
+        )
+        .within(outer),
+    )
+}
+
+fn glare_fault(glare: &Glare) -> Option<Fault> {
+    let fraction = blame(Quantity::GlareFraction, glare.fraction, keys!["glare"]);
+    fraction.or_else(|| match glare.spread {
+        Spread::Uniform => None,
+        Spread::Falloff(d0) => blame(Quantity::GlareFalloff, d0, keys!["glare", "spread"]),
+    })
+}
+
+fn brackets_fault(times: &[f64]) -> Option<Fault> {
+    if !(1..=MOST_BRACKETS).contains(&times.len()) {
+        let cause = format!("brackets has {} exposure times", times.len());
+        let cure = format!("give 1 to {MOST_BRACKETS}");
+        return Some(Fault::new(keys!["brackets"], cause, cure));
+    }
+    let wrong = |t: &&f64| Quantity::Exposure.refuses(**t).is_some();
+    times.iter().find(wrong).map(|t| {
+        let cause = format!("brackets has the exposure time {t} s");
+        Fault::new(keys!["brackets"], cause, "give positive times in s")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Scene, SceneError};
+    use super::*;
+
+    const BENCH: &str = include_str!("../../scenes/bench.toml");
+
+    fn with(table: &str) -> Result<Scene, SceneError> {
+        Scene::from_toml("my.toml", &format!("{BENCH}\n[sensor]\n{table}\n"))
+    }
+
+    #[test]
+    fn settings_are_read_as_written() {
+        let text = "model = \"machine-vision\"\nfull_well = inf\nbits = 0\nshot_noise = false\nframes = 4\n\
+                    brackets = [1, 0.1]\nglare = { fraction = 1e-4, spread = { falloff = 2 } }";
+        let settings = SensorSettings {
+            model: Some(SensorModel::MachineVision),
+            full_well: Some(f64::INFINITY),
+            bits: Some(0),
+            shot_noise: Some(false),
+            frames: Some(4),
+            brackets: Some(vec![1.0, 0.1]),
+            glare: Some(Glare {
+                fraction: 1e-4,
+                spread: Spread::Falloff(2.0),
+            }),
+            ..SensorSettings::default()
+        };
+        assert_eq!(with(text).unwrap().sensor, Some(settings));
+        let uniform = with("glare = { fraction = 0.5, spread = \"uniform\" }").unwrap();
+        assert_eq!(
+            uniform.sensor.unwrap().glare.unwrap().spread,
+            Spread::Uniform
+        );
+        for model in SensorModel::ALL {
+            let scene = with(&format!("model = \"{}\"", model.name())).unwrap();
+            assert_eq!(scene.sensor.unwrap().model, Some(model));
+        }
+    }
+
+    /// A sensor does not change the light, and so not the hash of what was rendered.
+    #[test]
+    fn a_sensor_does_not_change_the_hash() {
+        let bare = Scene::from_toml("my.toml", BENCH).unwrap();
+        assert!(bare.sensor.is_none());
+        assert_eq!(with("model = \"ccd\"").unwrap().hash, bare.hash);
+    }
+
+    #[test]
+    fn senseless_settings_are_refused_where_they_stand() {
+        for (line, cause, cure) in [
+            (
+                "quantum_efficiency = 0",
+                "quantum_efficiency = 0",
+                "above 0",
+            ),
+            ("quantum_efficiency = 1.1", "1.1", "up to 1"),
+            ("dark_current = -1", "-1", "0 or more"),
+            ("full_well = 0", "full_well = 0", "inf"),
+            ("full_well = nan", "NaN", "positive"),
+            ("read_noise = inf", "inf", "0 or more"),
+            ("gain = 0", "gain = 0", "per count"),
+            ("bits = 17", "bits = 17", "1 to 16"),
+            ("bits = -1", "invalid value", ""),
+            ("offset = -5", "-5", "0 or more"),
+            ("relative_noise = 1", "relative_noise = 1", "below 1"),
+            ("exposure = 0", "exposure = 0", "positive time"),
+            ("frames = 0", "frames = 0", "1 to"),
+            ("dark_frames = 2000000", "2000000", "0 to"),
+            ("brackets = []", "0 exposure times", "1 to 16"),
+            ("brackets = [1, 0]", "time 0 s", "positive"),
+            ("ambient = -1e-15", "ambient", "W"),
+            (
+                "glare = { fraction = 2, spread = \"uniform\" }",
+                "fraction = 2",
+                "0 to 1",
+            ),
+            (
+                "glare = { fraction = 0.1, spread = { falloff = 0 } }",
+                "falloff = 0",
+                "length",
+            ),
+            (
+                "glare = { fraction = 0.1, spread = \"unifrom\" }",
+                "unknown variant",
+                "`uniform`",
+            ),
+            ("glare = { fraction = 0.1 }", "missing field", "spread"),
+            ("model = \"cdc\"", "unknown variant", "`ccd`"),
+            (
+                "quantum_eficiency = 0.5",
+                "unknown field",
+                "`quantum_efficiency`",
+            ),
+            ("shot_noise = 1", "invalid type", ""),
+        ] {
+            let error = with(line).unwrap_err();
+            assert_eq!(error.place.as_ref().unwrap().text, line, "{error}");
+            assert!(error.cause.contains(cause), "{error}");
+            assert!(error.cure.contains(cure), "{error}");
+        }
+        let both = with("exposure = 1\nbrackets = [1, 2]").unwrap_err();
+        assert!(both.cause.contains("both"), "{both}");
+        assert!(both.place.unwrap().text.starts_with("brackets"));
+    }
+}

@@ -1,0 +1,70 @@
+//! What a sensor cannot photograph.
+
+use crate::scene::Quantity;
+
+/// Why an exposure makes no sense. Each message names cause and cure.
+#[derive(Clone, Copy, Debug, thiserror::Error, PartialEq)]
+pub enum SensorError {
+    /// A figure out of its range.
+    #[error("{key} = {value} has no meaning; use {range}")]
+    Figure {
+        /// Which one.
+        key: &'static str,
+        /// The value given.
+        value: f64,
+        /// What would make sense.
+        range: &'static str,
+    },
+    /// The converter has no room above its offset.
+    #[error(
+        "an offset of {offset} counts leaves nothing of {top} counts for light; lower `offset` or raise `bits`"
+    )]
+    Offset {
+        /// The offset, counts.
+        offset: f64,
+        /// The highest count.
+        top: f64,
+    },
+    /// No exposure time.
+    #[error("no exposure time is given; give one, or several for a series")]
+    NoTime,
+    /// A wavelength that light cannot have.
+    #[error(
+        "a wavelength of {0} m has no photons; give a positive number of metres, e.g. 632.8e-9"
+    )]
+    Wavelength(f64),
+    /// A flux that cannot be.
+    #[error(
+        "the flux into pixel {pixel} for spot {spot} is {value:e} W; only finite fluxes of 0 or more can be photographed: give the clean flux of a render"
+    )]
+    Flux {
+        /// Pixel index.
+        pixel: usize,
+        /// Spot index.
+        spot: usize,
+        /// The flux, W.
+        value: f64,
+    },
+    /// Glare of other size than the signal.
+    #[error(
+        "the glare has {found:?} (pixels, spots), the flux {expected:?}; take both from one scene"
+    )]
+    Shape {
+        /// Rows and columns of the flux.
+        expected: (usize, usize),
+        /// Rows and columns of the glare.
+        found: (usize, usize),
+    },
+}
+
+/// Refuses a value out of its quantity's range.
+pub(super) fn check(quantity: Quantity, value: f64) -> Result<(), SensorError> {
+    match quantity.refuses(value) {
+        None => Ok(()),
+        Some(range) => Err(SensorError::Figure {
+            key: quantity.key(),
+            value,
+            range,
+        }),
+    }
+}

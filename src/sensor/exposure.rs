@@ -1,0 +1,145 @@
+//! The light that is photographed, and how long.
+
+use super::error::{SensorError, check};
+use crate::matrix::Matrix;
+use crate::num::units::photon_energy;
+use crate::scene::Quantity;
+
+/// The light that falls on the sensor.
+#[derive(Clone, Copy, Debug)]
+pub struct Light<'a> {
+    signal: &'a Matrix,
+    glare: Option<&'a Matrix>,
+    ambient: f64,
+    wavelength: f64,
+}
+
+impl<'a> Light<'a> {
+    /// The clean flux `signal` (pixels × spots, W) of light of `wavelength` (m).
+    ///
+    /// # Errors
+    /// [`SensorError::Flux`], [`SensorError::Wavelength`].
+    pub fn new(signal: &'a Matrix, wavelength: f64) -> Result<Self, SensorError> {
+        if !(wavelength > 0.0 && wavelength.is_finite()) {
+            return Err(SensorError::Wavelength(wavelength));
+        }
+        Self::refuse(signal)?;
+        Ok(Self {
+            signal,
+            glare: None,
+            ambient: 0.0,
+            wavelength,
+        })
+    }
+
+    /// With scattered light of the laser (pixels × spots, W), see [`glare`](super::glare()).
+    ///
+    /// # Errors
+    /// [`SensorError::Shape`], [`SensorError::Flux`].
+    pub fn with_glare(self, glare: &'a Matrix) -> Result<Self, SensorError> {
+        if glare.shape() != self.signal.shape() {
+            return Err(SensorError::Shape {
+                expected: self.signal.shape(),
+                found: glare.shape(),
+            });
+        }
+        Self::refuse(glare)?;
+        Ok(Self {
+            glare: Some(glare),
+            ..self
+        })
+    }
+
+    /// With ambient light, W into each pixel, as if of the laser's wavelength. It is there without the laser too.
+    ///
+    /// # Errors
+    /// [`SensorError::Figure`].
+    pub fn with_ambient(self, ambient: f64) -> Result<Self, SensorError> {
+        check(Quantity::Ambient, ambient)?;
+        Ok(Self { ambient, ..self })
+    }
+
+    fn refuse(flux: &Matrix) -> Result<(), SensorError> {
+        let wrong = flux.iter().position(|x| !(*x >= 0.0 && x.is_finite()));
+        match wrong {
+            None => Ok(()),
+            Some(at) => Err(SensorError::Flux {
+                pixel: at % flux.nrows(),
+                spot: at / flux.nrows(),
+                value: flux[at],
+            }),
+        }
+    }
+
+    /// Pixels and spots.
+    pub fn shape(&self) -> (usize, usize) {
+        self.signal.shape()
+    }
+
+    /// The signal alone, W.
+    pub(super) fn signal(&self, pixel: usize, spot: usize) -> f64 {
+        self.signal[(pixel, spot)]
+    }
+
+    /// Signal and glare: what is there with the laser only, W.
+    pub(super) fn of_laser(&self, pixel: usize, spot: usize) -> f64 {
+        self.signal(pixel, spot) + self.glare.map_or(0.0, |g| g[(pixel, spot)])
+    }
+
+    /// What is there without the laser, W into each pixel.
+    pub(super) fn ambient(&self) -> f64 {
+        self.ambient
+    }
+
+    /// Photons per joule.
+    pub(super) fn photons_per_joule(&self) -> f64 {
+        1.0 / photon_energy(self.wavelength)
+    }
+}
+
+/// How frames are taken.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exposure {
+    times: Vec<f64>,
+    frames: u32,
+    dark_frames: u32,
+}
+
+impl Exposure {
+    /// `frames` frames of each of the exposure times (s), and as many times `dark_frames` without the laser.
+    ///
+    /// # Errors
+    /// [`SensorError::NoTime`], [`SensorError::Figure`].
+    pub fn new(times: &[f64], frames: u32, dark_frames: u32) -> Result<Self, SensorError> {
+        if times.is_empty() {
+            return Err(SensorError::NoTime);
+        }
+        for time in times {
+            check(Quantity::Exposure, *time)?;
+        }
+        check(Quantity::Frames, f64::from(frames))?;
+        check(Quantity::DarkFrames, f64::from(dark_frames))?;
+        let mut times = times.to_vec();
+        times.sort_by(|a, b| b.total_cmp(a));
+        Ok(Self {
+            times,
+            frames,
+            dark_frames,
+        })
+    }
+
+    /// Exposure times, s, the longest first.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Frames averaged at each time.
+    pub fn frames(&self) -> u32 {
+        self.frames
+    }
+
+    /// Frames without laser averaged and subtracted at each time; 0: only the offset is subtracted.
+    pub fn dark_frames(&self) -> u32 {
+        self.dark_frames
+    }
+}

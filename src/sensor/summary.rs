@@ -1,0 +1,54 @@
+//! An exposure in a few numbers.
+
+use serde::Serialize;
+
+use super::expose::{Exposed, Range};
+use super::exposure::{Exposure, Light};
+use super::figures::Sensor;
+
+/// What photographs came to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// Pixels times spots.
+    pub entries: usize,
+    /// Electrons in one frame of the longest exposure, expected: mean over all entries.
+    pub electrons_mean: f64,
+    /// The largest of them.
+    pub electrons_max: f64,
+    /// Entries whose full well or converter was at its end in every exposure.
+    pub saturated: usize,
+    /// Entries whose counts the converter cut off below 0.
+    pub floored: usize,
+    /// Entries taken from each exposure time, the longest first.
+    pub taken: Vec<usize>,
+    /// Signal (the clean flux) over standard deviation, mean over the entries within range; `None` without such entries or without noise.
+    pub snr_mean: Option<f64>,
+    /// The largest of them.
+    pub snr_max: Option<f64>,
+}
+
+impl Summary {
+    /// Sums up what `sensor` made of `light`.
+    pub fn new(sensor: &Sensor, light: &Light<'_>, exposure: &Exposure, exposed: &Exposed) -> Self {
+        let electrons = sensor.expected(light, exposure).electrons;
+        let (pixels, spots) = light.shape();
+        let within = |at: &usize| exposed.range[*at] == Range::Within;
+        let snr: Vec<f64> = (0..pixels * spots)
+            .filter(within)
+            .map(|at| light.signal(at % pixels, at / pixels) / exposed.stderr[at])
+            .collect();
+        let noisy = exposed.stderr.iter().all(|s| *s > 0.0) && !snr.is_empty();
+        Self {
+            entries: pixels * spots,
+            electrons_mean: electrons.mean(),
+            electrons_max: electrons.max(),
+            saturated: exposed.count(Range::Saturated),
+            floored: exposed.count(Range::Floored),
+            taken: (0..exposure.times().len())
+                .map(|k| exposed.bracket.iter().filter(|b| **b == k).count())
+                .collect(),
+            snr_mean: noisy.then(|| snr.iter().sum::<f64>() / snr.len() as f64),
+            snr_max: noisy.then(|| snr.iter().copied().fold(0.0, f64::max)),
+        }
+    }
+}

@@ -1,0 +1,339 @@
+//! The failed laboratory experiment, re-enacted: traced light, glare of the lens, a real sensor, and every way of reading the photographs.
+//!
+//! The photographs of a scene are Φ\[p,l\] = Φ_object\[p,l\] + Φ_glare\[p,l\], exposed by a sensor. Φ_object is traced, so no analysis is
+//! helped by a model that made its data. The glare is the light that enters the lens straight from the laser spot, scattered over the image
+//! ([`crate::sensor::glare`]); its strength is given as glare over signal, Σ Φ_glare/Σ Φ_object.
+
+mod analysis;
+mod results;
+mod words;
+
+use std::sync::atomic::Ordering;
+
+use rayon::prelude::*;
+
+use super::Spread;
+use crate::matrix::Matrix;
+use crate::model::{Kernel, MatrixModel, ModelError};
+use crate::num::stream::Sampling;
+use crate::scene::{Glare, Scene, Spread as GlareSpread};
+use crate::sensor::{
+    Exposed, Exposure, Light, Sensor, SensorError, entering_lens, glare, glare_to_signal,
+};
+use crate::transport::{Budget, Control, Estimator, Plan, render};
+use analysis::{ANALYSES, Figures, Laboratory, Photographs};
+pub use results::{Experiment, Reading, Setting, Threshold};
+
+/// How the experiment is re-enacted.
+#[derive(Clone, Debug)]
+pub struct ExperimentPlan {
+    /// The sensor.
+    pub sensor: Sensor,
+    /// Its name.
+    pub sensor_name: String,
+    /// Paths per pixel of the traced light.
+    pub samples: u64,
+    /// Seed of the tracer, and first one of the sensor.
+    pub seed: u64,
+    /// Seeds of the sensor's noise.
+    pub seeds: u64,
+    /// Frames averaged at each spot in the sweep over glare; the sweep over exposures takes one.
+    pub frames: u32,
+    /// Glare over signal, growing.
+    pub glares: Vec<f64>,
+    /// Exposure times over the longest one that the sensor bears, growing up to 1.
+    pub exposures: Vec<f64>,
+    /// Distance on the wall, scene units, at which the falling glare has halved; the even one is always studied too.
+    pub falloff: f64,
+}
+
+/// Why there is no study.
+#[derive(Debug, thiserror::Error)]
+pub enum ExperimentError {
+    /// The scene has no model.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The sensor cannot take the photographs.
+    #[error(transparent)]
+    Sensor(#[from] SensorError),
+    /// Nothing to be traced with.
+    #[error("{0} samples cannot be traced (use 1 to 2³²)")]
+    Samples(u64),
+    /// No light.
+    #[error("no light from the object reaches the camera (see `phicam scene check`)")]
+    Dark,
+    /// No glare to be had.
+    #[error(
+        "no light enters the lens straight from any spot, so there is no glare to study (let the camera face the wall where the spots are)"
+    )]
+    NoGlare,
+    /// A list is empty or not growing.
+    #[error("the list of {0} must not be empty and must grow from 0 or more")]
+    List(&'static str),
+}
+
+/// A photograph of the longest bearable exposure fills the fullest pixel to this share of what it holds.
+const FILLED: f64 = 0.5;
+/// Exposure of a sensor without limits, s.
+const UNLIMITED: f64 = 1.0;
+
+/// Re-enacts the experiment of `scene`. `steps` hears how many of all photograph series are read. `Ok(None)` if stopped.
+///
+/// # Errors
+/// [`ExperimentError`].
+pub fn experiment(
+    scene: &Scene,
+    plan: &ExperimentPlan,
+    control: Control<'_>,
+    steps: &(dyn Fn(usize, usize) + Sync),
+) -> Result<Option<Experiment>, ExperimentError> {
+    grows("--glares", &plan.glares, 0.0)?;
+    grows("--exposures", &plan.exposures, f64::MIN_POSITIVE)?;
+    let sampling = Sampling::Sobol;
+    let laboratory = Laboratory::new(
+        MatrixModel::new(scene, Kernel::Physical, None)?,
+        MatrixModel::new(scene, Kernel::Published, None)?,
+        [scene.camera.columns, scene.camera.rows],
+    );
+    let trace = Plan {
+        estimator: Estimator::Shared,
+        sampling,
+        seed: plan.seed,
+        budget: Budget::new(plan.samples, sampling)
+            .ok_or(ExperimentError::Samples(plan.samples))?,
+    };
+    let Some(traced) = render(scene, &trace, 0..scene.laser.spots.len(), control) else {
+        return Ok(None);
+    };
+    let signal = traced.flux;
+    if signal.sum() <= 0.0 {
+        return Err(ExperimentError::Dark);
+    }
+    let direct: f64 = entering_lens(scene).iter().sum();
+    if direct <= 0.0 {
+        return Err(ExperimentError::NoGlare);
+    }
+    let work = works(scene, plan, &signal);
+    let all = work.len() * plan.seeds as usize;
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let mut settings = Vec::with_capacity(work.len());
+    for w in &work {
+        let read: Result<Vec<Option<Seed>>, ExperimentError> = (0..plan.seeds)
+            .into_par_iter()
+            .map(|k| {
+                if control.stop.load(Ordering::Relaxed) {
+                    return Ok(None);
+                }
+                let seed = seed(
+                    scene,
+                    plan,
+                    &laboratory,
+                    w,
+                    &signal,
+                    plan.seed.wrapping_add(k),
+                )?;
+                steps(done.fetch_add(1, Ordering::Relaxed) + 1, all);
+                Ok(Some(seed))
+            })
+            .collect();
+        let Some(seeds) = read?.into_iter().collect::<Option<Vec<Seed>>>() else {
+            return Ok(None);
+        };
+        settings.push(setting(scene, w, &signal, &seeds, plan));
+    }
+    let by_exposure = settings.split_off(2 * plan.glares.len());
+    let thresholds = words::thresholds(&settings, &by_exposure);
+    let mut found = Experiment {
+        scene: scene.name.clone(),
+        scene_hash: scene.hash.clone(),
+        sensor: plan.sensor_name.clone(),
+        seeds: plan.seeds,
+        signal: signal.mean(),
+        direct_over_signal: direct / signal.sum(),
+        by_glare: settings,
+        by_exposure,
+        thresholds,
+        words: String::new(),
+    };
+    found.words = words::words(&found, &object(scene));
+    Ok(Some(found))
+}
+
+fn grows(name: &'static str, list: &[f64], least: f64) -> Result<(), ExperimentError> {
+    let fine = list.first().is_some_and(|x| *x >= least) && list.windows(2).all(|w| w[0] < w[1]);
+    match fine && list.iter().all(|x| x.is_finite()) {
+        true => Ok(()),
+        false => Err(ExperimentError::List(name)),
+    }
+}
+
+/// The object in words.
+fn object(scene: &Scene) -> String {
+    let names: Vec<String> = scene
+        .hidden()
+        .map(|(_, s)| format!("`{}`", s.name))
+        .collect();
+    names.join(" and ")
+}
+
+/// One series of photographs.
+struct Work {
+    spread: GlareSpread,
+    ratio: f64,
+    fraction: f64,
+    /// Light of the laser that the lens scatters, pixels × spots, W.
+    glare: Matrix,
+    /// The same for the whole of the light that enters.
+    pattern: Matrix,
+    time: f64,
+    frames: u32,
+}
+
+/// First the settings of growing glare, even and falling off, then those of growing exposure.
+fn works(scene: &Scene, plan: &ExperimentPlan, signal: &Matrix) -> Vec<Work> {
+    let spreads = [GlareSpread::Uniform, GlareSpread::Falloff(plan.falloff)];
+    let patterns = spreads.map(|spread| {
+        (
+            spread,
+            glare(
+                scene,
+                Glare {
+                    fraction: 1.0,
+                    spread,
+                },
+            ),
+        )
+    });
+    let work = |(spread, pattern): &(GlareSpread, Matrix), ratio: f64, share: f64, frames| {
+        let fraction = ratio / glare_to_signal(pattern, signal);
+        let glare = pattern * fraction;
+        let brightest = (signal + &glare).max();
+        Work {
+            spread: *spread,
+            ratio,
+            fraction,
+            time: share * longest(&plan.sensor, brightest, scene.laser.wavelength),
+            glare,
+            pattern: pattern.clone(),
+            frames,
+        }
+    };
+    let by_glare = patterns.iter().flat_map(|p| {
+        plan.glares
+            .iter()
+            .map(move |g| work(p, *g, 1.0, plan.frames))
+    });
+    let by_exposure = patterns
+        .iter()
+        .flat_map(|p| plan.exposures.iter().map(move |t| work(p, 1.0, *t, 1)));
+    by_glare.chain(by_exposure).collect()
+}
+
+/// The exposure, s, that fills a pixel of flux `brightest` (W) to [`FILLED`] of what well and converter hold.
+fn longest(sensor: &Sensor, brightest: f64, wavelength: f64) -> f64 {
+    let figures = sensor.figures();
+    let most = figures
+        .full_well
+        .min((figures.top() - figures.offset) * figures.gain);
+    let rate = figures.quantum_efficiency * brightest
+        / crate::num::units::photon_energy(wavelength)
+        + figures.dark_current;
+    match most.is_finite() {
+        true => FILLED * most / rate,
+        false => UNLIMITED,
+    }
+}
+
+/// What one seed gives.
+struct Seed {
+    saturated: usize,
+    noise: f64,
+    figures: Vec<Result<Figures, String>>,
+}
+
+fn seed(
+    scene: &Scene,
+    plan: &ExperimentPlan,
+    laboratory: &Laboratory,
+    work: &Work,
+    signal: &Matrix,
+    seed: u64,
+) -> Result<Seed, ExperimentError> {
+    let exposure = Exposure::new(&[work.time], work.frames, work.frames)?;
+    let wavelength = scene.laser.wavelength;
+    let expose = |light: &Matrix, seed: u64| -> Result<Exposed, SensorError> {
+        let light = Light::new(light, wavelength)?.with_glare(&work.glare)?;
+        plan.sensor.expose(&light, &exposure, seed)
+    };
+    let taken = expose(signal, seed.wrapping_mul(2))?;
+    let covered = expose(
+        &Matrix::zeros(signal.nrows(), signal.ncols()),
+        seed.wrapping_mul(2).wrapping_add(1),
+    )?;
+    let saturated = taken.count(crate::sensor::Range::Saturated);
+    let noise = taken.stderr.norm() / signal.norm();
+    let photographs = |e: Exposed| Photographs {
+        flux: e.flux,
+        stderr: e.stderr,
+    };
+    let (taken, covered) = (photographs(taken), photographs(covered));
+    let figures = ANALYSES
+        .iter()
+        .map(|a| {
+            laboratory
+                .read(a, &taken, &covered, &work.pattern)
+                .map_err(|e| e.to_string())
+        })
+        .collect();
+    Ok(Seed {
+        saturated,
+        noise,
+        figures,
+    })
+}
+
+fn setting(
+    scene: &Scene,
+    work: &Work,
+    signal: &Matrix,
+    seeds: &[Seed],
+    plan: &ExperimentPlan,
+) -> Setting {
+    let readings = ANALYSES
+        .iter()
+        .enumerate()
+        .map(|(i, analysis)| {
+            let of = |f: fn(&Figures) -> Option<f64>| {
+                let values: Vec<f64> = seeds
+                    .iter()
+                    .filter_map(|s| f(s.figures[i].as_ref().ok()?))
+                    .collect();
+                Spread::of(&values)
+            };
+            let reasons = || seeds.iter().filter_map(|s| s.figures[i].as_ref().err());
+            Reading {
+                analysis: analysis.name.to_owned(),
+                mtf: of(|f| f.mtf),
+                mtf_normalized: of(|f| f.mtf_normalized),
+                correlation: of(|f| f.correlation),
+                failed: reasons().count() as u64,
+                reason: reasons().next_back().cloned(),
+            }
+        })
+        .collect();
+    let rate = plan.sensor.figures().quantum_efficiency
+        / crate::num::units::photon_energy(scene.laser.wavelength);
+    Setting {
+        spread: match work.spread {
+            GlareSpread::Uniform => "even".to_owned(),
+            GlareSpread::Falloff(_) => "falling".to_owned(),
+        },
+        glare: work.ratio,
+        fraction: work.fraction,
+        exposure: work.time,
+        electrons: rate * signal.mean() * work.time,
+        saturated: seeds.iter().map(|s| s.saturated).max().unwrap_or(0),
+        noise: seeds.iter().map(|s| s.noise).sum::<f64>() / seeds.len() as f64,
+        readings,
+    }
+}

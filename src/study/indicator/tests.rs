@@ -1,0 +1,86 @@
+use super::*;
+
+/// Two layouts × two numbers × one half-width × elements 2 and 4 × one kernel; boards 2 and 4: (2, 2), (4, 2), (4, 4).
+pub(super) fn small_plan() -> IndicatorPlan {
+    IndicatorPlan {
+        layouts: vec![Layout::Staggered, Layout::Random],
+        spots: vec![8, 40],
+        half_widths: vec![4.0],
+        elements: vec![2, 4],
+        boards: vec![2, 4],
+        kernels: vec![Kernel::Physical],
+        methods: vec![Method::Pinv, Method::JointUnbounded],
+        noise: vec![1e-4],
+        every: 4,
+        seeds: 50,
+        first_seed: 1,
+    }
+}
+
+fn small_scene() -> Scene {
+    let text = Scene::load("bench").unwrap().text;
+    Scene::from_toml(
+        "small",
+        &text.replace("pixels = [16, 16]", "pixels = [4, 4]"),
+    )
+    .unwrap()
+}
+
+fn run(plan: &IndicatorPlan) -> Result<Option<Indicator>, IndicatorError> {
+    indicator(&small_scene(), plan, &AtomicBool::new(false), &|_, _| ())
+}
+
+#[test]
+fn the_sweep_is_whole_and_does_not_depend_on_threads() {
+    let pool = |n| {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(n)
+            .build()
+            .unwrap()
+    };
+    let found = pool(1).install(|| run(&small_plan())).unwrap().unwrap();
+    assert_eq!(found.configurations.len(), 2 * 2 * 3);
+    // Configurations 0, 4 and 8, two methods, one noise.
+    assert_eq!(found.points.len(), 3 * 2);
+    let json = |i: &Indicator| serde_json::to_string(i).unwrap();
+    let other = pool(3).install(|| run(&small_plan())).unwrap().unwrap();
+    assert_eq!(json(&found), json(&other));
+    let figures: Vec<&str> = found
+        .coefficients
+        .iter()
+        .map(|c| c.indicator.as_str())
+        .collect();
+    assert_eq!(figures.len(), 7);
+}
+
+/// Least squares over all pixels states its covariance, so its mean under noise is predicted.
+#[test]
+fn the_mean_under_noise_is_the_predicted_one() {
+    let found = run(&small_plan()).unwrap().unwrap();
+    let joint = &found.noisy[1];
+    assert!(joint.compared > 0, "{joint:?}");
+    assert!(joint.largest_p > 1e-3, "{joint:?}");
+}
+
+#[test]
+fn what_cannot_be_swept_is_refused() {
+    let none = IndicatorPlan {
+        boards: vec![3],
+        ..small_plan()
+    };
+    assert!(matches!(run(&none), Err(IndicatorError::NoObject)));
+    let furnace = Scene::load("furnace").unwrap();
+    let stop = AtomicBool::new(false);
+    let refused = indicator(&furnace, &small_plan(), &stop, &|_, _| ());
+    assert!(matches!(
+        refused,
+        Err(IndicatorError::Model(ModelError::NothingHidden))
+    ));
+    let stopped = indicator(
+        &small_scene(),
+        &small_plan(),
+        &AtomicBool::new(true),
+        &|_, _| (),
+    );
+    assert!(stopped.unwrap().is_none());
+}

@@ -1,0 +1,133 @@
+//! Photographs and noise models from which nothing can be recovered: said by each method, with cause and cure, and nothing written.
+
+use phicam::matrix::{Matrix, npy};
+use phicam::recovery::Method;
+
+use crate::small_scene::{TINY, altered};
+use crate::workspace::Workspace;
+
+/// A folder `bench` with a scene of 6 pixels and 8 spots alone, as for measured photographs.
+fn measured() -> Workspace {
+    with_scene(&altered(&TINY))
+}
+
+fn with_scene(text: &str) -> Workspace {
+    let workspace = Workspace::new();
+    std::fs::create_dir(workspace.path("bench")).unwrap();
+    workspace.write("bench/scene.toml", text);
+    workspace
+}
+
+/// Writes a matrix with one entry changed.
+fn write(workspace: &Workspace, name: &str, rows: usize, value: f64, at: (usize, usize, f64)) {
+    let mut matrix = Matrix::from_element(rows, 8, value);
+    matrix[(at.0, at.1)] = at.2;
+    npy::write(&workspace.path(name), &matrix).unwrap();
+}
+
+/// `recover bench --phi phi.npy` with each method is refused.
+fn every_method_refuses(workspace: &Workspace, more: &str, words: &[&str]) {
+    for method in Method::ALL {
+        let line = format!("recover bench --phi phi.npy --method {method} --elements 2 {more}");
+        workspace.refuses(&line, words);
+    }
+    workspace.refuses(&format!("recover bench --phi phi.npy {more}"), words);
+}
+
+#[test]
+fn entries_that_are_no_numbers() {
+    for (value, name) in [(f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
+        let workspace = measured();
+        write(&workspace, "phi.npy", 6, 1e-12, (4, 7, value));
+        every_method_refuses(&workspace, "", &["phi.npy", name, "4", "7"]);
+        write(&workspace, "phi.npy", 6, 1e-12, (0, 0, 1e-12));
+        write(&workspace, "errors.npy", 6, 1e-14, (1, 2, value));
+        every_method_refuses(&workspace, "--stderr errors.npy", &["errors.npy", name]);
+    }
+}
+
+#[test]
+fn another_shape() {
+    let workspace = measured();
+    write(&workspace, "phi.npy", 5, 1e-12, (0, 0, 1e-12));
+    every_method_refuses(&workspace, "", &["phi.npy", "5 × 8", "6 pixels", "8 spots"]);
+    write(&workspace, "phi.npy", 6, 1e-12, (0, 0, 1e-12));
+    write(&workspace, "errors.npy", 7, 1e-14, (0, 0, 1e-14));
+    let words = ["errors.npy", "7 × 8", "6 pixels", "cure: "];
+    every_method_refuses(&workspace, "--stderr errors.npy", &words);
+}
+
+#[test]
+fn negative_standard_errors() {
+    let workspace = measured();
+    write(&workspace, "phi.npy", 6, 1e-12, (0, 0, 1e-12));
+    write(&workspace, "errors.npy", 6, 1e-14, (3, 5, -1e-20));
+    let words = ["errors.npy", "negative", "pixel 3, spot 5", "cure: "];
+    every_method_refuses(&workspace, "--stderr errors.npy", &words);
+}
+
+#[test]
+fn no_noise_where_noise_is_asked_for() {
+    let workspace = measured();
+    write(&workspace, "phi.npy", 6, 1e-12, (0, 0, 2e-12));
+    write(&workspace, "errors.npy", 6, 0.0, (0, 0, 0.0));
+    for method in ["tsvd", "tikhonov", "tikhonov-gradient"] {
+        let line = format!("recover bench --phi phi.npy --stderr errors.npy --method {method}");
+        let words = [method, "every standard error is zero", "give", "gcv"];
+        workspace.refuses(&line, &words);
+    }
+}
+
+#[test]
+fn photographs_that_are_black() {
+    let workspace = measured();
+    write(&workspace, "phi.npy", 6, 0.0, (0, 0, 0.0));
+    write(&workspace, "errors.npy", 6, 1e-14, (0, 0, 1e-14));
+    for more in ["", "--stderr errors.npy", "--rule gcv", "--rule l-curve"] {
+        every_method_refuses(
+            &workspace,
+            more,
+            &["every entry of phi is zero", "no light", "check"],
+        );
+    }
+}
+
+#[test]
+fn a_hidden_surface_that_no_spot_lights() {
+    // It faces −y at y = 8: the pixels below see it, the spots above do not light it.
+    let object = "corner = [3, 11.350951966438567, 4.149048033561433], u = [4, 0, 0], v = [0, -2.82842712474619, 2.82842712474619]";
+    let turned = "corner = [3, 8, 2], u = [4, 0, 0], v = [0, 0, 3]";
+    let spots = "layout = \"list\"\npoints = [[1, 10], [2, 11], [3, 12], [4, 13], [5, 12], [6, 11], [7, 10], [8, 9.5]]";
+    let square = [
+        ("layout = \"square\"", spots),
+        ("centre = [5.0, 4.373476808130942]", ""),
+        ("half_width = 3.0", ""),
+        ("per_side = 30", ""),
+        ("stagger = [-1.0, 1.0, 0.0]", ""),
+        ("pixels = [16, 16]", "pixels = [3, 2]"),
+        (object, turned),
+    ];
+    let workspace = with_scene(&altered(&square));
+    write(&workspace, "phi.npy", 6, 1e-12, (0, 0, 2e-12));
+    every_method_refuses(&workspace, "", &["laser side D", "rank zero", "check"]);
+}
+
+#[test]
+fn inverses_that_do_not_exist() {
+    let workspace = measured();
+    write(&workspace, "phi.npy", 6, 1e-12, (0, 0, 2e-12));
+    // 16 elements under 8 spots, then 4.
+    for (method, elements, needed) in [("right-inverse", 4, "16"), ("left-inverse", 2, "8")] {
+        let line = format!("recover bench --phi phi.npy --method {method} --elements {elements}");
+        let words = [method, "does not exist", "rank", needed, "pinv"];
+        workspace.refuses(&line, &words);
+    }
+    for line in [
+        "--method left-inverse --elements 4 --tolerance 0",
+        "--method right-inverse --elements 2",
+    ] {
+        let _ = workspace
+            .phicam(&format!("recover bench --phi phi.npy {line}"))
+            .exits(0);
+    }
+}

@@ -1,0 +1,255 @@
+//! `phicam expose`: files, settings, refusals.
+
+use phicam::film;
+
+use crate::small_scene::{SMALL, TINY, altered};
+use crate::workspace::{Workspace, assert_same};
+
+/// A finished run of the tiny scene in `done`.
+fn with_run() -> Workspace {
+    let workspace = Workspace::with_scenes();
+    let _ = workspace
+        .phicam("render tiny.toml -o done --samples 32")
+        .exits(0);
+    workspace
+}
+
+/// The run's scene with a sensor table, which leaves the run valid.
+fn set_sensor(workspace: &Workspace, table: &str) {
+    let text = altered(&TINY);
+    workspace.write("done/scene.toml", format!("{text}\n[sensor]\n{table}\n"));
+}
+
+#[test]
+fn an_exposure_leaves_its_files() {
+    let workspace = with_run();
+    let line = "expose done --sensor ccd --exposure 0.004 --frames 3 --dark-frames 2";
+    let ended = workspace.phicam(line).exits(0);
+    for word in ["electrons", "signal/noise", "saturated", "0 of 48"] {
+        assert!(
+            ended.stdout.contains(word),
+            "no `{word}` in {}",
+            ended.account()
+        );
+    }
+    let names: Vec<String> = workspace.contents("done/exposed").into_keys().collect();
+    let mut expected = vec!["counts/".to_owned()];
+    for spot in 0..8 {
+        expected.extend(["exr", "png"].map(|e| format!("counts/spot-{spot:04}.{e}")));
+    }
+    expected.extend(
+        [
+            "exposure.json",
+            "phi.npy",
+            "phi.stderr.npy",
+            "saturated.npy",
+        ]
+        .map(str::to_owned),
+    );
+    assert_eq!(names, expected);
+    let [clean, exposed, stderr, saturated] = [
+        "phi",
+        "exposed/phi",
+        "exposed/phi.stderr",
+        "exposed/saturated",
+    ]
+    .map(|name| workspace.matrix(&format!("done/{name}.npy")));
+    assert_eq!(exposed.shape(), (6, 8));
+    assert_eq!(saturated.max(), 0.0);
+    for i in 0..clean.len() {
+        let z = (exposed[i] - clean[i]) / stderr[i];
+        assert!(stderr[i] > 0.0 && z.abs() < 6.0, "entry {i}: z = {z}");
+    }
+    let account = workspace.json("done/exposed/exposure.json");
+    assert_eq!(account["sensor"]["read_noise"], 12.6);
+    assert_eq!(account["times"], serde_json::json!([0.004]));
+    assert_eq!(account["result"]["saturated"], 0);
+    // The mean of three frames of whole counts, in EXR.
+    let frame = film::exr::read(&workspace.path("done/exposed/counts/spot-0003.exr")).unwrap();
+    assert_eq!((frame.columns, frame.rows), (3, 2));
+    let counts = frame.channel("counts").unwrap();
+    assert!(
+        counts
+            .iter()
+            .all(|c| *c > 100.0 && (c * 3.0 - (c * 3.0).round()).abs() < 1e-2)
+    );
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bytes_and_another_does_not() {
+    let workspace = with_run();
+    for (out, seed) in [("a", 3), ("b", 3), ("c", 4)] {
+        let line = format!("expose done -o {out} --sensor dslr --brackets 1,0.1 --seed {seed}");
+        let _ = workspace.phicam(&line).exits(0);
+    }
+    assert_same(
+        &workspace.contents("a"),
+        &workspace.contents("b"),
+        "seed 3 twice",
+    );
+    assert_ne!(workspace.read("a/phi.npy"), workspace.read("c/phi.npy"));
+    let frame = film::exr::read(&workspace.path("a/counts/spot-0000.exr")).unwrap();
+    assert!(frame.channel("counts.0").is_some() && frame.channel("counts.1").is_some());
+}
+
+#[test]
+fn the_ideal_sensor_gives_the_clean_flux_back() {
+    let workspace = with_run();
+    let _ = workspace.phicam("expose done --sensor ideal").exits(0);
+    let [clean, exposed] =
+        ["phi", "exposed/phi"].map(|n| workspace.matrix(&format!("done/{n}.npy")));
+    for (x, y) in exposed.iter().zip(&clean) {
+        assert!((x - y).abs() <= 1e-14 * y.abs(), "{x} {y}");
+    }
+    let account = workspace.json("done/exposed/exposure.json");
+    assert!(account["result"]["snr_mean"].is_null());
+    // The published percent error alone.
+    let _ = workspace
+        .phicam("expose done --sensor ideal --noise 0.01")
+        .exits(0);
+    let [noisy, stderr] =
+        ["phi", "phi.stderr"].map(|n| workspace.matrix(&format!("done/exposed/{n}.npy")));
+    for i in 0..clean.len() {
+        assert!((stderr[i] / clean[i] - 0.01).abs() < 1e-12);
+        assert!((noisy[i] - clean[i]).abs() < 0.06 * clean[i] && noisy[i] != clean[i]);
+    }
+}
+
+#[test]
+fn the_table_of_the_scene_is_used_and_the_command_line_goes_before_it() {
+    let workspace = with_run();
+    set_sensor(
+        &workspace,
+        "model = \"ccd\"\nread_noise = 2.5\nexposure = 0.5\nglare = { fraction = 1e-3, spread = { falloff = 2.0 } }",
+    );
+    let account = |line: &str| -> serde_json::Value {
+        let ended = workspace.phicam(line).exits(0);
+        serde_json::from_str(&ended.stdout).unwrap()
+    };
+    let own = account("expose done --json");
+    assert_eq!(own["sensor"]["read_noise"], 2.5);
+    assert_eq!(own["sensor"]["gain"], 1.413);
+    assert_eq!(own["times"], serde_json::json!([0.5]));
+    let ratio = own["glare_to_signal"].as_f64().unwrap();
+    assert!(ratio > 0.1, "{ratio}");
+    let other = account("expose done --json --brackets 0.1,2 --glare 2e-3 --ambient 1e-15");
+    assert_eq!(other["times"], serde_json::json!([2.0, 0.1]));
+    assert!((other["glare_to_signal"].as_f64().unwrap() / ratio - 2.0).abs() < 1e-12);
+    assert_eq!(other["ambient"], 1e-15);
+    // Another sensor keeps the exposure, and none of the figures.
+    let other = account("expose done --json --sensor machine-vision");
+    assert_eq!(other["sensor"]["read_noise"], 3.1);
+    assert_eq!(other["times"], serde_json::json!([0.5]));
+}
+
+#[test]
+fn what_was_exposed_can_be_recovered_from() {
+    let workspace = Workspace::new();
+    workspace.write("small.toml", altered(&SMALL));
+    let _ = workspace.phicam("render small.toml -o done").exits(0);
+    let _ = workspace
+        .phicam("expose done --sensor ccd --exposure 0.02 --frames 4000 --dark-frames 100")
+        .exits(0);
+    let line = "recover done --phi done/exposed/phi.npy --stderr done/exposed/phi.stderr.npy --method joint --json";
+    let ended = workspace.phicam(line).exits(0);
+    let found: serde_json::Value = serde_json::from_str(&ended.stdout).unwrap();
+    assert!(found[0]["mtf_raw"].is_number(), "{found}");
+}
+
+#[test]
+fn saturation_is_marked_counted_and_refused_if_asked() {
+    let workspace = with_run();
+    let line = "expose done --sensor machine-vision --exposure 1000";
+    workspace.refuses(
+        &format!("{line} --strict"),
+        &["48 of 48 entries are saturated", "--brackets"],
+    );
+    let ended = workspace.phicam(line).exits(0);
+    assert!(
+        ended.stderr.contains("48 of 48 entries are saturated"),
+        "{}",
+        ended.account()
+    );
+    assert_eq!(workspace.matrix("done/exposed/saturated.npy").sum(), 48.0);
+    let account = workspace.json("done/exposed/exposure.json");
+    assert_eq!(account["result"]["saturated"], 48);
+    assert!(account["result"]["snr_mean"].is_null());
+    // A shorter time in a series holds them.
+    let _ = workspace
+        .phicam("expose done --sensor machine-vision --brackets 1000,0.001 --strict")
+        .exits(0);
+    assert_eq!(workspace.matrix("done/exposed/saturated.npy").sum(), 0.0);
+}
+
+#[test]
+fn bad_settings_are_refused_before_anything_is_written() {
+    let workspace = with_run();
+    for (rest, words) in [
+        ("", ["no [sensor] table", "--sensor"]),
+        ("--sensor nikon", ["`nikon`", "machine-vision"]),
+        ("--sensor ccd --exposure 0", ["exposure = 0", "positive"]),
+        ("--sensor ccd --exposure -1", ["exposure = -1", "positive"]),
+        ("--sensor ccd --frames 0", ["frames = 0", "1 to"]),
+        ("--sensor ccd --brackets 1,0", ["exposure = 0", "positive"]),
+        (
+            "--sensor ccd --brackets 1 --exposure 1",
+            ["--brackets", "--exposure"],
+        ),
+        ("--sensor ccd --noise 1", ["relative_noise = 1", "below 1"]),
+        ("--sensor ccd --glare 1.5", ["--glare 1.5", "0 to 1"]),
+        ("--sensor ccd --ambient -1", ["ambient = -1", "0 or more"]),
+        ("--sensor ccd -o done", ["folder of a run", "-o"]),
+    ] {
+        workspace.refuses(&format!("expose done {rest}"), &words);
+    }
+    workspace.refuses("expose nowhere --sensor ccd", &["nowhere", "phicam render"]);
+    workspace.write("done/exposed", "mine");
+    workspace.refuses("expose done --sensor ccd", &["exposed", "not a folder"]);
+}
+
+#[test]
+fn a_flux_that_no_camera_can_see_is_refused() {
+    let workspace = with_run();
+    let clean = workspace.matrix("done/phi.npy");
+    let path = workspace.path("done/phi.npy");
+    phicam::matrix::npy::write(&path, &(&clean * 0.0)).unwrap();
+    workspace.refuses(
+        "expose done --sensor ccd",
+        &["dark in every pixel", "render"],
+    );
+    let mut negative = clean;
+    negative[(2, 5)] = -1e-15;
+    phicam::matrix::npy::write(&path, &negative).unwrap();
+    workspace.refuses(
+        "expose done --sensor ccd",
+        &["pixel 2", "spot 5", "-1e-15 W"],
+    );
+}
+
+#[test]
+fn the_built_in_sensors_are_listed() {
+    let workspace = Workspace::new();
+    let ended = workspace.phicam("expose --list").exits(0);
+    for word in [
+        "ideal",
+        "ccd",
+        "dslr",
+        "machine-vision",
+        "65600 e-",
+        "16 bits",
+    ] {
+        assert!(ended.stdout.contains(word), "{}", ended.account());
+    }
+    workspace.refuses("expose", &["<DIR>"]);
+}
+
+/// A new render of the scene makes photographs of the old one worthless.
+#[test]
+fn rendering_again_removes_the_photographs() {
+    let workspace = with_run();
+    let _ = workspace.phicam("expose done --sensor ccd").exits(0);
+    let _ = workspace
+        .phicam("render tiny.toml -o done --samples 32 --seed 9")
+        .exits(0);
+    assert!(workspace.contents("done/exposed").is_empty());
+}

@@ -1,0 +1,238 @@
+//! `phicam study noise` and `phicam study indicator`: files, refusals, going on.
+
+use crate::workspace::{Workspace, assert_same};
+
+const NOISE: &str =
+    "study noise small.toml --boards 2,4 --elements 2,4 --noise 1e-6,0.01 --method pinv,joint";
+
+#[test]
+fn noise_is_a_table_figures_and_json() {
+    let workspace = Workspace::with_scenes();
+    let ended = workspace
+        .phicam(&format!("{NOISE} -o n --seeds 3 --render-samples 16"))
+        .exits(0);
+    for word in ["4 × 4", "joint", "norm. 0.5", "shared"] {
+        assert!(
+            ended.stdout.contains(word),
+            "no `{word}`: {}",
+            ended.account()
+        );
+    }
+    // Objects (2, 2), (2, 4) and (4, 4), two methods, two levels, three draws; two lines above them.
+    assert_eq!(
+        workspace.text("n/noise.csv").lines().count(),
+        3 * 2 * 2 * 3 + 2
+    );
+    assert_eq!(
+        workspace.text("n/noise-curves.csv").lines().count(),
+        3 * 2 * 2 + 1
+    );
+    let json = workspace.json("n/noise.json");
+    assert_eq!(json["curves"].as_array().unwrap().len(), 6, "{json}");
+    assert_eq!(json["render_noise"].as_array().unwrap().len(), 2, "{json}");
+    for measure in ["mtf-raw", "mtf-normalized", "correlation", "rmse"] {
+        let figure = workspace.text(&format!("n/noise-{measure}.svg"));
+        assert!(
+            figure.contains("joint") && !figure.contains("NaN"),
+            "{measure}"
+        );
+    }
+}
+
+/// What an earlier run has finished is kept: a study that is cut, thinned out or extended ends with the bytes of one that ran through.
+#[test]
+fn noise_goes_on_where_it_was_left() {
+    let workspace = Workspace::with_scenes();
+    let _ = workspace
+        .phicam(&format!("{NOISE} -o whole --seeds 4 --threads 1"))
+        .exits(0);
+    let _ = workspace
+        .phicam(&format!("{NOISE} -o part --seeds 2"))
+        .exits(0);
+    // As a kill leaves it: some lines only. One trial is altered, to see that it is kept and not computed again.
+    let text = workspace.text("part/noise.csv");
+    let cut: Vec<&str> = text.lines().take(9).collect();
+    workspace.write("part/noise.csv", cut.join("\n") + "\n");
+    let ended = workspace
+        .phicam(&format!("{NOISE} -o part --seeds 4"))
+        .exits(0);
+    assert!(
+        ended.stderr.contains("going on from 7 trials"),
+        "{}",
+        ended.account()
+    );
+    let [part, whole] = ["part", "whole"].map(|dir| workspace.contents(dir));
+    assert_same(&part, &whole, "gone on and straight");
+
+    let before = workspace.text("whole/noise.csv");
+    let last = before.lines().last().unwrap();
+    let fields: Vec<&str> = last.split(',').collect();
+    let altered = last.replace(fields[5], "4.2e-1");
+    workspace.write("whole/noise.csv", before.replace(last, &altered));
+    let _ = workspace
+        .phicam(&format!("{NOISE} -o whole --seeds 4"))
+        .exits(0);
+    assert!(workspace.text("whole/noise.csv").contains("4.2e-1"));
+}
+
+#[test]
+fn noise_of_another_study_is_not_mixed_in() {
+    let workspace = Workspace::with_scenes();
+    let _ = workspace
+        .phicam(&format!("{NOISE} -o n --seeds 1"))
+        .exits(0);
+    let other = format!("{NOISE} -o n --seeds 1 --kernel published");
+    workspace.refuses(&other, &["another study", "published kernel", "(-o)"]);
+    workspace.refuses("study noise tiny.toml -o n", &["another study"]);
+    let text = workspace.text("n/noise.csv");
+    workspace.write("n/noise.csv", text.replace("pinv", "pinw"));
+    workspace.refuses(
+        &format!("{NOISE} -o n --seeds 1"),
+        &["line 3", "not a trial"],
+    );
+}
+
+#[test]
+fn bad_sweeps_are_refused() {
+    let workspace = Workspace::with_scenes();
+    for (line, words) in [
+        ("noise small.toml -o n --noise 0", ["--noise 0", "cure"]),
+        (
+            "noise small.toml -o n --noise 1e-3,-1",
+            ["--noise -1", "cure"],
+        ),
+        ("noise small.toml -o n --noise nan", ["--noise NaN", "cure"]),
+        ("noise small.toml -o n --boards 1", ["--boards 1", "cure"]),
+        (
+            "noise small.toml -o n --elements 0",
+            ["--elements 0", "cure"],
+        ),
+        (
+            "noise small.toml -o n --elements 3",
+            ["multiple", "use e.g."],
+        ),
+        (
+            "noise small.toml -o n --method lsqr",
+            ["lsqr", "choose one of"],
+        ),
+        ("noise small.toml -o n --seeds 0", ["--seeds", "0"]),
+        (
+            "noise small.toml -o n --render-samples 0",
+            ["--render-samples 0", "cure"],
+        ),
+        ("noise small.toml -o n --threads 0", ["--threads", "use 1"]),
+        ("indicator small.toml -o n --spots 0", ["--spots 0", "cure"]),
+        (
+            "indicator small.toml -o n --half-widths -3",
+            ["--half-widths -3", "cure"],
+        ),
+        (
+            "indicator small.toml -o n --half-widths inf",
+            ["--half-widths inf", "cure"],
+        ),
+        (
+            "indicator small.toml -o n --elements 7",
+            ["multiple", "use e.g."],
+        ),
+        ("indicator small.toml -o n --noise 2", ["--noise 2", "cure"]),
+        (
+            "indicator small.toml -o n --method lsqr",
+            ["lsqr", "choose one of"],
+        ),
+        ("indicator small.toml -o n --every 0", ["--every", "0"]),
+        ("indicator small.toml -o n --seeds 1", ["--seeds", "1"]),
+    ] {
+        let ended = workspace.phicam(&format!("study {line}")).exits(2);
+        for word in words {
+            assert!(
+                ended.stderr.contains(word),
+                "no `{word}`: {}",
+                ended.account()
+            );
+        }
+        assert!(
+            !workspace.path("n/noise.json").exists()
+                && !workspace.path("n/indicator.json").exists()
+        );
+    }
+    for study in ["noise", "indicator"] {
+        let ended = workspace
+            .phicam(&format!("study {study} furnace -o f"))
+            .exits(2);
+        assert!(ended.stderr.contains("hidden"), "{}", ended.account());
+    }
+}
+
+#[test]
+fn indicator_is_a_table_a_figure_and_json() {
+    let workspace = Workspace::with_scenes();
+    let line = "study indicator small.toml -o i --spots 8,40 --half-widths 2,5 --elements 2,4 --boards 2 --noise 1e-4 --every 11 --seeds 20";
+    let ended = workspace.phicam(line).exits(0);
+    for word in [
+        "condition number",
+        "Spearman",
+        "joint-unbounded",
+        "96 configurations",
+    ] {
+        assert!(
+            ended.stdout.contains(word),
+            "no `{word}`: {}",
+            ended.account()
+        );
+    }
+    let json = workspace.json("i/indicator.json");
+    // Six layouts, two numbers, two half-widths, two numbers of elements, two kernels; under noise each eleventh by four methods.
+    assert_eq!(
+        json["configurations"].as_array().unwrap().len(),
+        96,
+        "{json}"
+    );
+    assert_eq!(workspace.text("i/indicator.csv").lines().count(), 97);
+    assert_eq!(json["points"].as_array().unwrap().len(), 9 * 4);
+    assert_eq!(
+        workspace.text("i/indicator-noise.csv").lines().count(),
+        9 * 4 + 1
+    );
+    let figure = workspace.text("i/indicator.svg");
+    assert!(figure.contains("condition number") && !figure.contains("NaN"));
+}
+
+/// Ctrl-C as soon as the first trials are on disk: exit code 130, they are kept, and the same command goes on from them.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_the_finished_trials() {
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+
+    let workspace = Workspace::with_scenes();
+    let child = Command::new(env!("CARGO_BIN_EXE_phicam"))
+        .args(NOISE.split_whitespace())
+        .args(["-o", "cut", "--seeds", "50000"])
+        .current_dir(workspace.path(""))
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let start = Instant::now();
+    while !workspace.path("cut/noise.csv").exists() && start.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    // A process that has ended is not reaped before `wait_with_output`, so its id is nobody else's.
+    let signal = format!("kill -INT {}", child.id());
+    let sent = Command::new("sh").args(["-c", &signal]).status();
+    assert!(sent.expect("a shell").success());
+    let output = child.wait_with_output().expect("it ends");
+    let words = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(130), "{words}");
+    for word in ["stopped", "kept in cut", "same command"] {
+        assert!(words.contains(word), "no `{word}` in {words}");
+    }
+    assert!(!workspace.path("cut/noise.json").exists());
+    let kept = workspace.text("cut/noise.csv").lines().count() - 2;
+    assert!(kept > 0);
+    let ended = workspace
+        .phicam(&format!("{NOISE} -o cut --seeds 2"))
+        .exits(0);
+    let going_on = format!("going on from {kept} trials");
+    assert!(ended.stderr.contains(&going_on), "{}", ended.account());
+}
