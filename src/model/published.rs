@@ -20,6 +20,11 @@ const VIEW_Y: [f64; 2] = [2.75, 6.0];
 /// Offsets of the stagger, cycled from the second on.
 const STAGGER: [f64; 3] = [0.0, -1.0, 1.0];
 
+/// C, the foot of the normal of S2 through the object's centre.
+fn centre() -> [f64; 2] {
+    [5.0, HINGE - (NEAR + 0.5 * SIDE) * 2f64.sqrt()]
+}
+
 /// How the spots stand on their lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Stagger {
@@ -85,7 +90,7 @@ impl Published {
     /// The spots: lower side by growing x, right by growing y, upper by falling x, left by falling y; corners appear twice.
     pub fn spots(&self) -> Vec<[f64; 2]> {
         let (n, h) = (self.per_side, self.half_width);
-        let [cx, cy] = [5.0, HINGE - (NEAR + 0.5 * SIDE) * 2f64.sqrt()];
+        let [cx, cy] = centre();
         let along = |i: usize| match n {
             1 => 0.0,
             _ => h * (2.0 * i as f64 / (n as f64 - 1.0) - 1.0),
@@ -112,6 +117,16 @@ impl Published {
         Matrix::from_fn(elements.len(), spots.len(), |j, l| {
             self.g(spots[l], elements[j])
         })
+    }
+
+    /// G12 of one element over a grid of `side` × `side` wall points, from C − `reach` to C + `reach` along x (fastest) and y.
+    pub fn g12_over(&self, element: usize, reach: f64, side: usize) -> Vec<f64> {
+        let element = self.element_centres()[element];
+        let [cx, cy] = centre();
+        let along = |k: usize| reach * (2.0 * k as f64 / (side as f64 - 1.0) - 1.0);
+        (0..side * side)
+            .map(|at| self.g([cx + along(at % side), cy + along(at / side)], element))
+            .collect()
     }
 
     /// G23, pixels × elements.
