@@ -18,6 +18,7 @@ mod budget;
 mod convergence;
 mod coverage;
 mod deviate;
+mod eigenvalue;
 mod ensemble;
 mod experiment;
 mod indicator;

@@ -23,6 +23,10 @@ const SAME: f64 = 2.5e-2;
 pub(super) struct At {
     pub(super) half_width: f64,
     pub(super) rank: usize,
+    /// The first singular value that is cut, over the cut.
+    pub(super) nearest: f64,
+    /// The last that is kept, over the cut.
+    pub(super) last: f64,
     pub(super) outcome: Outcome,
 }
 
@@ -37,11 +41,13 @@ pub(super) fn curve(
         let half_width = 0.5 * half as f64;
         let case = published(kernel, SIDE, PER_SIDE, half_width, stagger);
         let inversion = Inversion::new(&case)?;
-        let rank = inversion.rank(tolerance)?;
+        let (rank, cut) = inversion.cut(tolerance)?;
         let outcome = inversion.noiseless(&case.board(SIDE), rank);
         Ok(At {
             half_width,
             rank,
+            nearest: inversion.sigma.get(rank).map_or(0.0, |s| s / cut),
+            last: inversion.sigma[rank - 1] / cut,
             outcome,
         })
     };
@@ -68,6 +74,8 @@ pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, Repro
                     layout.into(),
                     a.half_width.into(),
                     a.rank.into(),
+                    a.last.into(),
+                    a.nearest.into(),
                     o.raw.into(),
                     o.normalized.into(),
                 ]);
@@ -123,7 +131,7 @@ pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, Repro
                 _ => "without stagger and by turns on, 1 in. inside and 1 in. outside its lines",
             }
         ),
-        columns: vec!["kernel", "layout", "half_width_in", "rank", "mtf_raw", "mtf_normalized"],
+        columns: vec!["kernel", "layout", "half_width_in", "rank", "last_kept_over_cut", "first_cut_over_cut", "mtf_raw", "mtf_normalized"],
         rows,
         plots: vec![
             Plot {
@@ -139,6 +147,7 @@ pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, Repro
         ],
         galleries,
         checks,
+        notes: vec![finer(&of_published[0])],
     })
 }
 
@@ -147,24 +156,42 @@ fn normalized(curve: &[At], half_width: f64) -> Option<f64> {
     at.outcome.normalized
 }
 
-fn highest(curve: &[At]) -> Option<(f64, f64)> {
-    let found = curve.iter().filter_map(|a| Some((a.half_width, a.outcome.normalized?)));
+/// Whole inches and 7.5 in., the distances that are spoken of.
+fn spoken_of(a: &&At) -> bool {
+    a.half_width.fract() == 0.0 || a.half_width == 7.5
+}
+
+fn highest<'a>(curve: impl Iterator<Item = &'a At>) -> Option<(&'a At, f64)> {
+    let found = curve.filter_map(|a| Some((a, a.outcome.normalized?)));
     found.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
+/// What half inches add.
+fn finer(curve: &[At]) -> String {
+    let Some((a, most)) = highest(curve.iter()) else {
+        return "No normalized MTF is defined.".to_owned();
+    };
+    format!(
+        "In steps of half an inch the highest normalized MTF without stagger, published kernel, is {most:.4} at {} in.; its rank of {} rests on a singular value of {:.2} \
+         times the cut, the next one is {:.2} times the cut.",
+        a.half_width, a.rank, a.last, a.nearest
+    )
+}
+
 fn without(curve: &[At]) -> Vec<Check> {
-    let (at, most) = highest(curve).unwrap_or((f64::NAN, f64::NAN));
+    let most = highest(curve.iter().filter(spoken_of));
+    let (at, most) = most.map_or((f64::NAN, f64::NAN), |(a, most)| (a.half_width, most));
     vec![
         Check::trend(
-            "half-width of the highest normalized MTF, no stagger, in steps of 0.5 in.",
+            "half-width of the highest normalized MTF, no stagger, at whole inches and 7.5 in.",
             "7.5 in.",
             format!("{at} in. ({most:.4})"),
-            "the highest computed value is at 7.5 in.",
+            "the highest computed value is at 7.5 in., published kernel",
             at == 7.5,
         ),
         Check::value("normalized MTF at 5 in., no stagger", 0.4731, normalized(curve, 5.0), SAME),
         Check::trend(
-            "highest normalized MTF, no stagger",
+            "highest normalized MTF, no stagger, at whole inches and 7.5 in.",
             "none above 0.6",
             format!("{most:.4}"),
             "at most 0.6 plus 0.025",
@@ -230,7 +257,8 @@ mod tests {
             curve(Kernel::Published, stagger, Tolerance::Spacing, Watch::new(&stop)).unwrap()
         };
         let (plain, staggered) = (curve(Stagger::None), curve(Stagger::OneInch));
-        assert_eq!(highest(&plain).unwrap().0, 7.5);
+        let (best, _) = highest(plain.iter().filter(spoken_of)).unwrap();
+        assert_eq!(best.half_width, 7.5);
         assert!(normalized(&staggered, 5.0).unwrap() >= 0.999);
     }
 }

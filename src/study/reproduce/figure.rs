@@ -118,6 +118,8 @@ pub struct Reproduction {
     pub galleries: Vec<Gallery>,
     /// Published beside computed.
     pub checks: Vec<Check>,
+    /// What else the numbers say.
+    pub notes: Vec<String>,
 }
 
 impl From<&str> for Cell {

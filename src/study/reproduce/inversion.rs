@@ -82,7 +82,12 @@ impl Inversion {
 
     /// How many singular values `tolerance` keeps.
     pub(super) fn rank(&self, tolerance: Tolerance) -> Result<usize, LinalgError> {
-        Ok(cut(&self.sigma, self.u.nrows(), self.spots, tolerance)?.0)
+        Ok(self.cut(tolerance)?.0)
+    }
+
+    /// The same, and the value at or below which singular values are cut, in.⁻².
+    pub(super) fn cut(&self, tolerance: Tolerance) -> Result<(usize, f64), LinalgError> {
+        cut(&self.sigma, self.u.nrows(), self.spots, tolerance)
     }
 
     /// The recovery of `board` over the first `rank` directions: (B ∘ G23)·P ⊘ G23, mean over the pixels.

@@ -6,15 +6,21 @@
 #![doc = include_str!("ledger.md")]
 
 mod distance;
+mod exact;
 mod figure;
 mod inversion;
 mod item;
+mod noise;
+mod precision;
+mod spots;
+mod table1;
 mod tables;
 mod verdict;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::num::linalg::LinalgError;
+use crate::num::multiprecision::TooFewDigits;
 use crate::recovery::RecoveryError;
 
 pub use figure::{Cell, Course, FigureAxis, FigureCurve, Gallery, Picture, Plot, Reproduction, Shades, Source};
@@ -54,6 +60,9 @@ pub enum ReproduceError {
     /// A recovery failed.
     #[error(transparent)]
     Recovery(#[from] RecoveryError),
+    /// The digits of multiple precision do not suffice.
+    #[error(transparent)]
+    Digits(#[from] TooFewDigits),
     /// It was stopped.
     #[error("stopped before the item was finished; run the same command again to go on")]
     Stopped,
@@ -92,6 +101,10 @@ pub fn reproduce(
         Item::Table3 => Ok(tables::table(item, &tables::PRINTED[1])),
         Item::Table4 => Ok(tables::table(item, &tables::PRINTED[2])),
         Item::Fig17 | Item::Fig20 => distance::figure(item, watch),
-        _ => { let _ = plan; unreachable!() }
+        Item::Table1 => table1::table(watch),
+        Item::Fig12 | Item::Fig13 | Item::Fig14 => spots::modulation(item, plan, watch),
+        Item::Fig15 => spots::indicators(watch),
+        Item::Fig22 => noise::figure(plan, watch),
+        Item::Precision => precision::figure(plan, watch),
     }
 }

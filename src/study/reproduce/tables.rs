@@ -103,6 +103,7 @@ pub(super) fn table(item: Item, printed: &Printed) -> Reproduction {
         }],
         galleries: Vec::new(),
         checks,
+        notes: Vec::new(),
     }
 }
 

@@ -1,0 +1,243 @@
+//! The published simulation beyond double precision: geometry from its decimal numbers, kernel, Φ and inversion, all with as many digits as it takes.
+
+use rayon::prelude::*;
+
+use super::inversion::Outcome;
+use super::{ReproduceError, Watch};
+use crate::model::{Kernel, PixelGrid, Published, Stagger};
+use crate::num::multiprecision::{Digits, Inverse, Real, TooFewDigits, dot, inverse};
+
+/// Digits that are tried, one after the other.
+const DIGITS: [u32; 4] = [60, 120, 240, 480];
+
+/// A noiseless recovery.
+pub(super) struct Exact {
+    /// Recovered values as doubles.
+    pub(super) outcome: Outcome,
+    /// 1 − raw MTF, by the digits.
+    pub(super) shortfall: f64,
+    /// Digits used.
+    pub(super) digits: u32,
+    /// Rank of G12: elements, or different spots where those are fewer.
+    pub(super) rank: usize,
+}
+
+/// Recovers boards of `checks` a side each.
+pub(super) fn recover(
+    case: &Published,
+    checks: &[usize],
+    watch: Watch<'_>,
+) -> Result<Vec<Exact>, ReproduceError> {
+    let mut short = None;
+    for digits in DIGITS {
+        watch.go_on()?;
+        match Setup::new(case, Digits(digits)) {
+            Ok(setup) => {
+                let one = |c: &usize| setup.recover(&case.board(*c), watch);
+                return checks.iter().map(one).collect();
+            }
+            Err(e) => short = Some(e),
+        }
+    }
+    Err(ReproduceError::Digits(short.unwrap_or(TooFewDigits {
+        digits: 0,
+        ratio: 0.0,
+    })))
+}
+
+struct Setup {
+    digits: Digits,
+    g12: Vec<Vec<Real>>,
+    g23: Vec<Vec<Real>>,
+    inverse: Inverse,
+}
+
+impl Setup {
+    fn new(case: &Published, digits: Digits) -> Result<Self, TooFewDigits> {
+        let geometry = Geometry::new(case, digits);
+        let spots = geometry.spots(case);
+        let element = |j: usize| spots.iter().map(|s| geometry.g(case.kernel, s, j)).collect();
+        let g12: Vec<Vec<Real>> = (0..geometry.elements.len()).map(element).collect();
+        let view = geometry.pixels(case);
+        let pixel = |p: &[Real; 2]| {
+            (0..geometry.elements.len()).map(|j| geometry.g(case.kernel, p, j)).collect()
+        };
+        Ok(Self {
+            digits,
+            inverse: inverse(digits, &g12)?,
+            g23: view.iter().map(pixel).collect(),
+            g12,
+        })
+    }
+
+    fn recover(&self, board: &[f64], watch: Watch<'_>) -> Result<Exact, ReproduceError> {
+        let zero = self.digits.whole(0);
+        let (elements, spots) = (self.g12.len(), self.g12[0].len());
+        let per_pixel: Vec<Vec<Real>> = self
+            .g23
+            .par_iter()
+            .map(|g23| {
+                watch.go_on()?;
+                let light: Vec<usize> = (0..elements).filter(|j| board[*j] == 1.0).collect();
+                let phi: Vec<Real> = (0..spots)
+                    .map(|l| {
+                        dot(&zero, light.iter().map(|j| &g23[*j]), light.iter().map(|j| &self.g12[*j][l]))
+                    })
+                    .collect();
+                let found = self.inverse.left(&phi);
+                Ok(found.iter().zip(g23).map(|(x, g)| x / g).collect())
+            })
+            .collect::<Result<_, ReproduceError>>()?;
+        let sum = |values: &mut dyn Iterator<Item = &Real>| values.fold(zero.clone(), |s, x| &s + x);
+        let pixels = self.digits.whole(self.g23.len() as i64);
+        let mean = |j: usize| &sum(&mut per_pixel.iter().map(|x| &x[j])) / &pixels;
+        let values: Vec<Real> = (0..elements).map(mean).collect();
+        let of = |light: f64| {
+            let own: Vec<&Real> = values.iter().zip(board).filter(|(_, b)| **b == light).map(|(v, _)| v).collect();
+            let count = self.digits.whole(own.len() as i64);
+            &sum(&mut own.into_iter()) / &count
+        };
+        let (white, black) = (of(1.0), of(0.0));
+        // 1 − (W − B)/(W + B)
+        let shortfall = &(&black + &black) / &(&white + &black);
+        Ok(Exact {
+            outcome: Outcome::new(values.iter().map(Real::to_f64).collect(), board),
+            shortfall: shortfall.to_f64(),
+            digits: self.digits.0,
+            rank: elements.min(spots),
+        })
+    }
+}
+
+/// Lengths in inches.
+struct Geometry {
+    digits: Digits,
+    elements: Vec<[Real; 3]>,
+    root_two: Real,
+    hinge: Real,
+}
+
+impl Geometry {
+    fn new(case: &Published, digits: Digits) -> Self {
+        let root_two = digits.whole(2).sqrt();
+        let hinge = digits.ratio(155, 10);
+        let n = case.elements as i64;
+        // Centres at (2 i + 1)·4/(2 n).
+        let centre = |i: i64| digits.ratio((2 * i + 1) * 2, n);
+        let near = digits.ratio(586_764, 100_000);
+        let element = |at: i64| {
+            let z = &(&near + &centre(at / n)) / &root_two;
+            [&digits.whole(3) + &centre(at % n), &hinge - &z, z]
+        };
+        Self {
+            digits,
+            elements: (0..n * n).map(element).collect(),
+            root_two,
+            hinge,
+        }
+    }
+
+    /// The different spots: of those that the layout has twice, one.
+    fn spots(&self, case: &Published) -> Vec<[Real; 2]> {
+        let d = self.digits;
+        let (n, h) = (case.per_side as i64, whole_thousandths(case.half_width));
+        let centre = [d.whole(5), &self.hinge - &(&d.ratio(786_764, 100_000) * &self.root_two)];
+        let half = d.ratio(h, 1000);
+        let mut different: Vec<([i64; 2], [Real; 2])> = Vec::new();
+        for side in 0..4 {
+            for i in 0..n {
+                // In units of h/(n − 1) along, and of a thousandth of an inch across: equal keys are equal spots.
+                let along = if n == 1 { 0 } else { 2 * i - (n - 1) };
+                let off = match case.stagger {
+                    Stagger::None => 0,
+                    Stagger::OneInch => [0, -1, 1][((i + 1) % 3) as usize],
+                };
+                let t = &half * &d.ratio(along, (n - 1).max(1));
+                let o = d.whole(off);
+                let [x, y] = match side {
+                    0 => [t, &o - &half],
+                    1 => [&half + &o, t],
+                    2 => [&d.whole(0) - &t, &half + &o],
+                    _ => [&o - &half, &d.whole(0) - &t],
+                };
+                let scaled = (n - 1).max(1);
+                let across = |sign: i64| (sign * h + 1000 * off) * scaled;
+                let key = match side {
+                    0 => [along * h, across(-1)],
+                    1 => [across(1), along * h],
+                    2 => [-along * h, across(1)],
+                    _ => [across(-1), -along * h],
+                };
+                if different.iter().all(|(k, _)| *k != key) {
+                    different.push((key, [&centre[0] + &x, &centre[1] + &y]));
+                }
+            }
+        }
+        different.into_iter().map(|(_, spot)| spot).collect()
+    }
+
+    fn pixels(&self, case: &Published) -> Vec<[Real; 2]> {
+        let (d, n) = (self.digits, case.pixels as i64);
+        // From 6.5 down to 3.25 and from 2.75 up to 6.
+        let along = |k: i64| match case.grid {
+            PixelGrid::Edges if n > 1 => d.ratio(325 * k, 100 * (n - 1)),
+            _ => d.ratio(325 * (2 * k + 1), 200 * n),
+        };
+        let pixel = |p: i64| [&d.ratio(65, 10) - &along(p % n), &d.ratio(275, 100) + &along(p / n)];
+        (0..n * n).map(pixel).collect()
+    }
+
+    /// z2·root/R⁴.
+    fn g(&self, kernel: Kernel, [x, y]: &[Real; 2], element: usize) -> Real {
+        let [x2, y2, z2] = &self.elements[element];
+        let (dx, dy) = (x - x2, y - y2);
+        let plane = &(&dy * &dy) + &(z2 * z2);
+        let r2 = &(&dx * &dx) + &plane;
+        let root = match kernel {
+            Kernel::Published => (&plane / &self.digits.whole(2)).sqrt(),
+            Kernel::Physical => &(&self.hinge - y) / &self.root_two,
+        };
+        &(z2 * &root) / &(&r2 * &r2)
+    }
+}
+
+/// A length in thousandths of an inch.
+fn whole_thousandths(length: f64) -> i64 {
+    (1000.0 * length).round() as i64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::matrix::Matrix;
+    use crate::study::reproduce::inversion::published;
+    use std::sync::atomic::AtomicBool;
+
+    /// The geometry is written down twice, in doubles and in digits; both are one to rounding.
+    #[test]
+    fn both_geometries_are_one() {
+        for kernel in [Kernel::Published, Kernel::Physical] {
+            let case = published(kernel, 4, 5, 6.0, Stagger::OneInch);
+            let exact = Setup::new(&case, Digits(60)).unwrap();
+            let matrix = |rows: &[Vec<Real>]| Matrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j].to_f64());
+            let (g12, g23) = (case.g12(), case.g23());
+            assert!((matrix(&exact.g12) - &g12).amax() < 1e-14 * g12.amax());
+            assert!((matrix(&exact.g23) - &g23).amax() < 1e-14 * g23.amax());
+        }
+        // Corners appear twice without stagger.
+        let plain = published(Kernel::Published, 2, 5, 6.0, Stagger::None);
+        assert_eq!(Setup::new(&plain, Digits(60)).unwrap().g12[0].len(), 16);
+    }
+
+    /// With enough digits 8 × 8 elements are recovered perfectly from 80 spots.
+    #[test]
+    fn eight_by_eight_elements_are_no_matter_of_principle() {
+        let mut case = published(Kernel::Published, 8, 20, 6.0, Stagger::None);
+        case.pixels = 3;
+        let found = recover(&case, &[2, 8], Watch::new(&AtomicBool::new(false))).unwrap();
+        for f in &found {
+            assert_eq!(f.rank, 64);
+            assert!(f.shortfall.abs() < 1e-20, "{:e}", f.shortfall);
+        }
+    }
+}
