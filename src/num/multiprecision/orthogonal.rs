@@ -151,7 +151,9 @@ mod tests {
     #[test]
     fn too_few_digits_are_told() {
         let hilbert = |d: Digits| -> Vec<Vec<Real>> {
-            (0..30).map(|i| (0..30).map(|j| d.ratio(1, i + j + 1)).collect()).collect()
+            (0..30)
+                .map(|i| (0..30).map(|j| d.ratio(1, i + j + 1)).collect())
+                .collect()
         };
         assert!(inverse(Digits(40), &hilbert(Digits(40))).is_err());
         assert!(inverse(Digits(120), &hilbert(Digits(120))).is_ok());

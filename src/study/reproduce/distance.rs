@@ -2,9 +2,10 @@
 
 use rayon::prelude::*;
 
+use super::contour;
 use super::figure::{computed, elements, linear, published as printed};
 use super::inversion::{Inversion, Outcome, published};
-use super::{Check, Gallery, Item, Picture, Plot, ReproduceError, Reproduction, Shades, Watch};
+use super::{Check, Gallery, Item, Plot, ReproduceError, Reproduction, Shades, Watch};
 use crate::model::{Kernel, Stagger};
 use crate::num::linalg::Tolerance;
 
@@ -81,7 +82,10 @@ pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, Repro
                 ]);
             }
             let points = |f: fn(&Outcome) -> Option<f64>| {
-                curve.iter().filter_map(|a| Some([a.half_width, f(&a.outcome)?])).collect()
+                curve
+                    .iter()
+                    .filter_map(|a| Some([a.half_width, f(&a.outcome)?]))
+                    .collect()
             };
             let name = format!("{} kernel, {layout}", kernel.name());
             curves[0].push(computed(&name, points(|o| o.normalized)));
@@ -104,7 +108,12 @@ pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, Repro
         _ => vec![[5.0, 0.4731], [5.0, 1.0]],
     };
     curves[0].push(printed("printed in the text", known));
-    let axes = |title| [linear("half-width of the square of spots / in.", [0.0, 15.0]), linear(title, [-0.2, 1.0])];
+    let axes = |title| {
+        [
+            linear("half-width of the square of spots / in.", [0.0, 15.0]),
+            linear(title, [-0.2, 1.0]),
+        ]
+    };
     let [normalized, raw] = curves;
     let mut galleries = vec![Gallery {
         title: "Recovered 8 × 8 board, published kernel, stretched to [0, 1]".to_owned(),
@@ -113,7 +122,7 @@ pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, Repro
         pictures,
     }];
     if item == Item::Fig20 {
-        galleries.push(contours());
+        galleries.push(contour::contours());
     }
     Ok(Reproduction {
         item,
@@ -131,7 +140,16 @@ pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, Repro
                 _ => "without stagger and by turns on, 1 in. inside and 1 in. outside its lines",
             }
         ),
-        columns: vec!["kernel", "layout", "half_width_in", "rank", "last_kept_over_cut", "first_cut_over_cut", "mtf_raw", "mtf_normalized"],
+        columns: vec![
+            "kernel",
+            "layout",
+            "half_width_in",
+            "rank",
+            "last_kept_over_cut",
+            "first_cut_over_cut",
+            "mtf_raw",
+            "mtf_normalized",
+        ],
         rows,
         plots: vec![
             Plot {
@@ -189,7 +207,12 @@ fn without(curve: &[At]) -> Vec<Check> {
             "the highest computed value is at 7.5 in., published kernel",
             at == 7.5,
         ),
-        Check::value("normalized MTF at 5 in., no stagger", 0.4731, normalized(curve, 5.0), SAME),
+        Check::value(
+            "normalized MTF at 5 in., no stagger",
+            0.4731,
+            normalized(curve, 5.0),
+            SAME,
+        ),
         Check::trend(
             "highest normalized MTF, no stagger, at whole inches and 7.5 in.",
             "none above 0.6",
@@ -207,8 +230,18 @@ fn with(plain: &[At], staggered: &[At]) -> Vec<Check> {
         .filter(|(s, p)| s.outcome.normalized > p.outcome.normalized)
         .count();
     vec![
-        Check::value("normalized MTF at 5 in., stagger", 1.0, normalized(staggered, 5.0), 1e-3),
-        Check::value("normalized MTF at 5 in., no stagger", 0.4731, normalized(plain, 5.0), SAME),
+        Check::value(
+            "normalized MTF at 5 in., stagger",
+            1.0,
+            normalized(staggered, 5.0),
+            1e-3,
+        ),
+        Check::value(
+            "normalized MTF at 5 in., no stagger",
+            0.4731,
+            normalized(plain, 5.0),
+            SAME,
+        ),
         Check::trend(
             "distances at which stagger gives the higher normalized MTF",
             "stagger is better",
@@ -217,31 +250,6 @@ fn with(plain: &[At], staggered: &[At]) -> Vec<Check> {
             2 * higher > plain.len(),
         ),
     ]
-}
-
-/// Fig 21: G12 of four elements over the plane of the wall that the spots lie in, relative to its largest value.
-fn contours() -> Gallery {
-    let (side, reach) = (61, 7.5);
-    let mut pictures = Vec::new();
-    for (kernel, name) in [(Kernel::Published, "published"), (Kernel::Physical, "physical")] {
-        for [i, j] in [[0, 0], [7, 7]] {
-            let case = published(kernel, SIDE, 2, reach, Stagger::None);
-            let values = case.g12_over(i + SIDE * j, reach, side);
-            let title = format!("{name} kernel, element ({}, {})", i + 1, j + 1);
-            pictures.push(Picture {
-                title,
-                size: [side; 2],
-                values,
-                axes: ["x", "y"],
-            });
-        }
-    }
-    Gallery {
-        title: "G12 of two corner elements over the wall, 7.5 in. either side of C".to_owned(),
-        shades: Shades::Values,
-        unit: "1/in.²",
-        pictures,
-    }
 }
 
 #[cfg(test)]
@@ -254,7 +262,13 @@ mod tests {
     fn the_best_distance_and_the_stagger_are_as_published() {
         let stop = AtomicBool::new(false);
         let curve = |stagger| {
-            curve(Kernel::Published, stagger, Tolerance::Spacing, Watch::new(&stop)).unwrap()
+            curve(
+                Kernel::Published,
+                stagger,
+                Tolerance::Spacing,
+                Watch::new(&stop),
+            )
+            .unwrap()
         };
         let (plain, staggered) = (curve(Stagger::None), curve(Stagger::OneInch));
         let (best, _) = highest(plain.iter().filter(spoken_of)).unwrap();

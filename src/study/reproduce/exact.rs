@@ -56,11 +56,18 @@ impl Setup {
     fn new(case: &Published, digits: Digits) -> Result<Self, TooFewDigits> {
         let geometry = Geometry::new(case, digits);
         let spots = geometry.spots(case);
-        let element = |j: usize| spots.iter().map(|s| geometry.g(case.kernel, s, j)).collect();
+        let element = |j: usize| {
+            spots
+                .iter()
+                .map(|s| geometry.g(case.kernel, s, j))
+                .collect()
+        };
         let g12: Vec<Vec<Real>> = (0..geometry.elements.len()).map(element).collect();
         let view = geometry.pixels(case);
         let pixel = |p: &[Real; 2]| {
-            (0..geometry.elements.len()).map(|j| geometry.g(case.kernel, p, j)).collect()
+            (0..geometry.elements.len())
+                .map(|j| geometry.g(case.kernel, p, j))
+                .collect()
         };
         Ok(Self {
             digits,
@@ -81,19 +88,29 @@ impl Setup {
                 let light: Vec<usize> = (0..elements).filter(|j| board[*j] == 1.0).collect();
                 let phi: Vec<Real> = (0..spots)
                     .map(|l| {
-                        dot(&zero, light.iter().map(|j| &g23[*j]), light.iter().map(|j| &self.g12[*j][l]))
+                        dot(
+                            &zero,
+                            light.iter().map(|j| &g23[*j]),
+                            light.iter().map(|j| &self.g12[*j][l]),
+                        )
                     })
                     .collect();
                 let found = self.inverse.left(&phi);
                 Ok(found.iter().zip(g23).map(|(x, g)| x / g).collect())
             })
             .collect::<Result<_, ReproduceError>>()?;
-        let sum = |values: &mut dyn Iterator<Item = &Real>| values.fold(zero.clone(), |s, x| &s + x);
+        let sum =
+            |values: &mut dyn Iterator<Item = &Real>| values.fold(zero.clone(), |s, x| &s + x);
         let pixels = self.digits.whole(self.g23.len() as i64);
         let mean = |j: usize| &sum(&mut per_pixel.iter().map(|x| &x[j])) / &pixels;
         let values: Vec<Real> = (0..elements).map(mean).collect();
         let of = |light: f64| {
-            let own: Vec<&Real> = values.iter().zip(board).filter(|(_, b)| **b == light).map(|(v, _)| v).collect();
+            let own: Vec<&Real> = values
+                .iter()
+                .zip(board)
+                .filter(|(_, b)| **b == light)
+                .map(|(v, _)| v)
+                .collect();
             let count = self.digits.whole(own.len() as i64);
             &sum(&mut own.into_iter()) / &count
         };
@@ -141,7 +158,10 @@ impl Geometry {
     fn spots(&self, case: &Published) -> Vec<[Real; 2]> {
         let d = self.digits;
         let (n, h) = (case.per_side as i64, whole_thousandths(case.half_width));
-        let centre = [d.whole(5), &self.hinge - &(&d.ratio(786_764, 100_000) * &self.root_two)];
+        let centre = [
+            d.whole(5),
+            &self.hinge - &(&d.ratio(786_764, 100_000) * &self.root_two),
+        ];
         let half = d.ratio(h, 1000);
         let mut different: Vec<([i64; 2], [Real; 2])> = Vec::new();
         for side in 0..4 {
@@ -183,7 +203,12 @@ impl Geometry {
             PixelGrid::Edges if n > 1 => d.ratio(325 * k, 100 * (n - 1)),
             _ => d.ratio(325 * (2 * k + 1), 200 * n),
         };
-        let pixel = |p: i64| [&d.ratio(65, 10) - &along(p % n), &d.ratio(275, 100) + &along(p / n)];
+        let pixel = |p: i64| {
+            [
+                &d.ratio(65, 10) - &along(p % n),
+                &d.ratio(275, 100) + &along(p / n),
+            ]
+        };
         (0..n * n).map(pixel).collect()
     }
 
@@ -219,7 +244,9 @@ mod tests {
         for kernel in [Kernel::Published, Kernel::Physical] {
             let case = published(kernel, 4, 5, 6.0, Stagger::OneInch);
             let exact = Setup::new(&case, Digits(60)).unwrap();
-            let matrix = |rows: &[Vec<Real>]| Matrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j].to_f64());
+            let matrix = |rows: &[Vec<Real>]| {
+                Matrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j].to_f64())
+            };
             let (g12, g23) = (case.g12(), case.g23());
             assert!((matrix(&exact.g12) - &g12).amax() < 1e-14 * g12.amax());
             assert!((matrix(&exact.g23) - &g23).amax() < 1e-14 * g23.amax());

@@ -64,7 +64,10 @@ impl Outcome {
     pub(super) fn stretched(&self) -> Vec<f64> {
         let ends = |f: fn(f64, f64) -> f64| self.values.iter().copied().reduce(f).unwrap_or(0.0);
         let (low, high) = (ends(f64::min), ends(f64::max));
-        self.values.iter().map(|x| (x - low) / (high - low)).collect()
+        self.values
+            .iter()
+            .map(|x| (x - low) / (high - low))
+            .collect()
     }
 }
 

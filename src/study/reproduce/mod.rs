@@ -5,11 +5,15 @@
 //! which kernel, layout, pixels, tolerance and normalisation it uses; its verdict is a function of its [`Check`]s alone ([`Verdict::of`]).
 #![doc = include_str!("ledger.md")]
 
+mod contour;
 mod distance;
 mod exact;
 mod figure;
+mod indicators;
 mod inversion;
 mod item;
+#[cfg(test)]
+mod ledger;
 mod noise;
 mod precision;
 mod spots;
@@ -23,7 +27,9 @@ use crate::num::linalg::LinalgError;
 use crate::num::multiprecision::TooFewDigits;
 use crate::recovery::RecoveryError;
 
-pub use figure::{Cell, Course, FigureAxis, FigureCurve, Gallery, Picture, Plot, Reproduction, Shades, Source};
+pub use figure::{
+    Cell, Course, FigureAxis, FigureCurve, Gallery, Picture, Plot, Reproduction, Shades, Source,
+};
 pub use item::{Item, UnknownItem};
 pub use verdict::{Check, Verdict, Weight};
 
@@ -103,7 +109,7 @@ pub fn reproduce(
         Item::Fig17 | Item::Fig20 => distance::figure(item, watch),
         Item::Table1 => table1::table(watch),
         Item::Fig12 | Item::Fig13 | Item::Fig14 => spots::modulation(item, plan, watch),
-        Item::Fig15 => spots::indicators(watch),
+        Item::Fig15 => indicators::indicators(watch),
         Item::Fig22 => noise::figure(plan, watch),
         Item::Precision => precision::figure(plan, watch),
     }

@@ -5,7 +5,9 @@ use rayon::prelude::*;
 use super::figure::{computed, decades, elements, linear};
 use super::inversion::{Outcome, published};
 use super::spots::HALF_WIDTH;
-use super::{Check, Gallery, Item, Plot, ReproduceError, ReproducePlan, Reproduction, Shades, Watch};
+use super::{
+    Check, Gallery, Item, Plot, ReproduceError, ReproducePlan, Reproduction, Shades, Watch,
+};
 use crate::model::{Kernel, Stagger};
 use crate::num::linalg::{Tolerance, pinv};
 use crate::study::deviate::normal_deviates;
@@ -65,7 +67,8 @@ fn curve(
             Outcome::new(x.row_mean().iter().copied().collect(), &board)
         };
         let outcomes: Vec<Outcome> = draws.iter().map(recovered).collect();
-        let of = |f: fn(&Outcome) -> Option<f64>| spread(&outcomes.iter().map(f).collect::<Vec<_>>());
+        let of =
+            |f: fn(&Outcome) -> Option<f64>| spread(&outcomes.iter().map(f).collect::<Vec<_>>());
         Some(Point {
             power,
             normalized: of(|o| o.normalized),
@@ -76,8 +79,12 @@ fn curve(
     Ok(POWERS.filter_map(point).collect())
 }
 
-pub(super) fn figure(plan: &ReproducePlan, watch: Watch<'_>) -> Result<Reproduction, ReproduceError> {
-    let (mut rows, mut plots, mut pictures, mut checks) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+pub(super) fn figure(
+    plan: &ReproducePlan,
+    watch: Watch<'_>,
+) -> Result<Reproduction, ReproduceError> {
+    let (mut rows, mut plots, mut pictures, mut checks) =
+        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for kernel in [Kernel::Published, Kernel::Physical] {
         let mut lines = Vec::new();
         for side in SIDES {
@@ -94,8 +101,13 @@ pub(super) fn figure(plan: &ReproducePlan, watch: Watch<'_>) -> Result<Reproduct
                     p.normalized[1].into(),
                 ]);
             }
-            let line = points.iter().map(|p| [libm::exp10(f64::from(p.power)), p.normalized[0]]);
-            lines.push(computed(format!("{side} × {side} board and elements"), line.collect()));
+            let line = points
+                .iter()
+                .map(|p| [libm::exp10(f64::from(p.power)), p.normalized[0]]);
+            lines.push(computed(
+                format!("{side} × {side} board and elements"),
+                line.collect(),
+            ));
             if kernel == Kernel::Published {
                 for p in points.iter().filter(|p| SHOWN.contains(&p.power)) {
                     let title = format!("{side} × {side}, noise 1e{} %", p.power);
@@ -108,7 +120,10 @@ pub(super) fn figure(plan: &ReproducePlan, watch: Watch<'_>) -> Result<Reproduct
         }
         plots.push(Plot {
             title: format!("{} kernel, mean of {} draws", kernel.name(), plan.seeds),
-            axes: [decades("noise of each entry of Φ / %"), linear("normalized MTF", [-0.2, 1.0])],
+            axes: [
+                decades("noise of each entry of Φ / %"),
+                linear("normalized MTF", [-0.2, 1.0]),
+            ],
             curves: lines,
         });
     }
@@ -122,7 +137,14 @@ pub(super) fn figure(plan: &ReproducePlan, watch: Watch<'_>) -> Result<Reproduct
             plan.seeds, plan.first_seed
         ),
         columns: vec![
-            "kernel", "elements", "noise_percent", "draws", "mtf_raw", "mtf_raw_deviation", "mtf_normalized", "mtf_normalized_deviation",
+            "kernel",
+            "elements",
+            "noise_percent",
+            "draws",
+            "mtf_raw",
+            "mtf_raw_deviation",
+            "mtf_normalized",
+            "mtf_normalized_deviation",
         ],
         rows,
         plots,
@@ -143,7 +165,9 @@ fn needed(points: &[Point]) -> Check {
         "loudest noise that leaves the 8 × 8 board, by decades",
         "1e-8 to 1e-10 %",
         kept.map_or("none".to_owned(), |p| format!("1e{} %", p.power)),
-        format!("mean normalized MTF at least {KEPT} there, published kernel, and the decade is one of the published ones"),
+        format!(
+            "mean normalized MTF at least {KEPT} there, published kernel, and the decade is one of the published ones"
+        ),
         kept.is_some_and(|p| (-10..=-8).contains(&p.power)),
     )
 }

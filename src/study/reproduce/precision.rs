@@ -77,26 +77,71 @@ struct Found {
 /// Name of the arithmetic beyond doubles.
 const DIGITS: &str = "multiple precision";
 
-pub(super) fn figure(plan: &ReproducePlan, watch: Watch<'_>) -> Result<Reproduction, ReproduceError> {
+pub(super) fn figure(
+    plan: &ReproducePlan,
+    watch: Watch<'_>,
+) -> Result<Reproduction, ReproduceError> {
     let mut found = Vec::new();
-    for (group, g) in GROUPS.iter().enumerate().filter(|(_, g)| g.elements <= plan.most_elements) {
+    for (group, g) in GROUPS
+        .iter()
+        .enumerate()
+        .filter(|(_, g)| g.elements <= plan.most_elements)
+    {
         for &half_width in g.half_widths {
             for &per_side in g.per_side {
-                let case = published(Kernel::Published, g.elements, per_side, half_width, Stagger::None);
+                let case = published(
+                    Kernel::Published,
+                    g.elements,
+                    per_side,
+                    half_width,
+                    Stagger::None,
+                );
                 found.extend(one(group, &case, g.boards, watch)?);
             }
         }
     }
     let plots = vec![
-        plot(&found, 1, 8, "8 × 8 board, 8 × 8 elements, half-width 6 in.", "number of spots", [0.0, 400.0], |f| f.spots as f64),
-        plot(&found, 2, 16, "16 × 16 board, 16 × 16 elements, half-width 6 in.", "number of spots", [0.0, 400.0], |f| f.spots as f64),
-        plot(&found, 3, 8, "8 × 8 board, 8 × 8 elements, 100 spots", "half-width / in.", [0.0, 15.0], |f| f.half_width),
+        plot(
+            &found,
+            1,
+            8,
+            "8 × 8 board, 8 × 8 elements, half-width 6 in.",
+            "number of spots",
+            [0.0, 400.0],
+            |f| f.spots as f64,
+        ),
+        plot(
+            &found,
+            2,
+            16,
+            "16 × 16 board, 16 × 16 elements, half-width 6 in.",
+            "number of spots",
+            [0.0, 400.0],
+            |f| f.spots as f64,
+        ),
+        plot(
+            &found,
+            3,
+            8,
+            "8 × 8 board, 8 × 8 elements, 100 spots",
+            "half-width / in.",
+            [0.0, 15.0],
+            |f| f.half_width,
+        ),
     ];
     let enough = |f: &&Found| f.rule == DIGITS && GROUPS[f.group].elements == 8 && f.spots >= 80;
-    let worst = found.iter().filter(enough).map(|f| f.shortfall.abs()).fold(0.0, f64::max);
+    let worst = found
+        .iter()
+        .filter(enough)
+        .map(|f| f.shortfall.abs())
+        .fold(0.0, f64::max);
     let cases = found.iter().filter(enough).count();
-    let doubles = found.iter().filter(|f| f.rule == rules(64, 64)[0].0 && GROUPS[f.group].elements == 8 && f.spots >= 80);
-    let least = doubles.filter_map(|f| f.outcome.raw).fold(f64::INFINITY, f64::min);
+    let doubles = found
+        .iter()
+        .filter(|f| f.rule == rules(64, 64)[0].0 && GROUPS[f.group].elements == 8 && f.spots >= 80);
+    let least = doubles
+        .filter_map(|f| f.outcome.raw)
+        .fold(f64::INFINITY, f64::min);
     let rows = found.iter().map(|f| {
         vec![
             GROUPS[f.group].item.into(),
@@ -166,7 +211,14 @@ fn one(
         }
     }
     for (&board, e) in boards.iter().zip(exact::recover(case, boards, watch)?) {
-        found.push(line(board, DIGITS, e.rank, e.outcome, e.shortfall, e.digits));
+        found.push(line(
+            board,
+            DIGITS,
+            e.rank,
+            e.outcome,
+            e.shortfall,
+            e.digits,
+        ));
     }
     Ok(found)
 }
@@ -182,8 +234,13 @@ fn plot(
 ) -> Plot {
     let names = rules(64, 64).map(|r| r.0).into_iter().chain([DIGITS]);
     let curve = |name: &'static str| {
-        let own = found.iter().filter(|f| f.group == group && f.board == board && f.rule == name);
-        computed(name, own.filter_map(|f| Some([x(f), f.outcome.raw?])).collect())
+        let own = found
+            .iter()
+            .filter(|f| f.group == group && f.board == board && f.rule == name);
+        computed(
+            name,
+            own.filter_map(|f| Some([x(f), f.outcome.raw?])).collect(),
+        )
     };
     Plot {
         title: title.to_owned(),

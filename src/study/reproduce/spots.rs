@@ -1,14 +1,12 @@
-//! Figs 12 to 16: the number of spots.
+//! Figs 12 to 14: the number of spots.
 
 use rayon::prelude::*;
 
-use super::figure::{computed, decades, linear};
+use super::figure::{computed, linear};
 use super::inversion::{Inversion, Outcome, published};
 use super::{Check, FigureCurve, Item, Plot, ReproduceError, ReproducePlan, Reproduction, Watch};
-use crate::metrics::rank_correlation;
 use crate::model::{Kernel, Stagger};
 use crate::num::linalg::Tolerance;
-use crate::study::eigenvalue::smallest_eigenvalue;
 
 /// Spots a side: 8 to 400 in all.
 pub(super) const PER_SIDE: [usize; 16] =
@@ -23,10 +21,10 @@ const LEVEL: usize = 120;
 const FLAT: f64 = 0.1;
 /// Below this normalized MTF a board is not resolved.
 const RESOLVED: f64 = 0.5;
-const KERNELS: [Kernel; 2] = [Kernel::Published, Kernel::Physical];
+pub(super) const KERNELS: [Kernel; 2] = [Kernel::Published, Kernel::Physical];
 
 /// The layout and cut that all these figures share, in words.
-fn layout() -> &'static str {
+pub(super) fn layout() -> &'static str {
     "spots on the four sides of a square of half-width 6 in. around C, no stagger; 16 × 16 pixels laid to the edges of the view; Moore–Penrose inverse cut at \
      max(r, l)·eps(σ1), eps the spacing of doubles at σ1 (MATLAB)"
 }
@@ -94,12 +92,18 @@ pub(super) fn modulation(
     for &board in boards {
         for kernel in KERNELS {
             for (name, f) in [
-                ("normalized MTF", (|o| o.normalized) as fn(&Outcome) -> Option<f64>),
+                (
+                    "normalized MTF",
+                    (|o| o.normalized) as fn(&Outcome) -> Option<f64>,
+                ),
                 ("raw MTF", |o| o.raw),
             ] {
                 plots.push(Plot {
                     title: format!("{}, {} kernel", title(board), kernel.name()),
-                    axes: [linear("number of spots", [0.0, 400.0]), linear(name, [-0.2, 1.0])],
+                    axes: [
+                        linear("number of spots", [0.0, 400.0]),
+                        linear(name, [-0.2, 1.0]),
+                    ],
                     curves: curves(&points, board, kernel, f),
                 });
             }
@@ -109,14 +113,26 @@ pub(super) fn modulation(
         item,
         title: format!(
             "MTF against the number of spots, {}",
-            boards.iter().map(|b| title(*b)).collect::<Vec<_>>().join(" and ")
+            boards
+                .iter()
+                .map(|b| title(*b))
+                .collect::<Vec<_>>()
+                .join(" and ")
         ),
         caption: format!(
             "Published and physical kernel (G12 and G23 alike); {}; normalized MTF of the values stretched to [0, 1], raw MTF beside it; noiseless, by the projector; \
              elements a side as the legend says, those that the board divides.",
             layout()
         ),
-        columns: vec!["kernel", "board", "elements", "spots", "rank", "mtf_raw", "mtf_normalized"],
+        columns: vec![
+            "kernel",
+            "board",
+            "elements",
+            "spots",
+            "rank",
+            "mtf_raw",
+            "mtf_normalized",
+        ],
         rows: points.iter().map(row).collect(),
         plots,
         galleries: Vec::new(),
@@ -145,14 +161,26 @@ fn curves(
 /// Rises, then level (boards up to 8 × 8); never resolved (16 × 16).
 fn checks(points: &[Point], board: usize) -> Vec<Check> {
     let own = curves(points, board, Kernel::Published, |o| o.normalized);
-    let highest = own.iter().flat_map(|c| &c.points).map(|p| p[1]).fold(f64::NEG_INFINITY, f64::max);
+    let highest = own
+        .iter()
+        .flat_map(|c| &c.points)
+        .map(|p| p[1])
+        .fold(f64::NEG_INFINITY, f64::max);
     if board == 16 {
         let computed = format!("highest normalized MTF {highest:.4}");
         let criterion = format!("every normalized MTF, published kernel, is below {RESOLVED}");
         let what = "16 × 16 board";
-        return vec![Check::trend(what, "never resolved", computed, criterion, highest < RESOLVED)];
+        return vec![Check::trend(
+            what,
+            "never resolved",
+            computed,
+            criterion,
+            highest < RESOLVED,
+        )];
     }
-    let at = |c: &FigureCurve, spots: usize| c.points.iter().find(|p| p[0] == spots as f64).map(|p| p[1]);
+    let at = |c: &FigureCurve, spots: usize| {
+        c.points.iter().find(|p| p[0] == spots as f64).map(|p| p[1])
+    };
     let (mut rises, mut worst) = (0, (0.0f64, String::new()));
     for c in &own {
         let (Some(first), Some(level)) = (at(c, 8), at(c, LEVEL)) else {
@@ -170,7 +198,10 @@ fn checks(points: &[Point], board: usize) -> Vec<Check> {
         Check::trend(
             what("from 8 to 120 spots"),
             "rises",
-            format!("normalized MTF rises for {rises} of {} numbers of elements", own.len()),
+            format!(
+                "normalized MTF rises for {rises} of {} numbers of elements",
+                own.len()
+            ),
             "for every number of elements, published kernel",
             rises == own.len(),
         ),
@@ -182,107 +213,4 @@ fn checks(points: &[Point], board: usize) -> Vec<Check> {
             worst.0 <= FLAT,
         ),
     ]
-}
-
-/// Elements a side of Figs 15 and 16.
-const SIDES: [usize; 4] = [2, 4, 8, 16];
-/// A rank correlation below this is no pattern.
-const NO_PATTERN: f64 = 0.5;
-
-struct Figures {
-    condition: f64,
-    smallest: f64,
-    raw: Option<f64>,
-}
-
-/// Figs 15 and 16.
-pub(super) fn indicators(watch: Watch<'_>) -> Result<Reproduction, ReproduceError> {
-    let cases: Vec<(Kernel, usize, usize)> = KERNELS
-        .into_iter()
-        .flat_map(|k| SIDES.map(|e| (k, e)))
-        .flat_map(|(k, e)| PER_SIDE.map(|n| (k, e, n)))
-        .collect();
-    let found: Vec<(usize, Figures)> = cases
-        .par_iter()
-        .map(|&(kernel, elements, per_side)| {
-            watch.go_on()?;
-            let case = published(kernel, elements, per_side, HALF_WIDTH, Stagger::None);
-            let inversion = Inversion::new(&case)?;
-            let rank = inversion.rank(Tolerance::Spacing)?;
-            let figures = Figures {
-                condition: inversion.sigma[0] / inversion.sigma[rank - 1],
-                smallest: smallest_eigenvalue(&case.g12())?,
-                raw: inversion.noiseless(&case.board(elements), rank).raw,
-            };
-            Ok((rank, figures))
-        })
-        .collect::<Result<_, ReproduceError>>()?;
-    let line = |kernel: Kernel, side: usize, f: &dyn Fn(&Figures) -> Option<f64>| {
-        let own = cases.iter().zip(&found).filter(|(c, _)| (c.0, c.1) == (kernel, side));
-        own.filter_map(|(c, (_, x))| Some([(4 * c.2) as f64, f(x)?])).collect::<Vec<_>>()
-    };
-    let mut plots = Vec::new();
-    for kernel in KERNELS {
-        for (title, f) in [
-            ("‖G12‖·‖G12⁺‖", (|x| Some(x.condition)) as fn(&Figures) -> Option<f64>),
-            ("|smallest eigenvalue of G12·G12ᵀ| / largest", |x| Some(x.smallest.abs())),
-        ] {
-            let curve = |side| computed(format!("{side} × {side} elements"), line(kernel, side, &f));
-            plots.push(Plot {
-                title: format!("{} kernel", kernel.name()),
-                axes: [linear("number of spots", [0.0, 400.0]), decades(title)],
-                curves: SIDES.map(curve).to_vec(),
-            });
-        }
-    }
-    let rows = cases.iter().zip(&found).map(|(c, (rank, x))| {
-        vec![
-            c.0.name().into(),
-            c.1.into(),
-            (4 * c.2).into(),
-            (*rank).into(),
-            x.condition.into(),
-            x.smallest.into(),
-            x.raw.into(),
-        ]
-    });
-    let own = |side| cases.iter().zip(&found).filter(move |(c, _)| (c.0, c.1) == (Kernel::Published, side));
-    let mut checks = Vec::new();
-    for side in [8, 16] {
-        let all: Vec<&Figures> = own(side).map(|(_, (_, x))| x).collect();
-        let raw: Vec<f64> = all.iter().filter_map(|x| x.raw).collect();
-        for (name, values) in [
-            ("condition number", all.iter().map(|x| x.condition).collect::<Vec<f64>>()),
-            ("smallest eigenvalue", all.iter().map(|x| x.smallest).collect()),
-        ] {
-            let r = rank_correlation(&values, &raw);
-            checks.push(Check::trend(
-                format!("{name} and raw MTF over the numbers of spots, {side} × {side} elements"),
-                "no pattern",
-                r.map_or("none".to_owned(), |r| format!("rank correlation {r:.3}")),
-                format!("rank correlation within ±{NO_PATTERN}, published kernel"),
-                r.is_some_and(|r| r.abs() < NO_PATTERN),
-            ));
-        }
-    }
-    let negative = found.iter().filter(|(_, x)| x.smallest < 0.0).count();
-    Ok(Reproduction {
-        item: Item::Fig15,
-        title: "Condition number and smallest eigenvalue against the number of spots".to_owned(),
-        caption: format!(
-            "Published and physical kernel; {}; condition number σ1 over the last kept singular value; smallest eigenvalue of G12·G12ᵀ formed in doubles, relative to \
-             the largest and drawn by its size, its sign in the CSV; MTF of the board of one check an element, raw.",
-            layout()
-        ),
-        columns: vec!["kernel", "elements", "spots", "rank", "condition", "smallest_eigenvalue", "mtf_raw"],
-        rows: rows.collect(),
-        plots,
-        galleries: Vec::new(),
-        checks,
-        notes: vec![format!(
-            "{negative} of the {} smallest eigenvalues are negative, which those of G12·G12ᵀ cannot be: they are rounding. The condition number of a truncated inverse \
-             is bounded by the cut, 1/(max(r, l)·eps), whatever G12 is.",
-            found.len()
-        )],
-    })
 }

@@ -19,8 +19,12 @@ pub(super) const PRINTED: [Printed; 3] = [
     Printed {
         apart: 7.5,
         k: [
-            [0.0011, 0.0013, 0.0015, 0.0017, 0.0019, 0.0021, 0.0024, 0.0026],
-            [0.0301, 0.0227, 0.0173, 0.0134, 0.0105, 0.0084, 0.0068, 0.0055],
+            [
+                0.0011, 0.0013, 0.0015, 0.0017, 0.0019, 0.0021, 0.0024, 0.0026,
+            ],
+            [
+                0.0301, 0.0227, 0.0173, 0.0134, 0.0105, 0.0084, 0.0068, 0.0055,
+            ],
             [26.29, 17.21, 11.51, 7.87, 5.50, 3.93, 2.86, 2.12],
         ],
         ratios: [2.262, 5.474],
@@ -28,8 +32,12 @@ pub(super) const PRINTED: [Printed; 3] = [
     Printed {
         apart: 1.0,
         k: [
-            [0.0059, 0.0067, 0.0075, 0.0084, 0.0091, 0.0097, 0.0101, 0.0104],
-            [0.0113, 0.0126, 0.0137, 0.0146, 0.0151, 0.0153, 0.0152, 0.0148],
+            [
+                0.0059, 0.0067, 0.0075, 0.0084, 0.0091, 0.0097, 0.0101, 0.0104,
+            ],
+            [
+                0.0113, 0.0126, 0.0137, 0.0146, 0.0151, 0.0153, 0.0152, 0.0148,
+            ],
             [1.93, 1.88, 1.82, 1.75, 1.67, 1.58, 1.50, 1.41],
         ],
         ratios: [1.787, 1.354],
@@ -37,8 +45,12 @@ pub(super) const PRINTED: [Printed; 3] = [
     Printed {
         apart: 11.0,
         k: [
-            [0.0006, 0.0007, 0.0008, 0.0009, 0.0010, 0.0011, 0.0012, 0.0013],
-            [0.0003, 0.0002, 0.0002, 0.0001, 0.0001, 0.0001, 0.0001, 0.0001],
+            [
+                0.0006, 0.0007, 0.0008, 0.0009, 0.0010, 0.0011, 0.0012, 0.0013,
+            ],
+            [
+                0.0003, 0.0002, 0.0002, 0.0001, 0.0001, 0.0001, 0.0001, 0.0001,
+            ],
             [2.08, 3.02, 4.29, 5.95, 8.10, 10.83, 14.25, 18.48],
         ],
         ratios: [2.240, 3.968],
@@ -53,7 +65,13 @@ pub(super) fn compute(apart: f64) -> ([[f64; 8]; 3], [f64; 2]) {
     let (rows, lower, upper) = table_distances(apart);
     let [low, high] = [lower, upper].map(|s| rows.map(|d| flattened_k(s, d)));
     let over = |k: usize| high[k] / low[k];
-    let ratio = std::array::from_fn(|k| if over(0) > 1.0 { over(k) } else { 1.0 / over(k) });
+    let ratio = std::array::from_fn(|k| {
+        if over(0) > 1.0 {
+            over(k)
+        } else {
+            1.0 / over(k)
+        }
+    });
     let span = |line: [f64; 8]| {
         let end = |f: fn(f64, f64) -> f64| line.into_iter().reduce(f).unwrap_or(f64::NAN);
         end(f64::max) / end(f64::min)
@@ -69,14 +87,29 @@ pub(super) fn table(item: Item, printed: &Printed) -> Reproduction {
         for row in 0..8 {
             let (unit, name) = (UNITS[usize::from(line == 2)], names[line]);
             let (want, found) = (printed.k[line][row], k[line][row]);
-            rows.push(vec![name.into(), (row + 1).into(), want.into(), found.into()]);
-            checks.push(Check::value(format!("{name}, row {}", row + 1), want, Some(found), unit));
+            rows.push(vec![
+                name.into(),
+                (row + 1).into(),
+                want.into(),
+                found.into(),
+            ]);
+            checks.push(Check::value(
+                format!("{name}, row {}", row + 1),
+                want,
+                Some(found),
+                unit,
+            ));
         }
     }
     for line in 0..2 {
         let name = format!("largest over smallest, {}", names[line]);
         let (want, found) = (printed.ratios[line], ratios[line]);
-        rows.push(vec![name.as_str().into(), None.into(), want.into(), found.into()]);
+        rows.push(vec![
+            name.as_str().into(),
+            None.into(),
+            want.into(),
+            found.into(),
+        ]);
         checks.push(Check::value(name, want, Some(found), UNITS[2]));
     }
     let (at, ..) = table_distances(printed.apart);
@@ -84,11 +117,17 @@ pub(super) fn table(item: Item, printed: &Printed) -> Reproduction {
     let mut curves = Vec::new();
     for line in 0..2 {
         curves.push(computed(names[line], points(&k[line])));
-        curves.push(published(format!("{}, printed", names[line]), points(&printed.k[line])));
+        curves.push(published(
+            format!("{}, printed", names[line]),
+            points(&printed.k[line]),
+        ));
     }
     Reproduction {
         item,
-        title: format!("K of two spot lines {} in. either side of y = 4.375 in.", printed.apart),
+        title: format!(
+            "K of two spot lines {} in. either side of y = 4.375 in.",
+            printed.apart
+        ),
         caption: format!(
             "Physical kernel in the flattened cross-section, K = sin α sin β / r², law of sines in the triangle hinge, spot line, object row; hinge angle 45°, rows \
              centred at d = 6.11764 in. and every 0.5 in. from there, lines at y = 4.375 ∓ {} in.; no layout, pixels, tolerance or normalisation enter.",
@@ -98,7 +137,10 @@ pub(super) fn table(item: Item, printed: &Printed) -> Reproduction {
         rows,
         plots: vec![Plot {
             title: "K against the object row".to_owned(),
-            axes: [linear("distance of the row from the hinge / in.", [5.5, 10.0]), decades("K / in.⁻²")],
+            axes: [
+                linear("distance of the row from the hinge / in.", [5.5, 10.0]),
+                decades("K / in.⁻²"),
+            ],
             curves,
         }],
         galleries: Vec::new(),
@@ -121,12 +163,20 @@ mod tests {
                 for row in 0..8 {
                     let unit = UNITS[usize::from(line == 2)];
                     let (want, found) = (printed.k[line][row], k[line][row]);
-                    assert!((found - want).abs() <= unit, "{}: {line} {row}: {found} for {want}", printed.apart);
+                    assert!(
+                        (found - want).abs() <= unit,
+                        "{}: {line} {row}: {found} for {want}",
+                        printed.apart
+                    );
                     counted += 1;
                 }
             }
             for (found, want) in ratios.iter().zip(printed.ratios) {
-                assert!((found - want).abs() <= UNITS[2], "{}: {found} for {want}", printed.apart);
+                assert!(
+                    (found - want).abs() <= UNITS[2],
+                    "{}: {found} for {want}",
+                    printed.apart
+                );
                 counted += 1;
             }
         }

@@ -33,7 +33,12 @@ pub struct Check {
 
 impl Check {
     /// A published number, held where the computed one is at most `allowed` away.
-    pub(super) fn value(what: impl Into<String>, published: f64, computed: Option<f64>, allowed: f64) -> Self {
+    pub(super) fn value(
+        what: impl Into<String>,
+        published: f64,
+        computed: Option<f64>,
+        allowed: f64,
+    ) -> Self {
         Self {
             weight: Weight::Value,
             what: what.into(),
@@ -133,7 +138,10 @@ mod tests {
         for (checks, want) in [
             (vec![], Verdict::NotReproducible),
             (vec![value(true)], Verdict::Reproduced),
-            (vec![value(true), trend(true), claim(true)], Verdict::Reproduced),
+            (
+                vec![value(true), trend(true), claim(true)],
+                Verdict::Reproduced,
+            ),
             (vec![value(false), trend(true)], Verdict::InTrend),
             (vec![value(false)], Verdict::NotReproducible),
             (vec![value(true), trend(false)], Verdict::NotReproducible),
