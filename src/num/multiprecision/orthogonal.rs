@@ -1,5 +1,7 @@
 //! The Moore–Penrose inverse of a matrix of full rank, by modified Gram–Schmidt.
 
+use rayon::prelude::*;
+
 use super::{Digits, Real, dot};
 
 /// The digits do not suffice for the matrix.
@@ -49,35 +51,31 @@ pub fn inverse(digits: Digits, rows: &[Vec<Real>]) -> Result<Inverse, TooFewDigi
     };
     let zero = digits.whole(0);
     let mut r: Vec<Vec<Real>> = vec![Vec::new(); q.len()];
+    let least = libm::exp10(-0.5 * f64::from(digits.0));
+    let (mut shortest, mut longest) = (f64::INFINITY, 0.0f64);
     for k in 0..q.len() {
         let (done, open) = q.split_at_mut(k + 1);
         let own = &mut done[k];
         let length = dot(&zero, &*own, &*own).sqrt();
-        if length == zero {
+        let size = length.to_f64();
+        (shortest, longest) = (shortest.min(size), longest.max(size));
+        if shortest <= least * longest {
             return Err(TooFewDigits {
                 digits: digits.0,
-                ratio: 0.0,
+                ratio: shortest / longest,
             });
         }
         for x in own.iter_mut() {
             *x = &*x / &length;
         }
         r[k].push(length);
-        for (j, other) in open.iter_mut().enumerate() {
-            let along = dot(&zero, &*own, &*other);
-            for (x, q) in other.iter_mut().zip(own.iter()) {
+        let (own, r) = (&*own, &mut r[k + 1..]);
+        open.par_iter_mut().zip(r).for_each(|(other, r)| {
+            let along = dot(&zero, own, &*other);
+            for (x, q) in other.iter_mut().zip(own) {
                 *x = &*x - &(&along * q);
             }
-            r[k + 1 + j].push(along);
-        }
-    }
-    let diagonal: Vec<f64> = r.iter().filter_map(|c| Some(c.last()?.to_f64())).collect();
-    let end = |f: fn(f64, f64) -> f64| diagonal.iter().copied().reduce(f).unwrap_or(0.0);
-    let ratio = end(f64::min) / end(f64::max);
-    if ratio.is_nan() || ratio <= libm::exp10(-0.5 * f64::from(digits.0)) {
-        return Err(TooFewDigits {
-            digits: digits.0,
-            ratio,
+            r.push(along);
         });
     }
     Ok(Inverse {
@@ -85,7 +83,7 @@ pub fn inverse(digits: Digits, rows: &[Vec<Real>]) -> Result<Inverse, TooFewDigi
         r,
         shape,
         zero,
-        ratio,
+        ratio: shortest / longest,
     })
 }
 

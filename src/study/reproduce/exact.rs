@@ -33,8 +33,9 @@ pub(super) fn recover(
         watch.go_on()?;
         match Setup::new(case, Digits(digits)) {
             Ok(setup) => {
-                let one = |c: &usize| setup.recover(&case.board(*c), watch);
-                return checks.iter().map(one).collect();
+                let projector = setup.projector(watch)?;
+                let one = |c: &usize| setup.recover(&projector, &case.board(*c));
+                return Ok(checks.iter().map(one).collect());
             }
             Err(e) => short = Some(e),
         }
@@ -77,28 +78,28 @@ impl Setup {
         })
     }
 
-    fn recover(&self, board: &[f64], watch: Watch<'_>) -> Result<Exact, ReproduceError> {
+    /// Rows of G12·G12⁺.
+    fn projector(&self, watch: Watch<'_>) -> Result<Vec<Vec<Real>>, ReproduceError> {
+        let row = |d: &Vec<Real>| {
+            watch.go_on()?;
+            Ok(self.inverse.left(d))
+        };
+        self.g12.par_iter().map(row).collect()
+    }
+
+    /// (B ∘ G23)·(G12·G12⁺) ⊘ G23, mean over the pixels.
+    fn recover(&self, projector: &[Vec<Real>], board: &[f64]) -> Exact {
         let zero = self.digits.whole(0);
         let (elements, spots) = (self.g12.len(), self.g12[0].len());
-        let per_pixel: Vec<Vec<Real>> = self
-            .g23
-            .par_iter()
-            .map(|g23| {
-                watch.go_on()?;
-                let light: Vec<usize> = (0..elements).filter(|j| board[*j] == 1.0).collect();
-                let phi: Vec<Real> = (0..spots)
-                    .map(|l| {
-                        dot(
-                            &zero,
-                            light.iter().map(|j| &g23[*j]),
-                            light.iter().map(|j| &self.g12[*j][l]),
-                        )
-                    })
-                    .collect();
-                let found = self.inverse.left(&phi);
-                Ok(found.iter().zip(g23).map(|(x, g)| x / g).collect())
-            })
-            .collect::<Result<_, ReproduceError>>()?;
+        let light: Vec<usize> = (0..elements).filter(|j| board[*j] == 1.0).collect();
+        let pixel = |g23: &Vec<Real>| -> Vec<Real> {
+            let entry = |j: usize| {
+                let through = light.iter().map(|i| &projector[*i][j]);
+                &dot(&zero, light.iter().map(|i| &g23[*i]), through) / &g23[j]
+            };
+            (0..elements).map(entry).collect()
+        };
+        let per_pixel: Vec<Vec<Real>> = self.g23.par_iter().map(pixel).collect();
         let sum =
             |values: &mut dyn Iterator<Item = &Real>| values.fold(zero.clone(), |s, x| &s + x);
         let pixels = self.digits.whole(self.g23.len() as i64);
@@ -117,12 +118,12 @@ impl Setup {
         let (white, black) = (of(1.0), of(0.0));
         // 1 − (W − B)/(W + B)
         let shortfall = &(&black + &black) / &(&white + &black);
-        Ok(Exact {
+        Exact {
             outcome: Outcome::new(values.iter().map(Real::to_f64).collect(), board),
             shortfall: shortfall.to_f64(),
             digits: self.digits.0,
             rank: elements.min(spots),
-        })
+        }
     }
 }
 

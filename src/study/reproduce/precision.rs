@@ -36,7 +36,7 @@ const GROUPS: [Group; 4] = [
         item: "Figs 12–14",
         elements: 16,
         boards: &[2, 4, 8, 16],
-        per_side: &[20, 40, 80],
+        per_side: &[20, 40, 70],
         half_widths: &[HALF_WIDTH],
     },
     Group {
@@ -161,8 +161,8 @@ pub(super) fn figure(
         item: Item::Precision,
         title: "Double against multiple precision".to_owned(),
         caption: "Published kernel (G12 and G23 alike); spots on the four sides of a square around C, no stagger; 16 × 16 pixels laid to the edges of the view; raw MTF, \
-                  normalized in the CSV; noiseless. Doubles: by the projector, singular values cut as the legend says, N = max(r, l). Multiple precision: geometry, kernel, Φ and \
-                  Φ·G12⁺ with 60 digits or more, no cut, as many as leave half of them after the division; spots that the layout has twice taken once, which does not change the \
+                  normalized in the CSV; noiseless. Doubles: by the projector, singular values cut as the legend says, N = max(r, l). Multiple precision: geometry, kernel, G12⁺ \
+                  and (B ∘ G23)·(G12·G12⁺) with 60 digits or more, no cut, as many as leave half of them after the division; spots that the layout has twice taken once, which does not change the \
                   Moore–Penrose recovery."
             .to_owned(),
         columns: vec![
