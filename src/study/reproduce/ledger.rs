@@ -33,24 +33,21 @@ fn spots_leave_the_wall_as_told() {
 fn kernel_and_grid_differ_as_told() {
     let own = case(6.0, 30);
     let board = own.board(2);
-    let difference = |other: Published| {
-        let phi = own.phi(&board);
-        (other.phi(&board) - &phi).norm() / phi.norm()
-    };
-    let kernel = Published {
+    let phi = own.phi(&board);
+    let physical = Published {
         kernel: Kernel::Physical,
         ..own
     };
-    let told = format!(
-        "differs by {:.0} % at half-width 6",
-        100.0 * difference(kernel)
-    );
+    let light = physical.phi(&board);
+    let kernel = (&phi - &light).norm() / light.norm();
+    let told = format!("misses that of `physical` by {:.0} %", 100.0 * kernel);
     assert!(LEDGER.contains(&told), "{told}");
-    let grid = Published {
+    let centres = Published {
         grid: PixelGrid::Centres,
         ..own
     };
-    let told = format!("Φ of the two differs by {:.1} %", 100.0 * difference(grid));
+    let grid = (centres.phi(&board) - &phi).norm() / phi.norm();
+    let told = format!("Φ of the two differs by {:.1} %", 100.0 * grid);
     assert!(LEDGER.contains(&told), "{told}");
 }
 

@@ -162,7 +162,7 @@ pub(super) fn figure(
         title: "Double against multiple precision".to_owned(),
         caption: "Published kernel (G12 and G23 alike); spots on the four sides of a square around C, no stagger; 16 × 16 pixels laid to the edges of the view; raw MTF, \
                   normalized in the CSV; noiseless. Doubles: by the projector, singular values cut as the legend says, N = max(r, l). Multiple precision: geometry, kernel, G12⁺ \
-                  and (B ∘ G23)·(G12·G12⁺) with 60 digits or more, no cut, as many as leave half of them after the division; spots that the layout has twice taken once, which does not change the \
+                  and (B ∘ G23)·(G12·G12⁺) with 60 digits or more, no cut, as many as make G12·G12⁺ symmetric and its trace the rank to 1e-15; spots that the layout has twice taken once, which does not change the \
                   Moore–Penrose recovery."
             .to_owned(),
         columns: vec![
