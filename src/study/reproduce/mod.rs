@@ -8,6 +8,7 @@
 mod contour;
 mod distance;
 mod exact;
+mod exact_geometry;
 mod figure;
 mod indicators;
 mod inversion;
