@@ -36,7 +36,7 @@ const GROUPS: [Group; 4] = [
         item: "Figs 12–14",
         elements: 16,
         boards: &[2, 4, 8, 16],
-        per_side: &[20, 40, 70],
+        per_side: &[20, 30],
         half_widths: &[HALF_WIDTH],
     },
     Group {

@@ -84,9 +84,8 @@ pub(super) fn table(item: Item, printed: &Printed) -> Reproduction {
     let names = ["lower line", "upper line", "ratio of the lines"];
     let (mut rows, mut checks) = (Vec::new(), Vec::new());
     for line in 0..3 {
-        for row in 0..8 {
-            let (unit, name) = (UNITS[usize::from(line == 2)], names[line]);
-            let (want, found) = (printed.k[line][row], k[line][row]);
+        let (unit, name) = (UNITS[usize::from(line == 2)], names[line]);
+        for (row, (want, found)) in printed.k[line].into_iter().zip(k[line]).enumerate() {
             rows.push(vec![
                 name.into(),
                 (row + 1).into(),
@@ -160,9 +159,8 @@ mod tests {
         for printed in &PRINTED {
             let (k, ratios) = compute(printed.apart);
             for line in 0..3 {
-                for row in 0..8 {
-                    let unit = UNITS[usize::from(line == 2)];
-                    let (want, found) = (printed.k[line][row], k[line][row]);
+                let unit = UNITS[usize::from(line == 2)];
+                for (row, (want, found)) in printed.k[line].into_iter().zip(k[line]).enumerate() {
                     assert!(
                         (found - want).abs() <= unit,
                         "{}: {line} {row}: {found} for {want}",
