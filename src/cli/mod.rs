@@ -35,6 +35,7 @@ mod record;
 mod recover;
 mod recover_options;
 mod render;
+mod reproduce;
 mod run;
 mod scene;
 mod settings;
@@ -71,6 +72,7 @@ pub fn main() -> ExitCode {
         Command::Expose(a) => expose::execute(a, talk),
         Command::Scene(a) => scene::execute(a, talk),
         Command::Study(a) => study::execute(a, talk),
+        Command::Reproduce(a) => reproduce::execute(a, talk),
     };
     match result {
         Ok(Outcome::Done) => ExitCode::SUCCESS,

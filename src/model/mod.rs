@@ -9,8 +9,10 @@
 mod converged;
 mod kernel;
 mod matrix_model;
+mod published;
 mod sight;
 
 pub use converged::{Converged, Extent, Take, converged};
 pub use kernel::Kernel;
 pub use matrix_model::{ElementGrid, MatrixModel, ModelError};
+pub use published::{PixelGrid, Published, Stagger, flattened_k, table_distances};

@@ -1,6 +1,8 @@
-//! Floor 0: numbers. Constants, random and low-discrepancy streams, warps, quadrature, statistics, linear algebra.
+//! Floor 0: numbers. Constants, random and low-discrepancy streams, warps, quadrature, statistics, linear algebra,
+//! arithmetic beyond double precision.
 
 pub mod linalg;
+pub mod multiprecision;
 pub mod poisson;
 pub mod quadratic;
 pub mod quadrature;

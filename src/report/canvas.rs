@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use embedded_graphics::mono_font::{MonoFont, MonoTextStyle, iso_8859_1, iso_8859_7};
 use embedded_graphics::pixelcolor::Rgb888;
 use embedded_graphics::prelude::*;
-use embedded_graphics::primitives::{Line, PrimitiveStyle, Rectangle, Triangle};
+use embedded_graphics::primitives::{Circle, Line, PrimitiveStyle, Rectangle, Triangle};
 use embedded_graphics::text::{Baseline, Text};
 
 use super::colour::Rgb;
@@ -91,6 +91,22 @@ impl Canvas {
         );
         let style = PrimitiveStyle::with_stroke(Rgb888::new(90, 90, 90), 1);
         let Ok(()) = area.into_styled(style).draw(self);
+    }
+
+    /// Lines from point to point.
+    pub(super) fn stroke(&mut self, points: &[[usize; 2]], width: u32, [r, g, b]: Rgb) {
+        let style = PrimitiveStyle::with_stroke(Rgb888::new(r, g, b), width);
+        for pair in points.windows(2) {
+            let [from, to] = [pair[0], pair[1]].map(|[x, y]| Point::new(x as i32, y as i32));
+            let Ok(()) = Line::new(from, to).into_styled(style).draw(self);
+        }
+    }
+
+    /// A filled disc around a point.
+    pub(super) fn disc(&mut self, [x, y]: [usize; 2], radius: u32, [r, g, b]: Rgb) {
+        let circle = Circle::with_center(Point::new(x as i32, y as i32), 2 * radius + 1);
+        let style = PrimitiveStyle::with_fill(Rgb888::new(r, g, b));
+        let Ok(()) = circle.into_styled(style).draw(self);
     }
 
     /// An arrow from `a` to `b`, along an axis.

@@ -61,6 +61,12 @@ impl Axis {
         (-1e-9..=1.0 + 1e-9).contains(&t).then_some(t)
     }
 
+    /// Where along the axis its ticks are, 0 to 1, and what they say.
+    pub(super) fn marks(&self) -> Vec<(f64, String)> {
+        let placed = |(x, text)| Some((self.fraction(x)?, text));
+        self.ticks().into_iter().filter_map(placed).collect()
+    }
+
     fn ticks(&self) -> Vec<(f64, String)> {
         let [a, b] = self.ends;
         match self.run {
@@ -107,6 +113,15 @@ pub(super) fn style(i: usize) -> String {
     format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.8\" stroke-dasharray=\"{dash}\"")
 }
 
+/// The same as colour and lengths of dash and gap (0 where there is no gap), px.
+pub(super) fn inks(i: usize) -> ([u8; 3], [f64; 2]) {
+    let hex = |at: usize| u8::from_str_radix(&INKS[i % INKS.len()][at..at + 2], 16).unwrap_or(0);
+    let lengths = DASHES[i / INKS.len() % DASHES.len()].split_once(' ');
+    let length = |text: &str| text.parse().unwrap_or(0.0);
+    let dash = lengths.map_or([0.0; 2], |(a, b)| [length(a), length(b)]);
+    ([1, 3, 5].map(hex), dash)
+}
+
 /// A white sheet of that size with its title and, below, a note in grey. Close it with `</svg>`.
 pub(super) fn sheet([width, height]: [u32; 2], title: &str, note: &str) -> Svg {
     let mut svg = Svg::default();
@@ -139,6 +154,16 @@ impl Area {
             self.corner[1] + self.size[1] * (1.0 - ty),
         ])
     }
+}
+
+/// Where a point lies in the plotting area with that upper left corner and size; `None` where the axes do not reach.
+pub(super) fn place(
+    corner: [f64; 2],
+    size: [f64; 2],
+    axes: [&Axis; 2],
+    point: &[f64; 2],
+) -> Option<[f64; 2]> {
+    Area { corner, size }.place(axes, point)
 }
 
 /// Draws a panel with its axes, grid and lines; `corner` is the upper left corner of the plotting area, `size` its width and

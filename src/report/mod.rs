@@ -27,6 +27,7 @@ mod picard;
 mod picture;
 mod power;
 mod projection;
+mod reproduce;
 #[cfg(test)]
 mod sample;
 mod summary;
@@ -50,6 +51,9 @@ pub use page::run_html;
 pub use picard::{picard_csv, picard_svg};
 pub use picture::{Panel, colour_png, grey_png};
 pub use power::power_table;
+pub use reproduce::{
+    ItemSummary, reproduction_files, reproduction_html, reproduction_markdown, reproduction_table,
+};
 pub use summary::summary_json;
 pub use table::{recovery_table, summary_table, verdict_table};
 pub use tolerance::{tolerance_csv, tolerance_svg, tolerance_table};

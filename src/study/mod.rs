@@ -10,6 +10,7 @@
 //! * [`experiment`](fn@experiment): the failed laboratory experiment, re-enacted.
 //! * [`indicator`](fn@indicator): what predicts how well the published inversion works.
 //! * [`noise`](fn@noise): how much noise each recovery bears.
+//! * [`reproduce`]: the published tables and figures, computed again.
 //! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object; [`picards`] show what of it noise leaves.
 
 mod agreement;
@@ -17,12 +18,14 @@ mod budget;
 mod convergence;
 mod coverage;
 mod deviate;
+mod eigenvalue;
 mod ensemble;
 mod experiment;
 mod indicator;
 mod noise;
 mod objects;
 mod power;
+pub mod reproduce;
 mod results;
 mod tolerance;
 mod validation;

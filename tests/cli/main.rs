@@ -10,6 +10,7 @@ mod interruption;
 mod main_job;
 mod recovery;
 mod reproducibility;
+mod reproducing;
 mod scenes;
 mod small_scene;
 mod stacking;

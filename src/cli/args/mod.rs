@@ -2,6 +2,7 @@
 
 mod expose;
 mod laboratory;
+mod reproduce;
 mod study;
 mod sweep;
 mod value;
@@ -15,6 +16,7 @@ use value::{elements, levels, shift, spot_range};
 
 pub(in crate::cli) use expose::ExposeArgs;
 pub(in crate::cli) use laboratory::{CoverageArgs, ExperimentArgs};
+pub(in crate::cli) use reproduce::ReproduceArgs;
 pub(in crate::cli) use study::{
     BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs,
 };
@@ -54,6 +56,8 @@ pub(in crate::cli) enum Command {
     Scene(SceneArgs),
     /// Experiments around a scene
     Study(StudyArgs),
+    /// The published tables and figures, computed again
+    Reproduce(ReproduceArgs),
 }
 
 /// What has to be traced.

@@ -35,6 +35,8 @@ pub enum Tolerance {
     /// max(m, n) · eps · σ₁: what rounding of the entries alone can make of an exact zero.
     #[default]
     Auto,
+    /// max(m, n) · spacing of doubles at σ₁, 2^(⌊log₂ σ₁⌋ − 52): MATLAB's rule, up to half of `Auto`. Unlike the others it depends on the unit of A.
+    Spacing,
     /// The given fraction of σ₁, in [0, 1).
     Relative(f64),
     /// Keep exactly this many singular values, at least one.
@@ -154,6 +156,10 @@ pub fn cut(
     let first = sigma.first().copied().unwrap_or(0.0);
     let cutoff = match tolerance {
         Tolerance::Auto => rows.max(columns) as f64 * f64::EPSILON * first,
+        Tolerance::Spacing if first > 0.0 => {
+            rows.max(columns) as f64 * libm::scalbn(f64::EPSILON, libm::ilogb(first))
+        }
+        Tolerance::Spacing => 0.0,
         Tolerance::Relative(fraction) if (0.0..1.0).contains(&fraction) => fraction * first,
         Tolerance::Relative(fraction) => return Err(LinalgError::Tolerance(fraction)),
         Tolerance::Rank(asked) => {

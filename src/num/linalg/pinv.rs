@@ -138,4 +138,19 @@ mod tests {
         let p = pinv(&bench_g12(3.0), Tolerance::Auto).unwrap();
         assert!(p.rank > 20 && p.rank < 64, "rank {}", p.rank);
     }
+
+    /// Doubles lie 2⁻⁵¹ apart at σ₁ = 3, so the rule of `Spacing` cuts at 2 · 2⁻⁵⁰ for a side of 4, that of `Auto` at 3 · 2⁻⁵⁰; at a power of two both are one.
+    #[test]
+    fn spacing_is_the_distance_of_doubles() {
+        let unit = libm::exp2(-50.0);
+        let sigma = [3.0, 3.5 * unit, 2.5 * unit, 2.0 * unit];
+        assert_eq!(cut(&sigma, 4, 3, Tolerance::Spacing), Ok((3, 2.0 * unit)));
+        assert_eq!(cut(&sigma, 4, 3, Tolerance::Auto), Ok((2, 3.0 * unit)));
+        let power = [4.0, unit];
+        assert_eq!(
+            cut(&power, 2, 2, Tolerance::Spacing),
+            cut(&power, 2, 2, Tolerance::Auto)
+        );
+        assert_eq!(cut(&[0.0], 1, 1, Tolerance::Spacing), Ok((0, 0.0)));
+    }
 }

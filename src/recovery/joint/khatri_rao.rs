@@ -272,7 +272,7 @@ impl Operator {
     pub(super) fn tolerance(&self, asked: Tolerance) -> Tolerance {
         let floor = (self.elements as f64 * f64::EPSILON).sqrt();
         match (&self.form, asked) {
-            (Form::Normal(_), Tolerance::Auto) => Tolerance::Relative(floor),
+            (Form::Normal(_), Tolerance::Auto | Tolerance::Spacing) => Tolerance::Relative(floor),
             (Form::Normal(_), Tolerance::Relative(x)) if x < floor => Tolerance::Relative(floor),
             _ => asked,
         }

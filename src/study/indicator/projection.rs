@@ -3,6 +3,7 @@
 use crate::matrix::Matrix;
 use crate::model::MatrixModel;
 use crate::num::linalg::{LinalgError, Tolerance, cut, svd};
+use crate::study::eigenvalue::smallest_eigenvalue;
 
 /// The laser side of one bench.
 pub(super) struct Projection {
@@ -27,11 +28,6 @@ impl Projection {
         let sigma = laser.sigma.as_slice();
         let (rank, _) = cut(sigma, d.nrows(), d.ncols(), Tolerance::Auto)?;
         let kept = laser.u.columns(0, rank);
-        let gram = svd(&(d * d.transpose()))?;
-        // A symmetric matrix: the singular vectors of an eigenvalue λ agree up to its sign.
-        let eigenvalue =
-            |k: usize| gram.sigma[k].copysign(gram.u.column(k).dot(&gram.vt.row(k).transpose()));
-        let smallest = (0..d.nrows()).map(eigenvalue).fold(f64::INFINITY, f64::min);
         let last = if d.nrows() > d.ncols() {
             0.0
         } else {
@@ -41,7 +37,7 @@ impl Projection {
             projector: kept * kept.transpose(),
             rank,
             condition: sigma[0] / sigma[rank.max(1) - 1],
-            smallest_eigenvalue: smallest / gram.sigma[0],
+            smallest_eigenvalue: smallest_eigenvalue(d)?,
             smallest_square: last * last,
         })
     }

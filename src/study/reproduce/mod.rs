@@ -1,0 +1,117 @@
+//! The published study, item by item: computed again, and compared by stated criteria.
+//!
+//! The published simulation is [`Published`](crate::model::Published): its grids, spots, kernel and measurement as its code computes them, not as its text tells.
+//! Its inversion is the Moore–Penrose inverse cut by MATLAB's rule, [`Tolerance::Spacing`](crate::num::linalg::Tolerance::Spacing). Every item says in its caption
+//! which kernel, layout, pixels, tolerance and normalisation it uses; its verdict is a function of its [`Check`]s alone ([`Verdict::of`]).
+#![doc = include_str!("ledger.md")]
+
+mod contour;
+mod distance;
+mod exact;
+mod exact_geometry;
+mod figure;
+mod indicators;
+mod inversion;
+mod item;
+#[cfg(test)]
+mod ledger;
+mod noise;
+mod precision;
+mod spots;
+mod table1;
+mod tables;
+mod verdict;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::num::linalg::LinalgError;
+use crate::num::multiprecision::TooFewDigits;
+use crate::recovery::RecoveryError;
+
+pub use figure::{
+    Cell, Course, FigureAxis, FigureCurve, Gallery, Picture, Plot, Reproduction, Shades, Source,
+};
+pub use item::{Item, UnknownItem};
+pub use verdict::{Check, Verdict, Weight};
+
+/// What is free in the items.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ReproducePlan {
+    /// Items with more elements a side than this leave those curves out.
+    pub most_elements: usize,
+    /// Draws of the noise in Figs 22 to 24.
+    pub seeds: u64,
+    /// Seed of the first.
+    pub first_seed: u64,
+}
+
+impl ReproducePlan {
+    /// What results have to share to be one another's, in words.
+    pub fn settings(&self, item: Item) -> String {
+        format!(
+            "phicam {} reproduce {item}, up to {} elements a side, {} draws of noise from seed {}",
+            env!("CARGO_PKG_VERSION"),
+            self.most_elements,
+            self.seeds,
+            self.first_seed
+        )
+    }
+}
+
+/// Why an item was not computed.
+#[derive(Debug, thiserror::Error)]
+pub enum ReproduceError {
+    /// A decomposition failed.
+    #[error(transparent)]
+    Linalg(#[from] LinalgError),
+    /// A recovery failed.
+    #[error(transparent)]
+    Recovery(#[from] RecoveryError),
+    /// The digits of multiple precision do not suffice.
+    #[error(transparent)]
+    Digits(#[from] TooFewDigits),
+    /// It was stopped.
+    #[error("stopped before the item was finished; run the same command again to go on")]
+    Stopped,
+}
+
+/// Looks at a flag between two steps.
+#[derive(Clone, Copy)]
+struct Watch<'a>(&'a AtomicBool);
+
+impl<'a> Watch<'a> {
+    fn new(stop: &'a AtomicBool) -> Self {
+        Self(stop)
+    }
+
+    fn go_on(self) -> Result<(), ReproduceError> {
+        match self.0.load(Ordering::Relaxed) {
+            true => Err(ReproduceError::Stopped),
+            false => Ok(()),
+        }
+    }
+}
+
+/// Computes one item.
+///
+/// # Errors
+/// [`ReproduceError`].
+pub fn reproduce(
+    item: Item,
+    plan: &ReproducePlan,
+    stop: &AtomicBool,
+) -> Result<Reproduction, ReproduceError> {
+    let watch = Watch::new(stop);
+    watch.go_on()?;
+    match item {
+        Item::Table2 => Ok(tables::table(item, &tables::PRINTED[0])),
+        Item::Table3 => Ok(tables::table(item, &tables::PRINTED[1])),
+        Item::Table4 => Ok(tables::table(item, &tables::PRINTED[2])),
+        Item::Fig17 | Item::Fig20 => distance::figure(item, watch),
+        Item::Table1 => table1::table(watch),
+        Item::Fig12 | Item::Fig13 | Item::Fig14 => spots::modulation(item, plan, watch),
+        Item::Fig15 => indicators::indicators(watch),
+        Item::Fig22 => noise::figure(plan, watch),
+        Item::Precision => precision::figure(plan, watch),
+    }
+}

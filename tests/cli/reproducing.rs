@@ -1,0 +1,75 @@
+//! `phicam reproduce`: items by name, refusals, going on.
+
+use crate::workspace::{Workspace, assert_same};
+
+#[test]
+fn items_by_name_become_files_and_pages() {
+    let workspace = Workspace::new();
+    let ended = workspace.phicam("reproduce table2 fig18 -o r").exits(0);
+    assert!(
+        ended.stdout.contains("table2     reproduced "),
+        "{}",
+        ended.account()
+    );
+    for name in [
+        "table2.csv",
+        "table2.svg",
+        "table2.png",
+        "fig17.csv",
+        "fig17.svg",
+        "fig17-images.png",
+    ] {
+        assert!(!workspace.read(&format!("r/{name}")).is_empty());
+    }
+    let page = workspace.text("r/reproduction.md");
+    assert!(page.contains("## table2") && page.contains("## fig17") && !page.contains("## table3"));
+    assert!(workspace.text("r/reproduction.html").contains("table2.svg"));
+
+    // Finished items are not repeated, whatever is done to their numbers; one that lacks a file or has other settings is. Pages tell of all.
+    workspace.write("r/table2.csv", "marked");
+    std::fs::remove_file(workspace.path("r/fig17.svg")).unwrap();
+    let ended = workspace
+        .phicam("reproduce table2 fig17 table3 -o r")
+        .exits(0);
+    assert!(ended.stderr.contains("1 of 3 items"), "{}", ended.account());
+    assert_eq!(workspace.text("r/table2.csv"), "marked");
+    assert!(workspace.text("r/fig17.svg").contains("<svg"));
+    assert!(workspace.text("r/reproduction.md").contains("## table3"));
+    let ended = workspace.phicam("reproduce table2 -o r --seed 2").exits(0);
+    assert!(
+        !ended.stderr.contains("finished already"),
+        "{}",
+        ended.account()
+    );
+    assert!(
+        workspace
+            .text("r/table2.csv")
+            .starts_with("line,row,printed")
+    );
+}
+
+#[test]
+fn threads_do_not_change_a_byte() {
+    let workspace = Workspace::new();
+    let _ = workspace
+        .phicam("reproduce fig22 fig20 -o a --seeds 2 --threads 1")
+        .exits(0);
+    let _ = workspace
+        .phicam("reproduce fig22 fig20 -o b --seeds 2 --threads 3")
+        .exits(0);
+    assert_same(
+        &workspace.contents("a"),
+        &workspace.contents("b"),
+        "threads",
+    );
+}
+
+#[test]
+fn strangers_are_told_the_list() {
+    let workspace = Workspace::new();
+    workspace.refuses(
+        "reproduce table2 fig99 -o r",
+        &["fig99", "table1 (fig11)", "precision"],
+    );
+    workspace.refuses("reproduce --most-elements 65 -o r", &["--most-elements"]);
+}
