@@ -44,7 +44,8 @@
 //!    9  main.rs                      parse → run → exit code
 //!    8  cli/         arguments, checked settings, progress, one file per subcommand; the only floor that prints
 //!    7  report/      results → json, svg, png, html: results in, bytes out
-//!    6  study/       experiments that compose the floors below: validation, recovered objects, budget, tolerance, power
+//!    6  study/       experiments that compose the floors below: validation, recovered objects, budget, tolerance, power, noise,
+//!                    indicators, coverage, the laboratory experiment, the published study
 //!    5  recovery/    Φcam → reflectance              metrics/   how far two things are apart
 //!    4  transport/   the path tracer → Φcam          model/     G12, G23 → Φcam             sensor/  flux → electrons → counts
 //!    3  film/        frames, EXR                     matrix/    pixels × spots, .npy        store  whole files
@@ -112,7 +113,9 @@
 //! * [`model`]: the matrices, and what they leave out.
 //! * [`sensor`]: from the flux to what a camera stores, and its noise.
 //! * [`study`]: what "agree" means.
-//! * [`recovery`]: the methods.
+//! * [`sensor`]: what a camera makes of the flux, and the built-in sensors with their sources.
+//! * [`recovery`]: the methods, their parameters, their uncertainty.
+//! * [`study::reproduce`](mod@study::reproduce): the published study computed again, and the ledger of its contradictions.
 //! * [`cli`]: what a run leaves on disk.
 
 pub mod cli;
