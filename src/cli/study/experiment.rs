@@ -39,28 +39,8 @@ pub(super) fn execute(args: &ExperimentArgs, talk: Talk) -> Result<Outcome, Fail
 fn plan(args: &ExperimentArgs, scene: &Scene) -> Result<ExperimentPlan, Failure> {
     settings::budget("--samples", args.samples, Sampling::Sobol)?;
     expose::falloff(args.falloff)?;
-    for (name, list, least) in [
-        ("--glares", &args.glares, 0.0),
-        ("--exposures", &args.exposures, f64::MIN_POSITIVE),
-    ] {
-        let grows = list.windows(2).all(|w| w[0] < w[1]);
-        let bad = list.iter().find(|x| !(**x >= least && x.is_finite()));
-        if let Some(bad) = bad {
-            return Err(Failure::new(
-                format!("{name} {bad} has no meaning"),
-                "use finite numbers: exposures above 0, glares of 0 or more",
-            ));
-        }
-        if !grows {
-            let cause = format!("{name} does not grow");
-            return Err(Failure::new(
-                cause,
-                "list its values in growing order, each once",
-            ));
-        }
-    }
     let (sensor, sensor_name) = expose::studied(args.sensor.as_deref(), scene)?;
-    Ok(ExperimentPlan {
+    let plan = ExperimentPlan {
         sensor,
         sensor_name,
         samples: args.samples,
@@ -70,5 +50,7 @@ fn plan(args: &ExperimentArgs, scene: &Scene) -> Result<ExperimentPlan, Failure>
         glares: args.glares.clone(),
         exposures: args.exposures.clone(),
         falloff: args.falloff,
-    })
+    };
+    plan.check()?;
+    Ok(plan)
 }

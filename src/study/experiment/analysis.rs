@@ -3,7 +3,9 @@
 use crate::matrix::Matrix;
 use crate::metrics::{correlation, mtf_normalized, mtf_raw};
 use crate::model::{Kernel, MatrixModel};
-use crate::recovery::{Method, Nuisance, Options, Problem, RecoveryError, Rule, recover};
+use crate::recovery::{
+    Method, Nuisance, Options, Problem, RecoveryError, Rule, Uncertainty, recover,
+};
 
 /// What is analysed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -166,9 +168,10 @@ impl Laboratory {
             glare: (analysis.beside == Beside::Glare).then_some(glare),
             ..Nuisance::default()
         };
-        // Glare that nobody took away belies the noise model, so the discrepancy principle would refuse.
+        // Glare that nobody took away belies the noise model, so the discrepancy principle would refuse. The reflectances alone are measured.
         let options = Options {
             rule: Rule::Gcv,
+            uncertainty: Uncertainty::StandardError,
             ..Options::default()
         };
         let problem = Problem::new(&flux, camera_side, &model.laser_side, Some(&stderr))?

@@ -67,9 +67,49 @@ pub enum ExperimentError {
         "no light enters the lens straight from any spot, so there is no glare to study (let the camera face the wall where the spots are)"
     )]
     NoGlare,
-    /// A list is empty or not growing.
-    #[error("the list of {0} must not be empty and must grow from 0 or more")]
-    List(&'static str),
+    /// A list of levels that is empty, does not grow, or leaves its range.
+    #[error(
+        "the values of {name} ({what}) must be finite and {range}, and grow; list at least one, each once"
+    )]
+    List {
+        /// Its name.
+        name: &'static str,
+        /// What its values are.
+        what: &'static str,
+        /// Where they may lie.
+        range: &'static str,
+    },
+}
+
+impl ExperimentPlan {
+    /// Whether the lists of levels make sense.
+    ///
+    /// # Errors
+    /// [`ExperimentError::List`].
+    pub fn check(&self) -> Result<(), ExperimentError> {
+        for (list, fine, name, what, range) in [
+            (
+                &self.glares,
+                (|x| x >= 0.0) as fn(f64) -> bool,
+                "--glares",
+                "glare over signal",
+                "0 or more",
+            ),
+            (
+                &self.exposures,
+                |x| x >= f64::MIN_POSITIVE,
+                "--exposures",
+                "over the longest exposure",
+                "above 0",
+            ),
+        ] {
+            let within = list.iter().all(|&x| fine(x) && x.is_finite());
+            if list.is_empty() || !within || !list.windows(2).all(|w| w[0] < w[1]) {
+                return Err(ExperimentError::List { name, what, range });
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Re-enacts the experiment of `scene`. `steps` hears how many of all photograph series are read. `Ok(None)` if stopped.
@@ -82,8 +122,7 @@ pub fn experiment(
     control: Control<'_>,
     steps: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Option<Experiment>, ExperimentError> {
-    grows("--glares", &plan.glares, 0.0)?;
-    grows("--exposures", &plan.exposures, f64::MIN_POSITIVE)?;
+    plan.check()?;
     let sampling = Sampling::Sobol;
     let laboratory = Laboratory::new(
         MatrixModel::new(scene, Kernel::Physical, None)?,
@@ -108,7 +147,8 @@ pub fn experiment(
     if direct <= 0.0 {
         return Err(ExperimentError::NoGlare);
     }
-    let work = series::all(scene, plan, &signal);
+    let patterns = series::patterns(scene, plan);
+    let work = series::all(scene, plan, &patterns, &signal);
     let all = work.len() * plan.seeds as usize;
     let done = std::sync::atomic::AtomicUsize::new(0);
     let mut settings = Vec::with_capacity(work.len());
@@ -154,14 +194,6 @@ pub fn experiment(
     Ok(Some(found))
 }
 
-fn grows(name: &'static str, list: &[f64], least: f64) -> Result<(), ExperimentError> {
-    let fine = list.first().is_some_and(|x| *x >= least) && list.windows(2).all(|w| w[0] < w[1]);
-    match fine && list.iter().all(|x| x.is_finite()) {
-        true => Ok(()),
-        false => Err(ExperimentError::List(name)),
-    }
-}
-
 /// The object in words.
 fn object(scene: &Scene) -> String {
     let names: Vec<String> = scene
@@ -173,7 +205,7 @@ fn object(scene: &Scene) -> String {
 
 fn setting(
     scene: &Scene,
-    work: &Series,
+    work: &Series<'_>,
     signal: &Matrix,
     seeds: &[Seed],
     plan: &ExperimentPlan,

@@ -7,37 +7,40 @@ use crate::scene::{Glare, Scene, Spread as GlareSpread};
 use crate::sensor::{Exposed, Exposure, Light, SensorError, glare, glare_to_signal};
 
 /// The settings of one series, and the light that is scattered in it.
-pub(super) struct Series {
+pub(super) struct Series<'a> {
     pub(super) spread: GlareSpread,
     pub(super) ratio: f64,
     pub(super) fraction: f64,
-    /// Light of the laser that the lens scatters, pixels × spots, W.
-    pub(super) glare: Matrix,
-    /// The same for the whole of the light that enters.
-    pub(super) pattern: Matrix,
+    /// What the lens would scatter of the whole of the light that enters it, pixels × spots, W; the glare is `fraction` of it.
+    pub(super) pattern: &'a Matrix,
     pub(super) time: f64,
     pub(super) frames: u32,
 }
 
-/// First the settings of growing glare, even and falling off, then those of growing exposure.
-pub(super) fn all(scene: &Scene, plan: &ExperimentPlan, signal: &Matrix) -> Vec<Series> {
-    let spreads = [GlareSpread::Uniform, GlareSpread::Falloff(plan.falloff)];
-    let patterns = spreads.map(|spread| {
-        (
+/// A kind of glare, and what the lens would scatter of the whole of the light that enters it.
+pub(super) type Pattern = (GlareSpread, Matrix);
+
+/// Even glare, and glare that falls off.
+pub(super) fn patterns(scene: &Scene, plan: &ExperimentPlan) -> [Pattern; 2] {
+    [GlareSpread::Uniform, GlareSpread::Falloff(plan.falloff)].map(|spread| {
+        let whole = Glare {
+            fraction: 1.0,
             spread,
-            glare(
-                scene,
-                Glare {
-                    fraction: 1.0,
-                    spread,
-                },
-            ),
-        )
-    });
-    let work = |(spread, pattern): &(GlareSpread, Matrix), ratio: f64, share: f64, frames| {
+        };
+        (spread, glare(scene, whole))
+    })
+}
+
+/// First the settings of growing glare, one kind after the other, then those of growing exposure.
+pub(super) fn all<'a>(
+    scene: &Scene,
+    plan: &ExperimentPlan,
+    patterns: &'a [Pattern],
+    signal: &Matrix,
+) -> Vec<Series<'a>> {
+    let work = |(spread, pattern): &'a Pattern, ratio: f64, share: f64, frames| {
         let fraction = ratio / glare_to_signal(pattern, signal);
-        let glare = pattern * fraction;
-        let brightest = (signal + &glare).max();
+        let brightest = (signal + pattern * fraction).max();
         Series {
             spread: *spread,
             ratio,
@@ -46,8 +49,7 @@ pub(super) fn all(scene: &Scene, plan: &ExperimentPlan, signal: &Matrix) -> Vec<
                 * plan
                     .sensor
                     .longest_exposure(brightest, scene.laser.wavelength),
-            glare,
-            pattern: pattern.clone(),
+            pattern,
             frames,
         }
     };
@@ -74,14 +76,15 @@ pub(super) fn read(
     scene: &Scene,
     plan: &ExperimentPlan,
     laboratory: &Laboratory,
-    series: &Series,
+    series: &Series<'_>,
     signal: &Matrix,
     seed: u64,
 ) -> Result<Seed, ExperimentError> {
     let exposure = Exposure::new(&[series.time], series.frames, series.frames)?;
     let wavelength = scene.laser.wavelength;
+    let glare = series.pattern * series.fraction;
     let expose = |light: &Matrix, seed: u64| -> Result<Exposed, SensorError> {
-        let light = Light::new(light, wavelength)?.with_glare(&series.glare)?;
+        let light = Light::new(light, wavelength)?.with_glare(&glare)?;
         plan.sensor.expose(&light, &exposure, seed)
     };
     let taken = expose(signal, seed.wrapping_mul(2))?;
@@ -100,7 +103,7 @@ pub(super) fn read(
         .iter()
         .map(|a| {
             laboratory
-                .read(a, &taken, &covered, &series.pattern)
+                .read(a, &taken, &covered, series.pattern)
                 .map_err(|e| e.to_string())
         })
         .collect();
