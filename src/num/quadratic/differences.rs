@@ -1,11 +1,9 @@
 //! Least squares between bounds with a penalty on differences (fused least squares).
 
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::{
-    DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, ZeroConeT,
-};
+use clarabel::solver::{DefaultSettingsBuilder, NonnegativeConeT, ZeroConeT};
 use nalgebra::{DMatrix, DVector};
 
+use super::program::{Program, half_square};
 use super::{Bounds, BoxSolution, GAP_ALLOWED, QuadraticError, certificate};
 use crate::num::linalg::{Tolerance, least_squares};
 
@@ -133,52 +131,22 @@ impl Problem<'_> {
         let (r, pairs) = (self.r, self.pairs);
         let (k, n) = r.shape();
         let m = pairs.len();
-        let lengths: Vec<f64> = r
-            .column_iter()
-            .map(|c| if c.norm() > 0.0 { c.norm() } else { 1.0 })
-            .collect();
+        let mut program = Program::new(r, self.bounds.upper.as_slice());
+        let (lengths, closed) = (program.lengths.clone(), program.closed.clone());
         let e = r * start - self.d;
         let largest = lengths.iter().copied().fold(0.0, f64::max);
         let unit = [e.norm(), self.lambda.sqrt(), f64::EPSILON * largest]
             .into_iter()
             .fold(f64::MIN_POSITIVE, f64::max);
-        let closed: Vec<usize> = (0..n)
-            .filter(|&j| self.bounds.upper[j].is_finite())
-            .collect();
         // Variables v = (x − x₀)·length/unit, y = R(x − x₀)/unit, t ≥ |T x|. Rows: y − R v = 0; bounds; ±T v − t ≤ ∓T x₀.
-        let (mut row, mut column, mut value) = (Vec::new(), Vec::new(), Vec::new());
-        let mut put = |i, j, v: f64| {
-            if v != 0.0 {
-                row.push(i);
-                column.push(j);
-                value.push(v);
-            }
-        };
-        for j in 0..n {
-            for i in 0..k {
-                put(i, j, -r[(i, j)] / lengths[j]);
-            }
-            put(k + j, j, -1.0);
-        }
-        for (i, &j) in closed.iter().enumerate() {
-            put(k + n + i, j, 1.0);
-        }
-        for i in 0..k {
-            put(i, n + i, 1.0);
-        }
         let first = k + n + closed.len();
         for (i, &[a, b]) in pairs.iter().enumerate() {
             for (at, sign) in [(first + i, 1.0), (first + m + i, -1.0)] {
-                put(at, a, sign * unit / lengths[a]);
-                put(at, b, -sign * unit / lengths[b]);
-                put(at, n + k + i, -1.0);
+                program.put(at, a, sign * unit / lengths[a]);
+                program.put(at, b, -sign * unit / lengths[b]);
+                program.put(at, n + k + i, -1.0);
             }
         }
-        let rows = first + 2 * m;
-        let constraints = CscMatrix::new_from_triplets(rows, n + k + m, row, column, value);
-        let on_y: Vec<usize> = (n..n + k).collect();
-        let cost =
-            CscMatrix::new_from_triplets(n + k + m, n + k + m, on_y.clone(), on_y, vec![1.0; k]);
         let linear: Vec<f64> = std::iter::repeat_n(0.0, n)
             .chain(e.iter().map(|e| e / unit))
             .chain(std::iter::repeat_n(self.lambda / (unit * unit), m))
@@ -194,17 +162,10 @@ impl Problem<'_> {
             .chain(pairs.iter().map(|&[a, b]| start[b] - start[a]))
             .chain(pairs.iter().map(|&[a, b]| start[a] - start[b]))
             .collect();
-        let settings = DefaultSettingsBuilder::default()
-            .verbose(false)
-            .max_threads(1)
-            .tol_gap_abs(1e-11)
-            .tol_gap_rel(1e-11)
-            .build()
-            .map_err(|e| QuadraticError::Refused(e.to_string()))?;
         let cones = [ZeroConeT(k), NonnegativeConeT(n + closed.len() + 2 * m)];
-        let mut solver = DefaultSolver::new(&cost, &linear, &constraints, &right, &cones, settings)
-            .map_err(|e| QuadraticError::Refused(e.to_string()))?;
-        solver.solve();
+        let mut settings = DefaultSettingsBuilder::default();
+        let settings = settings.tol_gap_abs(1e-11).tol_gap_rel(1e-11);
+        let solver = program.solve(&half_square(n, k, m), &linear, &right, &cones, settings)?;
         let found = &solver.solution;
         let status = found.status.to_string();
         let mut x = DVector::from_fn(n, |j, _| start[j] + found.x[j] * unit / lengths[j]);

@@ -1,12 +1,11 @@
 //! How far one variable can go while the fit stays good.
 
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{
-    DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, ZeroConeT,
-};
+use clarabel::solver::{DefaultSettingsBuilder, NonnegativeConeT, SecondOrderConeT, ZeroConeT};
 use nalgebra::{DMatrix, DVector};
 
 use super::certificate::Lift;
+use super::program::Program;
 use super::{Bounds, QuadraticError};
 
 /// The least and the largest x_j among all l ≤ x ≤ u with ‖R x − d‖² ≤ ‖R x̂ − d‖² + slack, x̂ = `best` being one of them.
@@ -71,35 +70,13 @@ fn multipliers(
     (j, sign): (usize, f64),
 ) -> Result<DVector<f64>, QuadraticError> {
     let (k, n) = r.shape();
-    let lengths: Vec<f64> = r
-        .column_iter()
-        .map(|c| if c.norm() > 0.0 { c.norm() } else { 1.0 })
-        .collect();
-    let closed: Vec<usize> = (0..n).filter(|&i| bounds.upper[i].is_finite()).collect();
+    let mut program = Program::new(r, bounds.upper.as_slice());
+    let (lengths, closed) = (program.lengths.clone(), program.closed.clone());
     // Variables v = (x − x̂)·length/radius and y = R(x − x̂)/radius. Rows: y − R v = 0; −v ≤ (x̂ − l)…; v ≤ (u − x̂)…; (1, y + e/radius) in the cone.
-    let (mut row, mut column, mut value) = (Vec::new(), Vec::new(), Vec::new());
-    let mut put = |i, j, v: f64| {
-        if v != 0.0 {
-            row.push(i);
-            column.push(j);
-            value.push(v);
-        }
-    };
     let cone = k + n + closed.len();
-    for i in 0..n {
-        for a in 0..k {
-            put(a, i, -r[(a, i)] / lengths[i]);
-        }
-        put(k + i, i, -1.0);
-    }
-    for (at, &i) in closed.iter().enumerate() {
-        put(k + n + at, i, 1.0);
-    }
     for a in 0..k {
-        put(a, n + a, 1.0);
-        put(cone + 1 + a, n + a, -1.0);
+        program.put(cone + 1 + a, n + a, -1.0);
     }
-    let constraints = CscMatrix::new_from_triplets(cone + 1 + k, n + k, row, column, value);
     let scaled = |i: usize, room: f64| room * lengths[i] / radius;
     let right: Vec<f64> = std::iter::repeat_n(0.0, k)
         .chain((0..n).map(|i| scaled(i, best[i] - bounds.lower[i])))
@@ -109,20 +86,14 @@ fn multipliers(
         .collect();
     let mut linear = vec![0.0; n + k];
     linear[j] = sign;
-    let settings = DefaultSettingsBuilder::default()
-        .verbose(false)
-        .max_threads(1)
-        .build()
-        .map_err(|e| QuadraticError::Refused(e.to_string()))?;
     let cones = [
         ZeroConeT(k),
         NonnegativeConeT(n + closed.len()),
         SecondOrderConeT(k + 1),
     ];
     let cost = CscMatrix::zeros((n + k, n + k));
-    let mut solver = DefaultSolver::new(&cost, &linear, &constraints, &right, &cones, settings)
-        .map_err(|e| QuadraticError::Refused(e.to_string()))?;
-    solver.solve();
+    let mut settings = DefaultSettingsBuilder::default();
+    let solver = program.solve(&cost, &linear, &right, &cones, &mut settings)?;
     // Of x_j itself: v_j carries length_j/radius, the residuals 1/radius. A z that is not finite proves nothing and is none.
     let z = DVector::from_fn(k, |a, _| -solver.solution.z[cone + 1 + a] / lengths[j]);
     Ok(match z.iter().all(|x| x.is_finite()) {

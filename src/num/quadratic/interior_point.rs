@@ -1,11 +1,9 @@
 //! The problem as the conic solver wants it.
 
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::{
-    DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, ZeroConeT,
-};
+use clarabel::solver::{DefaultSettingsBuilder, NonnegativeConeT, ZeroConeT};
 use nalgebra::{DMatrix, DVector};
 
+use super::program::{Program, half_square};
 use super::{GAP_ALLOWED, Place, QuadraticError};
 
 /// Where the interior-point solver ended.
@@ -28,36 +26,10 @@ pub(super) fn solve(
     upper: &DVector<f64>,
 ) -> Result<Interior, QuadraticError> {
     let (k, n) = r.shape();
-    let lengths: Vec<f64> = r
-        .column_iter()
-        .map(|c| if c.norm() > 0.0 { c.norm() } else { 1.0 })
-        .collect();
+    let program = Program::new(r, upper.as_slice());
+    let (lengths, closed) = (program.lengths.clone(), program.closed.clone());
     let size = d.norm().max(lengths.iter().copied().fold(0.0, f64::max));
     // Variables (x_j·length_j/size, y/size); rows: y − R x = −d, then −x ≤ 0, then x ≤ u·length/size where u is finite.
-    let closed: Vec<usize> = (0..n).filter(|&j| upper[j].is_finite()).collect();
-    let (mut row, mut column, mut value) = (Vec::new(), Vec::new(), Vec::new());
-    let mut put = |i, j, v: f64| {
-        if v != 0.0 {
-            row.push(i);
-            column.push(j);
-            value.push(v);
-        }
-    };
-    for j in 0..n {
-        for i in 0..k {
-            put(i, j, -r[(i, j)] / lengths[j]);
-        }
-        put(k + j, j, -1.0);
-    }
-    for (i, &j) in closed.iter().enumerate() {
-        put(k + n + i, j, 1.0);
-    }
-    for i in 0..k {
-        put(i, n + i, 1.0);
-    }
-    let constraints = CscMatrix::new_from_triplets(k + n + closed.len(), n + k, row, column, value);
-    let on_y: Vec<usize> = (n..n + k).collect();
-    let cost = CscMatrix::new_from_triplets(n + k, n + k, on_y.clone(), on_y, vec![1.0; k]);
     let linear = vec![0.0; n + k];
     let ceilings = closed.iter().map(|&j| upper[j] * lengths[j] / size);
     let bounds: Vec<f64> = d
@@ -66,17 +38,10 @@ pub(super) fn solve(
         .chain(std::iter::repeat_n(0.0, n))
         .chain(ceilings)
         .collect();
-    let settings = DefaultSettingsBuilder::default()
-        .verbose(false)
-        .max_threads(1)
-        .tol_gap_abs(1e-12)
-        .tol_gap_rel(1e-12)
-        .build()
-        .map_err(|e| QuadraticError::Refused(e.to_string()))?;
     let cones = [ZeroConeT(k), NonnegativeConeT(n + closed.len())];
-    let mut solver = DefaultSolver::new(&cost, &linear, &constraints, &bounds, &cones, settings)
-        .map_err(|e| QuadraticError::Refused(e.to_string()))?;
-    solver.solve();
+    let mut settings = DefaultSettingsBuilder::default();
+    let settings = settings.tol_gap_abs(1e-12).tol_gap_rel(1e-12);
+    let solver = program.solve(&half_square(n, k, 0), &linear, &bounds, &cones, settings)?;
     let found = &solver.solution;
     let status = found.status.to_string();
     let mut x = DVector::from_fn(n, |j, _| found.x[j] * size / lengths[j]);

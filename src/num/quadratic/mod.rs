@@ -5,6 +5,7 @@ mod certificate;
 mod differences;
 mod extent;
 mod interior_point;
+mod program;
 
 pub use differences::{Fused, fused_least_squares};
 pub use extent::extent;
