@@ -3,12 +3,12 @@
 use crate::matrix::Matrix;
 use crate::model::MatrixModel;
 use crate::num::linalg::{LinalgError, Tolerance, cut, svd};
-use crate::study::eigenvalue::smallest_eigenvalue;
+use crate::study::inversion::{noiseless, smallest_eigenvalue};
 
 /// The laser side of one bench.
 pub(super) struct Projection {
-    /// P = G12·G12⁺ = U_k U_kᵀ over the k directions that `pinv` keeps, elements × elements.
-    projector: Matrix,
+    /// U_k of the projector P = G12·G12⁺ = U_k U_kᵀ over the k directions that `pinv` keeps, elements × k.
+    kept: Matrix,
     /// k.
     pub(super) rank: usize,
     /// ‖G12‖₂·‖G12⁺‖₂ = σ1/σ_k, over the last *kept* singular value.
@@ -27,14 +27,13 @@ impl Projection {
         let laser = svd(d)?;
         let sigma = laser.sigma.as_slice();
         let (rank, _) = cut(sigma, d.nrows(), d.ncols(), Tolerance::Auto)?;
-        let kept = laser.u.columns(0, rank);
         let last = if d.nrows() > d.ncols() {
             0.0
         } else {
             sigma[d.nrows() - 1] / sigma[0]
         };
         Ok(Self {
-            projector: kept * kept.transpose(),
+            kept: laser.u.columns(0, rank).into_owned(),
             rank,
             condition: sigma[0] / sigma[rank.max(1) - 1],
             smallest_eigenvalue: smallest_eigenvalue(d)?,
@@ -47,18 +46,12 @@ impl Projection {
         let mean = albedo.iter().sum::<f64>() / albedo.len() as f64;
         let pattern =
             nalgebra::DVector::from_iterator(albedo.len(), albedo.iter().map(|x| x - mean));
-        (&self.projector * &pattern).norm_squared() / pattern.norm_squared()
+        self.kept.tr_mul(&pattern).norm_squared() / pattern.norm_squared()
     }
 
     /// What `pinv` recovers from the noiseless Φcam, (C diag ρ)·P ⊘ C averaged over the pixels, without Φcam.
     pub(super) fn noiseless(&self, model: &MatrixModel) -> Vec<f64> {
-        let c = &model.camera_side;
-        let mut lit = c.clone();
-        for (mut column, rho) in lit.column_iter_mut().zip(&model.albedo) {
-            column *= *rho;
-        }
-        let found = (lit * &self.projector).component_div(c);
-        found.row_mean().iter().copied().collect()
+        noiseless(&model.camera_side, &model.albedo, &self.kept)
     }
 }
 
@@ -109,7 +102,7 @@ mod tests {
         let model = MatrixModel::new(&few, Kernel::Physical, Some([4, 4])).unwrap();
         let found = Projection::new(&model).unwrap();
         assert_eq!(found.rank, 3);
-        let p = &found.projector;
+        let p = &(&found.kept * found.kept.transpose());
         assert!((p.trace() - 3.0).abs() < 1e-12 && (p * p - p).norm() < 1e-12);
         let pattern = nalgebra::DVector::from_iterator(16, model.albedo.iter().map(|x| x - 0.5));
         let lost = (&pattern - p * &pattern).norm_squared() / pattern.norm_squared();

@@ -9,7 +9,7 @@ use super::{Check, Item, Plot, ReproduceError, Reproduction, Watch};
 use crate::metrics::rank_correlation;
 use crate::model::{Kernel, Stagger};
 use crate::num::linalg::Tolerance;
-use crate::study::eigenvalue::smallest_eigenvalue;
+use crate::study::inversion::smallest_eigenvalue;
 
 /// Elements a side of Figs 15 and 16.
 const SIDES: [usize; 4] = [2, 4, 8, 16];

@@ -7,6 +7,7 @@ use crate::matrix::Matrix;
 use crate::metrics::{mtf_normalized, mtf_raw};
 use crate::model::{Kernel, PixelGrid, Published, Stagger};
 use crate::num::linalg::{LinalgError, Tolerance, cut, svd};
+use crate::study::inversion::noiseless;
 
 /// Pixels a side of the camera in every item.
 pub(super) const PIXELS: usize = 16;
@@ -95,13 +96,8 @@ impl Inversion {
 
     /// The recovery of `board` over the first `rank` directions: (B ∘ G23)·P ⊘ G23, mean over the pixels.
     pub(super) fn noiseless(&self, board: &[f64], rank: usize) -> Outcome {
-        let kept = self.u.columns(0, rank);
-        let mut lit = self.g23.clone();
-        for (mut column, b) in lit.column_iter_mut().zip(board) {
-            column *= *b;
-        }
-        let found = ((lit * kept) * kept.transpose()).component_div(&self.g23);
-        Outcome::new(found.row_mean().iter().copied().collect(), board)
+        let kept = self.u.columns(0, rank).into_owned();
+        Outcome::new(noiseless(&self.g23, board, &kept), board)
     }
 }
 
