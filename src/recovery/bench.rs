@@ -2,6 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::{Choice, Recovered};
+
 /// The two sides of the model and the element grid.
 pub(super) struct Bench {
     /// Camera side, pixels × elements.
@@ -103,4 +105,16 @@ pub(super) fn normal_stream(seed: u64) -> impl FnMut() -> f64 {
         ((z ^ (z >> 31)) >> 11) as f64 * (0.5f64).powi(53) + (0.5f64).powi(54)
     };
     move || (-2.0 * libm::log(uniform())).sqrt() * libm::cos(std::f64::consts::TAU * uniform())
+}
+
+/// Residual, target and limit of a parameter that the discrepancy principle has chosen.
+pub(super) fn discrepancy(found: &Recovered) -> [f64; 3] {
+    match found.choice {
+        Choice::Discrepancy {
+            residual,
+            target,
+            limit,
+        } => [residual, target, limit],
+        other => panic!("{other:?} of {}", found.method),
+    }
 }

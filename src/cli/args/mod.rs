@@ -2,6 +2,7 @@
 
 mod expose;
 mod laboratory;
+mod recover;
 mod reproduce;
 mod study;
 mod sweep;
@@ -12,10 +13,11 @@ use std::path::PathBuf;
 
 use clap::{Args as Arguments, Parser, Subcommand, ValueEnum};
 
-use value::{elements, levels, shift, spot_range};
+use value::{elements, shift, spot_range};
 
 pub(in crate::cli) use expose::ExposeArgs;
 pub(in crate::cli) use laboratory::{CoverageArgs, ExperimentArgs};
+pub(in crate::cli) use recover::{RecoverArgs, RuleName, WeightingName};
 pub(in crate::cli) use reproduce::ReproduceArgs;
 pub(in crate::cli) use study::{
     BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs,
@@ -205,98 +207,6 @@ pub(in crate::cli) struct ValidateArgs {
     /// Print the verdict as JSON
     #[arg(long)]
     pub json: bool,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(in crate::cli) enum RuleName {
-    /// The strongest regularisation whose residual the noise explains
-    Discrepancy,
-    /// Generalised cross-validation; needs no noise model
-    Gcv,
-    /// The corner of the L-curve; needs no noise model
-    LCurve,
-}
-
-#[derive(Debug, Arguments)]
-pub(in crate::cli) struct RecoverArgs {
-    /// Folder of a run; with --phi a folder with a scene.toml is enough
-    pub dir: PathBuf,
-    /// Methods, separated by commas: pinv, left-inverse, right-inverse, rdivide, rdivide-min-norm, tsvd, tikhonov, tikhonov-gradient,
-    /// joint-unbounded, joint, nnls, joint-tv, joint-two-valued; pinv, tsvd, tikhonov, joint-unbounded and joint unless given
-    #[arg(long, value_delimiter = ',', value_name = "METHOD")]
-    pub method: Vec<String>,
-    /// Φcam to invert, pixels × spots in W, in place of DIR/phi.npy
-    #[arg(long, value_name = "FILE")]
-    pub phi: Option<PathBuf>,
-    /// Its standard error, in place of DIR/phi.stderr.npy
-    #[arg(long, value_name = "FILE", conflicts_with = "noise")]
-    pub stderr: Option<PathBuf>,
-    /// Noise model: standard deviation of each entry relative to its value, in place of a standard error
-    #[arg(long, value_name = "RELATIVE", allow_negative_numbers = true)]
-    pub noise: Option<f64>,
-    /// Use entries that `expose` has marked as saturated or cut off beside the --phi file (saturated.npy) as if they were right
-    #[arg(long, requires = "phi")]
-    pub keep_clipped: bool,
-    /// Kernel of the model that is inverted
-    #[arg(long, value_enum, default_value_t = KernelName::Physical)]
-    pub kernel: KernelName,
-    /// Elements along u and v, in place of the scene's: N or NxM
-    #[arg(long, value_name = "N", value_parser = elements)]
-    pub elements: Option<[usize; 2]>,
-    /// How tsvd, tikhonov and tikhonov-gradient choose their parameter
-    #[arg(long, value_enum, default_value_t = RuleName::Discrepancy)]
-    pub rule: RuleName,
-    /// Singular directions that tsvd keeps, in place of the rule's choice
-    #[arg(long, value_name = "K", allow_negative_numbers = true)]
-    pub rank: Option<usize>,
-    /// Damping of tikhonov and tikhonov-gradient relative to σ1, in place of the rule's choice
-    #[arg(long, value_name = "LAMBDA", allow_negative_numbers = true)]
-    pub damping: Option<f64>,
-    /// Relative singular value below which pinv, the divisions and joint-unbounded cut; max(size)·eps unless given
-    #[arg(long, value_name = "RELATIVE", allow_negative_numbers = true)]
-    pub tolerance: Option<f64>,
-    #[command(flatten)]
-    pub joint: JointArgs,
-    /// Bands that cover each element with this probability: METHOD.lower.npy and METHOD.upper.npy
-    #[arg(long, value_name = "LEVEL", allow_negative_numbers = true)]
-    pub bands: Option<f64>,
-    /// Print the results as JSON
-    #[arg(long)]
-    pub json: bool,
-}
-
-/// What the methods over all pixels and spots can do besides.
-#[derive(Debug, Arguments)]
-pub(in crate::cli) struct JointArgs {
-    /// By what the joint methods weigh the entries of Φcam
-    #[arg(long, value_enum, default_value_t = WeightingName::Noise)]
-    pub weighting: WeightingName,
-    /// Weight of joint-tv's total variation relative to σ1², in place of the discrepancy principle
-    #[arg(long, value_name = "LAMBDA", allow_negative_numbers = true)]
-    pub tv: Option<f64>,
-    /// The two reflectances of joint-two-valued, estimated unless given: DARK,LIGHT
-    #[arg(long, value_name = "DARK,LIGHT", value_parser = levels, allow_hyphen_values = true)]
-    pub levels: Option<[f64; 2]>,
-    /// Estimate a constant of each frame with the reflectances
-    #[arg(long)]
-    pub frame_constant: bool,
-    /// Estimate an image that is the same in all frames
-    #[arg(long)]
-    pub background: bool,
-    /// Estimate one factor of all photographs; the brightest element is the unit then
-    #[arg(long)]
-    pub free_scale: bool,
-    /// Estimate the strength of this pattern in each frame: pixels × spots
-    #[arg(long, value_name = "FILE")]
-    pub glare_pattern: Option<PathBuf>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum WeightingName {
-    /// By the noise, where it is known
-    Noise,
-    /// All alike
-    None,
 }
 
 #[derive(Debug, Arguments)]

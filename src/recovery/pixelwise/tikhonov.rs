@@ -29,7 +29,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::recovery::bench::{Bench, relative_noise};
+    use crate::recovery::bench::{Bench, discrepancy, relative_noise};
     use crate::recovery::{Choice, recover};
 
     #[test]
@@ -40,14 +40,7 @@ mod tests {
             let (phi, stderr) = relative_noise(&exact, noise, seed);
             let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
             let found = recover(Method::Tikhonov, &problem, &Options::default()).unwrap();
-            let Choice::Discrepancy {
-                residual,
-                target,
-                limit,
-            } = found.choice
-            else {
-                panic!("{:?}", found.choice)
-            };
+            let [residual, target, limit] = discrepancy(&found);
             assert!(
                 (residual / limit - 1.0).abs() < 1e-9 && target < limit && limit < 1.03 * target,
                 "{residual:e} {limit:e} {target:e}"

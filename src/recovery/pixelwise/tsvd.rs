@@ -60,7 +60,7 @@ fn choose(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recovery::bench::{Bench, relative_noise};
+    use crate::recovery::bench::{Bench, discrepancy, relative_noise};
     use crate::recovery::recover;
 
     #[test]
@@ -71,14 +71,7 @@ mod tests {
             let (phi, stderr) = relative_noise(&exact, noise, seed);
             let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
             let found = recover(Method::Tsvd, &problem, &Options::default()).unwrap();
-            let Choice::Discrepancy {
-                residual,
-                target,
-                limit,
-            } = found.choice
-            else {
-                panic!("{:?}", found.choice)
-            };
+            let [residual, target, limit] = discrepancy(&found);
             // Within the scatter allowed above; below by the same few standard deviations (1.2 % of the square each).
             assert!(
                 residual <= limit && residual > target * 0.97,
