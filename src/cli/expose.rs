@@ -19,6 +19,7 @@ use super::finished::{read_matrix, read_run};
 use super::folder::{self, PHI, STDERR};
 use super::output::{self, Talk};
 use super::record::{Record, version};
+use super::settings::sensor_model;
 use super::stale::remove_exposed;
 use crate::film::{self, Channel, Frame, frame_name};
 use crate::matrix::{Matrix, npy};
@@ -126,7 +127,7 @@ fn settings(args: &ExposeArgs, scene: &Scene) -> Result<SensorSettings, Failure>
     let base = match &args.sensor {
         None => given,
         Some(name) => SensorSettings {
-            model: Some(model(name)?),
+            model: Some(sensor_model(name)?),
             exposure: given.exposure,
             frames: given.frames,
             dark_frames: given.dark_frames,
@@ -153,38 +154,6 @@ fn settings(args: &ExposeArgs, scene: &Scene) -> Result<SensorSettings, Failure>
         brackets,
         ..base
     })
-}
-
-pub(super) fn model(name: &str) -> Result<SensorModel, Failure> {
-    let found = SensorModel::ALL.into_iter().find(|m| m.name() == name);
-    found.ok_or_else(|| {
-        let names: Vec<&str> = SensorModel::ALL.iter().map(|m| m.name()).collect();
-        let cure = format!("use one of {}", names.join(", "));
-        Failure::new(format!("there is no built-in sensor `{name}`"), cure)
-    })
-}
-
-/// The sensor of a study, and its name: the built-in one asked for, or that of the scene, or the CCD.
-pub(super) fn studied(name: Option<&str>, scene: &Scene) -> Result<(Sensor, String), Failure> {
-    Ok(match (name, &scene.sensor) {
-        (Some(name), _) => (Sensor::builtin(model(name)?), name.to_owned()),
-        (None, Some(own)) => (Sensor::from_settings(own)?, format!("of {}", scene.name)),
-        (None, None) => (
-            Sensor::builtin(SensorModel::Ccd),
-            SensorModel::Ccd.name().to_owned(),
-        ),
-    })
-}
-
-/// Refuses a `--falloff` that is no distance.
-pub(super) fn falloff(given: f64) -> Result<(), Failure> {
-    match given > 0.0 && given.is_finite() {
-        true => Ok(()),
-        false => Err(Failure::new(
-            format!("--falloff {given} is no distance"),
-            "use a length above 0 in the scene's unit",
-        )),
-    }
 }
 
 /// A glare whose fraction may come from the command line.

@@ -7,6 +7,8 @@ use super::failure::Failure;
 use super::output::Talk;
 use crate::model::Kernel;
 use crate::num::stream::Sampling;
+use crate::scene::{Scene, SensorModel};
+use crate::sensor::Sensor;
 use crate::study::{Errors, Integration, Test};
 use crate::transport::{Budget, Estimator, Plan};
 
@@ -89,6 +91,41 @@ pub(super) fn integration(name: IntegrationName) -> Integration {
     match name {
         IntegrationName::Centres => Integration::Centres,
         IntegrationName::Quadrature => Integration::Quadrature,
+    }
+}
+
+pub(super) fn sensor_model(name: &str) -> Result<SensorModel, Failure> {
+    let found = SensorModel::ALL.into_iter().find(|m| m.name() == name);
+    found.ok_or_else(|| {
+        let names: Vec<&str> = SensorModel::ALL.iter().map(|m| m.name()).collect();
+        let cure = format!("use one of {}", names.join(", "));
+        Failure::new(format!("there is no built-in sensor `{name}`"), cure)
+    })
+}
+
+/// The sensor of a study, and its name: the built-in one asked for, or that of the scene, or the CCD.
+pub(super) fn studied_sensor(
+    name: Option<&str>,
+    scene: &Scene,
+) -> Result<(Sensor, String), Failure> {
+    Ok(match (name, &scene.sensor) {
+        (Some(name), _) => (Sensor::builtin(sensor_model(name)?), name.to_owned()),
+        (None, Some(own)) => (Sensor::from_settings(own)?, format!("of {}", scene.name)),
+        (None, None) => (
+            Sensor::builtin(SensorModel::Ccd),
+            SensorModel::Ccd.name().to_owned(),
+        ),
+    })
+}
+
+/// Refuses a `--falloff` that is no distance.
+pub(super) fn falloff(given: f64) -> Result<(), Failure> {
+    match given > 0.0 && given.is_finite() {
+        true => Ok(()),
+        false => Err(Failure::new(
+            format!("--falloff {given} is no distance"),
+            "use a length above 0 in the scene's unit",
+        )),
     }
 }
 

@@ -2,7 +2,6 @@
 
 use super::findings::{Findings, traced};
 use crate::cli::args::ExperimentArgs;
-use crate::cli::expose;
 use crate::cli::failure::Failure;
 use crate::cli::output::Talk;
 use crate::cli::{Outcome, progress, settings};
@@ -38,8 +37,8 @@ pub(super) fn execute(args: &ExperimentArgs, talk: Talk) -> Result<Outcome, Fail
 
 fn plan(args: &ExperimentArgs, scene: &Scene) -> Result<ExperimentPlan, Failure> {
     settings::budget("--samples", args.samples, Sampling::Sobol)?;
-    expose::falloff(args.falloff)?;
-    let (sensor, sensor_name) = expose::studied(args.sensor.as_deref(), scene)?;
+    settings::falloff(args.falloff)?;
+    let (sensor, sensor_name) = settings::studied_sensor(args.sensor.as_deref(), scene)?;
     let plan = ExperimentPlan {
         sensor,
         sensor_name,

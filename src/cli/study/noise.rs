@@ -8,7 +8,6 @@ use std::time::{Duration, Instant};
 
 use super::findings::Findings;
 use crate::cli::args::{AxisName, NoiseArgs};
-use crate::cli::expose;
 use crate::cli::failure::Failure;
 use crate::cli::interrupt::stop_flag;
 use crate::cli::output::{self, Talk};
@@ -141,7 +140,7 @@ fn axis(args: &NoiseArgs, scene: &Scene) -> Result<NoiseAxis, Failure> {
         without("--falloff", args.falloff.is_some(), "--axis glare")?;
     }
     let camera = || {
-        let (sensor, name) = expose::studied(args.sensor.as_deref(), scene)?;
+        let (sensor, name) = settings::studied_sensor(args.sensor.as_deref(), scene)?;
         Ok::<_, Failure>(NamedSensor { name, sensor })
     };
     let plain = match args.axis {
@@ -153,7 +152,7 @@ fn axis(args: &NoiseArgs, scene: &Scene) -> Result<NoiseAxis, Failure> {
             let spread = match args.falloff {
                 None => Spread::Uniform,
                 Some(d0) => {
-                    expose::falloff(d0)?;
+                    settings::falloff(d0)?;
                     Spread::Falloff(d0)
                 }
             };
