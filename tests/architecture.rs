@@ -20,10 +20,11 @@ const FLOORS: [&[&str]; 9] = [
 const BESIDE: [(&str, &str); 3] = [("film", "matrix"), ("film", "store"), ("matrix", "store")];
 
 /// Foreign crates and the one place that may name them.
-const DOORS: [(&str, &[&str]); 15] = [
+const DOORS: [(&str, &[&str]); 16] = [
     ("obvhs", &["geometry/bvh"]),
     ("exr", &["film/exr"]),
     ("faer", &["num/linalg"]),
+    ("pulp", &["num/lanes"]),
     ("dashu_float", &["num/multiprecision"]),
     ("clarabel", &["num/quadratic"]),
     ("statrs", &["num/statistics"]),

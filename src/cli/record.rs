@@ -121,7 +121,7 @@ impl Record {
             );
             Failure::new(cause, "use the version of phicam that rendered it")
         };
-        let estimator = [Estimator::Independent, Estimator::Shared]
+        let estimator = Estimator::ALL
             .into_iter()
             .find(|e| e.name() == self.estimator)
             .ok_or_else(|| unknown("estimator"))?;

@@ -159,9 +159,9 @@ fn trace(
     talk: Talk,
 ) -> Result<(), Failure> {
     let pixels = scene.camera.pixels() as u64;
-    let per_pixel = match plan.estimator {
-        Estimator::Independent => todo.len() as u64,
-        Estimator::Shared => u64::from(!todo.is_empty()),
+    let per_pixel = match plan.estimator.serves_all_spots() {
+        false => todo.len() as u64,
+        true => u64::from(!todo.is_empty()),
     };
     let bar = progress::paths(
         talk,
@@ -228,7 +228,7 @@ fn batches(todo: &[usize], estimator: Estimator) -> Vec<Range<usize>> {
     let mut ranges: Vec<Range<usize>> = Vec::new();
     for &spot in todo {
         match ranges.last_mut() {
-            Some(last) if last.end == spot && estimator == Estimator::Shared => last.end = spot + 1,
+            Some(last) if last.end == spot && estimator.serves_all_spots() => last.end = spot + 1,
             _ => ranges.push(spot..spot + 1),
         }
     }

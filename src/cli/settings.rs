@@ -45,6 +45,7 @@ pub(super) fn estimator(name: EstimatorName) -> Estimator {
     match name {
         EstimatorName::Independent => Estimator::Independent,
         EstimatorName::Shared => Estimator::Shared,
+        EstimatorName::Factored => Estimator::Factored,
     }
 }
 
@@ -143,9 +144,6 @@ pub(super) fn test(args: &TestArgs, plan: &Plan, talk: Talk) -> Result<Test, Fai
     Ok(Test {
         significance: significance(args.significance)?,
         replicates: plan.budget.blocks,
-        errors: match plan.estimator {
-            Estimator::Independent => Errors::Independent,
-            Estimator::Shared => Errors::WithinRows,
-        },
+        errors: Errors::of(plan.estimator),
     })
 }

@@ -6,6 +6,7 @@
 mod basis;
 mod bvh;
 mod parallelogram;
+mod shaft;
 mod shape;
 mod sphere;
 
@@ -13,5 +14,6 @@ pub use basis::Basis;
 pub use bvh::{Bvh, GeometryError, Hit};
 pub use glam::DVec3;
 pub use parallelogram::Parallelogram;
+pub use shaft::{Blockers, Region};
 pub use shape::{Ray, Shape, ShapeId, SurfacePoint};
 pub use sphere::{Facing, Sphere};

@@ -1,6 +1,7 @@
 //! Floor 0: numbers. Constants, random and low-discrepancy streams, warps, quadrature, statistics, linear algebra,
-//! arithmetic beyond double precision.
+//! arithmetic beyond double precision, wide arithmetic.
 
+pub mod lanes;
 pub mod linalg;
 pub mod multiprecision;
 pub mod poisson;

@@ -52,6 +52,8 @@ pub struct Key {
 impl Key {
     /// Stands for the spot where all spots share the points.
     pub const ALL_SPOTS: u32 = u32::MAX;
+    /// Stands for the pixel where all pixels share the points.
+    pub const ALL_PIXELS: u32 = u32::MAX;
 
     /// A well mixed 64-bit value of the key; different salts give unrelated values.
     fn mixed(self, salt: u64) -> u64 {
@@ -98,6 +100,12 @@ impl Stream {
             }),
         };
         Self { uniform, net }
+    }
+
+    /// Opens the stream of one stratum among those that the points of `key` are divided into; streams of different strata are unrelated.
+    pub fn of_stratum(sampling: Sampling, key: Key, stratum: u32) -> Self {
+        let seed = split_mix(key.seed ^ (u64::from(stratum) << 32 | 0x5354_5241));
+        Self::new(sampling, Key { seed, ..key })
     }
 
     /// Moves to sample `index` of the block (0 … size − 1; Sobol': below [`LARGEST_NET`]). Samples must be

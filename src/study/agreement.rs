@@ -7,6 +7,7 @@ use crate::num::statistics::{
 use crate::num::summation::mean_and_stderr;
 
 use super::results::{Agreement, Entry};
+use crate::transport::Estimator;
 
 /// How the errors of traced entries hang together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,6 +16,19 @@ pub enum Errors {
     Independent,
     /// Entries of one pixel share theirs: only different rows are independent.
     WithinRows,
+    /// All entries share theirs.
+    Everywhere,
+}
+
+impl Errors {
+    /// Those of an estimator.
+    pub fn of(estimator: Estimator) -> Self {
+        match estimator {
+            Estimator::Independent => Self::Independent,
+            Estimator::Shared => Self::WithinRows,
+            Estimator::Factored => Self::Everywhere,
+        }
+    }
 }
 
 /// What is compared.
@@ -54,7 +68,9 @@ const WORST: usize = 10;
 ///
 /// * the largest |z| against the Šidák limit for all entries;
 /// * χ² = Σz². Under [`Errors::WithinRows`] the z of a row move together, but rows are independent: the scatter of the row sums
-///   tells how many independent entries Σz² amounts to (Satterthwaite), between the number of rows and that of entries.
+///   tells how many independent entries Σz² amounts to (Satterthwaite), between the number of rows and that of entries. Under
+///   [`Errors::Everywhere`] it counts as one entry's: whatever the correlations, the mean of z² exceeds a limit this far out less often than
+///   a single z² does.
 ///
 /// Entries whose standard error is 0 (light that never varies, or never arrives) are compared to rounding.
 pub fn agree(evidence: Evidence<'_>, test: Test) -> (Agreement, Matrix) {
@@ -82,6 +98,7 @@ pub fn agree(evidence: Evidence<'_>, test: Test) -> (Agreement, Matrix) {
     let dof = match test.errors {
         Errors::Independent => entries as f64,
         Errors::WithinRows => effective_freedom(&z),
+        Errors::Everywhere => 1.0,
     };
     let chi2_p = chi_square_sf(chi2_per_dof * dof, dof);
     let half = 0.5 * test.significance;

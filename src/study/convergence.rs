@@ -78,7 +78,7 @@ pub fn convergence(
         return Err(ConvergenceError::Obstructed);
     }
     let mut curves = Vec::new();
-    for estimator in [Estimator::Independent, Estimator::Shared] {
+    for estimator in Estimator::ALL {
         for sampling in [Sampling::Pcg, Sampling::Sobol] {
             let mut steps: Vec<Step> = Vec::new();
             for &wanted in samples {

@@ -110,14 +110,10 @@ pub fn power(
     for &estimator in &plan.estimators {
         for &samples in &plan.samples {
             let budget = Budget::new(samples, plan.sampling).ok_or(PowerError::Samples(samples))?;
-            let errors = match estimator {
-                Estimator::Independent => Errors::Independent,
-                Estimator::Shared => Errors::WithinRows,
-            };
             let test = Test {
                 significance: plan.significance,
                 replicates: budget.blocks,
-                errors,
+                errors: Errors::of(estimator),
             };
             let mut tally = Tally::new(&wrong, plan.seeds);
             for seed in (0..plan.seeds).map(|k| plan.first_seed.wrapping_add(k)) {

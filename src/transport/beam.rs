@@ -1,6 +1,6 @@
 //! Where the laser's light lands.
 
-use crate::geometry::{Basis, DVec3, Ray, ShapeId};
+use crate::geometry::{Basis, DVec3, Parallelogram, Ray, Region, Shape, ShapeId};
 use crate::num::warp;
 use crate::scene::{Profile, Scene};
 
@@ -53,6 +53,63 @@ impl<'a> Beams<'a> {
             Some(true) => self.ideal[spot],
             _ => None,
         }
+    }
+
+    /// The square around the target, in the plane across the spot's normal, outside of which a beam with width carries nothing at all:
+    /// a Gaussian's density underflows there, exp(−2·19.4²) < 2⁻¹⁰⁷⁵.
+    fn square(&self, spot: usize) -> Option<Parallelogram> {
+        let reach = match self.scene.laser.profile {
+            Profile::Ideal => return None,
+            Profile::Disc { radius } => radius,
+            Profile::Gaussian { radius } => 19.4 * radius,
+        };
+        let target = &self.scene.laser.spots[spot].target;
+        let basis = Basis::around(target.normal);
+        let (s, t) = (basis.s * reach, basis.t * reach);
+        Parallelogram::new(target.position - s - t, s * 2.0, t * 2.0)
+    }
+
+    /// The shape on which all the light of a beam with width lands, if that is known before a ray is cast: a flat one that reaches
+    /// as far as the beam, with nothing before it.
+    pub(super) fn surely_lands_on(&self, spot: usize) -> Option<ShapeId> {
+        let id = self.scene.laser.spots[spot].surface;
+        let Shape::Parallelogram(plane) = &self.scene.surfaces[id as usize].shape else {
+            return None;
+        };
+        let square = self.square(spot)?;
+        let inside = |c: &DVec3| {
+            let place = plane.coordinates(*c);
+            place.iter().all(|c| (0.0..=1.0).contains(c))
+        };
+        let laser = Region::point(self.scene.laser.position);
+        let before = self
+            .scene
+            .bvh()
+            .blockers(&laser, &Region::patch(&square), [None, Some(id)]);
+        (square.corners().iter().all(inside) && before.none()).then_some(id)
+    }
+
+    /// Whether a pixel may see the lit spot itself: no only where its light surely lands beside the view.
+    pub(super) fn may_be_seen(&self, spot: usize) -> bool {
+        if !self.has_width() {
+            return self.point_in_view(spot).is_some();
+        }
+        let (Some(_), Some(square)) = (self.surely_lands_on(spot), self.square(spot)) else {
+            return true;
+        };
+        let camera = &self.scene.camera;
+        let normal = camera.view.normal();
+        let height = normal.dot(camera.view.corner() - camera.position);
+        let places = square.corners().map(|c| {
+            let direction = c - camera.position;
+            let t = height / normal.dot(direction);
+            (t > 0.0).then(|| camera.view.coordinates(camera.position + direction * t))
+        });
+        let beside = |d: usize| {
+            let all = |f: &dyn Fn(f64) -> bool| places.iter().all(|p| p.is_some_and(|p| f(p[d])));
+            all(&|c| c < 0.0) || all(&|c| c > 1.0)
+        };
+        !(beside(0) || beside(1))
     }
 
     /// A point lit by beam `spot`, distributed as its power: the irradiance integrates to Φlaser, so that each sample

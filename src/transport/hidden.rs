@@ -29,11 +29,20 @@ struct Sampled {
 }
 
 impl HiddenArea {
+    /// The hidden surfaces.
     pub(super) fn new(scene: &Scene) -> Self {
+        let hidden: Vec<ShapeId> = scene.hidden().map(|(id, _)| id as ShapeId).collect();
+        Self::of(scene, &hidden)
+    }
+
+    /// Any shapes.
+    pub(super) fn of(scene: &Scene, shapes: &[ShapeId]) -> Self {
         let mut surfaces = Vec::new();
         let mut of_shape = vec![None; scene.surfaces.len()];
         let mut total = 0.0;
-        for (id, surface) in scene.hidden() {
+        for &shape in shapes {
+            let id = shape as usize;
+            let surface = &scene.surfaces[id];
             let count = surface.albedo.smooth_cells();
             let mean = |i: usize, j: usize| surface.albedo.cell_mean(i + j * count[0]);
             let row_sum = |j: usize| (0..count[0]).map(|i| mean(i, j)).sum::<f64>();
@@ -45,7 +54,7 @@ impl HiddenArea {
             let share = weight / (count[0] * count[1]) as f64 * area;
             of_shape[id] = Some(surfaces.len());
             surfaces.push(Sampled {
-                shape: id as ShapeId,
+                shape,
                 count,
                 share,
                 before: total,

@@ -15,11 +15,21 @@
 //! This floor never sees `model`: agreement between the two is evidence.
 
 mod beam;
+mod direct;
+mod eye;
+mod factored;
 mod form;
 mod hidden;
+mod lamp;
+mod moments;
+mod own;
+mod packet;
 mod pinhole;
 mod pixel;
 mod render;
+mod setting;
+mod sight;
+mod strata;
 mod walk;
 
 pub use render::{Budget, Control, Estimator, Plan, Traced, render};

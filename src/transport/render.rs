@@ -5,13 +5,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
+use super::beam::Beams;
+use super::factored::Factored;
 use super::pixel::PixelTracer;
+use super::setting::Setting;
 use crate::matrix::Matrix;
 use crate::num::stream::{LARGEST_NET, Sampling};
 use crate::num::summation::mean_and_stderr;
 use crate::scene::Scene;
 
-/// What paths have in common. Both are unbiased.
+/// What paths have in common. All are unbiased.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Estimator {
     /// Every (pixel, spot) entry has its own paths: errors are independent.
@@ -19,14 +22,26 @@ pub enum Estimator {
     /// The paths of a pixel serve all spots, one connection per spot and vertex: errors along a row of Φcam are
     /// correlated.
     Shared,
+    /// The points between first and last wall serve all pixels and all spots: Φ̂ is a matrix product, and the errors of all entries are
+    /// correlated.
+    Factored,
 }
 
 impl Estimator {
+    /// Every estimator.
+    pub const ALL: [Self; 3] = [Self::Independent, Self::Shared, Self::Factored];
+
+    /// Whether one path, or point, serves every spot.
+    pub fn serves_all_spots(self) -> bool {
+        self != Self::Independent
+    }
+
     /// The name used on the command line and in the files of a run.
     pub fn name(self) -> &'static str {
         match self {
             Self::Independent => "independent",
             Self::Shared => "shared",
+            Self::Factored => "factored",
         }
     }
 }
@@ -77,7 +92,7 @@ pub struct Plan {
     pub sampling: Sampling,
     /// Seed of the run.
     pub seed: u64,
-    /// Paths per pixel and spot (`Independent`) or per pixel (`Shared`).
+    /// Paths per pixel and spot (`Independent`), paths per pixel (`Shared`) or points between the walls (`Factored`).
     pub budget: Budget,
 }
 
@@ -109,6 +124,18 @@ pub struct Traced {
     pub stderr: Matrix,
 }
 
+impl Traced {
+    /// No columns at all.
+    fn dark(pixels: usize, orders: usize) -> Self {
+        let nothing = || Matrix::zeros(pixels, 0);
+        Self {
+            bounces: (0..orders).map(|_| nothing()).collect(),
+            flux: nothing(),
+            stderr: nothing(),
+        }
+    }
+}
+
 /// Traces the columns `spots` of Φcam. The same plan gives the same bits for every number of threads and every range
 /// that a spot is part of. `None` if it was stopped.
 ///
@@ -123,7 +150,15 @@ pub fn render(
     let columns = spots.len();
     let pixels = scene.camera.pixels();
     let orders = scene.max_bounces as usize;
-    let tracer = PixelTracer::new(scene, plan);
+    if spots.is_empty() {
+        return Some(Traced::dark(pixels, orders));
+    }
+    let beams = Beams::new(scene);
+    let setting = Setting::new(scene, plan, &beams, spots.clone());
+    if plan.estimator == Estimator::Factored {
+        return Factored::new(&setting).render(control);
+    }
+    let tracer = PixelTracer::new(&setting);
     let rows: Vec<Option<Row>> = (0..pixels)
         .into_par_iter()
         .map(|pixel| {
@@ -131,7 +166,7 @@ pub fn render(
                 return None;
             }
             let sums = tracer.trace(pixel, &spots);
-            let row = Row::from_blocks(&sums, plan.budget, orders, columns);
+            let row = Row::from_blocks(&sums, orders, columns);
             let shared = plan.estimator == Estimator::Shared;
             let paths = plan.budget.samples() * if shared { 1 } else { columns as u64 };
             (control.progress)(paths);
@@ -159,11 +194,10 @@ struct Row {
 }
 
 impl Row {
-    /// Means and standard errors from the block sums \[block\]\[order · columns + column\].
-    fn from_blocks(sums: &[Vec<f64>], budget: Budget, orders: usize, columns: usize) -> Self {
-        let size = f64::from(budget.size);
+    /// Means and standard errors from the estimates of the blocks \[block\]\[order · columns + column\].
+    fn from_blocks(blocks: &[Vec<f64>], orders: usize, columns: usize) -> Self {
         let replicates = |f: &dyn Fn(&Vec<f64>) -> f64| {
-            let means: Vec<f64> = sums.iter().map(|block| f(block) / size).collect();
+            let means: Vec<f64> = blocks.iter().map(f).collect();
             mean_and_stderr(&means)
         };
         let bounces: Vec<f64> = (0..orders * columns)

@@ -9,6 +9,7 @@ use crate::scene::Scene;
 
 use super::form::form;
 use super::hidden::HiddenArea;
+use super::sight::may_see;
 
 /// A point where a path meets the front of a surface.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +38,13 @@ impl Vertex {
         (point.normal.dot(direction) < 0.0).then(|| Self::at(scene, shape, &point, throughput))?
     }
 
-    fn at(scene: &Scene, shape: ShapeId, point: &SurfacePoint, throughput: f64) -> Option<Self> {
+    /// The vertex at a point of `shape`; `None` on black.
+    pub(super) fn at(
+        scene: &Scene,
+        shape: ShapeId,
+        point: &SurfacePoint,
+        throughput: f64,
+    ) -> Option<Self> {
         let albedo = scene.surfaces[shape as usize].albedo.albedo(point.uv);
         (albedo > 0.0).then_some(Self {
             position: point.position,
@@ -85,6 +92,14 @@ impl<'a> Walk<'a> {
             hidden,
             strategies,
         }
+    }
+
+    /// Whether paths leave `shape` towards hidden surfaces at some distance, or not at all.
+    pub(super) fn by_area_alone(&self, shape: ShapeId) -> bool {
+        matches!(
+            self.strategies[shape as usize],
+            Strategy::Area | Strategy::End
+        )
     }
 
     /// Whether any path has to choose between strategies.
@@ -166,30 +181,10 @@ impl<'a> Walk<'a> {
 /// What can be seen from shape `s`, judged conservatively: a strategy is left out only where it cannot be needed.
 fn strategy(scene: &Scene, hidden: &HiddenArea, s: usize) -> Strategy {
     let from = &scene.surfaces[s].shape;
-    let extent = from.area().sqrt();
-    // A flat surface sees what rises above its plane and faces it; a curved one may see anything.
-    let may_see = |t: usize| {
-        let to = &scene.surfaces[t];
-        if to.albedo.largest() <= 0.0 {
-            return false;
-        }
-        let slack = 1e-9 * (extent + to.shape.area().sqrt());
-        let above = |a: &crate::geometry::Shape, b: &crate::geometry::Shape| {
-            !a.is_flat() || {
-                let p = a.at([0.5, 0.5]);
-                b.reaches_above(p.position, p.normal, slack)
-            }
-        };
-        if s == t {
-            !from.is_flat()
-        } else {
-            above(from, &to.shape) && above(&to.shape, from)
-        }
-    };
     let mut sees_hidden = false;
     let mut sees_other = false;
     let mut all_far = true;
-    for t in (0..scene.surfaces.len()).filter(|t| may_see(*t)) {
+    for t in (0..scene.surfaces.len()).filter(|t| may_see(scene, s, *t)) {
         if hidden.contains(t as ShapeId) {
             sees_hidden = true;
             let shape = &scene.surfaces[t].shape;

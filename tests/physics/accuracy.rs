@@ -1,7 +1,7 @@
 //! How near the tracer comes to the integral, and how fast.
 
 use phicam::num::stream::Sampling;
-use phicam::transport::Estimator::{Independent, Shared};
+use phicam::transport::Estimator::{Factored, Independent, Shared};
 
 use crate::reference::Bench;
 use crate::{Way, builtin, compare, matrix, relative, trace};
@@ -92,6 +92,7 @@ fn a_wide_spot_is_the_mean_over_its_disc() {
     for way in [
         Way(Shared, Sampling::Sobol, 4, 4096),
         Way(Independent, Sampling::Pcg, 4, 128),
+        Way(Factored, Sampling::Sobol, 4, 4096),
     ] {
         let traced = trace(&scene, way);
         let verdict = compare(&traced, &matrix(&truth), way);

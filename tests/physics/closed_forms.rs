@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use phicam::matrix::Matrix;
 use phicam::num::stream::Sampling;
 use phicam::scene::Scene;
-use phicam::transport::Estimator::{Independent, Shared};
+use phicam::transport::Estimator::{Factored, Independent, Shared};
 
 use crate::reference::gauss;
 use crate::{Way, builtin, compare, relative, trace};
@@ -37,6 +37,7 @@ fn the_furnace_glows_as_an_integrating_sphere() {
         for way in [
             Way(Independent, Sampling::Pcg, 1, 512),
             Way(Shared, Sampling::Sobol, 1, 512),
+            Way(Factored, Sampling::Sobol, 1, 512),
         ] {
             let traced = trace(&scene, way);
             let orders: f64 = (2..=8).map(|n| a.powi(n)).sum();
@@ -111,6 +112,8 @@ fn two_bounces_follow_the_inverse_square_law() {
     for way in [
         Way(Shared, Sampling::Sobol, 1, 2048),
         Way(Independent, Sampling::Pcg, 1, 2048),
+        Way(Factored, Sampling::Sobol, 1, 2048),
+        Way(Factored, Sampling::Pcg, 1, 2048),
     ] {
         let verdict = compare(&trace(&scene, way), &truth, way);
         assert!(verdict.agrees, "{verdict:?}");

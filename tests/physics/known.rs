@@ -10,7 +10,7 @@ use std::sync::atomic::AtomicBool;
 use phicam::num::stream::{LARGEST_NET, Sampling};
 use phicam::num::summation::mean_and_stderr;
 use phicam::scene::{Known, Scene};
-use phicam::transport::Estimator::{self, Independent, Shared};
+use phicam::transport::Estimator::{self, Factored, Independent, Shared};
 use phicam::transport::{Budget, Control, Plan, Traced, render};
 use rayon::prelude::*;
 
@@ -25,8 +25,8 @@ const REPLICATES: u32 = 64;
 /// Paths in each replicate of a pilot.
 const PILOT: u32 = 1 << 9;
 /// What the variance that the pilot saw is multiplied by. From 64 replicates it is known to 18 %, from the same number in
-/// the render again: 1.5 is two such errors away.
-const MARGIN: f64 = 1.5;
+/// the render again: their ratio to 25 %, and the worst of some forty scenes and ways lies three times that away.
+const MARGIN: f64 = 1.8;
 /// Renders, each with a seed of its own, from whose spread the error of a single order of bounces comes.
 const SEEDS: u64 = 32;
 /// Paths in each replicate beyond which a scene is too noisy: the noisiest needs 2.9e5 of them.
@@ -186,4 +186,9 @@ fn known_scenes_have_their_answers_under_independent_pcg() {
 #[test]
 fn known_scenes_have_their_answers_under_shared_sobol() {
     all_agree((Shared, Sampling::Sobol));
+}
+
+#[test]
+fn known_scenes_have_their_answers_under_factored_sobol() {
+    all_agree((Factored, Sampling::Sobol));
 }

@@ -3,9 +3,10 @@
 use phicam::geometry::DVec3;
 use phicam::num::stream::Sampling;
 use phicam::scene::Scene;
-use phicam::transport::Estimator::{Independent, Shared};
+use phicam::study::Errors;
+use phicam::transport::Estimator::{Factored, Independent, Shared};
 
-use crate::{Way, assert_same, builtin, relative, trace, trace_spots};
+use crate::{Way, assert_same, assert_same_under, builtin, relative, trace, trace_spots};
 
 /// An occluder that stands between wall and object and reflects, and room for light to go five ways.
 const SHELF: &str = r#"
@@ -41,6 +42,10 @@ fn estimators_agree_with_each_other() {
             Way(Independent, Sampling::Sobol, 4, 16384),
         ] {
             assert_same(&trace(&scene, way), &base, "estimators");
+        }
+        for sampling in [Sampling::Pcg, Sampling::Sobol] {
+            let factored = trace(&scene, Way(Factored, sampling, 5, 1 << 17));
+            assert_same_under(Errors::Everywhere, &factored, &base, "factored");
         }
     }
 }
@@ -130,7 +135,7 @@ fn spot_and_pixel_can_be_exchanged() {
 #[test]
 fn bits_do_not_depend_on_threads_or_spot_ranges() {
     let scene = shelf(&[]);
-    for estimator in [Independent, Shared] {
+    for estimator in [Independent, Shared, Factored] {
         for sampling in [Sampling::Pcg, Sampling::Sobol] {
             let way = Way(estimator, sampling, 9, 64);
             let on = |threads| {

@@ -62,14 +62,10 @@ fn builtin(name: &str, changes: &[(&str, &str)]) -> Scene {
 
 /// Traced against truth at a significance of 1e-4.
 fn compare(traced: &Traced, truth: &Matrix, way: Way) -> Agreement {
-    let errors = match way.0 {
-        Estimator::Independent => Errors::Independent,
-        Estimator::Shared => Errors::WithinRows,
-    };
     let test = Test {
         significance: 1e-4,
         replicates: way.plan().budget.blocks,
-        errors,
+        errors: Errors::of(way.0),
     };
     let evidence = Evidence {
         traced: &traced.flux,
@@ -82,6 +78,11 @@ fn compare(traced: &Traced, truth: &Matrix, way: Way) -> Agreement {
 
 /// Two independent renders of the same truth: the differences against their joint standard error.
 fn assert_same(a: &Traced, b: &Traced, what: &str) {
+    assert_same_under(Errors::WithinRows, a, b, what);
+}
+
+/// The same where errors may hang together in another way.
+fn assert_same_under(errors: Errors, a: &Traced, b: &Traced, what: &str) {
     let stderr = a.stderr.zip_map(&b.stderr, |x, y| (x * x + y * y).sqrt());
     let evidence = Evidence {
         traced: &a.flux,
@@ -93,7 +94,7 @@ fn assert_same(a: &Traced, b: &Traced, what: &str) {
     let test = Test {
         significance: 1e-4,
         replicates: 32,
-        errors: Errors::WithinRows,
+        errors,
     };
     let verdict = agree(evidence, test).0;
     assert!(verdict.agrees, "{what}: {verdict:?}");

@@ -3,9 +3,10 @@
 use phicam::model::{Extent, Kernel, converged};
 use phicam::num::stream::Sampling;
 use phicam::scene::Scene;
-use phicam::transport::Estimator::{Independent, Shared};
+use phicam::study::Errors;
+use phicam::transport::Estimator::{Factored, Independent, Shared};
 
-use crate::{Way, assert_same, builtin, trace, trace_spots};
+use crate::{Way, assert_same, assert_same_under, builtin, trace, trace_spots};
 
 /// The trap of overlapping hidden faces: what stands behind another hidden face must add nothing, and what is seen partly
 /// must add up: Φ(both) = Φ(front, black back) + Φ(back behind a black front) for three bounces.
@@ -126,6 +127,13 @@ fn cut_surfaces_are_whole_ones() {
     );
     let way = |seed| Way(Shared, Sampling::Sobol, seed, 1 << 14);
     assert_same(&trace(&cut, way(1)), &trace(&whole, way(2)), "seams");
+    let factored = trace(&cut, Way(Factored, Sampling::Sobol, 3, 1 << 14));
+    assert_same_under(
+        Errors::Everywhere,
+        &factored,
+        &trace(&whole, way(2)),
+        "seams, factored",
+    );
 }
 
 /// A spot that hangs over the wall's edge loses what falls beside it: a disc cut at its middle keeps half its power, so that a

@@ -71,7 +71,7 @@ pub(in crate::cli) struct TraceArgs {
     /// Where random numbers come from
     #[arg(long, value_enum, default_value_t = SamplerName::Sobol)]
     pub sampler: SamplerName,
-    /// Paths per pixel and spot (independent) or per pixel (shared); rounded up to whole blocks
+    /// Paths per pixel and spot (independent) or per pixel (shared), points on the hidden surface (factored); rounded up to whole blocks
     #[arg(long, default_value_t = 512, allow_negative_numbers = true)]
     pub samples: u64,
     /// Seed: the same seed gives the same bytes
@@ -88,6 +88,8 @@ pub(in crate::cli) enum EstimatorName {
     Independent,
     /// The paths of a pixel serve all spots
     Shared,
+    /// The points on the hidden surface serve all pixels and all spots
+    Factored,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

@@ -80,7 +80,7 @@ pub(in crate::cli) struct PowerArgs {
     /// Folder for power.json
     #[arg(long, short, default_value = "out/power")]
     pub output: PathBuf,
-    /// Estimators, separated by commas; both unless given
+    /// Estimators, separated by commas; all unless given
     #[arg(long, value_enum, value_delimiter = ',')]
     pub estimator: Vec<EstimatorName>,
     /// Where random numbers come from

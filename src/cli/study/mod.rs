@@ -85,7 +85,7 @@ fn power(args: &PowerArgs, talk: Talk) -> Result<Outcome, Failure> {
     let pool = settings::pool(args.threads)?;
     let plan = PowerPlan {
         estimators: match args.estimator.as_slice() {
-            [] => vec![Estimator::Independent, Estimator::Shared],
+            [] => Estimator::ALL.to_vec(),
             names => names.iter().map(|n| settings::estimator(*n)).collect(),
         },
         sampling: settings::sampling(args.sampler),
@@ -97,11 +97,16 @@ fn power(args: &PowerArgs, talk: Talk) -> Result<Outcome, Failure> {
     let each = sum("--samples", &plan.samples)?.saturating_mul(plan.seeds);
     ensure_writable(&args.output)?;
     talk.warn(&scene);
-    let of = |kind| plan.estimators.iter().filter(|e| **e == kind).count() as u64;
+    let alone = plan
+        .estimators
+        .iter()
+        .filter(|e| !e.serves_all_spots())
+        .count() as u64;
+    let together = plan.estimators.len() as u64 - alone;
     let total = paths(
         &scene,
-        each.saturating_mul(of(Estimator::Shared)),
-        each.saturating_mul(of(Estimator::Independent)),
+        each.saturating_mul(together),
+        each.saturating_mul(alone),
     );
     let work = (&*format!("power on {}", scene.name), total);
     let found = traced(talk, &pool, work, |control| {

@@ -1,0 +1,229 @@
+//! Φcam as a matrix product.
+
+use std::f64::consts::FRAC_1_PI;
+use std::ops::Range;
+use std::sync::atomic::Ordering;
+
+use rayon::prelude::*;
+
+use super::beam::LitPoint;
+use super::eye::hide;
+use super::moments::{Layout, Moments, TILE};
+use super::packet::Packet;
+use super::render::{Control, Traced};
+use super::setting::Setting;
+use super::strata::Drawn;
+use super::walk::Vertex;
+use crate::geometry::Blockers;
+use crate::num::lanes::add_product;
+use crate::num::stream::Key;
+
+/// Points of S2 that are worked off together: a panel of the product stays in the nearest cache.
+const CHUNK: usize = 256;
+
+/// The estimator that shares the points between the first and the last wall among all pixels and all spots.
+///
+/// The light that meets n ≥ 3 surfaces is, with x_p what pixel p sees, y every point that reflects,
+///
+/// ```text
+/// Φ_n[p, l] = ∫ C_p(y) · L_n,l(y) dy      C_p(y) = E_p·(ρ3/π)·G(x_p, y)      L_3,l(y) = (ρ2/π)(y)·G(y, s_l)·(ρ1/π)·Φlaser
+/// ```
+///
+/// and L_n,l for n > 3 the same with a path from y to s_l. N points y_k of density N·p(y_k), drawn by strata, give
+/// Φ̂_n = Σ_k C[p,k]·L_n[k,l]: unbiased for each block, as C and L are evaluated at points of their own in footprint and beam, the same of
+/// all pixels and of all spots. Visibility is part of C and L; it is asked only where something can stand between.
+pub(super) struct Factored<'a> {
+    setting: &'a Setting<'a>,
+    /// By pixel and shape: what may stand between.
+    blockers: Vec<Vec<Blockers>>,
+}
+
+impl<'a> Factored<'a> {
+    pub(super) fn new(setting: &'a Setting<'a>) -> Self {
+        let blockers = setting
+            .sightings
+            .par_iter()
+            .map(|s| s.blockers(setting.scene, &setting.between))
+            .collect();
+        Self { setting, blockers }
+    }
+
+    /// All blocks; `None` if stopped.
+    pub(super) fn render(&self, control: Control<'_>) -> Option<Traced> {
+        let mut moments = Moments::new(self.layout());
+        let paths =
+            self.setting.scene.camera.pixels() as u64 * u64::from(self.setting.plan.budget.size);
+        for block in 0..self.setting.plan.budget.blocks {
+            moments.add(self.block(block, control)?);
+            (control.progress)(paths);
+        }
+        Some(moments.traced())
+    }
+
+    fn layout(&self) -> Layout {
+        Layout {
+            pixels: self.setting.scene.camera.pixels(),
+            columns: self.setting.lamp.len(),
+            orders: self.setting.scene.max_bounces as usize,
+        }
+    }
+
+    /// The estimate of one block.
+    fn block(&self, block: u32, control: Control<'_>) -> Option<Vec<f64>> {
+        let layout = self.layout();
+        let points = self.points(block);
+        let mut sums = layout.zeros();
+        let all = 0..layout.columns;
+        let count = points.footprint.len();
+        for start in (0..count).step_by(CHUNK) {
+            if control.stop.load(Ordering::Relaxed) {
+                return None;
+            }
+            let range = start..(start + CHUNK).min(count);
+            let lit: Vec<Vec<Option<LitPoint>>> = match points.beam.get(range.clone()) {
+                Some(places) => places
+                    .par_iter()
+                    .map(|b| self.setting.lamp.points(*b, &all))
+                    .collect(),
+                None => vec![self.setting.lamp.points([0.0; 2], &all)],
+            };
+            let light = self.light(&points, range.clone(), &lit);
+            let at = points.at.part(range.clone());
+            sums.par_chunks_mut(layout.tile())
+                .enumerate()
+                .for_each(|(tile, sums)| {
+                    let first = tile * TILE;
+                    let pixels = first..(first + TILE).min(layout.pixels);
+                    let places = &points.footprint[range.clone()];
+                    self.tile(pixels, (&at, places, count), (&light, &lit), sums);
+                });
+        }
+        Some(sums)
+    }
+
+    /// Draws the points of a block and, where light may meet more than three surfaces, the paths that go on from them.
+    fn points(&self, block: u32) -> Points {
+        let count = self.setting.strata.block_size();
+        let deeper = self.setting.scene.max_bounces.saturating_sub(2);
+        let mut points = Points {
+            at: Packet::dark(count),
+            footprint: Vec::with_capacity(count),
+            beam: Vec::new(),
+            vertices: vec![None; count * deeper as usize],
+        };
+        let key = Key {
+            seed: self.setting.plan.seed,
+            spot: Key::ALL_SPOTS,
+            pixel: Key::ALL_PIXELS,
+            block,
+        };
+        self.setting.strata.visit(key, |drawn, place, stream| {
+            let k = points.footprint.len();
+            let Drawn {
+                shape,
+                point,
+                density,
+            } = drawn;
+            points.footprint.push(place);
+            points.at.set(k, (point.position, point.normal), 1.0, shape);
+            if self.setting.beams.has_width() {
+                let [s, t, ..] = stream.next_four();
+                points.beam.push([s, t]);
+            }
+            let [u, v, choice, _] = match deeper > 1 {
+                true => stream.next_four(),
+                false => [0.0; 4],
+            };
+            let own = &mut points.vertices[k * deeper as usize..];
+            let first = Vertex::at(self.setting.scene, shape, &point, 1.0 / density);
+            self.setting
+                .walk
+                .run(first, deeper, [u, v], choice, stream, |n, vertex| {
+                    own[n as usize - 1] = Some(*vertex);
+                });
+        });
+        points
+    }
+
+    /// L for the points `range`, by order from three surfaces on: points × spots.
+    fn light(
+        &self,
+        points: &Points,
+        range: Range<usize>,
+        lit: &[Vec<Option<LitPoint>>],
+    ) -> Vec<Vec<f64>> {
+        let width = self.layout().width();
+        let deeper = self.setting.scene.max_bounces.saturating_sub(2) as usize;
+        let power = self.setting.scene.laser.power;
+        let packets: Vec<Packet> = lit
+            .par_iter()
+            .map(|l| self.setting.lamp.packet(l, width))
+            .collect();
+        let order = |n: usize| {
+            let mut light = vec![0.0; range.len() * width];
+            light
+                .par_chunks_mut(width)
+                .enumerate()
+                .for_each(|(i, row)| {
+                    let Some(vertex) = &points.vertices[(range.start + i) * deeper + n] else {
+                        return;
+                    };
+                    let own = i % lit.len();
+                    let factor = power * vertex.throughput * vertex.albedo * FRAC_1_PI;
+                    packets[own].forms_from((vertex.position, vertex.normal), factor, row);
+                    self.setting
+                        .lamp
+                        .hide(&lit[own], 0, (vertex.position, vertex.shape), row);
+                });
+            light
+        };
+        (0..deeper).map(order).collect()
+    }
+
+    /// Adds the points of a chunk to the sums of a tile of pixels.
+    fn tile(
+        &self,
+        pixels: Range<usize>,
+        (at, places, count): (&Packet, &[[f64; 2]], usize),
+        (light, lit): (&[Vec<f64>], &[Vec<Option<LitPoint>>]),
+        sums: &mut [f64],
+    ) {
+        let layout = self.layout();
+        let (width, inner) = (layout.width(), places.len());
+        let rows = sums.len() / layout.orders / width;
+        let mut camera = vec![0.0; rows * inner];
+        let mut x = Packet::dark(inner);
+        let share = 1.0 / count as f64;
+        for (i, pixel) in pixels.enumerate() {
+            let sighting = &self.setting.sightings[pixel];
+            sighting.vertices(self.setting.scene, places, &mut x);
+            let row = &mut camera[i * inner..(i + 1) * inner];
+            x.forms_to(at, row);
+            hide(self.setting.scene, &self.blockers[pixel], (&x, at), row);
+            if self.setting.two {
+                let two = &mut sums[(rows + i) * width..(rows + i + 1) * width];
+                self.setting.lamp.add_two_surfaces(&x, (lit, 0), share, two);
+            }
+            let one = &mut sums[i * width..(i + 1) * width];
+            self.setting
+                .direct
+                .add(sighting, places, (lit, &(0..layout.columns)), share, one);
+        }
+        for (n, light) in light.iter().enumerate() {
+            let order = &mut sums[(n + 2) * rows * width..(n + 3) * rows * width];
+            add_product(order, &camera, light, inner, width);
+        }
+    }
+}
+
+/// The points of one block.
+struct Points {
+    /// Position and normal of the first vertices.
+    at: Packet,
+    /// Place in the footprints of all pixels.
+    footprint: Vec<[f64; 2]>,
+    /// Place in the beams of all spots; empty if they have no width.
+    beam: Vec<[f64; 2]>,
+    /// By point and order: the end of the path that goes on from the point, itself first, with throughput 1/density.
+    vertices: Vec<Option<Vertex>>,
+}

@@ -1,0 +1,229 @@
+//! The lit spots, seen from the surfaces that they light.
+
+use std::f64::consts::FRAC_1_PI;
+use std::ops::Range;
+
+use super::beam::{Beams, LitPoint};
+use super::packet::Packet;
+use super::sight::all_shapes;
+use crate::geometry::{Basis, Blockers, DVec3, Parallelogram, Ray, Region, Shape, ShapeId};
+use crate::scene::{Profile, Scene};
+
+/// A range of spots, with what may stand between each and the shapes around.
+#[derive(Debug)]
+pub(super) struct Lamp<'a> {
+    scene: &'a Scene,
+    beams: &'a Beams<'a>,
+    spots: Range<usize>,
+    /// By spot: where its light is expected to land.
+    landings: Vec<Option<Landing>>,
+    /// By spot and shape.
+    blockers: Vec<Vec<Blockers>>,
+    /// Whether nothing stands between any expected landing and the shape.
+    clear: Vec<bool>,
+}
+
+/// A part of a flat shape.
+#[derive(Clone, Debug)]
+struct Landing {
+    shape: ShapeId,
+    /// The square around a wide spot; a spot without width has none.
+    square: Option<Parallelogram>,
+}
+
+impl Landing {
+    fn holds(&self, lit: &LitPoint) -> bool {
+        let inside = |s: &Parallelogram| {
+            let place = s.coordinates(lit.position);
+            place.iter().all(|c| (0.0..=1.0).contains(c))
+        };
+        lit.shape == self.shape && self.square.as_ref().is_none_or(inside)
+    }
+}
+
+/// Half the width of the square in which the light of a Gaussian spot is expected, in its 1/e² radii; what lands beyond is asked ray by
+/// ray.
+const EXPECTED: f64 = 3.0;
+
+impl<'a> Lamp<'a> {
+    pub(super) fn new(scene: &'a Scene, beams: &'a Beams<'a>, spots: Range<usize>) -> Self {
+        let shapes = scene.surfaces.len();
+        let landings: Vec<Option<Landing>> =
+            spots.clone().map(|l| landing(scene, beams, l)).collect();
+        let to: Vec<Region> = scene
+            .surfaces
+            .iter()
+            .map(|s| Region::around(&s.shape))
+            .collect();
+        let blockers: Vec<Vec<Blockers>> = landings
+            .iter()
+            .zip(spots.clone())
+            .map(|(landing, spot)| {
+                let Some(landing) = landing else {
+                    return vec![Blockers::Any; shapes];
+                };
+                let from = match &landing.square {
+                    Some(square) => Region::patch(square),
+                    None => Region::point(scene.laser.spots[spot].target.position),
+                };
+                let ends = |t: usize| [Some(landing.shape), Some(t as ShapeId)];
+                (0..shapes)
+                    .map(|t| scene.bvh().blockers(&from, &to[t], ends(t)))
+                    .collect()
+            })
+            .collect();
+        let clear = (0..shapes)
+            .map(|t| {
+                let free = blockers.iter().all(|b: &Vec<Blockers>| b[t].none());
+                free && landings.iter().all(Option::is_some) && !beams.has_width()
+            })
+            .collect();
+        Self {
+            scene,
+            beams,
+            spots,
+            landings,
+            blockers,
+            clear,
+        }
+    }
+
+    /// Number of spots.
+    pub(super) fn len(&self) -> usize {
+        self.spots.len()
+    }
+
+    /// Whether the beams have width.
+    pub(super) fn has_width(&self) -> bool {
+        self.beams.has_width()
+    }
+
+    /// The points lit by the beams of `columns`, for one place in the beam; None where the light is lost.
+    pub(super) fn points(&self, place: [f64; 2], columns: &Range<usize>) -> Vec<Option<LitPoint>> {
+        let point = |column| self.beams.point(self.spots.start + column, place);
+        columns.clone().map(point).collect()
+    }
+
+    /// The same as a packet, weighted by the BRDF ρ/π.
+    pub(super) fn packet(&self, points: &[Option<LitPoint>], width: usize) -> Packet {
+        let mut packet = Packet::dark(width);
+        for (i, point) in points.iter().enumerate() {
+            if let Some(p) = point {
+                packet.set(i, (p.position, p.normal), p.albedo * FRAC_1_PI, p.shape);
+            }
+        }
+        packet
+    }
+
+    /// Sets to 0 the entries of `row`, the columns from `first` on, whose spot cannot be seen from point x of shape `from`.
+    pub(super) fn hide(
+        &self,
+        points: &[Option<LitPoint>],
+        first: usize,
+        (x, from): (DVec3, ShapeId),
+        row: &mut [f64],
+    ) {
+        if self.clear[from as usize] {
+            return;
+        }
+        for (i, point) in points.iter().enumerate() {
+            if let Some(lit) = point
+                && row[i] != 0.0
+                && self.hidden(first + i, lit, (x, from))
+            {
+                row[i] = 0.0;
+            }
+        }
+    }
+
+    /// Whether the point that `column`'s beam lights cannot be seen from point x of shape `from`.
+    pub(super) fn hidden(
+        &self,
+        column: usize,
+        lit: &LitPoint,
+        (x, from): (DVec3, ShapeId),
+    ) -> bool {
+        if self.clear[from as usize] {
+            return false;
+        }
+        let blockers = match &self.landings[column] {
+            Some(landing) if landing.holds(lit) => &self.blockers[column][from as usize],
+            _ => &Blockers::Any,
+        };
+        let ends = [Some(from), Some(lit.shape)];
+        !blockers.none()
+            && Ray::between(x, lit.position)
+                .is_none_or(|ray| self.scene.bvh().blocked_by(blockers, &ray, ends))
+    }
+
+    /// Adds to `sums` the light that goes from the lit spots straight to the vertices x, the columns from `first` on; each vertex counts
+    /// `share`. `lit` has one entry, or one for each vertex.
+    pub(super) fn add_two_surfaces(
+        &self,
+        x: &Packet,
+        (lit, first): (&[Vec<Option<LitPoint>>], usize),
+        share: f64,
+        sums: &mut [f64],
+    ) {
+        let mut row = vec![0.0; sums.len()];
+        let mut packet = self.packet(&lit[0], sums.len());
+        for k in (0..x.len()).filter(|k| x.weight[*k] > 0.0) {
+            let own = &lit[k % lit.len()];
+            if lit.len() > 1 {
+                packet = self.packet(own, sums.len());
+            }
+            let (position, normal) = x.point(k);
+            let factor = self.scene.laser.power * share * x.weight[k];
+            packet.forms_from((position, normal), factor, &mut row);
+            self.hide(own, first, (position, x.shape[k]), &mut row);
+            sums.iter_mut().zip(&row).for_each(|(s, r)| *s += r);
+        }
+    }
+}
+
+/// Shapes on which the light of any spot of the scene may land.
+pub(super) fn lit(scene: &Scene, beams: &Beams<'_>) -> Vec<ShapeId> {
+    let lands = |l: usize| match beams.has_width() {
+        true => beams.surely_lands_on(l).map(Some),
+        false => Some(beams.point(l, [0.0; 2]).map(|p| p.shape)),
+    };
+    let known: Option<Vec<Option<ShapeId>>> = (0..scene.laser.spots.len()).map(lands).collect();
+    let mut shapes = match known {
+        None => all_shapes(scene),
+        Some(shapes) => shapes.into_iter().flatten().collect(),
+    };
+    shapes.sort_unstable();
+    shapes.dedup();
+    shapes
+}
+
+/// Where the light of a spot is expected: its target where that is a flat shape on which the beam lands unhindered.
+fn landing(scene: &Scene, beams: &Beams<'_>, spot: usize) -> Option<Landing> {
+    let spot_there = &scene.laser.spots[spot];
+    let (target, shape) = (&spot_there.target, spot_there.surface);
+    if !matches!(
+        scene.surfaces[shape as usize].shape,
+        Shape::Parallelogram(_)
+    ) {
+        return None;
+    }
+    let reach = match scene.laser.profile {
+        Profile::Ideal => {
+            let lit = beams.point(spot, [0.0; 2])?;
+            let there = lit.shape == shape && lit.position == target.position;
+            return there.then_some(Landing {
+                shape,
+                square: None,
+            });
+        }
+        Profile::Disc { radius } => radius,
+        Profile::Gaussian { radius } => EXPECTED * radius,
+    };
+    let basis = Basis::around(target.normal);
+    let (s, t) = (basis.s * reach, basis.t * reach);
+    let square = Parallelogram::new(target.position - s - t, s * 2.0, t * 2.0)?;
+    Some(Landing {
+        shape,
+        square: Some(square),
+    })
+}
