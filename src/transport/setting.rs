@@ -10,7 +10,7 @@ use super::eye::{Sighting, seen};
 use super::lamp::{Lamp, lit};
 use super::render::Plan;
 use super::sight::{between, two_surfaces};
-use super::strata::Strata;
+use super::strata::{Near, Strata};
 use super::walk::Walk;
 use crate::geometry::ShapeId;
 use crate::scene::Scene;
@@ -48,13 +48,18 @@ impl<'a> Setting<'a> {
             .collect();
         let (seen, lit) = (seen(scene, &sightings), lit(scene, beams));
         let between = between(scene, &seen, &lit);
+        let walk = Walk::new(scene);
+        let near = match seen.iter().all(|s| walk.by_area_alone(*s)) {
+            true => Near::Nothing,
+            false => Near::Something,
+        };
         Self {
             scene,
             plan,
             beams,
-            walk: Walk::new(scene),
+            walk,
             direct: Direct::new(scene, beams, spots),
-            strata: Strata::new(scene, &between, plan.sampling, plan.budget.size),
+            strata: Strata::new(scene, &between, near, plan.sampling, plan.budget.size),
             two: two_surfaces(scene, &seen, &lit),
             lamp,
             sightings,

@@ -1,8 +1,12 @@
 //! Points on the surfaces that light meets between wall and wall.
 
+use std::f64::consts::FRAC_1_PI;
+
+use super::form::form;
 use super::hidden::HiddenArea;
-use crate::geometry::{ShapeId, SurfacePoint};
+use crate::geometry::{Basis, DVec3, Ray, ShapeId, SurfacePoint};
 use crate::num::stream::{Key, Sampling, Stream};
+use crate::num::warp;
 use crate::scene::Scene;
 
 /// A point drawn from its stratum.
@@ -10,18 +14,84 @@ use crate::scene::Scene;
 pub(super) struct Drawn {
     pub shape: ShapeId,
     pub point: SurfacePoint,
-    /// Points per area: N_c/A_c in stratum c, so that Σ f(y_k)/density_k over a block estimates ∫ f dA over all surfaces.
+    /// Points per area, all strata together: N_c/A_c in texture cell c, plus what the anchor sends there. Σ f(y_k)/density_k over a block
+    /// estimates ∫ f dA over all surfaces (the balance heuristic). Infinite for a point that counts nothing.
     pub density: f64,
 }
 
 /// How the surfaces are divided: by texture cells, each with points in proportion to its area times albedo, at least one; dark ones with
 /// none, which is exact. No edge of a texture lies within a stratum, so within each the integrand is smooth whatever the direction of
 /// the edges. Where there are more cells than points, one stratum drawn from the distribution of area times albedo.
+///
+/// Where a surface comes close to what the camera sees, area alone would seldom hit what matters: as many points again are then sent out
+/// from an anchor in the middle of the view, by the cosine.
 #[derive(Debug)]
 pub(super) struct Strata<'a> {
     scene: &'a Scene,
     sampling: Sampling,
     kind: Kind,
+    /// By shape: the points per area of its cells; empty where none are drawn.
+    grids: Vec<Grid>,
+    anchor: Option<Anchor>,
+}
+
+#[derive(Clone, Debug, Default)]
+struct Grid {
+    count: [usize; 2],
+    density: Vec<f64>,
+}
+
+/// A point in view from which directions are drawn by the cosine.
+#[derive(Debug)]
+struct Anchor {
+    position: DVec3,
+    normal: DVec3,
+    shape: ShapeId,
+    points: u32,
+}
+
+impl Anchor {
+    /// What the middle of the view shows.
+    fn new(scene: &Scene, points: u32) -> Option<Self> {
+        let camera = &scene.camera;
+        let line = Ray::between(camera.position, camera.view.at([0.5, 0.5]).position)?;
+        let hit = scene
+            .bvh()
+            .closest(&Ray::new(line.origin, line.direction), None)?;
+        let shape = &scene.surfaces[hit.shape as usize].shape;
+        let point = shape.at_position(line.origin + line.direction * hit.t);
+        (point.normal.dot(line.direction) < 0.0).then_some(Self {
+            position: point.position,
+            normal: point.normal,
+            shape: hit.shape,
+            points,
+        })
+    }
+
+    /// Points per area at y on `shape`: N·cosθ·cosθ′/(π d²) where the anchor sees y.
+    fn density(&self, scene: &Scene, shape: ShapeId, y: &SurfacePoint) -> f64 {
+        let Some((form, ray)) = form((self.position, self.normal), (y.position, y.normal)) else {
+            return 0.0;
+        };
+        let ends = [Some(self.shape), Some(shape)];
+        match scene.bvh().blocked(&ray, ends) {
+            true => 0.0,
+            false => f64::from(self.points) * FRAC_1_PI * form,
+        }
+    }
+
+    /// What is seen along the direction of u; `None` where there is nothing.
+    fn sample(&self, scene: &Scene, u: [f64; 2]) -> Option<(ShapeId, SurfacePoint)> {
+        let local = warp::cosine_hemisphere(u);
+        let direction = Basis::around(self.normal).to_world(local).normalize();
+        let ray = Ray::new(self.position, direction);
+        let hit = scene.bvh().closest(&ray, Some(self.shape))?;
+        let shape = &scene.surfaces[hit.shape as usize].shape;
+        Some((
+            hit.shape,
+            shape.at_position(self.position + direction * hit.t),
+        ))
+    }
 }
 
 #[derive(Debug)]
@@ -40,9 +110,37 @@ struct Cell {
     points: u32,
 }
 
+impl Cell {
+    fn density(&self) -> f64 {
+        f64::from(self.points) / self.area
+    }
+}
+
+/// Whether surfaces come close to what the camera sees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Near {
+    Nothing,
+    Something,
+}
+
+/// The stratum of the anchor's points, beyond those of any cells.
+const ANCHOR: usize = u32::MAX as usize;
+
+/// Which of count\[0\] × count\[1\] cells a place lies in.
+fn index(count: [usize; 2], uv: [f64; 2]) -> usize {
+    let cell = |d: usize| ((uv[d] * count[d] as f64) as usize).min(count[d] - 1);
+    cell(0) + cell(1) * count[0]
+}
+
 impl<'a> Strata<'a> {
-    /// Divides `shapes` for blocks of about `size` points.
-    pub(super) fn new(scene: &'a Scene, shapes: &[ShapeId], sampling: Sampling, size: u32) -> Self {
+    /// Divides `shapes` for blocks of about `size` points; `near` tells whether any of them may be close to what the camera sees.
+    pub(super) fn new(
+        scene: &'a Scene,
+        shapes: &[ShapeId],
+        near: Near,
+        sampling: Sampling,
+        size: u32,
+    ) -> Self {
         let mut cells = Vec::new();
         let mut weights = Vec::new();
         for &shape in shapes {
@@ -81,6 +179,15 @@ impl<'a> Strata<'a> {
             Sampling::Pcg => (points.ceil() as u32).max(1),
             Sampling::Sobol => (points.ceil() as u32).max(1).next_power_of_two(),
         };
+        let anchor = match near {
+            Near::Nothing => None,
+            Near::Something => Anchor::new(scene, round(f64::from(size) / 2.0)),
+        };
+        let size = if anchor.is_some() {
+            size.div_ceil(2)
+        } else {
+            size
+        };
         // A share of exactly a power of two must not become the next by rounding.
         let share = |w: f64| f64::from(size) * w / total * (1.0 - 1e-9);
         let kind = if cells.len() > size as usize {
@@ -94,19 +201,85 @@ impl<'a> Strata<'a> {
             }
             Kind::Cells(cells)
         };
+        let mut grids = vec![Grid::default(); scene.surfaces.len()];
+        if let Kind::Cells(cells) = &kind {
+            for cell in cells {
+                let count = scene.surfaces[cell.shape as usize].albedo.smooth_cells();
+                let grid = &mut grids[cell.shape as usize];
+                grid.count = count;
+                grid.density.resize(count[0] * count[1], 0.0);
+                grid.density[index(count, cell.corner.map(|c| c + 1e-9))] = cell.density();
+            }
+        }
         Self {
             scene,
             sampling,
             kind,
+            grids,
+            anchor,
+        }
+    }
+
+    /// Points per area that the cells, or their distribution, put at a place of `shape`.
+    fn area_density(&self, shape: ShapeId, uv: [f64; 2]) -> f64 {
+        match &self.kind {
+            Kind::Distribution { area, points } => f64::from(*points) * area.density(shape, uv),
+            Kind::Cells(_) => {
+                let grid = &self.grids[shape as usize];
+                match grid.density.is_empty() {
+                    true => 0.0,
+                    false => grid.density[index(grid.count, uv)],
+                }
+            }
+        }
+    }
+
+    /// The point drawn by area with the density that the anchor adds to `density`.
+    fn drawn(&self, shape: ShapeId, point: SurfacePoint, density: f64) -> Drawn {
+        let anchor = self.anchor.as_ref();
+        let further = anchor.map_or(0.0, |a| a.density(self.scene, shape, &point));
+        Drawn {
+            shape,
+            point,
+            density: density + further,
+        }
+    }
+
+    /// The point in a direction from the anchor; where there is none, or none whose light is asked for, one that counts nothing.
+    fn seen_from(&self, anchor: &Anchor, u: [f64; 2]) -> Drawn {
+        let nothing = || Drawn {
+            shape: anchor.shape,
+            point: self.scene.surfaces[anchor.shape as usize]
+                .shape
+                .at([0.5; 2]),
+            density: f64::INFINITY,
+        };
+        let Some((shape, point)) = anchor.sample(self.scene, u) else {
+            return nothing();
+        };
+        let by_area = self.area_density(shape, point.uv);
+        let by_cosine = form(
+            (anchor.position, anchor.normal),
+            (point.position, point.normal),
+        )
+        .map_or(0.0, |(form, _)| f64::from(anchor.points) * FRAC_1_PI * form);
+        match by_cosine > 0.0 {
+            true => Drawn {
+                shape,
+                point,
+                density: by_area + by_cosine,
+            },
+            false => nothing(),
         }
     }
 
     /// Points in every block.
     pub(super) fn block_size(&self) -> usize {
-        match &self.kind {
+        let by_area: usize = match &self.kind {
             Kind::Cells(cells) => cells.iter().map(|c| c.points as usize).sum(),
             Kind::Distribution { points, .. } => *points as usize,
-        }
+        };
+        by_area + self.anchor.as_ref().map_or(0, |a| a.points as usize)
     }
 
     /// Draws the points of a block, a function of their key alone, and hands each to `visit` with the other two dimensions of its
@@ -126,22 +299,18 @@ impl<'a> Strata<'a> {
                     let shape = &self.scene.surfaces[cell.shape as usize].shape;
                     draw(stratum, cell.points, &|u| {
                         let at = |d: usize| cell.corner[d] + cell.width[d] * u[d];
-                        Drawn {
-                            shape: cell.shape,
-                            point: shape.at([at(0), at(1)]),
-                            density: f64::from(cell.points) / cell.area,
-                        }
+                        self.drawn(cell.shape, shape.at([at(0), at(1)]), cell.density())
                     });
                 }
             }
             Kind::Distribution { area, points } => draw(0, *points, &|u| {
                 let (shape, point) = area.sample(self.scene, u);
-                Drawn {
-                    shape,
-                    point,
-                    density: f64::from(*points) * area.density(shape, point.uv),
-                }
+                let density = f64::from(*points) * area.density(shape, point.uv);
+                self.drawn(shape, point, density)
             }),
+        }
+        if let Some(anchor) = &self.anchor {
+            draw(ANCHOR, anchor.points, &|u| self.seen_from(anchor, u));
         }
     }
 }
