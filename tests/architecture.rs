@@ -20,7 +20,7 @@ const FLOORS: [&[&str]; 9] = [
 const BESIDE: [(&str, &str); 3] = [("film", "matrix"), ("film", "store"), ("matrix", "store")];
 
 /// Foreign crates and the one place that may name them.
-const DOORS: [(&str, &[&str]); 15] = [
+const DOORS: [(&str, &[&str]); 16] = [
     ("obvhs", &["geometry/bvh"]),
     ("exr", &["film/exr"]),
     ("faer", &["num/linalg"]),
@@ -31,8 +31,9 @@ const DOORS: [(&str, &[&str]); 15] = [
     ("rand_pcg", &["num/stream"]),
     ("sobol_burley", &["num/stream"]),
     ("npyz", &["matrix/npy"]),
-    ("png", &["report"]),
-    ("embedded_graphics", &["report"]),
+    ("png", &["report/encode", "report/exposure"]),
+    ("resvg", &["report/raster"]),
+    ("dejavu", &["report/raster"]),
     ("toml", &["scene"]),
     ("clap", &["cli"]),
     ("indicatif", &["cli"]),

@@ -1,7 +1,9 @@
 //! Line charts.
 
 use super::axis::{tick, ticks};
-use super::svg::{Close, Svg, escape, ink};
+use super::picture::scientific;
+use super::raster::FAMILIES;
+use super::svg::{Close, Svg, escape, ink, number, raised};
 
 /// How an axis runs.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -61,16 +63,13 @@ impl Axis {
         (-1e-9..=1.0 + 1e-9).contains(&t).then_some(t)
     }
 
-    /// Where along the axis its ticks are, 0 to 1, and what they say.
-    pub(super) fn marks(&self) -> Vec<(f64, String)> {
-        let placed = |(x, text)| Some((self.fraction(x)?, text));
-        self.ticks().into_iter().filter_map(placed).collect()
-    }
-
     fn ticks(&self) -> Vec<(f64, String)> {
         let [a, b] = self.ends;
         match self.run {
-            Run::Linear => ticks(a, b, 6).into_iter().map(|x| (x, tick(x))).collect(),
+            Run::Linear => ticks(a, b, 7)
+                .into_iter()
+                .map(|x| (x, scientific(&tick(x))))
+                .collect(),
             Run::Logarithmic => {
                 let (low, high) = (libm::log10(a).round() as i32, libm::log10(b).round() as i32);
                 // Every decade has its line, and as many of them a name as have room.
@@ -96,37 +95,90 @@ pub(super) struct Series {
     pub points: Vec<[f64; 2]>,
 }
 
-/// Inks and dashes that can be told apart without colour.
+/// Inks, dashes and marks that go together: each of them alone tells the first six series apart, with and without colour.
 const INKS: [&str; 6] = [
     ink::BLUE,
     ink::VERMILLION,
     ink::GREEN,
     ink::PURPLE,
+    ink::ORANGE,
     ink::BLACK,
-    ink::GREY,
 ];
-const DASHES: [&str; 3] = ["", "7 3", "2 3"];
+const DASHES: [&str; 6] = ["", "8 3", "2 2.5", "9 3 2 3", "14 4", "5 2 1.5 2 1.5 2"];
+/// More points of a line than this are not all marked.
+const MOST_MARKS: usize = 40;
 
-/// The look of series `i`.
-pub(super) fn style(i: usize) -> String {
-    let (colour, dash) = (INKS[i % INKS.len()], DASHES[i / INKS.len() % DASHES.len()]);
-    format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.8\" stroke-dasharray=\"{dash}\"")
+/// The ink of series `i`.
+pub(super) fn colour(i: usize) -> &'static str {
+    INKS[i % INKS.len()]
 }
 
-/// The same as colour and lengths of dash and gap (0 where there is no gap), px.
-pub(super) fn inks(i: usize) -> ([u8; 3], [f64; 2]) {
-    let hex = |at: usize| u8::from_str_radix(&INKS[i % INKS.len()][at..at + 2], 16).unwrap_or(0);
-    let lengths = DASHES[i / INKS.len() % DASHES.len()].split_once(' ');
-    let length = |text: &str| text.parse().unwrap_or(0.0);
-    let dash = lengths.map_or([0.0; 2], |(a, b)| [length(a), length(b)]);
-    ([1, 3, 5].map(hex), dash)
+/// The dash of series `i`; from the seventh on inks come again with other dashes.
+fn dash(i: usize) -> &'static str {
+    DASHES[(i + i / INKS.len()) % DASHES.len()]
+}
+
+/// The look of line `i`.
+pub(super) fn style(i: usize) -> String {
+    let dashes = match dash(i) {
+        "" => String::new(),
+        lengths => format!(" stroke-dasharray=\"{lengths}\""),
+    };
+    format!(
+        "fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\" stroke-linejoin=\"round\"{dashes}",
+        colour(i)
+    )
+}
+
+/// The mark of series `i`: disc, square, triangle, diamond, triangle upside down, cross.
+pub(super) fn mark(svg: &mut Svg, [x, y]: [f64; 2], i: usize) {
+    let fill = format!("fill=\"{}\"", colour(i));
+    let shape = |svg: &mut Svg, corners: &[[f64; 2]]| {
+        let placed: Vec<[f64; 2]> = corners.iter().map(|[dx, dy]| [x + dx, y + dy]).collect();
+        svg.path(&placed, Close::Yes, &fill);
+    };
+    match i % INKS.len() {
+        0 => svg.circle([x, y], 3.2, &fill),
+        1 => svg.rect([x - 2.9, y - 2.9], [5.8, 5.8], &fill),
+        2 => shape(svg, &[[0.0, -4.2], [3.8, 2.7], [-3.8, 2.7]]),
+        3 => shape(svg, &[[0.0, -4.4], [4.0, 0.0], [0.0, 4.4], [-4.0, 0.0]]),
+        4 => shape(svg, &[[0.0, 4.2], [3.8, -2.7], [-3.8, -2.7]]),
+        _ => {
+            let [a, b] = [1.1, 3.8];
+            shape(
+                svg,
+                &[
+                    [-a, -b],
+                    [a, -b],
+                    [a, -a],
+                    [b, -a],
+                    [b, a],
+                    [a, a],
+                    [a, b],
+                    [-a, b],
+                    [-a, a],
+                    [-b, a],
+                    [-b, -a],
+                    [-a, -a],
+                ],
+            );
+        }
+    }
+}
+
+/// A sample of line `i` with its mark for a legend, 30 px long.
+pub(super) fn sample(i: usize) -> String {
+    let mut svg = Svg::default();
+    svg.line([0.0, 0.0], [30.0, 0.0], &style(i));
+    mark(&mut svg, [15.0, 0.0], i);
+    svg.text
 }
 
 /// A white sheet of that size with its title and, below, a note in grey. Close it with `</svg>`.
 pub(super) fn sheet([width, height]: [u32; 2], title: &str, note: &str) -> Svg {
     let mut svg = Svg::default();
     svg.raw(&format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"{FAMILIES}\" \
          font-size=\"13\" role=\"img\" aria-label=\"{}\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>",
         escape(title)
     ));
@@ -177,15 +229,23 @@ pub(super) fn panel(
 ) {
     let area = Area { corner, size };
     frame(svg, area, axes);
-    for (i, s) in series.iter().enumerate() {
+    // Lines first, so that no line hides a mark.
+    let runs = |s: &Series| -> Vec<Vec<[f64; 2]>> {
         let placed: Vec<Option<[f64; 2]>> = s.points.iter().map(|p| area.place(axes, p)).collect();
-        for run in placed.split(Option::is_none) {
-            let run: Vec<[f64; 2]> = run.iter().flatten().copied().collect();
-            if run.len() > 1 {
-                svg.path(&run, Close::No, &style(i));
-            }
-            for p in run {
-                svg.circle(p, 2.2, &format!("fill=\"{}\"", INKS[i % INKS.len()]));
+        let runs = placed.split(Option::is_none);
+        runs.map(|run| run.iter().flatten().copied().collect())
+            .collect()
+    };
+    for (i, s) in series.iter().enumerate() {
+        for run in runs(s).iter().filter(|run| run.len() > 1) {
+            svg.path(run, Close::No, &style(i));
+        }
+    }
+    for (i, s) in series.iter().enumerate() {
+        let each = s.points.len().div_ceil(MOST_MARKS).max(1);
+        for run in runs(s) {
+            for p in run.into_iter().step_by(each) {
+                mark(svg, p, i);
             }
         }
     }
@@ -203,7 +263,7 @@ pub(super) fn scatter(
     frame(svg, area, axes);
     let mut beyond = 0;
     for (i, s) in series.iter().enumerate() {
-        let dot = format!("fill=\"{}\" fill-opacity=\"0.5\"", INKS[i % INKS.len()]);
+        let dot = format!("fill=\"{}\" fill-opacity=\"0.5\"", colour(i));
         for point in &s.points {
             match area.place(axes, point) {
                 Some(p) => svg.circle(p, 1.8, &dot),
@@ -220,13 +280,13 @@ fn frame(svg: &mut Svg, Area { corner, size }: Area, [x, y]: [&Axis; 2]) {
     let [width, height] = size;
     let at_x = |t: f64| left + width * t;
     let at_y = |t: f64| top + height * (1.0 - t);
-    let pale = format!("stroke=\"{}\"", ink::PALE);
+    let pale = format!("stroke=\"{}\" stroke-width=\"0.6\"", ink::PALE);
     for (value, text) in x.ticks() {
         if let Some(t) = x.fraction(value) {
             svg.line([at_x(t), top], [at_x(t), top + height], &pale);
             svg.text(
                 [at_x(t), top + height + 18.0],
-                "text-anchor=\"middle\" fill=\"#6b6b6b\"",
+                "text-anchor=\"middle\" fill=\"#222222\"",
                 &text,
             );
         }
@@ -236,18 +296,24 @@ fn frame(svg: &mut Svg, Area { corner, size }: Area, [x, y]: [&Axis; 2]) {
             svg.line([left, at_y(t)], [left + width, at_y(t)], &pale);
             svg.text(
                 [left - 8.0, at_y(t) + 4.0],
-                "text-anchor=\"end\" fill=\"#6b6b6b\"",
+                "text-anchor=\"end\" fill=\"#222222\"",
                 &text,
             );
         }
     }
-    svg.rect(corner, size, "fill=\"none\" stroke=\"#222222\"");
+    svg.rect(
+        corner,
+        size,
+        "fill=\"none\" stroke=\"#222222\" stroke-width=\"0.9\"",
+    );
     let middle = "text-anchor=\"middle\" fill=\"#222222\"";
     svg.text([left + 0.5 * width, top + height + 40.0], middle, &x.title);
     let (tx, ty) = (left - 52.0, top + 0.5 * height);
     svg.raw(&format!(
-        "<text transform=\"translate({tx} {ty}) rotate(-90)\" {middle}>{}</text>",
-        escape(&y.title)
+        "<text transform=\"translate({} {}) rotate(-90)\" {middle}>{}</text>",
+        number(tx),
+        number(ty),
+        raised(&y.title)
     ));
 }
 
@@ -255,7 +321,12 @@ fn frame(svg: &mut Svg, Area { corner, size }: Area, [x, y]: [&Axis; 2]) {
 pub(super) fn legend(svg: &mut Svg, [x, y]: [f64; 2], series: &[Series]) {
     for (i, s) in series.iter().enumerate() {
         let y = y + 20.0 * i as f64;
-        svg.line([x, y], [x + 30.0, y], &style(i));
+        svg.raw(&format!(
+            "<g transform=\"translate({} {})\">{}</g>",
+            number(x),
+            number(y),
+            sample(i)
+        ));
         svg.text([x + 38.0, y + 4.0], "fill=\"#222222\"", &s.name);
     }
 }

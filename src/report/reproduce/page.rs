@@ -65,8 +65,7 @@ impl ItemSummary {
     }
 
     fn pictures(&self) -> impl Iterator<Item = &String> {
-        let own = |f: &&String| f.ends_with(".svg") || f.contains("-images");
-        self.files.iter().filter(own)
+        self.files.iter().filter(|f| f.ends_with(".svg"))
     }
 }
 
