@@ -11,9 +11,11 @@ use crate::study::reproduce::{Course, FigureAxis, FigureCurve, Plot, Reproductio
 
 /// Plots a row.
 const COLUMNS: usize = 2;
-/// Width and height of a plotting area, and from one to the next, units.
-const AREA: [f64; 2] = [328.0, 226.0];
-const PITCH: [f64; 2] = [415.0, 318.0];
+/// Width of a plotting area, and its height where there are up to three rows or more of them: four rows are a page of 230 mm.
+const WIDTH: f64 = 328.0;
+const HEIGHTS: [f64; 2] = [226.0, 176.0];
+/// Between two rows of plots, for axis and title.
+const BETWEEN: f64 = 80.0;
 /// Upper left corner of the first.
 const FIRST: [f64; 2] = [74.0, 30.0];
 /// Width of a single column, and millimetres a unit.
@@ -27,12 +29,12 @@ const BEYOND: f64 = 0.03;
 /// Ink of what was published.
 const PRINTED: &str = "fill=\"none\" stroke=\"#222222\" stroke-width=\"1.3\"";
 
-/// Where the plotting area of plot `i` begins.
-fn corner(i: usize) -> [f64; 2] {
+/// Where the plotting area of plot `i` begins, areas being `height` high.
+fn corner(i: usize, height: f64) -> [f64; 2] {
     let (column, row) = (i % COLUMNS, i / COLUMNS);
     [
-        FIRST[0] + PITCH[0] * column as f64,
-        FIRST[1] + PITCH[1] * row as f64,
+        FIRST[0] + COLUMN * column as f64,
+        FIRST[1] + (height + BETWEEN) * row as f64,
     ]
 }
 
@@ -118,8 +120,9 @@ pub(super) fn svg(r: &Reproduction) -> String {
     let [computed, printed] = names(r);
     let width = COLUMN * r.plots.len().min(COLUMNS) as f64;
     let (key, below) = key(width, &computed, &printed);
-    let rows = r.plots.len().div_ceil(COLUMNS) as f64;
-    let top = FIRST[1] + PITCH[1] * (rows - 1.0) + AREA[1] + BELOW;
+    let rows = r.plots.len().div_ceil(COLUMNS);
+    let area = [WIDTH, HEIGHTS[usize::from(rows > 3)]];
+    let top = FIRST[1] + (area[1] + BETWEEN) * rows as f64 - BETWEEN + BELOW;
     let height = (top + below).ceil();
     let mut svg = Svg::default();
     svg.raw(&format!(
@@ -130,20 +133,20 @@ pub(super) fn svg(r: &Reproduction) -> String {
         escape(&format!("{}: {}", r.item, r.title))
     ));
     for (i, plot) in r.plots.iter().enumerate() {
-        let corner = corner(i);
+        let corner = corner(i, area[1]);
         let [x, y] = axes(plot);
         svg.text(
             [corner[0], corner[1] - 9.0],
             "fill=\"#222222\"",
             &lettered(i, r.plots.len(), &plot.title),
         );
-        panel(&mut svg, corner, AREA, [&x, &y], &series(plot, &computed));
+        panel(&mut svg, corner, area, [&x, &y], &series(plot, &computed));
         for c in plot.curves.iter().filter(|c| c.source == Source::Published) {
             let which = printed.iter().position(|n| *n == c.name).unwrap_or(0);
             let placed = c
                 .points
                 .iter()
-                .filter_map(|p| place(corner, AREA, [&x, &y], p));
+                .filter_map(|p| place(corner, area, [&x, &y], p));
             for p in placed {
                 printed_mark(&mut svg, p, which);
             }

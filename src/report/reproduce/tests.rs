@@ -55,6 +55,8 @@ fn an_item_becomes_files_and_a_page() {
         markdown.contains("reproduced (26 of 26 checks hold)"),
         "{markdown}"
     );
+    // First and last line of the printed table, on both pages.
+    assert!(markdown.contains("| lower line | 1 | 0.005900 |") && html.contains("<td>1.354</td>"));
     assert!(reproduction_table(&[summary]).contains("26 of  26"));
 }
 
