@@ -95,7 +95,8 @@ pub(super) struct Series {
     pub points: Vec<[f64; 2]>,
 }
 
-/// Inks, dashes and marks that go together: each of them alone tells the first six series apart, with and without colour.
+/// Inks, dashes and marks that go together: each of them alone tells the first six series apart, with and without colour; the next six have hollow marks and
+/// other dashes.
 const INKS: [&str; 6] = [
     ink::BLUE,
     ink::VERMILLION,
@@ -104,7 +105,7 @@ const INKS: [&str; 6] = [
     ink::ORANGE,
     ink::BLACK,
 ];
-const DASHES: [&str; 6] = ["", "8 3", "2 2.5", "9 3 2 3", "14 4", "5 2 1.5 2 1.5 2"];
+const DASHES: [&str; 6] = ["", "8 3", "2 2.5", "9 3 2 3", "4 4", "10 3 2 3 2 3"];
 /// More points of a line than this are not all marked.
 const MOST_MARKS: usize = 40;
 
@@ -132,7 +133,11 @@ pub(super) fn style(i: usize) -> String {
 
 /// The mark of series `i`: disc, square, triangle, diamond, triangle upside down, cross.
 pub(super) fn mark(svg: &mut Svg, [x, y]: [f64; 2], i: usize) {
-    let fill = format!("fill=\"{}\"", colour(i));
+    let ink = colour(i);
+    let fill = match (i / INKS.len()) % 2 {
+        0 => format!("fill=\"{ink}\""),
+        _ => format!("fill=\"white\" stroke=\"{ink}\" stroke-width=\"1.2\""),
+    };
     let shape = |svg: &mut Svg, corners: &[[f64; 2]]| {
         let placed: Vec<[f64; 2]> = corners.iter().map(|[dx, dy]| [x + dx, y + dy]).collect();
         svg.path(&placed, Close::Yes, &fill);
@@ -174,6 +179,10 @@ pub(super) fn sample(i: usize) -> String {
     svg.text
 }
 
+/// Width of a character over the size of its type, bold and regular, rounded up.
+const BOLD: f64 = 0.68;
+const REGULAR: f64 = 0.6;
+
 /// A white sheet of that size with its title and, below, a note in grey. Close it with `</svg>`.
 pub(super) fn sheet([width, height]: [u32; 2], title: &str, note: &str) -> Svg {
     let mut svg = Svg::default();
@@ -182,10 +191,18 @@ pub(super) fn sheet([width, height]: [u32; 2], title: &str, note: &str) -> Svg {
          font-size=\"13\" role=\"img\" aria-label=\"{}\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>",
         escape(title)
     ));
-    let bold = "font-weight=\"bold\" font-size=\"16\" fill=\"#222222\"";
-    svg.text([16.0, 28.0], bold, title);
+    // Words that are too many for the width are set smaller.
+    let fitting = |size: f64, each: f64, text: &str| {
+        let room = f64::from(width) - 32.0;
+        number(size.min(room / (each * text.chars().count().max(1) as f64)))
+    };
+    let bold = fitting(16.0, BOLD, title);
+    let style = format!("font-weight=\"bold\" font-size=\"{bold}\" fill=\"#222222\"");
+    svg.text([16.0, 28.0], &style, title);
     if !note.is_empty() {
-        svg.text([16.0, 48.0], &format!("fill=\"{}\"", ink::GREY), note);
+        let size = fitting(13.0, REGULAR, note);
+        let style = format!("font-size=\"{size}\" fill=\"{}\"", ink::GREY);
+        svg.text([16.0, 48.0], &style, note);
     }
     svg
 }
@@ -342,7 +359,44 @@ pub(super) fn superscript(n: i32) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::svg::well_formed;
     use super::*;
+
+    /// Twelve series look different without their colours, and the first six by their marks alone.
+    #[test]
+    fn series_are_told_apart_without_colour() {
+        let grey = |text: String| INKS.iter().fold(text, |t, ink| t.replace(ink, "grey"));
+        let samples: Vec<String> = (0..12).map(|i| grey(sample(i))).collect();
+        for (i, a) in samples.iter().enumerate() {
+            well_formed(a).unwrap();
+            assert!(samples[..i].iter().all(|b| a != b), "{i}");
+        }
+        let marks = (0..6).map(|i| {
+            let mut svg = Svg::default();
+            mark(&mut svg, [0.0, 0.0], i);
+            grey(svg.text)
+        });
+        let marks: Vec<String> = marks.collect();
+        assert!((0..6).all(|i| marks[..i].iter().all(|m| *m != marks[i])));
+    }
+
+    /// A title of any length ends on the sheet: its type times its letters is no wider.
+    #[test]
+    fn long_titles_are_set_smaller() {
+        let title = "w".repeat(200);
+        let text = sheet([400, 300], &title, "").text;
+        let size = text
+            .split("font-weight=\"bold\" font-size=\"")
+            .nth(1)
+            .unwrap();
+        let size: f64 = size.split('"').next().unwrap().parse().unwrap();
+        assert!(size * BOLD * 200.0 <= 400.0 - 31.0, "{size}");
+        assert!(
+            sheet([400, 300], "short", "")
+                .text
+                .contains("font-size=\"16\"")
+        );
+    }
 
     #[test]
     fn decades_span_the_values_and_place_them() {

@@ -187,13 +187,14 @@ pub(super) fn pictures_svg(
     Ok(svg.text)
 }
 
-/// "(a) title" and so on where there are several panels, numbers in it as they are set.
+/// "(a) title" and so on where there are several panels, numbers in it as they are set and kept on the line of the word after them.
 pub(super) fn lettered(i: usize, panels: usize, title: &str) -> String {
     let set = |word: &str| match word.parse::<f64>() {
-        Ok(_) => scientific(word),
-        Err(_) => word.to_owned(),
+        Ok(_) => scientific(word) + "\u{a0}",
+        Err(_) => format!("{word} "),
     };
-    let title = title.split(' ').map(set).collect::<Vec<_>>().join(" ");
+    let title: String = title.split(' ').map(set).collect();
+    let title = title.trim_end().to_owned();
     match u8::try_from(i).ok().filter(|i| *i < 26 && panels > 1) {
         Some(i) => format!("({})\u{a0}{title}", char::from(b'a' + i)),
         None => title,

@@ -119,7 +119,7 @@ fn numbers_are_set_with_powers() {
 
 #[test]
 fn panels_are_lettered() {
-    assert_eq!(lettered(0, 1, "noise 1e-8 %"), "noise 10⁻⁸ %");
+    assert_eq!(lettered(0, 1, "noise 1e-8 %"), "noise 10⁻⁸\u{a0}%");
     assert_eq!(
         (lettered(0, 2, "t"), lettered(15, 16, "t")),
         ("(a)\u{a0}t".to_owned(), "(p)\u{a0}t".to_owned())
