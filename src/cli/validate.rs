@@ -91,6 +91,7 @@ fn write_map(dir: &Path, scene: &Scene, record: &Record, z: &Matrix) -> Result<(
         size: [columns, rows],
         values: surprise,
         axes: ["spot", "pixel"].map(str::to_owned),
+        scale_bar: None,
     };
     let png = report::colour_png(&scene.name, &[panel], &scale, "−log10 p")?;
     Ok(write_whole(&folder.join("p.png"), |w| w.write_all(&png))?)

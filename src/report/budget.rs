@@ -2,6 +2,7 @@
 
 use super::axis::significant;
 use super::chart::superscript;
+use super::raster::FAMILIES;
 use super::svg::{Close, Svg, escape, ink};
 use crate::study::{ErrorBudget, Estimate, Term};
 
@@ -105,7 +106,7 @@ pub fn budget_svg(budget: &ErrorBudget) -> String {
     let height = bottom + 62.0;
     let mut svg = Svg::default();
     svg.raw(&format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" font-family=\"sans-serif\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" font-family=\"{FAMILIES}\" \
          font-size=\"13\" role=\"img\" aria-label=\"Error budget of {}\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>",
         escape(&budget.scene)
     ));

@@ -1,7 +1,9 @@
 //! Line charts.
 
 use super::axis::{tick, ticks};
-use super::svg::{Close, Svg, escape, ink};
+use super::picture::scientific;
+use super::raster::FAMILIES;
+use super::svg::{Close, Svg, escape, ink, number, raised};
 
 /// How an axis runs.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -61,16 +63,13 @@ impl Axis {
         (-1e-9..=1.0 + 1e-9).contains(&t).then_some(t)
     }
 
-    /// Where along the axis its ticks are, 0 to 1, and what they say.
-    pub(super) fn marks(&self) -> Vec<(f64, String)> {
-        let placed = |(x, text)| Some((self.fraction(x)?, text));
-        self.ticks().into_iter().filter_map(placed).collect()
-    }
-
     fn ticks(&self) -> Vec<(f64, String)> {
         let [a, b] = self.ends;
         match self.run {
-            Run::Linear => ticks(a, b, 6).into_iter().map(|x| (x, tick(x))).collect(),
+            Run::Linear => ticks(a, b, 7)
+                .into_iter()
+                .map(|x| (x, scientific(&tick(x))))
+                .collect(),
             Run::Logarithmic => {
                 let (low, high) = (libm::log10(a).round() as i32, libm::log10(b).round() as i32);
                 // Every decade has its line, and as many of them a name as have room.
@@ -96,44 +95,114 @@ pub(super) struct Series {
     pub points: Vec<[f64; 2]>,
 }
 
-/// Inks and dashes that can be told apart without colour.
+/// Inks, dashes and marks that go together: each of them alone tells the first six series apart, with and without colour; the next six have hollow marks and
+/// other dashes.
 const INKS: [&str; 6] = [
     ink::BLUE,
     ink::VERMILLION,
     ink::GREEN,
     ink::PURPLE,
+    ink::ORANGE,
     ink::BLACK,
-    ink::GREY,
 ];
-const DASHES: [&str; 3] = ["", "7 3", "2 3"];
+const DASHES: [&str; 6] = ["", "8 3", "2 2.5", "9 3 2 3", "4 4", "10 3 2 3 2 3"];
+/// More points of a line than this are not all marked.
+const MOST_MARKS: usize = 40;
 
-/// The look of series `i`.
+/// The ink of series `i`.
+pub(super) fn colour(i: usize) -> &'static str {
+    INKS[i % INKS.len()]
+}
+
+/// The dash of series `i`; from the seventh on inks come again with other dashes.
+fn dash(i: usize) -> &'static str {
+    DASHES[(i + i / INKS.len()) % DASHES.len()]
+}
+
+/// The look of line `i`.
 pub(super) fn style(i: usize) -> String {
-    let (colour, dash) = (INKS[i % INKS.len()], DASHES[i / INKS.len() % DASHES.len()]);
-    format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.8\" stroke-dasharray=\"{dash}\"")
+    let dashes = match dash(i) {
+        "" => String::new(),
+        lengths => format!(" stroke-dasharray=\"{lengths}\""),
+    };
+    format!(
+        "fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\" stroke-linejoin=\"round\"{dashes}",
+        colour(i)
+    )
 }
 
-/// The same as colour and lengths of dash and gap (0 where there is no gap), px.
-pub(super) fn inks(i: usize) -> ([u8; 3], [f64; 2]) {
-    let hex = |at: usize| u8::from_str_radix(&INKS[i % INKS.len()][at..at + 2], 16).unwrap_or(0);
-    let lengths = DASHES[i / INKS.len() % DASHES.len()].split_once(' ');
-    let length = |text: &str| text.parse().unwrap_or(0.0);
-    let dash = lengths.map_or([0.0; 2], |(a, b)| [length(a), length(b)]);
-    ([1, 3, 5].map(hex), dash)
+/// The mark of series `i`: disc, square, triangle, diamond, triangle upside down, cross.
+pub(super) fn mark(svg: &mut Svg, [x, y]: [f64; 2], i: usize) {
+    let ink = colour(i);
+    let fill = match (i / INKS.len()) % 2 {
+        0 => format!("fill=\"{ink}\""),
+        _ => format!("fill=\"white\" stroke=\"{ink}\" stroke-width=\"1.2\""),
+    };
+    let shape = |svg: &mut Svg, corners: &[[f64; 2]]| {
+        let placed: Vec<[f64; 2]> = corners.iter().map(|[dx, dy]| [x + dx, y + dy]).collect();
+        svg.path(&placed, Close::Yes, &fill);
+    };
+    match i % INKS.len() {
+        0 => svg.circle([x, y], 3.2, &fill),
+        1 => svg.rect([x - 2.9, y - 2.9], [5.8, 5.8], &fill),
+        2 => shape(svg, &[[0.0, -4.2], [3.8, 2.7], [-3.8, 2.7]]),
+        3 => shape(svg, &[[0.0, -4.4], [4.0, 0.0], [0.0, 4.4], [-4.0, 0.0]]),
+        4 => shape(svg, &[[0.0, 4.2], [3.8, -2.7], [-3.8, -2.7]]),
+        _ => {
+            let [a, b] = [1.1, 3.8];
+            shape(
+                svg,
+                &[
+                    [-a, -b],
+                    [a, -b],
+                    [a, -a],
+                    [b, -a],
+                    [b, a],
+                    [a, a],
+                    [a, b],
+                    [-a, b],
+                    [-a, a],
+                    [-b, a],
+                    [-b, -a],
+                    [-a, -a],
+                ],
+            );
+        }
+    }
 }
+
+/// A sample of line `i` with its mark for a legend, 30 px long.
+pub(super) fn sample(i: usize) -> String {
+    let mut svg = Svg::default();
+    svg.line([0.0, 0.0], [30.0, 0.0], &style(i));
+    mark(&mut svg, [15.0, 0.0], i);
+    svg.text
+}
+
+/// Width of a character over the size of its type, bold and regular, rounded up.
+const BOLD: f64 = 0.68;
+const REGULAR: f64 = 0.6;
 
 /// A white sheet of that size with its title and, below, a note in grey. Close it with `</svg>`.
 pub(super) fn sheet([width, height]: [u32; 2], title: &str, note: &str) -> Svg {
     let mut svg = Svg::default();
     svg.raw(&format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"{FAMILIES}\" \
          font-size=\"13\" role=\"img\" aria-label=\"{}\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>",
         escape(title)
     ));
-    let bold = "font-weight=\"bold\" font-size=\"16\" fill=\"#222222\"";
-    svg.text([16.0, 28.0], bold, title);
+    // Words that are too many for the width are set smaller.
+    let fitting = |size: f64, each: f64, text: &str| {
+        let room = f64::from(width) - 32.0;
+        number(size.min(room / (each * text.chars().count().max(1) as f64)))
+    };
+    let bold = fitting(16.0, BOLD, title);
+    let style = format!("font-weight=\"bold\" font-size=\"{bold}\" fill=\"#222222\"");
+    svg.text([16.0, 28.0], &style, title);
     if !note.is_empty() {
-        svg.text([16.0, 48.0], &format!("fill=\"{}\"", ink::GREY), note);
+        let size = fitting(13.0, REGULAR, note);
+        let style = format!("font-size=\"{size}\" fill=\"{}\"", ink::GREY);
+        svg.text([16.0, 48.0], &style, note);
     }
     svg
 }
@@ -177,15 +246,23 @@ pub(super) fn panel(
 ) {
     let area = Area { corner, size };
     frame(svg, area, axes);
-    for (i, s) in series.iter().enumerate() {
+    // Lines first, so that no line hides a mark.
+    let runs = |s: &Series| -> Vec<Vec<[f64; 2]>> {
         let placed: Vec<Option<[f64; 2]>> = s.points.iter().map(|p| area.place(axes, p)).collect();
-        for run in placed.split(Option::is_none) {
-            let run: Vec<[f64; 2]> = run.iter().flatten().copied().collect();
-            if run.len() > 1 {
-                svg.path(&run, Close::No, &style(i));
-            }
-            for p in run {
-                svg.circle(p, 2.2, &format!("fill=\"{}\"", INKS[i % INKS.len()]));
+        let runs = placed.split(Option::is_none);
+        runs.map(|run| run.iter().flatten().copied().collect())
+            .collect()
+    };
+    for (i, s) in series.iter().enumerate() {
+        for run in runs(s).iter().filter(|run| run.len() > 1) {
+            svg.path(run, Close::No, &style(i));
+        }
+    }
+    for (i, s) in series.iter().enumerate() {
+        let each = s.points.len().div_ceil(MOST_MARKS).max(1);
+        for run in runs(s) {
+            for p in run.into_iter().step_by(each) {
+                mark(svg, p, i);
             }
         }
     }
@@ -203,7 +280,7 @@ pub(super) fn scatter(
     frame(svg, area, axes);
     let mut beyond = 0;
     for (i, s) in series.iter().enumerate() {
-        let dot = format!("fill=\"{}\" fill-opacity=\"0.5\"", INKS[i % INKS.len()]);
+        let dot = format!("fill=\"{}\" fill-opacity=\"0.5\"", colour(i));
         for point in &s.points {
             match area.place(axes, point) {
                 Some(p) => svg.circle(p, 1.8, &dot),
@@ -220,13 +297,13 @@ fn frame(svg: &mut Svg, Area { corner, size }: Area, [x, y]: [&Axis; 2]) {
     let [width, height] = size;
     let at_x = |t: f64| left + width * t;
     let at_y = |t: f64| top + height * (1.0 - t);
-    let pale = format!("stroke=\"{}\"", ink::PALE);
+    let pale = format!("stroke=\"{}\" stroke-width=\"0.6\"", ink::PALE);
     for (value, text) in x.ticks() {
         if let Some(t) = x.fraction(value) {
             svg.line([at_x(t), top], [at_x(t), top + height], &pale);
             svg.text(
                 [at_x(t), top + height + 18.0],
-                "text-anchor=\"middle\" fill=\"#6b6b6b\"",
+                "text-anchor=\"middle\" fill=\"#222222\"",
                 &text,
             );
         }
@@ -236,18 +313,24 @@ fn frame(svg: &mut Svg, Area { corner, size }: Area, [x, y]: [&Axis; 2]) {
             svg.line([left, at_y(t)], [left + width, at_y(t)], &pale);
             svg.text(
                 [left - 8.0, at_y(t) + 4.0],
-                "text-anchor=\"end\" fill=\"#6b6b6b\"",
+                "text-anchor=\"end\" fill=\"#222222\"",
                 &text,
             );
         }
     }
-    svg.rect(corner, size, "fill=\"none\" stroke=\"#222222\"");
+    svg.rect(
+        corner,
+        size,
+        "fill=\"none\" stroke=\"#222222\" stroke-width=\"0.9\"",
+    );
     let middle = "text-anchor=\"middle\" fill=\"#222222\"";
     svg.text([left + 0.5 * width, top + height + 40.0], middle, &x.title);
     let (tx, ty) = (left - 52.0, top + 0.5 * height);
     svg.raw(&format!(
-        "<text transform=\"translate({tx} {ty}) rotate(-90)\" {middle}>{}</text>",
-        escape(&y.title)
+        "<text transform=\"translate({} {}) rotate(-90)\" {middle}>{}</text>",
+        number(tx),
+        number(ty),
+        raised(&y.title)
     ));
 }
 
@@ -255,7 +338,12 @@ fn frame(svg: &mut Svg, Area { corner, size }: Area, [x, y]: [&Axis; 2]) {
 pub(super) fn legend(svg: &mut Svg, [x, y]: [f64; 2], series: &[Series]) {
     for (i, s) in series.iter().enumerate() {
         let y = y + 20.0 * i as f64;
-        svg.line([x, y], [x + 30.0, y], &style(i));
+        svg.raw(&format!(
+            "<g transform=\"translate({} {})\">{}</g>",
+            number(x),
+            number(y),
+            sample(i)
+        ));
         svg.text([x + 38.0, y + 4.0], "fill=\"#222222\"", &s.name);
     }
 }
@@ -271,7 +359,44 @@ pub(super) fn superscript(n: i32) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::svg::well_formed;
     use super::*;
+
+    /// Twelve series look different without their colours, and the first six by their marks alone.
+    #[test]
+    fn series_are_told_apart_without_colour() {
+        let grey = |text: String| INKS.iter().fold(text, |t, ink| t.replace(ink, "grey"));
+        let samples: Vec<String> = (0..12).map(|i| grey(sample(i))).collect();
+        for (i, a) in samples.iter().enumerate() {
+            well_formed(a).unwrap();
+            assert!(samples[..i].iter().all(|b| a != b), "{i}");
+        }
+        let marks = (0..6).map(|i| {
+            let mut svg = Svg::default();
+            mark(&mut svg, [0.0, 0.0], i);
+            grey(svg.text)
+        });
+        let marks: Vec<String> = marks.collect();
+        assert!((0..6).all(|i| marks[..i].iter().all(|m| *m != marks[i])));
+    }
+
+    /// A title of any length ends on the sheet: its type times its letters is no wider.
+    #[test]
+    fn long_titles_are_set_smaller() {
+        let title = "w".repeat(200);
+        let text = sheet([400, 300], &title, "").text;
+        let size = text
+            .split("font-weight=\"bold\" font-size=\"")
+            .nth(1)
+            .unwrap();
+        let size: f64 = size.split('"').next().unwrap().parse().unwrap();
+        assert!(size * BOLD * 200.0 <= 400.0 - 31.0, "{size}");
+        assert!(
+            sheet([400, 300], "short", "")
+                .text
+                .contains("font-size=\"16\"")
+        );
+    }
 
     #[test]
     fn decades_span_the_values_and_place_them() {

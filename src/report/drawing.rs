@@ -5,6 +5,7 @@ use super::key::entries;
 use super::label::{Labels, legend};
 use super::mark::{lines, names, spots, surface, view};
 use super::projection::{Frame, Projection, View};
+use super::raster::FAMILIES;
 use super::svg::{Close, Svg, escape, ink, number, shortened};
 use crate::scene::{Role, Scene};
 
@@ -53,7 +54,7 @@ pub fn bench_svg(scene: &Scene) -> String {
     let mut out = Svg::default();
     out.raw(&format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {w} {h}\" width=\"{w}\" height=\"{h}\" role=\"img\" \
-         font-family=\"system-ui, 'DejaVu Sans', Arial, sans-serif\">\n<title>{}</title>",
+         font-family=\"{FAMILIES}\">\n<title>{}</title>",
         escape(&format!("Scene {name}, drawn to scale"))
     ));
     out.rect([0.0, 0.0], [WIDTH, bottom], "fill=\"#ffffff\"");

@@ -1,7 +1,7 @@
 //! Photographs as text and as pictures of counts.
 
 use super::axis::significant;
-use super::canvas::{PictureError, grey16};
+use super::encode::{PictureError, grey16};
 use crate::sensor::Summary;
 
 /// What an exposure came to, as plain text of at most 80 columns; `times` in s, the longest first.

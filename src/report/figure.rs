@@ -3,6 +3,7 @@
 use base64::prelude::{BASE64_STANDARD, Engine};
 
 use super::colour::Scale;
+use super::encode::PictureError;
 use super::picture::{Panel, bar_ticks, legend_lines};
 use super::svg::{Svg, escape, number};
 
@@ -63,6 +64,7 @@ pub(super) fn reduced(
             size,
             values,
             axes,
+            scale_bar: None,
         },
         note,
     )
@@ -82,8 +84,12 @@ fn capital(text: &str) -> String {
         .map_or(String::new(), |c| c.to_uppercase().chain(letters).collect())
 }
 
-fn data_uri(panel: &Panel, scale: &Scale) -> Result<String, String> {
-    let png = panel.plain_png(scale).map_err(|e| e.to_string())?;
+/// The entries of a matrix as a picture inside of markup.
+///
+/// # Errors
+/// [`PictureError`].
+pub(super) fn data_uri(panel: &Panel, scale: &Scale) -> Result<String, PictureError> {
+    let png = panel.plain_png(scale)?;
     Ok(format!(
         "data:image/png;base64,{}",
         BASE64_STANDARD.encode(png)
@@ -110,7 +116,13 @@ pub(super) fn figure(
 ) -> String {
     let uri = match data_uri(panel, scale) {
         Ok(uri) => uri,
-        Err(e) => return format!("<p>{}: {}</p>\n", escape(&panel.title), escape(&e)),
+        Err(e) => {
+            return format!(
+                "<p>{}: {}</p>\n",
+                escape(&panel.title),
+                escape(&e.to_string())
+            );
+        }
     };
     let [nu, nv] = panel.size.map(|n| n.max(1) as f64);
     // A strip of a picture is widened until it can be seen; its entries are then no squares.

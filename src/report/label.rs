@@ -4,8 +4,8 @@ use super::svg::{Close, Svg, ink, shortened};
 
 /// Size of the type, px.
 const SIZE: f64 = 12.0;
-/// Width of a character of a usual sans-serif type, rounded up, px.
-const CHARACTER: f64 = 6.9;
+/// Width of a character of the type, rounded up, px.
+const CHARACTER: f64 = 7.2;
 /// More characters than this are cut.
 const LONGEST: usize = 34;
 
@@ -105,7 +105,7 @@ pub(super) fn halo(svg: &mut Svg, at: [f64; 2], style: &str, text: &str) {
     svg.text(at, &format!("{style} font-size=\"{SIZE}\""), text);
 }
 
-/// Entries of a legend in rows of `width`, each a sample of 24 px and its text; returns the height.
+/// Entries of a legend in rows of `width`, each a sample of up to 30 px and its text; returns the height.
 pub(super) fn legend(
     svg: &mut Svg,
     [x, y]: [f64; 2],
@@ -114,7 +114,7 @@ pub(super) fn legend(
 ) -> f64 {
     let (mut left, mut top) = (0.0, 0.0);
     for (sample, text) in entries {
-        let needed = 34.0 + CHARACTER * text.chars().count() as f64 + 14.0;
+        let needed = 38.0 + CHARACTER * text.chars().count() as f64 + 14.0;
         if left > 0.0 && left + needed > width {
             left = 0.0;
             top += 22.0;
@@ -124,7 +124,7 @@ pub(super) fn legend(
             "<g transform=\"translate({sx} {sy})\">{sample}</g>"
         ));
         let style = format!("fill=\"{}\" font-size=\"{SIZE}\"", ink::BLACK);
-        svg.text([x + left + 32.0, y + top + 4.0], &style, text);
+        svg.text([x + left + 37.0, y + top + 4.0], &style, text);
         left += needed;
     }
     top + 22.0

@@ -1,17 +1,18 @@
 //! Floor 7: the report. Results in, bytes out: nothing here computes physics, prints or touches the file system.
 //!
 //! [`bench_svg`] draws a scene to scale; [`grey_png`] and [`colour_png`] turn matrices into pictures with a legend;
+//! every PNG of a figure is its SVG, rendered with type of its own;
 //! [`summary_json`], [`summary_table`] and their kin say in short what was found, and [`run_html`] shows it on one
 //! self-contained page. Pictures clip at the ends of their scale and say so; numbers are never clipped.
 
 mod axis;
 mod budget;
-mod canvas;
 mod chart;
 mod colour;
 mod convergence;
 mod coverage;
 mod drawing;
+mod encode;
 mod experiment;
 mod exposure;
 mod figure;
@@ -27,6 +28,7 @@ mod picard;
 mod picture;
 mod power;
 mod projection;
+mod raster;
 mod reproduce;
 #[cfg(test)]
 mod sample;
@@ -37,11 +39,11 @@ mod tolerance;
 mod verdict;
 
 pub use budget::{budget_csv, budget_svg, budget_table};
-pub use canvas::PictureError;
 pub use colour::{Map, Rgb, Scale};
 pub use convergence::{convergence_svg, convergence_table};
 pub use coverage::coverage_table;
 pub use drawing::bench_svg;
+pub use encode::PictureError;
 pub use experiment::{experiment_csv, experiment_svg, experiment_table};
 pub use exposure::{counts_png, exposure_table};
 pub use indicator::{indicator_csv, indicator_noise_csv, indicator_svg, indicator_table};
@@ -49,7 +51,7 @@ pub use mitsuba::mitsuba_script;
 pub use noise::{Measure, noise_csv, noise_svg, noise_table};
 pub use page::run_html;
 pub use picard::{picard_csv, picard_svg};
-pub use picture::{Panel, colour_png, grey_png};
+pub use picture::{Panel, ScaleBar, colour_png, grey_png};
 pub use power::power_table;
 pub use reproduce::{
     ItemSummary, reproduction_files, reproduction_html, reproduction_markdown, reproduction_table,

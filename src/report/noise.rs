@@ -228,6 +228,8 @@ pub fn noise_csv(study: &NoiseStudy) -> String {
 
 /// Panels a row.
 const COLUMNS: usize = 3;
+/// A sheet is at least this wide, for the names of the curves, px.
+const MOST_NARROW: usize = 560;
 
 /// One measure as a figure: a panel for each object and number of elements, a line for each method. Render noise, if it was measured, as upright lines;
 /// beside the root mean square error the bound of Cramér and Rao.
@@ -245,7 +247,8 @@ pub fn noise_svg(study: &NoiseStudy, measure: Measure) -> String {
     let names = objects.first().map_or(0, |o| own(*o).count()) + marks + 1;
     let height = 120 + 330 * rows + 20 * names;
     let title = format!("How much noise each recovery bears: {}", place(study));
-    let mut svg = sheet([1100, height as u32], &title, "");
+    let width = (50 + 350 * objects.len().min(COLUMNS)).max(MOST_NARROW);
+    let mut svg = sheet([width as u32, height as u32], &title, "");
     let points = || study.curves.iter().flat_map(|c| &c.points);
     let x = match study.axis_spacing {
         Spacing::Logarithmic => Axis::decades(points().map(|p| p.level), study.axis_title.clone()),

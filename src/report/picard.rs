@@ -1,7 +1,6 @@
 //! The Picard data as a table for programs and as a figure.
 
-use super::chart::{Axis, Run, Series, legend, panel};
-use super::svg::Svg;
+use super::chart::{Axis, Run, Series, legend, panel, sheet};
 use crate::recovery::{Directions, Picard};
 
 /// One line per singular direction: its number from 1, σ, coefficient and noise level (in W but for weighted directions; empty where the noise is not
@@ -68,14 +67,8 @@ pub fn picard_svg(picard: &Picard) -> String {
     };
     let values = series.iter().flat_map(|s| &s.points).map(|p| p[1]);
     let y = Axis::decades(values, title_y);
-    let mut svg = Svg::default();
-    svg.raw(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 900 440\" font-family=\"sans-serif\" font-size=\"13\" \
-         role=\"img\" aria-label=\"Picard plot\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>",
-    );
-    let bold = "font-weight=\"bold\" font-size=\"16\" fill=\"#222222\"";
     let title = "Which singular directions rise above the noise";
-    svg.text([16.0, 28.0], bold, title);
+    let mut svg = sheet([900, 440], title, "");
     panel(&mut svg, [80.0, 50.0], [560.0, 320.0], [&x, &y], &series);
     legend(&mut svg, [660.0, 64.0], &series);
     svg.raw("</svg>");

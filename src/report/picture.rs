@@ -1,18 +1,42 @@
 //! Matrices as pictures with a title, axes and a legend.
 
 use super::axis::{significant, tick, ticks};
-use super::canvas::{Canvas, PictureError, Type};
-use super::colour::{Map, NOT_A_NUMBER, Scale};
+use super::chart::superscript;
+use super::colour::{Map, NOT_A_NUMBER, Rgb, Scale};
+use super::encode::{PictureError, rgb};
+use super::figure::data_uri;
+use super::raster::{self, DPI, FAMILIES};
+use super::svg::{Close, Svg, escape};
 
-/// An enlarged matrix is at least this long on its longer side, px.
+/// A bare matrix is enlarged to at least this on its longer side, px.
 const SIDE: usize = 256;
-const MARGIN: usize = 20;
-const GAP: usize = 28;
-/// Room left of a panel for the axis upwards.
-const AXIS: usize = 26;
-/// Widest row of panels, px.
-const ROW: usize = 1240;
-const BAR: [usize; 2] = [256, 16];
+/// Width of a sheet where no matrix needs more: 180 mm, two columns of a journal, px at 300 an inch as all lengths here.
+const WIDTH: usize = 2126;
+/// Longer side of a panel at most, where it has no more entries than that.
+const LARGEST: usize = 600;
+/// Panels a row.
+const MOST_COLUMNS: usize = 5;
+const MARGIN: usize = 24;
+const GAP: usize = 44;
+/// Room left of a panel for the axis upwards, and below for the axis across.
+const AXIS: usize = 52;
+const BELOW: usize = 54;
+/// Size of type (7 pt), of a line of it, and of a character, rounded up.
+const TYPE: usize = 29;
+const LINE: usize = 36;
+const CHARACTER: usize = 17;
+const BAR: [usize; 2] = [640, 30];
+/// Ink of frames and arrows, 0.5 pt wide.
+const THIN: &str = "fill=\"none\" stroke=\"#222222\" stroke-width=\"2\"";
+
+/// A length that is drawn below a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScaleBar {
+    /// Its share of the picture's width.
+    pub share: f64,
+    /// What it is, with its unit.
+    pub text: String,
+}
 
 /// A matrix to be shown: the first index runs to the right, the second upwards.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +49,8 @@ pub struct Panel {
     pub values: Vec<f64>,
     /// What runs to the right and what upwards.
     pub axes: [String; 2],
+    /// A length, where it has one.
+    pub scale_bar: Option<ScaleBar>,
 }
 
 impl Panel {
@@ -35,6 +61,7 @@ impl Panel {
             size,
             values,
             axes: ["iu", "iv"].map(str::to_owned),
+            scale_bar: None,
         }
     }
 
@@ -48,43 +75,42 @@ impl Panel {
 
     /// The entries alone, enlarged by a whole factor, the last row on top, as PNG bytes.
     pub(super) fn plain_png(&self, scale: &Scale) -> Result<Vec<u8>, PictureError> {
-        let [w, h] = self.pixels();
-        let mut canvas = Canvas::new(w, h)?;
-        self.paint(&mut canvas, [0, 0], self.factor(), scale);
-        canvas.png()
-    }
-
-    fn paint(&self, canvas: &mut Canvas, [x, y]: [usize; 2], factor: usize, scale: &Scale) {
-        let [nu, nv] = self.size.map(|n| n.max(1));
-        for iv in 0..nv {
-            for iu in 0..nu {
-                let corner = [x + iu * factor, y + (nv - 1 - iv) * factor];
-                canvas.fill(corner, [factor; 2], scale.colour(self.at(iu, iv)));
+        let [nu, nv] = self.entries();
+        let factor = SIDE.div_ceil(nu.max(nv));
+        let mut pixels = Vec::with_capacity(3 * nu * nv * factor * factor);
+        for iv in (0..nv).rev() {
+            let entry = |iu| std::iter::repeat_n(scale.colour(self.at(iu, iv)), factor);
+            let row: Vec<u8> = (0..nu).flat_map(entry).flatten().collect();
+            for _ in 0..factor {
+                pixels.extend_from_slice(&row);
             }
         }
+        rgb([nu * factor, nv * factor], &pixels, None)
     }
 
-    /// Whole pixels per entry, so that the longer side has at least [`SIDE`].
-    fn factor(&self) -> usize {
-        SIDE.div_ceil(self.size[0].max(self.size[1]).max(1))
+    fn entries(&self) -> [usize; 2] {
+        self.size.map(|n| n.max(1))
     }
 
-    fn pixels(&self) -> [usize; 2] {
-        self.size.map(|n| n.max(1) * self.factor())
+    /// Width and height on a sheet: the longer side as near below `most` as whole pixels an entry allow, but one at least.
+    fn pixels(&self, most: usize) -> [usize; 2] {
+        let [nu, nv] = self.entries();
+        let factor = (most / nu.max(nv)).max(1);
+        [nu * factor, nv * factor]
     }
 }
 
 /// Reflectances (or any values that belong in 0…1) side by side on the one fixed grey scale: black 0, white 1, whatever
-/// the data, values below 0 blue and above 1 orange. Entries are enlarged by a whole factor, never smoothed; iu runs to
-/// the right and iv upwards, as the arrows say. Returns PNG bytes.
+/// the data, values below 0 blue and above 1 orange. Entries are whole pixels, never smoothed; iu runs to the right and iv upwards, as the arrows say.
+/// Returns PNG bytes, 300 pixels an inch, 180 mm wide unless a matrix needs more.
 ///
 /// # Errors
 /// [`PictureError`] if the picture would be absurdly large.
 pub fn grey_png(title: &str, panels: &[Panel]) -> Result<Vec<u8>, PictureError> {
-    colour_png(title, panels, &Scale::reflectance(), "")
+    colour_png(title, panels, &Scale::reflectance(), "reflectance")
 }
 
-/// Matrices side by side on one shared `scale`, with a legend in `unit` (empty: a pure number). As [`grey_png`] else.
+/// Matrices side by side on one shared `scale`, with a legend that is named `unit`. As [`grey_png`] else.
 ///
 /// # Errors
 /// [`PictureError`] if the picture would be absurdly large.
@@ -94,114 +120,200 @@ pub fn colour_png(
     scale: &Scale,
     unit: &str,
 ) -> Result<Vec<u8>, PictureError> {
+    raster::png(&pictures_svg(title, panels, scale, unit)?)
+}
+
+/// The same as SVG.
+///
+/// # Errors
+/// [`PictureError`] if a picture in it cannot be encoded.
+pub(super) fn pictures_svg(
+    title: &str,
+    panels: &[Panel],
+    scale: &Scale,
+    unit: &str,
+) -> Result<String, PictureError> {
+    let titles: Vec<String> = panels
+        .iter()
+        .enumerate()
+        .map(|(i, p)| lettered(i, panels.len(), &p.title))
+        .collect();
+    let most = longest_side(panels.len());
+    let sizes: Vec<[usize; 2]> = panels.iter().map(|p| p.pixels(most)).collect();
+    let lines: Vec<Vec<String>> = titles
+        .iter()
+        .zip(&sizes)
+        .map(|(t, [w, _])| wrapped(t, w.max(&most) / CHARACTER))
+        .collect();
+    let above = LINE * lines.iter().map(Vec::len).max().unwrap_or(0) + 8;
+    let (places, [width, height]) = arrange(&sizes, most, above);
+    let heading = wrapped(title, (width - 2 * MARGIN) / CHARACTER);
+    let top = MARGIN + LINE * heading.len() + 12;
     let lettering = legend_lines(scale, panels);
-    let longest = lettering
-        .iter()
-        .map(|(_, t)| 26 + 7 * t.chars().count())
-        .max();
-    let least = MARGIN + (BAR[0] + 60).max(longest.unwrap_or(0)) + MARGIN;
-    let lines = panels
-        .iter()
-        .map(|p| title_lines(p).len())
-        .max()
-        .unwrap_or(0);
-    let (places, [width, height]) = arrange(panels, lines);
-    let width = width
-        .max(least)
-        .max(2 * MARGIN + (10 * title.chars().count()).min(ROW));
-    let titles = wrapped(title, (width - 2 * MARGIN) / 10);
-    let top = MARGIN + 24 * titles.len() + 6;
-    let legend = top + height + 8;
-    let mut canvas = Canvas::new(width, legend + BAR[1] + 28 + 18 * lettering.len() + MARGIN)?;
-    for (i, line) in titles.iter().enumerate() {
-        canvas.text([MARGIN, MARGIN + 24 * i], Type::Large, line);
+    let legend = top + height + 16;
+    let full = legend + BAR[1] + 56 + LINE * lettering.len() + MARGIN;
+    let mut svg = Svg::default();
+    let millimetres = |px: usize| 25.4 / DPI * px as f64;
+    svg.raw(&format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.4}mm\" height=\"{:.4}mm\" viewBox=\"0 0 {width} {full}\" font-family=\"{FAMILIES}\" \
+         font-size=\"{TYPE}\" fill=\"#222222\" role=\"img\" aria-label=\"{}\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>",
+        millimetres(width),
+        millimetres(full),
+        escape(title)
+    ));
+    write(&mut svg, [MARGIN, MARGIN], &heading);
+    for (i, panel) in panels.iter().enumerate() {
+        let [x, y] = places[i];
+        let corner = [x + AXIS, top + y + above];
+        // The last line of the title stands on the picture.
+        write(
+            &mut svg,
+            [corner[0], corner[1] - 8 - LINE * lines[i].len()],
+            &lines[i],
+        );
+        draw(&mut svg, panel, corner, sizes[i], scale)?;
     }
-    for (panel, [x, y]) in panels.iter().zip(places) {
-        let offset = lines - title_lines(panel).len();
-        draw(&mut canvas, panel, [x, top + y + 18 * offset], scale);
+    bar(&mut svg, [MARGIN + 100, legend], scale, unit)?;
+    for (i, ([r, g, b], text)) in lettering.iter().enumerate() {
+        let y = legend + BAR[1] + 56 + LINE * i;
+        svg.rect(
+            at([MARGIN, y + 5]),
+            [36.0, 24.0],
+            &format!("fill=\"#{r:02x}{g:02x}{b:02x}\" stroke=\"#222222\" stroke-width=\"2\""),
+        );
+        write(&mut svg, [MARGIN + 52, y], std::slice::from_ref(text));
     }
-    bar(&mut canvas, [MARGIN, legend], scale, unit);
-    for (i, (colour, text)) in lettering.iter().enumerate() {
-        let y = legend + BAR[1] + 26 + 18 * i;
-        canvas.fill([MARGIN, y + 1], [16, 12], *colour);
-        canvas.outline([MARGIN, y + 1], [16, 12]);
-        canvas.text([MARGIN + 24, y], Type::Small, text);
-    }
-    canvas.png()
+    svg.raw("</svg>");
+    Ok(svg.text)
 }
 
-/// The title of a panel in lines that are no wider than its picture.
-fn title_lines(panel: &Panel) -> Vec<String> {
-    wrapped(&panel.title, panel.pixels()[0].max(150) / 7)
+/// "(a) title" and so on where there are several panels, numbers in it as they are set and kept on the line of the word after them.
+pub(super) fn lettered(i: usize, panels: usize, title: &str) -> String {
+    let set = |word: &str| match word.parse::<f64>() {
+        Ok(_) => scientific(word) + "\u{a0}",
+        Err(_) => format!("{word} "),
+    };
+    let title: String = title.split(' ').map(set).collect();
+    let title = title.trim_end().to_owned();
+    match u8::try_from(i).ok().filter(|i| *i < 26 && panels > 1) {
+        Some(i) => format!("({})\u{a0}{title}", char::from(b'a' + i)),
+        None => title,
+    }
 }
 
-/// Width and height that a panel takes when every title has `lines` lines.
-fn cell(panel: &Panel, lines: usize) -> [usize; 2] {
-    let [w, h] = panel.pixels();
-    let w = w.max(150);
-    [AXIS + w, h + 18 * lines + 28]
+/// How long a panel may be so that as many stand in a row as leave no row half empty, if that can be.
+fn longest_side(panels: usize) -> usize {
+    let columns = match panels {
+        0..=MOST_COLUMNS => panels.max(1),
+        n => (3..=MOST_COLUMNS)
+            .rev()
+            .find(|c| n % c == 0)
+            .unwrap_or(MOST_COLUMNS),
+    };
+    let each = (WIDTH - 2 * MARGIN - GAP * (columns - 1)) / columns - AXIS;
+    each.min(LARGEST)
 }
 
-/// Upper left corner of each panel in rows of at most [`ROW`], and the size of it all.
-fn arrange(panels: &[Panel], lines: usize) -> (Vec<[usize; 2]>, [usize; 2]) {
-    let (mut x, mut y, mut row, mut right) = (MARGIN, 0, 0, 0);
-    let mut places = Vec::with_capacity(panels.len());
-    for panel in panels {
-        let [w, h] = cell(panel, lines);
-        if x > MARGIN && x + w > ROW {
-            (x, y, row) = (MARGIN, y + row + 14, 0);
+/// Upper left corner of each panel, its axis and its title, in rows of [`WIDTH`], and the size of it all.
+fn arrange(sizes: &[[usize; 2]], most: usize, above: usize) -> (Vec<[usize; 2]>, [usize; 2]) {
+    let (mut x, mut y, mut row, mut right) = (MARGIN, 0, 0, WIDTH - MARGIN);
+    let mut places = Vec::with_capacity(sizes.len());
+    for &[w, h] in sizes {
+        let w = AXIS + w.max(most);
+        if x > MARGIN && x + w + MARGIN > WIDTH {
+            (x, y, row) = (MARGIN, y + row, 0);
         }
         places.push([x, y]);
+        right = right.max(x + w);
         x += w + GAP;
-        right = right.max(x - GAP);
-        row = row.max(h);
+        row = row.max(above + h + BELOW + 10);
     }
     (places, [right + MARGIN, y + row])
 }
 
-fn draw(canvas: &mut Canvas, panel: &Panel, [x, y]: [usize; 2], scale: &Scale) {
-    let [w, h] = panel.pixels();
-    let lines = title_lines(panel);
+fn at(p: [usize; 2]) -> [f64; 2] {
+    p.map(|c| c as f64)
+}
+
+/// Lines of text below each other, the corner of the first.
+fn write(svg: &mut Svg, [x, y]: [usize; 2], lines: &[String]) {
     for (i, line) in lines.iter().enumerate() {
-        canvas.text([x + AXIS, y + 18 * i], Type::Small, line);
-    }
-    let [left, top] = [x + AXIS, y + 18 * lines.len() + 4];
-    panel.paint(canvas, [left, top], panel.factor(), scale);
-    canvas.outline([left, top], [w, h]);
-    let [across, up] = [&panel.axes[0], &panel.axes[1]];
-    canvas.arrow([left, top + h + 11], [left + 36, top + h + 11]);
-    canvas.text([left + 42, top + h + 5], Type::Small, across);
-    canvas.arrow(
-        [left - 8, top + h - 1],
-        [left - 8, (top + h).saturating_sub(37)],
-    );
-    // Upwards there is room for a few letters only; longer names go to the line below.
-    if up.chars().count() <= 2 {
-        canvas.text([left - 24, (top + h).saturating_sub(54)], Type::Small, up);
-    } else {
-        let start = left + 42 + 7 * (across.chars().count() + 3);
-        canvas.text([start, top + h + 5], Type::Small, &format!("up: {up}"));
+        svg.text(at([x, y + LINE * i + TYPE - 3]), "", line);
     }
 }
 
-/// The colours of the scale with its ticks.
-fn bar(canvas: &mut Canvas, [x, y]: [usize; 2], scale: &Scale, unit: &str) {
-    for i in 0..BAR[0] {
-        let colour = scale.map().at(i as f64 / (BAR[0] - 1) as f64);
-        canvas.fill([x + i, y], [1, BAR[1]], colour);
+fn image(svg: &mut Svg, [x, y]: [usize; 2], [w, h]: [usize; 2], uri: &str) {
+    svg.raw(&format!(
+        "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"{uri}\"/>"
+    ));
+    svg.rect(
+        [x as f64 - 1.0, y as f64 - 1.0],
+        [w as f64 + 2.0, h as f64 + 2.0],
+        THIN,
+    );
+}
+
+fn draw(
+    svg: &mut Svg,
+    panel: &Panel,
+    [left, top]: [usize; 2],
+    [w, h]: [usize; 2],
+    scale: &Scale,
+) -> Result<(), PictureError> {
+    image(svg, [left, top], [w, h], &data_uri(panel, scale)?);
+    let [across, up] = &panel.axes;
+    let bottom = top + h;
+    arrow(svg, at([left, bottom + 30]), [1.0, 0.0]);
+    svg.text(at([left + 70, bottom + 40]), "", across);
+    arrow(svg, at([left - 20, bottom]), [0.0, -1.0]);
+    // A letter stands upright, a word is turned along its arrow.
+    let [x, y] = at([left, bottom]);
+    if up.chars().count() <= 2 {
+        svg.text([x - 20.0, y - 68.0], "text-anchor=\"middle\"", up);
+    } else {
+        let turn = format!("transform=\"rotate(-90 {} {})\"", x - 12.0, y - 68.0);
+        svg.text([x - 12.0, y - 68.0], &turn, up);
     }
-    canvas.outline([x, y], BAR);
-    for (t, text) in bar_ticks(scale) {
-        let at = x + (t * (BAR[0] - 1) as f64).round() as usize;
-        canvas.fill([at, y + BAR[1]], [1, 4], [60; 3]);
-        let half = 7 * text.chars().count() / 2;
-        canvas.text(
-            [at.saturating_sub(half).max(2), y + BAR[1] + 6],
-            Type::Small,
-            &text,
+    if let Some(ScaleBar { share, text }) = &panel.scale_bar {
+        let [right, y] = at([left + w, bottom + 30]);
+        let long = share * w as f64;
+        svg.line(
+            [right - long, y],
+            [right, y],
+            "stroke=\"#222222\" stroke-width=\"7\"",
         );
+        svg.text([right - long - 10.0, y + 10.0], "text-anchor=\"end\"", text);
     }
-    canvas.text([x + BAR[0] + 16, y + 2], Type::Small, unit);
+    Ok(())
+}
+
+/// An arrow of 60 px.
+fn arrow(svg: &mut Svg, [x, y]: [f64; 2], [dx, dy]: [f64; 2]) {
+    let point = |along: f64, aside: f64| [x + along * dx - aside * dy, y + along * dy + aside * dx];
+    svg.line(point(0.0, 0.0), point(45.0, 0.0), THIN);
+    svg.path(
+        &[point(60.0, 0.0), point(42.0, 8.0), point(42.0, -8.0)],
+        Close::Yes,
+        "fill=\"#222222\"",
+    );
+}
+
+/// The colours of the scale with its ticks and its name.
+fn bar(svg: &mut Svg, [x, y]: [usize; 2], scale: &Scale, unit: &str) -> Result<(), PictureError> {
+    let [low, high] = scale.range();
+    let steps = 256;
+    let along = |i: usize| i as f64 / (steps - 1) as f64;
+    let values = (0..steps).map(|i| low * (1.0 - along(i)) + high * along(i));
+    let colours = Panel::elements("", [steps, 1], values.collect());
+    image(svg, [x, y], BAR, &data_uri(&colours, scale)?);
+    for (t, text) in bar_ticks(scale) {
+        let across = x as f64 + t * BAR[0] as f64;
+        let below = (y + BAR[1]) as f64;
+        svg.line([across, below], [across, below + 9.0], THIN);
+        svg.text([across, below + 40.0], "text-anchor=\"middle\"", &text);
+    }
+    svg.text(at([x + BAR[0] + 40, y + 25]), "", unit);
+    Ok(())
 }
 
 /// Where along the bar there is a tick, and its text: 0, 0.5, 1 on the grey scale, both ends and round values between
@@ -216,22 +328,35 @@ pub(super) fn bar_ticks(scale: &Scale) -> Vec<(f64, String)> {
         .into_iter()
         .filter(|x| (0.3..0.7).contains(&along(*x)));
     let inner: Vec<f64> = inner.take(1).collect();
-    let ends = [(0.0, significant(low, 3)), (1.0, significant(high, 3))];
+    let ends = [(0.0, low), (1.0, high)].map(|(t, x)| (t, scientific(&significant(x, 3))));
     let mut all = inner
         .into_iter()
-        .map(|x| (along(x), tick(x)))
+        .map(|x| (along(x), scientific(&tick(x))))
         .collect::<Vec<_>>();
     all.extend(ends);
     all
 }
 
-/// What the colours outside the scale mean; on the grey scale always, on the others where they occur.
-pub(super) fn legend_lines(scale: &Scale, panels: &[Panel]) -> Vec<([u8; 3], String)> {
+/// A number as it is set: 1.2e-7 becomes 1.2 × 10⁻⁷.
+pub(super) fn scientific(text: &str) -> String {
+    let power = |(mantissa, exponent): (&str, &str)| {
+        let exponent = superscript(exponent.parse().ok()?);
+        Some(match mantissa {
+            "1" => format!("10{exponent}"),
+            _ => format!("{mantissa} × 10{exponent}"),
+        })
+    };
+    text.split_once('e')
+        .and_then(power)
+        .unwrap_or_else(|| text.to_owned())
+}
+
+/// What the colours outside the scale mean, where they occur.
+pub(super) fn legend_lines(scale: &Scale, panels: &[Panel]) -> Vec<(Rgb, String)> {
     let [low, high] = scale.range();
     let values = || panels.iter().flat_map(|p| p.values.iter());
     let fixed = scale.map() == Map::Grey;
     let count = |n: usize| match n {
-        0 => "none here".to_owned(),
         1 => "1 value here".to_owned(),
         n => format!("{n} values here"),
     };
@@ -245,7 +370,7 @@ pub(super) fn legend_lines(scale: &Scale, panels: &[Panel]) -> Vec<([u8; 3], Str
             },
             count(n)
         );
-        (fixed || n > 0).then_some((colour, text))
+        (n > 0).then_some((colour, text))
     };
     let below = values().filter(|v| **v < low).count();
     let above = values().filter(|v| **v > high).count();

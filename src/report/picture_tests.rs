@@ -1,34 +1,41 @@
-use super::super::canvas::decoded;
+use super::super::encode::decoded;
 use super::*;
 
 fn panel(values: Vec<f64>) -> Panel {
     Panel::elements("board", [2, 2], values)
 }
 
-/// Colours at the centres of the four entries (iu, iv) = (0,0), (1,0), (0,1), (1,1) of the first panel, 256 px a side,
-/// below one line of title each for the picture and for the panel.
-fn quarters(bytes: &[u8]) -> [[u8; 3]; 4] {
+/// Colours at the centres of the four entries (iu, iv) = (0,0), (1,0), (0,1), (1,1) of the first panel of `panels` below one line of title each for the
+/// picture and for the panel.
+fn quarters(bytes: &[u8], panels: usize) -> [[u8; 3]; 4] {
     let (w, _, pixels) = decoded(bytes);
-    let [left, top] = [MARGIN + AXIS, MARGIN + 24 + 6 + 18 + 4];
+    let [left, top] = [MARGIN + AXIS, MARGIN + LINE + 12 + LINE + 8];
+    let side = longest_side(panels) / 2 * 2;
     let at = |x: usize, y: usize| {
-        let i = 3 * (left + x + (top + y) * w);
+        let i = 3 * (left + x * side / 4 + (top + y * side / 4) * w);
         [pixels[i], pixels[i + 1], pixels[i + 2]]
     };
     // iv grows upwards: the first row is the lower one.
-    [at(64, 192), at(192, 192), at(64, 64), at(192, 64)]
+    [at(1, 3), at(3, 3), at(1, 1), at(3, 1)]
 }
 
 #[test]
 fn greys_are_those_of_the_fixed_scale_and_iv_grows_upwards() {
     let bytes = grey_png("t", &[panel(vec![0.0, 1.0, 0.25, 0.5])]).unwrap();
     // 255·0.25 = 63.75 and 255·0.5 = 127.5, rounded.
-    assert_eq!(quarters(&bytes), [[0; 3], [255; 3], [64; 3], [128; 3]]);
+    assert_eq!(quarters(&bytes, 1), [[0; 3], [255; 3], [64; 3], [128; 3]]);
 }
 
 #[test]
 fn the_grey_scale_does_not_follow_the_data() {
-    let faint = quarters(&grey_png("t", &[panel(vec![0.0, 0.2, 0.2, 0.2])]).unwrap());
-    let strong = quarters(&grey_png("t", &[panel(vec![0.0, 0.2, 1.0, 9.0])]).unwrap());
+    let faint = quarters(
+        &grey_png("t", &[panel(vec![0.0, 0.2, 0.2, 0.2])]).unwrap(),
+        1,
+    );
+    let strong = quarters(
+        &grey_png("t", &[panel(vec![0.0, 0.2, 1.0, 9.0])]).unwrap(),
+        1,
+    );
     assert_eq!(faint[1], [51; 3]);
     assert_eq!(faint[..2], strong[..2]);
 }
@@ -37,7 +44,7 @@ fn the_grey_scale_does_not_follow_the_data() {
 fn values_outside_are_marked_not_clamped() {
     let scale = Scale::reflectance();
     let bytes = grey_png("t", &[panel(vec![-0.1, 1.1, f64::NAN])]).unwrap();
-    let marks = quarters(&bytes);
+    let marks = quarters(&bytes, 1);
     assert_eq!(marks[0], scale.below().0);
     assert_eq!(marks[1], scale.above().0);
     // The fourth value is missing.
@@ -58,7 +65,7 @@ fn panels_share_one_scale() {
         panel(vec![5.0, 3.0, 1.0, 1.0]),
     ];
     let scale = Scale::sequential(panels.iter().flat_map(|p| &p.values));
-    let got = quarters(&colour_png("t", &panels, &scale, "W").unwrap());
+    let got = quarters(&colour_png("t", &panels, &scale, "W").unwrap(), 2);
     assert_eq!(got[0], Map::Viridis.at(0.0));
     assert_eq!(got[1], Map::Viridis.at(0.25));
 }
@@ -91,11 +98,33 @@ fn any_size_makes_a_picture() {
         );
         let (w, h, _) = decoded(&grey_png("", &vec![panel; 9]).unwrap());
         assert!(
-            w >= SIDE && h >= SIDE.min(20 * size[1]),
+            w >= WIDTH && h >= 3 * size[1].max(LINE),
             "{size:?}: {w} × {h}"
         );
     }
+    // No entry is left out: a matrix of more entries than pixels makes the sheet wider.
+    let wide = Panel::elements("", [3000, 1], vec![0.5; 3000]);
+    assert!(decoded(&grey_png("", &[wide]).unwrap()).0 > 3000);
     assert!(grey_png("nothing", &[]).is_ok());
+}
+
+#[test]
+fn numbers_are_set_with_powers() {
+    assert_eq!(scientific("1.2e-7"), "1.2 × 10⁻⁷");
+    assert_eq!(
+        (scientific("1e12"), scientific("0.02")),
+        ("10¹²".to_owned(), "0.02".to_owned())
+    );
+}
+
+#[test]
+fn panels_are_lettered() {
+    assert_eq!(lettered(0, 1, "noise 1e-8 %"), "noise 10⁻⁸\u{a0}%");
+    assert_eq!(
+        (lettered(0, 2, "t"), lettered(15, 16, "t")),
+        ("(a)\u{a0}t".to_owned(), "(p)\u{a0}t".to_owned())
+    );
+    assert_eq!(lettered(26, 30, "t"), "t");
 }
 
 #[test]

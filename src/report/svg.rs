@@ -11,6 +11,7 @@ pub(super) mod ink {
     pub(in super::super) const GREEN: &str = "#009e73";
     pub(in super::super) const VERMILLION: &str = "#d55e00";
     pub(in super::super) const PURPLE: &str = "#a5467d";
+    pub(in super::super) const ORANGE: &str = "#e69f00";
 }
 
 /// `text` for XML and HTML, as content or as a quoted attribute. Characters that XML 1.0 cannot hold become U+FFFD.
@@ -106,15 +107,55 @@ impl Svg {
         );
     }
 
-    /// Text, escaped here.
+    /// Text, escaped and its raised signs set here.
     pub(super) fn text(&mut self, [x, y]: [f64; 2], style: &str, text: &str) {
         let (x, y) = (number(x), number(y));
         let _ = writeln!(
             self.text,
             "<text x=\"{x}\" y=\"{y}\" {style}>{}</text>",
-            escape(text)
+            raised(text)
         );
     }
+}
+
+/// Signs that Unicode has raised, and what they are.
+const RAISED: [(char, char); 13] = [
+    ('⁰', '0'),
+    ('¹', '1'),
+    ('²', '2'),
+    ('³', '3'),
+    ('⁴', '4'),
+    ('⁵', '5'),
+    ('⁶', '6'),
+    ('⁷', '7'),
+    ('⁸', '8'),
+    ('⁹', '9'),
+    ('⁻', '−'),
+    ('⁺', '+'),
+    ('ᵀ', 'T'),
+];
+
+/// `text` escaped, with raised signs as small ordinary ones above the line: a viewer's type need not have the raised ones, and they look alike.
+pub(super) fn raised(text: &str) -> String {
+    let plain = |c: char| RAISED.iter().find(|(r, _)| *r == c).map(|(_, p)| *p);
+    let letters: Vec<char> = text.chars().collect();
+    let mut out = String::new();
+    let mut below = "";
+    for run in letters.chunk_by(|a, b| plain(*a).is_some() == plain(*b).is_some()) {
+        let words: String = run.iter().map(|c| plain(*c).unwrap_or(*c)).collect();
+        let words = escape(&words);
+        if run.first().is_some_and(|c| plain(*c).is_some()) {
+            out += &format!("<tspan font-size=\"70%\" dy=\"-0.5em\">{words}</tspan>");
+            // As far down again, in units of the larger type.
+            below = "0.35em";
+        } else if below.is_empty() {
+            out += &words;
+        } else {
+            out += &format!("<tspan dy=\"{below}\">{words}</tspan>");
+            below = "";
+        }
+    }
+    out
 }
 
 /// Whether a path returns to its start.
@@ -211,6 +252,20 @@ mod tests {
         svg.text([0.0, 1.0], "fill=\"#000\"", "</text><script>&");
         assert!(well_formed(&svg.text).is_ok());
         assert!(!svg.text.contains("<script"));
+    }
+
+    #[test]
+    fn raised_signs_stand_above_the_line_and_the_rest_on_it() {
+        assert_eq!(raised("a < b"), "a &lt; b");
+        let up = |t: &str| format!("<tspan font-size=\"70%\" dy=\"-0.5em\">{t}</tspan>");
+        assert_eq!(raised("10⁻¹²"), format!("10{}", up("−12")));
+        let both = format!(
+            "in.{}<tspan dy=\"0.35em\"> &amp; m</tspan>{}",
+            up("2"),
+            up("T")
+        );
+        assert_eq!(raised("in.² & mᵀ"), both);
+        assert!(well_formed(&both).is_ok());
     }
 
     #[test]

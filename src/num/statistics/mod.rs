@@ -2,6 +2,7 @@
 
 mod binomial;
 mod chi_square;
+mod correlation;
 mod family;
 mod normal;
 mod student;
@@ -9,6 +10,7 @@ mod student;
 pub use binomial::binomial_interval;
 pub use chi_square::chi_square_sf;
 pub(super) use chi_square::excess;
+pub use correlation::correlation_two_sided;
 pub use family::{sidak_p, sidak_threshold};
 pub use normal::normal_two_sided;
 pub use student::student_to_normal;

@@ -1,26 +1,27 @@
 //! The published study computed again, as files: table, figure, pictures and the page that puts them together.
 
 mod page;
-mod raster;
 mod sheet;
 
-use super::canvas::PictureError;
+use super::axis::step;
 use super::colour::Scale;
-use super::picture::{Panel, colour_png, grey_png};
-use crate::study::reproduce::{Cell, Gallery, Reproduction, Shades};
+use super::encode::PictureError;
+use super::picture::{Panel, ScaleBar, pictures_svg};
+use super::raster;
+use crate::study::reproduce::{Cell, Gallery, Picture, Reproduction, Shades};
 
 pub use page::{ItemSummary, reproduction_html, reproduction_markdown, reproduction_table};
 
-/// The files of an item: name and bytes. `ITEM.csv`; where it has plots `ITEM.svg` and `ITEM.png`; for its pictures `ITEM-images.png`, further ones numbered.
+/// The files of an item: name and bytes. `ITEM.csv`; where it has plots `ITEM.svg`; for its pictures `ITEM-images.svg`, further ones numbered. Beside each SVG
+/// the PNG that is drawn from it, 300 pixels an inch at the width of one (90 mm) or two (180 mm) columns of a journal.
 ///
 /// # Errors
 /// [`PictureError`].
 pub fn reproduction_files(r: &Reproduction) -> Result<Vec<(String, Vec<u8>)>, PictureError> {
     let name = r.item.name();
-    let mut files = vec![(format!("{name}.csv"), csv(r).into_bytes())];
+    let mut figures = Vec::new();
     if !r.plots.is_empty() {
-        files.push((format!("{name}.svg"), sheet::svg(r).into_bytes()));
-        files.push((format!("{name}.png"), raster::png(r)?));
+        figures.push((name.to_owned(), sheet::svg(r)));
     }
     for (i, gallery) in r.galleries.iter().enumerate() {
         let number = if i == 0 {
@@ -28,7 +29,13 @@ pub fn reproduction_files(r: &Reproduction) -> Result<Vec<(String, Vec<u8>)>, Pi
         } else {
             format!("-{}", i + 1)
         };
-        files.push((format!("{name}-images{number}.png"), pictures(gallery)?));
+        figures.push((format!("{name}-images{number}"), pictures(gallery)?));
+    }
+    let mut files = vec![(format!("{name}.csv"), csv(r).into_bytes())];
+    for (name, svg) in figures {
+        let png = raster::png(&svg)?;
+        files.push((format!("{name}.svg"), svg.into_bytes()));
+        files.push((format!("{name}.png"), png));
     }
     Ok(files)
 }
@@ -44,20 +51,38 @@ fn csv(r: &Reproduction) -> String {
     r.columns.join(",") + "\n" + &r.rows.iter().map(line).collect::<String>()
 }
 
-fn pictures(gallery: &Gallery) -> Result<Vec<u8>, PictureError> {
-    let panel = |p: &crate::study::reproduce::Picture| Panel {
+/// A gallery as SVG.
+fn pictures(gallery: &Gallery) -> Result<String, PictureError> {
+    let panel = |p: &Picture| Panel {
         title: p.title.clone(),
         size: p.size,
         values: p.values.clone(),
         axes: p.axes.map(str::to_owned),
+        scale_bar: Some(scale_bar(p.width)),
     };
     let panels: Vec<Panel> = gallery.pictures.iter().map(panel).collect();
-    match gallery.shades {
-        Shades::Reflectance => grey_png(&gallery.title, &panels),
-        Shades::Values => {
-            let scale = Scale::sequential(gallery.pictures.iter().flat_map(|p| &p.values));
-            colour_png(&gallery.title, &panels, &scale, gallery.unit)
+    let (scale, unit) = match gallery.shades {
+        Shades::Reflectance => (Scale::reflectance(), "reflectance, stretched"),
+        Shades::Values => (
+            Scale::sequential(gallery.pictures.iter().flat_map(|p| &p.values)),
+            gallery.unit,
+        ),
+    };
+    pictures_svg(&gallery.title, &panels, &scale, unit)
+}
+
+/// A quarter of the width, or what is round below it.
+fn scale_bar(width: f64) -> ScaleBar {
+    let length = step(width, 4).map_or(width, |next| {
+        if next > 0.35 * width {
+            0.5 * next
+        } else {
+            next
         }
+    });
+    ScaleBar {
+        share: length / width,
+        text: format!("{length} in."),
     }
 }
 

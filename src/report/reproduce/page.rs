@@ -2,8 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::super::axis::significant;
+use super::super::picture::scientific;
 use super::super::svg::escape;
-use crate::study::reproduce::{Check, Reproduction, Verdict, Weight};
+use crate::study::reproduce::{Cell, Check, Reproduction, Verdict, Weight};
 
 /// An item in short, as `ITEM.json` keeps it: what the page is made of, and what tells whether the item has to be computed again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,8 +24,32 @@ pub struct ItemSummary {
     pub checks: Vec<Check>,
     /// What else the numbers say.
     pub notes: Vec<String>,
+    /// Its table, the head first, where it is short enough to be read; the CSV has every row and digit.
+    pub table: Vec<Vec<String>>,
     /// Names of the item's other files.
     pub files: Vec<String>,
+}
+
+/// A table of more rows than this is left to the CSV.
+const MOST_ROWS: usize = 40;
+
+/// The rows as they are read: four significant digits, words for names of columns.
+fn table(r: &Reproduction) -> Vec<Vec<String>> {
+    if r.rows.len() > MOST_ROWS {
+        return Vec::new();
+    }
+    let cell = |c: &Cell| match c {
+        Cell::Text(text) => text.clone(),
+        Cell::Count(n) => n.to_string(),
+        Cell::Number(x) => x.map_or("–".to_owned(), |x| scientific(&significant(x, 4))),
+    };
+    let head = r
+        .columns
+        .iter()
+        .map(|name| name.replace('_', " "))
+        .collect();
+    let rows = r.rows.iter().map(|row| row.iter().map(cell).collect());
+    std::iter::once(head).chain(rows).collect()
 }
 
 impl ItemSummary {
@@ -37,6 +63,7 @@ impl ItemSummary {
             verdict: Verdict::of(&r.checks),
             checks: r.checks.clone(),
             notes: r.notes.clone(),
+            table: table(r),
             files,
         }
     }
@@ -65,8 +92,7 @@ impl ItemSummary {
     }
 
     fn pictures(&self) -> impl Iterator<Item = &String> {
-        let own = |f: &&String| f.ends_with(".svg") || f.contains("-images");
-        self.files.iter().filter(own)
+        self.files.iter().filter(|f| f.ends_with(".svg"))
     }
 }
 
@@ -95,6 +121,16 @@ pub fn reproduction_markdown(items: &[ItemSummary]) -> String {
         out += &format!("{}\n\n", i.caption);
         for note in &i.notes {
             out += &format!("{note}\n\n");
+        }
+        for (k, row) in i.table.iter().enumerate() {
+            let cells: Vec<String> = row.iter().map(|c| cell(c)).collect();
+            out += &format!("| {} |\n", cells.join(" | "));
+            if k == 0 {
+                out += &format!("|{}\n", " --- |".repeat(row.len()));
+            }
+        }
+        if !i.table.is_empty() {
+            out += "\n";
         }
         out += &format!(
             "Files: {}\n\n",
@@ -149,6 +185,15 @@ pub fn reproduction_html(items: &[ItemSummary]) -> String {
         out += &format!("<p>{caption}</p>\n");
         for note in &i.notes {
             out += &format!("<p>{}</p>\n", escape(note));
+        }
+        if !i.table.is_empty() {
+            out += "<table>\n";
+            for (k, row) in i.table.iter().enumerate() {
+                let tag = if k == 0 { "th" } else { "td" };
+                let cells = row.iter().map(|c| format!("<{tag}>{}</{tag}>", escape(c)));
+                out += &format!("<tr>{}</tr>\n", cells.collect::<String>());
+            }
+            out += "</table>\n";
         }
         let links = i
             .files

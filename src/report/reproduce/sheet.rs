@@ -1,30 +1,45 @@
 //! The plots of an item on one sheet, as SVG.
+//!
+//! 830 units are 180 mm, the width of two columns of a journal: type of 13 units is then 8 pt, a line of 1.6 units 1 pt. A single plot takes one column, 90 mm.
 
-use super::super::chart::{Axis, Run, Series, legend, panel, sheet};
-use super::super::svg::{Close, Svg};
+use super::super::chart::{Axis, Run, Series, panel, place, sample};
+use super::super::label::legend;
+use super::super::picture::lettered;
+use super::super::raster::FAMILIES;
+use super::super::svg::{Close, Svg, escape, number};
 use crate::study::reproduce::{Course, FigureAxis, FigureCurve, Plot, Reproduction, Source};
 
 /// Plots a row.
 const COLUMNS: usize = 2;
-/// Width and height of a plotting area, and from one to the next, px.
-pub(super) const AREA: [f64; 2] = [400.0, 260.0];
-pub(super) const PITCH: [f64; 2] = [520.0, 370.0];
+/// Width of a plotting area, and its height where there are up to three rows or more of them: four rows are a page of 230 mm.
+const WIDTH: f64 = 328.0;
+const HEIGHTS: [f64; 2] = [226.0, 176.0];
+/// Between two rows of plots, for axis and title.
+const BETWEEN: f64 = 80.0;
 /// Upper left corner of the first.
-pub(super) const FIRST: [f64; 2] = [90.0, 96.0];
+const FIRST: [f64; 2] = [74.0, 30.0];
+/// Width of a single column, and millimetres a unit.
+const COLUMN: f64 = 415.0;
+const MILLIMETRES: f64 = 180.0 / 830.0;
+/// From the last row of plots to the legend, and left of the legend.
+const BELOW: f64 = 64.0;
+const LEFT: f64 = 20.0;
+/// An even axis reaches beyond its ends by this share, so that no mark lies on the frame.
+const BEYOND: f64 = 0.03;
 /// Ink of what was published.
-const PRINTED: &str = "fill=\"none\" stroke=\"#222222\" stroke-width=\"1.6\"";
+const PRINTED: &str = "fill=\"none\" stroke=\"#222222\" stroke-width=\"1.3\"";
 
-/// Where the plotting area of plot `i` begins.
-pub(super) fn corner(i: usize) -> [f64; 2] {
+/// Where the plotting area of plot `i` begins, areas being `height` high.
+fn corner(i: usize, height: f64) -> [f64; 2] {
     let (column, row) = (i % COLUMNS, i / COLUMNS);
     [
-        FIRST[0] + PITCH[0] * column as f64,
-        FIRST[1] + PITCH[1] * row as f64,
+        FIRST[0] + COLUMN * column as f64,
+        FIRST[1] + (height + BETWEEN) * row as f64,
     ]
 }
 
 /// The names of all curves, each once, computed ones before published ones: curves of one name look the same in every plot.
-pub(super) fn names(r: &Reproduction) -> [Vec<&str>; 2] {
+fn names(r: &Reproduction) -> [Vec<&str>; 2] {
     [Source::Computed, Source::Published].map(|source| {
         let mut names: Vec<&str> = Vec::new();
         for c in r
@@ -41,48 +56,33 @@ pub(super) fn names(r: &Reproduction) -> [Vec<&str>; 2] {
     })
 }
 
-/// Width and height of the sheet.
-pub(super) fn size(r: &Reproduction) -> [u32; 2] {
-    let [computed, printed] = names(r);
-    let columns = r.plots.len().min(COLUMNS);
-    let width = (FIRST[0] + PITCH[0] * columns as f64).max(760.0);
-    [
-        width as u32,
-        (legend_top(r) + 20.0 * (computed.len() + printed.len()) as f64 + 16.0) as u32,
-    ]
-}
-
-/// Where the legend begins.
-pub(super) fn legend_top(r: &Reproduction) -> f64 {
-    FIRST[1] + PITCH[1] * r.plots.len().div_ceil(COLUMNS) as f64 - 30.0
-}
-
 /// The axes of a plot.
-pub(super) fn axes(plot: &Plot) -> [Axis; 2] {
+fn axes(plot: &Plot) -> [Axis; 2] {
     std::array::from_fn(|d| {
-        axis(
-            &plot.axes[d],
-            plot.curves
-                .iter()
-                .flat_map(|c| &c.points)
-                .map(move |p| p[d]),
-        )
+        let points = plot.curves.iter().flat_map(|c| &c.points);
+        axis(&plot.axes[d], points.map(move |p| p[d]))
     })
 }
 
 fn axis(axis: &FigureAxis, values: impl Iterator<Item = f64>) -> Axis {
     match axis.course {
         Course::Logarithmic => Axis::decades(values, axis.title.clone()),
-        Course::Linear => Axis {
-            run: Run::Linear,
-            ends: axis.ends,
-            title: axis.title.clone(),
-        },
+        Course::Linear => {
+            // Nothing that was computed is left out.
+            let finite = values.filter(|x| x.is_finite());
+            let [low, high] = finite.fold(axis.ends, |[a, b], x| [a.min(x), b.max(x)]);
+            let beyond = BEYOND * (high - low);
+            Axis {
+                run: Run::Linear,
+                ends: [low - beyond, high + beyond],
+                title: axis.title.clone(),
+            }
+        }
     }
 }
 
 /// The computed curves of a plot in the order of `names`, those that it lacks empty.
-pub(super) fn series(plot: &Plot, names: &[&str]) -> Vec<Series> {
+fn series(plot: &Plot, names: &[&str]) -> Vec<Series> {
     let points = |name: &str| {
         let own = |c: &&FigureCurve| c.name == name && c.source == Source::Computed;
         plot.curves
@@ -99,52 +99,77 @@ pub(super) fn series(plot: &Plot, names: &[&str]) -> Vec<Series> {
         .collect()
 }
 
+/// The key of the figure in rows below the plots, and its height.
+fn key(width: f64, computed: &[&str], printed: &[&str]) -> (Svg, f64) {
+    let lines = computed
+        .iter()
+        .enumerate()
+        .map(|(i, name)| (sample(i), (*name).to_owned()));
+    let points = printed.iter().enumerate().map(|(i, name)| {
+        let mut svg = Svg::default();
+        printed_mark(&mut svg, [15.0, 0.0], i);
+        (svg.text, format!("{name} (published)"))
+    });
+    let entries: Vec<(String, String)> = lines.chain(points).collect();
+    let mut svg = Svg::default();
+    let height = legend(&mut svg, [0.0, 0.0], width - 2.0 * LEFT, &entries);
+    (svg, height)
+}
+
 pub(super) fn svg(r: &Reproduction) -> String {
     let [computed, printed] = names(r);
-    let mut svg = sheet(size(r), &format!("{}: {}", r.item, r.title), "");
+    let width = COLUMN * r.plots.len().min(COLUMNS) as f64;
+    let (key, below) = key(width, &computed, &printed);
+    let rows = r.plots.len().div_ceil(COLUMNS);
+    let area = [WIDTH, HEIGHTS[usize::from(rows > 3)]];
+    let top = FIRST[1] + (area[1] + BETWEEN) * rows as f64 - BETWEEN + BELOW;
+    let height = (top + below).ceil();
+    let mut svg = Svg::default();
+    svg.raw(&format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.3}mm\" height=\"{:.3}mm\" viewBox=\"0 0 {width} {height}\" font-family=\"{FAMILIES}\" \
+         font-size=\"13\" role=\"img\" aria-label=\"{}\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>",
+        MILLIMETRES * width,
+        MILLIMETRES * height,
+        escape(&format!("{}: {}", r.item, r.title))
+    ));
     for (i, plot) in r.plots.iter().enumerate() {
-        let corner = corner(i);
+        let corner = corner(i, area[1]);
         let [x, y] = axes(plot);
         svg.text(
-            [corner[0], corner[1] - 12.0],
+            [corner[0], corner[1] - 9.0],
             "fill=\"#222222\"",
-            &plot.title,
+            &lettered(i, r.plots.len(), &plot.title),
         );
-        panel(&mut svg, corner, AREA, [&x, &y], &series(plot, &computed));
+        panel(&mut svg, corner, area, [&x, &y], &series(plot, &computed));
         for c in plot.curves.iter().filter(|c| c.source == Source::Published) {
             let which = printed.iter().position(|n| *n == c.name).unwrap_or(0);
-            for point in &c.points {
-                if let Some(p) = super::super::chart::place(corner, AREA, [&x, &y], point) {
-                    mark(&mut svg, p, which);
-                }
+            let placed = c
+                .points
+                .iter()
+                .filter_map(|p| place(corner, area, [&x, &y], p));
+            for p in placed {
+                printed_mark(&mut svg, p, which);
             }
         }
     }
-    let (top, left) = (legend_top(r), FIRST[0] - 20.0);
-    let key = series(&r.plots[0], &computed);
-    legend(&mut svg, [left, top], &key);
-    for (i, name) in printed.iter().enumerate() {
-        let y = top + 20.0 * (computed.len() + i) as f64;
-        mark(&mut svg, [left + 15.0, y], i);
-        svg.text(
-            [left + 38.0, y + 4.0],
-            "fill=\"#222222\"",
-            &format!("{name} (published)"),
-        );
-    }
-    svg.raw("</svg>");
+    svg.raw(&format!(
+        "<g transform=\"translate({} {})\">{}</g></svg>",
+        number(LEFT),
+        number(top),
+        key.text
+    ));
     svg.text
 }
 
-/// A published point: diamonds for the first set, squares for the second.
-fn mark(svg: &mut Svg, [x, y]: [f64; 2], which: usize) {
-    let s = 6.0;
-    match which % 2 {
-        0 => svg.path(
-            &[[x - s, y], [x, y - s], [x + s, y], [x, y + s]],
+/// A published point: an open circle for the first set, an open square for the second, around the computed mark where they agree.
+fn printed_mark(svg: &mut Svg, [x, y]: [f64; 2], which: usize) {
+    match which % 3 {
+        0 => svg.circle([x, y], 6.2, PRINTED),
+        1 => svg.rect([x - 5.8, y - 5.8], [11.6, 11.6], PRINTED),
+        _ => svg.path(
+            &[[x, y - 7.6], [x + 7.6, y], [x, y + 7.6], [x - 7.6, y]],
             Close::Yes,
             PRINTED,
         ),
-        _ => svg.rect([x - 5.0, y - 5.0], [10.0, 10.0], PRINTED),
     }
 }

@@ -24,13 +24,14 @@ pub(super) fn contours() -> Gallery {
                 size: [side; 2],
                 values,
                 axes: ["x", "y"],
+                width: 2.0 * reach,
             });
         }
     }
     Gallery {
         title: "G12 of two corner elements over the wall, 7.5 in. either side of C".to_owned(),
         shades: Shades::Values,
-        unit: "1/in.²",
+        unit: "G12 / in.⁻²",
         pictures,
     }
 }

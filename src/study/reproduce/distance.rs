@@ -111,7 +111,7 @@ pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, Repro
     let axes = |title| {
         [
             linear("half-width of the square of spots / in.", [0.0, 15.0]),
-            linear(title, [-0.2, 1.0]),
+            linear(title, [0.0, 1.0]),
         ]
     };
     let [normalized, raw] = curves;

@@ -2,6 +2,9 @@
 
 use super::{Check, Item};
 
+/// Side of the published object, in.
+const OBJECT: f64 = 4.0;
+
 /// An entry of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
@@ -84,6 +87,8 @@ pub struct Picture {
     pub values: Vec<f64>,
     /// What runs to the right and what upwards.
     pub axes: [&'static str; 2],
+    /// How wide what it shows is, in.
+    pub width: f64,
 }
 
 /// Pictures on one scale.
@@ -188,5 +193,6 @@ pub(super) fn elements(title: impl Into<String>, side: usize, values: Vec<f64>) 
         size: [side; 2],
         values,
         axes: ["x", "d"],
+        width: OBJECT,
     }
 }

@@ -122,7 +122,7 @@ pub(super) fn figure(
             title: format!("{} kernel, mean of {} draws", kernel.name(), plan.seeds),
             axes: [
                 decades("noise of each entry of Φ / %"),
-                linear("normalized MTF", [-0.2, 1.0]),
+                linear("normalized MTF", [0.0, 1.0]),
             ],
             curves: lines,
         });

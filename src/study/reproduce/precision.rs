@@ -244,7 +244,7 @@ fn plot(
     };
     Plot {
         title: title.to_owned(),
-        axes: [linear(across, ends), linear("raw MTF", [-0.2, 1.0])],
+        axes: [linear(across, ends), linear("raw MTF", [0.0, 1.0])],
         curves: names.map(curve).collect(),
     }
 }

@@ -102,7 +102,7 @@ pub(super) fn modulation(
                     title: format!("{}, {} kernel", title(board), kernel.name()),
                     axes: [
                         linear("number of spots", [0.0, 400.0]),
-                        linear(name, [-0.2, 1.0]),
+                        linear(name, [0.0, 1.0]),
                     ],
                     curves: curves(&points, board, kernel, f),
                 });

@@ -116,10 +116,7 @@ pub(super) fn table(item: Item, printed: &Printed) -> Reproduction {
     let mut curves = Vec::new();
     for line in 0..2 {
         curves.push(computed(names[line], points(&k[line])));
-        curves.push(published(
-            format!("{}, printed", names[line]),
-            points(&printed.k[line]),
-        ));
+        curves.push(published(names[line], points(&printed.k[line])));
     }
     Reproduction {
         item,
