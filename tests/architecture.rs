@@ -20,7 +20,7 @@ const FLOORS: [&[&str]; 9] = [
 const BESIDE: [(&str, &str); 3] = [("film", "matrix"), ("film", "store"), ("matrix", "store")];
 
 /// Foreign crates and the one place that may name them.
-const DOORS: [(&str, &[&str]); 16] = [
+const DOORS: [(&str, &[&str]); 17] = [
     ("obvhs", &["geometry/bvh"]),
     ("exr", &["film/exr"]),
     ("faer", &["num/linalg"]),
