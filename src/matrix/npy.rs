@@ -24,6 +24,8 @@ const HEADER_MAX: usize = 1024;
 const BRACKETS_MAX: usize = 8;
 /// Most digits in a header, such that no product of its integers leaves an u64.
 const DIGITS_MAX: usize = 19;
+/// Rows in C order that are held before they are put into their columns.
+const BAND: usize = 32;
 
 /// Why a `.npy` file cannot serve as a matrix.
 #[derive(Debug, thiserror::Error)]
@@ -188,6 +190,9 @@ pub fn read(path: &Path) -> Result<Matrix, NpyError> {
 /// As [`read`], and [`NpyError::NotFinite`] for the first NaN or infinity, rows first.
 pub fn read_finite(path: &Path) -> Result<Matrix, NpyError> {
     let matrix = read(path)?;
+    if matrix.iter().all(|x| x.is_finite()) {
+        return Ok(matrix);
+    }
     for row in 0..matrix.nrows() {
         for column in 0..matrix.ncols() {
             let value = matrix[(row, column)];
@@ -253,20 +258,32 @@ fn fill(
     values: impl Iterator<Item = io::Result<f64>>,
 ) -> io::Result<Matrix> {
     let mut matrix = Matrix::zeros(rows, columns);
-    let mut count = 0;
-    for (k, value) in values.enumerate() {
-        let at = match order {
-            Order::C => (k / columns, k % columns),
-            Order::Fortran => (k % rows, k / rows),
-        };
-        matrix[at] = value?;
-        count += 1;
+    let mut values = values;
+    let mut next = || {
+        values
+            .next()
+            .unwrap_or(Err(io::ErrorKind::UnexpectedEof.into()))
+    };
+    if order == Order::Fortran {
+        for value in matrix.iter_mut() {
+            *value = next()?;
+        }
+        return Ok(matrix);
     }
-    if count == rows * columns {
-        Ok(matrix)
-    } else {
-        Err(io::ErrorKind::UnexpectedEof.into())
+    // Some rows at a time, so that neighbours in memory are written together.
+    let mut band = vec![0.0; BAND.min(rows) * columns];
+    for first in (0..rows).step_by(BAND) {
+        let count = BAND.min(rows - first);
+        for value in &mut band[..count * columns] {
+            *value = next()?;
+        }
+        for column in 0..columns {
+            for row in 0..count {
+                matrix[(first + row, column)] = band[row * columns + column];
+            }
+        }
     }
+    Ok(matrix)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Bands, Estimated, Method, Weighting};
+use super::{Bands, Estimated, Method, RecoveryError, Weighting};
 
 /// A regularisation parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,7 +109,7 @@ pub struct Recovered {
     /// How the entries of Φ were weighted.
     pub weighting: Weighting,
     /// Singular values of the matrix inverted, descending: D for the methods that work pixel by pixel (its standard form for `tikhonov-gradient`),
-    /// the whole (weighted) operator for the joint ones.
+    /// the whole (weighted) operator for the joint ones. Of a large matrix of few directions only those above rounding.
     pub sigma: DVector<f64>,
     /// Singular directions that were not dropped.
     pub rank: usize,
@@ -146,10 +146,10 @@ impl Recovered {
         reflectance: DVector<f64>,
         sigma: DVector<f64>,
         rank: usize,
-    ) -> Self {
-        let residual = problem.residual(&reflectance);
+    ) -> Result<Self, RecoveryError> {
+        let residual = problem.residual(&reflectance)?;
         let whole = problem.phi.norm();
-        Recovered {
+        Ok(Recovered {
             reflectance,
             standard_error: None,
             covariance: None,
@@ -166,6 +166,6 @@ impl Recovered {
             solver: None,
             nuisance: None,
             bands: None,
-        }
+        })
     }
 }

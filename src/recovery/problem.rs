@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{Nuisance, RecoveryError};
+use crate::num::linalg::{Range, product, range, subtract_product};
 
 /// Φ\[p,l\] = Σ_j C\[p,j\] ρ_j D\[j,l\] + noise, checked: shapes that fit, finite entries.
 #[derive(Debug, Clone, Copy)]
@@ -154,9 +155,17 @@ impl<'a> Problem<'a> {
         left * self.d
     }
 
-    /// ‖Φ − C diag(ρ) D‖, Frobenius, W.
-    pub(super) fn residual(&self, reflectance: &DVector<f64>) -> f64 {
-        (self.phi - self.light(reflectance)).norm()
+    /// ‖Φ − C diag(ρ) D‖, Frobenius, W. A large D of few directions takes part as their product, which is D to rounding.
+    pub(super) fn residual(&self, reflectance: &DVector<f64>) -> Result<f64, RecoveryError> {
+        let Some(Range { mut q, b, .. }) = range(self.d)? else {
+            return Ok((self.phi - self.light(reflectance)).norm());
+        };
+        for (mut row, &rho) in q.row_iter_mut().zip(reflectance.iter()) {
+            row *= rho;
+        }
+        let mut left = self.phi.clone();
+        subtract_product(&mut left, &product(self.c, &q), &b);
+        Ok(left.norm())
     }
 }
 

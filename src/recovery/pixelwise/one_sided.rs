@@ -9,7 +9,7 @@
 use nalgebra::DMatrix;
 
 use super::{Inverse, decompose};
-use crate::num::linalg::{cut, pivoted_qr};
+use crate::num::linalg::{cut, pivoted_qr_to};
 use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
 
 /// From which side D is inverted.
@@ -29,7 +29,7 @@ pub(in crate::recovery) fn recover(
         Side::Left => (Method::LeftInverse, spots),
         Side::Right => (Method::RightInverse, elements),
     };
-    let laser = decompose(method, problem)?;
+    let laser = decompose(method, problem, options.tolerance)?;
     let (rank, cutoff) = cut(laser.sigma.as_slice(), elements, spots, options.tolerance)?;
     if rank < needed {
         return Err(RecoveryError::NotFullRank {
@@ -40,7 +40,7 @@ pub(in crate::recovery) fn recover(
             spots,
         });
     }
-    let qr = pivoted_qr(&problem.d.transpose())?;
+    let qr = pivoted_qr_to(&problem.d.transpose(), options.tolerance)?;
     let solve = |b: &DMatrix<f64>| {
         let x = match side {
             Side::Left => qr.minimum_norm(rank, &b.transpose()),
@@ -48,7 +48,7 @@ pub(in crate::recovery) fn recover(
         };
         x.map(|x| x.transpose())
     };
-    let inverse = Inverse::solved(problem, options, laser.sigma, rank, solve)?;
+    let inverse = Inverse::solved(problem, options, laser.sigma, (&qr, rank), solve)?;
     let why = (Parameter::Rank(rank), Choice::Tolerance { cutoff });
     inverse.recovered(method, problem, options, why)
 }

@@ -8,7 +8,7 @@ pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
-    let laser = decompose(Method::Pinv, problem)?;
+    let laser = decompose(Method::Pinv, problem, options.tolerance)?;
     let (rows, columns) = problem.d.shape();
     let (rank, cutoff) = cut(laser.sigma.as_slice(), rows, columns, options.tolerance)?;
     let choice = match options.tolerance {
@@ -16,7 +16,7 @@ pub(in crate::recovery) fn recover(
         _ => Choice::Tolerance { cutoff },
     };
     let spectrum = Spectrum::of(&laser, rank);
-    let inverse = Inverse::filtered(problem, options, &spectrum, &vec![1.0; rank]);
+    let inverse = Inverse::filtered(problem, options, &spectrum, &vec![1.0; rank])?;
     inverse.recovered(
         Method::Pinv,
         problem,

@@ -10,7 +10,7 @@
 use nalgebra::DMatrix;
 
 use super::{Inverse, decompose};
-use crate::num::linalg::{Tolerance, pivoted_qr};
+use crate::num::linalg::{Tolerance, pivoted_qr_to};
 use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
 
 /// Which of the many solutions of a deficient system.
@@ -29,8 +29,8 @@ pub(in crate::recovery) fn recover(
         Solution::Basic => Method::Rdivide,
         Solution::LeastNorm => Method::RdivideMinNorm,
     };
-    let laser = decompose(method, problem)?;
-    let qr = pivoted_qr(&problem.d.transpose())?;
+    let laser = decompose(method, problem, Tolerance::Auto)?;
+    let qr = pivoted_qr_to(&problem.d.transpose(), options.tolerance)?;
     let (rank, cutoff) = qr.rank(options.tolerance)?;
     let choice = match options.tolerance {
         Tolerance::Rank(_) => Choice::Given,
@@ -43,13 +43,14 @@ pub(in crate::recovery) fn recover(
         };
         x.map(|x| x.transpose())
     };
-    let inverse = Inverse::solved(problem, options, laser.sigma, rank, solve)?;
+    let inverse = Inverse::solved(problem, options, laser.sigma, (&qr, rank), solve)?;
     inverse.recovered(method, problem, options, (Parameter::Rank(rank), choice))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::num::linalg::pivoted_qr;
     use crate::recovery::bench::{Bench, relative_noise};
     use crate::recovery::recover as by_method;
 

@@ -9,13 +9,13 @@ pub(in crate::recovery) fn recover(
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
     let method = Method::Tikhonov;
-    let laser = decompose(method, problem)?;
+    let laser = decompose(method, problem, Tolerance::Auto)?;
     let (rows, columns) = problem.d.shape();
     let (rank, _) = cut(laser.sigma.as_slice(), rows, columns, Tolerance::Auto)?;
     let spectrum = Spectrum::of(&laser, rank);
     let (damping, choice) = damping::choose(method, problem, options, &spectrum)?;
     let filter = spectrum.damped(damping * spectrum.sigma[0]);
-    let inverse = Inverse::filtered(problem, options, &spectrum, &filter);
+    let inverse = Inverse::filtered(problem, options, &spectrum, &filter)?;
     inverse.recovered(
         method,
         problem,

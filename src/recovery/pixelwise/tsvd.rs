@@ -12,7 +12,8 @@ pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
-    let laser = decompose(METHOD, problem)?;
+    let needed = options.rank.map_or(Tolerance::Auto, Tolerance::Rank);
+    let laser = decompose(METHOD, problem, needed)?;
     let (rows, columns) = problem.d.shape();
     let most = |tolerance| cut(laser.sigma.as_slice(), rows, columns, tolerance);
     let (spectrum, rank, choice) = match options.rank {
@@ -26,7 +27,7 @@ pub(in crate::recovery) fn recover(
             (spectrum, rank, choice)
         }
     };
-    let inverse = Inverse::filtered(problem, options, &spectrum, &vec![1.0; rank]);
+    let inverse = Inverse::filtered(problem, options, &spectrum, &vec![1.0; rank])?;
     inverse.recovered(METHOD, problem, options, (Parameter::Rank(rank), choice))
 }
 
