@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::problem::Lit;
 use super::{Bands, Estimated, Method, RecoveryError, Weighting};
 
 /// A regularisation parameter.
@@ -147,9 +148,20 @@ impl Recovered {
         sigma: DVector<f64>,
         rank: usize,
     ) -> Result<Self, RecoveryError> {
-        let residual = problem.residual(&reflectance)?;
-        let whole = problem.phi.norm();
-        Ok(Recovered {
+        let residual = problem.residual(&Lit::new(problem.d, &reflectance)?);
+        let norms = [residual, problem.phi.norm()];
+        Ok(Self::with_norms(method, norms, reflectance, sigma, rank))
+    }
+
+    /// The same with ‖Φ − C diag(ρ) D‖ and ‖Φ‖ known.
+    pub(super) fn with_norms(
+        method: Method,
+        [residual, whole]: [f64; 2],
+        reflectance: DVector<f64>,
+        sigma: DVector<f64>,
+        rank: usize,
+    ) -> Self {
+        Recovered {
             reflectance,
             standard_error: None,
             covariance: None,
@@ -166,6 +178,6 @@ impl Recovered {
             solver: None,
             nuisance: None,
             bands: None,
-        })
+        }
     }
 }

@@ -155,17 +155,35 @@ impl<'a> Problem<'a> {
         left * self.d
     }
 
-    /// ‖Φ − C diag(ρ) D‖, Frobenius, W. A large D of few directions takes part as their product, which is D to rounding.
-    pub(super) fn residual(&self, reflectance: &DVector<f64>) -> Result<f64, RecoveryError> {
-        let Some(Range { mut q, b, .. }) = range(self.d)? else {
-            return Ok((self.phi - self.light(reflectance)).norm());
+    /// ‖Φ − C diag(ρ) D‖, Frobenius, W.
+    pub(super) fn residual(&self, lit: &Lit) -> f64 {
+        let mut left = self.phi.clone();
+        match &lit.along {
+            Some(along) => subtract_product(&mut left, &product(self.c, &lit.elements), along),
+            None => subtract_product(&mut left, self.c, &lit.elements),
+        }
+        left.norm()
+    }
+}
+
+/// diag(ρ) D, where D is large and of few directions as the product of two thin factors, which is D to rounding.
+pub(super) struct Lit {
+    /// diag(ρ) D or diag(ρ) Q, r rows.
+    elements: DMatrix<f64>,
+    /// B of D = Q B.
+    along: Option<DMatrix<f64>>,
+}
+
+impl Lit {
+    pub(super) fn new(d: &DMatrix<f64>, reflectance: &DVector<f64>) -> Result<Self, RecoveryError> {
+        let (mut elements, along) = match range(d)? {
+            Some(Range { q, b, .. }) => (q, Some(b)),
+            None => (d.clone(), None),
         };
-        for (mut row, &rho) in q.row_iter_mut().zip(reflectance.iter()) {
+        for (mut row, &rho) in elements.row_iter_mut().zip(reflectance.iter()) {
             row *= rho;
         }
-        let mut left = self.phi.clone();
-        subtract_product(&mut left, &product(self.c, &q), &b);
-        Ok(left.norm())
+        Ok(Lit { elements, along })
     }
 }
 

@@ -17,15 +17,12 @@ use nalgebra::DMatrix;
 use super::laplacian::modes;
 use super::{Inverse, Spectrum, damping, decompose};
 use crate::num::linalg::{Tolerance, complement, cut, product, svd, svd_to, tr_product};
-use crate::recovery::{Method, Options, Parameter, Problem, Recovered, RecoveryError};
+use crate::recovery::{Method, Options, Parameter, Problem, RecoveryError};
 
 /// Elements whose modes, a matrix of elements × elements, are still formed: 512 MiB.
 const MOST_ELEMENTS: usize = 8192;
 
-pub(in crate::recovery) fn recover(
-    problem: &Problem<'_>,
-    options: &Options,
-) -> Result<Recovered, RecoveryError> {
+pub(super) fn inverse(problem: &Problem<'_>, options: &Options) -> Result<Inverse, RecoveryError> {
     let method = Method::TikhonovGradient;
     let elements = problem.d.nrows();
     if elements > MOST_ELEMENTS {
@@ -40,13 +37,8 @@ pub(in crate::recovery) fn recover(
     let spectrum = spectrum(problem, grids)?;
     let (damping, choice) = damping::choose(method, problem, options, &spectrum)?;
     let filter = spectrum.damped(damping * spectrum.sigma.first().unwrap_or(&0.0));
-    let inverse = Inverse::filtered(problem, options, &spectrum, &filter)?;
-    inverse.recovered(
-        method,
-        problem,
-        options,
-        (Parameter::Damping(damping), choice),
-    )
+    let why = (Parameter::Damping(damping), choice);
+    Ok(Inverse::filtered(options, &spectrum, &filter, why))
 }
 
 fn spectrum(problem: &Problem<'_>, grids: &[[usize; 2]]) -> Result<Spectrum, RecoveryError> {

@@ -73,7 +73,9 @@ fn the_directions_are_those_of_the_full_decomposition() {
                 assert!((s - full.sigma[i]).abs() < 1e-14 * full.sigma[0]);
             }
             let k_found = found.sigma.len();
-            assert!(full.sigma.iter().skip(k_found).all(|s| *s <= found.rest));
+            // Beyond them both know only what rounding left.
+            let beyond = full.sigma.rows(k_found, full.sigma.len() - k_found).amax();
+            assert!(beyond <= found.rest + 16.0 * f64::EPSILON * full.sigma[0]);
             // To rounding over σ_k: at the very last direction about 1e-3, ten times above it better by as much.
             for above in [1.0, 1e3, 1e6] {
                 let k = full
@@ -124,7 +126,7 @@ fn planted_spectra_are_found_or_left_to_the_full_decomposition() {
     let cases: [(&str, Vec<f64>, bool); 6] = [
         ("of rank 1", vec![3.0], true),
         ("of rank 40, all alike", geometric(1.0, 40), true),
-        ("falling by a factor 0.7", geometric(0.7, 120), true),
+        ("falling by a factor 0.5", geometric(0.5, 60), true),
         ("falling slowly", geometric(0.97, 300), false),
         ("with a tail just below the cut", with_tail(5e-14), false),
         ("with a tail just above it", with_tail(2e-13), false),
@@ -178,7 +180,7 @@ fn a_cut_in_doubt_is_left_to_the_full_decomposition() {
     }
     assert!(svd_to(&a, Tolerance::Relative(1.0)).is_err());
     // A cluster within what is missed of the cut: certain on neither side.
-    let at = crate::num::linalg::svd::certain;
+    let at = svd::certain;
     let cluster = [1.0, 1e-3 * (1.0 - 1e-12), 1e-3 * (1.0 - 2e-12)];
     let tolerance = Tolerance::Relative(1e-3);
     assert_eq!(at(&cluster, 1e-8, (9, 9), tolerance), Ok(false));
@@ -189,7 +191,7 @@ fn a_cut_in_doubt_is_left_to_the_full_decomposition() {
 /// The first pivots, the diagonal and the rank are those of the reduction of all of A.
 #[test]
 fn pivots_of_the_range_are_those_of_the_matrix() {
-    let a = leaning(20, 120, 6.0).transpose();
+    let a = leaning(24, 150, 6.0).transpose();
     let full = pivoted_qr(&a).unwrap();
     for tolerance in [Tolerance::Auto, Tolerance::Relative(1e-6)] {
         let found = pivoted_qr_to(&a, tolerance).unwrap();

@@ -44,7 +44,7 @@ fn the_compressed_objective_is_the_full_one() {
 /// A budget one entry short leaves pairs of weak directions out: many, and without a trace in the operator.
 #[test]
 fn pairs_lost_in_rounding_are_not_missed() {
-    let bench = Bench::new(3.0, 6, 12);
+    let bench = Bench::new(3.0, 8, 16);
     let phi = bench.phi(&bench.board(2));
     let problem = Problem::new(&phi, &bench.c, &bench.d, None).unwrap();
     let form = |budget| match Operator::new(&problem, &with(budget)).unwrap().form {
