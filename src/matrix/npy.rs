@@ -15,6 +15,10 @@ use std::path::{Path, PathBuf};
 
 use npyz::{NpyHeader, Order, TypeChar, WriterBuilder};
 
+mod rows;
+
+pub use rows::Rows;
+
 use super::Matrix;
 use crate::store::{self, StoreError};
 
@@ -109,16 +113,18 @@ pub fn write(path: &Path, matrix: &Matrix) -> Result<(), StoreError> {
     })
 }
 
-/// Reads a matrix from `path`: f64 or f32 of either byte order, C or Fortran order, two dimensions, or one, which becomes
-/// a column. NaN and infinity are passed on: see [`read_finite`]. Allocates at most twice the length of the file.
-///
-/// # Errors
-/// [`NpyError`] if the file cannot be read, is no `.npy`, has another type or shape, or another length than it claims.
-pub fn read(path: &Path) -> Result<Matrix, NpyError> {
-    let unreadable = |source| NpyError::Unreadable {
-        path: path.into(),
-        source,
-    };
+/// A file whose header makes sense, and whose length is what the header claims.
+struct Opened {
+    file: BufReader<File>,
+    header: NpyHeader,
+    rows: usize,
+    columns: usize,
+    /// Bytes of a number, 4 or 8.
+    bytes: u64,
+}
+
+fn open(path: &Path) -> Result<Opened, NpyError> {
+    let unreadable = |source| unreadable(path, source);
     let file = File::open(path).map_err(unreadable)?;
     let length = file.metadata().map_err(unreadable)?.len();
     let mut file = BufReader::new(file);
@@ -166,11 +172,28 @@ pub fn read(path: &Path) -> Result<Matrix, NpyError> {
         path: path.into(),
         shape: vec![rows, columns],
     };
-    let (rows, columns) = (
-        usize::try_from(rows).map_err(too_large)?,
-        usize::try_from(columns).map_err(too_large)?,
-    );
+    Ok(Opened {
+        rows: usize::try_from(rows).map_err(too_large)?,
+        columns: usize::try_from(columns).map_err(too_large)?,
+        file,
+        header,
+        bytes,
+    })
+}
 
+/// Reads a matrix from `path`: f64 or f32 of either byte order, C or Fortran order, two dimensions, or one, which becomes
+/// a column. NaN and infinity are passed on: see [`read_finite`]. Allocates at most twice the length of the file.
+///
+/// # Errors
+/// [`NpyError`] if the file cannot be read, is no `.npy`, has another type or shape, or another length than it claims.
+pub fn read(path: &Path) -> Result<Matrix, NpyError> {
+    let Opened {
+        file,
+        header,
+        rows,
+        columns,
+        bytes,
+    } = open(path)?;
     let order = header.order();
     let npy = npyz::NpyFile::with_header(header, file);
     let values = if bytes == 8 {
@@ -181,7 +204,7 @@ pub fn read(path: &Path) -> Result<Matrix, NpyError> {
     };
     values
         .map_err(|e| not_npy(path, &e.to_string()))?
-        .map_err(unreadable)
+        .map_err(|source| unreadable(path, source))
 }
 
 /// [`read`], and only finite values.
@@ -190,6 +213,11 @@ pub fn read(path: &Path) -> Result<Matrix, NpyError> {
 /// As [`read`], and [`NpyError::NotFinite`] for the first NaN or infinity, rows first.
 pub fn read_finite(path: &Path) -> Result<Matrix, NpyError> {
     let matrix = read(path)?;
+    finite(path, 0, matrix)
+}
+
+/// The matrix, which starts at row `first` of the file, if all of it is finite.
+fn finite(path: &Path, first: usize, matrix: Matrix) -> Result<Matrix, NpyError> {
     if matrix.iter().all(|x| x.is_finite()) {
         return Ok(matrix);
     }
@@ -199,7 +227,7 @@ pub fn read_finite(path: &Path) -> Result<Matrix, NpyError> {
             if !value.is_finite() {
                 return Err(NpyError::NotFinite {
                     path: path.into(),
-                    row,
+                    row: first + row,
                     column,
                     value,
                 });
@@ -207,6 +235,13 @@ pub fn read_finite(path: &Path) -> Result<Matrix, NpyError> {
         }
     }
     Ok(matrix)
+}
+
+fn unreadable(path: &Path, source: io::Error) -> NpyError {
+    NpyError::Unreadable {
+        path: path.into(),
+        source,
+    }
 }
 
 fn not_npy(path: &Path, reason: &str) -> NpyError {

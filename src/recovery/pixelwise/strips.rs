@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{Inverse, inverse, refuse_unseen};
 use crate::num::linalg::{product, tr_product};
+use crate::recovery::bands;
 use crate::recovery::problem::Lit;
 use crate::recovery::{Method, Options, Problem, Recovered, RecoveryError, Uncertainty};
 
@@ -34,6 +35,9 @@ pub fn recover_strips<E: From<RecoveryError>>(
     mut strip: impl FnMut(usize) -> Result<Option<Strip>, E>,
 ) -> Result<Recovered, E> {
     allowed(method, options)?;
+    if let Some(confidence) = options.bands {
+        bands::allowed(method, confidence)?;
+    }
     let options = &Options {
         uncertainty: Uncertainty::StandardError,
         ..*options
@@ -83,6 +87,9 @@ pub fn recover_strips<E: From<RecoveryError>>(
             terms.sum().sqrt() / pixels as f64
         })
     });
+    if let Some(confidence) = options.bands {
+        found.bands = Some(bands::gaussian(&found, confidence)?);
+    }
     Ok(found)
 }
 
