@@ -33,6 +33,7 @@ mod output;
 mod progress;
 mod record;
 mod recover;
+mod recover_memory;
 mod recover_options;
 mod render;
 mod reproduce;

@@ -9,11 +9,12 @@ use super::finished::{read_matrix, read_run, read_stderr};
 use super::folder::{PHI, SCENE, STDERR};
 use super::output::{self, Talk};
 use super::record::Record;
+use super::recover_memory::{self, Errors, Held};
 use super::stale::remove_named;
 use super::{Outcome, recover_options, settings};
 use crate::matrix::{Matrix, npy};
 use crate::model::MatrixModel;
-use crate::recovery::{Directions, Method, Nuisance, Picard, Uncertainty};
+use crate::recovery::{Directions, Method, Nuisance, Options, Picard, Uncertainty};
 use crate::report::{self, Panel};
 use crate::scene::Scene;
 use crate::store::{ensure_writable, write_whole};
@@ -21,6 +22,8 @@ use crate::study::{Attempt, Noise, RecoveredObject, picards, recover_objects};
 
 /// Elements whose covariance and resolution are still written: 32 MiB each.
 const MOST_CORRELATED: usize = 2048;
+/// Pixels of a mask that are looked at together.
+const MASK_ROWS: usize = 256;
 
 pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure> {
     let methods: Vec<Method> = match args.method.as_slice() {
@@ -35,6 +38,9 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
         true => Scene::load(&args.dir.join(SCENE).to_string_lossy())?,
         false => read_run(&args.dir)?.0,
     };
+    if let Held::Strips(pixels) = recover_memory::plan(args, &scene, &methods, &options, talk)? {
+        return in_strips(args, &scene, pixels, &methods, &options, talk);
+    }
     let phi = read_matrix(args.phi.as_ref().unwrap_or(&args.dir.join(PHI)), &scene)?;
     if let (Some(file), false) = (&args.phi, args.keep_clipped) {
         refuse_clipped(file, &scene)?;
@@ -68,11 +74,50 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
     let single = methods.len() == 1;
     let objects = collect(attempts, single, talk)?;
     let picards = picards(&model, &phi, noise, nuisance, &methods, &options)?;
-    write(&args.dir, &objects, &picards)?;
+    deliver(args, &objects, &picards)
+}
+
+/// The same from photographs that are never held at once.
+fn in_strips(
+    args: &RecoverArgs,
+    scene: &Scene,
+    pixels: usize,
+    methods: &[Method],
+    options: &Options,
+    talk: Talk,
+) -> Result<Outcome, Failure> {
+    let mut phi = recover_memory::open(args.phi.as_ref().unwrap_or(&args.dir.join(PHI)), scene)?;
+    if let (Some(file), false) = (&args.phi, args.keep_clipped) {
+        refuse_clipped(file, scene)?;
+    }
+    let mut errors = match (&args.stderr, args.noise) {
+        (_, Some(noise)) => Errors::Relative(noise),
+        (Some(file), None) => Errors::File(recover_memory::open(file, scene)?),
+        (None, None) if args.phi.is_none() => {
+            Errors::File(recover_memory::open(&args.dir.join(STDERR), scene)?)
+        }
+        (None, None) => Errors::Unknown,
+    };
+    let kernel = settings::kernel(args.kernel);
+    let model = MatrixModel::without_photographs(scene, kernel, args.elements)?;
+    talk.say("Φcam is read by rows: no covariance, no resolution, no Picard plot");
+    let attempts =
+        recover_memory::recover(&model, &mut phi, &mut errors, pixels, methods, options)?;
+    let objects = collect(attempts, methods.len() == 1, talk)?;
+    deliver(args, &objects, &[])
+}
+
+/// Writes and prints.
+fn deliver(
+    args: &RecoverArgs,
+    objects: &[RecoveredObject],
+    picards: &[Picard],
+) -> Result<Outcome, Failure> {
+    write(&args.dir, objects, picards)?;
     let text = if args.json {
         output::json(&objects)?
     } else {
-        report::recovery_table(&objects)
+        report::recovery_table(objects)
     };
     output::print(&text)?;
     Ok(Outcome::Done)
@@ -96,13 +141,19 @@ fn refuse_clipped(phi: &Path, scene: &Scene) -> Result<(), Failure> {
     if !mask.exists() {
         return Ok(());
     }
-    let marked = read_matrix(&mask, scene)?;
-    match marked.iter().filter(|x| **x != 0.0).count() {
+    let mut rows = recover_memory::open(&mask, scene)?;
+    let (pixels, spots) = rows.shape();
+    let mut marked = 0;
+    for first in (0..pixels).step_by(MASK_ROWS) {
+        let part = rows.read(first, MASK_ROWS)?;
+        marked += part.iter().filter(|x| **x != 0.0).count();
+    }
+    match marked {
         0 => Ok(()),
         n => Err(Failure::new(
             format!(
                 "{n} of {} entries of {} are saturated or cut off, says {}: neither their values nor their standard errors mean anything",
-                marked.len(),
+                pixels * spots,
                 phi.display(),
                 mask.display()
             ),

@@ -42,6 +42,7 @@ pub(super) fn checked(args: &RecoverArgs, methods: &[Method]) -> Result<Options,
         |x| x > 0.0 && x < 1.0,
         "above 0 and below 1: a probability, e.g. 0.95",
     )?;
+    within("--memory", args.memory, positive, "positive: GiB, e.g. 4")?;
     used(args, methods)?;
     let mut options = Options {
         rank: args.rank,

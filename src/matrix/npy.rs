@@ -15,6 +15,10 @@ use std::path::{Path, PathBuf};
 
 use npyz::{NpyHeader, Order, TypeChar, WriterBuilder};
 
+mod rows;
+
+pub use rows::Rows;
+
 use super::Matrix;
 use crate::store::{self, StoreError};
 
@@ -24,6 +28,8 @@ const HEADER_MAX: usize = 1024;
 const BRACKETS_MAX: usize = 8;
 /// Most digits in a header, such that no product of its integers leaves an u64.
 const DIGITS_MAX: usize = 19;
+/// Rows in C order that are held before they are put into their columns.
+const BAND: usize = 32;
 
 /// Why a `.npy` file cannot serve as a matrix.
 #[derive(Debug, thiserror::Error)]
@@ -107,16 +113,18 @@ pub fn write(path: &Path, matrix: &Matrix) -> Result<(), StoreError> {
     })
 }
 
-/// Reads a matrix from `path`: f64 or f32 of either byte order, C or Fortran order, two dimensions, or one, which becomes
-/// a column. NaN and infinity are passed on: see [`read_finite`]. Allocates at most twice the length of the file.
-///
-/// # Errors
-/// [`NpyError`] if the file cannot be read, is no `.npy`, has another type or shape, or another length than it claims.
-pub fn read(path: &Path) -> Result<Matrix, NpyError> {
-    let unreadable = |source| NpyError::Unreadable {
-        path: path.into(),
-        source,
-    };
+/// A file whose header makes sense, and whose length is what the header claims.
+struct Opened {
+    file: BufReader<File>,
+    header: NpyHeader,
+    rows: usize,
+    columns: usize,
+    /// Bytes of a number, 4 or 8.
+    bytes: u64,
+}
+
+fn open(path: &Path) -> Result<Opened, NpyError> {
+    let unreadable = |source| unreadable(path, source);
     let file = File::open(path).map_err(unreadable)?;
     let length = file.metadata().map_err(unreadable)?.len();
     let mut file = BufReader::new(file);
@@ -164,11 +172,28 @@ pub fn read(path: &Path) -> Result<Matrix, NpyError> {
         path: path.into(),
         shape: vec![rows, columns],
     };
-    let (rows, columns) = (
-        usize::try_from(rows).map_err(too_large)?,
-        usize::try_from(columns).map_err(too_large)?,
-    );
+    Ok(Opened {
+        rows: usize::try_from(rows).map_err(too_large)?,
+        columns: usize::try_from(columns).map_err(too_large)?,
+        file,
+        header,
+        bytes,
+    })
+}
 
+/// Reads a matrix from `path`: f64 or f32 of either byte order, C or Fortran order, two dimensions, or one, which becomes
+/// a column. NaN and infinity are passed on: see [`read_finite`]. Allocates at most twice the length of the file.
+///
+/// # Errors
+/// [`NpyError`] if the file cannot be read, is no `.npy`, has another type or shape, or another length than it claims.
+pub fn read(path: &Path) -> Result<Matrix, NpyError> {
+    let Opened {
+        file,
+        header,
+        rows,
+        columns,
+        bytes,
+    } = open(path)?;
     let order = header.order();
     let npy = npyz::NpyFile::with_header(header, file);
     let values = if bytes == 8 {
@@ -179,7 +204,7 @@ pub fn read(path: &Path) -> Result<Matrix, NpyError> {
     };
     values
         .map_err(|e| not_npy(path, &e.to_string()))?
-        .map_err(unreadable)
+        .map_err(|source| unreadable(path, source))
 }
 
 /// [`read`], and only finite values.
@@ -188,13 +213,21 @@ pub fn read(path: &Path) -> Result<Matrix, NpyError> {
 /// As [`read`], and [`NpyError::NotFinite`] for the first NaN or infinity, rows first.
 pub fn read_finite(path: &Path) -> Result<Matrix, NpyError> {
     let matrix = read(path)?;
+    finite(path, 0, matrix)
+}
+
+/// The matrix, which starts at row `first` of the file, if all of it is finite.
+fn finite(path: &Path, first: usize, matrix: Matrix) -> Result<Matrix, NpyError> {
+    if matrix.iter().all(|x| x.is_finite()) {
+        return Ok(matrix);
+    }
     for row in 0..matrix.nrows() {
         for column in 0..matrix.ncols() {
             let value = matrix[(row, column)];
             if !value.is_finite() {
                 return Err(NpyError::NotFinite {
                     path: path.into(),
-                    row,
+                    row: first + row,
                     column,
                     value,
                 });
@@ -202,6 +235,13 @@ pub fn read_finite(path: &Path) -> Result<Matrix, NpyError> {
         }
     }
     Ok(matrix)
+}
+
+fn unreadable(path: &Path, source: io::Error) -> NpyError {
+    NpyError::Unreadable {
+        path: path.into(),
+        source,
+    }
 }
 
 fn not_npy(path: &Path, reason: &str) -> NpyError {
@@ -253,20 +293,32 @@ fn fill(
     values: impl Iterator<Item = io::Result<f64>>,
 ) -> io::Result<Matrix> {
     let mut matrix = Matrix::zeros(rows, columns);
-    let mut count = 0;
-    for (k, value) in values.enumerate() {
-        let at = match order {
-            Order::C => (k / columns, k % columns),
-            Order::Fortran => (k % rows, k / rows),
-        };
-        matrix[at] = value?;
-        count += 1;
+    let mut values = values;
+    let mut next = || {
+        values
+            .next()
+            .unwrap_or(Err(io::ErrorKind::UnexpectedEof.into()))
+    };
+    if order == Order::Fortran {
+        for value in matrix.iter_mut() {
+            *value = next()?;
+        }
+        return Ok(matrix);
     }
-    if count == rows * columns {
-        Ok(matrix)
-    } else {
-        Err(io::ErrorKind::UnexpectedEof.into())
+    // Some rows at a time, so that neighbours in memory are written together.
+    let mut band = vec![0.0; BAND.min(rows) * columns];
+    for first in (0..rows).step_by(BAND) {
+        let count = BAND.min(rows - first);
+        for value in &mut band[..count * columns] {
+            *value = next()?;
+        }
+        for column in 0..columns {
+            for row in 0..count {
+                matrix[(first + row, column)] = band[row * columns + column];
+            }
+        }
     }
+    Ok(matrix)
 }
 
 #[cfg(test)]

@@ -83,6 +83,28 @@ impl MatrixModel {
         kernel: Kernel,
         elements: Option<[usize; 2]>,
     ) -> Result<Self, ModelError> {
+        let photographs = scene.camera.pixels() as f64 * scene.laser.spots.len() as f64;
+        Self::beside(scene, kernel, elements, photographs)
+    }
+
+    /// The same for photographs that are never held at once, and so do not count.
+    ///
+    /// # Errors
+    /// Those of [`MatrixModel::new`].
+    pub fn without_photographs(
+        scene: &Scene,
+        kernel: Kernel,
+        elements: Option<[usize; 2]>,
+    ) -> Result<Self, ModelError> {
+        Self::beside(scene, kernel, elements, 0.0)
+    }
+
+    fn beside(
+        scene: &Scene,
+        kernel: Kernel,
+        elements: Option<[usize; 2]>,
+        photographs: f64,
+    ) -> Result<Self, ModelError> {
         let mut grids: Vec<ElementGrid> = Vec::new();
         let mut count = 0;
         for (_, surface) in scene.hidden() {
@@ -98,7 +120,7 @@ impl MatrixModel {
             return Err(ModelError::NothingHidden);
         }
         let (pixels, spots) = (scene.camera.pixels(), scene.laser.spots.len());
-        let entries = 2.0 * count as f64 * (pixels + spots) as f64 + pixels as f64 * spots as f64;
+        let entries = 2.0 * count as f64 * (pixels + spots) as f64 + photographs;
         if entries > MOST_ENTRIES {
             return Err(ModelError::TooLarge {
                 elements: count,

@@ -43,6 +43,10 @@
 //! of what they make of the truth, from which their bias follows ([`Recovered::bias`]). [`picard`](picard()) and [`picard_joint`] show which singular
 //! directions rise above the noise.
 //!
+//! Large problems cost what their numerical rank costs: D of 4096 elements × 4000 spots has about 100 directions above rounding, and only those are
+//! looked for ([`svd_to`](crate::num::linalg::svd_to)); generalised inverses, products and residuals keep them as thin factors. Photographs that no memory
+//! holds are taken strip by strip ([`recover_strips`]).
+//!
 //! ```
 //! use nalgebra::DMatrix;
 //! use phicam::recovery::{Method, Options, Problem, recover};
@@ -74,11 +78,9 @@ pub use method::{Method, UnknownMethod};
 pub use options::{Options, Uncertainty, WeightRule};
 pub use outcome::{Choice, Parameter, Recovered, Solver};
 pub use picard::{Directions, Picard, picard};
+pub use pixelwise::strips::{Strip, recover_strips};
 pub use problem::Problem;
 pub use rule::Rule;
-
-use pixelwise::one_sided::Side;
-use pixelwise::rdivide::Solution;
 
 /// Recovers the reflectances of the r elements by the method asked for.
 ///
@@ -101,16 +103,14 @@ pub fn recover(
         bands::allowed(method, confidence)?;
     }
     let mut found = match method {
-        Method::Pinv => pixelwise::pinv::recover(problem, options),
-        Method::LeftInverse => pixelwise::one_sided::recover(problem, options, Side::Left),
-        Method::RightInverse => pixelwise::one_sided::recover(problem, options, Side::Right),
-        Method::Rdivide => pixelwise::rdivide::recover(problem, options, Solution::Basic),
-        Method::RdivideMinNorm => {
-            pixelwise::rdivide::recover(problem, options, Solution::LeastNorm)
-        }
-        Method::Tsvd => pixelwise::tsvd::recover(problem, options),
-        Method::Tikhonov => pixelwise::tikhonov::recover(problem, options),
-        Method::TikhonovGradient => pixelwise::gradient::recover(problem, options),
+        Method::Pinv
+        | Method::LeftInverse
+        | Method::RightInverse
+        | Method::Rdivide
+        | Method::RdivideMinNorm
+        | Method::Tsvd
+        | Method::Tikhonov
+        | Method::TikhonovGradient => pixelwise::recover(method, problem, options),
         Method::JointUnbounded => joint::unbounded::recover(problem, options),
         Method::Joint | Method::Nnls => joint::bounded::recover(method, problem, options),
         Method::JointTv => joint::total_variation::recover(problem, options),

@@ -38,8 +38,8 @@ pub struct Options {
     pub rule: Rule,
     /// How much the methods that work pixel by pixel tell of their uncertainty.
     pub uncertainty: Uncertainty,
-    /// Largest number of entries of the compressed Khatri–Rao product that `joint` forms (8 bytes each, up to three copies);
-    /// above it the Gram matrix is used, whose condition is squared.
+    /// Largest number of entries of the compressed Khatri–Rao product that `joint` forms (8 bytes each, up to three copies). Above it the rows that are
+    /// lost in rounding are left out, and where that is not enough the Gram matrix is used, whose condition is squared.
     pub budget: usize,
     /// Weights of the joint methods.
     pub weighting: WeightRule,

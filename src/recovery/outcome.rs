@@ -2,7 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Bands, Estimated, Method, Weighting};
+use super::problem::Lit;
+use super::{Bands, Estimated, Method, RecoveryError, Weighting};
 
 /// A regularisation parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,7 +110,7 @@ pub struct Recovered {
     /// How the entries of Φ were weighted.
     pub weighting: Weighting,
     /// Singular values of the matrix inverted, descending: D for the methods that work pixel by pixel (its standard form for `tikhonov-gradient`),
-    /// the whole (weighted) operator for the joint ones.
+    /// the whole (weighted) operator for the joint ones. Of a large matrix of few directions only those above rounding.
     pub sigma: DVector<f64>,
     /// Singular directions that were not dropped.
     pub rank: usize,
@@ -146,9 +147,20 @@ impl Recovered {
         reflectance: DVector<f64>,
         sigma: DVector<f64>,
         rank: usize,
+    ) -> Result<Self, RecoveryError> {
+        let residual = problem.residual(&Lit::new(problem.d, &reflectance)?);
+        let norms = [residual, problem.phi.norm()];
+        Ok(Self::with_norms(method, norms, reflectance, sigma, rank))
+    }
+
+    /// The same with ‖Φ − C diag(ρ) D‖ and ‖Φ‖ known.
+    pub(super) fn with_norms(
+        method: Method,
+        [residual, whole]: [f64; 2],
+        reflectance: DVector<f64>,
+        sigma: DVector<f64>,
+        rank: usize,
     ) -> Self {
-        let residual = problem.residual(&reflectance);
-        let whole = problem.phi.norm();
         Recovered {
             reflectance,
             standard_error: None,

@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use super::{Problem, RecoveryError};
-use crate::num::linalg::svd;
+use crate::num::linalg::{Tolerance, product, svd_to};
 
 /// Whose singular directions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,7 +22,7 @@ pub enum Directions {
 pub struct Picard {
     /// Whose directions, and so the unit.
     pub directions: Directions,
-    /// Singular values of D, descending; C times D is in W. Or those of the joint operator.
+    /// Singular values of D, descending; C times D is in W. Or those of the joint operator. Of a large problem only those above rounding.
     pub sigma: DVector<f64>,
     /// √((1/p) Σ_p (Φ v_i)_p²), W. Or |⟨u_i, √W Φ⟩|.
     pub coefficient: DVector<f64>,
@@ -36,14 +36,14 @@ pub struct Picard {
 /// [`RecoveryError::Dark`], [`RecoveryError::RankZero`], a decomposition that failed.
 pub fn picard(problem: &Problem<'_>) -> Result<Picard, RecoveryError> {
     problem.refuse_darkness()?;
-    let laser = svd(problem.d)?;
+    let laser = svd_to(problem.d, Tolerance::Auto)?;
     if laser.sigma[0] == 0.0 {
         return Err(RecoveryError::RankZero {
             side: "laser side D",
         });
     }
     let pixels = problem.phi.nrows() as f64;
-    let along = problem.phi * laser.vt.transpose();
+    let along = product(problem.phi, &laser.vt.transpose());
     let root_mean_square = |sum: f64| (sum / pixels).sqrt();
     let coefficient = DVector::from_iterator(
         laser.sigma.len(),
@@ -72,6 +72,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
+    use crate::num::linalg::svd;
     use crate::recovery::bench::{Bench, normal_stream};
 
     #[test]

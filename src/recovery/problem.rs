@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{Nuisance, RecoveryError};
+use crate::num::linalg::{Range, product, range, subtract_product};
 
 /// Φ\[p,l\] = Σ_j C\[p,j\] ρ_j D\[j,l\] + noise, checked: shapes that fit, finite entries.
 #[derive(Debug, Clone, Copy)]
@@ -155,8 +156,34 @@ impl<'a> Problem<'a> {
     }
 
     /// ‖Φ − C diag(ρ) D‖, Frobenius, W.
-    pub(super) fn residual(&self, reflectance: &DVector<f64>) -> f64 {
-        (self.phi - self.light(reflectance)).norm()
+    pub(super) fn residual(&self, lit: &Lit) -> f64 {
+        let mut left = self.phi.clone();
+        match &lit.along {
+            Some(along) => subtract_product(&mut left, &product(self.c, &lit.elements), along),
+            None => subtract_product(&mut left, self.c, &lit.elements),
+        }
+        left.norm()
+    }
+}
+
+/// diag(ρ) D, where D is large and of few directions as the product of two thin factors, which is D to rounding.
+pub(super) struct Lit {
+    /// diag(ρ) D or diag(ρ) Q, r rows.
+    elements: DMatrix<f64>,
+    /// B of D = Q B.
+    along: Option<DMatrix<f64>>,
+}
+
+impl Lit {
+    pub(super) fn new(d: &DMatrix<f64>, reflectance: &DVector<f64>) -> Result<Self, RecoveryError> {
+        let (mut elements, along) = match range(d)? {
+            Some(Range { q, b, .. }) => (q, Some(b)),
+            None => (d.clone(), None),
+        };
+        for (mut row, &rho) in elements.row_iter_mut().zip(reflectance.iter()) {
+            row *= rho;
+        }
+        Ok(Lit { elements, along })
     }
 }
 

@@ -47,7 +47,7 @@ pub use noise::{
     NoiseError, NoisePlan, NoiseStudy, Point, Reach, RenderNoise, Spacing, Spread, Trial, noise,
     read_ledger, render_noise, write_ledger,
 };
-pub use objects::{Attempt, Noise, picards, recover_objects};
+pub use objects::{Attempt, Noise, measured, picards, recover_objects};
 pub use power::{Detection, Power, PowerError, PowerPlan, PowerRow, power};
 pub use results::{Agreement, Entry, ObjectBands, RecoveredObject, RunResults, Settings};
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, tolerance};

@@ -45,7 +45,7 @@ pub fn recover_objects(
         let problem = problem(model, phi, noise)?
             .with_grids(&grids)?
             .with_nuisance(nuisance)?;
-        recover(method, &problem, options).map(|found| objects(model, &found))
+        recover(method, &problem, options).map(|found| measured(model, &found))
     };
     methods
         .iter()
@@ -92,7 +92,8 @@ fn problem<'a>(
     Problem::new(phi, &model.camera_side, &model.laser_side, stderr)
 }
 
-fn objects(model: &MatrixModel, found: &Recovered) -> Vec<RecoveredObject> {
+/// What was recovered, surface by surface, measured against the true albedo at the element centres.
+pub fn measured(model: &MatrixModel, found: &Recovered) -> Vec<RecoveredObject> {
     let bias = found.bias(&model.albedo);
     let cut = |grid: &crate::model::ElementGrid| {
         let range = grid.first..grid.first + grid.len();

@@ -116,6 +116,7 @@ fn of_recovery() {
         ("recover done --rank 0", &["--rank 0", "at least 1"]),
         ("recover done --damping -0.5", &["--damping -0.5", "cure: "]),
         ("recover done --damping nan", &["--damping NaN", "cure: "]),
+        ("recover done --memory 0", &["--memory 0", "positive: GiB"]),
         (
             "recover done --tolerance -1",
             &["--tolerance -1", "below 1"],

@@ -7,6 +7,7 @@ mod bad_scenes;
 mod bad_settings;
 mod exposing;
 mod interruption;
+mod large_photographs;
 mod main_job;
 mod recovery;
 mod reproducibility;

@@ -60,6 +60,9 @@ pub(in crate::cli) struct RecoverArgs {
     /// Bands that cover each element with this probability: METHOD.lower.npy and METHOD.upper.npy
     #[arg(long, value_name = "LEVEL", allow_negative_numbers = true)]
     pub bands: Option<f64>,
+    /// Memory that may be taken, GiB: where Φcam is larger it is read by rows, by the methods that can; three quarters of what is free unless given
+    #[arg(long, value_name = "GIB", allow_negative_numbers = true)]
+    pub memory: Option<f64>,
     /// Print the results as JSON
     #[arg(long)]
     pub json: bool,

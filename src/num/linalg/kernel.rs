@@ -24,20 +24,26 @@ pub(super) fn kahan(n: usize, theta: f64) -> DMatrix<f64> {
 /// The kernel cosθs·cosθd/R² of a bench with 120 spots on a square of the given half-width (lengths in inches) and 8 × 8 elements
 /// on a plane leaning 45° over the wall: 64 × 120, smooth and so numerically rank deficient.
 pub(super) fn bench_g12(half_width: f64) -> DMatrix<f64> {
+    leaning(8, 30, half_width)
+}
+
+/// The same with `side`² elements and `per_side` spots on each side of the square.
+pub(super) fn leaning(side: usize, per_side: usize, half_width: f64) -> DMatrix<f64> {
     let (cx, cy) = (5.0, 15.5 - 7.86764 * 2f64.sqrt());
     let h = half_width;
-    DMatrix::from_fn(64, 120, |j, l| {
-        let d = 5.86764 + 4.0 * ((j / 8) as f64 + 0.5) / 8.0;
+    let centre = |k: usize| 4.0 * (k as f64 + 0.5) / side as f64;
+    DMatrix::from_fn(side * side, 4 * per_side, |j, l| {
+        let d = 5.86764 + centre(j / side);
         let (x2, y2, z2) = (
-            3.0 + 4.0 * ((j % 8) as f64 + 0.5) / 8.0,
+            3.0 + centre(j % side),
             15.5 - d / 2f64.sqrt(),
             d / 2f64.sqrt(),
         );
         let (along, across) = (
-            2.0 * h * (l % 30) as f64 / 29.0 - h,
+            2.0 * h * (l % per_side) as f64 / (per_side - 1) as f64 - h,
             h + [-1.0, 1.0, 0.0][l % 3],
         );
-        let (x1, y1) = match l / 30 {
+        let (x1, y1) = match l / per_side {
             0 => (cx + along, cy - across),
             1 => (cx + across, cy + along),
             2 => (cx - along, cy + across),

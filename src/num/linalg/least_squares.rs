@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::triangle::{same_length, scaled_vector};
-use super::{LinalgError, Tolerance, cut, svd, triangle};
+use super::{LinalgError, Svd, Tolerance, cut, svd, svd_of_range, triangle};
 
 /// Singular values below this fraction of σ₁ are not trusted after an unpivoted QR, whose error on numerically
 /// rank-deficient input is about 4e-14 σ₁ (measured): three digits are kept above that.
@@ -25,7 +25,7 @@ pub enum Route {
 pub struct LeastSquares {
     /// x, n entries.
     pub solution: DVector<f64>,
-    /// Singular values of A, descending, min(m, n) of them.
+    /// Singular values of A, descending: min(m, n) of them, or those above rounding ([`svd_to`](super::svd_to)).
     pub sigma: DVector<f64>,
     /// How many singular values were kept.
     pub rank: usize,
@@ -58,7 +58,18 @@ pub(super) fn solve_by_svd(
     tolerance: Tolerance,
     route: Route,
 ) -> Result<LeastSquares, LinalgError> {
-    let decomposed = svd(a)?;
+    by_directions(a, svd(a)?, (b, rest), rows, tolerance, route)
+}
+
+/// From the directions of A.
+fn by_directions(
+    a: &DMatrix<f64>,
+    decomposed: Svd,
+    (b, rest): (&DVector<f64>, f64),
+    rows: usize,
+    tolerance: Tolerance,
+    route: Route,
+) -> Result<LeastSquares, LinalgError> {
     let (rank, cutoff) = cut(decomposed.sigma.as_slice(), rows, a.ncols(), tolerance)?;
     let vt = decomposed.vt.rows(0, rank).into_owned();
     let mut along = decomposed.u.columns(0, rank).transpose() * b;
@@ -83,7 +94,7 @@ pub(super) fn solve_by_svd(
 
 /// The x of least norm among those that minimise ‖A x − b‖, for an m × n matrix.
 ///
-/// QR first; where that shows σ_n < 1e-10 σ₁, or the tolerance is not [`Tolerance::Auto`], the singular value
+/// A large matrix of few directions is decomposed by its [`range`](super::range()). Of any other QR first; where that shows σ_n < 1e-10 σ₁, or the tolerance is not [`Tolerance::Auto`], the singular value
 /// decomposition of A itself, cut at `tolerance`.
 ///
 /// # Errors
@@ -94,6 +105,10 @@ pub fn least_squares(
     tolerance: Tolerance,
 ) -> Result<LeastSquares, LinalgError> {
     same_length("entries of b against rows of A", a.nrows(), b.len())?;
+    if let Some(decomposed) = svd_of_range(a, tolerance)? {
+        scaled_vector(b)?;
+        return by_directions(a, decomposed, (b, 0.0), a.nrows(), tolerance, Route::Svd);
+    }
     if tolerance == Tolerance::Auto && a.nrows() >= a.ncols() {
         let reduced = triangle(a, b)?;
         let solved = reduced.solve(a.nrows(), Tolerance::Auto, Route::Qr)?;

@@ -9,22 +9,29 @@
 //!   lose nothing;
 //! * the singular value decomposition of a tall or wide matrix never goes through an unpivoted QR first, which
 //!   would blur the singular values near the rank by three digits;
-//! * every singular value decomposition and every pivoted QR checks itself afterwards (see [`svd`]).
+//! * every singular value decomposition and every pivoted QR checks itself afterwards (see [`svd`]);
+//! * a large matrix of few directions is decomposed at the cost of those ([`svd_to`], [`range`](range())), where what is left over, measured, cannot
+//!   change the numerical rank.
 //!
 //! [`svd`]: svd()
+//! [`svd_to`]: svd_to()
 
 mod householder;
 mod least_squares;
 mod pinv;
 mod pivoted_qr;
+mod product;
+mod range;
 mod svd;
 mod triangle;
 
 pub use householder::{Complement, complement};
 pub use least_squares::{LeastSquares, Route, least_squares};
 pub use pinv::{Pinv, pinv};
-pub use pivoted_qr::{PivotedQr, pivoted_qr};
-pub use svd::{Svd, svd};
+pub use pivoted_qr::{PivotedQr, pivoted_qr, pivoted_qr_to};
+pub use product::{product, subtract_product, tr_product};
+pub use range::{Range, range};
+pub use svd::{Svd, svd, svd_of_range, svd_to};
 pub use triangle::{Triangle, normal_triangle, triangle};
 
 use nalgebra::DMatrix;

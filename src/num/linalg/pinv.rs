@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{LinalgError, Tolerance, cut, svd};
+use super::{LinalgError, Tolerance, cut, product, svd_to};
 
 /// A⁺ and how it was cut.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,7 +11,7 @@ pub struct Pinv {
     pub matrix: DMatrix<f64>,
     /// k: how many singular values were inverted; 0 for a zero matrix, whose A⁺ is zero.
     pub rank: usize,
-    /// All min(m, n) singular values, descending.
+    /// Singular values, descending: all min(m, n), or those above rounding ([`svd_to`](super::svd_to)).
     pub sigma: DVector<f64>,
     /// Singular values at or below this were taken as zero.
     pub cutoff: f64,
@@ -21,16 +21,16 @@ pub struct Pinv {
 /// singular values cut at `tolerance`.
 ///
 /// # Errors
-/// Those of [`svd`](svd()), [`LinalgError::Tolerance`], [`LinalgError::Rank`], and [`LinalgError::Overflow`] where 1/σ exceeds f64.
+/// Those of [`svd`](super::svd()), [`LinalgError::Tolerance`], [`LinalgError::Rank`], and [`LinalgError::Overflow`] where 1/σ exceeds f64.
 pub fn pinv(a: &DMatrix<f64>, tolerance: Tolerance) -> Result<Pinv, LinalgError> {
-    let decomposed = svd(a)?;
+    let decomposed = svd_to(a, tolerance)?;
     let (rank, cutoff) = cut(decomposed.sigma.as_slice(), a.nrows(), a.ncols(), tolerance)?;
     let mut v = decomposed.vt.rows(0, rank).transpose();
     for (mut column, &s) in v.column_iter_mut().zip(decomposed.sigma.iter()) {
         // Division, not multiplication by 1/σ: 1/σ of a subnormal σ would overflow before the entry is small enough.
         column /= s;
     }
-    let matrix = v * decomposed.u.columns(0, rank).transpose();
+    let matrix = product(&v, &decomposed.u.columns(0, rank).transpose());
     if matrix.iter().any(|x| !x.is_finite()) {
         return Err(LinalgError::Overflow("the pseudo-inverse"));
     }

@@ -7,7 +7,8 @@
 use nalgebra::DMatrix;
 
 use super::householder::{Pivoting, reduce};
-use super::{LinalgError, Tolerance, cut, scaled};
+use super::svd::certain;
+use super::{LinalgError, Tolerance, cut, product, range, scaled};
 
 /// A P = Q R with |R₁₁| ≥ |R₂₂| ≥ …, thin: k = min(m, n).
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +40,23 @@ pub fn pivoted_qr(a: &DMatrix<f64>) -> Result<PivotedQr, LinalgError> {
     };
     check(&scaled, &result)?;
     Ok(result)
+}
+
+/// The pivoted QR as far as a cut at `tolerance` needs it: of a large matrix of few directions that of its [`Range`](super::Range), A P = Q_range (B P), whose
+/// columns have the norms of A's columns but for what the range misses, at the cost of B; of any other, or where what is missed leaves the rank in
+/// doubt, of all of A.
+///
+/// # Errors
+/// Those of [`pivoted_qr`](pivoted_qr()), and [`LinalgError::Tolerance`].
+pub fn pivoted_qr_to(a: &DMatrix<f64>, tolerance: Tolerance) -> Result<PivotedQr, LinalgError> {
+    if let Some(found) = range(a)? {
+        let small = pivoted_qr(&found.b)?;
+        if certain(&small.diagonal(), found.rest, a.shape(), tolerance)? {
+            let q = product(&found.q, &small.q);
+            return Ok(PivotedQr { q, ..small });
+        }
+    }
+    pivoted_qr(a)
 }
 
 /// The two a-posteriori checks of [`pivoted_qr`] on the scaled matrix.

@@ -1,4 +1,4 @@
-//! The thin singular value decomposition, scaled and checked.
+//! The thin singular value decomposition, scaled and checked, of all directions or of those above rounding.
 
 use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -6,9 +6,9 @@ use faer::linalg::svd::{ComputeSvdVectors, SvdParams, svd as faer_svd, svd_scrat
 use faer::{Auto, Mat, MatRef, Par, Spec};
 use nalgebra::{DMatrix, DVector};
 
-use super::{LinalgError, scaled};
+use super::{LinalgError, Tolerance, cut, product, range, scaled};
 
-/// A = U Σ Vᵀ, thin: k = min(m, n).
+/// A = U Σ Vᵀ, thin: k = min(m, n), or fewer where those beyond are rounding.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Svd {
     /// Left singular vectors, m × k, orthonormal columns.
@@ -17,6 +17,8 @@ pub struct Svd {
     pub sigma: DVector<f64>,
     /// Right singular vectors as rows, k × n.
     pub vt: DMatrix<f64>,
+    /// What no singular value beyond these k exceeds: 0 where all min(m, n) are there.
+    pub rest: f64,
 }
 
 /// The thin singular value decomposition of an m × n matrix.
@@ -37,6 +39,68 @@ pub fn svd(a: &DMatrix<f64>) -> Result<Svd, LinalgError> {
         return Err(LinalgError::Overflow("the largest singular value"));
     }
     Ok(result)
+}
+
+/// The singular value decomposition as far as a cut at `tolerance` needs it: of large matrices with few directions only those above rounding, in
+/// time proportional to their number.
+///
+/// From the [`Range`](super::Range) A = Q B + E and the decomposition of B. As σ_i(B)² ≤ σ_i(A)² ≤ σ_i(B)² + ‖E‖² with ‖E‖ measured, the rank at the cut is
+/// that of A itself wherever both ends of this interval lie on the same side of it; where one does not, where a rank is asked for whose last direction
+/// is below the rounding max(m, n) · eps · σ₁, or where the range is too large to pay, all of A is decomposed as by [`svd`](svd()). Kept singular vectors differ
+/// from those of A by no more than ‖E‖/σ_k, as those of any other decomposition do by rounding of its own.
+///
+/// # Errors
+/// Those of [`svd`](svd()), and [`LinalgError::Tolerance`].
+pub fn svd_to(a: &DMatrix<f64>, tolerance: Tolerance) -> Result<Svd, LinalgError> {
+    match svd_of_range(a, tolerance)? {
+        Some(found) => Ok(found),
+        None => svd(a),
+    }
+}
+
+/// The decomposition of [`svd_to`] by the range of A; `None` where all of A would have to be decomposed.
+///
+/// # Errors
+/// Those of [`svd_to`].
+pub fn svd_of_range(a: &DMatrix<f64>, tolerance: Tolerance) -> Result<Option<Svd>, LinalgError> {
+    let Some(found) = range(a)? else {
+        return Ok(None);
+    };
+    let small = svd(&found.b)?;
+    let kept = small.sigma.iter().take_while(|&&s| s > found.rest).count();
+    if !certain(
+        &small.sigma.as_slice()[..kept],
+        found.rest,
+        a.shape(),
+        tolerance,
+    )? {
+        return Ok(None);
+    }
+    let next = small.sigma.get(kept).copied().unwrap_or(0.0);
+    Ok(Some(Svd {
+        u: product(&found.q, &small.u.columns(0, kept).into_owned()),
+        sigma: small.sigma.rows(0, kept).into_owned(),
+        vt: small.vt.rows(0, kept).into_owned(),
+        rest: libm::hypot(next, found.rest),
+    }))
+}
+
+/// Whether singular values from `sigma` up to the root of `sigma`² + `rest`², and others of no more than `rest`, leave no doubt about the cut.
+pub(super) fn certain(
+    sigma: &[f64],
+    rest: f64,
+    (rows, columns): (usize, usize),
+    tolerance: Tolerance,
+) -> Result<bool, LinalgError> {
+    let (rank, cutoff) = match tolerance {
+        Tolerance::Rank(asked) => {
+            let (rank, _) = cut(sigma, rows, columns, Tolerance::Auto)?;
+            return Ok((1..=rank).contains(&asked));
+        }
+        other => cut(sigma, rows, columns, other)?,
+    };
+    let above = |s: &&f64| libm::hypot(**s, rest) > cutoff;
+    Ok(rest <= cutoff && sigma.iter().take_while(above).count() == rank)
 }
 
 fn decompose(a: &DMatrix<f64>) -> Result<Svd, LinalgError> {
@@ -65,6 +129,7 @@ fn decompose(a: &DMatrix<f64>) -> Result<Svd, LinalgError> {
         u: DMatrix::from_fn(m, k, |i, j| u[(i, j)]),
         sigma: DVector::from_fn(k, |i, _| sigma[i]),
         vt: DMatrix::from_fn(k, n, |i, j| v[(j, i)]),
+        rest: 0.0,
     })
 }
 

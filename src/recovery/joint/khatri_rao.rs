@@ -7,7 +7,8 @@
 //!
 //! > Σ_ab (F\[a,b\] − Σ_j (Σ_c V_cᵀ)\[a,j\] (U_d Σ_d)\[j,b\] ρ_j)²,   F = U_cᵀ √W Φ √V V_d,
 //!
-//! so only rank(C̃)·rank(D̃) rows remain. Directions below the rounding of C̃ and D̃ are dropped. Frame constants and a background are projected out of
+//! so only rank(C̃)·rank(D̃) rows remain. Directions below the rounding of C̃ and D̃ are dropped; of large products also the pairs (a, b) of two weak
+//! directions, whose rows together are less than one rounding of the whole. Frame constants and a background are projected out of
 //! both sides first ([`super::nuisance`]); with glare patterns there is no such product, and the rows are stacked instead ([`super::stacked`]),
 //! each with its own weight.
 
@@ -18,8 +19,8 @@ use super::nuisance::{Estimated, estimate, unit, without_left, without_right};
 use super::stacked::{Coupled, stack};
 use super::weights::{self, Weights};
 use crate::num::linalg::{
-    LeastSquares, Route, Svd, Tolerance, Triangle, cut, least_squares, normal_triangle, svd,
-    triangle,
+    LeastSquares, Route, Svd, Tolerance, Triangle, cut, least_squares, normal_triangle, product,
+    svd_of_range, svd_to, tr_product, triangle,
 };
 use crate::recovery::{Options, Problem, RecoveryError, WeightRule};
 
@@ -35,11 +36,12 @@ pub(super) struct Operator {
     pub(super) weighting: Weighting,
 }
 
-/// Weighted and projected sides: C̃ = U T, U orthonormal, and D̃.
+/// Weighted and projected sides: C̃ = U T and D̃ = S V, U and Vᵀ with few orthonormal columns.
 struct Sides {
     u: DMatrix<f64>,
     t: DMatrix<f64>,
-    d: DMatrix<f64>,
+    s: DMatrix<f64>,
+    v: DMatrix<f64>,
 }
 
 /// v_k/s_k as columns, r × rank.
@@ -53,7 +55,11 @@ fn towards(solved: &LeastSquares) -> DMatrix<f64> {
 
 enum Form {
     /// The Khatri–Rao product of the small factors and the compressed Φ as one column.
-    Small { a: DMatrix<f64>, b: DVector<f64> },
+    Small {
+        a: DMatrix<f64>,
+        b: DVector<f64>,
+        rows: usize,
+    },
     /// From the Gram matrix (C̃ᵀC̃) ∘ (D̃D̃ᵀ), where the product is beyond the budget.
     Normal(Triangle),
     /// Row by row, each with its own weight.
@@ -70,7 +76,7 @@ fn compress(
     before: f64,
     name: &'static str,
 ) -> Result<(Svd, usize), RecoveryError> {
-    let decomposed = svd(side)?;
+    let decomposed = svd_to(side, Tolerance::Auto)?;
     let (rank, _) = cut(
         decomposed.sigma.as_slice(),
         side.nrows(),
@@ -92,6 +98,26 @@ fn compress(
     } else {
         Ok((decomposed, rank))
     }
+}
+
+/// The pairs (a, b) of rows of T and columns of S whose rows T\[a,j\] S\[j,b\] of the product carry it to rounding: all of them, unless their number
+/// times the elements is beyond the budget. Then the least are left out, so many that their common norm stays below one rounding of the whole's.
+fn pairs(t: &DMatrix<f64>, s: &DMatrix<f64>, budget: usize) -> Vec<[usize; 2]> {
+    let (rc, rd) = (t.nrows(), s.ncols());
+    let all = (0..rc * rd).map(|row| [row % rc, row / rc]);
+    if (rc * rd).saturating_mul(t.ncols()) <= budget {
+        return all.collect();
+    }
+    let squares = product(&t.component_mul(t), &s.component_mul(s));
+    let mut by_size: Vec<[usize; 2]> = all.collect();
+    by_size.sort_by(|x, y| squares[(x[0], x[1])].total_cmp(&squares[(y[0], y[1])]));
+    let allowed = f64::EPSILON * f64::EPSILON * squares.sum();
+    let mut lost = 0.0;
+    let first = by_size.iter().position(|&[a, b]| {
+        lost += squares[(a, b)];
+        lost > allowed
+    });
+    by_size.split_off(first.unwrap_or(0))
 }
 
 impl Operator {
@@ -152,19 +178,23 @@ impl Operator {
         let (laser, rd) = compress(&d, before.1, "laser side D")?;
         let elements = c.ncols();
         let t = DMatrix::from_fn(rc, elements, |a, j| camera.sigma[a] * camera.vt[(a, j)]);
-        let form = if rc.saturating_mul(rd).saturating_mul(elements) <= options.budget {
-            let right = |j: usize, b: usize| laser.u[(j, b)] * laser.sigma[b];
-            let a = DMatrix::from_fn(rc * rd, elements, |row, j| {
-                t[(row % rc, j)] * right(j, row / rc)
+        let s = DMatrix::from_fn(elements, rd, |j, b| laser.u[(j, b)] * laser.sigma[b]);
+        let u = camera.u.columns(0, rc).into_owned();
+        let v = laser.vt.rows(0, rd).into_owned();
+        let pairs = pairs(&t, &s, options.budget);
+        let form = if pairs.len().saturating_mul(elements) <= options.budget {
+            let a = DMatrix::from_fn(pairs.len(), elements, |row, j| {
+                t[(pairs[row][0], j)] * s[(j, pairs[row][1])]
             });
-            let f = camera.u.columns(0, rc).transpose() * phi * laser.vt.rows(0, rd).transpose();
+            let f = product(&tr_product(&u, &phi), &v.transpose());
             Form::Small {
                 a,
-                b: DVector::from_column_slice(f.as_slice()),
+                b: DVector::from_fn(pairs.len(), |row, _| f[(pairs[row][0], pairs[row][1])]),
+                rows: rc * rd,
             }
         } else {
-            let gram = (c.transpose() * &c).component_mul(&(&d * d.transpose()));
-            let along = (c.transpose() * &phi).component_mul(&d);
+            let gram = tr_product(&c, &c).component_mul(&product(&d, &d.transpose()));
+            let along = tr_product(&c, &phi).component_mul(&d);
             Form::Normal(normal_triangle(
                 &gram,
                 &along.column_sum(),
@@ -176,11 +206,7 @@ impl Operator {
             elements,
             weighting: weights.weighting,
             weights,
-            sides: Some(Sides {
-                u: camera.u.columns(0, rc).into_owned(),
-                t,
-                d,
-            }),
+            sides: Some(Sides { u, t, s, v }),
         })
     }
 
@@ -221,7 +247,8 @@ impl Operator {
         solved: &LeastSquares,
     ) -> Option<DMatrix<f64>> {
         let towards = towards(solved);
-        Some(&towards * self.noise(problem, solved)? * towards.transpose())
+        let noise = self.noise(problem, solved)?;
+        Some(product(&product(&towards, &noise), &towards.transpose()))
     }
 
     /// Covariance of the data along the left singular vectors, as the standard errors make it, rank × rank:
@@ -229,32 +256,43 @@ impl Operator {
     /// > N_kk' = Σ_pl u_k\[p,l\] u_k'\[p,l\] w_p v_l σ²\[p,l\],   u_k = √W K v_k/s_k as pixels × spots.
     ///
     /// The unit matrix where the weights are the entries' own; none without a noise model, and none for unweighted rows with glare patterns.
-    /// C̃ = U T with few (c) orthonormal columns to rounding, so that the sums over pixels cost l·(p·c² + c·k·(r + c + k)) operations and not l·p·k·(r + k).
+    /// C̃ = U T and D̃ = S V with few (c, d) orthonormal columns to rounding, so that the sums cost d·c·r·k + l·(p·c² + c·k·(d + c + k)) operations and not
+    /// l·p·k·(r + k).
     pub(super) fn noise(
         &self,
         problem: &Problem<'_>,
         solved: &LeastSquares,
     ) -> Option<DMatrix<f64>> {
         let stderr = problem.noise()?;
-        let Some(Sides { u, t, d }) = &self.sides else {
+        let Some(Sides { u, t, s, v }) = &self.sides else {
             return (self.weighting == Weighting::EntryByEntry)
                 .then(|| DMatrix::identity(solved.rank, solved.rank));
         };
         let towards = towards(solved);
-        let mut sum = DMatrix::zeros(solved.rank, solved.rank);
-        for l in 0..d.ncols() {
-            let mut lit = towards.clone();
-            for (mut row, &x) in lit.row_iter_mut().zip(d.column(l).iter()) {
+        // T diag(S_b) v_k/s_k of each direction b of the laser side, as columns.
+        let (c, k) = (t.nrows(), solved.rank);
+        let mut lit = DMatrix::zeros(c * k, s.ncols());
+        for (b, mut target) in lit.column_iter_mut().enumerate() {
+            let mut by_element = towards.clone();
+            for (mut row, &x) in by_element.row_iter_mut().zip(s.column(b).iter()) {
                 row *= x;
             }
-            let along = t * lit;
+            target.copy_from_slice(product(t, &by_element).as_slice());
+        }
+        let mut sum = DMatrix::zeros(k, k);
+        for l in 0..v.ncols() {
+            let along = DMatrix::from_column_slice(c, k, (&lit * v.column(l)).as_slice());
+            let errors: Vec<f64> = (0..u.nrows())
+                .map(|p| self.weights.pixels[p] * self.weights.spots[l] * stderr[(p, l)])
+                .collect();
             let mut noise = u.clone();
-            for (p, mut row) in noise.row_iter_mut().enumerate() {
-                row *= self.weights.pixels[p] * self.weights.spots[l] * stderr[(p, l)];
+            for mut column in noise.column_iter_mut() {
+                for (x, error) in column.iter_mut().zip(&errors) {
+                    *x *= error;
+                }
             }
-            // Products of transposed copies: nalgebra blocks those, and not tr_mul.
-            let weighted = noise.transpose() * &noise * &along;
-            sum.gemm(1.0, &along.transpose(), &weighted, 1.0);
+            let weighted = product(&tr_product(&noise, &noise), &along);
+            sum += tr_product(&along, &weighted);
         }
         Some(sum)
     }
@@ -262,7 +300,7 @@ impl Operator {
     /// Rows of the matrix that is decomposed, by which an automatic rank cut is scaled.
     pub(super) fn rows(&self) -> usize {
         match &self.form {
-            Form::Small { a, .. } => a.nrows(),
+            Form::Small { rows, .. } => *rows,
             Form::Normal(_) => self.elements,
             Form::Stacked { rows, .. } => *rows,
         }
@@ -282,7 +320,7 @@ impl Operator {
     pub(super) fn solve(&self, tolerance: Tolerance) -> Result<LeastSquares, RecoveryError> {
         let tolerance = self.tolerance(tolerance);
         let solved = match &self.form {
-            Form::Small { a, b } => least_squares(a, b, tolerance)?,
+            Form::Small { a, b, .. } => least_squares(a, b, tolerance)?,
             Form::Normal(reduced) => reduced.solve(self.elements, tolerance, Route::Normal)?,
             Form::Stacked { triangle, rows, .. } => triangle.solve(*rows, tolerance, Route::Qr)?,
         };
@@ -294,13 +332,22 @@ impl Operator {
         Ok(solved)
     }
 
-    /// R and d of ‖R ρ − d‖, the same objective but for a constant.
-    pub(super) fn reduced(&self) -> Result<Triangle, RecoveryError> {
-        Ok(match &self.form {
-            Form::Small { a, b } => triangle(a, b)?,
-            Form::Normal(reduced) => reduced.clone(),
-            Form::Stacked { triangle, .. } => triangle.clone(),
-        })
+    /// The directions of the operator, U Σ Vᵀ, and Uᵀ times the data: Σ Vᵀ ρ against it is the same objective but for a constant.
+    pub(super) fn directions(&self) -> Result<(Svd, DVector<f64>), RecoveryError> {
+        let reduced = match &self.form {
+            Form::Small { a, b, .. } => match svd_of_range(a, Tolerance::Auto)? {
+                Some(decomposed) => {
+                    let data = decomposed.u.tr_mul(b);
+                    return Ok((decomposed, data));
+                }
+                None => &triangle(a, b)?,
+            },
+            Form::Normal(reduced) => reduced,
+            Form::Stacked { triangle, .. } => triangle,
+        };
+        let decomposed = svd_to(&reduced.r, Tolerance::Auto)?;
+        let data = decomposed.u.tr_mul(&reduced.d);
+        Ok((decomposed, data))
     }
 }
 

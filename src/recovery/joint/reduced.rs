@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::khatri_rao::Operator;
-use crate::num::linalg::{Svd, Tolerance, cut, svd};
+use crate::num::linalg::{Svd, Tolerance, cut};
 use crate::num::quadratic::{Bounds, BoxSolution};
 use crate::recovery::{
     Choice, Estimated, Method, Options, Parameter, Problem, Recovered, RecoveryError, Solver,
@@ -22,8 +22,7 @@ pub(super) struct Reduced {
 impl Reduced {
     pub(super) fn new(problem: &Problem<'_>, options: &Options) -> Result<Self, RecoveryError> {
         let operator = Operator::new(problem, options)?;
-        let reduced = operator.reduced()?;
-        let Svd { u, sigma, vt } = svd(&reduced.r)?;
+        let (Svd { sigma, vt, .. }, data) = operator.directions()?;
         let tolerance = operator.tolerance(Tolerance::Auto);
         let (rank, cutoff) = cut(
             sigma.as_slice(),
@@ -42,7 +41,7 @@ impl Reduced {
         for (mut row, &s) in strong.row_iter_mut().zip(sigma.iter()) {
             row *= s;
         }
-        let d = u.columns(0, rows).transpose() * &reduced.d;
+        let d = data.rows(0, rows).into_owned();
         Ok(Reduced {
             operator,
             r: strong,
@@ -114,7 +113,7 @@ pub(super) fn finish(
     rank: usize,
 ) -> Result<Recovered, RecoveryError> {
     let nuisance = &problem.nuisance;
-    let mut found = Recovered::plain(method, problem, x.clone(), sigma, rank);
+    let mut found = Recovered::plain(method, problem, x.clone(), sigma, rank)?;
     found.weighting = operator.weighting;
     if !nuisance.is_some() {
         return Ok(found);

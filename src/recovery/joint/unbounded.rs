@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 
 use super::khatri_rao::Operator;
 use super::reduced::finish;
-use crate::num::linalg::Tolerance;
+use crate::num::linalg::{Tolerance, tr_product};
 use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
 
 pub(in crate::recovery) fn recover(
@@ -29,7 +29,7 @@ pub(in crate::recovery) fn recover(
             .axpy(-1.0 / largest, &solved.solution, 1.0);
         *of_x = &slope * &*of_x * slope.transpose() / (largest * largest);
     }
-    let resolution = solved.vt.tr_mul(&solved.vt);
+    let resolution = tr_product(&solved.vt, &solved.vt);
     let mut found = finish(
         Method::JointUnbounded,
         problem,

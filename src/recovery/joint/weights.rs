@@ -63,9 +63,22 @@ pub(super) fn fit(stderr: Option<&DMatrix<f64>>, pixels: usize, spots: usize) ->
     let (mut alpha, mut beta) = (vec![level; pixels], vec![0.0; spots]);
     for _ in 0..200 {
         let before = (alpha.clone(), beta.clone());
-        for (p, a) in alpha.iter_mut().enumerate() {
-            *a =
-                mean(&mut (0..spots).filter_map(|l| Some(log[(p, l)]? - beta[l]))).unwrap_or(level);
+        // Frame by frame, as they lie in memory.
+        let mut sums = vec![(0.0, 0u32); pixels];
+        for (l, b) in beta.iter().enumerate() {
+            for ((sum, count), log) in sums.iter_mut().zip(log.column(l).iter()) {
+                if let Some(log) = log {
+                    *sum += log - b;
+                    *count += 1;
+                }
+            }
+        }
+        for (a, (sum, count)) in alpha.iter_mut().zip(sums) {
+            *a = if count > 0 {
+                sum / f64::from(count)
+            } else {
+                level
+            };
         }
         for (l, b) in beta.iter_mut().enumerate() {
             *b =

@@ -16,23 +16,20 @@ use nalgebra::DMatrix;
 
 use super::laplacian::modes;
 use super::{Inverse, Spectrum, damping, decompose};
-use crate::num::linalg::{Tolerance, complement, cut, svd};
-use crate::recovery::{Method, Options, Parameter, Problem, Recovered, RecoveryError};
+use crate::num::linalg::{Tolerance, complement, cut, product, svd, svd_to, tr_product};
+use crate::recovery::{Method, Options, Parameter, Problem, RecoveryError};
 
 /// Elements whose modes, a matrix of elements × elements, are still formed: 512 MiB.
 const MOST_ELEMENTS: usize = 8192;
 
-pub(in crate::recovery) fn recover(
-    problem: &Problem<'_>,
-    options: &Options,
-) -> Result<Recovered, RecoveryError> {
+pub(super) fn inverse(problem: &Problem<'_>, options: &Options) -> Result<Inverse, RecoveryError> {
     let method = Method::TikhonovGradient;
     let elements = problem.d.nrows();
     if elements > MOST_ELEMENTS {
         let most = MOST_ELEMENTS;
         return Err(RecoveryError::TooManyElements { elements, most });
     }
-    decompose(method, problem)?;
+    decompose(method, problem, Tolerance::Auto)?;
     let grids = problem.grids.unwrap_or_default();
     if grids.iter().all(|[nu, nv]| nu * nv == 1) {
         return Err(RecoveryError::NoGrids { method });
@@ -40,13 +37,8 @@ pub(in crate::recovery) fn recover(
     let spectrum = spectrum(problem, grids)?;
     let (damping, choice) = damping::choose(method, problem, options, &spectrum)?;
     let filter = spectrum.damped(damping * spectrum.sigma.first().unwrap_or(&0.0));
-    let inverse = Inverse::filtered(problem, options, &spectrum, &filter);
-    inverse.recovered(
-        method,
-        problem,
-        options,
-        (Parameter::Damping(damping), choice),
-    )
+    let why = (Parameter::Damping(damping), choice);
+    Ok(Inverse::filtered(options, &spectrum, &filter, why))
 }
 
 fn spectrum(problem: &Problem<'_>, grids: &[[usize; 2]]) -> Result<Spectrum, RecoveryError> {
@@ -75,14 +67,14 @@ fn spectrum(problem: &Problem<'_>, grids: &[[usize; 2]]) -> Result<Spectrum, Rec
         column /= s;
     }
 
-    let steep = &a * &smooth;
-    let oblique = smooth - &even * seen.tr_mul(&steep);
+    let steep = product(&a, &smooth);
+    let oblique = smooth - &even * tr_product(&seen, &steep);
     // Decomposed within the complement of what the constants reach, the directions are orthogonal to it to rounding, however weak.
     let outside = complement(&seen)?;
     let rest = outside.coordinates(&steep);
     let uneven = match rest.nrows() {
         0 => None,
-        _ => Some(svd(&rest)?),
+        _ => Some(svd_to(&rest, Tolerance::Auto)?),
     };
     let rounding = spots.max(elements) as f64 * f64::EPSILON * steep.norm();
     let sigma: Vec<f64> = uneven
@@ -99,7 +91,7 @@ fn spectrum(problem: &Problem<'_>, grids: &[[usize; 2]]) -> Result<Spectrum, Rec
         let directions = uneven.u.columns(0, kept).into_owned();
         data.rows_mut(free, kept)
             .tr_copy_from(&outside.vectors(&directions));
-        let mut damped = uneven.vt.rows(0, kept) * oblique.transpose();
+        let mut damped = product(&uneven.vt.rows(0, kept).into_owned(), &oblique.transpose());
         for (mut row, &s) in damped.row_iter_mut().zip(&sigma) {
             row /= s;
         }

@@ -3,36 +3,37 @@
 //! > X = Φ D^#  (p × r),   ρ_j = (1/p) Σ_p X\[p,j\]/C\[p,j\]
 
 mod damping;
-pub(super) mod gradient;
+mod gradient;
 mod laplacian;
-pub(super) mod one_sided;
-pub(super) mod pinv;
-pub(super) mod rdivide;
+mod one_sided;
+mod pinv;
+mod rdivide;
 mod spectrum;
-pub(super) mod tikhonov;
-pub(super) mod tsvd;
+pub(super) mod strips;
+mod tikhonov;
+mod tsvd;
 mod uncertainty;
 
 pub(super) use spectrum::Spectrum;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::num::linalg::{LinalgError, Svd, svd};
+use one_sided::Side;
+use rdivide::Solution;
+
+use crate::num::linalg::{LinalgError, PivotedQr, Svd, Tolerance, product, svd_to, tr_product};
 use crate::recovery::{
     Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, Uncertainty,
 };
 
-/// The laser side decomposed, and the check that C can be divided by.
-fn decompose(method: Method, problem: &Problem<'_>) -> Result<Svd, RecoveryError> {
-    if let Some(at) = problem.c.iter().position(|&x| x == 0.0) {
-        let pixels = problem.c.nrows();
-        return Err(RecoveryError::Unseen {
-            method,
-            pixel: at % pixels,
-            element: at / pixels,
-        });
-    }
-    let decomposed = svd(problem.d)?;
+/// The laser side decomposed as far as a cut at `tolerance` needs it, and the check that C can be divided by.
+fn decompose(
+    method: Method,
+    problem: &Problem<'_>,
+    tolerance: Tolerance,
+) -> Result<Svd, RecoveryError> {
+    refuse_unseen(method, problem)?;
+    let decomposed = svd_to(problem.d, tolerance)?;
     if decomposed.sigma[0] == 0.0 {
         return Err(RecoveryError::RankZero {
             side: "laser side D",
@@ -41,12 +42,31 @@ fn decompose(method: Method, problem: &Problem<'_>) -> Result<Svd, RecoveryError
     Ok(decomposed)
 }
 
-/// A generalised inverse of the laser side, applied.
-struct Inverse {
-    /// X = Φ D^#, p × r.
-    x: DMatrix<f64>,
-    /// D^#, l × r.
-    sharp: DMatrix<f64>,
+/// Refuses an element that a pixel does not see: its C cannot be divided by.
+fn refuse_unseen(method: Method, problem: &Problem<'_>) -> Result<(), RecoveryError> {
+    match problem.c.iter().position(|&x| x == 0.0) {
+        None => Ok(()),
+        Some(at) => Err(RecoveryError::Unseen {
+            method,
+            pixel: at % problem.c.nrows(),
+            element: at / problem.c.nrows(),
+        }),
+    }
+}
+
+/// Pixels whose X is held at once.
+const PIXELS: usize = 512;
+
+type Solver = dyn Fn(&DMatrix<f64>) -> Result<DMatrix<f64>, LinalgError>;
+
+/// A generalised inverse of the laser side, D^# = Vᵀ S with as many rows of V and S as it has directions.
+pub(super) struct Inverse {
+    /// X = Φ D^# of any rows of Φ.
+    apply: Box<Solver>,
+    /// V, k × l, orthonormal rows.
+    data: DMatrix<f64>,
+    /// S, k × r.
+    solution: DMatrix<f64>,
     /// D D^#, r × r, where the resolution is asked for.
     product: Option<DMatrix<f64>>,
     /// Singular values of what was inverted.
@@ -55,66 +75,91 @@ struct Inverse {
     rank: usize,
     /// tr D D^#.
     effective_rank: f64,
+    /// Its parameter, and why that one.
+    why: (Parameter, Choice),
 }
 
 impl Inverse {
     /// Through filter factors on the first directions of a spectrum.
     fn filtered(
-        problem: &Problem<'_>,
         options: &Options,
         spectrum: &Spectrum,
         filter: &[f64],
+        why: (Parameter, Choice),
     ) -> Self {
-        let sharp = spectrum.inverse(filter);
+        let (data, solution) = spectrum.factors(filter);
+        let (across, along) = (data.transpose(), solution.clone());
         Inverse {
-            x: problem.phi * &sharp,
-            sharp,
+            apply: Box::new(move |rows| Ok(product(&product(rows, &across), &along))),
             product: whole(options).then(|| spectrum.product(filter)),
             sigma: DVector::from_column_slice(&spectrum.sigma),
             rank: filter.len(),
             effective_rank: filter.iter().sum(),
+            data,
+            solution,
+            why,
         }
     }
 
-    /// From a solver of X D = B for any B (rows of l entries), which D^# answers for the unit matrix; of the given rank.
+    /// From a solver of X D = B for any B (rows of l entries) that rests on the QR of Dᵀ, cut at the given rank; D^# is its answer for the unit matrix.
     fn solved(
         problem: &Problem<'_>,
         options: &Options,
         sigma: DVector<f64>,
-        rank: usize,
-        solve: impl Fn(&DMatrix<f64>) -> Result<DMatrix<f64>, LinalgError>,
+        (qr, rank): (PivotedQr, usize),
+        solve: fn(&PivotedQr, usize, &DMatrix<f64>) -> Result<DMatrix<f64>, LinalgError>,
+        choice: Choice,
     ) -> Result<Self, RecoveryError> {
-        let spots = problem.d.ncols();
-        let sharp = solve(&DMatrix::identity(spots, spots))?;
+        // What Q does not span is not seen by the solver.
+        let data = qr.q.columns(0, rank).transpose();
+        let apply = move |rows: &DMatrix<f64>| Ok(solve(&qr, rank, &rows.transpose())?.transpose());
+        let solution = apply(&data)?;
+        let whole = whole(options);
         Ok(Inverse {
-            x: solve(problem.phi)?,
-            product: whole(options).then(|| problem.d * &sharp),
-            sharp,
+            apply: Box::new(apply),
+            product: whole.then(|| product(&product(problem.d, &data.transpose()), &solution)),
+            data,
+            solution,
             sigma,
             rank,
             effective_rank: rank as f64,
+            why: (Parameter::Rank(rank), choice),
         })
     }
 
-    /// Divided by C and averaged over the pixels, with uncertainty and resolution.
+    /// Σ_p X\[p,j\]/C\[p,j\], a block of pixels after the other.
+    fn sum(&self, problem: &Problem<'_>) -> Result<DVector<f64>, RecoveryError> {
+        let (pixels, elements) = problem.c.shape();
+        let mut sum = DVector::zeros(elements);
+        for first in (0..pixels).step_by(PIXELS) {
+            let count = PIXELS.min(pixels - first);
+            let x = (self.apply)(&problem.phi.rows(first, count).into_owned())?;
+            let ratio = x.component_div(&problem.c.rows(first, count));
+            for (sum, column) in sum.iter_mut().zip(ratio.column_iter()) {
+                *sum += column.sum();
+            }
+        }
+        Ok(sum)
+    }
+
+    /// ρ_j = (1/p) Σ_p X\[p,j\]/C\[p,j\], with uncertainty and resolution.
     fn recovered(
         self,
         method: Method,
         problem: &Problem<'_>,
         options: &Options,
-        (parameter, choice): (Parameter, Choice),
     ) -> Result<Recovered, RecoveryError> {
-        let pixels = problem.phi.nrows() as f64;
-        let reflectance = mean_over_pixels(&self.x.component_div(problem.c), pixels);
-        let mut found = Recovered::plain(method, problem, reflectance, self.sigma, self.rank);
-        (found.parameter, found.choice) = (parameter, choice);
+        let reflectance = self.sum(problem)? / problem.phi.nrows() as f64;
+        let mut found = Recovered::plain(method, problem, reflectance, self.sigma, self.rank)?;
+        (found.parameter, found.choice) = self.why;
         found.effective_rank = self.effective_rank;
         found.resolution = self.product.map(|m| uncertainty::resolution(problem.c, &m));
         if let Some(stderr) = problem.noise() {
-            let errors = uncertainty::standard_error(stderr, &self.sharp, problem.c);
-            found.standard_error = Some(errors);
+            let factors = (&self.data, &self.solution);
+            found.standard_error = Some(uncertainty::standard_error(stderr, factors, problem.c));
             if whole(options) {
-                found.covariance = Some(uncertainty::covariance(stderr, &self.sharp, problem.c)?);
+                let sharp = tr_product(&self.data, &self.solution);
+                found.covariance = Some(uncertainty::covariance(stderr, &sharp, problem.c)?);
             }
         }
         Ok(found)
@@ -126,9 +171,29 @@ fn whole(options: &Options) -> bool {
     options.uncertainty == Uncertainty::Full
 }
 
-fn mean_over_pixels(x: &DMatrix<f64>, divisor: f64) -> DVector<f64> {
-    DVector::from_iterator(
-        x.ncols(),
-        x.column_iter().map(|column| column.sum() / divisor),
-    )
+/// The inverse of a method that works pixel by pixel; what `problem` holds of Φ serves the choice of a parameter that is not given.
+pub(super) fn inverse(
+    method: Method,
+    problem: &Problem<'_>,
+    options: &Options,
+) -> Result<Inverse, RecoveryError> {
+    match method {
+        Method::LeftInverse => one_sided::inverse(problem, options, Side::Left),
+        Method::RightInverse => one_sided::inverse(problem, options, Side::Right),
+        Method::Rdivide => rdivide::inverse(problem, options, Solution::Basic),
+        Method::RdivideMinNorm => rdivide::inverse(problem, options, Solution::LeastNorm),
+        Method::Tsvd => tsvd::inverse(problem, options),
+        Method::Tikhonov => tikhonov::inverse(problem, options),
+        Method::TikhonovGradient => gradient::inverse(problem, options),
+        _ => pinv::inverse(problem, options),
+    }
+}
+
+/// A method that works pixel by pixel.
+pub(super) fn recover(
+    method: Method,
+    problem: &Problem<'_>,
+    options: &Options,
+) -> Result<Recovered, RecoveryError> {
+    inverse(method, problem, options)?.recovered(method, problem, options)
 }

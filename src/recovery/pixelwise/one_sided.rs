@@ -6,30 +6,28 @@
 //! Neither product is formed, which would square the condition. Both are D⁺ where they exist, D_L giving the one exact solution of X D = Φ of least
 //! norm and D_R the one solution of least squares, and both come from the pivoted QR of Dᵀ; unlike `pinv` these methods refuse where they do not exist.
 
-use nalgebra::DMatrix;
-
 use super::{Inverse, decompose};
-use crate::num::linalg::{cut, pivoted_qr};
-use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
+use crate::num::linalg::{PivotedQr, cut, pivoted_qr_to};
+use crate::recovery::{Choice, Method, Options, Problem, RecoveryError};
 
 /// From which side D is inverted.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(in crate::recovery) enum Side {
+pub(super) enum Side {
     Left,
     Right,
 }
 
-pub(in crate::recovery) fn recover(
+pub(super) fn inverse(
     problem: &Problem<'_>,
     options: &Options,
     side: Side,
-) -> Result<Recovered, RecoveryError> {
+) -> Result<Inverse, RecoveryError> {
     let (elements, spots) = problem.d.shape();
     let (method, needed) = match side {
         Side::Left => (Method::LeftInverse, spots),
         Side::Right => (Method::RightInverse, elements),
     };
-    let laser = decompose(method, problem)?;
+    let laser = decompose(method, problem, options.tolerance)?;
     let (rank, cutoff) = cut(laser.sigma.as_slice(), elements, spots, options.tolerance)?;
     if rank < needed {
         return Err(RecoveryError::NotFullRank {
@@ -40,21 +38,19 @@ pub(in crate::recovery) fn recover(
             spots,
         });
     }
-    let qr = pivoted_qr(&problem.d.transpose())?;
-    let solve = |b: &DMatrix<f64>| {
-        let x = match side {
-            Side::Left => qr.minimum_norm(rank, &b.transpose()),
-            Side::Right => qr.basic(rank, &b.transpose()),
-        };
-        x.map(|x| x.transpose())
+    let qr = pivoted_qr_to(&problem.d.transpose(), options.tolerance)?;
+    let solve = match side {
+        Side::Left => PivotedQr::minimum_norm,
+        Side::Right => PivotedQr::basic,
     };
-    let inverse = Inverse::solved(problem, options, laser.sigma, rank, solve)?;
-    let why = (Parameter::Rank(rank), Choice::Tolerance { cutoff });
-    inverse.recovered(method, problem, options, why)
+    let choice = Choice::Tolerance { cutoff };
+    Inverse::solved(problem, options, laser.sigma, (qr, rank), solve, choice)
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::DMatrix;
+
     use super::*;
     use crate::num::linalg::{Tolerance, pinv};
     use crate::recovery::bench::Bench;

@@ -2,13 +2,10 @@
 
 use super::{Inverse, Spectrum, decompose};
 use crate::num::linalg::{Tolerance, cut};
-use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
+use crate::recovery::{Choice, Method, Options, Parameter, Problem, RecoveryError};
 
-pub(in crate::recovery) fn recover(
-    problem: &Problem<'_>,
-    options: &Options,
-) -> Result<Recovered, RecoveryError> {
-    let laser = decompose(Method::Pinv, problem)?;
+pub(super) fn inverse(problem: &Problem<'_>, options: &Options) -> Result<Inverse, RecoveryError> {
+    let laser = decompose(Method::Pinv, problem, options.tolerance)?;
     let (rows, columns) = problem.d.shape();
     let (rank, cutoff) = cut(laser.sigma.as_slice(), rows, columns, options.tolerance)?;
     let choice = match options.tolerance {
@@ -16,13 +13,8 @@ pub(in crate::recovery) fn recover(
         _ => Choice::Tolerance { cutoff },
     };
     let spectrum = Spectrum::of(&laser, rank);
-    let inverse = Inverse::filtered(problem, options, &spectrum, &vec![1.0; rank]);
-    inverse.recovered(
-        Method::Pinv,
-        problem,
-        options,
-        (Parameter::Rank(rank), choice),
-    )
+    let why = (Parameter::Rank(rank), choice);
+    Ok(Inverse::filtered(options, &spectrum, &vec![1.0; rank], why))
 }
 
 #[cfg(test)]

@@ -7,51 +7,49 @@
 //! * `rdivide-min-norm`: the solution of least norm, as Octave and LAPACK's `gelsy`. (`gelsy` itself decides the rank by an estimate of the
 //!   condition of R; here both share one rank, so that they differ in nothing but the solution chosen.)
 
-use nalgebra::DMatrix;
-
 use super::{Inverse, decompose};
-use crate::num::linalg::{Tolerance, pivoted_qr};
-use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
+use crate::num::linalg::{PivotedQr, Tolerance, pivoted_qr_to};
+use crate::recovery::{Choice, Method, Options, Problem, RecoveryError};
 
 /// Which of the many solutions of a deficient system.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(in crate::recovery) enum Solution {
+pub(super) enum Solution {
     Basic,
     LeastNorm,
 }
 
-pub(in crate::recovery) fn recover(
+pub(super) fn inverse(
     problem: &Problem<'_>,
     options: &Options,
     solution: Solution,
-) -> Result<Recovered, RecoveryError> {
+) -> Result<Inverse, RecoveryError> {
     let method = match solution {
         Solution::Basic => Method::Rdivide,
         Solution::LeastNorm => Method::RdivideMinNorm,
     };
-    let laser = decompose(method, problem)?;
-    let qr = pivoted_qr(&problem.d.transpose())?;
+    let laser = decompose(method, problem, Tolerance::Auto)?;
+    let qr = pivoted_qr_to(&problem.d.transpose(), options.tolerance)?;
     let (rank, cutoff) = qr.rank(options.tolerance)?;
     let choice = match options.tolerance {
         Tolerance::Rank(_) => Choice::Given,
         _ => Choice::Tolerance { cutoff },
     };
-    let solve = |b: &DMatrix<f64>| {
-        let x = match solution {
-            Solution::Basic => qr.basic(rank, &b.transpose()),
-            Solution::LeastNorm => qr.minimum_norm(rank, &b.transpose()),
-        };
-        x.map(|x| x.transpose())
+    let solve = match solution {
+        Solution::Basic => PivotedQr::basic,
+        Solution::LeastNorm => PivotedQr::minimum_norm,
     };
-    let inverse = Inverse::solved(problem, options, laser.sigma, rank, solve)?;
-    inverse.recovered(method, problem, options, (Parameter::Rank(rank), choice))
+    Inverse::solved(problem, options, laser.sigma, (qr, rank), solve, choice)
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::DMatrix;
+
     use super::*;
+    use crate::num::linalg::pivoted_qr;
     use crate::recovery::bench::{Bench, relative_noise};
     use crate::recovery::recover as by_method;
+    use crate::recovery::{Parameter, Recovered};
 
     fn both(problem: &Problem<'_>, options: &Options) -> [Recovered; 2] {
         [Method::Rdivide, Method::RdivideMinNorm].map(|m| by_method(m, problem, options).unwrap())

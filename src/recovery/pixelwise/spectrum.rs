@@ -7,7 +7,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::num::linalg::Svd;
+use crate::num::linalg::{Svd, tr_product};
 
 /// The directions, in the order in which they are kept.
 pub(in crate::recovery) struct Spectrum {
@@ -64,14 +64,16 @@ impl Spectrum {
             .collect()
     }
 
-    /// D^#, l × r, from the filter factors of the first directions.
-    pub(in crate::recovery) fn inverse(&self, filter: &[f64]) -> DMatrix<f64> {
-        self.data.rows(0, filter.len()).transpose() * self.weighted(filter)
+    /// V and S of D^# = Vᵀ S, from the filter factors of the first directions.
+    pub(in crate::recovery) fn factors(&self, filter: &[f64]) -> (DMatrix<f64>, DMatrix<f64>) {
+        let data = self.data.rows(0, filter.len()).into_owned();
+        (data, self.weighted(filter))
     }
 
     /// D D^#, r × r.
     pub(in crate::recovery) fn product(&self, filter: &[f64]) -> DMatrix<f64> {
-        self.image.rows(0, filter.len()).transpose() * self.weighted(filter)
+        let image = self.image.rows(0, filter.len()).into_owned();
+        tr_product(&image, &self.weighted(filter))
     }
 
     fn weighted(&self, filter: &[f64]) -> DMatrix<f64> {

@@ -2,26 +2,18 @@
 
 use super::{Inverse, Spectrum, damping, decompose};
 use crate::num::linalg::{Tolerance, cut};
-use crate::recovery::{Method, Options, Parameter, Problem, Recovered, RecoveryError};
+use crate::recovery::{Method, Options, Parameter, Problem, RecoveryError};
 
-pub(in crate::recovery) fn recover(
-    problem: &Problem<'_>,
-    options: &Options,
-) -> Result<Recovered, RecoveryError> {
+pub(super) fn inverse(problem: &Problem<'_>, options: &Options) -> Result<Inverse, RecoveryError> {
     let method = Method::Tikhonov;
-    let laser = decompose(method, problem)?;
+    let laser = decompose(method, problem, Tolerance::Auto)?;
     let (rows, columns) = problem.d.shape();
     let (rank, _) = cut(laser.sigma.as_slice(), rows, columns, Tolerance::Auto)?;
     let spectrum = Spectrum::of(&laser, rank);
     let (damping, choice) = damping::choose(method, problem, options, &spectrum)?;
     let filter = spectrum.damped(damping * spectrum.sigma[0]);
-    let inverse = Inverse::filtered(problem, options, &spectrum, &filter);
-    inverse.recovered(
-        method,
-        problem,
-        options,
-        (Parameter::Damping(damping), choice),
-    )
+    let why = (Parameter::Damping(damping), choice);
+    Ok(Inverse::filtered(options, &spectrum, &filter, why))
 }
 
 #[cfg(test)]

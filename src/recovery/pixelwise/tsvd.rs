@@ -4,15 +4,13 @@ use super::{Inverse, Spectrum, decompose};
 use crate::num::linalg::{Tolerance, cut};
 use crate::recovery::rule::discrepancy::Discrepancy;
 use crate::recovery::rule::{Data, Rule};
-use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
+use crate::recovery::{Choice, Method, Options, Parameter, Problem, RecoveryError};
 
 const METHOD: Method = Method::Tsvd;
 
-pub(in crate::recovery) fn recover(
-    problem: &Problem<'_>,
-    options: &Options,
-) -> Result<Recovered, RecoveryError> {
-    let laser = decompose(METHOD, problem)?;
+pub(super) fn inverse(problem: &Problem<'_>, options: &Options) -> Result<Inverse, RecoveryError> {
+    let needed = options.rank.map_or(Tolerance::Auto, Tolerance::Rank);
+    let laser = decompose(METHOD, problem, needed)?;
     let (rows, columns) = problem.d.shape();
     let most = |tolerance| cut(laser.sigma.as_slice(), rows, columns, tolerance);
     let (spectrum, rank, choice) = match options.rank {
@@ -26,8 +24,8 @@ pub(in crate::recovery) fn recover(
             (spectrum, rank, choice)
         }
     };
-    let inverse = Inverse::filtered(problem, options, &spectrum, &vec![1.0; rank]);
-    inverse.recovered(METHOD, problem, options, (Parameter::Rank(rank), choice))
+    let why = (Parameter::Rank(rank), choice);
+    Ok(Inverse::filtered(options, &spectrum, &vec![1.0; rank], why))
 }
 
 /// How many directions the rule keeps, and why.

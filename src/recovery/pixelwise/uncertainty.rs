@@ -2,19 +2,33 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::mean_over_pixels;
-use crate::num::linalg::{LinalgError, Tolerance, cut, svd};
+use crate::num::linalg::{LinalgError, Tolerance, cut, product, svd_to, tr_product};
 
-/// Standard errors for independent entries: var ρ̂_j = Σ_pl σ²\[p,l\] (D^#\[l,j\]/(p C\[p,j\]))². Cost p·l·r.
+/// Elements whose sums are held at once.
+const ELEMENTS: usize = 256;
+
+/// Standard errors for independent entries: var ρ̂_j = Σ_pl σ²\[p,l\] (D^#\[l,j\]/(p C\[p,j\]))², D^# = Vᵀ S. Cost p·l·r, memory that of Φ.
 pub(super) fn standard_error(
     stderr: &DMatrix<f64>,
-    sharp: &DMatrix<f64>,
+    (data, solution): (&DMatrix<f64>, &DMatrix<f64>),
     c: &DMatrix<f64>,
 ) -> DVector<f64> {
-    let squares = |m: &DMatrix<f64>| m.component_mul(m);
-    let pixels = c.nrows() as f64;
-    let ratio = (squares(stderr) * squares(sharp)).component_div(&squares(c));
-    mean_over_pixels(&ratio, pixels * pixels).map(f64::sqrt)
+    let (pixels, elements) = c.shape();
+    let variance = stderr.component_mul(stderr);
+    let across = data.transpose();
+    let mut errors = DVector::zeros(elements);
+    for first in (0..elements).step_by(ELEMENTS) {
+        let count = ELEMENTS.min(elements - first);
+        let share = c.columns(first, count).map(|x| 1.0 / (x * x));
+        let seen = tr_product(&variance, &share);
+        let sharp = product(&across, &solution.columns(first, count).into_owned());
+        for j in 0..count {
+            let terms = seen.column(j).zip_map(&sharp.column(j), |v, s| v * s * s);
+            let sum = terms.sum();
+            errors[first + j] = sum.sqrt() / pixels as f64;
+        }
+    }
+    errors
 }
 
 /// The covariance matrix for independent entries, r × r:
@@ -34,7 +48,7 @@ pub(super) fn covariance(
     for (mut column, &norm) in over_c.column_iter_mut().zip(&norms) {
         column /= norm;
     }
-    let smooth = svd(&over_c)?;
+    let smooth = svd_to(&over_c, Tolerance::Auto)?;
     let (rank, _) = cut(smooth.sigma.as_slice(), pixels, elements, Tolerance::Auto)?;
     let mut t = smooth.vt.rows(0, rank).into_owned();
     for (mut row, &s) in t.row_iter_mut().zip(smooth.sigma.iter()) {
@@ -63,13 +77,14 @@ pub(super) fn covariance(
 
 /// The resolution matrix R of E ρ̂ = R ρ, r × r: R_jk = (D D^#)_kj · (1/p) Σ_p C\[p,k\]/C\[p,j\]. Cost p·r².
 pub(super) fn resolution(c: &DMatrix<f64>, product: &DMatrix<f64>) -> DMatrix<f64> {
-    let share = c.map(|x| 1.0 / x).transpose() * c / c.nrows() as f64;
+    let share = tr_product(&c.map(|x| 1.0 / x), c) / c.nrows() as f64;
     share.component_mul(&product.transpose())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::num::linalg::svd;
     use crate::recovery::bench::{Bench, normal_stream, relative_noise};
     use crate::recovery::{Method, Options, Problem, Uncertainty, recover};
 
@@ -118,7 +133,8 @@ mod tests {
                 assert!((found[(j, k)] - sum / 256.0).abs() < 1e-12 * scale);
             }
         }
-        let errors = standard_error(&stderr, &sharp, &bench.c);
+        let factors = (&DMatrix::identity(120, 120), &sharp);
+        let errors = standard_error(&stderr, factors, &bench.c);
         let diagonal = found.diagonal().map(f64::sqrt);
         assert!((diagonal.component_div(&errors)).add_scalar(-1.0).amax() < 1e-12);
     }

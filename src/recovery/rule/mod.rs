@@ -9,6 +9,7 @@ use std::fmt;
 
 use super::Problem;
 use super::pixelwise::Spectrum;
+use crate::num::linalg::{product, subtract_product};
 
 /// How the parameter of `tsvd`, `tikhonov` and `tikhonov-gradient` is chosen where it is not given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -56,10 +57,12 @@ pub(in crate::recovery) struct Data<'s> {
 
 impl<'s> Data<'s> {
     pub(in crate::recovery) fn new(problem: &Problem<'_>, spectrum: &'s Spectrum) -> Self {
-        let coordinates = problem.phi * spectrum.data.transpose();
+        let coordinates = product(problem.phi, &spectrum.data.transpose());
+        let mut outside = problem.phi.clone();
+        subtract_product(&mut outside, &coordinates, &spectrum.data);
         Data {
             spectrum,
-            outside: (problem.phi - &coordinates * &spectrum.data).norm_squared(),
+            outside: outside.norm_squared(),
             along: coordinates
                 .column_iter()
                 .map(|c| c.norm_squared())

@@ -1,0 +1,223 @@
+//! How much memory a recovery takes, and Φcam by rows where it would be more than there is.
+
+use std::fs;
+use std::path::Path;
+
+use super::args::RecoverArgs;
+use super::failure::Failure;
+use super::output::Talk;
+use crate::matrix::npy::Rows;
+use crate::model::MatrixModel;
+use crate::recovery::{Method, Options, Strip, recover_strips};
+use crate::scene::Scene;
+use crate::study::{Attempt, measured};
+
+const GIB: f64 = (1u64 << 30) as f64;
+/// What the program takes besides.
+const BASE: f64 = 64.0 * 1024.0 * 1024.0;
+/// Pixels of the largest strip.
+const MOST_PIXELS: f64 = 4096.0;
+
+/// How Φcam is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Held {
+    Whole,
+    /// So many pixels at a time.
+    Strips(usize),
+}
+
+/// The numbers of a problem.
+#[derive(Clone, Copy, Debug)]
+struct Size {
+    pixels: f64,
+    spots: f64,
+    elements: f64,
+}
+
+impl Size {
+    /// The four matrices of the model.
+    fn model(self) -> f64 {
+        8.0 * 2.0 * self.elements * (self.pixels + self.spots)
+    }
+
+    /// Everything at once, an upper bound: Φcam, its errors and three matrices of their size on the way, four of D's; of a joint method weighted copies of
+    /// both sides and three of its product besides.
+    fn whole(self, joint: bool, budget: usize) -> f64 {
+        let phi = self.pixels * self.spots;
+        let sides = self.elements * (self.pixels + self.spots);
+        let more = match joint {
+            true => 2.0 * phi + 3.0 * sides + 3.0 * budget as f64,
+            false => 0.0,
+        };
+        BASE + self.model() + 8.0 * (5.0 * phi + 4.0 * self.elements * self.spots + more)
+    }
+
+    /// What strips need however low they are: the model, D decomposed, a matrix of spots × elements and another on the way.
+    fn beside(self) -> f64 {
+        BASE + self.model() + 8.0 * 6.0 * self.elements * self.spots
+    }
+
+    /// One pixel of a strip: Φcam and its errors as they are read and on the way, C and what is divided by it.
+    fn pixel(self) -> f64 {
+        8.0 * (6.0 * self.spots + 5.0 * self.elements)
+    }
+}
+
+/// How the photographs are to be held within the memory allowed; says what will be taken where that is much.
+pub(super) fn plan(
+    args: &RecoverArgs,
+    scene: &Scene,
+    methods: &[Method],
+    options: &Options,
+    talk: Talk,
+) -> Result<Held, Failure> {
+    let elements = |surface: [usize; 2]| {
+        let [nu, nv] = args.elements.unwrap_or(surface);
+        nu as f64 * nv as f64
+    };
+    let size = Size {
+        pixels: scene.camera.pixels() as f64,
+        spots: scene.laser.spots.len() as f64,
+        elements: scene.hidden().map(|(_, s)| elements(s.elements)).sum(),
+    };
+    let allowed = args.memory.map(|m| m * GIB).or_else(free);
+    let joint = methods.iter().any(|m| m.is_joint());
+    let whole = size.whole(joint, options.budget);
+    if allowed.is_none_or(|allowed| whole <= allowed) {
+        if whole > GIB {
+            talk.say(format!("memory: up to {:.1} GiB", whole / GIB));
+        }
+        return Ok(Held::Whole);
+    }
+    let allowed = allowed.unwrap_or(whole);
+    let pixels = ((allowed - size.beside()) / size.pixel()).floor();
+    if pixels < 1.0 {
+        let cause = format!(
+            "the model alone needs {:.2} GiB of memory, and {:.2} may be taken",
+            (size.beside() + size.pixel()) / GIB,
+            allowed / GIB
+        );
+        return Err(Failure::new(
+            cause,
+            "use fewer --elements, or allow more (--memory)",
+        ));
+    }
+    let pixels = pixels.min(MOST_PIXELS).min(size.pixels);
+    talk.say(format!(
+        "memory: up to {:.2} GiB (all of Φcam at once would take {:.2}, and {:.2} may be taken): Φcam is read by {pixels} pixels at a time",
+        (size.beside() + pixels * size.pixel()) / GIB,
+        whole / GIB,
+        allowed / GIB
+    ));
+    Ok(Held::Strips(pixels as usize))
+}
+
+/// Three quarters of the memory that is free, where the system says.
+fn free() -> Option<f64> {
+    let said = fs::read_to_string("/proc/meminfo").ok()?;
+    let line = said.lines().find(|l| l.starts_with("MemAvailable:"))?;
+    let kib: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(0.75 * kib * 1024.0)
+}
+
+/// What a strip's standard errors come from.
+pub(super) enum Errors {
+    Unknown,
+    /// Relative to each entry.
+    Relative(f64),
+    File(Rows),
+}
+
+/// A file of Φcam's shape, opened.
+pub(super) fn open(path: &Path, scene: &Scene) -> Result<Rows, Failure> {
+    let rows = Rows::open(path)?;
+    let wanted = (scene.camera.pixels(), scene.laser.spots.len());
+    if rows.shape() != wanted {
+        let (found, (pixels, spots)) = (rows.shape(), wanted);
+        let cause = format!(
+            "{} is {} × {}, but scene `{}` has {pixels} pixels and {spots} spots",
+            path.display(),
+            found.0,
+            found.1,
+            scene.name
+        );
+        return Err(Failure::new(
+            cause,
+            "give the matrix of this scene, pixels × spots",
+        ));
+    }
+    Ok(rows)
+}
+
+/// The hidden objects by each method, from strips of so many pixels.
+pub(super) fn recover(
+    model: &MatrixModel,
+    phi: &mut Rows,
+    errors: &mut Errors,
+    pixels: usize,
+    methods: &[Method],
+    options: &Options,
+) -> Result<Vec<Attempt>, Failure> {
+    let mut attempts = Vec::new();
+    for &method in methods {
+        // What the files refuse is no matter of the method.
+        let mut broken = None;
+        let strip = |first: usize| match read(model, phi, errors, first, pixels) {
+            Ok(strip) => Ok(strip),
+            Err(failure) => {
+                broken = Some(failure);
+                Ok(None)
+            }
+        };
+        let found = recover_strips(method, &model.laser_side, options, strip);
+        if let Some(failure) = broken {
+            return Err(failure);
+        }
+        attempts.push(Attempt {
+            method,
+            outcome: found.map(|found| measured(model, &found)),
+        });
+    }
+    Ok(attempts)
+}
+
+fn read(
+    model: &MatrixModel,
+    phi: &mut Rows,
+    errors: &mut Errors,
+    first: usize,
+    pixels: usize,
+) -> Result<Option<Strip>, Failure> {
+    let phi = phi.read(first, pixels)?;
+    let count = phi.nrows();
+    if count == 0 {
+        return Ok(None);
+    }
+    let stderr = match errors {
+        Errors::Unknown => None,
+        Errors::Relative(noise) => Some(phi.map(|x| x.abs() * *noise)),
+        Errors::File(rows) => Some(rows.read(first, count)?),
+    };
+    Ok(Some(Strip {
+        c: model.camera_side.rows(first, count).into_owned(),
+        phi,
+        stderr,
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 64 GiB of photographs, 64 elements: a strip fits 4 GiB with room to spare, the whole does not.
+    #[test]
+    fn photographs_of_sixty_four_gib_fit_four() {
+        let size = Size {
+            pixels: (1u64 << 20) as f64,
+            spots: 8192.0,
+            elements: 64.0,
+        };
+        assert!(size.whole(false, 0) > 64.0 * GIB);
+        assert!(size.beside() + MOST_PIXELS * size.pixel() < 4.0 * GIB);
+    }
+}
