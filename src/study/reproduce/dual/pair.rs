@@ -16,19 +16,19 @@ use super::super::photographs::traced;
 use super::super::{ReproduceError, Watch};
 use crate::geometry::DVec3;
 use crate::matrix::Matrix;
-use crate::model::{Extent, Kernel, converged};
+use crate::model::{Extent, Kernel, Take, converged};
 use crate::num::quadrature::Rule;
 use crate::scene::Scene;
 use crate::transport::Traced;
 
 /// Nodes a side of the quadrature of an étendue; the next rule changes it by less than 1e-12.
-const NODES: usize = 4;
+pub(super) const NODES: usize = 4;
 
-/// E_p = ∫ A_lens cosθ_cam cosθ_view/d² dA over the footprint of each pixel, length² sr.
-pub(super) fn etendues(scene: &Scene) -> Vec<f64> {
+/// E_p = ∫ A_lens cosθ_cam cosθ_view/d² dA over the footprint of each pixel, by `nodes` × `nodes` points, length² sr.
+pub(super) fn etendues(scene: &Scene, nodes: usize) -> Vec<f64> {
     let camera = &scene.camera;
     let normal = camera.view.normal();
-    let rule = Rule::gauss_legendre(NODES);
+    let rule = Rule::gauss_legendre(nodes);
     let at = |point: DVec3| {
         let line = camera.position - point;
         let cos = line.normalize().dot(normal);
@@ -82,7 +82,7 @@ impl Direction {
         let spots = 0..scene.laser.spots.len();
         Ok(Self {
             traced: traced(&scene, size, seed, spots, watch)?,
-            etendues: etendues(&scene),
+            etendues: etendues(&scene, NODES),
             scene,
         })
     }
@@ -95,14 +95,26 @@ impl Direction {
         })
     }
 
-    /// k by the converged integral over elements and footprints, and what its last refinement changed.
-    fn integral(&self) -> Result<[Matrix; 2], ReproduceError> {
-        let found = converged(&self.scene, Kernel::Physical, Extent::FULL)?;
-        Ok([self.transport(&found.phi), self.transport(&found.bound)])
+    /// k averaged over the footprints, each by its étendues, over k at their centres, less 1; and what quadrature may be off by. From the model alone, and
+    /// unmoved by a scale of the étendues.
+    fn spread(&self) -> Result<[Matrix; 2], ReproduceError> {
+        let centres = Extent {
+            footprints: Take::Centre,
+            ..Extent::FULL
+        };
+        let [whole, centre] =
+            [Extent::FULL, centres].map(|extent| converged(&self.scene, Kernel::Physical, extent));
+        let (whole, centre) = (whole?, centre?);
+        let [over, at] = [NODES, 1].map(|nodes| etendues(&self.scene, nodes));
+        let (pixels, spots) = whole.phi.shape();
+        let effect =
+            |p: usize, l: usize| whole.phi[(p, l)] / centre.phi[(p, l)] * (at[p] / over[p]) - 1.0;
+        let bound = (whole.bound + centre.bound).component_div(&centre.phi);
+        Ok([Matrix::from_fn(pixels, spots, effect), bound])
     }
 }
 
-/// By how much k of one direction exceeds the transposed k of the other because footprints have an area and spots have none, pixels × spots.
+/// By how much k of one direction exceeds the transposed k of the other because footprints have an area and spots have none, as a part of it; pixels × spots.
 pub(super) struct Footprints {
     /// By quadrature.
     pub(super) signed: Matrix,
@@ -114,7 +126,7 @@ pub(super) fn footprints(
     there: &Direction,
     back: &Direction,
 ) -> Result<Footprints, ReproduceError> {
-    let ([a, a_bound], [b, b_bound]) = (there.integral()?, back.integral()?);
+    let ([a, a_bound], [b, b_bound]) = (there.spread()?, back.spread()?);
     Ok(Footprints {
         signed: a - b.transpose(),
         bound: a_bound + b_bound.transpose(),

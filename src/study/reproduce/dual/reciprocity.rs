@@ -43,6 +43,7 @@ impl Reciprocity {
         let [a, a_error] = k(there);
         let [b, b_error] = k(back).map(|m| m.transpose());
         let Footprints { signed, bound } = footprints(there, back)?;
+        let [signed, bound] = [signed, bound].map(|part| part.component_mul(&a));
         let allowed = signed.abs() + &bound;
         let [flux, error] = [&back.traced.flux, &back.traced.stderr].map(Matrix::transpose);
         let none = Matrix::zeros(flux.nrows(), flux.ncols());

@@ -51,7 +51,7 @@ fn etendues_add_up_to_the_form_factor_of_the_view() {
         x / root * libm::atan(y / root)
     };
     let want = 0.05 * PI * 4.0 * (half(x, y) + half(y, x)) / (2.0 * PI);
-    let found: f64 = pair::etendues(&scene).iter().sum();
+    let found: f64 = pair::etendues(&scene, pair::NODES).iter().sum();
     assert!((found / want - 1.0).abs() < 1e-12, "{found} for {want}");
 }
 
