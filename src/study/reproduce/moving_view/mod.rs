@@ -212,7 +212,8 @@ fn notes(modelled: &[Configuration], traced: &[Photographs]) -> Vec<String> {
             )
         };
         notes.push(format!(
-            "Half-width {half_width} in., physical kernel, modelled; the noise at which the raw MTF of the 2 × 2 and of the 4 × 4 board falls below {KEPT}: {}.",
+            "Half-width {half_width} in., physical kernel, modelled; the noise at which the raw MTF of the 2 × 2 and of the 4 × 4 board falls below {KEPT}, at most the loudest tried, {:.1e}: {}.",
+            modelled::loudest(),
             own.iter().map(line).collect::<Vec<_>>().join("; ")
         ));
     }

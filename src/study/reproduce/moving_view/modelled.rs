@@ -16,6 +16,16 @@ use crate::study::deviate::normal_deviates;
 /// Twice the powers of ten of the noise, from the quietest on.
 const HALF_POWERS: std::ops::RangeInclusive<i32> = -12..=-1;
 
+/// The noise of a level.
+fn level(half_power: i32) -> f64 {
+    libm::exp10(0.5 * f64::from(half_power))
+}
+
+/// The loudest noise that is tried.
+pub(super) fn loudest() -> f64 {
+    level(*HALF_POWERS.end())
+}
+
 /// What one level of noise leaves of one board.
 pub(super) struct Point {
     /// Standard deviation of each entry of Φ over its value.
@@ -125,9 +135,9 @@ fn course(
         })
         .collect::<Vec<_>>();
     let unit = contrast_error(&weighted, &clean, &truth)?;
-    let point = |half: i32| {
+    let point = |half_power: i32| {
         watch.go_on()?;
-        let noise = libm::exp10(0.5 * f64::from(half));
+        let noise = level(half_power);
         let mut sum = 0.0;
         for z in &deviates {
             let found = weighted.recover(Method::Joint, &(&clean + z * noise), noise)?;
