@@ -42,7 +42,7 @@ fn loses(name: &str, modelled: &[Configuration], less: fn(f64, f64) -> bool) -> 
             modelled.iter().filter(own)
         };
         let fixed = own().find(|c| c.view == View::Fixed);
-        for moving in own().filter(|c| c.view != View::Fixed) {
+        for moving in own().filter(|c| c.view.moves()) {
             for k in 0..BOARDS.len() {
                 let borne = |c: &Configuration| c.courses[k].borne().unwrap_or(0.0);
                 let pair = [fixed.map_or(0.0, borne), borne(moving)];

@@ -2,7 +2,8 @@
 //!
 //! The published work has an older configuration in which spot and view shift together over the wall, and a later one, used everywhere else in this crate, with a view that stays.
 //! The text at hand gives no measures of the older one. The natural layout is taken: a view of the same size at a constant offset from the spot, spots where the later configuration
-//! has them, as many photographs and as many pixels in each. Several offsets are computed, so that the answer does not hang on one.
+//! has them, as many photographs and as many pixels in each. Several offsets are computed, so that the answer does not hang on one,
+//! and a fixed view that covers as much of the wall, so that motion and coverage can be told apart.
 //! What is computed is in [`system`]: every photograph has a G23 of its own, and ρ is found by least squares over all rows at once; of the fixed view by the same way.
 
 mod checks;
@@ -228,6 +229,11 @@ fn notes(modelled: &[Configuration], traced: &[Photographs]) -> Vec<String> {
             t.effective_rank
         )
     };
+    notes.push(
+        "The fixed view over all that the moving one covers (as many pixels, each as much larger; modelled only, for the spots are in it) parts the gain: what it bears more than the \
+         fixed view is the gain of coverage, what it still lacks of the moving one that of the motion."
+            .to_owned(),
+    );
     notes.push(format!(
         "Traced, at equal paths; this noise is louder than what any view bears on the 4 × 4 board: {}.",
         traced.iter().map(line).collect::<Vec<_>>().join("; ")

@@ -12,7 +12,7 @@ use crate::recovery::{Method, Options, Problem, recover};
 /// Every view is where it is said to be, and on the wall; the fixed one does not move.
 #[test]
 fn views_keep_their_offset_and_the_wall() {
-    for (name, _) in HALF_WIDTHS {
+    for (name, half_width) in HALF_WIDTHS {
         let scene = scene(name, 2).unwrap();
         for view in VIEWS {
             for spot in 0..scene.laser.spots.len() {
@@ -21,12 +21,19 @@ fn views_keep_their_offset_and_the_wall() {
                 let lit = scene.laser.spots[spot].target.position;
                 let want = match view {
                     View::Fixed => [4.875, 4.375],
+                    // The spots' square, 2 in. further left.
+                    View::Wide => [3.0, 4.373476808130942],
                     View::Moving {
                         offset: [dx, dy], ..
                     } => [lit.x + dx, lit.y + dy],
                 };
                 assert!((centre.x - want[0]).abs() < 1e-12 && (centre.y - want[1]).abs() < 1e-12);
-                assert!((seen.camera.view.area() - 3.25 * 3.25).abs() < 1e-12 && centre.z == 0.0);
+                // The wide one reaches half a view and the stagger of 1 in. beyond the square on either side.
+                let width = match view {
+                    View::Wide => 2.0 * half_width + 3.25 + 2.0,
+                    _ => 3.25,
+                };
+                assert!((seen.camera.view.area() - width * width).abs() < 1e-9);
                 for corner in seen.camera.view.corners() {
                     let wall = &scene.surfaces[0].shape;
                     assert_eq!(wall.at_xy(corner.x, corner.y).len(), 1, "{name} {corner}");
