@@ -37,6 +37,11 @@ pub fn builtins() -> &'static [Builtin] {
             text: include_str!("../../scenes/experiment.toml"),
         },
         Builtin {
+            name: "dual",
+            summary: "a projector–camera pair for dual photography: 16 × 16 spots beside 16 × 16 pixels",
+            text: include_str!("../../scenes/dual.toml"),
+        },
+        Builtin {
             name: "furnace",
             summary: "an integrating sphere, whose flux at every bounce count is known in closed form",
             text: include_str!("../../scenes/furnace.toml"),

@@ -7,7 +7,7 @@ fn items_by_name_become_files_and_pages() {
     let workspace = Workspace::new();
     let ended = workspace.phicam("reproduce table2 fig18 -o r").exits(0);
     assert!(
-        ended.stdout.contains("table2     reproduced "),
+        ended.stdout.contains("table2      reproduced "),
         "{}",
         ended.account()
     );
@@ -48,6 +48,48 @@ fn items_by_name_become_files_and_pages() {
     );
 }
 
+/// The items that trace their photographs: verdicts with their reasons, figures and pictures, kept when asked for again.
+#[test]
+fn traced_items_become_files_and_are_kept() {
+    let workspace = Workspace::new();
+    let ended = workspace
+        .phicam("reproduce dual moving-view -o r --seeds 2")
+        .exits(0);
+    assert!(
+        ended
+            .stdout
+            .contains("dual        reproduced             7 of   7")
+            && ended.stdout.contains("moving-view not reproducible"),
+        "{}",
+        ended.account()
+    );
+    for name in [
+        "dual.csv",
+        "dual.svg",
+        "dual-images.png",
+        "dual-images-2.png",
+        "moving-view.csv",
+        "moving-view.svg",
+        "moving-view-images.png",
+    ] {
+        assert!(!workspace.read(&format!("r/{name}")).is_empty());
+    }
+    let page = workspace.text("r/reproduction.md");
+    assert!(page.contains("none given"), "{page}");
+    let ended = workspace
+        .phicam("reproduce moving-view dual -o r --seeds 2")
+        .exits(0);
+    assert!(ended.stderr.contains("2 of 2 items"), "{}", ended.account());
+    let other = workspace
+        .phicam("reproduce dual -o s --seeds 2 --threads 1")
+        .exits(0);
+    assert_eq!(other.stdout.lines().count(), 1);
+    for name in ["dual.csv", "dual.json", "dual-images.png"] {
+        let [a, b] = ["r", "s"].map(|dir| workspace.read(&format!("{dir}/{name}")));
+        assert_eq!(a, b, "threads: {name}");
+    }
+}
+
 #[test]
 fn threads_do_not_change_a_byte() {
     let workspace = Workspace::new();
@@ -69,7 +111,7 @@ fn strangers_are_told_the_list() {
     let workspace = Workspace::new();
     workspace.refuses(
         "reproduce table2 fig99 -o r",
-        &["fig99", "table1 (fig11)", "precision"],
+        &["fig99", "table1 (fig11)", "precision", "moving-view"],
     );
     workspace.refuses("reproduce --most-elements 65 -o r", &["--most-elements"]);
 }

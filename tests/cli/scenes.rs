@@ -3,7 +3,7 @@
 use crate::small_scene::{bench, with_points_and_surface};
 use crate::workspace::Workspace;
 
-const BUILT_IN: [&str; 4] = ["bench", "thesis", "experiment", "furnace"];
+const BUILT_IN: [&str; 5] = ["bench", "thesis", "experiment", "dual", "furnace"];
 
 #[test]
 fn list_names_the_built_in_scenes() {
@@ -23,6 +23,7 @@ fn every_built_in_scene_is_sound() {
         "120 spots; 16 × 16 pixels",
         "120 spots; 16 × 16 pixels",
         "252 spots; 64 × 64 pixels",
+        "256 spots; 16 × 16 pixels",
         "3 spots; 4 × 4 pixels",
     ]) {
         let ended = workspace.phicam(&format!("scene check {name}")).exits(0);

@@ -6,7 +6,7 @@ use clap::Args as Arguments;
 
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct ReproduceArgs {
-    /// Tables and figures: table1, table2, …, fig12, …, precision; all unless given
+    /// Tables and figures: table1, table2, …, fig12, …, precision, dual, moving-view; all unless given
     #[arg(value_name = "ITEM")]
     pub items: Vec<String>,
     /// Folder for ITEM.csv, ITEM.svg and ITEM-images.svg, each with a PNG beside it, ITEM.json, reproduction.md and reproduction.html
@@ -15,7 +15,7 @@ pub(in crate::cli) struct ReproduceArgs {
     /// Leave out curves with more elements a side than this
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u64).range(8..=64))]
     pub most_elements: u64,
-    /// Draws of the noise of fig22
+    /// Draws of the noise of fig22; of moving-view a quarter of them
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(2..=100_000))]
     pub seeds: u64,
     /// First seed

@@ -221,7 +221,7 @@ pub fn reproduction_table(items: &[ItemSummary]) -> String {
     let line = |i: &ItemSummary| {
         let held = i.checks.iter().filter(|c| c.holds).count();
         format!(
-            "{:<10} {:<20} {held:>3} of {:>3} checks hold\n",
+            "{:<11} {:<20} {held:>3} of {:>3} checks hold\n",
             i.item,
             i.verdict.words(),
             i.checks.len()

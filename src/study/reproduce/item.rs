@@ -30,11 +30,15 @@ pub enum Item {
     Fig22,
     /// The same inversions beyond double precision.
     Precision,
+    /// The dual image: a traced matrix transposed.
+    Dual,
+    /// The camera's view moving with the laser spot.
+    MovingView,
 }
 
 impl Item {
     /// Every item, in the order in which they are computed.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::Table1,
         Self::Table2,
         Self::Table3,
@@ -47,6 +51,8 @@ impl Item {
         Self::Fig20,
         Self::Fig22,
         Self::Precision,
+        Self::Dual,
+        Self::MovingView,
     ];
 
     /// The name by which it is asked for and by which its files are called.
@@ -64,6 +70,8 @@ impl Item {
             Self::Fig20 => "fig20",
             Self::Fig22 => "fig22",
             Self::Precision => "precision",
+            Self::Dual => "dual",
+            Self::MovingView => "moving-view",
         }
     }
 

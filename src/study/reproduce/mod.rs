@@ -7,6 +7,7 @@
 
 mod contour;
 mod distance;
+mod dual;
 mod exact;
 mod exact_geometry;
 mod figure;
@@ -15,7 +16,9 @@ mod inversion;
 mod item;
 #[cfg(test)]
 mod ledger;
+mod moving_view;
 mod noise;
+mod photographs;
 mod precision;
 mod spots;
 mod table1;
@@ -24,9 +27,12 @@ mod verdict;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::model::ModelError;
 use crate::num::linalg::LinalgError;
 use crate::num::multiprecision::TooFewDigits;
 use crate::recovery::RecoveryError;
+use crate::scene::SceneError;
+use crate::study::ValidationError;
 
 pub use figure::{
     Cell, Course, FigureAxis, FigureCurve, Gallery, Picture, Plot, Reproduction, Shades, Source,
@@ -39,7 +45,7 @@ pub use verdict::{Check, Verdict, Weight};
 pub struct ReproducePlan {
     /// Items with more elements a side than this leave those curves out.
     pub most_elements: usize,
-    /// Draws of the noise in Figs 22 to 24.
+    /// Draws of the noise in Figs 22 to 24; of the moving view a quarter of them.
     pub seeds: u64,
     /// Seed of the first.
     pub first_seed: u64,
@@ -70,6 +76,15 @@ pub enum ReproduceError {
     /// The digits of multiple precision do not suffice.
     #[error(transparent)]
     Digits(#[from] TooFewDigits),
+    /// A scene does not allow what the item needs.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A scene has no model.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// Traced photographs do not fit their model.
+    #[error(transparent)]
+    Validation(#[from] ValidationError),
     /// It was stopped.
     #[error("stopped before the item was finished; run the same command again to go on")]
     Stopped,
@@ -113,5 +128,7 @@ pub fn reproduce(
         Item::Fig15 => indicators::indicators(watch),
         Item::Fig22 => noise::figure(plan, watch),
         Item::Precision => precision::figure(plan, watch),
+        Item::Dual => dual::figure(plan, watch),
+        Item::MovingView => moving_view::figure(plan, watch),
     }
 }
