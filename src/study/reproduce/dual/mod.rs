@@ -66,12 +66,16 @@ fn change(a: &[f64], b: &[f64]) -> f64 {
     (dot(&left, &left) / dot(a, a)).sqrt()
 }
 
+/// Width of the camera's view, of the projector's and of the board, in.
+const WIDTH: f64 = 4.0;
+
 fn picture(title: &str, values: &[f64]) -> Picture {
     Picture {
         title: title.to_owned(),
         size: [SIDE; 2],
         values: values.to_vec(),
         axes: ["x", "y"],
+        width: WIDTH,
     }
 }
 

@@ -72,7 +72,7 @@ impl System {
         for (mut row, error) in rows.row_iter_mut().zip(errors.iter()) {
             row /= *error;
         }
-        let Svd { u, sigma, vt } = svd(&rows)?;
+        let Svd { u, sigma, vt, .. } = svd(&rows)?;
         let mut rows = vt;
         for (mut row, s) in rows.row_iter_mut().zip(sigma.iter()) {
             row *= *s;
