@@ -18,15 +18,19 @@ mod ledger;
 mod noise;
 mod precision;
 mod spots;
+mod substitution;
 mod table1;
 mod tables;
+mod traced;
 mod verdict;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::model::ModelError;
 use crate::num::linalg::LinalgError;
 use crate::num::multiprecision::TooFewDigits;
 use crate::recovery::RecoveryError;
+use crate::scene::SceneError;
 
 pub use figure::{
     Cell, Course, FigureAxis, FigureCurve, Gallery, Picture, Plot, Reproduction, Shades, Source,
@@ -70,6 +74,12 @@ pub enum ReproduceError {
     /// The digits of multiple precision do not suffice.
     #[error(transparent)]
     Digits(#[from] TooFewDigits),
+    /// The scene of an item cannot be set up.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// It has no model.
+    #[error(transparent)]
+    Model(#[from] ModelError),
     /// It was stopped.
     #[error("stopped before the item was finished; run the same command again to go on")]
     Stopped,
