@@ -19,6 +19,8 @@ const PER_SIDE: usize = 25;
 const HALVES: std::ops::RangeInclusive<usize> = 2..=28;
 /// Distances of the pictures, in.
 const SHOWN: [f64; 5] = [1.0, 5.0, 6.0, 7.5, 11.0];
+/// Distances at which light is traced, in.
+const TRACED: [f64; 8] = [1.0, 3.0, 5.0, 6.0, 7.5, 9.0, 11.0, 14.0];
 /// Two values are one where they are nearer than this.
 const SAME: f64 = 2.5e-2;
 
@@ -205,11 +207,7 @@ fn normalized(curve: &[At], half_width: f64) -> Option<f64> {
 
 /// Whole inches and 7.5 in., the distances that are spoken of.
 fn spoken_of(a: &&At) -> bool {
-    spoken(a.half_width)
-}
-
-fn spoken(half_width: f64) -> bool {
-    half_width.fract() == 0.0 || half_width == 7.5
+    a.half_width.fract() == 0.0 || a.half_width == 7.5
 }
 
 fn highest<'a>(curve: impl Iterator<Item = &'a At>) -> Option<(&'a At, f64)> {
@@ -217,11 +215,9 @@ fn highest<'a>(curve: impl Iterator<Item = &'a At>) -> Option<(&'a At, f64)> {
     found.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// What is traced: whole inches and 7.5 in.
 fn cases(layouts: &[(Stagger, &'static str)]) -> Vec<Case> {
     let of = |&(stagger, curve): &(Stagger, &'static str)| {
-        let half_widths = HALVES.map(|half| 0.5 * half as f64).filter(|h| spoken(*h));
-        half_widths.map(move |x| Case {
+        TRACED.map(|x| Case {
             curve,
             x,
             published: published(Kernel::Physical, SIDE, PER_SIDE, x, stagger),

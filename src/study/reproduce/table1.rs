@@ -27,14 +27,28 @@ const METHODS: [(Method, &str); 3] = [
 /// Two values are one where they are nearer than this.
 const SAME: f64 = 2.5e-2;
 
-pub(super) fn table(watch: Watch<'_>) -> Result<Reproduction, ReproduceError> {
-    let options = Options {
+/// What the three methods make of modelled Φ.
+#[derive(Default)]
+pub(super) struct Inverted {
+    /// Rows of the table, three methods for each number of spots, published kernel first.
+    pub(super) rows: Vec<Vec<Cell>>,
+    pictures: Vec<Picture>,
+    /// What is compared, the printed number, and the raw and normalized MTF.
+    compared: Vec<(String, f64, [Option<f64>; 2])>,
+    /// The smallest values that Moore–Penrose recovers.
+    least: Vec<f64>,
+}
+
+fn options() -> Options {
+    Options {
         tolerance: Tolerance::Spacing,
         uncertainty: Uncertainty::StandardError,
         ..Options::default()
-    };
-    let (mut rows, mut pictures, mut compared) = (Vec::new(), Vec::new(), Vec::new());
-    let mut negative = Vec::new();
+    }
+}
+
+pub(super) fn inverted(watch: Watch<'_>) -> Result<Inverted, ReproduceError> {
+    let mut inverted = Inverted::default();
     for kernel in [Kernel::Published, Kernel::Physical] {
         for (spots, table, figure) in PRINTED {
             watch.go_on()?;
@@ -43,13 +57,13 @@ pub(super) fn table(watch: Watch<'_>) -> Result<Reproduction, ReproduceError> {
             let (phi, c, d) = (case.phi(&board), case.g23(), case.g12());
             let problem = Problem::new(&phi, &c, &d, None)?;
             for (k, (method, name)) in METHODS.into_iter().enumerate() {
-                let found = recover(method, &problem, &options)?;
+                let found = recover(method, &problem, &options())?;
                 let outcome = Outcome::new(found.reflectance.as_slice().to_vec(), &board);
                 let least = outcome.values.iter().copied().fold(f64::INFINITY, f64::min);
                 let own = (kernel == Kernel::Published)
                     .then_some(())
                     .and(table.get(k).copied());
-                rows.push(vec![
+                inverted.rows.push(vec![
                     kernel.name().into(),
                     spots.into(),
                     name.into(),
@@ -64,7 +78,7 @@ pub(super) fn table(watch: Watch<'_>) -> Result<Reproduction, ReproduceError> {
                 if kernel == Kernel::Physical {
                     continue;
                 }
-                pictures.push(elements(
+                inverted.pictures.push(elements(
                     format!("{name}, {spots} spots"),
                     SIDE,
                     outcome.stretched(),
@@ -72,17 +86,27 @@ pub(super) fn table(watch: Watch<'_>) -> Result<Reproduction, ReproduceError> {
                 let conventions = [outcome.raw, outcome.normalized];
                 if let Some(printed) = own {
                     let what = format!("Table 1: {name}, {spots} spots");
-                    compared.push((what, printed, conventions));
+                    inverted.compared.push((what, printed, conventions));
                 }
                 if method == Method::Pinv {
                     let what = format!("Fig 11: {name}, {spots} spots");
-                    compared.push((what, figure, conventions));
-                    negative.push(least);
+                    inverted.compared.push((what, figure, conventions));
+                    inverted.least.push(least);
                 }
             }
         }
     }
-    let (lost, shown) = trace(&options, &mut rows, watch)?;
+    Ok(inverted)
+}
+
+pub(super) fn table(watch: Watch<'_>) -> Result<Reproduction, ReproduceError> {
+    let Inverted {
+        mut rows,
+        pictures,
+        compared,
+        least,
+    } = inverted(watch)?;
+    let (lost, shown) = trace(&mut rows, watch)?;
     // The text calls its measure normalized; which convention the numbers follow is for the numbers to say.
     let distance = |k: usize| {
         let square = |(_, printed, found): &(String, f64, [Option<f64>; 2])| {
@@ -103,7 +127,7 @@ pub(super) fn table(watch: Watch<'_>) -> Result<Reproduction, ReproduceError> {
             )
         })
         .collect();
-    let least = negative.iter().copied().fold(f64::INFINITY, f64::min);
+    let least = least.iter().copied().fold(f64::INFINITY, f64::min);
     checks.push(Check::claim(
         "smallest value that Moore–Penrose recovers",
         "no negative values",
@@ -159,7 +183,6 @@ pub(super) fn table(watch: Watch<'_>) -> Result<Reproduction, ReproduceError> {
 
 /// Adds the rows of traced Φ; says what becomes of the recoveries and shows those by Moore–Penrose.
 fn trace(
-    options: &Options,
     rows: &mut Vec<Vec<Cell>>,
     watch: Watch<'_>,
 ) -> Result<(String, Vec<Picture>), ReproduceError> {
@@ -173,7 +196,7 @@ fn trace(
             let problem = Problem::new(&light.phi, &traced.g23, &traced.g12, None)?;
             for ((method, name), most) in METHODS.into_iter().zip(most) {
                 watch.go_on()?;
-                let found = recover(method, &problem, options)?;
+                let found = recover(method, &problem, &options())?;
                 let outcome = Outcome::new(found.reflectance.as_slice().to_vec(), &board);
                 let least = outcome.values.iter().copied().fold(f64::INFINITY, f64::min);
                 *most = most.max(outcome.normalized.unwrap_or(f64::NEG_INFINITY));
