@@ -9,8 +9,8 @@ use crate::model::Published;
 use crate::num::multiprecision::{Digits, Inverse, Real, TooFewDigits, dot, inverse};
 
 /// Digits that are tried, one after the other.
-const DIGITS: [u32; 5] = [60, 120, 240, 480, 960];
-/// Matrices of more different directions than this never got by with the first of them, so that the next is the first to be tried.
+const DIGITS: [u32; 6] = [60, 120, 180, 240, 480, 960];
+/// Matrices of more directions than this lose more than 100 digits (16 × 16 elements under 400 spots: 108), so that the first two are not tried.
 const FEW: usize = 128;
 
 /// What G12·G12⁺ may lack to a symmetric matrix with the trace of its rank, which a projector is.
@@ -39,7 +39,7 @@ pub(super) fn recover(
         ratio: 0.0,
     };
     let many = (4 * case.per_side).min(case.elements * case.elements) > FEW;
-    for &digits in &DIGITS[usize::from(many)..] {
+    for &digits in &DIGITS[2 * usize::from(many)..] {
         let setup = match Setup::new(case, Digits(digits), watch) {
             Ok(setup) => setup,
             Err(ReproduceError::Digits(e)) => {

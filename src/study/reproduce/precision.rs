@@ -36,7 +36,7 @@ const GROUPS: [Group; 5] = [
         item: "Figs 12–14",
         elements: 16,
         boards: &[2, 4, 8, 16],
-        // 76, 116 and 396 different spots: the last leave no element out, with a smallest over largest diagonal entry of R of 3e-48, which takes 120 digits.
+        // 76, 116 and 396 different spots: the last leave no element out, with a smallest over largest diagonal entry of R of 3e-48, of which 108 digits are lost.
         per_side: &[20, 30, 100],
         half_widths: &[HALF_WIDTH],
     },
