@@ -20,10 +20,10 @@ pub(super) const AS_RENDERED: Budget = Budget {
     blocks: 32,
     size: 4,
 };
-/// Paths of every pixel for the mean: 1024, each of which serves all spots.
+/// Points on S2 for the mean: 2¹⁷, each of which serves all pixels and all spots.
 const MEAN: Budget = Budget {
     blocks: 32,
-    size: 32,
+    size: 1 << 12,
 };
 /// Seed of the paths, and of the noise that is put on the modelled Φ.
 const SEED: u64 = 1;
@@ -125,7 +125,7 @@ impl Traced {
             Ok::<_, ReproduceError>((phi, stderr))
         };
         let (rendered, stderr) = trace(Estimator::Independent, budget)?;
-        let (mean, mean_stderr) = trace(Estimator::Shared, MEAN)?;
+        let (mean, mean_stderr) = trace(Estimator::Factored, MEAN)?;
         let modelled = {
             let mut lit = g12.clone();
             for (mut row, b) in lit.row_iter_mut().zip(case.board(checks)) {
@@ -176,7 +176,7 @@ impl Traced {
 pub(super) fn caption() -> String {
     format!(
         "Traced in place of modelled Φ: the published view in 16 × 16 equal footprints, ideal spots on a wall that reaches as far as they do (those behind S2 left out), light \
-         that met three surfaces; as rendered: {} paths an entry; mean: {} paths a pixel, shared by all spots; scrambled Sobol' points, seed {SEED}; recovered with the \
+         that met three surfaces; as rendered: {} paths an entry; mean: {} points on S2, shared by all pixels and spots; scrambled Sobol' points, seed {SEED}; recovered with the \
          physical G12 and G23 of the footprints' centres.",
         AS_RENDERED.samples(),
         MEAN.samples()
