@@ -204,10 +204,7 @@ fn spectra(traced: &[f64], modelled: &[f64]) -> Plot {
     };
     Plot {
         title: "Singular values of T".to_owned(),
-        axes: [
-            linear("k", [0.0, SHOWN_VALUES as f64]),
-            decades("σ_k / σ_1"),
-        ],
+        axes: [linear("k", [0.0, SHOWN_VALUES as f64]), decades("σk / σ1")],
         curves: vec![
             computed("T traced (its tail is noise)", points(traced)),
             computed("T modelled", points(modelled)),

@@ -161,7 +161,7 @@ fn plots(modelled: &[Configuration]) -> Vec<Plot> {
         };
         plots.push(Plot {
             title: format!("singular values, half-width {half_width} in."),
-            axes: [linear("k", [0.0, 64.0]), decades("σ_k / σ_1")],
+            axes: [linear("k", [0.0, 64.0]), decades("σk / σ1")],
             curves: curves(&|c| {
                 let sigma = c.sigma.iter().enumerate();
                 sigma
