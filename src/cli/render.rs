@@ -123,7 +123,7 @@ pub(super) fn into_folder(
     let points = block_size(scene, &plan) as u64;
     if points > u64::from(plan.budget.size) {
         talk.say(format!(
-            "each block takes {points} points in place of {}: its share of every texture cell is rounded up",
+            "a block takes {points} points in place of {}, so that every texture cell has its share",
             plan.budget.size
         ));
     }

@@ -92,12 +92,19 @@ impl Bvh {
         if self.shapes().len() > MOST_SHAPES {
             return Blockers::Any;
         }
-        let ids = (0..self.shapes().len()).filter(|id| {
-            let shape = &self.shapes()[*id];
-            let own = shape.is_flat() && ends.contains(&Some(*id as ShapeId));
-            !own && !separated(shape, a, b)
-        });
+        let ids = (0..self.shapes().len()).filter(|id| !self.is_beside(*id, a, b, ends));
         Blockers::Among(ids.map(|id| id as ShapeId).collect())
+    }
+
+    /// Whether nothing can block a segment from `a` to `b`, however many shapes there are.
+    pub fn surely_free(&self, a: &Region, b: &Region, ends: [Option<ShapeId>; 2]) -> bool {
+        (0..self.shapes().len()).all(|id| self.is_beside(id, a, b, ends))
+    }
+
+    /// Whether shape `id` cannot stand in the way.
+    fn is_beside(&self, id: usize, a: &Region, b: &Region, ends: [Option<ShapeId>; 2]) -> bool {
+        let shape = &self.shapes()[id];
+        shape.is_flat() && ends.contains(&Some(id as ShapeId)) || separated(shape, a, b)
     }
 
     /// [`Bvh::blocked`] where only `blockers` can stand in the way.

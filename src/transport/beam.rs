@@ -23,6 +23,15 @@ pub(super) struct Beams<'a> {
     in_view: Vec<bool>,
 }
 
+/// What of a beam is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Reach {
+    /// Its irradiance.
+    Density,
+    /// The points that it is sampled at.
+    Samples,
+}
+
 impl<'a> Beams<'a> {
     pub(super) fn new(scene: &'a Scene) -> Self {
         let spots = 0..scene.laser.spots.len();
@@ -55,38 +64,46 @@ impl<'a> Beams<'a> {
         }
     }
 
-    /// The square around the target, in the plane across the spot's normal, outside of which a beam with width carries nothing at all:
-    /// a Gaussian's density underflows there, exp(−2·19.4²) < 2⁻¹⁰⁷⁵.
-    fn square(&self, spot: usize) -> Option<Parallelogram> {
-        let reach = match self.scene.laser.profile {
-            Profile::Ideal => return None,
-            Profile::Disc { radius } => radius,
-            Profile::Gaussian { radius } => 19.4 * radius,
-        };
+    /// How far from the target a beam with width reaches, in the plane across the spot's normal: where its density vanishes (a Gaussian's
+    /// underflows, exp(−2·19.4²) < 2⁻¹⁰⁷⁵), or where no sample falls any more (√(½·53·ln 2) < 4.3 of its 1/e² radii).
+    fn reach(&self, what: Reach) -> f64 {
+        match (self.scene.laser.profile, what) {
+            (Profile::Ideal, _) => 0.0,
+            (Profile::Disc { radius }, _) => radius,
+            (Profile::Gaussian { radius }, Reach::Density) => 19.4 * radius,
+            (Profile::Gaussian { radius }, Reach::Samples) => 4.3 * radius,
+        }
+    }
+
+    /// The square around the target that holds all of that.
+    fn square(&self, spot: usize, what: Reach) -> Option<Parallelogram> {
+        let reach = self.reach(what);
         let target = &self.scene.laser.spots[spot].target;
         let basis = Basis::around(target.normal);
         let (s, t) = (basis.s * reach, basis.t * reach);
         Parallelogram::new(target.position - s - t, s * 2.0, t * 2.0)
     }
 
-    /// The shape on which all the light of a beam with width lands, if that is known before a ray is cast: a flat one that reaches
+    /// The shape on which all of a beam with width lands, if that is known before a ray is cast: a flat one that reaches
     /// as far as the beam, with nothing before it.
-    pub(super) fn surely_lands_on(&self, spot: usize) -> Option<ShapeId> {
+    pub(super) fn surely_lands_on(&self, spot: usize, what: Reach) -> Option<ShapeId> {
         let id = self.scene.laser.spots[spot].surface;
         let Shape::Parallelogram(plane) = &self.scene.surfaces[id as usize].shape else {
             return None;
         };
-        let square = self.square(spot)?;
+        let square = self.square(spot, what)?;
         let inside = |c: &DVec3| {
             let place = plane.coordinates(*c);
             place.iter().all(|c| (0.0..=1.0).contains(c))
         };
         let laser = Region::point(self.scene.laser.position);
-        let before = self
-            .scene
-            .bvh()
-            .blockers(&laser, &Region::patch(&square), [None, Some(id)]);
-        (square.corners().iter().all(inside) && before.none()).then_some(id)
+        let ends = [None, Some(id)];
+        let free = || {
+            self.scene
+                .bvh()
+                .surely_free(&laser, &Region::patch(&square), ends)
+        };
+        (square.corners().iter().all(inside) && free()).then_some(id)
     }
 
     /// Whether a pixel may see the lit spot itself: no only where its light surely lands beside the view.
@@ -94,7 +111,8 @@ impl<'a> Beams<'a> {
         if !self.has_width() {
             return self.point_in_view(spot).is_some();
         }
-        let (Some(_), Some(square)) = (self.surely_lands_on(spot), self.square(spot)) else {
+        let lands = self.surely_lands_on(spot, Reach::Density);
+        let (Some(_), Some(square)) = (lands, self.square(spot, Reach::Density)) else {
             return true;
         };
         let camera = &self.scene.camera;

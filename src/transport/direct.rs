@@ -113,6 +113,11 @@ pub(super) fn direct(
         x.throughput * x.albedo * FRAC_1_PI * irradiance * seen / (seen + irradiance)
     });
     let by_beam = lit.and_then(|point| {
+        // Which pixel it would be comes before the ray that says whether.
+        scene
+            .camera
+            .pixel_of(point.position)
+            .filter(|p| *p == pixel)?;
         let (by, flux) = pinhole::direct(scene, point)?;
         let at = (point.position, point.normal);
         let irradiance = beams.irradiance(spot, at, point.shape);

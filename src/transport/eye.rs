@@ -179,9 +179,9 @@ fn fills(scene: &Scene, pixel: usize, id: ShapeId) -> Option<(ShapeId, Parallelo
         corners.push(at);
     }
     let outline = Region::flat(corners);
+    let pinhole = Region::point(camera.position);
     let free = scene
         .bvh()
-        .blockers(&Region::point(camera.position), &outline, [None, Some(id)])
-        .none();
+        .surely_free(&pinhole, &outline, [None, Some(id)]);
     free.then_some((id, plane, outline))
 }

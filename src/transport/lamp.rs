@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::beam::{Beams, LitPoint};
+use super::beam::{Beams, LitPoint, Reach};
 use super::lit::Lit;
 use super::packet::Packet;
 use super::sight::all_shapes;
@@ -200,7 +200,7 @@ impl<'a> Lamp<'a> {
 /// Shapes on which the light of any spot of the scene may land.
 pub(super) fn lit(scene: &Scene, beams: &Beams<'_>) -> Vec<ShapeId> {
     let lands = |l: usize| match beams.has_width() {
-        true => beams.surely_lands_on(l).map(Some),
+        true => beams.surely_lands_on(l, Reach::Samples).map(Some),
         false => Some(beams.point(l, [0.0; 2]).map(|p| p.shape)),
     };
     let known: Option<Vec<Option<ShapeId>>> = (0..scene.laser.spots.len()).map(lands).collect();

@@ -1,5 +1,7 @@
 //! Sums over blocks of a whole matrix.
 
+use rayon::prelude::*;
+
 use super::render::Traced;
 use crate::matrix::Matrix;
 use crate::num::lanes::padded;
@@ -31,6 +33,11 @@ impl Layout {
         vec![0.0; self.pixels.div_ceil(TILE) * self.tile()]
     }
 
+    /// Numbers of one order.
+    fn one_order(self) -> usize {
+        self.pixels.div_ceil(TILE) * TILE * self.width()
+    }
+
     fn place(self, order: usize, pixel: usize, column: usize) -> usize {
         let row = (pixel / TILE * self.orders + order) * TILE + pixel % TILE;
         row * self.width() + column
@@ -40,7 +47,7 @@ impl Layout {
 /// Mean and scatter of block estimates, entry by entry, in the memory of a few matrices whatever their number.
 ///
 /// With d_b = x_b − x_1 the mean is x_1 + Σd_b/K and the standard error √((Σd_b² − (Σd_b)²/K)/(K(K − 1))): the differences are as small as
-/// the scatter itself, so that nothing cancels that would be missed. Blocks are added in their order.
+/// the scatter itself, so that nothing cancels that would be missed. Blocks are added in their order. A single block has no known error: it is infinite.
 #[derive(Debug)]
 pub(super) struct Moments {
     layout: Layout,
@@ -48,8 +55,8 @@ pub(super) struct Moments {
     first: Vec<f64>,
     /// Σd of every order.
     sums: Vec<f64>,
-    /// Σd² of the total over orders, pixels × columns.
-    squares: Matrix,
+    /// Σd² of the total over orders: \[pixel, whole tiles of them\]\[column\].
+    squares: Vec<f64>,
 }
 
 impl Moments {
@@ -59,7 +66,7 @@ impl Moments {
             blocks: 0.0,
             first: Vec::new(),
             sums: layout.zeros(),
-            squares: Matrix::zeros(layout.pixels, layout.columns),
+            squares: vec![0.0; layout.one_order()],
         }
     }
 
@@ -70,19 +77,25 @@ impl Moments {
             self.first = block;
             return;
         }
-        for (x, first) in block.iter_mut().zip(&self.first) {
-            *x -= first;
-        }
-        for (sum, d) in self.sums.iter_mut().zip(&block) {
-            *sum += d;
-        }
         let layout = self.layout;
-        for column in 0..layout.columns {
-            for pixel in 0..layout.pixels {
-                let total = layout.total(&block, pixel, column);
-                self.squares[(pixel, column)] += total * total;
-            }
-        }
+        let order = TILE * layout.width();
+        block
+            .par_chunks_mut(layout.tile())
+            .zip(self.first.par_chunks(layout.tile()))
+            .zip(self.sums.par_chunks_mut(layout.tile()))
+            .zip(self.squares.par_chunks_mut(order))
+            .for_each(|(((block, first), sums), squares)| {
+                for (x, first) in block.iter_mut().zip(first) {
+                    *x -= first;
+                }
+                for (sum, d) in sums.iter_mut().zip(&*block) {
+                    *sum += d;
+                }
+                for (i, square) in squares.iter_mut().enumerate() {
+                    let total: f64 = (0..layout.orders).map(|n| block[n * order + i]).sum();
+                    *square += total * total;
+                }
+            });
     }
 
     /// Means and standard errors.
@@ -94,15 +107,18 @@ impl Moments {
             .map(|n| {
                 matrix(&|p, l| {
                     let place = layout.place(n, p, l);
-                    self.first[place] + self.sums[place] / k
+                    self.first.get(place).copied().unwrap_or(0.0) + self.sums[place] / k.max(1.0)
                 })
             })
             .collect();
         // The same order of additions as where the frames are read back, so that the bits are the same.
         let flux = matrix(&|p, l| bounces.iter().map(|b| b[(p, l)]).sum());
         let stderr = matrix(&|p, l| {
+            if k < 2.0 {
+                return f64::INFINITY;
+            }
             let sum = layout.total(&self.sums, p, l);
-            let scatter = (self.squares[(p, l)] - sum * sum / k).max(0.0);
+            let scatter = (self.squares[p * layout.width() + l] - sum * sum / k).max(0.0);
             (scatter / (k * (k - 1.0))).sqrt()
         });
         Traced {

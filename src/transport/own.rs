@@ -22,8 +22,11 @@ pub(super) struct OwnPoints<'a> {
     buffers: Buffers,
 }
 
-/// Numbers of one block, kept from block to block.
-#[derive(Debug)]
+/// Points that are evaluated together.
+const CHUNK: usize = 1024;
+
+/// Numbers of one chunk, kept from chunk to chunk.
+#[derive(Debug, Default)]
 struct Buffers {
     /// What the pixel sees, weighted.
     x: Packet,
@@ -31,21 +34,23 @@ struct Buffers {
     y: Packet,
     places: Vec<[f64; 2]>,
     beams: Vec<[f64; 2]>,
-    /// C·w by point, then the light at each point from one spot.
+    /// Φlaser·C·w by point, then the light at each point from one spot.
     camera: Vec<f64>,
     light: Vec<f64>,
 }
 
 impl<'a> OwnPoints<'a> {
+    /// Whether the pixel's paths fit in.
+    pub(super) fn fits(setting: &Setting<'_>, pixel: usize) -> bool {
+        let filled = setting.sightings[pixel].shape();
+        setting.scene.max_bounces <= 3 && filled.is_some_and(|s| setting.walk.by_area_alone(s))
+    }
+
     /// `None` if the pixel's paths do not fit in.
     pub(super) fn new(setting: &'a Setting<'a>, pixel: usize) -> Option<Self> {
         let sighting = &setting.sightings[pixel];
-        let fits = setting.scene.max_bounces <= 3
-            && sighting
-                .shape()
-                .is_some_and(|shape| setting.walk.by_area_alone(shape));
-        let n = setting.strata.block_size();
-        fits.then(|| Self {
+        let n = setting.strata.block_size().min(CHUNK);
+        Self::fits(setting, pixel).then(|| Self {
             setting,
             sighting,
             blockers: sighting.blockers(setting.scene, &setting.between),
@@ -68,56 +73,19 @@ impl<'a> OwnPoints<'a> {
         stride: usize,
         sums: &mut [f64],
     ) {
-        self.draw(key);
-        let b = &mut self.buffers;
-        self.sighting
-            .vertices(self.setting.scene, &b.places, &mut b.x);
-        let lit = self.setting.lamp.lit(&b.beams, columns);
-        let share = 1.0 / b.places.len() as f64;
-        let n = columns.len();
-        self.setting
-            .direct
-            .add(self.sighting, &b.places, &lit, share, &mut sums[..n]);
-        if self.setting.two {
-            let two = &mut sums[stride..stride + n];
-            self.setting.lamp.add_two_surfaces(&b.x, &lit, share, two);
-        }
-        if sums.len() <= 2 * stride {
-            return;
-        }
-        b.x.forms_to(&b.y, &mut b.camera);
-        for (c, w) in b.camera.iter_mut().zip(&b.y.weight) {
-            *c *= w * self.setting.scene.laser.power;
-        }
-        hide(
-            self.setting.scene,
-            &self.blockers,
-            (&b.x, &b.y),
-            &mut b.camera,
-        );
-        let three = &mut sums[2 * stride..2 * stride + n];
-        if n == 1 {
-            self.one_spot(&lit, &mut three[0]);
-        } else {
-            self.all_spots(&lit, three);
-        }
-    }
-
-    fn draw(&mut self, key: Key) {
-        let b = &mut self.buffers;
-        b.places.clear();
-        b.beams.clear();
-        let wide = self.setting.lamp.has_width();
-        self.setting.strata.visit(key, |drawn, place, stream| {
+        let setting = self.setting;
+        let surfaces = &setting.scene.surfaces;
+        let wide = setting.lamp.has_width();
+        let mut b = std::mem::take(&mut self.buffers);
+        let mut evaluate = |b: &mut Buffers| self.chunk(b, columns, stride, sums);
+        setting.strata.visit(key, |drawn, place, stream| {
             let k = b.places.len();
             let Drawn {
                 shape,
                 point,
                 density,
             } = drawn;
-            let albedo = self.setting.scene.surfaces[shape as usize]
-                .albedo
-                .albedo(point.uv);
+            let albedo = surfaces[shape as usize].albedo.albedo(point.uv);
             let weight = albedo * FRAC_1_PI / density;
             b.y.set(k, (point.position, point.normal), weight, shape);
             b.places.push(place);
@@ -125,60 +93,86 @@ impl<'a> OwnPoints<'a> {
                 let [_, _, s, t] = stream.next_four();
                 b.beams.push([s, t]);
             }
+            if b.places.len() == b.y.len() {
+                evaluate(&mut b);
+            }
         });
+        if !b.places.is_empty() {
+            evaluate(&mut b);
+        }
+        self.buffers = b;
     }
 
-    /// Adds the light from one spot, all points at once.
-    fn one_spot(&mut self, lit: &Lit<'_>, sum: &mut f64) {
-        let column = lit.columns.start;
-        let b = &mut self.buffers;
-        if lit.is_fixed() {
-            let Some(lit) = &lit.at(0)[0] else { return };
-            let factor = lit.albedo * FRAC_1_PI;
-            b.y.unit_forms_from((lit.position, lit.normal), factor, &mut b.light);
-            for (k, light) in b.light.iter().enumerate() {
-                let part = b.camera[k] * light;
-                if part != 0.0
-                    && !self
-                        .setting
-                        .lamp
-                        .hidden(column, lit, (b.y.position(k), b.y.shape[k]))
-                {
-                    *sum += part;
-                }
-            }
-            return;
+    /// Adds the points that are in the buffers, and empties them.
+    fn chunk(&self, b: &mut Buffers, columns: &Range<usize>, stride: usize, sums: &mut [f64]) {
+        let Setting {
+            scene,
+            lamp,
+            direct,
+            ..
+        } = self.setting;
+        let count = b.places.len();
+        b.x.darken_from(count);
+        b.y.darken_from(count);
+        self.sighting.vertices(scene, &b.places, &mut b.x);
+        let lit = lamp.lit(&b.beams, columns);
+        let share = 1.0 / self.setting.strata.block_size() as f64;
+        let n = columns.len();
+        direct.add(self.sighting, &b.places, &lit, share, &mut sums[..n]);
+        if self.setting.two {
+            lamp.add_two_surfaces(&b.x, &lit, share, &mut sums[stride..stride + n]);
         }
-        for k in 0..b.camera.len() {
-            let Some(lit) = &lit.at(k)[0] else { continue };
-            let part =
-                b.camera[k] * lit.albedo * FRAC_1_PI * b.y.form(k, (lit.position, lit.normal));
-            if part != 0.0
-                && !self
-                    .setting
-                    .lamp
-                    .hidden(column, lit, (b.y.position(k), b.y.shape[k]))
-            {
+        if sums.len() > 2 * stride {
+            b.x.forms_to(&b.y, &mut b.camera);
+            for (c, w) in b.camera.iter_mut().zip(&b.y.weight) {
+                *c *= w * scene.laser.power;
+            }
+            hide(scene, &self.blockers, (&b.x, &b.y), &mut b.camera);
+            let three = &mut sums[2 * stride..2 * stride + n];
+            match three {
+                [sum] => self.one_spot(b, &lit, sum),
+                _ => self.all_spots(b, &lit, three),
+            }
+        }
+        b.places.clear();
+        b.beams.clear();
+    }
+
+    /// Adds the light from one spot, all points at once, with the roundings of [`OwnPoints::all_spots`].
+    fn one_spot(&self, b: &mut Buffers, lit: &Lit<'_>, sum: &mut f64) {
+        let lamp = &self.setting.lamp;
+        let column = lit.columns.start;
+        if lit.is_fixed()
+            && let Some(lit) = &lit.at(0)[0]
+        {
+            b.y.unit_forms_from((lit.position, lit.normal), &mut b.light);
+        }
+        for k in 0..b.places.len() {
+            let Some(point) = &lit.at(k)[0] else { continue };
+            let form = match lit.is_fixed() {
+                true => b.light[k],
+                false => b.y.form(k, (point.position, point.normal)),
+            };
+            let part = b.camera[k] * (point.albedo * FRAC_1_PI) * form;
+            if part != 0.0 && !lamp.hidden(column, point, (b.y.position(k), b.y.shape[k])) {
                 *sum += part;
             }
         }
     }
 
     /// Adds the light from many spots, all spots of a point at once.
-    fn all_spots(&mut self, lit: &Lit<'_>, sums: &mut [f64]) {
-        let b = &mut self.buffers;
+    fn all_spots(&self, b: &Buffers, lit: &Lit<'_>, sums: &mut [f64]) {
+        let lamp = &self.setting.lamp;
         let mut row = vec![0.0; sums.len()];
-        let mut packet = self.setting.lamp.packet(lit.at(0), sums.len());
+        let mut packet = lamp.packet(lit.at(0), sums.len());
         for (k, camera) in b.camera.iter().enumerate().filter(|(_, c)| **c != 0.0) {
             let own = lit.at(k);
             if !lit.is_fixed() {
-                packet = self.setting.lamp.packet(own, sums.len());
+                packet = lamp.packet(own, sums.len());
             }
             let (position, normal) = b.y.point(k);
             packet.forms_from((position, normal), *camera, &mut row);
-            self.setting
-                .lamp
-                .hide(own, lit.columns.start, (position, b.y.shape[k]), &mut row);
+            lamp.hide(own, lit.columns.start, (position, b.y.shape[k]), &mut row);
             sums.iter_mut().zip(&row).for_each(|(s, r)| *s += r);
         }
     }

@@ -70,6 +70,11 @@ impl Packet {
         (at(&self.position), at(&self.normal))
     }
 
+    /// Takes the weight of the points from `first` on.
+    pub(super) fn darken_from(&mut self, first: usize) {
+        self.weight[first..].fill(0.0);
+    }
+
     /// Points `range`.
     pub(super) fn part(&self, range: Range<usize>) -> Self {
         let cut = |v: &[f64]| v[range.clone()].to_vec();
@@ -98,8 +103,8 @@ impl Packet {
         );
     }
 
-    /// factor · cosθ·cosθ_i/d_i² between one point and every point of the packet, weights left out; visibility is no part of it.
-    pub(super) fn unit_forms_from(&self, (p, n): (DVec3, DVec3), factor: f64, out: &mut [f64]) {
+    /// cosθ·cosθ_i/d_i² between one point and every point of the packet; visibility is no part of it.
+    pub(super) fn unit_forms_from(&self, (p, n): (DVec3, DVec3), out: &mut [f64]) {
         let count = self.len();
         let [x, y, z] = self.position.each_ref().map(|c| &c[..count]);
         let [a, b, c] = self.normal.each_ref().map(|c| &c[..count]);
@@ -109,7 +114,7 @@ impl Packet {
             || {
                 for i in 0..count {
                     let d = [x[i] - p.x, y[i] - p.y, z[i] - p.z];
-                    out[i] = factor * form(d, n.to_array(), [a[i], b[i], c[i]]);
+                    out[i] = form(d, n.to_array(), [a[i], b[i], c[i]]);
                 }
             },
         );

@@ -137,12 +137,13 @@ impl Traced {
     }
 }
 
-/// Paths, or points, that a block really has: at least what `plan` asks for where the surfaces between the walls are divided into texture
+/// Paths, or points, that a block really has: more than `plan` asks for where the surfaces between the walls are divided into texture
 /// cells, each of which gets its share rounded up.
 pub fn block_size(scene: &Scene, plan: &Plan) -> usize {
     let beams = Beams::new(scene);
     let setting = Setting::new(scene, plan, &beams, 0..1);
-    if plan.estimator == Estimator::Factored || OwnPoints::new(&setting, 0).is_some() {
+    let own = || (0..scene.camera.pixels()).any(|p| OwnPoints::fits(&setting, p));
+    if plan.estimator == Estimator::Factored || own() {
         return setting.strata.block_size();
     }
     plan.budget.size as usize

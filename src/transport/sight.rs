@@ -1,6 +1,6 @@
 //! What can be seen from where, judged conservatively.
 
-use crate::geometry::{Shape, ShapeId};
+use crate::geometry::{Facing, Shape, ShapeId};
 use crate::scene::Scene;
 
 /// Whether light can travel between the fronts of shapes `s` and `t`: no only where geometry forbids it (one lies nowhere above the
@@ -11,7 +11,7 @@ pub(super) fn may_see(scene: &Scene, s: usize, t: usize) -> bool {
         return false;
     }
     if s == t {
-        return !from.is_flat();
+        return matches!(from, Shape::Sphere(s) if s.facing == Facing::Inside);
     }
     let slack = 1e-9 * (from.area().sqrt() + to.shape.area().sqrt());
     let above = |a: &Shape, b: &Shape| {

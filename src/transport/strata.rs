@@ -208,7 +208,7 @@ impl<'a> Strata<'a> {
         let mut grids = vec![Grid::default(); scene.surfaces.len()];
         if let Kind::Cells(cells) = &kind {
             for cell in cells {
-                let count = scene.surfaces[cell.shape as usize].albedo.smooth_cells();
+                let count = cell.width.map(|w| (1.0 / w).round() as usize);
                 let grid = &mut grids[cell.shape as usize];
                 grid.count = count;
                 grid.density.resize(count[0] * count[1], 0.0);

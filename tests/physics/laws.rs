@@ -134,24 +134,40 @@ fn spot_and_pixel_can_be_exchanged() {
 /// The same bits for 1, 2 and 3 threads and for any part of the spots; other bits for another seed.
 #[test]
 fn bits_do_not_depend_on_threads_or_spot_ranges() {
-    let scene = shelf(&[]);
-    for estimator in [Independent, Shared, Factored] {
-        for sampling in [Sampling::Pcg, Sampling::Sobol] {
+    let bench = |diameter| {
+        let small = [
+            ("per_side = 30", "per_side = 3"),
+            ("pixels = [16, 16]", "pixels = [4, 4]"),
+            ("spot_diameter = 0.0", diameter),
+        ];
+        builtin("bench", &small)
+    };
+    let scenes = [
+        shelf(&[]),
+        bench("spot_diameter = 0.0"),
+        bench("spot_diameter = 0.3"),
+    ];
+    let ways = [Independent, Shared, Factored].map(|e| [(e, Sampling::Pcg), (e, Sampling::Sobol)]);
+    for scene in &scenes {
+        for (estimator, sampling) in ways.into_iter().flatten() {
             let way = Way(estimator, sampling, 9, 64);
             let on = |threads| {
                 let pool = rayon::ThreadPoolBuilder::new()
                     .num_threads(threads)
                     .build()
                     .unwrap();
-                pool.install(|| trace(&scene, way))
+                pool.install(|| trace(scene, way))
             };
             let one = on(1);
             assert_eq!(one, on(2));
             assert_eq!(one, on(3));
-            let part = trace_spots(&scene, way, 5..8);
-            assert_eq!(part.flux, one.flux.columns(5, 3).into_owned());
-            assert_eq!(part.stderr, one.stderr.columns(5, 3).into_owned());
-            let other = trace(&scene, Way(estimator, sampling, 10, 64));
+            for range in [5..6, 5..8] {
+                let part = trace_spots(scene, way, range.clone());
+                let own = (range.start, range.len());
+                assert_eq!(part.flux, one.flux.columns(own.0, own.1).into_owned());
+                assert_eq!(part.stderr, one.stderr.columns(own.0, own.1).into_owned());
+            }
+            let other = trace(scene, Way(estimator, sampling, 10, 64));
             assert!(relative(&other.flux, &one.flux) > 1e-6);
         }
     }
