@@ -5,6 +5,7 @@
 
 mod basis;
 mod bvh;
+mod mesh;
 mod parallelogram;
 mod shaft;
 mod shape;
@@ -12,6 +13,7 @@ mod sphere;
 
 pub use basis::Basis;
 pub use bvh::{Bvh, GeometryError, Hit};
+pub use mesh::{Mesh, MeshHit};
 pub use glam::DVec3;
 pub use parallelogram::Parallelogram;
 pub use shaft::{Blockers, Region};
