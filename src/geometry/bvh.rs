@@ -17,7 +17,7 @@ use obvhs::ray::{Ray as TreeRay, RayHit};
 
 use super::{Ray, Shape, ShapeId};
 use space::{PADDING, Space};
-pub(super) use wide::WideTree;
+pub(super) use wide::{Query, WideTree};
 
 /// Largest number of shapes tested one by one: from there on the tree is faster (`benches/rays.rs`).
 const FLAT: usize = 8;
@@ -164,7 +164,7 @@ impl Tree {
     /// The ray in the tree's space, and how far its start was moved.
     fn ray(&self, ray: &Ray) -> (TreeRay, f64) {
         let (start, advance) = self.space.start(ray);
-        let length = (ray.length * self.space.scale - advance).max(0.0) + f64::from(PADDING);
+        let length = (self.space.length(ray.length) - advance).max(0.0) + f64::from(PADDING);
         let direction = ray.direction.as_vec3a();
         let ray = TreeRay::new(start, direction, 0.0, length.min(1e30) as f32);
         (ray, advance)
@@ -177,7 +177,7 @@ impl Tree {
         self.cwbvh.ray_traverse(tree_ray, &mut hit, |_, primitive| {
             let t = test(self.cwbvh.primitive_indices[primitive] as usize);
             // Prune only what lies behind the padded box of the nearest hit so far.
-            ((t * self.space.scale - advance).min(1e30) as f32) + 4.0 * PADDING
+            self.space.limit(t, advance)
         });
     }
 

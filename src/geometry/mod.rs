@@ -13,8 +13,8 @@ mod sphere;
 
 pub use basis::Basis;
 pub use bvh::{Bvh, GeometryError, Hit};
-pub use mesh::{Mesh, MeshHit};
 pub use glam::DVec3;
+pub use mesh::{Mesh, MeshError, MeshHit};
 pub use parallelogram::Parallelogram;
 pub use shaft::{Blockers, Region};
 pub use shape::{Ray, Shape, ShapeId, SurfacePoint};

@@ -1,9 +1,9 @@
 //! Which nodes of a binary tree become the nodes of a wide one?
 //!
 //! The choice with the least expected cost of a ray, found from the leaves upwards (Ylitie, Karras and Laine, *Efficient incoherent ray
-//! traversal on GPUs through compressed wide BVHs*, 2017, section 3): of a subtree n with surface A(n) and P(n) primitives,
+//! traversal on GPUs through compressed wide BVHs*, 2017, section 3): of a subtree n with surface A and P primitives,
 //!
-//! - C(n, 1) = min(A·⌈P/group⌉ as a leaf, A + D(n, 8) as a node),
+//! - C(n, 1) = A as a leaf where P is at most a group, A + D(n, 8) as a node otherwise,
 //! - C(n, i) = min(C(n, i − 1), D(n, i)) as up to i children of one node,
 //! - D(n, i) = min over k of C(left, k) + C(right, i − k).
 
@@ -23,8 +23,8 @@ pub(super) struct Collapse<'a> {
 }
 
 impl<'a> Collapse<'a> {
-    /// For leaves of groups of `group` primitives, at most `most` in all unless the boxes are one.
-    pub(super) fn new(tree: &'a Bvh2, group: u32, most: u32) -> Self {
+    /// For leaves of at most `group` primitives.
+    pub(super) fn new(tree: &'a Bvh2, group: u32) -> Self {
         let nodes = &tree.nodes;
         let mut order = vec![0_u32];
         let mut next = 0;
@@ -48,7 +48,7 @@ impl<'a> Collapse<'a> {
             if node.is_leaf() {
                 all.count[n] = node.prim_count;
                 all.leaf[n] = true;
-                cost[n] = [area * node.prim_count.div_ceil(group) as f32; WIDTH];
+                cost[n] = [area; WIDTH];
                 continue;
             }
             let (l, r) = (node.first_index as usize, node.first_index as usize + 1);
@@ -64,9 +64,8 @@ impl<'a> Collapse<'a> {
                 }
             }
             best[0] = area + best[WIDTH - 1];
-            let as_leaf = area * all.count[n].div_ceil(group) as f32;
-            if all.count[n] <= most && as_leaf <= best[0] {
-                best[0] = as_leaf;
+            if all.count[n] <= group {
+                best[0] = area;
                 all.leaf[n] = true;
             }
             for i in 1..WIDTH - 1 {

@@ -14,7 +14,7 @@ pub(super) const PADDING: f32 = 4e-3;
 #[derive(Clone, Debug)]
 pub(super) struct Space {
     origin: DVec3,
-    pub(super) scale: f64,
+    scale: f64,
 }
 
 impl Space {
@@ -31,18 +31,40 @@ impl Space {
 
     /// A box, widened.
     pub(super) fn padded(&self, (lower, upper): (DVec3, DVec3)) -> Aabb {
-        let low = ((lower - self.origin) * self.scale).as_vec3a() - Vec3A::splat(PADDING);
-        let high = ((upper - self.origin) * self.scale).as_vec3a() + Vec3A::splat(PADDING);
+        let low = self.local(lower).as_vec3a() - Vec3A::splat(PADDING);
+        let high = self.local(upper).as_vec3a() + Vec3A::splat(PADDING);
         Aabb::new(low, high)
+    }
+
+    /// A point of the scene in the tree's space.
+    #[inline(always)]
+    pub(super) fn local(&self, p: DVec3) -> DVec3 {
+        (p - self.origin) * self.scale
     }
 
     /// Where the ray reaches the scene's bounding sphere (so that a camera far away does not cost the f32 origin its digits), and how
     /// far that is from its own start.
     #[inline(always)]
     pub(super) fn start(&self, ray: &Ray) -> (Vec3A, f64) {
-        let local = (ray.origin - self.origin) * self.scale;
+        let local = self.local(ray.origin);
         let to_centre = DVec3::splat(0.5 * EXTENT) - local;
         let advance = (to_centre.dot(ray.direction) - EXTENT).max(0.0);
         ((local + ray.direction * advance).as_vec3a(), advance)
+    }
+
+    /// Where in the tree lies what is met at distance `t` by a ray whose start was moved by `advance`, at the latest.
+    #[inline(always)]
+    pub(super) fn limit(&self, t: f64, advance: f64) -> f32 {
+        ((t * self.scale - advance).min(1e30) as f32) + 4.0 * PADDING
+    }
+
+    /// What a distance measures in the tree's space, at the most.
+    pub(super) fn beyond(&self, distance: f64) -> f32 {
+        self.limit(distance, 0.0)
+    }
+
+    /// What a distance measures in the tree's space.
+    pub(super) fn length(&self, distance: f64) -> f64 {
+        distance * self.scale
     }
 }

@@ -1,8 +1,9 @@
 //! The tree for many primitives: obvhs' binary tree, opened to eight children a node.
 //!
 //! A node keeps the boxes of its children coordinate by coordinate, so that one pass of wide instructions tests all eight (Wald,
-//! Benthin and Boulos, *Getting rid of packets*, 2008). Boxes and rays are in f32, in the padded space of [`Space`]: the tree culls, its
-//! caller decides.
+//! Benthin and Boulos, *Getting rid of packets*, 2008). A large tree waits for memory most of the time; so several rays are under way at
+//! once, and what each needs next is asked for before any of them goes on. Boxes and rays are in f32, in the padded space of [`Space`]:
+//! the tree culls, its caller decides.
 
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -14,6 +15,8 @@ use crate::geometry::{DVec3, Ray};
 
 /// Marks a child that is a leaf.
 const LEAF: u32 = 1 << 31;
+/// Rays under way at once: enough to keep the memory busy, few enough for the first cache.
+const UNDER_WAY: usize = 12;
 
 /// Eight boxes and what is in them.
 #[derive(Clone, Debug)]
@@ -32,36 +35,46 @@ pub(in crate::geometry) struct WideTree {
     space: Space,
 }
 
+/// What is asked at the leaves.
+pub(in crate::geometry) trait Query {
+    /// What is kept of a ray on its way.
+    type State;
+    /// Before the first node.
+    fn begin(&self, ray: &Ray) -> Self::State;
+    /// A number that depends on the memory of a leaf.
+    fn touch(&self, leaf: u32) -> u32;
+    /// Looks into a leaf; returns the distance beyond which nothing matters any more, a negative one to end the search.
+    fn visit(&self, ray: &Ray, state: &mut Self::State, leaf: u32) -> f64;
+}
+
 impl WideTree {
-    pub(in crate::geometry) fn len(&self) -> usize { self.nodes.len() }
-    /// The tree over `boxes` (lower and upper corners, finite). `leaf` is told the boxes that share a leaf, at most `most` of them, and
-    /// returns the number by which the leaf is later visited.
+    /// The tree over `boxes` (lower and upper corners, finite). `leaf` is told the boxes that share a leaf and returns the number, below
+    /// 2³¹, by which the leaf is later visited. What is looked at in a leaf at once is a `group`.
     pub(in crate::geometry) fn new(
         boxes: &[(DVec3, DVec3)],
-        (group, most): (u32, u32),
+        group: u32,
         mut leaf: impl FnMut(&[u32]) -> u32,
     ) -> Self {
         let space = Space::around(boxes.iter().copied());
-        let padded: Vec<Aabb> = boxes.iter().map(|b| space.padded(*b)).collect();
+        let (distinct, members) = distinct(boxes.iter().map(|b| space.padded(*b)));
         let parameters = BvhBuildParams {
             max_prims_per_leaf: 1,
             ..BvhBuildParams::medium_build()
         };
         let mut time = std::time::Duration::ZERO;
-        let binary = build_bvh2(&padded, parameters, &mut time);
-        let collapse = Collapse::new(&binary, group, most);
-        let mut nodes = Vec::new();
-        // Nodes of the binary tree whose children are still to be gathered, by the place of their own node.
+        let binary = build_bvh2(&distinct, parameters, &mut time);
+        let collapse = Collapse::new(&binary, group);
+        let mut nodes = vec![Node::empty()];
+        // Nodes of the binary tree that become wide ones, and where those stand.
         let mut open = vec![(0_u32, 0_usize)];
-        nodes.push(Node::empty());
         while let Some((root, place)) = open.pop() {
-            let members = collapse.children(root);
             let mut node = Node::empty();
-            for (k, &index) in members.iter().enumerate() {
-                let child = &binary.nodes[index as usize];
-                node.set_bounds(k, child.aabb());
+            for (k, index) in collapse.children(root).into_iter().enumerate() {
+                node.set_bounds(k, binary.nodes[index as usize].aabb());
                 node.children[k] = if collapse.is_leaf(index) {
-                    LEAF | leaf(&collapse.primitives(index))
+                    let primitives = collapse.primitives(index);
+                    let inside = primitives.iter().flat_map(|p| &members[*p as usize]);
+                    LEAF | leaf(&inside.copied().collect::<Vec<u32>>())
                 } else {
                     nodes.push(Node::empty());
                     open.push((index, nodes.len() - 1));
@@ -73,99 +86,133 @@ impl WideTree {
         Self { nodes, space }
     }
 
-    /// Visits for each ray the leaves whose boxes it meets before a distance that starts as `ray.length`; `visit` is told the number of
-    /// the ray and of the leaf and returns the new distance, a negative one to end the search.
-    ///
-    /// Several rays are under way at once: while one waits for memory, the others go on.
+    /// Takes each ray through the leaves whose boxes it meets before a distance that starts as its length; `done` receives the number of
+    /// the ray and what has become of its state.
     #[inline(always)]
-    pub(in crate::geometry) fn traverse(&self, rays: &[Ray], mut visit: impl FnMut(usize, u32) -> f64) {
-        let mut waiting = 0..rays.len();
-        let mut walks: [Walk; UNDER_WAY] = std::array::from_fn(|_| Walk::idle());
-        let mut busy = 0;
-        for walk in &mut walks {
-            if let Some(i) = waiting.next() {
-                walk.start(&self.space, i, &rays[i]);
-                busy += 1;
+    pub(in crate::geometry) fn traverse<Q: Query>(
+        &self,
+        rays: &[Ray],
+        query: &Q,
+        mut done: impl FnMut(usize, Q::State),
+    ) {
+        let mut waiting = rays.iter().enumerate();
+        let mut walks: Vec<Walk<Q::State>> = Vec::with_capacity(UNDER_WAY);
+        walks.extend(waiting.by_ref().take(UNDER_WAY).map(|(i, ray)| {
+            let stack = Vec::with_capacity(64);
+            Walk::new(&self.space, (i, ray), query.begin(ray), stack)
+        }));
+        while !walks.is_empty() {
+            let mut asked = 0;
+            for walk in &walks {
+                asked ^= match walk.current & LEAF {
+                    0 => self.nodes[walk.current as usize].touch(),
+                    _ => query.touch(walk.current & !LEAF),
+                };
             }
-        }
-        while busy > 0 {
-            for walk in &mut walks {
-                if walk.ray == usize::MAX {
+            std::hint::black_box(asked);
+            let mut at = 0;
+            while at < walks.len() {
+                let walk = &mut walks[at];
+                if walk.step(self, rays, query) {
+                    at += 1;
                     continue;
                 }
-                if !walk.step(self, &mut visit) {
-                    match waiting.next() {
-                        Some(i) => walk.start(&self.space, i, &rays[i]),
-                        None => {
-                            walk.ray = usize::MAX;
-                            busy -= 1;
-                        }
+                let finished = match waiting.next() {
+                    Some((i, ray)) => {
+                        let stack = std::mem::take(&mut walk.stack);
+                        let next = Walk::new(&self.space, (i, ray), query.begin(ray), stack);
+                        std::mem::replace(walk, next)
                     }
-                }
+                    None => walks.swap_remove(at),
+                };
+                done(finished.ray, finished.state);
             }
+        }
+    }
+
+    /// Visits leaves, near ones first, as long as their boxes are nearer to `p` than what `visit` last returned.
+    pub(in crate::geometry) fn around(&self, p: DVec3, mut visit: impl FnMut(u32) -> f64) {
+        let p = self.space.local(p).as_vec3a().to_array();
+        let mut reach = f32::INFINITY;
+        let mut stack = vec![(0.0, 0_u32)];
+        while let Some((distance, current)) = stack.pop() {
+            if distance > reach {
+                continue;
+            }
+            if current & LEAF != 0 {
+                reach = self.space.beyond(visit(current & !LEAF));
+                continue;
+            }
+            let node = &self.nodes[current as usize];
+            let base = stack.len();
+            stack.extend((0..WIDTH).map(|k| (node.distance(k, p), node.children[k])));
+            stack[base..].sort_by(|a, b| b.0.total_cmp(&a.0));
         }
     }
 }
 
-/// Rays that are under way at once.
-const UNDER_WAY: usize = 8;
+/// The distinct boxes, and which of the given ones each stands for: thousands of equal boxes would make a tree as deep as their number.
+fn distinct(boxes: impl Iterator<Item = Aabb>) -> (Vec<Aabb>, Vec<Vec<u32>>) {
+    let key = |b: &Aabb| [b.min, b.max].map(|v| v.to_array().map(f32::to_bits));
+    let mut keyed: Vec<_> = boxes.zip(0_u32..).map(|(b, i)| (key(&b), i, b)).collect();
+    keyed.sort_unstable_by_key(|(key, i, _)| (*key, *i));
+    let equal = || keyed.chunk_by(|a, b| a.0 == b.0);
+    let members = equal().map(|same| same.iter().map(|(_, i, _)| *i).collect());
+    (equal().map(|same| same[0].2).collect(), members.collect())
+}
 
 /// A ray on its way through the tree.
-struct Walk {
+struct Walk<S> {
     ray: usize,
+    state: S,
     origin: [f32; 3],
     inverse: [f32; 3],
+    /// By axis, which of the node's bounds is met first.
     near: [usize; 3],
-    /// Scale and offset from distances along the ray to those in the tree.
-    scale: f64,
+    /// How far the start was moved in the tree's space.
     advance: f64,
+    /// Nothing beyond this matters.
     end: f32,
+    /// Node or leaf to be visited next.
     current: u32,
+    /// What is to be visited later, and where its box is entered.
     stack: Vec<(f32, u32)>,
 }
 
-impl Walk {
-    fn idle() -> Self {
-        Self {
-            ray: usize::MAX,
-            origin: [0.0; 3],
-            inverse: [0.0; 3],
-            near: [0; 3],
-            scale: 1.0,
-            advance: 0.0,
-            end: 0.0,
-            current: 0,
-            stack: Vec::with_capacity(128),
-        }
-    }
-
+impl<S> Walk<S> {
     #[inline(always)]
-    fn start(&mut self, space: &Space, number: usize, ray: &Ray) {
+    fn new(
+        space: &Space,
+        (number, ray): (usize, &Ray),
+        state: S,
+        mut stack: Vec<(f32, u32)>,
+    ) -> Self {
         let (origin, advance) = space.start(ray);
-        let direction = ray.direction.as_vec3a();
         // A component too small to be told from 0 keeps its sign and stays finite.
-        let inverse = |d: f32| 1.0 / if d.abs() > 1e-20 { d } else { 1e-20_f32.copysign(d) };
-        self.inverse = [inverse(direction.x), inverse(direction.y), inverse(direction.z)];
-        for axis in 0..3 {
-            self.near[axis] = 2 * axis + usize::from(self.inverse[axis] < 0.0);
+        let inverse = ray.direction.as_vec3a().to_array().map(|d| {
+            1.0 / if d.abs() > 1e-20 {
+                d
+            } else {
+                1e-20_f32.copysign(d)
+            }
+        });
+        stack.clear();
+        Self {
+            ray: number,
+            state,
+            origin: origin.to_array(),
+            inverse,
+            near: [0, 1, 2].map(|axis| 2 * axis + usize::from(inverse[axis] < 0.0)),
+            advance,
+            end: space.limit(ray.length, advance),
+            current: 0,
+            stack,
         }
-        self.ray = number;
-        self.origin = origin.to_array();
-        self.scale = space.scale;
-        self.advance = advance;
-        self.limit(ray.length);
-        self.current = 0;
-        self.stack.clear();
-    }
-
-    #[inline(always)]
-    fn limit(&mut self, t: f64) {
-        self.end = ((t * self.scale - self.advance).min(1e30) as f32) + 4.0 * PADDING;
     }
 
     /// One node or leaf further; whether there is more.
     #[inline(always)]
-    fn step(&mut self, tree: &WideTree, visit: &mut impl FnMut(usize, u32) -> f64) -> bool {
+    fn step<Q: Query<State = S>>(&mut self, tree: &WideTree, rays: &[Ray], query: &Q) -> bool {
         if self.current & LEAF == 0 {
             let node = &tree.nodes[self.current as usize];
             let (enter, mut hits) = node.meet(self.origin, self.inverse, self.near, self.end);
@@ -183,19 +230,15 @@ impl Walk {
                 self.stack[at] = child;
             }
         } else {
-            let t = visit(self.ray, self.current & !LEAF);
+            let t = query.visit(&rays[self.ray], &mut self.state, self.current & !LEAF);
             if t < 0.0 {
                 return false;
             }
-            self.limit(t);
+            self.end = tree.space.limit(t, self.advance);
         }
         while let Some((enter, child)) = self.stack.pop() {
             if enter <= self.end {
                 self.current = child;
-                if child & LEAF == 0 {
-                    let node = &tree.nodes[child as usize];
-                    std::hint::black_box((node.bounds[0][0], node.bounds[4][0]));
-                }
                 return true;
             }
         }
@@ -208,7 +251,7 @@ impl Node {
         let (low, high) = ([f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]);
         Self {
             bounds: [low, high, low, high, low, high],
-            children: [0; WIDTH],
+            children: [LEAF; WIDTH],
         }
     }
 
@@ -217,6 +260,13 @@ impl Node {
             self.bounds[2 * axis][k] = bounds.min[axis];
             self.bounds[2 * axis + 1][k] = bounds.max[axis];
         }
+    }
+
+    /// A number that depends on each of the node's four cache lines.
+    #[inline(always)]
+    fn touch(&self) -> u32 {
+        let lines = [0, 2, 4].map(|i: usize| self.bounds[i][0].to_bits());
+        lines[0] ^ lines[1] ^ lines[2] ^ self.children[0]
     }
 
     /// Where the ray enters each box, and a bit for each box that it meets before `end`.
@@ -244,5 +294,14 @@ impl Node {
             bits[k] = if enter[k] <= leave[k] { 1 << k } else { 0 };
         }
         (enter, bits.iter().fold(0, |a, b| a | b))
+    }
+
+    /// Distance of a point from box `k`.
+    fn distance(&self, k: usize, p: [f32; 3]) -> f32 {
+        let outside = [0, 1, 2].map(|axis| {
+            let (low, high) = (self.bounds[2 * axis][k], self.bounds[2 * axis + 1][k]);
+            (low - p[axis]).max(p[axis] - high).max(0.0)
+        });
+        outside.iter().map(|d| d * d).sum::<f32>().sqrt()
     }
 }

@@ -3,7 +3,7 @@
 use crate::geometry::{DVec3, Ray};
 
 /// Triangles in a group.
-pub(super) const GROUP: usize = 4;
+pub(super) const GROUP: usize = 8;
 
 /// A few triangles, coordinate by coordinate.
 #[derive(Clone, Debug)]
@@ -47,18 +47,19 @@ impl Sheared {
     }
 }
 
-/// What the ray finds in a group: by triangle the distance, and a bit for each that it meets between 0 and the limit.
+/// What the ray finds in a group: by triangle the distance, and a bit for each that it meets at 0 < t ≤ limit.
 pub(super) type Met = ([f64; GROUP], u32);
 
 impl Group {
-    pub(super) fn new(triangles: &[(u32, [DVec3; 3])], last: bool) -> Self {
+    /// At most [`GROUP`] triangles with their numbers.
+    pub(super) fn new(triangles: impl Iterator<Item = (u32, [DVec3; 3])>) -> Self {
         let mut group = Self {
             corners: [[[f64::NAN; GROUP]; 3]; 3],
             triangles: [u32::MAX; GROUP],
-            last,
+            last: false,
         };
-        for (k, (id, corners)) in triangles.iter().enumerate() {
-            group.triangles[k] = *id;
+        for (k, (number, corners)) in triangles.enumerate() {
+            group.triangles[k] = number;
             for (c, corner) in corners.iter().enumerate() {
                 for axis in 0..3 {
                     group.corners[axis][c][k] = corner[axis];
@@ -68,10 +69,23 @@ impl Group {
         group
     }
 
+    /// A number that depends on each of the group's cache lines.
+    #[inline(always)]
+    pub(super) fn touch(&self) -> u32 {
+        let lines = self.corners.as_flattened().iter();
+        self.triangles[0] ^ lines.fold(0, |bits, line| bits ^ line[0].to_bits() as u32)
+    }
+
     /// The corners of triangle `k` of the group.
     pub(super) fn corners(&self, k: usize) -> [DVec3; 3] {
         let c = &self.corners;
         [0, 1, 2].map(|i| DVec3::new(c[0][i][k], c[1][i][k], c[2][i][k]))
+    }
+
+    /// The triangles and their numbers.
+    pub(super) fn members(&self) -> impl Iterator<Item = (u32, [DVec3; 3])> {
+        let present = (0..GROUP).filter(|k| self.triangles[*k] != u32::MAX);
+        present.map(|k| (self.triangles[k], self.corners(k)))
     }
 
     /// With the corners a, b, c in the sheared space of the ray, where it is the axis, it passes inside if u = c×b, v = a×c and w = b×a
@@ -96,8 +110,9 @@ impl Group {
             let w = b[0] * a[1] - b[1] * a[0];
             let sum = u + v + w;
             t[k] = (u * a[2] + v * b[2] + w * c[2]) / sum;
-            let inside = ((u >= 0.0) & (v >= 0.0) & (w >= 0.0)) | ((u <= 0.0) & (v <= 0.0) & (w <= 0.0));
-            let met = inside & (t[k] > 0.0) & (t[k] < limit);
+            let inside =
+                ((u >= 0.0) & (v >= 0.0) & (w >= 0.0)) | ((u <= 0.0) & (v <= 0.0) & (w <= 0.0));
+            let met = inside & (t[k] > 0.0) & (t[k] <= limit);
             bits[k] = if met { 1 << k } else { 0 };
         }
         (t, bits.iter().fold(0, |a, b| a | b) as u32)
