@@ -22,7 +22,7 @@ pub(super) use wide::{Query, WideTree};
 /// Largest number of shapes tested one by one: from there on the tree is faster (`benches/rays.rs`).
 const FLAT: usize = 8;
 /// Hits are at one place if their distances differ by no more than this, relative to the lengths involved.
-const TIE: f64 = 1e-12;
+pub(super) const TIE: f64 = 1e-12;
 /// Coordinates beyond this (in scene units) are refused.
 const LARGEST: f64 = 1e12;
 

@@ -9,8 +9,8 @@ use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
 
+use super::Space;
 use super::collapse::{Collapse, WIDTH};
-use super::{PADDING, Space};
 use crate::geometry::{DVec3, Ray};
 
 /// Marks a child that is a leaf.
