@@ -93,7 +93,7 @@ impl Mesh {
                 p.abs().max_element()
             }
         };
-        let far = |p: &DVec3| !(reach(p) <= LARGEST);
+        let far = |p: &DVec3| !p.is_finite() || reach(p) > LARGEST;
         if let Some(vertex) = positions.iter().position(far) {
             let reach = reach(&positions[vertex]);
             return Err(MeshError::Unbounded { vertex, reach });
@@ -222,7 +222,7 @@ impl Mesh {
             #[inline(always)]
             || {
                 self.tree
-                    .traverse(rays, &Closest(self), |i, (_, hit)| found[i] = hit)
+                    .traverse(rays, &Closest(self), |i, (_, hit)| found[i] = hit);
             },
         );
         found
@@ -241,7 +241,7 @@ impl Mesh {
             #[inline(always)]
             || {
                 self.tree
-                    .traverse(segments, &Any(self), |i, (_, hit)| found[i] = hit)
+                    .traverse(segments, &Any(self), |i, (_, hit)| found[i] = hit);
             },
         );
         found

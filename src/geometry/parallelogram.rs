@@ -205,7 +205,7 @@ impl Parallelogram {
 #[inline(always)]
 fn contains([a, b]: [f64; 2]) -> bool {
     const EDGE: f64 = 1e-12;
-    let within = |c: f64| (c >= -EDGE) & (c <= 1.0 + EDGE);
+    let within = |c: f64| (-EDGE..=1.0 + EDGE).contains(&c);
     within(a) & within(b)
 }
 

@@ -305,3 +305,17 @@ impl Node {
         outside.iter().map(|d| d * d).sum::<f32>().sqrt()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_boxes_are_one() {
+        let at = |x: f32| Aabb::new([x; 3].into(), [x + 1.0; 3].into());
+        let (boxes, members) = distinct([2.0, 1.0, 2.0, 3.0, 1.0, 2.0].map(at).into_iter());
+        let starts: Vec<f32> = boxes.iter().map(|b| b.min.x).collect();
+        assert_eq!(starts, [1.0, 2.0, 3.0]);
+        assert_eq!(members, [vec![1, 4], vec![0, 2, 5], vec![3]]);
+    }
+}

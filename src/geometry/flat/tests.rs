@@ -31,14 +31,14 @@ fn shapes() -> impl Strategy<Value = Vec<Shape>> {
     })
 }
 
-/// The two ends, each a free point and perhaps a place on a shape instead.
-type Line = [(DVec3, Option<(u32, [f64; 2])>); 2];
+/// The two ends, each a free point, perhaps named as one of a shape, or a place on it.
+type Line = [(DVec3, Option<(u32, Option<[f64; 2]>)>); 2];
 
 fn lines() -> impl Strategy<Value = Vec<Line>> {
     let end = || {
         (
             point(),
-            prop::option::of((any::<u32>(), [0.0..=1.0, 0.0..=1.0])),
+            prop::option::of((any::<u32>(), prop::option::of([0.0..=1.0, 0.0..=1.0]))),
         )
     };
     prop::collection::vec([end(), end()], 1..30)
@@ -55,9 +55,9 @@ proptest! {
         let bvh = Bvh::new(shapes).unwrap();
         let (mut segments, mut ends) = (Vec::new(), Vec::new());
         for line in lines {
-            let [a, b] = line.map(|(free, place)| match place {
-                Some((id, uv)) => (bvh.shapes()[(id % count) as usize].at(uv).position, Some(id % count)),
-                None => (free, None),
+            let [a, b] = line.map(|(free, named)| match named.map(|(id, uv)| (id % count, uv)) {
+                Some((id, Some(uv))) => (bvh.shapes()[id as usize].at(uv).position, Some(id)),
+                named => (free, named.map(|(id, _)| id)),
             });
             if let Some(ray) = Ray::between(a.0, b.0) {
                 segments.push(ray);

@@ -77,7 +77,7 @@ fn the_tree_answers_as_the_list_does() {
                 if i % 5 == 0 {
                     d = DVec3::new(0.0, if i % 10 == 0 { 1e-9 } else { 0.0 }, d.z).normalize();
                 }
-                let away = if i % 4 == 0 { 300.0 * scale } else { 0.0 };
+                let away = if i % 4 == 0 { 1e5 * scale } else { 0.0 };
                 let length = if i % 3 == 0 {
                     f64::INFINITY
                 } else {
@@ -142,6 +142,35 @@ fn a_closed_surface_does_not_leak() {
         .count();
     assert_eq!(leaks, 0, "of {}", rays.len());
     assert!(mesh.blocks_many(&rays).iter().all(|b| *b));
+}
+
+/// Rays straight through the vertices, edges and diagonals of a grid of exact coordinates, whichever way its triangles turn.
+#[test]
+fn what_belongs_to_two_triangles_is_met() {
+    for turned in [false, true] {
+        let at = |i: u32, j: u32| DVec3::new(f64::from(i), f64::from(j), 0.0) * 0.25;
+        let positions = (0..81).map(|k| at(k / 9, k % 9)).collect();
+        let mut triangles = Vec::new();
+        for a in (0..72).filter(|k| k % 9 < 8) {
+            for [p, q, r] in [[a, a + 9, a + 10], [a, a + 10, a + 1]] {
+                triangles.push(if turned { [p, r, q] } else { [p, q, r] });
+            }
+        }
+        let mesh = Mesh::new(positions, triangles).unwrap();
+        let mut rays = Vec::new();
+        for i in 0..=64 {
+            for j in 0..=64 {
+                let to = DVec3::new(f64::from(i), f64::from(j), 0.0) / 32.0;
+                rays.push(Ray::new(to + DVec3::Z, -DVec3::Z));
+            }
+        }
+        assert!(
+            mesh.closest_many(&rays)
+                .iter()
+                .all(|hit| hit.is_some_and(|h| h.t == 1.0))
+        );
+        assert!(mesh.blocks_many(&rays).iter().all(|b| *b));
+    }
 }
 
 /// Points of a cube's walls see each other from inside, and nothing else.
