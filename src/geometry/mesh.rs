@@ -248,16 +248,10 @@ impl Mesh {
     }
 
     /// The groups of a leaf.
-    #[inline(always)]
     fn leaf(&self, first: u32) -> impl Iterator<Item = &Group> {
-        let mut more = true;
-        self.groups[first as usize..]
-            .iter()
-            .take_while(move |group| {
-                let taken = more;
-                more = !group.last;
-                taken
-            })
+        let groups = &self.groups[first as usize..];
+        let more = groups.iter().take_while(|g| !g.last).count();
+        groups[..=more].iter()
     }
 }
 
@@ -279,24 +273,32 @@ impl Query for Closest<'_> {
 
     #[inline(always)]
     fn visit(&self, ray: &Ray, (sheared, best): &mut Self::State, leaf: u32) -> f64 {
-        let mut limit = best.map_or(ray.length, |b| b.t);
-        for group in self.0.leaf(leaf) {
+        let mut limit = match best {
+            Some(b) => b.t,
+            None => ray.length,
+        };
+        let mut at = leaf as usize;
+        loop {
+            let group = &self.0.groups[at];
             let (t, mut hits) = group.meet(sheared, limit);
             while hits != 0 {
                 let k = hits.trailing_zeros() as usize & (GROUP - 1);
                 hits &= hits - 1;
-                let hit = MeshHit {
-                    triangle: group.triangles[k],
-                    t: t[k],
+                let (triangle, t) = (group.triangles[k], t[k]);
+                let first = match best {
+                    Some(b) => t < b.t || (t == b.t && triangle < b.triangle),
+                    None => t < ray.length,
                 };
-                let first = best.is_none_or(|b| (hit.t, hit.triangle) < (b.t, b.triangle));
-                if first && hit.t < ray.length && is_off_plane(group.corners(k), ray.origin) {
-                    *best = Some(hit);
-                    limit = hit.t;
+                if first && is_off_plane(group.corners(k), ray.origin) {
+                    *best = Some(MeshHit { triangle, t });
+                    limit = t;
                 }
             }
+            if group.last {
+                return limit;
+            }
+            at += 1;
         }
-        limit
     }
 }
 
@@ -318,21 +320,26 @@ impl Query for Any<'_> {
 
     #[inline(always)]
     fn visit(&self, ray: &Ray, (sheared, found): &mut Self::State, leaf: u32) -> f64 {
-        for group in self.0.leaf(leaf) {
+        let end = ray.origin + ray.direction * ray.length;
+        let mut at = leaf as usize;
+        loop {
+            let group = &self.0.groups[at];
             let (t, mut hits) = group.meet(sheared, ray.length);
             while hits != 0 {
                 let k = hits.trailing_zeros() as usize & (GROUP - 1);
                 hits &= hits - 1;
                 let corners = group.corners(k);
-                let off = |p: DVec3| is_off_plane(corners, p);
-                let ends = || off(ray.origin) && off(ray.origin + ray.direction * ray.length);
-                if t[k] < ray.length && ends() {
+                let off = is_off_plane(corners, ray.origin) && is_off_plane(corners, end);
+                if t[k] < ray.length && off {
                     *found = true;
                     return -1.0;
                 }
             }
+            if group.last {
+                return ray.length;
+            }
+            at += 1;
         }
-        ray.length
     }
 }
 

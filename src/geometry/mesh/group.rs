@@ -77,9 +77,14 @@ impl Group {
     }
 
     /// The corners of triangle `k` of the group.
+    #[inline(always)]
     pub(super) fn corners(&self, k: usize) -> [DVec3; 3] {
-        let c = &self.corners;
-        [0, 1, 2].map(|i| DVec3::new(c[0][i][k], c[1][i][k], c[2][i][k]))
+        let [x, y, z] = &self.corners;
+        [
+            DVec3::new(x[0][k], y[0][k], z[0][k]),
+            DVec3::new(x[1][k], y[1][k], z[1][k]),
+            DVec3::new(x[2][k], y[2][k], z[2][k]),
+        ]
     }
 
     /// The triangles and their numbers.
