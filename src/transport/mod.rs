@@ -29,6 +29,7 @@ mod pinhole;
 mod pixel;
 mod render;
 mod setting;
+mod shadow;
 mod sight;
 mod steps;
 mod strata;
