@@ -92,10 +92,11 @@ fn in_strips(
     }
     let mut errors = match (&args.stderr, args.noise) {
         (_, Some(noise)) => Errors::Relative(noise),
-        (Some(file), None) => Errors::File(recover_memory::open(file, scene)?),
-        (None, None) if args.phi.is_none() => {
-            Errors::File(recover_memory::open(&args.dir.join(STDERR), scene)?)
-        }
+        (Some(file), None) => Errors::File(Box::new(recover_memory::open(file, scene)?)),
+        (None, None) if args.phi.is_none() => Errors::File(Box::new(recover_memory::open(
+            &args.dir.join(STDERR),
+            scene,
+        )?)),
         (None, None) => Errors::Unknown,
     };
     let kernel = settings::kernel(args.kernel);

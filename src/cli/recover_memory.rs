@@ -125,7 +125,7 @@ pub(super) enum Errors {
     Unknown,
     /// Relative to each entry.
     Relative(f64),
-    File(Rows),
+    File(Box<Rows>),
 }
 
 /// A file of Φcam's shape, opened.

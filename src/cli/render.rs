@@ -15,7 +15,7 @@ use super::{Outcome, progress, settings};
 use crate::film;
 use crate::matrix::Matrix;
 use crate::scene::Scene;
-use crate::transport::{Control, Estimator, Plan, Traced, render};
+use crate::transport::{Control, Estimator, Plan, Traced, block_size, render};
 
 pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure> {
     let scene = Scene::load(&args.scene)?;
@@ -120,6 +120,13 @@ pub(super) fn into_folder(
             .collect(),
         _ => spots.collect(),
     };
+    let points = block_size(scene, &plan) as u64;
+    if points > u64::from(plan.budget.size) {
+        talk.say(format!(
+            "each block takes {points} points in place of {}: its share of every texture cell is rounded up",
+            plan.budget.size
+        ));
+    }
     let start = Instant::now();
     let traced = trace(scene, &plan, &todo, &folder, &record, &pool, talk);
     record.seconds += start.elapsed().as_secs_f64();

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::beam::{Beams, LitPoint};
 use super::eye::Sighting;
+use super::lit::Lit;
 use super::pinhole;
 use super::walk::Vertex;
 use crate::scene::Scene;
@@ -43,15 +44,16 @@ impl<'a> Direct<'a> {
         found
     }
 
-    /// Adds a pixel's row for `columns`: the mean over places in its footprint and, where they have width, in the beams, each place counting `share`.
+    /// Adds a pixel's row for the columns of `lit`: the mean over places in its footprint and, where they have width, in the beams, each place counting `share`.
     pub(super) fn add(
         &self,
         sighting: &Sighting,
         places: &[[f64; 2]],
-        (lit, columns): (&[Vec<Option<LitPoint>>], &Range<usize>),
+        lit: &Lit<'_>,
         share: f64,
         row: &mut [f64],
     ) {
+        let columns = &lit.columns;
         let power = self.scene.laser.power;
         for &(column, pixel, flux) in &self.ideal {
             if pixel == sighting.pixel() && columns.contains(&column) {
@@ -70,7 +72,7 @@ impl<'a> Direct<'a> {
             let first = sighting.vertex(self.scene, *place);
             for &(column, spot) in wide() {
                 let column = column - columns.start;
-                let lit = lit[k % lit.len()][column].as_ref();
+                let lit = lit.at(k)[column].as_ref();
                 let flux = direct(
                     self.scene,
                     self.beams,

@@ -6,8 +6,8 @@ use std::sync::atomic::Ordering;
 
 use rayon::prelude::*;
 
-use super::beam::LitPoint;
 use super::eye::hide;
+use super::lit::Lit;
 use super::moments::{Layout, Moments, TILE};
 use super::packet::Packet;
 use super::render::{Control, Traced};
@@ -80,13 +80,8 @@ impl<'a> Factored<'a> {
                 return None;
             }
             let range = start..(start + CHUNK).min(count);
-            let lit: Vec<Vec<Option<LitPoint>>> = match points.beam.get(range.clone()) {
-                Some(places) => places
-                    .par_iter()
-                    .map(|b| self.setting.lamp.points(*b, &all))
-                    .collect(),
-                None => vec![self.setting.lamp.points([0.0; 2], &all)],
-            };
+            let beams = points.beam.get(range.clone()).unwrap_or_default();
+            let lit = self.setting.lamp.lit(beams, &all);
             let light = self.light(&points, range.clone(), &lit);
             let at = points.at.part(range.clone());
             sums.par_chunks_mut(layout.tile())
@@ -146,18 +141,14 @@ impl<'a> Factored<'a> {
     }
 
     /// L for the points `range`, by order from three surfaces on: points × spots.
-    fn light(
-        &self,
-        points: &Points,
-        range: Range<usize>,
-        lit: &[Vec<Option<LitPoint>>],
-    ) -> Vec<Vec<f64>> {
+    fn light(&self, points: &Points, range: Range<usize>, lit: &Lit<'_>) -> Vec<Vec<f64>> {
         let width = self.layout().width();
         let deeper = self.setting.scene.max_bounces.saturating_sub(2) as usize;
         let power = self.setting.scene.laser.power;
-        let packets: Vec<Packet> = lit
-            .par_iter()
-            .map(|l| self.setting.lamp.packet(l, width))
+        let places = if lit.is_fixed() { 1 } else { range.len() };
+        let packets: Vec<Packet> = (0..places)
+            .into_par_iter()
+            .map(|k| self.setting.lamp.packet(lit.at(k), width))
             .collect();
         let order = |n: usize| {
             let mut light = vec![0.0; range.len() * width];
@@ -168,12 +159,12 @@ impl<'a> Factored<'a> {
                     let Some(vertex) = &points.vertices[(range.start + i) * deeper + n] else {
                         return;
                     };
-                    let own = i % lit.len();
+                    let own = if lit.is_fixed() { 0 } else { i };
                     let factor = power * vertex.throughput * vertex.albedo * FRAC_1_PI;
                     packets[own].forms_from((vertex.position, vertex.normal), factor, row);
                     self.setting
                         .lamp
-                        .hide(&lit[own], 0, (vertex.position, vertex.shape), row);
+                        .hide(lit.at(own), 0, (vertex.position, vertex.shape), row);
                 });
             light
         };
@@ -185,7 +176,7 @@ impl<'a> Factored<'a> {
         &self,
         pixels: Range<usize>,
         (at, places, count): (&Packet, &[[f64; 2]], usize),
-        (light, lit): (&[Vec<f64>], &[Vec<Option<LitPoint>>]),
+        (light, lit): (&[Vec<f64>], &Lit<'_>),
         sums: &mut [f64],
     ) {
         let layout = self.layout();
@@ -202,12 +193,10 @@ impl<'a> Factored<'a> {
             hide(self.setting.scene, &self.blockers[pixel], (&x, at), row);
             if self.setting.two {
                 let two = &mut sums[(rows + i) * width..(rows + i + 1) * width];
-                self.setting.lamp.add_two_surfaces(&x, (lit, 0), share, two);
+                self.setting.lamp.add_two_surfaces(&x, lit, share, two);
             }
             let one = &mut sums[i * width..(i + 1) * width];
-            self.setting
-                .direct
-                .add(sighting, places, (lit, &(0..layout.columns)), share, one);
+            self.setting.direct.add(sighting, places, lit, share, one);
         }
         for (n, light) in light.iter().enumerate() {
             let order = &mut sums[(n + 2) * rows * width..(n + 3) * rows * width];

@@ -1,5 +1,6 @@
 //! Sampling of points on the hidden surfaces by area.
 
+use super::steps::Steps;
 use crate::geometry::{ShapeId, SurfacePoint};
 use crate::scene::Scene;
 
@@ -21,11 +22,12 @@ struct Sampled {
     share: f64,
     /// Cumulative probability over surfaces, before this one.
     before: f64,
-    /// Cumulative distribution over rows of cells: count[1] + 1 entries from 0 to 1.
-    rows: Vec<f64>,
-    /// For each row the cumulative distribution over its cells, count[0] + 1 entries.
-    columns: Vec<Vec<f64>>,
-    area: f64,
+    /// Over rows of cells.
+    rows: Steps,
+    /// For each row, over its cells.
+    columns: Vec<Steps>,
+    /// Of each cell, per unit area.
+    density: Vec<f64>,
 }
 
 impl HiddenArea {
@@ -58,17 +60,24 @@ impl HiddenArea {
                 count,
                 share,
                 before: total,
-                rows: cumulative((0..count[1]).map(row_sum)),
+                rows: Steps::new((0..count[1]).map(row_sum)),
                 columns: (0..count[1])
-                    .map(|j| cumulative((0..count[0]).map(|i| mean(i, j))))
+                    .map(|j| Steps::new((0..count[0]).map(|i| mean(i, j))))
                     .collect(),
-                area,
+                density: Vec::new(),
             });
             total += share;
         }
         for s in &mut surfaces {
             s.share /= total;
             s.before /= total;
+            let [nu, nv] = s.count;
+            let per_cell = (nu * nv) as f64 / scene.surfaces[s.shape as usize].shape.area();
+            let share =
+                |cell: usize| s.rows.share(cell / nu) * s.columns[cell / nu].share(cell % nu);
+            s.density = (0..nu * nv)
+                .map(|c| s.share * share(c) * per_cell)
+                .collect();
         }
         Self { surfaces, of_shape }
     }
@@ -78,8 +87,12 @@ impl HiddenArea {
         self.of_shape[shape as usize].is_some()
     }
 
-    /// A point for u ∈ [0, 1)², with its shape.
-    pub(super) fn sample(&self, scene: &Scene, [mut a, b]: [f64; 2]) -> (ShapeId, SurfacePoint) {
+    /// A point for u ∈ [0, 1)², with its shape and its density per unit area.
+    pub(super) fn sample(
+        &self,
+        scene: &Scene,
+        [mut a, b]: [f64; 2],
+    ) -> (ShapeId, SurfacePoint, f64) {
         let last = self.surfaces.len() - 1;
         let chosen = self.surfaces[1..]
             .iter()
@@ -88,9 +101,10 @@ impl HiddenArea {
             .min(last);
         let s = &self.surfaces[chosen];
         a = ((a - s.before) / s.share).clamp(0.0, 1.0 - f64::EPSILON);
-        let (row, v) = invert(&s.rows, b);
-        let (_, u) = invert(&s.columns[row], a);
-        (s.shape, scene.surfaces[s.shape as usize].shape.at([u, v]))
+        let (row, v) = s.rows.invert(b);
+        let (column, u) = s.columns[row].invert(a);
+        let point = scene.surfaces[s.shape as usize].shape.at([u, v]);
+        (s.shape, point, s.density[column + row * s.count[0]])
     }
 
     /// Density of [`HiddenArea::sample`] at a point of `shape` with parameters `uv`, per unit area.
@@ -100,38 +114,26 @@ impl HiddenArea {
         };
         let cell = |x: f64, n: usize| ((x * n as f64) as usize).min(n - 1);
         let [i, j] = [cell(uv[0], s.count[0]), cell(uv[1], s.count[1])];
-        let row = s.rows[j + 1] - s.rows[j];
-        let column = s.columns[j][i + 1] - s.columns[j][i];
-        s.share * row * column * (s.count[0] * s.count[1]) as f64 / s.area
+        s.density[i + j * s.count[0]]
     }
-}
 
-/// Cumulative distribution of weights, from 0 to exactly 1; uniform if all weights vanish.
-fn cumulative(weights: impl Iterator<Item = f64>) -> Vec<f64> {
-    let mut sums = vec![0.0];
-    for w in weights {
-        sums.push(sums[sums.len() - 1] + w);
+    /// Whether all cells of one surface are unions of the boxes into which a net of `points` is stratified: then it is stratified by the
+    /// cells as well, and better between them than nets of their own.
+    pub(super) fn is_dyadic(&self, points: u32) -> bool {
+        let most = points.max(1).ilog2();
+        let [s] = self.surfaces.as_slice() else {
+            return false;
+        };
+        let rows = s.rows.digits(most);
+        let own = |j: usize| match s.rows.share(j) > 0.0 {
+            true => s.columns[j].digits(most),
+            false => Some(0),
+        };
+        let columns = (0..s.count[1])
+            .map(own)
+            .try_fold(0, |m, d| d.map(|d| d.max(m)));
+        rows.zip(columns).is_some_and(|(r, c)| r + c <= most)
     }
-    let n = sums.len() - 1;
-    let total = sums[n];
-    if total <= 0.0 {
-        return (0..=n).map(|i| i as f64 / n as f64).collect();
-    }
-    sums.iter_mut().for_each(|s| *s /= total);
-    sums[n] = 1.0;
-    sums
-}
-
-/// Inverse of a piecewise linear distribution function with equal steps: the step and the position in [0, 1).
-fn invert(cdf: &[f64], x: f64) -> (usize, f64) {
-    let n = cdf.len() - 1;
-    // The last step that starts at or below x and is not empty.
-    let mut i = cdf.partition_point(|c| *c <= x).clamp(1, n) - 1;
-    while cdf[i + 1] <= cdf[i] && i > 0 {
-        i -= 1;
-    }
-    let t = ((x - cdf[i]) / (cdf[i + 1] - cdf[i])).clamp(0.0, 1.0 - f64::EPSILON);
-    (i, (i as f64 + t) / n as f64)
 }
 
 #[cfg(test)]
@@ -169,7 +171,7 @@ mod tests {
         let mut counts = vec![[0.0; SUB * SUB]; 3];
         for _ in 0..n {
             let u = stream.next_four();
-            let (shape, p) = hidden.sample(&scene, [u[0], u[1]]);
+            let (shape, p, _) = hidden.sample(&scene, [u[0], u[1]]);
             assert!(
                 scene.surfaces[shape as usize].albedo.albedo(p.uv) > 0.0,
                 "a dark cell was sampled"
@@ -206,10 +208,10 @@ mod tests {
     fn points_return_to_their_place_in_the_square() {
         let scene = scene();
         let hidden = HiddenArea::new(&scene);
-        let along = |cdf: &[f64], x: f64| {
-            let n = (cdf.len() - 1) as f64;
-            let i = ((x * n) as usize).min(cdf.len() - 2);
-            cdf[i] + (x * n - i as f64) * (cdf[i + 1] - cdf[i])
+        let along = |steps: &Steps, n: usize, x: f64| {
+            let i = ((x * n as f64) as usize).min(n - 1);
+            let before: f64 = (0..i).map(|k| steps.share(k)).sum();
+            before + (x * n as f64 - i as f64) * steps.share(i)
         };
         let key = Key {
             seed: 4,
@@ -220,32 +222,16 @@ mod tests {
         let mut stream = Stream::new(Sampling::Pcg, key);
         for _ in 0..5000 {
             let u = stream.next_four();
-            let (shape, p) = hidden.sample(&scene, [u[0], u[1]]);
+            let (shape, p, _) = hidden.sample(&scene, [u[0], u[1]]);
             let s = &hidden.surfaces[hidden.of_shape[shape as usize].unwrap()];
             let row = ((p.uv[1] * s.count[1] as f64) as usize).min(s.count[1] - 1);
             let back = [
-                s.before + s.share * along(&s.columns[row], p.uv[0]),
-                along(&s.rows, p.uv[1]),
+                s.before + s.share * along(&s.columns[row], s.count[0], p.uv[0]),
+                along(&s.rows, s.count[1], p.uv[1]),
             ];
             for d in 0..2 {
                 assert!((back[d] - u[d]).abs() < 1e-12, "{u:?} -> {back:?}");
             }
         }
-    }
-
-    /// The map is continuous and onto: equal steps in u give points whose cell index never falls, and the ends of the
-    /// unit interval stay inside.
-    #[test]
-    fn distribution_functions_invert() {
-        let cdf = cumulative([0.0, 2.0, 0.0, 1.0, 0.0].into_iter());
-        let mut last = 0.0;
-        for k in 0..=1000 {
-            let (i, x) = invert(&cdf, f64::from(k) / 1000.0);
-            assert!(i == 1 || i == 3, "an empty step was chosen");
-            assert!(x >= last && x < 1.0);
-            last = x;
-        }
-        // Two thirds of the weight lie in step 1: u = 1/3 is its middle.
-        assert!((invert(&cdf, 1.0 / 3.0).1 - 0.3).abs() < 1e-12);
     }
 }

@@ -1,9 +1,13 @@
 //! The lit spots, seen from the surfaces that they light.
 
+use std::borrow::Cow;
 use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
 
+use rayon::prelude::*;
+
 use super::beam::{Beams, LitPoint};
+use super::lit::Lit;
 use super::packet::Packet;
 use super::sight::all_shapes;
 use crate::geometry::{Basis, Blockers, DVec3, Parallelogram, Ray, Region, Shape, ShapeId};
@@ -15,6 +19,8 @@ pub(super) struct Lamp<'a> {
     scene: &'a Scene,
     beams: &'a Beams<'a>,
     spots: Range<usize>,
+    /// By spot, if beams have no width: where its light lands.
+    ideal: Vec<Option<LitPoint>>,
     /// By spot: where its light is expected to land.
     landings: Vec<Option<Landing>>,
     /// By spot and shape.
@@ -78,10 +84,15 @@ impl<'a> Lamp<'a> {
                 free && landings.iter().all(Option::is_some) && !beams.has_width()
             })
             .collect();
+        let ideal = match beams.has_width() {
+            true => Vec::new(),
+            false => spots.clone().map(|l| beams.point(l, [0.0; 2])).collect(),
+        };
         Self {
             scene,
             beams,
             spots,
+            ideal,
             landings,
             blockers,
             clear,
@@ -98,13 +109,25 @@ impl<'a> Lamp<'a> {
         self.beams.has_width()
     }
 
-    /// The points lit by the beams of `columns`, for one place in the beam; None where the light is lost.
-    pub(super) fn points(&self, place: [f64; 2], columns: &Range<usize>) -> Vec<Option<LitPoint>> {
-        let point = |column| self.beams.point(self.spots.start + column, place);
-        columns.clone().map(point).collect()
+    /// The points lit by the beams of `columns` for many places in the beams.
+    pub(super) fn lit(&self, places: &[[f64; 2]], columns: &Range<usize>) -> Lit<'_> {
+        let points = match self.beams.has_width() {
+            false => Cow::Borrowed(&self.ideal[columns.clone()]),
+            true => {
+                let spot = |column| self.spots.start + column;
+                let at = |place| {
+                    columns
+                        .clone()
+                        .map(move |c| self.beams.point(spot(c), place))
+                };
+                let all = places.par_iter().with_min_len(64);
+                Cow::Owned(all.flat_map_iter(|place| at(*place)).collect())
+            }
+        };
+        Lit::new(columns.clone(), points)
     }
 
-    /// The same as a packet, weighted by the BRDF ρ/π.
+    /// Lit points as a packet, weighted by the BRDF ρ/π.
     pub(super) fn packet(&self, points: &[Option<LitPoint>], width: usize) -> Packet {
         let mut packet = Packet::dark(width);
         for (i, point) in points.iter().enumerate() {
@@ -156,26 +179,19 @@ impl<'a> Lamp<'a> {
                 .is_none_or(|ray| self.scene.bvh().blocked_by(blockers, &ray, ends))
     }
 
-    /// Adds to `sums` the light that goes from the lit spots straight to the vertices x, the columns from `first` on; each vertex counts
-    /// `share`. `lit` has one entry, or one for each vertex.
-    pub(super) fn add_two_surfaces(
-        &self,
-        x: &Packet,
-        (lit, first): (&[Vec<Option<LitPoint>>], usize),
-        share: f64,
-        sums: &mut [f64],
-    ) {
+    /// Adds to `sums` the light that goes from the lit spots straight to the vertices x; each vertex counts `share`.
+    pub(super) fn add_two_surfaces(&self, x: &Packet, lit: &Lit<'_>, share: f64, sums: &mut [f64]) {
         let mut row = vec![0.0; sums.len()];
-        let mut packet = self.packet(&lit[0], sums.len());
+        let mut packet = self.packet(lit.at(0), sums.len());
         for k in (0..x.len()).filter(|k| x.weight[*k] > 0.0) {
-            let own = &lit[k % lit.len()];
-            if lit.len() > 1 {
+            let own = lit.at(k);
+            if !lit.is_fixed() {
                 packet = self.packet(own, sums.len());
             }
             let (position, normal) = x.point(k);
             let factor = self.scene.laser.power * share * x.weight[k];
             packet.forms_from((position, normal), factor, &mut row);
-            self.hide(own, first, (position, x.shape[k]), &mut row);
+            self.hide(own, lit.columns.start, (position, x.shape[k]), &mut row);
             sums.iter_mut().zip(&row).for_each(|(s, r)| *s += r);
         }
     }

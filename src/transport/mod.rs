@@ -21,6 +21,7 @@ mod factored;
 mod form;
 mod hidden;
 mod lamp;
+mod lit;
 mod moments;
 mod own;
 mod packet;
@@ -29,7 +30,8 @@ mod pixel;
 mod render;
 mod setting;
 mod sight;
+mod steps;
 mod strata;
 mod walk;
 
-pub use render::{Budget, Control, Estimator, Plan, Traced, render};
+pub use render::{Budget, Control, Estimator, Plan, Traced, block_size, render};

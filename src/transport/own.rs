@@ -3,8 +3,8 @@
 use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
 
-use super::beam::LitPoint;
 use super::eye::{Sighting, hide};
+use super::lit::Lit;
 use super::packet::Packet;
 use super::setting::Setting;
 use super::strata::Drawn;
@@ -72,28 +72,15 @@ impl<'a> OwnPoints<'a> {
         let b = &mut self.buffers;
         self.sighting
             .vertices(self.setting.scene, &b.places, &mut b.x);
-        let lit: Vec<Vec<Option<LitPoint>>> = match b.beams.is_empty() {
-            true => vec![self.setting.lamp.points([0.0; 2], columns)],
-            false => b
-                .beams
-                .iter()
-                .map(|s| self.setting.lamp.points(*s, columns))
-                .collect(),
-        };
+        let lit = self.setting.lamp.lit(&b.beams, columns);
         let share = 1.0 / b.places.len() as f64;
         let n = columns.len();
-        self.setting.direct.add(
-            self.sighting,
-            &b.places,
-            (&lit, columns),
-            share,
-            &mut sums[..n],
-        );
+        self.setting
+            .direct
+            .add(self.sighting, &b.places, &lit, share, &mut sums[..n]);
         if self.setting.two {
             let two = &mut sums[stride..stride + n];
-            self.setting
-                .lamp
-                .add_two_surfaces(&b.x, (&lit, columns.start), share, two);
+            self.setting.lamp.add_two_surfaces(&b.x, &lit, share, two);
         }
         if sums.len() <= 2 * stride {
             return;
@@ -110,9 +97,9 @@ impl<'a> OwnPoints<'a> {
         );
         let three = &mut sums[2 * stride..2 * stride + n];
         if n == 1 {
-            self.one_spot(&lit, columns.start, &mut three[0]);
+            self.one_spot(&lit, &mut three[0]);
         } else {
-            self.all_spots(&lit, columns.start, three);
+            self.all_spots(&lit, three);
         }
     }
 
@@ -142,10 +129,11 @@ impl<'a> OwnPoints<'a> {
     }
 
     /// Adds the light from one spot, all points at once.
-    fn one_spot(&mut self, lit: &[Vec<Option<LitPoint>>], column: usize, sum: &mut f64) {
+    fn one_spot(&mut self, lit: &Lit<'_>, sum: &mut f64) {
+        let column = lit.columns.start;
         let b = &mut self.buffers;
-        if let [lit] = lit {
-            let Some(lit) = &lit[0] else { return };
+        if lit.is_fixed() {
+            let Some(lit) = &lit.at(0)[0] else { return };
             let factor = lit.albedo * FRAC_1_PI;
             b.y.unit_forms_from((lit.position, lit.normal), factor, &mut b.light);
             for (k, light) in b.light.iter().enumerate() {
@@ -161,8 +149,8 @@ impl<'a> OwnPoints<'a> {
             }
             return;
         }
-        for (k, lit) in lit.iter().enumerate() {
-            let Some(lit) = &lit[0] else { continue };
+        for k in 0..b.camera.len() {
+            let Some(lit) = &lit.at(k)[0] else { continue };
             let part =
                 b.camera[k] * lit.albedo * FRAC_1_PI * b.y.form(k, (lit.position, lit.normal));
             if part != 0.0
@@ -177,20 +165,20 @@ impl<'a> OwnPoints<'a> {
     }
 
     /// Adds the light from many spots, all spots of a point at once.
-    fn all_spots(&mut self, lit: &[Vec<Option<LitPoint>>], first: usize, sums: &mut [f64]) {
+    fn all_spots(&mut self, lit: &Lit<'_>, sums: &mut [f64]) {
         let b = &mut self.buffers;
         let mut row = vec![0.0; sums.len()];
-        let mut packet = self.setting.lamp.packet(&lit[0], sums.len());
+        let mut packet = self.setting.lamp.packet(lit.at(0), sums.len());
         for (k, camera) in b.camera.iter().enumerate().filter(|(_, c)| **c != 0.0) {
-            let own = &lit[k % lit.len()];
-            if lit.len() > 1 {
+            let own = lit.at(k);
+            if !lit.is_fixed() {
                 packet = self.setting.lamp.packet(own, sums.len());
             }
             let (position, normal) = b.y.point(k);
             packet.forms_from((position, normal), *camera, &mut row);
             self.setting
                 .lamp
-                .hide(own, first, (position, b.y.shape[k]), &mut row);
+                .hide(own, lit.columns.start, (position, b.y.shape[k]), &mut row);
             sums.iter_mut().zip(&row).for_each(|(s, r)| *s += r);
         }
     }

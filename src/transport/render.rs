@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::beam::Beams;
 use super::factored::Factored;
+use super::own::OwnPoints;
 use super::pixel::PixelTracer;
 use super::setting::Setting;
 use crate::matrix::Matrix;
@@ -134,6 +135,17 @@ impl Traced {
             stderr: nothing(),
         }
     }
+}
+
+/// Paths, or points, that a block really has: at least what `plan` asks for where the surfaces between the walls are divided into texture
+/// cells, each of which gets its share rounded up.
+pub fn block_size(scene: &Scene, plan: &Plan) -> usize {
+    let beams = Beams::new(scene);
+    let setting = Setting::new(scene, plan, &beams, 0..1);
+    if plan.estimator == Estimator::Factored || OwnPoints::new(&setting, 0).is_some() {
+        return setting.strata.block_size();
+    }
+    plan.budget.size as usize
 }
 
 /// Traces the columns `spots` of Φcam. The same plan gives the same bits for every number of threads and every range

@@ -21,7 +21,8 @@ pub(super) struct Drawn {
 
 /// How the surfaces are divided: by texture cells, each with points in proportion to its area times albedo, at least one; dark ones with
 /// none, which is exact. No edge of a texture lies within a stratum, so within each the integrand is smooth whatever the direction of
-/// the edges. Where there are more cells than points, one stratum drawn from the distribution of area times albedo.
+/// the edges. Where there are more cells than points, or a net over all of them is stratified by each of them anyhow, one stratum drawn
+/// from the distribution of area times albedo.
 ///
 /// Where a surface comes close to what the camera sees, area alone would seldom hit what matters: as many points again are then sent out
 /// from an anchor in the middle of the view, by the cosine.
@@ -190,9 +191,12 @@ impl<'a> Strata<'a> {
         };
         // A share of exactly a power of two must not become the next by rounding.
         let share = |w: f64| f64::from(size) * w / total * (1.0 - 1e-9);
-        let kind = if cells.len() > size as usize {
+        let whole = HiddenArea::of(scene, shapes);
+        let together =
+            cells.len() > size as usize || sampling == Sampling::Sobol && whole.is_dyadic(size);
+        let kind = if together {
             Kind::Distribution {
-                area: HiddenArea::of(scene, shapes),
+                area: whole,
                 points: round(f64::from(size)),
             }
         } else {
@@ -304,9 +308,8 @@ impl<'a> Strata<'a> {
                 }
             }
             Kind::Distribution { area, points } => draw(0, *points, &|u| {
-                let (shape, point) = area.sample(self.scene, u);
-                let density = f64::from(*points) * area.density(shape, point.uv);
-                self.drawn(shape, point, density)
+                let (shape, point, density) = area.sample(self.scene, u);
+                self.drawn(shape, point, f64::from(*points) * density)
             }),
         }
         if let Some(anchor) = &self.anchor {

@@ -133,7 +133,7 @@ impl<'a> Walk<'a> {
     }
 
     fn by_area(&self, x: &Vertex, u: [f64; 2]) -> Option<(ShapeId, SurfacePoint)> {
-        let (shape, point) = self.hidden.sample(self.scene, u);
+        let (shape, point, _) = self.hidden.sample(self.scene, u);
         let (_, ray) = form((x.position, x.normal), (point.position, point.normal))?;
         (!self.scene.bvh().blocked(&ray, [Some(x.shape), Some(shape)])).then_some((shape, point))
     }

@@ -94,10 +94,10 @@ fn traced_items_become_files_and_are_kept() {
 fn threads_do_not_change_a_byte() {
     let workspace = Workspace::new();
     let _ = workspace
-        .phicam("reproduce fig22 fig20 -o a --seeds 2 --threads 1")
+        .phicam("reproduce fig22 fig15 -o a --seeds 2 --threads 1")
         .exits(0);
     let _ = workspace
-        .phicam("reproduce fig22 fig20 -o b --seeds 2 --threads 3")
+        .phicam("reproduce fig22 fig15 -o b --seeds 2 --threads 3")
         .exits(0);
     assert_same(
         &workspace.contents("a"),

@@ -57,6 +57,8 @@ fn refuse_unseen(method: Method, problem: &Problem<'_>) -> Result<(), RecoveryEr
 /// Pixels whose X is held at once.
 const PIXELS: usize = 512;
 
+/// X of A X = B by the QR of A, cut at a rank.
+type Quotient = fn(&PivotedQr, usize, &DMatrix<f64>) -> Result<DMatrix<f64>, LinalgError>;
 type Solver = dyn Fn(&DMatrix<f64>) -> Result<DMatrix<f64>, LinalgError>;
 
 /// A generalised inverse of the laser side, D^# = Vᵀ S with as many rows of V and S as it has directions.
@@ -107,7 +109,7 @@ impl Inverse {
         options: &Options,
         sigma: DVector<f64>,
         (qr, rank): (PivotedQr, usize),
-        solve: fn(&PivotedQr, usize, &DMatrix<f64>) -> Result<DMatrix<f64>, LinalgError>,
+        solve: Quotient,
         choice: Choice,
     ) -> Result<Self, RecoveryError> {
         // What Q does not span is not seen by the solver.

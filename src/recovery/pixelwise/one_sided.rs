@@ -6,7 +6,7 @@
 //! Neither product is formed, which would square the condition. Both are D⁺ where they exist, D_L giving the one exact solution of X D = Φ of least
 //! norm and D_R the one solution of least squares, and both come from the pivoted QR of Dᵀ; unlike `pinv` these methods refuse where they do not exist.
 
-use super::{Inverse, decompose};
+use super::{Inverse, Quotient, decompose};
 use crate::num::linalg::{PivotedQr, cut, pivoted_qr_to};
 use crate::recovery::{Choice, Method, Options, Problem, RecoveryError};
 
@@ -39,7 +39,7 @@ pub(super) fn inverse(
         });
     }
     let qr = pivoted_qr_to(&problem.d.transpose(), options.tolerance)?;
-    let solve = match side {
+    let solve: Quotient = match side {
         Side::Left => PivotedQr::minimum_norm,
         Side::Right => PivotedQr::basic,
     };

@@ -7,7 +7,7 @@
 //! * `rdivide-min-norm`: the solution of least norm, as Octave and LAPACK's `gelsy`. (`gelsy` itself decides the rank by an estimate of the
 //!   condition of R; here both share one rank, so that they differ in nothing but the solution chosen.)
 
-use super::{Inverse, decompose};
+use super::{Inverse, Quotient, decompose};
 use crate::num::linalg::{PivotedQr, Tolerance, pivoted_qr_to};
 use crate::recovery::{Choice, Method, Options, Problem, RecoveryError};
 
@@ -34,7 +34,7 @@ pub(super) fn inverse(
         Tolerance::Rank(_) => Choice::Given,
         _ => Choice::Tolerance { cutoff },
     };
-    let solve = match solution {
+    let solve: Quotient = match solution {
         Solution::Basic => PivotedQr::basic,
         Solution::LeastNorm => PivotedQr::minimum_norm,
     };

@@ -5,6 +5,8 @@ use rayon::prelude::*;
 use super::contour;
 use super::figure::{computed, elements, linear, published as printed};
 use super::inversion::{Inversion, Outcome, published};
+use super::substitution::{self, Case};
+use super::traced::{self, MODELLED};
 use super::{Check, Gallery, Item, Plot, ReproduceError, Reproduction, Shades, Watch};
 use crate::model::{Kernel, Stagger};
 use crate::num::linalg::Tolerance;
@@ -17,6 +19,8 @@ const PER_SIDE: usize = 25;
 const HALVES: std::ops::RangeInclusive<usize> = 2..=28;
 /// Distances of the pictures, in.
 const SHOWN: [f64; 5] = [1.0, 5.0, 6.0, 7.5, 11.0];
+/// Distances at which light is traced, in.
+const TRACED: [f64; 8] = [1.0, 3.0, 5.0, 6.0, 7.5, 9.0, 11.0, 14.0];
 /// Two values are one where they are nearer than this.
 const SAME: f64 = 2.5e-2;
 
@@ -79,6 +83,8 @@ pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, Repro
                     a.nearest.into(),
                     o.raw.into(),
                     o.normalized.into(),
+                    MODELLED.into(),
+                    0.0.into(),
                 ]);
             }
             let points = |f: fn(&Outcome) -> Option<f64>| {
@@ -115,12 +121,30 @@ pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, Repro
         ]
     };
     let [normalized, raw] = curves;
+    let traced = substitution::trials(cases(layouts), watch)?;
+    for t in &traced {
+        for r in &t.found {
+            rows.push(vec![
+                Kernel::Physical.name().into(),
+                t.case.curve.into(),
+                t.case.x.into(),
+                t.rank.into(),
+                t.around[0].into(),
+                t.around[1].into(),
+                r.outcome.raw.into(),
+                r.outcome.normalized.into(),
+                r.name.into(),
+                r.noise.into(),
+            ]);
+        }
+    }
     let mut galleries = vec![Gallery {
         title: "Recovered 8 × 8 board, published kernel, stretched to [0, 1]".to_owned(),
         shades: Shades::Reflectance,
         unit: "",
         pictures,
     }];
+    galleries.push(substitution::gallery(&traced, &SHOWN));
     if item == Item::Fig20 {
         galleries.push(contour::contours());
     }
@@ -134,11 +158,12 @@ pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, Repro
         caption: format!(
             "Published and physical kernel (G12 and G23 alike); 8 × 8 board at 8 × 8 elements; 100 spots on the four sides of a square around C, {}; \
              16 × 16 pixels laid to the edges of the view; Moore–Penrose inverse cut at max(r, l)·eps(σ1), eps the spacing of doubles at σ1 (MATLAB); \
-             normalized MTF of the values stretched to [0, 1], raw MTF beside it; noiseless, by the projector.",
+             normalized MTF of the values stretched to [0, 1], raw MTF beside it; noiseless, by the projector. {}",
             match item {
                 Item::Fig17 => "no stagger",
                 _ => "without stagger and by turns on, 1 in. inside and 1 in. outside its lines",
-            }
+            },
+            traced::caption()
         ),
         columns: vec![
             "kernel",
@@ -149,6 +174,8 @@ pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, Repro
             "first_cut_over_cut",
             "mtf_raw",
             "mtf_normalized",
+            "phi",
+            "noise",
         ],
         rows,
         plots: vec![
@@ -162,10 +189,14 @@ pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, Repro
                 axes: axes("raw MTF"),
                 curves: raw,
             },
+            substitution::plot(
+                &traced,
+                linear("half-width of the square of spots / in.", [0.0, 15.0]),
+            ),
         ],
         galleries,
         checks,
-        notes: vec![finer(&of_published[0])],
+        notes: vec![finer(&of_published[0]), substitution::words(&traced)],
     })
 }
 
@@ -182,6 +213,18 @@ fn spoken_of(a: &&At) -> bool {
 fn highest<'a>(curve: impl Iterator<Item = &'a At>) -> Option<(&'a At, f64)> {
     let found = curve.filter_map(|a| Some((a, a.outcome.normalized?)));
     found.max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+fn cases(layouts: &[(Stagger, &'static str)]) -> Vec<Case> {
+    let of = |&(stagger, curve): &(Stagger, &'static str)| {
+        TRACED.map(|x| Case {
+            curve,
+            x,
+            published: published(Kernel::Physical, SIDE, PER_SIDE, x, stagger),
+            checks: SIDE,
+        })
+    };
+    layouts.iter().flat_map(of).collect()
 }
 
 /// What half inches add.

@@ -9,7 +9,9 @@ use crate::model::Published;
 use crate::num::multiprecision::{Digits, Inverse, Real, TooFewDigits, dot, inverse};
 
 /// Digits that are tried, one after the other.
-const DIGITS: [u32; 4] = [60, 120, 240, 480];
+const DIGITS: [u32; 6] = [60, 120, 180, 240, 480, 960];
+/// Matrices of more directions than this lose more than 100 digits (16 × 16 elements under 400 spots: 108), so that the first two are not tried.
+const FEW: usize = 128;
 
 /// What G12·G12⁺ may lack to a symmetric matrix with the trace of its rank, which a projector is.
 const MOST_ERROR: f64 = 1e-15;
@@ -36,18 +38,20 @@ pub(super) fn recover(
         digits: 0,
         ratio: 0.0,
     };
-    for digits in DIGITS {
-        watch.go_on()?;
-        let setup = match Setup::new(case, Digits(digits)) {
+    let many = (4 * case.per_side).min(case.elements * case.elements) > FEW;
+    for &digits in &DIGITS[2 * usize::from(many)..] {
+        let setup = match Setup::new(case, Digits(digits), watch) {
             Ok(setup) => setup,
-            Err(e) => {
+            Err(ReproduceError::Digits(e)) => {
                 short = e;
                 continue;
             }
+            Err(e) => return Err(e),
         };
         let projector = setup.projector(watch)?;
         if setup.error(&projector) <= MOST_ERROR {
-            let one = |c: &usize| setup.recover(&projector, &case.board(*c));
+            let ratios = setup.ratios(watch)?;
+            let one = |c: &usize| setup.recover(&projector, &ratios, &case.board(*c));
             return Ok(checks.iter().map(one).collect());
         }
         short.digits = digits;
@@ -64,26 +68,31 @@ struct Setup {
 }
 
 impl Setup {
-    fn new(case: &Published, digits: Digits) -> Result<Self, TooFewDigits> {
+    fn new(case: &Published, digits: Digits, watch: Watch<'_>) -> Result<Self, ReproduceError> {
         let geometry = Geometry::new(case, digits);
         let spots = geometry.spots(case);
         let element = |j: usize| {
-            spots
-                .iter()
-                .map(|s| geometry.g(case.kernel, s, j))
-                .collect()
+            watch.go_on()?;
+            let g = |s| geometry.g(case.kernel, s, j);
+            Ok(spots.iter().map(g).collect())
         };
-        let g12: Vec<Vec<Real>> = (0..geometry.elements.len()).map(element).collect();
+        let elements = (0..geometry.elements.len()).into_par_iter();
+        let g12: Vec<Vec<Real>> = elements
+            .map(element)
+            .collect::<Result<_, ReproduceError>>()?;
         let view = geometry.pixels(case);
         let pixel = |p: &[Real; 2]| {
-            (0..geometry.elements.len())
-                .map(|j| geometry.g(case.kernel, p, j))
-                .collect()
+            watch.go_on()?;
+            let elements = 0..geometry.elements.len();
+            Ok(elements.map(|j| geometry.g(case.kernel, p, j)).collect())
         };
         Ok(Self {
             digits,
-            inverse: inverse(digits, &g12)?,
-            g23: view.iter().map(pixel).collect(),
+            inverse: inverse(digits, &g12, watch.0)?.ok_or(ReproduceError::Stopped)?,
+            g23: view
+                .par_iter()
+                .map(pixel)
+                .collect::<Result<_, ReproduceError>>()?,
             g12,
         })
     }
@@ -111,24 +120,36 @@ impl Setup {
             .fold((&trace - &rank).to_f64().abs(), f64::max)
     }
 
-    /// (B ∘ G23)·(G12·G12⁺) ⊘ G23, mean over the pixels.
-    fn recover(&self, projector: &[Vec<Real>], board: &[f64]) -> Exact {
+    /// Mean over the pixels p of G23\[p,i\]/G23\[p,j\], element i after i: what a value at element i counts for at element j.
+    fn ratios(&self, watch: Watch<'_>) -> Result<Vec<Vec<Real>>, ReproduceError> {
+        let (elements, pixels) = (self.g12.len(), self.g23.len());
+        let (zero, one) = (self.digits.whole(0), self.digits.whole(1));
+        let share = &one / &self.digits.whole(pixels as i64);
+        let column = |j: usize| self.g23.iter().map(move |row| &row[j]);
+        let upside_down: Vec<Vec<Real>> = (0..elements)
+            .into_par_iter()
+            .map(|j| column(j).map(|g| &share / g).collect())
+            .collect();
+        let row = |i: usize| {
+            watch.go_on()?;
+            let entry = |j: usize| dot(&zero, column(i), &upside_down[j]);
+            Ok((0..elements).map(entry).collect())
+        };
+        (0..elements).into_par_iter().map(row).collect()
+    }
+
+    /// (B ∘ G23)·P ⊘ G23 with the projector P = G12·G12⁺, mean over the pixels: Σ_i B_i·ratio_ij·P_ij at element j.
+    fn recover(&self, projector: &[Vec<Real>], ratios: &[Vec<Real>], board: &[f64]) -> Exact {
         let zero = self.digits.whole(0);
         let (elements, spots) = (self.g12.len(), self.g12[0].len());
         let light: Vec<usize> = (0..elements).filter(|j| board[*j] == 1.0).collect();
-        let pixel = |g23: &Vec<Real>| -> Vec<Real> {
-            let entry = |j: usize| {
-                let through = light.iter().map(|i| &projector[*i][j]);
-                &dot(&zero, light.iter().map(|i| &g23[*i]), through) / &g23[j]
-            };
-            (0..elements).map(entry).collect()
-        };
-        let per_pixel: Vec<Vec<Real>> = self.g23.par_iter().map(pixel).collect();
         let sum =
             |values: &mut dyn Iterator<Item = &Real>| values.fold(zero.clone(), |s, x| &s + x);
-        let pixels = self.digits.whole(self.g23.len() as i64);
-        let mean = |j: usize| &sum(&mut per_pixel.iter().map(|x| &x[j])) / &pixels;
-        let values: Vec<Real> = (0..elements).map(mean).collect();
+        let value = |j: usize| {
+            let through = light.iter().map(|i| &projector[*i][j]);
+            dot(&zero, light.iter().map(|i| &ratios[*i][j]), through)
+        };
+        let values: Vec<Real> = (0..elements).map(value).collect();
         let of = |light: f64| {
             let own: Vec<&Real> = values
                 .iter()
@@ -164,7 +185,7 @@ mod tests {
     fn both_geometries_are_one() {
         for kernel in [Kernel::Published, Kernel::Physical] {
             let case = published(kernel, 4, 5, 6.0, Stagger::OneInch);
-            let exact = Setup::new(&case, Digits(60)).unwrap();
+            let exact = Setup::new(&case, Digits(60), Watch::new(&AtomicBool::new(false))).unwrap();
             let matrix = |rows: &[Vec<Real>]| {
                 Matrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j].to_f64())
             };
@@ -174,7 +195,13 @@ mod tests {
         }
         // Corners appear twice without stagger.
         let plain = published(Kernel::Published, 2, 5, 6.0, Stagger::None);
-        assert_eq!(Setup::new(&plain, Digits(60)).unwrap().g12[0].len(), 16);
+        assert_eq!(
+            Setup::new(&plain, Digits(60), Watch::new(&AtomicBool::new(false)))
+                .unwrap()
+                .g12[0]
+                .len(),
+            16
+        );
     }
 
     /// At half-width 1 in. 60 digits leave an error of 3e-4, which is noticed and mended.
@@ -182,7 +209,7 @@ mod tests {
     fn digits_are_added_until_they_suffice() {
         let mut case = published(Kernel::Published, 8, 25, 1.0, Stagger::None);
         case.pixels = 2;
-        let sixty = Setup::new(&case, Digits(60)).unwrap();
+        let sixty = Setup::new(&case, Digits(60), Watch::new(&AtomicBool::new(false))).unwrap();
         let watch = AtomicBool::new(false);
         let projector = sixty.projector(Watch::new(&watch)).unwrap();
         assert!(sixty.error(&projector) > MOST_ERROR);

@@ -2,7 +2,7 @@
 
 use crate::model::{Kernel, PixelGrid, Published, Stagger};
 use crate::study::reproduce::inversion::published;
-use crate::study::reproduce::{Item, ReproducePlan, reproduce};
+use crate::study::reproduce::{Watch, table1};
 
 const LEDGER: &str = include_str!("ledger.md");
 
@@ -53,17 +53,8 @@ fn kernel_and_grid_differ_as_told() {
 
 #[test]
 fn table_1_is_as_told() {
-    let plan = ReproducePlan {
-        most_elements: 8,
-        seeds: 2,
-        first_seed: 1,
-    };
-    let found = reproduce(
-        Item::Table1,
-        &plan,
-        &std::sync::atomic::AtomicBool::new(false),
-    )
-    .unwrap();
+    let stop = std::sync::atomic::AtomicBool::new(false);
+    let found = table1::inverted(Watch::new(&stop)).unwrap();
     let number = |row: usize, column: usize| match found.rows[row][column] {
         crate::study::reproduce::Cell::Number(Some(x)) => x,
         ref other => panic!("{other:?}"),

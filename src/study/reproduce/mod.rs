@@ -21,8 +21,10 @@ mod noise;
 mod photographs;
 mod precision;
 mod spots;
+mod substitution;
 mod table1;
 mod tables;
+mod traced;
 mod verdict;
 
 use std::sync::atomic::{AtomicBool, Ordering};

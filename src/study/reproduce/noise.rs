@@ -5,12 +5,14 @@ use rayon::prelude::*;
 use super::figure::{computed, decades, elements, linear};
 use super::inversion::{Outcome, published};
 use super::spots::HALF_WIDTH;
+use super::traced::{self, AS_RENDERED, MODELLED, NAMES, Traced};
 use super::{
-    Check, Gallery, Item, Plot, ReproduceError, ReproducePlan, Reproduction, Shades, Watch,
+    Cell, Check, Gallery, Item, Plot, ReproduceError, ReproducePlan, Reproduction, Shades, Watch,
 };
 use crate::model::{Kernel, Stagger};
 use crate::num::linalg::{Tolerance, pinv};
 use crate::study::deviate::normal_deviates;
+use crate::transport::Budget;
 
 /// Elements and checks a side.
 const SIDES: [usize; 3] = [2, 4, 8];
@@ -22,6 +24,19 @@ const POWERS: std::ops::RangeInclusive<i32> = -13..=2;
 const KEPT: f64 = 0.9;
 /// Powers of the pictures.
 const SHOWN: [i32; 5] = [-10, -8, -6, -2, 1];
+
+/// Paths an entry of what is traced, from the least noise to the most.
+const PATHS: [Budget; 3] = [
+    Budget {
+        blocks: 32,
+        size: 16,
+    },
+    AS_RENDERED,
+    Budget {
+        blocks: 32,
+        size: 1,
+    },
+];
 
 struct Point {
     power: i32,
@@ -99,6 +114,7 @@ pub(super) fn figure(
                     p.raw[1].into(),
                     p.normalized[0].into(),
                     p.normalized[1].into(),
+                    MODELLED.into(),
                 ]);
             }
             let line = points
@@ -127,14 +143,19 @@ pub(super) fn figure(
             curves: lines,
         });
     }
+    let (plot, note) = trace(&mut rows, watch)?;
+    plots.push(plot);
     Ok(Reproduction {
         item: Item::Fig22,
         title: "MTF against relative noise".to_owned(),
         caption: format!(
             "Published and physical kernel (G12 and G23 alike); board of one check an element; 120 spots on the four sides of a square of half-width 6 in., staggered by 1 in.; \
              16 × 16 pixels laid to the edges of the view; each entry of Φ times 1 + σ·N(0, 1), {} draws from seed {}; Moore–Penrose inverse in doubles cut at \
-             max(r, l)·eps(σ1), eps the spacing of doubles at σ1 (MATLAB); normalized MTF of the values stretched to [0, 1], raw MTF in the CSV; pictures are the first draw.",
-            plan.seeds, plan.first_seed
+             max(r, l)·eps(σ1), eps the spacing of doubles at σ1 (MATLAB); normalized MTF of the values stretched to [0, 1], raw MTF in the CSV; pictures are the first draw. {} In the last plot the render's own noise is the noise, {} paths an entry; the leftmost point is the mean.",
+            plan.seeds,
+            plan.first_seed,
+            traced::caption(),
+            PATHS.map(|b| b.samples().to_string()).join(", ")
         ),
         columns: vec![
             "kernel",
@@ -145,6 +166,7 @@ pub(super) fn figure(
             "mtf_raw_deviation",
             "mtf_normalized",
             "mtf_normalized_deviation",
+            "phi",
         ],
         rows,
         plots,
@@ -155,8 +177,80 @@ pub(super) fn figure(
             pictures,
         }],
         checks,
-        notes: Vec::new(),
+        notes: vec![note],
     })
+}
+
+/// Adds the rows of traced Φ; the plot of them over their own noise, and what it shows.
+fn trace(rows: &mut Vec<Vec<Cell>>, watch: Watch<'_>) -> Result<(Plot, String), ReproduceError> {
+    let (mut curves, mut said) = (Vec::new(), Vec::new());
+    for side in SIDES {
+        let case = published(
+            Kernel::Physical,
+            side,
+            PER_SIDE,
+            HALF_WIDTH,
+            Stagger::OneInch,
+        );
+        let board = case.board(side);
+        let mut lines = [const { Vec::new() }; 2];
+        let mut clean = [f64::NAN; 2];
+        for (k, budget) in PATHS.into_iter().enumerate() {
+            let traced = Traced::new(&case, side, budget, watch)?;
+            let (_, found) = traced.recovered(&board)?;
+            for (light, r) in found.iter().enumerate() {
+                // What does not depend on the number of paths, once.
+                let once = [NAMES[0], NAMES[2]].contains(&r.name);
+                if once && k > 0 {
+                    continue;
+                }
+                let percent = 100.0 * r.noise;
+                rows.push(vec![
+                    Kernel::Physical.name().into(),
+                    side.into(),
+                    percent.into(),
+                    1.into(),
+                    r.outcome.raw.into(),
+                    None.into(),
+                    r.outcome.normalized.into(),
+                    None.into(),
+                    r.name.into(),
+                ]);
+                let mtf = r.outcome.normalized.unwrap_or(f64::NAN);
+                match once {
+                    true => clean[light / 2] = mtf,
+                    false => lines[light / 2].push([percent, mtf]),
+                }
+                if r.name == NAMES[2] {
+                    lines[1].push([percent, mtf]);
+                }
+            }
+        }
+        said.push(format!(
+            "{side} × {side}: {:.3} and {:.3}",
+            clean[0], clean[1]
+        ));
+        let [modelled, traced] = lines;
+        curves.push(computed(format!("{side} × {side}, traced"), traced));
+        curves.push(computed(
+            format!("{side} × {side}, modelled, noise of the render"),
+            modelled,
+        ));
+    }
+    let plot = Plot {
+        title: "traced in place of modelled Φ, physical kernel".to_owned(),
+        axes: [
+            decades("standard error of Φ / %"),
+            linear("normalized MTF", [-0.4, 1.0]),
+        ],
+        curves,
+    };
+    let words = format!(
+        "Traced in place of modelled Φ: normalized MTF with Φ modelled for the footprints' centres, without noise, and with the mean of the trace: {}. What parts them is \
+         what the model leaves out of light, elements that are no points, and what noise the mean is left with.",
+        said.join("; ")
+    );
+    Ok((plot, words))
 }
 
 fn needed(points: &[Point]) -> Check {

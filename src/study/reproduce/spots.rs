@@ -4,13 +4,19 @@ use rayon::prelude::*;
 
 use super::figure::{computed, linear};
 use super::inversion::{Inversion, Outcome, published};
-use super::{Check, FigureCurve, Item, Plot, ReproduceError, ReproducePlan, Reproduction, Watch};
+use super::substitution::{self, Case};
+use super::traced::{self, MODELLED};
+use super::{
+    Cell, Check, FigureCurve, Item, Plot, ReproduceError, ReproducePlan, Reproduction, Watch,
+};
 use crate::model::{Kernel, Stagger};
 use crate::num::linalg::Tolerance;
 
 /// Spots a side: 8 to 400 in all.
 pub(super) const PER_SIDE: [usize; 16] =
     [2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 60, 80, 100];
+/// Those of which some are traced.
+const TRACED: [usize; 5] = [2, 5, 10, 20, 30];
 /// Half-width of the square, in.
 pub(super) const HALF_WIDTH: f64 = 6.0;
 /// Elements a side of Figs 12 to 14.
@@ -85,8 +91,11 @@ pub(super) fn modulation(
             p.rank.into(),
             p.outcome.raw.into(),
             p.outcome.normalized.into(),
+            MODELLED.into(),
+            0.0.into(),
         ]
     };
+    let mut rows: Vec<Vec<Cell>> = points.iter().map(row).collect();
     let title = |b: usize| format!("{b} × {b} board");
     let mut plots = Vec::new();
     for &board in boards {
@@ -109,6 +118,29 @@ pub(super) fn modulation(
             }
         }
     }
+    let (mut caption, mut notes) = (String::new(), Vec::new());
+    if item == Item::Fig12 {
+        let traced = substitution::trials(traced_cases(plan), watch)?;
+        for t in &traced {
+            for r in &t.found {
+                rows.push(vec![
+                    Kernel::Physical.name().into(),
+                    t.case.checks.into(),
+                    t.case.published.elements.into(),
+                    (4 * t.case.published.per_side).into(),
+                    t.rank.into(),
+                    r.outcome.raw.into(),
+                    r.outcome.normalized.into(),
+                    r.name.into(),
+                    r.noise.into(),
+                ]);
+            }
+        }
+        let across = linear("number of spots", [0.0, 400.0]);
+        plots.push(substitution::plot(&traced, across));
+        caption = format!(" {}", traced::caption());
+        notes.push(substitution::words(&traced));
+    }
     Ok(Reproduction {
         item,
         title: format!(
@@ -121,7 +153,7 @@ pub(super) fn modulation(
         ),
         caption: format!(
             "Published and physical kernel (G12 and G23 alike); {}; normalized MTF of the values stretched to [0, 1], raw MTF beside it; noiseless, by the projector; \
-             elements a side as the legend says, those that the board divides.",
+             elements a side as the legend says, those that the board divides.{caption}",
             layout()
         ),
         columns: vec![
@@ -132,13 +164,36 @@ pub(super) fn modulation(
             "rank",
             "mtf_raw",
             "mtf_normalized",
+            "phi",
+            "noise",
         ],
-        rows: points.iter().map(row).collect(),
+        rows,
         plots,
         galleries: Vec::new(),
         checks: boards.iter().flat_map(|b| checks(&points, *b)).collect(),
-        notes: Vec::new(),
+        notes,
     })
+}
+
+/// What is traced of Fig 12: the smallest numbers of elements under a few numbers of spots.
+fn traced_cases(plan: &ReproducePlan) -> Vec<Case> {
+    let sides = [(4, "4 × 4 elements"), (8, "8 × 8 elements")];
+    let of = |(elements, curve): (usize, &'static str)| {
+        TRACED.map(|per_side| Case {
+            curve,
+            x: 4.0 * per_side as f64,
+            published: published(
+                Kernel::Physical,
+                elements,
+                per_side,
+                HALF_WIDTH,
+                Stagger::None,
+            ),
+            checks: 2,
+        })
+    };
+    let wanted = sides.into_iter().filter(|s| s.0 <= plan.most_elements);
+    wanted.flat_map(of).collect()
 }
 
 fn curves(
