@@ -5,9 +5,10 @@ usage: python merit.py [--phicam FILE] [--seconds S] [--repeats R] [--variant NA
 ε is the relative Frobenius error against converged quadrature, T the CPU time (s): lower is better. As long as ε² falls like 1/T, ε²T is the
 same whatever the number of samples; where ε² falls faster, it falls with T. So every line is run at three numbers of samples, each four
 times the one before, the largest what fits into S seconds; R times each with seeds of their own, and lines take turns. A rung's ε² is the
-mean over the repeats, its T the median; a line counts with its best rung. The table goes to standard output, with -o to FILE.md and FILE.json too.
+mean over the repeats, its T the median; a line counts with its best rung. The table goes to standard output, with -o to
+FILE.md and FILE.json too, after every repeat.
 
-T of phicam is that of the whole process less what a process costs that traces next to nothing, but writes the same files; T of a peer is
+T of phicam is that of the whole process less the least that a process costs that traces next to nothing, but writes the same files; T of a peer is
 that of rendering alone, without loading the scene and compiling the kernel.
 
 Needs numpy; the lines of the peers need `pip install mitsuba mitransient` and LLVM, and are skipped with a message without.
@@ -52,11 +53,11 @@ class Line:
 
     def calibrate(self, seconds):
         """Warms up (peers compile their kernels) and finds the largest number of samples, in steps of 4, within `seconds`."""
-        self.run(self.samples, 0)
-        before = 0.0
+        self.run(self.samples // 4, 0)
+        _, before = self.run(self.samples // 4, 0)
         while True:
             _, spent = self.run(self.samples, 0)
-            # T is a constant and a slope: from n/4 to n it grew by a quarter of what it grows by from n to 4 n.
+            # T is a constant and a slope: from n to 4 n it grows by four times what it grew by from n/4 to n.
             if spent + 4 * max(spent - before, 0.0) > seconds:
                 break
             before, self.samples = spent, self.samples * 4
@@ -139,7 +140,7 @@ def peers(program, scene, variant, truth):
 
 
 def own(program, files, truths):
-    fixed = statistics.median(program.render(files["thesis"], "factored", "sobol", 32, k)[1] for k in range(5))
+    fixed = min(program.render(files["thesis"], "factored", "sobol", 32, k)[1] for k in range(9))  # the least favours the peers
     print(f"fixed cost of a process of phicam: {fixed:.3f} s", file=sys.stderr)
     wanted = [("thesis", e, s) for e in ("independent", "shared", "factored") for s in ("pcg", "sobol")]
     wanted += [("turned", "factored", "sobol"), ("disc", "factored", "sobol")]
@@ -183,6 +184,29 @@ def processor():
     except OSError:
         pass
     return platform.processor() or platform.machine()
+
+
+def recorded(lines, versions, variant, repeats, fixed):
+    """What the files hold."""
+
+    def row(line):
+        finest = FINEST if (line.how, line.sampler) == ("factored", "sobol") else None
+        best = (line.best(finest) or {}).get("samples")
+        return {
+            "who": line.who, "how": line.how, "sampler": line.sampler, "scene": line.scene, "best": best,
+            "rungs": line.results(),
+        }  # fmt: skip
+
+    return {
+        "date": date.today().isoformat(),
+        "processor": processor(),
+        "versions": versions,
+        "variant": variant,
+        "repeats": repeats,
+        "fixed_seconds": fixed,
+        "lines": [row(line) for line in lines],
+        "ratios": ratios(lines),
+    }
 
 
 def markdown(record):
@@ -232,26 +256,12 @@ def main():
             for rung in range(RUNGS):
                 for line in lines:
                     line.measure(list(line.rungs)[rung], repeat)
+            record = recorded(lines, versions, args.variant, repeat, fixed)
+            if args.output:
+                args.output.with_suffix(".md").write_text(markdown(record), encoding="utf-8")
+                args.output.with_suffix(".json").write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
             print(f"repeat {repeat} of {args.repeats} done", file=sys.stderr, flush=True)
-    finest = lambda x: FINEST if x.how == "factored" and x.sampler == "sobol" else None
-    record = {
-        "date": date.today().isoformat(),
-        "processor": processor(),
-        "versions": versions,
-        "variant": args.variant,
-        "repeats": args.repeats,
-        "fixed_seconds": fixed,
-        "lines": [
-            {"who": x.who, "how": x.how, "sampler": x.sampler, "scene": x.scene, "best": (x.best(finest(x)) or {}).get("samples"), "rungs": x.results()}
-            for x in lines
-        ],
-        "ratios": ratios(lines),
-    }
-    table = markdown(record)
-    print(table)
-    if args.output:
-        args.output.with_suffix(".md").write_text(table, encoding="utf-8")
-        args.output.with_suffix(".json").write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+    print(markdown(record))
 
 
 if __name__ == "__main__":
