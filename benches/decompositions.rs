@@ -1,11 +1,12 @@
 //! What does the number of directions save over the full decomposition? Varied: elements and spots; G12 of the published scene, numerical rank about 100.
-//! Read as ratios: `full` decomposes all of the matrix, `needed` as far as its numerical rank needs.
+//! Read as ratios: `full` decomposes all of the matrix, `needed` as far as its numerical rank needs, `inverse` is the Moore–Penrose inverse.
+//! `benches/peers/factorisations.py` sets them beside NumPy's.
 
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use phicam::model::{Kernel, MatrixModel};
-use phicam::num::linalg::{Tolerance, svd, svd_to};
+use phicam::num::linalg::{Tolerance, pinv, svd, svd_to};
 use phicam::scene::Scene;
 
 fn decompositions(c: &mut Criterion) {
@@ -22,6 +23,9 @@ fn decompositions(c: &mut Criterion) {
         });
         group.bench_function(BenchmarkId::new("needed", &name), |b| {
             b.iter(|| svd_to(black_box(&model.g12), Tolerance::Auto));
+        });
+        group.bench_function(BenchmarkId::new("inverse", &name), |b| {
+            b.iter(|| pinv(black_box(&model.g12), Tolerance::Auto));
         });
     }
     group.finish();
