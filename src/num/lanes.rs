@@ -27,7 +27,7 @@ pub fn widest<R>(f: impl FnOnce() -> R) -> R {
 pub fn add_product(c: &mut [f64], a: &[f64], b: &[f64], inner: usize, width: usize) {
     assert_eq!(width % LANES, 0);
     assert_eq!(b.len(), inner * width);
-    let rows = if width == 0 { 0 } else { c.len() / width };
+    let rows = c.len().checked_div(width).unwrap_or(0);
     assert_eq!((c.len(), a.len()), (rows * width, rows * inner));
     widest(
         #[inline(always)]
