@@ -6,22 +6,23 @@
 //! the tree lives in a space in which the scene measures 1000, and every box is wider than its shape by 4e-3 there:
 //! 64 times the f32 spacing at 1000, and forty times obvhs' limit.
 
-use glam::Vec3A;
+mod collapse;
+mod space;
+mod wide;
+
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::{CwBvh, builder::build_cwbvh};
 use obvhs::ray::{Ray as TreeRay, RayHit};
 
-use super::{DVec3, Ray, Shape, ShapeId};
+use super::{Ray, Shape, ShapeId};
+use space::{PADDING, Space};
+pub(super) use wide::{Query, WideTree};
 
 /// Largest number of shapes tested one by one: from there on the tree is faster (`benches/rays.rs`).
 const FLAT: usize = 8;
-/// Extent of the scene in the tree's space.
-const EXTENT: f64 = 1000.0;
-/// What each box is widened by in the tree's space.
-const PADDING: f32 = 4e-3;
 /// Hits are at one place if their distances differ by no more than this, relative to the lengths involved.
-const TIE: f64 = 1e-12;
+pub(super) const TIE: f64 = 1e-12;
 /// Coordinates beyond this (in scene units) are refused.
 const LARGEST: f64 = 1e12;
 
@@ -65,8 +66,7 @@ impl std::fmt::Debug for Bvh {
 #[derive(Clone)]
 struct Tree {
     cwbvh: CwBvh,
-    origin: DVec3,
-    scale: f64,
+    space: Space,
 }
 
 impl Bvh {
@@ -154,43 +154,19 @@ impl Bvh {
 
 impl Tree {
     fn new(shapes: &[Shape]) -> Self {
-        let bounds = shapes.iter().map(Shape::bounds);
-        let (lower, upper) = bounds
-            .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
-            .unwrap_or((DVec3::ZERO, DVec3::ONE));
-        let scale = EXTENT / (upper - lower).max_element().max(f64::MIN_POSITIVE);
-        let boxes: Vec<Aabb> = shapes
-            .iter()
-            .map(|s| {
-                let (a, b) = s.bounds();
-                let low = ((a - lower) * scale).as_vec3a() - Vec3A::splat(PADDING);
-                let high = ((b - lower) * scale).as_vec3a() + Vec3A::splat(PADDING);
-                Aabb::new(low, high)
-            })
-            .collect();
+        let space = Space::around(shapes.iter().map(Shape::bounds));
+        let boxes: Vec<Aabb> = shapes.iter().map(|s| space.padded(s.bounds())).collect();
         let mut time = std::time::Duration::ZERO;
         let cwbvh = build_cwbvh(&boxes, BvhBuildParams::medium_build(), &mut time);
-        Self {
-            cwbvh,
-            origin: lower,
-            scale,
-        }
+        Self { cwbvh, space }
     }
 
-    /// The ray in the tree's space, started where it reaches the scene's bounding sphere (so that a camera far away does
-    /// not cost the f32 origin its digits), and how far that start was moved.
+    /// The ray in the tree's space, and how far its start was moved.
     fn ray(&self, ray: &Ray) -> (TreeRay, f64) {
-        let local = (ray.origin - self.origin) * self.scale;
-        let to_centre = DVec3::splat(0.5 * EXTENT) - local;
-        let advance = (to_centre.dot(ray.direction) - EXTENT).max(0.0);
-        let length = (ray.length * self.scale - advance).max(0.0) + f64::from(PADDING);
-        let start = (local + ray.direction * advance).as_vec3a();
-        let ray = TreeRay::new(
-            start,
-            ray.direction.as_vec3a(),
-            0.0,
-            length.min(1e30) as f32,
-        );
+        let (start, advance) = self.space.start(ray);
+        let length = (self.space.length(ray.length) - advance).max(0.0) + f64::from(PADDING);
+        let direction = ray.direction.as_vec3a();
+        let ray = TreeRay::new(start, direction, 0.0, length.min(1e30) as f32);
         (ray, advance)
     }
 
@@ -201,7 +177,7 @@ impl Tree {
         self.cwbvh.ray_traverse(tree_ray, &mut hit, |_, primitive| {
             let t = test(self.cwbvh.primitive_indices[primitive] as usize);
             // Prune only what lies behind the padded box of the nearest hit so far.
-            ((t * self.scale - advance).min(1e30) as f32) + 4.0 * PADDING
+            self.space.limit(t, advance)
         });
     }
 

@@ -1,10 +1,12 @@
-//! Floor 1: geometry. Directions, shapes with their own f64 arithmetic, and the one door to the BVH.
+//! Floor 1: geometry. Directions, shapes and meshes with their own f64 arithmetic, and the one door to the BVH.
 //!
 //! Lengths are in the unit of the scene. A [`Shape`] knows everything that is asked of a surface without naming its
 //! kind: bounds, intersection, parametrisation, area element. Nothing above this floor may assume rectangles.
 
 mod basis;
 mod bvh;
+mod flat;
+mod mesh;
 mod parallelogram;
 mod shaft;
 mod shape;
@@ -13,6 +15,7 @@ mod sphere;
 pub use basis::Basis;
 pub use bvh::{Bvh, GeometryError, Hit};
 pub use glam::DVec3;
+pub use mesh::{Mesh, MeshError, MeshHit};
 pub use parallelogram::Parallelogram;
 pub use shaft::{Blockers, Region};
 pub use shape::{Ray, Shape, ShapeId, SurfacePoint};

@@ -94,6 +94,7 @@ impl Parallelogram {
     }
 
     /// (a, b) of a point of the plane.
+    #[inline(always)]
     pub fn coordinates(&self, p: DVec3) -> [f64; 2] {
         self.dual.map(|d| (p - self.corner).dot(d))
     }
@@ -115,29 +116,35 @@ impl Parallelogram {
     /// Intersection with the plane inside the patch: t = n·(corner − o)/(n·d). A ray that starts in the plane (to rounding)
     /// does not meet it.
     pub fn intersect(&self, ray: &Ray) -> Option<f64> {
-        let slope = self.normal.dot(ray.direction);
-        let height = self.height(ray.origin)?;
-        let t = -height / slope;
+        let (t, met) = self.crossing(ray);
+        met.then_some(t)
+    }
+
+    /// [`Parallelogram::intersect`] without branches: t, and whether the ray meets the patch there.
+    #[inline(always)]
+    pub(super) fn crossing(&self, ray: &Ray) -> (f64, bool) {
+        let (height, off) = self.height(ray.origin);
         // A slope of 0 gives an infinite t, which no length exceeds.
-        if !(t > 0.0 && t < ray.length) {
-            return None;
-        }
-        contains(self.coordinates(ray.origin + ray.direction * t)).then_some(t)
+        let t = -height / self.normal.dot(ray.direction);
+        let inside = contains(self.coordinates(ray.origin + ray.direction * t));
+        (t, off & (t > 0.0) & (t < ray.length) & inside)
     }
 
     /// Whether the patch stands between the two ends of the segment. A segment that starts or ends in the patch's plane (to
     /// rounding) is not cut by it: a point on a seam is not hidden by the neighbour, nor by what stands edge-on at its foot.
+    #[inline(always)]
     pub fn blocks(&self, segment: &Ray) -> bool {
-        let end = segment.origin + segment.direction * segment.length;
-        self.height(end).is_some() && self.intersect(segment).is_some()
+        let (_, off) = self.height(segment.origin + segment.direction * segment.length);
+        off & self.crossing(segment).1
     }
 
-    /// Signed distance n·(p − corner) from the plane; `None` if that is no more than rounding.
-    fn height(&self, p: DVec3) -> Option<f64> {
+    /// Signed distance n·(p − corner) from the plane, and whether that is more than rounding.
+    #[inline(always)]
+    fn height(&self, p: DVec3) -> (f64, bool) {
         const ROUNDING: f64 = 1e-12;
         let height = self.normal.dot(p - self.corner);
         let reach = p.abs().max_element() + self.corner.abs().max_element();
-        (height.abs() > ROUNDING * reach).then_some(height)
+        (height, height.abs() > ROUNDING * reach)
     }
 
     /// Whether the two patches lie in one plane (to a billionth of their size) and have more than an edge in common.
@@ -195,9 +202,11 @@ impl Parallelogram {
 
 /// Whether (a, b) lies in the patch. A few roundings outside still belong to it, so that no ray slips through between
 /// two patches that share an edge.
-fn contains(uv: [f64; 2]) -> bool {
+#[inline(always)]
+fn contains([a, b]: [f64; 2]) -> bool {
     const EDGE: f64 = 1e-12;
-    uv.iter().all(|c| (-EDGE..=1.0 + EDGE).contains(c))
+    let within = |c: f64| (-EDGE..=1.0 + EDGE).contains(&c);
+    within(a) & within(b)
 }
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
 use super::*;
-use crate::geometry::{Facing, Parallelogram, Sphere};
+use crate::geometry::{DVec3, Facing, Parallelogram, Sphere};
 use crate::num::stream::{Key, Sampling, Stream};
 
 fn numbers() -> impl FnMut() -> f64 {

@@ -1,0 +1,369 @@
+//! Triangle meshes.
+
+mod group;
+mod nearest;
+
+use super::bvh::{Query, WideTree};
+use super::{DVec3, Ray, SurfacePoint};
+use crate::num::lanes::widest;
+use group::{GROUP, Group, Sheared};
+
+/// Coordinates beyond this (in scene units) are refused.
+const LARGEST: f64 = 1e12;
+/// Most triangles of a mesh.
+const MOST: usize = 1 << 30;
+
+/// Why triangles make no mesh.
+#[derive(Debug, thiserror::Error, PartialEq)]
+pub enum MeshError {
+    /// A vertex is not finite or far outside any bench.
+    #[error(
+        "vertex {vertex} reaches to {reach:e}: coordinates must be finite and below 1e12 (choose a larger unit)"
+    )]
+    Unbounded {
+        /// Its place in the list.
+        vertex: usize,
+        /// Largest coordinate.
+        reach: f64,
+    },
+    /// A triangle names a vertex that is not there.
+    #[error("triangle {triangle} names vertex {vertex} of {count}: vertices are counted from 0")]
+    NoVertex {
+        /// The triangle's place in the list.
+        triangle: usize,
+        /// What it names.
+        vertex: u32,
+        /// Number of vertices.
+        count: usize,
+    },
+    /// No triangle has an area.
+    #[error("none of the {count} triangles has an area: give a mesh at least one proper triangle")]
+    Empty {
+        /// Number of triangles.
+        count: usize,
+    },
+    /// More triangles than can be numbered.
+    #[error("{count} triangles are more than 2³⁰: split the mesh")]
+    TooMany {
+        /// Number of triangles.
+        count: usize,
+    },
+}
+
+/// A ray's first intersection with a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshHit {
+    /// Which triangle.
+    pub triangle: u32,
+    /// Distance along the ray.
+    pub t: f64,
+}
+
+/// A surface of triangles, opaque from both sides, its front where the corners of a triangle run counterclockwise.
+///
+/// Triangles without area (|e₁ × e₂| below 1e-12·|e₁||e₂|) are kept in the list and met by nothing. Two triangles with a common edge
+/// leave no gap there: the test of the edge is one and the same number in both.
+#[derive(Clone)]
+pub struct Mesh {
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    bounds: (DVec3, DVec3),
+    area: f64,
+    tree: WideTree,
+    groups: Vec<Group>,
+}
+
+impl std::fmt::Debug for Mesh {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Mesh({} triangles)", self.triangles.len())
+    }
+}
+
+impl Mesh {
+    /// The mesh of the given vertices and of the triangles between them.
+    ///
+    /// # Errors
+    /// [`MeshError`] for coordinates that are not finite or beyond 1e12, for a vertex that is not there, for more than 2³⁰ triangles and
+    /// if no triangle has an area.
+    pub fn new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        let reach = |p: &DVec3| {
+            if p.is_nan() {
+                f64::NAN
+            } else {
+                p.abs().max_element()
+            }
+        };
+        let far = |p: &DVec3| !p.is_finite() || reach(p) > LARGEST;
+        if let Some(vertex) = positions.iter().position(far) {
+            let reach = reach(&positions[vertex]);
+            return Err(MeshError::Unbounded { vertex, reach });
+        }
+        let count = positions.len();
+        for (triangle, corners) in triangles.iter().enumerate() {
+            if let Some(&vertex) = corners.iter().find(|c| **c as usize >= count) {
+                return Err(MeshError::NoVertex {
+                    triangle,
+                    vertex,
+                    count,
+                });
+            }
+        }
+        let count = triangles.len();
+        if count > MOST {
+            return Err(MeshError::TooMany { count });
+        }
+        let corners = |i: u32| triangles[i as usize].map(|c| positions[c as usize]);
+        let proper: Vec<u32> = (0..count as u32)
+            .filter(|i| is_proper(corners(*i)))
+            .collect();
+        let boxes: Vec<(DVec3, DVec3)> = proper
+            .iter()
+            .map(|i| {
+                let [a, b, c] = corners(*i);
+                (a.min(b).min(c), a.max(b).max(c))
+            })
+            .collect();
+        let Some(bounds) = boxes
+            .iter()
+            .copied()
+            .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+        else {
+            return Err(MeshError::Empty { count });
+        };
+        let mut groups: Vec<Group> = Vec::new();
+        let tree = WideTree::new(&boxes, GROUP as u32, |members| {
+            let first = groups.len();
+            groups.extend(members.chunks(GROUP).map(|chunk| {
+                let named = chunk.iter().map(|m| proper[*m as usize]);
+                Group::new(named.map(|i| (i, corners(i))))
+            }));
+            if let Some(group) = groups.last_mut() {
+                group.last = true;
+            }
+            first as u32
+        });
+        let area = proper
+            .iter()
+            .map(|i| 0.5 * cross(corners(*i)).length())
+            .sum();
+        Ok(Self {
+            positions,
+            triangles,
+            bounds,
+            area,
+            tree,
+            groups,
+        })
+    }
+
+    /// The vertices.
+    pub fn positions(&self) -> &[DVec3] {
+        &self.positions
+    }
+
+    /// The triangles, each three vertices.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Smallest axis-aligned box: lower and upper corner.
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        self.bounds
+    }
+
+    /// Σ ½|(b − a) × (c − a)|, length².
+    pub fn area(&self) -> f64 {
+        self.area
+    }
+
+    /// The corners of a triangle.
+    ///
+    /// # Panics
+    /// If there is no such triangle.
+    pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.triangles[triangle as usize].map(|c| self.positions[c as usize])
+    }
+
+    /// The point of the mesh nearest to `p`, and its triangle; of triangles equally near the first. Its parameters are the weights of the
+    /// second and the third corner.
+    pub fn at_position(&self, p: DVec3) -> (u32, SurfacePoint) {
+        let mut best = (f64::INFINITY, u32::MAX, [0.0; 2]);
+        self.tree.around(p, |leaf| {
+            for group in self.leaf(leaf) {
+                for (triangle, corners) in group.members() {
+                    let (distance, uv) = nearest::on_triangle(corners, p);
+                    if distance < best.0 || (distance == best.0 && triangle < best.1) {
+                        best = (distance, triangle, uv);
+                    }
+                }
+            }
+            best.0
+        });
+        let (_, triangle, [v, w]) = best;
+        let [a, b, c] = self.corners(triangle);
+        let point = SurfacePoint {
+            position: a + (b - a) * v + (c - a) * w,
+            normal: cross([a, b, c]).normalize(),
+            uv: [v, w],
+        };
+        (triangle, point)
+    }
+
+    /// First triangle met by the ray at 0 < t < length, from either side. A ray that starts in the plane of a triangle (to rounding) does
+    /// not meet it. Where two are met at one distance, the first of the list counts.
+    pub fn closest(&self, ray: &Ray) -> Option<MeshHit> {
+        self.closest_many(std::slice::from_ref(ray))[0]
+    }
+
+    /// [`Mesh::closest`] for many rays: much faster than one by one where the mesh is large.
+    pub fn closest_many(&self, rays: &[Ray]) -> Vec<Option<MeshHit>> {
+        let mut found = vec![None; rays.len()];
+        widest(
+            #[inline(always)]
+            || {
+                self.tree
+                    .traverse(rays, &Closest(self), |i, (_, hit)| found[i] = hit);
+            },
+        );
+        found
+    }
+
+    /// Whether a triangle stands between the two ends of the segment. A segment that starts or ends in the plane of a triangle (to
+    /// rounding) is not cut by it.
+    pub fn blocks(&self, segment: &Ray) -> bool {
+        self.blocks_many(std::slice::from_ref(segment))[0]
+    }
+
+    /// [`Mesh::blocks`] for many segments: much faster than one by one where the mesh is large.
+    pub fn blocks_many(&self, segments: &[Ray]) -> Vec<bool> {
+        let mut found = vec![false; segments.len()];
+        widest(
+            #[inline(always)]
+            || {
+                self.tree
+                    .traverse(segments, &Any(self), |i, (_, hit)| found[i] = hit);
+            },
+        );
+        found
+    }
+
+    /// The groups of a leaf.
+    fn leaf(&self, first: u32) -> impl Iterator<Item = &Group> {
+        let groups = &self.groups[first as usize..];
+        let more = groups.iter().take_while(|g| !g.last).count();
+        groups[..=more].iter()
+    }
+}
+
+/// Which triangle is met first?
+struct Closest<'a>(&'a Mesh);
+
+impl Query for Closest<'_> {
+    type State = (Sheared, Option<MeshHit>);
+
+    #[inline(always)]
+    fn begin(&self, ray: &Ray) -> Self::State {
+        (Sheared::new(ray), None)
+    }
+
+    #[inline(always)]
+    fn touch(&self, leaf: u32) -> u32 {
+        self.0.groups[leaf as usize].touch()
+    }
+
+    #[inline(always)]
+    fn visit(&self, ray: &Ray, (sheared, best): &mut Self::State, leaf: u32) -> f64 {
+        let mut limit = match best {
+            Some(b) => b.t,
+            None => ray.length,
+        };
+        let mut at = leaf as usize;
+        loop {
+            let group = &self.0.groups[at];
+            let (t, mut hits) = group.meet(sheared, limit);
+            while hits != 0 {
+                let k = hits.trailing_zeros() as usize & (GROUP - 1);
+                hits &= hits - 1;
+                let (triangle, t) = (group.triangles[k], t[k]);
+                let first = match best {
+                    Some(b) => t < b.t || (t == b.t && triangle < b.triangle),
+                    None => t < ray.length,
+                };
+                if first && is_off_plane(group.corners(k), ray.origin) {
+                    *best = Some(MeshHit { triangle, t });
+                    limit = t;
+                }
+            }
+            if group.last {
+                return limit;
+            }
+            at += 1;
+        }
+    }
+}
+
+/// Is any triangle met?
+struct Any<'a>(&'a Mesh);
+
+impl Query for Any<'_> {
+    type State = (Sheared, bool);
+
+    #[inline(always)]
+    fn begin(&self, ray: &Ray) -> Self::State {
+        (Sheared::new(ray), false)
+    }
+
+    #[inline(always)]
+    fn touch(&self, leaf: u32) -> u32 {
+        self.0.groups[leaf as usize].touch()
+    }
+
+    #[inline(always)]
+    fn visit(&self, ray: &Ray, (sheared, found): &mut Self::State, leaf: u32) -> f64 {
+        let end = ray.origin + ray.direction * ray.length;
+        let mut at = leaf as usize;
+        loop {
+            let group = &self.0.groups[at];
+            let (t, mut hits) = group.meet(sheared, ray.length);
+            while hits != 0 {
+                let k = hits.trailing_zeros() as usize & (GROUP - 1);
+                hits &= hits - 1;
+                let corners = group.corners(k);
+                let off = is_off_plane(corners, ray.origin) && is_off_plane(corners, end);
+                if t[k] < ray.length && off {
+                    *found = true;
+                    return -1.0;
+                }
+            }
+            if group.last {
+                return ray.length;
+            }
+            at += 1;
+        }
+    }
+}
+
+/// Twice the area along the front's normal.
+fn cross([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a)
+}
+
+fn is_proper([a, b, c]: [DVec3; 3]) -> bool {
+    let area = cross([a, b, c]).length();
+    area > 0.0 && area > 1e-12 * (b - a).length() * (c - a).length()
+}
+
+/// Whether `p` is farther from the triangle's plane than rounding; what is not finite is.
+#[inline(always)]
+fn is_off_plane([a, b, c]: [DVec3; 3], p: DVec3) -> bool {
+    const ROUNDING: f64 = 1e-12;
+    if !p.is_finite() {
+        return true;
+    }
+    let normal = (b - a).cross(c - a);
+    let reach = p.abs().max_element() + a.abs().max_element();
+    normal.dot(p - a).abs() > ROUNDING * reach * normal.length()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,28 @@
+//! The point of a triangle nearest to another point.
+
+use crate::geometry::DVec3;
+
+/// Distance of `p` from the triangle, and the weights of the second and the third corner at the nearest point: inside if p projects
+/// there, else the nearest of the three edges.
+pub(super) fn on_triangle([a, b, c]: [DVec3; 3], p: DVec3) -> (f64, [f64; 2]) {
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let normal = ab.cross(ac);
+    let square = normal.length_squared();
+    let (v, w) = (
+        ap.cross(ac).dot(normal) / square,
+        ab.cross(ap).dot(normal) / square,
+    );
+    let distance = |[v, w]: [f64; 2]| (ab * v + ac * w - ap).length();
+    if v >= 0.0 && w >= 0.0 && v + w <= 1.0 {
+        return (distance([v, w]), [v, w]);
+    }
+    let along = |edge: DVec3, from: DVec3| (from.dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
+    let s = along(c - b, p - b);
+    let edges = [[along(ab, ap), 0.0], [0.0, along(ac, ap)], [1.0 - s, s]];
+    edges
+        .map(|uv| (distance(uv), uv))
+        .into_iter()
+        .fold((f64::INFINITY, [0.0; 2]), |best, next| {
+            if next.0 < best.0 { next } else { best }
+        })
+}
