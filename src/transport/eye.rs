@@ -4,6 +4,7 @@ use std::f64::consts::FRAC_1_PI;
 
 use super::packet::Packet;
 use super::pinhole;
+use super::shadow::Shadows;
 use super::sight::all_shapes;
 use super::walk::Vertex;
 use crate::geometry::{Blockers, DVec3, Parallelogram, Ray, Region, Shape, ShapeId};
@@ -131,16 +132,19 @@ pub(super) fn hide(
     (x, y): (&Packet, &Packet),
     entries: &mut [f64],
 ) {
-    for (k, entry) in entries.iter_mut().enumerate().filter(|(_, c)| **c != 0.0) {
-        let blockers = &blockers[y.shape[k] as usize];
+    let mut asked = Shadows::default();
+    for k in 0..entries.len() {
+        let between = &blockers[y.shape[k] as usize];
+        if entries[k] == 0.0 || between.none() {
+            continue;
+        }
         let ends = [Some(x.shape[k]), Some(y.shape[k])];
-        if !blockers.none()
-            && x.segment(k, y.point(k).0)
-                .is_none_or(|ray| scene.bvh().blocked_by(blockers, &ray, ends))
-        {
-            *entry = 0.0;
+        match x.segment(k, y.point(k).0) {
+            Some(ray) => asked.ask(scene.bvh(), between, (k, ray, ends), entries),
+            None => entries[k] = 0.0,
         }
     }
+    asked.answer(scene.bvh(), entries);
 }
 
 /// Shapes that some pixel may see.

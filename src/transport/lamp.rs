@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::beam::{Beams, LitPoint};
 use super::packet::Packet;
+use super::shadow::Shadows;
 use super::sight::all_shapes;
 use crate::geometry::{Basis, Blockers, DVec3, Parallelogram, Ray, Region, Shape, ShapeId};
 use crate::scene::{Profile, Scene};
@@ -126,13 +127,29 @@ impl<'a> Lamp<'a> {
         if self.clear[from as usize] {
             return;
         }
+        let mut asked = Shadows::default();
         for (i, point) in points.iter().enumerate() {
-            if let Some(lit) = point
-                && row[i] != 0.0
-                && self.hidden(first + i, lit, (x, from))
-            {
-                row[i] = 0.0;
+            let Some(lit) = point.as_ref().filter(|_| row[i] != 0.0) else {
+                continue;
+            };
+            let between = self.between(first + i, lit, from);
+            if between.none() {
+                continue;
             }
+            let ends = [Some(from), Some(lit.shape)];
+            match Ray::between(x, lit.position) {
+                Some(ray) => asked.ask(self.scene.bvh(), between, (i, ray, ends), row),
+                None => row[i] = 0.0,
+            }
+        }
+        asked.answer(self.scene.bvh(), row);
+    }
+
+    /// What may stand between shape `from` and the point that `column`'s beam lights.
+    fn between(&self, column: usize, lit: &LitPoint, from: ShapeId) -> &Blockers {
+        match &self.landings[column] {
+            Some(landing) if landing.holds(lit) => &self.blockers[column][from as usize],
+            _ => &Blockers::Any,
         }
     }
 
@@ -146,10 +163,7 @@ impl<'a> Lamp<'a> {
         if self.clear[from as usize] {
             return false;
         }
-        let blockers = match &self.landings[column] {
-            Some(landing) if landing.holds(lit) => &self.blockers[column][from as usize],
-            _ => &Blockers::Any,
-        };
+        let blockers = self.between(column, lit, from);
         let ends = [Some(from), Some(lit.shape)];
         !blockers.none()
             && Ray::between(x, lit.position)

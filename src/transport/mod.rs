@@ -28,6 +28,7 @@ mod pinhole;
 mod pixel;
 mod render;
 mod setting;
+mod shadow;
 mod sight;
 mod strata;
 mod walk;
