@@ -293,7 +293,9 @@ impl Node {
         for k in 0..WIDTH {
             bits[k] = if enter[k] <= leave[k] { 1 << k } else { 0 };
         }
-        (enter, bits.iter().fold(0, |a, b| a | b))
+        // In halves, as wide instructions fold a register.
+        let [a, b, c, d, e, f, g, h] = bits;
+        (enter, ((a | e) | (c | g)) | ((b | f) | (d | h)))
     }
 
     /// Distance of a point from box `k`.
