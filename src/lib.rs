@@ -51,7 +51,7 @@
 //!    3  film/        frames, EXR                     matrix/    pixels × spots, .npy        store  whole files
 //!    2  scene/       laser, surface, texture, camera, scene file
 //!    1  geometry/    basis, shapes, BVH
-//!    0  num/         constants, streams (random and Sobol'), warps, quadrature, statistics, linear algebra, summation
+//!    0  num/         constants, streams (random and Sobol'), warps, quadrature, statistics, linear algebra, summation, wide arithmetic
 //! ```
 //!
 //! Invariants, each kept by a test that reads the sources (`tests/architecture.rs`):
@@ -65,7 +65,7 @@
 //!    seed gives the same bytes.
 //!
 //! Rays travel in f32 inside the BVH only; every intersection, and every point that enters a radiometric term, is computed
-//! in f64 on its own shape, and every sum is f64 along a fixed tree.
+//! in f64 on its own shape, and every sum is f64 in a fixed order.
 //!
 //! # A toy run
 //!

@@ -32,6 +32,10 @@ const CHUNK: usize = 256;
 /// and L_n,l for n > 3 the same with a path from y to s_l. N points y_k of density N·p(y_k), drawn by strata, give
 /// Φ̂_n = Σ_k C[p,k]·L_n[k,l]: unbiased for each block, as C and L are evaluated at points of their own in footprint and beam, the same of
 /// all pixels and of all spots. Visibility is part of C and L; it is asked only where something can stand between.
+///
+/// Points that serve all pixels cannot crowd where each of them sees another surface up close. Where the view reaches into the edge between
+/// two surfaces, C grows like 1/d² towards it and the variance of those pixels' estimates has no bound: there `shared` is the estimator to
+/// take.
 pub(super) struct Factored<'a> {
     setting: &'a Setting<'a>,
     /// By pixel and shape: what may stand between.

@@ -10,7 +10,11 @@
 //! x₁ what the camera sees, s the point where the beam lands (dP its share of the power), G = V·cosθ·cosθ′/d² with the visibility V, f_r = ρ/π, E the
 //! étendue per unit of footprint area, and n the number of surfaces met. Paths start at the camera; at each vertex the spot
 //! is connected explicitly (it is far too small to be hit), and the path goes on by sampling the hidden surfaces' area
-//! or the cosine lobe, weighted against each other by the density of their mixture (the balance heuristic).
+//! or the cosine lobe, weighted against each other by the density of their mixture (the balance heuristic). Under
+//! [`Estimator::Factored`] they are points that all pixels and all spots share instead, which makes Φcam a product of two matrices.
+//!
+//! No ray is cast where nothing can stand in the way; what can is worked out once per pair of regions, conservatively
+//! ([`Region`](crate::geometry::Region)).
 //!
 //! This floor never sees `model`: agreement between the two is evidence.
 
