@@ -4,6 +4,8 @@ use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
 
+use rayon::prelude::*;
+
 use super::args::{RenderArgs, TraceArgs};
 use super::failure::Failure;
 use super::finished::read_matrix;
@@ -186,10 +188,13 @@ fn trace(
             .install(|| render(scene, plan, range.clone(), control))
             .ok_or_else(stopped)?;
         refuse_beyond_f32(&traced)?;
-        for (column, spot) in range.clone().enumerate() {
-            folder.write_frame(scene, record, spot, &traced, column)?;
-            folder.keep(spot, &traced, column)?;
-        }
+        pool.install(|| {
+            let columns = range.into_par_iter().enumerate();
+            columns.try_for_each(|(column, spot)| {
+                folder.write_frame(scene, record, spot, &traced, column)?;
+                folder.keep(spot, &traced, column)
+            })
+        })?;
     }
     bar.finish_and_clear();
     Ok(())

@@ -18,8 +18,10 @@ use crate::geometry::Blockers;
 use crate::num::lanes::add_product;
 use crate::num::stream::Key;
 
-/// Points of S2 that are worked off together: a panel of the product stays in the nearest cache.
+/// Points of S2 that are multiplied together: a panel of the product stays in the nearest cache.
 const CHUNK: usize = 256;
+/// Numbers of L that are held at once, at most (1 MiB, so that they stay in the second cache); at least one chunk of them.
+const MOST_LIGHT: usize = 1 << 17;
 
 /// The estimator that shares the points between the first and the last wall among all pixels and all spots.
 ///
@@ -57,9 +59,17 @@ impl<'a> Factored<'a> {
         let mut moments = Moments::new(self.layout());
         let paths =
             self.setting.scene.camera.pixels() as u64 * u64::from(self.setting.plan.budget.size);
-        for block in 0..self.setting.plan.budget.blocks {
-            moments.add(self.block(block, control)?);
+        let blocks = self.setting.plan.budget.blocks;
+        let mut points = self.points(0);
+        for block in 0..blocks {
+            // The next points are drawn, one after the other, while these are multiplied.
+            let next = || (block + 1 < blocks).then(|| self.points(block + 1));
+            let (sums, next) = rayon::join(|| self.block(&points, control), next);
+            moments.add(sums?);
             (control.progress)(paths);
+            if let Some(next) = next {
+                points = next;
+            }
         }
         Some(moments.traced())
     }
@@ -73,31 +83,44 @@ impl<'a> Factored<'a> {
     }
 
     /// The estimate of one block.
-    fn block(&self, block: u32, control: Control<'_>) -> Option<Vec<f64>> {
+    fn block(&self, points: &Points, control: Control<'_>) -> Option<Vec<f64>> {
         let layout = self.layout();
-        let points = self.points(block);
         let mut sums = layout.zeros();
-        let all = 0..layout.columns;
         let count = points.footprint.len();
-        for start in (0..count).step_by(CHUNK) {
+        let row = layout.width() * layout.orders.saturating_sub(2).max(1);
+        let together = (MOST_LIGHT / row / CHUNK).max(1) * CHUNK;
+        for start in (0..count).step_by(together) {
             if control.stop.load(Ordering::Relaxed) {
                 return None;
             }
-            let range = start..(start + CHUNK).min(count);
-            let beams = points.beam.get(range.clone()).unwrap_or_default();
-            let lit = self.setting.lamp.lit(beams, &all);
-            let light = self.light(&points, range.clone(), &lit);
-            let at = points.at.part(range.clone());
+            let end = (start + together).min(count);
+            let chunks: Vec<Chunk<'_>> = (start..end)
+                .into_par_iter()
+                .step_by(CHUNK)
+                .map(|first| self.chunk(points, first..(first + CHUNK).min(end)))
+                .collect();
             sums.par_chunks_mut(layout.tile())
                 .enumerate()
                 .for_each(|(tile, sums)| {
                     let first = tile * TILE;
                     let pixels = first..(first + TILE).min(layout.pixels);
-                    let places = &points.footprint[range.clone()];
-                    self.tile(pixels, (&at, places, count), (&light, &lit), sums);
+                    for chunk in &chunks {
+                        self.tile(pixels.clone(), chunk, count, sums);
+                    }
                 });
         }
         Some(sums)
+    }
+
+    fn chunk<'p>(&'p self, points: &'p Points, range: Range<usize>) -> Chunk<'p> {
+        let beams = points.beam.get(range.clone()).unwrap_or_default();
+        let lit = self.setting.lamp.lit(beams, &(0..self.layout().columns));
+        Chunk {
+            at: points.at.part(range.clone()),
+            places: &points.footprint[range.clone()],
+            light: self.light(points, range, &lit),
+            lit,
+        }
     }
 
     /// Draws the points of a block and, where light may meet more than three surfaces, the paths that go on from them.
@@ -151,38 +174,34 @@ impl<'a> Factored<'a> {
         let power = self.setting.scene.laser.power;
         let places = if lit.is_fixed() { 1 } else { range.len() };
         let packets: Vec<Packet> = (0..places)
-            .into_par_iter()
             .map(|k| self.setting.lamp.packet(lit.at(k), width))
             .collect();
         let order = |n: usize| {
             let mut light = vec![0.0; range.len() * width];
-            light
-                .par_chunks_mut(width)
-                .enumerate()
-                .for_each(|(i, row)| {
-                    let Some(vertex) = &points.vertices[(range.start + i) * deeper + n] else {
-                        return;
-                    };
-                    let own = if lit.is_fixed() { 0 } else { i };
-                    let factor = power * vertex.throughput * vertex.albedo * FRAC_1_PI;
-                    packets[own].forms_from((vertex.position, vertex.normal), factor, row);
-                    self.setting
-                        .lamp
-                        .hide(lit.at(own), 0, (vertex.position, vertex.shape), row);
-                });
+            light.chunks_mut(width).enumerate().for_each(|(i, row)| {
+                let Some(vertex) = &points.vertices[(range.start + i) * deeper + n] else {
+                    return;
+                };
+                let own = if lit.is_fixed() { 0 } else { i };
+                let factor = power * vertex.throughput * vertex.albedo * FRAC_1_PI;
+                packets[own].forms_from((vertex.position, vertex.normal), factor, row);
+                self.setting
+                    .lamp
+                    .hide(lit.at(own), 0, (vertex.position, vertex.shape), row);
+            });
             light
         };
         (0..deeper).map(order).collect()
     }
 
     /// Adds the points of a chunk to the sums of a tile of pixels.
-    fn tile(
-        &self,
-        pixels: Range<usize>,
-        (at, places, count): (&Packet, &[[f64; 2]], usize),
-        (light, lit): (&[Vec<f64>], &Lit<'_>),
-        sums: &mut [f64],
-    ) {
+    fn tile(&self, pixels: Range<usize>, chunk: &Chunk<'_>, count: usize, sums: &mut [f64]) {
+        let Chunk {
+            at,
+            places,
+            light,
+            lit,
+        } = chunk;
         let layout = self.layout();
         let (width, inner) = (layout.width(), places.len());
         let rows = sums.len() / layout.orders / width;
@@ -209,9 +228,18 @@ impl<'a> Factored<'a> {
     }
 }
 
+/// Points that are multiplied together.
+struct Chunk<'a> {
+    at: Packet,
+    places: &'a [[f64; 2]],
+    /// L by order from three surfaces on: points × spots.
+    light: Vec<Vec<f64>>,
+    lit: Lit<'a>,
+}
+
 /// The points of one block.
 struct Points {
-    /// Position and normal of the first vertices.
+    /// Position and normal of the points y.
     at: Packet,
     /// Place in the footprints of all pixels.
     footprint: Vec<[f64; 2]>,
