@@ -56,8 +56,8 @@ fn power_is_a_table_and_json() {
     let line = "study power tiny.toml -o p --seeds 4 --samples 32,64 --json";
     let json: serde_json::Value =
         serde_json::from_str(&workspace.phicam(line).exits(0).stdout).unwrap();
-    // Two estimators at two numbers of samples.
-    assert_eq!(json["rows"].as_array().unwrap().len(), 4);
+    // Three estimators at two numbers of samples.
+    assert_eq!(json["rows"].as_array().unwrap().len(), 6);
     assert_eq!(json, workspace.json("p/power.json"));
     workspace.refuses(
         "study power tiny.toml -o q --significance 1.5",
