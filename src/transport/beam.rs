@@ -30,6 +30,8 @@ pub(super) enum Reach {
     Density,
     /// The points that it is sampled at.
     Samples,
+    /// Nearly all of those; what lands beyond is asked ray by ray.
+    Expected,
 }
 
 impl<'a> Beams<'a> {
@@ -72,11 +74,12 @@ impl<'a> Beams<'a> {
             (Profile::Disc { radius }, _) => radius,
             (Profile::Gaussian { radius }, Reach::Density) => 19.4 * radius,
             (Profile::Gaussian { radius }, Reach::Samples) => 4.3 * radius,
+            (Profile::Gaussian { radius }, Reach::Expected) => 3.0 * radius,
         }
     }
 
     /// The square around the target that holds all of that.
-    fn square(&self, spot: usize, what: Reach) -> Option<Parallelogram> {
+    pub(super) fn square(&self, spot: usize, what: Reach) -> Option<Parallelogram> {
         let reach = self.reach(what);
         let target = &self.scene.laser.spots[spot].target;
         let basis = Basis::around(target.normal);

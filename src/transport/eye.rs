@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_1_PI;
 use super::packet::Packet;
 use super::pinhole;
 use super::shadow::Shadows;
-use super::sight::all_shapes;
+use super::sight::known_or_all;
 use super::walk::Vertex;
 use crate::geometry::{Blockers, DVec3, Parallelogram, Ray, Region, Shape, ShapeId};
 use crate::num::lanes::widest;
@@ -149,11 +149,7 @@ pub(super) fn hide(
 
 /// Shapes that some pixel may see.
 pub(super) fn seen(scene: &Scene, sightings: &[Sighting]) -> Vec<ShapeId> {
-    let known: Option<Vec<ShapeId>> = sightings.iter().map(Sighting::shape).collect();
-    let mut shapes = known.unwrap_or_else(|| all_shapes(scene));
-    shapes.sort_unstable();
-    shapes.dedup();
-    shapes
+    known_or_all(scene, sightings.iter().map(Sighting::shape).collect())
 }
 
 /// Shape `id` with its outline in the pixel, if it is flat, shows its front to the pinhole over the whole footprint, and nothing can

@@ -10,9 +10,9 @@ use super::beam::{Beams, LitPoint, Reach};
 use super::lit::Lit;
 use super::packet::Packet;
 use super::shadow::Shadows;
-use super::sight::all_shapes;
-use crate::geometry::{Basis, Blockers, DVec3, Parallelogram, Ray, Region, Shape, ShapeId};
-use crate::scene::{Profile, Scene};
+use super::sight::known_or_all;
+use crate::geometry::{Blockers, DVec3, Parallelogram, Ray, Region, Shape, ShapeId};
+use crate::scene::Scene;
 
 /// A range of spots, with what may stand between each and the shapes around.
 #[derive(Debug)]
@@ -47,10 +47,6 @@ impl Landing {
         lit.shape == self.shape && self.square.as_ref().is_none_or(inside)
     }
 }
-
-/// Half the width of the square in which the light of a Gaussian spot is expected, in its 1/e² radii; what lands beyond is asked ray by
-/// ray.
-const EXPECTED: f64 = 3.0;
 
 impl<'a> Lamp<'a> {
     pub(super) fn new(scene: &'a Scene, beams: &'a Beams<'a>, spots: Range<usize>) -> Self {
@@ -193,21 +189,37 @@ impl<'a> Lamp<'a> {
                 .is_none_or(|ray| self.scene.bvh().blocked_by(blockers, &ray, ends))
     }
 
-    /// Adds to `sums` the light that goes from the lit spots straight to the vertices x; each vertex counts `share`.
-    pub(super) fn add_two_surfaces(&self, x: &Packet, lit: &Lit<'_>, share: f64, sums: &mut [f64]) {
+    /// Adds to `sums` the light that goes from the lit spots to each of `points`, all spots of a point at once; point k counts `factor`(k),
+    /// and nothing if that is 0.
+    pub(super) fn add_light(
+        &self,
+        points: &Packet,
+        factor: impl Fn(usize) -> f64,
+        lit: &Lit<'_>,
+        sums: &mut [f64],
+    ) {
         let mut row = vec![0.0; sums.len()];
         let mut packet = self.packet(lit.at(0), sums.len());
-        for k in (0..x.len()).filter(|k| x.weight[*k] > 0.0) {
+        for (k, factor) in (0..points.len()).map(|k| (k, factor(k))) {
+            if factor == 0.0 {
+                continue;
+            }
             let own = lit.at(k);
             if !lit.is_fixed() {
                 packet = self.packet(own, sums.len());
             }
-            let (position, normal) = x.point(k);
-            let factor = self.scene.laser.power * share * x.weight[k];
+            let (position, normal) = points.point(k);
             packet.forms_from((position, normal), factor, &mut row);
-            self.hide(own, lit.columns.start, (position, x.shape[k]), &mut row);
+            let from = (position, points.shape[k]);
+            self.hide(own, lit.columns.start, from, &mut row);
             sums.iter_mut().zip(&row).for_each(|(s, r)| *s += r);
         }
+    }
+
+    /// Adds to `sums` the light that goes from the lit spots straight to the vertices x; each vertex counts `share`.
+    pub(super) fn add_two_surfaces(&self, x: &Packet, lit: &Lit<'_>, share: f64, sums: &mut [f64]) {
+        let factor = |k: usize| self.scene.laser.power * share * x.weight[k];
+        self.add_light(x, factor, lit, sums);
     }
 }
 
@@ -218,13 +230,7 @@ pub(super) fn lit(scene: &Scene, beams: &Beams<'_>) -> Vec<ShapeId> {
         false => Some(beams.point(l, [0.0; 2]).map(|p| p.shape)),
     };
     let known: Option<Vec<Option<ShapeId>>> = (0..scene.laser.spots.len()).map(lands).collect();
-    let mut shapes = match known {
-        None => all_shapes(scene),
-        Some(shapes) => shapes.into_iter().flatten().collect(),
-    };
-    shapes.sort_unstable();
-    shapes.dedup();
-    shapes
+    known_or_all(scene, known.map(|k| k.into_iter().flatten().collect()))
 }
 
 /// Where the light of a spot is expected: its target where that is a flat shape on which the beam lands unhindered.
@@ -237,23 +243,16 @@ fn landing(scene: &Scene, beams: &Beams<'_>, spot: usize) -> Option<Landing> {
     ) {
         return None;
     }
-    let reach = match scene.laser.profile {
-        Profile::Ideal => {
-            let lit = beams.point(spot, [0.0; 2])?;
-            let there = lit.shape == shape && lit.position == target.position;
-            return there.then_some(Landing {
-                shape,
-                square: None,
-            });
-        }
-        Profile::Disc { radius } => radius,
-        Profile::Gaussian { radius } => EXPECTED * radius,
-    };
-    let basis = Basis::around(target.normal);
-    let (s, t) = (basis.s * reach, basis.t * reach);
-    let square = Parallelogram::new(target.position - s - t, s * 2.0, t * 2.0)?;
+    if !beams.has_width() {
+        let lit = beams.point(spot, [0.0; 2])?;
+        let there = lit.shape == shape && lit.position == target.position;
+        return there.then_some(Landing {
+            shape,
+            square: None,
+        });
+    }
     Some(Landing {
         shape,
-        square: Some(square),
+        square: Some(beams.square(spot, Reach::Expected)?),
     })
 }

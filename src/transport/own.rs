@@ -131,14 +131,14 @@ impl<'a> OwnPoints<'a> {
             let three = &mut sums[2 * stride..2 * stride + n];
             match three {
                 [sum] => self.one_spot(b, &lit, sum),
-                _ => self.all_spots(b, &lit, three),
+                _ => lamp.add_light(&b.y, |k| b.camera[k], &lit, three),
             }
         }
         b.places.clear();
         b.beams.clear();
     }
 
-    /// Adds the light from one spot, all points at once, with the roundings of [`OwnPoints::all_spots`].
+    /// Adds the light from one spot, all points at once, with the roundings of [`Lamp::add_light`](super::lamp::Lamp::add_light).
     fn one_spot(&self, b: &mut Buffers, lit: &Lit<'_>, sum: &mut f64) {
         let lamp = &self.setting.lamp;
         let column = lit.columns.start;
@@ -157,23 +157,6 @@ impl<'a> OwnPoints<'a> {
             if part != 0.0 && !lamp.hidden(column, point, (b.y.position(k), b.y.shape[k])) {
                 *sum += part;
             }
-        }
-    }
-
-    /// Adds the light from many spots, all spots of a point at once.
-    fn all_spots(&self, b: &Buffers, lit: &Lit<'_>, sums: &mut [f64]) {
-        let lamp = &self.setting.lamp;
-        let mut row = vec![0.0; sums.len()];
-        let mut packet = lamp.packet(lit.at(0), sums.len());
-        for (k, camera) in b.camera.iter().enumerate().filter(|(_, c)| **c != 0.0) {
-            let own = lit.at(k);
-            if !lit.is_fixed() {
-                packet = lamp.packet(own, sums.len());
-            }
-            let (position, normal) = b.y.point(k);
-            packet.forms_from((position, normal), *camera, &mut row);
-            lamp.hide(own, lit.columns.start, (position, b.y.shape[k]), &mut row);
-            sums.iter_mut().zip(&row).for_each(|(s, r)| *s += r);
         }
     }
 }

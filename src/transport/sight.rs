@@ -40,7 +40,15 @@ pub(super) fn two_surfaces(scene: &Scene, seen: &[ShapeId], lit: &[ShapeId]) -> 
     scene.max_bounces > 1 && lit.iter().any(|t| sees(scene, seen, *t))
 }
 
+/// The known shapes, each once; all of the scene where any is unknown.
+pub(super) fn known_or_all(scene: &Scene, known: Option<Vec<ShapeId>>) -> Vec<ShapeId> {
+    let mut shapes = known.unwrap_or_else(|| all_shapes(scene));
+    shapes.sort_unstable();
+    shapes.dedup();
+    shapes
+}
+
 /// All shapes of the scene.
-pub(super) fn all_shapes(scene: &Scene) -> Vec<ShapeId> {
+fn all_shapes(scene: &Scene) -> Vec<ShapeId> {
     (0..scene.surfaces.len() as ShapeId).collect()
 }

@@ -63,13 +63,15 @@ impl Outcome {
 
     /// The values stretched to \[0, 1\] by their own ends, as the published pictures are.
     pub(super) fn stretched(&self) -> Vec<f64> {
-        let ends = |f: fn(f64, f64) -> f64| self.values.iter().copied().reduce(f).unwrap_or(0.0);
-        let (low, high) = (ends(f64::min), ends(f64::max));
-        self.values
-            .iter()
-            .map(|x| (x - low) / (high - low))
-            .collect()
+        stretched(&self.values)
     }
+}
+
+/// Values stretched to \[0, 1\] by their own ends.
+pub(super) fn stretched(values: &[f64]) -> Vec<f64> {
+    let ends = |f: fn(f64, f64) -> f64| values.iter().copied().reduce(f).unwrap_or(0.0);
+    let (low, high) = (ends(f64::min), ends(f64::max));
+    values.iter().map(|x| (x - low) / (high - low)).collect()
 }
 
 impl Inversion {

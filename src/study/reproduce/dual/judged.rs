@@ -1,5 +1,6 @@
 //! Pictures, and how much of the hidden board they show.
 
+use super::super::inversion::stretched;
 use super::super::{Cell, ReproduceError};
 use super::{ELEMENTS, SHOWN, adjoint, board};
 use crate::matrix::Matrix;
@@ -87,12 +88,7 @@ impl Judged {
 
     /// Values stretched to \[0, 1\] by their own ends.
     pub(super) fn stretched(&self) -> Vec<f64> {
-        let ends = |f: fn(f64, f64) -> f64| self.values.iter().copied().reduce(f).unwrap_or(0.0);
-        let (low, high) = (ends(f64::min), ends(f64::max));
-        self.values
-            .iter()
-            .map(|x| (x - low) / (high - low))
-            .collect()
+        stretched(&self.values)
     }
 
     pub(super) fn row(&self) -> Vec<Cell> {
