@@ -20,7 +20,7 @@ const FLOORS: [&[&str]; 9] = [
 const BESIDE: [(&str, &str); 3] = [("film", "matrix"), ("film", "store"), ("matrix", "store")];
 
 /// Foreign crates and the one place that may name them.
-const DOORS: [(&str, &[&str]); 17] = [
+const DOORS: [(&str, &[&str]); 19] = [
     ("obvhs", &["geometry/bvh"]),
     ("exr", &["film/exr"]),
     ("faer", &["num/linalg"]),
@@ -36,6 +36,8 @@ const DOORS: [(&str, &[&str]); 17] = [
     ("resvg", &["report/raster"]),
     ("dejavu", &["report/raster"]),
     ("toml", &["scene"]),
+    ("ply_rs_bw", &["scene/mesh/ply"]),
+    ("gltf_json", &["scene/mesh/gltf"]),
     ("clap", &["cli"]),
     ("indicatif", &["cli"]),
 ];

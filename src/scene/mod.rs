@@ -90,6 +90,7 @@ mod error;
 mod file;
 mod known;
 mod laser;
+pub mod mesh;
 mod parse;
 mod quantity;
 mod sensor;

@@ -1,0 +1,269 @@
+//! Scenes, buffers and forgeries of glTF.
+
+use super::*;
+
+fn with_nodes(nodes: &str) -> Result<Triangles, MeshFileError> {
+    alone("a.gltf", gltf_text(&inline_buffer(), nodes).as_bytes())
+}
+
+fn with_buffer(uri: &str) -> Result<Triangles, MeshFileError> {
+    let buffer = format!(r#""uri": "{uri}","#);
+    alone("a.gltf", gltf_text(&buffer, r#"{"mesh": 0}"#).as_bytes())
+}
+
+#[test]
+fn nodes_place_their_meshes() {
+    // Scale, then rotation by 90° about z, then translation: (x, y, z) → (−2y + 1, 3x, 4z); below it (x, y, z) → (x + 1, y, z).
+    let nodes = r#"{"translation": [1, 0, 0], "rotation": [0, 0, 0.70710678, 0.70710678], "scale": [3, 2, 4], "children": [1]},
+        {"matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 1,0,0,1], "mesh": 0}"#;
+    let mesh = with_nodes(nodes).unwrap();
+    let lower = mesh.positions.iter().copied().reduce(DVec3::min).unwrap();
+    let upper = mesh.positions.iter().copied().reduce(DVec3::max).unwrap();
+    assert!(lower.distance(DVec3::new(-1.0, 3.0, 0.0)) < 1e-6, "{lower}");
+    assert!(upper.distance(DVec3::new(1.0, 6.0, 4.0)) < 1e-6, "{upper}");
+    let found = Defects::of(&mesh);
+    assert!(found.is_closed() && (found.signed_volume - 24.0).abs() < 1e-5);
+    // A mirror keeps the fronts outside.
+    is_unit_cube(&with_nodes(r#"{"scale": [-1, 1, 1], "mesh": 0}"#).unwrap());
+}
+
+#[test]
+fn nodes_in_a_circle() {
+    for nodes in [
+        r#"{"children": [0], "mesh": 0}"#,
+        r#"{"children": [1]}, {"children": [2]}, {"children": [1]}"#,
+        r#"{"children": [1, 1]}, {"mesh": 0}"#,
+        r#"{"children": [7]}"#,
+        r#"{"mesh": 4}"#,
+        r#"{"mesh": 0, "rotation": [0, 0, 0, 0]}"#,
+    ] {
+        let error = with_nodes(nodes).unwrap_err();
+        assert!(matches!(error, MeshFileError::Malformed { .. }), "{error}");
+    }
+    let chain: Vec<String> = (1..20_000)
+        .map(|i| format!(r#"{{"children": [{i}]}}"#))
+        .collect();
+    let nodes = format!(r#"{}, {{"mesh": 0}}"#, chain.join(","));
+    is_unit_cube(&with_nodes(&nodes).unwrap());
+}
+
+#[test]
+fn small_files_stay_small() {
+    // 9000 nodes that share a mesh of 1998 vertices: 1.8·10⁷ vertices, or 430 MB, from 170 kB.
+    let children: Vec<String> = (1..=9000).map(|i| i.to_string()).collect();
+    let nodes = format!(
+        r#"{{"children": [{}]}}, {}"#,
+        children.join(","),
+        vec![r#"{"mesh": 0}"#; 9000].join(",")
+    );
+    let text = format!(
+        r#"{{"asset": {{"version": "2.0"}}, "scenes": [{{"nodes": [0]}}], "nodes": [{nodes}],
+"meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}], "buffers": [{{"uri": "a.bin", "byteLength": 24000}}],
+"bufferViews": [{{"buffer": 0, "byteLength": 24000}}],
+"accessors": [{{"bufferView": 0, "componentType": 5126, "count": 1998, "type": "VEC3"}}]}}"#
+    );
+    let error = read("a.gltf", text.as_bytes(), &mut |_| Ok(vec![0; 24000])).unwrap_err();
+    assert!(
+        matches!(error, MeshFileError::TooMany { most, .. } if most == 1 << 24),
+        "{error}"
+    );
+}
+
+#[test]
+fn buffers_beside_the_mesh() {
+    let text = gltf_text(r#""uri": "parts/the%20cube.bin","#, r#"{"mesh": 0}"#);
+    let mesh = read("a.gltf", text.as_bytes(), &mut |uri| {
+        assert_eq!(uri, "parts/the cube.bin");
+        Ok(gltf_buffer(&cube()))
+    });
+    is_unit_cube(&mesh.unwrap());
+    let error = read("a.gltf", text.as_bytes(), &mut |_| {
+        Err(String::from("no such file"))
+    });
+    assert!(error.unwrap_err().to_string().contains("no such file"));
+    let error = read("a.gltf", text.as_bytes(), &mut |_| Ok(vec![0; 100])).unwrap_err();
+    assert!(
+        matches!(error, MeshFileError::CutShort { left: 100, .. }),
+        "{error}"
+    );
+}
+
+#[test]
+fn buffers_outside_the_folder() {
+    for uri in [
+        "../../etc/passwd",
+        "/etc/passwd",
+        "file:///etc/passwd",
+        "http://localhost/cube.bin",
+        "//localhost/cube.bin",
+        "parts/../../cube.bin",
+        "%2e%2e/cube.bin",
+        "..%2Fcube.bin",
+        "%2Fetc/passwd",
+        "..\\\\cube.bin",
+        "C:/cube.bin",
+        "~/cube.bin",
+        "..",
+        "",
+    ] {
+        let error = with_buffer(uri).unwrap_err();
+        assert!(
+            matches!(error, MeshFileError::Outside { .. }),
+            "{uri}: {error}"
+        );
+    }
+    for uri in [
+        "data:text/plain,cube",
+        "data:;base64,!!",
+        "%zz",
+        "%ff",
+        "%4",
+    ] {
+        let error = with_buffer(uri).unwrap_err();
+        assert!(
+            matches!(error, MeshFileError::Buffer { .. }),
+            "{uri}: {error}"
+        );
+    }
+}
+
+#[test]
+fn accessors_that_reach_too_far() {
+    let text = gltf_text(&inline_buffer(), r#"{"mesh": 0}"#);
+    let with = |from: &str, to: &str| {
+        assert!(text.contains(from));
+        alone("a.gltf", text.replace(from, to).as_bytes()).unwrap_err()
+    };
+    for (from, to) in [
+        (r#""count": 8"#, r#""count": 9"#),
+        (r#""count": 8"#, r#""count": 18446744073709551615"#),
+        (r#""count": 36"#, r#""count": 4294967296"#),
+        (
+            r#""count": 8"#,
+            r#""count": 8, "byteOffset": 18446744073709551615"#,
+        ),
+        (r#""byteLength": 96"#, r#""byteLength": 169"#),
+        (
+            r#""byteLength": 168"#,
+            r#""byteLength": 18446744073709551615"#,
+        ),
+        (r#""byteOffset": 96"#, r#""byteOffset": 97"#),
+        (
+            r#""byteOffset": 96"#,
+            r#""byteOffset": 18446744073709551615"#,
+        ),
+        (
+            r#""byteLength": 96"#,
+            r#""byteLength": 96, "byteStride": 252"#,
+        ),
+    ] {
+        let error = with(from, to);
+        assert!(
+            matches!(error, MeshFileError::CutShort { .. }),
+            "{to}: {error}"
+        );
+    }
+    for (from, to) in [
+        (
+            r#""byteLength": 96"#,
+            r#""byteLength": 96, "byteStride": 0"#,
+        ),
+        (r#""bufferView": 1"#, r#""bufferView": 9"#),
+        (r#""indices": 1"#, r#""indices": 2"#),
+        (r#""indices": 1"#, r#""indices": 0"#),
+        (r#""POSITION": 0"#, r#""POSITION": 1"#),
+        (r#""count": 36"#, r#""count": 35"#),
+        ("5123", "5122"),
+        ("5123", "77"),
+    ] {
+        let error = with(from, to);
+        assert!(
+            matches!(error, MeshFileError::Malformed { .. }),
+            "{to}: {error}"
+        );
+    }
+    let sparse = r#""count": 8, "sparse": {"count": 1, "indices": {"bufferView": 1, "componentType": 5123}, "values": {"bufferView": 0}}"#;
+    for (from, to) in [
+        (r#""count": 8"#, sparse),
+        (r#""version": "2.0""#, r#""version": "1.0""#),
+        (
+            r#""scene": 0"#,
+            r#""extensionsRequired": ["KHR_draco_mesh_compression"], "scene": 0"#,
+        ),
+    ] {
+        let error = with(from, to);
+        assert!(
+            matches!(error, MeshFileError::Unsupported { .. }),
+            "{to}: {error}"
+        );
+    }
+    let short = text.replace(r#""count": 8"#, r#""count": 7"#);
+    let error = alone("a.gltf", short.as_bytes()).unwrap_err();
+    assert!(
+        matches!(
+            error,
+            MeshFileError::NoVertex {
+                index: 7,
+                count: 7,
+                ..
+            }
+        ),
+        "{error}"
+    );
+}
+
+#[test]
+fn containers_that_lie_about_their_lengths() {
+    let bytes = glb(&gltf_text("", r#"{"mesh": 0}"#), &gltf_buffer(&cube()));
+    let chunk = bytes.len() - 168 - 8;
+    for (at, values) in [
+        (
+            8,
+            &[0, 11, 12, 19, 20, 27, bytes.len() as u32 + 1, u32::MAX][..],
+        ),
+        (12, &[u32::MAX, 1 << 31]),
+        (chunk, &[169, u32::MAX]),
+    ] {
+        for value in values {
+            let mut wrong = bytes.clone();
+            wrong[at..at + 4].copy_from_slice(&value.to_le_bytes());
+            let error = alone("a.glb", &wrong).unwrap_err();
+            assert!(
+                matches!(
+                    error,
+                    MeshFileError::CutShort { .. } | MeshFileError::Malformed { .. }
+                ),
+                "{at} {value}: {error}"
+            );
+        }
+    }
+    let mut wrong = bytes.clone();
+    wrong[4] = 1;
+    let error = alone("a.glb", &wrong).unwrap_err();
+    assert!(
+        matches!(error, MeshFileError::Unsupported { .. }),
+        "{error}"
+    );
+}
+
+#[test]
+fn texture_coordinates_are_turned_up() {
+    // One triangle as a strip and as a fan; u and v as normalised bytes.
+    for (mode, expected) in [(5, [0, 1, 2]), (6, [1, 2, 0])] {
+        let text = format!(
+            r#"{{"asset": {{"version": "2.0"}}, "scenes": [{{"nodes": [0]}}], "nodes": [{{"mesh": 0}}],
+"meshes": [{{"primitives": [{{"mode": {mode}, "attributes": {{"POSITION": 0, "TEXCOORD_0": 1}}}}, {{"mode": 1, "attributes": {{"POSITION": 0}}}}]}}],
+"buffers": [{{"uri": "a.bin", "byteLength": 48}}],
+"bufferViews": [{{"buffer": 0, "byteLength": 36}}, {{"buffer": 0, "byteOffset": 36, "byteLength": 12, "byteStride": 4}}],
+"accessors": [{{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}},
+{{"bufferView": 1, "componentType": 5121, "normalized": true, "count": 3, "type": "VEC2"}}]}}"#
+        );
+        let floats = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+        let mut bytes: Vec<u8> = floats.iter().flat_map(|x| x.to_le_bytes()).collect();
+        bytes.extend([0, 255, 9, 9, 255, 51, 9, 9, 0, 0, 9, 9]);
+        let mesh = read("a.gltf", text.as_bytes(), &mut |_| Ok(bytes.clone())).unwrap();
+        assert_eq!(mesh.triangles, [expected]);
+        let uv = [[0.0, 0.0], [1.0, 0.8], [0.0, 1.0]];
+        assert_eq!(mesh.uv, Some(vec![expected.map(|c| uv[c as usize])]));
+    }
+}
