@@ -156,4 +156,4 @@ fn unsupported(name: &str, reason: impl Into<String>) -> ImageError {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -1,7 +1,7 @@
 use super::*;
 use proptest::prelude::*;
 
-mod bytes;
+pub(crate) mod bytes;
 
 /// Every file of [`bytes`] that is a picture of ours, with its name.
 const WHOLE: [(&str, &[u8]); 10] = [
