@@ -50,7 +50,7 @@
 //!    4  transport/   the path tracer → Φcam          model/     G12, G23 → Φcam             sensor/  flux → electrons → counts
 //!    3  film/        frames, EXR                     matrix/    pixels × spots, .npy        store  whole files
 //!    2  scene/       laser, surface, texture, camera, scene file
-//!    1  geometry/    basis, shapes, BVH
+//!    1  geometry/    basis, shapes, BVH              image/     PNG, JPEG, EXR bytes ↔ pictures
 //!    0  num/         constants, streams (random and Sobol'), warps, quadrature, statistics, linear algebra, summation, wide arithmetic
 //! ```
 //!
@@ -59,7 +59,7 @@
 //! 1. **Two witnesses.** [`transport`] and [`model`] never import each other. The model knows quadrature only, the
 //!    tracer knows random streams and warps only. If they shared code, their agreement would prove nothing.
 //! 2. **Blind recovery.** [`recovery`] imports [`num`] and [`matrix`] only; it never learns what scene it inverts.
-//! 3. **One door per foreign crate**: obvhs only in `geometry/bvh`, exr only in `film/exr`, matrix decompositions only in
+//! 3. **One door per foreign crate**: obvhs only in `geometry/bvh`, exr only in `film/exr` and `image/exr` (frames and pictures), png only in `image/png`, matrix decompositions only in
 //!    [`num::linalg`], random generators only in [`num::stream`], the argument parser only in [`cli`].
 //! 4. **A random number is a function of (seed, spot, pixel, sample block)**, never of the thread or the order. The same
 //!    seed gives the same bytes.
@@ -121,6 +121,7 @@
 pub mod cli;
 pub mod film;
 pub mod geometry;
+pub mod image;
 pub mod matrix;
 pub mod metrics;
 pub mod model;

@@ -43,6 +43,7 @@ mod settings;
 mod stack;
 mod stale;
 mod study;
+mod target;
 mod validate;
 
 use std::process::ExitCode;
@@ -72,6 +73,7 @@ pub fn main() -> ExitCode {
         Command::Recover(a) => recover::execute(a, talk),
         Command::Expose(a) => expose::execute(a, talk),
         Command::Scene(a) => scene::execute(a, talk),
+        Command::Target(a) => target::execute(a, talk),
         Command::Study(a) => study::execute(a, talk),
         Command::Reproduce(a) => reproduce::execute(a, talk),
     };

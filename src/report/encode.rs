@@ -1,4 +1,6 @@
-//! Pixels as PNG bytes: the one door to the crate `png`.
+//! Pixels as PNG bytes, of a size that can be written.
+
+use crate::image::{EncodingError, grey16_png, rgb_png};
 
 /// A picture that cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -9,10 +11,8 @@ pub enum PictureError {
     )]
     TooLarge(usize, usize),
     /// The encoder's own report.
-    #[error(
-        "the picture could not be encoded as PNG ({0}); show fewer panels, or average the matrix first"
-    )]
-    Encoding(#[from] png::EncodingError),
+    #[error("{0}; show fewer panels, or average the matrix first")]
+    Encoding(#[from] EncodingError),
     /// The renderer's own report.
     #[error(
         "the figure could not be drawn from its SVG ({0}); its numbers are in the files beside it"
@@ -35,7 +35,7 @@ pub(super) fn checked([width, height]: [usize; 2]) -> Result<[u32; 2], PictureEr
     Ok([w.map_err(|_| error())?, h.map_err(|_| error())?])
 }
 
-/// A coloured picture as PNG bytes, three bytes a pixel, row by row from the top; with `pixels_per_metre` it says how large it is on paper.
+/// [`rgb_png`] of a checked size.
 ///
 /// # Errors
 /// [`PictureError`].
@@ -44,70 +44,33 @@ pub(super) fn rgb(
     pixels: &[u8],
     pixels_per_metre: Option<u32>,
 ) -> Result<Vec<u8>, PictureError> {
-    let [w, h] = checked(size)?;
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, w, h);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_pixel_dims(pixels_per_metre.map(|n| png::PixelDimensions {
-        xppu: n,
-        yppu: n,
-        unit: png::Unit::Meter,
-    }));
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(pixels)?;
-    writer.finish()?;
-    Ok(bytes)
+    Ok(rgb_png(checked(size)?, pixels, pixels_per_metre)?)
 }
 
-/// A 16-bit grey picture as PNG bytes, `pixels` row by row from the top.
+/// [`grey16_png`] of a checked size.
 ///
 /// # Errors
 /// [`PictureError`].
 pub(super) fn grey16(size: [usize; 2], pixels: &[u16]) -> Result<Vec<u8>, PictureError> {
-    let [w, h] = checked(size)?;
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, w, h);
-    encoder.set_color(png::ColorType::Grayscale);
-    encoder.set_depth(png::BitDepth::Sixteen);
-    let mut writer = encoder.write_header()?;
-    let data: Vec<u8> = pixels.iter().flat_map(|p| p.to_be_bytes()).collect();
-    writer.write_image_data(&data)?;
-    writer.finish()?;
-    Ok(bytes)
+    Ok(grey16_png(checked(size)?, pixels)?)
 }
 
 /// Width, height and RGB pixels of a PNG.
 #[cfg(test)]
 pub(super) fn decoded(bytes: &[u8]) -> (usize, usize, Vec<u8>) {
-    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
-        .read_info()
-        .unwrap();
-    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-    let info = reader.next_frame(&mut pixels).unwrap();
+    use crate::image::{Channel, decode};
+    let image = decode("figure", bytes).unwrap();
     assert_eq!(
-        (info.color_type, info.bit_depth),
-        (png::ColorType::Rgb, png::BitDepth::Eight)
+        image.channels,
+        [Channel::Red, Channel::Green, Channel::Blue]
     );
-    (info.width as usize, info.height as usize, pixels)
+    let codes = image.values.iter().map(|v| (255.0 * v).round() as u8);
+    (image.width, image.height, codes.collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn what_is_written_is_what_is_decoded() {
-        let pixels: Vec<u8> = (0..18).collect();
-        let bytes = rgb([3, 2], &pixels, Some(11_811)).unwrap();
-        assert_eq!(decoded(&bytes), (3, 2, pixels));
-        let reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info();
-        let dots = reader.unwrap().info().pixel_dims.unwrap();
-        assert_eq!(
-            (dots.xppu, dots.yppu, dots.unit),
-            (11_811, 11_811, png::Unit::Meter)
-        );
-    }
 
     #[test]
     fn absurd_sizes_are_refused() {

@@ -77,14 +77,14 @@ def affine(x, y, z, origin):
 # ---- Surfaces -----------------------------------------------------------------------------------------------------------
 
 
-def bitmap(values, lookup="nearest", to_uv=None):
+def bitmap(values, lookup="nearest", to_uv=None, wrap="clamp"):
     """Texel [j][i] covers u in [i, i + 1] / nu, v in [j, j + 1] / nv: Mitsuba's row 0 lies at v = 0, as ours does."""
     texture = {
         "type": "bitmap",
         "bitmap": mi.Bitmap(np.ascontiguousarray(values, dtype=np.float32)[:, :, None]),
         "raw": True,
         "filter_type": lookup,
-        "wrap_mode": "clamp",
+        "wrap_mode": wrap,
     }
     if to_uv is not None:
         texture["to_uv"] = to_uv
@@ -111,12 +111,21 @@ def reflectance(s):
         u = 0.5 - 0.5 * np.cos(np.pi * (np.arange(4096) + 0.5) / 4096)
         if kind == "ramp":
             return bitmap((value[0] + (value[1] - value[0]) * u)[:, None].repeat(2, axis=1), "bilinear")
+        if kind == "bilinear":
+            wrap, texels = value[0], np.array(value[1])
+            x = u * texels.shape[1] - 0.5
+            left = np.floor(x).astype(int)
+            inside = (lambda i: i % texels.shape[1]) if wrap == "repeat" else (lambda i: np.clip(i, 0, texels.shape[1] - 1))
+            rows = texels[:, inside(left)] * (1 - (x - left)) + texels[:, inside(left + 1)] * (x - left)
+            return bitmap(rows.T, "bilinear", wrap=wrap)
         cells = np.array(value)
         return bitmap(cells[:, np.minimum((u * cells.shape[1]).astype(int), cells.shape[1] - 1)].T)
     if kind == "ramp":
         # Two texels with centres at 1/4 and 3/4: u in [0, 1] is mapped to what lies between them.
         between = mi.ScalarTransform4f().translate([0.25, 0, 0]).scale([0.5, 1, 1])
         return bitmap([value, value], "bilinear", between)
+    if kind == "bilinear":
+        return bitmap(value[1], "bilinear", wrap=value[0])
     return bitmap(value)
 
 

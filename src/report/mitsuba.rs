@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 
 use crate::geometry::{Basis, DVec3, Facing, Ray, Shape, ShapeId};
 use crate::num::warp;
-use crate::scene::{Cells, Laser, Profile, Scene, Spot, Surface, Texture};
+use crate::scene::{Cells, Laser, Profile, Scene, Spot, Surface, Texture, Wrap};
 
 const PROGRAM: &str = include_str!("mitsuba.py");
 /// Where the scene stands in the program.
@@ -116,18 +116,28 @@ fn albedo(texture: &Texture) -> String {
     match texture {
         Texture::Constant(rho) => format!("(\"constant\", {rho:?})"),
         Texture::Ramp([a, b]) => format!("(\"ramp\", ({a:?}, {b:?}))"),
-        Texture::Cells(cells) => match checks(cells) {
+        Texture::Bilinear(texels) => {
+            let wrap = match texels.wrap {
+                Wrap::Clamp => "clamp",
+                Wrap::Repeat => "repeat",
+            };
+            let rows = rows(&texels.albedo, texels.count[0]);
+            format!("(\"bilinear\", ({wrap:?}, {rows}))")
+        }
+        Texture::Cells(cells) | Texture::Tiles(cells) => match checks(cells) {
             Some([dark, light]) => {
                 let [nu, nv] = cells.count;
                 format!("(\"checkerboard\", ({nu}, {nv}, {dark:?}, {light:?}))")
             }
-            None => {
-                let rows = cells.albedo.chunks(cells.count[0]);
-                let rows: Vec<String> = rows.map(|row| format!("{row:?}")).collect();
-                format!("(\"cells\", [{}])", rows.join(", "))
-            }
+            None => format!("(\"cells\", {})", rows(&cells.albedo, cells.count[0])),
         },
     }
+}
+
+/// Values as a list of rows.
+fn rows(values: &[f64], width: usize) -> String {
+    let rows: Vec<String> = values.chunks(width).map(|row| format!("{row:?}")).collect();
+    format!("[{}]", rows.join(", "))
 }
 
 /// The dark and the light albedo if the cells alternate.

@@ -35,6 +35,7 @@ mod sample;
 mod summary;
 mod svg;
 mod table;
+mod target;
 mod tolerance;
 mod verdict;
 
@@ -58,4 +59,5 @@ pub use reproduce::{
 };
 pub use summary::summary_json;
 pub use table::{recovery_table, summary_table, verdict_table};
+pub use target::target_png;
 pub use tolerance::{tolerance_csv, tolerance_svg, tolerance_table};

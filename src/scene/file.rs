@@ -2,10 +2,10 @@
 //!
 //! Unknown keys are errors. The doc comment of each field is the documentation of its key.
 
-use serde::de::{self, MapAccess, Visitor, value::MapAccessDeserializer};
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 
 use super::sensor::SensorSettings;
+use super::texture::AlbedoTable;
 
 /// Three coordinates, in the scene's unit.
 pub(super) type Triple = [f64; 3];
@@ -213,55 +213,4 @@ pub(super) enum FaceName {
 pub(super) struct MaterialTable {
     /// Albedo in [0, 1]: a number, or a table that says how it varies over the surface.
     pub lambertian: AlbedoTable,
-}
-
-/// `0.8`, or one of the procedural textures.
-#[derive(Clone, Debug, Serialize)]
-#[serde(untagged)]
-pub(super) enum AlbedoTable {
-    Constant(f64),
-    Varied(Box<VariedTable>),
-}
-
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct VariedTable {
-    /// Checks along u and v; cell (0, 0), at the corner, is dark.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub checkerboard: Option<[u32; 2]>,
-    /// Albedo of the dark checks.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub dark: Option<f64>,
-    /// Albedo of the light checks.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub light: Option<f64>,
-    /// Albedo cell by cell: rows along v, from the corner; each row along u.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub cells: Option<Vec<Vec<f64>>>,
-    /// Albedo that changes linearly along u, from the corner on: [start, end].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub ramp: Option<[f64; 2]>,
-}
-
-impl<'de> Deserialize<'de> for AlbedoTable {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Albedo;
-        impl<'de> Visitor<'de> for Albedo {
-            type Value = AlbedoTable;
-            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-                f.write_str("an albedo: a number in [0, 1], or a table with `checkerboard`, `cells` or `ramp`")
-            }
-            fn visit_f64<E: de::Error>(self, x: f64) -> Result<AlbedoTable, E> {
-                Ok(AlbedoTable::Constant(x))
-            }
-            fn visit_i64<E: de::Error>(self, x: i64) -> Result<AlbedoTable, E> {
-                Ok(AlbedoTable::Constant(x as f64))
-            }
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<AlbedoTable, A::Error> {
-                let table = VariedTable::deserialize(MapAccessDeserializer::new(map))?;
-                Ok(AlbedoTable::Varied(Box::new(table)))
-            }
-        }
-        deserializer.deserialize_any(Albedo)
-    }
 }

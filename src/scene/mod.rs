@@ -65,7 +65,24 @@
 //! | `glare` | `{ fraction, spread }`: the part of the spot's light entering the lens that is scattered over the image, `"uniform"` or `{ falloff = d0 }` ∝ 1/(1 + (d/d0)²) at the distance d from the spot on the view's plane |
 //!
 //! Albedo tables: `{ checkerboard = [nu, nv], dark = …, light = … }` with cell (0, 0), at the corner, dark;
-//! `{ cells = [[…], …] }` with rows along v, each along u; `{ ramp = [start, end] }` along u.
+//! `{ cells = [[…], …] }` with rows along v, each along u; `{ ramp = [start, end] }` along u; `{ image = "FILE", … }` and
+//! `{ target = "NAME", … }`, pictures. A picture's lower left corner is at (u, v) = (0, 0), so it stands upright where u runs to the
+//! right and v upwards. Its linear value x becomes the albedo `dark` + (`light` − `dark`)·x; values outside \[0, 1\] are refused.
+//!
+//! | picture | meaning |
+//! | --- | --- |
+//! | `image` | PNG, JPEG or OpenEXR file below the scene's folder, 4096 pixels a side at most; opaque |
+//! | `target` | built-in picture of [`target`]: `card`, `letters`, `siemens`, `edge`, `usaf`, `ramp` |
+//! | `size` | `[columns, rows]` of the target; its own by default |
+//! | `transfer` | `"srgb"` or `"linear"`: what the stored values of a PNG or JPEG mean; must be given, for the file does not say. OpenEXR is linear |
+//! | `channel` | `"red"`, `"green"`, `"blue"`; `"luminance"`: 0.2126·R + 0.7152·G + 0.0722·B (ITU-R BT.709), linear; `"wavelength"`: of the laser, below; `"grey"` for the only one of a grey picture, the default there |
+//! | `filter` | `"nearest"` (default): every pixel is a cell of one albedo; `"bilinear"` between the centres of pixels, level beyond the outermost |
+//! | `wrap` | what lies outside \[0, 1\]: `"clamp"` (default), the nearest border, or `"repeat"`, the picture again |
+//! | `dark`, `light` | albedo for 0 and 1; default 0 and 1 |
+//!
+//! `channel = "wavelength"` interpolates between red, green and blue linearly in the laser's wavelength, from 464.2 nm (blue alone) over 549.1 nm (green alone) to
+//! 611.4 nm (red alone) and level beyond: the dominant wavelengths of the sRGB primaries seen from its white D65, where the lines from white through
+//! the primaries meet the spectral locus of CIE 1931. It is a rule, not a measurement: three numbers do not say how much a pigment reflects at one wavelength.
 //!
 //! Layouts, in the order in which they list their spots:
 //!
@@ -96,6 +113,7 @@ mod quantity;
 mod sensor;
 pub mod spots;
 mod surface;
+pub mod target;
 mod texture;
 mod variants;
 mod warning;
@@ -110,7 +128,7 @@ pub use laser::{Laser, Profile, Spot};
 pub use quantity::Quantity;
 pub use sensor::{Glare, MOST_BRACKETS, SensorModel, SensorSettings, Spread};
 pub use surface::{Role, Surface};
-pub use texture::{Cells, Texture};
+pub use texture::{Bilinear, Cells, Texture, Wrap};
 pub use warning::Warning;
 
 use crate::geometry::{Bvh, Shape};
@@ -217,7 +235,7 @@ impl Scene {
                 format!("use 1 to {MOST_BOUNCES}; 3 is laser – wall – object – wall – camera"),
             ));
         }
-        let surfaces = surface::from_tables(&file.surface)?;
+        let surfaces = surface::from_tables(&file.surface, file.laser.wavelength)?;
         let shapes: Vec<Shape> = surfaces.iter().map(|s| s.shape.clone()).collect();
         let bvh = Bvh::new(shapes)
             .map_err(|e| Fault::new(keys!["surface"], e.to_string(), "check the coordinates"))?;

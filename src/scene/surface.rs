@@ -35,10 +35,11 @@ pub struct Surface {
 }
 
 /// Checks all surfaces.
-pub(super) fn from_tables(tables: &[SurfaceTable]) -> Result<Vec<Surface>, Fault> {
+pub(super) fn from_tables(tables: &[SurfaceTable], wavelength: f64) -> Result<Vec<Surface>, Fault> {
     let mut surfaces: Vec<Surface> = Vec::with_capacity(tables.len());
     for (i, table) in tables.iter().enumerate() {
-        let surface = Surface::from_table(table).map_err(|f| f.within(keys!["surface", i]))?;
+        let surface =
+            Surface::from_table(table, wavelength).map_err(|f| f.within(keys!["surface", i]))?;
         if surfaces.iter().any(|s| s.name == surface.name) {
             let cause = format!("two surfaces are called `{}`", surface.name);
             return Err(Fault::new(
@@ -91,7 +92,7 @@ impl Surface {
         points.find(|p| (device - p.position).dot(p.normal) > 0.0)
     }
 
-    fn from_table(table: &SurfaceTable) -> Result<Self, Fault> {
+    fn from_table(table: &SurfaceTable, wavelength: f64) -> Result<Self, Fault> {
         if table.name.trim().is_empty() {
             return Err(Fault::new(
                 keys!["name"],
@@ -105,7 +106,8 @@ impl Surface {
             RoleName::Occluder => Role::Occluder,
         };
         let shape = shape(table)?;
-        let albedo = Texture::from_table(&table.material.lambertian)
+        let mut no_files = |_: &str| Err("this scene has no folder to look in".to_owned());
+        let albedo = Texture::from_table(&table.material.lambertian, wavelength, &mut no_files)
             .map_err(|f| f.within(keys!["material", "lambertian"]))?;
         let elements = match (role, table.elements) {
             (Role::Hidden, Some([nu, nv])) => {

@@ -17,5 +17,6 @@ mod small_scene;
 mod stacking;
 mod studies;
 mod sweeps;
+mod targets;
 mod verdict;
 mod workspace;

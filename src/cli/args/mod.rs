@@ -6,6 +6,7 @@ mod recover;
 mod reproduce;
 mod study;
 mod sweep;
+mod target;
 mod value;
 
 use std::ops::Range;
@@ -23,6 +24,7 @@ pub(in crate::cli) use study::{
     BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs,
 };
 pub(in crate::cli) use sweep::{AxisName, IndicatorArgs, NoiseArgs};
+pub(in crate::cli) use target::TargetArgs;
 
 /// phicam: a physically based renderer for indirect photography, and the laboratory around it.
 #[derive(Debug, Parser)]
@@ -56,6 +58,8 @@ pub(in crate::cli) enum Command {
     Expose(ExposeArgs),
     /// List, check, draw or export scenes
     Scene(SceneArgs),
+    /// Write a target picture, or list them: card, letters, star, edge, bars, ramp
+    Target(TargetArgs),
     /// Experiments around a scene
     Study(StudyArgs),
     /// The published tables and figures, computed again

@@ -23,6 +23,15 @@ pub(super) fn elements(text: &str) -> Result<[usize; 2], String> {
     parts.ok_or_else(|| "write it as 8 or 8x6, 1 to 1024 a side".to_owned())
 }
 
+/// "W,H", both from 1 to 4096.
+pub(super) fn size(text: &str) -> Result<[usize; 2], String> {
+    let side = |s: &str| s.trim().parse().ok().filter(|n| (1..=4096).contains(n));
+    let parts = text
+        .split_once(',')
+        .and_then(|(w, h)| Some([side(w)?, side(h)?]));
+    parts.ok_or_else(|| "write it as W,H, e.g. 47,31, 1 to 4096 a side".to_owned())
+}
+
 /// "DX,DY", finite.
 pub(super) fn shift(text: &str) -> Result<[f64; 2], String> {
     let number = |s: &str| s.trim().parse().ok().filter(|x: &f64| x.is_finite());
@@ -57,6 +66,10 @@ mod tests {
         }
         for bad in ["0", "8x0", "2000", "x", ""] {
             assert!(elements(bad).is_err(), "{bad}");
+        }
+        assert_eq!(size("47, 31"), Ok([47, 31]));
+        for bad in ["0,5", "5", "5000,1", "-1,2", ""] {
+            assert!(size(bad).is_err(), "{bad}");
         }
         for bad in ["1", "nan,0", "1,inf", ""] {
             assert!(shift(bad).is_err(), "{bad}");

@@ -1,15 +1,15 @@
-//! A frame as an OpenEXR file: the only door of the crate `exr`.
+//! A frame as an OpenEXR file. Pictures for textures, which come from other programs, are read by `image/exr`; these two
+//! are the doors of the crate `exr`: a frame's reader is strict in every attribute, a picture's knows none.
 //!
 //! One part, scan lines, every channel f32 (FLOAT), ZIP compression in blocks of 16 lines: lossless, and its checksum
 //! notices damaged pixels. What the frame knows of its origin stands in the header, see the table in `attributes.rs`.
 //! The same frame always gives the same bytes.
 //!
 //! A file is believed nothing: before memory is taken for pixels, their size is held against the length of the file
-//! (deflate shrinks at most by a factor of 1032, its longest match of 258 bytes for two bits) and against
+//! (deflate shrinks at most by [`DEFLATE_RATIO_MAX`]) and against
 //! [`PIXEL_BYTES_MAX`], and every block of lines has been found where it should be.
 
 mod attributes;
-mod envelope;
 
 use std::fs::File;
 use std::io::{self, Cursor, Read};
@@ -24,12 +24,12 @@ use exr::prelude::{
 };
 
 use super::{Channel, Frame};
+use crate::image::DEFLATE_RATIO_MAX;
+use crate::image::exr::envelope;
 use crate::store::{self, StoreError};
 
 /// Most bytes that the pixels of a frame may take, all channels together: 1 GiB, sixteen channels of 4096 × 4096.
 pub const PIXEL_BYTES_MAX: usize = 1 << 30;
-/// Deflate's best: no file of n bytes holds more than 1032·n bytes.
-const DEFLATE_RATIO_MAX: usize = 1032;
 /// Longest channel name that every OpenEXR reader accepts, bytes.
 const NAME_MAX: usize = 31;
 
@@ -130,7 +130,8 @@ pub fn read(path: &Path) -> Result<Frame, FrameError> {
     let meta = attributes::recall(&header.own_attributes).map_err(foreign)?;
     let Vec2(columns, rows) = header.layer_size;
     let lines = header.compression.scan_lines_per_block();
-    envelope::check_blocks(&bytes, table, rows, lines).map_err(|fault| damaged(fault.into()))?;
+    envelope::check_blocks(&bytes, table, [rows, lines], 0)
+        .map_err(|fault| damaged(fault.into()))?;
     let channels = decode(&bytes).map_err(damaged)?;
     Ok(Frame {
         columns,

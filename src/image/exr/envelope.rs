@@ -20,7 +20,7 @@ struct Attribute<'a> {
 }
 
 /// What is wrong with the bytes of a file, as the end of a sentence that begins with the file.
-pub(super) type Fault = &'static str;
+pub(crate) type Fault = &'static str;
 
 /// The attributes of `file` in their order, and the position after the NUL that ends them.
 fn attributes(file: &[u8]) -> Result<(Vec<Attribute<'_>>, usize), Fault> {
@@ -57,7 +57,7 @@ fn attributes(file: &[u8]) -> Result<(Vec<Attribute<'_>>, usize), Fault> {
 
 /// Checks that the attribute list lies within the file and names nothing twice; returns the position after it, where the
 /// table of blocks begins.
-pub(super) fn check_list(file: &[u8]) -> Result<usize, Fault> {
+pub(crate) fn check_list(file: &[u8]) -> Result<usize, Fault> {
     let (list, end) = attributes(file)?;
     let mut names: Vec<&[u8]> = list.iter().map(|a| a.name).collect();
     names.sort_unstable();
@@ -68,7 +68,7 @@ pub(super) fn check_list(file: &[u8]) -> Result<usize, Fault> {
 }
 
 /// Puts the attributes of a file in order of name. Nothing after them moves.
-pub(super) fn sort_attributes(file: &mut [u8]) -> Result<(), Fault> {
+pub(crate) fn sort_attributes(file: &mut [u8]) -> Result<(), Fault> {
     let (mut list, end) = attributes(file)?;
     list.sort_by_key(|a| a.name);
     let sorted: Vec<u8> = list.iter().flat_map(|a| a.bytes).copied().collect();
@@ -77,12 +77,12 @@ pub(super) fn sort_attributes(file: &mut [u8]) -> Result<(), Fault> {
 }
 
 /// Checks that the table at `table` leads to one block for each `lines` of the `rows` lines, each with the y it should
-/// have and wholly within the file.
-pub(super) fn check_blocks(
+/// have, counted from `first`, and wholly within the file.
+pub(crate) fn check_blocks(
     file: &[u8],
     table: usize,
-    rows: usize,
-    lines: usize,
+    [rows, lines]: [usize; 2],
+    first: i32,
 ) -> Result<(), Fault> {
     const CUT: Fault = "it ends before its last line";
     let word = |at: usize| {
@@ -98,7 +98,7 @@ pub(super) fn check_blocks(
         let at = usize::try_from(u64::from_le_bytes(offset)).map_err(|_| CUT)?;
         let y = word(at).ok_or(CUT)?;
         let size = at.checked_add(4).and_then(word).ok_or(CUT)?;
-        if usize::try_from(y) != Ok(block * lines) {
+        if i64::from(y) != i64::from(first) + (block * lines) as i64 {
             return Err("its lines are out of order");
         }
         let end = usize::try_from(size)

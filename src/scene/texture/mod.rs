@@ -1,7 +1,17 @@
 //! Albedo over a surface.
 
+mod bilinear;
+mod file;
+mod picture;
+
 use super::error::{Fault, keys};
-use super::file::{AlbedoTable, VariedTable};
+
+pub use bilinear::{Bilinear, Wrap};
+pub(super) use file::AlbedoTable;
+use file::VariedTable;
+
+/// Reads a file that a scene names, by its path below the scene's folder; the error says why not, without a full stop.
+pub(super) type Files<'a> = dyn FnMut(&str) -> Result<Vec<u8>, String> + 'a;
 
 /// More cells along a side than this are taken for a mistake.
 const MOST_CELLS: u32 = 4096;
@@ -15,6 +25,10 @@ pub enum Texture {
     Cells(Cells),
     /// Linear in u: from the first to the second value.
     Ramp([f64; 2]),
+    /// Cells that are repeated outside \[0, 1\].
+    Tiles(Cells),
+    /// Interpolated between the centres of texels.
+    Bilinear(Bilinear),
 }
 
 /// Cell-wise constant albedo.
@@ -27,16 +41,14 @@ pub struct Cells {
 }
 
 impl Texture {
-    /// Albedo at (u, v). On an edge between cells the higher cell counts; u, v are held to [0, 1].
+    /// Albedo at (u, v). On an edge between cells the higher cell counts; u, v are held to [0, 1] unless the texture repeats.
     pub fn albedo(&self, [u, v]: [f64; 2]) -> f64 {
         match self {
             Self::Constant(rho) => *rho,
-            Self::Cells(cells) => {
-                let [nu, nv] = cells.count;
-                let index = |x: f64, n: usize| ((x * n as f64) as usize).min(n - 1);
-                cells.albedo[index(u, nu) + index(v, nv) * nu]
-            }
+            Self::Cells(cells) => cells.at([u, v]),
             Self::Ramp([a, b]) => a + (b - a) * u.clamp(0.0, 1.0),
+            Self::Tiles(cells) => cells.at([u - u.floor(), v - v.floor()]),
+            Self::Bilinear(texels) => texels.at([u, v]),
         }
     }
 
@@ -44,7 +56,8 @@ impl Texture {
     pub fn smooth_cells(&self) -> [usize; 2] {
         match self {
             Self::Constant(_) | Self::Ramp(_) => [1, 1],
-            Self::Cells(cells) => cells.count,
+            Self::Cells(cells) | Self::Tiles(cells) => cells.count,
+            Self::Bilinear(texels) => texels.smooth_cells(),
         }
     }
 
@@ -52,8 +65,9 @@ impl Texture {
     pub fn cell_mean(&self, cell: usize) -> f64 {
         match self {
             Self::Constant(rho) => *rho,
-            Self::Cells(cells) => cells.albedo[cell],
+            Self::Cells(cells) | Self::Tiles(cells) => cells.albedo[cell],
             Self::Ramp([a, b]) => 0.5 * (a + b),
+            Self::Bilinear(texels) => texels.cell_mean(cell),
         }
     }
 
@@ -61,38 +75,92 @@ impl Texture {
     pub fn largest(&self) -> f64 {
         match self {
             Self::Constant(rho) => *rho,
-            Self::Cells(cells) => cells.albedo.iter().copied().fold(0.0, f64::max),
+            Self::Cells(cells) | Self::Tiles(cells) => {
+                cells.albedo.iter().copied().fold(0.0, f64::max)
+            }
+            Self::Bilinear(texels) => texels.albedo.iter().copied().fold(0.0, f64::max),
             Self::Ramp([a, b]) => a.max(*b),
         }
     }
 
-    pub(super) fn from_table(table: &AlbedoTable) -> Result<Self, Fault> {
+    /// Checks a table; `wavelength` (m) is the laser's, for pictures whose channels it weights, and `files` reads pictures.
+    pub(super) fn from_table(
+        table: &AlbedoTable,
+        wavelength: f64,
+        files: &mut Files,
+    ) -> Result<Self, Fault> {
         match table {
             AlbedoTable::Constant(rho) => albedo(*rho).map(Self::Constant),
-            AlbedoTable::Varied(varied) => Self::varied(varied),
+            AlbedoTable::Varied(varied) => Self::varied(varied, wavelength, files),
         }
     }
 
-    fn varied(table: &VariedTable) -> Result<Self, Fault> {
+    fn varied(table: &VariedTable, wavelength: f64, files: &mut Files) -> Result<Self, Fault> {
+        let is_picture = table.image.is_some() || table.target.is_some();
         let kinds = [
             table.checkerboard.is_some(),
             table.cells.is_some(),
             table.ramp.is_some(),
+            table.image.is_some(),
+            table.target.is_some(),
         ];
         if kinds.iter().filter(|k| **k).count() != 1 {
             return Err(Fault::new(
                 keys![],
-                "an albedo table needs exactly one of `checkerboard`, `cells` and `ramp`",
+                "an albedo table needs exactly one of `checkerboard`, `cells`, `ramp`, `image` and `target`",
                 "keep one of them, or write a plain number",
             ));
         }
-        if table.checkerboard.is_none() {
-            for (key, given) in [("dark", table.dark), ("light", table.light)] {
-                if given.is_some() {
-                    let cause = format!("`{key}` belongs to `checkerboard`");
-                    return Err(Fault::new(keys![key], cause, format!("remove `{key}`")));
-                }
-            }
+        let levels = table.checkerboard.is_some() || is_picture;
+        refuse_foreign_keys(&[
+            (
+                "dark",
+                table.dark.is_some(),
+                levels,
+                "`checkerboard`, `image` or `target`",
+            ),
+            (
+                "light",
+                table.light.is_some(),
+                levels,
+                "`checkerboard`, `image` or `target`",
+            ),
+            (
+                "size",
+                table.size.is_some(),
+                table.target.is_some(),
+                "`target`",
+            ),
+            (
+                "transfer",
+                table.transfer.is_some(),
+                table.image.is_some(),
+                "`image`",
+            ),
+            (
+                "channel",
+                table.channel.is_some(),
+                table.image.is_some(),
+                "`image`",
+            ),
+            (
+                "filter",
+                table.filter.is_some(),
+                is_picture,
+                "`image` or `target`",
+            ),
+            (
+                "wrap",
+                table.wrap.is_some(),
+                is_picture,
+                "`image` or `target`",
+            ),
+        ])?;
+        if let Some(name) = &table.image {
+            return picture::from_image(name, table, wavelength, files);
+        }
+        if let Some(name) = &table.target {
+            return picture::from_target(name, table);
         }
         if let Some([a, b]) = table.ramp {
             let at = |f: Fault| f.within(keys!["ramp"]);
@@ -134,6 +202,28 @@ impl Texture {
     }
 }
 
+impl Cells {
+    fn at(&self, [u, v]: [f64; 2]) -> f64 {
+        let [nu, nv] = self.count;
+        let index = |x: f64, n: usize| ((x * n as f64) as usize).min(n - 1);
+        self.albedo[index(u, nu) + index(v, nv) * nu]
+    }
+}
+
+/// Refuses keys (name, given, allowed, whose they are) that the table's kind does not take.
+fn refuse_foreign_keys(keys: &[(&'static str, bool, bool, &str)]) -> Result<(), Fault> {
+    match keys
+        .iter()
+        .find(|(_, given, allowed, _)| *given && !allowed)
+    {
+        None => Ok(()),
+        Some((key, _, _, owner)) => {
+            let cause = format!("`{key}` belongs to {owner}");
+            Err(Fault::new(keys![*key], cause, format!("remove `{key}`")))
+        }
+    }
+}
+
 fn cells(rows: &[Vec<f64>]) -> Result<Texture, Fault> {
     let width = rows.first().map_or(0, Vec::len);
     let most = MOST_CELLS as usize;
@@ -167,58 +257,4 @@ fn albedo(rho: f64) -> Result<f64, Fault> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn texture(text: &str) -> Result<Texture, Fault> {
-        #[derive(serde::Deserialize)]
-        struct Holder {
-            a: AlbedoTable,
-        }
-        Texture::from_table(&toml::from_str::<Holder>(&format!("a = {text}")).unwrap().a)
-    }
-
-    #[test]
-    fn the_first_check_is_dark() {
-        let board = texture("{ checkerboard = [2, 4], dark = 0.1, light = 0.9 }").unwrap();
-        assert_eq!(board.albedo([0.1, 0.1]), 0.1);
-        assert_eq!(board.albedo([0.6, 0.1]), 0.9);
-        assert_eq!(board.albedo([0.1, 0.3]), 0.9);
-        assert_eq!(board.albedo([0.6, 0.3]), 0.1);
-        assert_eq!(board.albedo([1.0, 1.0]), board.albedo([0.99, 0.99]));
-    }
-
-    #[test]
-    fn cells_run_along_u_and_ramps_are_linear() {
-        let cells = texture("{ cells = [[0, 0.5, 1], [0.1, 0.2, 0.3]] }").unwrap();
-        assert_eq!(cells.albedo([0.5, 0.25]), 0.5);
-        assert_eq!(cells.albedo([0.9, 0.75]), 0.3);
-        assert!(
-            (texture("{ ramp = [0.2, 0.6] }")
-                .unwrap()
-                .albedo([0.25, 0.9])
-                - 0.3)
-                .abs()
-                < 1e-15
-        );
-    }
-
-    #[test]
-    fn impossible_albedos_are_refused() {
-        for text in [
-            "1.2",
-            "-0.1",
-            "nan",
-            "{ checkerboard = [2, 2], dark = 0, light = 2 }",
-            "{ checkerboard = [0, 2], dark = 0, light = 1 }",
-            "{ checkerboard = [2, 2], dark = 0 }",
-            "{ cells = [[1], [1, 0]] }",
-            "{ cells = [] }",
-            "{ ramp = [0, 1.5] }",
-            "{ dark = 0.5 }",
-            "{ ramp = [0, 1], light = 1 }",
-        ] {
-            assert!(texture(text).is_err(), "{text}");
-        }
-    }
-}
+mod tests;

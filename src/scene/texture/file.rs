@@ -1,0 +1,110 @@
+//! The albedo of a surface as a scene file writes it.
+
+use serde::de::{self, MapAccess, Visitor, value::MapAccessDeserializer};
+use serde::{Deserialize, Deserializer, Serialize};
+
+/// `0.8`, or a table that says how the albedo varies.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+pub(in crate::scene) enum AlbedoTable {
+    Constant(f64),
+    Varied(Box<VariedTable>),
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct VariedTable {
+    /// Checks along u and v; cell (0, 0), at the corner, is dark.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub checkerboard: Option<[u32; 2]>,
+    /// Albedo of the dark checks, or of a picture's value 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dark: Option<f64>,
+    /// Albedo of the light checks, or of a picture's value 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light: Option<f64>,
+    /// Albedo cell by cell: rows along v, from the corner; each row along u.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cells: Option<Vec<Vec<f64>>>,
+    /// Albedo that changes linearly along u, from the corner on: [start, end].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ramp: Option<[f64; 2]>,
+    /// A picture below the scene's folder: PNG, JPEG or OpenEXR. Its lower left corner is at the surface's corner.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub image: Option<String>,
+    /// A picture that is built in: card, letters, siemens, edge, usaf or ramp.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub target: Option<String>,
+    /// Columns and rows of the target; its own unless given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub size: Option<[u32; 2]>,
+    /// What the image's stored values mean: srgb or linear.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub transfer: Option<TransferName>,
+    /// Which value of the image's pixels counts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub channel: Option<ChannelName>,
+    /// Between the centres of pixels: nearest (default) or bilinear.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub filter: Option<FilterName>,
+    /// Outside \[0, 1\]: clamp (default) or repeat.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wrap: Option<WrapName>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(in crate::scene) enum TransferName {
+    Srgb,
+    Linear,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(in crate::scene) enum ChannelName {
+    Grey,
+    Red,
+    Green,
+    Blue,
+    Luminance,
+    Wavelength,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(in crate::scene) enum FilterName {
+    #[default]
+    Nearest,
+    Bilinear,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(in crate::scene) enum WrapName {
+    #[default]
+    Clamp,
+    Repeat,
+}
+
+impl<'de> Deserialize<'de> for AlbedoTable {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Albedo;
+        impl<'de> Visitor<'de> for Albedo {
+            type Value = AlbedoTable;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("an albedo: a number in [0, 1], or a table with `checkerboard`, `cells`, `ramp`, `image` or `target`")
+            }
+            fn visit_f64<E: de::Error>(self, x: f64) -> Result<AlbedoTable, E> {
+                Ok(AlbedoTable::Constant(x))
+            }
+            fn visit_i64<E: de::Error>(self, x: i64) -> Result<AlbedoTable, E> {
+                Ok(AlbedoTable::Constant(x as f64))
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<AlbedoTable, A::Error> {
+                let table = VariedTable::deserialize(MapAccessDeserializer::new(map))?;
+                Ok(AlbedoTable::Varied(Box::new(table)))
+            }
+        }
+        deserializer.deserialize_any(Albedo)
+    }
+}
