@@ -5,6 +5,7 @@
 use serde::de::{self, MapAccess, Visitor, value::MapAccessDeserializer};
 use serde::{Deserialize, Deserializer, Serialize};
 
+use super::material::MaterialTable;
 use super::sensor::SensorSettings;
 
 /// Three coordinates, in the scene's unit.
@@ -206,13 +207,6 @@ pub(super) struct SphereTable {
 pub(super) enum FaceName {
     Outside,
     Inside,
-}
-
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct MaterialTable {
-    /// Albedo in [0, 1]: a number, or a table that says how it varies over the surface.
-    pub lambertian: AlbedoTable,
 }
 
 /// `0.8`, or one of the procedural textures.
