@@ -134,8 +134,7 @@ impl Measured {
             "the table reflects {:.4} of the light that arrives at {degrees}° from the normal: more than it receives",
             reflected * largest
         );
-        // Rounded down.
-        let scale = (1000.0 / reflected).floor() / 1000.0;
+        let scale = (1000.0 * (1.0 + 0.5 * ALLOWANCE) / reflected).floor() / 1000.0;
         let cure = format!(
             "write `scale = {scale}` or less, or check that its values are in sr⁻¹ and without cosine"
         );

@@ -126,7 +126,7 @@ impl Material {
         }
     }
 
-    /// Directional–hemispherical reflectance ∫ f_r cosθ_o dω_o of light from `incident`, by quadrature.
+    /// Directional–hemispherical reflectance ∫ f_r cosθ_o dω_o of light from `incident`, by quadrature where it has no closed form.
     pub fn directional_albedo(&self, albedo: f64, incident: DVec3) -> f64 {
         self.reflected(albedo, incident, &Rule::gauss_legendre(NODES))
     }
@@ -136,6 +136,7 @@ impl Material {
     pub fn white_sky_albedo(&self, albedo: f64) -> f64 {
         match self {
             Self::Lambertian => albedo,
+            Self::OrenNayar(m) => m.white_sky_albedo(albedo),
             Self::Mixture(parts) => {
                 let part = |p: &Part| p.weight * p.material.white_sky_albedo(p.albedo);
                 albedo * parts.iter().map(part).sum::<f64>()
@@ -159,6 +160,7 @@ impl Material {
         }
         match self {
             Self::Lambertian => albedo,
+            Self::OrenNayar(m) => m.directional_albedo(albedo, incident.z),
             Self::Mixture(parts) => {
                 let part = |p: &Part| p.weight * p.material.reflected(p.albedo, incident, rule);
                 albedo * parts.iter().map(part).sum::<f64>()

@@ -50,10 +50,26 @@ impl OrenNayar {
         };
         let single = albedo * a * (1.0 + r * ratio);
         // 1 − E = A r (c₁ − G/π) and 1 − Ē = A r (c₁ − c₂), without cancellation.
-        let mean = a * (1.0 + C2 * r);
-        let multiple = albedo * albedo * mean / (1.0 - albedo * (1.0 - mean));
         let lost = a * r * missing(incident.z) * missing(exitant.z) / (C1 - C2);
-        FRAC_1_PI * (single + multiple * lost)
+        FRAC_1_PI * (single + self.multiple(albedo) * lost)
+    }
+
+    /// ρ_m.
+    fn multiple(&self, albedo: f64) -> f64 {
+        let mean = self.a * (1.0 + C2 * self.r);
+        albedo * albedo * mean / (1.0 - albedo * (1.0 - mean))
+    }
+
+    /// ρ E(μ) + ρ_m (1 − E(μ)).
+    pub(super) fn directional_albedo(&self, albedo: f64, mu: f64) -> f64 {
+        let once = 1.0 - self.a * self.r * missing(mu);
+        albedo * once + self.multiple(albedo) * (1.0 - once)
+    }
+
+    /// ρ Ē + ρ_m (1 − Ē).
+    pub(super) fn white_sky_albedo(&self, albedo: f64) -> f64 {
+        let mean = self.a * (1.0 + C2 * self.r);
+        albedo * mean + self.multiple(albedo) * (1.0 - mean)
     }
 }
 
