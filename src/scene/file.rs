@@ -4,8 +4,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::material::MaterialTable;
 use super::sensor::SensorSettings;
-use super::texture::AlbedoTable;
 
 /// Three coordinates, in the scene's unit.
 pub(super) type Triple = [f64; 3];
@@ -206,11 +206,4 @@ pub(super) struct SphereTable {
 pub(super) enum FaceName {
     Outside,
     Inside,
-}
-
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct MaterialTable {
-    /// Albedo in [0, 1]: a number, or a table that says how it varies over the surface.
-    pub lambertian: AlbedoTable,
 }

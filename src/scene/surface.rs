@@ -2,6 +2,7 @@
 
 use super::error::{Fault, keys};
 use super::file::{FaceName, RoleName, SurfaceTable};
+use super::material::Material;
 use super::texture::Texture;
 use crate::geometry::{DVec3, Facing, Parallelogram, Shape, Sphere, SurfacePoint};
 
@@ -106,9 +107,13 @@ impl Surface {
             RoleName::Occluder => Role::Occluder,
         };
         let shape = shape(table)?;
-        let mut no_files = |_: &str| Err("this scene has no folder to look in".to_owned());
-        let albedo = Texture::from_table(&table.material.lambertian, wavelength, &mut no_files)
-            .map_err(|f| f.within(keys!["material", "lambertian"]))?;
+        let mut no_files = |path: &str| Err(format!("{path}: this scene has no folder to look in"));
+        let (material, albedo) = Material::from_table(&table.material, wavelength, &mut no_files)
+            .map_err(|f| f.within(keys!["material"]))?;
+        if !material.is_lambertian() {
+            let cause = "this material is not traced yet";
+            return Err(Fault::new(keys!["material"], cause, "use `lambertian`"));
+        }
         let elements = match (role, table.elements) {
             (Role::Hidden, Some([nu, nv])) => {
                 if !(1..=MOST_ELEMENTS).contains(&nu) || !(1..=MOST_ELEMENTS).contains(&nv) {

@@ -26,6 +26,14 @@ mod form;
 mod hidden;
 mod lamp;
 mod lit;
+#[cfg_attr(
+    not(test),
+    allow(
+        dead_code,
+        reason = "called once paths ask surfaces for their material"
+    )
+)]
+mod lobe;
 mod moments;
 mod own;
 mod packet;

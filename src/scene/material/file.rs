@@ -1,0 +1,309 @@
+//! Materials as written in a scene file, and what they mean.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::merl::Channel;
+use super::{Coated, Conductor, Material, Measured, OrenNayar, Part};
+use crate::scene::error::{Fault, keys};
+use crate::scene::texture::{AlbedoTable, Texture};
+
+/// The keys of every material; which of them a material takes is checked. Keys that are absent are not serialised, so that the hash of a scene does not
+/// depend on materials it does not have.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct MaterialTable {
+    /// Albedo in [0, 1]: a number, or a table that says how it varies over the surface.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lambertian: Option<AlbedoTable>,
+    /// Albedo of a rough matt surface.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub oren_nayar: Option<AlbedoTable>,
+    /// Albedo of the ground below a clear coat.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coated: Option<AlbedoTable>,
+    /// Refractive index of a metal.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub conductor: Option<IndexTable>,
+    /// File with a measured BRDF.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured: Option<String>,
+    /// Materials to be added.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mixture: Option<Vec<PartTable>>,
+    /// Standard deviation of the slope angle, radians (oren_nayar), or α (coated, conductor).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub roughness: Option<f64>,
+    /// Refractive index of the coat (coated); default 1.5.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ior: Option<f64>,
+    /// What the metal's reflection is multiplied by (conductor); default 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reflectance: Option<AlbedoTable>,
+    /// Colour of a MERL table (measured).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub channel: Option<ChannelName>,
+    /// What the table is multiplied by (measured); default 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scale: Option<AlbedoTable>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct IndexTable {
+    /// Real part.
+    pub eta: f64,
+    /// Imaginary part.
+    pub k: f64,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct PartTable {
+    /// What the part is multiplied by.
+    pub weight: f64,
+    pub material: MaterialTable,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(in crate::scene) enum ChannelName {
+    Red,
+    Green,
+    Blue,
+}
+
+/// Reads a file that the scene names, by the path written there; an error says why not.
+pub(in crate::scene) type Files<'a> = &'a mut dyn FnMut(&str) -> Result<Vec<u8>, String>;
+
+const KINDS: &str = "`lambertian`, `oren_nayar`, `coated`, `conductor`, `measured` and `mixture`";
+/// Index of refraction where the coat's is not stated: acrylic and polyurethane paint.
+const COAT: f64 = 1.5;
+/// Parts of a mixture.
+const MOST_PARTS: usize = 16;
+/// Rounding of weights that add up to 1.
+const ROUNDING: f64 = 1e-12;
+
+impl Material {
+    /// What a table means: the material, and the texture whose value `brdf` takes as its albedo.
+    pub(in crate::scene) fn from_table(
+        table: &MaterialTable,
+        wavelength: f64,
+        files: Files<'_>,
+    ) -> Result<(Self, Texture), Fault> {
+        let kind = kind(table)?;
+        refuse_foreign_keys(table, kind)?;
+        let mut albedo = |key: &'static str, given: &AlbedoTable| {
+            Texture::from_table(given, wavelength, files).map_err(|f| f.within(keys![key]))
+        };
+        let mut factor = |key: &'static str, given: &Option<AlbedoTable>| {
+            given
+                .as_ref()
+                .map_or(Ok(Texture::Constant(1.0)), |t| albedo(key, t))
+        };
+        if let Some(given) = &table.lambertian {
+            return Ok((Self::Lambertian, albedo("lambertian", given)?));
+        }
+        if let Some(given) = &table.oren_nayar {
+            let sigma = roughness(table, 0.0, std::f64::consts::FRAC_PI_2, "radians")?;
+            let material = Self::OrenNayar(OrenNayar::new(sigma));
+            return Ok((material, albedo("oren_nayar", given)?));
+        }
+        if let Some(given) = &table.coated {
+            let alpha = roughness(table, LEAST_ALPHA, 1.0, "α")?;
+            let ior = table.ior.unwrap_or(COAT);
+            if !(ior > 1.0 && ior <= 4.0) {
+                let cause = format!("a coat of refractive index {ior}");
+                let cure = "use a number above 1, up to 4; paint and varnish have 1.4 to 1.6";
+                return Err(Fault::new(keys!["ior"], cause, cure));
+            }
+            let texture = albedo("coated", given)?;
+            return Ok((Self::Coated(Arc::new(Coated::new(alpha, ior))), texture));
+        }
+        if let Some(index) = &table.conductor {
+            let alpha = roughness(table, LEAST_ALPHA, 1.0, "α")?;
+            for (key, value, least) in [("eta", index.eta, 1e-3), ("k", index.k, 0.0)] {
+                if !(least..=100.0).contains(&value) {
+                    let cause = format!("a metal whose `{key}` is {value}");
+                    let cure = format!("use {least} to 100, from a table of optical constants");
+                    return Err(Fault::new(keys!["conductor", key], cause, cure));
+                }
+            }
+            let material = Self::Conductor(Conductor::new(alpha, index.eta, index.k));
+            return Ok((material, factor("reflectance", &table.reflectance)?));
+        }
+        if let Some(path) = &table.measured {
+            let texture = factor("scale", &table.scale)?;
+            let material = measured(table, path, texture.largest(), files)?;
+            return Ok((Self::Measured(Arc::new(material)), texture));
+        }
+        let parts = table.mixture.as_deref().unwrap_or_default();
+        Ok((mixture(parts, wavelength, files)?, Texture::Constant(1.0)))
+    }
+}
+
+const LEAST_ALPHA: f64 = 0.01;
+
+/// The one kind of material that is given.
+fn kind(table: &MaterialTable) -> Result<&'static str, Fault> {
+    let kinds = [
+        ("lambertian", table.lambertian.is_some()),
+        ("oren_nayar", table.oren_nayar.is_some()),
+        ("coated", table.coated.is_some()),
+        ("conductor", table.conductor.is_some()),
+        ("measured", table.measured.is_some()),
+        ("mixture", table.mixture.is_some()),
+    ];
+    let mut given = kinds
+        .into_iter()
+        .filter_map(|(name, is)| is.then_some(name));
+    match (given.next(), given.next()) {
+        (Some(name), None) => Ok(name),
+        (Some(a), Some(b)) => {
+            let cause = format!("a material that is both `{a}` and `{b}`");
+            let cure = "keep one; a sum of materials is a `mixture`";
+            Err(Fault::new(keys![b], cause, cure))
+        }
+        (None, _) => {
+            let cause = format!("a material needs exactly one of {KINDS}");
+            Err(Fault::new(keys![], cause, "add e.g. `lambertian = 0.8`"))
+        }
+    }
+}
+
+fn refuse_foreign_keys(table: &MaterialTable, kind: &'static str) -> Result<(), Fault> {
+    let keys: [(&'static str, bool, &[&str]); 5] = [
+        (
+            "roughness",
+            table.roughness.is_some(),
+            &["oren_nayar", "coated", "conductor"],
+        ),
+        ("ior", table.ior.is_some(), &["coated"]),
+        ("reflectance", table.reflectance.is_some(), &["conductor"]),
+        ("channel", table.channel.is_some(), &["measured"]),
+        ("scale", table.scale.is_some(), &["measured"]),
+    ];
+    for (key, given, owners) in keys {
+        if given && !owners.contains(&kind) {
+            let cause = format!("`{key}` does not belong to `{kind}`");
+            return Err(Fault::new(keys![key], cause, format!("remove `{key}`")));
+        }
+    }
+    Ok(())
+}
+
+fn roughness(table: &MaterialTable, least: f64, most: f64, what: &str) -> Result<f64, Fault> {
+    let range = format!("{least} to {most:.4} ({what})");
+    let Some(value) = table.roughness else {
+        let cause = "the material does not say how rough it is";
+        return Err(Fault::new(
+            keys![],
+            cause,
+            format!("add `roughness = …`: {range}"),
+        ));
+    };
+    if (least..=most).contains(&value) {
+        return Ok(value);
+    }
+    let cause = format!("a roughness of {value}");
+    Err(Fault::new(
+        keys!["roughness"],
+        cause,
+        format!("use {range}"),
+    ))
+}
+
+fn measured(
+    table: &MaterialTable,
+    path: &str,
+    largest: f64,
+    files: Files<'_>,
+) -> Result<Measured, Fault> {
+    let text = path.to_ascii_lowercase().ends_with(".csv");
+    let channel = match (text, table.channel) {
+        (true, None) => None,
+        (true, Some(_)) => {
+            let cause = "a table of angle triples has no colours";
+            return Err(Fault::new(keys!["channel"], cause, "remove `channel`"));
+        }
+        (false, Some(ChannelName::Red)) => Some(Channel::Red),
+        (false, Some(ChannelName::Green)) => Some(Channel::Green),
+        (false, Some(ChannelName::Blue)) => Some(Channel::Blue),
+        (false, None) => {
+            let cause = "a MERL table has three colours, and the scene one wavelength";
+            let cure = "add `channel = \"red\"`, \"green\" or \"blue\"";
+            return Err(Fault::new(keys!["measured"], cause, cure));
+        }
+    };
+    let bytes = files(path).map_err(|cause| {
+        let cure = "give the path of a MERL table or of a .csv table, from the scene's folder";
+        Fault::new(keys!["measured"], cause, cure)
+    })?;
+    let read = match channel {
+        Some(channel) => Measured::merl(&bytes, channel, largest),
+        None => Measured::grid(&bytes, largest),
+    };
+    read.map_err(|mut fault| {
+        fault.cause = format!("{path}: {}", fault.cause);
+        fault.within(keys!["measured"])
+    })
+}
+
+fn mixture(
+    tables: &[PartTable],
+    wavelength: f64,
+    files: Files<'_>,
+) -> Result<Material, Fault> {
+    if tables.is_empty() || tables.len() > MOST_PARTS {
+        let cause = format!("a mixture of {} parts", tables.len());
+        let cure = format!("use 1 to {MOST_PARTS}");
+        return Err(Fault::new(keys!["mixture"], cause, cure));
+    }
+    let mut parts = Vec::with_capacity(tables.len());
+    for (i, table) in tables.iter().enumerate() {
+        if !(0.0..=1.0).contains(&table.weight) {
+            let cause = format!("a weight of {}", table.weight);
+            let at = keys!["mixture", i, "weight"];
+            return Err(Fault::new(at, cause, "use 0 to 1"));
+        }
+        if table.material.mixture.is_some() {
+            let at = keys!["mixture", i, "material"];
+            let cure = "list its parts in the outer one, their weights multiplied by its own";
+            return Err(Fault::new(at, "a mixture inside a mixture", cure));
+        }
+        let (material, texture) = Material::from_table(&table.material, wavelength, &mut *files)
+            .map_err(|f| f.within(keys!["mixture", i, "material"]))?;
+        let Texture::Constant(albedo) = texture else {
+            let at = keys!["mixture", i, "material"];
+            let cause = "a part of a mixture whose albedo varies over the surface";
+            return Err(Fault::new(at, cause, "give it a number"));
+        };
+        let share = table.weight * material.white_sky_albedo(albedo);
+        parts.push(Part {
+            weight: table.weight,
+            albedo,
+            material,
+            share,
+        });
+    }
+    let weights: f64 = parts.iter().map(|p| p.weight).sum();
+    if weights > 1.0 + ROUNDING {
+        let cause = format!("the weights of the mixture add up to {weights}");
+        return Err(Fault::new(
+            keys!["mixture"],
+            cause,
+            "let them add up to 1 at most",
+        ));
+    }
+    let total: f64 = parts.iter().map(|p| p.share).sum();
+    let even = 1.0 / parts.len() as f64;
+    for part in &mut parts {
+        part.share = if total > 0.0 {
+            part.share / total
+        } else {
+            even
+        };
+    }
+    Ok(Material::Mixture(parts.into()))
+}

@@ -1,0 +1,239 @@
+//! The MERL database's binary tables.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use crate::geometry::DVec3;
+use crate::scene::error::{Fault, keys};
+
+/// Which of the table's three colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Channel {
+    Red,
+    Green,
+    Blue,
+}
+
+/// An isotropic BRDF over Rusinkiewicz' half and difference angles (W. Matusik, H. Pfister, M. Brand and L. McMillan, *A data-driven reflectance
+/// model*, 2003).
+///
+/// The file: three little-endian `i32` n_h, n_d, n_φ (90, 90, 180), then 3 n_h n_d n_φ little-endian `f64`, red, green, blue; entry
+/// φ + n_φ (d + n_d h) of a colour, times 1/1500, 1.15/1500 or 1.66/1500, is f_r in sr⁻¹. Entry (h, d, φ) covers
+///
+/// > θ_h ∈ (π/2) \[(h/n_h)², ((h + 1)/n_h)²),   θ_d ∈ (π/2) \[d, d + 1)/n_d,   φ_d ∈ π \[φ, φ + 1)/n_φ
+///
+/// and stands here for the middle of those intervals (of √θ_h); between the middles f_r is trilinear in (√θ_h, θ_d, φ_d), beyond the outermost it is
+/// constant. Exchanging the two directions turns φ_d by π, the table's period, so the interpolated BRDF is reciprocal. Negative entries mark what could
+/// not be measured: such an entry takes the value of the next smaller θ_h at the same (θ_d, φ_d), or 0 where there is none.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Merl {
+    /// n_h, n_d, n_φ.
+    count: [usize; 3],
+    /// sr⁻¹.
+    values: Vec<f64>,
+}
+
+const HEADER_BYTES: usize = 12;
+
+impl Merl {
+    pub(super) fn read(bytes: &[u8], channel: Channel) -> Result<Self, Fault> {
+        let refuse = |cause: String| {
+            let cure = "give a file of the MERL database as published: 90 × 90 × 180 entries of three colours";
+            Err(Fault::new(keys![], cause, cure))
+        };
+        let Some((header, body)) = bytes.split_at_checked(HEADER_BYTES) else {
+            return refuse(format!(
+                "a MERL table of {} bytes: it is cut off in its header",
+                bytes.len()
+            ));
+        };
+        let mut count = [0usize; 3];
+        for (n, raw) in count.iter_mut().zip(header.as_chunks::<4>().0) {
+            let written = i32::from_le_bytes(*raw);
+            match usize::try_from(written) {
+                Ok(positive) if positive > 0 => *n = positive,
+                _ => return refuse(format!("a MERL table with {written} entries along an axis")),
+            }
+        }
+        let [h, d, p] = count;
+        let entries = h.checked_mul(d).and_then(|n| n.checked_mul(p));
+        let Some(needed) = entries.and_then(|n| n.checked_mul(3 * 8)) else {
+            return refuse(format!("a MERL table of {h} × {d} × {p} entries"));
+        };
+        if body.len() != needed {
+            return refuse(format!(
+                "a MERL table of {h} × {d} × {p} entries needs {needed} bytes after its header, and {} follow",
+                body.len()
+            ));
+        }
+        let (colour, scale) = match channel {
+            Channel::Red => (0, 1.0 / 1500.0),
+            Channel::Green => (1, 1.15 / 1500.0),
+            Channel::Blue => (2, 1.66 / 1500.0),
+        };
+        let size = needed / 3;
+        let raw = body[colour * size..(colour + 1) * size].as_chunks::<8>().0;
+        let mut values = Vec::with_capacity(raw.len());
+        for (i, entry) in raw.iter().enumerate() {
+            let value = f64::from_le_bytes(*entry) * scale;
+            if !value.is_finite() {
+                return refuse(format!("entry {i} of the MERL table is {value}"));
+            }
+            let nearer = i.checked_sub(d * p).map_or(0.0, |k| values[k]);
+            values.push(if value < 0.0 { nearer } else { value });
+        }
+        Ok(Self { count, values })
+    }
+
+    /// f_r of directions above the surface, sr⁻¹.
+    pub(super) fn brdf(&self, incident: DVec3, exitant: DVec3) -> f64 {
+        let [theta_h, theta_d, phi_d] = half_difference(incident, exitant);
+        let [nh, nd, np] = self.count;
+        let (h0, h1, h) = between((theta_h / FRAC_PI_2).sqrt(), nh);
+        let (d0, d1, d) = between(theta_d / FRAC_PI_2, nd);
+        let x = phi_d / PI * np as f64 - 0.5;
+        let turn = x.floor();
+        let p = x - turn;
+        let p0 = (turn as i64).rem_euclid(np as i64) as usize;
+        let p1 = if p0 + 1 == np { 0 } else { p0 + 1 };
+        let along = |h: usize, d: usize| {
+            let row = &self.values[np * (d + nd * h)..][..np];
+            row[p0] + p * (row[p1] - row[p0])
+        };
+        let across = |h: usize| along(h, d0) + d * (along(h, d1) - along(h, d0));
+        across(h0) + h * (across(h1) - across(h0))
+    }
+}
+
+/// The two entries around `x` ∈ [0, 1] of `n`, whose places are the middles (k + ½)/n, and the weight of the second.
+fn between(x: f64, n: usize) -> (usize, usize, f64) {
+    let place = (x * n as f64 - 0.5).clamp(0.0, (n - 1) as f64);
+    let low = place as usize;
+    (low, (low + 1).min(n - 1), place - low as f64)
+}
+
+/// θ_h, θ_d and φ_d (Rusinkiewicz, *A new change of variables for efficient BRDF representation*, 1998): the half vector, and the incident direction in
+/// the frame where that is the pole.
+fn half_difference(incident: DVec3, exitant: DVec3) -> [f64; 3] {
+    let h = (incident + exitant).normalize();
+    let across = (h.x * h.x + h.y * h.y).sqrt();
+    let (cos, sin) = if across > 0.0 {
+        (h.x / across, h.y / across)
+    } else {
+        (1.0, 0.0)
+    };
+    let x = incident.dot(DVec3::new(h.z * cos, h.z * sin, -across));
+    let y = incident.y * cos - incident.x * sin;
+    [
+        libm::atan2(across, h.z),
+        libm::atan2((x * x + y * y).sqrt(), incident.dot(h)),
+        libm::atan2(y, x),
+    ]
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::scene::material::tests::directions;
+
+    /// The bytes of a table whose entries are `f`(θ_h, θ_d, φ_d) at their middles, in every colour.
+    pub(in crate::scene::material) fn written(
+        count: [usize; 3],
+        f: impl Fn(f64, f64, f64) -> f64,
+    ) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        for n in count {
+            bytes.extend(i32::try_from(n).unwrap().to_le_bytes());
+        }
+        let middle = |k: usize, n: usize| (k as f64 + 0.5) / n as f64;
+        for scale in [1500.0, 1500.0 / 1.15, 1500.0 / 1.66] {
+            for h in 0..count[0] {
+                for d in 0..count[1] {
+                    for p in 0..count[2] {
+                        let value = f(
+                            FRAC_PI_2 * middle(h, count[0]).powi(2),
+                            FRAC_PI_2 * middle(d, count[1]),
+                            PI * middle(p, count[2]),
+                        );
+                        bytes.extend((value * scale).to_le_bytes());
+                    }
+                }
+            }
+        }
+        bytes
+    }
+
+    /// A table made of a known function gives it back between its entries: error of linear interpolation, ⅛ Δ² max|f″| an axis.
+    #[test]
+    fn a_synthetic_table_is_the_function_it_was_made_of() {
+        let f = |h: f64, d: f64, p: f64| {
+            (0.3 + 0.2 * (2.0 * p).cos() * d.sin().powi(2)) * (-h / 0.5).exp()
+        };
+        for (channel, _) in [(Channel::Red, 0), (Channel::Green, 1), (Channel::Blue, 2)] {
+            let table = Merl::read(&written([90, 90, 180], f), channel).unwrap();
+            let mut worst: f64 = 0.0;
+            for (i, o) in directions(4000) {
+                let [h, d, p] = half_difference(i, o);
+                let inside = |x: f64| x > 0.5 / 90.0 && x < 89.5 / 90.0;
+                if inside((h / FRAC_PI_2).sqrt()) && inside(d / FRAC_PI_2) {
+                    worst = worst.max((table.brdf(i, o) - f(h, d, p)).abs());
+                }
+            }
+            assert!(worst < 3e-4, "{worst}");
+        }
+    }
+
+    /// The half vector bisects: of a mirror pair θ_h = 0 and θ_d is the angle of incidence; of one direction twice θ_d = 0.
+    #[test]
+    fn half_and_difference_angles() {
+        for theta in [0.1, 0.7, 1.3f64] {
+            let (s, c) = theta.sin_cos();
+            let [h, d, _] = half_difference(DVec3::new(s, 0.0, c), DVec3::new(-s, 0.0, c));
+            assert!(h.abs() < 1e-14 && (d - theta).abs() < 1e-14);
+            let [h, d, _] = half_difference(DVec3::new(0.0, s, c), DVec3::new(0.0, s, c));
+            assert!((h - theta).abs() < 1e-14 && d.abs() < 1e-7);
+        }
+        // Both in the plane of the normal: φ_d is 0 or π; aside of it, ±π/2.
+        let at = |x: f64| DVec3::new(x, 0.0, (1.0 - x * x).sqrt());
+        let [_, _, p] = half_difference(at(0.8), at(0.1));
+        assert!(p.abs() < 1e-12, "{p}");
+        let [_, _, p] = half_difference(
+            DVec3::new(0.5, 0.6, 0.39f64.sqrt()),
+            DVec3::new(0.5, -0.6, 0.39f64.sqrt()),
+        );
+        assert!((p - FRAC_PI_2).abs() < 1e-12, "{p}");
+    }
+
+    #[test]
+    fn entries_that_were_not_measured_take_their_neighbour() {
+        let f = |h: f64, _: f64, _: f64| if h > 0.8 { -1.0 } else { 0.2 };
+        let table = Merl::read(&written([30, 10, 10], f), Channel::Red).unwrap();
+        assert!(table.values.iter().all(|v| (v - 0.2).abs() < 1e-15));
+        let none = Merl::read(&written([2, 2, 2], |_, _, _| -1.0), Channel::Red).unwrap();
+        assert!(none.values.iter().all(|v| *v == 0.0));
+    }
+
+    #[test]
+    fn forged_and_cut_tables_are_refused() {
+        let good = written([4, 3, 2], |_, _, _| 0.1);
+        assert!(Merl::read(&good, Channel::Blue).is_ok());
+        let mut longer = good.clone();
+        longer.push(0);
+        let mut negative = good.clone();
+        negative[..4].copy_from_slice(&(-4i32).to_le_bytes());
+        let mut huge = good.clone();
+        huge[..12].copy_from_slice(&[0xff, 0xff, 0xff, 0x7f].repeat(3));
+        let mut infinite = good.clone();
+        infinite[12..20].copy_from_slice(&f64::INFINITY.to_le_bytes());
+        for (bytes, cause) in [
+            (&good[..7], "cut off in its header"),
+            (&good[..good.len() - 1], "575 follow"),
+            (&longer[..], "577 follow"),
+            (&negative[..], "-4 entries"),
+            (&huge[..], "2147483647 × 2147483647"),
+            (&infinite[..], "entry 0"),
+        ] {
+            let fault = Merl::read(bytes, Channel::Red).unwrap_err();
+            assert!(fault.cause.contains(cause), "{}", fault.cause);
+        }
+    }
+}
