@@ -5,6 +5,7 @@ use std::path::Path;
 use super::failure::Failure;
 use super::folder::{PHI, SCENE};
 use super::record::Record;
+use super::trust;
 use crate::matrix::{Matrix, npy};
 use crate::scene::Scene;
 
@@ -22,7 +23,7 @@ pub(super) fn read_run(dir: &Path) -> Result<(Scene, Record), Failure> {
         )
     })?;
     let path = dir.join(SCENE);
-    let scene = Scene::load(&path.to_string_lossy())?;
+    let scene = trust::load(&path.to_string_lossy())?;
     if scene.hash != record.scene_hash {
         let cause = format!(
             "{} is not the scene that {} was rendered from",

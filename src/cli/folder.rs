@@ -3,6 +3,7 @@
 //! | file | content |
 //! | --- | --- |
 //! | scene.toml, run.json | the scene, whole; what was rendered and how |
+//! | files/ | copies of the meshes, pictures and materials that the scene names |
 //! | frames/spot-NNNN.exr | one frame a spot |
 //! | phi.npy, phi.stderr.npy | Φcam and its standard error, pixels × spots, W |
 //! | partial/spot-NNNN.npy | finished spots of an unfinished run in f64: one column per bounce count, last the standard error |
@@ -15,9 +16,10 @@ use super::failure::Failure;
 use super::output::Talk;
 use super::record::Record;
 use super::stale::{remove_exposed, remove_files, remove_named, remove_numbered, remove_recovered};
+use super::trust;
 use crate::film::{self, Channel, Frame, FrameMeta, frame_name};
 use crate::matrix::{Matrix, npy};
-use crate::scene::Scene;
+use crate::scene::{COPIES, Scene};
 use crate::store::{StoreError, ensure_writable, write_whole};
 use crate::transport::Traced;
 
@@ -107,10 +109,10 @@ impl Folder {
             }
             return Ok(());
         }
-        if let Ok(bytes) = fs::read(self.path.join(SCENE)) {
+        let own = self.path.join(SCENE);
+        if own.exists() {
             // What cannot be read as a scene is not this one either.
-            let text = String::from_utf8_lossy(&bytes);
-            if !Scene::from_toml(SCENE, &text).is_ok_and(|s| s.hash == scene.hash) {
+            if !trust::load(&own.to_string_lossy()).is_ok_and(|s| s.hash == scene.hash) {
                 return Err(Failure::new(
                     format!("{path} belongs to another scene ({SCENE})"),
                     cure,
@@ -131,7 +133,7 @@ impl Folder {
 
     /// What stands where a folder or a file of a run has to stand shows before the long work, not after it.
     fn refuse_obstacles(&self) -> Result<(), Failure> {
-        for name in ["frames", "partial", "model", "recovered"] {
+        for name in ["frames", "partial", "model", "recovered", COPIES] {
             let path = self.path.join(name);
             if path.exists() && !path.is_dir() {
                 return Err(StoreError::NotAFolder { path }.into());
@@ -146,8 +148,28 @@ impl Folder {
         Ok(())
     }
 
-    /// Writes the scene, whole.
+    /// Writes the scene, whole: with copies of the files that it names.
     pub(super) fn write_scene(&self, scene: &Scene) -> Result<(), Failure> {
+        let copies = self.path.join(COPIES);
+        for file in &scene.files {
+            ensure_writable(&copies)?;
+            let to = copies.join(file.copy_name());
+            if to.canonicalize().is_ok_and(|to| to == file.path) {
+                continue;
+            }
+            let bytes = fs::read(&file.path).map_err(|e| {
+                let cause = format!("cannot read `{}` again: {e}", file.name);
+                Failure::new(
+                    cause,
+                    "leave the scene's files in place while phicam starts",
+                )
+            })?;
+            if !file.holds(&bytes) {
+                let cause = format!("`{}` has changed since the scene was read", file.name);
+                return Err(Failure::new(cause, "start again"));
+            }
+            write_whole(&to, |w| w.write_all(&bytes))?;
+        }
         Ok(write_whole(&self.path.join(SCENE), |w| {
             w.write_all(scene.text.as_bytes())
         })?)

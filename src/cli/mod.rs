@@ -7,6 +7,7 @@
 //!
 //! | file | content |
 //! | --- | --- |
+//! | `files/` | copies of the meshes, pictures and materials that the scene names |
 //! | `scene.toml`, `run.json` | the scene, whole; version, scene hash, seed, samples, estimator, threads, time |
 //! | `frames/spot-0000.exr` | one frame a spot, f32: `flux`, `flux.stderr`, and `flux.bN` for light that met N surfaces, W |
 //! | `phi.npy`, `phi.stderr.npy` | Φcam and its standard error, f64, (pixels, spots), C order, W |
@@ -44,6 +45,7 @@ mod stack;
 mod stale;
 mod study;
 mod target;
+mod trust;
 mod validate;
 
 use std::process::ExitCode;
@@ -64,6 +66,7 @@ enum Outcome {
 pub fn main() -> ExitCode {
     let args = Args::parse();
     let talk = Talk { quiet: args.quiet };
+    trust::also_read(&args.also_read);
     let result = match &args.command {
         Command::Run(a) => run::execute(a, talk),
         Command::Render(a) => render::execute(a, talk),

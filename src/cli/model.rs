@@ -6,15 +6,15 @@ use super::args::ModelArgs;
 use super::failure::Failure;
 use super::folder::Folder;
 use super::output::{self, Talk};
+use super::trust;
 use super::{Outcome, settings};
 use crate::matrix::{Matrix, npy};
 use crate::model::{Extent, MatrixModel, converged};
-use crate::scene::Scene;
 use crate::store::ensure_writable;
 use crate::study::Integration;
 
 pub(super) fn execute(args: &ModelArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = Scene::load(&args.scene)?;
+    let scene = trust::load(&args.scene)?;
     let kernel = settings::kernel(args.kernel);
     let model = MatrixModel::new(&scene, kernel, args.elements)?;
     let folder = Folder {

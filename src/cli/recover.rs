@@ -11,6 +11,7 @@ use super::output::{self, Talk};
 use super::record::Record;
 use super::recover_memory::{self, Errors, Held};
 use super::stale::remove_named;
+use super::trust;
 use super::{Outcome, recover_options, settings};
 use crate::matrix::{Matrix, npy};
 use crate::model::MatrixModel;
@@ -35,7 +36,7 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
     // Measured photographs come without a run: a scene.toml is enough for them.
     let measured = args.phi.is_some() && !args.dir.join(Record::FILE).exists();
     let scene = match measured {
-        true => Scene::load(&args.dir.join(SCENE).to_string_lossy())?,
+        true => trust::load(&args.dir.join(SCENE).to_string_lossy())?,
         false => read_run(&args.dir)?.0,
     };
     if let Held::Strips(pixels) = recover_memory::plan(args, &scene, &methods, &options, talk)? {

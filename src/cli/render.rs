@@ -13,6 +13,7 @@ use super::folder::{Folder, Keep, PHI, STDERR};
 use super::interrupt::stop_flag;
 use super::output::{self, Talk};
 use super::record::Record;
+use super::trust;
 use super::{Outcome, progress, settings};
 use crate::film;
 use crate::matrix::Matrix;
@@ -20,7 +21,7 @@ use crate::scene::Scene;
 use crate::transport::{Control, Estimator, Plan, Traced, block_size, render};
 
 pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = Scene::load(&args.scene)?;
+    let scene = trust::load(&args.scene)?;
     let total = scene.laser.spots.len();
     let spots = args.spots.clone().unwrap_or(0..total);
     if spots.end > total {
@@ -105,6 +106,7 @@ pub(super) fn into_folder(
     talk: Talk,
 ) -> Result<Rendered, Failure> {
     let plan = settings::plan(args, talk)?;
+    settings::suited(scene, &plan)?;
     let pool = settings::pool(args.threads)?;
     let threads = pool.current_num_threads();
     let mut record = Record::new(scene, &plan, 0, threads, 0.0);

@@ -10,6 +10,7 @@ use super::interrupt::stop_flag;
 use super::output::{self, Talk};
 use super::record::Record;
 use super::render::{self, Rendered};
+use super::trust;
 use super::{Outcome, model, recover, settings, validate};
 use crate::film;
 use crate::matrix::Matrix;
@@ -17,12 +18,11 @@ use crate::metrics::relative_frobenius;
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Nuisance, Options};
 use crate::report;
-use crate::scene::Scene;
 use crate::store::write_whole;
 use crate::study::{self, Noise, RunResults};
 
 pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = Scene::load(&args.scene)?;
+    let scene = trust::load(&args.scene)?;
     let mut clock = Clock::start();
     let plan = settings::plan(&args.trace, Talk { quiet: true })?;
     let test = settings::test(&args.test, &plan, talk)?;

@@ -6,15 +6,16 @@ use super::Outcome;
 use super::args::{SceneArgs, SceneCommand};
 use super::failure::Failure;
 use super::output::{self, Talk};
+use super::trust;
 use crate::report;
 use crate::scene::{Role, Scene, builtins};
 
 pub(super) fn execute(args: &SceneArgs, talk: Talk) -> Result<Outcome, Failure> {
     match &args.command {
         SceneCommand::List => output::print(&list())?,
-        SceneCommand::Check { scene } => output::print(&check(&Scene::load(scene)?))?,
+        SceneCommand::Check { scene } => output::print(&check(&trust::load(scene)?))?,
         SceneCommand::Show { scene, output } => {
-            let scene = Scene::load(scene)?;
+            let scene = trust::load(scene)?;
             talk.warn(&scene);
             output::deliver(&report::bench_svg(&scene), output.as_deref())?;
         }
@@ -23,7 +24,7 @@ pub(super) fn execute(args: &SceneArgs, talk: Talk) -> Result<Outcome, Failure> 
             mitsuba,
             output,
         } => {
-            let scene = Scene::load(scene)?;
+            let scene = trust::load(scene)?;
             let text = if *mitsuba {
                 report::mitsuba_script(&scene)
             } else {

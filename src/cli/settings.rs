@@ -10,7 +10,7 @@ use crate::num::stream::Sampling;
 use crate::scene::{Scene, SensorModel};
 use crate::sensor::Sensor;
 use crate::study::{Errors, Integration, Test};
-use crate::transport::{Budget, Estimator, Plan};
+use crate::transport::{Budget, Estimator, Plan, obstacle};
 
 /// The plan that the arguments describe; a rounded number of samples is said.
 pub(super) fn plan(args: &TraceArgs, talk: Talk) -> Result<Plan, Failure> {
@@ -31,6 +31,18 @@ pub(super) fn plan(args: &TraceArgs, talk: Talk) -> Result<Plan, Failure> {
         seed: args.seed,
         budget,
     })
+}
+
+/// Refuses an estimator that does not suit the scene.
+pub(super) fn suited(scene: &Scene, plan: &Plan) -> Result<(), Failure> {
+    let Some(surface) = obstacle(scene, plan) else {
+        return Ok(());
+    };
+    let cause = format!(
+        "--estimator {} needs Lambertian surfaces between the walls, and `{surface}` is none",
+        plan.estimator.name()
+    );
+    Err(Failure::new(cause, "use --estimator shared"))
 }
 
 /// `samples` in blocks; `flag` names it where that cannot be.

@@ -8,6 +8,7 @@ use super::finished::{read_matrix, read_run, read_stderr};
 use super::folder::{self, PHI, STDERR};
 use super::output::{self, Talk};
 use super::record::Record;
+use super::trust;
 use super::{Outcome, settings};
 use crate::film::{self, Channel, Frame};
 use crate::matrix::Matrix;
@@ -22,7 +23,7 @@ pub(super) fn execute(args: &ValidateArgs, talk: Talk) -> Result<Outcome, Failur
     let phi = read_matrix(&args.dir.join(PHI), &own)?;
     let stderr = read_stderr(&args.dir.join(STDERR), &own)?;
     let mut scene = match &args.against {
-        Some(other) => Scene::load(other)?,
+        Some(other) => trust::load(other)?,
         None => own,
     };
     if let Some(by) = args.shift_spots {

@@ -30,6 +30,11 @@ impl Basis {
     pub fn to_world(&self, [x, y, z]: [f64; 3]) -> DVec3 {
         self.s * x + self.t * y + self.n * z
     }
+
+    /// World → local coordinates.
+    pub fn to_local(&self, w: DVec3) -> DVec3 {
+        DVec3::new(self.s.dot(w), self.t.dot(w), self.n.dot(w))
+    }
 }
 
 #[cfg(test)]

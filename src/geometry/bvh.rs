@@ -15,7 +15,7 @@ use obvhs::aabb::Aabb;
 use obvhs::cwbvh::{CwBvh, builder::build_cwbvh};
 use obvhs::ray::{Ray as TreeRay, RayHit};
 
-use super::{Ray, Shape, ShapeId};
+use super::{Contact, Ray, Shape, ShapeId, SurfacePoint};
 use space::{PADDING, Space};
 pub(super) use wide::{Query, WideTree};
 
@@ -48,6 +48,8 @@ pub struct Hit {
     pub shape: ShapeId,
     /// Distance along the ray.
     pub t: f64,
+    /// The triangle of a mesh; 0 for every other shape.
+    pub triangle: u32,
 }
 
 /// All shapes of a scene, ready for ray queries.
@@ -105,8 +107,10 @@ impl Bvh {
                 length: limit,
                 ..*ray
             };
-            if let Some(t) = self.shapes[id].intersect(&rest, from == Some(shape)) {
-                let hit = Hit { shape, t };
+            if let Some(Contact { t, triangle }) =
+                self.shapes[id].intersect(&rest, from == Some(shape))
+            {
+                let hit = Hit { shape, t, triangle };
                 if best.is_none_or(|b| self.before(ray, hit, b, slack(t))) {
                     best = Some(hit);
                 }
@@ -122,16 +126,18 @@ impl Bvh {
         best
     }
 
+    /// The point that the ray hits, exactly on its shape.
+    pub fn point(&self, ray: &Ray, hit: Hit) -> SurfacePoint {
+        let Hit { shape, t, triangle } = hit;
+        self.shapes[shape as usize].at_contact(ray, Contact { t, triangle })
+    }
+
     /// Whether hit `a` comes before hit `b`.
     fn before(&self, ray: &Ray, a: Hit, b: Hit, slack: f64) -> bool {
         if (a.t - b.t).abs() > slack {
             return a.t < b.t;
         }
-        let front = |hit: Hit| {
-            let shape = &self.shapes[hit.shape as usize];
-            let point = shape.at_position(ray.origin + ray.direction * hit.t);
-            point.normal.dot(ray.direction) < 0.0
-        };
+        let front = |hit: Hit| self.point(ray, hit).normal.dot(ray.direction) < 0.0;
         match (front(a), front(b)) {
             (true, false) => true,
             (false, true) => false,

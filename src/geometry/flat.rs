@@ -67,7 +67,7 @@ impl Bvh {
         assert_eq!(rays.len(), from.len());
         let flat = |shape: &Shape| match shape {
             Shape::Parallelogram(patch) => Some(*patch),
-            Shape::Sphere(_) => None,
+            Shape::Sphere(_) | Shape::Disc(_) | Shape::Body(_) => None,
         };
         let few = self.shapes().len() <= FLAT && rays.len() >= WORTHWHILE;
         let patches: Option<Vec<_>> = few
@@ -119,17 +119,34 @@ impl Bvh {
                 &all
             }
         };
+        let mesh = |id: &ShapeId| matches!(self.shapes()[*id as usize], Shape::Body(_));
+        let (bodies, ids): (Vec<ShapeId>, Vec<ShapeId>) = ids.iter().copied().partition(mesh);
         let mut blocked = vec![false; segments.len()];
         widest(
             #[inline(always)]
             || {
                 let chunks = segments.chunks(EIGHT).zip(ends.chunks(EIGHT));
                 for ((segments, ends), blocked) in chunks.zip(blocked.chunks_mut(EIGHT)) {
-                    self.block(ids, segments, ends, blocked);
+                    self.block(&ids, segments, ends, blocked);
                 }
             },
         );
+        for id in bodies {
+            self.block_by_body(id, segments, &mut blocked);
+        }
         blocked
+    }
+
+    /// Meshes are asked last, for what is still free, many segments at once.
+    fn block_by_body(&self, id: ShapeId, segments: &[Ray], blocked: &mut [bool]) {
+        let Shape::Body(body) = &self.shapes()[id as usize] else {
+            return;
+        };
+        let free: Vec<usize> = (0..segments.len()).filter(|i| !blocked[*i]).collect();
+        let asked: Vec<Ray> = free.iter().map(|i| segments[*i]).collect();
+        for (i, stands) in free.iter().zip(body.blocks_many(&asked)) {
+            blocked[*i] = stands;
+        }
     }
 
     /// At most eight segments.
@@ -204,7 +221,11 @@ fn closest(
     }
     for (k, hit) in hits.iter_mut().enumerate().take(EIGHT) {
         let shape = best[k] as ShapeId;
-        *hit = (best[k] != NONE).then_some(Hit { shape, t: at[k] });
+        *hit = (best[k] != NONE).then_some(Hit {
+            shape,
+            t: at[k],
+            triangle: 0,
+        });
     }
 }
 

@@ -6,6 +6,7 @@ mod nearest;
 use super::bvh::{Query, WideTree};
 use super::{DVec3, Ray, SurfacePoint};
 use crate::num::lanes::widest;
+use crate::num::warp;
 use group::{GROUP, Group, Sheared};
 
 /// Coordinates beyond this (in scene units) are refused.
@@ -42,6 +43,14 @@ pub enum MeshError {
         /// Number of triangles.
         count: usize,
     },
+    /// Texture coordinates for another number of triangles.
+    #[error("{given} triples of texture coordinates for {triangles} triangles: give one to each")]
+    Coordinates {
+        /// Triples given.
+        given: usize,
+        /// Number of triangles.
+        triangles: usize,
+    },
     /// More triangles than can be numbered.
     #[error("{count} triangles are more than 2³⁰: split the mesh")]
     TooMany {
@@ -67,8 +76,11 @@ pub struct MeshHit {
 pub struct Mesh {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
+    /// By triangle and corner.
+    uv: Option<Vec<[[f32; 2]; 3]>>,
     bounds: (DVec3, DVec3),
-    area: f64,
+    /// By triangle: the area of all up to it, itself included.
+    areas: Vec<f64>,
     tree: WideTree,
     groups: Vec<Group>,
 }
@@ -142,18 +154,46 @@ impl Mesh {
             }
             first as u32
         });
-        let area = proper
-            .iter()
-            .map(|i| 0.5 * cross(corners(*i)).length())
-            .sum();
+        let mut areas = vec![0.0; triangles.len()];
+        for &i in &proper {
+            areas[i as usize] = 0.5 * cross(corners(i)).length();
+        }
+        let mut sum = 0.0;
+        for area in &mut areas {
+            sum += *area;
+            *area = sum;
+        }
         Ok(Self {
             positions,
             triangles,
+            uv: None,
             bounds,
-            area,
+            areas,
             tree,
             groups,
         })
+    }
+
+    /// The same mesh with texture coordinates by triangle and corner, v growing upwards in the picture.
+    ///
+    /// # Errors
+    /// [`MeshError::Coordinates`] if there are not as many as triangles.
+    pub fn with_uv(self, uv: Vec<[[f32; 2]; 3]>) -> Result<Self, MeshError> {
+        if uv.len() != self.triangles.len() {
+            return Err(MeshError::Coordinates {
+                given: uv.len(),
+                triangles: self.triangles.len(),
+            });
+        }
+        Ok(Self {
+            uv: Some(uv),
+            ..self
+        })
+    }
+
+    /// Texture coordinates by triangle and corner, if the mesh has any.
+    pub fn uv(&self) -> Option<&[[[f32; 2]; 3]]> {
+        self.uv.as_deref()
     }
 
     /// The vertices.
@@ -173,7 +213,15 @@ impl Mesh {
 
     /// Σ ½|(b − a) × (c − a)|, length².
     pub fn area(&self) -> f64 {
-        self.area
+        self.areas[self.areas.len() - 1]
+    }
+
+    /// The area of one triangle.
+    ///
+    /// # Panics
+    /// If there is no such triangle.
+    pub fn triangle_area(&self, triangle: u32) -> f64 {
+        0.5 * cross(self.corners(triangle)).length()
     }
 
     /// The corners of a triangle.
@@ -184,8 +232,43 @@ impl Mesh {
         self.triangles[triangle as usize].map(|c| self.positions[c as usize])
     }
 
-    /// The point of the mesh nearest to `p`, and its triangle; of triangles equally near the first. Its parameters are the weights of the
-    /// second and the third corner.
+    /// The point of a triangle with the given weights of the second and the third corner. Its parameters are texture coordinates where the
+    /// mesh has them, else (0, 0).
+    fn point(&self, triangle: u32, [v, w]: [f64; 2]) -> SurfacePoint {
+        let [a, b, c] = self.corners(triangle);
+        let uv = self.uv.as_ref().map_or([0.0; 2], |uv| {
+            let [p, q, r] = uv[triangle as usize].map(|c| c.map(f64::from));
+            [0, 1].map(|d| p[d] + (q[d] - p[d]) * v + (r[d] - p[d]) * w)
+        });
+        SurfacePoint {
+            position: a + (b - a) * v + (c - a) * w,
+            normal: cross([a, b, c]).normalize(),
+            uv,
+        }
+    }
+
+    /// The point of a triangle nearest to `p`.
+    ///
+    /// # Panics
+    /// If there is no such triangle.
+    pub fn on_triangle(&self, triangle: u32, p: DVec3) -> SurfacePoint {
+        let (_, weights) = nearest::on_triangle(self.corners(triangle), p);
+        self.point(triangle, weights)
+    }
+
+    /// An equal-area map of the unit square to the mesh: u chooses the triangle, in the order of the list and in proportion to its area,
+    /// and what is left of it places the point there together with v.
+    pub fn at(&self, [u, v]: [f64; 2]) -> SurfacePoint {
+        let target = u.clamp(0.0, 1.0 - f64::EPSILON) * self.area();
+        let triangle = self.areas.partition_point(|a| *a <= target);
+        let triangle = triangle.min(self.areas.len() - 1);
+        let before = triangle.checked_sub(1).map_or(0.0, |k| self.areas[k]);
+        let own = self.areas[triangle] - before;
+        let rest = ((target - before) / own).clamp(0.0, 1.0);
+        self.point(triangle as u32, warp::triangle([rest, v]))
+    }
+
+    /// The point of the mesh nearest to `p`, and its triangle; of triangles equally near the first.
     pub fn at_position(&self, p: DVec3) -> (u32, SurfacePoint) {
         let mut best = (f64::INFINITY, u32::MAX, [0.0; 2]);
         self.tree.around(p, |leaf| {
@@ -199,14 +282,8 @@ impl Mesh {
             }
             best.0
         });
-        let (_, triangle, [v, w]) = best;
-        let [a, b, c] = self.corners(triangle);
-        let point = SurfacePoint {
-            position: a + (b - a) * v + (c - a) * w,
-            normal: cross([a, b, c]).normalize(),
-            uv: [v, w],
-        };
-        (triangle, point)
+        let (_, triangle, weights) = best;
+        (triangle, self.point(triangle, weights))
     }
 
     /// First triangle met by the ray at 0 < t < length, from either side. A ray that starts in the plane of a triangle (to rounding) does
@@ -217,12 +294,21 @@ impl Mesh {
 
     /// [`Mesh::closest`] for many rays: much faster than one by one where the mesh is large.
     pub fn closest_many(&self, rays: &[Ray]) -> Vec<Option<MeshHit>> {
+        self.closest_of(rays, 0.0)
+    }
+
+    /// [`Mesh::closest`] for a ray whose start was computed from numbers as large as `reach`, and has their rounding.
+    pub(super) fn closest_beyond(&self, ray: &Ray, reach: f64) -> Option<MeshHit> {
+        self.closest_of(std::slice::from_ref(ray), reach)[0]
+    }
+
+    fn closest_of(&self, rays: &[Ray], reach: f64) -> Vec<Option<MeshHit>> {
         let mut found = vec![None; rays.len()];
         widest(
             #[inline(always)]
             || {
                 self.tree
-                    .traverse(rays, &Closest(self), |i, (_, hit)| found[i] = hit);
+                    .traverse(rays, &Closest(self, reach), |i, (_, hit)| found[i] = hit);
             },
         );
         found
@@ -236,12 +322,17 @@ impl Mesh {
 
     /// [`Mesh::blocks`] for many segments: much faster than one by one where the mesh is large.
     pub fn blocks_many(&self, segments: &[Ray]) -> Vec<bool> {
+        self.blocks_many_beyond(segments, 0.0)
+    }
+
+    /// [`Mesh::blocks_many`] for segments whose ends were computed from numbers as large as `reach`, and have their rounding.
+    pub(super) fn blocks_many_beyond(&self, segments: &[Ray], reach: f64) -> Vec<bool> {
         let mut found = vec![false; segments.len()];
         widest(
             #[inline(always)]
             || {
                 self.tree
-                    .traverse(segments, &Any(self), |i, (_, hit)| found[i] = hit);
+                    .traverse(segments, &Any(self, reach), |i, (_, hit)| found[i] = hit);
             },
         );
         found
@@ -256,7 +347,7 @@ impl Mesh {
 }
 
 /// Which triangle is met first?
-struct Closest<'a>(&'a Mesh);
+struct Closest<'a>(&'a Mesh, f64);
 
 impl Query for Closest<'_> {
     type State = (Sheared, Option<MeshHit>);
@@ -289,7 +380,7 @@ impl Query for Closest<'_> {
                     Some(b) => t < b.t || (t == b.t && triangle < b.triangle),
                     None => t < ray.length,
                 };
-                if first && is_off_plane(group.corners(k), ray.origin) {
+                if first && is_off_plane(group.corners(k), ray.origin, self.1) {
                     *best = Some(MeshHit { triangle, t });
                     limit = t;
                 }
@@ -303,7 +394,7 @@ impl Query for Closest<'_> {
 }
 
 /// Is any triangle met?
-struct Any<'a>(&'a Mesh);
+struct Any<'a>(&'a Mesh, f64);
 
 impl Query for Any<'_> {
     type State = (Sheared, bool);
@@ -329,7 +420,8 @@ impl Query for Any<'_> {
                 let k = hits.trailing_zeros() as usize & (GROUP - 1);
                 hits &= hits - 1;
                 let corners = group.corners(k);
-                let off = is_off_plane(corners, ray.origin) && is_off_plane(corners, end);
+                let off =
+                    is_off_plane(corners, ray.origin, self.1) && is_off_plane(corners, end, self.1);
                 if t[k] < ray.length && off {
                     *found = true;
                     return -1.0;
@@ -353,15 +445,15 @@ fn is_proper([a, b, c]: [DVec3; 3]) -> bool {
     area > 0.0 && area > 1e-12 * (b - a).length() * (c - a).length()
 }
 
-/// Whether `p` is farther from the triangle's plane than rounding; what is not finite is.
+/// Whether `p`, computed from numbers as large as `reach`, is farther from the triangle's plane than rounding; what is not finite is.
 #[inline(always)]
-fn is_off_plane([a, b, c]: [DVec3; 3], p: DVec3) -> bool {
+fn is_off_plane([a, b, c]: [DVec3; 3], p: DVec3, reach: f64) -> bool {
     const ROUNDING: f64 = 1e-12;
     if !p.is_finite() {
         return true;
     }
     let normal = (b - a).cross(c - a);
-    let reach = p.abs().max_element() + a.abs().max_element();
+    let reach = p.abs().max_element() + a.abs().max_element() + reach;
     normal.dot(p - a).abs() > ROUNDING * reach * normal.length()
 }
 

@@ -4,7 +4,9 @@
 //! kind: bounds, intersection, parametrisation, area element. Nothing above this floor may assume rectangles.
 
 mod basis;
+mod body;
 mod bvh;
+mod disc;
 mod flat;
 mod mesh;
 mod parallelogram;
@@ -13,10 +15,12 @@ mod shape;
 mod sphere;
 
 pub use basis::Basis;
+pub use body::{Body, Side};
 pub use bvh::{Bvh, GeometryError, Hit};
-pub use glam::DVec3;
+pub use disc::Disc;
+pub use glam::{DAffine3, DQuat, DVec3};
 pub use mesh::{Mesh, MeshError, MeshHit};
 pub use parallelogram::Parallelogram;
 pub use shaft::{Blockers, Region};
-pub use shape::{Ray, Shape, ShapeId, SurfacePoint};
+pub use shape::{Contact, Ray, Shape, ShapeId, SurfacePoint};
 pub use sphere::{Facing, Sphere};

@@ -1,7 +1,7 @@
 //! What can stand between two regions, judged before any ray is cast.
 //!
 //! Every segment from region a to region b lies in the convex hull of both, the *shaft* (Haines and Wallace, *Shaft culling for
-//! efficient ray-traced radiosity*, 1991). A convex shape that some plane separates from that hull cannot block any of them. The test
+//! efficient ray-traced radiosity*, 1991). A shape that some plane separates from that hull (a mesh: its box) cannot block any of them. The test
 //! tries a finite set of planes and so errs to one side only: what it calls free is free; what it cannot separate has to be asked
 //! ray by ray.
 
@@ -47,13 +47,8 @@ impl Region {
         if let Shape::Parallelogram(patch) = shape {
             return Self::patch(patch);
         }
-        let (low, high) = shape.bounds();
-        let corner = |k: usize| {
-            let pick = |d: usize| if k >> d & 1 == 0 { low[d] } else { high[d] };
-            DVec3::new(pick(0), pick(1), pick(2))
-        };
         Self {
-            points: (0..8).map(corner).collect(),
+            points: shape.box_corners().to_vec(),
             edges: DVec3::AXES.to_vec(),
         }
     }
@@ -143,8 +138,14 @@ fn separated(shape: &Shape, a: &Region, b: &Region) -> bool {
     let (own, centre) = match shape {
         Shape::Parallelogram(p) => (vec![p.u(), p.v()], p.at([0.5, 0.5]).position),
         Shape::Sphere(s) => (Vec::new(), s.centre),
+        Shape::Disc(d) => (Vec::new(), d.centre()),
+        Shape::Body(_) => (DVec3::AXES.to_vec(), shape.circumsphere().0),
     };
-    let first = [normal(&own), normal(&a.edges), normal(&b.edges)];
+    let face = match shape {
+        Shape::Disc(d) => d.normal(),
+        _ => normal(&own),
+    };
+    let first = [face, normal(&a.edges), normal(&b.edges)];
     if first.into_iter().chain(DVec3::AXES).any(apart) {
         return true;
     }
@@ -178,6 +179,13 @@ fn extent(shape: &Shape, axis: DVec3) -> [f64; 2] {
             let middle = s.centre.dot(axis);
             [middle - s.radius, middle + s.radius]
         }
+        Shape::Disc(d) => {
+            // Its extent along a unit vector is r·√(1 − (n·axis)²).
+            let (middle, along) = (d.centre().dot(axis), d.normal().dot(axis));
+            let half = d.radius() * (1.0 - along * along).max(0.0).sqrt();
+            [middle - half, middle + half]
+        }
+        Shape::Body(_) => Region::around(shape).range(axis),
     }
 }
 

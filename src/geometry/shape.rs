@@ -2,7 +2,7 @@
 
 use glam::DAffine3;
 
-use super::{DVec3, Parallelogram, Sphere};
+use super::{Body, DVec3, Disc, Facing, Parallelogram, Sphere};
 
 /// Index of a shape in its [`Bvh`](super::Bvh).
 pub type ShapeId = u32;
@@ -46,8 +46,17 @@ pub struct SurfacePoint {
     pub position: DVec3,
     /// Unit normal of the front.
     pub normal: DVec3,
-    /// Parameters in [0, 1]².
+    /// Parameters in [0, 1]²; on a mesh its texture coordinates, or (0, 0) where it has none.
     pub uv: [f64; 2],
+}
+
+/// Where a ray meets a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// Distance along the ray.
+    pub t: f64,
+    /// The triangle of a mesh; 0 for every other shape.
+    pub triangle: u32,
 }
 
 /// A surface's geometry. Every shape is one-sided in its optics (front: where the normal points) and opaque from
@@ -58,6 +67,10 @@ pub enum Shape {
     Parallelogram(Parallelogram),
     /// A sphere seen from outside or from inside.
     Sphere(Sphere),
+    /// A flat disc.
+    Disc(Disc),
+    /// A mesh of triangles.
+    Body(Body),
 }
 
 impl Shape {
@@ -66,6 +79,8 @@ impl Shape {
         match self {
             Self::Parallelogram(p) => p.bounds(),
             Self::Sphere(s) => s.bounds(),
+            Self::Disc(d) => d.bounds(),
+            Self::Body(b) => b.bounds(),
         }
     }
 
@@ -74,15 +89,31 @@ impl Shape {
         match self {
             Self::Parallelogram(p) => p.area(),
             Self::Sphere(s) => s.area(),
+            Self::Disc(d) => d.area(),
+            Self::Body(b) => b.area(),
         }
     }
 
     /// Smallest t in (0, `ray.length`) at which the ray meets the shape from either side. `leaving`: the ray starts on
     /// this very shape, so that the start itself is no hit.
-    pub fn intersect(&self, ray: &Ray, leaving: bool) -> Option<f64> {
+    pub fn intersect(&self, ray: &Ray, leaving: bool) -> Option<Contact> {
+        let plain = |t| Contact { t, triangle: 0 };
         match self {
-            Self::Parallelogram(p) => (!leaving).then(|| p.intersect(ray)).flatten(),
-            Self::Sphere(s) => s.intersect(ray, leaving),
+            Self::Parallelogram(p) => (!leaving).then(|| p.intersect(ray)).flatten().map(plain),
+            Self::Sphere(s) => s.intersect(ray, leaving).map(plain),
+            Self::Disc(d) => (!leaving).then(|| d.intersect(ray)).flatten().map(plain),
+            Self::Body(b) => b
+                .intersect(ray)
+                .map(|(t, triangle)| Contact { t, triangle }),
+        }
+    }
+
+    /// The point of the shape where the ray meets it: removes the rounding.
+    pub fn at_contact(&self, ray: &Ray, contact: Contact) -> SurfacePoint {
+        let at = ray.origin + ray.direction * contact.t;
+        match self {
+            Self::Body(b) => b.on_triangle(contact.triangle, at),
+            _ => self.at_position(at),
         }
     }
 
@@ -92,22 +123,30 @@ impl Shape {
         match self {
             Self::Parallelogram(p) => !leaves && !arrives && p.blocks(ray),
             Self::Sphere(s) => s.blocks(ray, leaves, arrives),
+            Self::Disc(d) => !leaves && !arrives && d.blocks(ray),
+            Self::Body(b) => b.blocks(ray),
         }
     }
 
-    /// The point of the shape nearest to `p`, which must lie on it up to rounding: removes the rounding.
+    /// The point of the shape nearest to `p`, which must lie on it up to rounding: removes the rounding. Of a mesh it takes a search;
+    /// [`Shape::at_contact`] does not.
     pub fn at_position(&self, p: DVec3) -> SurfacePoint {
         match self {
             Self::Parallelogram(s) => s.at_position(p),
             Self::Sphere(s) => s.at_position(p),
+            Self::Disc(d) => d.at_position(p),
+            Self::Body(b) => b.at_position(p),
         }
     }
 
-    /// The point with parameters `uv` in [0, 1]².
+    /// The point to which an equal-area map takes `uv` in [0, 1]². They are the point's parameters, but for a mesh, whose parameters are
+    /// its texture coordinates.
     pub fn at(&self, uv: [f64; 2]) -> SurfacePoint {
         match self {
             Self::Parallelogram(p) => p.at(uv),
             Self::Sphere(s) => s.at(uv),
+            Self::Disc(d) => d.at(uv),
+            Self::Body(b) => b.at(uv),
         }
     }
 
@@ -116,12 +155,23 @@ impl Shape {
         match self {
             Self::Parallelogram(p) => p.at_xy(x, y).into_iter().collect(),
             Self::Sphere(s) => s.at_xy(x, y),
+            Self::Disc(d) => d.at_xy(x, y).into_iter().collect(),
+            Self::Body(b) => b.at_xy(x, y),
         }
     }
 
     /// Whether the whole shape lies in one plane: then no light travels between two points of it.
     pub fn is_flat(&self) -> bool {
-        matches!(self, Self::Parallelogram(_))
+        matches!(self, Self::Parallelogram(_) | Self::Disc(_))
+    }
+
+    /// Whether light may travel between two points of the shape's own front.
+    pub fn may_see_itself(&self) -> bool {
+        match self {
+            Self::Parallelogram(_) | Self::Disc(_) => false,
+            Self::Sphere(s) => s.facing == Facing::Inside,
+            Self::Body(_) => true,
+        }
     }
 
     /// Whether any point of the shape lies in front of the plane through `point` with normal `normal`, by more than
@@ -130,6 +180,10 @@ impl Shape {
         match self {
             Self::Parallelogram(p) => p.corners().iter().any(|c| (*c - point).dot(normal) > slack),
             Self::Sphere(s) => (s.centre - point).dot(normal) + s.radius > slack,
+            Self::Disc(_) | Self::Body(_) => {
+                let corners = self.box_corners();
+                corners.iter().any(|c| (*c - point).dot(normal) > slack)
+            }
         }
     }
 
@@ -141,7 +195,18 @@ impl Shape {
                 let centre = motion.transform_point3(s.centre);
                 Sphere::new(centre, s.radius, s.facing).map(Self::Sphere)
             }
+            Self::Disc(d) => d.moved(motion).map(Self::Disc),
+            Self::Body(b) => b.moved(motion).map(Self::Body),
         }
+    }
+
+    /// The corners of its axis-aligned box.
+    pub fn box_corners(&self) -> [DVec3; 8] {
+        let (low, high) = self.bounds();
+        std::array::from_fn(|k| {
+            let pick = |d: usize| if k >> d & 1 == 0 { low[d] } else { high[d] };
+            DVec3::new(pick(0), pick(1), pick(2))
+        })
     }
 
     /// A ball around the shape: centre and radius.
@@ -156,6 +221,11 @@ impl Shape {
                 )
             }
             Self::Sphere(s) => (s.centre, s.radius),
+            Self::Disc(d) => (d.centre(), d.radius()),
+            Self::Body(b) => {
+                let (low, high) = b.bounds();
+                (0.5 * (low + high), 0.5 * (high - low).length())
+            }
         }
     }
 
@@ -164,6 +234,8 @@ impl Shape {
         match self {
             Self::Parallelogram(s) => (s.at_position(p).position - p).length(),
             Self::Sphere(s) => ((p - s.centre).length() - s.radius).abs(),
+            Self::Disc(d) => (d.at_position(p).position - p).length(),
+            Self::Body(b) => (b.at_position(p).position - p).length(),
         }
     }
 
@@ -173,7 +245,7 @@ impl Shape {
             Self::Parallelogram(_) => [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
                 .map(|uv| self.at(uv))
                 .to_vec(),
-            Self::Sphere(_) => {
+            Self::Sphere(_) | Self::Disc(_) | Self::Body(_) => {
                 let steps = [0.0, 0.25, 0.5, 0.75, 1.0];
                 steps
                     .iter()

@@ -4,12 +4,11 @@ use std::f64::consts::FRAC_1_PI;
 
 use super::ModelError;
 use super::kernel::{HiddenPoint, Kernel};
-use super::matrix_model::hidden_point;
 use super::sight::{self, WallPoint};
-use crate::geometry::Basis;
+use crate::geometry::{Basis, Body, DVec3, Shape};
 use crate::matrix::Matrix;
 use crate::num::quadrature::Rule;
-use crate::scene::{Profile, Scene};
+use crate::scene::{Element, Profile, Scene, Surface};
 
 /// Φcam by quadrature, and how far it can be trusted.
 #[derive(Clone, Debug)]
@@ -70,10 +69,7 @@ const GAUSSIAN_REACH: f64 = 4.0;
 /// # Errors
 /// [`ModelError::NothingHidden`].
 pub fn converged(scene: &Scene, kernel: Kernel, extent: Extent) -> Result<Converged, ModelError> {
-    let cells: usize = scene
-        .hidden()
-        .map(|(_, s)| s.albedo.smooth_cells().iter().product::<usize>())
-        .sum();
+    let cells: usize = scene.hidden().map(|(_, s)| pieces(s)).sum();
     if cells == 0 {
         return Err(ModelError::NothingHidden);
     }
@@ -142,8 +138,12 @@ fn integrate(scene: &Scene, kernel: Kernel, nodes: Nodes) -> Matrix {
         offsets.iter().map(lit).collect::<Vec<_>>()
     };
     let lit: Vec<Vec<WallPoint>> = (0..spots).map(lit).collect();
-    let side =
-        |walls: &[WallPoint], point| walls.iter().map(|w| w.towards(kernel, point)).sum::<f64>();
+    let side = |walls: &[WallPoint], point| {
+        walls
+            .iter()
+            .map(|w| w.towards(scene, kernel, point))
+            .sum::<f64>()
+    };
     let mut phi = Matrix::zeros(pixels, spots);
     for chunk in hidden_nodes(scene, nodes).chunks(CHUNK) {
         let camera = Matrix::from_fn(pixels, chunk.len(), |p, q| side(&seen[p], &chunk[q].0));
@@ -158,26 +158,85 @@ fn integrate(scene: &Scene, kernel: Kernel, nodes: Nodes) -> Matrix {
 /// Points of the hidden surfaces with area · albedo/π.
 fn hidden_nodes(scene: &Scene, nodes: Nodes) -> Vec<(HiddenPoint, f64)> {
     let mut found = Vec::new();
+    let mut add = |surface: &Surface, element: &Element| {
+        let albedo = surface.albedo.albedo(element.uv);
+        if albedo > 0.0 && element.area > 0.0 {
+            let weight = element.area * albedo * FRAC_1_PI;
+            found.push((HiddenPoint::from(element), weight));
+        }
+    };
     for (_, surface) in scene.hidden() {
-        let ([nu, nv], rule) = match nodes.extent.elements {
-            Take::Centre => (surface.elements, 1),
-            Take::Integral => (surface.albedo.smooth_cells(), nodes.hidden),
-        };
-        let area = surface.shape.area() / (nu * nv) as f64;
-        for cell in 0..nu * nv {
-            for ([a, b], w) in plane_nodes(rule) {
-                let uv = [
-                    ((cell % nu) as f64 + a) / nu as f64,
-                    ((cell / nu) as f64 + b) / nv as f64,
-                ];
-                let albedo = surface.albedo.albedo(uv);
-                if albedo > 0.0 {
-                    found.push((hidden_point(surface, uv), w * area * albedo * FRAC_1_PI));
+        let whole = surface.shape.area();
+        match (nodes.extent.elements, &surface.shape) {
+            (Take::Centre, _) => {
+                let elements = surface.divided(surface.elements);
+                elements.iter().for_each(|e| add(surface, e));
+            }
+            (Take::Integral, Shape::Body(body)) => {
+                triangle_nodes(body, nodes.hidden, |e| add(surface, &e));
+            }
+            (Take::Integral, _) => {
+                let [nu, nv] = surface.albedo.smooth_cells();
+                let area = whole / (nu * nv) as f64;
+                for cell in 0..nu * nv {
+                    for ([a, b], w) in plane_nodes(nodes.hidden) {
+                        let uv = [
+                            ((cell % nu) as f64 + a) / nu as f64,
+                            ((cell / nu) as f64 + b) / nv as f64,
+                        ];
+                        let area = w * area;
+                        add(
+                            surface,
+                            &Element {
+                                area,
+                                ..surface.element_at(uv)
+                            },
+                        );
+                    }
                 }
             }
         }
     }
     found
+}
+
+/// Parts of a hidden surface within which the integrand is smooth.
+fn pieces(surface: &Surface) -> usize {
+    match &surface.shape {
+        Shape::Body(body) => body.mesh().triangles().len(),
+        _ => surface.albedo.smooth_cells().iter().product(),
+    }
+}
+
+/// Every triangle by the product rule of n × n nodes on the square that is folded onto it: (u, v) → (1 − u, u·(1 − v), u·v), whose area
+/// element is twice the triangle's area times u. With one node its centroid.
+fn triangle_nodes(body: &Body, n: usize, mut visit: impl FnMut(Element)) {
+    let scale = body.area() / body.mesh().area();
+    for t in 0..body.mesh().triangles().len() as u32 {
+        let [a, b, c] = body.corners(t);
+        let area = body.mesh().triangle_area(t) * scale;
+        let mut node = |weights: [f64; 3], share: f64| {
+            let [x, y, z] = weights;
+            let point = body.on_triangle(t, a * x + b * y + c * z);
+            visit(Element {
+                position: point.position,
+                normal: point.normal,
+                area: area * share,
+                u_axis: DVec3::X,
+                uv: point.uv,
+            });
+        };
+        if area <= 0.0 {
+            continue;
+        }
+        if n == 1 {
+            node([1.0 / 3.0; 3], 1.0);
+            continue;
+        }
+        for ([u, v], w) in plane_nodes(n) {
+            node([1.0 - u, u * (1.0 - v), u * v], 2.0 * u * w);
+        }
+    }
 }
 
 /// Product rule on the unit square; the weights add up to 1.

@@ -1,6 +1,7 @@
 //! The two kernels of G12 and G23.
 
 use crate::geometry::DVec3;
+use crate::scene::Element;
 
 /// Which cosine is taken at S2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,6 +21,16 @@ pub(super) struct HiddenPoint {
     pub normal: DVec3,
     /// Unit vector along u.
     pub u_axis: DVec3,
+}
+
+impl From<&Element> for HiddenPoint {
+    fn from(element: &Element) -> Self {
+        Self {
+            position: element.position,
+            normal: element.normal,
+            u_axis: element.u_axis,
+        }
+    }
 }
 
 impl Kernel {

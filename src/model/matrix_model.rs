@@ -6,7 +6,7 @@ use super::kernel::{HiddenPoint, Kernel};
 use super::sight::{self, WallPoint};
 use crate::geometry::DVec3;
 use crate::matrix::Matrix;
-use crate::scene::{Scene, Surface};
+use crate::scene::{Division, Scene};
 
 /// Why a scene has no matrix model.
 #[derive(Debug, thiserror::Error, PartialEq)]
@@ -110,7 +110,10 @@ impl MatrixModel {
         for (_, surface) in scene.hidden() {
             let grid = ElementGrid {
                 surface: surface.name.clone(),
-                count: elements.unwrap_or(surface.elements),
+                count: match surface.division {
+                    Division::Cells => elements.unwrap_or(surface.elements),
+                    Division::Faces => surface.elements,
+                },
                 first: count,
             };
             count += grid.len();
@@ -131,15 +134,10 @@ impl MatrixModel {
         let mut areas = Vec::with_capacity(count);
         let mut albedo = Vec::with_capacity(count);
         for ((_, surface), grid) in scene.hidden().zip(&grids) {
-            let [nu, nv] = grid.count;
-            for element in 0..grid.len() {
-                let uv = [
-                    ((element % nu) as f64 + 0.5) / nu as f64,
-                    ((element / nu) as f64 + 0.5) / nv as f64,
-                ];
-                points.push(hidden_point(surface, uv));
-                areas.push(surface.shape.area() / grid.len() as f64);
-                albedo.push(surface.albedo.albedo(uv));
+            for element in surface.divided(grid.count) {
+                points.push(HiddenPoint::from(&element));
+                areas.push(element.area);
+                albedo.push(surface.albedo.albedo(element.uv));
             }
         }
         let seen: Vec<WallPoint> = (0..pixels)
@@ -152,10 +150,11 @@ impl MatrixModel {
         let g23 = Matrix::from_fn(pixels, count, |p, j| g(&seen[p], j));
         let g12 = Matrix::from_fn(count, spots, |j, l| g(&lit[l], j));
         let camera_side = Matrix::from_fn(pixels, count, |p, j| {
-            seen[p].weight * g23[(p, j)] * FRAC_1_PI
+            seen[p].reflected(scene, points[j].position) * g23[(p, j)] * FRAC_1_PI
         });
-        let laser_side =
-            Matrix::from_fn(count, spots, |j, l| lit[l].weight * areas[j] * g12[(j, l)]);
+        let laser_side = Matrix::from_fn(count, spots, |j, l| {
+            lit[l].reflected(scene, points[j].position) * areas[j] * g12[(j, l)]
+        });
         Ok(Self {
             kernel,
             grids,
@@ -174,16 +173,5 @@ impl MatrixModel {
             row *= *rho;
         }
         &self.camera_side * lit
-    }
-}
-
-/// The point of a hidden surface with parameters `uv`.
-pub(super) fn hidden_point(surface: &Surface, uv: [f64; 2]) -> HiddenPoint {
-    let point = surface.shape.at(uv);
-    let along = surface.shape.at([1.0, uv[1]]).position - surface.shape.at([0.0, uv[1]]).position;
-    HiddenPoint {
-        position: point.position,
-        normal: point.normal,
-        u_axis: along.normalize_or(DVec3::X),
     }
 }

@@ -4,22 +4,66 @@ use std::f64::consts::FRAC_1_PI;
 
 use super::kernel::{HiddenPoint, Kernel};
 use crate::geometry::{DVec3, Ray, SurfacePoint};
-use crate::scene::{Role, Scene, Surface};
+use crate::scene::{Role, Scene};
 
 /// A point of the wall that a line of sight ends on, or that the laser lights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct WallPoint {
     pub position: DVec3,
     pub normal: DVec3,
-    /// What the point contributes besides G: E_p·ρ3/π (length² sr · sr⁻¹) on the camera's side, Φlaser·ρ1/π (W sr⁻¹) on the
-    /// laser's.
+    /// What the point contributes besides G and f_r: E_p (length² sr) on the camera's side, Φlaser (W) on the laser's; 0 where the line
+    /// ends on nothing, or on a back.
     pub weight: f64,
+    /// How it reflects.
+    pub reflection: Reflection,
+}
+
+/// f_r of a wall point between the device (laser or camera) and the hidden surface: BRDF12, BRDF23cam.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Reflection {
+    /// ρ/π, whatever the directions.
+    Constant(f64),
+    /// That of surface `surface`, whose texture has the value `albedo`, for the unit vector `device`.
+    Directed {
+        surface: usize,
+        albedo: f64,
+        device: DVec3,
+    },
 }
 
 impl WallPoint {
-    /// Weight times G.
-    pub(super) fn towards(&self, kernel: Kernel, hidden: &HiddenPoint) -> f64 {
-        self.weight * kernel.between(self.position, self.normal, hidden)
+    /// Weight times f_r, towards a point of the hidden surface.
+    pub(super) fn reflected(&self, scene: &Scene, to: DVec3) -> f64 {
+        self.weight
+            * match self.reflection {
+                Reflection::Constant(f) => f,
+                Reflection::Directed {
+                    surface,
+                    albedo,
+                    device,
+                } => {
+                    let to = (to - self.position).normalize_or_zero();
+                    scene.surfaces[surface].brdf(albedo, self.normal, device, to)
+                }
+            }
+    }
+
+    /// Weight times f_r times G.
+    pub(super) fn towards(&self, scene: &Scene, kernel: Kernel, hidden: &HiddenPoint) -> f64 {
+        match kernel.between(self.position, self.normal, hidden) {
+            0.0 => 0.0,
+            g => self.reflected(scene, hidden.position) * g,
+        }
+    }
+
+    /// A place that nothing is lit at or seen of.
+    fn nowhere(position: DVec3, normal: DVec3) -> Self {
+        Self {
+            position,
+            normal,
+            weight: 0.0,
+            reflection: Reflection::Constant(0.0),
+        }
     }
 }
 
@@ -34,20 +78,20 @@ pub(super) fn seen(scene: &Scene, pixel: usize, ab: [f64; 2], share: f64) -> Wal
     let direction = line / d2.sqrt();
     let cos = camera.view.normal().dot(direction);
     let etendue = camera.aperture_area * cos * cos / d2 * share * footprint.area;
-    let relays = scene.surfaces.iter().filter(|s| s.role == Role::Relay);
+    let relays = scene
+        .surfaces
+        .iter()
+        .enumerate()
+        .filter(|(_, s)| s.role == Role::Relay);
     let ray = Ray::new(camera.position, direction);
     let nearest = relays
-        .filter_map(|s| s.shape.intersect(&ray, false).map(|t| (t, s)))
-        .min_by(|a, b| a.0.total_cmp(&b.0));
+        .filter_map(|(id, s)| s.shape.intersect(&ray, false).map(|met| (met, id)))
+        .min_by(|a, b| a.0.t.total_cmp(&b.0.t));
     match nearest {
-        None => WallPoint {
-            position: target,
-            normal: camera.view.normal(),
-            weight: 0.0,
-        },
-        Some((t, surface)) => {
-            let point = surface.shape.at_position(camera.position + direction * t);
-            lambertian(surface, &point, direction, etendue)
+        None => WallPoint::nowhere(target, camera.view.normal()),
+        Some((met, id)) => {
+            let point = scene.surfaces[id].shape.at_contact(&ray, met);
+            reflecting(scene, id, &point, direction, etendue)
         }
     }
 }
@@ -57,44 +101,47 @@ pub(super) fn seen(scene: &Scene, pixel: usize, ab: [f64; 2], share: f64) -> Wal
 pub(super) fn lit(scene: &Scene, spot: usize, offset: DVec3, share: f64) -> WallPoint {
     let laser = &scene.laser;
     let target = &laser.spots[spot].target;
-    let surface = &scene.surfaces[laser.spots[spot].surface as usize];
+    let id = laser.spots[spot].surface as usize;
     let aim = target.position + offset;
     let direction = (aim - laser.position).normalize_or_zero();
     if offset == DVec3::ZERO {
-        return lambertian(surface, target, direction, share * laser.power);
+        return reflecting(scene, id, target, direction, share * laser.power);
     }
-    match surface
-        .shape
-        .intersect(&Ray::new(laser.position, direction), false)
-    {
-        None => WallPoint {
-            position: aim,
-            normal: target.normal,
-            weight: 0.0,
-        },
-        Some(t) => {
-            let point = surface.shape.at_position(laser.position + direction * t);
-            lambertian(surface, &point, direction, share * laser.power)
+    let ray = Ray::new(laser.position, direction);
+    let shape = &scene.surfaces[id].shape;
+    match shape.intersect(&ray, false) {
+        None => WallPoint::nowhere(aim, target.normal),
+        Some(met) => {
+            let point = shape.at_contact(&ray, met);
+            reflecting(scene, id, &point, direction, share * laser.power)
         }
     }
 }
 
-/// A Lambertian wall point met along `direction`: its weight is `received`·ρ/π, and 0 on the back.
-fn lambertian(
-    surface: &Surface,
+/// A wall point of surface `id` met along `direction`, with `received` W or length² sr; nothing on the back.
+fn reflecting(
+    scene: &Scene,
+    id: usize,
     point: &SurfacePoint,
     direction: DVec3,
     received: f64,
 ) -> WallPoint {
-    let front = point.normal.dot(direction) < 0.0;
-    let albedo = if front {
-        surface.albedo.albedo(point.uv)
-    } else {
-        0.0
-    };
+    if point.normal.dot(direction) >= 0.0 {
+        return WallPoint::nowhere(point.position, point.normal);
+    }
+    let surface = &scene.surfaces[id];
+    let albedo = surface.albedo.albedo(point.uv);
     WallPoint {
         position: point.position,
         normal: point.normal,
-        weight: received * albedo * FRAC_1_PI,
+        weight: received,
+        reflection: match surface.is_lambertian() {
+            true => Reflection::Constant(albedo * FRAC_1_PI),
+            false => Reflection::Directed {
+                surface: id,
+                albedo,
+                device: -direction,
+            },
+        },
     }
 }

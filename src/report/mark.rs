@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::axis::tick;
+use super::hull::hull;
 use super::label::Labels;
 use super::projection::{Projection, View};
 use super::svg::{Close, Svg, ink, number};
@@ -14,6 +15,10 @@ use crate::scene::{Role, Scene, Surface, Texture};
 pub(super) const MOST_SPOTS: usize = 20_000;
 /// A texture is drawn with at most this many cells a side.
 const MOST_CELLS: usize = 64;
+/// A mesh is drawn as the outline of at most this many vertices.
+const MOST_VERTICES: usize = 50_000;
+/// Points on a quarter of a disc's rim.
+const RIM: usize = 24;
 
 /// The ink of a role.
 pub(super) fn colour(role: Role) -> &'static str {
@@ -57,6 +62,24 @@ pub(super) fn surface(svg: &mut Svg, surface: &Surface, p: &Projection) {
             ];
             let rim = ways.map(|w| surface.shape.at_position(sphere.centre + w * sphere.radius));
             rim.map(|s| (s.position, s.normal)).to_vec()
+        }
+        Shape::Disc(disc) => {
+            let edges = |k: usize| [[1.0, k as f64 / RIM as f64], [k as f64 / RIM as f64, 1.0]];
+            let half = (0..RIM)
+                .flat_map(edges)
+                .map(|uv| disc.at(uv).position - disc.centre());
+            let both = half.flat_map(|d| [disc.centre() + d, disc.centre() - d]);
+            let outline = hull(both.map(|q| p.at(q)).collect());
+            svg.path(&outline, Close::Yes, &style);
+            vec![(disc.centre(), disc.normal())]
+        }
+        Shape::Body(body) => {
+            let vertices = body.mesh().positions();
+            let thin = vertices.len().div_ceil(MOST_VERTICES);
+            let place = |v: &DVec3| p.at(body.placement().transform_point3(*v));
+            let outline = hull(vertices.iter().step_by(thin).map(place).collect());
+            svg.path(&outline, Close::Yes, &style);
+            Vec::new()
         }
     };
     let style = format!("fill=\"none\" stroke=\"{ink}\" stroke-width=\"1.2\"");

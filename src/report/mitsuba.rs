@@ -106,6 +106,20 @@ fn surface(s: &Surface) -> String {
                 Facing::Inside => "inside",
             }
         ),
+        Shape::Disc(d) => format!(
+            "\"shape\": \"disc\", \"centre\": {}, \"normal\": {}, \"radius\": {:?}",
+            triple(d.centre()),
+            triple(d.normal()),
+            d.radius()
+        ),
+        Shape::Body(b) => {
+            let corners = (0..b.mesh().triangles().len() as u32).map(|t| b.corners(t));
+            let corners: Vec<String> = corners.map(|c| c.map(triple).join(", ")).collect();
+            format!(
+                "\"shape\": \"mesh\", \"triangles\": [({})]",
+                corners.join("), (")
+            )
+        }
     };
     let name = text(&s.name);
     let albedo = albedo(&s.albedo);
@@ -163,9 +177,10 @@ struct Landing {
 fn land(scene: &Scene, aim: DVec3) -> Option<Landing> {
     let from = scene.laser.position;
     let direction = (aim - from).try_normalize()?;
-    let hit = scene.bvh().closest(&Ray::new(from, direction), None)?;
+    let ray = Ray::new(from, direction);
+    let hit = scene.bvh().closest(&ray, None)?;
     let surface = &scene.surfaces[hit.shape as usize];
-    let point = surface.shape.at_position(from + direction * hit.t);
+    let point = scene.bvh().point(&ray, hit);
     (point.normal.dot(direction) < 0.0).then(|| Landing {
         shape: hit.shape,
         position: point.position,

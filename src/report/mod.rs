@@ -17,6 +17,7 @@ mod experiment;
 mod exposure;
 mod figure;
 mod gallery;
+mod hull;
 mod indicator;
 mod key;
 mod label;

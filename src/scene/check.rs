@@ -47,7 +47,7 @@ pub(super) fn refuse_visible_hidden_face(scene: &Scene) -> Result<(), Fault> {
 
 /// Collects what is suspicious.
 pub(super) fn warnings(scene: &Scene) -> Vec<Warning> {
-    let mut found = Vec::new();
+    let mut found = scene.found.clone();
     if scene.hidden().next().is_none() {
         found.push(Warning::NothingHidden);
     }

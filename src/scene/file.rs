@@ -163,10 +163,113 @@ pub(super) struct SurfaceTable {
     pub rectangle: Option<RectangleTable>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sphere: Option<SphereTable>,
-    pub material: MaterialTable,
-    /// Resolution of the matrix model and of the recovery along u and v (hidden surfaces).
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub elements: Option<[u32; 2]>,
+    pub disc: Option<DiscTable>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<Box<MeshTable>>,
+    /// one (default): the front reflects, the back is black; two: both reflect.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sides: Option<SidesName>,
+    pub material: MaterialTable,
+    /// Resolution of the matrix model and of the recovery along u and v, or "faces" for one element to each triangle (hidden surfaces).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elements: Option<ElementsTable>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum SidesName {
+    One,
+    Two,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(
+    untagged,
+    expecting = "elements along u and v, e.g. [8, 8], or \"faces\""
+)]
+pub(super) enum ElementsTable {
+    Grid([u32; 2]),
+    Faces(FacesName),
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum FacesName {
+    Faces,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct DiscTable {
+    pub centre: Triple,
+    /// Normal of the front, of any length but 0.
+    pub normal: Triple,
+    pub radius: f64,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MeshTable {
+    /// PLY, OBJ, glTF or GLB file, relative to the scene file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// A mesh that phicam makes itself, in place of a file: bust, sphere or rectangle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub generate: Option<GeneratorName>,
+    /// At least so many triangles (generate).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub faces: Option<u64>,
+    /// Factor on all coordinates, or one for each axis; applied first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scale: Option<ScaleTable>,
+    /// Rotations about axes through the origin, in order, after the scale.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rotate: Option<Vec<RotationTable>>,
+    /// Shift, after the rotations.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub translate: Option<Triple>,
+    /// Puts the mesh, as it is turned, down on another surface.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub on: Option<OnTable>,
+    /// true: the mesh is meant to be closed, so that open edges are a defect.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub closed: Option<bool>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq, Hash)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum GeneratorName {
+    Bust,
+    Sphere,
+    Rectangle,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(
+    untagged,
+    expecting = "a factor, or one for each axis: 2.5 or [1, 1, 2]"
+)]
+pub(super) enum ScaleTable {
+    Uniform(f64),
+    Axes(Triple),
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RotationTable {
+    pub axis: Triple,
+    /// Degrees, counterclockwise seen from the tip of the axis.
+    pub angle: f64,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct OnTable {
+    /// Name of a surface that comes earlier in the file.
+    pub surface: String,
+    /// The place on it, in its parameters.
+    pub at: [f64; 2],
 }
 
 #[derive(Clone, Debug, Deserialize)]

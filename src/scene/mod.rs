@@ -100,11 +100,14 @@
 //! the wall is lost. The view's plane is that relay's plane; of a curved relay it is the
 //! tangent plane at the view's centre. Pixel index = column + row·columns, columns along +x and rows along +y of the view.
 
+mod body;
 mod builtin;
 mod camera;
 mod check;
+mod element;
 mod error;
 mod file;
+mod files;
 mod known;
 mod laser;
 pub mod material;
@@ -119,23 +122,28 @@ mod texture;
 mod variants;
 mod warning;
 
+use std::path::{Path, PathBuf};
+
 use sha2::{Digest, Sha256};
 
 pub use builtin::{Builtin, builtins};
 pub use camera::Camera;
+pub use element::Element;
 pub use error::{Place, SceneError};
+pub use files::{COPIES, Referenced};
 pub use known::Known;
 pub use laser::{Laser, Profile, Spot};
 pub use material::Material;
 pub use quantity::Quantity;
 pub use sensor::{Glare, MOST_BRACKETS, SensorModel, SensorSettings, Spread};
-pub use surface::{Role, Surface};
+pub use surface::{Division, Role, Surface};
 pub use texture::{Bilinear, Cells, Texture, Wrap};
 pub use warning::Warning;
 
 use crate::geometry::{Bvh, Shape};
 use error::{Fault, keys};
 use file::{SceneFile, UnitName};
+use files::Files;
 
 /// Largest number of surfaces that a path may meet.
 pub const MOST_BOUNCES: u32 = 1000;
@@ -196,9 +204,13 @@ pub struct Scene {
     pub sensor: Option<SensorSettings>,
     /// The text that the scene was read from.
     pub text: String,
+    /// The files that it names.
+    pub files: Vec<Referenced>,
     /// SHA-256 (hex) of the scene's content: comments and spelling of numbers do not change it.
     pub hash: String,
     bvh: Bvh,
+    /// What was suspicious in the files.
+    found: Vec<Warning>,
 }
 
 impl Scene {
@@ -207,22 +219,39 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] with file, line, cause and cure.
     pub fn load(name_or_path: &str) -> Result<Self, SceneError> {
+        Self::load_with(name_or_path, &[])
+    }
+
+    /// The same for a scene that may read meshes, pictures and materials in the folders `also` too, not only in its own.
+    ///
+    /// # Errors
+    /// [`SceneError`] with file, line, cause and cure.
+    pub fn load_with(name_or_path: &str, also: &[PathBuf]) -> Result<Self, SceneError> {
         if let Some(builtin) = builtins().iter().find(|b| b.name == name_or_path) {
             return Self::from_toml(name_or_path, builtin.text);
         }
-        Self::from_toml(name_or_path, &builtin::read(name_or_path)?)
+        let text = builtin::read(name_or_path)?;
+        let folder = match Path::new(name_or_path).parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        Self::read(name_or_path, &text, Files::of(folder, also))
     }
 
-    /// A scene from the text of a scene file; `source` names it in errors.
+    /// A scene from the text of a scene file; `source` names it in errors. It may name no other files, for a text has no folder.
     ///
     /// # Errors
     /// [`SceneError`] with line, cause and cure.
     pub fn from_toml(source: &str, text: &str) -> Result<Self, SceneError> {
-        let file = parse::parse(source, text)?;
-        Self::assemble(&file, text).map_err(|fault| parse::locate(source, text, fault))
+        Self::read(source, text, Files::default())
     }
 
-    fn assemble(file: &SceneFile, text: &str) -> Result<Self, Fault> {
+    fn read(source: &str, text: &str, files: Files) -> Result<Self, SceneError> {
+        let file = parse::parse(source, text)?;
+        Self::assemble(&file, text, files).map_err(|fault| parse::locate(source, text, fault))
+    }
+
+    fn assemble(file: &SceneFile, text: &str, mut files: Files) -> Result<Self, Fault> {
         if file.name.trim().is_empty() {
             return Err(Fault::new(
                 keys!["name"],
@@ -237,7 +266,9 @@ impl Scene {
                 format!("use 1 to {MOST_BOUNCES}; 3 is laser – wall – object – wall – camera"),
             ));
         }
-        let surfaces = surface::from_tables(&file.surface, file.laser.wavelength)?;
+        let mut found = Vec::new();
+        let wavelength = file.laser.wavelength;
+        let surfaces = surface::from_tables(&file.surface, &mut files, wavelength, &mut found)?;
         let shapes: Vec<Shape> = surfaces.iter().map(|s| s.shape.clone()).collect();
         let bvh = Bvh::new(shapes)
             .map_err(|e| Fault::new(keys!["surface"], e.to_string(), "check the coordinates"))?;
@@ -256,10 +287,11 @@ impl Scene {
             .transpose()?;
         let json = serde_json::to_vec(file)
             .map_err(|e| Fault::new(keys![], e.to_string(), "use finite numbers only"))?;
-        let hash = Sha256::digest(json)
-            .iter()
-            .map(|b| format!("{b:02x}"))
-            .collect();
+        let mut digest = Sha256::new_with_prefix(json);
+        for file in &files.read {
+            digest.update(&file.digest);
+        }
+        let hash = files::hex(&digest.finalize());
         let scene = Self {
             name: file.name.clone(),
             unit: match file.unit {
@@ -275,8 +307,10 @@ impl Scene {
             known,
             sensor,
             text: text.to_owned(),
+            files: files.read,
             hash,
             bvh,
+            found,
         };
         check::refuse_visible_hidden_face(&scene)?;
         Ok(scene)

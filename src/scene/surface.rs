@@ -1,13 +1,18 @@
 //! Surfaces.
 
+use super::body::{Meshes, Placed};
 use super::error::{Fault, keys};
-use super::file::{FaceName, RoleName, SurfaceTable};
+use super::file::{ElementsTable, FaceName, RoleName, SidesName, SurfaceTable};
+use super::files::Files;
 use super::material::Material;
 use super::texture::Texture;
-use crate::geometry::{DVec3, Facing, Parallelogram, Shape, Sphere, SurfacePoint};
+use super::warning::Warning;
+use crate::geometry::{Basis, DVec3, Disc, Facing, Parallelogram, Shape, Sphere, SurfacePoint};
 
 /// More elements along a side than this are taken for a mistake.
 const MOST_ELEMENTS: u32 = 1024;
+/// A picture or a measured material larger than this is not read: 256 MiB.
+const LARGEST_PICTURE: u64 = 256 << 20;
 
 /// What a surface is there for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,7 +25,7 @@ pub enum Role {
     Occluder,
 }
 
-/// A Lambertian surface: its front reflects, its back is black, both are opaque.
+/// A surface: its front reflects, its back is black, both are opaque.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
     /// Name, unique in the scene.
@@ -29,18 +34,43 @@ pub struct Surface {
     pub role: Role,
     /// Its geometry.
     pub shape: Shape,
-    /// Its albedo.
+    /// How its front reflects.
+    pub material: Material,
+    /// Its albedo, or what the material makes of that number.
     pub albedo: Texture,
-    /// Elements along u and v into which the matrix model divides it; \[0, 0\] unless hidden.
+    /// Elements along u and v into which the matrix model divides it (of triangles: all of them, and 1); \[0, 0\] unless hidden.
     pub elements: [usize; 2],
+    /// What the elements are.
+    pub division: Division,
+}
+
+/// What a hidden surface is divided into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Division {
+    /// Cells of its parameters; of a mesh: of its texture coordinates.
+    Cells,
+    /// The triangles of a mesh.
+    Faces,
 }
 
 /// Checks all surfaces.
-pub(super) fn from_tables(tables: &[SurfaceTable], wavelength: f64) -> Result<Vec<Surface>, Fault> {
+pub(super) fn from_tables(
+    tables: &[SurfaceTable],
+    files: &mut Files,
+    wavelength: f64,
+    found: &mut Vec<Warning>,
+) -> Result<Vec<Surface>, Fault> {
     let mut surfaces: Vec<Surface> = Vec::with_capacity(tables.len());
+    let mut meshes = Meshes::default();
     for (i, table) in tables.iter().enumerate() {
-        let surface =
-            Surface::from_table(table, wavelength).map_err(|f| f.within(keys!["surface", i]))?;
+        let mut sources = Sources {
+            meshes: &mut meshes,
+            files: &mut *files,
+            wavelength,
+            found: &mut *found,
+        };
+        let surface = Surface::from_table(table, &surfaces, &mut sources)
+            .map_err(|f| f.within(keys!["surface", i]))?;
         if surfaces.iter().any(|s| s.name == surface.name) {
             let cause = format!("two surfaces are called `{}`", surface.name);
             return Err(Fault::new(
@@ -51,6 +81,15 @@ pub(super) fn from_tables(tables: &[SurfaceTable], wavelength: f64) -> Result<Ve
         }
         surfaces.push(surface);
     }
+    // The backs come last, so that positions in the list are those in the file.
+    for (i, table) in tables.iter().enumerate() {
+        if table.sides == Some(SidesName::Two) {
+            let back = surfaces[i]
+                .back()
+                .map_err(|f| f.within(keys!["surface", i]))?;
+            surfaces.push(back);
+        }
+    }
     refuse_coincident(&surfaces)?;
     if !surfaces.iter().any(|s| s.role == Role::Relay) {
         return Err(Fault::new(
@@ -60,6 +99,14 @@ pub(super) fn from_tables(tables: &[SurfaceTable], wavelength: f64) -> Result<Ve
         ));
     }
     Ok(surfaces)
+}
+
+/// What surfaces are made from besides their tables.
+struct Sources<'a> {
+    meshes: &'a mut Meshes,
+    files: &'a mut Files,
+    wavelength: f64,
+    found: &'a mut Vec<Warning>,
 }
 
 /// Two surfaces in one place that face the same way: it would be up to rounding which of them the light meets. Back to back
@@ -87,13 +134,88 @@ fn refuse_coincident(surfaces: &[Surface]) -> Result<(), Fault> {
 }
 
 impl Surface {
+    /// f_r, sr⁻¹, at a point of the surface where its texture has the value `albedo` and its front the normal `normal`, between two unit
+    /// vectors that point away from it; 0 unless both are on the front.
+    pub fn brdf(&self, albedo: f64, normal: DVec3, incident: DVec3, exitant: DVec3) -> f64 {
+        let basis = Basis::around(normal);
+        self.material
+            .brdf(albedo, basis.to_local(incident), basis.to_local(exitant))
+    }
+
+    /// Whether every point of it reflects by ρ/π, whatever the directions.
+    pub fn is_lambertian(&self) -> bool {
+        self.material.is_lambertian()
+    }
+
+    /// Whether none of it reflects anything.
+    pub fn is_black(&self) -> bool {
+        self.material.is_black(self.albedo.largest())
+    }
+
+    /// Cells along u and v within which the albedo is smooth; a mesh, whose texture knows nothing of the equal-area map, is one.
+    pub fn smooth_cells(&self) -> [usize; 2] {
+        match self.shape {
+            Shape::Body(_) => [1, 1],
+            _ => self.albedo.smooth_cells(),
+        }
+    }
+
+    /// About how much of the light cell iu + iv·nu of [`Surface::smooth_cells`] reflects: 0 where, and only where, it is black.
+    pub fn cell_weight(&self, cell: usize) -> f64 {
+        /// What is sampled of a surface that reflects though its texture is black there.
+        const LEAST: f64 = 0.05;
+        let mean = match self.shape {
+            Shape::Body(_) => self.albedo.largest(),
+            _ => self.albedo.cell_mean(cell),
+        };
+        if self.material.is_lambertian() {
+            return mean;
+        }
+        match self.material.is_black(mean) {
+            true => 0.0,
+            false => mean.max(LEAST),
+        }
+    }
+
     /// The point above or below (x, y) that shows its front to `device`; of a sphere's two the lower one.
     pub(super) fn facing_at_xy(&self, x: f64, y: f64, device: DVec3) -> Option<SurfacePoint> {
         let mut points = self.shape.at_xy(x, y).into_iter();
         points.find(|p| (device - p.position).dot(p.normal) > 0.0)
     }
 
-    fn from_table(table: &SurfaceTable, wavelength: f64) -> Result<Self, Fault> {
+    /// A surface in the same place whose front is this one's back.
+    fn back(&self) -> Result<Self, Fault> {
+        let shape = match &self.shape {
+            Shape::Parallelogram(p) => Some(Shape::Parallelogram(p.turned())),
+            Shape::Disc(d) => d.turned().map(Shape::Disc),
+            Shape::Body(b) => Some(Shape::Body(b.turned())),
+            Shape::Sphere(_) => None,
+        };
+        let refused = |cause: &str, cure: &str| Fault::new(keys!["sides"], cause, cure);
+        if self.role == Role::Hidden {
+            return Err(refused(
+                "a hidden surface has one side: the model divides its front into elements",
+                "remove `sides`, and put an occluder behind it if its back is to be seen",
+            ));
+        }
+        let shape = shape.ok_or_else(|| {
+            refused(
+                "a sphere has one side, inside or outside",
+                "remove `sides`, or add a second sphere that differs a little in radius",
+            )
+        })?;
+        Ok(Self {
+            name: format!("{} (back)", self.name),
+            shape,
+            ..self.clone()
+        })
+    }
+
+    fn from_table(
+        table: &SurfaceTable,
+        earlier: &[Self],
+        sources: &mut Sources<'_>,
+    ) -> Result<Self, Fault> {
         if table.name.trim().is_empty() {
             return Err(Fault::new(
                 keys!["name"],
@@ -106,16 +228,26 @@ impl Surface {
             RoleName::Hidden => Role::Hidden,
             RoleName::Occluder => Role::Occluder,
         };
-        let shape = shape(table)?;
-        let mut no_files = |path: &str| Err(format!("{path}: this scene has no folder to look in"));
-        let (material, albedo) = Material::from_table(&table.material, wavelength, &mut no_files)
+        let shape = shape(table, earlier, sources)?;
+        let wavelength = sources.wavelength;
+        let files = &mut *sources.files;
+        let mut read = |path: &str| {
+            files
+                .bytes(path, LARGEST_PICTURE)
+                .map_err(|(cause, cure)| format!("{cause}; {cure}"))
+        };
+        let (material, albedo) = Material::from_table(&table.material, wavelength, &mut read)
             .map_err(|f| f.within(keys!["material"]))?;
-        if !material.is_lambertian() {
-            let cause = "this material is not traced yet";
-            return Err(Fault::new(keys!["material"], cause, "use `lambertian`"));
-        }
         let elements = match (role, table.elements) {
-            (Role::Hidden, Some([nu, nv])) => {
+            (Role::Hidden, Some(ElementsTable::Faces(_))) => {
+                let Shape::Body(body) = &shape else {
+                    let cause = "only a mesh can be divided into its faces";
+                    let cure = "give elements along u and v: `elements = [8, 8]`";
+                    return Err(Fault::new(keys!["elements"], cause, cure));
+                };
+                [body.mesh().triangles().len(), 1]
+            }
+            (Role::Hidden, Some(ElementsTable::Grid([nu, nv]))) => {
                 if !(1..=MOST_ELEMENTS).contains(&nu) || !(1..=MOST_ELEMENTS).contains(&nv) {
                     let cause = format!("{nu} × {nv} elements");
                     let cure = format!("use 1 to {MOST_ELEMENTS} a side");
@@ -142,27 +274,52 @@ impl Surface {
                 ));
             }
         };
-        if role == Role::Hidden && !shape.is_flat() {
-            return Err(Fault::new(
-                keys!["sphere"],
-                "a hidden surface must be a rectangle: the matrix model divides nothing else into elements",
-                "use `rectangle`, or another role",
-            ));
+        let division = match table.elements {
+            Some(ElementsTable::Faces(_)) => Division::Faces,
+            _ => Division::Cells,
+        };
+        if let Shape::Body(body) = &shape
+            && body.mesh().uv().is_none()
+        {
+            let cause = |what: &str| {
+                format!(
+                    "the mesh of `{}` has no texture coordinates for {what}",
+                    table.name
+                )
+            };
+            if role == Role::Hidden && division == Division::Cells {
+                let cure = "write `elements = \"faces\"`, or use a mesh with texture coordinates";
+                return Err(Fault::new(keys!["elements"], cause("cells of them"), cure));
+            }
+            if !matches!(albedo, Texture::Constant(_)) {
+                let cure = "use a constant albedo, or a mesh with texture coordinates";
+                return Err(Fault::new(
+                    keys!["material"],
+                    cause("an albedo that varies"),
+                    cure,
+                ));
+            }
         }
         Ok(Self {
             name: table.name.clone(),
             role,
             shape,
+            material,
             albedo,
             elements,
+            division,
         })
     }
 }
 
-fn shape(table: &SurfaceTable) -> Result<Shape, Fault> {
+fn shape(
+    table: &SurfaceTable,
+    earlier: &[Surface],
+    sources: &mut Sources<'_>,
+) -> Result<Shape, Fault> {
     let v = DVec3::from_array;
-    match (&table.rectangle, &table.sphere) {
-        (Some(r), None) => {
+    match (&table.rectangle, &table.sphere, &table.disc, &table.mesh) {
+        (Some(r), None, None, None) => {
             if [r.corner, r.u, r.v]
                 .iter()
                 .flatten()
@@ -184,7 +341,26 @@ fn shape(table: &SurfaceTable) -> Result<Shape, Fault> {
             })?;
             Ok(Shape::Parallelogram(patch))
         }
-        (None, Some(s)) => {
+        (None, None, Some(d), None) => Disc::new(v(d.centre), v(d.normal), d.radius)
+            .map(Shape::Disc)
+            .ok_or_else(|| {
+                let cause = format!("disc `{}` has no area or no normal", table.name);
+                let cure = "use a finite centre, a normal that is not zero and a positive radius";
+                Fault::new(keys!["disc"], cause, cure)
+            }),
+        (None, None, None, Some(m)) => {
+            let Placed { body, defects } = sources
+                .meshes
+                .place(m, earlier, sources.files)
+                .map_err(|f| f.within(keys!["mesh"]))?;
+            let open = m.closed == Some(true) && !defects.is_closed();
+            if open || !defects.is_empty() {
+                let name = table.name.clone();
+                sources.found.push(Warning::Mesh(name, defects));
+            }
+            Ok(Shape::Body(body))
+        }
+        (None, Some(s), None, None) => {
             let facing = match s.face {
                 FaceName::Outside => Facing::Outside,
                 FaceName::Inside => Facing::Inside,
@@ -205,7 +381,7 @@ fn shape(table: &SurfaceTable) -> Result<Shape, Fault> {
         _ => Err(Fault::new(
             keys![],
             format!(
-                "surface `{}` needs exactly one of `rectangle` and `sphere`",
+                "surface `{}` needs exactly one of `rectangle`, `disc`, `sphere` and `mesh`",
                 table.name
             ),
             "add `rectangle = { corner = […], u = […], v = […] }`",

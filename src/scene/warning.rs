@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use super::mesh::Defects;
+
 /// Something suspicious in a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Warning {
@@ -23,6 +25,8 @@ pub enum Warning {
     ElementsAcrossCells(String),
     /// Spots whose line to the hidden surface is blocked for every element.
     SpotsShadowed(Vec<usize>),
+    /// Defects of a surface's mesh.
+    Mesh(String, Defects),
     /// Spots of which a part falls beside the wall and is lost.
     SpotsOverhang(Vec<usize>),
 }
@@ -36,6 +40,7 @@ impl fmt::Display for Warning {
                     "no surface is hidden: frames can be rendered, but there is nothing to model or recover"
                 )
             }
+            Self::Mesh(surface, defects) => write!(f, "the mesh of `{surface}`: {defects}"),
             Self::SpotsInView(spots) => {
                 write!(
                     f,

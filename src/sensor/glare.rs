@@ -1,7 +1,5 @@
 //! Veiling glare: light of the spot that the lens scatters over the whole image.
 
-use std::f64::consts::FRAC_1_PI;
-
 use crate::geometry::{DVec3, Ray, ShapeId};
 use crate::matrix::Matrix;
 use crate::scene::{Glare, Scene, Spread};
@@ -78,11 +76,7 @@ fn lit(scene: &Scene, spot: usize) -> Option<Lit> {
     let own = laser.spots[spot].surface;
     let (id, point) = if scene.bvh().blocked(&ray, [None, Some(own)]) {
         let hit = scene.bvh().closest(&ray, None)?;
-        let at = ray.origin + ray.direction * hit.t;
-        (
-            hit.shape,
-            scene.surfaces[hit.shape as usize].shape.at_position(at),
-        )
+        (hit.shape, scene.bvh().point(&ray, hit))
     } else {
         (own, *target)
     };
@@ -102,5 +96,8 @@ fn enters(scene: &Scene, (position, normal, albedo, surface): &Lit) -> f64 {
         return 0.0;
     }
     let aperture = camera.aperture_area * cos_lens / (ray.length * ray.length);
-    scene.laser.power * albedo * FRAC_1_PI * cos_spot * aperture
+    let surface = &scene.surfaces[*surface as usize];
+    let laser = (scene.laser.position - *position).normalize_or_zero();
+    let reflected = surface.brdf(*albedo, *normal, laser, ray.direction);
+    scene.laser.power * reflected * cos_spot * aperture
 }

@@ -1,6 +1,8 @@
 //! Where the laser's light lands.
 
-use crate::geometry::{Basis, DVec3, Parallelogram, Ray, Region, Shape, ShapeId};
+use std::f64::consts::FRAC_1_PI;
+
+use crate::geometry::{Basis, DVec3, Parallelogram, Ray, Region, Shape, ShapeId, SurfacePoint};
 use crate::num::warp;
 use crate::scene::{Profile, Scene};
 
@@ -11,6 +13,31 @@ pub(super) struct LitPoint {
     pub normal: DVec3,
     pub shape: ShapeId,
     pub albedo: f64,
+    /// Unit vector to the laser.
+    pub towards: DVec3,
+}
+
+impl LitPoint {
+    fn new(scene: &Scene, shape: ShapeId, point: &SurfacePoint, direction: DVec3) -> Option<Self> {
+        let albedo = scene.surfaces[shape as usize].albedo.albedo(point.uv);
+        (point.normal.dot(direction) < 0.0).then_some(Self {
+            position: point.position,
+            normal: point.normal,
+            shape,
+            albedo,
+            towards: -direction,
+        })
+    }
+
+    /// f_r between the beam and the direction to the point `to`.
+    pub(super) fn brdf(&self, scene: &Scene, to: DVec3) -> f64 {
+        let surface = &scene.surfaces[self.shape as usize];
+        if surface.is_lambertian() {
+            return self.albedo * FRAC_1_PI;
+        }
+        let exitant = (to - self.position).normalize_or_zero();
+        surface.brdf(self.albedo, self.normal, self.towards, exitant)
+    }
 }
 
 /// The beams to all spots.
@@ -189,27 +216,16 @@ impl<'a> Beams<'a> {
         if self.scene.bvh().blocked(&ray, [None, Some(spot.surface)]) {
             return self.land(target.position);
         }
-        let surface = &self.scene.surfaces[spot.surface as usize];
-        (target.normal.dot(ray.direction) < 0.0).then(|| LitPoint {
-            position: target.position,
-            normal: target.normal,
-            shape: spot.surface,
-            albedo: surface.albedo.albedo(target.uv),
-        })
+        LitPoint::new(self.scene, spot.surface, target, ray.direction)
     }
 
     /// First hit of the ray from the laser through `aim`.
     fn land(&self, aim: DVec3) -> Option<LitPoint> {
         let from = self.scene.laser.position;
         let direction = (aim - from).try_normalize()?;
-        let hit = self.scene.bvh().closest(&Ray::new(from, direction), None)?;
-        let surface = &self.scene.surfaces[hit.shape as usize];
-        let point = surface.shape.at_position(from + direction * hit.t);
-        (point.normal.dot(direction) < 0.0).then(|| LitPoint {
-            position: point.position,
-            normal: point.normal,
-            shape: hit.shape,
-            albedo: surface.albedo.albedo(point.uv),
-        })
+        let ray = Ray::new(from, direction);
+        let hit = self.scene.bvh().closest(&ray, None)?;
+        let point = self.scene.bvh().point(&ray, hit);
+        LitPoint::new(self.scene, hit.shape, &point, direction)
     }
 }

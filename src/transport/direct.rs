@@ -8,7 +8,6 @@ use super::lit::Lit;
 use super::pinhole;
 use super::walk::Vertex;
 use crate::scene::Scene;
-use std::f64::consts::FRAC_1_PI;
 
 /// What the pixels see of a range of spots.
 #[derive(Debug)]
@@ -110,7 +109,8 @@ pub(super) fn direct(
             return 0.0;
         }
         let seen = pinhole::density(scene, at);
-        x.throughput * x.albedo * FRAC_1_PI * irradiance * seen / (seen + irradiance)
+        let to_laser = (scene.laser.position - x.position).normalize_or_zero();
+        x.throughput * x.brdf(scene, to_laser) * irradiance * seen / (seen + irradiance)
     });
     let by_beam = lit.and_then(|point| {
         // Which pixel it would be comes before the ray that says whether.

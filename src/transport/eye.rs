@@ -1,7 +1,6 @@
 //! What every pixel sees first.
 
-use std::f64::consts::FRAC_1_PI;
-
+use super::gloss;
 use super::packet::Packet;
 use super::pinhole;
 use super::shadow::Shadows;
@@ -61,24 +60,25 @@ impl Sighting {
             footprint.area * camera.aperture_area * cos * cos / (line.length * line.length);
         let height = plane.normal().dot(plane.corner() - line.origin);
         let at = line.origin + line.direction * (height / plane.normal().dot(line.direction));
-        Vertex::arrive(scene, *shape, at, line.direction, etendue)
+        let point = plane.at_position(at);
+        Vertex::arrive(scene, *shape, &point, line.direction, etendue)
     }
 
-    /// First vertices for many points of the footprint, weighted by étendue · ρ/π (length² sr); without weight where nothing is seen.
+    /// First vertices for many points of the footprint, weighted by étendue · ρ/π (length² sr), or étendue where ρ/π is not how the surface reflects; without weight where nothing is seen.
     pub(super) fn vertices(&self, scene: &Scene, places: &[[f64; 2]], out: &mut Packet) {
         let constant = |id: ShapeId| match &scene.surfaces[id as usize].albedo {
-            Texture::Constant(rho) => Some(*rho),
+            Texture::Constant(rho) => Some(gloss::weight(scene, id, *rho)),
             _ => None,
         };
         if let Some((shape, plane, _)) = &self.fills
-            && let Some(rho) = constant(*shape)
+            && let Some(weight) = constant(*shape)
         {
-            return self.on_plane(scene, places, out, (*shape, plane, rho));
+            return self.on_plane(scene, places, out, (*shape, plane, weight));
         }
         for (i, ab) in places.iter().enumerate() {
             match self.vertex(scene, *ab) {
                 Some(x) => {
-                    let weight = x.throughput * x.albedo * FRAC_1_PI;
+                    let weight = x.throughput * gloss::weight(scene, x.shape, x.albedo);
                     out.set(i, (x.position, x.normal), weight, x.shape);
                 }
                 None => out.set(i, (DVec3::ZERO, DVec3::ZERO), 0.0, 0),
@@ -93,14 +93,14 @@ impl Sighting {
         scene: &Scene,
         places: &[[f64; 2]],
         out: &mut Packet,
-        (shape, plane, rho): (ShapeId, &Parallelogram, f64),
+        (shape, plane, reflection): (ShapeId, &Parallelogram, f64),
     ) {
         let camera = &scene.camera;
         let footprint = camera.footprint(self.pixel);
         let [corner, u, v] = [footprint.corner - camera.position, footprint.u, footprint.v];
         let (o, n, view) = (camera.position, plane.normal(), camera.view.normal());
         let height = n.dot(plane.corner() - o);
-        let factor = footprint.area * camera.aperture_area * rho * FRAC_1_PI;
+        let factor = footprint.area * camera.aperture_area * reflection;
         out.fill_shape(shape, n, places.len());
         let ([x, y, z], weight) = out.places_mut(places.len());
         widest(

@@ -1,12 +1,12 @@
 //! Φcam as a matrix product.
 
-use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
 use std::sync::atomic::Ordering;
 
 use rayon::prelude::*;
 
 use super::eye::hide;
+use super::gloss;
 use super::lit::Lit;
 use super::moments::{Layout, Moments, TILE};
 use super::packet::Packet;
@@ -183,11 +183,14 @@ impl<'a> Factored<'a> {
                     return;
                 };
                 let own = if lit.is_fixed() { 0 } else { i };
-                let factor = power * vertex.throughput * vertex.albedo * FRAC_1_PI;
+                let scene = self.setting.scene;
+                let reflection = gloss::weight(scene, vertex.shape, vertex.albedo);
+                let factor = power * vertex.throughput * reflection;
                 packets[own].forms_from((vertex.position, vertex.normal), factor, row);
-                self.setting
-                    .lamp
-                    .hide(lit.at(own), 0, (vertex.position, vertex.shape), row);
+                let lamp = &self.setting.lamp;
+                lamp.hide(lit.at(own), 0, (vertex.position, vertex.shape), row);
+                lamp.shade(lit.at(own), vertex.position, row);
+                gloss::of_vertex(scene, vertex, lit.at(own), row);
             });
             light
         };
@@ -213,6 +216,9 @@ impl<'a> Factored<'a> {
             sighting.vertices(self.setting.scene, places, &mut x);
             let row = &mut camera[i * inner..(i + 1) * inner];
             x.forms_to(at, row);
+            if self.setting.glossy {
+                gloss::of_views(self.setting.scene, &x, at, row);
+            }
             hide(self.setting.scene, &self.blockers[pixel], (&x, at), row);
             if self.setting.two {
                 let two = &mut sums[(rows + i) * width..(rows + i + 1) * width];

@@ -4,7 +4,7 @@ use super::steps::Steps;
 use crate::geometry::{ShapeId, SurfacePoint};
 use crate::scene::Scene;
 
-/// Density ∝ the mean albedo of each smooth texture cell, uniform in area within it: dark cells are never sampled, which
+/// Density ∝ the mean albedo of each smooth texture cell (a mesh is one cell), uniform in area within it: dark cells are never sampled, which
 /// is exact, and light ones are stratified by their edges.
 #[derive(Debug)]
 pub(super) struct HiddenArea {
@@ -45,8 +45,8 @@ impl HiddenArea {
         for &shape in shapes {
             let id = shape as usize;
             let surface = &scene.surfaces[id];
-            let count = surface.albedo.smooth_cells();
-            let mean = |i: usize, j: usize| surface.albedo.cell_mean(i + j * count[0]);
+            let count = surface.smooth_cells();
+            let mean = |i: usize, j: usize| surface.cell_weight(i + j * count[0]);
             let row_sum = |j: usize| (0..count[0]).map(|i| mean(i, j)).sum::<f64>();
             let weight: f64 = (0..count[1]).map(row_sum).sum();
             if weight <= 0.0 {

@@ -1,12 +1,12 @@
 //! The lit spots, seen from the surfaces that they light.
 
 use std::borrow::Cow;
-use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
 
 use rayon::prelude::*;
 
 use super::beam::{Beams, LitPoint, Reach};
+use super::gloss;
 use super::lit::Lit;
 use super::packet::Packet;
 use super::shadow::Shadows;
@@ -28,6 +28,8 @@ pub(super) struct Lamp<'a> {
     blockers: Vec<Vec<Blockers>>,
     /// Whether nothing stands between any expected landing and the shape.
     clear: Vec<bool>,
+    /// Whether any surface is not Lambertian.
+    glossy: bool,
 }
 
 /// A part of a flat shape.
@@ -93,7 +95,20 @@ impl<'a> Lamp<'a> {
             landings,
             blockers,
             clear,
+            glossy: gloss::in_scene(scene),
         }
+    }
+
+    /// Multiplies a row over lit points by their f_r towards `to`, where that is not in their packet.
+    pub(super) fn shade(&self, points: &[Option<LitPoint>], to: DVec3, row: &mut [f64]) {
+        if self.glossy {
+            gloss::of_lit(self.scene, points, to, row);
+        }
+    }
+
+    /// The first spot.
+    pub(super) fn first(&self) -> usize {
+        self.spots.start
     }
 
     /// Number of spots.
@@ -124,12 +139,13 @@ impl<'a> Lamp<'a> {
         Lit::new(columns.clone(), points)
     }
 
-    /// Lit points as a packet, weighted by the BRDF ρ/π.
+    /// Lit points as a packet, weighted by the BRDF ρ/π where that is how they reflect.
     pub(super) fn packet(&self, points: &[Option<LitPoint>], width: usize) -> Packet {
         let mut packet = Packet::dark(width);
         for (i, point) in points.iter().enumerate() {
             if let Some(p) = point {
-                packet.set(i, (p.position, p.normal), p.albedo * FRAC_1_PI, p.shape);
+                let weight = gloss::weight(self.scene, p.shape, p.albedo);
+                packet.set(i, (p.position, p.normal), weight, p.shape);
             }
         }
         packet
@@ -190,11 +206,12 @@ impl<'a> Lamp<'a> {
     }
 
     /// Adds to `sums` the light that goes from the lit spots to each of `points`, all spots of a point at once; point k counts `factor`(k),
-    /// and nothing if that is 0.
+    /// and nothing if that is 0; and `reflection`(k, position of the lit point), if there is such a thing.
     pub(super) fn add_light(
         &self,
         points: &Packet,
         factor: impl Fn(usize) -> f64,
+        reflection: Option<&dyn Fn(usize, DVec3) -> f64>,
         lit: &Lit<'_>,
         sums: &mut [f64],
     ) {
@@ -212,6 +229,13 @@ impl<'a> Lamp<'a> {
             packet.forms_from((position, normal), factor, &mut row);
             let from = (position, points.shape[k]);
             self.hide(own, lit.columns.start, from, &mut row);
+            self.shade(own, position, &mut row);
+            if let Some(reflection) = reflection {
+                let lit = row.iter_mut().zip(own);
+                lit.filter_map(|(r, lit)| Some((r, lit.as_ref()?.position)))
+                    .filter(|(r, _)| **r != 0.0)
+                    .for_each(|(r, lit)| *r *= reflection(k, lit));
+            }
             sums.iter_mut().zip(&row).for_each(|(s, r)| *s += r);
         }
     }
@@ -219,7 +243,13 @@ impl<'a> Lamp<'a> {
     /// Adds to `sums` the light that goes from the lit spots straight to the vertices x; each vertex counts `share`.
     pub(super) fn add_two_surfaces(&self, x: &Packet, lit: &Lit<'_>, share: f64, sums: &mut [f64]) {
         let factor = |k: usize| self.scene.laser.power * share * x.weight[k];
-        self.add_light(x, factor, lit, sums);
+        let reflection =
+            |k: usize, lit: DVec3| gloss::of_view(self.scene, x, k, lit).unwrap_or(1.0);
+        let reflection: Option<&dyn Fn(usize, DVec3) -> f64> = match self.glossy {
+            true => Some(&reflection),
+            false => None,
+        };
+        self.add_light(x, factor, reflection, lit, sums);
     }
 }
 

@@ -23,16 +23,10 @@ mod direct;
 mod eye;
 mod factored;
 mod form;
+mod gloss;
 mod hidden;
 mod lamp;
 mod lit;
-#[cfg_attr(
-    not(test),
-    allow(
-        dead_code,
-        reason = "called once paths ask surfaces for their material"
-    )
-)]
 mod lobe;
 mod moments;
 mod own;
@@ -47,4 +41,4 @@ mod steps;
 mod strata;
 mod walk;
 
-pub use render::{Budget, Control, Estimator, Plan, Traced, block_size, render};
+pub use render::{Budget, Control, Estimator, Plan, Traced, block_size, obstacle, render};

@@ -4,6 +4,7 @@ use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
 
 use super::eye::{Sighting, hide};
+use super::gloss;
 use super::lit::Lit;
 use super::packet::Packet;
 use super::setting::Setting;
@@ -43,7 +44,9 @@ impl<'a> OwnPoints<'a> {
     /// Whether the pixel's paths fit in.
     pub(super) fn fits(setting: &Setting<'_>, pixel: usize) -> bool {
         let filled = setting.sightings[pixel].shape();
-        setting.scene.max_bounces <= 3 && filled.is_some_and(|s| setting.walk.by_area_alone(s))
+        setting.scene.max_bounces <= 3
+            && setting.plain
+            && filled.is_some_and(|s| setting.walk.far_from_hidden(s))
     }
 
     /// `None` if the pixel's paths do not fit in.
@@ -105,12 +108,13 @@ impl<'a> OwnPoints<'a> {
 
     /// Adds the points that are in the buffers, and empties them.
     fn chunk(&self, b: &mut Buffers, columns: &Range<usize>, stride: usize, sums: &mut [f64]) {
+        let setting = self.setting;
         let Setting {
             scene,
             lamp,
             direct,
             ..
-        } = self.setting;
+        } = setting;
         let count = b.places.len();
         b.x.darken_from(count);
         b.y.darken_from(count);
@@ -124,6 +128,9 @@ impl<'a> OwnPoints<'a> {
         }
         if sums.len() > 2 * stride {
             b.x.forms_to(&b.y, &mut b.camera);
+            if setting.glossy {
+                gloss::of_views(scene, &b.x, &b.y, &mut b.camera);
+            }
             for (c, w) in b.camera.iter_mut().zip(&b.y.weight) {
                 *c *= w * scene.laser.power;
             }
@@ -131,7 +138,7 @@ impl<'a> OwnPoints<'a> {
             let three = &mut sums[2 * stride..2 * stride + n];
             match three {
                 [sum] => self.one_spot(b, &lit, sum),
-                _ => lamp.add_light(&b.y, |k| b.camera[k], &lit, three),
+                _ => lamp.add_light(&b.y, |k| b.camera[k], None, &lit, three),
             }
         }
         b.places.clear();
@@ -153,7 +160,7 @@ impl<'a> OwnPoints<'a> {
                 true => b.light[k],
                 false => b.y.form(k, (point.position, point.normal)),
             };
-            let part = b.camera[k] * (point.albedo * FRAC_1_PI) * form;
+            let part = b.camera[k] * point.brdf(self.setting.scene, b.y.position(k)) * form;
             if part != 0.0 && !lamp.hidden(column, point, (b.y.position(k), b.y.shape[k])) {
                 *sum += part;
             }

@@ -17,21 +17,15 @@ pub(super) fn first_vertex(scene: &Scene, pixel: usize, ab: [f64; 2]) -> Option<
     let line = Ray::between(camera.position, footprint.at(ab))?;
     let cos = camera.view.normal().dot(line.direction).abs();
     let etendue = footprint.area * camera.aperture_area * cos * cos / (line.length * line.length);
-    let hit = scene
-        .bvh()
-        .closest(&Ray::new(line.origin, line.direction), None)?;
-    Vertex::arrive(
-        scene,
-        hit.shape,
-        line.origin + line.direction * hit.t,
-        line.direction,
-        etendue,
-    )
+    let ray = Ray::new(line.origin, line.direction);
+    let hit = scene.bvh().closest(&ray, None)?;
+    let point = scene.bvh().point(&ray, hit);
+    Vertex::arrive(scene, hit.shape, &point, line.direction, etendue)
 }
 
 /// The flux of the lit point itself into whichever pixel sees it, per watt of laser power: (pixel, flux).
 ///
-/// A point that scatters Φ has the radiant intensity Φ·(ρ/π)·cosθ; the aperture fills A_lens·cosθ_cam/d² of solid angle.
+/// A point that scatters Φ has the radiant intensity Φ·f_r·cosθ; the aperture fills A_lens·cosθ_cam/d² of solid angle.
 pub(super) fn direct(scene: &Scene, lit: &LitPoint) -> Option<(usize, f64)> {
     let camera: &Camera = &scene.camera;
     let pixel = camera.pixel_of(lit.position)?;
@@ -44,7 +38,7 @@ pub(super) fn direct(scene: &Scene, lit: &LitPoint) -> Option<(usize, f64)> {
     let solid_angle = camera.aperture_area * cos_camera / (ray.length * ray.length);
     Some((
         pixel,
-        lit.albedo * std::f64::consts::FRAC_1_PI * cos_lit * solid_angle,
+        lit.brdf(scene, camera.position) * cos_lit * solid_angle,
     ))
 }
 

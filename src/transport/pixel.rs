@@ -1,16 +1,17 @@
 //! All paths of one pixel.
 
-use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
 
 use super::beam::LitPoint;
 use super::direct::direct;
 use super::form::form;
+use super::gloss;
 use super::own::OwnPoints;
 use super::pinhole;
 use super::setting::Setting;
 use super::walk::Vertex;
 use crate::num::stream::{Key, Stream};
+use crate::scene::Scene;
 
 /// Traces pixels of one scene by one plan.
 #[derive(Debug)]
@@ -71,7 +72,10 @@ impl<'a> PixelTracer<'a> {
         let power = self.setting.scene.laser.power;
         let vertices = self.setting.scene.max_bounces - 1;
         let second = self.setting.beams.has_width() || self.setting.walk.chooses();
+        let Setting { scene, lamp, .. } = self.setting;
+        let first_column = spots.start - lamp.first();
         let mut lit: Vec<Option<LitPoint>> = Vec::with_capacity(spots.len());
+        let mut row = vec![0.0; spots.len()];
         for index in 0..self.setting.plan.budget.size {
             stream.start(index);
             let [a, b, u, v] = stream.next_four();
@@ -98,31 +102,28 @@ impl<'a> PixelTracer<'a> {
             self.setting
                 .walk
                 .run(first, vertices, [u, v], choice, &mut stream, |n, vertex| {
-                    let radiance = vertex.throughput * vertex.albedo * FRAC_1_PI * power;
-                    let row = &mut sums[n as usize * columns..];
-                    for (sum, point) in row.iter_mut().zip(&lit) {
-                        if let Some(point) = point {
-                            *sum += radiance * self.connect(vertex, point);
-                        }
+                    let reflection = gloss::weight(scene, vertex.shape, vertex.albedo);
+                    let radiance = vertex.throughput * reflection * power;
+                    for (entry, point) in row.iter_mut().zip(&lit) {
+                        *entry = point
+                            .as_ref()
+                            .map_or(0.0, |lit| radiance * connection(scene, vertex, lit));
                     }
+                    let from = (vertex.position, vertex.shape);
+                    lamp.hide(&lit, first_column, from, &mut row);
+                    lamp.shade(&lit, vertex.position, &mut row);
+                    gloss::of_vertex(scene, vertex, &lit, &mut row);
+                    let sums = &mut sums[n as usize * columns..];
+                    sums.iter_mut().zip(&row).for_each(|(s, r)| *s += r);
                 });
         }
     }
+}
 
-    /// V·cosθ·cosθ′/d² · ρ/π between a vertex and the lit point.
-    fn connect(&self, vertex: &Vertex, lit: &LitPoint) -> f64 {
-        let ends = ((vertex.position, vertex.normal), (lit.position, lit.normal));
-        match form(ends.0, ends.1) {
-            Some((form, ray))
-                if !self
-                    .setting
-                    .scene
-                    .bvh()
-                    .blocked(&ray, [Some(vertex.shape), Some(lit.shape)]) =>
-            {
-                form * lit.albedo * FRAC_1_PI
-            }
-            _ => 0.0,
-        }
-    }
+/// cosθ·cosθ′/d² between a vertex and the lit point, times ρ/π of the latter where that is how it reflects; visibility is no part of it.
+fn connection(scene: &Scene, vertex: &Vertex, lit: &LitPoint) -> f64 {
+    let ends = ((vertex.position, vertex.normal), (lit.position, lit.normal));
+    form(ends.0, ends.1).map_or(0.0, |(form, _)| {
+        form * gloss::weight(scene, lit.shape, lit.albedo)
+    })
 }

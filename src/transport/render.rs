@@ -13,7 +13,7 @@ use super::setting::Setting;
 use crate::matrix::Matrix;
 use crate::num::stream::{LARGEST_NET, Sampling};
 use crate::num::summation::mean_and_stderr;
-use crate::scene::Scene;
+use crate::scene::{Scene, Surface};
 
 /// What paths have in common. All are unbiased.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -149,11 +149,24 @@ pub fn block_size(scene: &Scene, plan: &Plan) -> usize {
     plan.budget.size as usize
 }
 
+/// The surface for which `plan` has no estimator, by name: [`Estimator::Factored`] needs all that light may meet between the first and the
+/// last wall to be Lambertian, for its points are the same for all pixels and spots.
+pub fn obstacle<'a>(scene: &'a Scene, plan: &Plan) -> Option<&'a str> {
+    if plan.estimator != Estimator::Factored || scene.surfaces.iter().all(Surface::is_lambertian) {
+        return None;
+    }
+    let beams = Beams::new(scene);
+    let setting = Setting::new(scene, plan, &beams, 0..1);
+    let met = setting.between.iter().map(|s| &scene.surfaces[*s as usize]);
+    let glossy = met.filter(|s| !s.is_lambertian()).map(|s| s.name.as_str());
+    glossy.into_iter().next()
+}
+
 /// Traces the columns `spots` of Φcam. The same plan gives the same bits for every number of threads and every range
 /// that a spot is part of. `None` if it was stopped.
 ///
 /// # Panics
-/// If `spots` reaches beyond the scene's spots.
+/// If `spots` reaches beyond the scene's spots, or there is an [`obstacle`].
 pub fn render(
     scene: &Scene,
     plan: &Plan,
@@ -169,6 +182,10 @@ pub fn render(
     let beams = Beams::new(scene);
     let setting = Setting::new(scene, plan, &beams, spots.clone());
     if plan.estimator == Estimator::Factored {
+        assert!(
+            setting.plain,
+            "factored needs Lambertian surfaces between the walls"
+        );
         return Factored::new(&setting).render(control);
     }
     let tracer = PixelTracer::new(&setting);

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::beam::Beams;
 use super::direct::Direct;
 use super::eye::{Sighting, seen};
+use super::gloss;
 use super::lamp::{Lamp, lit};
 use super::render::Plan;
 use super::sight::{between, two_surfaces};
@@ -32,6 +33,10 @@ pub(super) struct Setting<'a> {
     pub strata: Strata<'a>,
     /// Whether light that met two surfaces can reach any pixel.
     pub two: bool,
+    /// Whether all of `between` is Lambertian.
+    pub plain: bool,
+    /// Whether anything in the scene is not.
+    pub glossy: bool,
 }
 
 impl<'a> Setting<'a> {
@@ -49,7 +54,10 @@ impl<'a> Setting<'a> {
         let (seen, lit) = (seen(scene, &sightings), lit(scene, beams));
         let between = between(scene, &seen, &lit);
         let walk = Walk::new(scene);
-        let near = match seen.iter().all(|s| walk.by_area_alone(*s)) {
+        let plain = between
+            .iter()
+            .all(|s| scene.surfaces[*s as usize].is_lambertian());
+        let near = match seen.iter().all(|s| walk.far_from_hidden(*s)) {
             true => Near::Nothing,
             false => Near::Something,
         };
@@ -61,6 +69,8 @@ impl<'a> Setting<'a> {
             direct: Direct::new(scene, beams, spots),
             strata: Strata::new(scene, &between, near, plan.sampling, plan.budget.size),
             two: two_surfaces(scene, &seen, &lit),
+            plain,
+            glossy: gloss::in_scene(scene),
             lamp,
             sightings,
             between,

@@ -1,17 +1,17 @@
 //! What can be seen from where, judged conservatively.
 
-use crate::geometry::{Facing, Shape, ShapeId};
+use crate::geometry::{Shape, ShapeId};
 use crate::scene::Scene;
 
 /// Whether light can travel between the fronts of shapes `s` and `t`: no only where geometry forbids it (one lies nowhere above the
 /// other's plane) or `t` reflects nothing. Other shapes in between are not asked.
 pub(super) fn may_see(scene: &Scene, s: usize, t: usize) -> bool {
     let (from, to) = (&scene.surfaces[s].shape, &scene.surfaces[t]);
-    if to.albedo.largest() <= 0.0 {
+    if to.is_black() {
         return false;
     }
     if s == t {
-        return matches!(from, Shape::Sphere(s) if s.facing == Facing::Inside);
+        return from.may_see_itself();
     }
     let slack = 1e-9 * (from.area().sqrt() + to.shape.area().sqrt());
     let above = |a: &Shape, b: &Shape| {

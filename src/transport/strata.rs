@@ -56,11 +56,9 @@ impl Anchor {
     fn new(scene: &Scene, points: u32) -> Option<Self> {
         let camera = &scene.camera;
         let line = Ray::between(camera.position, camera.view.at([0.5, 0.5]).position)?;
-        let hit = scene
-            .bvh()
-            .closest(&Ray::new(line.origin, line.direction), None)?;
-        let shape = &scene.surfaces[hit.shape as usize].shape;
-        let point = shape.at_position(line.origin + line.direction * hit.t);
+        let ray = Ray::new(line.origin, line.direction);
+        let hit = scene.bvh().closest(&ray, None)?;
+        let point = scene.bvh().point(&ray, hit);
         (point.normal.dot(line.direction) < 0.0).then_some(Self {
             position: point.position,
             normal: point.normal,
@@ -87,11 +85,7 @@ impl Anchor {
         let direction = Basis::around(self.normal).to_world(local).normalize();
         let ray = Ray::new(self.position, direction);
         let hit = scene.bvh().closest(&ray, Some(self.shape))?;
-        let shape = &scene.surfaces[hit.shape as usize].shape;
-        Some((
-            hit.shape,
-            shape.at_position(self.position + direction * hit.t),
-        ))
+        Some((hit.shape, scene.bvh().point(&ray, hit)))
     }
 }
 
@@ -146,10 +140,10 @@ impl<'a> Strata<'a> {
         let mut weights = Vec::new();
         for &shape in shapes {
             let surface = &scene.surfaces[shape as usize];
-            let [nu, nv] = surface.albedo.smooth_cells();
+            let [nu, nv] = surface.smooth_cells();
             let area = surface.shape.area() / (nu * nv) as f64;
             for cell in 0..nu * nv {
-                let weight = surface.albedo.cell_mean(cell) * area;
+                let weight = surface.cell_weight(cell) * area;
                 if weight > 0.0 {
                     let at = |i: usize, n: usize| i as f64 / n as f64;
                     cells.push(Cell {

@@ -5,10 +5,11 @@ use std::f64::consts::FRAC_1_PI;
 use crate::geometry::{Basis, DVec3, Ray, ShapeId, SurfacePoint};
 use crate::num::stream::Stream;
 use crate::num::warp;
-use crate::scene::Scene;
+use crate::scene::{Scene, Surface};
 
 use super::form::form;
 use super::hidden::HiddenArea;
+use super::lobe;
 use super::sight::may_see;
 
 /// A point where a path meets the front of a surface.
@@ -18,41 +19,57 @@ pub(super) struct Vertex {
     pub normal: DVec3,
     pub shape: ShapeId,
     pub albedo: f64,
+    /// Unit vector back along the path; zero where a Lambertian surface need not know it.
+    pub towards: DVec3,
     /// Flux into the pixel per unit of radiance leaving this vertex along the path, over the density of the path so far
     /// (length² sr).
     pub throughput: f64,
 }
 
 impl Vertex {
-    /// The vertex where a ray along `direction` arrives at `shape` near `position`; `None` on a back or a black surface,
-    /// from which no light can come.
+    /// The vertex where a ray along `direction` arrives at a point of `shape`; `None` on a back or a black surface, from which no light
+    /// can come.
     pub(super) fn arrive(
         scene: &Scene,
         shape: ShapeId,
-        position: DVec3,
+        point: &SurfacePoint,
         direction: DVec3,
         throughput: f64,
     ) -> Option<Self> {
-        let surface = &scene.surfaces[shape as usize];
-        let point = surface.shape.at_position(position);
-        (point.normal.dot(direction) < 0.0).then(|| Self::at(scene, shape, &point, throughput))?
+        let front = point.normal.dot(direction) < 0.0;
+        let vertex = front.then(|| Self::at(scene, shape, point, throughput))??;
+        Some(Self {
+            towards: -direction,
+            ..vertex
+        })
     }
 
-    /// The vertex at a point of `shape`; `None` on black.
+    /// The vertex at a point of `shape`, whoever looks at it; `None` on black.
     pub(super) fn at(
         scene: &Scene,
         shape: ShapeId,
         point: &SurfacePoint,
         throughput: f64,
     ) -> Option<Self> {
-        let albedo = scene.surfaces[shape as usize].albedo.albedo(point.uv);
-        (albedo > 0.0).then_some(Self {
+        let surface = &scene.surfaces[shape as usize];
+        let albedo = surface.albedo.albedo(point.uv);
+        (!surface.material.is_black(albedo)).then_some(Self {
             position: point.position,
             normal: point.normal,
             shape,
             albedo,
+            towards: DVec3::ZERO,
             throughput,
         })
+    }
+
+    /// f_r of what comes along the unit vector `from` (pointing to where it comes from), towards the path so far.
+    pub(super) fn brdf(&self, scene: &Scene, from: DVec3) -> f64 {
+        let surface = &scene.surfaces[self.shape as usize];
+        match surface.is_lambertian() {
+            true => self.albedo * FRAC_1_PI,
+            false => surface.brdf(self.albedo, self.normal, from, self.towards),
+        }
     }
 }
 
@@ -63,8 +80,8 @@ enum Strategy {
     End,
     /// Points on the hidden surfaces by area: all that can be seen are hidden surfaces at some distance.
     Area,
-    /// Directions by the cosine lobe: no hidden surface can be seen.
-    Cosine,
+    /// Directions by the material's lobe: no hidden surface can be seen.
+    Lobe,
     /// Either, with probability ½, weighted by the mixture's density.
     Both,
 }
@@ -76,6 +93,8 @@ pub(super) struct Walk<'a> {
     hidden: HiddenArea,
     /// By shape.
     strategies: Vec<Strategy>,
+    /// By shape: whether all that it may see are hidden surfaces at some distance.
+    far: Vec<bool>,
 }
 
 /// A hidden surface this many of its circumradii away is sampled by area alone: the kernel varies little over it.
@@ -84,33 +103,34 @@ const FAR: f64 = 1.25;
 impl<'a> Walk<'a> {
     pub(super) fn new(scene: &'a Scene) -> Self {
         let hidden = HiddenArea::new(scene);
-        let strategies = (0..scene.surfaces.len())
+        let (strategies, far) = (0..scene.surfaces.len())
             .map(|s| strategy(scene, &hidden, s))
-            .collect();
+            .unzip();
         Self {
             scene,
             hidden,
             strategies,
+            far,
         }
     }
 
-    /// Whether paths leave `shape` towards hidden surfaces at some distance, or not at all.
-    pub(super) fn by_area_alone(&self, shape: ShapeId) -> bool {
-        matches!(
-            self.strategies[shape as usize],
-            Strategy::Area | Strategy::End
-        )
+    /// Whether all that can be seen from `shape` are hidden surfaces at some distance.
+    pub(super) fn far_from_hidden(&self, shape: ShapeId) -> bool {
+        self.far[shape as usize]
     }
 
-    /// Whether any path has to choose between strategies.
+    /// Whether any path has to choose between strategies, or between the lobes of a material.
     pub(super) fn chooses(&self) -> bool {
+        let glossy =
+            |(s, surface): (&Strategy, &Surface)| *s == Strategy::Lobe && !surface.is_lambertian();
         self.strategies.contains(&Strategy::Both)
+            || self.strategies.iter().zip(&self.scene.surfaces).any(glossy)
     }
 
     /// The next vertex of the path: `u` places it, `choice` picks the strategy where there are two.
     ///
-    /// Let q be the probability of the area strategy, p_A its density and p_C = cosθ_x/π · cosθ_y/d² that of the cosine
-    /// strategy, both per unit area at y. Whatever strategy found y, the estimator of ∫ f dy is
+    /// Let q be the probability of the area strategy, p_A its density and p_C = p_ω · cosθ_y/d² that of the lobe strategy, p_ω the
+    /// density per solid angle by which the material is sampled (cosθ_x/π where it is Lambertian), both per unit area at y. Whatever strategy found y, the estimator of ∫ f dy is
     /// f(y)/(q·p_A(y) + (1 − q)·p_C(y)), which is unbiased wherever f > 0 implies a positive mixture density. A point that
     /// the area strategy chose counts only if it is visible itself: taking the first hit in its direction instead would
     /// count a surface in front of it twice.
@@ -118,18 +138,22 @@ impl<'a> Walk<'a> {
         let q = match self.strategies[x.shape as usize] {
             Strategy::End => return None,
             Strategy::Area => 1.0,
-            Strategy::Cosine => 0.0,
+            Strategy::Lobe => 0.0,
             Strategy::Both => 0.5,
         };
         let (shape, point) = if choice < q {
             self.by_area(x, u)?
         } else {
-            self.by_cosine(x, u)?
+            self.by_lobe(x, u, (choice - q) / (1.0 - q))?
         };
-        let (form, _) = form((x.position, x.normal), (point.position, point.normal))?;
-        let density = q * self.hidden.density(shape, point.uv) + (1.0 - q) * FRAC_1_PI * form;
-        let throughput = x.throughput * x.albedo * FRAC_1_PI * form / density;
-        Vertex::at(self.scene, shape, &point, throughput)
+        let (form, ray) = form((x.position, x.normal), (point.position, point.normal))?;
+        let by_lobe = match q < 1.0 {
+            true => self.lobe_density(x, &point, &ray, form),
+            false => 0.0,
+        };
+        let density = q * self.hidden.density(shape, point.uv) + (1.0 - q) * by_lobe;
+        let throughput = x.throughput * x.brdf(self.scene, ray.direction) * form / density;
+        Vertex::arrive(self.scene, shape, &point, ray.direction, throughput)
     }
 
     fn by_area(&self, x: &Vertex, u: [f64; 2]) -> Option<(ShapeId, SurfacePoint)> {
@@ -138,15 +162,32 @@ impl<'a> Walk<'a> {
         (!self.scene.bvh().blocked(&ray, [Some(x.shape), Some(shape)])).then_some((shape, point))
     }
 
-    fn by_cosine(&self, x: &Vertex, u: [f64; 2]) -> Option<(ShapeId, SurfacePoint)> {
-        let local = warp::cosine_hemisphere(u);
-        let direction = Basis::around(x.normal).to_world(local).normalize();
-        let hit = self
-            .scene
-            .bvh()
-            .closest(&Ray::new(x.position, direction), Some(x.shape))?;
-        let shape = &self.scene.surfaces[hit.shape as usize].shape;
-        Some((hit.shape, shape.at_position(x.position + direction * hit.t)))
+    fn by_lobe(&self, x: &Vertex, u: [f64; 2], choice: f64) -> Option<(ShapeId, SurfacePoint)> {
+        let surface = &self.scene.surfaces[x.shape as usize];
+        let basis = Basis::around(x.normal);
+        let local = match surface.is_lambertian() {
+            true => warp::cosine_hemisphere(u),
+            false => {
+                let exitant = basis.to_local(x.towards);
+                lobe::sample(&surface.material, x.albedo, exitant, u, choice)?.to_array()
+            }
+        };
+        let ray = Ray::new(x.position, basis.to_world(local).normalize());
+        let hit = self.scene.bvh().closest(&ray, Some(x.shape))?;
+        Some((hit.shape, self.scene.bvh().point(&ray, hit)))
+    }
+
+    /// Density of [`Walk::by_lobe`] per unit area at y, which `ray` reaches from x; `form` is cosθ_x·cosθ_y/d².
+    fn lobe_density(&self, x: &Vertex, y: &SurfacePoint, ray: &Ray, form: f64) -> f64 {
+        let surface = &self.scene.surfaces[x.shape as usize];
+        if surface.is_lambertian() {
+            return FRAC_1_PI * form;
+        }
+        let basis = Basis::around(x.normal);
+        let [exitant, incident] = [x.towards, ray.direction].map(|w| basis.to_local(w));
+        let cos_y = -y.normal.dot(ray.direction);
+        lobe::density(&surface.material, x.albedo, exitant, incident) * cos_y
+            / (ray.length * ray.length)
     }
 
     /// Walks from `first` and calls `visit(n, vertex)` for vertices n = 1 … `vertices`.
@@ -179,7 +220,7 @@ impl<'a> Walk<'a> {
 }
 
 /// What can be seen from shape `s`, judged conservatively: a strategy is left out only where it cannot be needed.
-fn strategy(scene: &Scene, hidden: &HiddenArea, s: usize) -> Strategy {
+fn strategy(scene: &Scene, hidden: &HiddenArea, s: usize) -> (Strategy, bool) {
     let from = &scene.surfaces[s].shape;
     let mut sees_hidden = false;
     let mut sees_other = false;
@@ -194,10 +235,11 @@ fn strategy(scene: &Scene, hidden: &HiddenArea, s: usize) -> Strategy {
             sees_other = true;
         }
     }
-    match (sees_hidden, sees_other) {
+    let strategy = match (sees_hidden, sees_other) {
         (false, false) => Strategy::End,
-        (false, true) => Strategy::Cosine,
-        (true, false) if all_far => Strategy::Area,
+        (false, true) => Strategy::Lobe,
+        (true, false) if all_far && scene.surfaces[s].is_lambertian() => Strategy::Area,
         (true, _) => Strategy::Both,
-    }
+    };
+    (strategy, !sees_other && all_far)
 }

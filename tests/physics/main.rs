@@ -6,6 +6,7 @@ mod indicator;
 mod known;
 mod laboratory;
 mod laws;
+mod meshes;
 mod model;
 mod noise;
 mod obstacles;
@@ -23,7 +24,7 @@ use phicam::study::{Agreement, Errors, Evidence, Test, agree};
 use phicam::transport::{Budget, Control, Estimator, Plan, Traced, render};
 
 /// How to trace: estimator, sampling, seed, samples.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Way(Estimator, Sampling, u64, u64);
 
 impl Way {

@@ -36,6 +36,9 @@ pub(in crate::cli) struct Args {
     /// No progress and no remarks on standard error
     #[arg(long, short, global = true)]
     pub quiet: bool,
+    /// Let scenes read meshes, pictures and materials in this folder too, not only beside the scene file; may be given several times
+    #[arg(long, value_name = "DIR", global = true)]
+    pub also_read: Vec<PathBuf>,
     #[command(subcommand)]
     pub command: Command,
 }

@@ -8,15 +8,15 @@ use crate::cli::args::CoverageArgs;
 use crate::cli::failure::Failure;
 use crate::cli::interrupt::stop_flag;
 use crate::cli::output::Talk;
+use crate::cli::trust;
 use crate::cli::{Outcome, settings};
 use crate::model::{Kernel, MatrixModel};
 use crate::report;
-use crate::scene::Scene;
 use crate::store::ensure_writable;
 use crate::study::{self, CoveragePlan};
 
 pub(super) fn execute(args: &CoverageArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = Scene::load(&args.scene)?;
+    let scene = trust::load(&args.scene)?;
     let pool = settings::pool(args.threads)?;
     let within = |name: &str, x: f64, range: &str, fine: bool| match fine {
         true => Ok(()),

@@ -4,6 +4,7 @@ use super::findings::{Findings, traced};
 use crate::cli::args::ExperimentArgs;
 use crate::cli::failure::Failure;
 use crate::cli::output::Talk;
+use crate::cli::trust;
 use crate::cli::{Outcome, progress, settings};
 use crate::num::stream::Sampling;
 use crate::report;
@@ -12,7 +13,7 @@ use crate::store::ensure_writable;
 use crate::study::{self, ExperimentPlan};
 
 pub(super) fn execute(args: &ExperimentArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = Scene::load(&args.scene)?;
+    let scene = trust::load(&args.scene)?;
     let plan = plan(args, &scene)?;
     let pool = settings::pool(args.threads)?;
     ensure_writable(&args.output)?;

@@ -6,10 +6,10 @@ use crate::cli::args::IndicatorArgs;
 use crate::cli::failure::Failure;
 use crate::cli::interrupt::stop_flag;
 use crate::cli::output::Talk;
+use crate::cli::trust;
 use crate::cli::{Outcome, settings};
 use crate::model::Kernel;
 use crate::report;
-use crate::scene::Scene;
 use crate::store::ensure_writable;
 use crate::study::{self, IndicatorPlan, Layout, NoiseAxis};
 
@@ -19,7 +19,7 @@ const WIDEST: f64 = 1000.0;
 const MOST_SPOTS: usize = 10_000;
 
 pub(super) fn execute(args: &IndicatorArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = Scene::load(&args.scene)?;
+    let scene = trust::load(&args.scene)?;
     let plan = plan(args)?;
     let pool = settings::pool(args.threads)?;
     ensure_writable(&args.output)?;

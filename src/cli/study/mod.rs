@@ -9,13 +9,14 @@ mod noise;
 use super::args::{BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs};
 use super::failure::Failure;
 use super::output::Talk;
+use super::trust;
 use super::{Outcome, progress, settings};
 use crate::num::stream::Sampling;
 use crate::report;
 use crate::scene::Scene;
 use crate::store::ensure_writable;
 use crate::study::{self, BudgetPlan, PowerPlan, error_budget};
-use crate::transport::Estimator;
+use crate::transport::{Estimator, Plan};
 use findings::{Findings, traced};
 
 pub(in crate::cli) fn execute(args: &StudyArgs, talk: Talk) -> Result<Outcome, Failure> {
@@ -51,7 +52,7 @@ fn sum(flag: &str, samples: &[u64]) -> Result<u64, Failure> {
 }
 
 fn budget(args: &BudgetArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = Scene::load(&args.scene)?;
+    let scene = trust::load(&args.scene)?;
     let pool = settings::pool(args.threads)?;
     let total = paths(
         &scene,
@@ -81,7 +82,7 @@ fn budget(args: &BudgetArgs, talk: Talk) -> Result<Outcome, Failure> {
 }
 
 fn power(args: &PowerArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = Scene::load(&args.scene)?;
+    let scene = trust::load(&args.scene)?;
     let pool = settings::pool(args.threads)?;
     let plan = PowerPlan {
         estimators: match args.estimator.as_slice() {
@@ -94,6 +95,16 @@ fn power(args: &PowerArgs, talk: Talk) -> Result<Outcome, Failure> {
         first_seed: args.seed,
         significance: settings::significance(args.significance)?,
     };
+    for &estimator in &plan.estimators {
+        let budget = settings::budget("--samples", 1, plan.sampling)?;
+        let one = Plan {
+            estimator,
+            sampling: plan.sampling,
+            seed: 0,
+            budget,
+        };
+        settings::suited(&scene, &one)?;
+    }
     let each = sum("--samples", &plan.samples)?.saturating_mul(plan.seeds);
     ensure_writable(&args.output)?;
     talk.warn(&scene);
@@ -118,7 +129,7 @@ fn power(args: &PowerArgs, talk: Talk) -> Result<Outcome, Failure> {
 }
 
 fn tolerance(args: &ToleranceArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = Scene::load(&args.scene)?;
+    let scene = trust::load(&args.scene)?;
     if !(args.noise > 0.0 && args.noise < 1.0) {
         let cause = format!("--noise {} is not a relative noise", args.noise);
         return Err(Failure::new(
@@ -142,7 +153,7 @@ fn tolerance(args: &ToleranceArgs, talk: Talk) -> Result<Outcome, Failure> {
 }
 
 fn convergence(args: &ConvergenceArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = Scene::load(&args.scene)?;
+    let scene = trust::load(&args.scene)?;
     let pool = settings::pool(args.threads)?;
     // Both samplers, under both estimators.
     let each = sum("--samples", &args.samples)?.saturating_mul(2);

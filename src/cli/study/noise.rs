@@ -11,6 +11,7 @@ use crate::cli::args::{AxisName, NoiseArgs};
 use crate::cli::failure::Failure;
 use crate::cli::interrupt::stop_flag;
 use crate::cli::output::{self, Talk};
+use crate::cli::trust;
 use crate::cli::{Outcome, progress, settings};
 use crate::num::stream::Sampling;
 use crate::recovery::Method;
@@ -26,7 +27,7 @@ use crate::transport::Control;
 const KEEP_EVERY: Duration = Duration::from_secs(5);
 
 pub(super) fn execute(args: &NoiseArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = Scene::load(&args.scene)?;
+    let scene = trust::load(&args.scene)?;
     let plan = plan(args, &scene)?;
     let pool = settings::pool(args.threads)?;
     for &samples in &args.render_samples {

@@ -250,11 +250,7 @@ fn measured(
     })
 }
 
-fn mixture(
-    tables: &[PartTable],
-    wavelength: f64,
-    files: Files<'_>,
-) -> Result<Material, Fault> {
+fn mixture(tables: &[PartTable], wavelength: f64, files: Files<'_>) -> Result<Material, Fault> {
     if tables.is_empty() || tables.len() > MOST_PARTS {
         let cause = format!("a mixture of {} parts", tables.len());
         let cure = format!("use 1 to {MOST_PARTS}");

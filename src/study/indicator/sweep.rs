@@ -94,9 +94,9 @@ impl Site {
         let walls = scene.surfaces.iter().filter(|s| s.role == Role::Relay);
         let nearest = walls
             .filter_map(|s| s.shape.intersect(&normal, false))
-            .min_by(f64::total_cmp);
-        Ok(nearest.map(|t| {
-            let foot = middle.position + middle.normal * t;
+            .min_by(|a, b| a.t.total_cmp(&b.t));
+        Ok(nearest.map(|met| {
+            let foot = middle.position + middle.normal * met.t;
             Self {
                 centre: [foot.x, foot.y],
                 scene,

@@ -1,0 +1,205 @@
+//! Meshes of a scene: read or made, mended, placed.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::error::{Fault, Step, keys};
+use super::file::{GeneratorName, MeshTable, ScaleTable};
+use super::files::Files;
+use super::mesh::{self, Defects, Triangles};
+use super::surface::Surface;
+use crate::geometry::{Body, DAffine3, DQuat, DVec3, Mesh, Side};
+
+/// A mesh file larger than this is not read: 1 GiB.
+const LARGEST_FILE: u64 = 1 << 30;
+/// Triangles of a mesh that phicam makes, unless the scene says how many.
+const FACES: u64 = 20_000;
+/// More are not made.
+const MOST_FACES: u64 = 100_000_000;
+
+/// What meshes share: two surfaces that name one mesh at one stretch use one copy, and one tree.
+#[derive(Debug, Default)]
+pub(super) struct Meshes {
+    made: HashMap<String, (Arc<Mesh>, Defects)>,
+}
+
+/// A placed mesh and what was wrong with it.
+pub(super) struct Placed {
+    pub body: Body,
+    pub defects: Defects,
+}
+
+impl Meshes {
+    /// The mesh of a table, in its place; `earlier` are the surfaces that it may stand on.
+    pub(super) fn place(
+        &mut self,
+        table: &MeshTable,
+        earlier: &[Surface],
+        files: &mut Files,
+    ) -> Result<Placed, Fault> {
+        let scale = match table.scale.unwrap_or(ScaleTable::Uniform(1.0)) {
+            ScaleTable::Uniform(s) => [s; 3],
+            ScaleTable::Axes(s) => s,
+        };
+        if scale.iter().any(|s| !(s.is_finite() && *s > 0.0)) {
+            let cause = format!("a mesh cannot be scaled by {scale:?}");
+            return Err(Fault::new(keys!["scale"], cause, "use factors above 0"));
+        }
+        // A similarity is left to the body; a stretch changes the mesh.
+        let [sx, sy, sz] = scale;
+        let (uniform, stretch) = match sx == sy && sy == sz {
+            true => (sx, None),
+            false => (1.0, Some(DVec3::from_array(scale))),
+        };
+        let (mesh, defects) = self.mesh(table, stretch, files)?;
+        let mut turned = DAffine3::from_scale(DVec3::splat(uniform));
+        for (i, r) in table.rotate.iter().flatten().enumerate() {
+            let axis = DVec3::from_array(r.axis).try_normalize();
+            let (Some(axis), true) = (axis, r.angle.is_finite()) else {
+                let cause = format!("rotation about {:?} by {}", r.axis, r.angle);
+                let cure = "give an axis that is not zero and a finite angle in degrees";
+                return Err(Fault::new(keys!["rotate", i], cause, cure));
+            };
+            turned = DAffine3::from_quat(rotation(axis, r.angle)) * turned;
+        }
+        let shift = self.shift(table, &mesh, &turned, earlier)?;
+        let placement = DAffine3::from_translation(shift) * turned;
+        let body = Body::new(mesh, placement, Side::Outer).ok_or_else(|| {
+            let cure = "use finite factors, angles and places";
+            Fault::new(keys![], "the mesh has no proper place", cure)
+        })?;
+        Ok(Placed { body, defects })
+    }
+
+    /// Where the turned mesh goes.
+    fn shift(
+        &self,
+        table: &MeshTable,
+        mesh: &Mesh,
+        turned: &DAffine3,
+        earlier: &[Surface],
+    ) -> Result<DVec3, Fault> {
+        let shift = DVec3::from_array(table.translate.unwrap_or_default());
+        if !shift.is_finite() {
+            let cause = format!("translate = {:?}", shift.to_array());
+            return Err(Fault::new(keys!["translate"], cause, "use finite numbers"));
+        }
+        let Some(on) = &table.on else {
+            return Ok(shift);
+        };
+        let Some(below) = earlier.iter().find(|s| s.name == on.surface) else {
+            let cause = format!("no surface before this one is called `{}`", on.surface);
+            let cure = "name a surface that comes earlier in the file";
+            return Err(Fault::new(keys!["on", "surface"], cause, cure));
+        };
+        if on.at.iter().any(|c| !(0.0..=1.0).contains(c)) {
+            let cause = format!("{:?} is no place on a surface", on.at);
+            return Err(Fault::new(
+                keys!["on", "at"],
+                cause,
+                "use two numbers from 0 to 1",
+            ));
+        }
+        let foot = below.shape.at(on.at);
+        let (mut low, mut high, mut height) = (DVec3::INFINITY, DVec3::NEG_INFINITY, f64::INFINITY);
+        for p in mesh.positions() {
+            let p = turned.transform_point3(*p);
+            (low, high) = (low.min(p), high.max(p));
+            height = height.min(p.dot(foot.normal));
+        }
+        let middle = 0.5 * (low + high);
+        let across = middle - foot.normal * middle.dot(foot.normal);
+        Ok(shift + foot.position - across - foot.normal * height)
+    }
+
+    fn mesh(
+        &mut self,
+        table: &MeshTable,
+        stretch: Option<DVec3>,
+        files: &mut Files,
+    ) -> Result<(Arc<Mesh>, Defects), Fault> {
+        let key = format!(
+            "{:?} {:?} {:?} {stretch:?}",
+            table.file, table.generate, table.faces
+        );
+        if let Some((mesh, defects)) = self.made.get(&key) {
+            return Ok((mesh.clone(), defects.clone()));
+        }
+        let (at, mut triangles): (Step, Triangles) = match (&table.file, table.generate) {
+            (Some(file), None) => {
+                if table.faces.is_some() {
+                    let cause = "`faces` belongs to `generate`: a file has the triangles it has";
+                    return Err(Fault::new(keys!["faces"], cause, "remove `faces`"));
+                }
+                (Step::Key("file"), read(file, files)?)
+            }
+            (None, Some(generator)) => (Step::Key("generate"), generate(generator, table.faces)?),
+            _ => {
+                let cause = "a mesh needs exactly one of `file` and `generate`";
+                let cure = "add `file = \"body.ply\"`, or `generate = \"bust\"`";
+                return Err(Fault::new(keys![], cause, cure));
+            }
+        };
+        for p in &mut triangles.positions {
+            *p *= stretch.unwrap_or(DVec3::ONE);
+        }
+        let (triangles, defects) = triangles.mended();
+        let fault = |e: crate::geometry::MeshError| {
+            Fault::new([at.clone()], e.to_string(), "mend the mesh, or use another")
+        };
+        let mut mesh = Mesh::new(triangles.positions, triangles.triangles).map_err(&fault)?;
+        if let Some(uv) = triangles.uv {
+            mesh = mesh.with_uv(uv).map_err(&fault)?;
+        }
+        let mesh = Arc::new(mesh);
+        self.made.insert(key, (mesh.clone(), defects.clone()));
+        Ok((mesh, defects))
+    }
+}
+
+/// The rotation by `degrees` about a unit vector: q = (axis·sin ½φ, cos ½φ).
+fn rotation(axis: DVec3, degrees: f64) -> DQuat {
+    let (sin, cos) = libm::sincos(0.5 * degrees.to_radians());
+    let v = axis * sin;
+    DQuat::from_xyzw(v.x, v.y, v.z, cos)
+}
+
+fn read(name: &str, files: &mut Files) -> Result<Triangles, Fault> {
+    let fault = |(cause, cure): (String, String)| Fault::new(keys!["file"], cause, cure);
+    let bytes = files.bytes(name, LARGEST_FILE).map_err(fault)?;
+    let folder = name.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let mut beside = |other: &str| {
+        let path = match folder {
+            "" => other.to_owned(),
+            folder => format!("{folder}/{other}"),
+        };
+        files
+            .bytes(&path, LARGEST_FILE)
+            .map_err(|(cause, cure)| format!("{cause}; {cure}"))
+    };
+    mesh::read(name, &bytes, &mut beside).map_err(|e| {
+        Fault::new(
+            keys!["file"],
+            format!("`{name}`: {e}"),
+            "mend the file, or use another",
+        )
+    })
+}
+
+fn generate(generator: GeneratorName, faces: Option<u64>) -> Result<Triangles, Fault> {
+    let faces = faces.unwrap_or(FACES);
+    if !(1..=MOST_FACES).contains(&faces) {
+        let cause = format!("{faces} triangles");
+        let cure = format!("use 1 to {MOST_FACES}");
+        return Err(Fault::new(keys!["faces"], cause, cure));
+    }
+    let faces = faces as usize;
+    Ok(match generator {
+        GeneratorName::Bust => mesh::bust(faces),
+        GeneratorName::Sphere => mesh::sphere(faces),
+        GeneratorName::Rectangle => {
+            let side = (0.5 * faces as f64).sqrt().ceil().max(1.0) as u32;
+            mesh::rectangle(side, side)
+        }
+    })
+}

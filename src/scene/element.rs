@@ -1,0 +1,260 @@
+//! Division of hidden surfaces into resolution elements.
+
+use super::surface::{Division, Surface};
+use crate::geometry::{Body, DVec3, Shape};
+
+/// An element as the matrix model takes it: one point with a normal, and an area.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Element {
+    /// Its middle.
+    pub position: DVec3,
+    /// Unit normal there; zero for an element without area.
+    pub normal: DVec3,
+    /// Area, length².
+    pub area: f64,
+    /// Unit vector along u, in the surface.
+    pub u_axis: DVec3,
+    /// Parameters of the middle, at which the albedo is taken.
+    pub uv: [f64; 2],
+}
+
+impl Surface {
+    /// The elements, iu + iv·nu. Of rectangles, discs and spheres cells of equal area in their parameters, taken at their middle. Of a mesh
+    /// the triangles, at their centroids; or the cells of its texture coordinates: each has the area of what the coordinates put there (the
+    /// triangles clipped), the direction of that part's vector area as its normal, and the point of the mesh nearest to its centroid.
+    pub fn divided(&self, [nu, nv]: [usize; 2]) -> Vec<Element> {
+        match (&self.shape, self.division) {
+            (Shape::Body(body), Division::Faces) => faces(body),
+            (Shape::Body(body), Division::Cells) => cells(body, [nu, nv]),
+            (shape, _) => {
+                let area = shape.area() / (nu * nv) as f64;
+                let middle = |i: usize, n: usize| (i as f64 + 0.5) / n as f64;
+                (0..nu * nv)
+                    .map(|j| Element {
+                        area,
+                        ..self.element_at([middle(j % nu, nu), middle(j / nu, nv)])
+                    })
+                    .collect()
+            }
+        }
+    }
+
+    /// The point of the surface with parameters `uv` (of a mesh: to which its equal-area map takes them), without area.
+    pub fn element_at(&self, uv: [f64; 2]) -> Element {
+        let at = |uv| self.shape.at(uv);
+        let point = at(uv);
+        let along = match self.shape {
+            Shape::Body(_) => DVec3::ZERO,
+            _ => at([1.0, uv[1]]).position - at([0.0, uv[1]]).position,
+        };
+        Element {
+            position: point.position,
+            normal: point.normal,
+            area: 0.0,
+            u_axis: along.normalize_or(DVec3::X),
+            uv: point.uv,
+        }
+    }
+}
+
+fn faces(body: &Body) -> Vec<Element> {
+    let scale = body.area() / body.mesh().area();
+    (0..body.mesh().triangles().len() as u32)
+        .map(|t| {
+            let [a, b, c] = body.corners(t);
+            let area = body.mesh().triangle_area(t) * scale;
+            let point = body.on_triangle(t, (a + b + c) / 3.0);
+            match area > 0.0 {
+                true => Element {
+                    position: point.position,
+                    normal: point.normal,
+                    area,
+                    u_axis: (b - a).normalize_or(DVec3::X),
+                    uv: point.uv,
+                },
+                false => NOTHING,
+            }
+        })
+        .collect()
+}
+
+const NOTHING: Element = Element {
+    position: DVec3::ZERO,
+    normal: DVec3::ZERO,
+    area: 0.0,
+    u_axis: DVec3::X,
+    uv: [0.0; 2],
+};
+
+/// What lies in a cell so far.
+#[derive(Clone, Copy, Default)]
+struct Part {
+    area: f64,
+    moment: DVec3,
+    vector: DVec3,
+}
+
+/// A corner of a polygon in texture coordinates (in cells), and its weights in the triangle.
+type Corner = ([f64; 2], DVec3);
+
+fn cells(body: &Body, [nu, nv]: [usize; 2]) -> Vec<Element> {
+    let mut parts = vec![Part::default(); nu * nv];
+    let uv = body.mesh().uv().unwrap_or_default();
+    for (t, uv) in uv.iter().enumerate() {
+        let corners = body.corners(t as u32);
+        let [a, b, c] = corners;
+        let vector = (b - a).cross(c - a) * 0.5;
+        let area = vector.length();
+        if area <= 0.0 {
+            continue;
+        }
+        let place = |weights: DVec3| a * weights.x + b * weights.y + c * weights.z;
+        for (cell, share, middle) in shares(uv.map(|c| c.map(f64::from)), [nu, nv]) {
+            let part = &mut parts[cell];
+            part.area += area * share;
+            part.moment += place(middle) * (area * share);
+            part.vector += body.on_triangle(t as u32, a).normal * (area * share);
+        }
+    }
+    parts
+        .into_iter()
+        .map(|part| {
+            let normal = part.vector.try_normalize();
+            let (Some(normal), true) = (normal, part.area > 0.0) else {
+                return NOTHING;
+            };
+            let point = body.at_position(part.moment / part.area);
+            Element {
+                position: point.position,
+                normal,
+                area: part.area,
+                u_axis: DVec3::X,
+                uv: point.uv,
+            }
+        })
+        .collect()
+}
+
+/// The cells that a triangle with these texture coordinates covers: cell, share of the triangle's area, and the weights of the three
+/// corners at the middle of that share. Coordinates beyond \[0, 1\] are taken modulo 1, a triangle as a whole.
+fn shares(uv: [[f64; 2]; 3], [nu, nv]: [usize; 2]) -> Vec<(usize, f64, DVec3)> {
+    let count = [nu, nv];
+    let mut corners = uv;
+    for d in 0..2 {
+        let whole = ((uv[0][d] + uv[1][d] + uv[2][d]) / 3.0).floor();
+        let shift = if whole == 1.0 && uv.iter().all(|c| c[d] <= 1.0) {
+            0.0
+        } else {
+            whole
+        };
+        for c in &mut corners {
+            c[d] = ((c[d] - shift) * count[d] as f64).clamp(0.0, count[d] as f64);
+        }
+    }
+    let range = |d: usize| {
+        let low = corners.iter().map(|c| c[d]).fold(f64::INFINITY, f64::min);
+        let high = corners.iter().map(|c| c[d]).fold(0.0, f64::max);
+        let first = (low as usize).min(count[d] - 1);
+        first..=(high as usize).min(count[d] - 1)
+    };
+    let weights = [DVec3::X, DVec3::Y, DVec3::Z];
+    let whole: Vec<Corner> = corners.into_iter().zip(weights).collect();
+    let total = area_and_middle(&whole).0;
+    let [columns, rows] = [range(0), range(1)];
+    // A triangle within one cell, or without extent in the picture, counts whole where its middle is.
+    if total <= 0.0 || (columns.start() == columns.end() && rows.start() == rows.end()) {
+        let at = |d: usize| {
+            let middle = (corners[0][d] + corners[1][d] + corners[2][d]) / 3.0;
+            (middle as usize).min(count[d] - 1)
+        };
+        return vec![(at(0) + at(1) * nu, 1.0, DVec3::splat(1.0 / 3.0))];
+    }
+    let mut found = Vec::new();
+    for row in rows {
+        let strip = clip(
+            clip(whole.clone(), 1, row as f64, 1.0),
+            1,
+            row as f64 + 1.0,
+            -1.0,
+        );
+        for column in columns.clone() {
+            let x = column as f64;
+            let inside = clip(clip(strip.clone(), 0, x, 1.0), 0, x + 1.0, -1.0);
+            let (area, middle) = area_and_middle(&inside);
+            if area > 0.0 {
+                found.push((column + row * nu, area / total, middle));
+            }
+        }
+    }
+    found
+}
+
+/// The part of a convex polygon where sign·(x_d − at) ≥ 0 (Sutherland and Hodgman, 1974).
+fn clip(polygon: Vec<Corner>, d: usize, at: f64, sign: f64) -> Vec<Corner> {
+    let height = |c: &Corner| sign * (c.0[d] - at);
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (i, from) in polygon.iter().enumerate() {
+        let to = &polygon[(i + 1) % polygon.len()];
+        let (a, b) = (height(from), height(to));
+        if a >= 0.0 {
+            kept.push(*from);
+        }
+        if (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0) {
+            let t = a / (a - b);
+            let mid = [0, 1].map(|k| from.0[k] + (to.0[k] - from.0[k]) * t);
+            kept.push((mid, from.1 + (to.1 - from.1) * t));
+        }
+    }
+    kept
+}
+
+/// Area of a convex polygon in the picture, and the weights at its centroid.
+fn area_and_middle(polygon: &[Corner]) -> (f64, DVec3) {
+    let Some((origin, _)) = polygon.first() else {
+        return (0.0, DVec3::ZERO);
+    };
+    let (mut area, mut moment) = (0.0, DVec3::ZERO);
+    for pair in polygon[1..].windows(2) {
+        let [p, q] = [pair[0].0, pair[1].0].map(|c| [c[0] - origin[0], c[1] - origin[1]]);
+        let part = 0.5 * (p[0] * q[1] - p[1] * q[0]).abs();
+        area += part;
+        moment += (polygon[0].1 + pair[0].1 + pair[1].1) * (part / 3.0);
+    }
+    match area > 0.0 {
+        true => (area, moment / area),
+        false => (0.0, DVec3::ZERO),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Shares add up to 1 and their middles to the triangle's; a right triangle over a 2 × 2 grid covers two cells of it by half a cell,
+    /// one whole, one not at all.
+    #[test]
+    fn shares_of_a_triangle_are_its_parts() {
+        let half = shares([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], [2, 2]);
+        let share = |cell| half.iter().find(|s| s.0 == cell).map_or(0.0, |s| s.1);
+        for (cell, part) in [(0, 0.5), (1, 0.25), (2, 0.25), (3, 0.0)] {
+            assert!(
+                (share(cell) - part).abs() < 1e-15,
+                "{cell}: {}",
+                share(cell)
+            );
+        }
+        for grid in [[1, 1], [3, 2], [7, 5], [64, 64]] {
+            for uv in [
+                [[0.1, 0.2], [0.9, 0.3], [0.4, 0.95]],
+                [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0]],
+                [[1.2, 3.1], [1.7, 3.4], [1.3, 3.9]],
+            ] {
+                let parts = shares(uv, grid);
+                let total: f64 = parts.iter().map(|p| p.1).sum();
+                let middle: DVec3 = parts.iter().map(|p| p.2 * p.1).sum();
+                assert!((total - 1.0).abs() < 1e-12, "{grid:?} {uv:?}: {total}");
+                assert!((middle - DVec3::splat(1.0 / 3.0)).length() < 1e-12);
+            }
+        }
+    }
+}

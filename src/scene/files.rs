@@ -1,0 +1,221 @@
+//! Files that a scene names: meshes, pictures, measured materials.
+//!
+//! A scene may come from anyone. It reads ordinary files in its own folder and below, and nothing else; links that lead out of it
+//! included. Who starts phicam may name further folders. What was read is remembered with its digest, so that the scene's hash speaks of
+//! the contents, and a run can keep a copy.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Component, Path, PathBuf};
+
+use sha2::{Digest, Sha256};
+
+/// Folder of copies beside a scene file: looked into first.
+pub const COPIES: &str = "files";
+
+/// A file that a scene names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Referenced {
+    /// As the scene names it.
+    pub name: String,
+    /// Where it was read.
+    pub path: PathBuf,
+    /// SHA-256 of its bytes (hex).
+    pub digest: String,
+}
+
+impl Referenced {
+    /// The name of its copy in [`COPIES`]: a part of the digest of its name, so that no two collide, and its last component.
+    pub fn copy_name(&self) -> String {
+        copy_name(&self.name)
+    }
+
+    /// Whether these are its bytes.
+    pub fn holds(&self, bytes: &[u8]) -> bool {
+        hex(&Sha256::digest(bytes)) == self.digest
+    }
+}
+
+fn copy_name(name: &str) -> String {
+    let last: String = name
+        .rsplit(['/', '\\'])
+        .next()
+        .unwrap_or_default()
+        .chars()
+        .map(|c| match c.is_ascii_alphanumeric() || ".-_".contains(c) {
+            true => c,
+            false => '_',
+        })
+        .collect();
+    format!("{}-{last}", &hex(&Sha256::digest(name))[..12])
+}
+
+/// Hexadecimal digits of a digest.
+pub(super) fn hex(digest: &[u8]) -> String {
+    digest.iter().map(|b| format!("{b:02x}")).collect()
+}
+
+/// What a scene may read, and has read.
+#[derive(Debug, Default)]
+pub(super) struct Files {
+    /// The scene's folder; none for a scene that is only text.
+    folder: Option<PathBuf>,
+    /// Further folders, named by whoever started the program.
+    also: Vec<PathBuf>,
+    pub read: Vec<Referenced>,
+}
+
+impl Files {
+    pub(super) fn of(folder: &Path, also: &[PathBuf]) -> Self {
+        Self {
+            folder: Some(folder.to_owned()),
+            also: also.to_vec(),
+            read: Vec::new(),
+        }
+    }
+
+    /// The bytes of the file that the scene calls `name`, at most `most` of them; or what is wrong, and the cure.
+    pub(super) fn bytes(&mut self, name: &str, most: u64) -> Result<Vec<u8>, (String, String)> {
+        let path = self.find(name)?;
+        let cannot = |e: std::io::Error| {
+            let cause = format!("cannot read `{name}`: {e}");
+            (cause, "check the file and its permissions".to_owned())
+        };
+        let file = File::open(&path).map_err(cannot)?;
+        if !file.metadata().map_err(cannot)?.is_file() {
+            let cause = format!("`{name}` is no ordinary file");
+            return Err((cause, "name a file".to_owned()));
+        }
+        let mut bytes = Vec::new();
+        file.take(most + 1)
+            .read_to_end(&mut bytes)
+            .map_err(cannot)?;
+        if bytes.len() as u64 > most {
+            let cause = format!("`{name}` is larger than {} MiB", most >> 20);
+            return Err((cause, "use a smaller one".to_owned()));
+        }
+        let digest = hex(&Sha256::digest(&bytes));
+        if !self.read.iter().any(|r| r.name == name) {
+            self.read.push(Referenced {
+                name: name.to_owned(),
+                path,
+                digest,
+            });
+        }
+        Ok(bytes)
+    }
+
+    /// Where that file is.
+    fn find(&self, name: &str) -> Result<PathBuf, (String, String)> {
+        let Some(folder) = &self.folder else {
+            let cause = format!("`{name}` is named by a scene that is no file and has no folder");
+            return Err((cause, "read the scene from a file beside it".to_owned()));
+        };
+        let copy = folder.join(COPIES).join(copy_name(name));
+        let outside = || {
+            let cause = format!("`{name}` lies outside the scene's folder");
+            let cure = "copy it beside the scene file, or allow its folder with --also-read DIR";
+            (cause, cure.to_owned())
+        };
+        let plain = |c: Component<'_>| matches!(c, Component::Normal(_) | Component::CurDir);
+        let inside = Path::new(name).components().all(plain);
+        let candidates = [(copy, folder.clone()), (folder.join(name), folder.clone())];
+        let own = candidates.into_iter().take(if inside { 2 } else { 1 });
+        let also = self.also.iter().map(|a| (folder.join(name), a.clone()));
+        let mut found_outside = !inside;
+        for (path, root) in own.chain(also) {
+            let (Ok(path), Ok(root)) = (path.canonicalize(), root.canonicalize()) else {
+                continue;
+            };
+            if path.starts_with(&root) {
+                return Ok(path);
+            }
+            found_outside = true;
+        }
+        if found_outside {
+            return Err(outside());
+        }
+        let cause = format!("there is no file `{name}` beside the scene");
+        let cure = "check the name: paths are relative to the scene file's folder";
+        Err((cause, cure.to_owned()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn place() -> tempfile::TempDir {
+        let dir = tempfile::tempdir().unwrap();
+        fs::create_dir_all(dir.path().join("scene/below")).unwrap();
+        fs::write(dir.path().join("secret"), "no").unwrap();
+        fs::write(dir.path().join("scene/own"), "yes").unwrap();
+        fs::write(dir.path().join("scene/below/own"), "deep").unwrap();
+        dir
+    }
+
+    #[test]
+    fn what_lies_in_the_folder_is_read_and_remembered() {
+        let dir = place();
+        let mut files = Files::of(&dir.path().join("scene"), &[]);
+        assert_eq!(files.bytes("own", 10).unwrap(), b"yes");
+        assert_eq!(files.bytes("./below/own", 10).unwrap(), b"deep");
+        assert_eq!(files.bytes("own", 10).unwrap(), b"yes");
+        assert_eq!(files.read.len(), 2);
+        // The digest of "yes", from another program.
+        assert!(
+            files.read[0]
+                .digest
+                .starts_with("8a798890fe93817163b10b5f7bd2ca4d")
+        );
+        assert!(files.bytes("own", 2).unwrap_err().0.contains("larger"));
+        assert!(files.bytes("below", 10).unwrap_err().0.contains("ordinary"));
+        assert!(files.bytes("absent", 10).unwrap_err().0.contains("no file"));
+    }
+
+    #[test]
+    fn nothing_outside_is_read_unless_asked() {
+        let dir = place();
+        let folder = dir.path().join("scene");
+        let absolute = dir.path().join("secret");
+        let absolute = absolute.to_str().unwrap();
+        let mut names = vec!["../secret", absolute, "below/../../secret", "/etc/passwd"];
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink(absolute, folder.join("link")).unwrap();
+            names.push("link");
+        }
+        let mut files = Files::of(&folder, &[]);
+        for name in &names {
+            let (cause, cure) = files.bytes(name, 10).unwrap_err();
+            assert!(
+                cause.contains("outside") && cure.contains("--also-read"),
+                "{name}: {cause}"
+            );
+        }
+        assert!(files.read.is_empty());
+        let mut files = Files::of(&folder, &[dir.path().to_owned()]);
+        for name in names.iter().filter(|n| **n != "/etc/passwd") {
+            assert_eq!(files.bytes(name, 10).unwrap(), b"no", "{name}");
+        }
+        assert!(files.bytes("/etc/passwd", 10).is_err());
+        assert!(Files::default().bytes("own", 10).is_err());
+    }
+
+    /// A run keeps copies under names of their own, whatever the scene calls them.
+    #[test]
+    fn copies_are_found_first() {
+        let dir = place();
+        let folder = dir.path().join("scene");
+        fs::create_dir(folder.join(COPIES)).unwrap();
+        for (name, text) in [("../secret", "copy"), ("own", "kept")] {
+            let path = folder.join(COPIES).join(copy_name(name));
+            fs::write(path, text).unwrap();
+            let mut files = Files::of(&folder, &[]);
+            assert_eq!(files.bytes(name, 10).unwrap(), text.as_bytes());
+            assert_eq!(files.read[0].copy_name(), copy_name(name));
+        }
+        assert!(!copy_name("a/../b\\c d:é").contains(['/', '\\', ' ', ':']));
+    }
+}

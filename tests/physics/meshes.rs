@@ -1,0 +1,170 @@
+//! Meshes against the analytic shapes that they approximate, and against themselves.
+
+use std::path::Path;
+
+use phicam::geometry::{DAffine3, DQuat, DVec3};
+use phicam::model::{Extent, Kernel, converged};
+use phicam::num::stream::Sampling;
+use phicam::scene::mesh::{FaceValues, Triangles, bust, ply};
+use phicam::scene::{Role, Scene};
+use phicam::transport::Estimator;
+
+use super::{Way, assert_same, assert_same_under, builtin, compare, relative, trace};
+use phicam::study::Errors;
+
+const RECTANGLE: &str = "rectangle = { corner = [3, 11.350951966438567, 4.149048033561433], \
+    u = [4, 0, 0], v = [0, -2.82842712474619, 2.82842712474619] }";
+/// The same: the unit square four times as large, leant over by 135° and moved; stretched by a hair, so that the mesh itself is.
+const MESHED: &str = "mesh = { generate = \"rectangle\", faces = 450, scale = [4, 4.000000000001, 1], \
+    rotate = [{ axis = [1, 0, 0], angle = 135 }], translate = [3, 11.350951966438567, 4.149048033561433] }";
+const FEW_SPOTS: (&str, &str) = ("per_side = 30", "per_side = 3");
+
+/// The board of the bench as 450 triangles: every estimator agrees with the quadrature over the rectangle, and with its own render of it.
+#[test]
+fn a_meshed_rectangle_is_the_rectangle() {
+    let flat = builtin("bench", &[FEW_SPOTS]);
+    let mesh = builtin("bench", &[FEW_SPOTS, (RECTANGLE, MESHED)]);
+    let truth = converged(&flat, Kernel::Physical, Extent::FULL)
+        .unwrap()
+        .phi;
+    let own = converged(&mesh, Kernel::Physical, Extent::FULL)
+        .unwrap()
+        .phi;
+    assert!(relative(&own, &truth) < 1e-3, "{}", relative(&own, &truth));
+    for (estimator, samples) in [
+        (Estimator::Independent, 1024),
+        (Estimator::Shared, 2048),
+        (Estimator::Factored, 8192),
+    ] {
+        for sampling in [Sampling::Pcg, Sampling::Sobol] {
+            let way = Way(estimator, sampling, 5, samples);
+            let traced = trace(&mesh, way);
+            let verdict = compare(&traced, &truth, way);
+            assert!(verdict.agrees, "{way:?}: {verdict:?}");
+            let other = trace(&flat, Way(estimator, sampling, 6, samples));
+            assert_same_under(Errors::of(estimator), &traced, &other, "rectangle");
+        }
+    }
+}
+
+/// The same at five bounces, and a board whose mesh lies the wrong way round is dark.
+#[test]
+fn a_meshed_rectangle_has_more_bounces_and_one_front() {
+    let deep = ("max_bounces = 3", "max_bounces = 5");
+    let flat = builtin("bench", &[FEW_SPOTS, deep]);
+    let mesh = builtin("bench", &[FEW_SPOTS, deep, (RECTANGLE, MESHED)]);
+    let way = |seed| Way(Estimator::Shared, Sampling::Sobol, seed, 4096);
+    assert_same(&trace(&mesh, way(1)), &trace(&flat, way(2)), "five bounces");
+    let turned = MESHED.replace("angle = 135", "angle = -45");
+    let turned = turned.replace(
+        "translate = [3, 11.350951966438567, 4.149048033561433]",
+        "translate = [3, 8.522524841692377, 6.977475158307623]",
+    );
+    let turned = builtin("bench", &[FEW_SPOTS, (RECTANGLE, &turned)]);
+    assert_eq!(trace(&turned, way(1)).flux.sum(), 0.0);
+}
+
+const BALL: &str =
+    "\n[[surface]]\nname = \"ball\"\nrole = \"occluder\"\nmaterial = { lambertian = 0.7 }\n";
+
+/// A bright ball between wall and object: it reflects, and it casts shadows.
+#[test]
+fn a_finely_meshed_sphere_is_the_sphere() {
+    let scene = |shape: &str| {
+        let text = builtin("bench", &[FEW_SPOTS]).text + BALL + shape;
+        Scene::from_toml("ball", &text).unwrap()
+    };
+    let exact = scene("sphere = { centre = [6, 8, 3], radius = 1.2, face = \"outside\" }\n");
+    let mesh = scene(
+        "mesh = { generate = \"sphere\", faces = 300000, scale = 1.2, translate = [6, 8, 3], closed = true }\n",
+    );
+    assert!(
+        mesh.warnings().len() == exact.warnings().len(),
+        "{:?}",
+        mesh.warnings()
+    );
+    for (estimator, samples) in [(Estimator::Shared, 4096), (Estimator::Factored, 8192)] {
+        let way = |seed| Way(estimator, Sampling::Sobol, seed, samples);
+        let (a, b) = (trace(&mesh, way(1)), trace(&exact, way(2)));
+        assert_same_under(Errors::of(estimator), &a, &b, "sphere");
+        // Both differ from the bench without it.
+        let bare = trace(&builtin("bench", &[FEW_SPOTS]), way(3));
+        assert!(relative(&bare.flux, &b.flux) > 0.05);
+    }
+}
+
+fn placed(triangles: &Triangles, place: DAffine3) -> Triangles {
+    let mut moved = triangles.clone();
+    for p in &mut moved.positions {
+        *p = place.transform_point3(*p);
+    }
+    moved
+}
+
+/// Two busts that share one mesh, against two meshes whose vertices were moved before they were written: the same paths meet the same
+/// triangles, up to rounding.
+#[test]
+fn instances_are_copies() {
+    let dir = tempfile::tempdir().unwrap();
+    let body = |name: &str, mesh: &str| {
+        format!(
+            "\n[[surface]]\nname = \"{name}\"\nrole = \"occluder\"\nmaterial = {{ lambertian = 0.5 }}\nmesh = {mesh}\n"
+        )
+    };
+    let bench = builtin("bench", &[FEW_SPOTS]).text;
+    let shared = bench.clone()
+        + &body(
+            "left",
+            "{ file = \"bust.ply\", scale = 3, rotate = [{ axis = [0, 0, 1], angle = 30 }], translate = [1.5, 9, 0.5] }",
+        )
+        + &body(
+            "right",
+            "{ file = \"bust.ply\", scale = 2, rotate = [{ axis = [1, 1, 0], angle = 70 }], translate = [8, 9, 2] }",
+        );
+    let copied = bench
+        + &body("left", "{ file = \"left.ply\" }")
+        + &body("right", "{ file = \"right.ply\" }");
+    let turn =
+        |axis: DVec3, degrees: f64| DQuat::from_axis_angle(axis.normalize(), degrees.to_radians());
+    let place = |s: f64, q, t| DAffine3::from_scale_rotation_translation(DVec3::splat(s), q, t);
+    let left = place(3.0, turn(DVec3::Z, 30.0), DVec3::new(1.5, 9.0, 0.5));
+    let right = place(
+        2.0,
+        turn(DVec3::new(1.0, 1.0, 0.0), 70.0),
+        DVec3::new(8.0, 9.0, 2.0),
+    );
+    let own = bust(4000);
+    let write = |name: &str, bytes: &[u8]| std::fs::write(dir.path().join(name), bytes).unwrap();
+    write("bust.ply", &ply(&own, FaceValues::default()));
+    write("left.ply", &ply(&placed(&own, left), FaceValues::default()));
+    write(
+        "right.ply",
+        &ply(&placed(&own, right), FaceValues::default()),
+    );
+    let load = |name: &str, text: &str| {
+        write(name, text.as_bytes());
+        let path: &Path = &dir.path().join(name);
+        Scene::load(&path.to_string_lossy()).unwrap_or_else(|e| panic!("{e}"))
+    };
+    let (shared, copied) = (load("shared.toml", &shared), load("copied.toml", &copied));
+    let busts = shared
+        .surfaces
+        .iter()
+        .filter(|s| s.role == Role::Occluder)
+        .count();
+    assert_eq!(busts, 2);
+    for estimator in [Estimator::Shared, Estimator::Factored] {
+        let way = Way(estimator, Sampling::Sobol, 3, 1024);
+        let (a, b) = (trace(&shared, way), trace(&copied, way));
+        assert!(
+            relative(&a.flux, &b.flux) < 1e-9,
+            "{}",
+            relative(&a.flux, &b.flux)
+        );
+        assert_same(
+            &a,
+            &trace(&copied, Way(estimator, Sampling::Sobol, 4, 1024)),
+            "copies",
+        );
+    }
+}
