@@ -34,7 +34,7 @@ pub enum Take {
 /// What the three-bounce integral is integrated over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Extent {
-    /// Elements of the hidden surfaces, with the albedo at their centres; or the surfaces with the albedo as it varies.
+    /// Elements of the hidden surfaces, with their mean albedo; or the surfaces with the albedo as it varies.
     pub elements: Take,
     /// Pixels' footprints.
     pub footprints: Take,
@@ -158,10 +158,9 @@ fn integrate(scene: &Scene, kernel: Kernel, nodes: Nodes) -> Matrix {
 /// Points of the hidden surfaces with area · albedo/π.
 fn hidden_nodes(scene: &Scene, nodes: Nodes) -> Vec<(HiddenPoint, f64)> {
     let mut found = Vec::new();
-    let mut add = |surface: &Surface, element: &Element| {
-        let albedo = surface.albedo.albedo(element.uv);
-        if albedo > 0.0 && element.area > 0.0 {
-            let weight = element.area * albedo * FRAC_1_PI;
+    let mut add = |element: &Element| {
+        if element.albedo > 0.0 && element.area > 0.0 {
+            let weight = element.area * element.albedo * FRAC_1_PI;
             found.push((HiddenPoint::from(element), weight));
         }
     };
@@ -170,10 +169,10 @@ fn hidden_nodes(scene: &Scene, nodes: Nodes) -> Vec<(HiddenPoint, f64)> {
         match (nodes.extent.elements, &surface.shape) {
             (Take::Centre, _) => {
                 let elements = surface.divided(surface.elements);
-                elements.iter().for_each(|e| add(surface, e));
+                elements.iter().for_each(&mut add);
             }
             (Take::Integral, Shape::Body(body)) => {
-                triangle_nodes(body, nodes.hidden, |e| add(surface, &e));
+                triangle_nodes(surface, body, nodes.hidden, |e| add(&e));
             }
             (Take::Integral, _) => {
                 let [nu, nv] = surface.albedo.smooth_cells();
@@ -185,13 +184,10 @@ fn hidden_nodes(scene: &Scene, nodes: Nodes) -> Vec<(HiddenPoint, f64)> {
                             ((cell / nu) as f64 + b) / nv as f64,
                         ];
                         let area = w * area;
-                        add(
-                            surface,
-                            &Element {
-                                area,
-                                ..surface.element_at(uv)
-                            },
-                        );
+                        add(&Element {
+                            area,
+                            ..surface.element_at(uv)
+                        });
                     }
                 }
             }
@@ -210,7 +206,7 @@ fn pieces(surface: &Surface) -> usize {
 
 /// Every triangle by the product rule of n × n nodes on the square that is folded onto it: (u, v) → (1 − u, u·(1 − v), u·v), whose area
 /// element is twice the triangle's area times u. With one node its centroid.
-fn triangle_nodes(body: &Body, n: usize, mut visit: impl FnMut(Element)) {
+fn triangle_nodes(surface: &Surface, body: &Body, n: usize, mut visit: impl FnMut(Element)) {
     let scale = body.area() / body.mesh().area();
     for t in 0..body.mesh().triangles().len() as u32 {
         let [a, b, c] = body.corners(t);
@@ -223,7 +219,7 @@ fn triangle_nodes(body: &Body, n: usize, mut visit: impl FnMut(Element)) {
                 normal: point.normal,
                 area: area * share,
                 u_axis: DVec3::X,
-                uv: point.uv,
+                albedo: surface.albedo.albedo(point.uv),
             });
         };
         if area <= 0.0 {

@@ -62,7 +62,7 @@ pub struct MatrixModel {
     pub g12: Matrix,
     /// Pixels × elements, length⁻².
     pub g23: Matrix,
-    /// Albedo of each element at its centre.
+    /// Mean albedo of each element.
     pub albedo: Vec<f64>,
     /// C, pixels × elements: E_p·(ρ3/π)·G23/π.
     pub camera_side: Matrix,
@@ -137,7 +137,7 @@ impl MatrixModel {
             for element in surface.divided(grid.count) {
                 points.push(HiddenPoint::from(&element));
                 areas.push(element.area);
-                albedo.push(surface.albedo.albedo(element.uv));
+                albedo.push(element.albedo);
             }
         }
         let seen: Vec<WallPoint> = (0..pixels)

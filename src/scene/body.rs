@@ -8,7 +8,7 @@ use super::file::{GeneratorName, MeshTable, ScaleTable};
 use super::files::Files;
 use super::mesh::{self, Defects, Triangles};
 use super::surface::Surface;
-use crate::geometry::{Body, DAffine3, DQuat, DVec3, Mesh, Side};
+use crate::geometry::{Body, DAffine3, DQuat, DVec3, Mesh, Shape, Side};
 
 /// A mesh file larger than this is not read: 1 GiB.
 const LARGEST_FILE: u64 = 1 << 30;
@@ -99,6 +99,14 @@ impl Meshes {
                 cause,
                 "use two numbers from 0 to 1",
             ));
+        }
+        if matches!(below.shape, Shape::Body(_)) {
+            let cause = format!(
+                "`{}` is a mesh, and has no places by parameters",
+                on.surface
+            );
+            let cure = "put it on a rectangle or a disc, or use `translate`";
+            return Err(Fault::new(keys!["on", "surface"], cause, cure));
         }
         let foot = below.shape.at(on.at);
         let (mut low, mut high, mut height) = (DVec3::INFINITY, DVec3::NEG_INFINITY, f64::INFINITY);
@@ -197,6 +205,7 @@ fn generate(generator: GeneratorName, faces: Option<u64>) -> Result<Triangles, F
     Ok(match generator {
         GeneratorName::Bust => mesh::bust(faces),
         GeneratorName::Sphere => mesh::sphere(faces),
+        GeneratorName::Box => mesh::cube(),
         GeneratorName::Rectangle => {
             let side = (0.5 * faces as f64).sqrt().ceil().max(1.0) as u32;
             mesh::rectangle(side, side)

@@ -42,6 +42,31 @@ pub fn builtins() -> &'static [Builtin] {
             text: include_str!("../../scenes/dual.toml"),
         },
         Builtin {
+            name: "card",
+            summary: "a playing card face down over a table, 47 × 31 elements; laser and camera peek under it",
+            text: include_str!("../../scenes/card.toml"),
+        },
+        Builtin {
+            name: "satin",
+            summary: "the bench with a wall in satin paint: its BRDF enters the model",
+            text: include_str!("../../scenes/satin.toml"),
+        },
+        Builtin {
+            name: "shelf",
+            summary: "the bench with a shelf between wall and object",
+            text: include_str!("../../scenes/shelf.toml"),
+        },
+        Builtin {
+            name: "corner",
+            summary: "a letter chart around a corner: the relay wall is seen past another wall",
+            text: include_str!("../../scenes/corner.toml"),
+        },
+        Builtin {
+            name: "room",
+            summary: "a furnished room with a bust of a million triangles in it",
+            text: include_str!("../../scenes/room.toml"),
+        },
+        Builtin {
             name: "furnace",
             summary: "an integrating sphere, whose flux at every bounce count is known in closed form",
             text: include_str!("../../scenes/furnace.toml"),

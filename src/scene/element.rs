@@ -1,6 +1,7 @@
 //! Division of hidden surfaces into resolution elements.
 
 use super::surface::{Division, Surface};
+use super::texture::Texture;
 use crate::geometry::{Body, DVec3, Shape};
 
 /// An element as the matrix model takes it: one point with a normal, and an area.
@@ -14,8 +15,8 @@ pub struct Element {
     pub area: f64,
     /// Unit vector along u, in the surface.
     pub u_axis: DVec3,
-    /// Parameters of the middle, at which the albedo is taken.
-    pub uv: [f64; 2],
+    /// Its mean albedo; of a cell of a mesh's texture coordinates that at its middle.
+    pub albedo: f64,
 }
 
 impl Surface {
@@ -24,15 +25,20 @@ impl Surface {
     /// triangles clipped), the direction of that part's vector area as its normal, and the point of the mesh nearest to its centroid.
     pub fn divided(&self, [nu, nv]: [usize; 2]) -> Vec<Element> {
         match (&self.shape, self.division) {
-            (Shape::Body(body), Division::Faces) => faces(body),
-            (Shape::Body(body), Division::Cells) => cells(body, [nu, nv]),
+            (Shape::Body(body), Division::Faces) => faces(body, &self.albedo),
+            (Shape::Body(body), Division::Cells) => cells(body, &self.albedo, [nu, nv]),
             (shape, _) => {
                 let area = shape.area() / (nu * nv) as f64;
-                let middle = |i: usize, n: usize| (i as f64 + 0.5) / n as f64;
+                let range = |i: usize, n: usize| [i as f64 / n as f64, (i + 1) as f64 / n as f64];
+                let middle = |[a, b]: [f64; 2]| 0.5 * (a + b);
                 (0..nu * nv)
-                    .map(|j| Element {
-                        area,
-                        ..self.element_at([middle(j % nu, nu), middle(j / nu, nv)])
+                    .map(|j| {
+                        let [u, v] = [range(j % nu, nu), range(j / nu, nv)];
+                        Element {
+                            area,
+                            albedo: self.albedo.mean(u, v),
+                            ..self.element_at([middle(u), middle(v)])
+                        }
                     })
                     .collect()
             }
@@ -52,12 +58,12 @@ impl Surface {
             normal: point.normal,
             area: 0.0,
             u_axis: along.normalize_or(DVec3::X),
-            uv: point.uv,
+            albedo: self.albedo.albedo(point.uv),
         }
     }
 }
 
-fn faces(body: &Body) -> Vec<Element> {
+fn faces(body: &Body, albedo: &Texture) -> Vec<Element> {
     let scale = body.area() / body.mesh().area();
     (0..body.mesh().triangles().len() as u32)
         .map(|t| {
@@ -70,7 +76,7 @@ fn faces(body: &Body) -> Vec<Element> {
                     normal: point.normal,
                     area,
                     u_axis: (b - a).normalize_or(DVec3::X),
-                    uv: point.uv,
+                    albedo: albedo.albedo(point.uv),
                 },
                 false => NOTHING,
             }
@@ -83,7 +89,7 @@ const NOTHING: Element = Element {
     normal: DVec3::ZERO,
     area: 0.0,
     u_axis: DVec3::X,
-    uv: [0.0; 2],
+    albedo: 0.0,
 };
 
 /// What lies in a cell so far.
@@ -97,7 +103,7 @@ struct Part {
 /// A corner of a polygon in texture coordinates (in cells), and its weights in the triangle.
 type Corner = ([f64; 2], DVec3);
 
-fn cells(body: &Body, [nu, nv]: [usize; 2]) -> Vec<Element> {
+fn cells(body: &Body, albedo: &Texture, [nu, nv]: [usize; 2]) -> Vec<Element> {
     let mut parts = vec![Part::default(); nu * nv];
     let uv = body.mesh().uv().unwrap_or_default();
     for (t, uv) in uv.iter().enumerate() {
@@ -129,7 +135,7 @@ fn cells(body: &Body, [nu, nv]: [usize; 2]) -> Vec<Element> {
                 normal,
                 area: part.area,
                 u_axis: DVec3::X,
-                uv: point.uv,
+                albedo: albedo.albedo(point.uv),
             }
         })
         .collect()

@@ -214,7 +214,7 @@ pub(super) struct MeshTable {
     /// PLY, OBJ, glTF or GLB file, relative to the scene file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
-    /// A mesh that phicam makes itself, in place of a file: bust, sphere or rectangle.
+    /// A mesh that phicam makes itself, in place of a file: bust, sphere, rectangle or box (the unit cube).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub generate: Option<GeneratorName>,
     /// At least so many triangles (generate).
@@ -243,6 +243,7 @@ pub(super) enum GeneratorName {
     Bust,
     Sphere,
     Rectangle,
+    Box,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]

@@ -42,6 +42,34 @@ pub fn rectangle(nu: u32, nv: u32) -> Triangles {
     made
 }
 
+/// The unit cube \[0, 1\]³, two triangles a side, wound outwards; the texture's unit square covers every side.
+pub fn cube() -> Triangles {
+    let mut made = Triangles::default();
+    let mut uvs = Vec::new();
+    for axis in 0..3 {
+        for far in [0.0, 1.0] {
+            // u × v points along the axis where it is far, against it where it is near.
+            let (s, t) = match far > 0.0 {
+                true => ((axis + 1) % 3, (axis + 2) % 3),
+                false => ((axis + 2) % 3, (axis + 1) % 3),
+            };
+            let first = made.positions.len() as u32;
+            let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+            for [u, v] in square {
+                let mut corner = DVec3::ZERO;
+                (corner[axis], corner[s], corner[t]) = (far, u, v);
+                made.positions.push(corner);
+            }
+            for corners in [[0, 1, 2], [0, 2, 3]] {
+                made.triangles.push(corners.map(|c| first + c as u32));
+                uvs.push(corners.map(|c: usize| square[c].map(|x| x as f32)));
+            }
+        }
+    }
+    made.uv = Some(uvs);
+    made
+}
+
 /// A closed body of at least `faces` triangles: `surface` gives the point at longitude u and latitude v in \[0, 1\], and its texture's v.
 /// All longitudes meet in one point at v = 0, below, and at v = 1, above; outwards is to the right hand of growing u and v. The texture's
 /// u at these two points is the middle of each triangle's.

@@ -16,7 +16,7 @@ mod write;
 
 pub use bust::bust;
 pub use defects::Defects;
-pub use grid::{rectangle, sphere};
+pub use grid::{cube, rectangle, sphere};
 pub use write::{FaceValues, to_ply};
 
 use crate::geometry::DVec3;

@@ -40,6 +40,20 @@ pub struct Cells {
     pub albedo: Vec<f64>,
 }
 
+/// The cells of n equal ones on \[0, 1\] that an interval covers, each with its share of the interval; of one within rounding (1e-9 of a
+/// cell) nothing is taken.
+fn overlaps([a, b]: [f64; 2], n: usize) -> Vec<(usize, f64)> {
+    const ROUNDING: f64 = 1e-9;
+    let (a, b) = (a * n as f64, b * n as f64);
+    let first = (a + ROUNDING).floor().max(0.0) as usize;
+    let last = ((b - ROUNDING).ceil() as usize).clamp(first + 1, n.max(first + 1));
+    let width = |i: usize| b.min(i as f64 + 1.0) - a.max(i as f64);
+    match last - first {
+        1 => vec![(first.min(n - 1), 1.0)],
+        _ => (first..last).map(|i| (i, width(i) / (b - a))).collect(),
+    }
+}
+
 impl Texture {
     /// Albedo at (u, v). On an edge between cells the higher cell counts; u, v are held to [0, 1] unless the texture repeats.
     pub fn albedo(&self, [u, v]: [f64; 2]) -> f64 {
@@ -68,6 +82,33 @@ impl Texture {
             Self::Cells(cells) | Self::Tiles(cells) => cells.albedo[cell],
             Self::Ramp([a, b]) => 0.5 * (a + b),
             Self::Bilinear(texels) => texels.cell_mean(cell),
+        }
+    }
+
+    /// Mean albedo over a rectangle of parameters within \[0, 1\]: exact, but between the texels of a bilinear picture, where it is that of
+    /// 16 × 16 points.
+    pub fn mean(&self, [u0, u1]: [f64; 2], [v0, v1]: [f64; 2]) -> f64 {
+        match self {
+            Self::Constant(rho) => *rho,
+            Self::Ramp([a, b]) => a + (b - a) * 0.5 * (u0 + u1),
+            Self::Cells(cells) | Self::Tiles(cells) => {
+                let [nu, nv] = cells.count;
+                let (across, up) = (overlaps([u0, u1], nu), overlaps([v0, v1], nv));
+                let row = |j: usize| -> f64 {
+                    let along = across.iter();
+                    along.map(|(i, w)| w * cells.albedo[i + j * nu]).sum()
+                };
+                up.iter().map(|(j, w)| w * row(*j)).sum()
+            }
+            Self::Bilinear(_) => {
+                const POINTS: usize = 16;
+                let at = |k: usize| (k as f64 + 0.5) / POINTS as f64;
+                let point = |k: usize| {
+                    let [s, t] = [at(k % POINTS), at(k / POINTS)];
+                    self.albedo([u0 + (u1 - u0) * s, v0 + (v1 - v0) * t])
+                };
+                (0..POINTS * POINTS).map(point).sum::<f64>() / (POINTS * POINTS) as f64
+            }
         }
     }
 
