@@ -31,6 +31,7 @@ mod folder;
 mod interrupt;
 mod model;
 mod output;
+mod portrait;
 mod progress;
 mod record;
 mod recover;

@@ -1,4 +1,4 @@
-//! `phicam scene`: list, check, show, export.
+//! `phicam scene`: list, check, show, view, export.
 
 use std::fmt::Write as _;
 
@@ -6,7 +6,7 @@ use super::Outcome;
 use super::args::{SceneArgs, SceneCommand};
 use super::failure::Failure;
 use super::output::{self, Talk};
-use super::trust;
+use super::{portrait, trust};
 use crate::report;
 use crate::scene::{Role, Scene, builtins};
 
@@ -19,6 +19,7 @@ pub(super) fn execute(args: &SceneArgs, talk: Talk) -> Result<Outcome, Failure> 
             talk.warn(&scene);
             output::deliver(&report::bench_svg(&scene), output.as_deref())?;
         }
+        SceneCommand::View(view) => return portrait::execute(view, talk),
         SceneCommand::Export {
             scene,
             mitsuba,

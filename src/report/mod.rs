@@ -27,6 +27,7 @@ mod noise;
 mod page;
 mod picard;
 mod picture;
+mod portrait;
 mod power;
 mod projection;
 mod raster;
@@ -54,6 +55,7 @@ pub use noise::{Measure, noise_csv, noise_svg, noise_table};
 pub use page::run_html;
 pub use picard::{picard_csv, picard_svg};
 pub use picture::{Panel, ScaleBar, colour_png, grey_png};
+pub use portrait::portrait_png;
 pub use power::power_table;
 pub use reproduce::{
     ItemSummary, reproduction_files, reproduction_html, reproduction_markdown, reproduction_table,

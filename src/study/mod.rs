@@ -10,6 +10,7 @@
 //! * [`experiment`](fn@experiment): the failed laboratory experiment, re-enacted.
 //! * [`indicator`](fn@indicator): what predicts how well the published inversion works.
 //! * [`noise`](fn@noise): how much noise each recovery bears.
+//! * [`portrait`](fn@portrait): a picture of the scene in ordinary light, for people.
 //! * [`reproduce`]: the published tables and figures, computed again.
 //! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object; [`picards`] show what of it noise leaves.
 
@@ -24,6 +25,7 @@ mod indicator;
 mod inversion;
 mod noise;
 mod objects;
+mod portrait;
 mod power;
 pub mod reproduce;
 mod results;
@@ -48,6 +50,9 @@ pub use noise::{
     read_ledger, render_noise, write_ledger,
 };
 pub use objects::{Attempt, Noise, measured, picards, recover_objects};
+pub use portrait::{
+    Colour, Marking, Portrait, PortraitPlan, Viewpoint, ViewpointError, Wishes, portrait, stand,
+};
 pub use power::{Detection, Power, PowerError, PowerPlan, PowerRow, power};
 pub use results::{Agreement, Entry, ObjectBands, RecoveredObject, RunResults, Settings};
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, tolerance};

@@ -8,6 +8,7 @@ mod study;
 mod sweep;
 mod target;
 mod value;
+mod view;
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -25,6 +26,7 @@ pub(in crate::cli) use study::{
 };
 pub(in crate::cli) use sweep::{AxisName, IndicatorArgs, NoiseArgs};
 pub(in crate::cli) use target::TargetArgs;
+pub(in crate::cli) use view::{PortraitArgs, YesNo};
 
 /// phicam: a physically based renderer for indirect photography, and the laboratory around it.
 #[derive(Debug, Parser)]
@@ -241,6 +243,8 @@ pub(in crate::cli) enum SceneCommand {
         #[arg(long, short)]
         output: Option<PathBuf>,
     },
+    /// Look at a scene from any place, in ordinary light, as PNG
+    View(Box<PortraitArgs>),
     /// Write the text of a scene, as a start for one's own
     Export {
         /// Built-in scene or path of a scene file

@@ -41,6 +41,15 @@ pub(super) fn shift(text: &str) -> Result<[f64; 2], String> {
     parts.ok_or_else(|| "write it as DX,DY, e.g. 0.05,0".to_owned())
 }
 
+/// "X,Y,Z", finite.
+pub(super) fn point(text: &str) -> Result<[f64; 3], String> {
+    let number = |s: &str| s.trim().parse().ok().filter(|x: &f64| x.is_finite());
+    let parts: Option<Vec<f64>> = text.split(',').map(number).collect();
+    parts
+        .and_then(|p| p.try_into().ok())
+        .ok_or_else(|| "write it as X,Y,Z, e.g. 5,-8,12".to_owned())
+}
+
 /// "DARK,LIGHT", 0 ≤ DARK < LIGHT ≤ 1.
 pub(super) fn levels(text: &str) -> Result<[f64; 2], String> {
     let parts = text
@@ -73,6 +82,10 @@ mod tests {
         }
         for bad in ["1", "nan,0", "1,inf", ""] {
             assert!(shift(bad).is_err(), "{bad}");
+        }
+        assert_eq!(point("5, -8,1e1"), Ok([5.0, -8.0, 10.0]));
+        for bad in ["1,2", "1,2,3,4", "1,2,nan", "1,,2", ""] {
+            assert!(point(bad).is_err(), "{bad}");
         }
         assert_eq!(levels("0.1, 1"), Ok([0.1, 1.0]));
         for bad in ["1,0", "0.5", "0,nan", "-0.1,1", "0,1.5", "0.5,0.5"] {
