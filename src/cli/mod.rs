@@ -48,6 +48,7 @@ mod study;
 mod target;
 mod trust;
 mod validate;
+mod view;
 
 use std::process::ExitCode;
 
@@ -76,6 +77,7 @@ pub fn main() -> ExitCode {
         Command::Validate(a) => validate::execute(a, talk),
         Command::Recover(a) => recover::execute(a, talk),
         Command::Expose(a) => expose::execute(a, talk),
+        Command::View(a) => view::execute(a, talk),
         Command::Scene(a) => scene::execute(a, talk),
         Command::Target(a) => target::execute(a, talk),
         Command::Study(a) => study::execute(a, talk),

@@ -14,10 +14,20 @@ pub enum Map {
     Diverging,
 }
 
+/// How colours are spread over values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// Evenly.
+    Linear,
+    /// Evenly over the logarithm.
+    Logarithmic,
+}
+
 /// Values low…high shown by the colours of a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     map: Map,
+    law: Law,
     low: f64,
     high: f64,
 }
@@ -30,6 +40,7 @@ impl Scale {
     pub fn reflectance() -> Self {
         Self {
             map: Map::Grey,
+            law: Law::Linear,
             low: 0.0,
             high: 1.0,
         }
@@ -50,6 +61,7 @@ impl Scale {
         };
         Self {
             map: Map::Viridis,
+            law: Law::Linear,
             low,
             high: if low < high { high } else { low + 1.0 },
         }
@@ -64,8 +76,50 @@ impl Scale {
         };
         Self {
             map: Map::Diverging,
+            law: Law::Linear,
             low: -limit,
             high: limit,
+        }
+    }
+
+    /// `map` from `low` to `high`; `None` unless they are finite, in this order, and above 0 where the scale is logarithmic.
+    pub fn between(map: Map, law: Law, [low, high]: [f64; 2]) -> Option<Self> {
+        let ordered = low < high && low.is_finite() && high.is_finite();
+        let proper = ordered && (law == Law::Linear || low > 0.0);
+        proper.then_some(Self {
+            map,
+            law,
+            low,
+            high,
+        })
+    }
+
+    /// How its colours are spread.
+    pub fn law(&self) -> Law {
+        self.law
+    }
+
+    /// Where between the first colour (0) and the last (1) a value of the range stands.
+    pub fn share(&self, value: f64) -> f64 {
+        match self.law {
+            // Halves, so that no difference overflows.
+            Law::Linear => (0.5 * value - 0.5 * self.low) / (0.5 * self.high - 0.5 * self.low),
+            Law::Logarithmic => {
+                let [x, low, high] = [value, self.low, self.high].map(libm::log10);
+                (x - low) / (high - low)
+            }
+        }
+    }
+
+    /// The value that stands there.
+    pub fn value(&self, share: f64) -> f64 {
+        match self.law {
+            Law::Linear => self.low * (1.0 - share) + self.high * share,
+            Law::Logarithmic => {
+                let [low, high] = [self.low, self.high].map(libm::log10);
+                // Rounding of the powers must not leave the range.
+                libm::exp10(low * (1.0 - share) + high * share).clamp(self.low, self.high)
+            }
         }
     }
 
@@ -88,9 +142,7 @@ impl Scale {
         } else if value > self.high {
             self.above().0
         } else {
-            // Halves, so that no difference overflows.
-            let span = 0.5 * self.high - 0.5 * self.low;
-            self.map.at((0.5 * value - 0.5 * self.low) / span)
+            self.map.at(self.share(value))
         }
     }
 
@@ -201,6 +253,30 @@ mod tests {
             assert!(b > a - 0.0065, "{i}");
         }
         assert_eq!(VIRIDIS.len(), 6 * 256);
+    }
+
+    /// Four decades: each takes a quarter of the colours.
+    #[test]
+    fn a_logarithmic_scale_gives_each_decade_as_many_colours() {
+        let scale = Scale::between(Map::Viridis, Law::Logarithmic, [1e-13, 1e-9]).unwrap();
+        for (k, value) in [1e-13, 1e-12, 1e-11, 1e-10, 1e-9].into_iter().enumerate() {
+            let share = k as f64 / 4.0;
+            assert!((scale.share(value) - share).abs() < 1e-12);
+            assert!((scale.value(share) / value - 1.0).abs() < 1e-12);
+            assert_eq!(scale.colour(value), Map::Viridis.at(share));
+        }
+        for below in [0.0, -1.0, 0.9e-13] {
+            assert_eq!(scale.colour(below), scale.below().0);
+        }
+        for (law, range) in [
+            (Law::Logarithmic, [0.0, 1.0]),
+            (Law::Logarithmic, [-1.0, 1.0]),
+            (Law::Linear, [1.0, 1.0]),
+            (Law::Linear, [0.0, f64::INFINITY]),
+            (Law::Linear, [f64::NAN, 1.0]),
+        ] {
+            assert_eq!(Scale::between(Map::Grey, law, range), None);
+        }
     }
 
     #[test]

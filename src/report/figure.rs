@@ -84,16 +84,18 @@ fn capital(text: &str) -> String {
         .map_or(String::new(), |c| c.to_uppercase().chain(letters).collect())
 }
 
+/// Bytes as base64.
+pub(super) fn encoded(bytes: &[u8]) -> String {
+    BASE64_STANDARD.encode(bytes)
+}
+
 /// The entries of a matrix as a picture inside of markup.
 ///
 /// # Errors
 /// [`PictureError`].
 pub(super) fn data_uri(panel: &Panel, scale: &Scale) -> Result<String, PictureError> {
     let png = panel.plain_png(scale)?;
-    Ok(format!(
-        "data:image/png;base64,{}",
-        BASE64_STANDARD.encode(png)
-    ))
+    Ok(format!("data:image/png;base64,{}", encoded(&png)))
 }
 
 /// The shape of an entry.

@@ -34,6 +34,7 @@ mod raster;
 mod reproduce;
 #[cfg(test)]
 mod sample;
+mod shown;
 mod summary;
 mod svg;
 mod table;
@@ -42,7 +43,7 @@ mod tolerance;
 mod verdict;
 
 pub use budget::{budget_csv, budget_svg, budget_table};
-pub use colour::{Map, Rgb, Scale};
+pub use colour::{Law, Map, Rgb, Scale};
 pub use convergence::{convergence_svg, convergence_table};
 pub use coverage::coverage_table;
 pub use drawing::bench_svg;
@@ -60,6 +61,7 @@ pub use power::power_table;
 pub use reproduce::{
     ItemSummary, reproduction_files, reproduction_html, reproduction_markdown, reproduction_table,
 };
+pub use shown::{Shown, iterm, kitty};
 pub use summary::summary_json;
 pub use table::{recovery_table, summary_table, verdict_table};
 pub use target::target_png;

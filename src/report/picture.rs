@@ -2,7 +2,7 @@
 
 use super::axis::{significant, tick, ticks};
 use super::chart::superscript;
-use super::colour::{Map, NOT_A_NUMBER, Rgb, Scale};
+use super::colour::{Law, NOT_A_NUMBER, Rgb, Scale};
 use super::encode::{PictureError, rgb};
 use super::figure::data_uri;
 use super::raster::{self, DPI, FAMILIES};
@@ -16,16 +16,16 @@ const WIDTH: usize = 2126;
 const LARGEST: usize = 600;
 /// Panels a row.
 const MOST_COLUMNS: usize = 5;
-const MARGIN: usize = 24;
+pub(super) const MARGIN: usize = 24;
 const GAP: usize = 44;
 /// Room left of a panel for the axis upwards, and below for the axis across.
-const AXIS: usize = 52;
-const BELOW: usize = 54;
+pub(super) const AXIS: usize = 52;
+pub(super) const BELOW: usize = 54;
 /// Size of type (7 pt), of a line of it, and of a character, rounded up.
 const TYPE: usize = 29;
-const LINE: usize = 36;
-const CHARACTER: usize = 17;
-const BAR: [usize; 2] = [640, 30];
+pub(super) const LINE: usize = 36;
+pub(super) const CHARACTER: usize = 17;
+pub(super) const BAR: [usize; 2] = [640, 30];
 /// Ink of frames and arrows, 0.5 pt wide.
 const THIN: &str = "fill=\"none\" stroke=\"#222222\" stroke-width=\"2\"";
 
@@ -93,7 +93,7 @@ impl Panel {
     }
 
     /// Width and height on a sheet: the longer side as near below `most` as whole pixels an entry allow, but one at least.
-    fn pixels(&self, most: usize) -> [usize; 2] {
+    pub(super) fn pixels(&self, most: usize) -> [usize; 2] {
         let [nu, nv] = self.entries();
         let factor = (most / nu.max(nv)).max(1);
         [nu * factor, nv * factor]
@@ -153,14 +153,7 @@ pub(super) fn pictures_svg(
     let legend = top + height + 16;
     let full = legend + BAR[1] + 56 + LINE * lettering.len() + MARGIN;
     let mut svg = Svg::default();
-    let millimetres = |px: usize| 25.4 / DPI * px as f64;
-    svg.raw(&format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.4}mm\" height=\"{:.4}mm\" viewBox=\"0 0 {width} {full}\" font-family=\"{FAMILIES}\" \
-         font-size=\"{TYPE}\" fill=\"#222222\" role=\"img\" aria-label=\"{}\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>",
-        millimetres(width),
-        millimetres(full),
-        escape(title)
-    ));
+    svg.raw(&opening(title, [width, full]));
     write(&mut svg, [MARGIN, MARGIN], &heading);
     for (i, panel) in panels.iter().enumerate() {
         let [x, y] = places[i];
@@ -174,17 +167,34 @@ pub(super) fn pictures_svg(
         draw(&mut svg, panel, corner, sizes[i], scale)?;
     }
     bar(&mut svg, [MARGIN + 100, legend], scale, unit)?;
+    key(&mut svg, [MARGIN, legend + BAR[1] + 56], &lettering);
+    svg.raw("</svg>");
+    Ok(svg.text)
+}
+
+/// The tag that opens a sheet of so many pixels, and its white ground.
+pub(super) fn opening(title: &str, [width, height]: [usize; 2]) -> String {
+    let millimetres = |px: usize| 25.4 / DPI * px as f64;
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.4}mm\" height=\"{:.4}mm\" viewBox=\"0 0 {width} {height}\" font-family=\"{FAMILIES}\" \
+         font-size=\"{TYPE}\" fill=\"#222222\" role=\"img\" aria-label=\"{}\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>",
+        millimetres(width),
+        millimetres(height),
+        escape(title)
+    )
+}
+
+/// Colours with what they mean, below each other.
+pub(super) fn key(svg: &mut Svg, [x, y]: [usize; 2], lettering: &[(Rgb, String)]) {
     for (i, ([r, g, b], text)) in lettering.iter().enumerate() {
-        let y = legend + BAR[1] + 56 + LINE * i;
+        let y = y + LINE * i;
         svg.rect(
-            at([MARGIN, y + 5]),
+            at([x, y + 5]),
             [36.0, 24.0],
             &format!("fill=\"#{r:02x}{g:02x}{b:02x}\" stroke=\"#222222\" stroke-width=\"2\""),
         );
-        write(&mut svg, [MARGIN + 52, y], std::slice::from_ref(text));
+        write(svg, [x + 52, y], std::slice::from_ref(text));
     }
-    svg.raw("</svg>");
-    Ok(svg.text)
 }
 
 /// "(a) title" and so on where there are several panels, numbers in it as they are set and kept on the line of the word after them.
@@ -236,7 +246,7 @@ fn at(p: [usize; 2]) -> [f64; 2] {
 }
 
 /// Lines of text below each other, the corner of the first.
-fn write(svg: &mut Svg, [x, y]: [usize; 2], lines: &[String]) {
+pub(super) fn write(svg: &mut Svg, [x, y]: [usize; 2], lines: &[String]) {
     for (i, line) in lines.iter().enumerate() {
         svg.text(at([x, y + LINE * i + TYPE - 3]), "", line);
     }
@@ -253,7 +263,7 @@ fn image(svg: &mut Svg, [x, y]: [usize; 2], [w, h]: [usize; 2], uri: &str) {
     );
 }
 
-fn draw(
+pub(super) fn draw(
     svg: &mut Svg,
     panel: &Panel,
     [left, top]: [usize; 2],
@@ -299,11 +309,14 @@ fn arrow(svg: &mut Svg, [x, y]: [f64; 2], [dx, dy]: [f64; 2]) {
 }
 
 /// The colours of the scale with its ticks and its name.
-fn bar(svg: &mut Svg, [x, y]: [usize; 2], scale: &Scale, unit: &str) -> Result<(), PictureError> {
-    let [low, high] = scale.range();
+pub(super) fn bar(
+    svg: &mut Svg,
+    [x, y]: [usize; 2],
+    scale: &Scale,
+    unit: &str,
+) -> Result<(), PictureError> {
     let steps = 256;
-    let along = |i: usize| i as f64 / (steps - 1) as f64;
-    let values = (0..steps).map(|i| low * (1.0 - along(i)) + high * along(i));
+    let values = (0..steps).map(|i| scale.value(i as f64 / (steps - 1) as f64));
     let colours = Panel::elements("", [steps, 1], values.collect());
     image(svg, [x, y], BAR, &data_uri(&colours, scale)?);
     for (t, text) in bar_ticks(scale) {
@@ -320,11 +333,19 @@ fn bar(svg: &mut Svg, [x, y]: [usize; 2], scale: &Scale, unit: &str) -> Result<(
 /// on the others.
 pub(super) fn bar_ticks(scale: &Scale) -> Vec<(f64, String)> {
     let [low, high] = scale.range();
-    let along = |x: f64| (0.5 * x - 0.5 * low) / (0.5 * high - 0.5 * low);
-    if scale.map() == Map::Grey {
+    let along = |x: f64| scale.share(x);
+    if *scale == Scale::reflectance() {
         return [0.0, 0.5, 1.0].map(|x| (along(x), tick(x))).to_vec();
     }
-    let inner = ticks(low, high, 3)
+    let round = match scale.law() {
+        Law::Linear => ticks(low, high, 3),
+        Law::Logarithmic => ticks(libm::log10(low), libm::log10(high), 3)
+            .into_iter()
+            .filter(|x| x.fract() == 0.0)
+            .map(libm::exp10)
+            .collect(),
+    };
+    let inner = round
         .into_iter()
         .filter(|x| (0.3..0.7).contains(&along(*x)));
     let inner: Vec<f64> = inner.take(1).collect();
@@ -355,7 +376,7 @@ pub(super) fn scientific(text: &str) -> String {
 pub(super) fn legend_lines(scale: &Scale, panels: &[Panel]) -> Vec<(Rgb, String)> {
     let [low, high] = scale.range();
     let values = || panels.iter().flat_map(|p| p.values.iter());
-    let fixed = scale.map() == Map::Grey;
+    let fixed = *scale == Scale::reflectance();
     let count = |n: usize| match n {
         1 => "1 value here".to_owned(),
         n => format!("{n} values here"),

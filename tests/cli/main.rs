@@ -19,4 +19,5 @@ mod studies;
 mod sweeps;
 mod targets;
 mod verdict;
+mod views;
 mod workspace;

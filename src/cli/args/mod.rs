@@ -26,7 +26,7 @@ pub(in crate::cli) use study::{
 };
 pub(in crate::cli) use sweep::{AxisName, IndicatorArgs, NoiseArgs};
 pub(in crate::cli) use target::TargetArgs;
-pub(in crate::cli) use view::{PortraitArgs, YesNo};
+pub(in crate::cli) use view::{LawName, MapName, PortraitArgs, TerminalName, ViewArgs, YesNo};
 
 /// phicam: a physically based renderer for indirect photography, and the laboratory around it.
 #[derive(Debug, Parser)]
@@ -61,7 +61,9 @@ pub(in crate::cli) enum Command {
     Recover(RecoverArgs),
     /// Photograph the clean flux with a sensor: shot noise, read noise, glare, converter
     Expose(ExposeArgs),
-    /// List, check, draw or export scenes
+    /// Look at a frame or a matrix in false colour, as PNG or in the terminal
+    View(ViewArgs),
+    /// List, check, draw, look at or export scenes
     Scene(SceneArgs),
     /// Write a target picture, or list them: card, letters, star, edge, bars, ramp
     Target(TargetArgs),

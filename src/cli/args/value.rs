@@ -41,6 +41,17 @@ pub(super) fn shift(text: &str) -> Result<[f64; 2], String> {
     parts.ok_or_else(|| "write it as DX,DY, e.g. 0.05,0".to_owned())
 }
 
+/// "LOW,HIGH", finite, LOW < HIGH.
+pub(super) fn range(text: &str) -> Result<[f64; 2], String> {
+    let number = |s: &str| s.trim().parse().ok().filter(|x: &f64| x.is_finite());
+    let parts = text
+        .split_once(',')
+        .and_then(|(a, b)| Some([number(a)?, number(b)?]));
+    parts
+        .filter(|[low, high]| low < high)
+        .ok_or_else(|| "write it as LOW,HIGH with LOW below HIGH, e.g. 0,2e-12".to_owned())
+}
+
 /// "X,Y,Z", finite.
 pub(super) fn point(text: &str) -> Result<[f64; 3], String> {
     let number = |s: &str| s.trim().parse().ok().filter(|x: &f64| x.is_finite());
@@ -82,6 +93,10 @@ mod tests {
         }
         for bad in ["1", "nan,0", "1,inf", ""] {
             assert!(shift(bad).is_err(), "{bad}");
+        }
+        assert_eq!(range("-1e-9, 2"), Ok([-1e-9, 2.0]));
+        for bad in ["1,1", "2,1", "0,inf", "nan,1", "1", ""] {
+            assert!(range(bad).is_err(), "{bad}");
         }
         assert_eq!(point("5, -8,1e1"), Ok([5.0, -8.0, 10.0]));
         for bad in ["1,2", "1,2,3,4", "1,2,nan", "1,,2", ""] {

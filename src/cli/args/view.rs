@@ -1,10 +1,10 @@
-//! Arguments of `phicam scene view`.
+//! Arguments of `phicam view` and `phicam scene view`.
 
 use std::path::PathBuf;
 
 use clap::Args as Arguments;
 
-use super::value::{point, size};
+use super::value::{point, range, size};
 
 #[derive(Debug, Arguments)]
 #[command(
@@ -28,7 +28,12 @@ pub(in crate::cli) struct PortraitArgs {
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true, default_value = "0,1,0")]
     pub up: [f64; 3],
     /// Angle between the left and the right edge, degrees
-    #[arg(long, value_name = "DEG", default_value_t = 40.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "DEG",
+        default_value_t = 40.0,
+        allow_negative_numbers = true
+    )]
     pub fov: f64,
     /// Columns and rows, 1 to 4096 each
     #[arg(long, value_name = "W,H", value_parser = size, default_value = "960,640")]
@@ -47,4 +52,79 @@ pub(in crate::cli) enum YesNo {
     Yes,
     /// Surfaces alone
     No,
+}
+
+#[derive(Debug, Arguments)]
+#[command(
+    after_help = "FILE is a frame of phicam (channels flux, flux.stderr, flux.b3, …, counts), any other OpenEXR picture of R, G, B or Y, or a matrix (.npy): \
+    pixels × spots, of which --spot N is one photograph, or a recovered reflectance. Rows run upwards as the camera sees them. Numbers are shown as they are: \
+    what lies outside the scale has a colour of its own and is counted.\n\n\
+    Without -o the picture goes to the terminal, if standard output is one that shows colours (kitty, iTerm2 and WezTerm show it whole, others as half-block \
+    characters), and else to FILE.png."
+)]
+pub(in crate::cli) struct ViewArgs {
+    /// Frame, picture or matrix
+    pub file: PathBuf,
+    /// PNG file to write
+    #[arg(long, short)]
+    pub output: Option<PathBuf>,
+    /// Channel of a frame or picture; flux, luminance or the only one unless given
+    #[arg(long)]
+    pub channel: Option<String>,
+    /// Column of a matrix pixels × spots, shown as the camera's photograph
+    #[arg(long, value_name = "N")]
+    pub spot: Option<usize>,
+    /// Scale from 0 to the largest value over 2^EV
+    #[arg(
+        long,
+        value_name = "EV",
+        allow_negative_numbers = true,
+        conflicts_with = "range"
+    )]
+    pub exposure: Option<f64>,
+    /// Values of the first and the last colour; the smallest and the largest value unless given
+    #[arg(long, value_name = "LOW,HIGH", value_parser = range, allow_hyphen_values = true)]
+    pub range: Option<[f64; 2]>,
+    /// How colours are spread over values
+    #[arg(long, value_enum, default_value_t = LawName::Linear)]
+    pub scale: LawName,
+    /// Colours; viridis unless given, grey for a recovered reflectance
+    #[arg(long, value_enum)]
+    pub map: Option<MapName>,
+    /// The entries alone: no title, axes, colour bar and legend
+    #[arg(long)]
+    pub bare: bool,
+    /// Show it in the terminal, whatever standard output is; HOW is chosen by the environment unless given
+    #[arg(long, value_name = "HOW", num_args = 0..=1, require_equals = true, default_missing_value = "auto", conflicts_with = "output")]
+    pub terminal: Option<TerminalName>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(in crate::cli) enum LawName {
+    /// Evenly
+    Linear,
+    /// Evenly over the logarithm
+    Log,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(in crate::cli) enum MapName {
+    /// Black to white
+    Grey,
+    /// Dark blue to yellow, perceptually uniform
+    Viridis,
+    /// Blue, white, red: for signed values, symmetric about 0 unless --range is given
+    Diverging,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(in crate::cli) enum TerminalName {
+    /// By the environment
+    Auto,
+    /// kitty graphics protocol
+    Kitty,
+    /// Inline images of iTerm2
+    Iterm,
+    /// Half-block characters of 24-bit colours
+    Blocks,
 }

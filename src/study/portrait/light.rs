@@ -11,6 +11,8 @@ const SKY: [f64; 2] = [0.16, 0.50];
 /// Irradiance of a surface that faces the lamp over the shoulder, and of one that faces the eye.
 const KEY: f64 = 0.50 * PI;
 const EYE: f64 = 0.14 * PI;
+/// No sample counts for more, so that a glossy surface does not sparkle: three times white. This is a picture.
+const MOST: f64 = 3.0;
 /// Where the lamp stands: to the left, up and back, as seen by the viewer; its radius at distance 1.
 const PLACE: [f64; 3] = [-0.55, 0.85, -0.75];
 const RADIUS: f64 = 0.10;
@@ -55,6 +57,7 @@ impl Light {
             true => KEY * slope * brdf(key),
             false => 0.0,
         };
-        from_sky + from_key + EYE * normal.dot(viewer).max(0.0) * brdf(viewer)
+        let from_eye = EYE * normal.dot(viewer).max(0.0) * brdf(viewer);
+        from_sky.min(MOST) + from_key.min(MOST) + from_eye.min(MOST)
     }
 }

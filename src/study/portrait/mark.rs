@@ -67,9 +67,7 @@ impl Segment {
         let off = [at[0] - ax - along * dx, at[1] - ay - along * dy];
         let covered = off[0] * off[0] + off[1] * off[1] <= self.half * self.half;
         // 1/depth is linear along a line in the picture.
-        covered.then(|| {
-            (self.nearness[0] + along * (self.nearness[1] - self.nearness[0])).recip()
-        })
+        covered.then(|| (self.nearness[0] + along * (self.nearness[1] - self.nearness[0])).recip())
     }
 
     /// Whether it may cover something between the lines `y` and `y` + 1 of the picture.

@@ -10,13 +10,13 @@ const HUGE: f64 = 3.0;
 /// Part of the picture that the scene fills.
 const FILLED: f64 = 0.92;
 /// Places that are tried: heights, and ways around, degrees.
-const HEIGHTS: [i32; 6] = [-40, -20, 5, 20, 35, 50];
+const HEIGHTS: [i32; 7] = [-50, -30, -10, 10, 25, 40, 55];
 const AROUND: i32 = 15;
 /// Rays of a trial.
 const GRID: [usize; 2] = [45, 30];
 /// What the back of a hidden surface is worth, its front 1; and a place below the scene, above 1.
-const BACK: f64 = 0.1;
-const BELOW: f64 = 0.8;
+const BACK: f64 = 0.01;
+const BELOW: f64 = 0.9;
 /// Degrees between the left and the right edge, unless asked for.
 const FIELD: f64 = 40.0;
 
@@ -33,8 +33,8 @@ pub struct Wishes {
     pub field: Option<f64>,
 }
 
-/// The viewpoint with `wishes` fulfilled. Who does not say where to stand is placed where much is seen of the fronts of hidden and of relay surfaces: of 144
-/// directions the one with the largest √(H·R), H and R the parts of the picture that they take (a hidden surface's back counts a tenth), as near as leaves all
+/// The viewpoint with `wishes` fulfilled. Who does not say where to stand is placed where much is seen of the fronts of hidden and of relay surfaces: of 168
+/// directions the one with the largest √(H·R), H and R the parts of the picture that they take (a hidden surface's back counts a hundredth), as near as leaves all
 /// surfaces in the picture but those more than three times as long as hidden surfaces, spots and view together.
 ///
 /// # Errors
@@ -61,7 +61,10 @@ pub fn stand(
         return Ok(viewpoint);
     }
     let reach = (high - low).length().max(f64::MIN_POSITIVE);
-    let first = whole(middle + reach * Basis::around(up.normalize_or(DVec3::Y)).s, middle);
+    let first = whole(
+        middle + reach * Basis::around(up.normalize_or(DVec3::Y)).s,
+        middle,
+    );
     Lens::new(&first, size)?;
     let model = Model::new(scene);
     let upright = Basis::around(up.normalize());
@@ -125,7 +128,12 @@ fn fitted(
         let [right, up, ahead] = lens.axes();
         let distance = (viewpoint.to - viewpoint.from).length();
         // How far back the eye must go so that each corner is inside, were the picture centred where it is.
-        let mut edges = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
+        let mut edges = [
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+        ];
         let mut needed = f64::NEG_INFINITY;
         for corner in corners {
             let way = *corner - viewpoint.to;
@@ -151,7 +159,11 @@ fn fitted(
 }
 
 /// How much is seen of what matters.
-fn worth(model: &Model<'_>, viewpoint: &Viewpoint, size: [usize; 2]) -> Result<f64, ViewpointError> {
+fn worth(
+    model: &Model<'_>,
+    viewpoint: &Viewpoint,
+    size: [usize; 2],
+) -> Result<f64, ViewpointError> {
     let lens = Lens::new(viewpoint, size)?;
     let (mut hidden, mut relay) = (0.0, 0.0);
     let cell = [0, 1].map(|k| size[k] as f64 / GRID[k] as f64);

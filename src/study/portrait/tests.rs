@@ -33,7 +33,10 @@ fn points_lie_where_perspective_puts_them() {
     ] {
         let point = eye + DVec3::from_array(offset);
         let got = lens.place(point);
-        assert!((got[0] - place[0]).abs() < 1e-9 && (got[1] - place[1]).abs() < 1e-9, "{got:?} {place:?}");
+        assert!(
+            (got[0] - place[0]).abs() < 1e-9 && (got[1] - place[1]).abs() < 1e-9,
+            "{got:?} {place:?}"
+        );
         // The ray through that place meets the point.
         let ray = lens.ray(place);
         let along = (point - eye).dot(ray.direction);
@@ -44,10 +47,16 @@ fn points_lie_where_perspective_puts_them() {
 
 #[test]
 fn what_is_looked_at_is_in_the_middle() {
-    for (from, to) in [([1.0, 7.0, 3.0], [0.0, 0.5, -2.0]), ([-3.0, 0.1, 0.0], [4.0, 4.0, 4.0])] {
+    for (from, to) in [
+        ([1.0, 7.0, 3.0], [0.0, 0.5, -2.0]),
+        ([-3.0, 0.1, 0.0], [4.0, 4.0, 4.0]),
+    ] {
         let lens = Lens::new(&viewpoint(from.into(), to.into()), [321, 77]).unwrap();
         let [x, y] = lens.place(to.into());
-        assert!((x - 160.5).abs() < 1e-9 && (y - 38.5).abs() < 1e-9, "{x} {y}");
+        assert!(
+            (x - 160.5).abs() < 1e-9 && (y - 38.5).abs() < 1e-9,
+            "{x} {y}"
+        );
     }
 }
 
@@ -55,12 +64,24 @@ fn what_is_looked_at_is_in_the_middle() {
 fn places_that_nothing_can_be_seen_from_are_refused() {
     let good = viewpoint(DVec3::ZERO, DVec3::X);
     let refused = |v: Viewpoint, size| Lens::new(&v, size).unwrap_err();
-    let at_itself = Viewpoint { to: DVec3::ZERO, ..good };
-    assert!(matches!(refused(at_itself, [4, 4]), ViewpointError::NoDirection(..)));
-    let up = Viewpoint { up: -2.0 * DVec3::X, ..good };
+    let at_itself = Viewpoint {
+        to: DVec3::ZERO,
+        ..good
+    };
+    assert!(matches!(
+        refused(at_itself, [4, 4]),
+        ViewpointError::NoDirection(..)
+    ));
+    let up = Viewpoint {
+        up: -2.0 * DVec3::X,
+        ..good
+    };
     assert!(matches!(refused(up, [4, 4]), ViewpointError::NoUp(..)));
     for field in [0.0, -1.0, 180.0, f64::NAN] {
-        assert!(matches!(refused(Viewpoint { field, ..good }, [4, 4]), ViewpointError::Field(_)));
+        assert!(matches!(
+            refused(Viewpoint { field, ..good }, [4, 4]),
+            ViewpointError::Field(_)
+        ));
     }
     for size in [[0, 4], [4, 0], [1 << 13, 1 << 13], [usize::MAX, 2]] {
         assert!(matches!(refused(good, size), ViewpointError::Size(..)));
@@ -74,7 +95,12 @@ fn light_is_that_of_sky_and_lamps() {
     let light = Light::beside(&lens);
     let brdf = |_| std::f64::consts::FRAC_1_PI;
     let mean = |lit: &dyn Fn(DVec3) -> bool| {
-        let key = Key { seed: 3, spot: 0, pixel: 0, block: 0 };
+        let key = Key {
+            seed: 3,
+            spot: 0,
+            pixel: 0,
+            block: 0,
+        };
         let mut stream = Stream::new(Sampling::Sobol, key);
         let value = |i| {
             stream.start(i);
@@ -86,7 +112,11 @@ fn light_is_that_of_sky_and_lamps() {
     // its disc is small. The eye sees the plate straight on.
     let cosine = 0.75 / (0.55f64 * 0.55 + 0.85 * 0.85 + 0.75 * 0.75).sqrt();
     let all = 0.33 + 0.50 * cosine + 0.14;
-    assert!((mean(&|_| true) - all).abs() < 0.005, "{} {all}", mean(&|_| true));
+    assert!(
+        (mean(&|_| true) - all).abs() < 0.005,
+        "{} {all}",
+        mean(&|_| true)
+    );
     assert!((mean(&|_| false) - 0.14).abs() < 1e-12);
 }
 
@@ -112,7 +142,9 @@ fn one_looks_through_an_outer_wall_at_what_is_behind_it() {
     let model = Model::new(&scene);
     let seen = |x: f64, y: f64| {
         let ray = Ray::new(DVec3::new(x, y, -5.0), DVec3::Z);
-        model.look(&ray).map(|s| (model.surface(s.shape).name.clone(), s.face, s.panes))
+        model
+            .look(&ray)
+            .map(|s| (model.surface(s.shape).name.clone(), s.face, s.panes))
     };
     // The object covers x from 3 to 7, y from 8.5 to 11.35.
     assert_eq!(seen(5.0, 10.0), Some(("object".to_owned(), Face::Front, 1)));
@@ -130,7 +162,10 @@ fn the_default_place_shows_object_and_wall_from_the_front() {
         let mut found = [0; 2];
         for (x, y) in (0..96).flat_map(|x| (0..64).map(move |y| (x, y))) {
             let seen = model.look(&lens.ray([f64::from(x) + 0.5, f64::from(y) + 0.5]));
-            match seen.filter(|s| s.face == Face::Front).map(|s| model.surface(s.shape).role) {
+            match seen
+                .filter(|s| s.face == Face::Front)
+                .map(|s| model.surface(s.shape).role)
+            {
                 Some(Role::Hidden) => found[0] += 1,
                 Some(Role::Relay) => found[1] += 1,
                 _ => {}
@@ -139,7 +174,10 @@ fn the_default_place_shows_object_and_wall_from_the_front() {
         assert!(found.iter().all(|n| *n > 100), "{name}: {found:?}");
         for corner in scene.hidden().flat_map(|(_, s)| s.shape.box_corners()) {
             let [x, y] = lens.place(corner);
-            assert!((0.0..=96.0).contains(&x) && (0.0..=64.0).contains(&y), "{name}: {x} {y}");
+            assert!(
+                (0.0..=96.0).contains(&x) && (0.0..=64.0).contains(&y),
+                "{name}: {x} {y}"
+            );
         }
     }
 }
@@ -148,7 +186,11 @@ fn the_default_place_shows_object_and_wall_from_the_front() {
 #[test]
 fn marks_are_hidden_by_what_stands_before_them() {
     let scene = Scene::load("bench").unwrap();
-    let lens = Lens::new(&viewpoint([5.0, 4.0, 12.0].into(), [5.0, 4.0, 0.0].into()), [400, 400]).unwrap();
+    let lens = Lens::new(
+        &viewpoint([5.0, 4.0, 12.0].into(), [5.0, 4.0, 0.0].into()),
+        [400, 400],
+    )
+    .unwrap();
     let marks = Marks::of(&scene, &lens);
     let spot = scene.laser.spots[40].target.position;
     let at = lens.place(spot);
@@ -174,12 +216,20 @@ fn threads_do_not_change_a_bit() {
         marking: Marking::Marked,
     };
     let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
         pool.install(|| made(&scene, &plan))
     };
     let one = on(1);
     assert_eq!(one, on(3));
-    assert!(one.colours.iter().flatten().all(|c| c.is_finite() && *c >= 0.0));
+    assert!(
+        one.colours
+            .iter()
+            .flatten()
+            .all(|c| c.is_finite() && *c >= 0.0)
+    );
 }
 
 #[test]
@@ -192,6 +242,9 @@ fn a_stopped_portrait_is_none() {
         marking: Marking::Bare,
     };
     let stop = AtomicBool::new(true);
-    let control = Control { progress: &|_| (), stop: &stop };
+    let control = Control {
+        progress: &|_| (),
+        stop: &stop,
+    };
     assert_eq!(portrait(&scene, &plan, control), Ok(None));
 }

@@ -1,0 +1,127 @@
+//! `phicam view`: a frame, a picture or a matrix in false colour.
+
+mod source;
+mod terminal;
+
+use std::path::{Path, PathBuf};
+
+use super::Outcome;
+use super::args::{LawName, MapName, ViewArgs};
+use super::failure::Failure;
+use super::output::{self, Talk};
+use crate::report::{Law, Map, Panel, Scale, Shown, iterm, kitty};
+use crate::store::write_whole;
+use source::{Meaning, Source};
+use terminal::Terminal;
+
+/// Without --exposure and --range a logarithmic scale spans what is above 0; with --exposure so many decades.
+const DECADES: i32 = 4;
+
+pub(super) fn execute(args: &ViewArgs, talk: Talk) -> Result<Outcome, Failure> {
+    let source = Source::read(args)?;
+    let scale = scale(args, &source)?;
+    let panel = Panel {
+        title: source.title,
+        size: source.size,
+        values: source.values,
+        axes: source.axes,
+        scale_bar: None,
+    };
+    let shown = Shown::new(panel, scale, source.unit);
+    let png = || match args.bare {
+        true => shown.bare_png(),
+        false => shown.sheet_png(),
+    };
+    let terminal = match (&args.output, args.terminal) {
+        (Some(_), _) => None,
+        (None, Some(name)) => Some(terminal::named(name)),
+        (None, None) => terminal::detected(),
+    };
+    let columns = terminal::columns();
+    match terminal {
+        Some(Terminal::Kitty) => output::print(&kitty(&png()?, columns))?,
+        Some(Terminal::Iterm) => output::print(&iterm(&png()?, columns))?,
+        Some(Terminal::Blocks) => output::print(&shown.blocks(columns))?,
+        None => {
+            let path = args.output.clone().unwrap_or_else(|| beside(&args.file));
+            let png = png()?;
+            write_whole(&path, |file| file.write_all(&png))?;
+            talk.say(format!("{}: written", path.display()));
+            for (_, words) in shown.outside() {
+                talk.say(words);
+            }
+        }
+    }
+    Ok(Outcome::Done)
+}
+
+/// FILE.png: nothing that a run has written has such a name.
+fn beside(file: &Path) -> PathBuf {
+    let mut name = file.as_os_str().to_owned();
+    name.push(".png");
+    name.into()
+}
+
+fn scale(args: &ViewArgs, source: &Source) -> Result<Scale, Failure> {
+    let law = match args.scale {
+        LawName::Linear => Law::Linear,
+        LawName::Log => Law::Logarithmic,
+    };
+    let plain = args.range.is_none() && args.exposure.is_none() && law == Law::Linear;
+    if source.meaning == Meaning::Reflectance
+        && plain
+        && args.map.is_none_or(|m| m == MapName::Grey)
+    {
+        return Ok(Scale::reflectance());
+    }
+    let map = match args.map {
+        None | Some(MapName::Viridis) => Map::Viridis,
+        Some(MapName::Grey) => Map::Grey,
+        Some(MapName::Diverging) => Map::Diverging,
+    };
+    let finite = || source.values.iter().copied().filter(|v| v.is_finite());
+    let largest = finite().fold(f64::NEG_INFINITY, f64::max);
+    let range = match (args.range, args.exposure) {
+        (Some(range), _) => range,
+        (None, _) if law == Law::Logarithmic && !(largest > 0.0) => {
+            let cause = format!("{}: no value is above 0", args.file.display());
+            return Err(Failure::new(cause, "use --scale linear, or give --range"));
+        }
+        (None, Some(ev)) if map == Map::Diverging => {
+            let most = finite().map(f64::abs).fold(0.0, f64::max) * libm::exp2(-ev);
+            [-most, most]
+        }
+        (None, Some(ev)) => {
+            let high = largest * libm::exp2(-ev);
+            match law {
+                Law::Linear => [0.0, high],
+                Law::Logarithmic => [high * 0.1f64.powi(DECADES), high],
+            }
+        }
+        (None, None) if map == Map::Diverging => {
+            return Ok(Scale::symmetric(finite().map(f64::abs).fold(0.0, f64::max)));
+        }
+        (None, None) if law == Law::Logarithmic => {
+            let low = finite().filter(|v| *v > 0.0).fold(largest, f64::min);
+            // Of equal values, a decade.
+            if low < largest {
+                [low, largest]
+            } else {
+                [0.1 * largest, largest]
+            }
+        }
+        (None, None) => Scale::sequential(&source.values).range(),
+    };
+    Scale::between(map, law, range).ok_or_else(|| {
+        let [low, high] = range;
+        let above = if law == Law::Logarithmic {
+            ", and LOW above 0"
+        } else {
+            ""
+        };
+        Failure::new(
+            format!("a scale from {low:e} to {high:e}"),
+            format!("give --range LOW,HIGH with LOW below HIGH{above}, or a smaller --exposure"),
+        )
+    })
+}

@@ -1,0 +1,332 @@
+//! One matrix by itself, for a look at it: as PNG, or in a terminal.
+
+use super::axis::significant;
+use super::colour::{NOT_A_NUMBER, Rgb, Scale};
+use super::encode::PictureError;
+use super::figure::{Reduction, encoded, reduced};
+use super::picture::{
+    AXIS, BAR, BELOW, CHARACTER, LINE, MARGIN, Panel, bar, bar_ticks, draw, key, opening, wrapped,
+    write,
+};
+use super::raster;
+use super::svg::Svg;
+
+/// Longer side of the matrix on its sheet, px, where it has no more entries than that.
+const LARGEST: usize = 900;
+/// Room right of the colour bar for the unit, px.
+const UNIT: usize = 380;
+/// Cells of the colour bar in a terminal.
+const CELLS: usize = 32;
+/// Bytes of a message of the kitty protocol.
+const MESSAGE: usize = 4096;
+
+/// A matrix with its scale. What the scale does not hold is counted, never shown as if it did: there is no tone curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shown {
+    panel: Panel,
+    scale: Scale,
+    unit: String,
+    infinite: usize,
+}
+
+impl Shown {
+    /// A matrix and how it is shown; `unit` is that of its values, empty for none.
+    pub fn new(panel: Panel, scale: Scale, unit: impl Into<String>) -> Self {
+        let infinite = panel.values.iter().filter(|v| v.is_infinite()).count();
+        let finite = |v: &f64| if v.is_finite() { *v } else { f64::NAN };
+        let values = panel.values.iter().map(finite).collect();
+        Self {
+            panel: Panel { values, ..panel },
+            scale,
+            unit: unit.into(),
+            infinite,
+        }
+    }
+
+    /// What the colours outside the scale mean and how many values have them: "3 of 256 above 1.2e-9 W".
+    pub fn outside(&self) -> Vec<(Rgb, String)> {
+        let [low, high] = self.scale.range();
+        let values = &self.panel.values;
+        let all = values.len();
+        let count = |f: &dyn Fn(f64) -> bool| values.iter().filter(|v| f(**v)).count();
+        let unit = match self.unit.as_str() {
+            "" => String::new(),
+            unit => format!(" {unit}"),
+        };
+        let said = |(colour, name): (Rgb, &str), n: usize, what: String| {
+            (n > 0).then(|| (colour, format!("{name}: {n} of {all} {what}")))
+        };
+        let beyond = |side: &str, limit: f64| format!("{side} {}{unit}", significant(limit, 3));
+        let strange = count(&f64::is_nan);
+        let strangers = match self.infinite {
+            0 => "not a number".to_owned(),
+            n if n == strange => "infinite".to_owned(),
+            n => format!("not finite ({n} infinite, {} not a number)", strange - n),
+        };
+        let below = count(&|v| v < low);
+        let above = count(&|v| v > high);
+        [
+            said(self.scale.below(), below, beyond("below", low)),
+            said(self.scale.above(), above, beyond("above", high)),
+            said(NOT_A_NUMBER, strange, strangers),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
+    }
+
+    /// With title, axes, colour bar and what lies outside it, as PNG bytes; the last row is on top.
+    ///
+    /// # Errors
+    /// [`PictureError`].
+    pub fn sheet_png(&self) -> Result<Vec<u8>, PictureError> {
+        raster::png(&self.svg()?)
+    }
+
+    /// The entries alone, each a square of whole pixels, the last row on top, as PNG bytes.
+    ///
+    /// # Errors
+    /// [`PictureError`].
+    pub fn bare_png(&self) -> Result<Vec<u8>, PictureError> {
+        self.panel.plain_png(&self.scale)
+    }
+
+    fn svg(&self) -> Result<String, PictureError> {
+        let size = self.panel.pixels(LARGEST);
+        let width = (MARGIN + AXIS + size[0] + MARGIN).max(MARGIN + 100 + BAR[0] + UNIT);
+        let heading = wrapped(&self.panel.title, (width - 2 * MARGIN) / CHARACTER);
+        let lettering = self.outside();
+        let top = MARGIN + LINE * heading.len() + 12;
+        let legend = top + size[1] + BELOW + 26;
+        let height = legend + BAR[1] + 56 + LINE * lettering.len() + MARGIN;
+        let mut svg = Svg::default();
+        svg.raw(&opening(&self.panel.title, [width, height]));
+        write(&mut svg, [MARGIN, MARGIN], &heading);
+        draw(
+            &mut svg,
+            &self.panel,
+            [MARGIN + AXIS, top],
+            size,
+            &self.scale,
+        )?;
+        bar(&mut svg, [MARGIN + 100, legend], &self.scale, &self.unit)?;
+        key(&mut svg, [MARGIN, legend + BAR[1] + 56], &lettering);
+        svg.raw("</svg>");
+        Ok(svg.text)
+    }
+
+    /// Title, picture and legend for a terminal of 24-bit colours that is `columns` wide: each character ▀ is two entries, one above the other. A matrix with
+    /// more columns than that is shown by the means of blocks, and the legend says so.
+    pub fn blocks(&self, columns: usize) -> String {
+        let panel = &self.panel;
+        let most = columns.max(8);
+        let (small, note) = reduced(
+            String::new(),
+            ["", ""],
+            panel.size,
+            most,
+            Reduction::Mean,
+            |iu, iv| panel.at(iu, iv),
+        );
+        let [nu, nv] = small.size;
+        // A small matrix is enlarged to about half of the width.
+        let factor = (most / (2 * nu.max(1))).clamp(1, 8);
+        let colour = |x: usize, y: usize| {
+            let row = (nv * factor).checked_sub(y + 1)? / factor;
+            Some(self.scale.colour(small.at(x / factor, row)))
+        };
+        let mut text = format!("{}\n", panel.title);
+        for y in (0..nv * factor).step_by(2) {
+            let cells = (0..nu * factor).map(|x| (colour(x, y), colour(x, y + 1)));
+            text += &half_blocks(cells);
+            text.push('\n');
+        }
+        text += &self.legend();
+        if let Some(note) = note {
+            text += &note;
+            text.push('\n');
+        }
+        text
+    }
+
+    /// Colour bar with its ends and its unit, and what lies outside, as text of 24-bit colours.
+    fn legend(&self) -> String {
+        let steps = (0..CELLS).map(|i| {
+            let value = self.scale.value(i as f64 / (CELLS - 1) as f64);
+            let colour = Some(self.scale.colour(value));
+            (colour, colour)
+        });
+        let ticks = bar_ticks(&self.scale);
+        let text = |share: f64| ticks.iter().find(|t| t.0 == share).map_or("", |t| &t.1);
+        let (low, high) = (text(0.0), text(1.0));
+        let mut text = format!("{low} {} {high} {}\n", half_blocks(steps), self.unit);
+        for (colour, words) in self.outside() {
+            let sample = half_blocks([(Some(colour), Some(colour))].into_iter());
+            text += &format!("{sample} {words}\n");
+        }
+        text
+    }
+}
+
+/// A line of characters, each of an upper and a lower colour; without a lower one the terminal's own ground.
+fn half_blocks(cells: impl Iterator<Item = (Option<Rgb>, Option<Rgb>)>) -> String {
+    let mut line = String::new();
+    for (upper, lower) in cells {
+        let code = |kind: u8, colour: Option<Rgb>| match colour {
+            Some([r, g, b]) => format!("\x1b[{kind}8;2;{r};{g};{b}m"),
+            None => format!("\x1b[{kind}9m"),
+        };
+        line += &code(3, upper);
+        line += &code(4, lower);
+        line.push('▀');
+    }
+    line + "\x1b[0m"
+}
+
+/// A PNG as the kitty graphics protocol sends it, `columns` cells wide: in messages of 4096 bytes of base64, all but the last marked m=1.
+pub fn kitty(png: &[u8], columns: usize) -> String {
+    let data = encoded(png);
+    let pieces = data.len().div_ceil(MESSAGE);
+    let mut text = String::new();
+    for k in 0..pieces {
+        let piece = &data[k * MESSAGE..((k + 1) * MESSAGE).min(data.len())];
+        let more = u8::from(k + 1 < pieces);
+        let first = match k {
+            0 => format!("a=T,f=100,c={columns},"),
+            _ => String::new(),
+        };
+        text += &format!("\x1b_G{first}m={more};{piece}\x1b\\");
+    }
+    text + "\n"
+}
+
+/// A PNG as an inline image of iTerm2, `columns` cells wide.
+pub fn iterm(png: &[u8], columns: usize) -> String {
+    let size = png.len();
+    let data = encoded(png);
+    format!(
+        "\x1b]1337;File=inline=1;size={size};width={columns};preserveAspectRatio=1:{data}\x07\n"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::colour::{Law, Map};
+    use super::super::encode::decoded;
+    use super::*;
+
+    fn shown(size: [usize; 2], values: Vec<f64>, range: [f64; 2]) -> Shown {
+        let scale = Scale::between(Map::Viridis, Law::Linear, range).unwrap();
+        Shown::new(Panel::elements("frame", size, values), scale, "W")
+    }
+
+    #[test]
+    fn what_is_outside_is_counted() {
+        let mut values = vec![0.5; 256];
+        values[..3].fill(2.0);
+        values[3] = -1.0;
+        values[4] = f64::NAN;
+        values[5] = f64::INFINITY;
+        values[6] = f64::NEG_INFINITY;
+        let words = |s: &Shown| s.outside().into_iter().map(|o| o.1).collect::<Vec<_>>();
+        assert_eq!(
+            words(&shown([16, 16], values, [0.0, 1.0])),
+            [
+                "black: 1 of 256 below 0 W",
+                "orange: 3 of 256 above 1.00 W",
+                "purple: 3 of 256 not finite (2 infinite, 1 not a number)"
+            ]
+        );
+        // The ends belong to the scale.
+        assert!(words(&shown([2, 1], vec![0.0, 1.0], [0.0, 1.0])).is_empty());
+    }
+
+    #[test]
+    fn the_bar_says_its_ends_and_decades() {
+        let scale = Scale::between(Map::Grey, Law::Logarithmic, [1e-12, 1e-8]).unwrap();
+        let texts: Vec<String> = bar_ticks(&scale).into_iter().map(|t| t.1).collect();
+        assert_eq!(texts, ["10⁻¹⁰", "1.00 × 10⁻¹²", "1.00 × 10⁻⁸"]);
+        let scale = Scale::between(Map::Grey, Law::Linear, [0.0, 4e-9]).unwrap();
+        let ends: Vec<(f64, String)> = bar_ticks(&scale);
+        assert_eq!(ends[0], (0.5, "2 × 10⁻⁹".to_owned()));
+        assert_eq!(ends[2], (1.0, "4.00 × 10⁻⁹".to_owned()));
+    }
+
+    #[test]
+    fn the_first_row_is_at_the_bottom_of_the_sheet() {
+        let s = shown([1, 2], vec![0.0, 1.0], [0.0, 1.0]);
+        let (w, h, pixels) = decoded(&s.bare_png().unwrap());
+        let at = |x: usize, y: usize| &pixels[3 * (x + y * w)..][..3];
+        assert_eq!(at(0, h - 1), Map::Viridis.at(0.0));
+        assert_eq!(at(0, 0), Map::Viridis.at(1.0));
+        let (w, h, pixels) = decoded(&s.sheet_png().unwrap());
+        let find = |c: Rgb| {
+            let at = |i: usize| (i % w, i / w);
+            let all = pixels.chunks(3).enumerate().filter(|(_, p)| **p == c);
+            all.map(|(i, _)| at(i).1).min()
+        };
+        assert!(
+            find(Map::Viridis.at(1.0)) < find(Map::Viridis.at(0.0)),
+            "{w} × {h}"
+        );
+    }
+
+    /// Columns 0 and 1 of one row over another: the upper half of a character is the upper row.
+    #[test]
+    fn a_half_block_is_the_upper_entry_over_the_lower() {
+        let [a, b] = [[1, 2, 3], [40, 50, 60]];
+        assert_eq!(
+            half_blocks([(Some(a), Some(b)), (Some(b), None)].into_iter()),
+            "\x1b[38;2;1;2;3m\x1b[48;2;40;50;60m▀\x1b[38;2;40;50;60m\x1b[49m▀\x1b[0m"
+        );
+        let s = shown([1, 2], vec![0.0, 1.0], [0.0, 1.0]);
+        let text = s.blocks(8);
+        let lines: Vec<&str> = text.lines().collect();
+        let [r, g, b] = Map::Viridis.at(1.0);
+        assert!(
+            lines[1].starts_with(&format!("\x1b[38;2;{r};{g};{b}m")),
+            "{lines:?}"
+        );
+        assert_eq!(lines[0], "frame");
+        // 1 × 2 entries four times as large: four characters a line, four lines.
+        assert_eq!(lines[1].matches('▀').count(), 4);
+        assert!(
+            lines[5].starts_with("0 ") && lines[5].ends_with("1.00 W"),
+            "{lines:?}"
+        );
+    }
+
+    #[test]
+    fn a_wide_matrix_fits_the_terminal_and_says_how() {
+        let s = shown([200, 100], vec![0.5; 20_000], [0.0, 1.0]);
+        let text = s.blocks(80);
+        assert!(text.lines().all(|l| l.matches('▀').count() <= 80));
+        assert!(text.contains("mean of 3 × 2 entries"), "{text}");
+    }
+
+    #[test]
+    fn protocols_carry_the_whole_picture() {
+        let png: Vec<u8> = (0..10_000_u32).map(|k| (k * k) as u8).collect();
+        let text = kitty(&png, 60);
+        let pieces: Vec<&str> = text
+            .trim_end()
+            .split("\x1b\\")
+            .filter(|p| !p.is_empty())
+            .collect();
+        assert!(pieces[0].starts_with("\x1b_Ga=T,f=100,c=60,m=1;"));
+        let last = pieces.len() - 1;
+        assert!(pieces[last].starts_with("\x1b_Gm=0;"));
+        let data: String = pieces
+            .iter()
+            .map(|p| p.split_once(';').unwrap().1)
+            .collect();
+        assert_eq!(data, encoded(&png));
+        assert!(
+            pieces
+                .iter()
+                .all(|p| p.split_once(';').unwrap().1.len() <= 4096)
+        );
+        let text = iterm(&png, 60);
+        assert!(text.contains("size=10000;") && text.ends_with(&format!(":{data}\x07\n")));
+    }
+}
