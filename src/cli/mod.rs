@@ -12,6 +12,7 @@
 //! | `frames/spot-0000.exr` | one frame a spot, f32: `flux`, `flux.stderr`, and `flux.bN` for light that met N surfaces, W |
 //! | `phi.npy`, `phi.stderr.npy` | Φcam and its standard error, f64, (pixels, spots), C order, W |
 //! | `model/g12.npy`, `g23.npy`, `phi.npy` | the analytic side |
+//! | `model/laser_side.npy`, `camera_side.npy` | D and C: G12 and G23 with the walls' BRDFs and in W, Φcam = C·diag(ρ)·D |
 //! | `recovered/METHOD.npy`, `.png` | recovered reflectance, (nv, nu); `truth` beside it |
 //! | `recovered/METHOD.stderr.npy` | its standard error, (nv, nu), where the noise is known |
 //! | `recovered/METHOD.covariance.npy`, `METHOD.resolution.npy` | covariance and resolution matrix of a linear method, elements × elements of all surfaces |

@@ -16,7 +16,14 @@ use crate::study::Integration;
 pub(super) fn execute(args: &ModelArgs, talk: Talk) -> Result<Outcome, Failure> {
     let scene = trust::load(&args.scene)?;
     let kernel = settings::kernel(args.kernel);
-    let model = MatrixModel::new(&scene, kernel, args.elements)?;
+    let mut model = MatrixModel::new(&scene, kernel, args.elements)?;
+    if args.occlusion {
+        if settings::integration(args.integration) == Integration::Quadrature {
+            let cause = "--occlusion is asked at the middles of elements, pixels and spots only";
+            return Err(Failure::new(cause, "leave --integration at centres"));
+        }
+        model = model.with_occlusion(&scene);
+    }
     let folder = Folder {
         path: args.output.clone(),
     };
@@ -49,13 +56,16 @@ pub(super) fn execute(args: &ModelArgs, talk: Talk) -> Result<Outcome, Failure> 
     Ok(Outcome::Done)
 }
 
-/// Writes DIR/model/g12.npy, g23.npy and phi.npy.
+/// Writes DIR/model/g12.npy, g23.npy and phi.npy; and with the walls' BRDFs and the scale of the light, entry by entry, laser_side.npy (D, W) and
+/// camera_side.npy (C): Φcam = C·diag(ρ)·D.
 pub(super) fn write(dir: &Path, model: &MatrixModel, phi: &Matrix) -> Result<(), Failure> {
     let folder = dir.join("model");
     ensure_writable(&folder)?;
     for (name, matrix) in [
         ("g12.npy", &model.g12),
         ("g23.npy", &model.g23),
+        ("laser_side.npy", &model.laser_side),
+        ("camera_side.npy", &model.camera_side),
         ("phi.npy", phi),
     ] {
         npy::write(&folder.join(name), matrix)?;

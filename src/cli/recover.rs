@@ -17,7 +17,7 @@ use crate::matrix::{Matrix, npy};
 use crate::model::MatrixModel;
 use crate::recovery::{Directions, Method, Nuisance, Options, Picard, Uncertainty};
 use crate::report::{self, Panel};
-use crate::scene::Scene;
+use crate::scene::{Division, Scene, Surface};
 use crate::store::{ensure_writable, write_whole};
 use crate::study::{Attempt, Noise, RecoveredObject, picards, recover_objects};
 
@@ -58,7 +58,10 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
             None
         }
     };
-    let model = MatrixModel::new(&scene, settings::kernel(args.kernel), args.elements)?;
+    let mut model = MatrixModel::new(&scene, settings::kernel(args.kernel), args.elements)?;
+    if args.occlusion {
+        model = model.with_occlusion(&scene);
+    }
     let noise = stderr.as_ref().map_or(Noise::Unknown, Noise::StandardError);
     let glare = match &args.joint.glare_pattern {
         Some(file) => Some(read_matrix(file, &scene)?),
@@ -75,7 +78,7 @@ pub(super) fn execute(args: &RecoverArgs, talk: Talk) -> Result<Outcome, Failure
     let single = methods.len() == 1;
     let objects = collect(attempts, single, talk)?;
     let picards = picards(&model, &phi, noise, nuisance, &methods, &options)?;
-    deliver(args, &objects, &picards)
+    deliver(args, &scene, &objects, &picards)
 }
 
 /// The same from photographs that are never held at once.
@@ -101,21 +104,25 @@ fn in_strips(
         (None, None) => Errors::Unknown,
     };
     let kernel = settings::kernel(args.kernel);
-    let model = MatrixModel::without_photographs(scene, kernel, args.elements)?;
+    let mut model = MatrixModel::without_photographs(scene, kernel, args.elements)?;
+    if args.occlusion {
+        model = model.with_occlusion(scene);
+    }
     talk.say("Φcam is read by rows: no covariance, no resolution, no Picard plot");
     let attempts =
         recover_memory::recover(&model, &mut phi, &mut errors, pixels, methods, options)?;
     let objects = collect(attempts, methods.len() == 1, talk)?;
-    deliver(args, &objects, &[])
+    deliver(args, scene, &objects, &[])
 }
 
 /// Writes and prints.
 fn deliver(
     args: &RecoverArgs,
+    scene: &Scene,
     objects: &[RecoveredObject],
     picards: &[Picard],
 ) -> Result<Outcome, Failure> {
-    write(&args.dir, objects, picards)?;
+    write(&args.dir, scene, objects, picards)?;
     let text = if args.json {
         output::json(&objects)?
     } else {
@@ -208,11 +215,13 @@ pub(super) fn collect(
 }
 
 /// Writes DIR/recovered/METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png, and overview.png with all of them side
-/// by side; what is known of the uncertainty in METHOD.stderr.npy (nv × nu), METHOD.covariance.npy and METHOD.resolution.npy (own elements ×
+/// by side (no pictures of elements that are the triangles of a mesh); METHOD.texture.png, the reflectance as a texture for a scene, and METHOD.ply, the
+/// surface with it as colours; what is known of the uncertainty in METHOD.stderr.npy (nv × nu), METHOD.covariance.npy and METHOD.resolution.npy (own elements ×
 /// elements of all surfaces), METHOD.bias.npy (nv × nu), METHOD.lower.npy and METHOD.upper.npy where bands were asked for; NAME.csv and NAME.svg of each of
 /// `picards`, and no others. Where several surfaces are hidden the names are METHOD-0, METHOD-1, … in file order.
 pub(super) fn write(
     dir: &Path,
+    scene: &Scene,
     objects: &[RecoveredObject],
     picards: &[Picard],
 ) -> Result<(), Failure> {
@@ -245,6 +254,8 @@ pub(super) fn write(
         } else {
             String::new()
         };
+        let shape = scene.surfaces.iter().find(|s| s.name == **surface);
+        let drawn = shape.is_none_or(|s| s.division == Division::Cells);
         let mut panels = Vec::new();
         for object in objects.iter().filter(|o| o.surface == *surface) {
             let [nu, nv] = object.elements;
@@ -256,15 +267,45 @@ pub(super) fn write(
                     &path.with_extension("npy"),
                     &Matrix::from_row_slice(nv, nu, values),
                 )?;
-                let panel = Panel::elements(name, object.elements, values.clone());
-                write_png(&path, surface, std::slice::from_ref(&panel))?;
-                panels.push(panel);
+                if drawn {
+                    let panel = Panel::elements(name, object.elements, values.clone());
+                    write_png(&path, surface, std::slice::from_ref(&panel))?;
+                    panels.push(panel);
+                }
+            }
+            if let Some(shape) = shape {
+                write_surface(
+                    &folder,
+                    &format!("{}{suffix}", object.method),
+                    shape,
+                    object,
+                )?;
             }
             write_uncertainty(&folder, &format!("{}{suffix}", object.method), object)?;
         }
-        write_png(&folder.join(format!("overview{suffix}")), surface, &panels)?;
+        if drawn {
+            write_png(&folder.join(format!("overview{suffix}")), surface, &panels)?;
+        }
     }
     Ok(())
+}
+
+/// Writes `name`.texture.png and `name`.ply.
+fn write_surface(
+    folder: &Path,
+    name: &str,
+    surface: &Surface,
+    object: &RecoveredObject,
+) -> Result<(), Failure> {
+    let values = &object.reflectance;
+    if surface.division == Division::Cells {
+        let png = report::texture_png(object.elements, values)?;
+        let path = folder.join(format!("{name}.texture.png"));
+        write_whole(&path, |w| w.write_all(&png))?;
+    }
+    let ply = report::recovered_ply(surface, object.elements, values);
+    let path = folder.join(format!("{name}.ply"));
+    Ok(write_whole(&path, |w| w.write_all(&ply))?)
 }
 
 /// Writes `name`.stderr.npy, `name`.covariance.npy, `name`.resolution.npy, `name`.bias.npy, `name`.lower.npy and `name`.upper.npy, and removes those of an earlier recovery that are not known now.

@@ -145,7 +145,7 @@ fn compare_and_recover(
         &Method::USUAL,
         &options,
     )?;
-    recover::write(&args.output, &results.recovered, &picards)?;
+    recover::write(&args.output, &results.scene, &results.recovered, &picards)?;
     clock.lap("recover")?;
     Ok(())
 }

@@ -62,9 +62,10 @@ pub(super) fn remove_recovered(dir: &Path) -> Result<(), Failure> {
                 "bias",
                 "lower",
                 "upper",
+                "texture",
             ]
             .contains(&what);
-        ours && matches!(ext, "npy" | "png" | "csv" | "svg")
+        ours && matches!(ext, "npy" | "png" | "csv" | "svg" | "ply")
     })?;
     let _ = fs::remove_dir(dir);
     Ok(())

@@ -9,6 +9,7 @@ use super::failure::Failure;
 use super::output::{self, Talk};
 use crate::image::Transfer;
 use crate::report;
+use crate::scene::mesh::{self, FaceValues, Triangles};
 use crate::scene::target::Target;
 use crate::store::write_whole;
 
@@ -17,8 +18,17 @@ pub(super) fn execute(args: &TargetArgs, talk: Talk) -> Result<Outcome, Failure>
         output::print(&list())?;
         return Ok(Outcome::Done);
     };
+    if let Some(mesh) = mesh(name, args)? {
+        return write_mesh(name, &mesh, args, talk);
+    }
+    if args.faces.is_some() {
+        let cause = format!("`{name}` is a picture and has no --faces");
+        return Err(Failure::new(cause, "leave --faces out, or write a mesh"));
+    }
     let target = Target::by_name(name).ok_or_else(|| {
-        let names = Target::ALL.map(Target::name).join(", ");
+        let pictures = Target::ALL.map(Target::name).join(", ");
+        let meshes = MESHES.map(|m| m.0).join(", ");
+        let names = format!("{pictures}, or of the meshes {meshes}");
         Failure::new(
             format!("there is no target `{name}`"),
             format!("use one of {names}"),
@@ -52,10 +62,70 @@ pub(super) fn execute(args: &TargetArgs, talk: Talk) -> Result<Outcome, Failure>
     Ok(Outcome::Done)
 }
 
+/// Names and summaries of the meshes.
+const MESHES: [(&str, &str); 4] = [
+    ("mesh", "PLY: a bust, head and shoulders, 1 high"),
+    ("sphere", "PLY: the sphere of radius 1"),
+    ("rectangle", "PLY: the unit square"),
+    ("box", "PLY: the unit cube"),
+];
+/// Triangles unless told.
+const FACES: u64 = 1_000_000;
+/// More are not made.
+const MOST_FACES: u64 = 100_000_000;
+
+/// The mesh of that name, if there is one.
+fn mesh(name: &str, args: &TargetArgs) -> Result<Option<Triangles>, Failure> {
+    if !MESHES.iter().any(|m| m.0 == name) {
+        return Ok(None);
+    }
+    if args.size.is_some() || args.linear {
+        let cause = format!("`{name}` is a mesh and has neither --size nor --linear");
+        return Err(Failure::new(
+            cause,
+            "leave them out; --faces says how fine it is",
+        ));
+    }
+    let faces = args.faces.unwrap_or(FACES);
+    if !(1..=MOST_FACES).contains(&faces) {
+        let cause = format!("--faces {faces}");
+        return Err(Failure::new(cause, format!("use 1 to {MOST_FACES}")));
+    }
+    let faces = faces as usize;
+    let side = (0.5 * faces as f64).sqrt().ceil() as u32;
+    Ok(Some(match name {
+        "sphere" => mesh::sphere(faces),
+        "rectangle" => mesh::rectangle(side, side),
+        "box" => mesh::cube(),
+        _ => mesh::bust(faces),
+    }))
+}
+
+fn write_mesh(
+    name: &str,
+    mesh: &Triangles,
+    args: &TargetArgs,
+    talk: Talk,
+) -> Result<Outcome, Failure> {
+    let path = args
+        .output
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(format!("{name}.ply")));
+    let bytes = mesh::to_ply(mesh, FaceValues::default());
+    write_whole(&path, |file| file.write_all(&bytes))?;
+    let count = mesh.triangles.len();
+    talk.say(format!("{}: {count} triangles", path.display()));
+    Ok(Outcome::Done)
+}
+
 fn list() -> String {
-    Target::ALL.iter().fold(String::new(), |mut text, t| {
+    let mut text = String::new();
+    for t in Target::ALL {
         let [w, h] = t.usual_size();
-        let _ = writeln!(text, "{:<8} {:>3} × {:<3}  {}", t.name(), w, h, t.summary());
-        text
-    })
+        let _ = writeln!(text, "{:<9} {:>3} × {:<3}  {}", t.name(), w, h, t.summary());
+    }
+    for (name, summary) in MESHES {
+        let _ = writeln!(text, "{name:<9} {:9}  {summary}", "");
+    }
+    text
 }

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_1_PI;
 
 use super::kernel::{HiddenPoint, Kernel};
 use super::sight::{self, WallPoint};
-use crate::geometry::DVec3;
+use crate::geometry::{DVec3, Ray, ShapeId};
 use crate::matrix::Matrix;
 use crate::scene::{Division, Scene};
 
@@ -164,6 +164,43 @@ impl MatrixModel {
             camera_side,
             laser_side,
         })
+    }
+
+    /// The same model with occlusion: every entry of G12, G23, C and D between whose wall point and element (by their middles) something
+    /// stands is 0. The published model has none; where a scene's obstacles are known, this is what takes them in.
+    pub fn with_occlusion(mut self, scene: &Scene) -> Self {
+        let hidden = scene.hidden().zip(&self.grids);
+        let elements: Vec<(ShapeId, DVec3)> = hidden
+            .flat_map(|((id, surface), grid)| {
+                let elements = surface.divided(grid.count);
+                elements
+                    .into_iter()
+                    .map(move |e| (id as ShapeId, e.position))
+            })
+            .collect();
+        let blocked = |wall: &WallPoint, (id, element): (ShapeId, DVec3)| {
+            Ray::between(wall.position, element)
+                .is_none_or(|ray| scene.bvh().blocked(&ray, [wall.surface, Some(id)]))
+        };
+        for p in 0..self.g23.nrows() {
+            let wall = sight::seen(scene, p, [0.5, 0.5], 1.0);
+            for (j, element) in elements.iter().enumerate() {
+                if self.g23[(p, j)] != 0.0 && blocked(&wall, *element) {
+                    self.g23[(p, j)] = 0.0;
+                    self.camera_side[(p, j)] = 0.0;
+                }
+            }
+        }
+        for l in 0..self.g12.ncols() {
+            let wall = sight::lit(scene, l, DVec3::ZERO, 1.0);
+            for (j, element) in elements.iter().enumerate() {
+                if self.g12[(j, l)] != 0.0 && blocked(&wall, *element) {
+                    self.g12[(j, l)] = 0.0;
+                    self.laser_side[(j, l)] = 0.0;
+                }
+            }
+        }
+        self
     }
 
     /// Φcam, pixels × spots, W.

@@ -3,8 +3,8 @@
 //! > Φcam\[p,l\] = Φlaser · E_p · (ρ3/π) · (ρ1/π) · Σ_j G23\[p,j\] · (ρ2_j/π) · A_j · G12\[j,l\]
 //!
 //! with absolute scale: watts, and no free factor. Elements, pixels and spots are taken at their centres
-//! ([`MatrixModel`]), or everything is integrated until it no longer changes ([`converged`]). Three surfaces, no occlusion, a
-//! Lambertian object: what light does beyond that is for `transport` to show, which this floor never sees.
+//! ([`MatrixModel`]), or everything is integrated until it no longer changes ([`converged`]). Three surfaces, a Lambertian object, and no occlusion
+//! unless asked for ([`MatrixModel::with_occlusion`]): what light does beyond that is for `transport` to show, which this floor never sees.
 
 mod converged;
 mod kernel;

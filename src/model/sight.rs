@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_1_PI;
 
 use super::kernel::{HiddenPoint, Kernel};
-use crate::geometry::{DVec3, Ray, SurfacePoint};
+use crate::geometry::{DVec3, Ray, ShapeId, SurfacePoint};
 use crate::scene::{Role, Scene};
 
 /// A point of the wall that a line of sight ends on, or that the laser lights.
@@ -16,6 +16,8 @@ pub(super) struct WallPoint {
     pub weight: f64,
     /// How it reflects.
     pub reflection: Reflection,
+    /// The wall; none where the line ends on nothing.
+    pub surface: Option<ShapeId>,
 }
 
 /// f_r of a wall point between the device (laser or camera) and the hidden surface: BRDF12, BRDF23cam.
@@ -63,6 +65,7 @@ impl WallPoint {
             normal,
             weight: 0.0,
             reflection: Reflection::Constant(0.0),
+            surface: None,
         }
     }
 }
@@ -143,5 +146,6 @@ fn reflecting(
                 device: -direction,
             },
         },
+        surface: Some(id as ShapeId),
     }
 }

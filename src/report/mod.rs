@@ -31,6 +31,7 @@ mod portrait;
 mod power;
 mod projection;
 mod raster;
+mod relief;
 mod reproduce;
 #[cfg(test)]
 mod sample;
@@ -58,6 +59,7 @@ pub use picard::{picard_csv, picard_svg};
 pub use picture::{Panel, ScaleBar, colour_png, grey_png};
 pub use portrait::portrait_png;
 pub use power::power_table;
+pub use relief::{recovered_ply, texture_png};
 pub use reproduce::{
     ItemSummary, reproduction_files, reproduction_html, reproduction_markdown, reproduction_table,
 };

@@ -131,7 +131,7 @@ impl Meshes {
             table.file, table.generate, table.faces
         );
         if let Some((mesh, defects)) = self.made.get(&key) {
-            return Ok((mesh.clone(), defects.clone()));
+            return Ok((mesh.clone(), *defects));
         }
         let (at, mut triangles): (Step, Triangles) = match (&table.file, table.generate) {
             (Some(file), None) => {
@@ -160,7 +160,7 @@ impl Meshes {
             mesh = mesh.with_uv(uv).map_err(&fault)?;
         }
         let mesh = Arc::new(mesh);
-        self.made.insert(key, (mesh.clone(), defects.clone()));
+        self.made.insert(key, (mesh.clone(), defects));
         Ok((mesh, defects))
     }
 }

@@ -132,7 +132,11 @@ fn spots(scene: &Scene, found: &mut Vec<Warning>) {
         found.push(Warning::SpotsShadowed(shadowed));
     }
     for (_, surface) in scene.hidden() {
-        let outline = surface.shape.outline();
+        // A body has fronts to all sides: no plane has it all behind.
+        let outline = match &surface.shape {
+            Shape::Body(_) | Shape::Sphere(_) => continue,
+            flat => flat.outline(),
+        };
         let faces = |q: DVec3| outline.iter().any(|p| (q - p.position).dot(p.normal) > 0.0);
         let behind: Vec<usize> = (0..laser.spots.len())
             .filter(|i| !faces(laser.spots[*i].target.position))
@@ -192,9 +196,7 @@ fn pixels(scene: &Scene, found: &mut Vec<Warning>) {
             .closest(&Ray::new(ray.origin, ray.direction), None);
         let Some(hit) = stop else { continue };
         let surface = &scene.surfaces[hit.shape as usize];
-        let point = surface
-            .shape
-            .at_position(ray.origin + ray.direction * hit.t);
+        let point = scene.bvh().point(&ray, hit);
         let front = point.normal.dot(ray.direction) < 0.0;
         if surface.role != Role::Relay || !front {
             match blocked.iter_mut().find(|(s, _)| *s == hit.shape) {

@@ -45,6 +45,23 @@ impl Surface {
         }
     }
 
+    /// By triangle of a mesh: the element that most of it belongs to. Empty for other shapes.
+    pub fn elements_of_triangles(&self, count: [usize; 2]) -> Vec<usize> {
+        let Shape::Body(body) = &self.shape else {
+            return Vec::new();
+        };
+        let uv = match self.division {
+            Division::Faces => return (0..body.mesh().triangles().len()).collect(),
+            Division::Cells => body.mesh().uv().unwrap_or_default(),
+        };
+        let largest = |uv: &[[f32; 2]; 3]| {
+            let parts = shares(uv.map(|c| c.map(f64::from)), count);
+            let most = parts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
+            most.map_or(0, |part| part.0)
+        };
+        uv.iter().map(largest).collect()
+    }
+
     /// The point of the surface with parameters `uv` (of a mesh: to which its equal-area map takes them), without area.
     pub fn element_at(&self, uv: [f64; 2]) -> Element {
         let at = |uv| self.shape.at(uv);

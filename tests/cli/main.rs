@@ -6,6 +6,7 @@ mod bad_recoveries;
 mod bad_scenes;
 mod bad_settings;
 mod exposing;
+mod foreign_files;
 mod interruption;
 mod large_photographs;
 mod main_job;

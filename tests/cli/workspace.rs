@@ -56,7 +56,21 @@ impl Workspace {
 
     /// Runs `phicam` with the words of `line`. A panic of the program fails the test, whatever else it expects.
     pub(crate) fn phicam(&self, line: &str) -> Ended {
-        let output = assert_cmd::cargo::cargo_bin_cmd!("phicam")
+        self.end(line, assert_cmd::cargo::cargo_bin_cmd!("phicam"))
+    }
+
+    /// The same with `memory` KiB of address space.
+    fn phicam_within(&self, memory: u64, line: &str) -> Ended {
+        let mut shell = assert_cmd::Command::new("sh");
+        let limited = format!("ulimit -v {memory} && exec \"$0\" \"$@\"");
+        shell
+            .args(["-c", &limited])
+            .arg(env!("CARGO_BIN_EXE_phicam"));
+        self.end(line, shell)
+    }
+
+    fn end(&self, line: &str, mut command: assert_cmd::Command) -> Ended {
+        let output = command
             .args(line.split_whitespace())
             .current_dir(self.dir.path())
             .timeout(Duration::from_secs(120))
@@ -78,7 +92,17 @@ impl Workspace {
     /// output, and not a byte of the workspace changed.
     pub(crate) fn refuses(&self, line: &str, words: &[&str]) {
         let before = self.contents("");
-        let ended = self.phicam(line).exits(2);
+        self.refused(self.phicam(line), line, words, &before);
+    }
+
+    /// The same with `memory` KiB of address space.
+    pub(crate) fn refuses_within(&self, memory: u64, line: &str, words: &[&str]) {
+        let before = self.contents("");
+        self.refused(self.phicam_within(memory, line), line, words, &before);
+    }
+
+    fn refused(&self, ended: Ended, line: &str, words: &[&str], before: &Contents) {
+        let ended = ended.exits(2);
         for word in words {
             assert!(
                 ended.stderr.contains(word),
@@ -87,7 +111,7 @@ impl Workspace {
             );
         }
         assert_eq!(ended.stdout, "", "{}", ended.account());
-        assert_same(&before, &self.contents(""), line);
+        assert_same(before, &self.contents(""), line);
     }
 
     /// Every file below `folder`; an empty list if there is no such folder.

@@ -186,6 +186,9 @@ pub(in crate::cli) struct ModelArgs {
     /// Elements along u and v, in place of the scene's: N or NxM
     #[arg(long, value_name = "N", value_parser = elements)]
     pub elements: Option<[usize; 2]>,
+    /// Leave out, entry by entry, what the scene's surfaces stand in the way of: the published model knows no occlusion
+    #[arg(long)]
+    pub occlusion: bool,
     /// Where Φcam is evaluated; G12 and G23 are always those of the centres
     #[arg(long, value_enum, default_value_t = IntegrationName::Centres)]
     pub integration: IntegrationName,

@@ -43,6 +43,9 @@ pub(in crate::cli) struct RecoverArgs {
     /// Elements along u and v, in place of the scene's: N or NxM
     #[arg(long, value_name = "N", value_parser = elements)]
     pub elements: Option<[usize; 2]>,
+    /// Leave out, entry by entry, what the scene's surfaces stand in the way of: the published model knows no occlusion
+    #[arg(long)]
+    pub occlusion: bool,
     /// How tsvd, tikhonov and tikhonov-gradient choose their parameter
     #[arg(long, value_enum, default_value_t = RuleName::Discrepancy)]
     pub rule: RuleName,

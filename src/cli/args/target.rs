@@ -14,7 +14,7 @@ use super::value::size;
 pub(in crate::cli) struct TargetArgs {
     /// Which picture; all are listed unless given
     pub name: Option<String>,
-    /// PNG file to write; NAME.png unless given
+    /// File to write; NAME.png, of a mesh NAME.ply, unless given
     #[arg(long, short, requires = "name")]
     pub output: Option<PathBuf>,
     /// Columns and rows, 1 to 4096 each; the target's own unless given
@@ -23,4 +23,7 @@ pub(in crate::cli) struct TargetArgs {
     /// Store reflectance itself instead of its sRGB code (which looks right in a viewer)
     #[arg(long, requires = "name")]
     pub linear: bool,
+    /// At least so many triangles (mesh, sphere, rectangle); a million unless given
+    #[arg(long, requires = "name")]
+    pub faces: Option<u64>,
 }

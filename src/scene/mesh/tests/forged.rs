@@ -133,6 +133,11 @@ fn faces_that_name_no_vertex() {
             "{text}: {error}"
         );
     }
+    let error = alone("a.obj", obj("1 2 0").as_bytes()).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "line 5 names vertex 0 of 3: export the mesh again"
+    );
     for (name, text) in [
         ("a.ply", ply("2 0 1")),
         ("a.ply", ply("-1")),

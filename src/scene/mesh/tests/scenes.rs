@@ -238,6 +238,11 @@ fn containers_that_lie_about_their_lengths() {
         }
     }
     let mut wrong = bytes.clone();
+    wrong[8] += 1;
+    let error = alone("a.glb", &wrong).unwrap_err();
+    let cut = matches!(error, MeshFileError::CutShort { left, .. } if left == bytes.len());
+    assert!(cut, "{error}");
+    let mut wrong = bytes.clone();
     wrong[4] = 1;
     let error = alone("a.glb", &wrong).unwrap_err();
     assert!(
