@@ -40,6 +40,7 @@ mod summary;
 mod svg;
 mod table;
 mod target;
+mod terminal;
 mod tolerance;
 mod verdict;
 
@@ -63,8 +64,9 @@ pub use relief::{recovered_ply, texture_png};
 pub use reproduce::{
     ItemSummary, reproduction_files, reproduction_html, reproduction_markdown, reproduction_table,
 };
-pub use shown::{Shown, iterm, kitty};
+pub use shown::Shown;
 pub use summary::summary_json;
 pub use table::{recovery_table, summary_table, verdict_table};
 pub use target::target_png;
+pub use terminal::{iterm, kitty};
 pub use tolerance::{tolerance_csv, tolerance_svg, tolerance_table};

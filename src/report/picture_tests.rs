@@ -1,3 +1,4 @@
+use super::super::colour::Map;
 use super::super::encode::decoded;
 use super::*;
 

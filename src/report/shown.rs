@@ -3,13 +3,14 @@
 use super::axis::significant;
 use super::colour::{NOT_A_NUMBER, Rgb, Scale};
 use super::encode::PictureError;
-use super::figure::{Reduction, encoded, reduced};
+use super::figure::{Reduction, reduced};
 use super::picture::{
     AXIS, BAR, BELOW, CHARACTER, LINE, MARGIN, Panel, bar, bar_ticks, draw, key, opening, wrapped,
     write,
 };
 use super::raster;
 use super::svg::Svg;
+use super::terminal::half_blocks;
 
 /// Longer side of the matrix on its sheet, px, where it has no more entries than that.
 const LARGEST: usize = 900;
@@ -17,8 +18,6 @@ const LARGEST: usize = 900;
 const UNIT: usize = 380;
 /// Cells of the colour bar in a terminal.
 const CELLS: usize = 32;
-/// Bytes of a message of the kitty protocol.
-const MESSAGE: usize = 4096;
 
 /// A matrix with its scale. What the scale does not hold is counted, never shown as if it did: there is no tone curve.
 #[derive(Clone, Debug, PartialEq)]
@@ -168,47 +167,6 @@ impl Shown {
     }
 }
 
-/// A line of characters, each of an upper and a lower colour; without a lower one the terminal's own ground.
-fn half_blocks(cells: impl Iterator<Item = (Option<Rgb>, Option<Rgb>)>) -> String {
-    let mut line = String::new();
-    for (upper, lower) in cells {
-        let code = |kind: u8, colour: Option<Rgb>| match colour {
-            Some([r, g, b]) => format!("\x1b[{kind}8;2;{r};{g};{b}m"),
-            None => format!("\x1b[{kind}9m"),
-        };
-        line += &code(3, upper);
-        line += &code(4, lower);
-        line.push('▀');
-    }
-    line + "\x1b[0m"
-}
-
-/// A PNG as the kitty graphics protocol sends it, `columns` cells wide: in messages of 4096 bytes of base64, all but the last marked m=1.
-pub fn kitty(png: &[u8], columns: usize) -> String {
-    let data = encoded(png);
-    let pieces = data.len().div_ceil(MESSAGE);
-    let mut text = String::new();
-    for k in 0..pieces {
-        let piece = &data[k * MESSAGE..((k + 1) * MESSAGE).min(data.len())];
-        let more = u8::from(k + 1 < pieces);
-        let first = match k {
-            0 => format!("a=T,f=100,c={columns},"),
-            _ => String::new(),
-        };
-        text += &format!("\x1b_G{first}m={more};{piece}\x1b\\");
-    }
-    text + "\n"
-}
-
-/// A PNG as an inline image of iTerm2, `columns` cells wide.
-pub fn iterm(png: &[u8], columns: usize) -> String {
-    let size = png.len();
-    let data = encoded(png);
-    format!(
-        "\x1b]1337;File=inline=1;size={size};width={columns};preserveAspectRatio=1:{data}\x07\n"
-    )
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::colour::{Law, Map};
@@ -271,14 +229,9 @@ mod tests {
         );
     }
 
-    /// Columns 0 and 1 of one row over another: the upper half of a character is the upper row.
+    /// The upper half of a character is the upper row.
     #[test]
-    fn a_half_block_is_the_upper_entry_over_the_lower() {
-        let [a, b] = [[1, 2, 3], [40, 50, 60]];
-        assert_eq!(
-            half_blocks([(Some(a), Some(b)), (Some(b), None)].into_iter()),
-            "\x1b[38;2;1;2;3m\x1b[48;2;40;50;60m▀\x1b[38;2;40;50;60m\x1b[49m▀\x1b[0m"
-        );
+    fn blocks_have_the_last_row_on_top_and_the_legend_below() {
         let s = shown([1, 2], vec![0.0, 1.0], [0.0, 1.0]);
         let text = s.blocks(8);
         let lines: Vec<&str> = text.lines().collect();
@@ -302,31 +255,5 @@ mod tests {
         let text = s.blocks(80);
         assert!(text.lines().all(|l| l.matches('▀').count() <= 80));
         assert!(text.contains("mean of 3 × 2 entries"), "{text}");
-    }
-
-    #[test]
-    fn protocols_carry_the_whole_picture() {
-        let png: Vec<u8> = (0..10_000_u32).map(|k| (k * k) as u8).collect();
-        let text = kitty(&png, 60);
-        let pieces: Vec<&str> = text
-            .trim_end()
-            .split("\x1b\\")
-            .filter(|p| !p.is_empty())
-            .collect();
-        assert!(pieces[0].starts_with("\x1b_Ga=T,f=100,c=60,m=1;"));
-        let last = pieces.len() - 1;
-        assert!(pieces[last].starts_with("\x1b_Gm=0;"));
-        let data: String = pieces
-            .iter()
-            .map(|p| p.split_once(';').unwrap().1)
-            .collect();
-        assert_eq!(data, encoded(&png));
-        assert!(
-            pieces
-                .iter()
-                .all(|p| p.split_once(';').unwrap().1.len() <= 4096)
-        );
-        let text = iterm(&png, 60);
-        assert!(text.contains("size=10000;") && text.ends_with(&format!(":{data}\x07\n")));
     }
 }
