@@ -82,7 +82,7 @@ impl fmt::Display for Warning {
             }
             Self::ElementsAcrossCells(name) => write!(
                 f,
-                "elements of `{name}` straddle the edges of its texture: the model takes the albedo at their centres"
+                "elements of `{name}` straddle the edges of its texture: the model takes their mean albedo"
             ),
             Self::SpotsOverhang(spots) => {
                 write!(
