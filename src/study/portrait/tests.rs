@@ -171,7 +171,8 @@ fn the_default_place_shows_object_and_wall_from_the_front() {
                 _ => {}
             }
         }
-        assert!(found.iter().all(|n| *n > 100), "{name}: {found:?}");
+        // A hundredth of the picture each.
+        assert!(found.iter().all(|n| *n >= 61), "{name}: {found:?}");
         for corner in scene.hidden().flat_map(|(_, s)| s.shape.box_corners()) {
             let [x, y] = lens.place(corner);
             assert!(
