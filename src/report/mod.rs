@@ -6,6 +6,7 @@
 //! self-contained page. Pictures clip at the ends of their scale and say so; numbers are never clipped.
 
 mod axis;
+mod brdf;
 mod budget;
 mod chart;
 mod colour;
@@ -40,6 +41,7 @@ mod target;
 mod tolerance;
 mod verdict;
 
+pub use brdf::{brdf_csv, brdf_svg, brdf_table};
 pub use budget::{budget_csv, budget_svg, budget_table};
 pub use colour::{Map, Rgb, Scale};
 pub use convergence::{convergence_svg, convergence_table};
