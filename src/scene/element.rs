@@ -15,7 +15,8 @@ pub struct Element {
     pub area: f64,
     /// Unit vector along u, in the surface.
     pub u_axis: DVec3,
-    /// Its mean albedo, of a surface that is not Lambertian that of [`Surface::matt`]; of a cell of a mesh's texture coordinates that at its middle.
+    /// Its mean albedo, of a surface that is not Lambertian that of [`Surface::matt`]; of a cell of a mesh's texture coordinates that at its middle;
+    /// of a single point ([`Surface::element_at`]) the texture's value.
     pub albedo: f64,
 }
 
@@ -46,7 +47,7 @@ impl Surface {
         }
     }
 
-    /// The point of the surface with parameters `uv` (of a mesh: to which its equal-area map takes them), without area; its albedo is the texture's value.
+    /// The point of the surface with parameters `uv` (of a mesh: to which its equal-area map takes them), without area.
     pub fn element_at(&self, uv: [f64; 2]) -> Element {
         let at = |uv| self.shape.at(uv);
         let point = at(uv);
