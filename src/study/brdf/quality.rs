@@ -10,6 +10,9 @@ use crate::recovery::{Method, Options, Problem, RecoveryError, recover};
 use crate::study::deviate::normal_deviates;
 use crate::study::noise::Spread;
 
+/// How far recovered reflectances are from the true ones, where that is defined.
+type Measure = fn(&[f64], &[f64]) -> Option<f64>;
+
 /// How far the known BRDF may stay behind the Lambertian case.
 const BEHIND: f64 = 0.1;
 /// Correlation with the truth below which the Lambertian case itself recovers nothing, so that there is nothing to reach.
@@ -62,16 +65,16 @@ fn quality(
     let reason = reasons.map(RecoveryError::to_string).next_back();
     let draws = found.len();
     let found: Vec<Vec<f64>> = found.into_iter().flatten().collect();
-    let spread = |measure: &dyn Fn(&[f64], &[f64]) -> Option<f64>| {
+    let spread = |measure: Measure| {
         let values: Vec<f64> = found.iter().filter_map(|f| measure(f, truth)).collect();
         Spread::of(&values)
     };
     Quality {
         method: method.name().to_owned(),
         noise,
-        mtf_raw: spread(&mtf_raw),
-        correlation: spread(&correlation),
-        rmse: spread(&rmse),
+        mtf_raw: spread(mtf_raw),
+        correlation: spread(correlation),
+        rmse: spread(rmse),
         failed: draws - found.len(),
         reason,
     }
