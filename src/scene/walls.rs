@@ -4,6 +4,12 @@
 use super::{Material, Role, Scene, Surface};
 
 impl Scene {
+    /// Whether every relay surface is Lambertian.
+    pub fn relay_is_lambertian(&self) -> bool {
+        let mut relays = self.surfaces.iter().filter(|s| s.role == Role::Relay);
+        relays.all(Surface::is_lambertian)
+    }
+
     /// The same scene with each relay surface Lambertian and of the same white-sky albedo ([`Surface::matt`]).
     pub fn with_lambertian_relay(&self) -> Self {
         self.with_matt(Role::Relay)
@@ -71,7 +77,7 @@ mod tests {
         let albedo = wall.material.white_sky_albedo(0.8);
         assert!(albedo > 0.5 && albedo < 0.8, "{albedo}");
         assert_eq!(matt.surfaces[0].albedo, Texture::Constant(albedo));
-        assert!(matt.surfaces[0].is_lambertian());
+        assert!(matt.relay_is_lambertian() && !satin.relay_is_lambertian());
         assert_eq!(matt.surfaces[1], satin.surfaces[1]);
         assert_eq!(satin.with_lambertian_hidden().surfaces, satin.surfaces);
         let bench = Scene::load("bench").unwrap();

@@ -10,10 +10,13 @@ use crate::cli::trust;
 use crate::cli::{Outcome, settings};
 use crate::report;
 use crate::store::ensure_writable;
-use crate::study::{self, BrdfPlan, NoiseAxis};
+use crate::study::{self, BrdfError, BrdfPlan, NoiseAxis};
 
 pub(super) fn execute(args: &BrdfArgs, talk: Talk) -> Result<Outcome, Failure> {
     let scene = trust::load(&args.scene)?;
+    if scene.relay_is_lambertian() {
+        return Err(BrdfError::Lambertian.into());
+    }
     let pool = settings::pool(args.threads)?;
     let axis = NoiseAxis::Relative;
     if let Some((level, cure)) = args.noise.iter().find_map(|l| Some((l, axis.refuses(*l)?))) {

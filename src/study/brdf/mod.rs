@@ -157,10 +157,10 @@ pub fn brdf(
     control: Control<'_>,
 ) -> Result<Option<BrdfStudy>, BrdfError> {
     let scene = &scene.with_max_bounces(3);
-    let matt = scene.with_lambertian_relay();
-    if matt.surfaces == scene.surfaces {
+    if scene.relay_is_lambertian() {
         return Err(BrdfError::Lambertian);
     }
+    let matt = scene.with_lambertian_relay();
     let how = tracing(scene, plan)?;
     let models: Vec<Assumed> = assumed(scene);
     let mut assumptions = Vec::with_capacity(models.len());
