@@ -45,7 +45,7 @@
 //!    8  cli/         arguments, checked settings, progress, one file per subcommand; the only floor that prints
 //!    7  report/      results → json, svg, png, html: results in, bytes out
 //!    6  study/       experiments that compose the floors below: validation, recovered objects, budget, tolerance, power, noise,
-//!                    indicators, coverage, the laboratory experiment, the published study
+//!                    indicators, coverage, wall BRDFs, the laboratory experiment, the published study
 //!    5  recovery/    Φcam → reflectance              metrics/   how far two things are apart
 //!    4  transport/   the path tracer → Φcam          model/     G12, G23 → Φcam             sensor/  flux → electrons → counts
 //!    3  film/        frames, EXR                     matrix/    pixels × spots, .npy        store  whole files

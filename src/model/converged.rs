@@ -64,7 +64,8 @@ const GAUSSIAN_REACH: f64 = 4.0;
 
 /// The matrix model's integral: Gauss–Legendre over each smooth texture cell of each hidden surface, over each footprint and
 /// over each spot's profile, as far as `extent` asks for it, refined together until Φcam changes by less than 1e-10 or the
-/// rules are as large as they may be. As in the matrix model there is no occlusion and light meets three surfaces.
+/// rules are as large as they may be. As in the matrix model there is no occlusion, light meets three surfaces, and the hidden ones are
+/// Lambertian: one that is not is taken for [`Surface::matt`].
 ///
 /// # Errors
 /// [`ModelError::NothingHidden`].
@@ -165,6 +166,7 @@ fn hidden_nodes(scene: &Scene, nodes: Nodes) -> Vec<(HiddenPoint, f64)> {
         }
     };
     for (_, surface) in scene.hidden() {
+        let surface = &*surface.matt();
         let whole = surface.shape.area();
         match (nodes.extent.elements, &surface.shape) {
             (Take::Centre, _) => {

@@ -62,7 +62,8 @@ pub struct MatrixModel {
     pub g12: Matrix,
     /// Pixels × elements, length⁻².
     pub g23: Matrix,
-    /// Mean albedo of each element.
+    /// Mean albedo of each element; of a surface that is not Lambertian that of the Lambertian one that reflects as much
+    /// ([`Surface::matt`](crate::scene::Surface::matt)).
     pub albedo: Vec<f64>,
     /// C, pixels × elements: E_p·(ρ3/π)·G23/π.
     pub camera_side: Matrix,

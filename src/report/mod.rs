@@ -6,6 +6,7 @@
 //! self-contained page. Pictures clip at the ends of their scale and say so; numbers are never clipped.
 
 mod axis;
+mod brdf;
 mod budget;
 mod chart;
 mod colour;
@@ -44,6 +45,7 @@ mod terminal;
 mod tolerance;
 mod verdict;
 
+pub use brdf::{brdf_csv, brdf_svg, brdf_table};
 pub use budget::{budget_csv, budget_svg, budget_table};
 pub use colour::{Law, Map, Rgb, Scale};
 pub use convergence::{convergence_svg, convergence_table};

@@ -15,7 +15,8 @@ pub struct Element {
     pub area: f64,
     /// Unit vector along u, in the surface.
     pub u_axis: DVec3,
-    /// Its mean albedo; of a cell of a mesh's texture coordinates that at its middle.
+    /// Its mean albedo, of a surface that is not Lambertian that of [`Surface::matt`]; of a cell of a mesh's texture coordinates that at its middle;
+    /// of a single point ([`Surface::element_at`]) the texture's value.
     pub albedo: f64,
 }
 
@@ -24,9 +25,10 @@ impl Surface {
     /// the triangles, at their centroids; or the cells of its texture coordinates: each has the area of what the coordinates put there (the
     /// triangles clipped), the direction of that part's vector area as its normal, and the point of the mesh nearest to its centroid.
     pub fn divided(&self, [nu, nv]: [usize; 2]) -> Vec<Element> {
-        match (&self.shape, self.division) {
-            (Shape::Body(body), Division::Faces) => faces(body, &self.albedo),
-            (Shape::Body(body), Division::Cells) => cells(body, &self.albedo, [nu, nv]),
+        let matt = self.matt();
+        match (&matt.shape, matt.division) {
+            (Shape::Body(body), Division::Faces) => faces(body, &matt.albedo),
+            (Shape::Body(body), Division::Cells) => cells(body, &matt.albedo, [nu, nv]),
             (shape, _) => {
                 let area = shape.area() / (nu * nv) as f64;
                 let range = |i: usize, n: usize| [i as f64 / n as f64, (i + 1) as f64 / n as f64];
@@ -36,8 +38,8 @@ impl Surface {
                         let [u, v] = [range(j % nu, nu), range(j / nu, nv)];
                         Element {
                             area,
-                            albedo: self.albedo.mean(u, v),
-                            ..self.element_at([middle(u), middle(v)])
+                            albedo: matt.albedo.mean(u, v),
+                            ..matt.element_at([middle(u), middle(v)])
                         }
                     })
                     .collect()

@@ -120,6 +120,7 @@ mod surface;
 pub mod target;
 mod texture;
 mod variants;
+mod walls;
 mod warning;
 
 use std::path::{Path, PathBuf};

@@ -1,5 +1,8 @@
 //! Surfaces.
 
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
 use super::body::{Meshes, Placed};
 use super::error::{Fault, keys};
 use super::file::{ElementsTable, FaceName, RoleName, SidesName, SurfaceTable};
@@ -145,6 +148,26 @@ impl Surface {
     /// Whether every point of it reflects by ρ/π, whatever the directions.
     pub fn is_lambertian(&self) -> bool {
         self.material.is_lambertian()
+    }
+
+    /// The Lambertian surface in its place that reflects as much of light that comes evenly from everywhere: its albedo is the material's white-sky
+    /// albedo at each value of the texture (between the texels of a bilinear picture, and along a ramp, interpolated). What the matrix model takes
+    /// for the hidden surface.
+    pub fn matt(&self) -> Cow<'_, Self> {
+        if self.is_lambertian() {
+            return Cow::Borrowed(self);
+        }
+        // A quadrature each, so every value once.
+        let mut known: BTreeMap<u64, f64> = BTreeMap::new();
+        let reflectance = |rho: f64| {
+            let found = known.entry(rho.to_bits());
+            *found.or_insert_with(|| self.material.white_sky_albedo(rho))
+        };
+        Cow::Owned(Self {
+            material: Material::Lambertian,
+            albedo: self.albedo.map(reflectance),
+            ..self.clone()
+        })
     }
 
     /// Whether none of it reflects anything.

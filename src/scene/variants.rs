@@ -5,7 +5,7 @@ use glam::DAffine3;
 use super::error::{Fault, keys};
 use super::laser;
 use super::parse;
-use super::{Cells, Role, Scene, SceneError, Texture};
+use super::{Cells, Material, Role, Scene, SceneError, Texture};
 use crate::geometry::{Bvh, DVec3, Facing, Parallelogram, Shape, Sphere};
 
 impl Scene {
@@ -42,6 +42,7 @@ impl Scene {
         let mut scene = self.clone();
         for surface in &mut scene.surfaces {
             if surface.role == Role::Occluder {
+                surface.material = Material::Lambertian;
                 surface.albedo = Texture::Constant(0.0);
             }
         }

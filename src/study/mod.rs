@@ -6,6 +6,7 @@
 //! * [`convergence`](fn@convergence): how fast the error of each estimator falls.
 //! * [`power`](fn@power): what [`validate`] detects, and how often it errs.
 //! * [`tolerance`](fn@tolerance): how wrong the assumed geometry may be.
+//! * [`brdf`](fn@brdf): the model on a wall that is not Lambertian, its BRDF known, ignored, or wrong.
 //! * [`coverage`](fn@coverage): how often the bands of recovered reflectances cover the truth.
 //! * [`experiment`](fn@experiment): the failed laboratory experiment, re-enacted.
 //! * [`indicator`](fn@indicator): what predicts how well the published inversion works.
@@ -15,6 +16,7 @@
 //! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object; [`picards`] show what of it noise leaves.
 
 mod agreement;
+mod brdf;
 mod budget;
 mod convergence;
 mod coverage;
@@ -33,6 +35,7 @@ mod tolerance;
 mod validation;
 
 pub use agreement::{Errors, Evidence, Test, agree};
+pub use brdf::{Assumption, BrdfError, BrdfPlan, BrdfStudy, Quality, Ratio, brdf};
 pub use budget::{BudgetError, BudgetPlan, Closure, ErrorBudget, Term, error_budget};
 pub use convergence::{Convergence, ConvergenceError, Curve, Step, convergence};
 pub use coverage::{Coverage, CoveragePlan, CoverageRow, coverage};

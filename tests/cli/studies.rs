@@ -1,5 +1,6 @@
 //! `phicam study`: files, tables, refusals.
 
+use crate::small_scene::{SMALL, altered};
 use crate::workspace::Workspace;
 
 #[test]
@@ -195,5 +196,46 @@ fn coverage_is_a_table_and_json() {
         ("--method best", "joint-two-valued"),
     ] {
         workspace.refuses(&format!("study coverage small.toml -o d {wrong}"), &[word]);
+    }
+}
+
+/// On satin the wall's own BRDF agrees and the others are rejected; a bench without gloss has nothing to tell.
+#[test]
+fn brdf_is_a_table_json_csv_and_a_figure() {
+    let workspace = Workspace::with_scenes();
+    let satin = ("{ lambertian = 0.8 }", "{ coated = 0.8, roughness = 0.3 }");
+    workspace.write("satin.toml", altered(SMALL.iter().chain([&satin])));
+    let line = "study brdf satin.toml -o b --samples 4096 --seeds 3 --noise 0.01 --method joint";
+    let ended = workspace.phicam(line).exits(0);
+    for word in [
+        "own BRDF agrees with the traced light",
+        "Lambertian is rejected",
+        "Lambertian, best scale is rejected",
+        "roughness × 2 is rejected",
+        "reaches it within 10 %",
+    ] {
+        assert!(ended.stdout.contains(word), "{word}: {}", ended.account());
+    }
+    let json = workspace.json("b/brdf.json");
+    let assumptions = json["assumptions"].as_array().unwrap().len();
+    assert_eq!(json["ratios"][0]["reaches"], true);
+    // A header, then a line for each assumption and for the Lambertian case: one method, one level.
+    let lines = workspace.text("b/brdf.csv").lines().count();
+    assert_eq!(lines, 1 + assumptions + 1);
+    let figure = workspace.text("b/brdf.svg");
+    assert!(figure.contains("own BRDF (agrees)") && !figure.contains("NaN"));
+    let again = workspace
+        .phicam(&format!("{line} --threads 1 --json"))
+        .exits(0);
+    let again: serde_json::Value = serde_json::from_str(&again.stdout).unwrap();
+    assert_eq!(again, json, "threads change nothing");
+    workspace.refuses("study brdf small.toml -o c", &["Lambertian", "satin"]);
+    for (wrong, word) in [
+        ("--noise 0", "--noise"),
+        ("--significance 2", "--significance"),
+        ("--samples 0", "at least 1"),
+        ("--method best", "joint-two-valued"),
+    ] {
+        workspace.refuses(&format!("study brdf satin.toml -o d {wrong}"), &[word]);
     }
 }

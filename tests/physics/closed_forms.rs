@@ -57,7 +57,7 @@ fn the_furnace_glows_as_an_integrating_sphere() {
     }
 }
 
-const TWO_WALLS: &str = r#"
+pub(crate) const TWO_WALLS: &str = r#"
 name = "two walls"
 unit = "m"
 max_bounces = 2

@@ -1,6 +1,7 @@
 //! Tracer and model against an independent quadrature, closed forms and the laws of light transport.
 
 mod accuracy;
+mod brdf;
 mod closed_forms;
 mod indicator;
 mod known;

@@ -9,7 +9,7 @@ use phicam::transport::{Control, Estimator};
 
 use crate::builtin;
 
-fn budget(scene: &Scene, ensemble_samples: u64) -> ErrorBudget {
+pub(crate) fn budget(scene: &Scene, ensemble_samples: u64) -> ErrorBudget {
     let stop = AtomicBool::new(false);
     let control = Control {
         progress: &|_| (),

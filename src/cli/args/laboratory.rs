@@ -1,4 +1,4 @@
-//! Arguments of the studies of bands and of the laboratory experiment.
+//! Arguments of the studies of bands, of wall BRDFs and of the laboratory experiment.
 
 use std::path::PathBuf;
 
@@ -50,6 +50,45 @@ pub(in crate::cli) struct ExperimentArgs {
     #[arg(long)]
     pub threads: Option<usize>,
     /// Print experiment.json instead of the findings
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Arguments)]
+pub(in crate::cli) struct BrdfArgs {
+    /// Built-in scene or path of a scene file
+    #[arg(default_value = "satin")]
+    pub scene: String,
+    /// Folder for brdf.json, brdf.csv and brdf.svg
+    #[arg(long, short, default_value = "out/brdf")]
+    pub output: PathBuf,
+    /// Points, or paths per pixel where the hidden surface is not Lambertian, of each of the two renders
+    #[arg(long, default_value_t = 65536)]
+    pub samples: u64,
+    /// Noise of the photographs, relative to each entry, separated by commas
+    #[arg(
+        long,
+        value_delimiter = ',',
+        default_value = "0.001,0.01,0.1",
+        allow_negative_numbers = true
+    )]
+    pub noise: Vec<f64>,
+    /// Recovery methods, separated by commas
+    #[arg(long, value_delimiter = ',', default_value = "pinv,tikhonov,joint")]
+    pub method: Vec<String>,
+    /// Draws of the noise
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    pub seeds: u64,
+    /// Seed of the tracer and first one of the noise
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Probability of rejecting a right model
+    #[arg(long, default_value_t = 1e-4, allow_negative_numbers = true)]
+    pub significance: f64,
+    /// Threads; all cores unless given
+    #[arg(long)]
+    pub threads: Option<usize>,
+    /// Print brdf.json instead of the table
     #[arg(long)]
     pub json: bool,
 }

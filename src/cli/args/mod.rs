@@ -18,7 +18,7 @@ use clap::{Args as Arguments, Parser, Subcommand, ValueEnum};
 use value::{elements, shift, spot_range};
 
 pub(in crate::cli) use expose::ExposeArgs;
-pub(in crate::cli) use laboratory::{CoverageArgs, ExperimentArgs};
+pub(in crate::cli) use laboratory::{BrdfArgs, CoverageArgs, ExperimentArgs};
 pub(in crate::cli) use recover::{RecoverArgs, RuleName, WeightingName};
 pub(in crate::cli) use reproduce::ReproduceArgs;
 pub(in crate::cli) use study::{

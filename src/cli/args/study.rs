@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args as Arguments, Subcommand};
 
-use super::laboratory::{CoverageArgs, ExperimentArgs};
+use super::laboratory::{BrdfArgs, CoverageArgs, ExperimentArgs};
 use super::sweep::{IndicatorArgs, NoiseArgs};
 use super::{EstimatorName, SamplerName};
 
@@ -28,6 +28,8 @@ pub(in crate::cli) enum StudyCommand {
     Noise(NoiseArgs),
     /// What predicts the modulation of the published inversion: table, JSON, CSV, figure
     Indicator(IndicatorArgs),
+    /// The matrix model on a wall that is not Lambertian, its BRDF known, ignored, or wrong: table, JSON, CSV, figure
+    Brdf(BrdfArgs),
     /// How often bands around recovered reflectances cover the truth: table and JSON
     Coverage(CoverageArgs),
     /// The failed laboratory experiment with a real sensor and glare: findings in words, tables, JSON, CSV, figure

@@ -1,5 +1,6 @@
 //! `phicam study`: experiments around a scene.
 
+mod brdf;
 mod coverage;
 mod experiment;
 mod findings;
@@ -27,6 +28,7 @@ pub(in crate::cli) fn execute(args: &StudyArgs, talk: Talk) -> Result<Outcome, F
         StudyCommand::Convergence(a) => convergence(a, talk),
         StudyCommand::Noise(a) => noise::execute(a, talk),
         StudyCommand::Indicator(a) => indicator::execute(a, talk),
+        StudyCommand::Brdf(a) => brdf::execute(a, talk),
         StudyCommand::Coverage(a) => coverage::execute(a, talk),
         StudyCommand::Experiment(a) => experiment::execute(a, talk),
     }

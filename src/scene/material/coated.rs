@@ -70,6 +70,16 @@ impl Coated {
         coated
     }
 
+    /// Its interface.
+    pub(super) fn ggx(&self) -> &Ggx {
+        &self.ggx
+    }
+
+    /// Refractive index of the coat.
+    pub(super) fn eta(&self) -> f64 {
+        self.eta
+    }
+
     /// T at cosine `mu`: Catmull and Rom's cubic in √μ.
     fn transmittance(&self, mu: f64) -> f64 {
         let x = mu.min(1.0).sqrt() * INTERVALS as f64;

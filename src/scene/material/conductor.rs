@@ -25,6 +25,11 @@ impl Conductor {
         }
     }
 
+    /// The same metal with another interface.
+    pub(super) fn with(self, ggx: Ggx) -> Self {
+        Self { ggx, ..self }
+    }
+
     /// f_r of directions above the surface, sr⁻¹.
     pub(super) fn brdf(&self, albedo: f64, incident: DVec3, exitant: DVec3) -> f64 {
         let (mirror, cosine) = self.ggx.reflection(incident, exitant);

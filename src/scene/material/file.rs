@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::merl::Channel;
+use super::variants::{LEAST_ALPHA, MOST_ALPHA, MOST_INDEX, MOST_SIGMA};
 use super::{Coated, Conductor, Material, Measured, OrenNayar, Part};
 use crate::scene::error::{Fault, keys};
 use crate::scene::texture::{AlbedoTable, Texture};
@@ -106,14 +107,14 @@ impl Material {
             return Ok((Self::Lambertian, albedo("lambertian", given)?));
         }
         if let Some(given) = &table.oren_nayar {
-            let sigma = roughness(table, 0.0, std::f64::consts::FRAC_PI_2, "radians")?;
+            let sigma = roughness(table, 0.0, MOST_SIGMA, "radians")?;
             let material = Self::OrenNayar(OrenNayar::new(sigma));
             return Ok((material, albedo("oren_nayar", given)?));
         }
         if let Some(given) = &table.coated {
-            let alpha = roughness(table, LEAST_ALPHA, 1.0, "α")?;
+            let alpha = roughness(table, LEAST_ALPHA, MOST_ALPHA, "α")?;
             let ior = table.ior.unwrap_or(COAT);
-            if !(ior > 1.0 && ior <= 4.0) {
+            if !(ior > 1.0 && ior <= MOST_INDEX) {
                 let cause = format!("a coat of refractive index {ior}");
                 let cure = "use a number above 1, up to 4; paint and varnish have 1.4 to 1.6";
                 return Err(Fault::new(keys!["ior"], cause, cure));
@@ -122,7 +123,7 @@ impl Material {
             return Ok((Self::Coated(Arc::new(Coated::new(alpha, ior))), texture));
         }
         if let Some(index) = &table.conductor {
-            let alpha = roughness(table, LEAST_ALPHA, 1.0, "α")?;
+            let alpha = roughness(table, LEAST_ALPHA, MOST_ALPHA, "α")?;
             for (key, value, least) in [("eta", index.eta, 1e-3), ("k", index.k, 0.0)] {
                 if !(least..=100.0).contains(&value) {
                     let cause = format!("a metal whose `{key}` is {value}");
@@ -142,8 +143,6 @@ impl Material {
         Ok((mixture(parts, wavelength, files)?, Texture::Constant(1.0)))
     }
 }
-
-const LEAST_ALPHA: f64 = 0.01;
 
 /// The one kind of material that is given.
 fn kind(table: &MaterialTable) -> Result<&'static str, Fault> {
@@ -275,12 +274,11 @@ fn mixture(tables: &[PartTable], wavelength: f64, files: Files<'_>) -> Result<Ma
             let cause = "a part of a mixture whose albedo varies over the surface";
             return Err(Fault::new(at, cause, "give it a number"));
         };
-        let share = table.weight * material.white_sky_albedo(albedo);
         parts.push(Part {
             weight: table.weight,
             albedo,
             material,
-            share,
+            share: 0.0,
         });
     }
     let weights: f64 = parts.iter().map(|p| p.weight).sum();
@@ -292,14 +290,5 @@ fn mixture(tables: &[PartTable], wavelength: f64, files: Files<'_>) -> Result<Ma
             "let them add up to 1 at most",
         ));
     }
-    let total: f64 = parts.iter().map(|p| p.share).sum();
-    let even = 1.0 / parts.len() as f64;
-    for part in &mut parts {
-        part.share = if total > 0.0 {
-            part.share / total
-        } else {
-            even
-        };
-    }
-    Ok(Material::Mixture(parts.into()))
+    Ok(Material::mixture(parts))
 }

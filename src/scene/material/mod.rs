@@ -25,6 +25,7 @@ mod lobe;
 mod measured;
 mod merl;
 mod oren_nayar;
+mod variants;
 
 use std::f64::consts::FRAC_1_PI;
 use std::sync::Arc;

@@ -21,6 +21,7 @@ use crate::geometry::DVec3;
 /// (M. Oren and S. K. Nayar, *Generalization of Lambert's reflectance model*, 1994); EON itself takes r ∈ \[0, 1\] as its roughness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrenNayar {
+    sigma: f64,
     r: f64,
     a: f64,
 }
@@ -34,14 +35,20 @@ impl OrenNayar {
         let s2 = sigma * sigma;
         let r = 0.45 * s2 / (s2 + 0.09) / (1.0 - 0.5 * s2 / (s2 + 0.33));
         Self {
+            sigma,
             r,
             a: 1.0 / (1.0 + C1 * r),
         }
     }
 
+    /// σ.
+    pub(super) fn sigma(&self) -> f64 {
+        self.sigma
+    }
+
     /// f_r of directions above the surface, sr⁻¹.
     pub(super) fn brdf(&self, albedo: f64, incident: DVec3, exitant: DVec3) -> f64 {
-        let Self { r, a } = *self;
+        let Self { r, a, .. } = *self;
         let s = incident.x * exitant.x + incident.y * exitant.y;
         let ratio = if s > 0.0 {
             s / incident.z.max(exitant.z)

@@ -112,6 +112,26 @@ impl Texture {
         }
     }
 
+    /// The texture whose numbers are `f` of this one's. Between the numbers of a ramp or of a bilinear picture it is interpolated as before, which is `f` of
+    /// what was there only if `f` is linear.
+    pub(super) fn map(&self, mut f: impl FnMut(f64) -> f64) -> Self {
+        let mut each = |albedo: &[f64]| albedo.iter().map(|rho| f(*rho)).collect::<Vec<_>>();
+        let mut cells = |c: &Cells| Cells {
+            count: c.count,
+            albedo: each(&c.albedo),
+        };
+        match self {
+            Self::Cells(c) => Self::Cells(cells(c)),
+            Self::Tiles(c) => Self::Tiles(cells(c)),
+            Self::Constant(rho) => Self::Constant(f(*rho)),
+            Self::Ramp([a, b]) => Self::Ramp([f(*a), f(*b)]),
+            Self::Bilinear(texels) => Self::Bilinear(Bilinear {
+                albedo: each(&texels.albedo),
+                ..texels.clone()
+            }),
+        }
+    }
+
     /// Largest albedo.
     pub fn largest(&self) -> f64 {
         match self {

@@ -3,9 +3,12 @@
 //! The chain from the model M₀ (elements, pixels and spots by their centres) to the light that a run stores:
 //!
 //! ```text
-//! M₀ →(elements)→ M₁ →(footprints)→ M₂ →(spots)→ M₃ →(occlusion)→ T₃ˡ →(other surfaces)→ T₃ →(2, 4, 5, … bounces)→ T
-//!    →(Monte Carlo)→ A →(f32)→ frames
+//! M₀ →(elements)→ M₁ →(footprints)→ M₂ →(spots)→ M₃ →(occlusion)→ T₃ᵐ →(BRDF of S2)→ T₃ˡ →(other surfaces)→ T₃
+//!    →(2, 4, 5, … bounces)→ T →(Monte Carlo)→ A →(f32)→ frames
 //! ```
+//!
+//! The model knows the BRDF of the wall, but takes S2 for the Lambertian surface of equal white-sky albedo ([`crate::scene::Surface::matt`]). Where it is
+//! not Lambertian, T₃ᵐ is traced with that one in its place, and what its own BRDF changes has a row.
 //!
 //! Each step is a matrix, computed by itself: M by quadrature, T from an ensemble of precise renders (`shared`, Sobol', seeds of
 //! their own), A one render as `render` makes it (`independent`). The parts add up to frames − M₀ by construction,
@@ -140,7 +143,8 @@ pub fn error_budget(
     if norm <= 0.0 {
         return Err(BudgetError::Dark);
     }
-    let grey = converged(&scene.with_mean_albedo(), Kernel::Physical, Extent::FULL)?.phi;
+    let grey = scene.with_lambertian_hidden().with_mean_albedo();
+    let grey = converged(&grey, Kernel::Physical, Extent::FULL)?.phi;
     let signal = (&m3.0 - grey).norm() / norm;
 
     let each = Samples::new(plan.ensemble_samples.div_ceil(MEMBERS), Sampling::Sobol)
@@ -169,6 +173,14 @@ pub fn error_budget(
     let black = scene.with_black_occluders().with_max_bounces(3);
     let Some(occluded) = (0..if blocked { MEMBERS } else { 0 })
         .map(|k| member(&black, k + 101))
+        .collect::<Option<Vec<Traced>>>()
+    else {
+        return Ok(None);
+    };
+    let glossy = scene.hidden().any(|(_, s)| !s.is_lambertian());
+    let matt = black.with_lambertian_hidden();
+    let Some(matt) = (0..if glossy { MEMBERS } else { 0 })
+        .map(|k| member(&matt, k + 201))
         .collect::<Option<Vec<Traced>>>()
     else {
         return Ok(None);
@@ -206,19 +218,22 @@ pub fn error_budget(
         sizes.exact("pixel footprint", &m2, &m1),
         sizes.exact("spot size and profile", &m3, &m2),
     ];
+    // Light of three bounces by wall and hidden surfaces alone.
+    let own = if blocked { &occluded } else { &members };
+    let third = |traced: &[Traced]| traced.iter().map(|t| t.bounces[2].clone()).collect();
+    let first = if glossy { &matt } else { own };
+    let occlusion = Ensemble::new(third(first)).map(|m| m - &m3.0);
+    terms.push(sizes.traced("occlusion", &occlusion, true));
+    let step = |to: &[Traced], from: &[Traced]| {
+        let pairs = to.iter().zip(from);
+        Ensemble::new(pairs.map(|(t, f)| &t.bounces[2] - &f.bounces[2]).collect())
+    };
+    if glossy {
+        terms.push(sizes.traced("S2 not Lambertian", &step(own, &matt), true));
+    }
     if blocked {
-        let lit = Ensemble::new(occluded.iter().map(|t| t.bounces[2].clone()).collect());
-        terms.push(sizes.traced("occlusion", &lit.map(|m| m - &m3.0), true));
-        let rest = Ensemble::new(
-            members
-                .iter()
-                .zip(&occluded)
-                .map(|(t, o)| &t.bounces[2] - &o.bounces[2])
-                .collect(),
-        );
+        let rest = step(&members, &occluded);
         terms.push(sizes.traced("3 bounces by other surfaces", &rest, true));
-    } else {
-        terms.push(sizes.traced("occlusion", &order(3).map(|m| m - &m3.0), true));
     }
     for n in [1, 2, 4, 5, 6, OWN_ROW] {
         let name = if n == 1 {
