@@ -84,6 +84,21 @@ impl Coated {
         a + t * (da + t * (3.0 * (b - a) - 2.0 * da - db + t * (2.0 * (a - b) + da + db)))
     }
 
+    /// Its interface.
+    pub fn ggx(&self) -> Ggx {
+        self.ggx
+    }
+
+    /// The refractive index of the coat.
+    pub fn index(&self) -> f64 {
+        self.eta
+    }
+
+    /// R̄, what the interface returns of diffuse light from inside.
+    pub fn internal_reflectance(&self) -> f64 {
+        self.internal
+    }
+
     /// f_r of directions above the surface, sr⁻¹.
     pub(super) fn brdf(&self, albedo: f64, incident: DVec3, exitant: DVec3) -> f64 {
         let (mirror, cosine) = self.ggx.reflection(incident, exitant);

@@ -20,6 +20,11 @@ impl Ggx {
         Self { alpha }
     }
 
+    /// Its roughness.
+    pub fn alpha(&self) -> f64 {
+        self.alpha
+    }
+
     /// D(h), sr⁻¹.
     pub fn distribution(&self, h: DVec3) -> f64 {
         let a2 = self.alpha * self.alpha;

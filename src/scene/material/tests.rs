@@ -29,7 +29,7 @@ fn material(text: &str, file: &[u8]) -> Result<Material, String> {
         m: MaterialTable,
     }
     let table = toml::from_str::<Holder>(&format!("m = {text}")).map_err(|e| e.to_string())?;
-    Material::from_table(&table.m, &mut |_| Ok(file.to_vec()))
+    Material::from_table(&table.m, 550e-9, &mut |_| Ok(file.to_vec()))
         .map(|(m, _)| m)
         .map_err(|f| format!("{}; {}", f.cause, f.cure))
 }
