@@ -44,7 +44,14 @@ pub(super) fn literals(scene: &Scene) -> Result<(String, String), MitsubaError> 
             "    {{\"name\": {name}, {shape}, \"material\": {material}, \"albedo\": {albedo}{brdf}}},\n"
         );
     }
-    let meshes: String = meshes.iter().map(|m| mesh(m)).collect();
+    let varies = |m: &Arc<Mesh>| {
+        scene.surfaces.iter().any(|s| {
+            let constant = matches!(s.albedo, Texture::Constant(_));
+            matches!(&s.shape, Shape::Body(b) if Arc::ptr_eq(m, b.mesh())) && !constant
+        })
+    };
+    let mesh = |m: &&Arc<Mesh>| mesh(m, m.uv().filter(|_| varies(m)));
+    let meshes: String = meshes.iter().map(mesh).collect();
     Ok((format!("[\n{meshes}]"), surfaces + "]"))
 }
 
@@ -97,14 +104,14 @@ fn shape(shape: &Shape) -> String {
     }
 }
 
-/// One entry of MESHES.
-fn mesh(mesh: &Mesh) -> String {
+/// One entry of MESHES, with texture coordinates if they are given.
+fn mesh(mesh: &Mesh, uv: Option<&[[[f32; 2]; 3]]>) -> String {
     let encode = |bytes: Vec<u8>| BASE64_STANDARD.encode(bytes);
     let positions = mesh.positions().iter().flat_map(|p| p.to_array());
     let positions = encode(positions.flat_map(f64::to_le_bytes).collect());
     let triangles = mesh.triangles().iter().flatten();
     let triangles = encode(triangles.flat_map(|k| k.to_le_bytes()).collect());
-    let uv = mesh.uv().map_or(String::new(), |uv| {
+    let uv = uv.map_or(String::new(), |uv| {
         let uv = uv.iter().flatten().flatten();
         let uv = encode(uv.flat_map(|c| c.to_le_bytes()).collect());
         format!(", \"uv\": \"{uv}\"")
