@@ -23,9 +23,10 @@ How the scene is translated
              ground by 1 - rho * F, F the coat's reflectance of diffuse light from inside. phicam integrates F; Mitsuba takes
              the mean over 64 nodes, F', which is up to 1.5 % less. So the program measures F' by evaluating the BSDF with two
              reflectances and takes the rho' that gives the ground the light that it has in phicam:
-             rho' / (1 - rho' F') = rho / (1 - rho F). Without that the BRDFs differ by up to 1e-2. What remains is that
-             Mitsuba interpolates the coat's transmittance linearly between 64 cosines. (Between the centres of texels rho'
-             is interpolated, not rho.)
+             rho' / (1 - rho' F') = rho / (1 - rho F). Without that the BRDFs differ by up to 1e-2. What remains, below 1e-3,
+             is that Mitsuba interpolates the coat's transmittance linearly between 64 cosines. A pixel that sees such a spot
+             itself shows it beyond any noise. (Between the centres of texels rho' is interpolated, not rho.)
+             measured: refused when the file is written, for Mitsuba reads no such table.
              Values of phicam's own BRDFs stand below: before it renders, the program prints how far Mitsuba's are from them.
   Camera     No Mitsuba sensor: every sample is a ray from the pinhole through a uniform point of the pixel's footprint, and
              its radiance counts A_footprint * A_lens * cos^2 / d^2, the etendue that it stands for.
@@ -34,7 +35,8 @@ How the scene is translated
              order of (radius / distance)^2, some 1e-8. A spot of finite size that falls on one flat surface of one albedo is a
              `disk` (uniform), or a `rectangle` with a bitmap (Gaussian, cut at 3 w: 4e-6 of its power is moved inwards).
              Any other is 1024 ideal ones of equal power, each where the beam lands: edges across it are resolved
-             to about 0.5 % of its power, and where the camera sees such a spot itself, to a few % of an edge pixel's light. The emitter lies LIFT above the surface (5e-6 of the extent).
+             to about 0.5 % of its power, and where the camera sees such a spot itself, to a few % of an edge pixel's light.
+             The emitter lies LIFT above the surface (5e-6 of the extent).
              Where the lit surface is not Lambertian, the spot is no area but points with the intensity
              power * f_r(to the laser, w) * cos(w), f_r by Mitsuba's own BSDF: an emitter in Python, below.
   Bounces    phicam counts the surfaces between laser and camera, the spot's included; Mitsuba counts the edges of a path from

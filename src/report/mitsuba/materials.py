@@ -91,7 +91,8 @@ def differences():
 def in_python():
     """The BSDF, registered, and the emitter that Mitsuba lacks, which is returned; the scalar variants cannot run such."""
     if mi.variant().startswith("scalar"):
-        raise SystemExit(f"{mi.variant()} cannot run this scene, part of which is in Python: use --variant llvm_ad_rgb, for which LLVM must be installed")
+        cure = "use --variant llvm_ad_rgb, for which LLVM must be installed"
+        raise SystemExit(f"{mi.variant()} cannot run this scene, part of which is in Python: {cure}")
     zero = lambda x, active: dr.select(active, x, 0)
 
     class OrenNayar(mi.BSDF):

@@ -157,10 +157,11 @@ def triangles(s):
     props["bsdf"] = mi.load_dict(material)
     shape = mi.Mesh(s["name"], len(positions), corners.size // 3, props=props, has_vertex_texcoords=textured)
     data = mi.traverse(shape)
-    data["vertex_positions"] = mi.Float(positions.astype(np.float32).ravel())
-    data["faces"] = mi.UInt32(corners.astype(np.uint32).ravel())
+    given = {"vertex_positions": positions.astype(np.float32), "faces": corners.astype(np.uint32)}
     if textured:
-        data["vertex_texcoords"] = mi.Float(uv.astype(np.float32).ravel())
+        given["vertex_texcoords"] = uv.astype(np.float32)
+    for key, values in given.items():
+        data[key] = type(data[key])(values.ravel())  # an array in the scalar variants too
     data.update()
     return shape
 
