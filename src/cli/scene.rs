@@ -27,7 +27,7 @@ pub(super) fn execute(args: &SceneArgs, talk: Talk) -> Result<Outcome, Failure> 
         } => {
             let scene = trust::load(scene)?;
             let text = if *mitsuba {
-                report::mitsuba_script(&scene)
+                report::mitsuba_script(&scene)?
             } else {
                 scene.text
             };

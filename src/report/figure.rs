@@ -1,4 +1,4 @@
-//! Figures of a page: a matrix as an inline SVG with axes, and the legend of a scale. The one door to `base64`.
+//! Figures of a page: a matrix as an inline SVG with axes, and the legend of a scale.
 
 use base64::prelude::{BASE64_STANDARD, Engine};
 

@@ -55,7 +55,7 @@ pub use encode::PictureError;
 pub use experiment::{experiment_csv, experiment_svg, experiment_table};
 pub use exposure::{counts_png, exposure_table};
 pub use indicator::{indicator_csv, indicator_noise_csv, indicator_svg, indicator_table};
-pub use mitsuba::mitsuba_script;
+pub use mitsuba::{MitsubaError, mitsuba_script};
 pub use noise::{Measure, noise_csv, noise_svg, noise_table};
 pub use page::run_html;
 pub use picard::{picard_csv, picard_svg};

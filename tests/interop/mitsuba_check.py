@@ -8,7 +8,7 @@ SCRIPT and compared with the same columns of PHI. Exit code 1 if any of three te
 
   chi^2       sum of z^2, z = (mitsuba - phicam) / joint standard error, outside its two-sided band
   largest |z| against the normal law, Sidak-corrected for the number of entries
-  scale       c = <mitsuba, phicam> / <phicam, phicam>, which must be 1 within its error. Its weights know nothing of
+  scale       c = <mitsuba, phicam> / <phicam, phicam>, the latter less its noise, must be 1 within its error. Its weights know nothing of
               Mitsuba's noise: weights from standard errors would favour entries that came out low, whose estimated errors
               are low too, and pull c down by (relative variance of one sample) / spp.
 
@@ -59,8 +59,10 @@ chi2 = float((z * z).sum() / n)
 # P(max |z| > t) = 1 - (1 - p)^n with p = P(|z| > t).
 most = normal.inv_cdf(1 + np.expm1(np.log1p(-args.significance) / n) / 2)
 largest = float(np.abs(z).max())
-scale = float((peer * phi).sum() / (phi * phi).sum())
-scale_error = float(np.sqrt((phi**2 * joint**2).sum()) / (phi * phi).sum())
+# The square of a noisy entry is too large by its variance.
+norm = (phi**2 - phi_error**2).sum()
+scale = float((peer * phi).sum() / norm)
+scale_error = float(np.sqrt((phi**2 * joint**2).sum()) / norm)
 
 print(f"{n} entries; relative standard error: phicam {np.mean(phi_error[phi > 0] / phi[phi > 0]):.1e}, Mitsuba {np.mean(peer_error[phi > 0] / phi[phi > 0]):.1e}")
 verdicts = [

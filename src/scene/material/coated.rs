@@ -70,16 +70,6 @@ impl Coated {
         coated
     }
 
-    /// Its interface.
-    pub(super) fn ggx(&self) -> &Ggx {
-        &self.ggx
-    }
-
-    /// Refractive index of the coat.
-    pub(super) fn eta(&self) -> f64 {
-        self.eta
-    }
-
     /// T at cosine `mu`: Catmull and Rom's cubic in √μ.
     fn transmittance(&self, mu: f64) -> f64 {
         let x = mu.min(1.0).sqrt() * INTERVALS as f64;
@@ -92,6 +82,21 @@ impl Coated {
         let after = table.get(k + 2).copied().unwrap_or(2.0 * b - a);
         let (da, db) = (0.5 * (b - before), 0.5 * (after - a));
         a + t * (da + t * (3.0 * (b - a) - 2.0 * da - db + t * (2.0 * (a - b) + da + db)))
+    }
+
+    /// Its interface.
+    pub fn ggx(&self) -> Ggx {
+        self.ggx
+    }
+
+    /// The refractive index of the coat.
+    pub fn index(&self) -> f64 {
+        self.eta
+    }
+
+    /// R̄, what the interface returns of diffuse light from inside.
+    pub fn internal_reflectance(&self) -> f64 {
+        self.internal
     }
 
     /// f_r of directions above the surface, sr⁻¹.

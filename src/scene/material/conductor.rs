@@ -30,6 +30,16 @@ impl Conductor {
         Self { ggx, ..self }
     }
 
+    /// Its surface.
+    pub fn ggx(&self) -> Ggx {
+        self.ggx
+    }
+
+    /// η and k.
+    pub fn index(&self) -> [f64; 2] {
+        [self.eta, self.k]
+    }
+
     /// f_r of directions above the surface, sr⁻¹.
     pub(super) fn brdf(&self, albedo: f64, incident: DVec3, exitant: DVec3) -> f64 {
         let (mirror, cosine) = self.ggx.reflection(incident, exitant);

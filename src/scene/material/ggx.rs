@@ -20,8 +20,8 @@ impl Ggx {
         Self { alpha }
     }
 
-    /// α.
-    pub(super) fn alpha(&self) -> f64 {
+    /// Its roughness.
+    pub fn alpha(&self) -> f64 {
         self.alpha
     }
 

@@ -46,6 +46,11 @@ impl OrenNayar {
         self.sigma
     }
 
+    /// r = B/A, EON's roughness.
+    pub fn ratio(&self) -> f64 {
+        self.r
+    }
+
     /// f_r of directions above the surface, sr⁻¹.
     pub(super) fn brdf(&self, albedo: f64, incident: DVec3, exitant: DVec3) -> f64 {
         let Self { r, a, .. } = *self;

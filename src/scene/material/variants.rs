@@ -45,7 +45,7 @@ impl Material {
                 within.then(|| Self::OrenNayar(OrenNayar::new(sigma)))
             }
             Self::Coated(m) => {
-                let coated = Coated::new(alpha(m.ggx())?, m.eta());
+                let coated = Coated::new(alpha(&m.ggx())?, m.index());
                 Some(Self::Coated(Arc::new(coated)))
             }
             Self::Conductor(m) => Some(Self::Conductor(m.with(Ggx::new(alpha(&m.ggx)?)))),
@@ -60,7 +60,7 @@ impl Material {
     pub fn with_contrast_times(&self, factor: f64) -> Option<Self> {
         match self {
             Self::Coated(m) => {
-                let index = 1.0 + factor * (m.eta() - 1.0);
+                let index = 1.0 + factor * (m.index() - 1.0);
                 let within = index > 1.0 && index <= MOST_INDEX;
                 within.then(|| Self::Coated(Arc::new(Coated::new(m.ggx().alpha(), index))))
             }
