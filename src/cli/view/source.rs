@@ -8,8 +8,9 @@ use super::super::args::ViewArgs;
 use super::super::failure::Failure;
 use super::super::record::Record;
 use super::super::{folder, trust};
+use crate::film;
+use crate::film::exr::FrameError;
 use crate::film::frame::{COUNTS, FLUX};
-use crate::film::{self, exr::FrameError};
 use crate::image::{self, Channel, Image};
 use crate::matrix::npy;
 
