@@ -83,7 +83,7 @@ fn scale(args: &ViewArgs, source: &Source) -> Result<Scale, Failure> {
     let largest = finite().fold(f64::NEG_INFINITY, f64::max);
     let range = match (args.range, args.exposure) {
         (Some(range), _) => range,
-        (None, _) if law == Law::Logarithmic && !(largest > 0.0) => {
+        (None, _) if law == Law::Logarithmic && largest <= 0.0 => {
             let cause = format!("{}: no value is above 0", args.file.display());
             return Err(Failure::new(cause, "use --scale linear, or give --range"));
         }

@@ -112,8 +112,8 @@ impl Marks {
             add([scene.laser.position, target(i)], LASER, BEAM, SHEER);
         }
         let corners = camera.view.corners();
-        for k in 0..4 {
-            add([camera.position, corners[k]], CAMERA, BEAM, SHEER);
+        for corner in corners {
+            add([camera.position, corner], CAMERA, BEAM, SHEER);
         }
         for k in 0..4 {
             add([corners[k], corners[(k + 1) % 4]], CAMERA, EDGE, 1.0);
