@@ -29,15 +29,33 @@
 //! | `camera.pixels` | columns (x) and rows (y) |
 //! | `surface.name`, `surface.role` | `relay` (S1 and S3), `hidden` (S2, recovered), `occluder` |
 //! | `surface.rectangle` | `{ corner, u, v }`; the front is the side of u × v |
-//! | `surface.sphere` | `{ centre, radius, face = "outside" or "inside" }` (not for hidden surfaces) |
-//! | `surface.material` | `{ lambertian = ρ }` with ρ a number, or one of the tables below |
-//! | `surface.elements` | elements along u and v (hidden surfaces only) |
+//! | `surface.disc` | `{ centre, normal, radius }` |
+//! | `surface.sphere` | `{ centre, radius, face = "outside" or "inside" }` |
+//! | `surface.mesh` | triangles from a file or made by phicam, below |
+//! | `surface.sides` | `"one"` (default): the back is black; `"two"`: it reflects as the front does (not of spheres and hidden surfaces) |
+//! | `surface.material` | `{ lambertian = ρ }` with ρ a number, or one of the tables below; [`material`] has the others |
+//! | `surface.elements` | elements along u and v (hidden surfaces only); of a mesh in its texture coordinates, or `"faces"`: one for each triangle |
 //! | `known.pixel`, `known.spot` | `[[known]]`, optional, any number: an entry of Φcam whose exact value is known |
 //! | `known.flux` | the exact flux into that pixel when that spot is lit, W |
 //! | `known.bounces` | only light that met exactly so many surfaces; absent: all light of up to `max_bounces` |
 //! | `sensor` | `[sensor]`, optional: how the frames are photographed, below |
 //!
 //! Surfaces reflect from their front; their back is black; both sides are opaque.
+//!
+//! | `surface.mesh` | meaning |
+//! | --- | --- |
+//! | `file` | PLY (ASCII or binary), OBJ, glTF or GLB, relative to the scene file; [`mesh`] says what is read of each. The front of a triangle is where its corners run counterclockwise; normals in the file are not used |
+//! | `generate` | in place of a file: `"bust"`, `"sphere"`, `"rectangle"` (the unit square) or `"box"` (the unit cube), as `phicam target` writes them |
+//! | `faces` | at least so many triangles (`generate`); default 20 000 |
+//! | `scale` | a factor, or one for each axis; first |
+//! | `rotate` | `[{ axis, angle }, …]`: turns about axes through the origin, degrees, in this order |
+//! | `translate` | shift, last |
+//! | `on` | `{ surface, at = [u, v] }`: put down, as it is turned, on that place of a rectangle, disc or sphere that comes earlier in the file: its lowest point along the normal there touches, its middle is above the place |
+//! | `closed` | `true`: meant to be a closed body, so that open edges are told |
+//!
+//! Faces that are degenerate, doubled or not finite are left out, and told by `phicam scene check` with what else is odd. Surfaces that name one file share one mesh and
+//! one tree, wherever they stand (unless they are stretched). A scene reads files in its own folder and below, and in folders named with `--also-read`; a
+//! run keeps copies of them in `files/`.
 //!
 //! Known answers are for tests and for checks of one's own; they change neither the light nor the scene's hash. The
 //! scenes below `scenes/known/` of the repository state theirs, with the derivation in their headers.

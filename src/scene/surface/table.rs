@@ -1,0 +1,303 @@
+//! Surfaces from their tables.
+
+use super::{Division, Role, Surface};
+use crate::geometry::{DVec3, Disc, Facing, Parallelogram, Shape, Sphere};
+use crate::scene::body::{Meshes, Placed};
+use crate::scene::error::{Fault, keys};
+use crate::scene::file::{ElementsTable, FaceName, RoleName, SidesName, SurfaceTable};
+use crate::scene::files::Files;
+use crate::scene::material::Material;
+use crate::scene::texture::Texture;
+use crate::scene::warning::Warning;
+
+/// More elements along a side than this are taken for a mistake.
+const MOST_ELEMENTS: u32 = 1024;
+/// A picture or a measured material larger than this is not read: 256 MiB.
+const LARGEST_PICTURE: u64 = 256 << 20;
+
+/// Checks all surfaces.
+pub(in crate::scene) fn from_tables(
+    tables: &[SurfaceTable],
+    files: &mut Files,
+    wavelength: f64,
+    found: &mut Vec<Warning>,
+) -> Result<Vec<Surface>, Fault> {
+    let mut surfaces: Vec<Surface> = Vec::with_capacity(tables.len());
+    let mut meshes = Meshes::default();
+    for (i, table) in tables.iter().enumerate() {
+        let mut sources = Sources {
+            meshes: &mut meshes,
+            files: &mut *files,
+            wavelength,
+            found: &mut *found,
+        };
+        let surface = Surface::from_table(table, &surfaces, &mut sources)
+            .map_err(|f| f.within(keys!["surface", i]))?;
+        if surfaces.iter().any(|s| s.name == surface.name) {
+            let cause = format!("two surfaces are called `{}`", surface.name);
+            return Err(Fault::new(
+                keys!["surface", i, "name"],
+                cause,
+                "give each its own name",
+            ));
+        }
+        surfaces.push(surface);
+    }
+    // The backs come last, so that positions in the list are those in the file.
+    for (i, table) in tables.iter().enumerate() {
+        if table.sides == Some(SidesName::Two) {
+            let back = surfaces[i]
+                .back()
+                .map_err(|f| f.within(keys!["surface", i]))?;
+            surfaces.push(back);
+        }
+    }
+    refuse_coincident(&surfaces)?;
+    if !surfaces.iter().any(|s| s.role == Role::Relay) {
+        return Err(Fault::new(
+            keys!["surface"],
+            "no surface has the role `relay`: there is no wall for laser and camera",
+            "add a [[surface]] with role = \"relay\"",
+        ));
+    }
+    Ok(surfaces)
+}
+
+/// What surfaces are made from besides their tables.
+struct Sources<'a> {
+    meshes: &'a mut Meshes,
+    files: &'a mut Files,
+    wavelength: f64,
+    found: &'a mut Vec<Warning>,
+}
+
+/// Two surfaces in one place that face the same way: it would be up to rounding which of them the light meets. Back to back
+/// they make a panel with two faces, and edge to edge a larger surface.
+fn refuse_coincident(surfaces: &[Surface]) -> Result<(), Fault> {
+    for (i, a) in surfaces.iter().enumerate() {
+        for (j, b) in surfaces.iter().enumerate().skip(i + 1) {
+            let coincide = match (&a.shape, &b.shape) {
+                (Shape::Parallelogram(p), Shape::Parallelogram(q)) => {
+                    p.normal().dot(q.normal()) > 0.0 && p.overlaps(q)
+                }
+                (p, q) => p == q,
+            };
+            if coincide {
+                let cause = format!(
+                    "`{}` lies in the plane of `{}` and overlaps it",
+                    b.name, a.name
+                );
+                let cure = "lift one of them by a little, leave a hole in the other, or paint it as a texture";
+                return Err(Fault::new(keys!["surface", j], cause, cure));
+            }
+        }
+    }
+    Ok(())
+}
+
+impl Surface {
+    /// A surface in the same place whose front is this one's back.
+    fn back(&self) -> Result<Self, Fault> {
+        let shape = match &self.shape {
+            Shape::Parallelogram(p) => Some(Shape::Parallelogram(p.turned())),
+            Shape::Disc(d) => d.turned().map(Shape::Disc),
+            Shape::Body(b) => Some(Shape::Body(b.turned())),
+            Shape::Sphere(_) => None,
+        };
+        let refused = |cause: &str, cure: &str| Fault::new(keys!["sides"], cause, cure);
+        if self.role == Role::Hidden {
+            return Err(refused(
+                "a hidden surface has one side: the model divides its front into elements",
+                "remove `sides`, and put an occluder behind it if its back is to be seen",
+            ));
+        }
+        let shape = shape.ok_or_else(|| {
+            refused(
+                "a sphere has one side, inside or outside",
+                "remove `sides`, or add a second sphere that differs a little in radius",
+            )
+        })?;
+        Ok(Self {
+            name: format!("{} (back)", self.name),
+            shape,
+            ..self.clone()
+        })
+    }
+
+    fn from_table(
+        table: &SurfaceTable,
+        earlier: &[Self],
+        sources: &mut Sources<'_>,
+    ) -> Result<Self, Fault> {
+        if table.name.trim().is_empty() {
+            return Err(Fault::new(
+                keys!["name"],
+                "a surface has no name",
+                "give it one",
+            ));
+        }
+        let role = match table.role {
+            RoleName::Relay => Role::Relay,
+            RoleName::Hidden => Role::Hidden,
+            RoleName::Occluder => Role::Occluder,
+        };
+        let shape = shape(table, earlier, sources)?;
+        let wavelength = sources.wavelength;
+        let files = &mut *sources.files;
+        let mut read = |path: &str| {
+            files
+                .bytes(path, LARGEST_PICTURE)
+                .map_err(|(cause, cure)| format!("{cause}; {cure}"))
+        };
+        let (material, albedo) = Material::from_table(&table.material, wavelength, &mut read)
+            .map_err(|f| f.within(keys!["material"]))?;
+        let elements = match (role, table.elements) {
+            (Role::Hidden, Some(ElementsTable::Faces(_))) => {
+                let Shape::Body(body) = &shape else {
+                    let cause = "only a mesh can be divided into its faces";
+                    let cure = "give elements along u and v: `elements = [8, 8]`";
+                    return Err(Fault::new(keys!["elements"], cause, cure));
+                };
+                [body.mesh().triangles().len(), 1]
+            }
+            (Role::Hidden, Some(ElementsTable::Grid([nu, nv]))) => {
+                if !(1..=MOST_ELEMENTS).contains(&nu) || !(1..=MOST_ELEMENTS).contains(&nv) {
+                    let cause = format!("{nu} × {nv} elements");
+                    let cure = format!("use 1 to {MOST_ELEMENTS} a side");
+                    return Err(Fault::new(keys!["elements"], cause, cure));
+                }
+                [nu as usize, nv as usize]
+            }
+            (Role::Hidden, None) => {
+                return Err(Fault::new(
+                    keys![],
+                    format!(
+                        "hidden surface `{}` does not say into how many elements it is divided",
+                        table.name
+                    ),
+                    "add `elements = [8, 8]` (along u and v)",
+                ));
+            }
+            (_, None) => [0, 0],
+            (_, Some(_)) => {
+                return Err(Fault::new(
+                    keys!["elements"],
+                    "only a hidden surface is divided into elements",
+                    "remove `elements`, or set role = \"hidden\"",
+                ));
+            }
+        };
+        let division = match table.elements {
+            Some(ElementsTable::Faces(_)) => Division::Faces,
+            _ => Division::Cells,
+        };
+        if let Shape::Body(body) = &shape
+            && body.mesh().uv().is_none()
+        {
+            let cause = |what: &str| {
+                format!(
+                    "the mesh of `{}` has no texture coordinates for {what}",
+                    table.name
+                )
+            };
+            if role == Role::Hidden && division == Division::Cells {
+                let cure = "write `elements = \"faces\"`, or use a mesh with texture coordinates";
+                return Err(Fault::new(keys!["elements"], cause("cells of them"), cure));
+            }
+            if !matches!(albedo, Texture::Constant(_)) {
+                let cure = "use a constant albedo, or a mesh with texture coordinates";
+                return Err(Fault::new(
+                    keys!["material"],
+                    cause("an albedo that varies"),
+                    cure,
+                ));
+            }
+        }
+        Ok(Self {
+            name: table.name.clone(),
+            role,
+            shape,
+            material,
+            albedo,
+            elements,
+            division,
+        })
+    }
+}
+
+fn shape(
+    table: &SurfaceTable,
+    earlier: &[Surface],
+    sources: &mut Sources<'_>,
+) -> Result<Shape, Fault> {
+    let v = DVec3::from_array;
+    match (&table.rectangle, &table.sphere, &table.disc, &table.mesh) {
+        (Some(r), None, None, None) => {
+            if [r.corner, r.u, r.v]
+                .iter()
+                .flatten()
+                .any(|x| !x.is_finite())
+            {
+                let cause = format!(
+                    "surface `{}` has a coordinate that is not finite",
+                    table.name
+                );
+                return Err(Fault::new(keys!["rectangle"], cause, "use finite numbers"));
+            }
+            let patch = Parallelogram::new(v(r.corner), v(r.u), v(r.v)).ok_or_else(|| {
+                let cause = format!("surface `{}` has no area: u × v vanishes", table.name);
+                Fault::new(
+                    keys!["rectangle"],
+                    cause,
+                    "give two edges that are neither zero nor parallel",
+                )
+            })?;
+            Ok(Shape::Parallelogram(patch))
+        }
+        (None, None, Some(d), None) => Disc::new(v(d.centre), v(d.normal), d.radius)
+            .map(Shape::Disc)
+            .ok_or_else(|| {
+                let cause = format!("disc `{}` has no area or no normal", table.name);
+                let cure = "use a finite centre, a normal that is not zero and a positive radius";
+                Fault::new(keys!["disc"], cause, cure)
+            }),
+        (None, None, None, Some(m)) => {
+            let Placed { body, defects } = sources
+                .meshes
+                .place(m, earlier, sources.files)
+                .map_err(|f| f.within(keys!["mesh"]))?;
+            let open = m.closed == Some(true) && !defects.is_closed();
+            if open || !defects.is_empty() {
+                let name = table.name.clone();
+                sources.found.push(Warning::Mesh(name, defects));
+            }
+            Ok(Shape::Body(body))
+        }
+        (None, Some(s), None, None) => {
+            let facing = match s.face {
+                FaceName::Outside => Facing::Outside,
+                FaceName::Inside => Facing::Inside,
+            };
+            let sphere = Sphere::new(v(s.centre), s.radius, facing).ok_or_else(|| {
+                let cause = format!(
+                    "sphere `{}` has radius {}: it has no area",
+                    table.name, s.radius
+                );
+                Fault::new(
+                    keys!["sphere"],
+                    cause,
+                    "use a finite centre and a positive radius",
+                )
+            })?;
+            Ok(Shape::Sphere(sphere))
+        }
+        _ => Err(Fault::new(
+            keys![],
+            format!(
+                "surface `{}` needs exactly one of `rectangle`, `disc`, `sphere` and `mesh`",
+                table.name
+            ),
+            "add `rectangle = { corner = […], u = […], v = […] }`",
+        )),
+    }
+}
