@@ -1,4 +1,4 @@
-//! Floor 4: the matrix model. G12, G23 and Φcam from the geometry, by formula, without tracing a ray.
+//! Floor 4: the matrix model. G12, G23 and Φcam from the geometry, by formula, without sampling anything.
 //!
 //! > Φcam\[p,l\] = Φlaser · E_p · (ρ3/π) · (ρ1/π) · Σ_j G23\[p,j\] · (ρ2_j/π) · A_j · G12\[j,l\]
 //!
