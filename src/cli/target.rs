@@ -86,6 +86,10 @@ fn mesh(name: &str, args: &TargetArgs) -> Result<Option<Triangles>, Failure> {
             "leave them out; --faces says how fine it is",
         ));
     }
+    if name == "box" && args.faces.is_some() {
+        let cause = "a box has its 12 triangles, and no --faces";
+        return Err(Failure::new(cause, "leave --faces out"));
+    }
     let faces = args.faces.unwrap_or(FACES);
     if !(1..=MOST_FACES).contains(&faces) {
         let cause = format!("--faces {faces}");

@@ -2,8 +2,11 @@
 
 use glam::DAffine3;
 
-use super::{Basis, DVec3, Ray, SurfacePoint};
+use super::{Basis, DVec3, Parallelogram, Ray, SurfacePoint};
 use crate::num::warp;
+
+/// Planes nearer than this fraction of the sizes involved are one.
+const SLACK: f64 = 1e-9;
 
 /// A flat disc. Its parameters are those of the equal-area map of the square to the disc (Shirley and Chiu, 1997).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,6 +122,26 @@ impl Disc {
         (height, height.abs() > ROUNDING * reach)
     }
 
+    /// Whether two discs lie in one plane (to a billionth of their size), face the same way and have more than a point in common.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        let size = self.radius + other.radius;
+        self.faces_along(other.centre, other.basis.n, size)
+            && (other.centre - self.centre).length() < size * (1.0 - SLACK)
+    }
+
+    /// The same for a patch.
+    pub fn overlaps_patch(&self, patch: &Parallelogram) -> bool {
+        let size = self.radius + patch.u().length() + patch.v().length();
+        let near = patch.at_position(self.centre).position;
+        self.faces_along(patch.corner(), patch.normal(), size)
+            && (near - self.centre).length() < self.radius - SLACK * size
+    }
+
+    fn faces_along(&self, point: DVec3, normal: DVec3, size: f64) -> bool {
+        normal.dot(self.basis.n) > 1.0 - SLACK
+            && self.basis.n.dot(point - self.centre).abs() <= SLACK * size
+    }
+
     /// Intersection with the plane inside the disc. A ray that starts in the plane (to rounding) does not meet it.
     pub fn intersect(&self, ray: &Ray) -> Option<f64> {
         let (height, off) = self.height(ray.origin);
@@ -162,6 +185,21 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn overlap_is_in_one_plane_and_of_one_front() {
+        let at = |x: f64, n: DVec3| Disc::new(DVec3::new(x, 0.0, 1.0), n, 1.0).unwrap();
+        let d = at(0.0, DVec3::Z);
+        assert!(d.overlaps(&at(1.9, DVec3::Z)) && !d.overlaps(&at(2.0, DVec3::Z)));
+        assert!(!d.overlaps(&at(0.5, -DVec3::Z)));
+        let patch = |x: f64, z: f64| {
+            let corner = DVec3::new(x, -3.0, z);
+            Parallelogram::new(corner, DVec3::X, DVec3::Y * 6.0).unwrap()
+        };
+        assert!(d.overlaps_patch(&patch(0.9, 1.0)) && !d.overlaps_patch(&patch(1.0, 1.0)));
+        assert!(!d.overlaps_patch(&patch(0.9, 1.1)));
+        assert!(!d.overlaps_patch(&patch(0.9, 1.0).turned()));
     }
 
     #[test]

@@ -46,6 +46,10 @@ impl Kernel {
     pub(super) fn between(self, wall: DVec3, normal: DVec3, hidden: &HiddenPoint) -> f64 {
         let r = hidden.position - wall;
         let r2 = r.length_squared();
+        // An element without area has no normal, and no place.
+        if r2 == 0.0 || hidden.normal == DVec3::ZERO {
+            return 0.0;
+        }
         let at_wall = r.dot(normal).max(0.0);
         let at_hidden = match self {
             Self::Physical => (-r.dot(hidden.normal)).max(0.0),

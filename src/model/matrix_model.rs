@@ -168,7 +168,7 @@ impl MatrixModel {
     }
 
     /// The same model with occlusion: every entry of G12, G23, C and D between whose wall point and element (by their middles) something
-    /// stands is 0. The published model has none; where a scene's obstacles are known, this is what takes them in.
+    /// stands is 0, and so are the rows of pixels and the columns of spots whose wall point camera or laser cannot see. The published model has none; where a scene's obstacles are known, this is what takes them in.
     pub fn with_occlusion(mut self, scene: &Scene) -> Self {
         let hidden = scene.hidden().zip(&self.grids);
         let elements: Vec<(ShapeId, DVec3)> = hidden
@@ -183,8 +183,17 @@ impl MatrixModel {
             Ray::between(wall.position, element)
                 .is_none_or(|ray| scene.bvh().blocked(&ray, [wall.surface, Some(id)]))
         };
+        let hidden_from = |device: DVec3, wall: &WallPoint| {
+            Ray::between(device, wall.position)
+                .is_none_or(|ray| scene.bvh().blocked(&ray, [None, wall.surface]))
+        };
         for p in 0..self.g23.nrows() {
             let wall = sight::seen(scene, p, [0.5, 0.5], 1.0);
+            if hidden_from(scene.camera.position, &wall) {
+                self.g23.row_mut(p).fill(0.0);
+                self.camera_side.row_mut(p).fill(0.0);
+                continue;
+            }
             for (j, element) in elements.iter().enumerate() {
                 if self.g23[(p, j)] != 0.0 && blocked(&wall, *element) {
                     self.g23[(p, j)] = 0.0;
@@ -194,6 +203,11 @@ impl MatrixModel {
         }
         for l in 0..self.g12.ncols() {
             let wall = sight::lit(scene, l, DVec3::ZERO, 1.0);
+            if hidden_from(scene.laser.position, &wall) {
+                self.g12.column_mut(l).fill(0.0);
+                self.laser_side.column_mut(l).fill(0.0);
+                continue;
+            }
             for (j, element) in elements.iter().enumerate() {
                 if self.g12[(j, l)] != 0.0 && blocked(&wall, *element) {
                     self.g12[(j, l)] = 0.0;

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_1_PI;
 
 use super::kernel::{HiddenPoint, Kernel};
-use crate::geometry::{DVec3, Ray, ShapeId, SurfacePoint};
+use crate::geometry::{Contact, DVec3, Ray, ShapeId, SurfacePoint};
 use crate::scene::{Role, Scene};
 
 /// A point of the wall that a line of sight ends on, or that the laser lights.
@@ -89,7 +89,14 @@ pub(super) fn seen(scene: &Scene, pixel: usize, ab: [f64; 2], share: f64) -> Wal
     let ray = Ray::new(camera.position, direction);
     let nearest = relays
         .filter_map(|(id, s)| s.shape.intersect(&ray, false).map(|met| (met, id)))
-        .min_by(|a, b| a.0.t.total_cmp(&b.0.t));
+        .min_by(|a, b| {
+            // Of the two sides of one wall the one that shows its front.
+            let back = |(met, id): &(Contact, usize)| {
+                let point = scene.surfaces[*id].shape.at_contact(&ray, *met);
+                point.normal.dot(direction) >= 0.0
+            };
+            a.0.t.total_cmp(&b.0.t).then_with(|| back(a).cmp(&back(b)))
+        });
     match nearest {
         None => WallPoint::nowhere(target, camera.view.normal()),
         Some((met, id)) => {

@@ -15,7 +15,7 @@ const LARGEST_FILE: u64 = 1 << 30;
 /// Triangles of a mesh that phicam makes, unless the scene says how many.
 const FACES: u64 = 20_000;
 /// More are not made.
-const MOST_FACES: u64 = 100_000_000;
+const MOST_FACES: u64 = 20_000_000;
 
 /// What meshes share: two surfaces that name one mesh at one stretch use one copy, and one tree.
 #[derive(Debug, Default)]
@@ -195,6 +195,10 @@ fn read(name: &str, files: &mut Files) -> Result<Triangles, Fault> {
 }
 
 fn generate(generator: GeneratorName, faces: Option<u64>) -> Result<Triangles, Fault> {
+    if generator == GeneratorName::Box && faces.is_some() {
+        let cause = "a box has its 12 triangles, and no `faces`";
+        return Err(Fault::new(keys!["faces"], cause, "remove `faces`"));
+    }
     let faces = faces.unwrap_or(FACES);
     if !(1..=MOST_FACES).contains(&faces) {
         let cause = format!("{faces} triangles");

@@ -4,13 +4,13 @@
 //! included. Who starts phicam may name further folders. What was read is remembered with its digest, so that the scene's hash speaks of
 //! the contents, and a run can keep a copy.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
-/// Folder of copies beside a scene file: looked into first.
+/// Folder of copies beside a scene file: looked into for what is not there itself.
 pub const COPIES: &str = "files";
 
 /// A file that a scene names.
@@ -81,11 +81,12 @@ impl Files {
             let cause = format!("cannot read `{name}`: {e}");
             (cause, "check the file and its permissions".to_owned())
         };
-        let file = File::open(&path).map_err(cannot)?;
-        if !file.metadata().map_err(cannot)?.is_file() {
+        // Before it is opened: opening a pipe waits for somebody to write.
+        if !fs::metadata(&path).map_err(cannot)?.is_file() {
             let cause = format!("`{name}` is no ordinary file");
             return Err((cause, "name a file".to_owned()));
         }
+        let file = File::open(&path).map_err(cannot)?;
         let mut bytes = Vec::new();
         file.take(most + 1)
             .read_to_end(&mut bytes)
@@ -95,7 +96,15 @@ impl Files {
             return Err((cause, "use a smaller one".to_owned()));
         }
         let digest = hex(&Sha256::digest(&bytes));
-        if !self.read.iter().any(|r| r.name == name) {
+        if let Some(earlier) = self.read.iter().find(|r| r.name == name) {
+            if earlier.digest != digest {
+                let cause = format!("`{name}` changed while the scene was read");
+                return Err((
+                    cause,
+                    "leave the scene's files in place, and start again".to_owned(),
+                ));
+            }
+        } else {
             self.read.push(Referenced {
                 name: name.to_owned(),
                 path,
@@ -119,8 +128,9 @@ impl Files {
         };
         let plain = |c: Component<'_>| matches!(c, Component::Normal(_) | Component::CurDir);
         let inside = Path::new(name).components().all(plain);
-        let candidates = [(copy, folder.clone()), (folder.join(name), folder.clone())];
-        let own = candidates.into_iter().take(if inside { 2 } else { 1 });
+        // The file itself comes before a copy of it, which may be older.
+        let candidates = [(folder.join(name), folder.clone()), (copy, folder.clone())];
+        let own = candidates.into_iter().skip(if inside { 0 } else { 1 });
         let also = self.also.iter().map(|a| (folder.join(name), a.clone()));
         let mut found_outside = !inside;
         for (path, root) in own.chain(also) {
@@ -205,17 +215,20 @@ mod tests {
 
     /// A run keeps copies under names of their own, whatever the scene calls them.
     #[test]
-    fn copies_are_found_first() {
+    fn copies_stand_in_for_what_is_gone() {
         let dir = place();
         let folder = dir.path().join("scene");
         fs::create_dir(folder.join(COPIES)).unwrap();
-        for (name, text) in [("../secret", "copy"), ("own", "kept")] {
+        for (name, text) in [("../secret", "copy"), ("gone", "kept")] {
             let path = folder.join(COPIES).join(copy_name(name));
             fs::write(path, text).unwrap();
             let mut files = Files::of(&folder, &[]);
             assert_eq!(files.bytes(name, 10).unwrap(), text.as_bytes());
             assert_eq!(files.read[0].copy_name(), copy_name(name));
         }
+        fs::write(folder.join(COPIES).join(copy_name("own")), "old").unwrap();
+        let mut files = Files::of(&folder, &[]);
+        assert_eq!(files.bytes("own", 10).unwrap(), b"yes");
         assert!(!copy_name("a/../b\\c d:é").contains(['/', '\\', ' ', ':']));
     }
 }

@@ -88,7 +88,9 @@ impl Scene {
                 let [du, dv] = [p.u(), p.v()].map(|edge| edge.normalize_or_zero() * margin);
                 let wide =
                     Parallelogram::new(p.corner() - du - dv, p.u() + du * 2.0, p.v() + dv * 2.0);
+                let turned = p.u().cross(p.v()).dot(p.normal()) < 0.0;
                 surface.shape = wide
+                    .map(|wide| if turned { wide.turned() } else { wide })
                     .map(Shape::Parallelogram)
                     .ok_or_else(|| self.locate(no_shape()))?;
                 surface.albedo = mean_albedo(&surface.albedo);

@@ -55,6 +55,11 @@ pub enum ConvergenceError {
         "the reference is a quadrature without occlusion, and the scene has surfaces that can block (use a scene of one hidden surface and its wall)"
     )]
     Obstructed,
+    /// The hidden surface is not Lambertian.
+    #[error(
+        "the reference is a quadrature of a Lambertian object, and the scene's is none (use `lambertian` for the hidden surface)"
+    )]
+    Glossy,
     /// Not numbers of paths to draw a line through.
     #[error("the error needs at least two different numbers of samples, each from 1 to 2³²")]
     Samples,
@@ -74,6 +79,10 @@ pub fn convergence(
     let scene = scene.with_max_bounces(3);
     let truth = converged(&scene, Kernel::Physical, Extent::FULL)?.phi;
     let occluders = scene.surfaces.iter().any(|s| s.role == Role::Occluder);
+    let glossy = scene.hidden().any(|(_, s)| !s.is_lambertian());
+    if glossy {
+        return Err(ConvergenceError::Glossy);
+    }
     if occluders || scene.hidden().count() > 1 {
         return Err(ConvergenceError::Obstructed);
     }

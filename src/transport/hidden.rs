@@ -82,6 +82,11 @@ impl HiddenArea {
         Self { surfaces, of_shape }
     }
 
+    /// Whether nothing is sampled: all is black.
+    pub(super) fn is_empty(&self) -> bool {
+        self.surfaces.is_empty()
+    }
+
     /// Whether `shape` is sampled.
     pub(super) fn contains(&self, shape: ShapeId) -> bool {
         self.of_shape[shape as usize].is_some()

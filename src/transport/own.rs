@@ -160,7 +160,12 @@ impl<'a> OwnPoints<'a> {
                 true => b.light[k],
                 false => b.y.form(k, (point.position, point.normal)),
             };
-            let part = b.camera[k] * point.brdf(self.setting.scene, b.y.position(k)) * form;
+            let scene = self.setting.scene;
+            let mut part = b.camera[k] * gloss::weight(scene, point.shape, point.albedo) * form;
+            if self.setting.glossy {
+                let own = std::slice::from_mut(&mut part);
+                lamp.shade(lit.at(k), b.y.position(k), own);
+            }
             if part != 0.0 && !lamp.hidden(column, point, (b.y.position(k), b.y.shape[k])) {
                 *sum += part;
             }

@@ -118,6 +118,9 @@ pub(super) enum Near {
     Something,
 }
 
+/// Cells of all surfaces beyond which no stratum is made of each.
+const MOST_CELLS: usize = 1 << 20;
+
 /// The stratum of the anchor's points, beyond those of any cells.
 const ANCHOR: usize = u32::MAX as usize;
 
@@ -138,7 +141,14 @@ impl<'a> Strata<'a> {
     ) -> Self {
         let mut cells = Vec::new();
         let mut weights = Vec::new();
-        for &shape in shapes {
+        // More cells than this are never strata of their own: their list, which may be long, is not made.
+        let many = shapes
+            .iter()
+            .map(|s| scene.surfaces[*s as usize].smooth_cells())
+            .map(|[nu, nv]| nu * nv)
+            .sum::<usize>()
+            > MOST_CELLS;
+        for &shape in shapes.iter().filter(|_| !many) {
             let surface = &scene.surfaces[shape as usize];
             let [nu, nv] = surface.smooth_cells();
             let area = surface.shape.area() / (nu * nv) as f64;
@@ -157,7 +167,9 @@ impl<'a> Strata<'a> {
                 }
             }
         }
-        if cells.is_empty() {
+        let whole = HiddenArea::of(scene, shapes);
+        let many = many && !whole.is_empty();
+        if cells.is_empty() && !many {
             // No light is met between the walls, but footprints and beams have to be sampled all the same.
             let area = scene.surfaces[0].shape.area();
             cells.push(Cell {
@@ -185,9 +197,9 @@ impl<'a> Strata<'a> {
         };
         // A share of exactly a power of two must not become the next by rounding.
         let share = |w: f64| f64::from(size) * w / total * (1.0 - 1e-9);
-        let whole = HiddenArea::of(scene, shapes);
-        let together =
-            cells.len() > size as usize || sampling == Sampling::Sobol && whole.is_dyadic(size);
+        let together = many
+            || cells.len() > size as usize
+            || sampling == Sampling::Sobol && whole.is_dyadic(size);
         let kind = if together {
             Kind::Distribution {
                 area: whole,

@@ -142,8 +142,13 @@ fn bits_do_not_depend_on_threads_or_spot_ranges() {
         ];
         builtin("bench", &small)
     };
+    let satin = [
+        ("per_side = 30", "per_side = 3"),
+        ("pixels = [16, 16]", "pixels = [4, 4]"),
+    ];
     let scenes = [
         shelf(&[]),
+        builtin("satin", &satin),
         bench("spot_diameter = 0.0"),
         bench("spot_diameter = 0.3"),
     ];

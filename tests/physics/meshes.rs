@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use phicam::geometry::{DAffine3, DQuat, DVec3};
-use phicam::model::{Extent, Kernel, converged};
+use phicam::model::{Extent, Kernel, MatrixModel, converged};
 use phicam::num::stream::Sampling;
 use phicam::scene::mesh::{FaceValues, Triangles, bust, to_ply};
 use phicam::scene::{Role, Scene};
@@ -175,4 +175,81 @@ fn instances_are_copies() {
         let other = trace(&copied, Way(estimator, Sampling::Sobol, 4, 1024));
         assert_same_under(Errors::of(estimator), &a, &other, "copies");
     }
+}
+
+/// Cells of the mesh's texture coordinates are cells of the rectangle, clipped out of triangles that straddle them: the same G12, G23, areas
+/// and albedos. One element to each triangle makes nearly the integral.
+#[test]
+fn elements_of_a_mesh_are_those_of_the_surface() {
+    let four = ("elements = [8, 8]", "elements = [4, 4]");
+    let model = |scene: &Scene| MatrixModel::new(scene, Kernel::Physical, None).unwrap();
+    let flat = model(&builtin("bench", &[FEW_SPOTS, four]));
+    let mesh = model(&builtin("bench", &[FEW_SPOTS, four, (RECTANGLE, MESHED)]));
+    assert!(relative(&mesh.g12, &flat.g12) < 1e-6 && relative(&mesh.g23, &flat.g23) < 1e-6);
+    assert!(relative(&mesh.laser_side, &flat.laser_side) < 1e-6);
+    assert!(relative(&mesh.camera_side, &flat.camera_side) < 1e-6);
+    assert_eq!(mesh.albedo, flat.albedo);
+    let faces = ("elements = [8, 8]", "elements = \"faces\"");
+    let fine = MESHED.replace("faces = 450", "faces = 2048");
+    let scene = builtin("bench", &[FEW_SPOTS, faces, (RECTANGLE, &fine)]);
+    let by_faces = model(&scene);
+    assert_eq!(by_faces.g12.nrows(), 2048);
+    let truth = converged(
+        &builtin("bench", &[FEW_SPOTS]),
+        Kernel::Physical,
+        Extent::FULL,
+    );
+    let error = relative(&by_faces.phi(), &truth.unwrap().phi);
+    assert!(error < 1e-3, "{error}");
+}
+
+/// A plate that reflects on both sides is two plates back to back.
+#[test]
+fn two_sides_are_two_surfaces() {
+    let plate = |name: &str, corners: &str, sides: &str| {
+        format!(
+            "\n[[surface]]\nname = \"{name}\"\nrole = \"occluder\"\n{corners}\n{sides}material = {{ lambertian = 0.6 }}\n"
+        )
+    };
+    let front = "rectangle = { corner = [5, 7, 1], u = [3, 0, 1], v = [0, 1, 2] }";
+    let back = "rectangle = { corner = [5, 7, 1], u = [0, 1, 2], v = [3, 0, 1] }";
+    let bench = builtin(
+        "bench",
+        &[FEW_SPOTS, ("max_bounces = 3", "max_bounces = 4")],
+    )
+    .text;
+    let scene = |more: String| Scene::from_toml("plate", &(bench.clone() + &more)).unwrap();
+    let one = scene(plate("plate", front, "sides = \"two\"\n"));
+    let two = scene(plate("plate", front, "") + &plate("other", back, ""));
+    let half = scene(plate("plate", front, ""));
+    let way = Way(Estimator::Shared, Sampling::Sobol, 1, 2048);
+    let [one, two, half] = [one, two, half].map(|s| trace(&s, way).flux);
+    assert!(relative(&one, &two) < 1e-9, "{}", relative(&one, &two));
+    assert!(
+        relative(&half, &two) > 1e-3,
+        "the back gives nothing: {}",
+        relative(&half, &two)
+    );
+}
+
+/// The shelf's model with occlusion is nearer to what is traced than the plain one, and what it leaves out is what the shelf hides.
+#[test]
+fn occlusion_brings_the_model_nearer() {
+    let shelf = builtin("shelf", &[FEW_SPOTS]).with_black_occluders();
+    let traced = trace(
+        &shelf,
+        Way(Estimator::Factored, Sampling::Sobol, 1, 1 << 16),
+    )
+    .flux;
+    let model = |elements| {
+        let plain = MatrixModel::new(&shelf, Kernel::Physical, Some([elements; 2])).unwrap();
+        let occluded = plain.clone().with_occlusion(&shelf);
+        [plain.phi(), occluded.phi()].map(|phi| relative(&phi, &traced))
+    };
+    let [plain, coarse] = model(8);
+    let [_, fine] = model(48);
+    assert!(
+        plain > 0.02 && coarse < 0.5 * plain && fine < 0.2 * plain,
+        "{plain} {coarse} {fine}"
+    );
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use super::super::args::ViewArgs;
 use super::super::failure::Failure;
+use super::super::output::harmless;
 use super::super::record::Record;
 use super::super::{folder, trust};
 use crate::film;
@@ -91,7 +92,10 @@ fn frame(path: &Path, frame: &film::Frame, channel: Option<&str>) -> Result<Sour
     };
     let meta = &frame.meta;
     Ok(Source {
-        title: format!("{}, spot {}: {name}", meta.scene_name, meta.spot_index),
+        title: harmless(&format!(
+            "{}, spot {}: {name}",
+            meta.scene_name, meta.spot_index
+        )),
         size: [frame.columns, frame.rows],
         values: values.iter().copied().map(f64::from).collect(),
         unit: unit.to_owned(),

@@ -64,10 +64,18 @@ impl Defects {
         let welded = weld(&mesh.positions);
         let finite: Vec<bool> = mesh.positions.iter().map(|p| p.is_finite()).collect();
         let sound = |t: &[u32; 3]| t.iter().all(|c| finite.get(*c as usize) == Some(&true));
+        // A texture coordinate beyond 2²⁴ has no digits left for a place in the picture.
+        let places = |uv: &[[f32; 2]; 3]| uv.as_flattened().iter().all(|x| x.abs() < 1.7e7);
+        let painted = |i: usize| {
+            mesh.uv
+                .as_ref()
+                .is_none_or(|uv| uv.get(i).is_some_and(places))
+        };
         let mut fates: Vec<Fate> = mesh
             .triangles
             .iter()
-            .map(|t| match sound(t) {
+            .enumerate()
+            .map(|(i, t)| match sound(t) && painted(i) {
                 false => Fate::NotFinite,
                 true if is_proper(t.map(|c| mesh.positions[c as usize])) => Fate::Kept,
                 true => Fate::Degenerate,

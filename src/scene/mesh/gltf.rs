@@ -56,6 +56,7 @@ fn assemble(
         buffers: Buffers::new(&root, chunk, beside),
         root: &root,
         bytes: bytes as u64,
+        visited: 0,
         made: Triangles::default(),
         uvs: Vec::new(),
     };
@@ -76,7 +77,7 @@ fn refuse_unsupported(root: &Root) -> Result<(), MeshFileError> {
     // Extensions that leave the shape alone.
     let harmless = [
         "KHR_materials_",
-        "KHR_texture_",
+        "KHR_texture_basisu",
         "KHR_lights_",
         "KHR_mesh_quantization",
     ];
@@ -95,12 +96,17 @@ fn refuse_unsupported(root: &Root) -> Result<(), MeshFileError> {
     }
 }
 
+/// More primitives are not walked through.
+const MOST_VISITED: usize = 1 << 20;
+
 /// What has been read.
 struct Body<'a> {
     root: &'a Root,
     buffers: Buffers<'a>,
     /// Length of the file.
     bytes: u64,
+    /// Primitives met so far, again for each node that shows them.
+    visited: usize,
     made: Triangles,
     /// By triangle and corner; shorter than the triangles if some came without.
     uvs: Vec<[[f32; 2]; 3]>,
@@ -128,6 +134,14 @@ impl<'a> Body<'a> {
         // Primitives of one mesh often share their vertices.
         let mut shared: BTreeMap<usize, u32> = BTreeMap::new();
         for (i, primitive) in mesh.primitives.iter().enumerate() {
+            self.visited += 1;
+            if self.visited > MOST_VISITED {
+                return Err(MeshFileError::Unsupported {
+                    what: format!(
+                        "more than {MOST_VISITED} parts, meshes counted wherever they stand"
+                    ),
+                });
+            }
             let mode = match primitive.mode {
                 Checked::Valid(
                     mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan),

@@ -80,6 +80,9 @@ fn refuse_coincident(surfaces: &[Surface]) -> Result<(), Fault> {
                 (Shape::Parallelogram(p), Shape::Parallelogram(q)) => {
                     p.normal().dot(q.normal()) > 0.0 && p.overlaps(q)
                 }
+                (Shape::Disc(p), Shape::Disc(q)) => p.overlaps(q),
+                (Shape::Disc(d), Shape::Parallelogram(p))
+                | (Shape::Parallelogram(p), Shape::Disc(d)) => d.overlaps_patch(p),
                 (p, q) => p == q,
             };
             if coincide {

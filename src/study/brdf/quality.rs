@@ -90,9 +90,17 @@ pub(super) fn ratios(known: &[Quality], reference: &[Quality]) -> Vec<Ratio> {
         );
         let rmse = over(a.rmse, b.rmse);
         let recovers = b.correlation.is_some_and(|c| c.mean >= NOTHING);
+        // A measure that only the reference has was not reached, nor was anything where more draws failed.
+        let has = |a: Option<Spread>, b: Option<Spread>| a.is_some() || b.is_none();
+        let complete = a.failed <= b.failed
+            && has(a.mtf_raw, b.mtf_raw)
+            && has(a.correlation, b.correlation)
+            && has(a.rmse, b.rmse);
         let reached = |r: Option<f64>| r.is_none_or(|r| r >= 1.0 - BEHIND);
-        let reaches =
-            reached(mtf) && reached(correlation) && rmse.is_none_or(|r| r <= 1.0 + BEHIND);
+        let reaches = complete
+            && reached(mtf)
+            && reached(correlation)
+            && rmse.is_none_or(|r| r <= 1.0 + BEHIND);
         Ratio {
             method: a.method.clone(),
             noise: a.noise,

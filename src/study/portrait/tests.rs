@@ -154,7 +154,8 @@ fn one_looks_through_an_outer_wall_at_what_is_behind_it() {
 
 #[test]
 fn the_default_place_shows_object_and_wall_from_the_front() {
-    for name in ["bench", "card", "corner"] {
+    // No place shows two fronts as close as those of card and table.
+    for name in ["bench", "shelf", "corner"] {
         let scene = Scene::load(name).unwrap();
         let size = [96, 64];
         let viewpoint = stand(&scene, size, &Wishes::default()).unwrap();

@@ -9,6 +9,9 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+/// More bytes are not read from files beside a mesh: 2 GiB.
+const MOST_BESIDE: u64 = 2 << 30;
+
 /// The bytes of a buffer.
 pub(super) type Bytes<'a> = Rc<Cow<'a, [u8]>>;
 
@@ -85,9 +88,16 @@ impl<'a> Buffers<'a> {
         if leads_out(&path) {
             return Err(MeshFileError::Outside { uri: short });
         }
-        let bytes =
-            (self.beside)(&path).map_err(|cause| MeshFileError::Buffer { uri: short, cause })?;
+        let bytes = (self.beside)(&path).map_err(|cause| MeshFileError::Buffer {
+            uri: short.clone(),
+            cause,
+        })?;
+        // One file may be spelled in many ways.
         self.bytes_beside += bytes.len() as u64;
+        if self.bytes_beside > MOST_BESIDE {
+            let cause = String::from("with it the buffers have more than 2 GiB");
+            return Err(MeshFileError::Buffer { uri: short, cause });
+        }
         Ok(bytes)
     }
 }

@@ -123,3 +123,16 @@ fn faces_with_no_vertex_are_survived() {
     let none = Triangles::default().mended();
     assert!(none.1.is_empty() && !none.1.is_closed());
 }
+
+#[test]
+fn texture_coordinates_that_are_no_numbers() {
+    for wrong in [f32::NAN, f32::INFINITY, 1e38] {
+        let mut mesh = crate::scene::mesh::cube();
+        if let Some(uv) = &mut mesh.uv {
+            uv[5][1][0] = wrong;
+        }
+        let (mended, found) = mesh.mended();
+        assert_eq!((found.not_finite, mended.triangles.len()), (1, 11));
+        assert_eq!(mended.uv.map(|uv| uv.len()), Some(11));
+    }
+}
