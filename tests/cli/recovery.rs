@@ -31,7 +31,9 @@ fn a_method_writes_its_matrix_and_its_picture() {
     let names: Vec<String> = workspace.contents("done/recovered").into_keys().collect();
     let written = [
         "joint.npy",
+        "joint.ply",
         "joint.png",
+        "joint.texture.png",
         "overview.png",
         "picard-joint.csv",
         "picard-joint.svg",

@@ -3,7 +3,18 @@
 use crate::small_scene::{bench, with_points_and_surface};
 use crate::workspace::Workspace;
 
-const BUILT_IN: [&str; 5] = ["bench", "thesis", "experiment", "dual", "furnace"];
+const BUILT_IN: [&str; 10] = [
+    "bench",
+    "thesis",
+    "experiment",
+    "dual",
+    "card",
+    "satin",
+    "shelf",
+    "corner",
+    "room",
+    "furnace",
+];
 
 #[test]
 fn list_names_the_built_in_scenes() {
@@ -24,6 +35,11 @@ fn every_built_in_scene_is_sound() {
         "120 spots; 16 × 16 pixels",
         "252 spots; 64 × 64 pixels",
         "256 spots; 16 × 16 pixels",
+        "128 spots; 72 × 48 pixels",
+        "120 spots; 16 × 16 pixels",
+        "120 spots; 16 × 16 pixels",
+        "144 spots; 32 × 32 pixels",
+        "120 spots; 64 × 64 pixels",
         "3 spots; 4 × 4 pixels",
     ]) {
         let ended = workspace.phicam(&format!("scene check {name}")).exits(0);
