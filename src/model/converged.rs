@@ -55,6 +55,8 @@ impl Extent {
 const TARGET: f64 = 1e-10;
 /// Nodes on all hidden surfaces together beyond which no finer rule is tried.
 const MOST_NODES: usize = 400_000;
+/// A picture of more texels than that is taken at the middles of at most so many parts a side, each with its mean albedo.
+const COARSE: usize = 512;
 /// Nodes a side of a footprint beyond which no finer rule is tried.
 const MOST_FOOTPRINT_NODES: usize = 8;
 /// Nodes handled at once.
@@ -176,6 +178,10 @@ fn hidden_nodes(scene: &Scene, nodes: Nodes) -> Vec<(HiddenPoint, f64)> {
             (Take::Integral, Shape::Body(body)) => {
                 triangle_nodes(surface, body, nodes.hidden, |e| add(&e));
             }
+            (Take::Integral, _) if texels(surface) > MOST_NODES => {
+                let coarse = surface.albedo.smooth_cells().map(|n| n.min(COARSE));
+                surface.divided(coarse).iter().for_each(&mut add);
+            }
             (Take::Integral, _) => {
                 let [nu, nv] = surface.albedo.smooth_cells();
                 let area = whole / (nu * nv) as f64;
@@ -202,8 +208,17 @@ fn hidden_nodes(scene: &Scene, nodes: Nodes) -> Vec<(HiddenPoint, f64)> {
 fn pieces(surface: &Surface) -> usize {
     match &surface.shape {
         Shape::Body(body) => body.mesh().triangles().len(),
-        _ => surface.albedo.smooth_cells().iter().product(),
+        _ if texels(surface) > MOST_NODES => {
+            let coarse = surface.albedo.smooth_cells().map(|n| n.min(COARSE));
+            coarse.iter().product()
+        }
+        _ => texels(surface),
     }
+}
+
+/// Cells of a hidden surface's texture within which it is smooth.
+fn texels(surface: &Surface) -> usize {
+    surface.albedo.smooth_cells().iter().product()
 }
 
 /// Every triangle by the product rule of n × n nodes on the square that is folded onto it: (u, v) → (1 − u, u·(1 − v), u·v), whose area

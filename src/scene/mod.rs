@@ -89,7 +89,7 @@
 //!
 //! | picture | meaning |
 //! | --- | --- |
-//! | `image` | PNG, JPEG or OpenEXR file below the scene's folder, 4096 pixels a side at most; opaque |
+//! | `image` | PNG, JPEG or OpenEXR file below the scene's folder, 4096 pixels a side at most; opaque. A camera's note of orientation (EXIF) is not applied |
 //! | `target` | built-in picture of [`target`]: `card`, `letters`, `siemens`, `edge`, `usaf`, `ramp` |
 //! | `size` | `[columns, rows]` of the target; its own by default |
 //! | `transfer` | `"srgb"` or `"linear"`: what the stored values of a PNG or JPEG mean; must be given, for the file does not say. OpenEXR is linear |
