@@ -61,35 +61,6 @@ mod tests {
         }
     }
 
-    /// By way of the Gram matrix the answer is the same as by way of the product itself: what the Gram matrix holds only as rounding must not
-    /// be fitted.
-    #[test]
-    fn the_gram_matrix_gives_the_same_answer() {
-        let bench = Bench::new(3.0, 16, 16);
-        let board = bench.board(2);
-        let exact = bench.phi(&board);
-        let stderr = &exact * 1e-2;
-        let mut normal = normal_stream(3);
-        let phi = exact.zip_map(&stderr, |x, s| x + s * normal());
-        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
-        let with = |budget| {
-            let options = Options {
-                budget,
-                ..Options::default()
-            };
-            recover(Method::Joint, &problem, &options).unwrap()
-        };
-        let (product, gram) = (with(usize::MAX), with(0));
-        let light = |found: &Recovered| problem.light(&found.reflectance);
-        let misfit = |found: &Recovered| (light(found) - &phi).component_div(&stderr).norm();
-        assert!(
-            (misfit(&gram) - misfit(&product)).abs() < 1e-3,
-            "{} {}",
-            misfit(&gram),
-            misfit(&product)
-        );
-    }
-
     #[test]
     fn a_board_of_two_checks_survives_one_percent_of_noise() {
         let bench = Bench::new(3.0, 8, 16);

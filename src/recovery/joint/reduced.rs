@@ -35,10 +35,8 @@ impl Reduced {
                 side: "model C, D as a whole",
             });
         }
-        // Directions below one rounding of the strongest carry nothing, nor do those that a Gram matrix holds only as rounding, whose data are
-        // that rounding divided by their singular value: k rows Σ_k V_kᵀ stand for R.
-        let rounding = operator.tolerance(Tolerance::Relative(f64::EPSILON));
-        let (rows, _) = cut(sigma.as_slice(), 1, 1, rounding)?;
+        // Directions below one rounding of the strongest carry nothing: k rows Σ_k V_kᵀ stand for R.
+        let (rows, _) = cut(sigma.as_slice(), 1, 1, Tolerance::Relative(f64::EPSILON))?;
         let mut strong = vt.rows(0, rows).into_owned();
         for (mut row, &s) in strong.row_iter_mut().zip(sigma.iter()) {
             row *= s;
