@@ -9,7 +9,7 @@ use super::failure::Failure;
 use super::output::{self, Talk};
 use crate::image::Transfer;
 use crate::report;
-use crate::scene::mesh::{self, FaceValues, Triangles};
+use crate::scene::mesh::{FaceValues, Generator, Triangles, to_ply};
 use crate::scene::target::Target;
 use crate::store::write_whole;
 
@@ -63,11 +63,15 @@ pub(super) fn execute(args: &TargetArgs, talk: Talk) -> Result<Outcome, Failure>
 }
 
 /// Names and summaries of the meshes.
-const MESHES: [(&str, &str); 4] = [
-    ("mesh", "PLY: a bust, head and shoulders, 1 high"),
-    ("sphere", "PLY: the sphere of radius 1"),
-    ("rectangle", "PLY: the unit square"),
-    ("box", "PLY: the unit cube"),
+const MESHES: [(&str, Generator, &str); 4] = [
+    (
+        "mesh",
+        Generator::Bust,
+        "PLY: a bust, head and shoulders, 1 high",
+    ),
+    ("sphere", Generator::Sphere, "PLY: the sphere of radius 1"),
+    ("rectangle", Generator::Rectangle, "PLY: the unit square"),
+    ("box", Generator::Box, "PLY: the unit cube"),
 ];
 /// Triangles unless told.
 const FACES: u64 = 1_000_000;
@@ -76,9 +80,9 @@ const MOST_FACES: u64 = 100_000_000;
 
 /// The mesh of that name, if there is one.
 fn mesh(name: &str, args: &TargetArgs) -> Result<Option<Triangles>, Failure> {
-    if !MESHES.iter().any(|m| m.0 == name) {
+    let Some((_, generator, _)) = MESHES.iter().find(|m| m.0 == name) else {
         return Ok(None);
-    }
+    };
     if args.size.is_some() || args.linear {
         let cause = format!("`{name}` is a mesh and has neither --size nor --linear");
         return Err(Failure::new(
@@ -86,7 +90,7 @@ fn mesh(name: &str, args: &TargetArgs) -> Result<Option<Triangles>, Failure> {
             "leave them out; --faces says how fine it is",
         ));
     }
-    if name == "box" && args.faces.is_some() {
+    if *generator == Generator::Box && args.faces.is_some() {
         let cause = "a box has its 12 triangles, and no --faces";
         return Err(Failure::new(cause, "leave --faces out"));
     }
@@ -95,14 +99,7 @@ fn mesh(name: &str, args: &TargetArgs) -> Result<Option<Triangles>, Failure> {
         let cause = format!("--faces {faces}");
         return Err(Failure::new(cause, format!("use 1 to {MOST_FACES}")));
     }
-    let faces = faces as usize;
-    let side = (0.5 * faces as f64).sqrt().ceil() as u32;
-    Ok(Some(match name {
-        "sphere" => mesh::sphere(faces),
-        "rectangle" => mesh::rectangle(side, side),
-        "box" => mesh::cube(),
-        _ => mesh::bust(faces),
-    }))
+    Ok(Some(generator.triangles(faces as usize)))
 }
 
 fn write_mesh(
@@ -115,7 +112,7 @@ fn write_mesh(
         .output
         .clone()
         .unwrap_or_else(|| PathBuf::from(format!("{name}.ply")));
-    let bytes = mesh::to_ply(mesh, FaceValues::default());
+    let bytes = to_ply(mesh, FaceValues::default());
     write_whole(&path, |file| file.write_all(&bytes))?;
     let count = mesh.triangles.len();
     talk.say(format!("{}: {count} triangles", path.display()));
@@ -128,7 +125,7 @@ fn list() -> String {
         let [w, h] = t.usual_size();
         let _ = writeln!(text, "{:<9} {:>3} × {:<3}  {}", t.name(), w, h, t.summary());
     }
-    for (name, summary) in MESHES {
+    for (name, _, summary) in MESHES {
         let _ = writeln!(text, "{name:<9} {:9}  {summary}", "");
     }
     text

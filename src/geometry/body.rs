@@ -112,6 +112,14 @@ impl Body {
         self.mesh.area() * self.scale * self.scale
     }
 
+    /// Area of a triangle, length².
+    ///
+    /// # Panics
+    /// If there is no such triangle.
+    pub fn triangle_area(&self, triangle: u32) -> f64 {
+        self.mesh.triangle_area(triangle) * self.scale * self.scale
+    }
+
     /// Corners of a triangle in the scene.
     ///
     /// # Panics

@@ -3,7 +3,7 @@
 //! The arithmetic is that of one ray, operation by operation, so the answers are the same bit for bit.
 
 use super::bvh::TIE;
-use super::{Blockers, Bvh, DVec3, Hit, Parallelogram, Ray, Shape, ShapeId};
+use super::{Blockers, Body, Bvh, DVec3, Hit, Parallelogram, Ray, Shape, ShapeId};
 use crate::num::lanes::widest;
 
 /// Rays tested at a time: a register of AVX-512.
@@ -119,37 +119,25 @@ impl Bvh {
                 &all
             }
         };
-        let mesh = |id: &ShapeId| matches!(self.shapes()[*id as usize], Shape::Body(_));
-        let (bodies, ids): (Vec<ShapeId>, Vec<ShapeId>) = ids.iter().copied().partition(mesh);
         let mut blocked = vec![false; segments.len()];
         widest(
             #[inline(always)]
             || {
                 let chunks = segments.chunks(EIGHT).zip(ends.chunks(EIGHT));
                 for ((segments, ends), blocked) in chunks.zip(blocked.chunks_mut(EIGHT)) {
-                    self.block(&ids, segments, ends, blocked);
+                    self.block(ids, segments, ends, blocked);
                 }
             },
         );
-        for id in bodies {
-            self.block_by_body(id, segments, &mut blocked);
+        for &id in ids {
+            if let Shape::Body(body) = &self.shapes()[id as usize] {
+                block_by_body(body, segments, &mut blocked);
+            }
         }
         blocked
     }
 
-    /// Meshes are asked last, for what is still free, many segments at once.
-    fn block_by_body(&self, id: ShapeId, segments: &[Ray], blocked: &mut [bool]) {
-        let Shape::Body(body) = &self.shapes()[id as usize] else {
-            return;
-        };
-        let free: Vec<usize> = (0..segments.len()).filter(|i| !blocked[*i]).collect();
-        let asked: Vec<Ray> = free.iter().map(|i| segments[*i]).collect();
-        for (i, stands) in free.iter().zip(body.blocks_many(&asked)) {
-            blocked[*i] = stands;
-        }
-    }
-
-    /// At most eight segments.
+    /// At most eight segments, and all shapes but meshes.
     #[inline(always)]
     fn block(
         &self,
@@ -174,6 +162,7 @@ impl Bvh {
                         free[k] &= !(stands & (from[k] != own) & (to[k] != own));
                     }
                 }
+                Shape::Body(_) => {}
                 shape => {
                     for (k, ray) in segments.iter().enumerate().take(EIGHT) {
                         free[k] = free[k] && !shape.blocks(ray, from[k] == own, to[k] == own);
@@ -182,6 +171,15 @@ impl Bvh {
             }
         }
         blocked.iter_mut().zip(free).for_each(|(b, f)| *b = !f);
+    }
+}
+
+/// Meshes are asked last, for what is still free, many segments at once.
+fn block_by_body(body: &Body, segments: &[Ray], blocked: &mut [bool]) {
+    let free: Vec<usize> = (0..segments.len()).filter(|i| !blocked[*i]).collect();
+    let asked: Vec<Ray> = free.iter().map(|i| segments[*i]).collect();
+    for (i, stands) in free.iter().zip(body.blocks_many(&asked)) {
+        blocked[*i] = stands;
     }
 }
 

@@ -224,10 +224,9 @@ fn texels(surface: &Surface) -> usize {
 /// Every triangle by the product rule of n × n nodes on the square that is folded onto it: (u, v) → (1 − u, u·(1 − v), u·v), whose area
 /// element is twice the triangle's area times u. With one node its centroid.
 fn triangle_nodes(surface: &Surface, body: &Body, n: usize, mut visit: impl FnMut(Element)) {
-    let scale = body.area() / body.mesh().area();
     for t in 0..body.mesh().triangles().len() as u32 {
         let [a, b, c] = body.corners(t);
-        let area = body.mesh().triangle_area(t) * scale;
+        let area = body.triangle_area(t);
         let mut node = |weights: [f64; 3], share: f64| {
             let [x, y, z] = weights;
             let point = body.on_triangle(t, a * x + b * y + c * z);

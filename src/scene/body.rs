@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::error::{Fault, Step, keys};
-use super::file::{GeneratorName, MeshTable, ScaleTable};
+use super::file::{MeshTable, ScaleTable};
 use super::files::Files;
-use super::mesh::{self, Defects, Triangles};
+use super::mesh::{self, Defects, Generator, Triangles};
 use super::surface::Surface;
 use crate::geometry::{Body, DAffine3, DQuat, DVec3, Mesh, Shape, Side};
 
@@ -181,9 +181,7 @@ fn read(name: &str, files: &mut Files) -> Result<Triangles, Fault> {
             "" => other.to_owned(),
             folder => format!("{folder}/{other}"),
         };
-        files
-            .bytes(&path, LARGEST_FILE)
-            .map_err(|(cause, cure)| format!("{cause}; {cure}"))
+        files.bytes_or_words(&path, LARGEST_FILE)
     };
     mesh::read(name, &bytes, &mut beside).map_err(|e| {
         Fault::new(
@@ -194,8 +192,8 @@ fn read(name: &str, files: &mut Files) -> Result<Triangles, Fault> {
     })
 }
 
-fn generate(generator: GeneratorName, faces: Option<u64>) -> Result<Triangles, Fault> {
-    if generator == GeneratorName::Box && faces.is_some() {
+fn generate(generator: Generator, faces: Option<u64>) -> Result<Triangles, Fault> {
+    if generator == Generator::Box && faces.is_some() {
         let cause = "a box has its 12 triangles, and no `faces`";
         return Err(Fault::new(keys!["faces"], cause, "remove `faces`"));
     }
@@ -205,14 +203,5 @@ fn generate(generator: GeneratorName, faces: Option<u64>) -> Result<Triangles, F
         let cure = format!("use 1 to {MOST_FACES}");
         return Err(Fault::new(keys!["faces"], cause, cure));
     }
-    let faces = faces as usize;
-    Ok(match generator {
-        GeneratorName::Bust => mesh::bust(faces),
-        GeneratorName::Sphere => mesh::sphere(faces),
-        GeneratorName::Box => mesh::cube(),
-        GeneratorName::Rectangle => {
-            let side = (0.5 * faces as f64).sqrt().ceil().max(1.0) as u32;
-            mesh::rectangle(side, side)
-        }
-    })
+    Ok(generator.triangles(faces as usize))
 }

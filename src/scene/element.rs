@@ -83,11 +83,10 @@ impl Surface {
 }
 
 fn faces(body: &Body, albedo: &Texture) -> Vec<Element> {
-    let scale = body.area() / body.mesh().area();
     (0..body.mesh().triangles().len() as u32)
         .map(|t| {
             let [a, b, c] = body.corners(t);
-            let area = body.mesh().triangle_area(t) * scale;
+            let area = body.triangle_area(t);
             let point = body.on_triangle(t, (a + b + c) / 3.0);
             match area > 0.0 {
                 true => Element {

@@ -5,6 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::material::MaterialTable;
+use super::mesh::Generator;
 use super::sensor::SensorSettings;
 
 /// Three coordinates, in the scene's unit.
@@ -216,7 +217,7 @@ pub(super) struct MeshTable {
     pub file: Option<String>,
     /// A mesh that phicam makes itself, in place of a file: bust, sphere, rectangle or box (the unit cube).
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub generate: Option<GeneratorName>,
+    pub generate: Option<Generator>,
     /// At least so many triangles (generate).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub faces: Option<u64>,
@@ -235,15 +236,6 @@ pub(super) struct MeshTable {
     /// true: the mesh is meant to be closed, so that open edges are a defect.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub closed: Option<bool>,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq, Hash)]
-#[serde(rename_all = "lowercase")]
-pub(super) enum GeneratorName {
-    Bust,
-    Sphere,
-    Rectangle,
-    Box,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]

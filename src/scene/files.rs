@@ -114,6 +114,12 @@ impl Files {
         Ok(bytes)
     }
 
+    /// The same for readers that put their own cure beside what was wrong.
+    pub(super) fn bytes_or_words(&mut self, name: &str, most: u64) -> Result<Vec<u8>, String> {
+        self.bytes(name, most)
+            .map_err(|(cause, cure)| format!("{cause}; {cure}"))
+    }
+
     /// Where that file is.
     fn find(&self, name: &str) -> Result<PathBuf, (String, String)> {
         let Some(folder) = &self.folder else {

@@ -19,13 +19,13 @@ use exr::meta::attribute::LineOrder;
 use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, IntegerBounds, Layer, ReadChannels,
-    ReadLayers, SampleType, Vec2, WritableImage,
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, IntegerBounds, Layer, SampleType, Vec2,
+    WritableImage,
 };
 
 use super::{Channel, Frame};
 use crate::image::DEFLATE_RATIO_MAX;
-use crate::image::exr::envelope;
+use crate::image::exr::{channels, envelope};
 use crate::store::{self, StoreError};
 
 /// Most bytes that the pixels of a frame may take, all channels together: 1 GiB, sixteen channels of 4096 × 4096.
@@ -250,16 +250,6 @@ fn check_header(header: &Header, length: usize) -> Result<(), String> {
 
 /// The channels of a file whose header and blocks have been checked; the error says what is damaged.
 fn decode(bytes: &[u8]) -> Result<Vec<Channel>, String> {
-    let image = exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .first_valid_layer()
-        .all_attributes()
-        .pedantic()
-        .non_parallel()
-        .from_buffered(Cursor::new(bytes))
-        .map_err(|e| e.to_string())?;
     let channel = |c: AnyChannel<FlatSamples>| {
         let name = String::from_utf8(c.name.as_slice().to_vec())
             .map_err(|_| "a channel has no readable name")?;
@@ -268,13 +258,7 @@ fn decode(bytes: &[u8]) -> Result<Vec<Channel>, String> {
             _ => Err(format!("its channel {name} is not f32")),
         }
     };
-    image
-        .layer_data
-        .channel_data
-        .list
-        .into_iter()
-        .map(channel)
-        .collect()
+    channels(bytes)?.map(channel).collect()
 }
 
 #[cfg(test)]

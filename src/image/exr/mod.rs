@@ -70,8 +70,10 @@ pub(super) fn read_exr(name: &str, bytes: &[u8]) -> Result<Image, ImageError> {
     interleaved(name, [width, height], found)
 }
 
-/// The known channels of a file whose header and blocks have been checked.
-fn planes(bytes: &[u8]) -> Result<Vec<(Channel, Vec<f32>)>, String> {
+/// All channels of a file whose header and blocks have been checked.
+pub(crate) fn channels(
+    bytes: &[u8],
+) -> Result<impl Iterator<Item = AnyChannel<FlatSamples>>, String> {
     let image = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
@@ -82,6 +84,11 @@ fn planes(bytes: &[u8]) -> Result<Vec<(Channel, Vec<f32>)>, String> {
         .non_parallel()
         .from_buffered(Cursor::new(bytes))
         .map_err(|e| e.to_string())?;
+    Ok(image.layer_data.channel_data.list.into_iter())
+}
+
+/// The known channels of a file whose header and blocks have been checked.
+fn planes(bytes: &[u8]) -> Result<Vec<(Channel, Vec<f32>)>, String> {
     let known = |c: AnyChannel<FlatSamples>| {
         let (_, channel) = NAMES
             .into_iter()
@@ -93,8 +100,7 @@ fn planes(bytes: &[u8]) -> Result<Vec<(Channel, Vec<f32>)>, String> {
         };
         Some((channel, values))
     };
-    let list = image.layer_data.channel_data.list;
-    Ok(list.into_iter().filter_map(known).collect())
+    Ok(channels(bytes)?.filter_map(known).collect())
 }
 
 fn interleaved(

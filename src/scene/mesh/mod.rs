@@ -8,6 +8,7 @@
 
 mod bust;
 mod defects;
+mod generator;
 mod gltf;
 mod grid;
 mod obj;
@@ -16,6 +17,7 @@ mod write;
 
 pub use bust::bust;
 pub use defects::Defects;
+pub use generator::Generator;
 pub use grid::{cube, rectangle, sphere};
 pub use write::{FaceValues, to_ply};
 

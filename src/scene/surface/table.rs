@@ -147,11 +147,7 @@ impl Surface {
         let shape = shape(table, earlier, sources)?;
         let wavelength = sources.wavelength;
         let files = &mut *sources.files;
-        let mut read = |path: &str| {
-            files
-                .bytes(path, LARGEST_PICTURE)
-                .map_err(|(cause, cure)| format!("{cause}; {cure}"))
-        };
+        let mut read = |path: &str| files.bytes_or_words(path, LARGEST_PICTURE);
         let (material, albedo) = Material::from_table(&table.material, wavelength, &mut read)
             .map_err(|f| f.within(keys!["material"]))?;
         let elements = match (role, table.elements) {
