@@ -10,5 +10,6 @@ pub mod quadrature;
 pub mod statistics;
 pub mod stream;
 pub mod summation;
+pub mod tree;
 pub mod units;
 pub mod warp;

@@ -1,18 +1,19 @@
 //! Φcam as a matrix product.
 
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 use std::sync::atomic::Ordering;
 
 use rayon::prelude::*;
 
 use super::eye::hide;
 use super::gloss;
+use super::layout::{Layout, TILE};
 use super::lit::Lit;
-use super::moments::{Layout, Moments, TILE};
 use super::packet::Packet;
-use super::render::{Control, Traced};
+use super::render::Control;
 use super::setting::Setting;
 use super::strata::Drawn;
+use super::tally::Tally;
 use super::walk::Vertex;
 use crate::geometry::Blockers;
 use crate::num::lanes::add_product;
@@ -54,24 +55,35 @@ impl<'a> Factored<'a> {
         Self { setting, blockers }
     }
 
-    /// All blocks; `None` if stopped.
-    pub(super) fn render(&self, control: Control<'_>) -> Option<Traced> {
-        let mut moments = Moments::new(self.layout());
+    /// The blocks from where `tally` ends up to `end`; fewer if stopped.
+    pub(super) fn trace(
+        &self,
+        mut tally: Tally,
+        end: u32,
+        control: Control<'_>,
+        after: &mut dyn FnMut(&Tally) -> ControlFlow<()>,
+    ) -> Tally {
         let paths =
             self.setting.scene.camera.pixels() as u64 * u64::from(self.setting.plan.budget.size);
-        let blocks = self.setting.plan.budget.blocks;
-        let mut points = self.points(0);
-        for block in 0..blocks {
+        let first = tally.range().end;
+        let mut points = self.points(first);
+        for block in first..end {
             // The next points are drawn, one after the other, while these are multiplied.
-            let next = || (block + 1 < blocks).then(|| self.points(block + 1));
+            let next = || (block + 1 < end).then(|| self.points(block + 1));
             let (sums, next) = rayon::join(|| self.block(&points, control), next);
-            moments.add(sums?);
+            let Some(sums) = sums else { break };
+            tally
+                .add(block..block + 1, self.layout().moments(&sums))
+                .expect("blocks follow one another");
             (control.progress)(paths);
+            if after(&tally).is_break() {
+                break;
+            }
             if let Some(next) = next {
                 points = next;
             }
         }
-        Some(moments.traced())
+        tally
     }
 
     fn layout(&self) -> Layout {

@@ -26,9 +26,9 @@ mod form;
 mod gloss;
 mod hidden;
 mod lamp;
+mod layout;
 mod lit;
 mod lobe;
-mod moments;
 mod own;
 mod packet;
 mod pinhole;
@@ -39,6 +39,10 @@ mod shadow;
 mod sight;
 mod steps;
 mod strata;
+mod tally;
 mod walk;
 
-pub use render::{Budget, Control, Estimator, Plan, Traced, block_size, obstacle, render};
+pub use render::{
+    Budget, Control, Estimator, NUMERICS, Plan, Traced, block_size, obstacle, render, trace,
+};
+pub use tally::{Moments, Tally, TallyError};

@@ -9,8 +9,10 @@ use super::gloss;
 use super::own::OwnPoints;
 use super::pinhole;
 use super::setting::Setting;
+use super::tally::Moments;
 use super::walk::Vertex;
 use crate::num::stream::{Key, Stream};
+use crate::num::tree::Tree;
 use crate::scene::Scene;
 
 /// Traces pixels of one scene by one plan.
@@ -24,9 +26,14 @@ impl<'a> PixelTracer<'a> {
         Self { setting }
     }
 
-    /// Estimates \[block\]\[order · columns + column\] of a pixel for the given spots, W; order n − 1 holds the light that
-    /// met n surfaces.
-    pub(super) fn trace(&self, pixel: usize, spots: &Range<usize>) -> Vec<Vec<f64>> {
+    /// Sums and scatter of the estimates \[order · columns + column\] of a pixel for the given spots and blocks, W; order n − 1 holds the light
+    /// that met n surfaces.
+    pub(super) fn trace(
+        &self,
+        pixel: usize,
+        spots: &Range<usize>,
+        blocks: Range<u32>,
+    ) -> Tree<Moments> {
         let Setting { scene, plan, .. } = self.setting;
         let columns = spots.len();
         let orders = scene.max_bounces as usize;
@@ -50,19 +57,21 @@ impl<'a> PixelTracer<'a> {
                 }
             }
         };
-        (0..plan.budget.blocks)
-            .map(|block| {
-                let mut sums = vec![0.0; orders * columns];
-                if plan.estimator.serves_all_spots() {
-                    estimate(block, 0..columns, Key::ALL_SPOTS, &mut sums);
-                } else {
-                    for (l, spot) in spots.clone().enumerate() {
-                        estimate(block, l..l + 1, spot as u32, &mut sums[l..]);
-                    }
+        let mut tree = Tree::new(plan.budget.blocks, blocks.start);
+        for block in blocks {
+            let mut sums = vec![0.0; orders * columns];
+            if plan.estimator.serves_all_spots() {
+                estimate(block, 0..columns, Key::ALL_SPOTS, &mut sums);
+            } else {
+                for (l, spot) in spots.clone().enumerate() {
+                    estimate(block, l..l + 1, spot as u32, &mut sums[l..]);
                 }
-                sums
-            })
-            .collect()
+            }
+            let moments = Moments::of_block(sums, orders);
+            tree.push(block..block + 1, moments, Moments::join)
+                .expect("blocks follow one another");
+        }
+        tree
     }
 
     /// One block of paths that serve `spots`; entry (order, l) of the sums stands at order·columns + l.

@@ -1,7 +1,8 @@
 //! The estimators of Φcam.
 
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use rayon::prelude::*;
 
@@ -10,9 +11,10 @@ use super::factored::Factored;
 use super::own::OwnPoints;
 use super::pixel::PixelTracer;
 use super::setting::Setting;
+use super::tally::{Moments, Tally};
 use crate::matrix::Matrix;
 use crate::num::stream::{LARGEST_NET, Sampling};
-use crate::num::summation::mean_and_stderr;
+use crate::num::tree::Tree;
 use crate::scene::{Scene, Surface};
 
 /// What paths have in common. All are unbiased.
@@ -125,18 +127,6 @@ pub struct Traced {
     pub stderr: Matrix,
 }
 
-impl Traced {
-    /// No columns at all.
-    fn dark(pixels: usize, orders: usize) -> Self {
-        let nothing = || Matrix::zeros(pixels, 0);
-        Self {
-            bounces: (0..orders).map(|_| nothing()).collect(),
-            flux: nothing(),
-            stderr: nothing(),
-        }
-    }
-}
-
 /// Paths, or points, that a block really has: more than `plan` asks for where the surfaces between the walls are divided into texture
 /// cells, each of which gets its share rounded up.
 pub fn block_size(scene: &Scene, plan: &Plan) -> usize {
@@ -162,6 +152,10 @@ pub fn obstacle<'a>(scene: &'a Scene, plan: &Plan) -> Option<&'a str> {
     glossy.into_iter().next()
 }
 
+/// Which bits a plan leads to, apart from the plan itself: raised whenever a change of the tracer, of the random streams or of the order of sums
+/// changes any of them. What was traced under another number is never added to what is traced under this one.
+pub const NUMERICS: u32 = 1;
+
 /// Traces the columns `spots` of Φcam. The same plan gives the same bits for every number of threads and every range
 /// that a spot is part of. `None` if it was stopped.
 ///
@@ -173,11 +167,44 @@ pub fn render(
     spots: Range<usize>,
     control: Control<'_>,
 ) -> Option<Traced> {
-    let columns = spots.len();
-    let pixels = scene.camera.pixels();
-    let orders = scene.max_bounces as usize;
+    let tally = Tally::new(scene, plan, spots.len(), 0);
     if spots.is_empty() {
-        return Some(Traced::dark(pixels, orders));
+        return Some(tally.dark());
+    }
+    let go_on = &mut |_: &Tally| ControlFlow::Continue(());
+    trace(
+        scene,
+        plan,
+        spots,
+        tally,
+        plan.budget.blocks,
+        control,
+        go_on,
+    )
+    .traced()
+}
+
+/// Traces the columns `spots` from where `tally` ends up to block `end` (exclusive). After every few blocks, one if they are long, `after` sees
+/// what is there, and may end the work. What comes back is shorter than asked for if it did, or if `control` says stop; what is there is whole
+/// in any case, and can be gone on with.
+///
+/// # Panics
+/// If `spots` reaches beyond the scene's spots, `tally` is not of these columns, or there is an [`obstacle`].
+pub fn trace(
+    scene: &Scene,
+    plan: &Plan,
+    spots: Range<usize>,
+    tally: Tally,
+    end: u32,
+    control: Control<'_>,
+    after: &mut dyn FnMut(&Tally) -> ControlFlow<()>,
+) -> Tally {
+    assert!(
+        tally.is_of(scene, plan, spots.len()),
+        "a tally of other columns"
+    );
+    if spots.is_empty() || tally.range().end >= end {
+        return tally;
     }
     let beams = Beams::new(scene);
     let setting = Setting::new(scene, plan, &beams, spots.clone());
@@ -186,62 +213,52 @@ pub fn render(
             setting.plain,
             "factored needs Lambertian surfaces between the walls"
         );
-        return Factored::new(&setting).render(control);
+        return Factored::new(&setting).trace(tally, end, control, after);
     }
-    let tracer = PixelTracer::new(&setting);
-    let rows: Vec<Option<Row>> = (0..pixels)
-        .into_par_iter()
-        .map(|pixel| {
+    by_pixel(&setting, &spots, tally, end, control, after)
+}
+
+/// Paths that are traced between two looks at what is there, at first.
+const FIRST_LOOK: u64 = 1 << 18;
+/// Time between two looks where blocks are shorter, s.
+const LOOK: f64 = 0.25;
+
+/// Every pixel on its own, a few blocks at a time.
+fn by_pixel(
+    setting: &Setting<'_>,
+    spots: &Range<usize>,
+    mut tally: Tally,
+    end: u32,
+    control: Control<'_>,
+    after: &mut dyn FnMut(&Tally) -> ControlFlow<()>,
+) -> Tally {
+    let plan = setting.plan;
+    let tracer = PixelTracer::new(setting);
+    let pixels = setting.scene.camera.pixels();
+    let serve_all = plan.estimator.serves_all_spots();
+    let paths = u64::from(plan.budget.size) * if serve_all { 1 } else { spots.len() as u64 };
+    let all = paths.saturating_mul(pixels as u64).max(1);
+    let mut together = u32::try_from(FIRST_LOOK / all).unwrap_or(u32::MAX).max(1);
+    while tally.range().end < end {
+        let first = tally.range().end;
+        let blocks = first..end.min(first.saturating_add(together));
+        let start = Instant::now();
+        let row = |pixel| {
             if control.stop.load(Ordering::Relaxed) {
                 return None;
             }
-            let sums = tracer.trace(pixel, &spots);
-            let row = Row::from_blocks(&sums, orders, columns);
-            let shared = plan.estimator == Estimator::Shared;
-            let paths = plan.budget.samples() * if shared { 1 } else { columns as u64 };
-            (control.progress)(paths);
+            let row = tracer.trace(pixel, spots, blocks.clone());
+            (control.progress)(paths * u64::from(blocks.end - blocks.start));
             Some(row)
-        })
-        .collect();
-    let rows: Vec<Row> = rows.into_iter().collect::<Option<_>>()?;
-    let gather =
-        |f: &dyn Fn(&Row, usize) -> f64| Matrix::from_fn(pixels, columns, |p, l| f(&rows[p], l));
-    Some(Traced {
-        bounces: (0..orders)
-            .map(|n| gather(&|row, l| row.bounces[n * columns + l]))
-            .collect(),
-        flux: gather(&|row, l| row.flux[l]),
-        stderr: gather(&|row, l| row.stderr[l]),
-    })
-}
-
-/// One row of Φcam.
-struct Row {
-    /// \[order · columns + column\].
-    bounces: Vec<f64>,
-    flux: Vec<f64>,
-    stderr: Vec<f64>,
-}
-
-impl Row {
-    /// Means and standard errors from the estimates of the blocks \[block\]\[order · columns + column\].
-    fn from_blocks(blocks: &[Vec<f64>], orders: usize, columns: usize) -> Self {
-        let replicates = |f: &dyn Fn(&Vec<f64>) -> f64| {
-            let means: Vec<f64> = blocks.iter().map(f).collect();
-            mean_and_stderr(&means)
         };
-        let bounces: Vec<f64> = (0..orders * columns)
-            .map(|i| replicates(&|block| block[i]).0)
-            .collect();
-        let total = |values: &[f64], l: usize| (0..orders).map(|n| values[n * columns + l]).sum();
-        let flux = (0..columns).map(|l| total(&bounces, l)).collect();
-        let stderr = (0..columns)
-            .map(|l| replicates(&|block| total(block, l)).1)
-            .collect();
-        Self {
-            bounces,
-            flux,
-            stderr,
+        let rows: Option<Vec<Tree<Moments>>> = (0..pixels).into_par_iter().map(row).collect();
+        let Some(rows) = rows else { break };
+        tally.add_rows(&rows).expect("blocks follow one another");
+        if after(&tally).is_break() {
+            break;
         }
+        let each = start.elapsed().as_secs_f64() / f64::from(blocks.end - blocks.start);
+        together = ((LOOK / each) as u32).max(1);
     }
+    tally
 }
