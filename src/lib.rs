@@ -48,7 +48,7 @@
 //!                    indicators, coverage, wall BRDFs, the laboratory experiment, the published study
 //!    5  recovery/    Φcam → reflectance              metrics/   how far two things are apart
 //!    4  transport/   the path tracer → Φcam          model/     G12, G23 → Φcam             sensor/  flux → electrons → counts
-//!    3  film/        frames, EXR                     matrix/    pixels × spots, .npy        store  whole files
+//!    3  film/        frames, EXR                     matrix/    pixels × spots, .npy        store  whole files    shard  parts of a computation
 //!    2  scene/       laser, surface, texture, camera, scene file
 //!    1  geometry/    basis, shapes, BVH              image/     PNG, JPEG, EXR bytes ↔ pictures
 //!    0  num/         constants, streams (random and Sobol'), warps, quadrature, statistics, linear algebra, summation, wide arithmetic
@@ -130,6 +130,7 @@ pub mod recovery;
 pub mod report;
 pub mod scene;
 pub mod sensor;
+pub mod shard;
 pub mod store;
 pub mod study;
 pub mod transport;

@@ -8,7 +8,7 @@ const FLOORS: [&[&str]; 9] = [
     &["num"],
     &["geometry", "image"],
     &["scene"],
-    &["film", "matrix", "store"],
+    &["film", "matrix", "shard", "store"],
     &["transport", "model", "sensor"],
     &["recovery", "metrics"],
     &["study"],
@@ -17,7 +17,12 @@ const FLOORS: [&[&str]; 9] = [
 ];
 
 /// Imports beside the arrows: files of one floor that build on each other.
-const BESIDE: [(&str, &str); 3] = [("film", "matrix"), ("film", "store"), ("matrix", "store")];
+const BESIDE: [(&str, &str); 4] = [
+    ("film", "matrix"),
+    ("film", "store"),
+    ("matrix", "store"),
+    ("shard", "store"),
+];
 
 /// Foreign crates and the one place that may name them. `exr` has two: frames are written and read with all their attributes, pictures of other
 /// programs are read without any; what both must know of a file's bytes stands in `image/exr/envelope`.
