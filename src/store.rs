@@ -8,6 +8,7 @@
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Why a file or a folder could not be written. Each message names the path, the cause and the cure.
 #[derive(Debug, thiserror::Error)]
@@ -94,13 +95,49 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// A temporary file in `folder`, readable as any new file would be (a bare temporary file is private to its owner).
+/// A temporary file in `folder`, readable as any new file would be (a bare temporary file is private to its owner). Its name says whose it is:
+/// `.phicam-HOST-PROCESS-RANDOM.part`.
 fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".phicam-").suffix(".part");
+    let prefix = format!("{PREFIX}{}-{}-", host(), std::process::id());
+    builder.prefix(&prefix).suffix(SUFFIX);
     #[cfg(unix)]
     let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder.tempfile_in(folder)
+}
+
+const PREFIX: &str = ".phicam-";
+const SUFFIX: &str = ".part";
+/// A temporary file that nobody has written to for so long is nobody's.
+const FORSAKEN: Duration = Duration::from_secs(3600);
+
+/// The name of this machine as far as it can stand in a file name; empty where it is not known.
+fn host() -> String {
+    let name = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
+    name.trim()
+        .chars()
+        .filter(char::is_ascii_alphanumeric)
+        .collect()
+}
+
+/// Whether the file is one that [`write_whole`] was writing when its process ended: by the process's number if it ran on this machine, else by
+/// its age.
+pub fn is_abandoned(path: &Path) -> bool {
+    let name = path.file_name().and_then(|n| n.to_str()).unwrap_or("");
+    let Some(own) = name
+        .strip_prefix(PREFIX)
+        .and_then(|n| n.strip_suffix(SUFFIX))
+    else {
+        return false;
+    };
+    let mut words = own.split('-');
+    let here = words.next().is_some_and(|h| !h.is_empty() && h == host());
+    let process = words.next().and_then(|p| p.parse::<u32>().ok());
+    if let (true, Some(process)) = (here, process) {
+        return !Path::new("/proc").join(process.to_string()).exists();
+    }
+    let modified = fs::metadata(path).and_then(|m| m.modified());
+    modified.is_ok_and(|m| m.elapsed().is_ok_and(|age| age > FORSAKEN))
 }
 
 /// Makes a rename inside `folder` durable. File systems that know no such thing are left alone.

@@ -2,51 +2,99 @@
 
 use std::error::Error;
 use std::fmt::Write as _;
+use std::io;
 
+use super::interrupt;
 use super::output::complain;
+use crate::shard::ShardError;
+use crate::store::StoreError;
 
 /// Why a command ended without its result.
 #[derive(Debug)]
 pub(super) enum Failure {
-    /// Something is wrong: exit code 2.
+    /// What was given cannot be accepted.
     Error(String),
-    /// Ctrl-C: exit code 130; the text says what is kept.
+    /// The command was called in a way that has no meaning.
+    Usage(String),
+    /// Blocks of a plan are missing.
+    Missing(String),
+    /// The system could not read or write.
+    System(String),
+    /// Ctrl-C or SIGTERM; the text says what is kept.
     Stopped(String),
+}
+
+/// Which numbers say how a command failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Codes {
+    /// 2 for every error.
+    Plain,
+    /// For a scheduler, which must know whether it is worth another try: those of `sysexits.h`, as far as they fit.
+    Scheduler,
 }
 
 impl Failure {
     /// An error of cause and cure.
     pub(super) fn new(cause: impl Into<String>, cure: impl AsRef<str>) -> Self {
-        Self::Error(format!("{}\n  cure: {}", cause.into(), cure.as_ref()))
+        Self::Error(words(cause, cure))
     }
 
-    pub(super) fn code(&self) -> u8 {
-        match self {
-            Self::Error(_) => 2,
-            Self::Stopped(_) => 130,
+    /// A wrong argument, by cause and cure.
+    pub(super) fn usage(cause: impl Into<String>, cure: impl AsRef<str>) -> Self {
+        Self::Usage(words(cause, cure))
+    }
+
+    pub(super) fn code(&self, codes: Codes) -> u8 {
+        match (self, codes) {
+            (Self::Stopped(_), _) if interrupt::warned() => 75,
+            (Self::Stopped(_), _) => 130,
+            (_, Codes::Plain) => 2,
+            (Self::Usage(_), _) => 64,
+            (Self::Error(_), _) => 65,
+            (Self::Missing(_), _) => 66,
+            (Self::System(_), _) => 74,
         }
     }
 
     pub(super) fn report(&self) {
-        match self {
-            Self::Error(message) => complain(&format!("error: {message}")),
-            Self::Stopped(message) => complain(&format!("stopped: {message}")),
-        }
+        let (kind, message) = match self {
+            Self::Error(m) | Self::Usage(m) | Self::System(m) => ("error", m),
+            Self::Missing(m) => ("missing", m),
+            Self::Stopped(m) => ("stopped", m),
+        };
+        complain(&format!("{kind}: {message}"));
     }
 }
 
+fn words(cause: impl Into<String>, cure: impl AsRef<str>) -> String {
+    format!("{}\n  cure: {}", cause.into(), cure.as_ref())
+}
+
 /// The error of any floor below, whose message already names cause and cure.
-impl<E: Error> From<E> for Failure {
+impl<E: Error + 'static> From<E> for Failure {
     fn from(error: E) -> Self {
         let mut message = error.to_string();
+        let mut system = is_of_the_system(&error);
         let mut source = error.source();
         while let Some(inner) = source {
             let text = inner.to_string();
             if !message.contains(&text) {
                 let _ = write!(message, ": {text}");
             }
+            system |= is_of_the_system(inner);
             source = inner.source();
         }
-        Self::Error(message)
+        match system {
+            true => Self::System(message),
+            false => Self::Error(message),
+        }
     }
+}
+
+/// Whether trying again, elsewhere or later, may help.
+fn is_of_the_system(error: &(dyn Error + 'static)) -> bool {
+    let unreadable = |e: &ShardError| matches!(e, ShardError::Unreadable { .. });
+    error.is::<StoreError>()
+        || error.is::<io::Error>()
+        || error.downcast_ref().is_some_and(unreadable)
 }

@@ -7,10 +7,13 @@
 //! | frames/spot-NNNN.exr | one frame a spot |
 //! | phi.npy, phi.stderr.npy | Φcam and its standard error, pixels × spots, W |
 //! | partial/spot-NNNN.npy | finished spots of an unfinished run in f64: one column per bounce count, last the standard error |
+//! | partial/spots-NNNN-MMMM.phs | finished blocks of the spots NNNN to MMMM − 1, which are traced together |
 
 use std::fs;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use super::columns;
 use super::expose;
 use super::failure::Failure;
 use super::output::Talk;
@@ -20,8 +23,9 @@ use super::trust;
 use crate::film::{self, Channel, Frame, FrameMeta, frame_name};
 use crate::matrix::{Matrix, npy};
 use crate::scene::{COPIES, Scene};
+use crate::shard::{self, Identity, ShardFile};
 use crate::store::{StoreError, ensure_writable, write_whole};
-use crate::transport::Traced;
+use crate::transport::{Plan, Traced};
 
 pub(super) const PHI: &str = "phi.npy";
 pub(super) const STDERR: &str = "phi.stderr.npy";
@@ -185,15 +189,74 @@ impl Folder {
             .join(format!("spot-{spot:04}.npy"))
     }
 
-    /// Keeps a finished spot (column `column` of `traced`) until the run is complete.
-    pub(super) fn keep(&self, spot: usize, traced: &Traced, column: usize) -> Result<(), Failure> {
+    /// Keeps a finished spot (column `column` of `traced`) until the run is complete, and returns what it keeps.
+    pub(super) fn keep(
+        &self,
+        spot: usize,
+        traced: &Traced,
+        column: usize,
+    ) -> Result<Matrix, Failure> {
         ensure_writable(&self.path.join("partial"))?;
         let columns = traced.bounces.iter().chain([&traced.stderr]);
         let columns: Vec<_> = columns.map(|m| m.column(column).into_owned()).collect();
-        Ok(npy::write(
-            &self.partial(spot),
-            &Matrix::from_columns(&columns),
-        )?)
+        let kept = Matrix::from_columns(&columns);
+        npy::write(&self.partial(spot), &kept)?;
+        Ok(kept)
+    }
+
+    /// The file for the finished blocks of `spots`.
+    pub(super) fn checkpoint(&self, spots: &Range<usize>) -> Result<PathBuf, Failure> {
+        ensure_writable(&self.path.join("partial"))?;
+        Ok(self.checkpoint_path(spots))
+    }
+
+    fn checkpoint_path(&self, spots: &Range<usize>) -> PathBuf {
+        let name = format!(
+            "spots-{:04}-{:04}.{}",
+            spots.start,
+            spots.end,
+            shard::EXTENSION
+        );
+        self.path.join("partial").join(name)
+    }
+
+    /// Spots of which `plan` has finished blocks there.
+    pub(super) fn checkpoints(&self, scene: &Scene, plan: &Plan) -> Vec<Range<usize>> {
+        let entries = fs::read_dir(self.path.join("partial"));
+        let names = entries
+            .into_iter()
+            .flatten()
+            .filter_map(|e| e.ok()?.file_name().into_string().ok());
+        let spots = |name: String| {
+            let own = name.strip_suffix(shard::EXTENSION)?.strip_suffix('.')?;
+            let (from, to) = own.strip_prefix("spots-")?.split_once('-')?;
+            Some(from.parse().ok()?..to.parse().ok()?)
+        };
+        let blocks = u64::from(plan.budget.blocks);
+        let mut found: Vec<Range<usize>> = names
+            .filter_map(spots)
+            .filter(|r| r.start < r.end && r.end <= scene.laser.spots.len())
+            .filter(|r| {
+                ShardFile::open(
+                    &self.checkpoint_path(r),
+                    &own_identity(scene, plan, r),
+                    blocks,
+                )
+                .is_ok()
+            })
+            .collect();
+        found.sort_by_key(|r| r.start);
+        found
+    }
+
+    /// Forgets the finished blocks of `spots`, once these are whole.
+    pub(super) fn remove_checkpoint(&self, spots: &Range<usize>) -> Result<(), Failure> {
+        let path = self.checkpoint_path(spots);
+        let name = path
+            .file_name()
+            .and_then(|n| n.to_str())
+            .unwrap_or_default();
+        remove_named(&self.path.join("partial"), &[name])
     }
 
     /// A finished spot of the run `record`: one column per bounce count, then the standard error; `None` unless both this and
@@ -207,7 +270,11 @@ impl Folder {
     }
 
     pub(super) fn remove_partial(&self) -> Result<(), Failure> {
-        remove_numbered(&self.path.join("partial"), "npy")
+        let partial = self.path.join("partial");
+        remove_files(&partial, |stem, ext| {
+            stem.starts_with("spots-") && ext == shard::EXTENSION
+        })?;
+        remove_numbered(&partial, "npy")
     }
 
     /// Removes what was rendered, and what was found from it.
@@ -256,6 +323,11 @@ impl Folder {
         npy::write(&self.path.join(STDERR), stderr)?;
         Ok(npy::write(&self.path.join(PHI), phi)?)
     }
+}
+
+/// What the finished blocks of `spots` depend on.
+pub(super) fn own_identity(scene: &Scene, plan: &Plan, spots: &Range<usize>) -> Identity {
+    columns::identity(scene, plan).with("spots", format!("{}..{}", spots.start, spots.end))
 }
 
 /// What the frame of `spot` says of its origin.

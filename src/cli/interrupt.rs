@@ -1,20 +1,54 @@
-//! Ctrl-C.
+//! Ctrl-C, and the warning that a scheduler sends before it ends a job.
 
+use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static STOP: AtomicBool = AtomicBool::new(false);
+static WARNED: AtomicBool = AtomicBool::new(false);
+static GENTLE: AtomicBool = AtomicBool::new(false);
 
-/// The flag that Ctrl-C and SIGTERM set; a second Ctrl-C ends the process at once. What is finished is on disk by then.
+/// The flag that ends the work at once: Ctrl-C sets it, and SIGTERM where nothing can be finished first. A second Ctrl-C ends the process. What
+/// is finished is on disk by then.
 pub(super) fn stop_flag() -> &'static AtomicBool {
-    static ONCE: std::sync::Once = std::sync::Once::new();
-    ONCE.call_once(|| {
-        let handler = || {
-            if STOP.swap(true, Ordering::Relaxed) {
-                std::process::exit(130);
-            }
-        };
-        // Without a handler Ctrl-C still ends the process, and finished spots are still kept.
-        let _ = ctrlc::set_handler(handler);
-    });
+    static ONCE: Once = Once::new();
+    ONCE.call_once(listen);
     &STOP
 }
+
+/// From now on SIGTERM is a warning: the block at work is finished first. A second SIGTERM does not wait for it.
+pub(super) fn finish_blocks() {
+    let _ = stop_flag();
+    GENTLE.store(true, Ordering::Relaxed);
+}
+
+/// Whether SIGTERM came.
+pub(super) fn warned() -> bool {
+    WARNED.load(Ordering::Relaxed)
+}
+
+#[cfg(unix)]
+fn listen() {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::iterator::Signals;
+
+    // Without this a signal still ends the process, and finished spots are still kept.
+    let Ok(mut signals) = Signals::new([SIGINT, SIGHUP, SIGTERM]) else {
+        return;
+    };
+    let wait = move || {
+        for signal in signals.forever() {
+            if signal == SIGTERM {
+                let again = WARNED.swap(true, Ordering::Relaxed);
+                if again || !GENTLE.load(Ordering::Relaxed) {
+                    STOP.store(true, Ordering::Relaxed);
+                }
+            } else if STOP.swap(true, Ordering::Relaxed) {
+                std::process::exit(130);
+            }
+        }
+    };
+    let _ = std::thread::Builder::new().spawn(wait);
+}
+
+#[cfg(not(unix))]
+fn listen() {}

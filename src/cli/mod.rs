@@ -21,15 +21,20 @@
 //! | `exposed/` | what `phicam expose` made of it: `phi.npy`, `phi.stderr.npy`, `saturated.npy`, `counts/`, `exposure.json` |
 //! | `partial/` | finished spots of an unfinished run; gone when it is complete |
 //!
-//! Exit codes: 0 done (and agreed), 1 traced and modelled disagree, 2 error, 130 stopped by Ctrl-C with what is finished
-//! kept.
+//! Exit codes: 0 done (and agreed), 1 traced and modelled disagree, 2 error, 75 stopped by SIGTERM and 130 by Ctrl-C with what is finished
+//! kept. The commands for many machines (`plan`, `shard`, `status`, `merge`, `slurm`, `clean`) tell schedulers more: 3 not complete
+//! (`status`), 64 wrong usage, 65 refused data, 66 missing blocks, 74 the system cannot read or write.
 
 mod args;
+mod checkpoint;
+mod columns;
 mod expose;
 mod failure;
 mod finished;
 mod folder;
+mod indices;
 mod interrupt;
+mod many;
 mod model;
 mod output;
 mod portrait;
@@ -56,6 +61,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use args::{Args, Command};
+use failure::{Codes, Failure};
 use output::Talk;
 
 /// How a command ended, if it did not fail.
@@ -63,11 +69,15 @@ use output::Talk;
 enum Outcome {
     Done,
     Disagreed,
+    Incomplete,
 }
 
 /// Parses the arguments, runs the command and returns its exit code.
 pub fn main() -> ExitCode {
-    let args = Args::parse();
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        Err(error) => return refuse(&error),
+    };
     let talk = Talk { quiet: args.quiet };
     trust::also_read(&args.also_read);
     let result = match &args.command {
@@ -81,15 +91,35 @@ pub fn main() -> ExitCode {
         Command::View(a) => view::execute(a, talk),
         Command::Scene(a) => scene::execute(a, talk),
         Command::Target(a) => target::execute(a, talk),
+        Command::Plan(a) => many::plan::execute(a, talk),
+        Command::Shard(a) => many::shard::execute(a, talk),
+        Command::Status(a) => many::status::execute(a, talk),
+        Command::Merge(a) => many::merge::execute(a, talk),
+        Command::Clean(a) => many::clean::execute(a, talk),
         Command::Study(a) => study::execute(a, talk),
         Command::Reproduce(a) => reproduce::execute(a, talk),
     };
     match result {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::Disagreed) => ExitCode::from(1),
+        Ok(Outcome::Incomplete) => ExitCode::from(3),
         Err(failure) => {
             failure.report();
-            ExitCode::from(failure.code())
+            ExitCode::from(failure.code(args.command.codes()))
         }
+    }
+}
+
+/// What clap says of arguments that it cannot read, or of a question for help.
+fn refuse(error: &clap::Error) -> ExitCode {
+    // That nobody reads it is no reason for another code.
+    let _ = error.print();
+    let scheduled = || std::env::args().skip(1).find(|a| !a.starts_with('-'));
+    match error.use_stderr() {
+        false => ExitCode::SUCCESS,
+        true if scheduled().is_some_and(|c| Command::SCHEDULED.contains(&c.as_str())) => {
+            ExitCode::from(Failure::Usage(String::new()).code(Codes::Scheduler))
+        }
+        true => ExitCode::from(2),
     }
 }

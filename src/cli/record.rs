@@ -6,11 +6,11 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::failure::Failure;
-use crate::num::stream::Sampling;
+use super::settings;
 use crate::scene::Scene;
 use crate::store::write_whole;
 use crate::study::Settings;
-use crate::transport::{Budget, Estimator, Plan};
+use crate::transport::Plan;
 
 /// The record of a run.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -114,30 +114,11 @@ impl Record {
 
     /// The plan that was rendered.
     pub(super) fn plan(&self) -> Result<Plan, Failure> {
-        let unknown = |what: &str| {
-            let cause = format!(
-                "{} names a {what} that this version does not know",
-                Self::FILE
-            );
-            Failure::new(cause, "use the version of phicam that rendered it")
-        };
-        let estimator = Estimator::ALL
-            .into_iter()
-            .find(|e| e.name() == self.estimator)
-            .ok_or_else(|| unknown("estimator"))?;
-        let sampling = [Sampling::Pcg, Sampling::Sobol]
-            .into_iter()
-            .find(|s| s.name() == self.sampler)
-            .ok_or_else(|| unknown("sampler"))?;
-        let budget = Budget::new(self.samples, sampling)
-            .filter(|b| b.blocks == self.blocks && b.samples() == self.samples)
-            .ok_or_else(|| unknown("division into blocks"))?;
-        Ok(Plan {
-            estimator,
-            sampling,
-            seed: self.seed,
-            budget,
-        })
+        let plan = settings::named(&self.estimator, &self.sampler, self.seed, self.samples)?;
+        match plan.budget.blocks == self.blocks {
+            true => Ok(plan),
+            false => Err(settings::unknown("division into blocks")),
+        }
     }
 
     pub(super) fn to_settings(&self) -> Settings {

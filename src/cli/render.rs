@@ -7,10 +7,12 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use super::args::{RenderArgs, TraceArgs};
+use super::checkpoint::{Checkpoint, Parts};
+use super::columns::{Columns, together};
 use super::failure::Failure;
 use super::finished::read_matrix;
-use super::folder::{Folder, Keep, PHI, STDERR};
-use super::interrupt::stop_flag;
+use super::folder::{Folder, Keep, PHI, STDERR, own_identity};
+use super::interrupt::{finish_blocks, stop_flag};
 use super::output::{self, Talk};
 use super::record::Record;
 use super::trust;
@@ -18,7 +20,7 @@ use super::{Outcome, progress, settings};
 use crate::film;
 use crate::matrix::Matrix;
 use crate::scene::Scene;
-use crate::transport::{Control, Estimator, Plan, Traced, block_size, render};
+use crate::transport::{Control, Plan, Tally, Traced, block_size};
 
 pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure> {
     let scene = trust::load(&args.scene)?;
@@ -41,7 +43,10 @@ pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure>
     };
     let complete = match keep {
         Keep::Nothing => None,
-        _ => complete(&scene, &args.trace, &args.output)?,
+        _ => {
+            let plan = settings::plan(&args.trace.paths, Talk { quiet: true })?;
+            complete(&scene, &plan, &args.output)?
+        }
     };
     let (record, phi) = match complete {
         Some(record) => (record, true),
@@ -73,10 +78,9 @@ pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure>
     Ok(Outcome::Done)
 }
 
-/// The record of the run in `path` if this very run is there whole, so that nothing is left to resume.
-fn complete(scene: &Scene, args: &TraceArgs, path: &Path) -> Result<Option<Record>, Failure> {
-    let plan = settings::plan(args, Talk { quiet: true })?;
-    let asked = Record::new(scene, &plan, 0, 0, 0.0);
+/// The record of the run in `path` if this very run is there whole, so that nothing is left to do.
+pub(super) fn complete(scene: &Scene, plan: &Plan, path: &Path) -> Result<Option<Record>, Failure> {
+    let asked = Record::new(scene, plan, 0, 0, 0.0);
     let record = Record::read(path)?
         .filter(|earlier| earlier.same_settings(&asked) && earlier.finished == earlier.spots);
     let whole = || {
@@ -105,7 +109,7 @@ pub(super) fn into_folder(
     path: &Path,
     talk: Talk,
 ) -> Result<Rendered, Failure> {
-    let plan = settings::plan(args, talk)?;
+    let plan = settings::plan(&args.paths, talk)?;
     settings::suited(scene, &plan)?;
     let pool = settings::pool(args.threads)?;
     let threads = pool.current_num_threads();
@@ -116,14 +120,19 @@ pub(super) fn into_folder(
         record.seconds = earlier.seconds;
     }
     refuse_too_large(scene)?;
+    finish_blocks();
     let folder = Folder::open(path, scene, &record, keep, talk)?;
     talk.warn(scene);
-    let todo: Vec<usize> = match keep {
-        Keep::Finished => spots
-            .filter(|s| folder.kept(*s, scene, &record).is_none())
-            .collect(),
-        _ => spots.collect(),
+    let total = scene.laser.spots.len();
+    let there = |s: usize| match keep {
+        Keep::Finished => true,
+        Keep::OtherSpots => !spots.contains(&s),
+        Keep::Nothing => false,
     };
+    let mut kept: Vec<Option<Matrix>> = (0..total)
+        .map(|s| there(s).then(|| folder.kept(s, scene, &record)).flatten())
+        .collect();
+    let todo: Vec<usize> = spots.filter(|s| kept[*s].is_none()).collect();
     let points = block_size(scene, &plan) as u64;
     if points > u64::from(plan.budget.size) {
         talk.say(format!(
@@ -132,16 +141,22 @@ pub(super) fn into_folder(
         ));
     }
     let start = Instant::now();
-    let traced = trace(scene, &plan, &todo, &folder, &record, &pool, talk);
+    let work = Work {
+        scene,
+        plan: &plan,
+        folder: &folder,
+        record: &record,
+        pool: &pool,
+        resume: keep == Keep::Finished,
+    };
+    let traced = work.trace(&todo, &mut kept, talk);
     record.seconds += start.elapsed().as_secs_f64();
-    let total = scene.laser.spots.len();
-    let kept: Vec<Option<Matrix>> = (0..total).map(|s| folder.kept(s, scene, &record)).collect();
     record.finished = kept.iter().flatten().count();
     if let Err(failure) = traced {
         record.write(path)?;
         return Err(match failure {
-            Failure::Stopped(_) => Failure::Stopped(format!(
-                "{} of {total} spots are finished and kept in {}; go on with `phicam render --resume` and the same settings",
+            Failure::Stopped(blocks) => Failure::Stopped(format!(
+                "{} of {total} spots{blocks} are finished and kept in {}; go on with `phicam render --resume` and the same settings",
                 record.finished,
                 path.display()
             )),
@@ -159,54 +174,145 @@ pub(super) fn into_folder(
     Ok(Rendered { record, phi })
 }
 
-/// Traces the spots of `todo`; frames and kept columns are written as soon as they are finished.
-fn trace(
-    scene: &Scene,
-    plan: &Plan,
-    todo: &[usize],
-    folder: &Folder,
-    record: &Record,
-    pool: &rayon::ThreadPool,
-    talk: Talk,
-) -> Result<(), Failure> {
-    let pixels = scene.camera.pixels() as u64;
-    let per_pixel = match plan.estimator.serves_all_spots() {
-        false => todo.len() as u64,
-        true => u64::from(!todo.is_empty()),
-    };
-    let bar = progress::paths(
-        talk,
-        &format!("tracing {}", scene.name),
-        pixels * plan.budget.samples() * per_pixel,
-    );
-    let tick = |paths| bar.inc(paths);
-    let control = Control {
-        progress: &tick,
-        stop: stop_flag(),
-    };
-    let stopped = || Failure::Stopped(String::new());
-    for range in batches(todo, plan.estimator) {
-        let traced = pool
-            .install(|| render(scene, plan, range.clone(), control))
-            .ok_or_else(stopped)?;
-        refuse_beyond_f32(&traced)?;
-        pool.install(|| {
-            let columns = range.into_par_iter().enumerate();
-            columns.try_for_each(|(column, spot)| {
-                folder.write_frame(scene, record, spot, &traced, column)?;
-                folder.keep(spot, &traced, column)
-            })
-        })?;
+/// A render at work.
+struct Work<'a> {
+    scene: &'a Scene,
+    plan: &'a Plan,
+    folder: &'a Folder,
+    record: &'a Record,
+    pool: &'a rayon::ThreadPool,
+    resume: bool,
+}
+
+impl Work<'_> {
+    /// Traces the spots of `todo`; blocks, frames and kept columns are written as soon as they are finished.
+    fn trace(
+        &self,
+        todo: &[usize],
+        kept: &mut [Option<Matrix>],
+        talk: Talk,
+    ) -> Result<(), Failure> {
+        let Self { scene, plan, .. } = *self;
+        let batches = self.batches(todo);
+        let pixels = scene.camera.pixels() as u64;
+        let columns = match plan.estimator.serves_all_spots() {
+            false => todo.len(),
+            true => batches.len(),
+        };
+        let bar = progress::paths(
+            talk,
+            &format!("tracing {}", scene.name),
+            pixels * plan.budget.samples() * columns as u64,
+        );
+        let tick = |paths| bar.inc(paths);
+        let control = Control {
+            progress: &tick,
+            stop: stop_flag(),
+        };
+        for range in batches {
+            let columns = Columns {
+                scene,
+                plan,
+                spots: range.clone(),
+                first: 0,
+            };
+            let threads = self.pool.current_num_threads();
+            let path = self.folder.checkpoint(&range)?;
+            let mut checkpoint = Checkpoint::new(path, own_identity(scene, plan, &range), threads);
+            let mut tally = columns.tally(0);
+            let blocks = columns.blocks();
+            if self.resume {
+                columns.add(&mut tally, checkpoint.resume(&blocks, blocks.end))?;
+                self.say_resumed(&tally, &range, talk);
+                let traced = u64::from(tally.range().end) * u64::from(plan.budget.size);
+                let each = if plan.estimator.serves_all_spots() {
+                    1
+                } else {
+                    range.len() as u64
+                };
+                bar.inc(pixels * traced * each);
+            }
+            let nothing = Parts::new();
+            let tally = self.pool.install(|| {
+                columns.trace(tally, blocks.end, control, (&mut checkpoint, &nothing))
+            })?;
+            let there = tally.range().end;
+            let Some(traced) = tally.traced() else {
+                let of = plan.budget.blocks;
+                return Err(Failure::Stopped(match there {
+                    0 => String::new(),
+                    _ => format!(" and {there} of {of} blocks of the next"),
+                }));
+            };
+            refuse_beyond_f32(&traced)?;
+            let write = |(column, spot): (usize, usize)| {
+                self.folder
+                    .write_frame(scene, self.record, spot, &traced, column)?;
+                self.folder.keep(spot, &traced, column)
+            };
+            let written = || -> Result<Vec<Matrix>, Failure> {
+                range
+                    .clone()
+                    .into_par_iter()
+                    .enumerate()
+                    .map(write)
+                    .collect()
+            };
+            let columns = self.pool.install(written)?;
+            for (spot, column) in range.clone().zip(columns) {
+                kept[spot] = Some(column);
+            }
+            self.folder.remove_checkpoint(&range)?;
+        }
+        bar.finish_and_clear();
+        Ok(())
     }
-    bar.finish_and_clear();
-    Ok(())
+
+    fn say_resumed(&self, tally: &Tally, range: &Range<usize>, talk: Talk) {
+        let there = tally.range().end;
+        if there > 0 {
+            talk.say(format!(
+                "going on after {there} of {} blocks of the spots {} to {}",
+                self.plan.budget.blocks,
+                range.start,
+                range.end - 1
+            ));
+        }
+    }
+
+    /// Runs of neighbouring spots to be traced together: one spot each where nothing is shared, as many as memory bears where paths serve all
+    /// spots. Where an earlier process has left blocks of some of them, these stay together.
+    fn batches(&self, todo: &[usize]) -> Vec<Range<usize>> {
+        let most = together(self.scene, self.plan.estimator);
+        let begun = match self.resume {
+            true => self.folder.checkpoints(self.scene, self.plan),
+            false => Vec::new(),
+        };
+        let fits = |r: &Range<usize>| r.clone().all(|s| todo.contains(&s));
+        let begun: Vec<Range<usize>> = begun.into_iter().filter(fits).collect();
+        let own = |spot: usize| begun.iter().position(|r| r.contains(&spot));
+        let mut ranges: Vec<Range<usize>> = Vec::new();
+        for &spot in todo {
+            match ranges.last_mut() {
+                Some(last)
+                    if last.end == spot
+                        && own(last.start) == own(spot)
+                        && (last.len() < most || own(spot).is_some()) =>
+                {
+                    last.end = spot + 1;
+                }
+                _ => ranges.push(spot..spot + 1),
+            }
+        }
+        ranges
+    }
 }
 
 /// Bytes that Φcam with all its bounce counts may take in memory.
 const MOST_BYTES: f64 = 16.0 * 1024.0 * 1024.0 * 1024.0;
 
 /// What will not fit in the end is refused at the start.
-fn refuse_too_large(scene: &Scene) -> Result<(), Failure> {
+pub(super) fn refuse_too_large(scene: &Scene) -> Result<(), Failure> {
     let (pixels, spots) = (scene.camera.pixels() as f64, scene.laser.spots.len() as f64);
     let channels = f64::from(scene.max_bounces) + 2.0;
     let (frame, matrix) = (4.0 * pixels * channels, 8.0 * pixels * spots * channels);
@@ -227,26 +333,13 @@ fn refuse_too_large(scene: &Scene) -> Result<(), Failure> {
 }
 
 /// Frames hold f32: a flux beyond its range would be stored as infinity.
-fn refuse_beyond_f32(traced: &Traced) -> Result<(), Failure> {
+pub(super) fn refuse_beyond_f32(traced: &Traced) -> Result<(), Failure> {
     let most = traced.flux.amax().max(traced.stderr.amax());
     if most <= f64::from(f32::MAX) {
         return Ok(());
     }
     let cause = format!("a flux of {most:.1e} W is more than the f32 of a frame can hold");
     Err(Failure::new(cause, "lower the laser's power in the scene"))
-}
-
-/// Runs of neighbouring spots to be traced together: one spot each where nothing is shared, as many as possible where paths
-/// serve all spots.
-fn batches(todo: &[usize], estimator: Estimator) -> Vec<Range<usize>> {
-    let mut ranges: Vec<Range<usize>> = Vec::new();
-    for &spot in todo {
-        match ranges.last_mut() {
-            Some(last) if last.end == spot && estimator.serves_all_spots() => last.end = spot + 1,
-            _ => ranges.push(spot..spot + 1),
-        }
-    }
-    ranges
 }
 
 /// All columns from what was kept of each spot, if every spot is there.

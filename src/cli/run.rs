@@ -24,7 +24,7 @@ use crate::study::{self, Noise, RunResults};
 pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
     let scene = trust::load(&args.scene)?;
     let mut clock = Clock::start();
-    let plan = settings::plan(&args.trace, Talk { quiet: true })?;
+    let plan = settings::plan(&args.trace.paths, Talk { quiet: true })?;
     let test = settings::test(&args.test, &plan, talk)?;
     let spots = 0..scene.laser.spots.len();
     let asked = Record::new(&scene, &plan, 0, 0, 0.0);

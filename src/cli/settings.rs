@@ -2,7 +2,7 @@
 
 use rayon::ThreadPool;
 
-use super::args::{EstimatorName, IntegrationName, KernelName, SamplerName, TestArgs, TraceArgs};
+use super::args::{EstimatorName, IntegrationName, KernelName, PathArgs, SamplerName, TestArgs};
 use super::failure::Failure;
 use super::output::Talk;
 use crate::model::Kernel;
@@ -13,7 +13,7 @@ use crate::study::{Errors, Integration, Test};
 use crate::transport::{Budget, Estimator, Plan, obstacle};
 
 /// The plan that the arguments describe; a rounded number of samples is said.
-pub(super) fn plan(args: &TraceArgs, talk: Talk) -> Result<Plan, Failure> {
+pub(super) fn plan(args: &PathArgs, talk: Talk) -> Result<Plan, Failure> {
     let (estimator, sampling) = (estimator(args.estimator), sampling(args.sampler));
     let budget = budget("--samples", args.samples, sampling)?;
     if budget.samples() != args.samples {
@@ -31,6 +31,38 @@ pub(super) fn plan(args: &TraceArgs, talk: Talk) -> Result<Plan, Failure> {
         seed: args.seed,
         budget,
     })
+}
+
+/// The plan that a file describes: its samples are already whole blocks.
+pub(super) fn named(
+    estimator: &str,
+    sampler: &str,
+    seed: u64,
+    samples: u64,
+) -> Result<Plan, Failure> {
+    let estimator = Estimator::ALL
+        .into_iter()
+        .find(|e| e.name() == estimator)
+        .ok_or_else(|| unknown("estimator"))?;
+    let sampling = [Sampling::Pcg, Sampling::Sobol]
+        .into_iter()
+        .find(|s| s.name() == sampler)
+        .ok_or_else(|| unknown("sampler"))?;
+    let budget = Budget::new(samples, sampling)
+        .filter(|b| b.samples() == samples)
+        .ok_or_else(|| unknown("division into blocks"))?;
+    Ok(Plan {
+        estimator,
+        sampling,
+        seed,
+        budget,
+    })
+}
+
+/// What a file names and this version does not know.
+pub(super) fn unknown(what: &str) -> Failure {
+    let cause = format!("the settings name a {what} that this version does not know");
+    Failure::new(cause, "use the version of phicam that wrote them")
 }
 
 /// Refuses an estimator that does not suit the scene.

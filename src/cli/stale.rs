@@ -9,6 +9,7 @@ use super::expose;
 use super::failure::Failure;
 use super::folder::{PHI, STDERR};
 use crate::recovery::Method;
+use crate::store::is_abandoned;
 
 /// Removes the spot-NNNN files of `dir` with the given extension, and `dir` if that empties it.
 pub(super) fn remove_numbered(dir: &Path, extension: &str) -> Result<(), Failure> {
@@ -79,8 +80,7 @@ pub(super) fn remove_files(dir: &Path, ours: impl Fn(&str, &str) -> bool) -> Res
     for path in entries.filter_map(Result::ok).map(|e| e.path()) {
         let part = |s: Option<&OsStr>| s.and_then(OsStr::to_str).unwrap_or("").to_owned();
         let (stem, ext) = (part(path.file_stem()), part(path.extension()));
-        let unfinished = stem.starts_with(".phicam-") && ext == "part";
-        if unfinished || ours(&stem, &ext) {
+        if is_abandoned(&path) || ours(&stem, &ext) {
             fs::remove_file(&path)?;
         }
     }

@@ -2,7 +2,7 @@
 
 use std::io;
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What is wrong with a shard. Each message names the file, the cause and the cure.
 #[derive(Debug, thiserror::Error)]
@@ -100,15 +100,15 @@ pub enum ShardError {
 }
 
 impl ShardError {
-    /// Whether the file, if it were removed, would be missed by nobody: it is ours and spoilt.
-    pub fn is_spoilt(&self) -> bool {
-        matches!(
-            self,
-            Self::Empty { .. }
-                | Self::Truncated { .. }
-                | Self::TooLong { .. }
-                | Self::Damaged { .. }
-                | Self::Range { .. }
-        )
+    /// The file, if it is one of ours that nobody can use: what it held has to be computed again.
+    pub fn spoilt(&self) -> Option<&Path> {
+        match self {
+            Self::Empty { path }
+            | Self::Truncated { path, .. }
+            | Self::TooLong { path, .. }
+            | Self::Damaged { path, .. }
+            | Self::Range { path, .. } => Some(path),
+            _ => None,
+        }
     }
 }

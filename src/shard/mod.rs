@@ -30,6 +30,9 @@ pub use writer::write;
 
 use serde::{Deserialize, Serialize};
 
+/// What the name of a shard ends in.
+pub const EXTENSION: &str = "phs";
+
 const MAGIC: [u8; 8] = *b"phicam\0\0";
 const LAYOUT: u32 = 1;
 /// Magic, layout and the length of the header.

@@ -116,3 +116,43 @@ fn ensure_writable_never_touches_a_file_and_cleans_up() {
     assert_eq!(fs::read(&file).unwrap(), b"precious");
     assert_eq!(names(dir.path()), ["file"]);
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_a_dead_process_left_is_told_from_what_a_living_one_writes() {
+    let dir = tempfile::tempdir().unwrap();
+    let own = temporary(dir.path()).unwrap();
+    assert!(!is_abandoned(own.path()));
+    // The number of a process that has ended and was waited for is free.
+    let mut child = std::process::Command::new("true").spawn().unwrap();
+    let dead = child.id();
+    child.wait().unwrap();
+    let named = |name: String| {
+        let path = dir.path().join(name);
+        fs::write(&path, b"half").unwrap();
+        path
+    };
+    assert!(is_abandoned(&named(format!(
+        ".phicam-{}-{dead}-Xy.part",
+        host()
+    ))));
+    // Of another machine only the age tells; one from the future is left alone.
+    let foreign = named(format!(".phicam-elsewhere0-{dead}-Xy.part"));
+    assert!(!is_abandoned(&foreign));
+    let set = |time| {
+        File::options()
+            .write(true)
+            .open(&foreign)
+            .unwrap()
+            .set_modified(time)
+            .unwrap()
+    };
+    let now = std::time::SystemTime::now();
+    set(now - 2 * FORSAKEN);
+    assert!(is_abandoned(&foreign));
+    set(now + 2 * FORSAKEN);
+    assert!(!is_abandoned(&foreign));
+    for name in ["phi.npy", ".phicam-", "x.part"] {
+        assert!(!is_abandoned(&named(name.to_owned())));
+    }
+}

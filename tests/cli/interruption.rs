@@ -92,8 +92,15 @@ fn what_a_killed_process_was_writing_is_cleared_away() {
     let workspace = Workspace::with_scenes();
     let line = "render tiny.toml -o done --samples 32";
     let _ = workspace.phicam(&format!("{line} --spots 0..3")).exits(0);
+    // The number of a process that has ended and was waited for is free.
+    let mut child = Command::new("true").spawn().expect("a process");
+    let dead = child.id();
+    child.wait().expect("it ends");
+    let host = std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
+    let host: String = host.chars().filter(char::is_ascii_alphanumeric).collect();
     for folder in ["", "frames/", "partial/"] {
-        workspace.write(&format!("done/{folder}.phicam-Xy12.part"), "half a file");
+        let name = format!("done/{folder}.phicam-{host}-{dead}-Xy12.part");
+        workspace.write(&name, "half a file");
     }
     let _ = workspace.phicam(&format!("{line} --resume")).exits(0);
     let names = workspace.contents("done");

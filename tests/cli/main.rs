@@ -10,6 +10,7 @@ mod foreign_files;
 mod interruption;
 mod large_photographs;
 mod main_job;
+mod many;
 mod recovery;
 mod reproducibility;
 mod reproducing;

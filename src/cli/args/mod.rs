@@ -2,6 +2,7 @@
 
 mod expose;
 mod laboratory;
+mod many;
 mod recover;
 mod reproduce;
 mod study;
@@ -15,10 +16,12 @@ use std::path::PathBuf;
 
 use clap::{Args as Arguments, Parser, Subcommand, ValueEnum};
 
+use super::failure::Codes;
 use value::{elements, shift, spot_range};
 
 pub(in crate::cli) use expose::ExposeArgs;
 pub(in crate::cli) use laboratory::{BrdfArgs, CoverageArgs, ExperimentArgs};
+pub(in crate::cli) use many::{CleanArgs, MergeArgs, PlanArgs, ShardArgs, StatusArgs};
 pub(in crate::cli) use recover::{RecoverArgs, RuleName, WeightingName};
 pub(in crate::cli) use reproduce::ReproduceArgs;
 pub(in crate::cli) use study::{
@@ -32,7 +35,8 @@ pub(in crate::cli) use view::{LawName, MapName, PortraitArgs, TerminalName, View
 #[derive(Debug, Parser)]
 #[command(version, about, max_term_width = 100, propagate_version = true)]
 #[command(
-    after_help = "Exit codes: 0 done, 1 traced and modelled disagree, 2 error, 130 stopped by Ctrl-C."
+    after_help = "Exit codes: 0 done, 1 traced and modelled disagree, 2 error, 75 stopped by SIGTERM, 130 by Ctrl-C. \
+                  Those for schedulers: `phicam help shard`."
 )]
 pub(in crate::cli) struct Args {
     /// No progress and no remarks on standard error
@@ -67,15 +71,41 @@ pub(in crate::cli) enum Command {
     Scene(SceneArgs),
     /// Write a target picture, or list them: card, letters, star, edge, bars, ramp
     Target(TargetArgs),
+    /// Divide a render or a study into shards for many machines
+    Plan(PlanArgs),
+    /// Compute one shard of a plan
+    Shard(ShardArgs),
+    /// Which shards of a plan are missing
+    Status(StatusArgs),
+    /// Put the shards of a plan together
+    Merge(MergeArgs),
+    /// Remove from a plan's folder what is not needed any more
+    Clean(CleanArgs),
     /// Experiments around a scene
     Study(StudyArgs),
     /// The published tables and figures, computed again
     Reproduce(ReproduceArgs),
 }
 
-/// What has to be traced.
+impl Command {
+    /// Those that schedulers call.
+    pub(in crate::cli) const SCHEDULED: [&str; 6] =
+        ["plan", "shard", "status", "merge", "slurm", "clean"];
+
+    /// Which exit codes its failures have.
+    pub(in crate::cli) fn codes(&self) -> Codes {
+        match self {
+            Self::Plan(_) | Self::Shard(_) | Self::Status(_) | Self::Merge(_) | Self::Clean(_) => {
+                Codes::Scheduler
+            }
+            _ => Codes::Plain,
+        }
+    }
+}
+
+/// The paths that are traced.
 #[derive(Debug, Arguments)]
-pub(in crate::cli) struct TraceArgs {
+pub(in crate::cli) struct PathArgs {
     /// Which paths are shared
     #[arg(long, value_enum, default_value_t = EstimatorName::Independent)]
     pub estimator: EstimatorName,
@@ -88,6 +118,13 @@ pub(in crate::cli) struct TraceArgs {
     /// Seed: the same seed gives the same bytes
     #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     pub seed: u64,
+}
+
+/// What has to be traced, and how.
+#[derive(Debug, Arguments)]
+pub(in crate::cli) struct TraceArgs {
+    #[command(flatten)]
+    pub paths: PathArgs,
     /// Threads; all cores unless given. Does not change a byte of the result
     #[arg(long, allow_negative_numbers = true)]
     pub threads: Option<usize>,
@@ -140,7 +177,7 @@ pub(in crate::cli) struct RenderArgs {
     /// Only spots A to B − 1; phi.npy follows when every spot is there
     #[arg(long, value_name = "A..B", value_parser = spot_range)]
     pub spots: Option<Range<usize>>,
-    /// Keep the spots that an interrupted run with the same settings has finished
+    /// Keep the spots and blocks that an interrupted run with the same settings has finished
     #[arg(long)]
     pub resume: bool,
     /// Print the record of the run (run.json)

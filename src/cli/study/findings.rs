@@ -47,7 +47,7 @@ impl Findings {
 }
 
 /// Runs a study that traces `paths` paths: on the threads of `pool`, with a progress bar called `what`, until Ctrl-C.
-pub(super) fn traced<T: Send, E: Error + Send>(
+pub(super) fn traced<T: Send, E: Error + 'static + Send>(
     talk: Talk,
     pool: &ThreadPool,
     (what, paths): (&str, u64),
@@ -65,7 +65,7 @@ pub(super) fn traced<T: Send, E: Error + Send>(
 }
 
 /// Runs a study that counts its steps, with a progress bar called `what`; `Ok(None)` is Ctrl-C.
-pub(super) fn stepped<T: Send, E: Error + Send>(
+pub(super) fn stepped<T: Send, E: Error + 'static + Send>(
     talk: Talk,
     pool: &ThreadPool,
     what: &str,

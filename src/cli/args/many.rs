@@ -1,0 +1,76 @@
+//! Arguments of the commands for many machines.
+
+use std::path::PathBuf;
+
+use clap::Args as Arguments;
+
+use super::PathArgs;
+
+#[derive(Debug, Arguments)]
+#[command(after_help = CODES)]
+pub(in crate::cli) struct PlanArgs {
+    /// Built-in scene or path of a scene file
+    pub scene: String,
+    /// Folder of the plan: the scene with every file that it names, and what is to be computed
+    #[arg(long, short)]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub paths: PathArgs,
+    /// Into how many shards the work is divided; does not change a byte of the result
+    #[arg(long, default_value_t = 32, allow_negative_numbers = true)]
+    pub shards: u64,
+    /// Print plan.json
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What the exit codes of these commands mean.
+const CODES: &str = "Exit codes: 0 done, 3 (status) not complete, 64 wrong usage, 65 refused data, 66 missing blocks, \
+                     74 the system cannot read or write, 75 stopped early by SIGTERM, 130 by Ctrl-C. \
+                     Another try helps with 74 and 75, never with 64 and 65.";
+
+#[derive(Debug, Arguments)]
+#[command(after_help = CODES)]
+pub(in crate::cli) struct ShardArgs {
+    /// Folder of a plan
+    pub dir: PathBuf,
+    /// Which shard, from 0
+    #[arg(long, value_name = "K")]
+    pub index: u64,
+    /// Threads; all cores unless given. Does not change a byte of the result
+    #[arg(long, allow_negative_numbers = true)]
+    pub threads: Option<usize>,
+}
+
+#[derive(Debug, Arguments)]
+#[command(after_help = CODES)]
+pub(in crate::cli) struct StatusArgs {
+    /// Folder of a plan
+    pub dir: PathBuf,
+}
+
+#[derive(Debug, Arguments)]
+#[command(after_help = CODES)]
+pub(in crate::cli) struct MergeArgs {
+    /// Folder of a plan
+    pub dir: PathBuf,
+    /// Folder of the result, as the command that was planned would have left it
+    #[arg(long, short)]
+    pub output: PathBuf,
+    /// Print the record of the run (run.json)
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Arguments)]
+#[command(after_help = CODES)]
+pub(in crate::cli) struct CleanArgs {
+    /// Folder of a plan
+    pub dir: PathBuf,
+    /// The shards too: what they hold must be computed again unless it was merged
+    #[arg(long)]
+    pub shards: bool,
+    /// Only say what would be removed
+    #[arg(long)]
+    pub dry_run: bool,
+}

@@ -1,0 +1,73 @@
+//! `phicam clean`: the one command that removes what others have finished.
+
+use std::fs;
+use std::path::PathBuf;
+
+use super::folder::PlanFolder;
+use super::shards::{CHECKPOINT, files, find, named_range};
+use crate::cli::Outcome;
+use crate::cli::args::CleanArgs;
+use crate::cli::failure::Failure;
+use crate::cli::output::{self, Talk};
+use crate::shard::{EXTENSION, gaps};
+use crate::store::is_abandoned;
+
+pub(in crate::cli) fn execute(args: &CleanArgs, talk: Talk) -> Result<Outcome, Failure> {
+    let plan = PlanFolder::open(&args.dir)?;
+    let mut needless = abandoned(&plan)?;
+    let place = plan.shards_path();
+    let (there, wrong) = find(&plan, &(0..plan.file.blocks))?;
+    for error in wrong {
+        if let Some(path) = error.spoilt() {
+            needless.push(path.to_owned());
+        } else {
+            talk.say(format!("warning: {error}"));
+        }
+    }
+    for path in files(&place, CHECKPOINT)? {
+        let Some(range) = named_range(&path, plan.id(), CHECKPOINT) else {
+            continue;
+        };
+        if args.shards || gaps(range, there.iter().map(|s| s.range.clone())).is_empty() {
+            needless.push(path);
+        }
+    }
+    if args.shards {
+        let own = files(&place, EXTENSION)?;
+        needless.extend(
+            own.into_iter()
+                .filter(|p| named_range(p, plan.id(), EXTENSION).is_some()),
+        );
+    }
+    needless.sort();
+    needless.dedup();
+    let mut bytes = 0;
+    let mut words = String::new();
+    for path in &needless {
+        bytes += fs::metadata(path).map_or(0, |m| m.len());
+        words += &format!("{}\n", path.display());
+        if !args.dry_run {
+            fs::remove_file(path)?;
+        }
+    }
+    output::print(&words)?;
+    let did = if args.dry_run {
+        "would be removed"
+    } else {
+        "removed"
+    };
+    talk.say(format!(
+        "{} files, {:.1} MiB, {did}",
+        needless.len(),
+        bytes as f64 / f64::from(1 << 20)
+    ));
+    Ok(Outcome::Done)
+}
+
+/// What processes that have ended were writing.
+fn abandoned(plan: &PlanFolder) -> Result<Vec<PathBuf>, Failure> {
+    let mut found = files(&plan.path, "part")?;
+    found.extend(files(&plan.shards_path(), "part")?);
+    found.retain(|path| is_abandoned(path));
+    Ok(found)
+}

@@ -1,0 +1,67 @@
+//! `phicam plan`.
+
+use super::folder::{PlanFile, PlanFolder};
+use super::render::Render;
+use super::work::Work;
+use crate::cli::args::PlanArgs;
+use crate::cli::failure::Failure;
+use crate::cli::folder::{Folder, SCENE};
+use crate::cli::output::{self, Talk};
+use crate::cli::{Outcome, settings, trust};
+use crate::store::ensure_writable;
+
+/// Shards of one plan, at most: a folder has to list them.
+const MOST_SHARDS: u64 = 1_000_000;
+
+pub(in crate::cli) fn execute(args: &PlanArgs, talk: Talk) -> Result<Outcome, Failure> {
+    let scene = trust::load(&args.scene)?;
+    let plan = settings::plan(&args.paths, talk)?;
+    let work = Work::Render(Render::new(scene, plan)?);
+    let most = work.blocks().min(MOST_SHARDS);
+    if !(1..=most).contains(&args.shards) {
+        let cause = format!(
+            "--shards {} is not possible: the work has {} blocks",
+            args.shards,
+            work.blocks()
+        );
+        return Err(Failure::usage(cause, format!("use 1 to {most}")));
+    }
+    let file = PlanFile::new(&work, args.shards);
+    let dir = &args.output;
+    let earlier = PlanFile::read(dir)?;
+    if let Some(earlier) = &earlier
+        && let Some((name, there, asked)) = earlier.identity.difference(&file.identity)
+    {
+        let cause = format!(
+            "{} holds another plan: its {name} is {there}, and {asked} was asked for",
+            dir.display()
+        );
+        return Err(Failure::new(cause, "plan into another folder (-o)"));
+    }
+    if earlier.is_none() && dir.join(SCENE).exists() {
+        let cause = format!("{} holds a {SCENE} that is not of a plan", dir.display());
+        return Err(Failure::new(cause, "plan into another folder (-o)"));
+    }
+    ensure_writable(dir)?;
+    talk.warn(work.scene());
+    let folder = Folder { path: dir.clone() };
+    folder.write_scene(work.scene())?;
+    file.write(dir)?;
+    ensure_writable(&dir.join("shards"))?;
+    // What was written is what every machine will read.
+    let read = PlanFolder::open(dir)?;
+    if args.json {
+        output::print(&output::json(&read.file)?)?;
+    } else {
+        let PlanFile { blocks, shards, .. } = read.file;
+        let (id, dir) = (read.id().short(), dir.display());
+        output::print(&format!(
+            "{dir}: plan {id}, {blocks} blocks in {shards} shards\n  \
+             each:     phicam shard {dir} --index 0 … {}\n  \
+             missing:  phicam status {dir}\n  \
+             together: phicam merge {dir} -o OUT\n",
+            shards - 1
+        ))?;
+    }
+    Ok(Outcome::Done)
+}
