@@ -49,6 +49,12 @@ pub enum StoreError {
         /// What was to be written.
         path: PathBuf,
     },
+    /// A limit on the size of files forbids it.
+    #[error("cannot write {}: it is larger than files may be here; raise the limit (`ulimit -f`), or choose an output on another file system", path.display())]
+    TooLarge {
+        /// What was to be written.
+        path: PathBuf,
+    },
     /// Anything else.
     #[error("cannot write {}: {source}; check the path and its device", path.display())]
     Failed {
@@ -70,9 +76,8 @@ impl StoreError {
             ErrorKind::IsADirectory => Self::NotAFile { path },
             ErrorKind::PermissionDenied => Self::Denied { path },
             ErrorKind::ReadOnlyFilesystem => Self::ReadOnly { path },
-            ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
-                Self::Full { path }
-            }
+            ErrorKind::StorageFull | ErrorKind::QuotaExceeded => Self::Full { path },
+            ErrorKind::FileTooLarge => Self::TooLarge { path },
             _ => Self::Failed { path, source },
         }
     }

@@ -52,3 +52,14 @@ fn listen() {
 
 #[cfg(not(unix))]
 fn listen() {}
+
+/// A file that grows beyond a limit on its size shall be an error with a name, not the end of the process.
+#[cfg(unix)]
+pub(super) fn outlive_size_limits() {
+    static CAUGHT: AtomicBool = AtomicBool::new(false);
+    // Without this the system ends the process, and finished files are still whole.
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, &CAUGHT);
+}
+
+#[cfg(not(unix))]
+pub(super) fn outlive_size_limits() {}

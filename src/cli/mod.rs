@@ -74,6 +74,7 @@ enum Outcome {
 
 /// Parses the arguments, runs the command and returns its exit code.
 pub fn main() -> ExitCode {
+    interrupt::outlive_size_limits();
     let args = match Args::try_parse() {
         Ok(args) => args,
         Err(error) => return refuse(&error),

@@ -8,6 +8,7 @@ mod bad_settings;
 mod exposing;
 mod foreign_files;
 mod interruption;
+mod killing;
 mod large_photographs;
 mod main_job;
 mod many;

@@ -132,3 +132,46 @@ fn a_damaged_part_is_rendered_again() {
     workspace.write("out/partial/spot-0001.npy", &kept[..kept.len() / 2]);
     assert_same(&whole, &rendered(&workspace, "out", "--resume"), "resumed");
 }
+
+/// Elementary functions of the system's C library are chosen by the processor's features, and their last bits differ; those of the tracer come
+/// from elsewhere. Seen from outside: with the features taken away, the bytes stay. (Where the C library is not glibc, nothing is taken away.)
+#[test]
+fn processor_features_change_no_byte() {
+    let workspace = workspace();
+    let _ = workspace
+        .phicam("scene export satin -o satin.toml")
+        .exits(0);
+    let satin = workspace
+        .text("satin.toml")
+        .replace("per_side = 30", "per_side = 2")
+        .replace("pixels = [16, 16]", "pixels = [4, 4]");
+    workspace.write("satin.toml", satin);
+    let render = |scene: &str, dir: &str, plan: &str, features: &str| {
+        let line = format!("render {scene} -o {dir} --samples 64 {plan}");
+        let status = std::process::Command::new(env!("CARGO_BIN_EXE_phicam"))
+            .args(line.split_whitespace())
+            .current_dir(workspace.path(""))
+            .env("GLIBC_TUNABLES", features)
+            .output()
+            .expect("the program starts");
+        assert!(status.status.success(), "{line}: {status:?}");
+        let mut files = workspace.contents(dir);
+        assert!(files.remove("run.json").is_some());
+        files
+    };
+    let none =
+        "glibc.cpu.hwcaps=-AVX512F,-AVX512VL,-AVX2,-AVX,-FMA,-FMA4,-SSE4_2,-SSE4_1,-BMI2,-ERMS";
+    for (n, (scene, plan)) in [
+        ("tiny.toml", "--estimator independent"),
+        ("tiny.toml", "--estimator factored"),
+        ("satin.toml", "--estimator shared"),
+        ("satin.toml", "--estimator factored"),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let all = render(scene, &format!("all-{n}"), plan, "");
+        let few = render(scene, &format!("few-{n}"), plan, none);
+        assert_same(&all, &few, &format!("{scene} {plan}"));
+    }
+}
