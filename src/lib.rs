@@ -117,6 +117,7 @@
 //! * [`recovery`]: the methods, their parameters, their uncertainty.
 //! * [`study::reproduce`](mod@study::reproduce): the published study computed again, and the ledger of its contradictions.
 //! * [`cli`]: what a run leaves on disk.
+//! * [`cli::many_machines`](mod@cli::many_machines): thousands of frames on a cluster, on Slurm and other schedulers.
 
 pub mod cli;
 pub mod film;

@@ -44,6 +44,11 @@ impl Failure {
         Self::Usage(words(cause, cure))
     }
 
+    /// What the system could not do, by cause and cure.
+    pub(super) fn system(cause: impl Into<String>, cure: impl AsRef<str>) -> Self {
+        Self::System(words(cause, cure))
+    }
+
     pub(super) fn code(&self, codes: Codes) -> u8 {
         match (self, codes) {
             (Self::Stopped(_), _) if interrupt::warned() => 75,

@@ -35,6 +35,7 @@ mod folder;
 mod indices;
 mod interrupt;
 mod many;
+pub mod many_machines;
 mod model;
 mod output;
 mod portrait;
@@ -96,6 +97,7 @@ pub fn main() -> ExitCode {
         Command::Shard(a) => many::shard::execute(a, talk),
         Command::Status(a) => many::status::execute(a, talk),
         Command::Merge(a) => many::merge::execute(a, talk),
+        Command::Slurm(a) => many::slurm::execute(a, talk),
         Command::Clean(a) => many::clean::execute(a, talk),
         Command::Study(a) => study::execute(a, talk),
         Command::Reproduce(a) => reproduce::execute(a, talk),

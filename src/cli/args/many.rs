@@ -63,6 +63,26 @@ pub(in crate::cli) struct MergeArgs {
 }
 
 #[derive(Debug, Arguments)]
+#[command(
+    after_help = "Running it again is the resume: only shards that are neither there nor queued nor running are submitted. \
+    SBATCH OPTIONS go to the array and to the merge alike, e.g. `phicam slurm DIR -- --partition=cpu --time=2:00:00 --cpus-per-task=16 --mem=8G`. \
+    What the jobs say is in DIR/slurm."
+)]
+pub(in crate::cli) struct SlurmArgs {
+    /// Folder of a plan
+    pub dir: PathBuf,
+    /// Folder that the merge writes; DIR/merged unless given
+    #[arg(long, short)]
+    pub output: Option<PathBuf>,
+    /// Print the job scripts and the sbatch commands, as a shell script, and submit nothing
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Options of sbatch
+    #[arg(last = true, value_name = "SBATCH OPTIONS", allow_hyphen_values = true)]
+    pub options: Vec<String>,
+}
+
+#[derive(Debug, Arguments)]
 #[command(after_help = CODES)]
 pub(in crate::cli) struct CleanArgs {
     /// Folder of a plan

@@ -21,7 +21,7 @@ use value::{elements, shift, spot_range};
 
 pub(in crate::cli) use expose::ExposeArgs;
 pub(in crate::cli) use laboratory::{BrdfArgs, CoverageArgs, ExperimentArgs};
-pub(in crate::cli) use many::{CleanArgs, MergeArgs, PlanArgs, ShardArgs, StatusArgs};
+pub(in crate::cli) use many::{CleanArgs, MergeArgs, PlanArgs, ShardArgs, SlurmArgs, StatusArgs};
 pub(in crate::cli) use recover::{RecoverArgs, RuleName, WeightingName};
 pub(in crate::cli) use reproduce::ReproduceArgs;
 pub(in crate::cli) use study::{
@@ -79,6 +79,8 @@ pub(in crate::cli) enum Command {
     Status(StatusArgs),
     /// Put the shards of a plan together
     Merge(MergeArgs),
+    /// Submit what is missing of a plan to Slurm, and the merge after it; once more to resume
+    Slurm(SlurmArgs),
     /// Remove from a plan's folder what is not needed any more
     Clean(CleanArgs),
     /// Experiments around a scene
@@ -95,9 +97,12 @@ impl Command {
     /// Which exit codes its failures have.
     pub(in crate::cli) fn codes(&self) -> Codes {
         match self {
-            Self::Plan(_) | Self::Shard(_) | Self::Status(_) | Self::Merge(_) | Self::Clean(_) => {
-                Codes::Scheduler
-            }
+            Self::Plan(_)
+            | Self::Shard(_)
+            | Self::Status(_)
+            | Self::Merge(_)
+            | Self::Slurm(_)
+            | Self::Clean(_) => Codes::Scheduler,
             _ => Codes::Plain,
         }
     }

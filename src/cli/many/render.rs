@@ -133,6 +133,13 @@ impl Render {
         Ok(parts)
     }
 
+    /// The record is the last file that a merge writes.
+    pub(super) fn is_merged(&self, output: &Path) -> Result<bool, Failure> {
+        let asked = Record::new(&self.scene, &self.plan, 0, 0, 0.0);
+        let there = Record::read(output)?;
+        Ok(there.is_some_and(|r| r.same_settings(&asked) && r.finished == r.spots))
+    }
+
     pub(super) fn merge(
         &self,
         shards: &Shards,

@@ -14,11 +14,7 @@ use crate::shard::gaps;
 
 pub(in crate::cli) fn execute(args: &StatusArgs, talk: Talk) -> Result<Outcome, Failure> {
     let plan = PlanFolder::open(&args.dir)?;
-    let (there, wrong) = find(&plan, &(0..plan.file.blocks))?;
-    for error in wrong {
-        talk.say(format!("warning: {error}"));
-    }
-    let missing = missing(&plan, there.into_iter().map(|s| s.range));
+    let missing = missing_shards(&plan, talk)?;
     let (all, lack) = (plan.file.shards, missing.len() as u64);
     talk.say(format!("{} of {all} shards are there", all - lack));
     if missing.is_empty() {
@@ -26,6 +22,15 @@ pub(in crate::cli) fn execute(args: &StatusArgs, talk: Talk) -> Result<Outcome, 
     }
     output::print(&format!("{}\n", array_syntax(&missing)))?;
     Ok(Outcome::Incomplete)
+}
+
+/// The indices of the shards that are not there whole; what is wrong with files that should be one is said.
+pub(super) fn missing_shards(plan: &PlanFolder, talk: Talk) -> Result<BTreeSet<usize>, Failure> {
+    let (there, wrong) = find(plan, &(0..plan.file.blocks))?;
+    for error in wrong {
+        talk.say(format!("warning: {error}"));
+    }
+    Ok(missing(plan, there.into_iter().map(|s| s.range)))
 }
 
 /// The indices of the shards of which blocks are in none of the `ranges`.

@@ -73,6 +73,13 @@ impl Work {
         }
     }
 
+    /// Whether `output` is what a merge has left, to its last file.
+    pub(super) fn is_merged(&self, output: &Path) -> Result<bool, Failure> {
+        match self {
+            Self::Render(render) => render.is_merged(output),
+        }
+    }
+
     /// Puts the shards together in `output`; returns what to tell, or print as JSON.
     pub(super) fn merge(
         &self,

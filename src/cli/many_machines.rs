@@ -1,0 +1,2 @@
+//! Many machines: plan, shard, merge, resume.
+#![doc = include_str!("many_machines.md")]
