@@ -106,3 +106,7 @@ fn pages(folder: &Path, plan: &ReproducePlan) -> Result<(), Failure> {
     }
     Ok(())
 }
+
+pub(in crate::cli) fn cut(_: &ReproduceArgs) -> Result<Box<dyn super::tasks::Cut>, Failure> {
+    Err(Failure::new("not yet", "wait"))
+}
