@@ -8,9 +8,11 @@ use super::args::Command;
 use super::failure::Failure;
 use super::{reproduce, study};
 use crate::scene::Scene;
+use crate::study::{Division, encode, parts};
 use crate::transport::Control;
 
 /// A command whose work is independent tasks. Every process that has the same command and the same scene has the same tasks.
+#[cfg_attr(not(test), expect(dead_code, reason = "plan, shard and merge call it"))]
 pub(in crate::cli) trait Cut: Sync {
     /// How many tasks there are.
     fn tasks(&self) -> usize;
@@ -33,6 +35,7 @@ pub(in crate::cli) trait Cut: Sync {
 }
 
 /// The tasks of a command; a study's scene is `scene`, or where there is none the one that the command names.
+#[cfg_attr(not(test), expect(dead_code, reason = "plan, shard and merge call it"))]
 pub(in crate::cli) fn cut(
     command: &Command,
     scene: Option<Scene>,
@@ -45,4 +48,20 @@ pub(in crate::cli) fn cut(
             "plan a render (phicam plan SCENE), a study (… -- study NAME …) or the published items (… -- reproduce …)",
         )),
     }
+}
+
+/// The results of some tasks of `division` as bytes. `Ok(None)` if stopped.
+pub(in crate::cli) fn encoded<D: Division>(
+    division: &D,
+    tasks: Range<usize>,
+    control: Control<'_>,
+) -> Result<Option<Vec<Vec<u8>>>, Failure> {
+    let Some(ground) = division.ground(control)? else {
+        return Ok(None);
+    };
+    let Some(found) = parts(division, &ground, tasks.clone(), control, &|_, _| ())? else {
+        return Ok(None);
+    };
+    let encoded = tasks.zip(&found).map(|(index, part)| encode(index, part));
+    Ok(Some(encoded.collect::<Result<_, _>>()?))
 }

@@ -7,11 +7,11 @@ use super::findings::Findings;
 use crate::cli::failure::Failure;
 use crate::cli::interrupt::stop_flag;
 use crate::cli::output::Talk;
-use crate::cli::tasks::Cut;
+use crate::cli::tasks::{Cut, encoded};
 use crate::cli::{Outcome, progress, settings};
 use crate::scene::Scene;
 use crate::store::ensure_writable;
-use crate::study::{Division, decode, encode, parts, whole};
+use crate::study::{Division, decode, whole};
 use crate::transport::Control;
 
 /// What a progress bar counts.
@@ -86,15 +86,7 @@ impl<D: Division> Cut for Job<D> {
         tasks: Range<usize>,
         control: Control<'_>,
     ) -> Result<Option<Vec<Vec<u8>>>, Failure> {
-        let Some(ground) = self.division.ground(control)? else {
-            return Ok(None);
-        };
-        let found = parts(&self.division, &ground, tasks.clone(), control, &|_, _| ())?;
-        let Some(found) = found else {
-            return Ok(None);
-        };
-        let encoded = tasks.zip(&found).map(|(index, part)| encode(index, part));
-        Ok(Some(encoded.collect::<Result<_, _>>()?))
+        encoded(&self.division, tasks, control)
     }
 
     fn deliver(

@@ -195,7 +195,7 @@ mod tests {
         let squares: f64 = (0..seeds)
             .map(|seed| {
                 let taken = stage.photograph(level, seed).unwrap();
-                let error = (taken.phi - stage.exact).component_div(&taken.stderr);
+                let error = (taken.phi - &stage.exact).component_div(&taken.stderr);
                 error.norm_squared() / error.len() as f64
             })
             .sum();

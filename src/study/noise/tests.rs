@@ -2,7 +2,7 @@ use super::*;
 use crate::model::Kernel;
 use crate::scene::{SensorModel, Spread};
 use crate::sensor::Sensor;
-use crate::study::task::tests::{divides, small};
+use crate::study::task::tests::divides;
 
 fn small() -> (Scene, NoisePlan) {
     let text = Scene::load("bench").unwrap().text;
@@ -337,7 +337,7 @@ fn it_divides() {
         seeds: 3,
         first_seed: 9,
     };
-    let found = divides(&NoiseTasks::new(&small("bench"), plan, vec![16]));
+    let found = divides(&NoiseTasks::new(&small().0, plan, vec![16]));
     assert_eq!(
         [found.study.curves.len(), found.study.render_noise.len()],
         [4, 2]

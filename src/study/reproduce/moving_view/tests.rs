@@ -217,7 +217,8 @@ fn a_stop_is_heeded() {
     };
     let stop = AtomicBool::new(true);
     let watch = Watch::new(&stop);
-    assert!(matches!(figure(&plan, watch), Err(ReproduceError::Stopped)));
-    let traced = traced::photographs(&plan, watch);
+    let modelled = Modelled::compute(0, &plan, watch);
+    assert!(matches!(modelled, Err(ReproduceError::Stopped)));
+    let traced = Seen::compute(0, &plan, watch);
     assert!(matches!(traced, Err(ReproduceError::Stopped)));
 }
