@@ -65,3 +65,6 @@ pub(in crate::cli) fn encoded<D: Division>(
     let encoded = tasks.zip(&found).map(|(index, part)| encode(index, part));
     Ok(Some(encoded.collect::<Result<_, _>>()?))
 }
+
+#[cfg(test)]
+mod tests;

@@ -8,6 +8,7 @@ use super::system::System;
 use super::*;
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Options, Problem, recover};
+use crate::study::reproduce::{ReproduceError, Watch};
 
 /// Every view is where it is said to be, and on the wall; the fixed one does not move.
 #[test]
