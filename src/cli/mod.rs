@@ -53,6 +53,7 @@ mod stack;
 mod stale;
 mod study;
 mod target;
+mod tasks;
 mod trust;
 mod validate;
 mod view;

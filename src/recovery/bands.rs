@@ -15,13 +15,14 @@
 //! Regularised methods are biased by far more than their noise: their bands say how well the estimate repeats, not where the reflectance is.
 
 use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 
 use super::{Method, Options, Problem, Recovered, RecoveryError, WeightRule};
 use crate::num::quadratic::{Bounds, extent};
 use crate::num::statistics::sidak_threshold;
 
 /// What a band is, and so what it promises of each element taken alone.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BandKind {
     /// ρ̂ ± z σ of an unbiased linear estimate: covers with exactly its confidence under normal noise of the stated standard errors.
     Gaussian,
@@ -39,7 +40,7 @@ pub enum BandKind {
 }
 
 /// An interval for each element.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Bands {
     /// Probability that each alone shall cover.
     pub confidence: f64,

@@ -1,7 +1,12 @@
 //! How fast does the error of each estimator fall?
 
+use std::ops::Range;
+
 use serde::Serialize;
 
+use super::task::Division;
+use super::task::matrix::{Columns, SHARES, share};
+use crate::matrix::Matrix;
 use crate::model::{Extent, Kernel, ModelError, converged};
 use crate::num::stream::Sampling;
 use crate::scene::{Role, Scene};
@@ -65,65 +70,154 @@ pub enum ConvergenceError {
     Samples,
 }
 
-/// Renders the three-bounce light of `scene` with growing numbers of paths, and compares each with converged quadrature. `Ok(None)`
-/// if stopped.
-///
-/// # Errors
-/// [`ConvergenceError`].
-pub fn convergence(
-    scene: &Scene,
-    samples: &[u64],
+/// Renders the three-bounce light of a scene with growing numbers of paths, and compares each with converged quadrature. A task is one render; where every spot has
+/// paths of its own, that of some of the spots.
+#[derive(Debug)]
+pub struct ConvergenceTasks {
+    scene: Scene,
+    samples: Vec<u64>,
     seed: u64,
-    control: Control<'_>,
-) -> Result<Option<Convergence>, ConvergenceError> {
-    let scene = scene.with_max_bounces(3);
-    let truth = converged(&scene, Kernel::Physical, Extent::FULL)?.phi;
-    let occluders = scene.surfaces.iter().any(|s| s.role == Role::Occluder);
-    let glossy = scene.hidden().any(|(_, s)| !s.is_lambertian());
-    if glossy {
-        return Err(ConvergenceError::Glossy);
-    }
-    if occluders || scene.hidden().count() > 1 {
-        return Err(ConvergenceError::Obstructed);
-    }
-    let mut curves = Vec::new();
-    for estimator in Estimator::ALL {
-        for sampling in [Sampling::Pcg, Sampling::Sobol] {
-            let mut steps: Vec<Step> = Vec::new();
-            for &wanted in samples {
-                let budget = Budget::new(wanted, sampling).ok_or(ConvergenceError::Samples)?;
-                let plan = Plan {
-                    estimator,
-                    sampling,
-                    seed,
-                    budget,
-                };
-                let Some(traced) = render(&scene, &plan, 0..scene.laser.spots.len(), control)
-                else {
-                    return Ok(None);
-                };
-                steps.push(Step {
-                    samples: budget.samples(),
-                    error: (traced.flux - &truth).norm() / truth.norm(),
-                    stated: traced.stderr.norm() / truth.norm(),
-                });
-            }
-            let slope = slope(&steps).ok_or(ConvergenceError::Samples)?;
-            let (estimator, sampler) = (estimator.name().to_owned(), sampling.name().to_owned());
-            curves.push(Curve {
+    renders: Vec<Render>,
+}
+
+/// A render with its tasks.
+#[derive(Clone, Copy, Debug)]
+struct Render {
+    estimator: Estimator,
+    sampling: Sampling,
+    samples: u64,
+    shares: usize,
+}
+
+impl ConvergenceTasks {
+    /// The study of a scene with these numbers of paths.
+    pub fn new(scene: &Scene, samples: &[u64], seed: u64) -> Self {
+        let render = |estimator: Estimator, sampling| {
+            samples.iter().map(move |samples| Render {
                 estimator,
-                sampler,
-                steps,
-                slope,
-            });
+                sampling,
+                samples: *samples,
+                shares: if estimator.serves_all_spots() {
+                    1
+                } else {
+                    SHARES
+                },
+            })
+        };
+        let samplings = [Sampling::Pcg, Sampling::Sobol];
+        let renders = Estimator::ALL
+            .into_iter()
+            .flat_map(|e| samplings.into_iter().flat_map(move |s| render(e, s)));
+        Self {
+            scene: scene.with_max_bounces(3),
+            samples: samples.to_vec(),
+            seed,
+            renders: renders.collect(),
         }
     }
-    Ok(Some(Convergence {
-        scene: scene.name.clone(),
-        scene_hash: scene.hash.clone(),
-        seed,
-        curves,
-    }))
+
+    /// The render of a task, and its spots.
+    fn at(&self, index: usize) -> Option<(Render, Range<usize>)> {
+        let tasks = self
+            .renders
+            .iter()
+            .flat_map(|r| (0..r.shares).map(move |k| (*r, k)));
+        let (render, k) = tasks.skip(index).next()?;
+        Some((render, share(&self.scene, k, render.shares)))
+    }
+
+    /// Refuses what the reference does not know.
+    fn check(&self) -> Result<(), ConvergenceError> {
+        let occluders = self.scene.surfaces.iter().any(|s| s.role == Role::Occluder);
+        let glossy = self.scene.hidden().any(|(_, s)| !s.is_lambertian());
+        if glossy {
+            return Err(ConvergenceError::Glossy);
+        }
+        if occluders || self.scene.hidden().count() > 1 {
+            return Err(ConvergenceError::Obstructed);
+        }
+        Ok(())
+    }
+}
+
+impl Division for ConvergenceTasks {
+    /// The three-bounce integral, pixels × spots, W.
+    type Ground = Matrix;
+    type Part = Columns;
+    type Finding = Convergence;
+    type Error = ConvergenceError;
+
+    fn tasks(&self) -> usize {
+        self.renders.iter().map(|r| r.shares).sum()
+    }
+
+    fn ground(&self, _: Control<'_>) -> Result<Option<Matrix>, ConvergenceError> {
+        let truth = converged(&self.scene, Kernel::Physical, Extent::FULL)?.phi;
+        self.check()?;
+        Ok(Some(truth))
+    }
+
+    fn task(
+        &self,
+        _: &Matrix,
+        index: usize,
+        control: Control<'_>,
+    ) -> Result<Option<Columns>, ConvergenceError> {
+        let Some((of, spots)) = self.at(index) else {
+            return Ok(None);
+        };
+        let plan = Plan {
+            estimator: of.estimator,
+            sampling: of.sampling,
+            seed: self.seed,
+            budget: of.budget()?,
+        };
+        let traced = render(&self.scene, &plan, spots, control);
+        Ok(traced.map(Columns::of))
+    }
+
+    fn fits(&self, truth: &Matrix, index: usize, part: &Columns) -> bool {
+        let own = self.at(index);
+        own.is_some_and(|(_, spots)| part.shaped((truth.nrows(), spots.len())))
+    }
+
+    fn finish(&self, truth: &Matrix, parts: Vec<Columns>) -> Result<Convergence, ConvergenceError> {
+        let mut parts = parts.iter();
+        let mut curves = Vec::new();
+        for renders in self.renders.chunks(self.samples.len().max(1)) {
+            let step = |of: &Render| {
+                let own: Vec<&Columns> = parts.by_ref().take(of.shares).collect();
+                let [flux, stderr] = Columns::join(truth.nrows(), own.into_iter());
+                Ok(Step {
+                    samples: of.budget()?.samples(),
+                    error: (flux - truth).norm() / truth.norm(),
+                    stated: stderr.norm() / truth.norm(),
+                })
+            };
+            let steps: Vec<Step> = renders
+                .iter()
+                .map(step)
+                .collect::<Result<_, ConvergenceError>>()?;
+            curves.push(Curve {
+                estimator: renders[0].estimator.name().to_owned(),
+                sampler: renders[0].sampling.name().to_owned(),
+                slope: slope(&steps).ok_or(ConvergenceError::Samples)?,
+                steps,
+            });
+        }
+        Ok(Convergence {
+            scene: self.scene.name.clone(),
+            scene_hash: self.scene.hash.clone(),
+            seed: self.seed,
+            curves,
+        })
+    }
+}
+
+impl Render {
+    fn budget(self) -> Result<Budget, ConvergenceError> {
+        Budget::new(self.samples, self.sampling).ok_or(ConvergenceError::Samples)
+    }
 }
 
 /// Least-squares slope of ln error against ln samples; `None` for fewer than two different numbers of samples.
@@ -143,6 +237,13 @@ fn slope(steps: &[Step]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::task::tests::{divides, small};
+
+    #[test]
+    fn it_divides() {
+        let found = divides(&ConvergenceTasks::new(&small("bench"), &[32, 64], 7));
+        assert_eq!(found.curves.len(), 6);
+    }
 
     #[test]
     fn a_power_law_has_its_exponent() {

@@ -1,14 +1,17 @@
 //! Do the bands around recovered reflectances cover the truth as often as they say?
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::convert::Infallible;
+use std::ops::Range;
+use std::sync::atomic::Ordering;
 
-use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::deviate::normal_deviates;
+use super::task::Division;
 use crate::matrix::Matrix;
 use crate::model::MatrixModel;
 use crate::recovery::{BandKind, Bands, Method, Options, Problem, RecoveryError, recover};
+use crate::transport::Control;
 
 /// How coverage is counted.
 #[derive(Clone, Debug)]
@@ -67,71 +70,124 @@ pub struct Coverage {
     pub rows: Vec<CoverageRow>,
 }
 
-/// Adds normal noise to what `model` says, recovers, and counts. The model is right by construction, so that only noise and method are on trial; the recovery is
-/// told the true standard deviations. `steps` hears how many recoveries of all are done. `None` if stopped.
-pub fn coverage(
-    (scene, scene_hash): (&str, &str),
-    model: &MatrixModel,
-    plan: &CoveragePlan,
-    stop: &AtomicBool,
-    steps: &(dyn Fn(usize, usize) + Sync),
-) -> Option<Coverage> {
-    let exact = model.phi();
-    let stderr = exact.map(|x| x.abs() * plan.noise);
-    let (done, all) = (
-        std::sync::atomic::AtomicUsize::new(0),
-        plan.methods.len() * plan.seeds as usize,
-    );
-    let mut rows = Vec::new();
-    for &method in &plan.methods {
-        let trials: Vec<Option<Result<Trial, RecoveryError>>> = (0..plan.seeds)
-            .into_par_iter()
-            .map(|k| {
-                if stop.load(Ordering::Relaxed) {
-                    return None;
-                }
-                let found = trial(
-                    model,
-                    &exact,
-                    &stderr,
-                    method,
-                    plan,
-                    plan.first_seed.wrapping_add(k),
-                );
-                steps(done.fetch_add(1, Ordering::Relaxed) + 1, all);
-                Some(found)
-            })
-            .collect();
-        let trials: Vec<_> = trials.into_iter().collect::<Option<_>>()?;
-        rows.push(row(method, &model.albedo, trials));
+/// Seeds of a task.
+const GROUP: u64 = 10;
+
+/// Adds normal noise to what a model says, recovers, and counts. The model is right by construction, so that only noise and method are on trial; the recovery is
+/// told the true standard deviations. A task is one method under a few seeds.
+#[derive(Debug)]
+pub struct CoverageTasks {
+    scene: String,
+    scene_hash: String,
+    model: MatrixModel,
+    plan: CoveragePlan,
+}
+
+impl CoverageTasks {
+    /// The study of `model`, that of the scene of this name and hash.
+    pub fn new((scene, scene_hash): (&str, &str), model: MatrixModel, plan: CoveragePlan) -> Self {
+        Self {
+            scene: scene.to_owned(),
+            scene_hash: scene_hash.to_owned(),
+            model,
+            plan,
+        }
     }
-    Some(Coverage {
-        scene: scene.to_owned(),
-        scene_hash: scene_hash.to_owned(),
-        noise: plan.noise,
-        confidence: plan.confidence,
-        seeds: plan.seeds,
-        elements: model.albedo.len(),
-        rows,
-    })
+
+    fn groups(&self) -> usize {
+        self.plan.seeds.div_ceil(GROUP) as usize
+    }
+
+    /// The method of a task, and its seeds, counted from the first.
+    fn at(&self, index: usize) -> (Method, Range<u64>) {
+        let from = (index % self.groups()) as u64 * GROUP;
+        let method = self.plan.methods[index / self.groups()];
+        (method, from..(from + GROUP).min(self.plan.seeds))
+    }
+}
+
+/// Φcam without noise and the standard errors, pixels × spots, W.
+#[derive(Debug)]
+pub struct Exact {
+    phi: Matrix,
+    stderr: Matrix,
+}
+
+impl Division for CoverageTasks {
+    type Ground = Exact;
+    type Part = Vec<Result<Trial, String>>;
+    type Finding = Coverage;
+    type Error = Infallible;
+
+    fn tasks(&self) -> usize {
+        self.plan.methods.len() * self.groups()
+    }
+
+    fn ground(&self, _: Control<'_>) -> Result<Option<Exact>, Infallible> {
+        let phi = self.model.phi();
+        let stderr = phi.map(|x| x.abs() * self.plan.noise);
+        Ok(Some(Exact { phi, stderr }))
+    }
+
+    fn task(
+        &self,
+        exact: &Exact,
+        index: usize,
+        control: Control<'_>,
+    ) -> Result<Option<Self::Part>, Infallible> {
+        let (method, seeds) = self.at(index);
+        let one = |k: u64| {
+            if control.stop.load(Ordering::Relaxed) {
+                return None;
+            }
+            let seed = self.plan.first_seed.wrapping_add(k);
+            let found = trial(&self.model, exact, method, &self.plan, seed);
+            Some(found.map_err(|e| e.to_string()))
+        };
+        Ok(seeds.map(one).collect())
+    }
+
+    fn fits(&self, _: &Exact, index: usize, part: &Self::Part) -> bool {
+        let (elements, seeds) = (self.model.albedo.len(), self.at(index).1);
+        let whole = |t: &Trial| [t.bands.intervals.len(), t.reflectance.len()] == [elements; 2];
+        part.len() as u64 == seeds.end - seeds.start && part.iter().flatten().all(whole)
+    }
+
+    fn finish(&self, _: &Exact, parts: Vec<Self::Part>) -> Result<Coverage, Infallible> {
+        let mut parts = parts.into_iter();
+        let methods = self.plan.methods.iter();
+        let rows = methods.map(|method| {
+            let own = parts.by_ref().take(self.groups()).flatten().collect();
+            row(*method, &self.model.albedo, own)
+        });
+        Ok(Coverage {
+            rows: rows.collect(),
+            scene: self.scene.clone(),
+            scene_hash: self.scene_hash.clone(),
+            noise: self.plan.noise,
+            confidence: self.plan.confidence,
+            seeds: self.plan.seeds,
+            elements: self.model.albedo.len(),
+        })
+    }
 }
 
 /// One recovery.
-struct Trial {
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Trial {
     bands: Bands,
     reflectance: Vec<f64>,
 }
 
 fn trial(
     model: &MatrixModel,
-    exact: &Matrix,
-    stderr: &Matrix,
+    Exact { phi, stderr }: &Exact,
     method: Method,
     plan: &CoveragePlan,
     seed: u64,
 ) -> Result<Trial, RecoveryError> {
-    let normal = normal_deviates(seed, exact.nrows(), exact.ncols());
-    let phi = exact + stderr.component_mul(&normal);
+    let normal = normal_deviates(seed, phi.nrows(), phi.ncols());
+    let phi = phi + stderr.component_mul(&normal);
     let grids: Vec<[usize; 2]> = model.grids.iter().map(|g| g.count).collect();
     let problem = Problem::new(&phi, &model.camera_side, &model.laser_side, Some(stderr))?
         .with_grids(&grids)?;
@@ -151,7 +207,7 @@ fn trial(
     })
 }
 
-fn row(method: Method, truth: &[f64], trials: Vec<Result<Trial, RecoveryError>>) -> CoverageRow {
+fn row(method: Method, truth: &[f64], trials: Vec<Result<Trial, String>>) -> CoverageRow {
     let mut row = CoverageRow {
         method: method.name().to_owned(),
         bands: None,
@@ -165,7 +221,7 @@ fn row(method: Method, truth: &[f64], trials: Vec<Result<Trial, RecoveryError>>)
     };
     let all = trials.len();
     let reasons = trials.iter().filter_map(|t| t.as_ref().err());
-    row.reason = reasons.map(RecoveryError::to_string).next_back();
+    row.reason = reasons.cloned().next_back();
     let trials: Vec<Trial> = trials.into_iter().flatten().collect();
     row.failed = all - trials.len();
     let Some(first) = trials.first() else {
@@ -214,5 +270,28 @@ fn words(kind: BandKind) -> &'static str {
         BandKind::Gaussian => "unbiased",
         BandKind::GaussianAroundMean => "bias left out",
         BandKind::Profile => "profile",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Kernel;
+    use crate::study::task::tests::{divides, small};
+
+    /// Twelve seeds are a full task and a rest.
+    #[test]
+    fn it_divides() {
+        let scene = small("bench");
+        let model = MatrixModel::new(&scene, Kernel::Physical, Some([2, 2])).unwrap();
+        let plan = CoveragePlan {
+            noise: 0.01,
+            confidence: 0.95,
+            methods: vec![Method::Pinv, Method::Joint],
+            seeds: 12,
+            first_seed: 5,
+        };
+        let found = divides(&CoverageTasks::new(("name", "hash"), model, plan));
+        assert_eq!(found.rows.len(), 2);
     }
 }

@@ -3,12 +3,12 @@
 //! * [`agree`]: traced against modelled Φcam, a verdict by test statistics.
 //! * [`validate`]: the same for a scene, the model computed on the way.
 //! * [`error_budget`]: the difference between frames and model taken apart into its causes.
-//! * [`convergence`](fn@convergence): how fast the error of each estimator falls.
+//! * [`ConvergenceTasks`]: how fast the error of each estimator falls.
 //! * [`power`](fn@power): what [`validate`] detects, and how often it errs.
-//! * [`tolerance`](fn@tolerance): how wrong the assumed geometry may be.
-//! * [`brdf`](fn@brdf): the model on a wall that is not Lambertian, its BRDF known, ignored, or wrong.
-//! * [`coverage`](fn@coverage): how often the bands of recovered reflectances cover the truth.
-//! * [`experiment`](fn@experiment): the failed laboratory experiment, re-enacted.
+//! * [`ToleranceTasks`]: how wrong the assumed geometry may be.
+//! * [`BrdfTasks`]: the model on a wall that is not Lambertian, its BRDF known, ignored, or wrong.
+//! * [`CoverageTasks`]: how often the bands of recovered reflectances cover the truth.
+//! * [`ExperimentTasks`]: the failed laboratory experiment, re-enacted.
 //! * [`indicator`](fn@indicator): what predicts how well the published inversion works.
 //! * [`noise`](fn@noise): how much noise each recovery bears.
 //! * [`portrait`](fn@portrait): a picture of the scene in ordinary light, for people.
@@ -31,32 +31,34 @@ mod portrait;
 mod power;
 pub mod reproduce;
 mod results;
+mod task;
 mod tolerance;
 mod validation;
 
 pub use agreement::{Errors, Evidence, Test, agree};
-pub use brdf::{Assumption, BrdfError, BrdfPlan, BrdfStudy, Quality, Ratio, brdf};
-pub use budget::{BudgetError, BudgetPlan, Closure, ErrorBudget, Term, error_budget};
-pub use convergence::{Convergence, ConvergenceError, Curve, Step, convergence};
-pub use coverage::{Coverage, CoveragePlan, CoverageRow, coverage};
+pub use brdf::{Assumption, BrdfError, BrdfPlan, BrdfStudy, BrdfTasks, Quality, Ratio};
+pub use budget::{BudgetError, BudgetPlan, BudgetTasks, Closure, ErrorBudget, Term, error_budget};
+pub use convergence::{Convergence, ConvergenceError, ConvergenceTasks, Curve, Step};
+pub use coverage::{Coverage, CoveragePlan, CoverageRow, CoverageTasks};
 pub use ensemble::Estimate;
 pub use experiment::{
-    Experiment, ExperimentError, ExperimentPlan, Reading, Setting, Threshold, experiment,
+    Experiment, ExperimentError, ExperimentPlan, ExperimentTasks, Reading, Setting, Threshold,
 };
 pub use indicator::{
-    Coefficients, Comparison, Configuration, Indicator, IndicatorError, IndicatorPlan, Layout,
-    NoisyOutcome, NoisyPoint, NoisySummary, indicator,
+    Coefficients, Comparison, Configuration, Indicator, IndicatorError, IndicatorPlan,
+    IndicatorTasks, Layout, NoisyOutcome, NoisyPoint, NoisySummary, indicator,
 };
 pub use noise::{
     Best, Held, LIMITS, LedgerError, Lost, Measures, NamedSensor, NoiseAxis, NoiseCurve,
-    NoiseError, NoisePlan, NoiseStudy, Point, Reach, RenderNoise, Spacing, Spread, Trial, noise,
-    read_ledger, render_noise, write_ledger,
+    NoiseError, NoiseFinding, NoisePlan, NoiseStudy, NoiseTasks, Point, Reach, RenderNoise,
+    Spacing, Spread, Trial, noise, read_ledger, write_ledger,
 };
 pub use objects::{Attempt, Noise, measured, picards, recover_objects};
 pub use portrait::{
     Colour, Marking, Portrait, PortraitPlan, Viewpoint, ViewpointError, Wishes, portrait, stand,
 };
-pub use power::{Detection, Power, PowerError, PowerPlan, PowerRow, power};
+pub use power::{Detection, Power, PowerError, PowerPlan, PowerRow, PowerTasks, power};
 pub use results::{Agreement, Entry, ObjectBands, RecoveredObject, RunResults, Settings};
-pub use tolerance::{Misplacement, Sensitivity, Tolerance, tolerance};
+pub use task::{Division, Steps, TaskError, decode, encode, parts, whole};
+pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
 pub use validation::{Integration, Validation, ValidationError, validate};

@@ -1,8 +1,9 @@
 //! How small a model error does `validate` detect, and how often does it cry wolf?
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::agreement::{Errors, Evidence, Test, agree};
+use super::task::{Division, whole};
 use crate::matrix::Matrix;
 use crate::model::{Extent, Kernel, MatrixModel, ModelError, converged};
 use crate::num::statistics::binomial_interval;
@@ -102,42 +103,131 @@ pub fn power(
     plan: &PowerPlan,
     control: Control<'_>,
 ) -> Result<Option<Power>, PowerError> {
-    // Validation is of three-bounce light.
-    let scene = scene.with_max_bounces(3);
-    let right = converged(&scene, Kernel::Physical, Extent::FULL)?.phi;
-    let wrong = wrong_models(&scene, &right)?;
-    let mut rows = Vec::new();
-    for &estimator in &plan.estimators {
-        for &samples in &plan.samples {
-            let budget = Budget::new(samples, plan.sampling).ok_or(PowerError::Samples(samples))?;
-            let test = Test {
-                significance: plan.significance,
-                replicates: budget.blocks,
-                errors: Errors::of(estimator),
-            };
-            let mut tally = Tally::new(&wrong, plan.seeds);
-            for seed in (0..plan.seeds).map(|k| plan.first_seed.wrapping_add(k)) {
-                let how = Plan {
-                    estimator,
-                    sampling: plan.sampling,
-                    seed,
-                    budget,
-                };
-                let Some(traced) = render(&scene, &how, 0..scene.laser.spots.len(), control) else {
-                    return Ok(None);
-                };
-                tally.add(&traced, &right, &wrong, test);
-            }
-            rows.push(tally.row(estimator, budget.samples(), plan));
+    whole(&PowerTasks::new(scene, plan.clone()), control, &|_, _| ())
+}
+
+/// [`power`](fn@power) in tasks, each a render with its verdicts.
+#[derive(Debug)]
+pub struct PowerTasks {
+    scene: Scene,
+    plan: PowerPlan,
+}
+
+impl PowerTasks {
+    /// The study of a scene.
+    pub fn new(scene: &Scene, plan: PowerPlan) -> Self {
+        Self {
+            // Validation is of three-bounce light.
+            scene: scene.with_max_bounces(3),
+            plan,
         }
     }
-    Ok(Some(Power {
-        scene: scene.name.clone(),
-        scene_hash: scene.hash.clone(),
-        sampler: plan.sampling.name().to_owned(),
-        significance: plan.significance,
-        rows,
-    }))
+
+    /// Estimators with numbers of paths, in the order of the rows.
+    fn kinds(&self) -> impl Iterator<Item = (Estimator, u64)> {
+        let plan = &self.plan;
+        let of = |e: &Estimator| {
+            plan.samples.iter().map({
+                let e = *e;
+                move |n| (e, *n)
+            })
+        };
+        plan.estimators.iter().flat_map(of)
+    }
+
+    fn budget(&self, samples: u64) -> Result<Budget, PowerError> {
+        Budget::new(samples, self.plan.sampling).ok_or(PowerError::Samples(samples))
+    }
+}
+
+/// The right model and wrong ones, each with what is wrong and ‖wrong − right‖/‖right‖.
+#[derive(Debug)]
+pub struct Models {
+    right: Matrix,
+    wrong: Vec<(String, f64, Matrix)>,
+}
+
+/// What one render comes to.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Verdicts {
+    chi2_per_dof: f64,
+    /// Whether the right model was accepted.
+    agrees: bool,
+    /// Whether each wrong one was rejected.
+    rejected: Vec<bool>,
+    smallest_scale: f64,
+}
+
+impl Division for PowerTasks {
+    type Ground = Models;
+    type Part = Verdicts;
+    type Finding = Power;
+    type Error = PowerError;
+
+    fn tasks(&self) -> usize {
+        self.kinds().count() * self.plan.seeds as usize
+    }
+
+    fn ground(&self, _: Control<'_>) -> Result<Option<Models>, PowerError> {
+        let right = converged(&self.scene, Kernel::Physical, Extent::FULL)?.phi;
+        let wrong = wrong_models(&self.scene, &right)?.into_iter();
+        let sized = |(name, model): (String, Matrix)| {
+            let size = (&model - &right).norm() / right.norm();
+            (name, size, model)
+        };
+        let wrong = wrong.map(sized).collect();
+        Ok(Some(Models { right, wrong }))
+    }
+
+    fn task(
+        &self,
+        models: &Models,
+        index: usize,
+        control: Control<'_>,
+    ) -> Result<Option<Verdicts>, PowerError> {
+        let (row, k) = (
+            index as u64 / self.plan.seeds,
+            index as u64 % self.plan.seeds,
+        );
+        let Some((estimator, samples)) = self.kinds().nth(row as usize) else {
+            return Ok(None);
+        };
+        let budget = self.budget(samples)?;
+        let how = Plan {
+            estimator,
+            sampling: self.plan.sampling,
+            seed: self.plan.first_seed.wrapping_add(k),
+            budget,
+        };
+        let test = Test {
+            significance: self.plan.significance,
+            replicates: budget.blocks,
+            errors: Errors::of(estimator),
+        };
+        let spots = 0..self.scene.laser.spots.len();
+        let traced = render(&self.scene, &how, spots, control);
+        Ok(traced.map(|traced| verdicts(&traced, models, test)))
+    }
+
+    fn fits(&self, models: &Models, _: usize, part: &Verdicts) -> bool {
+        part.rejected.len() == models.wrong.len()
+    }
+
+    fn finish(&self, models: &Models, parts: Vec<Verdicts>) -> Result<Power, PowerError> {
+        let own = parts.chunks((self.plan.seeds as usize).max(1));
+        let row = |((estimator, samples), own): ((Estimator, u64), &[Verdicts])| {
+            let paths = self.budget(samples)?.samples();
+            Ok(row((estimator, paths), own, models, &self.plan))
+        };
+        let rows = self.kinds().zip(own).map(row);
+        Ok(Power {
+            rows: rows.collect::<Result<_, PowerError>>()?,
+            scene: self.scene.name.clone(),
+            scene_hash: self.scene.hash.clone(),
+            sampler: self.plan.sampling.name().to_owned(),
+            significance: self.plan.significance,
+        })
+    }
 }
 
 /// Wrong models, each with what is wrong.
@@ -169,75 +259,56 @@ fn wrong_models(scene: &Scene, right: &Matrix) -> Result<Vec<(String, Matrix)>, 
     Ok(models)
 }
 
-/// Counts over the seeds.
-struct Tally {
-    chi2: f64,
-    false_alarms: u64,
-    rejected: Vec<u64>,
-    names: Vec<(String, f64)>,
-    smallest: Vec<f64>,
+/// Tests a render against every model.
+fn verdicts(traced: &Traced, models: &Models, test: Test) -> Verdicts {
+    let verdict = |model: &Matrix| {
+        let evidence = Evidence {
+            traced: &traced.flux,
+            stderr: &traced.stderr,
+            model,
+            bound: None,
+        };
+        agree(evidence, test).0
+    };
+    let own = verdict(&models.right);
+    let wrong = models.wrong.iter();
+    Verdicts {
+        chi2_per_dof: own.chi2_per_dof,
+        agrees: own.agrees,
+        rejected: wrong.map(|(.., model)| !verdict(model).agrees).collect(),
+        smallest_scale: smallest_scale(|scale| !verdict(&(&models.right * scale)).agrees),
+    }
 }
 
-impl Tally {
-    fn new(wrong: &[(String, Matrix)], seeds: u64) -> Self {
-        Self {
-            chi2: 0.0,
-            false_alarms: 0,
-            rejected: vec![0; wrong.len()],
-            names: wrong.iter().map(|(name, _)| (name.clone(), 0.0)).collect(),
-            smallest: Vec::with_capacity(seeds as usize),
-        }
-    }
-
-    fn add(&mut self, traced: &Traced, right: &Matrix, wrong: &[(String, Matrix)], test: Test) {
-        let verdict = |model: &Matrix| {
-            agree(
-                Evidence {
-                    traced: &traced.flux,
-                    stderr: &traced.stderr,
-                    model,
-                    bound: None,
-                },
-                test,
-            )
-            .0
-        };
-        let own = verdict(right);
-        self.chi2 += own.chi2_per_dof;
-        self.false_alarms += u64::from(!own.agrees);
-        for (i, (_, model)) in wrong.iter().enumerate() {
-            self.names[i].1 = (model - right).norm() / right.norm();
-            self.rejected[i] += u64::from(!verdict(model).agrees);
-        }
-        self.smallest
-            .push(smallest_scale(|scale| !verdict(&(right * scale)).agrees));
-    }
-
-    fn row(mut self, estimator: Estimator, samples: u64, plan: &PowerPlan) -> PowerRow {
-        self.smallest.sort_by(f64::total_cmp);
-        PowerRow {
-            estimator: estimator.name().to_owned(),
-            samples,
-            seeds: plan.seeds,
-            chi2_per_dof: self.chi2 / plan.seeds as f64,
-            false_alarms: self.false_alarms,
-            expected: binomial_interval(plan.seeds, plan.significance, 0.99),
-            detections: self
-                .names
-                .into_iter()
-                .zip(self.rejected)
-                .map(|((error, size), rejected)| Detection {
-                    error,
-                    size,
-                    rejected,
-                })
-                .collect(),
-            smallest_scale: self
-                .smallest
-                .get(self.smallest.len() / 2)
-                .copied()
-                .unwrap_or(f64::NAN),
-        }
+/// Counts over the seeds.
+fn row(
+    (estimator, samples): (Estimator, u64),
+    own: &[Verdicts],
+    models: &Models,
+    plan: &PowerPlan,
+) -> PowerRow {
+    let count = |f: &dyn Fn(&Verdicts) -> bool| own.iter().filter(|v| f(v)).count() as u64;
+    let mut smallest: Vec<f64> = own.iter().map(|v| v.smallest_scale).collect();
+    smallest.sort_by(f64::total_cmp);
+    let wrong = models.wrong.iter().enumerate();
+    PowerRow {
+        estimator: estimator.name().to_owned(),
+        samples,
+        seeds: plan.seeds,
+        chi2_per_dof: own.iter().fold(0.0, |sum, v| sum + v.chi2_per_dof) / plan.seeds as f64,
+        false_alarms: count(&|v| !v.agrees),
+        expected: binomial_interval(plan.seeds, plan.significance, 0.99),
+        detections: wrong
+            .map(|(i, (error, size, _))| Detection {
+                error: error.clone(),
+                size: *size,
+                rejected: count(&|v| v.rejected[i]),
+            })
+            .collect(),
+        smallest_scale: smallest
+            .get(smallest.len() / 2)
+            .copied()
+            .unwrap_or(f64::NAN),
     }
 }
 
@@ -265,6 +336,21 @@ fn smallest_scale(rejects: impl Fn(f64) -> bool) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::task::tests::{divides, small};
+
+    #[test]
+    fn it_divides() {
+        let plan = PowerPlan {
+            estimators: vec![Estimator::Shared, Estimator::Factored],
+            sampling: Sampling::Sobol,
+            samples: vec![32, 64],
+            seeds: 2,
+            first_seed: 3,
+            significance: 0.01,
+        };
+        let found = divides(&PowerTasks::new(&small("bench"), plan));
+        assert_eq!(found.rows.len(), 4);
+    }
 
     #[test]
     fn the_threshold_is_found() {

@@ -1,6 +1,6 @@
 //! Plain results: what a run found, ready to be written in any form.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::matrix::Matrix;
 use crate::scene::Scene;
@@ -23,7 +23,7 @@ pub struct Settings {
 }
 
 /// One entry of Φcam, traced and modelled.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Entry {
     /// Pixel index.
     pub pixel: usize,
@@ -38,7 +38,7 @@ pub struct Entry {
 }
 
 /// Traced against modelled Φcam.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Agreement {
     /// Whether both tests pass at the significance level.
     pub agrees: bool,

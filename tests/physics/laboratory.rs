@@ -7,7 +7,8 @@ use phicam::recovery::Method;
 use phicam::scene::{Scene, SensorModel};
 use phicam::sensor::Sensor;
 use phicam::study::{
-    CoveragePlan, CoverageRow, Experiment, ExperimentPlan, Setting, coverage, experiment,
+    CoveragePlan, CoverageRow, CoverageTasks, Experiment, ExperimentPlan, ExperimentTasks, Setting,
+    whole,
 };
 use phicam::transport::Control;
 
@@ -24,9 +25,12 @@ fn covered(confidence: f64, seeds: u64, methods: &[Method]) -> Vec<CoverageRow> 
         first_seed: 1,
     };
     let stop = AtomicBool::new(false);
-    coverage(("bench", ""), &model, &plan, &stop, &|_, _| ())
-        .unwrap()
-        .rows
+    let control = Control {
+        progress: &|_| (),
+        stop: &stop,
+    };
+    let tasks = CoverageTasks::new(("bench", ""), model, plan);
+    whole(&tasks, control, &|_, _| ()).unwrap().unwrap().rows
 }
 
 /// Unbiased methods: every stated confidence is the share that is covered, within four of its own standard errors, and 95 % within the 2 % asked for.
@@ -90,7 +94,7 @@ fn enact(scene: &Scene, glares: &[f64], exposures: &[f64]) -> Experiment {
         progress: &|_| (),
         stop: &stop,
     };
-    experiment(scene, &plan, control, &|_, _| ())
+    whole(&ExperimentTasks::new(scene, plan), control, &|_, _| ())
         .unwrap()
         .unwrap()
 }

@@ -1,23 +1,20 @@
 //! `phicam study brdf`: the model on a wall that is not Lambertian.
 
-use super::findings::{Findings, traced};
+use super::findings::Findings;
+use super::job::{Count, Job};
 use super::noise::methods;
-use super::{paths, sum};
 use crate::cli::args::BrdfArgs;
 use crate::cli::failure::Failure;
-use crate::cli::output::Talk;
-use crate::cli::trust;
 use crate::cli::{Outcome, settings};
+use crate::num::stream::Sampling;
 use crate::report;
-use crate::store::ensure_writable;
-use crate::study::{self, BrdfError, BrdfPlan, NoiseAxis};
+use crate::scene::Scene;
+use crate::study::{BrdfError, BrdfPlan, BrdfTasks, NoiseAxis};
 
-pub(super) fn execute(args: &BrdfArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = trust::load(&args.scene)?;
+pub(super) fn job(args: &BrdfArgs, scene: &Scene) -> Result<Job<BrdfTasks>, Failure> {
     if scene.relay_is_lambertian() {
         return Err(BrdfError::Lambertian.into());
     }
-    let pool = settings::pool(args.threads)?;
     let axis = NoiseAxis::Relative;
     if let Some((level, cure)) = args.noise.iter().find_map(|l| Some((l, axis.refuses(*l)?))) {
         return Err(Failure::new(
@@ -33,21 +30,22 @@ pub(super) fn execute(args: &BrdfArgs, talk: Talk) -> Result<Outcome, Failure> {
         methods: methods(&args.method)?,
         draws: args.seeds,
     };
-    // Two renders.
-    let each = sum("--samples", &[args.samples])?;
-    ensure_writable(&args.output)?;
-    talk.warn(&scene);
-    let total = paths(&scene, each.saturating_mul(2), 0);
-    let work = (&*format!("wall BRDFs on {}", scene.name), total);
-    let found = traced(talk, &pool, work, |control| {
-        study::brdf(&scene, &plan, control)
-    })?;
-    Findings::new("brdf", &found, report::brdf_table(&found))?
-        .with("brdf.csv", report::brdf_csv(&found))
-        .with("brdf.svg", report::brdf_svg(&found))
-        .deliver(&args.output, args.json)?;
-    Ok(match found.known().agreement.agrees {
-        true => Outcome::Done,
-        false => Outcome::Disagreed,
+    settings::budget("--samples", args.samples, Sampling::Sobol)?;
+    Ok(Job {
+        division: BrdfTasks::new(scene, plan),
+        what: format!("wall BRDFs on {}", scene.name),
+        count: Count::Tasks,
+        threads: args.threads,
+        output: args.output.clone(),
+        json: args.json,
+        findings: |found| {
+            let findings = Findings::new("brdf", found, report::brdf_table(found))?
+                .with("brdf.csv", report::brdf_csv(found))
+                .with("brdf.svg", report::brdf_svg(found));
+            Ok(match found.known().agreement.agrees {
+                true => (findings, Outcome::Done),
+                false => (findings, Outcome::Disagreed),
+            })
+        },
     })
 }

@@ -1,23 +1,17 @@
 //! `phicam study coverage`: how often the bands of recovered reflectances cover the truth.
 
-use std::convert::Infallible;
-
-use super::findings::{Findings, stepped};
+use super::findings::Findings;
+use super::job::{Count, Job};
 use super::noise::{methods, sides};
+use crate::cli::Outcome;
 use crate::cli::args::CoverageArgs;
 use crate::cli::failure::Failure;
-use crate::cli::interrupt::stop_flag;
-use crate::cli::output::Talk;
-use crate::cli::trust;
-use crate::cli::{Outcome, settings};
 use crate::model::{Kernel, MatrixModel};
 use crate::report;
-use crate::store::ensure_writable;
-use crate::study::{self, CoveragePlan};
+use crate::scene::Scene;
+use crate::study::{CoveragePlan, CoverageTasks};
 
-pub(super) fn execute(args: &CoverageArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = trust::load(&args.scene)?;
-    let pool = settings::pool(args.threads)?;
+pub(super) fn job(args: &CoverageArgs, scene: &Scene) -> Result<Job<CoverageTasks>, Failure> {
     let within = |name: &str, x: f64, range: &str, fine: bool| match fine {
         true => Ok(()),
         false => Err(Failure::new(
@@ -50,14 +44,17 @@ pub(super) fn execute(args: &CoverageArgs, talk: Talk) -> Result<Outcome, Failur
         Some(n) => sides("--elements", &[n], 1)?.first().map(|n| [*n, *n]),
         None => None,
     };
-    let model = MatrixModel::new(&scene, Kernel::Physical, elements)?;
-    ensure_writable(&args.output)?;
-    let what = format!("coverage on {}", scene.name);
-    let found = stepped(talk, &pool, &what, |steps| {
-        let names = (&*scene.name, &*scene.hash);
-        Ok::<_, Infallible>(study::coverage(names, &model, &plan, stop_flag(), steps))
-    })?;
-    Findings::new("coverage", &found, report::coverage_table(&found))?
-        .deliver(&args.output, args.json)?;
-    Ok(Outcome::Done)
+    let model = MatrixModel::new(scene, Kernel::Physical, elements)?;
+    Ok(Job {
+        division: CoverageTasks::new((&scene.name, &scene.hash), model, plan),
+        what: format!("coverage on {}", scene.name),
+        count: Count::Tasks,
+        threads: args.threads,
+        output: args.output.clone(),
+        json: args.json,
+        findings: |found| {
+            let findings = Findings::new("coverage", found, report::coverage_table(found))?;
+            Ok((findings, Outcome::Done))
+        },
+    })
 }

@@ -1,38 +1,37 @@
 //! `phicam study indicator`: what predicts how well the published inversion works.
 
-use super::findings::{Findings, stepped};
+use super::findings::Findings;
+use super::job::{Count, Job};
 use super::noise::{methods, sides};
+use crate::cli::Outcome;
 use crate::cli::args::IndicatorArgs;
 use crate::cli::failure::Failure;
-use crate::cli::interrupt::stop_flag;
-use crate::cli::output::Talk;
-use crate::cli::trust;
-use crate::cli::{Outcome, settings};
 use crate::model::Kernel;
 use crate::report;
-use crate::store::ensure_writable;
-use crate::study::{self, IndicatorPlan, Layout, NoiseAxis};
+use crate::scene::Scene;
+use crate::study::{IndicatorPlan, IndicatorTasks, Layout, NoiseAxis};
 
 /// The largest half-width that is still a bench, in.
 const WIDEST: f64 = 1000.0;
 /// The most spots a layout is asked for.
 const MOST_SPOTS: usize = 10_000;
 
-pub(super) fn execute(args: &IndicatorArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = trust::load(&args.scene)?;
-    let plan = plan(args)?;
-    let pool = settings::pool(args.threads)?;
-    ensure_writable(&args.output)?;
-    let what = format!("indicators on {}", scene.name);
-    let found = stepped(talk, &pool, &what, |steps| {
-        study::indicator(&scene, &plan, stop_flag(), steps)
-    })?;
-    Findings::new("indicator", &found, report::indicator_table(&found))?
-        .with("indicator.csv", report::indicator_csv(&found))
-        .with("indicator-noise.csv", report::indicator_noise_csv(&found))
-        .with("indicator.svg", report::indicator_svg(&found))
-        .deliver(&args.output, args.json)?;
-    Ok(Outcome::Done)
+pub(super) fn job(args: &IndicatorArgs, scene: &Scene) -> Result<Job<IndicatorTasks>, Failure> {
+    Ok(Job {
+        division: IndicatorTasks::new(scene, plan(args)?)?,
+        what: format!("indicators on {}", scene.name),
+        count: Count::Tasks,
+        threads: args.threads,
+        output: args.output.clone(),
+        json: args.json,
+        findings: |found| {
+            let findings = Findings::new("indicator", found, report::indicator_table(found))?
+                .with("indicator.csv", report::indicator_csv(found))
+                .with("indicator-noise.csv", report::indicator_noise_csv(found))
+                .with("indicator.svg", report::indicator_svg(found));
+            Ok((findings, Outcome::Done))
+        },
+    })
 }
 
 fn plan(args: &IndicatorArgs) -> Result<IndicatorPlan, Failure> {

@@ -5,33 +5,66 @@ mod coverage;
 mod experiment;
 mod findings;
 mod indicator;
+mod job;
 mod noise;
 
+use super::Outcome;
 use super::args::{BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs};
 use super::failure::Failure;
 use super::output::Talk;
+use super::settings;
+use super::tasks::Cut;
 use super::trust;
-use super::{Outcome, progress, settings};
 use crate::num::stream::Sampling;
 use crate::report;
 use crate::scene::Scene;
-use crate::store::ensure_writable;
-use crate::study::{self, BudgetPlan, PowerPlan, error_budget};
+use crate::study::{
+    BudgetPlan, BudgetTasks, ConvergenceTasks, Division, PowerPlan, PowerTasks, ToleranceTasks,
+};
 use crate::transport::{Estimator, Plan};
-use findings::{Findings, traced};
+use findings::Findings;
+use job::{Count, Job};
 
 pub(in crate::cli) fn execute(args: &StudyArgs, talk: Talk) -> Result<Outcome, Failure> {
     match &args.command {
-        StudyCommand::Budget(a) => budget(a, talk),
-        StudyCommand::Power(a) => power(a, talk),
-        StudyCommand::Tolerance(a) => tolerance(a, talk),
-        StudyCommand::Convergence(a) => convergence(a, talk),
+        StudyCommand::Budget(a) => start(talk, &a.scene, |scene| budget(a, scene)),
+        StudyCommand::Power(a) => start(talk, &a.scene, |scene| power(a, scene)),
+        StudyCommand::Tolerance(a) => start(talk, &a.scene, |scene| tolerance(a, scene)),
+        StudyCommand::Convergence(a) => start(talk, &a.scene, |scene| convergence(a, scene)),
         StudyCommand::Noise(a) => noise::execute(a, talk),
-        StudyCommand::Indicator(a) => indicator::execute(a, talk),
-        StudyCommand::Brdf(a) => brdf::execute(a, talk),
-        StudyCommand::Coverage(a) => coverage::execute(a, talk),
-        StudyCommand::Experiment(a) => experiment::execute(a, talk),
+        StudyCommand::Indicator(a) => start(talk, &a.scene, |scene| indicator::job(a, scene)),
+        StudyCommand::Brdf(a) => start(talk, &a.scene, |scene| brdf::job(a, scene)),
+        StudyCommand::Coverage(a) => start(talk, &a.scene, |scene| coverage::job(a, scene)),
+        StudyCommand::Experiment(a) => start(talk, &a.scene, |scene| experiment::job(a, scene)),
     }
+}
+
+fn start<D: Division>(
+    talk: Talk,
+    scene: &str,
+    job: impl FnOnce(&Scene) -> Result<Job<D>, Failure>,
+) -> Result<Outcome, Failure> {
+    let scene = trust::load(scene)?;
+    job(&scene)?.execute(&scene, talk)
+}
+
+/// The tasks of a study of `scene`, or where there is none of the scene that the arguments name.
+pub(in crate::cli) fn cut(args: &StudyArgs, scene: Option<Scene>) -> Result<Box<dyn Cut>, Failure> {
+    let load = |name: &str| match scene {
+        Some(scene) => Ok(scene),
+        None => trust::load(name),
+    };
+    Ok(match &args.command {
+        StudyCommand::Budget(a) => Box::new(budget(a, &load(&a.scene)?)?),
+        StudyCommand::Power(a) => Box::new(power(a, &load(&a.scene)?)?),
+        StudyCommand::Tolerance(a) => Box::new(tolerance(a, &load(&a.scene)?)?),
+        StudyCommand::Convergence(a) => Box::new(convergence(a, &load(&a.scene)?)?),
+        StudyCommand::Noise(a) => Box::new(noise::job(a, &load(&a.scene)?)?),
+        StudyCommand::Indicator(a) => Box::new(indicator::job(a, &load(&a.scene)?)?),
+        StudyCommand::Brdf(a) => Box::new(brdf::job(a, &load(&a.scene)?)?),
+        StudyCommand::Coverage(a) => Box::new(coverage::job(a, &load(&a.scene)?)?),
+        StudyCommand::Experiment(a) => Box::new(experiment::job(a, &load(&a.scene)?)?),
+    })
 }
 
 /// Paths that `scene` needs: `shared` of them per pixel and `independent` ones per pixel and spot. A number too large to count
@@ -53,39 +86,37 @@ fn sum(flag: &str, samples: &[u64]) -> Result<u64, Failure> {
     Ok(all)
 }
 
-fn budget(args: &BudgetArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = trust::load(&args.scene)?;
-    let pool = settings::pool(args.threads)?;
+fn budget(args: &BudgetArgs, scene: &Scene) -> Result<Job<BudgetTasks>, Failure> {
     let total = paths(
-        &scene,
+        scene,
         sum("--samples", &[args.samples])?,
         sum("--run-samples", &[args.run_samples])?,
     );
-    ensure_writable(&args.output)?;
-    talk.warn(&scene);
     let plan = BudgetPlan {
         seed: args.seed,
         ensemble_samples: args.samples,
         run_samples: args.run_samples,
     };
-    let work = (&*format!("budget of {}", scene.name), total);
-    let found = traced(talk, &pool, work, |control| {
-        error_budget(&scene, plan, control)
-    })?;
-    Findings::new("budget", &found, report::budget_table(&found))?
-        .with("budget.csv", report::budget_csv(&found))
-        .with("budget.svg", report::budget_svg(&found))
-        .deliver(&args.output, args.json)?;
-    Ok(if found.closure.closes {
-        Outcome::Done
-    } else {
-        Outcome::Disagreed
+    Ok(Job {
+        division: BudgetTasks::new(scene, plan),
+        what: format!("budget of {}", scene.name),
+        count: Count::Paths(total),
+        threads: args.threads,
+        output: args.output.clone(),
+        json: args.json,
+        findings: |found| {
+            let findings = Findings::new("budget", found, report::budget_table(found))?
+                .with("budget.csv", report::budget_csv(found))
+                .with("budget.svg", report::budget_svg(found));
+            Ok(match found.closure.closes {
+                true => (findings, Outcome::Done),
+                false => (findings, Outcome::Disagreed),
+            })
+        },
     })
 }
 
-fn power(args: &PowerArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = trust::load(&args.scene)?;
-    let pool = settings::pool(args.threads)?;
+fn power(args: &PowerArgs, scene: &Scene) -> Result<Job<PowerTasks>, Failure> {
     let plan = PowerPlan {
         estimators: match args.estimator.as_slice() {
             [] => Estimator::ALL.to_vec(),
@@ -105,11 +136,9 @@ fn power(args: &PowerArgs, talk: Talk) -> Result<Outcome, Failure> {
             seed: 0,
             budget,
         };
-        settings::suited(&scene, &one)?;
+        settings::suited(scene, &one)?;
     }
     let each = sum("--samples", &plan.samples)?.saturating_mul(plan.seeds);
-    ensure_writable(&args.output)?;
-    talk.warn(&scene);
     let alone = plan
         .estimators
         .iter()
@@ -117,21 +146,25 @@ fn power(args: &PowerArgs, talk: Talk) -> Result<Outcome, Failure> {
         .count() as u64;
     let together = plan.estimators.len() as u64 - alone;
     let total = paths(
-        &scene,
+        scene,
         each.saturating_mul(together),
         each.saturating_mul(alone),
     );
-    let work = (&*format!("power on {}", scene.name), total);
-    let found = traced(talk, &pool, work, |control| {
-        study::power(&scene, &plan, control)
-    })?;
-    Findings::new("power", &found, report::power_table(&found))?
-        .deliver(&args.output, args.json)?;
-    Ok(Outcome::Done)
+    Ok(Job {
+        division: PowerTasks::new(scene, plan),
+        what: format!("power on {}", scene.name),
+        count: Count::Paths(total),
+        threads: args.threads,
+        output: args.output.clone(),
+        json: args.json,
+        findings: |found| {
+            let findings = Findings::new("power", found, report::power_table(found))?;
+            Ok((findings, Outcome::Done))
+        },
+    })
 }
 
-fn tolerance(args: &ToleranceArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = trust::load(&args.scene)?;
+fn tolerance(args: &ToleranceArgs, scene: &Scene) -> Result<Job<ToleranceTasks>, Failure> {
     if !(args.noise > 0.0 && args.noise < 1.0) {
         let cause = format!("--noise {} is not a relative noise", args.noise);
         return Err(Failure::new(
@@ -139,36 +172,36 @@ fn tolerance(args: &ToleranceArgs, talk: Talk) -> Result<Outcome, Failure> {
             "use a number between 0 and 1, e.g. 0.01",
         ));
     }
-    ensure_writable(&args.output)?;
-    talk.warn(&scene);
-    let bar = progress::steps(talk, &format!("tolerance of {}", scene.name));
-    let found = study::tolerance(&scene, args.noise, &|done, all| {
-        bar.set_length(all as u64);
-        bar.set_position(done as u64);
-    })?;
-    bar.finish_and_clear();
-    Findings::new("tolerance", &found, report::tolerance_table(&found))?
-        .with("tolerance.csv", report::tolerance_csv(&found))
-        .with("tolerance.svg", report::tolerance_svg(&found))
-        .deliver(&args.output, args.json)?;
-    Ok(Outcome::Done)
+    Ok(Job {
+        division: ToleranceTasks::new(scene, args.noise),
+        what: format!("tolerance of {}", scene.name),
+        count: Count::Tasks,
+        threads: None,
+        output: args.output.clone(),
+        json: args.json,
+        findings: |found| {
+            let findings = Findings::new("tolerance", found, report::tolerance_table(found))?
+                .with("tolerance.csv", report::tolerance_csv(found))
+                .with("tolerance.svg", report::tolerance_svg(found));
+            Ok((findings, Outcome::Done))
+        },
+    })
 }
 
-fn convergence(args: &ConvergenceArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = trust::load(&args.scene)?;
-    let pool = settings::pool(args.threads)?;
+fn convergence(args: &ConvergenceArgs, scene: &Scene) -> Result<Job<ConvergenceTasks>, Failure> {
     // Both samplers, under both estimators.
     let each = sum("--samples", &args.samples)?.saturating_mul(2);
-    ensure_writable(&args.output)?;
-    let work = (
-        &*format!("convergence on {}", scene.name),
-        paths(&scene, each, each),
-    );
-    let found = traced(talk, &pool, work, |control| {
-        study::convergence(&scene, &args.samples, args.seed, control)
-    })?;
-    Findings::new("convergence", &found, report::convergence_table(&found))?
-        .with("convergence.svg", report::convergence_svg(&found))
-        .deliver(&args.output, args.json)?;
-    Ok(Outcome::Done)
+    Ok(Job {
+        division: ConvergenceTasks::new(scene, &args.samples, args.seed),
+        what: format!("convergence on {}", scene.name),
+        count: Count::Paths(paths(scene, each, each)),
+        threads: args.threads,
+        output: args.output.clone(),
+        json: args.json,
+        findings: |found| {
+            let findings = Findings::new("convergence", found, report::convergence_table(found))?
+                .with("convergence.svg", report::convergence_svg(found));
+            Ok((findings, Outcome::Done))
+        },
+    })
 }

@@ -7,6 +7,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::findings::Findings;
+use super::job::{Count, Job};
 use crate::cli::args::{AxisName, NoiseArgs};
 use crate::cli::failure::Failure;
 use crate::cli::interrupt::stop_flag;
@@ -19,7 +20,7 @@ use crate::report::{self, Measure};
 use crate::scene::{Scene, Spread};
 use crate::store::ensure_writable;
 use crate::study::{
-    self, NamedSensor, NoiseAxis, NoisePlan, RenderNoise, Trial, read_ledger, write_ledger,
+    NamedSensor, NoiseAxis, NoiseFinding, NoisePlan, NoiseTasks, Trial, read_ledger, write_ledger,
 };
 use crate::transport::Control;
 
@@ -28,13 +29,10 @@ const KEEP_EVERY: Duration = Duration::from_secs(5);
 
 pub(super) fn execute(args: &NoiseArgs, talk: Talk) -> Result<Outcome, Failure> {
     let scene = trust::load(&args.scene)?;
-    let plan = plan(args, &scene)?;
+    let job = job(args, &scene)?;
     let pool = settings::pool(args.threads)?;
-    for &samples in &args.render_samples {
-        settings::budget("--render-samples", samples, Sampling::Sobol)?;
-    }
     let path = args.output.join("noise.csv");
-    let name = plan.study(&scene);
+    let name = job.division.name();
     let known = known(&path, &name)?;
     ensure_writable(&args.output)?;
     talk.warn(&scene);
@@ -49,8 +47,8 @@ pub(super) fn execute(args: &NoiseArgs, talk: Talk) -> Result<Outcome, Failure> 
     let mut trials = known.clone();
     let mut failed = None;
     let mut last: Option<Instant> = None;
-    let bar = progress::steps(talk, &format!("noise on {}", scene.name));
-    bar.set_length(plan.trials() as u64);
+    let bar = progress::steps(talk, &job.what);
+    bar.set_length(job.division.trials() as u64);
     let mut keep = |new: &[Trial]| {
         trials.extend_from_slice(new);
         bar.inc(new.len() as u64);
@@ -63,34 +61,51 @@ pub(super) fn execute(args: &NoiseArgs, talk: Talk) -> Result<Outcome, Failure> 
         }
         ControlFlow::Continue(())
     };
-    let found = pool.install(|| study::noise(&scene, &plan, &known, stop_flag(), &mut keep))?;
+    let tick = |_| bar.tick();
+    let control = Control {
+        progress: &tick,
+        stop: stop_flag(),
+    };
+    let found = pool.install(|| job.division.go_on(&known, control, &mut keep))?;
     bar.finish_and_clear();
     if let Some(failure) = failed {
         return Err(failure);
     }
-    output::deliver(&write_ledger(&name, &trials), Some(&path))?;
-    let kept = || {
-        Failure::Stopped(format!(
+    let Some(found) = found else {
+        output::deliver(&write_ledger(&name, &trials), Some(&path))?;
+        return Err(Failure::Stopped(format!(
             "{} trials are finished and kept in {}; go on with the same command",
             trials.len(),
             path.display()
-        ))
+        )));
     };
-    let mut found = found.ok_or_else(kept)?;
-    if !args.render_samples.is_empty() {
-        found.render_noise = pool
-            .install(|| render_noise(&scene, &plan.axis, args, talk))
-            .ok_or_else(kept)?;
-    }
+    job.leave(&found, &args.output)
+}
 
-    let mut findings = Findings::new("noise", &found, report::noise_table(&found))?
-        .with("noise-curves.csv", report::noise_csv(&found));
-    for measure in Measure::ALL {
-        let figure = report::noise_svg(&found, measure);
-        findings = findings.with(&format!("noise-{}.svg", measure.name()), figure);
+/// The study, ready: also without what an earlier run has finished.
+pub(super) fn job(args: &NoiseArgs, scene: &Scene) -> Result<Job<NoiseTasks>, Failure> {
+    let plan = plan(args, scene)?;
+    for &samples in &args.render_samples {
+        settings::budget("--render-samples", samples, Sampling::Sobol)?;
     }
-    findings.deliver(&args.output, args.json)?;
-    Ok(Outcome::Done)
+    Ok(Job {
+        division: NoiseTasks::new(scene, plan, args.render_samples.clone()),
+        what: format!("noise on {}", scene.name),
+        count: Count::Tasks,
+        threads: args.threads,
+        output: args.output.clone(),
+        json: args.json,
+        findings: |NoiseFinding { study, ledger }| {
+            let mut findings = Findings::new("noise", study, report::noise_table(study))?
+                .with("noise.csv", ledger.clone())
+                .with("noise-curves.csv", report::noise_csv(study));
+            for measure in Measure::ALL {
+                let figure = report::noise_svg(study, measure);
+                findings = findings.with(&format!("noise-{}.svg", measure.name()), figure);
+            }
+            Ok((findings, Outcome::Done))
+        },
+    })
 }
 
 fn plan(args: &NoiseArgs, scene: &Scene) -> Result<NoisePlan, Failure> {
@@ -208,22 +223,4 @@ fn known(path: &Path, name: &str) -> Result<Vec<Trial>, Failure> {
     };
     read_ledger(name, &text)
         .map_err(|e| Failure::Error(format!("cannot go on from {}: {e}", path.display())))
-}
-
-/// Renders a few spots; `None` if stopped.
-fn render_noise(
-    scene: &Scene,
-    axis: &NoiseAxis,
-    args: &NoiseArgs,
-    talk: Talk,
-) -> Option<Vec<RenderNoise>> {
-    let bar = progress::steps(talk, "noise of renders");
-    let tick = |_| bar.tick();
-    let control = Control {
-        progress: &tick,
-        stop: stop_flag(),
-    };
-    let found = study::render_noise(scene, axis, &args.render_samples, args.seed, control);
-    bar.finish_and_clear();
-    found
 }

@@ -57,7 +57,7 @@ fn pictures(gallery: &Gallery) -> Result<String, PictureError> {
         title: p.title.clone(),
         size: p.size,
         values: p.values.clone(),
-        axes: p.axes.map(str::to_owned),
+        axes: p.axes.clone(),
         scale_bar: Some(scale_bar(p.width)),
     };
     let panels: Vec<Panel> = gallery.pictures.iter().map(panel).collect();
@@ -65,7 +65,7 @@ fn pictures(gallery: &Gallery) -> Result<String, PictureError> {
         Shades::Reflectance => (Scale::reflectance(), "reflectance, stretched"),
         Shades::Values => (
             Scale::sequential(gallery.pictures.iter().flat_map(|p| &p.values)),
-            gallery.unit,
+            gallery.unit.as_str(),
         ),
     };
     pictures_svg(&gallery.title, &panels, &scale, unit)

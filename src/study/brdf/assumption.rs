@@ -12,6 +12,7 @@ pub(super) enum Fit {
 }
 
 /// An assumption.
+#[derive(Debug)]
 pub(super) struct Assumed {
     pub(super) name: String,
     /// The scene that has the wall that is assumed.

@@ -11,9 +11,7 @@
 mod assumption;
 mod quality;
 
-use std::sync::atomic::Ordering;
-
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use assumption::{Assumed, Fit, assumed};
 use quality::{qualities, ratios};
@@ -21,6 +19,7 @@ use quality::{qualities, ratios};
 use super::agreement::{Errors, Evidence, Test, agree};
 use super::noise::Spread;
 use super::results::Agreement;
+use super::task::Division;
 use super::validation::Integration;
 use crate::matrix::Matrix;
 use crate::model::{Extent, Kernel, MatrixModel, ModelError, converged};
@@ -47,7 +46,7 @@ pub struct BrdfPlan {
 }
 
 /// How good a recovery is, over draws of the noise.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Quality {
     /// Method.
     pub method: String,
@@ -66,7 +65,7 @@ pub struct Quality {
 }
 
 /// What becomes of one assumption about the wall.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Assumption {
     /// What is assumed, in words.
     pub name: String,
@@ -147,59 +146,96 @@ pub enum BrdfError {
     Samples(u64),
 }
 
-/// Traces the scene and its Lambertian twin, and tries the assumptions. `Ok(None)` if stopped.
-///
-/// # Errors
-/// [`BrdfError`].
-pub fn brdf(
-    scene: &Scene,
-    plan: &BrdfPlan,
-    control: Control<'_>,
-) -> Result<Option<BrdfStudy>, BrdfError> {
-    let scene = &scene.with_max_bounces(3);
-    if scene.relay_is_lambertian() {
-        return Err(BrdfError::Lambertian);
-    }
-    let matt = scene.with_lambertian_relay();
-    let how = tracing(scene, plan)?;
-    let models: Vec<Assumed> = assumed(scene);
-    let mut assumptions = Vec::with_capacity(models.len());
-    let Some(light) = light(scene, &how, control) else {
-        return Ok(None);
-    };
-    if light.flux.amax() <= 0.0 {
-        return Err(BrdfError::Dark);
-    }
-    for model in &models {
-        if control.stop.load(Ordering::Relaxed) {
-            return Ok(None);
+/// Traces a scene and its Lambertian twin, and tries the assumptions. A task is one of them.
+#[derive(Debug)]
+pub struct BrdfTasks {
+    scene: Scene,
+    /// The same with Lambertian walls of equal albedo.
+    matt: Scene,
+    plan: BrdfPlan,
+    /// What is assumed of the one, and last what is true of the other.
+    assumed: Vec<Assumed>,
+}
+
+impl BrdfTasks {
+    /// The study of a scene.
+    pub fn new(scene: &Scene, plan: BrdfPlan) -> Self {
+        let scene = scene.with_max_bounces(3);
+        let matt = scene.with_lambertian_relay();
+        let mut assumed = assumed(&scene);
+        assumed.push(Assumed::right("Lambertian wall", &matt));
+        Self {
+            scene,
+            matt,
+            plan,
+            assumed,
         }
-        assumptions.push(tried(model, &light, &how, plan)?);
     }
-    let Some(light) = self::light(&matt, &how, control) else {
-        return Ok(None);
-    };
-    let lambertian_case = tried(
-        &Assumed::right("Lambertian wall", &matt),
-        &light,
-        &how,
-        plan,
-    )?;
-    let relays = matt.surfaces.iter().filter(|s| s.role == Role::Relay);
-    Ok(Some(BrdfStudy {
-        scene: scene.name.clone(),
-        scene_hash: scene.hash.clone(),
-        estimator: how.estimator.name().to_owned(),
-        samples: how.budget.samples(),
-        seed: plan.seed,
-        draws: plan.draws,
-        relay_albedo: relays
-            .map(|s| s.albedo.mean([0.0, 1.0], [0.0, 1.0]))
-            .collect(),
-        ratios: ratios(&assumptions[0].qualities, &lambertian_case.qualities),
-        assumptions,
-        lambertian_case,
-    }))
+}
+
+impl Division for BrdfTasks {
+    /// Light of the scene and of its twin.
+    type Ground = [Traced; 2];
+    type Part = Assumption;
+    type Finding = BrdfStudy;
+    type Error = BrdfError;
+
+    fn tasks(&self) -> usize {
+        self.assumed.len()
+    }
+
+    fn ground(&self, control: Control<'_>) -> Result<Option<[Traced; 2]>, BrdfError> {
+        if self.scene.relay_is_lambertian() {
+            return Err(BrdfError::Lambertian);
+        }
+        let how = tracing(&self.scene, &self.plan)?;
+        let Some(own) = light(&self.scene, &how, control) else {
+            return Ok(None);
+        };
+        if own.flux.amax() <= 0.0 {
+            return Err(BrdfError::Dark);
+        }
+        Ok(light(&self.matt, &how, control).map(|twin| [own, twin]))
+    }
+
+    fn task(
+        &self,
+        [own, twin]: &[Traced; 2],
+        index: usize,
+        _: Control<'_>,
+    ) -> Result<Option<Assumption>, BrdfError> {
+        let how = tracing(&self.scene, &self.plan)?;
+        let light = match index + 1 == self.assumed.len() {
+            true => twin,
+            false => own,
+        };
+        tried(&self.assumed[index], light, &how, &self.plan).map(Some)
+    }
+
+    fn fits(&self, _: &[Traced; 2], _: usize, part: &Assumption) -> bool {
+        part.qualities.len() == self.plan.methods.len() * self.plan.noise.len()
+    }
+
+    fn finish(&self, _: &[Traced; 2], parts: Vec<Assumption>) -> Result<BrdfStudy, BrdfError> {
+        let mut assumptions = parts;
+        let lambertian_case = assumptions.pop().ok_or(BrdfError::Lambertian)?;
+        let how = tracing(&self.scene, &self.plan)?;
+        let relays = self.matt.surfaces.iter().filter(|s| s.role == Role::Relay);
+        Ok(BrdfStudy {
+            scene: self.scene.name.clone(),
+            scene_hash: self.scene.hash.clone(),
+            estimator: how.estimator.name().to_owned(),
+            samples: how.budget.samples(),
+            seed: self.plan.seed,
+            draws: self.plan.draws,
+            relay_albedo: relays
+                .map(|s| s.albedo.mean([0.0, 1.0], [0.0, 1.0]))
+                .collect(),
+            ratios: ratios(&assumptions[0].qualities, &lambertian_case.qualities),
+            assumptions,
+            lambertian_case,
+        })
+    }
 }
 
 /// `factored` where the hidden surfaces allow it, else `shared`.
@@ -261,4 +297,24 @@ fn tried(
         agreement,
         qualities: qualities(&matrices, &light.flux, plan),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::task::tests::{divides, small};
+
+    #[test]
+    fn it_divides() {
+        let plan = BrdfPlan {
+            samples: 64,
+            seed: 1,
+            significance: 0.01,
+            noise: vec![0.01],
+            methods: vec![Method::Pinv, Method::Joint],
+            draws: 2,
+        };
+        let found = divides(&BrdfTasks::new(&small("satin"), plan));
+        assert!(found.assumptions.len() > 5);
+    }
 }

@@ -16,24 +16,23 @@
 //! closes is a test of both.
 
 mod sizes;
+mod tasks;
 
 use serde::Serialize;
 
 use sizes::{Sizes, closure};
+pub use tasks::BudgetTasks;
+use tasks::{Found, Integral, MEMBERS, Member};
 
 use super::ensemble::{Ensemble, Estimate};
+use super::task::whole;
 use crate::matrix::Matrix;
-use crate::model::{Extent, Kernel, MatrixModel, ModelError, Take, converged};
-use crate::num::stream::Sampling;
-use crate::scene::{Role, Scene};
-use crate::transport::{Budget as Samples, Control, Estimator, Plan, Traced, render};
+use crate::model::{Kernel, MatrixModel, ModelError};
+use crate::scene::Scene;
+use crate::transport::Control;
 
-/// Renders of the ensemble.
-const MEMBERS: u64 = 8;
 /// Bounce counts that have a row of their own; more share one.
 const OWN_ROW: usize = 7;
-/// Paths of the ensemble go on to this many surfaces.
-const LONGEST: u32 = 12;
 
 /// One cause.
 #[derive(Clone, Debug, Serialize)]
@@ -122,166 +121,125 @@ pub fn error_budget(
     plan: BudgetPlan,
     control: Control<'_>,
 ) -> Result<Option<ErrorBudget>, BudgetError> {
-    let centres = Extent {
-        elements: Take::Centre,
-        footprints: Take::Centre,
-        spots: Take::Centre,
-    };
-    let areas = Extent {
-        elements: Take::Integral,
-        ..centres
-    };
-    let footprints = Extent {
-        footprints: Take::Integral,
-        ..areas
-    };
-    let integral = |extent| converged(scene, Kernel::Physical, extent);
-    let chain = [centres, areas, footprints, Extent::FULL].map(integral);
-    let [m0, m1, m2, m3] = chain.map(|m| m.map(|m| (m.phi, m.bound)));
-    let (m0, m1, m2, m3) = (m0?, m1?, m2?, m3?);
-    let norm = m3.0.norm();
-    if norm <= 0.0 {
-        return Err(BudgetError::Dark);
-    }
-    let grey = scene.with_lambertian_hidden().with_mean_albedo();
-    let grey = converged(&grey, Kernel::Physical, Extent::FULL)?.phi;
-    let signal = (&m3.0 - grey).norm() / norm;
+    whole(&BudgetTasks::new(scene, plan), control, &|_, _| ())
+}
 
-    let each = Samples::new(plan.ensemble_samples.div_ceil(MEMBERS), Sampling::Sobol)
-        .ok_or(BudgetError::Samples(plan.ensemble_samples))?;
-    let run = Samples::new(plan.run_samples, Sampling::Sobol)
-        .ok_or(BudgetError::Samples(plan.run_samples))?;
-    let long = scene.with_max_bounces(LONGEST.max(scene.max_bounces));
-    let spots = 0..scene.laser.spots.len();
-    let member = |scene: &Scene, stream: u64| {
-        let seed = plan.seed.wrapping_mul(1000).wrapping_add(stream);
-        let plan = Plan {
-            estimator: Estimator::Shared,
-            sampling: Sampling::Sobol,
-            seed,
-            budget: each,
+impl BudgetTasks {
+    /// The terms of the chain, from what was integrated and traced.
+    fn terms(
+        &self,
+        sizes: &Sizes<'_>,
+        m3: &Integral,
+        found: &Found,
+    ) -> Result<Vec<Term>, ModelError> {
+        let scene = &self.scene;
+        let [m0, m1, m2] = &found.chain;
+        let mut terms = vec![
+            sizes.exact("element area", m1, m0),
+            sizes.exact("pixel footprint", m2, m1),
+            sizes.exact("spot size and profile", m3, m2),
+        ];
+        // Light of three bounces by wall and hidden surfaces alone.
+        let thirds: Vec<&Matrix> = found.members.iter().map(|m| &m.bounces[2]).collect();
+        let occluded: Vec<&Matrix> = found.occluded.iter().collect();
+        let matt: Vec<&Matrix> = found.matt.iter().collect();
+        let own = if self.blocked() { &occluded } else { &thirds };
+        let first = if self.glossy() { &matt } else { own };
+        let less = first.iter().map(|m| *m - &m3.0).collect();
+        terms.push(sizes.traced("occlusion", &Ensemble::new(less), true));
+        let step = |to: &[&Matrix], from: &[&Matrix]| {
+            Ensemble::new(to.iter().zip(from).map(|(t, f)| *t - *f).collect())
         };
-        render(scene, &plan, spots.clone(), control)
-    };
-    let Some(members) = (0..MEMBERS)
-        .map(|k| member(&long, k + 1))
-        .collect::<Option<Vec<Traced>>>()
-    else {
-        return Ok(None);
-    };
-    let blocked = scene.surfaces.iter().any(|s| s.role == Role::Occluder);
-    let black = scene.with_black_occluders().with_max_bounces(3);
-    let Some(occluded) = (0..if blocked { MEMBERS } else { 0 })
-        .map(|k| member(&black, k + 101))
-        .collect::<Option<Vec<Traced>>>()
-    else {
-        return Ok(None);
-    };
-    let glossy = scene.hidden().any(|(_, s)| !s.is_lambertian());
-    let matt = black.with_lambertian_hidden();
-    let Some(matt) = (0..if glossy { MEMBERS } else { 0 })
-        .map(|k| member(&matt, k + 201))
-        .collect::<Option<Vec<Traced>>>()
-    else {
-        return Ok(None);
-    };
-    let seed = plan.seed.wrapping_mul(1000);
-    let frames = Plan {
-        estimator: Estimator::Independent,
-        sampling: Sampling::Sobol,
-        seed,
-        budget: run,
-    };
-    let Some(frames) = render(&long, &frames, spots.clone(), control) else {
-        return Ok(None);
-    };
-
-    let sizes = Sizes {
-        reference: &m3.0,
-        norm,
-        signal,
-    };
-    let order =
-        |n: usize| Ensemble::new(members.iter().map(|t| t.bounces[n - 1].clone()).collect());
-    let beyond = Ensemble::new(
-        members
-            .iter()
-            .map(|t| {
-                t.bounces[OWN_ROW..]
-                    .iter()
-                    .fold(Matrix::zeros(m3.0.nrows(), m3.0.ncols()), |a, b| a + b)
-            })
-            .collect(),
-    );
-    let mut terms = vec![
-        sizes.exact("element area", &m1, &m0),
-        sizes.exact("pixel footprint", &m2, &m1),
-        sizes.exact("spot size and profile", &m3, &m2),
-    ];
-    // Light of three bounces by wall and hidden surfaces alone.
-    let own = if blocked { &occluded } else { &members };
-    let third = |traced: &[Traced]| traced.iter().map(|t| t.bounces[2].clone()).collect();
-    let first = if glossy { &matt } else { own };
-    let occlusion = Ensemble::new(third(first)).map(|m| m - &m3.0);
-    terms.push(sizes.traced("occlusion", &occlusion, true));
-    let step = |to: &[Traced], from: &[Traced]| {
-        let pairs = to.iter().zip(from);
-        Ensemble::new(pairs.map(|(t, f)| &t.bounces[2] - &f.bounces[2]).collect())
-    };
-    if glossy {
-        terms.push(sizes.traced("S2 not Lambertian", &step(own, &matt), true));
-    }
-    if blocked {
-        let rest = step(&members, &occluded);
-        terms.push(sizes.traced("3 bounces by other surfaces", &rest, true));
-    }
-    for n in [1, 2, 4, 5, 6, OWN_ROW] {
-        let name = if n == 1 {
-            "1 bounce".to_owned()
-        } else {
-            format!("{n} bounces")
-        };
-        let dark = members.iter().all(|t| t.bounces[n - 1].amax() <= 0.0);
-        if !(n < 3 && dark) {
-            terms.push(sizes.traced(&name, &order(n), true));
+        if self.glossy() {
+            terms.push(sizes.traced("S2 not Lambertian", &step(own, &matt), true));
         }
+        if self.blocked() {
+            let rest = step(&thirds, &occluded);
+            terms.push(sizes.traced("3 bounces by other surfaces", &rest, true));
+        }
+        terms.extend(found.by_bounces(sizes));
+        let zero = || Matrix::zeros(m3.0.nrows(), m3.0.ncols());
+        terms.push(sizes.exact(
+            "storage in f32 frames",
+            &(found.stored(), zero()),
+            &(found.flux.clone(), zero()),
+        ));
+        terms.push(Term {
+            in_sum: true,
+            ..sizes.noise("Monte Carlo itself", &found.stderr)
+        });
+        terms.push(Term {
+            in_sum: false,
+            ..sizes.exact(
+                "étendue, if taken constant",
+                &(constant_etendue(scene)?, zero()),
+                &(m0.0.clone(), zero()),
+            )
+        });
+        Ok(terms)
     }
-    terms.push(sizes.traced(&format!("{} and more bounces", OWN_ROW + 1), &beyond, true));
-    let stored = frames.flux.map(|x| f64::from(x as f32));
-    let zero = Matrix::zeros(m3.0.nrows(), m3.0.ncols());
-    terms.push(sizes.exact(
-        "storage in f32 frames",
-        &(stored.clone(), zero.clone()),
-        &(frames.flux.clone(), zero.clone()),
-    ));
-    terms.push(Term {
-        in_sum: true,
-        ..sizes.noise("Monte Carlo itself", &frames.stderr)
-    });
-    terms.push(Term {
-        in_sum: false,
-        ..sizes.exact(
-            "étendue, if taken constant",
-            &(constant_etendue(scene)?, zero.clone()),
-            &(m0.0.clone(), zero),
-        )
-    });
 
-    let everything = Ensemble::new(members.iter().map(|t| t.flux.clone()).collect());
-    let total = &stored - &m0.0;
-    // The parts telescope to (ensemble − M₀) plus what f32 changes in the run.
-    let sum = everything.map(|t| t - &m0.0 + &stored - &frames.flux);
-    let closure = closure(&total, &sum, &frames.stderr, norm);
-    Ok(Some(ErrorBudget {
-        scene: scene.name.clone(),
-        scene_hash: scene.hash.clone(),
-        seed: plan.seed,
-        ensemble_samples: each.samples() * MEMBERS,
-        run_samples: run.samples(),
-        signal,
-        terms,
-        closure,
-    }))
+    /// The budget, from what was integrated and traced.
+    fn budget(&self, m3: &Integral, found: &Found) -> Result<ErrorBudget, BudgetError> {
+        let norm = m3.0.norm();
+        let signal = (&m3.0 - &found.grey).norm() / norm;
+        let sizes = Sizes {
+            reference: &m3.0,
+            norm,
+            signal,
+        };
+        let terms = self.terms(&sizes, m3, found)?;
+        let (stored, m0) = (found.stored(), &found.chain[0].0);
+        let everything = Ensemble::new(found.members.iter().map(|t| t.flux.clone()).collect());
+        let total = &stored - m0;
+        // The parts telescope to (ensemble − M₀) plus what f32 changes in the run.
+        let sum = everything.map(|t| t - m0 + &stored - &found.flux);
+        let [each, run] = self.samples()?;
+        Ok(ErrorBudget {
+            scene: self.scene.name.clone(),
+            scene_hash: self.scene.hash.clone(),
+            seed: self.plan.seed,
+            ensemble_samples: each.samples() * MEMBERS,
+            run_samples: run.samples(),
+            signal,
+            terms,
+            closure: closure(&total, &sum, &found.stderr, norm),
+        })
+    }
+}
+
+impl Found {
+    /// The run as its frames store it.
+    fn stored(&self) -> Matrix {
+        self.flux.map(|x| f64::from(x as f32))
+    }
+
+    /// Light that met another number of surfaces than three.
+    fn by_bounces(&self, sizes: &Sizes<'_>) -> Vec<Term> {
+        let order = |n: usize| {
+            let own = self.members.iter().map(|t| t.bounces[n - 1].clone());
+            Ensemble::new(own.collect())
+        };
+        let beyond = |t: &Member| {
+            let zero = Matrix::zeros(self.flux.nrows(), self.flux.ncols());
+            t.bounces[OWN_ROW..].iter().fold(zero, |a, b| a + b)
+        };
+        let mut terms = Vec::new();
+        for n in [1, 2, 4, 5, 6, OWN_ROW] {
+            let name = if n == 1 {
+                "1 bounce".to_owned()
+            } else {
+                format!("{n} bounces")
+            };
+            let dark = self.members.iter().all(|t| t.bounces[n - 1].amax() <= 0.0);
+            if !(n < 3 && dark) {
+                terms.push(sizes.traced(&name, &order(n), true));
+            }
+        }
+        let beyond = Ensemble::new(self.members.iter().map(beyond).collect());
+        terms.push(sizes.traced(&format!("{} and more bounces", OWN_ROW + 1), &beyond, true));
+        terms
+    }
 }
 
 /// The matrix model if every pixel had the mean étendue.

@@ -1,5 +1,7 @@
 //! Ways of reading the photographs.
 
+use serde::{Deserialize, Serialize};
+
 use crate::matrix::Matrix;
 use crate::metrics::{correlation, mtf_normalized, mtf_raw};
 use crate::model::{Kernel, MatrixModel};
@@ -112,6 +114,7 @@ pub(super) struct Laboratory {
 }
 
 /// Raw and normalized modulation and correlation of one reading.
+#[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Figures {
     pub(super) mtf: Option<f64>,
     pub(super) mtf_normalized: Option<f64>,

@@ -9,11 +9,8 @@ mod results;
 mod series;
 mod words;
 
-use std::sync::atomic::Ordering;
-
-use rayon::prelude::*;
-
 use super::Spread;
+use super::task::Division;
 use crate::matrix::Matrix;
 use crate::model::{Kernel, MatrixModel, ModelError};
 use crate::num::stream::Sampling;
@@ -22,7 +19,7 @@ use crate::sensor::{Sensor, SensorError, entering_lens};
 use crate::transport::{Budget, Control, Estimator, Plan, render};
 use analysis::{ANALYSES, Figures, Laboratory};
 pub use results::{Experiment, Reading, Setting, Threshold};
-use series::{Seed, Series};
+use series::{Pattern, Seed, Series};
 
 /// How the experiment is re-enacted.
 #[derive(Clone, Debug)]
@@ -112,86 +109,133 @@ impl ExperimentPlan {
     }
 }
 
-/// Re-enacts the experiment of `scene`. `steps` hears how many of all photograph series are read. `Ok(None)` if stopped.
-///
-/// # Errors
-/// [`ExperimentError`].
-pub fn experiment(
-    scene: &Scene,
-    plan: &ExperimentPlan,
-    control: Control<'_>,
-    steps: &(dyn Fn(usize, usize) + Sync),
-) -> Result<Option<Experiment>, ExperimentError> {
-    plan.check()?;
-    let sampling = Sampling::Sobol;
-    let laboratory = Laboratory::new(
-        MatrixModel::new(scene, Kernel::Physical, None)?,
-        MatrixModel::new(scene, Kernel::Published, None)?,
-        [scene.camera.columns, scene.camera.rows],
-    );
-    let trace = Plan {
-        estimator: Estimator::Shared,
-        sampling,
-        seed: plan.seed,
-        budget: Budget::new(plan.samples, sampling)
-            .ok_or(ExperimentError::Samples(plan.samples))?,
-    };
-    let Some(traced) = render(scene, &trace, 0..scene.laser.spots.len(), control) else {
-        return Ok(None);
-    };
-    let signal = traced.flux;
-    if signal.sum() <= 0.0 {
-        return Err(ExperimentError::Dark);
+/// Re-enacts the experiment of a scene. A task is one series of photographs under one seed of the sensor.
+#[derive(Debug)]
+pub struct ExperimentTasks {
+    scene: Scene,
+    plan: ExperimentPlan,
+}
+
+/// What every series is photographed and read with.
+pub struct Ground {
+    laboratory: Laboratory,
+    /// Flux from the object, pixels × spots, W.
+    signal: Matrix,
+    /// Flux that enters the lens straight from the spots, W, over all of them.
+    direct: f64,
+    patterns: [Pattern; 2],
+}
+
+impl ExperimentTasks {
+    /// The study of a scene.
+    pub fn new(scene: &Scene, plan: ExperimentPlan) -> Self {
+        let scene = scene.clone();
+        Self { scene, plan }
     }
-    let direct: f64 = entering_lens(scene).iter().sum();
-    if direct <= 0.0 {
-        return Err(ExperimentError::NoGlare);
+
+    fn series<'a>(&self, ground: &'a Ground) -> Vec<Series<'a>> {
+        series::all(&self.scene, &self.plan, &ground.patterns, &ground.signal)
     }
-    let patterns = series::patterns(scene, plan);
-    let work = series::all(scene, plan, &patterns, &signal);
-    let all = work.len() * plan.seeds as usize;
-    let done = std::sync::atomic::AtomicUsize::new(0);
-    let mut settings = Vec::with_capacity(work.len());
-    for w in &work {
-        let read: Result<Vec<Option<Seed>>, ExperimentError> = (0..plan.seeds)
-            .into_par_iter()
-            .map(|k| {
-                if control.stop.load(Ordering::Relaxed) {
-                    return Ok(None);
-                }
-                let seed = series::read(
-                    scene,
-                    plan,
-                    &laboratory,
-                    w,
-                    &signal,
-                    plan.seed.wrapping_add(k),
-                )?;
-                steps(done.fetch_add(1, Ordering::Relaxed) + 1, all);
-                Ok(Some(seed))
-            })
-            .collect();
-        let Some(seeds) = read?.into_iter().collect::<Option<Vec<Seed>>>() else {
+}
+
+impl Division for ExperimentTasks {
+    type Ground = Ground;
+    type Part = Seed;
+    type Finding = Experiment;
+    type Error = ExperimentError;
+
+    fn tasks(&self) -> usize {
+        let levels = self.plan.glares.len() + self.plan.exposures.len();
+        2 * levels * self.plan.seeds as usize
+    }
+
+    fn ground(&self, control: Control<'_>) -> Result<Option<Ground>, ExperimentError> {
+        let Self { scene, plan } = self;
+        plan.check()?;
+        let sampling = Sampling::Sobol;
+        let laboratory = Laboratory::new(
+            MatrixModel::new(scene, Kernel::Physical, None)?,
+            MatrixModel::new(scene, Kernel::Published, None)?,
+            [scene.camera.columns, scene.camera.rows],
+        );
+        let trace = Plan {
+            estimator: Estimator::Shared,
+            sampling,
+            seed: plan.seed,
+            budget: Budget::new(plan.samples, sampling)
+                .ok_or(ExperimentError::Samples(plan.samples))?,
+        };
+        let Some(traced) = render(scene, &trace, 0..scene.laser.spots.len(), control) else {
             return Ok(None);
         };
-        settings.push(setting(scene, w, &signal, &seeds, plan));
+        let signal = traced.flux;
+        if signal.sum() <= 0.0 {
+            return Err(ExperimentError::Dark);
+        }
+        let direct: f64 = entering_lens(scene).iter().sum();
+        if direct <= 0.0 {
+            return Err(ExperimentError::NoGlare);
+        }
+        Ok(Some(Ground {
+            laboratory,
+            signal,
+            direct,
+            patterns: series::patterns(scene, plan),
+        }))
     }
-    let by_exposure = settings.split_off(2 * plan.glares.len());
-    let thresholds = words::thresholds(&settings, &by_exposure);
-    let mut found = Experiment {
-        scene: scene.name.clone(),
-        scene_hash: scene.hash.clone(),
-        sensor: plan.sensor_name.clone(),
-        seeds: plan.seeds,
-        signal: signal.mean(),
-        direct_over_signal: direct / signal.sum(),
-        by_glare: settings,
-        by_exposure,
-        thresholds,
-        words: String::new(),
-    };
-    found.words = words::words(&found, &object(scene));
-    Ok(Some(found))
+
+    fn task(
+        &self,
+        ground: &Ground,
+        index: usize,
+        _: Control<'_>,
+    ) -> Result<Option<Seed>, ExperimentError> {
+        let Self { scene, plan } = self;
+        let seeds = plan.seeds as usize;
+        let (own, seed) = (
+            index / seeds,
+            plan.seed.wrapping_add((index % seeds) as u64),
+        );
+        let of = |series: &Series<'_>| {
+            let Ground {
+                laboratory, signal, ..
+            } = ground;
+            series::read(scene, plan, laboratory, series, signal, seed)
+        };
+        self.series(ground).get(own).map(of).transpose()
+    }
+
+    fn fits(&self, _: &Ground, _: usize, part: &Seed) -> bool {
+        part.figures.len() == ANALYSES.len()
+    }
+
+    fn finish(&self, ground: &Ground, parts: Vec<Seed>) -> Result<Experiment, ExperimentError> {
+        let Self { scene, plan } = self;
+        let signal = &ground.signal;
+        let work = self.series(ground);
+        let own = parts.chunks((plan.seeds as usize).max(1));
+        let mut settings: Vec<Setting> = work
+            .iter()
+            .zip(own)
+            .map(|(w, seeds)| setting(scene, w, signal, seeds, plan))
+            .collect();
+        let by_exposure = settings.split_off(2 * plan.glares.len());
+        let thresholds = words::thresholds(&settings, &by_exposure);
+        let mut found = Experiment {
+            scene: scene.name.clone(),
+            scene_hash: scene.hash.clone(),
+            sensor: plan.sensor_name.clone(),
+            seeds: plan.seeds,
+            signal: signal.mean(),
+            direct_over_signal: ground.direct / signal.sum(),
+            by_glare: settings,
+            by_exposure,
+            thresholds,
+            words: String::new(),
+        };
+        found.words = words::words(&found, &object(scene));
+        Ok(found)
+    }
 }
 
 /// The object in words.
@@ -246,5 +290,29 @@ fn setting(
         saturated: seeds.iter().map(|s| s.saturated).max().unwrap_or(0),
         noise: seeds.iter().map(|s| s.noise).sum::<f64>() / seeds.len() as f64,
         readings,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::SensorModel;
+    use crate::study::task::tests::{divides, small};
+
+    #[test]
+    fn it_divides() {
+        let plan = ExperimentPlan {
+            sensor: Sensor::builtin(SensorModel::Ccd),
+            sensor_name: "ccd".to_owned(),
+            samples: 32,
+            seed: 1,
+            seeds: 2,
+            frames: 2,
+            glares: vec![1.0],
+            exposures: vec![0.1],
+            falloff: 1.0,
+        };
+        let found = divides(&ExperimentTasks::new(&small("experiment"), plan));
+        assert_eq!([found.by_glare.len(), found.by_exposure.len()], [2, 2]);
     }
 }

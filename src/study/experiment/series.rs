@@ -1,5 +1,7 @@
 //! A series of photographs: every spot once, with one strength and kind of glare and one exposure.
 
+use serde::{Deserialize, Serialize};
+
 use super::analysis::{ANALYSES, Figures, Laboratory, Photographs};
 use super::{ExperimentError, ExperimentPlan};
 use crate::matrix::Matrix;
@@ -65,7 +67,8 @@ pub(super) fn all<'a>(
 }
 
 /// What one seed gives.
-pub(super) struct Seed {
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Seed {
     pub(super) saturated: usize,
     pub(super) noise: f64,
     pub(super) figures: Vec<Result<Figures, String>>,

@@ -12,24 +12,26 @@ mod projection;
 mod ratio;
 mod summary;
 mod sweep;
+mod tasks;
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
-use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::metrics::mtf_raw;
 use crate::model::{Kernel, MatrixModel, ModelError};
 use crate::num::linalg::LinalgError;
 use crate::recovery::{Method, Options, Problem, RecoveryError, recover};
 use crate::scene::{Scene, SceneError};
+use crate::transport::Control;
 
 pub use noisy::{Comparison, NoisyOutcome, NoisyPoint};
 pub use summary::{Coefficients, NoisySummary};
 pub use sweep::Layout;
+pub use tasks::IndicatorTasks;
 
+use super::task::{Steps, whole};
 use projection::Projection;
-use summary::{coefficients, summary};
 use sweep::{Arrangement, Site};
 
 /// The sweep.
@@ -84,7 +86,7 @@ impl IndicatorPlan {
 }
 
 /// One bench with one object.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Configuration {
     /// Layout.
     pub layout: String,
@@ -164,7 +166,7 @@ pub enum IndicatorError {
     NoObject,
 }
 
-/// Sweeps the benches: without noise all of them, under noise every so many. `progress` is told how many of how many arrangements are done. `Ok(None)`
+/// Sweeps the benches: without noise all of them, under noise every so many. `progress` is told how many of how many tasks are done. `Ok(None)`
 /// if stopped.
 ///
 /// # Errors
@@ -173,72 +175,17 @@ pub fn indicator(
     scene: &Scene,
     plan: &IndicatorPlan,
     stop: &AtomicBool,
-    progress: &(dyn Fn(usize, usize) + Sync),
+    progress: Steps<'_>,
 ) -> Result<Option<Indicator>, IndicatorError> {
-    if scene.hidden().next().is_none() {
-        return Err(ModelError::NothingHidden.into());
-    }
-    let divides = |e: &usize| plan.boards.iter().any(|b| e.is_multiple_of(*b));
-    if !plan.elements.iter().any(divides) {
-        return Err(IndicatorError::NoObject);
-    }
-    let widest = plan.half_widths.iter().copied().fold(0.0, f64::max);
-    // Two inches for the stagger and to spare.
-    let reach = (widest + 2.0) * scene.unit.per_inch();
-    let site = Site::new(scene, reach)?.ok_or(IndicatorError::NoCentre)?;
-    let arrangements = plan.arrangements();
-    let (done, all) = (std::sync::atomic::AtomicUsize::new(0), arrangements.len());
-    let swept: Vec<Option<Vec<Configured>>> = arrangements
-        .par_iter()
-        .map(|a| {
-            if stop.load(Ordering::Relaxed) {
-                return Ok(None);
-            }
-            let found = configurations(&site, a, &plan.boards)?;
-            progress(done.fetch_add(1, Ordering::Relaxed) + 1, all);
-            Ok(Some(found))
-        })
-        .collect::<Result<_, IndicatorError>>()?;
-    let Some(swept) = swept.into_iter().collect::<Option<Vec<_>>>() else {
-        return Ok(None);
+    let control = Control {
+        progress: &|_| (),
+        stop,
     };
-    let configured: Vec<Configured> = swept.into_iter().flatten().collect();
-    let mut points = Vec::new();
-    let chosen: Vec<usize> = (0..configured.len()).step_by(plan.every.max(1)).collect();
-    for (k, &i) in chosen.iter().enumerate() {
-        if stop.load(Ordering::Relaxed) {
-            return Ok(None);
-        }
-        let Configured { arrangement, found } = &configured[i];
-        if let Some(model) = model(&site, arrangement, found.board)? {
-            points.extend(noisy::points(i, &model, plan));
-        }
-        progress(all + k + 1, all + chosen.len());
-    }
-    let configurations: Vec<Configuration> = configured.into_iter().map(|c| c.found).collect();
-    let identity = configurations
-        .iter()
-        .map(|c| (c.projected - c.mtf).abs())
-        .fold(0.0, f64::max);
-    let mtf: Vec<f64> = configurations.iter().map(|c| c.mtf).collect();
-    let everything: Vec<&Configuration> = configurations.iter().collect();
-    let noisy = |m: &Method| summary(*m, &points, &configurations);
-    Ok(Some(Indicator {
-        scene: scene.name.clone(),
-        scene_hash: scene.hash.clone(),
-        seeds: plan.seeds,
-        first_seed: plan.first_seed,
-        identity,
-        coefficients: coefficients(&everything, &mtf),
-        noisy: plan.methods.iter().map(noisy).collect(),
-        points,
-        configurations,
-    }))
-}
-
-struct Configured {
-    arrangement: Arrangement,
-    found: Configuration,
+    whole(
+        &IndicatorTasks::new(scene, plan.clone())?,
+        control,
+        progress,
+    )
 }
 
 fn model(
@@ -262,7 +209,7 @@ fn configurations(
     site: &Site,
     arrangement: &Arrangement,
     boards: &[usize],
-) -> Result<Vec<Configured>, IndicatorError> {
+) -> Result<Vec<Configuration>, IndicatorError> {
     let mut found = Vec::new();
     let mut shared: Option<Projection> = None;
     for &board in boards
@@ -284,23 +231,20 @@ fn configurations(
         let projected = mtf_raw(&projection.noiseless(&model), &model.albedo);
         // A board of one check has no contrast.
         if let (Some(mtf), Some(projected)) = (mtf, projected) {
-            found.push(Configured {
-                arrangement: *arrangement,
-                found: Configuration {
-                    layout: arrangement.layout.name().to_owned(),
-                    spots: model.laser_side.ncols(),
-                    half_width: arrangement.half_width,
-                    elements: arrangement.elements,
-                    board,
-                    kernel: arrangement.kernel.name().to_owned(),
-                    rank: projection.rank,
-                    kept: projection.kept(&model.albedo),
-                    projected,
-                    mtf,
-                    condition: projection.condition,
-                    smallest_eigenvalue: projection.smallest_eigenvalue,
-                    smallest_square: projection.smallest_square,
-                },
+            found.push(Configuration {
+                layout: arrangement.layout.name().to_owned(),
+                spots: model.laser_side.ncols(),
+                half_width: arrangement.half_width,
+                elements: arrangement.elements,
+                board,
+                kernel: arrangement.kernel.name().to_owned(),
+                rank: projection.rank,
+                kept: projection.kept(&model.albedo),
+                projected,
+                mtf,
+                condition: projection.condition,
+                smallest_eigenvalue: projection.smallest_eigenvalue,
+                smallest_square: projection.smallest_square,
             });
         }
         shared = Some(projection);

@@ -1,7 +1,7 @@
 //! The indicator's extension to noise: mean and spread of the MTF in closed form, against what draws of the noise show.
 
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::IndicatorPlan;
 use super::ratio::Pair;
@@ -48,7 +48,7 @@ pub enum NoisyOutcome {
 }
 
 /// Predicted against measured raw MTF.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Comparison {
     /// The signal kept: raw MTF without noise, at the same parameter.
     pub kept: f64,
@@ -64,29 +64,49 @@ pub struct Comparison {
     pub z: f64,
 }
 
-/// Every method at every noise on one model; draws in parallel.
-pub(super) fn points(
-    configuration: usize,
-    model: &MatrixModel,
-    plan: &IndicatorPlan,
-) -> Vec<NoisyPoint> {
+/// An outcome as it travels: without the names that it has in the files of a study.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub enum Compared {
+    /// [`NoisyOutcome::Compared`].
+    Compared(Comparison),
+    /// [`NoisyOutcome::Undefined`].
+    Undefined(f64),
+    /// [`NoisyOutcome::NoCovariance`].
+    NoCovariance,
+    /// [`NoisyOutcome::Failed`].
+    Failed(String),
+}
+
+impl From<Compared> for NoisyOutcome {
+    fn from(found: Compared) -> Self {
+        match found {
+            Compared::Compared(comparison) => Self::Compared(comparison),
+            Compared::Undefined(spread) => Self::Undefined { spread },
+            Compared::NoCovariance => Self::NoCovariance,
+            Compared::Failed(reason) => Self::Failed { reason },
+        }
+    }
+}
+
+/// Methods and noises, in the order of the points.
+pub(super) fn pairs(plan: &IndicatorPlan) -> Vec<(Method, f64)> {
+    let noises = |m: &Method| {
+        plan.noise.iter().map({
+            let m = *m;
+            move |s| (m, *s)
+        })
+    };
+    plan.methods.iter().flat_map(noises).collect()
+}
+
+/// Every method at every noise on one model, in the order of [`pairs`].
+pub(super) fn compared(model: &MatrixModel, plan: &IndicatorPlan) -> Vec<Compared> {
     let exact = model.phi();
-    let pairs: Vec<(Method, f64)> = plan
-        .methods
-        .iter()
-        .flat_map(|m| plan.noise.iter().map(|s| (*m, *s)))
-        .collect();
-    pairs
+    pairs(plan)
         .par_iter()
-        .map(|&(method, noise)| NoisyPoint {
-            configuration,
-            method: method.name().to_owned(),
-            noise,
-            outcome: compare(model, &exact, method, noise, plan).unwrap_or_else(|e| {
-                NoisyOutcome::Failed {
-                    reason: e.to_string(),
-                }
-            }),
+        .map(|&(method, noise)| {
+            let found = compare(model, &exact, method, noise, plan);
+            found.unwrap_or_else(|e| Compared::Failed(e.to_string()))
         })
         .collect()
 }
@@ -97,7 +117,7 @@ fn compare(
     method: Method,
     noise: f64,
     plan: &IndicatorPlan,
-) -> Result<NoisyOutcome, RecoveryError> {
+) -> Result<Compared, RecoveryError> {
     let stderr = exact.map(|x| noise * x.abs());
     let grids: Vec<[usize; 2]> = model.grids.iter().map(|grid| grid.count).collect();
     let invert = |phi: &Matrix, options: &Options| -> Result<Recovered, RecoveryError> {
@@ -114,15 +134,15 @@ fn compare(
     let options = fixed(&pilot);
     let found = invert(exact, &options)?;
     let Some(covariance) = &found.covariance else {
-        return Ok(NoisyOutcome::NoCovariance);
+        return Ok(Compared::NoCovariance);
     };
     let truth = &model.albedo;
     let Some(pair) = Pair::of(found.reflectance.as_slice(), covariance, truth) else {
-        return Ok(NoisyOutcome::NoCovariance);
+        return Ok(Compared::NoCovariance);
     };
     let spread = pair.spread();
     let Some(predicted) = pair.modulation() else {
-        return Ok(NoisyOutcome::Undefined { spread });
+        return Ok(Compared::Undefined(spread));
     };
     // Of the draws the reflectances alone are measured.
     let options = Options {
@@ -136,9 +156,9 @@ fn compare(
     }
     let measured = Spread::of(&values).filter(|m| m.draws as u64 == plan.seeds);
     let Some((measured, stderr)) = measured.and_then(|m| Some((m, m.stderr?))) else {
-        return Ok(NoisyOutcome::Undefined { spread });
+        return Ok(Compared::Undefined(spread));
     };
-    Ok(NoisyOutcome::Compared(Comparison {
+    Ok(Compared::Compared(Comparison {
         kept: pair.means[0] / pair.means[1],
         mean: predicted.mean,
         deviation: predicted.deviation,
@@ -245,10 +265,7 @@ mod tests {
             noise: vec![1e-4],
             ..small_plan()
         };
-        let found = points(0, &model, &plan);
-        assert!(
-            matches!(found[0].outcome, NoisyOutcome::NoCovariance),
-            "{found:?}"
-        );
+        let found = compared(&model, &plan);
+        assert!(matches!(found[0], Compared::NoCovariance), "{found:?}");
     }
 }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::study::task::tests::divides;
 
 /// Two layouts × two numbers × one half-width × elements 2 and 4 × one kernel; boards 2 and 4: (2, 2), (4, 2), (4, 4).
 pub(super) fn small_plan() -> IndicatorPlan {
@@ -83,4 +84,14 @@ fn what_cannot_be_swept_is_refused() {
         &|_, _| (),
     );
     assert!(stopped.unwrap().is_none());
+}
+
+#[test]
+fn it_divides() {
+    let plan = IndicatorPlan {
+        seeds: 4,
+        ..small_plan()
+    };
+    let found = divides(&IndicatorTasks::new(&small_scene(), plan).unwrap());
+    assert_eq!([found.configurations.len(), found.points.len()], [12, 6]);
 }

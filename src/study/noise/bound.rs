@@ -4,7 +4,6 @@ use rayon::prelude::*;
 
 use super::axis::NoiseAxis;
 use super::stage::Stage;
-use crate::matrix::Matrix;
 use crate::model::MatrixModel;
 use crate::recovery::{Problem, cramer_rao};
 
@@ -14,14 +13,14 @@ use crate::recovery::{Problem, cramer_rao};
 /// Where the levels change the size of the standard errors alone, the bound is proportional to it and computed once.
 pub(super) fn bounds(
     axis: &NoiseAxis,
-    stage: &Stage<'_>,
-    (model, exact): (&MatrixModel, &Matrix),
+    stage: &Stage,
+    model: &MatrixModel,
     levels: &[f64],
 ) -> Vec<Option<f64>> {
     let bound = |level: f64| {
         let stderr = stage.stderr(level).ok()?;
         let (c, d) = (&model.camera_side, &model.laser_side);
-        let problem = Problem::new(exact, c, d, Some(&stderr)).ok()?;
+        let problem = Problem::new(&stage.exact, c, d, Some(&stderr)).ok()?;
         let errors = cramer_rao(&problem).ok()?.standard_error;
         let mean = errors.norm_squared() / errors.len() as f64;
         mean.is_finite().then(|| mean.sqrt())

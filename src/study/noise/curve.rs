@@ -1,6 +1,6 @@
 //! Mean and spread over the seeds, and the noise at which a modulation is lost.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::axis::Spacing;
 use super::trial::{Measures, Trial};
@@ -10,7 +10,7 @@ use crate::num::summation::{mean_and_stderr, tree_sum};
 pub(in super::super) const MOST_SPREAD: f64 = 0.1;
 
 /// Mean and spread of a measure over the draws in which it is defined.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// Draws.
     pub draws: usize,

@@ -18,21 +18,18 @@ mod ledger;
 mod plan;
 mod render;
 mod stage;
+mod tasks;
 mod trial;
 
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
-use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::model::{MatrixModel, ModelError};
+use crate::model::ModelError;
 use crate::recovery::Method;
 use crate::scene::Scene;
-
-use best::best;
-use bound::bounds;
-use stage::Stage;
+use crate::transport::Control;
 
 pub use axis::{NamedSensor, NoiseAxis, Spacing};
 pub use best::Best;
@@ -40,8 +37,9 @@ pub(super) use curve::MOST_SPREAD;
 pub use curve::{Held, Lost, Point, Reach, Spread};
 pub use ledger::{LedgerError, read_ledger, write_ledger};
 pub use plan::NoisePlan;
-pub use render::{RenderNoise, render_noise};
+pub use render::RenderNoise;
 pub(super) use stage::relative;
+pub use tasks::{NoiseFinding, NoiseTasks};
 pub use trial::{Measures, Trial};
 
 /// One method on one object.
@@ -133,8 +131,6 @@ pub enum NoiseError {
 
 /// Standard error above which a mean MTF is not held against a limit: a mean that strays has not fallen.
 const MOST_STDERR: f64 = 0.1;
-/// Draws worked off between two calls of `keep`.
-const CHUNK: usize = 32;
 
 /// Recovers every object from every draw of the noise at every level. Trials among `known` are not repeated; `keep` is handed the others as they
 /// are finished, and may break the study off, as `stop` may. `Ok(None)` if that happened.
@@ -148,103 +144,13 @@ pub fn noise(
     stop: &AtomicBool,
     keep: &mut dyn FnMut(&[Trial]) -> ControlFlow<()>,
 ) -> Result<Option<NoiseStudy>, NoiseError> {
-    let objects = plan.objects();
-    if objects.is_empty() {
-        return Err(NoiseError::NoObject);
-    }
-    plan.refuse_saturation(scene)?;
-    let mut known: Vec<Trial> = known.to_vec();
-    known.sort_by(Trial::order);
-    let mut curves = Vec::new();
-    let mut winners = Vec::new();
-    for &[board, elements] in &objects {
-        let model = plan.model(scene, [board, elements])?;
-        let exact = model.phi();
-        let stage = Stage::new(&plan.axis, scene, &exact)?;
-        let draws: Vec<(f64, u64)> = plan
-            .levels
-            .iter()
-            .flat_map(|level| (0..plan.seeds).map(|k| (*level, plan.first_seed.wrapping_add(k))))
-            .collect();
-        for chunk in draws.chunks(CHUNK) {
-            let bench = Bench {
-                plan,
-                board,
-                elements,
-                model: &model,
-                stage: &stage,
-            };
-            let found: Vec<Option<Vec<Trial>>> = chunk
-                .par_iter()
-                .map(|draw| (!stop.load(Ordering::Relaxed)).then(|| bench.draw(*draw, &known)))
-                .collect();
-            let whole = found.iter().all(Option::is_some);
-            let found: Vec<Trial> = found.into_iter().flatten().flatten().collect();
-            let go_on = keep(&found);
-            known.extend(found);
-            known.sort_by(Trial::order);
-            if !whole || go_on.is_break() {
-                return Ok(None);
-            }
-        }
-        let bounds = bounds(&plan.axis, &stage, (&model, &exact), &plan.levels);
-        let own = |m: &Method| curve(plan, [board, elements], *m, (&known, &bounds));
-        curves.extend(plan.methods.iter().map(own));
-        winners.push(best(&plan.axis, [board, elements], &curves));
-    }
-    Ok(Some(NoiseStudy {
-        scene: scene.name.clone(),
-        scene_hash: scene.hash.clone(),
-        kernel: plan.kernel.name().to_owned(),
-        axis: plan.axis.name().to_owned(),
-        axis_title: plan.axis.title().to_owned(),
-        axis_column: plan.axis.column().to_owned(),
-        axis_spacing: plan.axis.spacing(),
-        axis_words: plan.axis.words().to_owned(),
-        sensor: plan.axis.sensor().map(str::to_owned),
-        seeds: plan.seeds,
-        first_seed: plan.first_seed,
-        curves,
-        best: winners,
-        render_noise: Vec::new(),
-    }))
-}
-
-/// One object, ready to be photographed.
-struct Bench<'a> {
-    plan: &'a NoisePlan,
-    board: usize,
-    elements: usize,
-    model: &'a MatrixModel,
-    stage: &'a Stage<'a>,
-}
-
-impl Bench<'_> {
-    /// The trials of one draw that are not known yet.
-    fn draw(&self, (level, seed): (f64, u64), known: &[Trial]) -> Vec<Trial> {
-        let trial = |method| Trial {
-            board: self.board,
-            elements: self.elements,
-            method,
-            level,
-            seed,
-            outcome: Err(String::new()),
-        };
-        let mut open: Vec<Trial> = self.plan.methods.iter().map(|m| trial(*m)).collect();
-        open.retain(|t| known.binary_search_by(|k| k.order(t)).is_err());
-        if open.is_empty() {
-            return open;
-        }
-        let photographs = self.stage.photograph(level, seed);
-        for trial in &mut open {
-            let measured = |p| trial::measure(self.model, p, trial.method);
-            trial.outcome = photographs
-                .as_ref()
-                .map_err(String::clone)
-                .and_then(measured);
-        }
-        open
-    }
+    let tasks = NoiseTasks::new(scene, plan.clone(), Vec::new());
+    let control = Control {
+        progress: &|_| (),
+        stop,
+    };
+    let found = tasks.go_on(known, control, keep)?;
+    Ok(found.map(|f| f.study))
 }
 
 /// `bounds` are those of Cramér and Rao at the plan's levels.

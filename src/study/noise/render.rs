@@ -1,6 +1,6 @@
 //! Where the noise of a render lies on an axis.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::NoiseAxis;
 use crate::num::stream::Sampling;
@@ -8,7 +8,7 @@ use crate::scene::Scene;
 use crate::transport::{Budget, Control, Estimator, Plan, render};
 
 /// The noise of a render.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RenderNoise {
     /// Estimator.
     pub estimator: String,
@@ -24,41 +24,37 @@ pub struct RenderNoise {
 /// Spots rendered, spread over the layout.
 const SPOTS: usize = 4;
 
-/// Renders a few spots by both estimators (Sobol' points) with each number of paths. `None` if stopped, or for a number of paths that cannot be traced.
-pub fn render_noise(
+/// The estimators of the renders.
+pub(super) const ESTIMATORS: [Estimator; 2] = [Estimator::Independent, Estimator::Shared];
+
+/// Renders a few spots (Sobol' points) with `samples` paths. `None` if stopped, or for a number of paths that cannot be traced.
+pub(super) fn render_noise(
     scene: &Scene,
     axis: &NoiseAxis,
-    samples: &[u64],
-    seed: u64,
+    (estimator, samples, seed): (Estimator, u64, u64),
     control: Control<'_>,
-) -> Option<Vec<RenderNoise>> {
+) -> Option<RenderNoise> {
     let spots = scene.laser.spots.len();
     let count = SPOTS.min(spots);
-    let mut marks = Vec::new();
-    for estimator in [Estimator::Independent, Estimator::Shared] {
-        for &wanted in samples {
-            let budget = Budget::new(wanted, Sampling::Sobol)?;
-            let plan = Plan {
-                estimator,
-                sampling: Sampling::Sobol,
-                seed,
-                budget,
-            };
-            let mut squares = Vec::new();
-            for spot in (0..count).map(|k| k * spots / count) {
-                let traced = render(scene, &plan, spot..spot + 1, control)?;
-                let entries = traced.flux.iter().zip(traced.stderr.iter());
-                let lit = entries.filter(|(flux, _)| **flux > 0.0);
-                squares.extend(lit.map(|(flux, stderr)| (stderr / flux) * (stderr / flux)));
-            }
-            let noise = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
-            marks.push(RenderNoise {
-                estimator: estimator.name().to_owned(),
-                samples: budget.samples(),
-                noise,
-                level: axis.of_relative(noise),
-            });
-        }
+    let budget = Budget::new(samples, Sampling::Sobol)?;
+    let plan = Plan {
+        estimator,
+        sampling: Sampling::Sobol,
+        seed,
+        budget,
+    };
+    let mut squares = Vec::new();
+    for spot in (0..count).map(|k| k * spots / count) {
+        let traced = render(scene, &plan, spot..spot + 1, control)?;
+        let entries = traced.flux.iter().zip(traced.stderr.iter());
+        let lit = entries.filter(|(flux, _)| **flux > 0.0);
+        squares.extend(lit.map(|(flux, stderr)| (stderr / flux) * (stderr / flux)));
     }
-    Some(marks)
+    let noise = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    Some(RenderNoise {
+        estimator: estimator.name().to_owned(),
+        samples: budget.samples(),
+        noise,
+        level: axis.of_relative(noise),
+    })
 }

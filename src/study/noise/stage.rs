@@ -30,10 +30,11 @@ pub(in super::super) fn relative(exact: &Matrix, level: f64, seed: u64) -> Photo
 }
 
 /// An object's light, ready to be photographed.
-pub(super) struct Stage<'a> {
-    axis: &'a NoiseAxis,
+#[derive(Debug)]
+pub(super) struct Stage {
+    axis: NoiseAxis,
     /// Φcam, pixels × spots, W.
-    exact: &'a Matrix,
+    pub(super) exact: Matrix,
     wavelength: f64,
     /// Glare of as much light as the signal, W.
     glare: Option<Matrix>,
@@ -46,12 +47,8 @@ struct Shot {
     glare: Option<Matrix>,
 }
 
-impl<'a> Stage<'a> {
-    pub(super) fn new(
-        axis: &'a NoiseAxis,
-        scene: &Scene,
-        exact: &'a Matrix,
-    ) -> Result<Self, NoiseError> {
+impl Stage {
+    pub(super) fn new(axis: &NoiseAxis, scene: &Scene, exact: Matrix) -> Result<Self, NoiseError> {
         if exact.max() <= 0.0 {
             return Err(NoiseError::Dark);
         }
@@ -62,7 +59,7 @@ impl<'a> Stage<'a> {
                     spread: *spread,
                 };
                 let pattern = glare(scene, all);
-                let ratio = glare_to_signal(&pattern, exact);
+                let ratio = glare_to_signal(&pattern, &exact);
                 if ratio <= 0.0 {
                     return Err(NoiseError::NoGlare);
                 }
@@ -71,7 +68,7 @@ impl<'a> Stage<'a> {
             _ => None,
         };
         Ok(Self {
-            axis,
+            axis: axis.clone(),
             exact,
             wavelength: scene.laser.wavelength,
             glare,
@@ -83,8 +80,8 @@ impl<'a> Stage<'a> {
     /// # Errors
     /// In words: what the sensor cannot take, or that entries are saturated, which no recovery is told of.
     pub(super) fn photograph(&self, level: f64, seed: u64) -> Result<Photographs, String> {
-        if *self.axis == NoiseAxis::Relative {
-            return Ok(relative(self.exact, level, seed));
+        if self.axis == NoiseAxis::Relative {
+            return Ok(relative(&self.exact, level, seed));
         }
         let take = || {
             let shot = self.shot(level, offset(seed))?;
@@ -103,7 +100,7 @@ impl<'a> Stage<'a> {
 
     /// The standard error of every entry at `level`, W.
     pub(super) fn stderr(&self, level: f64) -> Result<Matrix, SensorError> {
-        if *self.axis == NoiseAxis::Relative {
+        if self.axis == NoiseAxis::Relative {
             return Ok(self.exact.map(|x| level * x.abs()));
         }
         let shot = self.shot(level, 0.0)?;
@@ -112,7 +109,7 @@ impl<'a> Stage<'a> {
     }
 
     fn light<'s>(&'s self, shot: &'s Shot) -> Result<Light<'s>, SensorError> {
-        let light = Light::new(self.exact, self.wavelength)?;
+        let light = Light::new(&self.exact, self.wavelength)?;
         match &shot.glare {
             Some(glare) => light.with_glare(glare),
             None => Ok(light),
@@ -129,7 +126,7 @@ impl<'a> Stage<'a> {
             })
         };
         let energy = photon_energy(self.wavelength);
-        match self.axis {
+        match &self.axis {
             NoiseAxis::Relative => plain(Figures::IDEAL, 1.0),
             NoiseAxis::Photons => {
                 let figures = Figures {
@@ -155,8 +152,8 @@ impl<'a> Stage<'a> {
             }),
             NoiseAxis::Glare(camera, _) => {
                 let glare = self.glare.as_ref().map(|g| g * level);
-                let all = glare.as_ref().map(|g| self.exact + g);
-                let brightest = all.as_ref().unwrap_or(self.exact).max();
+                let all = glare.as_ref().map(|g| &self.exact + g);
+                let brightest = all.as_ref().unwrap_or(&self.exact).max();
                 let time = camera.sensor.longest_exposure(brightest, self.wavelength);
                 Ok(Shot {
                     sensor: camera.sensor,
@@ -189,16 +186,16 @@ mod tests {
         Matrix::from_fn(12, 36, |p, l| 1e-15 * (1.0 + p as f64 + 0.37 * l as f64))
     }
 
-    fn stage<'a>(axis: &'a NoiseAxis, exact: &'a Matrix) -> Stage<'a> {
-        Stage::new(axis, &Scene::load("bench").unwrap(), exact).unwrap()
+    fn stage(axis: &NoiseAxis, exact: &Matrix) -> Stage {
+        Stage::new(axis, &Scene::load("bench").unwrap(), exact.clone()).unwrap()
     }
 
     /// √(mean of ((Φ − exact)/σ)²) over entries and `seeds`.
-    fn spread(stage: &Stage<'_>, level: f64, seeds: u64) -> f64 {
+    fn spread(stage: &Stage, level: f64, seeds: u64) -> f64 {
         let squares: f64 = (0..seeds)
             .map(|seed| {
                 let taken = stage.photograph(level, seed).unwrap();
-                let error = (taken.phi - stage.exact).component_div(&taken.stderr);
+                let error = (taken.phi - &stage.exact).component_div(&taken.stderr);
                 error.norm_squared() / error.len() as f64
             })
             .sum();

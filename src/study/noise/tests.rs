@@ -2,6 +2,7 @@ use super::*;
 use crate::model::Kernel;
 use crate::scene::{SensorModel, Spread};
 use crate::sensor::Sensor;
+use crate::study::task::tests::divides;
 
 fn small() -> (Scene, NoisePlan) {
     let text = Scene::load("bench").unwrap().text;
@@ -321,4 +322,24 @@ fn more_photons_are_less_noise() {
     assert!((high / 1e5 - 1.0).abs() < 1e-12 && (low / 1e3 - 1.0).abs() < 1e-12);
     assert_eq!(found.held.unwrap().level, high);
     assert_eq!(found.lost_normalized, [Lost::Before; 2]);
+}
+
+/// Draws at two levels, a rest of a task among them, and a render.
+#[test]
+fn it_divides() {
+    let plan = NoisePlan {
+        boards: vec![2],
+        elements: vec![2, 4],
+        methods: vec![Method::Pinv, Method::Joint],
+        kernel: Kernel::Physical,
+        axis: NoiseAxis::Relative,
+        levels: vec![1e-6, 1e-2],
+        seeds: 3,
+        first_seed: 9,
+    };
+    let found = divides(&NoiseTasks::new(&small().0, plan, vec![16]));
+    assert_eq!(
+        [found.study.curves.len(), found.study.render_noise.len()],
+        [4, 2]
+    );
 }

@@ -2,6 +2,8 @@
 
 use std::cmp::Ordering;
 
+use serde::{Deserialize, Serialize};
+
 use crate::metrics::{correlation, light_and_dark, mtf_normalized, mtf_raw, rmse};
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Options, Problem, Uncertainty, recover};
@@ -26,7 +28,7 @@ pub struct Trial {
 }
 
 /// How far a recovery is from the truth; absent where a measure is not defined.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measures {
     /// (White − Black)/(White + Black) of the recovered values.
     pub mtf_raw: Option<f64>,

@@ -23,7 +23,7 @@ pub(super) fn contours() -> Gallery {
                 title,
                 size: [side; 2],
                 values,
-                axes: ["x", "y"],
+                axes: ["x", "y"].map(str::to_owned),
                 width: 2.0 * reach,
             });
         }
@@ -31,7 +31,7 @@ pub(super) fn contours() -> Gallery {
     Gallery {
         title: "G12 of two corner elements over the wall, 7.5 in. either side of C".to_owned(),
         shades: Shades::Values,
-        unit: "G12 / in.⁻²",
+        unit: "G12 / in.⁻²".to_owned(),
         pictures,
     }
 }

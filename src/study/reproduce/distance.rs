@@ -1,12 +1,13 @@
 //! Figs 17, 18, 20, 21: the distance of the spot lines from C.
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::contour;
 use super::figure::{computed, elements, linear, published as printed};
 use super::inversion::{Inversion, Outcome, published};
-use super::substitution::{self, Case};
-use super::traced::{self, MODELLED};
+use super::substitution::{self, Case, Trial};
+use super::traced::{self, MODELLED, NAMES};
 use super::{Check, Gallery, Item, Plot, ReproduceError, Reproduction, Shades, Watch};
 use crate::model::{Kernel, Stagger};
 use crate::num::linalg::Tolerance;
@@ -25,7 +26,8 @@ const TRACED: [f64; 8] = [1.0, 3.0, 5.0, 6.0, 7.5, 9.0, 11.0, 14.0];
 const SAME: f64 = 2.5e-2;
 
 /// A point of a curve.
-pub(super) struct At {
+#[derive(Debug, Serialize, Deserialize)]
+pub struct At {
     pub(super) half_width: f64,
     pub(super) rank: usize,
     /// The first singular value that is cut, over the cut.
@@ -59,19 +61,40 @@ pub(super) fn curve(
     HALVES.into_par_iter().map(at).collect()
 }
 
-/// Fig 17 is the first of the two layouts, Fig 20 both.
-pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, ReproduceError> {
-    let layouts: &[(Stagger, &str)] = match item {
+/// Layouts with their names; Fig 17 has the first of two, Fig 20 both.
+fn layouts(item: Item) -> &'static [(Stagger, &'static str)] {
+    match item {
         Item::Fig17 => &[(Stagger::None, "no stagger")],
         _ => &[(Stagger::None, "no stagger"), (Stagger::OneInch, "stagger")],
-    };
+    }
+}
+
+/// Kernels and layouts of the curves.
+pub(super) fn curves(item: Item) -> Vec<(Kernel, Stagger)> {
+    let layouts = layouts(item).iter();
+    [Kernel::Published, Kernel::Physical]
+        .into_iter()
+        .flat_map(|k| layouts.clone().map(move |l| (k, l.0)))
+        .collect()
+}
+
+/// Whether `curve` may be one of them.
+pub(super) fn fits(curve: &[At]) -> bool {
+    let whole = |a: &At| a.outcome.values.len() == SIDE * SIDE;
+    curve.len() == HALVES.count() && curve.iter().all(whole)
+}
+
+/// The figure from its curves, and what was traced.
+pub(super) fn figure(item: Item, found: Vec<Vec<At>>, traced: &[(Case, Trial)]) -> Reproduction {
+    let layouts = layouts(item);
+    let mut found = found.into_iter();
     let mut rows = Vec::new();
     let mut curves = [const { Vec::new() }; 2];
     let mut pictures = Vec::new();
     let mut of_published = Vec::new();
     for kernel in [Kernel::Published, Kernel::Physical] {
-        for &(stagger, layout) in layouts {
-            let curve = curve(kernel, stagger, Tolerance::Spacing, watch)?;
+        for &(_, layout) in layouts {
+            let curve = found.next().unwrap_or_default();
             for a in &curve {
                 let o = &a.outcome;
                 rows.push(vec![
@@ -121,19 +144,18 @@ pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, Repro
         ]
     };
     let [normalized, raw] = curves;
-    let traced = substitution::trials(cases(layouts), watch)?;
-    for t in &traced {
-        for r in &t.found {
+    for (case, t) in traced {
+        for (name, r) in NAMES.iter().zip(&t.found) {
             rows.push(vec![
                 Kernel::Physical.name().into(),
-                t.case.curve.into(),
-                t.case.x.into(),
+                case.curve.into(),
+                case.x.into(),
                 t.rank.into(),
                 t.around[0].into(),
                 t.around[1].into(),
                 r.outcome.raw.into(),
                 r.outcome.normalized.into(),
-                r.name.into(),
+                (*name).into(),
                 r.noise.into(),
             ]);
         }
@@ -141,14 +163,14 @@ pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, Repro
     let mut galleries = vec![Gallery {
         title: "Recovered 8 × 8 board, published kernel, stretched to [0, 1]".to_owned(),
         shades: Shades::Reflectance,
-        unit: "",
+        unit: String::new(),
         pictures,
     }];
-    galleries.push(substitution::gallery(&traced, &SHOWN));
+    galleries.push(substitution::gallery(traced, &SHOWN));
     if item == Item::Fig20 {
         galleries.push(contour::contours());
     }
-    Ok(Reproduction {
+    Reproduction {
         item,
         title: match item {
             Item::Fig17 => "MTF against the distance of the spot lines from C, no stagger",
@@ -165,7 +187,7 @@ pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, Repro
             },
             traced::caption()
         ),
-        columns: vec![
+        columns: [
             "kernel",
             "layout",
             "half_width_in",
@@ -176,7 +198,9 @@ pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, Repro
             "mtf_normalized",
             "phi",
             "noise",
-        ],
+        ]
+        .map(str::to_owned)
+        .to_vec(),
         rows,
         plots: vec![
             Plot {
@@ -190,14 +214,14 @@ pub(super) fn figure(item: Item, watch: Watch<'_>) -> Result<Reproduction, Repro
                 curves: raw,
             },
             substitution::plot(
-                &traced,
+                traced,
                 linear("half-width of the square of spots / in.", [0.0, 15.0]),
             ),
         ],
         galleries,
         checks,
-        notes: vec![finer(&of_published[0]), substitution::words(&traced)],
-    })
+        notes: vec![finer(&of_published[0]), substitution::words(traced)],
+    }
 }
 
 fn normalized(curve: &[At], half_width: f64) -> Option<f64> {
@@ -215,7 +239,8 @@ fn highest<'a>(curve: impl Iterator<Item = &'a At>) -> Option<(&'a At, f64)> {
     found.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-fn cases(layouts: &[(Stagger, &'static str)]) -> Vec<Case> {
+/// What is traced.
+pub(super) fn cases(item: Item) -> Vec<Case> {
     let of = |&(stagger, curve): &(Stagger, &'static str)| {
         TRACED.map(|x| Case {
             curve,
@@ -224,7 +249,7 @@ fn cases(layouts: &[(Stagger, &'static str)]) -> Vec<Case> {
             checks: SIDE,
         })
     };
-    layouts.iter().flat_map(of).collect()
+    layouts(item).iter().flat_map(of).collect()
 }
 
 /// What half inches add.

@@ -1,12 +1,14 @@
 //! What an item comes to: a table, figures, pictures and checks, as plain values.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Check, Item};
 
 /// Side of the published object, in.
 const OBJECT: f64 = 4.0;
 
 /// An entry of a table.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Cell {
     /// Words.
     Text(String),
@@ -17,7 +19,7 @@ pub enum Cell {
 }
 
 /// How an axis of a figure runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Course {
     /// Evenly, between these ends.
     Linear,
@@ -26,7 +28,7 @@ pub enum Course {
 }
 
 /// An axis: what it shows (with unit), how it runs, and its ends where it is linear.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FigureAxis {
     /// Name and unit.
     pub title: String,
@@ -37,7 +39,7 @@ pub struct FigureAxis {
 }
 
 /// Where the points of a curve are from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Source {
     /// Computed here.
     Computed,
@@ -46,7 +48,7 @@ pub enum Source {
 }
 
 /// Points with a name.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FigureCurve {
     /// Its name in the legend.
     pub name: String,
@@ -57,7 +59,7 @@ pub struct FigureCurve {
 }
 
 /// One pair of axes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plot {
     /// What it shows.
     pub title: String,
@@ -68,7 +70,7 @@ pub struct Plot {
 }
 
 /// What the shades of a picture mean.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Shades {
     /// Reflectances, 0 black and 1 white.
     Reflectance,
@@ -77,7 +79,7 @@ pub enum Shades {
 }
 
 /// A matrix shown as a picture.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Picture {
     /// What it is.
     pub title: String,
@@ -86,26 +88,26 @@ pub struct Picture {
     /// Value of column i, row j at i + j·columns; the first row is the lowest.
     pub values: Vec<f64>,
     /// What runs to the right and what upwards.
-    pub axes: [&'static str; 2],
+    pub axes: [String; 2],
     /// How wide what it shows is, in.
     pub width: f64,
 }
 
 /// Pictures on one scale.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gallery {
     /// What they show.
     pub title: String,
     /// What their shades mean.
     pub shades: Shades,
     /// Unit of the values.
-    pub unit: &'static str,
+    pub unit: String,
     /// The pictures.
     pub pictures: Vec<Picture>,
 }
 
 /// An item, computed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Reproduction {
     /// Which.
     pub item: Item,
@@ -114,7 +116,7 @@ pub struct Reproduction {
     /// Kernel, layout, pixels, tolerance rule and normalisation.
     pub caption: String,
     /// Heads of the table's columns.
-    pub columns: Vec<&'static str>,
+    pub columns: Vec<String>,
     /// Its rows.
     pub rows: Vec<Vec<Cell>>,
     /// Its figure, a sheet of plots; empty where the table says all.
@@ -125,6 +127,14 @@ pub struct Reproduction {
     pub checks: Vec<Check>,
     /// What else the numbers say.
     pub notes: Vec<String>,
+}
+
+impl Reproduction {
+    /// Whether every picture has as many values as its size says.
+    pub(super) fn pictured(&self) -> bool {
+        let whole = |p: &Picture| p.size[0].checked_mul(p.size[1]) == Some(p.values.len());
+        self.galleries.iter().flat_map(|g| &g.pictures).all(whole)
+    }
 }
 
 impl From<&str> for Cell {
@@ -192,7 +202,7 @@ pub(super) fn elements(title: impl Into<String>, side: usize, values: Vec<f64>) 
         title: title.into(),
         size: [side; 2],
         values,
-        axes: ["x", "d"],
+        axes: ["x", "d"].map(str::to_owned),
         width: OBJECT,
     }
 }

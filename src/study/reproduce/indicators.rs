@@ -101,7 +101,7 @@ pub(super) fn indicators(watch: Watch<'_>) -> Result<Reproduction, ReproduceErro
              the largest and drawn by its size, its sign in the CSV; MTF of the board of one check an element, raw.",
             layout()
         ),
-        columns: vec![
+        columns: [
             "kernel",
             "elements",
             "spots",
@@ -109,7 +109,7 @@ pub(super) fn indicators(watch: Watch<'_>) -> Result<Reproduction, ReproduceErro
             "condition",
             "smallest_eigenvalue",
             "mtf_raw",
-        ],
+        ].map(str::to_owned).to_vec(),
         rows: rows.collect(),
         plots,
         galleries: Vec::new(),

@@ -3,6 +3,8 @@
 //! X = Φ·G12⁺ with Φ = (B ∘ G23)·G12 is (B ∘ G23)·P, P = G12·G12⁺ = U_k U_kᵀ over the k singular directions that the tolerance keeps. Computing it so leaves out
 //! the rounding of Φ that G12⁺ multiplies by the condition, and costs r·k numbers in place of r².
 
+use serde::{Deserialize, Serialize};
+
 use crate::matrix::Matrix;
 use crate::metrics::{mtf_normalized, mtf_raw};
 use crate::model::{Kernel, PixelGrid, Published, Stagger};
@@ -42,7 +44,7 @@ pub(super) struct Inversion {
 }
 
 /// What comes out of an inversion.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Outcome {
     /// Recovered values of the elements, before any stretch.
     pub(super) values: Vec<f64>,

@@ -54,7 +54,9 @@ fn kernel_and_grid_differ_as_told() {
 #[test]
 fn table_1_is_as_told() {
     let stop = std::sync::atomic::AtomicBool::new(false);
-    let found = table1::inverted(Watch::new(&stop)).unwrap();
+    let made = |case| table1::model(case, Watch::new(&stop)).unwrap();
+    let made: Vec<_> = table1::modelled().into_iter().map(made).collect();
+    let found = table1::inverted(&made);
     let number = |row: usize, column: usize| match found.rows[row][column] {
         crate::study::reproduce::Cell::Number(Some(x)) => x,
         ref other => panic!("{other:?}"),

@@ -24,6 +24,7 @@ mod spots;
 mod substitution;
 mod table1;
 mod tables;
+mod tasks;
 mod traced;
 mod verdict;
 
@@ -35,11 +36,14 @@ use crate::num::multiprecision::TooFewDigits;
 use crate::recovery::RecoveryError;
 use crate::scene::SceneError;
 use crate::study::ValidationError;
+use crate::study::task::whole;
+use crate::transport::Control;
 
 pub use figure::{
     Cell, Course, FigureAxis, FigureCurve, Gallery, Picture, Plot, Reproduction, Shades, Source,
 };
 pub use item::{Item, UnknownItem};
+pub use tasks::ReproduceTasks;
 pub use verdict::{Check, Verdict, Weight};
 
 /// What is free in the items.
@@ -118,19 +122,27 @@ pub fn reproduce(
     plan: &ReproducePlan,
     stop: &AtomicBool,
 ) -> Result<Reproduction, ReproduceError> {
-    let watch = Watch::new(stop);
-    watch.go_on()?;
+    let control = Control {
+        progress: &|_| (),
+        stop,
+    };
+    let found = whole(&ReproduceTasks::new(*plan, vec![item]), control, &|_, _| ())?;
+    let found = found.and_then(|items| items.into_iter().next());
+    found.ok_or(ReproduceError::Stopped)
+}
+
+/// An item that is one task.
+fn whole_item(
+    item: Item,
+    plan: &ReproducePlan,
+    watch: Watch<'_>,
+) -> Result<Reproduction, ReproduceError> {
     match item {
-        Item::Table2 => Ok(tables::table(item, &tables::PRINTED[0])),
         Item::Table3 => Ok(tables::table(item, &tables::PRINTED[1])),
         Item::Table4 => Ok(tables::table(item, &tables::PRINTED[2])),
-        Item::Fig17 | Item::Fig20 => distance::figure(item, watch),
-        Item::Table1 => table1::table(watch),
-        Item::Fig12 | Item::Fig13 | Item::Fig14 => spots::modulation(item, plan, watch),
         Item::Fig15 => indicators::indicators(watch),
         Item::Fig22 => noise::figure(plan, watch),
-        Item::Precision => precision::figure(plan, watch),
         Item::Dual => dual::figure(plan, watch),
-        Item::MovingView => moving_view::figure(plan, watch),
+        _ => Ok(tables::table(item, &tables::PRINTED[0])),
     }
 }

@@ -157,7 +157,7 @@ pub(super) fn figure(
             traced::caption(),
             PATHS.map(|b| b.samples().to_string()).join(", ")
         ),
-        columns: vec![
+        columns: [
             "kernel",
             "elements",
             "noise_percent",
@@ -167,13 +167,15 @@ pub(super) fn figure(
             "mtf_normalized",
             "mtf_normalized_deviation",
             "phi",
-        ],
+        ]
+        .map(str::to_owned)
+        .to_vec(),
         rows,
         plots,
         galleries: vec![Gallery {
             title: "Recovered boards, published kernel, stretched to [0, 1]".to_owned(),
             shades: Shades::Reflectance,
-            unit: "",
+            unit: String::new(),
             pictures,
         }],
         checks,
@@ -199,8 +201,9 @@ fn trace(rows: &mut Vec<Vec<Cell>>, watch: Watch<'_>) -> Result<(Plot, String), 
             let traced = Traced::new(&case, side, budget, watch)?;
             let (_, found) = traced.recovered(&board)?;
             for (light, r) in found.iter().enumerate() {
+                let name = NAMES[light];
                 // What does not depend on the number of paths, once.
-                let once = [NAMES[0], NAMES[2]].contains(&r.name);
+                let once = [NAMES[0], NAMES[2]].contains(&name);
                 if once && k > 0 {
                     continue;
                 }
@@ -214,14 +217,14 @@ fn trace(rows: &mut Vec<Vec<Cell>>, watch: Watch<'_>) -> Result<(Plot, String), 
                     None.into(),
                     r.outcome.normalized.into(),
                     None.into(),
-                    r.name.into(),
+                    name.into(),
                 ]);
                 let mtf = r.outcome.normalized.unwrap_or(f64::NAN);
                 match once {
                     true => clean[light / 2] = mtf,
                     false => lines[light / 2].push([percent, mtf]),
                 }
-                if r.name == NAMES[2] {
+                if name == NAMES[2] {
                     lines[1].push([percent, mtf]);
                 }
             }

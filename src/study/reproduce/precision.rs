@@ -1,5 +1,7 @@
 //! The same inversions beyond double precision, and in doubles under several tolerances.
 
+use serde::{Deserialize, Serialize};
+
 use super::exact;
 use super::figure::{computed, linear};
 use super::inversion::{Inversion, Outcome, published};
@@ -87,28 +89,64 @@ struct Found {
 /// Name of the arithmetic beyond doubles.
 const DIGITS: &str = "multiple precision";
 
-pub(super) fn figure(
-    plan: &ReproducePlan,
-    watch: Watch<'_>,
-) -> Result<Reproduction, ReproduceError> {
-    let mut found = Vec::new();
-    for (group, g) in GROUPS
-        .iter()
-        .enumerate()
-        .filter(|(_, g)| g.elements <= plan.most_elements)
-    {
+/// What one arithmetic comes to on one board, as it travels.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Line {
+    rank: usize,
+    outcome: Outcome,
+    shortfall: f64,
+    digits: u32,
+}
+
+/// The cases that the plan admits, with their groups.
+pub(super) fn cases(plan: &ReproducePlan) -> Vec<(usize, Published)> {
+    let mut cases = Vec::new();
+    let groups = GROUPS.iter().enumerate();
+    for (group, g) in groups.filter(|(_, g)| g.elements <= plan.most_elements) {
         for &half_width in g.half_widths {
             for &per_side in g.per_side {
-                let case = published(
-                    Kernel::Published,
-                    g.elements,
-                    per_side,
-                    half_width,
-                    Stagger::None,
-                );
-                found.extend(one(group, &case, g.boards, watch)?);
+                let (kernel, stagger) = (Kernel::Published, Stagger::None);
+                let case = published(kernel, g.elements, per_side, half_width, stagger);
+                cases.push((group, case));
             }
         }
+    }
+    cases
+}
+
+/// Arithmetics and boards of a case, in the order of its lines.
+fn arithmetics(group: usize, case: &Published) -> Vec<(&'static str, usize)> {
+    let rules = rules(case.elements * case.elements, 4 * case.per_side).map(|r| r.0);
+    let names = rules.into_iter().chain([DIGITS]);
+    let boards = GROUPS[group].boards.iter();
+    names
+        .flat_map(|name| boards.clone().map(move |board| (name, *board)))
+        .collect()
+}
+
+/// Whether `lines` may be those of a case.
+pub(super) fn fits((group, case): &(usize, Published), lines: &[Line]) -> bool {
+    let elements = case.elements * case.elements;
+    let whole = |line: &Line| line.outcome.values.len() == elements;
+    lines.len() == arithmetics(*group, case).len() && lines.iter().all(whole)
+}
+
+/// The figure from the lines of every case.
+pub(super) fn figure(plan: &ReproducePlan, lines: Vec<Vec<Line>>) -> Reproduction {
+    let mut found = Vec::new();
+    for ((group, case), lines) in cases(plan).into_iter().zip(lines) {
+        let of = |((rule, board), line): ((&'static str, usize), Line)| Found {
+            group,
+            board,
+            spots: 4 * case.per_side,
+            half_width: case.half_width,
+            rule,
+            rank: line.rank,
+            outcome: line.outcome,
+            shortfall: line.shortfall,
+            digits: line.digits,
+        };
+        found.extend(arithmetics(group, &case).into_iter().zip(lines).map(of));
     }
     let plots = vec![
         plot(
@@ -186,7 +224,7 @@ pub(super) fn figure(
             f.shortfall.into(),
         ]
     });
-    Ok(Reproduction {
+    Reproduction {
         item: Item::Precision,
         title: "Double against multiple precision".to_owned(),
         caption: "Published kernel (G12 and G23 alike); spots on the four sides of a square around C, no stagger; 16 × 16 pixels laid to the edges of the view; raw MTF, \
@@ -194,9 +232,9 @@ pub(super) fn figure(
                   and (B ∘ G23)·(G12·G12⁺) with 60 digits or more, no cut, as many as make G12·G12⁺ symmetric and its trace the rank to 1e-15; spots that the layout has twice taken once, which does not change the \
                   Moore–Penrose recovery."
             .to_owned(),
-        columns: vec![
+        columns: [
             "item", "board", "elements", "spots", "half_width_in", "arithmetic", "digits", "rank", "mtf_raw", "mtf_normalized", "one_minus_mtf_raw",
-        ],
+        ].map(str::to_owned).to_vec(),
         rows: rows.collect(),
         plots,
         galleries: Vec::new(),
@@ -208,48 +246,38 @@ pub(super) fn figure(
             worst > 1e-9,
         )],
         notes,
-    })
+    }
 }
 
-fn one(
-    group: usize,
-    case: &Published,
-    boards: &[usize],
+/// The lines of a case.
+pub(super) fn one(
+    (group, case): &(usize, Published),
     watch: Watch<'_>,
-) -> Result<Vec<Found>, ReproduceError> {
-    let spots = 4 * case.per_side;
+) -> Result<Vec<Line>, ReproduceError> {
+    let boards = GROUPS[*group].boards;
     let inversion = Inversion::new(case)?;
-    let mut found = Vec::new();
-    let line = |board, rule, rank, outcome: Outcome, shortfall, digits| Found {
-        group,
-        board,
-        spots,
-        half_width: case.half_width,
-        rule,
-        rank,
-        outcome,
-        shortfall,
-        digits,
-    };
-    for (rule, tolerance) in rules(case.elements * case.elements, spots) {
+    let mut lines = Vec::new();
+    for (_, tolerance) in rules(case.elements * case.elements, 4 * case.per_side) {
         let rank = inversion.rank(tolerance)?;
         for &board in boards {
             let outcome = inversion.noiseless(&case.board(board), rank);
-            let shortfall = outcome.raw.map_or(f64::NAN, |raw| 1.0 - raw);
-            found.push(line(board, rule, rank, outcome, shortfall, 16));
+            lines.push(Line {
+                rank,
+                shortfall: outcome.raw.map_or(f64::NAN, |raw| 1.0 - raw),
+                outcome,
+                digits: 16,
+            });
         }
     }
-    for (&board, e) in boards.iter().zip(exact::recover(case, boards, watch)?) {
-        found.push(line(
-            board,
-            DIGITS,
-            e.rank,
-            e.outcome,
-            e.shortfall,
-            e.digits,
-        ));
+    for e in exact::recover(case, boards, watch)? {
+        lines.push(Line {
+            rank: e.rank,
+            outcome: e.outcome,
+            shortfall: e.shortfall,
+            digits: e.digits,
+        });
     }
-    Ok(found)
+    Ok(lines)
 }
 
 fn plot(

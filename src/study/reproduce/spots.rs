@@ -1,14 +1,12 @@
 //! Figs 12 to 14: the number of spots.
 
-use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::figure::{computed, linear};
 use super::inversion::{Inversion, Outcome, published};
-use super::substitution::{self, Case};
-use super::traced::{self, MODELLED};
-use super::{
-    Cell, Check, FigureCurve, Item, Plot, ReproduceError, ReproducePlan, Reproduction, Watch,
-};
+use super::substitution::{self, Case, Trial};
+use super::traced::{self, MODELLED, NAMES};
+use super::{Cell, Check, FigureCurve, Item, Plot, ReproduceError, ReproducePlan, Reproduction};
 use crate::model::{Kernel, Stagger};
 use crate::num::linalg::Tolerance;
 
@@ -44,43 +42,83 @@ struct Point {
     outcome: Outcome,
 }
 
-/// Fig 12 (2 × 2 board), 13 (4 × 4) or 14 (8 × 8 and 16 × 16).
-pub(super) fn modulation(
-    item: Item,
-    plan: &ReproducePlan,
-    watch: Watch<'_>,
-) -> Result<Reproduction, ReproduceError> {
-    let boards: &[usize] = match item {
+/// What a case comes to, as it travels.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Modulations {
+    rank: usize,
+    /// One for each board that divides the elements.
+    outcomes: Vec<Outcome>,
+}
+
+/// Kernel, elements a side, spots a side.
+type Bench = (Kernel, usize, usize);
+
+/// Checks a side of the boards of Fig 12, 13 or 14.
+fn boards(item: Item) -> &'static [usize] {
+    match item {
         Item::Fig12 => &[2],
         Item::Fig13 => &[4],
         _ => &[8, 16],
-    };
+    }
+}
+
+/// Those of them that divide the elements.
+fn dividing(item: Item, elements: usize) -> impl Iterator<Item = usize> {
+    let boards = boards(item).iter().copied();
+    boards.filter(move |b| elements.is_multiple_of(*b))
+}
+
+/// What is modelled.
+pub(super) fn cases(item: Item, plan: &ReproducePlan) -> Vec<Bench> {
     let sides = ELEMENTS.into_iter().filter(|e| *e <= plan.most_elements);
-    let cases: Vec<(Kernel, usize, usize)> = sides
-        .filter(|e| boards.iter().any(|b| e % b == 0))
+    sides
+        .filter(|e| dividing(item, *e).next().is_some())
         .flat_map(|e| PER_SIDE.map(|n| (e, n)))
         .flat_map(|(e, n)| KERNELS.map(|k| (k, e, n)))
-        .collect();
-    let points: Vec<Vec<Point>> = cases
-        .into_par_iter()
-        .map(|(kernel, elements, per_side)| {
-            watch.go_on()?;
-            let case = published(kernel, elements, per_side, HALF_WIDTH, Stagger::None);
-            let inversion = Inversion::new(&case)?;
-            let rank = inversion.rank(Tolerance::Spacing)?;
-            let point = |board: usize| Point {
-                board,
-                elements,
-                kernel,
-                spots: 4 * per_side,
-                rank,
-                outcome: inversion.noiseless(&case.board(board), rank),
-            };
-            let own = boards.iter().filter(|b| elements % **b == 0);
-            Ok(own.map(|b| point(*b)).collect())
-        })
-        .collect::<Result<_, ReproduceError>>()?;
-    let mut points: Vec<Point> = points.into_iter().flatten().collect();
+        .collect()
+}
+
+/// One case.
+pub(super) fn one(
+    item: Item,
+    &(kernel, elements, per_side): &Bench,
+) -> Result<Modulations, ReproduceError> {
+    let case = published(kernel, elements, per_side, HALF_WIDTH, Stagger::None);
+    let inversion = Inversion::new(&case)?;
+    let rank = inversion.rank(Tolerance::Spacing)?;
+    let outcome = |board: usize| inversion.noiseless(&case.board(board), rank);
+    Ok(Modulations {
+        rank,
+        outcomes: dividing(item, elements).map(outcome).collect(),
+    })
+}
+
+/// Whether `found` may be what a case comes to.
+pub(super) fn fits(item: Item, bench: &Bench, found: &Modulations) -> bool {
+    found.outcomes.len() == dividing(item, bench.1).count()
+}
+
+/// Fig 12 (2 × 2 board), 13 (4 × 4) or 14 (8 × 8 and 16 × 16), from what its cases come to, and what was traced.
+pub(super) fn modulation(
+    item: Item,
+    plan: &ReproducePlan,
+    found: Vec<Modulations>,
+    traced: &[(Case, Trial)],
+) -> Reproduction {
+    let boards = boards(item);
+    let points = |((kernel, elements, per_side), found): (Bench, Modulations)| {
+        let point = move |(board, outcome)| Point {
+            board,
+            elements,
+            kernel,
+            spots: 4 * per_side,
+            rank: found.rank,
+            outcome,
+        };
+        dividing(item, elements).zip(found.outcomes).map(point)
+    };
+    let cases = cases(item, plan).into_iter();
+    let mut points: Vec<Point> = cases.zip(found).flat_map(points).collect();
     points.sort_by_key(|p| (p.board, p.kernel.name(), p.elements, p.spots));
     let row = |p: &Point| {
         vec![
@@ -120,28 +158,27 @@ pub(super) fn modulation(
     }
     let (mut caption, mut notes) = (String::new(), Vec::new());
     if item == Item::Fig12 {
-        let traced = substitution::trials(traced_cases(plan), watch)?;
-        for t in &traced {
-            for r in &t.found {
+        for (case, t) in traced {
+            for (name, r) in NAMES.iter().zip(&t.found) {
                 rows.push(vec![
                     Kernel::Physical.name().into(),
-                    t.case.checks.into(),
-                    t.case.published.elements.into(),
-                    (4 * t.case.published.per_side).into(),
+                    case.checks.into(),
+                    case.published.elements.into(),
+                    (4 * case.published.per_side).into(),
                     t.rank.into(),
                     r.outcome.raw.into(),
                     r.outcome.normalized.into(),
-                    r.name.into(),
+                    (*name).into(),
                     r.noise.into(),
                 ]);
             }
         }
         let across = linear("number of spots", [0.0, 400.0]);
-        plots.push(substitution::plot(&traced, across));
+        plots.push(substitution::plot(traced, across));
         caption = format!(" {}", traced::caption());
-        notes.push(substitution::words(&traced));
+        notes.push(substitution::words(traced));
     }
-    Ok(Reproduction {
+    Reproduction {
         item,
         title: format!(
             "MTF against the number of spots, {}",
@@ -156,7 +193,7 @@ pub(super) fn modulation(
              elements a side as the legend says, those that the board divides.{caption}",
             layout()
         ),
-        columns: vec![
+        columns: [
             "kernel",
             "board",
             "elements",
@@ -166,17 +203,22 @@ pub(super) fn modulation(
             "mtf_normalized",
             "phi",
             "noise",
-        ],
+        ]
+        .map(str::to_owned)
+        .to_vec(),
         rows,
         plots,
         galleries: Vec::new(),
         checks: boards.iter().flat_map(|b| checks(&points, *b)).collect(),
         notes,
-    })
+    }
 }
 
-/// What is traced of Fig 12: the smallest numbers of elements under a few numbers of spots.
-fn traced_cases(plan: &ReproducePlan) -> Vec<Case> {
+/// What is traced, of Fig 12 alone: the smallest numbers of elements under a few numbers of spots.
+pub(super) fn traced_cases(item: Item, plan: &ReproducePlan) -> Vec<Case> {
+    if item != Item::Fig12 {
+        return Vec::new();
+    }
     let sides = [(4, "4 × 4 elements"), (8, "8 × 8 elements")];
     let of = |(elements, curve): (usize, &'static str)| {
         TRACED.map(|per_side| Case {

@@ -1,5 +1,7 @@
 //! Items with traced Φcam in place of the modelled one.
 
+use serde::{Deserialize, Serialize};
+
 use super::figure::{computed, elements, linear};
 use super::traced::{AS_RENDERED, NAMES, Recovery, Traced};
 use super::{FigureAxis, FigureCurve, Gallery, Plot, ReproduceError, Shades, Watch};
@@ -17,8 +19,8 @@ pub(super) struct Case {
 }
 
 /// A case, recovered from each light.
-pub(super) struct Trial {
-    pub(super) case: Case,
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Trial {
     pub(super) rank: usize,
     /// The last singular value that is kept, and the first that is not, over the cut.
     pub(super) around: [f64; 2],
@@ -30,35 +32,37 @@ pub(super) struct Trial {
     pub(super) found: Vec<Recovery>,
 }
 
-/// Traces and recovers each of `cases`.
-pub(super) fn trials(
-    cases: impl IntoIterator<Item = Case>,
-    watch: Watch<'_>,
-) -> Result<Vec<Trial>, ReproduceError> {
-    let trial = |case: Case| {
-        let traced = Traced::new(&case.published, case.checks, AS_RENDERED, watch)?;
-        let (inverse, found) = traced.recovered(&case.published.board(case.checks))?;
-        let sigma = |k: usize| inverse.sigma.get(k).copied().unwrap_or(0.0);
-        let last = sigma(inverse.rank.saturating_sub(1));
-        Ok(Trial {
-            case,
-            rank: inverse.rank,
-            around: [last, sigma(inverse.rank)].map(|s| s / inverse.cutoff),
-            condition: sigma(0) / last,
-            difference: traced.difference(),
-            found,
-        })
-    };
-    cases.into_iter().map(trial).collect()
+/// Traces and recovers a case.
+pub(super) fn trial(case: &Case, watch: Watch<'_>) -> Result<Trial, ReproduceError> {
+    let traced = Traced::new(&case.published, case.checks, AS_RENDERED, watch)?;
+    let (inverse, found) = traced.recovered(&case.published.board(case.checks))?;
+    let sigma = |k: usize| inverse.sigma.get(k).copied().unwrap_or(0.0);
+    let last = sigma(inverse.rank.saturating_sub(1));
+    Ok(Trial {
+        rank: inverse.rank,
+        around: [last, sigma(inverse.rank)].map(|s| s / inverse.cutoff),
+        condition: sigma(0) / last,
+        difference: traced.difference(),
+        found,
+    })
+}
+
+impl Trial {
+    /// Whether it may be one of `case`.
+    pub(super) fn fits(&self, case: &Case) -> bool {
+        let elements = case.published.elements * case.published.elements;
+        let whole = |r: &Recovery| r.outcome.values.len() == elements;
+        self.found.len() == NAMES.len() && self.found.iter().all(whole)
+    }
 }
 
 /// Normalized MTF of every light over `across`.
-pub(super) fn plot(trials: &[Trial], across: FigureAxis) -> Plot {
-    let mut names: Vec<&str> = trials.iter().map(|t| t.case.curve).collect();
+pub(super) fn plot(trials: &[(Case, Trial)], across: FigureAxis) -> Plot {
+    let mut names: Vec<&str> = trials.iter().map(|(case, _)| case.curve).collect();
     names.dedup();
     let curve = |light: usize, name: &str| -> FigureCurve {
-        let own = trials.iter().filter(|t| t.case.curve == name);
-        let points = own.filter_map(|t| Some([t.case.x, t.found[light].outcome.normalized?]));
+        let own = trials.iter().filter(|(case, _)| case.curve == name);
+        let points = own.filter_map(|(case, t)| Some([case.x, t.found[light].outcome.normalized?]));
         computed(format!("{}, {name}", NAMES[light]), points.collect())
     };
     Plot {
@@ -72,31 +76,31 @@ pub(super) fn plot(trials: &[Trial], across: FigureAxis) -> Plot {
 }
 
 /// What both traced lights come to at the places `shown`.
-pub(super) fn gallery(trials: &[Trial], shown: &[f64]) -> Gallery {
-    let own = trials.iter().filter(|t| shown.contains(&t.case.x));
-    let of = |t: &Trial| {
+pub(super) fn gallery(trials: &[(Case, Trial)], shown: &[f64]) -> Gallery {
+    let own = trials.iter().filter(|(case, _)| shown.contains(&case.x));
+    let of = |(case, t): &(Case, Trial)| {
         let picture = |light: usize| {
-            let Recovery { name, outcome, .. } = &t.found[light];
-            let title = format!("{} in., {}, {name}", t.case.x, t.case.curve);
-            elements(title, t.case.published.elements, outcome.stretched())
+            let title = format!("{} in., {}, {}", case.x, case.curve, NAMES[light]);
+            let values = t.found[light].outcome.stretched();
+            elements(title, case.published.elements, values)
         };
         [2, 3].map(picture)
     };
     Gallery {
         title: "Recovered from traced Φ, physical kernel, stretched to [0, 1]".to_owned(),
         shades: Shades::Reflectance,
-        unit: "",
+        unit: String::new(),
         pictures: own.flat_map(of).collect(),
     }
 }
 
 /// What becomes of the recovery, and of what.
-pub(super) fn words(trials: &[Trial]) -> String {
+pub(super) fn words(trials: &[(Case, Trial)]) -> String {
     let told = |light: usize| {
-        let mtf = |t: &&Trial| t.found[light].outcome.normalized;
+        let mtf = |(_, t): &&(Case, Trial)| t.found[light].outcome.normalized;
         trials.iter().filter(|t| mtf(t) >= Some(TOLD)).count()
     };
-    let most = |f: fn(&Trial) -> f64| trials.iter().map(f).fold(0.0, f64::max);
+    let most = |f: fn(&Trial) -> f64| trials.iter().map(|(_, t)| f(t)).fold(0.0, f64::max);
     format!(
         "Traced in place of modelled Φ: of {} cases {} reach a normalized MTF of {TOLD} with Φ modelled for the footprints' centres, {} with the noise of the render put on it, \
          {} with the mean of the trace and {} with Φ as rendered. The mean is up to {:.1e} of Φ away from the model, which takes elements at their centres, \

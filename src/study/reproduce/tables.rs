@@ -129,7 +129,9 @@ pub(super) fn table(item: Item, printed: &Printed) -> Reproduction {
              centred at d = 6.11764 in. and every 0.5 in. from there, lines at y = 4.375 ∓ {} in.; no layout, pixels, tolerance or normalisation enter.",
             printed.apart
         ),
-        columns: vec!["line", "row", "printed", "computed"],
+        columns: ["line", "row", "printed", "computed"]
+            .map(str::to_owned)
+            .to_vec(),
         rows,
         plots: vec![Plot {
             title: "K against the object row".to_owned(),

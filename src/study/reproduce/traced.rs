@@ -4,6 +4,8 @@
 //! Spots behind S2, whose front no light of theirs can meet, are left out of Φ and G12 alike. Light that met three surfaces counts, the spot itself where the camera
 //! sees it does not. Divided by Φlaser·E_p·(ρ3/π)·(ρ1/π)·A/π it is in the unit of the published Φ = (B ∘ G23)·G12, in.⁻⁴.
 
+use serde::{Deserialize, Serialize};
+
 use super::inversion::Outcome;
 use super::{ReproduceError, Watch};
 use crate::geometry::DVec3;
@@ -36,8 +38,6 @@ const THIRD: usize = 2;
 
 /// Φcam in the unit of the published Φ, pixels × spots.
 pub(super) struct Light {
-    /// Where it is from.
-    pub(super) name: &'static str,
     pub(super) phi: Matrix,
     /// Its standard error, the same shape.
     stderr: Matrix,
@@ -70,9 +70,9 @@ pub(super) struct Traced {
     pub(super) lights: [Light; 4],
 }
 
-/// A recovery.
+/// A recovery from one of the lights.
+#[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Recovery {
-    pub(super) name: &'static str,
     pub(super) noise: f64,
     pub(super) outcome: Outcome,
 }
@@ -136,27 +136,25 @@ impl Traced {
         let deviates = normal_deviates(SEED, stderr.nrows(), stderr.ncols());
         let noisy = &modelled + deviates.component_mul(&stderr);
         let none = Matrix::zeros(stderr.nrows(), stderr.ncols());
-        let [exact, with_noise, converged, single] = NAMES;
-        let light = |name, phi, stderr| Light { name, phi, stderr };
+        let light = |phi, stderr| Light { phi, stderr };
         Ok(Self {
             g23: model.g23,
             g12,
             lights: [
-                light(exact, modelled, none),
-                light(with_noise, noisy, stderr.clone()),
-                light(converged, mean, mean_stderr),
-                light(single, rendered, stderr),
+                light(modelled, none),
+                light(noisy, stderr.clone()),
+                light(mean, mean_stderr),
+                light(rendered, stderr),
             ],
         })
     }
 
-    /// The published inversion of each light, and the inverse that it is done with.
+    /// The published inversion of each light in the order of [`NAMES`], and the inverse that it is done with.
     pub(super) fn recovered(&self, board: &[f64]) -> Result<(Pinv, Vec<Recovery>), ReproduceError> {
         let inverse = pinv(&self.g12, Tolerance::Spacing)?;
         let recovered = |light: &Light| {
             let x = (&light.phi * &inverse.matrix).component_div(&self.g23);
             Recovery {
-                name: light.name,
                 noise: light.noise(),
                 outcome: Outcome::new(x.row_mean().iter().copied().collect(), board),
             }

@@ -6,17 +6,19 @@
 mod misplaced;
 
 use misplaced::{Misplaced, normal};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use super::task::Division;
 use crate::matrix::Matrix;
 use crate::metrics::mtf_raw;
 use crate::model::{Extent, Kernel, MatrixModel, ModelError, converged};
 use crate::num::summation::tree_sum;
 use crate::recovery::{Method, Options, Problem, recover};
 use crate::scene::Scene;
+use crate::transport::Control;
 
 /// What a misplacement of one size does.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Misplacement {
     /// Degrees, or the scene's unit of length.
     pub size: f64,
@@ -61,84 +63,154 @@ const SIZES: [f64; 9] = [1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0];
 /// Noisy photographs whose recoveries are averaged.
 const DRAWS: u64 = 4;
 
-/// Misplaces one thing after the other. `progress` is told how many of how many are done.
-///
-/// # Errors
-/// [`ModelError`] if nothing is hidden.
-pub fn tolerance(
-    scene: &Scene,
+/// Misplaces one thing after the other. A task is one thing misplaced by one size; the first has everything in its place.
+#[derive(Debug)]
+pub struct ToleranceTasks {
+    scene: Scene,
     noise: f64,
-    progress: &dyn Fn(usize, usize),
-) -> Result<Tolerance, ModelError> {
-    let truth = converged(scene, Kernel::Physical, Extent::FULL)?.phi;
-    let photographs: Vec<(Matrix, Matrix)> = (0..DRAWS)
-        .map(|seed| {
-            let mut normal = normal(seed);
-            let stderr = truth.map(|x| x * noise);
-            (truth.zip_map(&stderr, |x, s| x + s * normal()[0]), stderr)
-        })
-        .collect();
-    let mtf = |assumed: &Scene| -> Result<Option<f64>, ModelError> {
-        let model = MatrixModel::new(assumed, Kernel::Physical, None)?;
-        let found: Vec<Option<f64>> = photographs
-            .iter()
-            .map(|(phi, stderr)| {
-                let problem =
-                    Problem::new(phi, &model.camera_side, &model.laser_side, Some(stderr)).ok()?;
-                let found = recover(Method::Joint, &problem, &Options::default()).ok()?;
-                mtf_raw(found.reflectance.as_slice(), &model.albedo)
-            })
-            .collect();
-        let found: Option<Vec<f64>> = found.into_iter().collect();
-        Ok(found.map(|m| tree_sum(&m) / m.len() as f64))
-    };
-    let right = mtf(scene)?;
-    let mut parameters = Vec::new();
-    for (done, what) in Misplaced::ALL.into_iter().enumerate() {
-        progress(done, Misplaced::ALL.len());
-        let unit = if what == Misplaced::HingeAngle {
-            1.0
-        } else {
-            scene.unit.per_inch()
-        };
-        let mut rows = Vec::new();
-        for size in SIZES.map(|s| s * unit) {
-            // A misplacement that the wall does not allow is no misplacement of this bench.
-            let Ok(Some(wrong)) = what.apply(scene, size) else {
-                continue;
-            };
-            let phi = converged(&wrong, Kernel::Physical, Extent::FULL)?.phi;
-            let scale = phi.dot(&truth) / phi.norm_squared().max(f64::MIN_POSITIVE);
-            rows.push(Misplacement {
-                size,
-                change: (&phi - &truth).norm() / truth.norm(),
-                after_scale: (&phi * scale - &truth).norm() / truth.norm(),
-                mtf: mtf(&wrong)?,
-            });
-        }
-        if !rows.is_empty() {
-            let unit = if what == Misplaced::HingeAngle {
-                "deg"
-            } else {
-                scene.unit.symbol()
-            };
-            let lost_at = lost_at(right, &rows);
-            parameters.push(Sensitivity {
-                name: what.name().to_owned(),
-                unit: unit.to_owned(),
-                rows,
-                lost_at,
-            });
+}
+
+/// Φcam and its noisy photographs with their standard errors, pixels × spots, W.
+#[derive(Debug)]
+pub struct Bench {
+    truth: Matrix,
+    photographs: Vec<(Matrix, Matrix)>,
+}
+
+/// What a task gives.
+#[derive(Debug, Serialize, Deserialize)]
+pub enum Placed {
+    /// Mean raw MTF with the right geometry.
+    Right(Option<f64>),
+    /// A misplacement; none where the scene does not allow it.
+    Wrong(Option<Misplacement>),
+}
+
+impl ToleranceTasks {
+    /// The study of a scene, of photographs whose noise relative to each entry is `noise`.
+    pub fn new(scene: &Scene, noise: f64) -> Self {
+        Self {
+            scene: scene.clone(),
+            noise,
         }
     }
-    progress(Misplaced::ALL.len(), Misplaced::ALL.len());
-    Ok(Tolerance {
-        scene: scene.name.clone(),
-        scene_hash: scene.hash.clone(),
-        noise,
-        mtf: right,
-        parameters,
-    })
+
+    /// Mean raw MTF of what is recovered with the model of `assumed`.
+    fn mtf(&self, bench: &Bench, assumed: &Scene) -> Result<Option<f64>, ModelError> {
+        let model = MatrixModel::new(assumed, Kernel::Physical, None)?;
+        let recovered = |(phi, stderr): &(Matrix, Matrix)| {
+            let problem =
+                Problem::new(phi, &model.camera_side, &model.laser_side, Some(stderr)).ok()?;
+            let found = recover(Method::Joint, &problem, &Options::default()).ok()?;
+            mtf_raw(found.reflectance.as_slice(), &model.albedo)
+        };
+        let found: Option<Vec<f64>> = bench.photographs.iter().map(recovered).collect();
+        Ok(found.map(|m| tree_sum(&m) / m.len() as f64))
+    }
+
+    fn misplaced(
+        &self,
+        Bench { truth, .. }: &Bench,
+        what: Misplaced,
+        size: f64,
+    ) -> Result<Option<(Scene, Misplacement)>, ModelError> {
+        // A misplacement that the wall does not allow is no misplacement of this bench.
+        let Ok(Some(wrong)) = what.apply(&self.scene, size) else {
+            return Ok(None);
+        };
+        let phi = converged(&wrong, Kernel::Physical, Extent::FULL)?.phi;
+        let scale = phi.dot(truth) / phi.norm_squared().max(f64::MIN_POSITIVE);
+        let misplacement = Misplacement {
+            size,
+            change: (&phi - truth).norm() / truth.norm(),
+            after_scale: (&phi * scale - truth).norm() / truth.norm(),
+            mtf: None,
+        };
+        Ok(Some((wrong, misplacement)))
+    }
+}
+
+impl Division for ToleranceTasks {
+    type Ground = Bench;
+    type Part = Placed;
+    type Finding = Tolerance;
+    type Error = ModelError;
+
+    fn tasks(&self) -> usize {
+        1 + Misplaced::ALL.len() * SIZES.len()
+    }
+
+    fn ground(&self, _: Control<'_>) -> Result<Option<Bench>, ModelError> {
+        let truth = converged(&self.scene, Kernel::Physical, Extent::FULL)?.phi;
+        let photograph = |seed| {
+            let mut normal = normal(seed);
+            let stderr = truth.map(|x| x * self.noise);
+            (truth.zip_map(&stderr, |x, s| x + s * normal()[0]), stderr)
+        };
+        let photographs = (0..DRAWS).map(photograph).collect();
+        Ok(Some(Bench { truth, photographs }))
+    }
+
+    fn task(
+        &self,
+        bench: &Bench,
+        index: usize,
+        _: Control<'_>,
+    ) -> Result<Option<Placed>, ModelError> {
+        let Some(at) = index.checked_sub(1) else {
+            return Ok(Some(Placed::Right(self.mtf(bench, &self.scene)?)));
+        };
+        let what = Misplaced::ALL[at / SIZES.len()];
+        let size = SIZES[at % SIZES.len()] * inch(what, &self.scene).0;
+        let found = match self.misplaced(bench, what, size)? {
+            Some((wrong, found)) => Some(Misplacement {
+                mtf: self.mtf(bench, &wrong)?,
+                ..found
+            }),
+            None => None,
+        };
+        Ok(Some(Placed::Wrong(found)))
+    }
+
+    fn fits(&self, _: &Bench, index: usize, part: &Placed) -> bool {
+        matches!(part, Placed::Right(_)) == (index == 0)
+    }
+
+    fn finish(&self, _: &Bench, parts: Vec<Placed>) -> Result<Tolerance, ModelError> {
+        let mut right = None;
+        let mut placed = Vec::with_capacity(parts.len());
+        for part in parts {
+            match part {
+                Placed::Right(mtf) => right = mtf,
+                Placed::Wrong(found) => placed.push(found),
+            }
+        }
+        let of = |(what, own): (&Misplaced, &[Option<Misplacement>])| {
+            let rows: Vec<Misplacement> = own.iter().flatten().copied().collect();
+            (!rows.is_empty()).then(|| Sensitivity {
+                name: what.name().to_owned(),
+                unit: inch(*what, &self.scene).1.to_owned(),
+                lost_at: lost_at(right, &rows),
+                rows,
+            })
+        };
+        let things = Misplaced::ALL.iter().zip(placed.chunks(SIZES.len()));
+        Ok(Tolerance {
+            scene: self.scene.name.clone(),
+            scene_hash: self.scene.hash.clone(),
+            noise: self.noise,
+            mtf: right,
+            parameters: things.filter_map(of).collect(),
+        })
+    }
+}
+
+/// What one of [`SIZES`] is, and in which unit: a degree, or an inch in the scene's unit.
+fn inch(what: Misplaced, scene: &Scene) -> (f64, &'static str) {
+    match what {
+        Misplaced::HingeAngle => (1.0, "deg"),
+        _ => (scene.unit.per_inch(), scene.unit.symbol()),
+    }
 }
 
 /// Below this an MTF shows no pattern.
@@ -166,6 +238,13 @@ fn lost_at(right: Option<f64>, rows: &[Misplacement]) -> Option<f64> {
 mod tests {
     use super::misplaced::hinge;
     use super::*;
+    use crate::study::task::tests::{divides, small};
+
+    #[test]
+    fn it_divides() {
+        let found = divides(&ToleranceTasks::new(&small("bench"), 0.01));
+        assert_eq!(found.parameters.len(), Misplaced::ALL.len());
+    }
 
     /// On the bench the planes meet at y = 15.5, z = 0, along x.
     #[test]

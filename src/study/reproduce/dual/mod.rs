@@ -74,7 +74,7 @@ fn picture(title: &str, values: &[f64]) -> Picture {
         title: title.to_owned(),
         size: [SIDE; 2],
         values: values.to_vec(),
-        axes: ["x", "y"],
+        axes: ["x", "y"].map(str::to_owned),
         width: WIDTH,
     }
 }
@@ -167,7 +167,7 @@ pub(super) fn figure(
             plan.first_seed,
             100.0 * loudest
         ),
-        columns: vec![
+        columns: [
             "what",
             "matrix",
             "k",
@@ -175,7 +175,7 @@ pub(super) fn figure(
             "mtf_raw",
             "mtf_normalized",
             "correlation",
-        ],
+        ].map(str::to_owned).to_vec(),
         rows,
         plots: vec![spectra(&traced, &modelled)],
         galleries: galleries(&pictures, &found),
@@ -234,7 +234,7 @@ fn galleries(pictures: &[Judged; 3], found: &[Judged]) -> Vec<Gallery> {
         Gallery {
             title: "The wall from the two places".to_owned(),
             shades: Shades::Values,
-            unit: "W",
+            unit: "W".to_owned(),
             pictures: pictures
                 .iter()
                 .map(|j| picture(j.what, &j.values))
@@ -244,7 +244,7 @@ fn galleries(pictures: &[Judged; 3], found: &[Judged]) -> Vec<Gallery> {
             title: "The board by transposing and by inverting the traced T, stretched to [0, 1]"
                 .to_owned(),
             shades: Shades::Reflectance,
-            unit: "",
+            unit: String::new(),
             pictures: boards,
         },
     ]

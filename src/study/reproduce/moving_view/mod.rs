@@ -15,13 +15,12 @@ mod tests;
 mod traced;
 
 use super::figure::{computed, decades, elements, linear};
-use super::{
-    Cell, FigureCurve, Gallery, Item, Plot, ReproduceError, ReproducePlan, Reproduction, Shades,
-    Watch,
-};
+use super::{Cell, FigureCurve, Gallery, Item, Plot, ReproducePlan, Reproduction, Shades};
 use crate::model::Kernel;
 use modelled::Configuration;
+pub(super) use modelled::Modelled;
 use traced::Photographs;
+pub(super) use traced::Seen;
 
 /// Pixels of the camera and elements of the board, a side.
 const PIXELS: usize = 8;
@@ -42,12 +41,22 @@ fn board(checks: usize) -> Vec<f64> {
         .collect()
 }
 
+/// How many configurations are modelled.
+pub(super) fn modelled_cases() -> usize {
+    modelled::cases().len()
+}
+
+/// How many are traced.
+pub(super) const TRACED_CASES: usize = traced::CASES.len();
+
+/// The figure, from what was modelled and what was traced.
 pub(super) fn figure(
     plan: &ReproducePlan,
-    watch: Watch<'_>,
-) -> Result<Reproduction, ReproduceError> {
-    let modelled = modelled::configurations(plan, watch)?;
-    let traced = traced::photographs(plan, watch)?;
+    modelled: Vec<Modelled>,
+    traced: Vec<Seen>,
+) -> Reproduction {
+    let modelled = modelled::configurations(modelled);
+    let traced = traced::photographs(traced);
     let mut rows: Vec<Vec<Cell>> = modelled.iter().flat_map(modelled_rows).collect();
     rows.extend(traced.iter().map(|t| traced_row(t, &modelled)));
     let pictures = BOARDS.iter().flat_map(|checks| {
@@ -57,7 +66,7 @@ pub(super) fn figure(
             elements(title, ELEMENTS, t.recovered.clone())
         })
     });
-    Ok(Reproduction {
+    Reproduction {
         item: Item::MovingView,
         title: "The camera's view moving with the laser spot, against the view that stays"
             .to_owned(),
@@ -75,7 +84,7 @@ pub(super) fn figure(
             super::photographs::REPLICATES * traced::SIZE,
             plan.first_seed
         ),
-        columns: vec![
+        columns: [
             "photographs",
             "half_width_in",
             "kernel",
@@ -87,18 +96,20 @@ pub(super) fn figure(
             "contrast_error",
             "mtf_raw",
             "rmse",
-        ],
+        ]
+        .map(str::to_owned)
+        .to_vec(),
         rows,
         plots: plots(&modelled),
         galleries: vec![Gallery {
             title: "Traced and recovered by joint, half-width 3 in.".to_owned(),
             shades: Shades::Reflectance,
-            unit: "",
+            unit: String::new(),
             pictures: pictures.collect(),
         }],
         checks: checks::checks(&modelled, &traced),
         notes: notes(&modelled, &traced),
-    })
+    }
 }
 
 fn modelled_rows(c: &Configuration) -> Vec<Vec<Cell>> {

@@ -1,7 +1,7 @@
 //! Modelled photographs under relative noise.
 
 use nalgebra::DVector;
-use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::super::{ReproduceError, ReproducePlan, Watch};
 use super::layout::{self, View};
@@ -27,6 +27,7 @@ pub(super) fn loudest() -> f64 {
 }
 
 /// What one level of noise leaves of one board.
+#[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Point {
     /// Standard deviation of each entry of Φ over its value.
     pub(super) noise: f64,
@@ -79,35 +80,66 @@ pub(super) fn draws(plan: &ReproducePlan) -> u64 {
     plan.seeds.div_ceil(4)
 }
 
-/// Every half-width and view under both kernels; noise is drawn under the physical one.
-pub(super) fn configurations(
-    plan: &ReproducePlan,
-    watch: Watch<'_>,
-) -> Result<Vec<Configuration>, ReproduceError> {
-    let mut cases: Vec<(f64, Scene, Kernel, View)> = Vec::new();
+/// Half-width, scene, kernel and view of every configuration; noise is drawn under the physical kernel.
+pub(super) fn cases() -> Vec<(f64, &'static str, Kernel, View)> {
+    let mut cases = Vec::new();
     for (name, half_width) in HALF_WIDTHS {
-        let scene = layout::scene(name, PIXELS)?;
         for kernel in [Kernel::Physical, Kernel::Published] {
-            cases.extend(layout::VIEWS.map(|view| (half_width, scene.clone(), kernel, view)));
+            cases.extend(layout::VIEWS.map(|view| (half_width, name, kernel, view)));
         }
     }
     cases
-        .into_par_iter()
-        .map(|(half_width, scene, kernel, view)| {
-            let system = System::new(&scene, view, kernel, 1)?;
-            let courses = BOARDS
-                .iter()
-                .map(|checks| course(&system, &scene, kernel, *checks, plan, watch))
-                .collect::<Result<_, ReproduceError>>()?;
-            Ok(Configuration {
-                half_width,
-                kernel,
-                view,
-                sigma: system.sigma()?,
-                courses,
-            })
+}
+
+/// What a configuration comes to, as it travels.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Modelled {
+    /// Singular values of K, W.
+    sigma: Vec<f64>,
+    /// Board by board.
+    courses: Vec<Vec<Point>>,
+}
+
+impl Modelled {
+    /// The configuration numbered `index`.
+    pub(in super::super) fn compute(
+        index: usize,
+        plan: &ReproducePlan,
+        watch: Watch<'_>,
+    ) -> Result<Self, ReproduceError> {
+        let (_, name, kernel, view) = cases()[index];
+        let scene = layout::scene(name, PIXELS)?;
+        let system = System::new(&scene, view, kernel, 1)?;
+        let course = |checks: &usize| course(&system, &scene, kernel, *checks, plan, watch);
+        Ok(Self {
+            courses: BOARDS.iter().map(course).collect::<Result<_, _>>()?,
+            sigma: system.sigma()?,
         })
-        .collect()
+    }
+
+    /// Whether it may be one.
+    pub(in super::super) fn fits(&self) -> bool {
+        let whole = |points: &Vec<Point>| points.len() == HALF_POWERS.count();
+        !self.sigma.is_empty()
+            && self.courses.len() == BOARDS.len()
+            && self.courses.iter().all(whole)
+    }
+}
+
+/// The configurations, from what they come to.
+pub(super) fn configurations(found: Vec<Modelled>) -> Vec<Configuration> {
+    let course = |(checks, points): (&usize, Vec<Point>)| Course {
+        checks: *checks,
+        points,
+    };
+    let of = |((half_width, _, kernel, view), found): (_, Modelled)| Configuration {
+        half_width,
+        kernel,
+        view,
+        sigma: found.sigma,
+        courses: BOARDS.iter().zip(found.courses).map(course).collect(),
+    };
+    cases().into_iter().zip(found).map(of).collect()
 }
 
 fn course(
@@ -117,7 +149,7 @@ fn course(
     checks: usize,
     plan: &ReproducePlan,
     watch: Watch<'_>,
-) -> Result<Course, ReproduceError> {
+) -> Result<Vec<Point>, ReproduceError> {
     let truth = board(checks);
     // Relative noise: every entry's error is `noise` times its value.
     let exact = system.light(&truth);
@@ -150,12 +182,7 @@ fn course(
             mtf: (draws > 0).then(|| sum / draws as f64),
         })
     };
-    Ok(Course {
-        checks,
-        points: HALF_POWERS
-            .map(point)
-            .collect::<Result<_, ReproduceError>>()?,
-    })
+    HALF_POWERS.map(point).collect()
 }
 
 /// √(wᵀ Cov(ρ̂) w) of unbounded least squares under unit noise, w the mean over the light elements less that over the dark ones.

@@ -8,6 +8,7 @@ use super::system::System;
 use super::*;
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Options, Problem, recover};
+use crate::study::reproduce::{ReproduceError, Watch};
 
 /// Every view is where it is said to be, and on the wall; the fixed one does not move.
 #[test]
@@ -217,7 +218,8 @@ fn a_stop_is_heeded() {
     };
     let stop = AtomicBool::new(true);
     let watch = Watch::new(&stop);
-    assert!(matches!(figure(&plan, watch), Err(ReproduceError::Stopped)));
-    let traced = traced::photographs(&plan, watch);
+    let modelled = Modelled::compute(0, &plan, watch);
+    assert!(matches!(modelled, Err(ReproduceError::Stopped)));
+    let traced = Seen::compute(0, &plan, watch);
     assert!(matches!(traced, Err(ReproduceError::Stopped)));
 }

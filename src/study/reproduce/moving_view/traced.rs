@@ -1,13 +1,14 @@
 //! Traced photographs, with the noise that their render has.
 
 use nalgebra::DVector;
+use serde::{Deserialize, Serialize};
 
 use super::super::photographs::{REPLICATES, traced};
 use super::super::{ReproduceError, ReproducePlan, Watch};
 use super::layout::{self, View};
 use super::modelled::contrast_error;
 use super::system::System;
-use super::{BOARDS, HALF_WIDTHS, PIXELS, board};
+use super::{BOARDS, ELEMENTS, HALF_WIDTHS, PIXELS, board};
 use crate::matrix::Matrix;
 use crate::metrics::{mtf_raw, rmse};
 use crate::model::Kernel;
@@ -39,20 +40,58 @@ pub(super) struct Photographs {
     pub(super) agreeing: [usize; 2],
 }
 
-/// The boards of the half-width 3 in., seen by the fixed and by the moving view.
-pub(super) fn photographs(
-    plan: &ReproducePlan,
-    watch: Watch<'_>,
-) -> Result<Vec<Photographs>, ReproduceError> {
-    let scene = layout::scene(HALF_WIDTHS[0].0, PIXELS)?;
-    let mut found = Vec::new();
-    for checks in BOARDS {
-        let scene = scene.with_checkerboard(checks);
-        for view in [View::Fixed, layout::TRACED] {
-            found.push(one(&scene, view, checks, plan, watch)?);
-        }
+/// Boards and views of the half-width 3 in.
+pub(super) const CASES: [(usize, View); 4] = [
+    (BOARDS[0], View::Fixed),
+    (BOARDS[0], layout::TRACED),
+    (BOARDS[1], View::Fixed),
+    (BOARDS[1], layout::TRACED),
+];
+
+/// What the photographs of a case come to, as it travels.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Seen {
+    noise: f64,
+    effective_rank: usize,
+    contrast_error: f64,
+    mtf: Option<f64>,
+    rmse: Option<f64>,
+    recovered: Vec<f64>,
+    agreeing: [usize; 2],
+}
+
+impl Seen {
+    /// The case numbered `index`.
+    pub(in super::super) fn compute(
+        index: usize,
+        plan: &ReproducePlan,
+        watch: Watch<'_>,
+    ) -> Result<Self, ReproduceError> {
+        let (checks, view) = CASES[index];
+        let scene = layout::scene(HALF_WIDTHS[0].0, PIXELS)?.with_checkerboard(checks);
+        one(&scene, view, checks, plan, watch)
     }
-    Ok(found)
+
+    /// Whether it may be one.
+    pub(in super::super) fn fits(&self) -> bool {
+        self.recovered.len() == ELEMENTS * ELEMENTS && self.agreeing.iter().all(|n| *n <= 1 << 20)
+    }
+}
+
+/// The photographs, from what they come to.
+pub(super) fn photographs(found: Vec<Seen>) -> Vec<Photographs> {
+    let of = |((checks, view), seen): ((usize, View), Seen)| Photographs {
+        view,
+        checks,
+        noise: seen.noise,
+        effective_rank: seen.effective_rank,
+        contrast_error: seen.contrast_error,
+        mtf: seen.mtf,
+        rmse: seen.rmse,
+        recovered: seen.recovered,
+        agreeing: seen.agreeing,
+    };
+    CASES.into_iter().zip(found).map(of).collect()
 }
 
 fn one(
@@ -61,7 +100,7 @@ fn one(
     checks: usize,
     plan: &ReproducePlan,
     watch: Watch<'_>,
-) -> Result<Photographs, ReproduceError> {
+) -> Result<Seen, ReproduceError> {
     let (pixels, spots) = (scene.camera.pixels(), scene.laser.spots.len());
     let [mut flux, mut error] = [(); 2].map(|()| Matrix::zeros(pixels, spots));
     let mut agreeing = [0, 0];
@@ -94,9 +133,7 @@ fn one(
     let data = flux.component_div(&error);
     let along = weighted.along(&DVector::from_column_slice(data.as_slice()));
     let recovered = weighted.recover(Method::Joint, &along, 1.0)?.reflectance;
-    Ok(Photographs {
-        view,
-        checks,
+    Ok(Seen {
         noise: error.norm() / flux.norm(),
         effective_rank: weighted.effective_rank(1.0),
         contrast_error: contrast_error(&weighted, &along, &truth)?,

@@ -1,0 +1,118 @@
+use std::collections::BTreeMap;
+use std::fs;
+use std::sync::atomic::AtomicBool;
+
+use clap::Parser;
+
+use super::*;
+use crate::cli::args::Args;
+use crate::cli::output::Talk;
+
+const TALK: Talk = Talk { quiet: true };
+
+fn command(line: &str) -> Command {
+    let words = std::iter::once("phicam").chain(line.split_whitespace());
+    Args::try_parse_from(words).unwrap().command
+}
+
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entry = |e: std::io::Result<fs::DirEntry>| {
+        let e = e.unwrap();
+        let name = e.file_name().into_string().unwrap();
+        (name, fs::read(e.path()).unwrap())
+    };
+    fs::read_dir(folder).unwrap().map(entry).collect()
+}
+
+/// A built-in scene of four by four pixels as a file.
+fn small(folder: &Path, name: &str) -> String {
+    let text = Scene::load(name).unwrap().text;
+    let at = text.find("pixels = [").unwrap();
+    let end = at + text[at..].find(']').unwrap() + 1;
+    let path = folder.join(format!("{name}.toml"));
+    fs::write(&path, text.replacen(&text[at..end], "pixels = [4, 4]", 1)).unwrap();
+    path.to_string_lossy().into_owned()
+}
+
+/// Runs `line` as it is, and in tasks of two processes, the second half first.
+fn same(line: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    let direct = folder.path().join("direct");
+    let merged = folder.path().join("merged");
+    let line = ["bench", "satin", "experiment"]
+        .into_iter()
+        .filter(|name| line.contains(&format!("{{{name}}}")))
+        .fold(line.to_owned(), |line, name| {
+            line.replace(&format!("{{{name}}}"), &small(folder.path(), name))
+        });
+    let own = command(&format!("{line} -o {}", direct.display()));
+    match &own {
+        Command::Study(args) => study::execute(args, TALK).map(|_| ()).unwrap(),
+        Command::Reproduce(args) => reproduce::execute(args, TALK).map(|_| ()).unwrap(),
+        _ => panic!("{line}"),
+    }
+    let stop = AtomicBool::new(false);
+    let control = Control {
+        progress: &|_| (),
+        stop: &stop,
+    };
+    let process = |tasks| {
+        let tasks: Range<usize> = tasks;
+        cut(&own, None)
+            .unwrap()
+            .run(tasks, control)
+            .unwrap()
+            .unwrap()
+    };
+    let all = cut(&own, None).unwrap();
+    let half = all.tasks() / 2;
+    let second = process(half..all.tasks());
+    let parts = [process(0..half), second].concat();
+    all.deliver(&parts, control, &merged).unwrap().unwrap();
+    assert!(files(&direct) == files(&merged), "{line}");
+
+    let mut forged = parts.clone();
+    forged[0].push(0);
+    assert!(all.deliver(&forged, control, &merged).is_err(), "{line}");
+    stop.store(true, std::sync::atomic::Ordering::Relaxed);
+    assert!(
+        matches!(all.run(0..all.tasks(), control), Ok(None)),
+        "{line}"
+    );
+}
+
+#[test]
+fn studies_of_recoveries_leave_the_same_files() {
+    same("study coverage {bench} --elements 2 --seeds 11 --method pinv,joint");
+    same(
+        "study noise {bench} --boards 2 --elements 2,4 --seeds 3 --noise 1e-6,1e-2 --method pinv,joint --render-samples 16",
+    );
+    same(
+        "study indicator {bench} --spots 8,40 --half-widths 4 --elements 4 --boards 2 --seeds 3 --every 5 --method pinv",
+    );
+    same(
+        "study experiment {experiment} --samples 32 --seeds 2 --glares 1 --exposures 0.1 --frames 2",
+    );
+}
+
+#[test]
+fn studies_of_traced_light_leave_the_same_files() {
+    same("study power {bench} --samples 32 --seeds 3 --estimator shared,factored");
+    same("study convergence {bench} --samples 32,64");
+    same("study budget {bench} --samples 256 --run-samples 32");
+    same("study tolerance {bench}");
+    same("study brdf {satin} --samples 64 --noise 0.01 --seeds 2 --method pinv,joint");
+}
+
+#[test]
+fn published_items_leave_the_same_files() {
+    same("reproduce table2 fig13 --most-elements 8");
+}
+
+#[test]
+fn other_commands_are_refused() {
+    let Err(Failure::Error(said)) = cut(&command("scene list"), None) else {
+        panic!("cut")
+    };
+    assert!(said.contains("cannot be cut into tasks"), "{said}");
+}
