@@ -14,13 +14,15 @@ use crate::geometry::{Body, DAffine3, DQuat, DVec3, Mesh, Shape, Side};
 const LARGEST_FILE: u64 = 1 << 30;
 /// Triangles of a mesh that phicam makes, unless the scene says how many.
 const FACES: u64 = 20_000;
-/// More are not made.
+/// More are not made, of all meshes of a scene together.
 const MOST_FACES: u64 = 20_000_000;
 
 /// What meshes share: two surfaces that name one mesh at one stretch use one copy, and one tree.
 #[derive(Debug, Default)]
 pub(super) struct Meshes {
     made: HashMap<String, (Arc<Mesh>, Defects)>,
+    /// Triangles that phicam was asked to make.
+    faces: u64,
 }
 
 /// A placed mesh and what was wrong with it.
@@ -141,7 +143,10 @@ impl Meshes {
                 }
                 (Step::Key("file"), read(file, files)?)
             }
-            (None, Some(generator)) => (Step::Key("generate"), generate(generator, table.faces)?),
+            (None, Some(generator)) => (
+                Step::Key("generate"),
+                self.generate(generator, table.faces)?,
+            ),
             _ => {
                 let cause = "a mesh needs exactly one of `file` and `generate`";
                 let cure = "add `file = \"body.ply\"`, or `generate = \"bust\"`";
@@ -162,6 +167,26 @@ impl Meshes {
         let mesh = Arc::new(mesh);
         self.made.insert(key, (mesh.clone(), defects));
         Ok((mesh, defects))
+    }
+
+    fn generate(&mut self, generator: Generator, faces: Option<u64>) -> Result<Triangles, Fault> {
+        if generator == Generator::Box && faces.is_some() {
+            let cause = "a box has its 12 triangles, and no `faces`";
+            return Err(Fault::new(keys!["faces"], cause, "remove `faces`"));
+        }
+        let usual = if generator == Generator::Box {
+            12
+        } else {
+            FACES
+        };
+        let faces = faces.unwrap_or(usual);
+        self.faces = self.faces.saturating_add(faces);
+        if faces == 0 || self.faces > MOST_FACES {
+            let cause = format!("{faces} triangles, {} with those before", self.faces);
+            let cure = format!("use 1 to {MOST_FACES}, for all meshes of the scene together");
+            return Err(Fault::new(keys!["faces"], cause, cure));
+        }
+        Ok(generator.triangles(faces as usize))
     }
 }
 
@@ -190,18 +215,4 @@ fn read(name: &str, files: &mut Files) -> Result<Triangles, Fault> {
             "mend the file, or use another",
         )
     })
-}
-
-fn generate(generator: Generator, faces: Option<u64>) -> Result<Triangles, Fault> {
-    if generator == Generator::Box && faces.is_some() {
-        let cause = "a box has its 12 triangles, and no `faces`";
-        return Err(Fault::new(keys!["faces"], cause, "remove `faces`"));
-    }
-    let faces = faces.unwrap_or(FACES);
-    if !(1..=MOST_FACES).contains(&faces) {
-        let cause = format!("{faces} triangles");
-        let cure = format!("use 1 to {MOST_FACES}");
-        return Err(Fault::new(keys!["faces"], cause, cure));
-    }
-    Ok(generator.triangles(faces as usize))
 }

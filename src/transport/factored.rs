@@ -169,7 +169,11 @@ impl<'a> Factored<'a> {
                 false => [0.0; 4],
             };
             let own = &mut points.vertices[k * deeper as usize..];
-            let first = Vertex::at(self.setting.scene, shape, &point, 1.0 / density);
+            // A point elsewhere sends no light to any pixel, and a glossy one would have to know which.
+            let counts = self.setting.between.contains(&shape);
+            let first = counts
+                .then(|| Vertex::at(self.setting.scene, shape, &point, 1.0 / density))
+                .flatten();
             self.setting
                 .walk
                 .run(first, deeper, [u, v], choice, stream, |n, vertex| {

@@ -11,6 +11,7 @@ mod meshes;
 mod model;
 mod noise;
 mod obstacles;
+mod random_scenes;
 mod reference;
 mod sensor;
 mod studies;

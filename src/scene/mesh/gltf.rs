@@ -25,7 +25,7 @@ use walk::Walk;
 
 const CURE: &str = "export the mesh again";
 /// Nodes that share a mesh may multiply vertices and triangles up to this even if the file has fewer bytes.
-const MOST_SHARED: u64 = 1 << 24;
+const MOST_SHARED: u64 = 1 << 22;
 
 /// Reads a file beside the mesh.
 pub(super) type Beside<'a> = &'a mut dyn FnMut(&str) -> Result<Vec<u8>, String>;

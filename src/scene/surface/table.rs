@@ -12,6 +12,8 @@ use crate::scene::warning::Warning;
 
 /// More elements along a side than this are taken for a mistake.
 const MOST_ELEMENTS: u32 = 1024;
+/// More cells in the textures of all surfaces together are taken for a mistake; they take half a gigabyte.
+const MOST_CELLS: usize = 1 << 26;
 /// A picture or a measured material larger than this is not read: 256 MiB.
 const LARGEST_PICTURE: u64 = 256 << 20;
 
@@ -23,6 +25,7 @@ pub(in crate::scene) fn from_tables(
     found: &mut Vec<Warning>,
 ) -> Result<Vec<Surface>, Fault> {
     let mut surfaces: Vec<Surface> = Vec::with_capacity(tables.len());
+    let mut cells = 0;
     let mut meshes = Meshes::default();
     for (i, table) in tables.iter().enumerate() {
         let mut sources = Sources {
@@ -40,6 +43,14 @@ pub(in crate::scene) fn from_tables(
                 cause,
                 "give each its own name",
             ));
+        }
+        // A back has a copy of its front's texture.
+        let copies = 1 + usize::from(table.sides == Some(SidesName::Two));
+        cells += copies * surface.albedo.held();
+        if cells > MOST_CELLS {
+            let cause = format!("the textures up to `{}` have {cells} cells", surface.name);
+            let cure = format!("use {MOST_CELLS} at most, on all surfaces together");
+            return Err(Fault::new(keys!["surface", i, "material"], cause, cure));
         }
         surfaces.push(surface);
     }

@@ -75,6 +75,15 @@ impl Texture {
         }
     }
 
+    /// How many numbers it holds.
+    pub(super) fn held(&self) -> usize {
+        match self {
+            Self::Constant(_) | Self::Ramp(_) => 0,
+            Self::Cells(cells) | Self::Tiles(cells) => cells.albedo.len(),
+            Self::Bilinear(texels) => texels.albedo.len(),
+        }
+    }
+
     /// Mean albedo of smooth cell iu + iv·nu: exact.
     pub fn cell_mean(&self, cell: usize) -> f64 {
         match self {

@@ -26,7 +26,7 @@ pub trait Division: Sync {
     /// What all of them come to.
     type Finding: Send;
     /// Why there is none.
-    type Error: Error + Send;
+    type Error: Error + Send + 'static;
 
     /// How many tasks there are.
     fn tasks(&self) -> usize;

@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Fuzzes phicam's readers, each for so many seconds, one after the other: tests/fuzz/run.sh SECONDS [TARGET…]
+# What it finds is in tests/fuzz/artifacts/TARGET, and any finding ends it. src/lib.rs says more.
+set -euo pipefail
+cd "$(dirname "$0")"
+seconds=${1:?how many seconds for each target}
+shift
+if [ $# = 0 ]; then
+    for file in src/bin/*.rs; do set -- "$@" "$(basename "$file" .rs)"; done
+fi
+
+# What cargo-fuzz hands to LLVM, without a sanitizer, which would need a nightly compiler.
+host=$(rustc -vV | sed -n 's/^host: //p')
+flags="--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
+-Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
+-Cllvm-args=-sanitizer-coverage-trace-compares -Cllvm-args=-simplifycfg-branch-fold-threshold=0"
+RUSTFLAGS="$flags" cargo build --locked --quiet --target "$host" --bins --examples
+built=target/$host/debug
+
+"$built/examples/seeds" corpus
+# Files go to memory where there is such a place.
+if [ -w /dev/shm ]; then export TMPDIR=/dev/shm; fi
+for target in "$@"; do
+    mkdir -p "corpus/$target" "found/$target" "artifacts/$target"
+    dictionary=()
+    if [ -f "$target.dict" ]; then dictionary=("-dict=$target.dict"); fi
+    echo "-- $target, $seconds s"
+    "$built/$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=1024 -max_len=16384 -print_final_stats=1 \
+        -artifact_prefix="artifacts/$target/" "${dictionary[@]}" "corpus/$target" "found/$target" 2>"artifacts/$target/log" ||
+        { tail -40 "artifacts/$target/log"; exit 1; }
+    grep -E "DONE|^stat::(number_of_executed_units|peak_rss_mb)" "artifacts/$target/log"
+done
