@@ -12,7 +12,6 @@ use crate::study::{Division, encode, parts};
 use crate::transport::Control;
 
 /// A command whose work is independent tasks. Every process that has the same command and the same scene has the same tasks.
-#[cfg_attr(not(test), expect(dead_code, reason = "plan, shard and merge call it"))]
 pub(in crate::cli) trait Cut: Sync {
     /// How many tasks there are.
     fn tasks(&self) -> usize;
@@ -35,7 +34,6 @@ pub(in crate::cli) trait Cut: Sync {
 }
 
 /// The tasks of a command; a study's scene is `scene`, or where there is none the one that the command names.
-#[cfg_attr(not(test), expect(dead_code, reason = "plan, shard and merge call it"))]
 pub(in crate::cli) fn cut(
     command: &Command,
     scene: Option<Scene>,

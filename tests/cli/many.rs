@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use crate::small_scene::{TINY, altered};
+use crate::small_scene::{SMALL, TINY, altered};
 use crate::workspace::{Contents, Ended, Workspace, assert_same};
 
 const PATHS: &str = "--samples 64 --seed 5";
@@ -26,10 +26,11 @@ fn compute(workspace: &Workspace, indices: impl IntoIterator<Item = usize>) {
     }
 }
 
-/// The files of the result, without the record, whose times differ.
+/// The files of the result, without the record, whose times differ, and without what says of which plan it is.
 fn result(workspace: &Workspace, folder: &str) -> Contents {
     let mut contents = workspace.contents(folder);
     assert!(contents.remove("run.json").is_some());
+    contents.remove("merged.json");
     contents
 }
 
@@ -340,5 +341,70 @@ fn a_plan_carries_the_files_of_its_scene() {
         &result(&workspace, "whole"),
         &result(&workspace, "merged"),
         "packed",
+    );
+}
+
+/// A study in shards leaves the files of the study in one process; so do the published items.
+#[test]
+fn studies_are_divided_too() {
+    let workspace = Workspace::new();
+    workspace.write("tiny.toml", altered(&SMALL));
+    for (n, command) in [
+        "study noise tiny.toml --seeds 3 --noise 0.1,0.01 --method pinv,joint",
+        "study power tiny.toml --seeds 6 --samples 32,64",
+        "reproduce table1 fig12",
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let job = format!("job-{n}");
+        let line = format!("plan -o {job} --shards 3 -- {command}");
+        let _ = workspace.phicam(&line).exits(0);
+        for k in [2, 0, 1] {
+            let _ = workspace
+                .phicam(&format!("shard {job} --index {k}"))
+                .exits(0);
+        }
+        let merged = workspace.phicam(&format!("merge {job} -o merged-{n}"));
+        let straight = workspace.phicam(&format!("{command} -o straight-{n}"));
+        assert_eq!(
+            (merged.code, &merged.stdout),
+            (straight.code, &straight.stdout)
+        );
+        let mut contents = workspace.contents(&format!("merged-{n}"));
+        assert!(contents.remove("merged.json").is_some());
+        let mut whole = workspace.contents(&format!("straight-{n}"));
+        // The ledger of a study that can be gone on with.
+        whole.remove("noise.csv");
+        contents.remove("noise.csv");
+        assert_same(&contents, &whole, command);
+    }
+    for (line, word) in [
+        (
+            "plan -o other -- study noise tiny.toml -o out",
+            "-o is no part",
+        ),
+        (
+            "plan -o other -- study noise tiny.toml --threads 2",
+            "--threads is no part",
+        ),
+        ("plan -o other", "a plan is of a scene"),
+        (
+            "plan tiny.toml -o other -- study noise tiny.toml",
+            "a plan is of a scene",
+        ),
+        ("plan -o other -- study nonsense", "nonsense"),
+        (
+            "plan -o other --samples 4 -- study noise tiny.toml",
+            "--samples",
+        ),
+    ] {
+        refused(&workspace, line, 64, &[word]);
+    }
+    refused(
+        &workspace,
+        "plan -o other -- run tiny.toml",
+        65,
+        &["cannot be cut"],
     );
 }

@@ -9,19 +9,22 @@ use super::PathArgs;
 #[derive(Debug, Arguments)]
 #[command(after_help = CODES)]
 pub(in crate::cli) struct PlanArgs {
-    /// Built-in scene or path of a scene file
-    pub scene: String,
+    /// Built-in scene or path of a scene file, to be rendered
+    pub scene: Option<String>,
     /// Folder of the plan: the scene with every file that it names, and what is to be computed
     #[arg(long, short)]
     pub output: PathBuf,
     #[command(flatten)]
     pub paths: PathArgs,
-    /// Into how many shards the work is divided; does not change a byte of the result
-    #[arg(long, default_value_t = 32, allow_negative_numbers = true)]
-    pub shards: u64,
+    /// Into how many shards the work is divided, 32 unless there are fewer blocks; does not change a byte of the result
+    #[arg(long, allow_negative_numbers = true)]
+    pub shards: Option<u64>,
     /// Print plan.json
     #[arg(long)]
     pub json: bool,
+    /// A study or published items in place of a render: `study NAME SCENE …` or `reproduce …`, without its output folder
+    #[arg(last = true, conflicts_with_all = ["estimator", "sampler", "samples", "seed"])]
+    pub command: Vec<String>,
 }
 
 /// What the exit codes of these commands mean.
@@ -57,7 +60,7 @@ pub(in crate::cli) struct MergeArgs {
     /// Folder of the result, as the command that was planned would have left it
     #[arg(long, short)]
     pub output: PathBuf,
-    /// Print the record of the run (run.json)
+    /// Print JSON: the record of the run (run.json), or what the study prints with --json
     #[arg(long)]
     pub json: bool,
 }

@@ -36,6 +36,23 @@ pub(in crate::cli) enum StudyCommand {
     Experiment(ExperimentArgs),
 }
 
+impl StudyCommand {
+    /// The scene that is studied.
+    pub(in crate::cli) fn scene(&self) -> &str {
+        match self {
+            Self::Budget(a) => &a.scene,
+            Self::Power(a) => &a.scene,
+            Self::Tolerance(a) => &a.scene,
+            Self::Convergence(a) => &a.scene,
+            Self::Noise(a) => &a.scene,
+            Self::Indicator(a) => &a.scene,
+            Self::Brdf(a) => &a.scene,
+            Self::Coverage(a) => &a.scene,
+            Self::Experiment(a) => &a.scene,
+        }
+    }
+}
+
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct ConvergenceArgs {
     /// Built-in scene or path of a scene file

@@ -9,8 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::work::Work;
 use crate::cli::failure::Failure;
-use crate::cli::folder::SCENE;
-use crate::cli::{output, trust};
+use crate::cli::output;
 use crate::shard::{Identity, PlanId};
 use crate::store::write_whole;
 
@@ -43,6 +42,8 @@ pub(super) enum Settings {
         seed: u64,
         samples: u64,
     },
+    /// Another command, by its arguments.
+    Command(Vec<String>),
 }
 
 /// A plan that was read and found to be what it says.
@@ -55,6 +56,8 @@ pub(super) struct PlanFolder {
 
 impl PlanFile {
     pub(super) const NAME: &'static str = "plan.json";
+    /// Its name in the folder of what was merged, where it is the last file to be written.
+    pub(super) const MERGED: &'static str = "merged.json";
     const LAYOUT: u32 = 1;
     const LARGEST: u64 = 16 << 20;
 
@@ -70,9 +73,9 @@ impl PlanFile {
         }
     }
 
-    /// The plan in `dir`, if there is one.
-    pub(super) fn read(dir: &Path) -> Result<Option<Self>, Failure> {
-        let path = dir.join(Self::NAME);
+    /// The plan in the file `name` of `dir`, if there is one.
+    pub(super) fn read(dir: &Path, name: &str) -> Result<Option<Self>, Failure> {
+        let path = dir.join(name);
         let mut text = Vec::new();
         let read = File::open(&path).and_then(|f| f.take(Self::LARGEST + 1).read_to_end(&mut text));
         match read {
@@ -120,9 +123,9 @@ impl PlanFile {
         Ok(Some(file))
     }
 
-    pub(super) fn write(&self, dir: &Path) -> Result<(), Failure> {
+    pub(super) fn write(&self, dir: &Path, name: &str) -> Result<(), Failure> {
         let text = output::json(self)?;
-        Ok(write_whole(&dir.join(Self::NAME), |w| {
+        Ok(write_whole(&dir.join(name), |w| {
             w.write_all(text.as_bytes())
         })?)
     }
@@ -139,6 +142,11 @@ impl PlanFile {
 impl PlanFolder {
     /// Reads the plan in `path`, and refuses it if the scene beside it, or the program, is not the one that was planned.
     pub(super) fn open(path: &Path) -> Result<Self, Failure> {
+        Self::open_as(path, false)
+    }
+
+    /// The same; a study is to print JSON if `json`.
+    pub(super) fn open_as(path: &Path, json: bool) -> Result<Self, Failure> {
         let none = || {
             let cause = format!(
                 "{} is not the folder of a plan: it has no {}",
@@ -147,9 +155,8 @@ impl PlanFolder {
             );
             Failure::usage(cause, "give a folder that `phicam plan` has written")
         };
-        let file = PlanFile::read(path)?.ok_or_else(none)?;
-        let scene = trust::load(&path.join(SCENE).to_string_lossy())?;
-        let work = Work::new(scene, &file.work)?;
+        let file = PlanFile::read(path, PlanFile::NAME)?.ok_or_else(none)?;
+        let work = Work::read(path, &file.work, json)?;
         if let Some((name, planned, found)) = file.identity.difference(&work.identity()) {
             let dir = path.display();
             return Err(match name.as_str() {
@@ -196,6 +203,12 @@ impl PlanFolder {
 
     pub(super) fn id(&self) -> PlanId {
         self.file.identity.id()
+    }
+
+    /// Whether `output` is what a merge has left, to its last file.
+    pub(super) fn is_merged(&self, output: &Path) -> Result<bool, Failure> {
+        let there = PlanFile::read(output, PlanFile::MERGED)?;
+        Ok(there.is_some_and(|p| p.plan_id == self.file.plan_id))
     }
 
     pub(super) fn shards_path(&self) -> PathBuf {

@@ -4,14 +4,14 @@ use std::ops::Range;
 use std::thread::sleep;
 use std::time::Duration;
 
-use super::folder::PlanFolder;
+use super::folder::{PlanFile, PlanFolder};
 use super::shards::Shards;
 use super::status::missing;
 use crate::cli::Outcome;
 use crate::cli::args::MergeArgs;
 use crate::cli::failure::Failure;
 use crate::cli::indices::array_syntax;
-use crate::cli::output::{self, Talk};
+use crate::cli::output::Talk;
 use crate::shard::gaps;
 
 /// How often the folder is listed before a shard counts as missing, and how long it waits between: a network file system may show a file of
@@ -20,15 +20,11 @@ const LOOKS: usize = 3;
 const BETWEEN: Duration = Duration::from_millis(700);
 
 pub(in crate::cli) fn execute(args: &MergeArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let plan = PlanFolder::open(&args.dir)?;
+    let plan = PlanFolder::open_as(&args.dir, args.json)?;
     let shards = whole(&plan)?;
-    let merged = plan.work.merge(&shards, &args.output, talk)?;
-    output::print(if args.json {
-        &merged.json
-    } else {
-        &merged.words
-    })?;
-    Ok(Outcome::Done)
+    let outcome = plan.work.merge(&shards, &args.output, args.json, talk)?;
+    plan.file.write(&args.output, PlanFile::MERGED)?;
+    Ok(outcome)
 }
 
 /// Shards that make up the whole plan.

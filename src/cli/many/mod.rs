@@ -19,4 +19,5 @@ pub(super) mod shard;
 mod shards;
 pub(super) mod slurm;
 pub(super) mod status;
+mod study;
 mod work;

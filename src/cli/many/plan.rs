@@ -2,6 +2,7 @@
 
 use super::folder::{PlanFile, PlanFolder};
 use super::render::Render;
+use super::study::Study;
 use super::work::Work;
 use crate::cli::args::PlanArgs;
 use crate::cli::failure::Failure;
@@ -12,23 +13,23 @@ use crate::store::ensure_writable;
 
 /// Shards of one plan, at most: a folder has to list them.
 const MOST_SHARDS: u64 = 1_000_000;
+/// Shards of a plan unless told otherwise.
+const USUAL_SHARDS: u64 = 32;
 
 pub(in crate::cli) fn execute(args: &PlanArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = trust::load(&args.scene)?;
-    let plan = settings::plan(&args.paths, talk)?;
-    let work = Work::Render(Render::new(scene, plan)?);
+    let work = work(args, talk)?;
     let most = work.blocks().min(MOST_SHARDS);
-    if !(1..=most).contains(&args.shards) {
+    let shards = args.shards.unwrap_or(most.min(USUAL_SHARDS));
+    if !(1..=most).contains(&shards) {
         let cause = format!(
-            "--shards {} is not possible: the work has {} blocks",
-            args.shards,
+            "--shards {shards} is not possible: the work has {} blocks",
             work.blocks()
         );
         return Err(Failure::usage(cause, format!("use 1 to {most}")));
     }
-    let file = PlanFile::new(&work, args.shards);
+    let file = PlanFile::new(&work, shards);
     let dir = &args.output;
-    let earlier = PlanFile::read(dir)?;
+    let earlier = PlanFile::read(dir, PlanFile::NAME)?;
     if let Some(earlier) = &earlier
         && let Some((name, there, asked)) = earlier.identity.difference(&file.identity)
     {
@@ -43,10 +44,12 @@ pub(in crate::cli) fn execute(args: &PlanArgs, talk: Talk) -> Result<Outcome, Fa
         return Err(Failure::new(cause, "plan into another folder (-o)"));
     }
     ensure_writable(dir)?;
-    talk.warn(work.scene());
-    let folder = Folder { path: dir.clone() };
-    folder.write_scene(work.scene())?;
-    file.write(dir)?;
+    if let Some(scene) = work.scene() {
+        talk.warn(scene);
+        let folder = Folder { path: dir.clone() };
+        folder.write_scene(scene)?;
+    }
+    file.write(dir, PlanFile::NAME)?;
     ensure_writable(&dir.join("shards"))?;
     // What was written is what every machine will read.
     let read = PlanFolder::open(dir)?;
@@ -64,4 +67,20 @@ pub(in crate::cli) fn execute(args: &PlanArgs, talk: Talk) -> Result<Outcome, Fa
         ))?;
     }
     Ok(Outcome::Done)
+}
+
+/// A render of the scene, or the command after `--`.
+fn work(args: &PlanArgs, talk: Talk) -> Result<Work, Failure> {
+    match (&args.scene, args.command.is_empty()) {
+        (Some(scene), true) => {
+            let scene = trust::load(scene)?;
+            let plan = settings::plan(&args.paths, talk)?;
+            Ok(Work::Render(Box::new(Render::new(scene, plan)?)))
+        }
+        (None, false) => Ok(Work::Study(Box::new(Study::plan(&args.command)?))),
+        _ => Err(Failure::usage(
+            "a plan is of a scene that is rendered, or of a command after `--`",
+            "phicam plan SCENE -o DIR, or phicam plan -o DIR -- study noise SCENE …",
+        )),
+    }
 }

@@ -7,7 +7,6 @@ use rayon::prelude::*;
 
 use super::folder::Settings;
 use super::shards::Shards;
-use super::work::Merged;
 use crate::cli::checkpoint::{Checkpoint, Parts};
 use crate::cli::columns::{self, Columns, together};
 use crate::cli::failure::Failure;
@@ -16,7 +15,7 @@ use crate::cli::interrupt::{stop_flag, warned};
 use crate::cli::output::{self, Talk};
 use crate::cli::record::Record;
 use crate::cli::render::{complete, refuse_beyond_f32, refuse_too_large};
-use crate::cli::{progress, settings};
+use crate::cli::{Outcome, progress, settings};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
 use crate::shard::Identity;
@@ -133,19 +132,13 @@ impl Render {
         Ok(parts)
     }
 
-    /// The record is the last file that a merge writes.
-    pub(super) fn is_merged(&self, output: &Path) -> Result<bool, Failure> {
-        let asked = Record::new(&self.scene, &self.plan, 0, 0, 0.0);
-        let there = Record::read(output)?;
-        Ok(there.is_some_and(|r| r.same_settings(&asked) && r.finished == r.spots))
-    }
-
     pub(super) fn merge(
         &self,
         shards: &Shards,
         output: &Path,
+        json: bool,
         talk: Talk,
-    ) -> Result<Merged, Failure> {
+    ) -> Result<Outcome, Failure> {
         let Self { scene, plan } = self;
         let mut record = Record::new(scene, plan, 0, shards.threads(), shards.seconds());
         if let Some(there) = Record::read(output)? {
@@ -158,7 +151,7 @@ impl Render {
                 return Err(Failure::new(cause, "merge into another folder (-o)"));
             }
             if let Some(there) = complete(scene, plan, output)? {
-                return told(&there, output);
+                return told(&there, output, json);
             }
         }
         let folder = Folder::open(output, scene, &record, Keep::Finished, talk)?;
@@ -193,17 +186,19 @@ impl Render {
         record.finished = spots;
         record.write(output)?;
         folder.remove_partial()?;
-        told(&record, output)
+        told(&record, output, json)
     }
 }
 
-fn told(record: &Record, output: &Path) -> Result<Merged, Failure> {
-    let words = format!(
-        "{}: {} spots merged ({}): frames, phi.npy and phi.stderr.npy\n",
-        output.display(),
-        record.spots,
-        record.settings()
-    );
-    let json = output::json(record)?;
-    Ok(Merged { words, json })
+fn told(record: &Record, dir: &Path, json: bool) -> Result<Outcome, Failure> {
+    output::print(&match json {
+        true => output::json(record)?,
+        false => format!(
+            "{}: {} spots merged ({}): frames, phi.npy and phi.stderr.npy\n",
+            dir.display(),
+            record.spots,
+            record.settings()
+        ),
+    })?;
+    Ok(Outcome::Done)
 }

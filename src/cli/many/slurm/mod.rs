@@ -40,7 +40,7 @@ pub(in crate::cli) fn execute(args: &SlurmArgs, talk: Talk) -> Result<Outcome, F
         plan: plan.id().short(),
         shards: plan.file.shards as usize,
         missing: status::missing_shards(&plan, talk)?,
-        merged: match plan.work.is_merged(&output)? {
+        merged: match plan.is_merged(&output)? {
             true => Merged::Yes,
             false => Merged::No,
         },
