@@ -62,7 +62,8 @@
 //! 3. **One door per foreign crate**: obvhs only in `geometry/bvh`, exr only in `film/exr` and `image/exr` (frames and pictures), png only in `image/png`, matrix decompositions only in
 //!    [`num::linalg`], random generators only in [`num::stream`], the argument parser only in [`cli`].
 //! 4. **A random number is a function of (seed, spot, pixel, sample block)**, never of the thread or the order. The same
-//!    seed gives the same bytes.
+//!    seed gives the same bytes. Blocks are added along one fixed binary tree ([`num::tree`]), so that any part of a computation can be done
+//!    elsewhere or later, and comes out with the same bits.
 //!
 //! Rays travel in f32 inside the BVH only; every intersection, and every point that enters a radiometric term, is computed
 //! in f64 on its own shape, and every sum is f64 in a fixed order.

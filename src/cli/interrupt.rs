@@ -15,10 +15,26 @@ pub(super) fn stop_flag() -> &'static AtomicBool {
     &STOP
 }
 
-/// From now on SIGTERM is a warning: the block at work is finished first. A second SIGTERM does not wait for it.
-pub(super) fn finish_blocks() {
-    let _ = stop_flag();
-    GENTLE.store(true, Ordering::Relaxed);
+/// While it lives SIGTERM is a warning: the block at work is finished first. A second SIGTERM does not wait for it.
+#[derive(Debug)]
+pub(super) struct Gentle;
+
+impl Gentle {
+    /// From now on.
+    pub(super) fn new() -> Self {
+        let _ = stop_flag();
+        GENTLE.store(true, Ordering::Relaxed);
+        Self
+    }
+}
+
+impl Drop for Gentle {
+    fn drop(&mut self) {
+        GENTLE.store(false, Ordering::Relaxed);
+        if warned() {
+            STOP.store(true, Ordering::Relaxed);
+        }
+    }
 }
 
 /// Whether SIGTERM came.

@@ -19,7 +19,8 @@
 //! | `recovered/picard.csv`, `.svg` | signal and noise in each singular direction of the laser side |
 //! | `summary.json`, `report.html` | what was found |
 //! | `exposed/` | what `phicam expose` made of it: `phi.npy`, `phi.stderr.npy`, `saturated.npy`, `counts/`, `exposure.json` |
-//! | `partial/` | finished spots of an unfinished run; gone when it is complete |
+//! | `partial/` | finished spots and blocks of an unfinished run; gone when it is complete |
+//! | `merged.json` | of which plan it is, where it was put together from shards |
 //!
 //! Exit codes: 0 done (and agreed), 1 traced and modelled disagree, 2 error, 75 stopped by SIGTERM and 130 by Ctrl-C with what is finished
 //! kept. The commands for many machines (`plan`, `shard`, `status`, `merge`, `slurm`, `clean`) tell schedulers more: 3 not complete

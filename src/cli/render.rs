@@ -12,7 +12,7 @@ use super::columns::{Columns, together};
 use super::failure::Failure;
 use super::finished::read_matrix;
 use super::folder::{Folder, Keep, PHI, STDERR, own_identity};
-use super::interrupt::{finish_blocks, stop_flag};
+use super::interrupt::{Gentle, stop_flag};
 use super::output::{self, Talk};
 use super::record::Record;
 use super::trust;
@@ -120,7 +120,6 @@ pub(super) fn into_folder(
         record.seconds = earlier.seconds;
     }
     refuse_too_large(scene)?;
-    finish_blocks();
     let folder = Folder::open(path, scene, &record, keep, talk)?;
     talk.warn(scene);
     let total = scene.laser.spots.len();
@@ -149,7 +148,9 @@ pub(super) fn into_folder(
         pool: &pool,
         resume: keep == Keep::Finished,
     };
+    let gentle = Gentle::new();
     let traced = work.trace(&todo, &mut kept, talk);
+    drop(gentle);
     record.seconds += start.elapsed().as_secs_f64();
     record.finished = kept.iter().flatten().count();
     if let Err(failure) = traced {

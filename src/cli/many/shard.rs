@@ -5,7 +5,7 @@ use super::shards::{CHECKPOINT, file_name, find};
 use crate::cli::args::ShardArgs;
 use crate::cli::checkpoint::Checkpoint;
 use crate::cli::failure::Failure;
-use crate::cli::interrupt::finish_blocks;
+use crate::cli::interrupt::Gentle;
 use crate::cli::output::{self, Talk};
 use crate::cli::{Outcome, settings};
 use crate::shard::{EXTENSION, ShardError, gaps, write};
@@ -30,9 +30,9 @@ pub(in crate::cli) fn execute(args: &ShardArgs, talk: Talk) -> Result<Outcome, F
     if missing.is_empty() {
         talk.say(format!("shard {} is there", args.index));
     } else {
-        finish_blocks();
         ensure_writable(&place)?;
     }
+    let _gentle = Gentle::new();
     for range in missing {
         let path = place.join(file_name(plan.id(), &range, EXTENSION));
         let unfinished = place.join(file_name(plan.id(), &range, CHECKPOINT));
