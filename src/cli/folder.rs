@@ -51,6 +51,13 @@ pub(super) struct Folder {
 }
 
 impl Folder {
+    /// The folder of a run that is there.
+    pub(super) fn at(path: &Path) -> Self {
+        Self {
+            path: path.to_owned(),
+        }
+    }
+
     /// Makes sure that the run `record` may be written to `path`, and that it can be. Nothing is changed before every check
     /// has passed.
     pub(super) fn open(
@@ -93,9 +100,7 @@ impl Folder {
         }
         record.write(path)?;
         ensure_writable(&folder.frames())?;
-        for dir in [path, &folder.frames()] {
-            remove_files(dir, |_, _| false)?;
-        }
+        folder.remove_abandoned()?;
         folder.write_scene(scene)?;
         Ok(folder)
     }
@@ -267,6 +272,18 @@ impl Folder {
         let frame = film::exr::read(&self.frames().join(frame_name(spot as u32))).ok()?;
         let own = frame.meta == meta(scene, record, spot);
         (own && matrix.shape() == shape).then_some(matrix)
+    }
+
+    /// Removes from a run that is complete what an ended process has left beside it.
+    pub(super) fn tidy(&self) -> Result<(), Failure> {
+        self.remove_partial()?;
+        self.remove_abandoned()
+    }
+
+    fn remove_abandoned(&self) -> Result<(), Failure> {
+        let nothing = |_: &str, _: &str| false;
+        remove_files(&self.path, nothing)?;
+        remove_files(&self.frames(), nothing)
     }
 
     pub(super) fn remove_partial(&self) -> Result<(), Failure> {

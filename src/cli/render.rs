@@ -49,7 +49,11 @@ pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure>
         }
     };
     let (record, phi) = match complete {
-        Some(record) => (record, true),
+        Some(record) => {
+            // What the earlier process was killed over.
+            Folder::at(&args.output).tidy()?;
+            (record, true)
+        }
         None => {
             let rendered = into_folder(&scene, &args.trace, spots, keep, &args.output, talk)?;
             (rendered.record, rendered.phi.is_some())
@@ -194,7 +198,7 @@ impl Work<'_> {
         talk: Talk,
     ) -> Result<(), Failure> {
         let Self { scene, plan, .. } = *self;
-        let batches = self.batches(todo);
+        let batches = self.batches(todo, kept);
         let pixels = scene.camera.pixels() as u64;
         let columns = match plan.estimator.serves_all_spots() {
             false => todo.len(),
@@ -282,29 +286,34 @@ impl Work<'_> {
     }
 
     /// Runs of neighbouring spots to be traced together: one spot each where nothing is shared, as many as memory bears where paths serve all
-    /// spots. Where an earlier process has left blocks of some of them, these stay together.
-    fn batches(&self, todo: &[usize]) -> Vec<Range<usize>> {
+    /// spots. Where an earlier process has left blocks of some of them, these stay together, with those of them that are finished: to write these
+    /// again costs less than to trace the others anew.
+    fn batches(&self, todo: &[usize], kept: &[Option<Matrix>]) -> Vec<Range<usize>> {
         let most = together(self.scene, self.plan.estimator);
         let begun = match self.resume {
             true => self.folder.checkpoints(self.scene, self.plan),
             false => Vec::new(),
         };
-        let fits = |r: &Range<usize>| r.clone().all(|s| todo.contains(&s));
-        let begun: Vec<Range<usize>> = begun.into_iter().filter(fits).collect();
-        let own = |spot: usize| begun.iter().position(|r| r.contains(&spot));
+        let mut free: Vec<bool> = vec![false; kept.len()];
+        todo.iter().for_each(|s| free[*s] = true);
         let mut ranges: Vec<Range<usize>> = Vec::new();
-        for &spot in todo {
-            match ranges.last_mut() {
-                Some(last)
-                    if last.end == spot
-                        && own(last.start) == own(spot)
-                        && (last.len() < most || own(spot).is_some()) =>
-                {
-                    last.end = spot + 1;
-                }
+        for range in begun {
+            let needed = range.clone().any(|s| free[s]);
+            let ours = range.clone().all(|s| free[s] || kept[s].is_some());
+            let apart = ranges.last().is_none_or(|r| r.end <= range.start);
+            if needed && ours && apart {
+                range.clone().for_each(|s| free[s] = false);
+                ranges.push(range);
+            }
+        }
+        let begun = ranges.len();
+        for &spot in todo.iter().filter(|s| free[**s]) {
+            match ranges[begun..].last_mut() {
+                Some(last) if last.end == spot && last.len() < most => last.end = spot + 1,
                 _ => ranges.push(spot..spot + 1),
             }
         }
+        ranges.sort_by_key(|r| r.start);
         ranges
     }
 }

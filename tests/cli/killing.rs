@@ -154,5 +154,6 @@ fn a_warned_shard_keeps_its_blocks_and_goes_on() {
     let _ = workspace.phicam(&line).exits(0);
     let [mut merged, mut whole] = ["merged", "whole"].map(|f| workspace.contents(f));
     assert!(merged.remove("run.json").is_some() && whole.remove("run.json").is_some());
+    assert!(merged.remove("merged.json").is_some());
     assert_same(&merged, &whole, "warned and straight");
 }

@@ -36,10 +36,10 @@ settings=$(SLURMD_TIMEOUT=5 "$here/up.sh")
 eval "$settings"
 say "two nodes are up"
 
-# 8 blocks, one for each shard; frames of 192 × 192 pixels make every shard a file of megabytes, whose write can be met.
+# 32 blocks, four for each shard; 192 × 192 pixels for 8 spots make every shard a file of 9 MB, whose write can be met.
 "$phicam" scene export bench |
     sed 's/pixels = .*/pixels = [192, 192]/; s/per_side = .*/per_side = 2/' >"$work/scene.toml"
-samples=(--samples 64 --sampler pcg)
+samples=(--samples 2048 --sampler pcg --estimator shared)
 expect 0 "$phicam" -q render "$work/scene.toml" -o "$work/straight" "${samples[@]}"
 say "one process has rendered it"
 expect 0 "$phicam" -q plan "$work/scene.toml" -o "$plan" "${samples[@]}" --shards 8
@@ -54,10 +54,10 @@ processes() {
     for proc in /proc/[0-9]*; do
         own= found=
         while IFS= read -r -d '' line; do
-            [ "$line" = "SLURM_CONF=$SLURM_CONF" ] && own=yes
-            [ "$line" = "$1" ] && found=yes
+            if [ "$line" = "SLURM_CONF=$SLURM_CONF" ]; then own=yes; fi
+            if [ "$line" = "$1" ]; then found=yes; fi
         done 2>/dev/null <"$proc/environ" || continue
-        [ "$own$found" = yesyes ] && printf '%s\n' "${proc#/proc/}"
+        if [ "$own$found" = yesyes ]; then printf '%s\n' "${proc#/proc/}"; fi
     done
 }
 program() { cat "/proc/$1/comm" 2>/dev/null || true; }
