@@ -96,10 +96,12 @@ fn meshes() -> Vec<Vec<u8>> {
     );
     let json = |uri: &str| {
         format!(
-            r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"children":[1,2]}},{{"mesh":0,"scale":[1,2,3]}},{{"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,-1,0,1,2,3,1]}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1,"mode":4}}]}}],"buffers":[{{{uri}"byteLength":168}}],"bufferViews":[{{"buffer":0,"byteLength":96}},{{"buffer":0,"byteOffset":96,"byteLength":72}}],"accessors":[{{"bufferView":0,"componentType":5126,"count":8,"type":"VEC3"}},{{"bufferView":1,"componentType":5123,"count":36,"type":"SCALAR"}}]}}"#
+            r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"children":[1,2]}},{{"mesh":0,"scale":[1,2,3]}},{{"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,-1,0,1,2,3,1]}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1,"mode":4}}]}}],"buffers":[{{{uri}"byteLength":360}}],"bufferViews":[{{"buffer":0,"byteLength":288}},{{"buffer":0,"byteOffset":288,"byteLength":72}}],"accessors":[{{"bufferView":0,"componentType":5126,"count":24,"type":"VEC3"}},{{"bufferView":1,"componentType":5123,"count":36,"type":"SCALAR"}}]}}"#
         )
     };
-    let zeros = "A".repeat(224);
+    // Its buffer is its own text: three triangles whose coordinates are what four letters make.
+    let beside = r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"uri":"a.bin","byteLength":108}],"bufferViews":[{"buffer":0,"byteLength":108}],"accessors":[{"bufferView":0,"componentType":5126,"count":9,"type":"VEC3"}]}"#;
+    let zeros = "A".repeat(480);
     vec![
         of(0, &ply),
         of(0, text.as_bytes()),
@@ -111,7 +113,7 @@ fn meshes() -> Vec<Vec<u8>> {
             ))
             .as_bytes(),
         ),
-        of(2, json(r#""uri":"a.bin","#).as_bytes()),
+        of(2, beside.as_bytes()),
         of(3, &glb(&json(""), &buffer)),
     ]
 }

@@ -378,11 +378,11 @@ fn light_is_finite_and_never_negative() {
         check(&scene, &traced).map_err(|e| TestCaseError::fail(format!("{e}\n{plan:?}\n{text}")))
     });
     assert!(outcome.is_ok(), "{}", outcome.unwrap_err());
-    let most = |n: usize| 2 * n > SCENES as usize;
+    // Fewer than three bounces, or a black object, leave the rest dark.
+    let all = SCENES as usize;
+    let [accepted, lit] = [accepted.get(), lit.get()];
     assert!(
-        most(accepted.get()) && most(lit.get()),
-        "{} of {SCENES} accepted, {} with light",
-        accepted.get(),
-        lit.get()
+        2 * accepted > all && 4 * lit > all,
+        "{accepted} of {all} accepted, {lit} with light"
     );
 }
