@@ -14,6 +14,8 @@
 //! * [`portrait`](fn@portrait): a picture of the scene in ordinary light, for people.
 //! * [`reproduce`]: the published tables and figures, computed again.
 //! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object; [`picards`] show what of it noise leaves.
+//!
+//! Those that take long are a [`Division`]: independent tasks that one process works off by [`whole`], and many machines share.
 
 mod agreement;
 mod brdf;
