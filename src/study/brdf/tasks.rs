@@ -8,7 +8,7 @@ use crate::model::{Extent, Kernel, MatrixModel, converged};
 use crate::num::stream::Sampling;
 use crate::scene::{Role, Scene};
 use crate::study::agreement::{Errors, Evidence, Test, agree};
-use crate::study::task::Division;
+use crate::study::task::{Division, Sharing};
 use crate::study::validation::Integration;
 use crate::transport::{Budget, Control, Estimator, Plan, Traced, obstacle, render};
 
@@ -48,6 +48,11 @@ impl Division for BrdfTasks {
 
     fn tasks(&self) -> usize {
         self.assumed.len()
+    }
+
+    /// A render is spread over the threads by itself.
+    fn sharing(&self) -> Sharing {
+        Sharing::InTurn
     }
 
     fn ground(&self, control: Control<'_>) -> Result<Option<[Traced; 2]>, BrdfError> {

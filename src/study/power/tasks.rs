@@ -6,7 +6,7 @@ use crate::matrix::Matrix;
 use crate::model::{Extent, Kernel, MatrixModel, converged};
 use crate::scene::Scene;
 use crate::study::agreement::{Errors, Test};
-use crate::study::task::Division;
+use crate::study::task::{Division, Sharing};
 use crate::transport::{Budget, Control, Estimator, Plan, render};
 
 /// Relative size of the scaled wrong model, and of the wrong albedo of one element.
@@ -55,6 +55,11 @@ impl Division for PowerTasks {
 
     fn tasks(&self) -> usize {
         self.kinds().count() * self.plan.seeds as usize
+    }
+
+    /// A render is spread over the threads by itself.
+    fn sharing(&self) -> Sharing {
+        Sharing::InTurn
     }
 
     fn ground(&self, _: Control<'_>) -> Result<Option<Models>, PowerError> {
