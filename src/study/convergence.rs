@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use super::task::Division;
 use super::task::matrix::{Columns, SHARES, share};
+use super::task::{Division, Sharing};
 use crate::matrix::Matrix;
 use crate::model::{Extent, Kernel, ModelError, converged};
 use crate::num::stream::Sampling;
@@ -149,6 +149,11 @@ impl Division for ConvergenceTasks {
 
     fn tasks(&self) -> usize {
         self.renders.iter().map(|r| r.shares).sum()
+    }
+
+    /// A render is spread over the threads by itself.
+    fn sharing(&self) -> Sharing {
+        Sharing::InTurn
     }
 
     fn ground(&self, _: Control<'_>) -> Result<Option<Matrix>, ConvergenceError> {

@@ -14,6 +14,8 @@
 //! * [`portrait`](fn@portrait): a picture of the scene in ordinary light, for people.
 //! * [`reproduce`]: the published tables and figures, computed again.
 //! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object; [`picards`] show what of it noise leaves.
+//!
+//! Those that take long are a [`Division`]: independent tasks that one process works off by [`whole`], and many machines share.
 
 mod agreement;
 mod brdf;
@@ -59,6 +61,6 @@ pub use portrait::{
 };
 pub use power::{Detection, Power, PowerError, PowerPlan, PowerRow, PowerTasks, power};
 pub use results::{Agreement, Entry, ObjectBands, RecoveredObject, RunResults, Settings};
-pub use task::{Division, Steps, TaskError, decode, encode, parts, whole};
+pub use task::{Division, Sharing, Steps, TaskError, decode, encode, parts, whole};
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
 pub use validation::{Integration, Validation, ValidationError, validate};

@@ -99,6 +99,7 @@ impl<D: Division> Cut for Job<D> {
             return Ok(None);
         };
         let parts = decode(&self.division, &ground, parts)?;
+        ensure_writable(output)?;
         let found = self.division.finish(&ground, parts)?;
         self.leave(&found, output).map(Some)
     }

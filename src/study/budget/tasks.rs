@@ -7,8 +7,8 @@ use crate::matrix::Matrix;
 use crate::model::{Extent, Kernel, ModelError, Take, converged};
 use crate::num::stream::Sampling;
 use crate::scene::{Role, Scene};
-use crate::study::task::Division;
 use crate::study::task::matrix::{Columns, Kept, SHARES, share};
+use crate::study::task::{Division, Sharing};
 use crate::transport::{Budget as Samples, Control, Estimator, Plan, Traced, render};
 
 /// Renders of an ensemble.
@@ -181,6 +181,11 @@ impl Division for BudgetTasks {
 
     fn tasks(&self) -> usize {
         self.tasks.len()
+    }
+
+    /// A render is spread over the threads by itself.
+    fn sharing(&self) -> Sharing {
+        Sharing::InTurn
     }
 
     fn ground(&self, _: Control<'_>) -> Result<Option<Integral>, BudgetError> {

@@ -17,6 +17,15 @@ use serde::de::DeserializeOwned;
 
 use crate::transport::Control;
 
+/// How tasks share the threads of a process.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sharing {
+    /// They run side by side.
+    SideBySide,
+    /// One after the other, each on all threads: there is memory for one.
+    InTurn,
+}
+
 /// A study, divided into tasks.
 pub trait Division: Sync {
     /// What every task stands on: computed once a process, and the same in each.
@@ -30,6 +39,11 @@ pub trait Division: Sync {
 
     /// How many tasks there are.
     fn tasks(&self) -> usize;
+
+    /// How they share the threads of a process; it does not change a bit of the results.
+    fn sharing(&self) -> Sharing {
+        Sharing::SideBySide
+    }
 
     /// The ground of all tasks. `Ok(None)` if stopped.
     ///
@@ -94,7 +108,7 @@ pub enum TaskError {
 /// Tells how many of how many tasks are done; called from any thread.
 pub type Steps<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
-/// The results of `tasks`, side by side on the threads of the pool. `Ok(None)` if stopped.
+/// The results of `tasks`, on the threads of the pool. `Ok(None)` if stopped.
 ///
 /// # Errors
 /// Those of the study; of the first task in order that has one among those that ran.
@@ -106,18 +120,19 @@ pub fn parts<D: Division>(
     steps: Steps<'_>,
 ) -> Result<Option<Vec<D::Part>>, D::Error> {
     let (done, all) = (AtomicUsize::new(0), tasks.len());
-    let found: Vec<Option<D::Part>> = tasks
-        .into_par_iter()
-        .map(|index| {
-            if control.stop.load(Ordering::Relaxed) {
-                return Ok(None);
-            }
-            let part = division.task(ground, index, control)?;
-            steps(done.fetch_add(1, Ordering::Relaxed) + 1, all);
-            Ok(part)
-        })
-        .collect::<Result<_, D::Error>>()?;
-    Ok(found.into_iter().collect())
+    let one = |index| {
+        if control.stop.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        let part = division.task(ground, index, control)?;
+        steps(done.fetch_add(1, Ordering::Relaxed) + 1, all);
+        Ok(part)
+    };
+    let found: Result<Vec<Option<D::Part>>, D::Error> = match division.sharing() {
+        Sharing::SideBySide => tasks.into_par_iter().map(one).collect(),
+        Sharing::InTurn => tasks.map(one).collect(),
+    };
+    Ok(found?.into_iter().collect())
 }
 
 /// The whole study in this process. `Ok(None)` if stopped.
