@@ -6,7 +6,6 @@ use std::io;
 
 use super::interrupt;
 use super::output::complain;
-use crate::shard::ShardError;
 use crate::store::StoreError;
 
 /// Why a command ended without its result.
@@ -98,8 +97,5 @@ impl<E: Error + 'static> From<E> for Failure {
 
 /// Whether trying again, elsewhere or later, may help.
 fn is_of_the_system(error: &(dyn Error + 'static)) -> bool {
-    let unreadable = |e: &ShardError| matches!(e, ShardError::Unreadable { .. });
-    error.is::<StoreError>()
-        || error.is::<io::Error>()
-        || error.downcast_ref().is_some_and(unreadable)
+    error.is::<StoreError>() || error.is::<io::Error>()
 }

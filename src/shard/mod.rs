@@ -19,12 +19,14 @@
 mod cover;
 mod error;
 mod identity;
+mod plan;
 mod reader;
 mod writer;
 
 pub use cover::{Clash, gaps, select};
 pub use error::ShardError;
 pub use identity::{Identity, PlanId};
+pub use plan::{PlanError, PlanFile, Settings};
 pub use reader::ShardFile;
 pub use writer::write;
 

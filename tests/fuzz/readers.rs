@@ -3,11 +3,16 @@
 
 use std::io::Write;
 use std::path::Path;
+use std::sync::OnceLock;
 
 use phicam::film::exr;
 use phicam::image::{self, DEFLATE_RATIO_MAX, MOST_PIXELS};
 use phicam::matrix::npy;
+use phicam::num::stream::Sampling;
 use phicam::scene::{Scene, mesh};
+use phicam::shard::{Identity, PlanFile, ShardFile};
+use phicam::transport::{Budget, Estimator, Plan, Tally};
+use sha2::{Digest, Sha256};
 
 /// What became of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +36,7 @@ pub struct Reader {
 }
 
 /// All of them.
-pub const ALL: [Reader; 6] = [SCENE, MESH, PICTURE, MEASURED, FRAME, NPY];
+pub const ALL: [Reader; 8] = [SCENE, MESH, PICTURE, MEASURED, FRAME, NPY, SHARD, PLAN];
 
 const MIB: usize = 1 << 20;
 
@@ -176,6 +181,88 @@ pub const NPY: Reader = Reader {
     },
     // Three matrices, each twice what its numbers take as f32.
     memory: |length| 8 * length + MIB / 4,
+};
+
+/// A shard, as it is, and with a closing digest that is right; then what it holds, added up.
+pub const SHARD: Reader = Reader {
+    name: "shard",
+    read: |bytes| {
+        let (identity, total) = work();
+        let sealed = [bytes, &Sha256::digest(bytes)[..]].concat();
+        in_folder(&[("a.phs", bytes), ("b.phs", &sealed)], |folder| {
+            let mut outcome = Outcome::Refused;
+            for name in ["a.phs", "b.phs"] {
+                let Ok(shard) =
+                    ShardFile::open(&folder.join(name), &identity, total).map_err(reason)
+                else {
+                    continue;
+                };
+                assert!(shard.range.start < shard.range.end && shard.range.end <= total);
+                let mut end = shard.range.start;
+                static BENCH: OnceLock<Scene> = OnceLock::new();
+                let bench = || {
+                    let text = include_str!("../../scenes/bench.toml");
+                    Scene::from_toml("bench.toml", text).expect("the built-in bench")
+                };
+                let scene = BENCH.get_or_init(bench);
+                let plan = Plan {
+                    estimator: Estimator::Shared,
+                    sampling: Sampling::Pcg,
+                    seed: 1,
+                    budget: Budget {
+                        blocks: 32,
+                        size: 1,
+                    },
+                };
+                let mut tally = Tally::new(scene, &plan, 1, end as u32);
+                for part in shard.parts(0..total) {
+                    let (range, bytes) = part.expect("it was read before");
+                    assert_eq!(range.start, end);
+                    end = range.end;
+                    let range = range.start as u32..range.end as u32;
+                    let _ = tally.add_part(range, &bytes).map_err(reason);
+                }
+                assert_eq!(end, shard.range.end);
+                if let Some(traced) = tally.traced() {
+                    assert!(traced.flux.iter().all(|x| *x >= 0.0));
+                    assert!(traced.stderr.iter().all(|x| *x >= 0.0));
+                }
+                outcome = Outcome::Accepted;
+            }
+            outcome
+        })
+    },
+    // The header's JSON becomes numbers; a scene and one column of 256 pixels besides.
+    memory: |length| 64 * length + 4 * MIB,
+};
+
+/// What the seeds of shards belong to.
+pub fn work() -> (Identity, u64) {
+    let identity = Identity::default()
+        .with("scene", "bench")
+        .with("seed", 1)
+        .with(Identity::NUMERICS, 1);
+    (identity, 32)
+}
+
+/// A plan, and every range that it promises.
+pub const PLAN: Reader = Reader {
+    name: "plan",
+    read: |bytes| {
+        in_folder(&[("plan.json", bytes)], |folder| {
+            let Ok(plan) = PlanFile::read(&folder.join("plan.json")).map_err(reason) else {
+                return Outcome::Refused;
+            };
+            let plan = plan.expect("the file is there");
+            assert_eq!(plan.range(0).start, 0);
+            assert_eq!(plan.range(plan.shards - 1).end, plan.blocks);
+            for k in [0, plan.shards / 2, plan.shards - 1] {
+                assert!(!plan.range(k).is_empty());
+            }
+            Outcome::Accepted
+        })
+    },
+    memory: |length| 64 * length + MIB,
 };
 
 /// A reason can be told, and says something.

@@ -5,6 +5,9 @@ use phicam::image::{grey16_png, rgb_png};
 use phicam::matrix::{Matrix, npy};
 use phicam::scene::builtins;
 use phicam::scene::mesh::{FaceValues, Generator, to_ply};
+use phicam::shard::{self, PlanFile, Provenance, Settings};
+
+use super::readers::work;
 
 #[path = "../../src/image/tests/bytes.rs"]
 mod pictures;
@@ -18,6 +21,8 @@ pub fn of(name: &str) -> Vec<Vec<u8>> {
         "measured" => tables(),
         "frame" => vec![frame(["flux", "flux.stderr", "flux.b3"])],
         "npy" => arrays(),
+        "shard" => shards(),
+        "plan" => plans(),
         other => unreachable!("no seeds of {other}"),
     }
 }
@@ -75,6 +80,55 @@ fn scenes() -> Vec<Vec<u8>> {
         \n[sensor]\nmodel = \"ccd\"\nquantum_efficiency = 0.5\ndark_current = 0.1\nfull_well = inf\nread_noise = 2\ngain = 1.5\nbits = 12\noffset = 10\nshot_noise = true\nbrackets = [1, 2]\nambient = 1e-15\nglare = { fraction = 0.01, spread = { falloff = 2 } }\n";
     all.push(bench + rest);
     all.into_iter().map(String::into_bytes).collect()
+}
+
+/// Whole ones, and without the closing digest, which the reader puts there.
+fn shards() -> Vec<Vec<u8>> {
+    let (identity, _) = work();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("a.phs");
+    let numbers = |n: usize| {
+        (0..n)
+            .flat_map(|i| (i as f64 * 1e-12).to_le_bytes())
+            .collect()
+    };
+    let provenance = || Provenance {
+        version: "0.1.0".to_owned(),
+        threads: 2,
+        seconds: 1.5,
+    };
+    let mut all = Vec::new();
+    for parts in [
+        vec![(0..32, numbers(4 * 256))],
+        vec![(3..4, numbers(2)), (4..8, vec![]), (8..9, numbers(1))],
+        vec![(31..32, vec![7; 3])],
+    ] {
+        shard::write(&path, &identity, &parts, provenance()).expect("a shard");
+        let bytes = std::fs::read(&path).expect("it was written");
+        all.push(bytes[..bytes.len() - 32].to_vec());
+        all.push(bytes);
+    }
+    all
+}
+
+fn plans() -> Vec<Vec<u8>> {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("plan.json");
+    let render = Settings::Render {
+        estimator: "shared".to_owned(),
+        sampler: "sobol".to_owned(),
+        seed: 1,
+        samples: 512,
+    };
+    let command = Settings::Command(["study", "noise", "bench"].map(str::to_owned).to_vec());
+    let written = |settings| {
+        let (identity, blocks) = work();
+        PlanFile::new(identity, settings, blocks, 7)
+            .write(&path)
+            .expect("a plan");
+        std::fs::read(&path).expect("it was written")
+    };
+    [render, command].map(written).to_vec()
 }
 
 /// The first byte names the format.

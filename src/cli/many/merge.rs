@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::thread::sleep;
 use std::time::Duration;
 
-use super::folder::{PlanFile, PlanFolder};
+use super::folder::PlanFolder;
 use super::shards::Shards;
 use super::status::missing;
 use crate::cli::Outcome;
@@ -12,7 +12,7 @@ use crate::cli::args::MergeArgs;
 use crate::cli::failure::Failure;
 use crate::cli::indices::array_syntax;
 use crate::cli::output::Talk;
-use crate::shard::gaps;
+use crate::shard::{PlanFile, gaps};
 
 /// How often the folder is listed before a shard counts as missing, and how long it waits between: a network file system may show a file of
 /// another machine late.
@@ -23,7 +23,7 @@ pub(in crate::cli) fn execute(args: &MergeArgs, talk: Talk) -> Result<Outcome, F
     let plan = PlanFolder::open_as(&args.dir, args.json)?;
     let shards = whole(&plan)?;
     let outcome = plan.work.merge(&shards, &args.output, args.json, talk)?;
-    plan.file.write(&args.output, PlanFile::MERGED)?;
+    plan.file.write(&args.output.join(PlanFile::MERGED))?;
     Ok(outcome)
 }
 

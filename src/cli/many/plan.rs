@@ -1,6 +1,6 @@
 //! `phicam plan`.
 
-use super::folder::{PlanFile, PlanFolder};
+use super::folder::PlanFolder;
 use super::render::Render;
 use super::study::Study;
 use super::work::Work;
@@ -9,6 +9,7 @@ use crate::cli::failure::Failure;
 use crate::cli::folder::{Folder, SCENE};
 use crate::cli::output::{self, Talk};
 use crate::cli::{Outcome, settings, trust};
+use crate::shard::PlanFile;
 use crate::store::ensure_writable;
 
 /// Shards of one plan, at most: a folder has to list them.
@@ -27,9 +28,9 @@ pub(in crate::cli) fn execute(args: &PlanArgs, talk: Talk) -> Result<Outcome, Fa
         );
         return Err(Failure::usage(cause, format!("use 1 to {most}")));
     }
-    let file = PlanFile::new(&work, shards);
+    let file = PlanFile::new(work.identity(), work.settings(), work.blocks(), shards);
     let dir = &args.output;
-    let earlier = PlanFile::read(dir, PlanFile::NAME)?;
+    let earlier = PlanFile::read(&dir.join(PlanFile::NAME))?;
     if let Some(earlier) = &earlier
         && let Some((name, there, asked)) = earlier.identity.difference(&file.identity)
     {
@@ -49,7 +50,7 @@ pub(in crate::cli) fn execute(args: &PlanArgs, talk: Talk) -> Result<Outcome, Fa
         let folder = Folder { path: dir.clone() };
         folder.write_scene(scene)?;
     }
-    file.write(dir, PlanFile::NAME)?;
+    file.write(&dir.join(PlanFile::NAME))?;
     ensure_writable(&dir.join("shards"))?;
     // What was written is what every machine will read.
     let read = PlanFolder::open(dir)?;

@@ -5,7 +5,6 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use super::folder::Settings;
 use super::shards::Shards;
 use crate::cli::checkpoint::{Checkpoint, Parts};
 use crate::cli::columns::{self, Columns, together};
@@ -18,7 +17,7 @@ use crate::cli::render::{complete, refuse_beyond_f32, refuse_too_large};
 use crate::cli::{Outcome, progress, settings};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
-use crate::shard::Identity;
+use crate::shard::{Identity, Settings};
 use crate::transport::{Control, Plan};
 
 /// A render. Its blocks are the sample blocks of the first columns of Φcam that are traced together, then those of the next.

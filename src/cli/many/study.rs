@@ -7,7 +7,6 @@ use std::time::Instant;
 
 use clap::Parser;
 
-use super::folder::Settings;
 use super::shards::Shards;
 use crate::cli::args::{Args, Command};
 use crate::cli::checkpoint::{Checkpoint, Parts};
@@ -18,7 +17,7 @@ use crate::cli::record::version;
 use crate::cli::tasks::{Cut, cut};
 use crate::cli::{Outcome, progress, trust};
 use crate::scene::Scene;
-use crate::shard::Identity;
+use crate::shard::{Identity, Settings};
 use crate::store::ensure_writable;
 use crate::transport::{Control, NUMERICS};
 

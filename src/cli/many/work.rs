@@ -3,7 +3,6 @@
 use std::ops::Range;
 use std::path::Path;
 
-use super::folder::Settings;
 use super::render::Render;
 use super::shards::Shards;
 use super::study::Study;
@@ -14,7 +13,7 @@ use crate::cli::folder::SCENE;
 use crate::cli::output::Talk;
 use crate::cli::trust;
 use crate::scene::Scene;
-use crate::shard::Identity;
+use crate::shard::{Identity, Settings};
 
 /// A computation in blocks, each a function of scene, settings and its number alone.
 #[derive(Debug)]
