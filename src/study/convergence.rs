@@ -118,11 +118,11 @@ impl ConvergenceTasks {
 
     /// The render of a task, and its spots.
     fn at(&self, index: usize) -> Option<(Render, Range<usize>)> {
-        let tasks = self
+        let mut tasks = self
             .renders
             .iter()
             .flat_map(|r| (0..r.shares).map(move |k| (*r, k)));
-        let (render, k) = tasks.skip(index).next()?;
+        let (render, k) = tasks.nth(index)?;
         Some((render, share(&self.scene, k, render.shares)))
     }
 

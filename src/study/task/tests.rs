@@ -18,7 +18,10 @@ pub(in crate::study) fn unstopped<T>(act: impl FnOnce(Control<'_>) -> T) -> T {
 
 /// Numbers 0 to n − 1 in another order: a multiplicative sequence of a prime that n is no multiple of.
 fn shuffled(n: usize) -> Vec<usize> {
-    let prime = [7919, 7907].into_iter().find(|p| n % p != 0).unwrap();
+    let prime = [7919, 7907]
+        .into_iter()
+        .find(|p| !n.is_multiple_of(*p))
+        .unwrap();
     (0..n).map(|k| (k * prime + 3) % n).collect()
 }
 
