@@ -54,6 +54,16 @@ pub(in crate::cli) fn encoded<D: Division>(
     tasks: Range<usize>,
     control: Control<'_>,
 ) -> Result<Option<Vec<Vec<u8>>>, Failure> {
+    let all = division.tasks();
+    if tasks.start > tasks.end || tasks.end > all {
+        return Err(Failure::new(
+            format!(
+                "there are no tasks {} to {} among {all}",
+                tasks.start, tasks.end
+            ),
+            "plan again: the command, the scene or the program is another one",
+        ));
+    }
     let Some(ground) = division.ground(control)? else {
         return Ok(None);
     };

@@ -118,11 +118,11 @@ impl ConvergenceTasks {
 
     /// The render of a task, and its spots.
     fn at(&self, index: usize) -> Option<(Render, Range<usize>)> {
-        let tasks = self
+        let mut tasks = self
             .renders
             .iter()
             .flat_map(|r| (0..r.shares).map(move |k| (*r, k)));
-        let (render, k) = tasks.skip(index).next()?;
+        let (render, k) = tasks.nth(index)?;
         Some((render, share(&self.scene, k, render.shares)))
     }
 
@@ -242,12 +242,16 @@ fn slope(steps: &[Step]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::task::tests::{divides, small};
+    use crate::study::task::tests::{divides, refuses, small, unstopped};
 
     #[test]
     fn it_divides() {
-        let found = divides(&ConvergenceTasks::new(&small("bench"), &[32, 64], 7));
-        assert_eq!(found.curves.len(), 6);
+        let tasks = ConvergenceTasks::new(&small("bench"), &[32, 64], 7);
+        assert_eq!(divides(&tasks).curves.len(), 6);
+        // The last task is of all spots, the first of some.
+        let ground = unstopped(|c| tasks.ground(c)).unwrap().unwrap();
+        let last = unstopped(|c| tasks.task(&ground, tasks.tasks() - 1, c));
+        refuses(&tasks, 0, &last.unwrap().unwrap());
     }
 
     #[test]

@@ -277,7 +277,7 @@ fn words(kind: BandKind) -> &'static str {
 mod tests {
     use super::*;
     use crate::model::Kernel;
-    use crate::study::task::tests::{divides, small};
+    use crate::study::task::tests::{divides, refuses, small};
 
     /// Twelve seeds are a full task and a rest.
     #[test]
@@ -291,7 +291,8 @@ mod tests {
             seeds: 12,
             first_seed: 5,
         };
-        let found = divides(&CoverageTasks::new(("name", "hash"), model, plan));
-        assert_eq!(found.rows.len(), 2);
+        let tasks = CoverageTasks::new(("name", "hash"), model, plan);
+        assert_eq!(divides(&tasks).rows.len(), 2);
+        refuses(&tasks, 1, &(0..3).map(|_| Err(String::new())).collect());
     }
 }

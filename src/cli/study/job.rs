@@ -23,6 +23,9 @@ pub(super) enum Count {
     Tasks,
 }
 
+/// What a finding leaves behind, and how its command ends.
+pub(super) type Leaves = Result<(Findings, Outcome), Failure>;
+
 /// A study, checked and ready.
 pub(super) struct Job<D: Division> {
     pub division: D,
@@ -36,7 +39,7 @@ pub(super) struct Job<D: Division> {
     /// Whether the JSON is printed in place of the table.
     pub json: bool,
     /// What becomes of the finding.
-    pub findings: fn(&D::Finding) -> Result<(Findings, Outcome), Failure>,
+    pub findings: fn(&D::Finding) -> Leaves,
 }
 
 impl<D: Division> Job<D> {

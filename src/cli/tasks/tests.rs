@@ -74,6 +74,8 @@ fn same(line: &str) {
     let mut forged = parts.clone();
     forged[0].push(0);
     assert!(all.deliver(&forged, control, &merged).is_err(), "{line}");
+    let beyond = half..all.tasks() + 1;
+    assert!(all.run(beyond, control).is_err(), "{line}");
     stop.store(true, std::sync::atomic::Ordering::Relaxed);
     assert!(
         matches!(all.run(0..all.tasks(), control), Ok(None)),

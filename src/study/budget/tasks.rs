@@ -274,11 +274,11 @@ impl Division for BudgetTasks {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::task::tests::{divides, small};
+    use crate::study::task::tests::{divides, refuses, small, unstopped};
 
     #[test]
     fn it_divides() {
-        for name in ["bench", "room"] {
+        for name in ["bench", "corner"] {
             let plan = BudgetPlan {
                 seed: 1,
                 ensemble_samples: 256,
@@ -286,6 +286,23 @@ mod tests {
             };
             let tasks = BudgetTasks::new(&small(name), plan);
             assert!(divides(&tasks).terms.len() > 8);
+        }
+    }
+
+    /// The last tasks are shares of the run, the first an integral.
+    #[test]
+    fn results_of_another_kind_are_refused() {
+        let plan = BudgetPlan {
+            seed: 1,
+            ensemble_samples: 64,
+            run_samples: 32,
+        };
+        let tasks = BudgetTasks::new(&small("bench"), plan);
+        let integral = unstopped(|c| tasks.ground(c)).unwrap().unwrap();
+        let last = tasks.tasks() - 1;
+        for (index, at) in [(0, last), (last, 0)] {
+            let part = unstopped(|c| tasks.task(&integral, at, c));
+            refuses(&tasks, index, &part.unwrap().unwrap());
         }
     }
 }

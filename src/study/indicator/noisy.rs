@@ -68,7 +68,7 @@ pub struct Comparison {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Compared {
     /// [`NoisyOutcome::Compared`].
-    Compared(Comparison),
+    Measured(Comparison),
     /// [`NoisyOutcome::Undefined`].
     Undefined(f64),
     /// [`NoisyOutcome::NoCovariance`].
@@ -80,7 +80,7 @@ pub enum Compared {
 impl From<Compared> for NoisyOutcome {
     fn from(found: Compared) -> Self {
         match found {
-            Compared::Compared(comparison) => Self::Compared(comparison),
+            Compared::Measured(comparison) => Self::Compared(comparison),
             Compared::Undefined(spread) => Self::Undefined { spread },
             Compared::NoCovariance => Self::NoCovariance,
             Compared::Failed(reason) => Self::Failed { reason },
@@ -158,7 +158,7 @@ fn compare(
     let Some((measured, stderr)) = measured.and_then(|m| Some((m, m.stderr?))) else {
         return Ok(Compared::Undefined(spread));
     };
-    Ok(Compared::Compared(Comparison {
+    Ok(Compared::Measured(Comparison {
         kept: pair.means[0] / pair.means[1],
         mean: predicted.mean,
         deviation: predicted.deviation,

@@ -111,7 +111,7 @@ impl Division for IndicatorTasks {
             }
             (Part::Noisy(found), None) => {
                 let drawn = |c: &Compared| match c {
-                    Compared::Compared(c) => c.measured.draws as u64 == self.plan.seeds,
+                    Compared::Measured(c) => c.measured.draws as u64 == self.plan.seeds,
                     _ => true,
                 };
                 [0, points].contains(&found.len()) && found.iter().all(drawn)

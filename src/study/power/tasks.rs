@@ -157,7 +157,7 @@ fn wrong_models(scene: &Scene, right: &Matrix) -> Result<Vec<(String, Matrix)>, 
 mod tests {
     use super::*;
     use crate::num::stream::Sampling;
-    use crate::study::task::tests::{divides, small};
+    use crate::study::task::tests::{divides, refuses, small};
 
     #[test]
     fn it_divides() {
@@ -169,7 +169,15 @@ mod tests {
             first_seed: 3,
             significance: 0.01,
         };
-        let found = divides(&PowerTasks::new(&small("bench"), plan));
-        assert_eq!(found.rows.len(), 4);
+        let tasks = PowerTasks::new(&small("bench"), plan);
+        assert_eq!(divides(&tasks).rows.len(), 4);
+        // One wrong model is untold.
+        let verdicts = Verdicts {
+            chi2_per_dof: 1.0,
+            agrees: true,
+            rejected: vec![true; 3],
+            smallest_scale: 0.1,
+        };
+        refuses(&tasks, 0, &verdicts);
     }
 }

@@ -18,12 +18,12 @@ pub struct Models {
 /// What one render comes to.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Verdicts {
-    chi2_per_dof: f64,
+    pub(super) chi2_per_dof: f64,
     /// Whether the right model was accepted.
-    agrees: bool,
+    pub(super) agrees: bool,
     /// Whether each wrong one was rejected.
     pub(super) rejected: Vec<bool>,
-    smallest_scale: f64,
+    pub(super) smallest_scale: f64,
 }
 
 /// Tests a render against every model.

@@ -233,9 +233,9 @@ impl Division for ReproduceTasks {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::task::tests::divides;
+    use crate::study::task::tests::{divides, unstopped};
 
-    /// Every kind of item, those that take long by their whole tasks' first and last alone in [`pieces_come_back_as_they_were`].
+    /// Whole items and one in pieces.
     #[test]
     fn it_divides() {
         let plan = ReproducePlan {
@@ -246,5 +246,31 @@ mod tests {
         let items = vec![Item::Table2, Item::Fig13, Item::Fig15];
         let found = divides(&ReproduceTasks::new(plan, items));
         assert_eq!(found.len(), 3);
+    }
+
+    /// Of every item that is cut the first and the last piece, in the place of the other and of a whole item.
+    #[test]
+    fn pieces_are_of_their_item() {
+        let plan = ReproducePlan {
+            most_elements: 8,
+            seeds: 2,
+            first_seed: 1,
+        };
+        let tasks = ReproduceTasks::new(plan, vec![Item::Table2, Item::Fig12, Item::Fig17]);
+        let at = |item: Item, k: usize| tasks.tasks.iter().position(|t| *t == (item, k)).unwrap();
+        let last = |item: Item| tasks.pieces(item) - 1;
+        let piece = |index| unstopped(|c| tasks.task(&(), index, c)).unwrap().unwrap();
+        let kinds = [
+            at(Item::Table2, 0),
+            at(Item::Fig12, 0),
+            at(Item::Fig12, last(Item::Fig12)),
+            at(Item::Fig17, 0),
+        ];
+        let pieces = kinds.map(piece);
+        for (index, own) in kinds.into_iter().zip(&pieces) {
+            for other in &pieces {
+                assert_eq!(tasks.fits(&(), index, other), std::ptr::eq(own, other));
+            }
+        }
     }
 }
