@@ -10,7 +10,7 @@
 //! | 8 | `phicam` and two zeros |
 //! | 4 | version of this layout, 1 |
 //! | 4 | length h of the header |
-//! | h | header, JSON: what is computed (the [`Identity`], of which the plan's id is the SHA-256), range, parts, provenance |
+//! | h | header, JSON: the plan's id, what is computed (the [`Identity`], of which the id is the SHA-256), range, parts, provenance |
 //! | Σ | the parts, one after the other |
 //! | 32 | SHA-256 of all before |
 //!
@@ -59,6 +59,7 @@ pub struct Provenance {
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Header {
+    plan_id: String,
     identity: Identity,
     from: u64,
     to: u64,

@@ -80,7 +80,7 @@ impl ShardFile {
         if !file.closes().map_err(unreadable)? {
             return Err(damaged("its bytes are not those that were written"));
         }
-        refuse_foreign(path, &header.identity, identity)?;
+        refuse_foreign(path, &header, identity)?;
         let range = header.from..header.to;
         let follow = parts.iter().try_fold(range.start, |end, (part, _, _)| {
             (part.start == end && part.start < part.end).then_some(part.end)
@@ -217,10 +217,10 @@ impl Digesting {
 }
 
 /// Refuses what is not part of the plan, and says in what it differs.
-fn refuse_foreign(path: &Path, found: &Identity, plan: &Identity) -> Result<(), ShardError> {
-    let path = path.to_owned();
+fn refuse_foreign(path: &Path, header: &Header, plan: &Identity) -> Result<(), ShardError> {
+    let (path, found) = (path.to_owned(), &header.identity);
     match found.difference(plan) {
-        None if found.id() == plan.id() => Ok(()),
+        None if found.id() == plan.id() && header.plan_id == plan.id().to_string() => Ok(()),
         None => Err(ShardError::Damaged {
             path,
             what: "what it says of its plan is out of order".to_owned(),

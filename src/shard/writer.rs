@@ -20,6 +20,7 @@ pub fn write(
     provenance: Provenance,
 ) -> Result<(), StoreError> {
     let header = Header {
+        plan_id: identity.id().to_string(),
         identity: identity.clone(),
         from: parts.first().map_or(0, |(range, _)| range.start),
         to: parts.last().map_or(0, |(range, _)| range.end),

@@ -145,7 +145,7 @@ fn what_a_dead_process_left_is_told_from_what_a_living_one_writes() {
             .open(&foreign)
             .unwrap()
             .set_modified(time)
-            .unwrap()
+            .unwrap();
     };
     let now = std::time::SystemTime::now();
     set(now - 2 * FORSAKEN);

@@ -1,7 +1,7 @@
 //! Slurm's own commands: sbatch, squeue and scontrol.
 
 use std::io::ErrorKind;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::cli::failure::Failure;
@@ -153,7 +153,7 @@ fn ask(program: &PathBuf, arguments: &[String]) -> Result<String, Failure> {
     Err(Failure::system(cause, cure))
 }
 
-fn nonsense(program: &PathBuf, answer: &str) -> Failure {
+fn nonsense(program: &Path, answer: &str) -> Failure {
     let name = program.display();
     let start: String = answer.trim().chars().take(200).collect();
     let cause = format!(
