@@ -319,6 +319,18 @@ fn only_clean_removes_and_only_what_is_ours() {
     assert!(workspace.path("job/plan.json").exists());
 }
 
+/// A plan that was killed before its last file is planned again; a folder with another scene is not touched.
+#[test]
+fn a_plan_that_was_not_finished_is_planned_again() {
+    let workspace = planned("--shards 2");
+    fs::remove_file(workspace.path("job/plan.json")).expect("removed");
+    let line = format!("plan tiny.toml -o job {PATHS} --shards 2");
+    let _ = workspace.phicam(&line).exits(0);
+    fs::remove_file(workspace.path("job/plan.json")).expect("removed");
+    workspace.write("job/scene.toml", "a scene of somebody else");
+    refused(&workspace, &line, 65, &["not of a plan", "another folder"]);
+}
+
 /// The packed copy carries what the scene names; the originals are not needed any more.
 #[test]
 fn a_plan_carries_the_files_of_its_scene() {

@@ -25,7 +25,7 @@ for target in "$@"; do
     dictionary=()
     if [ -f "$target.dict" ]; then dictionary=("-dict=$target.dict"); fi
     echo "-- $target, $seconds s"
-    "$built/$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=1024 -max_len=16384 -print_final_stats=1 \
+    "$built/$target" -max_total_time="$seconds" -timeout=30 -rss_limit_mb=1024 -max_len=16384 -print_final_stats=1 \
         -artifact_prefix="artifacts/$target/" "${dictionary[@]}" "corpus/$target" "found/$target" 2>"artifacts/$target/log" ||
         { tail -40 "artifacts/$target/log"; exit 1; }
     grep -E "DONE|^stat::(number_of_executed_units|peak_rss_mb)" "artifacts/$target/log"

@@ -1,5 +1,8 @@
 //! `phicam plan`.
 
+use std::fs;
+use std::path::Path;
+
 use super::folder::PlanFolder;
 use super::render::Render;
 use super::study::Study;
@@ -40,7 +43,7 @@ pub(in crate::cli) fn execute(args: &PlanArgs, talk: Talk) -> Result<Outcome, Fa
         );
         return Err(Failure::new(cause, "plan into another folder (-o)"));
     }
-    if earlier.is_none() && dir.join(SCENE).exists() {
+    if earlier.is_none() && !is_free(dir, &work) {
         let cause = format!("{} holds a {SCENE} that is not of a plan", dir.display());
         return Err(Failure::new(cause, "plan into another folder (-o)"));
     }
@@ -68,6 +71,13 @@ pub(in crate::cli) fn execute(args: &PlanArgs, talk: Talk) -> Result<Outcome, Fa
         ))?;
     }
     Ok(Outcome::Done)
+}
+
+/// Whether no scene is in `dir`, or the very same: what a process leaves that was killed while it planned.
+fn is_free(dir: &Path, work: &Work) -> bool {
+    let path = dir.join(SCENE);
+    let own = || work.scene().map(|s| s.text.as_bytes().to_vec());
+    !path.exists() || fs::read(path).ok() == own()
 }
 
 /// A render of the scene, or the command after `--`.

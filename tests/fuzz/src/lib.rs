@@ -2,7 +2,7 @@
 //!
 //! `./run.sh SECONDS [TARGET…]` builds the targets with LLVM's coverage counters and lets libFuzzer work on each for so long, from the seeds
 //! of `seeds.rs` and the inputs of `found/TARGET` onwards. It needs a stable Rust compiler and a C++ compiler, nothing else. A panic, an
-//! overflow, a failed assertion, an input that takes longer than 10 s, and memory beyond the target's bound (or 1 GiB resident) end it;
+//! overflow, a failed assertion, an input that takes longer than 30 s, and memory beyond the target's bound (or 1 GiB resident) end it;
 //! the input is then in `artifacts/TARGET`.
 //!
 //! What a target does with its bytes stands in `readers.rs`, which `tests/forged` of phicam compiles too: `cargo test` reads every seed and
