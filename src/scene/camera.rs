@@ -3,6 +3,7 @@
 use super::error::{Fault, keys};
 use super::file::CameraTable;
 use super::surface::{Role, Surface};
+use super::{FARTHEST, FINEST};
 use crate::geometry::{DVec3, Parallelogram, SurfacePoint};
 
 /// More pixels than this are taken for a mistake.
@@ -79,15 +80,19 @@ impl Camera {
             let cause = format!("{columns} × {rows} pixels are more than 2²⁶");
             return refuse("pixels", cause, "use fewer");
         }
-        if !(table.aperture_area > 0.0 && table.aperture_area.is_finite()) {
+        if !(FINEST * FINEST..=FARTHEST * FARTHEST).contains(&table.aperture_area) {
             let cause = format!("aperture area {}", table.aperture_area);
             return refuse("aperture_area", cause, "give a positive area in unit²");
         }
-        if table.position.iter().any(|x| !x.is_finite()) {
+        if table
+            .position
+            .iter()
+            .any(|x| !(-FARTHEST..=FARTHEST).contains(x))
+        {
             return refuse(
                 "position",
-                "the camera's position is not finite".into(),
-                "use finite numbers",
+                format!("the camera's position is not finite, or farther than {FARTHEST:e}"),
+                "use finite numbers, or another unit of length",
             );
         }
         let ([x0, x1], [y0, y1]) = (table.view.x, table.view.y);

@@ -4,7 +4,12 @@ use super::error::{Fault, keys};
 use super::file::{LaserTable, ProfileName};
 use super::spots;
 use super::surface::{Role, Surface};
+use super::{FARTHEST, FINEST};
 use crate::geometry::{DVec3, ShapeId, SurfacePoint};
+
+/// Powers in W beyond which fluxes would leave the range of f64.
+const LEAST_POWER: f64 = 1e-60;
+const MOST_POWER: f64 = 1e60;
 
 /// How the power is spread over a spot, in the wall's plane around the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +56,7 @@ impl Laser {
     pub(super) fn from_table(table: &LaserTable, surfaces: &[Surface]) -> Result<Self, Fault> {
         let within = |f: Fault| f.within(keys!["laser"]);
         let refuse = |key, cause, cure| Err(within(Fault::new(keys![key], cause, cure)));
-        if !(table.power > 0.0 && table.power.is_finite()) {
+        if !(LEAST_POWER..=MOST_POWER).contains(&table.power) {
             return refuse(
                 "power",
                 format!("laser power {} W", table.power),
@@ -63,18 +68,22 @@ impl Laser {
             return refuse("wavelength", cause, "give it in metres, e.g. 632.8e-9");
         }
         let d = table.spot_diameter;
-        if !(d >= 0.0 && d.is_finite()) {
+        if !(d == 0.0 || (FINEST..=FARTHEST).contains(&d)) {
             return refuse(
                 "spot_diameter",
                 format!("spot diameter {d}"),
-                "use 0 or more",
+                "use 0 for an ideal spot, or a positive length",
             );
         }
-        if table.position.iter().any(|x| !x.is_finite()) {
+        if table
+            .position
+            .iter()
+            .any(|x| !(-FARTHEST..=FARTHEST).contains(x))
+        {
             return refuse(
                 "position",
-                "the laser's position is not finite".into(),
-                "use finite numbers",
+                format!("the laser's position is not finite, or farther than {FARTHEST:e}"),
+                "use finite numbers, or another unit of length",
             );
         }
         let profile = match table.profile {

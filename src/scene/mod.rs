@@ -42,6 +42,10 @@
 //!
 //! Surfaces reflect from their front; their back is black; both sides are opaque.
 //!
+//! Numbers that would leave the range of what is computed from them are refused: coordinates beyond 10¹⁵, extents below 10⁻¹⁵ that are not 0, areas beyond
+//! the squares of these, powers outside 10⁻⁶⁰ to 10⁶⁰ W, albedos below 10⁻³⁰ that are not 0. The textures of a scene have 2²⁶ cells at most together, and
+//! the meshes that it has phicam make 20 million triangles.
+//!
 //! | `surface.mesh` | meaning |
 //! | --- | --- |
 //! | `file` | PLY (ASCII or binary), OBJ, glTF or GLB, relative to the scene file; [`mesh`] says what is read of each. The front of a triangle is where its corners run counterclockwise; normals in the file are not used |
@@ -166,6 +170,12 @@ use files::Files;
 
 /// Largest number of surfaces that a path may meet.
 pub const MOST_BOUNCES: u32 = 1000;
+
+/// Largest magnitude of a coordinate: rays travel in f32, where the square of a length may not pass 3.4e38.
+const FARTHEST: f64 = 1e15;
+
+/// Smallest extent: areas and their inverses stay far from the ends of f64.
+const FINEST: f64 = 1e-15;
 
 /// The length unit of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

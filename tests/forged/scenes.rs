@@ -39,6 +39,15 @@ fn absurd_sizes_are_refused_before_memory_is_taken() {
         ("aperture_area = 0.05", "aperture_area = -inf"),
         ("u = [11.5, 0, 0]", "u = [1e300, 0, 0]"),
         ("corner = [0, 0, 0]", "corner = [nan, 0, 0]"),
+        (
+            "position = [-20.0, 10.0, 15.0]",
+            "position = [1e308, 10.0, 15.0]",
+        ),
+        ("spot_diameter = 0.0", "spot_diameter = 1e-308"),
+        ("aperture_area = 0.05", "aperture_area = 1e308"),
+        ("power = 5.0e-3", "power = 1e308"),
+        ("light = 1.0", "light = 5e-324"),
+        ("v = [0, 15.5, 0]", "v = [0, 1e-200, 0]"),
     ] {
         let (outcome, taken) = read(&SCENE, bench(old, new).as_bytes(), new);
         assert_eq!(outcome, Outcome::Refused, "{new}");

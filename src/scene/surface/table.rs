@@ -9,6 +9,7 @@ use crate::scene::files::Files;
 use crate::scene::material::Material;
 use crate::scene::texture::Texture;
 use crate::scene::warning::Warning;
+use crate::scene::{FARTHEST, FINEST};
 
 /// More elements along a side than this are taken for a mistake.
 const MOST_ELEMENTS: u32 = 1024;
@@ -156,6 +157,7 @@ impl Surface {
             RoleName::Occluder => Role::Occluder,
         };
         let shape = shape(table, earlier, sources)?;
+        refuse_beyond_numbers(&table.name, &shape)?;
         let wavelength = sources.wavelength;
         let files = &mut *sources.files;
         let mut read = |path: &str| files.bytes_or_words(path, LARGEST_PICTURE);
@@ -233,6 +235,21 @@ impl Surface {
             division,
         })
     }
+}
+
+/// Sizes whose squares or inverses a number cannot hold.
+fn refuse_beyond_numbers(name: &str, shape: &Shape) -> Result<(), Fault> {
+    let (low, high) = shape.bounds();
+    let far = low.abs().max(high.abs()).max_element();
+    let area = shape.area();
+    let cause = if !(0.0..=FARTHEST).contains(&far) {
+        format!("surface `{name}` reaches to {far}, farther than {FARTHEST:e}")
+    } else if !(FINEST * FINEST..).contains(&area) {
+        format!("surface `{name}` has an area of {area}, less than {FINEST:e} squared")
+    } else {
+        return Ok(());
+    };
+    Err(Fault::new(keys![], cause, "use another unit of length"))
 }
 
 fn shape(

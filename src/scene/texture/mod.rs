@@ -13,6 +13,8 @@ use file::VariedTable;
 /// Reads a file that a scene names, by its path below the scene's folder; the error says why not, without a full stop.
 pub(super) type Files<'a> = dyn FnMut(&str) -> Result<Vec<u8>, String> + 'a;
 
+/// A smaller albedo than this is taken for a mistake: products of them would leave the range of f64.
+const LEAST_ALBEDO: f64 = 1e-30;
 /// More cells along a side than this are taken for a mistake.
 const MOST_CELLS: u32 = 4096;
 
@@ -316,8 +318,12 @@ fn cells(rows: &[Vec<f64>]) -> Result<Texture, Fault> {
 }
 
 fn albedo(rho: f64) -> Result<f64, Fault> {
-    if (0.0..=1.0).contains(&rho) {
+    if rho == 0.0 || (LEAST_ALBEDO..=1.0).contains(&rho) {
         return Ok(rho);
+    }
+    if rho > 0.0 && rho < LEAST_ALBEDO {
+        let cause = format!("albedo {rho} is less than {LEAST_ALBEDO:e}, and not 0");
+        return Err(Fault::new(keys![], cause, "use 0 for black"));
     }
     Err(Fault::new(
         keys![],
