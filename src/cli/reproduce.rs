@@ -155,7 +155,7 @@ impl Cut for Published {
         tasks: Range<usize>,
         control: Control<'_>,
     ) -> Result<Option<Vec<Vec<u8>>>, Failure> {
-        encoded(&self.division, tasks, control)
+        encoded(&self.division, &(), tasks, control)
     }
 
     fn deliver(

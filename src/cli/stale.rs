@@ -80,8 +80,13 @@ pub(super) fn remove_files(dir: &Path, ours: impl Fn(&str, &str) -> bool) -> Res
     for path in entries.filter_map(Result::ok).map(|e| e.path()) {
         let part = |s: Option<&OsStr>| s.and_then(OsStr::to_str).unwrap_or("").to_owned();
         let (stem, ext) = (part(path.file_stem()), part(path.extension()));
-        if is_abandoned(&path) || ours(&stem, &ext) {
-            fs::remove_file(&path)?;
+        if !is_abandoned(&path) && !ours(&stem, &ext) {
+            continue;
+        }
+        match fs::remove_file(&path) {
+            // Another process was faster.
+            Err(e) if e.kind() == ErrorKind::NotFound => {}
+            other => other?,
         }
     }
     Ok(())

@@ -51,6 +51,7 @@ pub(in crate::cli) fn cut(
 /// The results of some tasks of `division` as bytes. `Ok(None)` if stopped.
 pub(in crate::cli) fn encoded<D: Division>(
     division: &D,
+    ground: &D::Ground,
     tasks: Range<usize>,
     control: Control<'_>,
 ) -> Result<Option<Vec<Vec<u8>>>, Failure> {
@@ -64,10 +65,7 @@ pub(in crate::cli) fn encoded<D: Division>(
             "plan again: the command, the scene or the program is another one",
         ));
     }
-    let Some(ground) = division.ground(control)? else {
-        return Ok(None);
-    };
-    let Some(found) = parts(division, &ground, tasks.clone(), control, &|_, _| ())? else {
+    let Some(found) = parts(division, ground, tasks.clone(), control, &|_, _| ())? else {
         return Ok(None);
     };
     let encoded = tasks.zip(&found).map(|(index, part)| encode(index, part));

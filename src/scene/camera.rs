@@ -82,7 +82,11 @@ impl Camera {
         }
         if !(FINEST * FINEST..=FARTHEST * FARTHEST).contains(&table.aperture_area) {
             let cause = format!("aperture area {}", table.aperture_area);
-            return refuse("aperture_area", cause, "give a positive area in unit²");
+            return refuse(
+                "aperture_area",
+                cause,
+                "give a positive area in unit², from 1e-30 to 1e30",
+            );
         }
         if table
             .position

@@ -60,7 +60,7 @@ impl Laser {
             return refuse(
                 "power",
                 format!("laser power {} W", table.power),
-                "give a positive power in W",
+                "give a positive power in W, from 1e-60 to 1e60",
             );
         }
         if !(table.wavelength > 0.0 && table.wavelength.is_finite()) {
@@ -72,7 +72,7 @@ impl Laser {
             return refuse(
                 "spot_diameter",
                 format!("spot diameter {d}"),
-                "use 0 for an ideal spot, or a positive length",
+                "use 0 for an ideal spot, or a length from 1e-15 to 1e15",
             );
         }
         if table

@@ -61,6 +61,6 @@ pub use portrait::{
 };
 pub use power::{Detection, Power, PowerError, PowerPlan, PowerRow, PowerTasks, power};
 pub use results::{Agreement, Entry, ObjectBands, RecoveredObject, RunResults, Settings};
-pub use task::{Division, Sharing, Steps, TaskError, decode, encode, parts, whole};
+pub use task::{Division, LAYOUT, Sharing, Steps, TaskError, decode, encode, parts, whole};
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
 pub use validation::{Integration, Validation, ValidationError, validate};

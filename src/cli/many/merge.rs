@@ -13,6 +13,7 @@ use crate::cli::failure::Failure;
 use crate::cli::indices::array_syntax;
 use crate::cli::output::Talk;
 use crate::shard::{PlanFile, gaps};
+use crate::store::ensure_writable;
 
 /// How often the folder is listed before a shard counts as missing, and how long it waits between: a network file system may show a file of
 /// another machine late.
@@ -42,6 +43,8 @@ fn whole(plan: &PlanFolder) -> Result<Shards, Failure> {
         }
         looks += 1;
         sleep(BETWEEN);
+        // A file written here makes a network file system ask its server again what the folder holds; where none may be written, it stays at looking.
+        let _ = ensure_writable(&plan.shards_path());
     }
 }
 

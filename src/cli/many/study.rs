@@ -15,10 +15,11 @@ use crate::cli::interrupt::stop_flag;
 use crate::cli::output::Talk;
 use crate::cli::record::version;
 use crate::cli::tasks::{Cut, cut};
-use crate::cli::{Outcome, progress, trust};
+use crate::cli::{Outcome, progress, settings, trust};
 use crate::scene::Scene;
 use crate::shard::{Identity, Settings};
 use crate::store::ensure_writable;
+use crate::study::LAYOUT as TASKS;
 use crate::transport::{Control, NUMERICS};
 
 /// A command whose blocks are its tasks.
@@ -91,6 +92,7 @@ impl Study {
             .with("command", format!("{:?}", self.arguments))
             .with("tasks", self.cut.tasks())
             .with("program", version())
+            .with("layout of tasks", TASKS)
             .with(Identity::NUMERICS, NUMERICS)
     }
 
@@ -165,7 +167,8 @@ impl Study {
             progress: &|_| (),
             stop: stop_flag(),
         };
-        let delivered = self.cut.deliver(&results, control, output)?;
+        let pool = settings::pool(None)?;
+        let delivered = pool.install(|| self.cut.deliver(&results, control, output))?;
         delivered.ok_or_else(|| Failure::Stopped("nothing was written; merge again".to_owned()))
     }
 }

@@ -1,5 +1,7 @@
 //! `phicam study brdf`: the model on a wall that is not Lambertian.
 
+use std::sync::OnceLock;
+
 use super::findings::Findings;
 use super::job::{Count, Job};
 use super::noise::methods;
@@ -33,6 +35,7 @@ pub(super) fn job(args: &BrdfArgs, scene: &Scene) -> Result<Job<BrdfTasks>, Fail
     settings::budget("--samples", args.samples, Sampling::Sobol)?;
     Ok(Job {
         division: BrdfTasks::new(scene, plan),
+        ground: OnceLock::new(),
         what: format!("wall BRDFs on {}", scene.name),
         count: Count::Tasks,
         threads: args.threads,

@@ -1,5 +1,7 @@
 //! `phicam study coverage`: how often the bands of recovered reflectances cover the truth.
 
+use std::sync::OnceLock;
+
 use super::findings::Findings;
 use super::job::{Count, Job};
 use super::noise::{methods, sides};
@@ -47,6 +49,7 @@ pub(super) fn job(args: &CoverageArgs, scene: &Scene) -> Result<Job<CoverageTask
     let model = MatrixModel::new(scene, Kernel::Physical, elements)?;
     Ok(Job {
         division: CoverageTasks::new((&scene.name, &scene.hash), model, plan),
+        ground: OnceLock::new(),
         what: format!("coverage on {}", scene.name),
         count: Count::Tasks,
         threads: args.threads,

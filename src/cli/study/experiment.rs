@@ -1,5 +1,7 @@
 //! `phicam study experiment`: the failed laboratory experiment, re-enacted.
 
+use std::sync::OnceLock;
+
 use super::findings::Findings;
 use super::job::{Count, Job};
 use crate::cli::args::ExperimentArgs;
@@ -13,6 +15,7 @@ use crate::study::{ExperimentPlan, ExperimentTasks};
 pub(super) fn job(args: &ExperimentArgs, scene: &Scene) -> Result<Job<ExperimentTasks>, Failure> {
     Ok(Job {
         division: ExperimentTasks::new(scene, plan(args, scene)?),
+        ground: OnceLock::new(),
         what: format!("photographs of {}", scene.name),
         count: Count::Tasks,
         threads: args.threads,

@@ -1,5 +1,7 @@
 //! `phicam study indicator`: what predicts how well the published inversion works.
 
+use std::sync::OnceLock;
+
 use super::findings::Findings;
 use super::job::{Count, Job};
 use super::noise::{methods, sides};
@@ -19,6 +21,7 @@ const MOST_SPOTS: usize = 10_000;
 pub(super) fn job(args: &IndicatorArgs, scene: &Scene) -> Result<Job<IndicatorTasks>, Failure> {
     Ok(Job {
         division: IndicatorTasks::new(scene, plan(args)?)?,
+        ground: OnceLock::new(),
         what: format!("indicators on {}", scene.name),
         count: Count::Tasks,
         threads: args.threads,

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use super::findings::Findings;
 use crate::cli::failure::Failure;
@@ -29,6 +30,8 @@ pub(super) type Leaves = Result<(Findings, Outcome), Failure>;
 /// A study, checked and ready.
 pub(super) struct Job<D: Division> {
     pub division: D,
+    /// What its tasks stand on, once it is worked out.
+    pub ground: OnceLock<D::Ground>,
     /// What is done, in words.
     pub what: String,
     pub count: Count,
@@ -71,6 +74,18 @@ impl<D: Division> Job<D> {
         self.leave(&found.ok_or_else(nothing)?, &self.output)
     }
 
+    /// What the tasks stand on. `Ok(None)` if stopped.
+    fn ground(&self, control: Control<'_>) -> Result<Option<&D::Ground>, Failure> {
+        if self.ground.get().is_none() {
+            let Some(found) = self.division.ground(control)? else {
+                return Ok(None);
+            };
+            // Two that come at once find the same.
+            let _ = self.ground.set(found);
+        }
+        Ok(self.ground.get())
+    }
+
     /// Leaves the files of a finding in `output` and prints its table or JSON.
     pub(super) fn leave(&self, found: &D::Finding, output: &Path) -> Result<Outcome, Failure> {
         let (findings, outcome) = (self.findings)(found)?;
@@ -89,7 +104,10 @@ impl<D: Division> Cut for Job<D> {
         tasks: Range<usize>,
         control: Control<'_>,
     ) -> Result<Option<Vec<Vec<u8>>>, Failure> {
-        encoded(&self.division, tasks, control)
+        let Some(ground) = self.ground(control)? else {
+            return Ok(None);
+        };
+        encoded(&self.division, ground, tasks, control)
     }
 
     fn deliver(
@@ -98,12 +116,12 @@ impl<D: Division> Cut for Job<D> {
         control: Control<'_>,
         output: &Path,
     ) -> Result<Option<Outcome>, Failure> {
-        let Some(ground) = self.division.ground(control)? else {
+        let Some(ground) = self.ground(control)? else {
             return Ok(None);
         };
-        let parts = decode(&self.division, &ground, parts)?;
+        let parts = decode(&self.division, ground, parts)?;
         ensure_writable(output)?;
-        let found = self.division.finish(&ground, parts)?;
+        let found = self.division.finish(ground, parts)?;
         self.leave(&found, output).map(Some)
     }
 }

@@ -8,6 +8,8 @@ mod indicator;
 mod job;
 mod noise;
 
+use std::sync::OnceLock;
+
 use super::Outcome;
 use super::args::{BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs};
 use super::failure::Failure;
@@ -99,6 +101,7 @@ fn budget(args: &BudgetArgs, scene: &Scene) -> Result<Job<BudgetTasks>, Failure>
     };
     Ok(Job {
         division: BudgetTasks::new(scene, plan),
+        ground: OnceLock::new(),
         what: format!("budget of {}", scene.name),
         count: Count::Paths(total),
         threads: args.threads,
@@ -152,6 +155,7 @@ fn power(args: &PowerArgs, scene: &Scene) -> Result<Job<PowerTasks>, Failure> {
     );
     Ok(Job {
         division: PowerTasks::new(scene, plan),
+        ground: OnceLock::new(),
         what: format!("power on {}", scene.name),
         count: Count::Paths(total),
         threads: args.threads,
@@ -174,6 +178,7 @@ fn tolerance(args: &ToleranceArgs, scene: &Scene) -> Result<Job<ToleranceTasks>,
     }
     Ok(Job {
         division: ToleranceTasks::new(scene, args.noise),
+        ground: OnceLock::new(),
         what: format!("tolerance of {}", scene.name),
         count: Count::Tasks,
         threads: None,
@@ -193,6 +198,7 @@ fn convergence(args: &ConvergenceArgs, scene: &Scene) -> Result<Job<ConvergenceT
     let each = sum("--samples", &args.samples)?.saturating_mul(2);
     Ok(Job {
         division: ConvergenceTasks::new(scene, &args.samples, args.seed),
+        ground: OnceLock::new(),
         what: format!("convergence on {}", scene.name),
         count: Count::Paths(paths(scene, each, each)),
         threads: args.threads,

@@ -4,6 +4,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use super::findings::Findings;
@@ -90,6 +91,7 @@ pub(super) fn job(args: &NoiseArgs, scene: &Scene) -> Result<Job<NoiseTasks>, Fa
     }
     Ok(Job {
         division: NoiseTasks::new(scene, plan, args.render_samples.clone()),
+        ground: OnceLock::new(),
         what: format!("noise on {}", scene.name),
         count: Count::Tasks,
         threads: args.threads,

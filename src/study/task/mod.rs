@@ -26,10 +26,14 @@ pub enum Sharing {
     InTurn,
 }
 
+/// How studies are divided and what their tasks come to: raised whenever a change of either makes the results of tasks of another number
+/// useless, or different.
+pub const LAYOUT: u32 = 1;
+
 /// A study, divided into tasks.
 pub trait Division: Sync {
     /// What every task stands on: computed once a process, and the same in each.
-    type Ground: Sync;
+    type Ground: Send + Sync;
     /// The result of a task.
     type Part: Serialize + DeserializeOwned + Send;
     /// What all of them come to.

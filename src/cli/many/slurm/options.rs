@@ -3,7 +3,7 @@
 use crate::cli::failure::Failure;
 
 /// Options that would undo what this command does with sbatch, and what to do instead.
-const RESERVED: [(&[&str], &str); 7] = [
+const RESERVED: [(&[&str], &str); 8] = [
     (
         &["-a", "--array"],
         "leave it out: the missing shards are the array",
@@ -23,12 +23,24 @@ const RESERVED: [(&[&str], &str); 7] = [
     (&["--parsable"], "leave it out: it is given already"),
     (&["--test-only"], "use `phicam slurm --dry-run`"),
     (&["--wrap"], "leave it out: the job scripts are phicam's"),
+    (
+        &["-W", "--wait"],
+        "leave it out: the merge is submitted before the shards have ended",
+    ),
 ];
 
 /// Refuses what cannot be passed on.
 pub(super) fn check(options: &[String]) -> Result<(), Failure> {
-    if let Some(first) = options.first().filter(|o| !o.starts_with('-')) {
-        let cause = format!("`{first}` after `--` is no option of sbatch");
+    let dashed = |word: &String| word.starts_with('-');
+    // One word may be the value of the option before it; the next would be taken for the job script.
+    let first = options.first().filter(|o| !dashed(o));
+    let second = || {
+        options
+            .windows(2)
+            .find(|w| !dashed(&w[0]) && !dashed(&w[1]))
+    };
+    if let Some(stray) = first.or_else(|| second().map(|w| &w[1])) {
+        let cause = format!("`{stray}` after `--` is no option of sbatch");
         return Err(Failure::usage(
             cause,
             "write options only, e.g. `-- --partition=cpu --time=2:00:00`",
@@ -47,12 +59,15 @@ pub(super) fn check(options: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Whether `option` is the option `name`, alone or with its value: `--array=1`, `-a1`.
+/// Whether `option` is the option `name`, alone or with its value, or abridged as sbatch allows: `--array=1`, `-a1`, `--arr=1`.
 fn is(option: &str, name: &str) -> bool {
-    match option.strip_prefix(name) {
-        Some(value) if name.starts_with("--") => value.is_empty() || value.starts_with('='),
-        Some(_) => true,
-        None => false,
+    match option.strip_prefix("--") {
+        None => !name.starts_with("--") && option.starts_with(name),
+        Some(long) => {
+            let word = long.split('=').next().unwrap_or("");
+            let own = name.strip_prefix("--");
+            !word.is_empty() && own.is_some_and(|own| own.starts_with(word))
+        }
     }
 }
 
@@ -80,6 +95,8 @@ mod tests {
             ("--quiet", "job's number"),
             ("--test-only", "--dry-run"),
             ("--wrap=true", "phicam's"),
+            ("--arr=0-3", "missing shards"),
+            ("-W", "before the shards"),
         ] {
             let message = refusal(&["--time=10", option]).unwrap_or_default();
             assert!(
@@ -87,8 +104,10 @@ mod tests {
                 "{option}: {message}"
             );
         }
-        let script = refusal(&["job.sh"]).unwrap_or_default();
-        assert!(script.contains("`job.sh`"), "{script}");
+        for words in [&["job.sh"][..], &["--time", "10", "job.sh"]] {
+            let script = refusal(words).unwrap_or_default();
+            assert!(script.contains("`job.sh`"), "{script}");
+        }
     }
 
     #[test]

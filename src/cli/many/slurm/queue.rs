@@ -25,8 +25,8 @@ pub(super) trait Queue {
     /// MaxArraySize: one more than the highest number that a task may have; not 0.
     fn array_size(&self) -> Result<usize, Failure>;
 
-    /// The jobs with these names that are queued or running.
-    fn jobs(&self, names: &[String]) -> Result<Vec<Job>, Failure>;
+    /// The user's own jobs that are queued or running and whose names begin so.
+    fn jobs(&self, prefix: &str) -> Result<Vec<Job>, Failure>;
 }
 
 /// No Slurm at all.
@@ -37,7 +37,7 @@ impl Queue for Nobody {
         Ok(ARRAY_SIZE)
     }
 
-    fn jobs(&self, _: &[String]) -> Result<Vec<Job>, Failure> {
+    fn jobs(&self, _: &str) -> Result<Vec<Job>, Failure> {
         Ok(Vec::new())
     }
 }
@@ -98,10 +98,10 @@ impl Queue for Slurm {
         }
     }
 
-    fn jobs(&self, names: &[String]) -> Result<Vec<Job>, Failure> {
-        // Without -r a long list of waiting tasks comes abridged.
-        let arguments = ["-h", "-r", "-o", "%t|%F|%K|%j", "-n"].map(str::to_owned);
-        let answer = ask(&self.squeue, &[&arguments[..], &[names.join(",")]].concat())?;
+    fn jobs(&self, prefix: &str) -> Result<Vec<Job>, Failure> {
+        // Without -r a long list of waiting tasks comes abridged, without -a hidden partitions are left out.
+        let arguments = ["-h", "-r", "-a", "--me", "-o", "%t|%F|%K|%j"].map(str::to_owned);
+        let answer = ask(&self.squeue, &arguments)?;
         let mut jobs = Vec::new();
         for line in answer.lines().map(str::trim) {
             // With SLURM_CLUSTERS set, a headline names the cluster.
@@ -109,7 +109,8 @@ impl Queue for Slurm {
                 continue;
             }
             match line.splitn(4, '|').collect::<Vec<_>>()[..] {
-                // One that is being cleaned up has ended, whatever came of it.
+                [.., name] if !name.starts_with(prefix) => {}
+                // Its program has ended. Where Slurm will start it again, to submit it here, too, costs time only.
                 ["CG", ..] => {}
                 [_, id, task, name] if is_id(id) => {
                     jobs.push(Job {
@@ -132,7 +133,14 @@ fn is_id(text: &str) -> bool {
 /// What a command prints, if it succeeds.
 fn ask(program: &PathBuf, arguments: &[String]) -> Result<String, Failure> {
     let name = program.display();
-    let output = Command::new(program).args(arguments).output().map_err(|e| match e.kind() {
+    let mut command = Command::new(program);
+    // What the user wants squeue to show by default is not what is asked here.
+    for (name, _) in std::env::vars_os() {
+        if name.to_string_lossy().starts_with("SQUEUE_") {
+            command.env_remove(name);
+        }
+    }
+    let output = command.args(arguments).output().map_err(|e| match e.kind() {
         ErrorKind::NotFound => Failure::system(
             format!("there is no `{name}` on this machine"),
             "run this on a login node of the cluster, load its Slurm module, or see with --dry-run what would be submitted; \

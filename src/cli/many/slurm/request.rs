@@ -2,14 +2,15 @@
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::jobs::Jobs;
-use super::queue::{Queue, Slurm};
+use super::queue::{Job, Queue, Slurm};
 use super::script::quote;
 use super::submission::{Merge, Merged, Names, Submission};
 use crate::cli::failure::Failure;
 use crate::cli::indices::array_syntax;
+use crate::shard::Identity;
 
 /// How far a plan has come.
 pub(super) struct Progress {
@@ -121,8 +122,19 @@ impl Request {
             missing,
             merged,
         } = &self.progress;
-        let names = Names::new(plan, queue.array_size()?);
-        let queued = queue.jobs(&names.all(*shards))?;
+        let place = format!("{}-{}", plan, short(&self.dir));
+        let names = Names::new(&place, *shards, &short(&self.output), queue.array_size()?);
+        let queued = queue.jobs(names.prefix())?;
+        if let Some(other) = queued.iter().find(|job| !names.owns(job)) {
+            let Job { name, id, .. } = other;
+            let cause = format!(
+                "job {id} (`{name}`) is queued or running, and divides this plan into another number of shards"
+            );
+            return Err(Failure::new(
+                cause,
+                "wait until the jobs of that division have ended, or cancel them with scancel; then call again",
+            ));
+        }
         let submission = Submission::new(missing, &queued, *merged, &names);
         let jobs = Jobs::new(
             &self.executable,
@@ -133,6 +145,12 @@ impl Request {
         )?;
         Ok((submission, jobs))
     }
+}
+
+/// Eight digits that tell a folder from others.
+fn short(path: &Path) -> String {
+    let place = Identity::default().with("folder", path.display());
+    place.id().short()[..8].to_owned()
 }
 
 fn waiting(submission: &Submission) -> Option<String> {

@@ -37,6 +37,7 @@ trap 'again=yes' TERM
 index=$((${{1:-0}} + SLURM_ARRAY_TASK_ID))
 {executable} shard {dir} --index "$index" --threads "${{SLURM_CPUS_ON_NODE:-1}}" &
 shard=$!
+[ -z "$warned" ] || kill -TERM "$shard"
 again=yes
 while [ "$again" ]; do
     again=
@@ -48,6 +49,11 @@ restarts=0
 case $code in
 74) restarts={RESTARTS_DISK} ;;
 75) [ -z "$warned" ] || restarts={RESTARTS_TIME} ;;
+esac
+# What is being cancelled is not to be revived.
+state=$(scontrol --oneliner show job "${{SLURM_ARRAY_JOB_ID}}_$SLURM_ARRAY_TASK_ID" 2>/dev/null)
+case $state in
+*JobState=CANCELLED* | *JobState=COMPLETING*) restarts=0 ;;
 esac
 if [ "${{SLURM_RESTART_COUNT:-0}}" -lt "$restarts" ]; then
     echo "shard $index ended with $code: to be started again" >&2

@@ -44,18 +44,38 @@ pub(super) enum Merged {
     No,
 }
 
-/// The names of a plan's jobs. An array's name tells its offset, because squeue tells the tasks only.
+/// The names of a plan's jobs: of this plan, in this folder, in so many shards, merged into this folder. An array's name tells its offset, because
+/// squeue tells the tasks only.
 pub(super) struct Names {
+    /// What the jobs of all divisions of the plan begin with.
+    prefix: String,
     stem: String,
+    output: String,
     /// Slurm's MaxArraySize: no task may have this number or a higher one.
     size: usize,
 }
 
 impl Names {
-    /// `plan`: the short form of its id. `size` must not be 0.
-    pub(super) fn new(plan: &str, size: usize) -> Self {
-        let stem = format!("phicam-{plan}");
-        Self { stem, size }
+    /// `plan`: the short form of its id and of its folder, `output`: that of the merge's folder. `size` must not be 0.
+    pub(super) fn new(plan: &str, shards: usize, output: &str, size: usize) -> Self {
+        let prefix = format!("phicam-{plan}.");
+        Self {
+            stem: format!("{prefix}{shards}"),
+            prefix,
+            output: output.to_owned(),
+            size,
+        }
+    }
+
+    /// What the jobs of the plan begin with, into however many shards it is divided.
+    pub(super) fn prefix(&self) -> &str {
+        &self.prefix
+    }
+
+    /// Whether a job of the plan is one of this division.
+    pub(super) fn owns(&self, job: &Job) -> bool {
+        let rest = job.name.strip_prefix(&self.stem);
+        rest.is_some_and(|r| r.is_empty() || r.starts_with(['+', '-']))
     }
 
     pub(super) fn array(&self, offset: usize) -> String {
@@ -66,16 +86,7 @@ impl Names {
     }
 
     pub(super) fn merge(&self) -> String {
-        format!("{}-merge", self.stem)
-    }
-
-    /// Every name that a job of a plan of so many shards may have.
-    pub(super) fn all(&self, shards: usize) -> Vec<String> {
-        let offsets = (0..shards.max(1)).step_by(self.size);
-        offsets
-            .map(|o| self.array(o))
-            .chain([self.merge()])
-            .collect()
+        format!("{}-merge-{}", self.stem, self.output)
     }
 
     /// The shard that a job computes, if it does.
@@ -113,14 +124,16 @@ impl Submission {
             .into_iter()
             .map(|(offset, tasks)| Array { offset, tasks })
             .collect();
-        let queued = jobs.iter().rfind(|job| job.name == names.merge());
-        let merge = match queued {
-            // It waits for older arrays only: the new one follows it, so that never two write the same folder.
-            Some(merge) if !arrays.is_empty() => {
-                before.insert(merge.id.clone());
+        let number = |id: &String| id.parse::<u64>().unwrap_or(u64::MAX);
+        let merges = || jobs.iter().filter(|job| job.name == names.merge());
+        // A merge waits for older arrays only: a new one follows all that are queued, so that never two write the same folder.
+        let late = |merge: &Job| before.iter().all(|id| number(id) < number(&merge.id));
+        let merge = match merges().max_by_key(|job| number(&job.id)) {
+            Some(merge) if arrays.is_empty() && late(merge) => Merge::Queued(merge.id.clone()),
+            Some(_) => {
+                before.extend(merges().map(|job| job.id.clone()));
                 Merge::Submit(before)
             }
-            Some(merge) => Merge::Queued(merge.id.clone()),
             None if missing.is_empty() && merged == Merged::Yes => Merge::There,
             None => Merge::Submit(before),
         };

@@ -13,10 +13,10 @@ fn jobs_are_read_and_those_that_have_ended_are_not() {
     let cluster = Cluster::new();
     cluster.program(
         "squeue",
-        "[ \"$*\" = '-h -r -o %t|%F|%K|%j -n one,two' ] || exit 9\n\
-         printf '%s\\n' 'CLUSTER: big' 'PD|17|3|one' 'R|17|4|one' 'CG|17|5|one' 'PD|18|N/A|two'",
+        "[ \"$*\" = '-h -r -a --me -o %t|%F|%K|%j' ] || exit 9\n\
+         printf '%s\\n' 'CLUSTER: big' 'PD|17|3|one' 'R|17|4|one' 'CG|17|5|one' 'PD|18|N/A|onetwo' 'R|19|1|two'",
     );
-    let jobs = cluster.slurm().jobs(&["one".into(), "two".into()]).unwrap();
+    let jobs = cluster.slurm().jobs("one").unwrap();
     let job = |name: &str, id: &str, task| Job {
         name: name.into(),
         id: id.into(),
@@ -27,11 +27,11 @@ fn jobs_are_read_and_those_that_have_ended_are_not() {
         [
             job("one", "17", Some(3)),
             job("one", "17", Some(4)),
-            job("two", "18", None)
+            job("onetwo", "18", None)
         ]
     );
     cluster.program("squeue", "echo '<html>Maintenance</html>'");
-    let words = message(cluster.slurm().jobs(&[]).unwrap_err());
+    let words = message(cluster.slurm().jobs("").unwrap_err());
     assert!(
         words.contains("<html>Maintenance") && words.contains("not understood"),
         "{words}"

@@ -5,7 +5,12 @@ use super::*;
 use crate::cli::many::slurm::fake::Cluster;
 use crate::cli::many::slurm::queue::Nobody;
 
-const NAME: &str = "phicam-0123456789ab";
+/// The names of the array and of the merge of [`request`].
+fn names(cluster: &Cluster) -> [String; 2] {
+    let array = format!("phicam-0123456789ab-{}.12", short(&cluster.path("plan")));
+    let merge = format!("{array}-merge-{}", short(&cluster.path("plan/merged")));
+    [array, merge]
+}
 
 fn request(
     cluster: &Cluster,
@@ -71,9 +76,9 @@ fn arrays_within_the_limit_and_a_merge_after_them() {
     let said = submit(&request, &cluster).unwrap();
     let array = |offset: &str, tasks: &str| {
         let name = if offset == "0" {
-            NAME.to_owned()
+            names(&cluster)[0].clone()
         } else {
-            format!("{NAME}+{offset}")
+            format!("{}+{offset}", names(&cluster)[0])
         };
         let own = [format!("--job-name={name}"), format!("--array={tasks}")];
         let own: Vec<&str> = own.iter().map(String::as_str).collect();
@@ -86,7 +91,7 @@ fn arrays_within_the_limit_and_a_merge_after_them() {
         )
     };
     let merge = [
-        format!("--job-name={NAME}-merge"),
+        format!("--job-name={}", names(&cluster)[1]),
         "--dependency=afterany:101:102:103".to_owned(),
     ];
     let merge: Vec<&str> = merge.iter().map(String::as_str).collect();
@@ -122,9 +127,10 @@ fn arrays_within_the_limit_and_a_merge_after_them() {
 #[test]
 fn a_second_call_submits_only_what_is_neither_there_nor_queued() {
     let cluster = Cluster::new();
+    let [array, merge] = names(&cluster);
     fs::write(
         cluster.path("queue"),
-        format!("PD|51|1|{NAME}\nR|52|2|{NAME}+5\nCG|51|2|{NAME}\nPD|54|N/A|{NAME}-merge\n"),
+        format!("PD|51|1|{array}\nR|52|2|{array}+5\nCG|51|2|{array}\nPD|54|N/A|{merge}\n"),
     )
     .unwrap();
     let said = submit(&request(&cluster, [1, 2, 7], &[]), &cluster).unwrap();
@@ -187,10 +193,11 @@ fn what_was_submitted_before_a_refusal_is_said() {
 #[test]
 fn the_rehearsal_is_a_script_that_does_the_same() {
     let cluster = Cluster::new();
+    let [array, merge] = names(&cluster);
     let options = ["--comment=it's $HOME", "--time=10"];
     fs::write(
         cluster.path("queue"),
-        format!("PD|55|3|{NAME}\nPD|56|N/A|{NAME}-merge\n"),
+        format!("PD|55|3|{array}\nPD|56|N/A|{merge}\n"),
     )
     .unwrap();
     let request = request(&cluster, [0, 3, 4, 8], &options);

@@ -5,7 +5,7 @@ use super::*;
 const ID: &str = "0123456789ab";
 
 fn names(size: usize) -> Names {
-    Names::new(ID, size)
+    Names::new(ID, 8, "0a0b0c0d", size)
 }
 
 fn job(name: String, id: &str, task: Option<usize>) -> Job {
@@ -21,22 +21,41 @@ fn set<T: Ord>(items: impl IntoIterator<Item = T>) -> BTreeSet<T> {
 }
 
 #[test]
-fn the_names_tell_plan_and_offset() {
+fn the_names_tell_plan_division_and_offset() {
     let names = names(1000);
+    assert_eq!(names.array(0), "phicam-0123456789ab.8");
+    assert_eq!(names.array(2000), "phicam-0123456789ab.8+2000");
+    assert_eq!(names.merge(), "phicam-0123456789ab.8-merge-0a0b0c0d");
+    let owns = |name: &str| names.owns(&job(name.to_owned(), "1", None));
+    assert!(owns(&names.array(0)) && owns(&names.array(1000)) && owns(&names.merge()));
+    // The merge into another folder is one of this division, and not this one.
+    assert!(owns("phicam-0123456789ab.8-merge-ffffffff"));
+    assert!(!owns("phicam-0123456789ab.80") && !owns("phicam-0123456789ab.4"));
+    assert!(names.array(0).starts_with(names.prefix()));
+}
+
+/// The array of the second call was submitted, and its merge was refused by Slurm.
+#[test]
+fn a_merge_that_does_not_wait_for_all_is_followed_by_one_that_does() {
+    let names = names(10);
+    let jobs = [
+        job(names.array(0), "1", Some(3)),
+        job(names.merge(), "2", None),
+        job(names.array(0), "6", Some(4)),
+    ];
+    let again = Submission::new(&set([3, 4]), &jobs, Merged::No, &names);
+    assert!(again.arrays.is_empty());
     assert_eq!(
-        names.all(1),
-        ["phicam-0123456789ab", "phicam-0123456789ab-merge"]
+        again.merge,
+        Merge::Submit(set(["1", "2", "6"].map(str::to_owned)))
     );
-    let all = names.all(2001);
-    assert_eq!(
-        all[..3],
-        [
-            "phicam-0123456789ab",
-            "phicam-0123456789ab+1000",
-            "phicam-0123456789ab+2000"
-        ]
-    );
-    assert_eq!(names.all(2000).len(), 3);
+    let other = [job(
+        "phicam-0123456789ab.8-merge-ffffffff".to_owned(),
+        "9",
+        None,
+    )];
+    let here = Submission::new(&set([]), &other, Merged::No, &names);
+    assert_eq!(here.merge, Merge::Submit(set([])));
 }
 
 #[test]
@@ -142,7 +161,7 @@ proptest! {
         }
         prop_assert_eq!(seen, missing);
         for job in &jobs {
-            prop_assert!(names.all(200).contains(&job.name));
+            prop_assert!(names.owns(job));
         }
     }
 }
