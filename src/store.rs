@@ -101,10 +101,10 @@ fn folder_of(path: &Path) -> &Path {
 }
 
 /// A temporary file in `folder`, readable as any new file would be (a bare temporary file is private to its owner). Its name says whose it is:
-/// `.phicam-HOST-PROCESS-RANDOM.part`.
+/// `.phicam-MACHINE-PROCESS-RANDOM.part`.
 fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    let prefix = format!("{PREFIX}{}-{}-", host(), std::process::id());
+    let prefix = format!("{PREFIX}{}-{}-", machine(), std::process::id());
     builder.prefix(&prefix).suffix(SUFFIX);
     #[cfg(unix)]
     let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
@@ -116,13 +116,27 @@ const SUFFIX: &str = ".part";
 /// A temporary file that nobody has written to for so long is nobody's.
 const FORSAKEN: Duration = Duration::from_secs(3600);
 
-/// The name of this machine as far as it can stand in a file name; empty where it is not known.
-fn host() -> String {
-    let name = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
-    name.trim()
+/// Where process numbers are those of this process: the machine by its name and its last start, and the namespace of process numbers. Without
+/// dashes; empty where it is not known.
+pub fn machine() -> String {
+    let read = |path: &str| fs::read_to_string(path).unwrap_or_default();
+    let (name, start) = (
+        read("/proc/sys/kernel/hostname"),
+        read("/proc/sys/kernel/random/boot_id"),
+    );
+    let space = fs::read_link("/proc/self/ns/pid").unwrap_or_default();
+    let space: String = space
+        .to_string_lossy()
         .chars()
-        .filter(char::is_ascii_alphanumeric)
-        .collect()
+        .filter(char::is_ascii_digit)
+        .collect();
+    if name.is_empty() || start.is_empty() || space.is_empty() {
+        return String::new();
+    }
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    let name: String = name.trim().chars().map(plain).collect();
+    let start: String = start.chars().take(8).map(plain).collect();
+    format!("{name}_{start}_{space}")
 }
 
 /// Whether the file is one that [`write_whole`] was writing when its process ended: by the process's number if it ran on this machine, else by
@@ -136,7 +150,9 @@ pub fn is_abandoned(path: &Path) -> bool {
         return false;
     };
     let mut words = own.split('-');
-    let here = words.next().is_some_and(|h| !h.is_empty() && h == host());
+    let here = words
+        .next()
+        .is_some_and(|h| !h.is_empty() && h == machine());
     let process = words.next().and_then(|p| p.parse::<u32>().ok());
     if let (true, Some(process)) = (here, process) {
         return !Path::new("/proc").join(process.to_string()).exists();

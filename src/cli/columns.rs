@@ -31,6 +31,7 @@ pub(super) fn identity(scene: &Scene, plan: &Plan) -> Identity {
         .with("seed", plan.seed)
         .with("samples", plan.budget.samples())
         .with("block size", plan.budget.size)
+        .with("columns together", together(scene, plan.estimator))
         .with(Identity::NUMERICS, NUMERICS)
 }
 
@@ -81,7 +82,11 @@ impl Columns<'_> {
         control: Control<'_>,
         (checkpoint, before): (&mut Checkpoint, &Parts),
     ) -> Result<Tally, Failure> {
-        let all = |tally: &Tally| [before.clone(), self.parts(tally)].concat();
+        let all = |tally: &Tally| {
+            let mut parts = before.clone();
+            parts.extend(self.parts(tally));
+            parts
+        };
         let end = self.local(self.first..end).end;
         let after = &mut |tally: &Tally| match tally.range().end < end {
             true => checkpoint.look(|| all(tally)),

@@ -61,7 +61,7 @@ mod view;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 
 use args::{Args, Command};
 use failure::{Codes, Failure};
@@ -119,7 +119,15 @@ pub fn main() -> ExitCode {
 fn refuse(error: &clap::Error) -> ExitCode {
     // That nobody reads it is no reason for another code.
     let _ = error.print();
-    let scheduled = || std::env::args().skip(1).find(|a| !a.starts_with('-'));
+    // The first word that is a command, whatever options stand before it.
+    let commands = Args::command();
+    let is_command = |word: &String| commands.find_subcommand(word).is_some();
+    let words = || {
+        std::env::args_os()
+            .skip(1)
+            .filter_map(|a| a.into_string().ok())
+    };
+    let scheduled = || words().find(is_command);
     match error.use_stderr() {
         false => ExitCode::SUCCESS,
         true if scheduled().is_some_and(|c| Command::SCHEDULED.contains(&c.as_str())) => {

@@ -72,7 +72,7 @@ impl Record {
             }
             Err(e) => {
                 let cause = format!("cannot read {}: {e}", path.display());
-                return Err(Failure::new(
+                return Err(Failure::system(
                     cause,
                     "make it readable, or choose another folder",
                 ));

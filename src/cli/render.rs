@@ -12,7 +12,7 @@ use super::columns::{Columns, together};
 use super::failure::Failure;
 use super::finished::read_matrix;
 use super::folder::{Folder, Keep, PHI, STDERR, own_identity};
-use super::interrupt::{Gentle, stop_flag};
+use super::interrupt::{Gentle, stop_flag, warned};
 use super::output::{self, Talk};
 use super::record::Record;
 use super::trust;
@@ -158,7 +158,7 @@ pub(super) fn into_folder(
     record.seconds += start.elapsed().as_secs_f64();
     record.finished = kept.iter().flatten().count();
     if let Err(failure) = traced {
-        record.write(path)?;
+        note(&record, path)?;
         return Err(match failure {
             Failure::Stopped(blocks) => Failure::Stopped(format!(
                 "{} of {total} spots{blocks} are finished and kept in {}; go on with `phicam render --resume` and the same settings",
@@ -174,9 +174,18 @@ pub(super) fn into_folder(
         record.write(path)?;
         folder.remove_partial()?;
     } else {
-        record.write(path)?;
+        note(&record, path)?;
     }
     Ok(Rendered { record, phi })
+}
+
+/// Writes how far a run has come, unless another process has finished it meanwhile.
+fn note(record: &Record, path: &Path) -> Result<(), Failure> {
+    let whole = |there: &Record| there.same_settings(record) && there.finished == there.spots;
+    match Record::read(path)?.is_some_and(|there| whole(&there)) {
+        true => Ok(()),
+        false => record.write(path),
+    }
 }
 
 /// A render at work.
@@ -214,7 +223,8 @@ impl Work<'_> {
             progress: &tick,
             stop: stop_flag(),
         };
-        for range in batches {
+        let last = batches.len();
+        for (number, range) in batches.into_iter().enumerate() {
             let columns = Columns {
                 scene,
                 plan,
@@ -268,6 +278,9 @@ impl Work<'_> {
                 kept[spot] = Some(column);
             }
             self.folder.remove_checkpoint(&range)?;
+            if warned() && number + 1 < last {
+                return Err(Failure::Stopped(String::new()));
+            }
         }
         bar.finish_and_clear();
         Ok(())

@@ -81,7 +81,7 @@ pub(super) fn suited(scene: &Scene, plan: &Plan) -> Result<(), Failure> {
 pub(super) fn budget(flag: &str, samples: u64, sampling: Sampling) -> Result<Budget, Failure> {
     Budget::new(samples, sampling).ok_or_else(|| {
         let cause = format!("{flag} {samples} is not a number of paths that can be traced");
-        Failure::new(cause, "use at least 1 and at most 2³²")
+        Failure::usage(cause, "use at least 1 and at most 2³²")
     })
 }
 
@@ -115,7 +115,7 @@ pub(super) fn significance(level: f64) -> Result<f64, Failure> {
 /// The threads to work with.
 pub(super) fn pool(threads: Option<usize>) -> Result<ThreadPool, Failure> {
     if threads.is_some_and(|n| !(1..=4096).contains(&n)) {
-        return Err(Failure::new(
+        return Err(Failure::usage(
             "--threads is out of range",
             "use 1 to 4096, or leave it out",
         ));

@@ -81,7 +81,7 @@ pub enum PlanError {
         /// The file.
         path: PathBuf,
     },
-    /// More shards than blocks, or none.
+    /// More shards than blocks, more than a million, or none.
     #[error("{} was edited: {shards} shards of {blocks} blocks; plan again: what is computed already stays valid", path.display())]
     Division {
         /// The file.
@@ -98,6 +98,8 @@ impl PlanFile {
     pub const NAME: &'static str = "plan.json";
     /// Its name in the folder of what was merged, where it is the last file to be written.
     pub const MERGED: &'static str = "merged.json";
+    /// Shards of one plan, at most: a folder has to list them.
+    pub const MOST_SHARDS: u64 = 1_000_000;
     const LAYOUT: u32 = 1;
     /// Bytes of the largest.
     const LARGEST: u64 = 16 << 20;
@@ -154,7 +156,7 @@ impl PlanFile {
         if file.identity.id().to_string() != file.plan_id {
             return Err(PlanError::Edited { path });
         }
-        if !(1..=file.blocks).contains(&file.shards) {
+        if !(1..=file.blocks.min(Self::MOST_SHARDS)).contains(&file.shards) {
             return Err(PlanError::Division {
                 path,
                 shards: file.shards,

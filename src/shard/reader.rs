@@ -1,6 +1,6 @@
 //! Shards from disk.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -22,8 +22,16 @@ pub struct ShardFile {
     pub provenance: Provenance,
     /// SHA-256 of its parts and their ranges: equal for all that computed the same.
     pub payload: [u8; 32],
-    /// Blocks, place in the file and length of every part.
-    parts: Vec<(Range<u64>, u64, usize)>,
+    parts: Vec<Place>,
+}
+
+/// Where a part is, and what its bytes were when the file was found whole: it may be replaced before they are asked for.
+#[derive(Debug)]
+struct Place {
+    blocks: Range<u64>,
+    start: u64,
+    length: usize,
+    digest: [u8; 32],
 }
 
 /// Bytes that are read and digested at once.
@@ -41,12 +49,12 @@ impl ShardFile {
             path: at(),
             what: what.to_owned(),
         };
-        let file = File::open(path).map_err(unreadable)?;
-        let metadata = file.metadata().map_err(unreadable)?;
-        if !metadata.is_file() {
+        // Before it is opened: opening a pipe waits for somebody to write.
+        if !fs::metadata(path).map_err(unreadable)?.is_file() {
             return Err(ShardError::NotAShard { path: at() });
         }
-        let length = metadata.len();
+        let file = File::open(path).map_err(unreadable)?;
+        let length = file.metadata().map_err(unreadable)?.len();
         let mut file = Digesting::new(file);
         let header = file.header(path, length)?;
         let promised: u64 = header
@@ -72,18 +80,25 @@ impl ShardFile {
         let mut payload = Sha256::new();
         let mut parts = Vec::with_capacity(header.parts.len());
         for part in &header.parts {
-            parts.push((part.from..part.to, file.read, part.bytes as usize));
+            let start = file.read;
+            let digest = file.digest_part(part.bytes).map_err(unreadable)?;
             payload.update([part.from, part.to].map(u64::to_le_bytes).concat());
-            file.digest_part(part.bytes, &mut payload)
-                .map_err(unreadable)?;
+            payload.update(digest);
+            parts.push(Place {
+                blocks: part.from..part.to,
+                start,
+                length: part.bytes as usize,
+                digest,
+            });
         }
         if !file.closes().map_err(unreadable)? {
             return Err(damaged("its bytes are not those that were written"));
         }
         refuse_foreign(path, &header, identity)?;
         let range = header.from..header.to;
-        let follow = parts.iter().try_fold(range.start, |end, (part, _, _)| {
-            (part.start == end && part.start < part.end).then_some(part.end)
+        let follow = parts.iter().try_fold(range.start, |end, part| {
+            let Range { start, end: to } = part.blocks;
+            (start == end && start < to).then_some(to)
         });
         if parts.is_empty() || follow != Some(range.end) || range.end > total {
             return Err(ShardError::Range {
@@ -106,21 +121,26 @@ impl ShardFile {
         &self,
         range: Range<u64>,
     ) -> impl Iterator<Item = Result<(Range<u64>, Vec<u8>), ShardError>> {
-        let inside = move |part: &Range<u64>| part.start >= range.start && part.end <= range.end;
-        let own = self.parts.iter().filter(move |(part, _, _)| inside(part));
-        own.map(|(part, place, length)| {
+        let inside =
+            move |part: &&Place| part.blocks.start >= range.start && part.blocks.end <= range.end;
+        self.parts.iter().filter(inside).map(|part| {
             let read = || {
                 let mut file = File::open(&self.path)?;
-                file.seek(SeekFrom::Start(*place))?;
-                let mut bytes = vec![0; *length];
+                file.seek(SeekFrom::Start(part.start))?;
+                let mut bytes = vec![0; part.length];
                 file.read_exact(&mut bytes)?;
                 Ok(bytes)
             };
-            let unreadable = |source| ShardError::Unreadable {
-                path: self.path.clone(),
+            let path = || self.path.clone();
+            let bytes = read().map_err(|source| ShardError::Unreadable {
+                path: path(),
                 source,
-            };
-            Ok((part.clone(), read().map_err(unreadable)?))
+            })?;
+            if Sha256::digest(&bytes)[..] != part.digest {
+                let what = "it was replaced while it was read".to_owned();
+                return Err(ShardError::Damaged { path: path(), what });
+            }
+            Ok((part.blocks.clone(), bytes))
         })
     }
 }
@@ -196,16 +216,17 @@ impl Digesting {
             .map_err(|e| damaged(format!("its header cannot be read ({e})")))
     }
 
-    fn digest_part(&mut self, bytes: u64, payload: &mut Sha256) -> io::Result<()> {
+    fn digest_part(&mut self, bytes: u64) -> io::Result<[u8; 32]> {
+        let mut part = Sha256::new();
         let mut stretch = [0; STRETCH];
         let mut left = bytes;
         while left > 0 {
             let n = left.min(STRETCH as u64) as usize;
             self.take(&mut stretch[..n])?;
-            payload.update(&stretch[..n]);
+            part.update(&stretch[..n]);
             left -= n as u64;
         }
-        Ok(())
+        Ok(part.finalize().into())
     }
 
     /// Whether the closing digest is that of all before.

@@ -134,7 +134,7 @@ fn what_a_dead_process_left_is_told_from_what_a_living_one_writes() {
     };
     assert!(is_abandoned(&named(format!(
         ".phicam-{}-{dead}-Xy.part",
-        host()
+        machine()
     ))));
     // Of another machine only the age tells; one from the future is left alone.
     let foreign = named(format!(".phicam-elsewhere0-{dead}-Xy.part"));

@@ -96,10 +96,9 @@ fn what_a_killed_process_was_writing_is_cleared_away() {
     let mut child = Command::new("true").spawn().expect("a process");
     let dead = child.id();
     child.wait().expect("it ends");
-    let host = std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
-    let host: String = host.chars().filter(char::is_ascii_alphanumeric).collect();
+    let machine = phicam::store::machine();
     for folder in ["", "frames/", "partial/"] {
-        let name = format!("done/{folder}.phicam-{host}-{dead}-Xy12.part");
+        let name = format!("done/{folder}.phicam-{machine}-{dead}-Xy12.part");
         workspace.write(&name, "half a file");
     }
     let _ = workspace.phicam(&format!("{line} --resume")).exits(0);

@@ -72,6 +72,7 @@ fn blocks_of(bytes: &[u8], name: &str) -> u64 {
 fn killed_at_fifty_moments_it_ends_with_the_same_bytes() {
     let mut random = 0x9e37_79b9_7f4a_7c15u64;
     let mut killed: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut resumed = 0;
     for plan in PLANS {
         let workspace = Workspace::new();
         let bounces = ("max_bounces = 3", "max_bounces = 4");
@@ -104,6 +105,7 @@ fn killed_at_fifty_moments_it_ends_with_the_same_bytes() {
                 // What was finished is never forgotten, unless a whole spot, or all, has taken its place.
                 let kept = there >= blocks || there == 0;
                 assert!(kept, "{plan}: {blocks} blocks were there, now {there}");
+                resumed += u64::from(there > 0);
                 blocks = there;
             }
             let mut found = workspace.contents(&cut);
@@ -112,6 +114,50 @@ fn killed_at_fifty_moments_it_ends_with_the_same_bytes() {
         }
     }
     assert!(killed.values().sum::<usize>() >= 50, "{killed:?}");
+    assert!(
+        resumed > 5,
+        "blocks were there at {resumed} of the moments only"
+    );
+}
+
+/// Spots so short that all their blocks are traced at one go: SIGTERM ends a render between two of them, and kill -9 leaves a shard what it had.
+#[test]
+fn short_spots_are_kept_one_by_one() {
+    let workspace = Workspace::new();
+    let spots = ("per_side = 30", "per_side = 300");
+    workspace.write("many.toml", altered([&TINY[0], &spots]));
+    let wait = |what: &dyn Fn() -> bool| {
+        let begun = Instant::now();
+        while !what() && begun.elapsed() < Duration::from_secs(60) {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        assert!(what(), "nothing was finished within a minute");
+    };
+    let mut child = start(&workspace, "render many.toml -o cut --samples 512");
+    wait(&|| workspace.path("cut/frames/spot-0003.exr").exists());
+    let sent = Command::new("kill")
+        .args(["-TERM", &child.id().to_string()])
+        .status();
+    assert!(sent.expect("a signal").success());
+    assert_eq!(child.wait().expect("it ends").code(), Some(75));
+    assert!(!workspace.path("cut/phi.npy").exists());
+
+    let _ = workspace
+        .phicam("plan many.toml -o job --samples 65536 --shards 1")
+        .exits(0);
+    let mut child = start(&workspace, "shard job --index 0");
+    let unfinished = || {
+        let names = workspace.contents("job/shards");
+        names.keys().any(|n| n.ends_with(".checkpoint"))
+    };
+    wait(&unfinished);
+    child.kill().expect("it can be killed");
+    assert!(!child.wait().expect("it ends").success());
+    let mut child = start(&workspace, "shard job --index 0");
+    std::thread::sleep(Duration::from_millis(200));
+    child.kill().expect("it can be killed");
+    let _ = child.wait();
+    assert!(unfinished());
 }
 
 /// SIGTERM is the scheduler's warning: the block at work is finished and kept, and the exit code says that going on is worth it.

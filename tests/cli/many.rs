@@ -276,6 +276,8 @@ fn wrong_usage_has_its_own_code() {
         ("status nowhere", "not the folder of a plan"),
         ("merge job", "--output"),
         ("plan tiny.toml -o other --shards 0", "--shards 0"),
+        ("plan tiny.toml -o other --samples 0", "--samples 0"),
+        ("--also-read . shard job --bad", "--bad"),
         ("plan tiny.toml -o other --shards 100000", "--shards 100000"),
         ("plan tiny.toml -o other --no-such-flag", "--no-such-flag"),
     ] {
@@ -329,6 +331,27 @@ fn a_plan_that_was_not_finished_is_planned_again() {
     fs::remove_file(workspace.path("job/plan.json")).expect("removed");
     workspace.write("job/scene.toml", "a scene of somebody else");
     refused(&workspace, &line, 65, &["not of a plan", "another folder"]);
+}
+
+/// What a study takes from the scene beside its light is part of the plan, too.
+#[test]
+fn a_study_of_another_sensor_is_another_plan() {
+    let workspace = Workspace::new();
+    let scene = altered(&TINY) + "\n[sensor]\nmodel = \"ccd\"\n";
+    workspace.write("tiny.toml", &scene);
+    let study = "study noise tiny.toml --axis exposure --seeds 2 --noise 1 --method pinv";
+    let line = format!("plan -o job --shards 2 -- {study}");
+    let _ = workspace.phicam(&line).exits(0);
+    let _ = workspace.phicam("shard job --index 0").exits(0);
+    workspace.write("job/scene.toml", scene.replace("ccd", "dslr"));
+    refused(
+        &workspace,
+        "shard job --index 1",
+        65,
+        &["edited after planning", "text"],
+    );
+    workspace.write("tiny.toml", scene.replace("ccd", "dslr"));
+    refused(&workspace, &line, 65, &["holds another plan"]);
 }
 
 /// The packed copy carries what the scene names; the originals are not needed any more.
@@ -385,10 +408,7 @@ fn studies_are_divided_too() {
         );
         let mut contents = workspace.contents(&format!("merged-{n}"));
         assert!(contents.remove("merged.json").is_some());
-        let mut whole = workspace.contents(&format!("straight-{n}"));
-        // The ledger of a study that can be gone on with.
-        whole.remove("noise.csv");
-        contents.remove("noise.csv");
+        let whole = workspace.contents(&format!("straight-{n}"));
         assert_same(&contents, &whole, command);
     }
     for (line, word) in [

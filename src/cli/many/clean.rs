@@ -1,7 +1,8 @@
 //! `phicam clean`: the one command that removes what others have finished.
 
 use std::fs;
-use std::path::PathBuf;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
 
 use super::folder::PlanFolder;
 use super::shards::{CHECKPOINT, files, find, named_range};
@@ -9,7 +10,7 @@ use crate::cli::Outcome;
 use crate::cli::args::CleanArgs;
 use crate::cli::failure::Failure;
 use crate::cli::output::{self, Talk};
-use crate::shard::{EXTENSION, gaps};
+use crate::shard::{EXTENSION, ShardFile, gaps};
 use crate::store::is_abandoned;
 
 pub(in crate::cli) fn execute(args: &CleanArgs, talk: Talk) -> Result<Outcome, Failure> {
@@ -44,10 +45,15 @@ pub(in crate::cli) fn execute(args: &CleanArgs, talk: Talk) -> Result<Outcome, F
     let mut bytes = 0;
     let mut words = String::new();
     for path in &needless {
+        let spoilt = || ShardFile::open(path, &plan.file.identity, plan.file.blocks).is_err();
+        if !args.shards && path.extension().is_some_and(|e| e == EXTENSION) && !spoilt() {
+            // Somebody has computed it again meanwhile.
+            continue;
+        }
         bytes += fs::metadata(path).map_or(0, |m| m.len());
         words += &format!("{}\n", path.display());
         if !args.dry_run {
-            fs::remove_file(path)?;
+            remove(path)?;
         }
     }
     output::print(&words)?;
@@ -62,6 +68,16 @@ pub(in crate::cli) fn execute(args: &CleanArgs, talk: Talk) -> Result<Outcome, F
         bytes as f64 / f64::from(1 << 20)
     ));
     Ok(Outcome::Done)
+}
+
+fn remove(path: &Path) -> Result<(), Failure> {
+    match fs::remove_file(path) {
+        Err(e) if e.kind() != ErrorKind::NotFound => Err(Failure::system(
+            format!("cannot remove {}: {e}", path.display()),
+            "make its folder writable for you",
+        )),
+        _ => Ok(()),
+    }
 }
 
 /// What processes that have ended were writing.

@@ -1,9 +1,13 @@
 //! The folder of a plan.
 
+use std::fs::{self, File};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::work::Work;
 use crate::cli::failure::Failure;
+use crate::cli::folder::SCENE;
+use crate::scene::COPIES;
 use crate::shard::{Identity, PlanFile, PlanId};
 
 /// A plan that was read and found to be what it says.
@@ -31,6 +35,7 @@ impl PlanFolder {
             Failure::usage(cause, "give a folder that `phicam plan` has written")
         };
         let file = PlanFile::read(&path.join(PlanFile::NAME))?.ok_or_else(none)?;
+        readable(path)?;
         let work = Work::read(path, &file.work, json)?;
         if let Some((name, planned, found)) = file.identity.difference(&work.identity()) {
             let dir = path.display();
@@ -41,7 +46,7 @@ impl PlanFolder {
                     ),
                     "use the version of phicam that planned it, or plan again into another folder",
                 ),
-                "scene" | "scene's digest" => Failure::new(
+                "scene" | "scene's digest" | "scene's text" => Failure::new(
                     format!(
                         "the scene in {dir} was edited after planning ({name}: {planned} planned, {found} found)"
                     ),
@@ -89,4 +94,25 @@ impl PlanFolder {
     pub(super) fn shards_path(&self) -> PathBuf {
         self.path.join("shards")
     }
+}
+
+/// What cannot be read for now is told from what is wrong in it: another try may help.
+fn readable(dir: &Path) -> Result<(), Failure> {
+    let mut files = vec![dir.join(SCENE)];
+    if let Ok(copies) = fs::read_dir(dir.join(COPIES)) {
+        files.extend(copies.flatten().map(|entry| entry.path()));
+    }
+    for path in files {
+        match File::open(&path) {
+            Err(e) if e.kind() != ErrorKind::NotFound => {
+                let cause = format!("cannot read {}: {e}", path.display());
+                return Err(Failure::system(
+                    cause,
+                    "check the folder and its file server",
+                ));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }

@@ -15,14 +15,12 @@ use crate::cli::{Outcome, settings, trust};
 use crate::shard::PlanFile;
 use crate::store::ensure_writable;
 
-/// Shards of one plan, at most: a folder has to list them.
-const MOST_SHARDS: u64 = 1_000_000;
 /// Shards of a plan unless told otherwise.
 const USUAL_SHARDS: u64 = 32;
 
 pub(in crate::cli) fn execute(args: &PlanArgs, talk: Talk) -> Result<Outcome, Failure> {
     let work = work(args, talk)?;
-    let most = work.blocks().min(MOST_SHARDS);
+    let most = work.blocks().min(PlanFile::MOST_SHARDS);
     let shards = args.shards.unwrap_or(most.min(USUAL_SHARDS));
     if !(1..=most).contains(&shards) {
         let cause = format!(

@@ -10,7 +10,7 @@ use crate::cli::checkpoint::{Checkpoint, Parts};
 use crate::cli::columns::{self, Columns, together};
 use crate::cli::failure::Failure;
 use crate::cli::folder::{Folder, Keep};
-use crate::cli::interrupt::{stop_flag, warned};
+use crate::cli::interrupt::stop_flag;
 use crate::cli::output::{self, Talk};
 use crate::cli::record::Record;
 use crate::cli::render::{complete, refuse_beyond_f32, refuse_too_large};
@@ -121,7 +121,11 @@ impl Render {
             let tally = columns.trace(tally, todo.end, control, (checkpoint, &parts))?;
             let whole = columns.first + u64::from(tally.range().end) == todo.end;
             parts.extend(columns.parts(&tally));
-            if !whole || (warned() && todo.end < range.end) {
+            if !whole {
+                break;
+            }
+            if todo.end < range.end && checkpoint.look(|| parts.clone()).is_break() {
+                checkpoint.outcome()?;
                 let _ = checkpoint.keep(&parts);
                 checkpoint.outcome()?;
                 break;

@@ -65,7 +65,11 @@ pub(super) fn find(
         }
         match ShardFile::open(&path, &plan.file.identity, total) {
             Ok(shard) => found.push(shard),
-            Err(e @ ShardError::Unreadable { .. }) => return Err(e.into()),
+            Err(ShardError::Unreadable { path, source })
+                if source.kind() != ErrorKind::NotFound =>
+            {
+                return Err(ShardError::Unreadable { path, source }.into());
+            }
             Err(e) => wrong.push(e),
         }
     }

@@ -80,15 +80,17 @@ impl Study {
 
     pub(super) fn identity(&self) -> Identity {
         let none = "none".to_owned();
-        let scene = self
-            .scene
-            .as_ref()
-            .map(|s| (s.name.clone(), s.hash.clone()));
-        let (name, hash) = scene.unwrap_or((none.clone(), none));
+        let scene = self.scene.as_ref().map(|s| {
+            // Of the sensor and the known answers the scene's digest says nothing; a study may use them.
+            let text = Identity::default().with("text", &s.text).id();
+            [s.name.clone(), s.hash.clone(), text.to_string()]
+        });
+        let [name, hash, text] = scene.unwrap_or([(); 3].map(|()| none.clone()));
         Identity::default()
             .with("work", "command")
             .with("scene", name)
             .with("scene's digest", hash)
+            .with("scene's text", text)
             .with("command", format!("{:?}", self.arguments))
             .with("tasks", self.cut.tasks())
             .with("program", version())
