@@ -1,6 +1,7 @@
 //! Columns of Φcam that are traced together, block after block.
 
 use std::ops::{ControlFlow, Range};
+use std::time::Instant;
 
 use super::checkpoint::{Checkpoint, Parts};
 use super::failure::Failure;
@@ -8,6 +9,8 @@ use crate::scene::Scene;
 use crate::shard::Identity;
 use crate::transport::{Control, Estimator, NUMERICS, Plan, Tally, trace};
 
+/// Time between two looks at what is finished where blocks are shorter, s.
+const LOOK: f64 = 0.25;
 /// Numbers of one part of a [`Tally`]: half a gibibyte.
 const MOST_NUMBERS: usize = 1 << 26;
 
@@ -88,9 +91,15 @@ impl Columns<'_> {
             parts
         };
         let end = self.local(self.first..end).end;
-        let after = &mut |tally: &Tally| match tally.range().end < end {
-            true => checkpoint.look(|| all(tally)),
-            false => ControlFlow::Continue(()),
+        let mut pace = (Instant::now(), tally.range().end);
+        let after = &mut |tally: &Tally| {
+            let there = tally.range().end;
+            let each = pace.0.elapsed().as_secs_f64() / f64::from(there - pace.1);
+            pace = (Instant::now(), there);
+            if there < end {
+                checkpoint.look(|| all(tally))?;
+            }
+            ControlFlow::Continue((LOOK / each) as u32)
         };
         let tally = trace(
             self.scene,

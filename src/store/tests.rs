@@ -147,7 +147,7 @@ fn what_a_dead_process_left_is_told_from_what_a_living_one_writes() {
             .set_modified(time)
             .unwrap();
     };
-    let now = std::time::SystemTime::now();
+    let now = fs::metadata(&foreign).unwrap().modified().unwrap();
     set(now - 2 * FORSAKEN);
     assert!(is_abandoned(&foreign));
     set(now + 2 * FORSAKEN);

@@ -61,7 +61,7 @@ impl<'a> Factored<'a> {
         mut tally: Tally,
         end: u32,
         control: Control<'_>,
-        after: &mut dyn FnMut(&Tally) -> ControlFlow<()>,
+        after: &mut dyn FnMut(&Tally) -> ControlFlow<(), u32>,
     ) -> Tally {
         let paths =
             self.setting.scene.camera.pixels() as u64 * u64::from(self.setting.plan.budget.size);

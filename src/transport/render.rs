@@ -2,7 +2,6 @@
 
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
 
 use rayon::prelude::*;
 
@@ -171,7 +170,7 @@ pub fn render(
     if spots.is_empty() {
         return Some(tally.dark());
     }
-    let go_on = &mut |_: &Tally| ControlFlow::Continue(());
+    let go_on = &mut |_: &Tally| ControlFlow::Continue(u32::MAX);
     trace(
         scene,
         plan,
@@ -184,8 +183,8 @@ pub fn render(
     .traced()
 }
 
-/// Traces the columns `spots` from where `tally` ends up to block `end` (exclusive). After every few blocks, one if they are long, `after` sees
-/// what is there, and may end the work. What comes back is shorter than asked for if it did, or if `control` says stop; what is there is whole
+/// Traces the columns `spots` from where `tally` ends up to block `end` (exclusive). After the first few blocks, one if they are long, `after` sees
+/// what is there; it ends the work, or says how many blocks to trace before it looks again (under `Factored` it sees every one). What comes back is shorter than asked for if it did, or if `control` says stop; what is there is whole
 /// in any case, and can be gone on with.
 ///
 /// # Panics
@@ -197,7 +196,7 @@ pub fn trace(
     tally: Tally,
     end: u32,
     control: Control<'_>,
-    after: &mut dyn FnMut(&Tally) -> ControlFlow<()>,
+    after: &mut dyn FnMut(&Tally) -> ControlFlow<(), u32>,
 ) -> Tally {
     assert!(
         tally.is_of(scene, plan, spots.len()),
@@ -218,10 +217,8 @@ pub fn trace(
     by_pixel(&setting, &spots, tally, end, control, after)
 }
 
-/// Paths that are traced between two looks at what is there, at first.
+/// Paths that are traced before the first look at what is there.
 const FIRST_LOOK: u64 = 1 << 18;
-/// Time between two looks where blocks are shorter, s.
-const LOOK: f64 = 0.25;
 
 /// Every pixel on its own, a few blocks at a time.
 fn by_pixel(
@@ -230,7 +227,7 @@ fn by_pixel(
     mut tally: Tally,
     end: u32,
     control: Control<'_>,
-    after: &mut dyn FnMut(&Tally) -> ControlFlow<()>,
+    after: &mut dyn FnMut(&Tally) -> ControlFlow<(), u32>,
 ) -> Tally {
     let plan = setting.plan;
     let tracer = PixelTracer::new(setting);
@@ -242,7 +239,6 @@ fn by_pixel(
     while tally.range().end < end {
         let first = tally.range().end;
         let blocks = first..end.min(first.saturating_add(together));
-        let start = Instant::now();
         let row = |pixel| {
             if control.stop.load(Ordering::Relaxed) {
                 return None;
@@ -254,11 +250,10 @@ fn by_pixel(
         let rows: Option<Vec<Tree<Moments>>> = (0..pixels).into_par_iter().map(row).collect();
         let Some(rows) = rows else { break };
         tally.add_rows(&rows).expect("blocks follow one another");
-        if after(&tally).is_break() {
-            break;
+        match after(&tally) {
+            ControlFlow::Break(()) => break,
+            ControlFlow::Continue(blocks) => together = blocks.max(1),
         }
-        let each = start.elapsed().as_secs_f64() / f64::from(blocks.end - blocks.start);
-        together = ((LOOK / each) as u32).max(1);
     }
     tally
 }

@@ -360,12 +360,12 @@ mod tests {
                     if looks == 1 {
                         ControlFlow::Break(())
                     } else {
-                        ControlFlow::Continue(())
+                        ControlFlow::Continue(1)
                     }
                 };
                 let piece =
                     super::super::trace(&scene, &plan, 0..5, start, part.end, control, once);
-                let go_on = &mut |_: &Tally| ControlFlow::Continue(());
+                let go_on = &mut |_: &Tally| ControlFlow::Continue(1);
                 let piece =
                     super::super::trace(&scene, &plan, 0..5, piece, part.end, control, go_on);
                 assert_eq!(piece.range(), part);

@@ -339,7 +339,7 @@ fn a_study_of_another_sensor_is_another_plan() {
     let workspace = Workspace::new();
     let scene = altered(&TINY) + "\n[sensor]\nmodel = \"ccd\"\n";
     workspace.write("tiny.toml", &scene);
-    let study = "study noise tiny.toml --axis exposure --seeds 2 --noise 1 --method pinv";
+    let study = "study noise tiny.toml --axis exposure --seeds 2 --noise 0.001 --method pinv";
     let line = format!("plan -o job --shards 2 -- {study}");
     let _ = workspace.phicam(&line).exits(0);
     let _ = workspace.phicam("shard job --index 0").exits(0);
@@ -387,7 +387,7 @@ fn studies_are_divided_too() {
     for (n, command) in [
         "study noise tiny.toml --seeds 3 --noise 0.1,0.01 --method pinv,joint",
         "study power tiny.toml --seeds 6 --samples 32,64",
-        "reproduce table1 fig12",
+        "reproduce fig15 fig17 fig22",
     ]
     .into_iter()
     .enumerate()
