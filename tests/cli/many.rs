@@ -313,8 +313,17 @@ fn only_clean_removes_and_only_what_is_ours() {
     assert!(dry.stdout.contains(&checkpoint), "{}", dry.account());
     assert_same(&before, &workspace.contents(""), "dry run");
     let _ = workspace.phicam("clean job").exits(0);
+    let missing = workspace.path("job/shards").join(&names[1]);
+    let second = fs::read(&missing).expect("a shard");
     let left = |name: &str| workspace.path("job/shards").join(name).exists();
     assert!(!left(&checkpoint) && left("notes.txt") && names.iter().all(|n| left(n)));
+    // What is finished of a shard that is not is needed.
+    fs::remove_file(&missing).expect("removed");
+    let begun = names[1].replace(".phs", ".checkpoint");
+    workspace.write(&format!("job/shards/{begun}"), "x");
+    let _ = workspace.phicam("clean job").exits(0);
+    assert!(left(&begun) && left(&names[0]));
+    fs::write(&missing, second).expect("written");
     let _ = workspace.phicam("merge job -o merged").exits(0);
     let _ = workspace.phicam("clean job --shards").exits(0);
     assert!(left("notes.txt") && !names.iter().any(|n| left(n)));
@@ -387,7 +396,7 @@ fn studies_are_divided_too() {
     for (n, command) in [
         "study noise tiny.toml --seeds 3 --noise 0.1,0.01 --method pinv,joint",
         "study power tiny.toml --seeds 6 --samples 32,64",
-        "reproduce fig15 fig17 fig22",
+        "reproduce fig15 dual fig22",
     ]
     .into_iter()
     .enumerate()

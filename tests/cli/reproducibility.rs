@@ -138,6 +138,12 @@ fn a_damaged_part_is_rendered_again() {
 #[test]
 fn processor_features_change_no_byte() {
     let workspace = workspace();
+    // Wide spots: each path draws a point of a Gaussian beam.
+    let wide = |text: String| match text.contains("spot_diameter = 0.0") {
+        true => text.replace("spot_diameter = 0.0", "spot_diameter = 0.5"),
+        false => text.replace("[laser]", "[laser]\nspot_diameter = 0.5"),
+    };
+    workspace.write("tiny.toml", wide(workspace.text("tiny.toml")));
     let _ = workspace
         .phicam("scene export satin -o satin.toml")
         .exits(0);
@@ -145,9 +151,9 @@ fn processor_features_change_no_byte() {
         .text("satin.toml")
         .replace("per_side = 30", "per_side = 2")
         .replace("pixels = [16, 16]", "pixels = [4, 4]");
-    workspace.write("satin.toml", satin);
+    workspace.write("satin.toml", wide(satin));
     let render = |scene: &str, dir: &str, plan: &str, features: &str| {
-        let line = format!("render {scene} -o {dir} --samples 64 {plan}");
+        let line = format!("render {scene} -o {dir} --samples 1024 {plan}");
         let status = std::process::Command::new(env!("CARGO_BIN_EXE_phicam"))
             .args(line.split_whitespace())
             .current_dir(workspace.path(""))
