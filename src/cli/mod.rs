@@ -27,6 +27,7 @@
 //! (`status`), 64 wrong usage, 65 refused data, 66 missing blocks, 74 the system cannot read or write.
 
 mod args;
+mod batches;
 mod checkpoint;
 mod columns;
 mod expose;

@@ -4,23 +4,20 @@ use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
 
-use rayon::prelude::*;
-
 use super::args::{RenderArgs, TraceArgs};
-use super::checkpoint::{Checkpoint, Parts};
-use super::columns::{Columns, together};
+use super::batches::Work;
 use super::failure::Failure;
 use super::finished::read_matrix;
-use super::folder::{Folder, Keep, PHI, STDERR, own_identity};
-use super::interrupt::{Gentle, stop_flag, warned};
+use super::folder::{Folder, Keep, PHI, STDERR};
+use super::interrupt::Gentle;
 use super::output::{self, Talk};
 use super::record::Record;
 use super::trust;
-use super::{Outcome, progress, settings};
+use super::{Outcome, settings};
 use crate::film;
 use crate::matrix::Matrix;
 use crate::scene::Scene;
-use crate::transport::{Control, Plan, Tally, Traced, block_size};
+use crate::transport::{Plan, Traced, block_size};
 
 pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure> {
     let scene = trust::load(&args.scene)?;
@@ -185,149 +182,6 @@ fn note(record: &Record, path: &Path) -> Result<(), Failure> {
     match Record::read(path)?.is_some_and(|there| whole(&there)) {
         true => Ok(()),
         false => record.write(path),
-    }
-}
-
-/// A render at work.
-struct Work<'a> {
-    scene: &'a Scene,
-    plan: &'a Plan,
-    folder: &'a Folder,
-    record: &'a Record,
-    pool: &'a rayon::ThreadPool,
-    resume: bool,
-}
-
-impl Work<'_> {
-    /// Traces the spots of `todo`; blocks, frames and kept columns are written as soon as they are finished.
-    fn trace(
-        &self,
-        todo: &[usize],
-        kept: &mut [Option<Matrix>],
-        talk: Talk,
-    ) -> Result<(), Failure> {
-        let Self { scene, plan, .. } = *self;
-        let batches = self.batches(todo, kept);
-        let pixels = scene.camera.pixels() as u64;
-        let columns = match plan.estimator.serves_all_spots() {
-            false => todo.len(),
-            true => batches.len(),
-        };
-        let bar = progress::paths(
-            talk,
-            &format!("tracing {}", scene.name),
-            pixels * plan.budget.samples() * columns as u64,
-        );
-        let tick = |paths| bar.inc(paths);
-        let control = Control {
-            progress: &tick,
-            stop: stop_flag(),
-        };
-        let last = batches.len();
-        for (number, range) in batches.into_iter().enumerate() {
-            let columns = Columns {
-                scene,
-                plan,
-                spots: range.clone(),
-                first: 0,
-            };
-            let threads = self.pool.current_num_threads();
-            let path = self.folder.checkpoint(&range)?;
-            let mut checkpoint = Checkpoint::new(path, own_identity(scene, plan, &range), threads);
-            let mut tally = columns.tally(0);
-            let blocks = columns.blocks();
-            if self.resume {
-                columns.add(&mut tally, checkpoint.resume(&blocks, blocks.end))?;
-                self.say_resumed(&tally, &range, talk);
-                let traced = u64::from(tally.range().end) * u64::from(plan.budget.size);
-                let each = if plan.estimator.serves_all_spots() {
-                    1
-                } else {
-                    range.len() as u64
-                };
-                bar.inc(pixels * traced * each);
-            }
-            let nothing = Parts::new();
-            let tally = self.pool.install(|| {
-                columns.trace(tally, blocks.end, control, (&mut checkpoint, &nothing))
-            })?;
-            let there = tally.range().end;
-            let Some(traced) = tally.traced() else {
-                let of = plan.budget.blocks;
-                return Err(Failure::Stopped(match there {
-                    0 => String::new(),
-                    _ => format!(" and {there} of {of} blocks of the next"),
-                }));
-            };
-            refuse_beyond_f32(&traced)?;
-            let write = |(column, spot): (usize, usize)| {
-                self.folder
-                    .write_frame(scene, self.record, spot, &traced, column)?;
-                self.folder.keep(spot, &traced, column)
-            };
-            let written = || -> Result<Vec<Matrix>, Failure> {
-                range
-                    .clone()
-                    .into_par_iter()
-                    .enumerate()
-                    .map(write)
-                    .collect()
-            };
-            let columns = self.pool.install(written)?;
-            for (spot, column) in range.clone().zip(columns) {
-                kept[spot] = Some(column);
-            }
-            self.folder.remove_checkpoint(&range)?;
-            if warned() && number + 1 < last {
-                return Err(Failure::Stopped(String::new()));
-            }
-        }
-        bar.finish_and_clear();
-        Ok(())
-    }
-
-    fn say_resumed(&self, tally: &Tally, range: &Range<usize>, talk: Talk) {
-        let there = tally.range().end;
-        if there > 0 {
-            talk.say(format!(
-                "going on after {there} of {} blocks of the spots {} to {}",
-                self.plan.budget.blocks,
-                range.start,
-                range.end - 1
-            ));
-        }
-    }
-
-    /// Runs of neighbouring spots to be traced together: one spot each where nothing is shared, as many as memory bears where paths serve all
-    /// spots. Where an earlier process has left blocks of some of them, these stay together, with those of them that are finished: to write these
-    /// again costs less than to trace the others anew.
-    fn batches(&self, todo: &[usize], kept: &[Option<Matrix>]) -> Vec<Range<usize>> {
-        let most = together(self.scene, self.plan.estimator);
-        let begun = match self.resume {
-            true => self.folder.checkpoints(self.scene, self.plan),
-            false => Vec::new(),
-        };
-        let mut free: Vec<bool> = vec![false; kept.len()];
-        todo.iter().for_each(|s| free[*s] = true);
-        let mut ranges: Vec<Range<usize>> = Vec::new();
-        for range in begun {
-            let needed = range.clone().any(|s| free[s]);
-            let ours = range.clone().all(|s| free[s] || kept[s].is_some());
-            let apart = ranges.last().is_none_or(|r| r.end <= range.start);
-            if needed && ours && apart {
-                range.clone().for_each(|s| free[s] = false);
-                ranges.push(range);
-            }
-        }
-        let begun = ranges.len();
-        for &spot in todo.iter().filter(|s| free[**s]) {
-            match ranges[begun..].last_mut() {
-                Some(last) if last.end == spot && last.len() < most => last.end = spot + 1,
-                _ => ranges.push(spot..spot + 1),
-            }
-        }
-        ranges.sort_by_key(|r| r.start);
-        ranges
     }
 }
 

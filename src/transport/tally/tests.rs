@@ -1,0 +1,144 @@
+use super::*;
+use std::ops::ControlFlow;
+
+use crate::num::stream::Sampling;
+use crate::num::summation::mean_and_stderr;
+use crate::transport::{Budget, Estimator};
+
+const PIXELS: usize = 37;
+const COLUMNS: usize = 5;
+const ORDERS: usize = 2;
+
+fn value(b: u32, n: usize, p: usize, l: usize) -> f64 {
+    let i = b as usize * 7919 + n * 104_729 + p * 31 + l;
+    1.0 + 0.1 * p as f64 + 1e-9 * libm::sin(i as f64)
+}
+
+fn tally(blocks: u32, part: Range<u32>) -> Tally {
+    let mut tally = Tally {
+        orders: ORDERS,
+        pixels: PIXELS,
+        columns: COLUMNS,
+        blocks,
+        tree: Tree::new(blocks, part.start),
+    };
+    for b in part {
+        let entries = (0..ORDERS).flat_map(|n| (0..PIXELS).map(move |p| (n, p)));
+        let sums = entries
+            .flat_map(|(n, p)| (0..COLUMNS).map(move |l| value(b, n, p, l)))
+            .collect();
+        tally
+            .add(b..b + 1, Moments::of_block(sums, ORDERS))
+            .unwrap();
+    }
+    tally
+}
+
+/// Against the two-pass formula for each entry, with blocks that differ in the ninth digit, of a number that is no power of two.
+#[test]
+fn means_and_standard_errors_are_the_two_pass_ones() {
+    let blocks = 11;
+    let traced = tally(blocks, 0..blocks).traced().unwrap();
+    for (p, l) in (0..PIXELS).flat_map(|p| (0..COLUMNS).map(move |l| (p, l))) {
+        let totals: Vec<f64> = (0..blocks)
+            .map(|b| value(b, 0, p, l) + value(b, 1, p, l))
+            .collect();
+        let (mean, stderr) = mean_and_stderr(&totals);
+        assert!((traced.flux[(p, l)] - mean).abs() <= 1e-15 * mean.abs() * 4.0);
+        let found = traced.stderr[(p, l)];
+        assert!((found - stderr).abs() <= 1e-6 * stderr, "{found} {stderr}");
+    }
+}
+
+#[test]
+fn parts_go_through_bytes_and_come_out_as_the_whole() {
+    let whole = tally(11, 0..11);
+    let mut merged = tally(11, 0..0);
+    for part in [0..3, 3..4, 4..11] {
+        for (range, bytes) in tally(11, part).parts() {
+            merged.add_part(range, &bytes).unwrap();
+        }
+    }
+    assert_eq!(merged, whole);
+    assert_eq!(tally(11, 0..10).traced(), None);
+}
+
+#[test]
+fn what_cannot_be_a_part_is_refused() {
+    let mut tally = tally(11, 0..4);
+    let bytes = vec![0u8; tally.part_bytes()];
+    let misplaced = tally.add_part(5..6, &bytes).unwrap_err();
+    assert_eq!(
+        misplaced,
+        TallyError::Misplaced {
+            range: 5..6,
+            after: 4
+        }
+    );
+    let short = tally.add_part(4..8, &bytes[8..]).unwrap_err();
+    assert!(matches!(short, TallyError::Length { .. }), "{short}");
+    for bad in [-1.0, f64::NAN, f64::INFINITY] {
+        let mut bytes = bytes.clone();
+        bytes[80..88].copy_from_slice(&f64::to_le_bytes(bad));
+        assert_eq!(
+            tally.add_part(4..8, &bytes),
+            Err(TallyError::NoFlux { range: 4..8 })
+        );
+    }
+    assert_eq!(tally.add_part(4..8, &bytes), Ok(()));
+}
+
+/// Every estimator, cut anywhere, gives the bits of the whole; and what the control stops can be gone on with.
+#[test]
+fn traced_in_pieces_or_at_once_the_bits_are_the_same() {
+    let text = Scene::load("bench").unwrap().text;
+    let text = text
+        .replace("per_side = 30", "per_side = 2")
+        .replace("pixels = [16, 16]", "pixels = [3, 4]");
+    let scene = Scene::from_toml("toy", &text).unwrap();
+    let never = std::sync::atomic::AtomicBool::new(false);
+    let control = crate::transport::Control {
+        progress: &|_| (),
+        stop: &never,
+    };
+    for (estimator, sampling) in Estimator::ALL
+        .into_iter()
+        .flat_map(|e| [(e, Sampling::Pcg), (e, Sampling::Sobol)])
+    {
+        let budget = Budget::new(32 * 37, sampling).unwrap();
+        let plan = Plan {
+            estimator,
+            sampling,
+            seed: 3,
+            budget,
+        };
+        let whole = crate::transport::render(&scene, &plan, 0..5, control).unwrap();
+        let mut merged = Tally::new(&scene, &plan, 5, 0);
+        for part in [0..1, 1..7, 7..8, 8..32] {
+            let start = Tally::new(&scene, &plan, 5, part.start);
+            let mut looks = 0;
+            let once = &mut |_: &Tally| {
+                looks += 1;
+                if looks == 1 {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(1)
+                }
+            };
+            let piece =
+                crate::transport::trace(&scene, &plan, 0..5, start, part.end, control, once);
+            let go_on = &mut |_: &Tally| ControlFlow::Continue(1);
+            let piece =
+                crate::transport::trace(&scene, &plan, 0..5, piece, part.end, control, go_on);
+            assert_eq!(piece.range(), part);
+            for (range, bytes) in piece.parts() {
+                merged.add_part(range, &bytes).unwrap();
+            }
+        }
+        assert_eq!(
+            merged.traced().unwrap(),
+            whole,
+            "{estimator:?} {sampling:?}"
+        );
+    }
+}
