@@ -10,12 +10,14 @@ use phicam::matrix::npy;
 use crate::small_scene::{TINY, altered};
 use crate::workspace::{Contents, Workspace, assert_same};
 
-/// A scene whose render takes about a second, as a few long blocks and as many short ones.
-const PLANS: [&str; 3] = [
-    "--estimator shared --samples 65536",
-    "--estimator independent --samples 8192",
-    "--estimator factored --samples 262144",
+/// Estimators, and the samples to begin with.
+const PLANS: [(&str, u64); 3] = [
+    ("shared", 65536),
+    ("independent", 8192),
+    ("factored", 262_144),
 ];
+/// A render is to take so long that moments of it can be met, and a checkpoint is due in it.
+const LONG: Duration = Duration::from_millis(800);
 /// Moments, over all plans.
 const KILLS: usize = 51;
 
@@ -73,14 +75,20 @@ fn killed_at_fifty_moments_it_ends_with_the_same_bytes() {
     let mut random = 0x9e37_79b9_7f4a_7c15u64;
     let mut killed: BTreeMap<&str, usize> = BTreeMap::new();
     let mut resumed = 0;
-    for plan in PLANS {
+    for (plan, mut samples) in PLANS {
         let workspace = Workspace::new();
         let bounces = ("max_bounces = 3", "max_bounces = 4");
         workspace.write("tiny.toml", altered(TINY.iter().chain([&bounces])));
-        let line = format!("render tiny.toml {plan} --threads 2");
-        let begun = Instant::now();
-        let _ = workspace.phicam(&format!("{line} -o whole")).exits(0);
-        let takes = begun.elapsed();
+        let (line, takes) = loop {
+            let line =
+                format!("render tiny.toml --estimator {plan} --samples {samples} --threads 2");
+            let begun = Instant::now();
+            let _ = workspace.phicam(&format!("{line} -o whole")).exits(0);
+            if begun.elapsed() >= LONG {
+                break (line, begun.elapsed());
+            }
+            samples *= 2;
+        };
         let mut whole = workspace.contents("whole");
         whole.remove("run.json");
         let mut renders = 0;
