@@ -8,6 +8,7 @@
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::time::Duration;
 
 /// Why a file or a folder could not be written. Each message names the path, the cause and the cure.
@@ -118,7 +119,12 @@ const FORSAKEN: Duration = Duration::from_secs(3600);
 
 /// Where process numbers are those of this process: the machine by its name and its last start, and the namespace of process numbers. Without
 /// dashes; empty where it is not known.
-pub fn machine() -> String {
+pub fn machine() -> &'static str {
+    static MACHINE: OnceLock<String> = OnceLock::new();
+    MACHINE.get_or_init(found_machine)
+}
+
+fn found_machine() -> String {
     let read = |path: &str| fs::read_to_string(path).unwrap_or_default();
     let (name, start) = (
         read("/proc/sys/kernel/hostname"),

@@ -77,8 +77,15 @@ impl Checkpoint {
         }
     }
 
+    /// The last word of work that is stopped: the failure of a write before, or `parts`, written.
+    pub(super) fn leave(&mut self, parts: &Parts) -> Result<(), Failure> {
+        self.outcome()?;
+        let _ = self.keep(parts);
+        self.outcome()
+    }
+
     /// Writes `parts`, if there are any.
-    pub(super) fn keep(&mut self, parts: &Parts) -> ControlFlow<()> {
+    fn keep(&mut self, parts: &Parts) -> ControlFlow<()> {
         if parts.is_empty() {
             return ControlFlow::Continue(());
         }

@@ -112,8 +112,7 @@ impl Columns<'_> {
         );
         checkpoint.outcome()?;
         if tally.range().end < end {
-            let _ = checkpoint.keep(&all(&tally));
-            checkpoint.outcome()?;
+            checkpoint.leave(&all(&tally))?;
         }
         Ok(tally)
     }

@@ -48,8 +48,7 @@ pub(in crate::cli) fn execute(args: &PlanArgs, talk: Talk) -> Result<Outcome, Fa
     ensure_writable(dir)?;
     if let Some(scene) = work.scene() {
         talk.warn(scene);
-        let folder = Folder { path: dir.clone() };
-        folder.write_scene(scene)?;
+        Folder::at(dir).write_scene(scene)?;
     }
     file.write(&dir.join(PlanFile::NAME))?;
     ensure_writable(&dir.join("shards"))?;

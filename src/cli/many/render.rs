@@ -125,9 +125,7 @@ impl Render {
                 break;
             }
             if todo.end < range.end && checkpoint.look(|| parts.clone()).is_break() {
-                checkpoint.outcome()?;
-                let _ = checkpoint.keep(&parts);
-                checkpoint.outcome()?;
+                checkpoint.leave(&parts)?;
                 break;
             }
         }

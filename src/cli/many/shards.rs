@@ -34,9 +34,7 @@ pub(super) fn files(dir: &Path, extension: &str) -> Result<Vec<PathBuf>, Failure
         Err(e) if e.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
         Err(e) => {
             let cause = format!("cannot list {}: {e}", dir.display());
-            return Err(Failure::System(format!(
-                "{cause}\n  cure: make it readable"
-            )));
+            return Err(Failure::system(cause, "make it readable"));
         }
         Ok(entries) => entries,
     };

@@ -130,16 +130,13 @@ impl Study {
                 .cut
                 .run(tasks.start as usize..tasks.end as usize, control)?
             else {
-                let _ = checkpoint.keep(&parts);
-                checkpoint.outcome()?;
+                checkpoint.leave(&parts)?;
                 break;
             };
             parts.extend(tasks.clone().map(|task| task..task + 1).zip(found));
             if tasks.end < range.end && checkpoint.look(|| parts.clone()) == ControlFlow::Break(())
             {
-                checkpoint.outcome()?;
-                let _ = checkpoint.keep(&parts);
-                checkpoint.outcome()?;
+                checkpoint.leave(&parts)?;
                 break;
             }
             let each = start.elapsed().as_secs_f64() / (tasks.end - tasks.start) as f64;
