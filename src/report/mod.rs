@@ -68,7 +68,7 @@ pub use reproduce::{
 };
 pub use shown::Shown;
 pub use summary::summary_json;
-pub use table::{recovery_table, summary_table, verdict_table};
+pub use table::{recovery_table, render_table, summary_table, verdict_table};
 pub use target::target_png;
 pub use terminal::{iterm, kitty};
 pub use tolerance::{tolerance_csv, tolerance_svg, tolerance_table};

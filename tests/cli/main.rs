@@ -10,6 +10,7 @@ mod foreign_files;
 mod interruption;
 mod killing;
 mod large_photographs;
+mod machine_readable;
 mod main_job;
 mod many;
 mod recovery;
