@@ -48,6 +48,7 @@ const DOORS: [(&str, &[&str]); 21] = [
     ("postcard", &["study/task/bytes"]),
     ("clap", &["cli"]),
     ("indicatif", &["cli"]),
+    ("terminal_size", &["cli/view/terminal"]),
 ];
 
 struct Source {

@@ -145,10 +145,9 @@ impl Tracing {
         self.bar.clone()
     }
 
-    /// Counts samples of an earlier process, which say nothing of how fast this one is.
+    /// Leaves out samples of an earlier process: they say nothing of how fast this one is.
     pub(super) fn skip(&self, samples: u64) {
-        self.bar.inc(samples);
-        self.bar.reset_eta();
+        self.bar.dec_length(samples);
     }
 
     /// A remark on a line of its own.
