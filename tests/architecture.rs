@@ -26,7 +26,7 @@ const BESIDE: [(&str, &str); 4] = [
 
 /// Foreign crates and the one place that may name them. `exr` has two: frames are written and read with all their attributes, pictures of other
 /// programs are read without any; what both must know of a file's bytes stands in `image/exr/envelope`.
-const DOORS: [(&str, &[&str]); 21] = [
+const DOORS: [(&str, &[&str]); 22] = [
     ("obvhs", &["geometry/bvh"]),
     ("exr", &["film/exr", "image/exr"]),
     ("faer", &["num/linalg"]),
@@ -42,6 +42,7 @@ const DOORS: [(&str, &[&str]); 21] = [
     ("zune_jpeg", &["image/jpeg"]),
     ("resvg", &["report/raster"]),
     ("dejavu", &["report/raster"]),
+    ("flate2", &["report/page/packed"]),
     ("toml", &["scene"]),
     ("ply_rs_bw", &["scene/mesh/ply"]),
     ("gltf_json", &["scene/mesh/gltf"]),

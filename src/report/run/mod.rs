@@ -7,6 +7,7 @@ use super::colour::Scale;
 use super::drawing::bench_svg;
 use super::figure::{Entries, MOST, Reduction, figure, legend, note, reduced};
 use super::gallery::recoveries;
+use super::page::{Page, Tone};
 use super::picture::Panel;
 use super::svg::{escape, number};
 use super::table::facts;
@@ -23,34 +24,29 @@ const MOST_TEXT: usize = 200_000;
 /// that repeat the run. What a run does not have is left out. Pictures larger than 256 (Φcam: 512) entries a side are
 /// averaged or thinned for display, and the page says so.
 pub fn run_html(results: &RunResults) -> String {
-    let title = escape(&format!("phicam: {}", results.scene.name));
-    let class = match &results.agreement {
-        Some(a) if a.agrees => "verdict agree",
-        Some(_) => "verdict disagree",
-        None => "verdict",
+    let mut page = Page::new(&format!("phicam: {}", results.scene.name));
+    let tone = match &results.agreement {
+        Some(a) if a.agrees => Tone::Good,
+        Some(_) => Tone::Bad,
+        None => Tone::Plain,
     };
     let mut sentence = verdict(results);
     if let Some(first) = sentence.get(..1).map(str::to_uppercase) {
         sentence.replace_range(..1, &first);
     }
-    let style = include_str!("page.css");
-    let mut html = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
-         <style>\n{style}</style>\n</head>\n<body>\n<h1>{title}</h1>\n<p class=\"{class}\">{}.</p>\n",
-        escape(&sentence)
+    page.verdict(tone, &format!("{sentence}."));
+    let bench = format!(
+        "<figure class=\"bench\">\n{}</figure>\n",
+        bench_svg(&results.scene)
     );
-    html.push_str("<h2>The scene</h2>\n<figure class=\"bench\">\n");
-    html.push_str(&bench_svg(&results.scene));
-    html.push_str("</figure>\n");
-    html.push_str(&frames(results));
-    html.push_str(&matrices(results));
-    html.push_str(&deviations(results));
-    html.push_str(&recoveries(results));
-    html.push_str(&bounces(results));
-    html.push_str(&settings(results));
-    html.push_str("</body>\n</html>\n");
-    html
+    page.section("scene", "The scene", &bench);
+    page.section("frames", "Frames", &frames(results));
+    page.section("phi", "The matrix Φcam", &matrices(results));
+    page.section("z", "Traced minus modelled", &deviations(results));
+    page.section("recovered", "Recovered", &recoveries(results));
+    page.section("bounces", "Light by bounce count", &bounces(results));
+    page.section("settings", "What was run", &settings(results));
+    page.html()
 }
 
 /// The photographs of the first, the middle and the last spot.
@@ -100,7 +96,7 @@ fn frames(results: &RunResults) -> String {
         .map(|p| figure(p, ends, Entries::Square, &scale, ""))
         .collect();
     format!(
-        "<h2>Frames</h2>\n<p>What the camera records for the first, the middle and the last laser spot: flux into each \
+        "<p>What the camera records for the first, the middle and the last laser spot: flux into each \
          pixel. One scale for all, from the smallest to the largest value shown.</p>\n\
          <div class=\"row\">\n{figures}</div>\n{}{}",
         legend(&scale, "W", &panels),
@@ -142,7 +138,7 @@ fn matrices(results: &RunResults) -> String {
         .map(|p| figure(p, ends(&results.phi), Entries::Stretched, &scale, ""))
         .collect();
     format!(
-        "<h2>The matrix Φcam</h2>\n<p>Flux into every pixel (upwards: column + row · {} columns) for every spot (to the \
+        "<p>Flux into every pixel (upwards: column + row · {} columns) for every spot (to the \
          right), on one scale.</p>\n<div class=\"row\">\n{figures}</div>\n{}{}",
         results.scene.camera.columns,
         legend(&scale, "W", &panels),
@@ -159,7 +155,7 @@ fn deviations(results: &RunResults) -> String {
         let (panel, said) = map("z", z, Reduction::Pick);
         let [_, shown] = scale.range();
         html.push_str(&format!(
-            "<h2>Traced minus modelled</h2>\n<p>z: the difference of every entry in units of its standard error. If the \
+            "<p>z: the difference of every entry in units of its standard error. If the \
              model is right it is noise, without pattern, and stays within ±{}.</p>\n<div class=\"row\">\n{}</div>\n{}{}",
             significant(shown, 2),
             figure(&panel, ends(z), Entries::Stretched, &scale, ""),
@@ -199,7 +195,7 @@ fn bounces(results: &RunResults) -> String {
     if results.bounces.is_empty() {
         return String::new();
     }
-    let mut html = "<h2>Light by bounce count</h2>\n<div class=\"wide\"><table>\n<tr><th class=\"n\">surfaces met</th>\
+    let mut html = "<div class=\"wide\"><table>\n<tr><th class=\"n\">surfaces met</th>\
                     <th class=\"n\">share of the flux</th><th></th></tr>\n"
         .to_owned();
     for (n, share) in &results.bounces {
@@ -216,7 +212,7 @@ fn bounces(results: &RunResults) -> String {
 /// Settings, times, commands, and the scene file.
 fn settings(results: &RunResults) -> String {
     let (s, scene) = (&results.settings, &results.scene);
-    let mut html = "<h2>What was run</h2>\n<div class=\"wide\"><table>\n".to_owned();
+    let mut html = "<div class=\"wide\"><table>\n".to_owned();
     let version = [
         ("version", format!("phicam {}", s.version)),
         ("scene hash", scene.hash.clone()),
@@ -228,7 +224,7 @@ fn settings(results: &RunResults) -> String {
             escape(&text)
         ));
     }
-    html.push_str("</table></div>\n<h2>To repeat it</h2>\n");
+    html.push_str("</table></div>\n<h3>To repeat it</h3>\n");
     let builtin = is_builtin(scene);
     let file = if builtin {
         scene.name.as_str()
@@ -272,5 +268,5 @@ fn is_builtin(scene: &Scene) -> bool {
 }
 
 #[cfg(test)]
-#[path = "page_tests.rs"]
+#[path = "tests.rs"]
 mod tests;
