@@ -39,7 +39,14 @@ impl Library {
 const LICENCES: &str = include_str!("vendor/LICENSES.txt");
 
 /// The page's own script, in the order in which it runs.
-const SCRIPT: [&str; 1] = [include_str!("script/page.js")];
+const SCRIPT: [&str; 6] = [
+    include_str!("script/page.js"),
+    include_str!("script/explorer.js"),
+    include_str!("script/frames.js"),
+    include_str!("script/plan.js"),
+    include_str!("script/row.js"),
+    include_str!("script/source.js"),
+];
 
 /// How a verdict is marked, beside its words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

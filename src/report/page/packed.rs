@@ -1,6 +1,6 @@
 //! Numbers inside of a page.
 //!
-//! The values, as f64 or as f32 with so many bits of their mantissa, are taken as integers; of these differences along the block are taken none, one or two times,
+//! The values, as f64 or as f32 with so many bits of their mantissa, are taken as integers; of these differences along the block are taken none to three times,
 //! whichever packs best (smooth matrices shrink, noise does not); all first bytes come first, then all second ones, and so on; the whole is deflated and written in base64.
 //! `page.js` takes the same steps back.
 
@@ -30,7 +30,7 @@ pub(in super::super) struct Packed {
 }
 
 /// Differences are taken at most so often.
-const MOST_ORDER: u32 = 2;
+const MOST_ORDER: u32 = 3;
 
 impl Packed {
     /// Packs values.

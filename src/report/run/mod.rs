@@ -1,5 +1,8 @@
 //! The page of a run.
 
+mod difference;
+mod explorer;
+
 use std::collections::BTreeSet;
 
 use super::axis::significant;
@@ -7,11 +10,14 @@ use super::colour::Scale;
 use super::drawing::bench_svg;
 use super::figure::{Entries, MOST, Reduction, figure, legend, note, reduced};
 use super::gallery::recoveries;
-use super::page::{Page, Tone};
+use super::page::{Page, Tone, explained};
+use super::picard::picard_svg;
 use super::picture::Panel;
 use super::svg::{escape, number};
 use super::table::facts;
 use super::verdict::verdict;
+use difference::difference;
+use explorer::explorer;
 use crate::matrix::Matrix;
 use crate::scene::{Scene, builtins};
 use crate::study::RunResults;
@@ -40,10 +46,14 @@ pub fn run_html(results: &RunResults) -> String {
         bench_svg(&results.scene)
     );
     page.section("scene", "The scene", &bench);
-    page.section("frames", "Frames", &frames(results));
+    let fallback = frames(results);
+    let explorer = explorer(&mut page, results, &fallback);
+    page.section("explorer", "Φcam, entry by entry", &explorer);
     page.section("phi", "The matrix Φcam", &matrices(results));
     page.section("z", "Traced minus modelled", &deviations(results));
     page.section("recovered", "Recovered", &recoveries(results));
+    page.section("picard", "What noise leaves of the signal", &picards(results));
+    page.section("difference", "Error budget", &difference(results));
     page.section("bounces", "Light by bounce count", &bounces(results));
     page.section("settings", "What was run", &settings(results));
     page.html()
@@ -226,11 +236,7 @@ fn settings(results: &RunResults) -> String {
     }
     html.push_str("</table></div>\n<h3>To repeat it</h3>\n");
     let builtin = is_builtin(scene);
-    let file = if builtin {
-        scene.name.as_str()
-    } else {
-        "scene.toml"
-    };
+    let file = scene_file(scene);
     let mut commands = format!(
         "phicam run {file} -o out --estimator {} --sampler {} --samples {} --seed {}\n",
         s.estimator, s.sampler, s.samples, s.seed
@@ -258,6 +264,29 @@ fn settings(results: &RunResults) -> String {
         escape(&scene.text[..end])
     ));
     html
+}
+
+/// What commands call the scene: its name, or the file in the folder of the run.
+fn scene_file(scene: &Scene) -> &str {
+    match is_builtin(scene) {
+        true => &scene.name,
+        false => "scene.toml",
+    }
+}
+
+/// Singular values with signal and noise in their directions.
+fn picards(results: &RunResults) -> String {
+    if results.picards.is_empty() {
+        return String::new();
+    }
+    let figure = |p| format!("<figure class=\"plot\">\n{}</figure>\n", picard_svg(p));
+    let figures: String = results.picards.iter().map(figure).collect();
+    format!(
+        "<p>{}</p>\n{figures}",
+        explained(
+            "A Picard plot: singular values fall, and where the signal has sunk into the noise an inversion must stop."
+        )
+    )
 }
 
 /// Whether the scene's name alone is enough to load it again.
