@@ -147,7 +147,12 @@ fn compare_and_recover(
         &Method::USUAL,
         &options,
     )?;
-    recover::write(&args.output, &results.scene, &results.recovered, &results.picards)?;
+    recover::write(
+        &args.output,
+        &results.scene,
+        &results.recovered,
+        &results.picards,
+    )?;
     clock.lap("recover")?;
     Ok(())
 }

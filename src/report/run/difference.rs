@@ -14,7 +14,9 @@ pub(super) fn difference(results: &RunResults) -> String {
         return String::new();
     };
     let scale = (a.best_scale - 1.0).abs();
-    let shape = (a.relative_difference.powi(2) - scale.powi(2)).max(0.0).sqrt();
+    let shape = (a.relative_difference.powi(2) - scale.powi(2))
+        .max(0.0)
+        .sqrt();
     let beyond: f64 = results
         .bounces
         .iter()
@@ -23,9 +25,17 @@ pub(super) fn difference(results: &RunResults) -> String {
         .sum();
     let rows = [
         ("measured: ‖traced − modelled‖", a.relative_difference, ""),
-        ("of it a scale that all entries share", scale, "best single scale less 1"),
+        (
+            "of it a scale that all entries share",
+            scale,
+            "best single scale less 1",
+        ),
         ("of it a pattern", shape, "what the best scale leaves"),
-        ("expected: noise of the path tracer", a.relative_noise, "‖standard error‖"),
+        (
+            "expected: noise of the path tracer",
+            a.relative_noise,
+            "‖standard error‖",
+        ),
         (
             "at most: elements and pixels taken at their centres",
             a.relative_discretisation,
@@ -37,7 +47,11 @@ pub(super) fn difference(results: &RunResults) -> String {
             "share of the traced flux; the model has three surfaces",
         ),
     ];
-    let most = rows.iter().map(|r| r.1).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
+    let most = rows
+        .iter()
+        .map(|r| r.1)
+        .fold(0.0, f64::max)
+        .max(f64::MIN_POSITIVE);
     let row = |(what, share, how): &(&str, f64, &str)| {
         format!(
             "<tr><td>{}</td><td class=\"n\">{} %</td><td><span class=\"bar\" style=\"width:{}px\"></span></td><td class=\"note\">{}</td></tr>\n",

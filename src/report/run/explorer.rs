@@ -3,7 +3,9 @@
 use serde_json::{Value, json};
 
 use super::super::page::{Library, Packed, Page, Precision};
+use crate::geometry::DVec3;
 use crate::matrix::Matrix;
+use crate::scene::Scene;
 use crate::study::RunResults;
 
 /// What the packed matrices may take of the page, bytes: with libraries, pictures and recoveries it stays below 10 MB.
@@ -97,7 +99,13 @@ pub(super) fn explorer(page: &mut Page, results: &RunResults, fallback: &str) ->
     for (name, block) in &blocks {
         page.numbers(&format!("phi-{name}"), block);
     }
-    page.json("explorer-data", &circumstances(results, &excerpt));
+    let about = circumstances(
+        &results.scene,
+        &excerpt,
+        Ends::of(results),
+        results.model.is_some(),
+    );
+    page.json("explorer-data", &about);
     page.needs(Library::Plot);
     format!("<div class=\"explorer\">\n{fallback}</div>\n")
 }
@@ -126,43 +134,81 @@ fn packed(
     })
 }
 
+/// The ends of scales, as far as they are known.
+#[derive(Clone, Copy, Debug, Default)]
+struct Ends {
+    /// Least and greatest flux, traced or modelled, W.
+    range: Option<[f64; 2]>,
+    /// Largest |traced − modelled|, W.
+    residual: Option<f64>,
+    /// Largest standard error, W.
+    stderr: Option<f64>,
+    /// The limit for the largest |z|.
+    limit: Option<f64>,
+}
+
+impl Ends {
+    fn of(results: &RunResults) -> Self {
+        let flux = results.model.iter().chain([&results.phi]);
+        let range = flux
+            .flat_map(|m| m.iter())
+            .filter(|x| x.is_finite())
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| {
+                [l.min(*x), h.max(*x)]
+            });
+        Self {
+            range: (range[0] < range[1]).then_some(range),
+            residual: results.model.as_ref().map(|m| (&results.phi - m).amax()),
+            stderr: Some(results.stderr.amax()),
+            limit: results.agreement.as_ref().map(|a| a.z_limit),
+        }
+    }
+}
+
+/// The element that the script turns into the explorer where a server hands out the matrices; `model` says whether there are modelled ones.
+pub(super) fn served_explorer(page: &mut Page, scene: &Scene, model: bool) -> String {
+    let nothing = Excerpt {
+        every: 1,
+        spots: Vec::new(),
+        pixels: Vec::new(),
+    };
+    let about = circumstances(scene, &nothing, Ends::default(), model);
+    page.json("explorer-data", &about);
+    page.needs(Library::Plot);
+    "<div class=\"explorer\">\n<p>The entries are read when they are asked for, by the page's script.</p>\n</div>\n".to_owned()
+}
+
 /// What the script must know beside the numbers.
-fn circumstances(results: &RunResults, excerpt: &Excerpt) -> Value {
-    let (scene, camera) = (&results.scene, &results.scene.camera);
+fn circumstances(scene: &Scene, excerpt: &Excerpt, ends: Ends, model: bool) -> Value {
+    let camera = &scene.camera;
     let (right, up) = (camera.view.u().normalize(), camera.view.v().normalize());
-    let flat = |p: crate::geometry::DVec3| [p.dot(right), p.dot(up)];
-    let spots = &scene.laser.spots;
-    let places: Vec<[f64; 3]> = spots
+    let places: Vec<DVec3> = scene
+        .laser
+        .spots
         .iter()
         .take(MOST_PLACES)
-        .map(|s| s.target.position.to_array())
+        .map(|s| s.target.position)
         .collect();
-    let residual = results.model.as_ref().map(|m| (&results.phi - m).amax());
-    let flux = results.model.iter().chain([&results.phi]);
-    let range = flux
-        .flat_map(|m| m.iter())
-        .filter(|x| x.is_finite())
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [l.min(*x), h.max(*x)]);
     json!({
         "unit": scene.unit.symbol(),
         "columns": camera.columns,
         "rows": camera.rows,
-        "spots": results.phi.ncols(),
+        "spots": scene.laser.spots.len(),
         "every": excerpt.every,
         "embedded": excerpt.spots,
-        "places": places,
+        "places": places.iter().map(|p| p.to_array()).collect::<Vec<_>>(),
         "view": {
             "corner": camera.view.corner().to_array(),
             "u": camera.view.u().to_array(),
             "v": camera.view.v().to_array(),
         },
         "axes": { "right": right.to_array(), "up": up.to_array() },
-        "flat": places.iter().map(|p| flat((*p).into())).collect::<Vec<_>>(),
-        "range": range,
-        "residual": residual,
-        "stderr": results.stderr.amax(),
-        "limit": results.agreement.as_ref().map(|a| a.z_limit),
-        "model": results.model.is_some(),
+        "flat": places.iter().map(|p| [p.dot(right), p.dot(up)]).collect::<Vec<_>>(),
+        "range": ends.range,
+        "residual": ends.residual,
+        "stderr": ends.stderr,
+        "limit": ends.limit,
+        "model": model,
     })
 }
 
@@ -191,7 +237,10 @@ mod tests {
             ([1, 1], 100_000, 500.0),
         ] {
             let e = Excerpt::new(size, spots, entries);
-            assert!((e.spots.len() * e.pixels.len()) as f64 <= entries.max(12.0), "{size:?}");
+            assert!(
+                (e.spots.len() * e.pixels.len()) as f64 <= entries.max(12.0),
+                "{size:?}"
+            );
             assert!(e.spots.iter().all(|s| *s < spots) && e.spots.len() >= 7.min(spots));
             assert!(e.pixels.iter().all(|p| *p < size[0] * size[1]));
             assert!(e.pixels.windows(2).all(|w| w[0] < w[1]));

@@ -6,6 +6,10 @@ const MOST_SHOWN = 512;
 upgrade(".explorer", async (root) => {
     const about = /** @type {Circumstances} */ (data("explorer-data"));
     const source = (await served(about)) ?? (await embedded(about));
+    if (source.spots.length === 0) {
+        root.append(make("p", { class: "note" }, "The matrices are not in this page: ", make("code", {}, "phicam serve DIR"), " shows them."));
+        return;
+    }
 
     /**
      * What is shown of each frame, in pixels of the camera.
@@ -104,11 +108,11 @@ upgrade(".explorer", async (root) => {
     function ranges(/** @type {ArrayLike<number>[]} */ found) {
         const all = span.value === "all";
         if (!about.model) {
-            return [all ? about.range : rangeOf([found[0]]), all ? [0, about.stderr || 1] : rangeOf([found[1]])];
+            return [all ? (about.range ?? rangeOf([found[0]])) : rangeOf([found[0]]), all ? [0, about.stderr || 1] : rangeOf([found[1]])];
         }
-        const flux = all ? about.range : rangeOf(found.slice(0, 2));
+        const flux = (all && about.range) || rangeOf(found.slice(0, 2));
         const largest = Math.max(...rangeOf([found[2]]).map(Math.abs));
-        const residual = shared.checked ? around(Math.max(...flux.map(Math.abs))) : around(all ? (about.residual ?? 1) : largest);
+        const residual = shared.checked ? around(Math.max(...flux.map(Math.abs))) : around(all ? (about.residual ?? largest) : largest);
         return [flux, flux, residual, around(about.limit ?? 4)];
     }
 

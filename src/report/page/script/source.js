@@ -6,7 +6,7 @@
  *   unit: string, columns: number, rows: number, spots: number, every: number, embedded: number[],
  *   places: [number, number, number][], flat: [number, number][],
  *   view: { corner: number[], u: number[], v: number[] }, axes: { right: number[], up: number[] },
- *   range: [number, number], residual: number | null, stderr: number, limit: number | null, model: boolean,
+ *   range: [number, number] | null, residual: number | null, stderr: number | null, limit: number | null, model: boolean,
  * }} Circumstances
  */
 
