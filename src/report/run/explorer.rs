@@ -1,5 +1,6 @@
 //! The explorer of Φcam: what of the matrices lies in the page, and what the script must know of them.
 
+use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::super::page::{Library, Packed, Page, Precision};
@@ -16,12 +17,13 @@ const MOST_PLACES: usize = 20_000;
 const LEAST_EACH: f64 = 5.0;
 
 /// How exactly traced and modelled flux, standard error and z are kept; the first set that fits.
-const PRECISIONS: [[Precision; 4]; 3] = {
+const PRECISIONS: [[Precision; 4]; 4] = {
     use Precision::{Exact, Single};
     [
         [Exact; 4],
         [Single(23), Single(23), Single(12), Single(10)],
         [Single(20), Single(20), Single(8), Single(7)],
+        [Single(18), Single(18), Single(7), Single(6)],
     ]
 };
 
@@ -67,6 +69,14 @@ impl Excerpt {
         }
     }
 
+    /// One frame in sixteen of it.
+    fn few(&self) -> Self {
+        Self {
+            spots: self.spots.iter().copied().step_by(16).collect(),
+            ..self.clone()
+        }
+    }
+
     /// Its entries of a matrix, frame after frame.
     pub(super) fn of(&self, matrix: &Matrix) -> Vec<f64> {
         let frame = |&spot: &usize| self.pixels.iter().map(move |&pixel| matrix[(pixel, spot)]);
@@ -89,10 +99,14 @@ pub(super) fn explorer(page: &mut Page, results: &RunResults, fallback: &str) ->
         ("z", results.z.as_ref()),
     ];
     let mut entries = MOST as f64 / LEAST_EACH;
-    let (excerpt, blocks) = loop {
+    let (excerpt, precision, blocks) = loop {
         let excerpt = Excerpt::new(size, phi.ncols(), entries);
-        if let Some(blocks) = packed(&excerpt, &named) {
-            break (excerpt, blocks);
+        let fitting = PRECISIONS.into_iter().find_map(|precisions| {
+            let blocks = packed(&excerpt, &named, precisions)?;
+            Some((precisions[0], blocks))
+        });
+        if let Some((precision, blocks)) = fitting {
+            break (excerpt, precision, blocks);
         }
         entries *= 0.7;
     };
@@ -103,6 +117,7 @@ pub(super) fn explorer(page: &mut Page, results: &RunResults, fallback: &str) ->
         &results.scene,
         &excerpt,
         Ends::of(results),
+        Some(precision),
         results.model.is_some(),
     );
     page.json("explorer-data", &about);
@@ -110,28 +125,32 @@ pub(super) fn explorer(page: &mut Page, results: &RunResults, fallback: &str) ->
     format!("<div class=\"explorer\">\n{fallback}</div>\n")
 }
 
-/// The matrices at the best precision at which they fit.
+/// The matrices at a precision, if they fit.
 fn packed(
     excerpt: &Excerpt,
     named: &[(&'static str, Option<&Matrix>); 4],
+    precisions: [Precision; 4],
 ) -> Option<Vec<(&'static str, Packed)>> {
-    let entries = excerpt.spots.len() * excerpt.pixels.len();
-    PRECISIONS.into_iter().find_map(|precisions| {
-        // What cannot fit is not tried: of numbers with noise in them, half of the bytes are left at best.
-        if precisions[0] == Precision::Exact && 16 * entries > MOST {
-            return None;
-        }
-        let mut left = MOST;
-        let mut blocks = Vec::new();
-        for ((name, matrix), precision) in named.iter().zip(precisions) {
-            if let Some(matrix) = matrix {
-                let block = Packed::new(&excerpt.of(matrix), precision);
-                left = left.checked_sub(block.len())?;
-                blocks.push((*name, block));
-            }
-        }
-        Some(blocks)
-    })
+    let there = || {
+        let both = named.iter().zip(precisions);
+        both.filter_map(|((name, matrix), precision)| Some((*name, (*matrix)?, precision)))
+    };
+    // A few frames tell how many bytes all will take: what misses by far is not tried.
+    let few = excerpt.few();
+    let all = excerpt.spots.len() as f64 / few.spots.len().max(1) as f64;
+    let sample: usize = there()
+        .map(|(_, matrix, precision)| Packed::new(&few.of(matrix), precision).len())
+        .sum();
+    if sample as f64 * all > 1.05 * MOST as f64 {
+        return None;
+    }
+    let blocks: Vec<(&'static str, Packed)> = there()
+        .collect::<Vec<_>>()
+        .into_par_iter()
+        .map(|(name, matrix, precision)| (name, Packed::new(&excerpt.of(matrix), precision)))
+        .collect();
+    let size: usize = blocks.iter().map(|(_, block)| block.len()).sum();
+    (size <= MOST).then_some(blocks)
 }
 
 /// The ends of scales, as far as they are known.
@@ -172,14 +191,20 @@ pub(super) fn served_explorer(page: &mut Page, scene: &Scene, model: bool) -> St
         spots: Vec::new(),
         pixels: Vec::new(),
     };
-    let about = circumstances(scene, &nothing, Ends::default(), model);
+    let about = circumstances(scene, &nothing, Ends::default(), None, model);
     page.json("explorer-data", &about);
     page.needs(Library::Plot);
     "<div class=\"explorer\">\n<p>The entries are read when they are asked for, by the page's script.</p>\n</div>\n".to_owned()
 }
 
 /// What the script must know beside the numbers.
-fn circumstances(scene: &Scene, excerpt: &Excerpt, ends: Ends, model: bool) -> Value {
+fn circumstances(
+    scene: &Scene,
+    excerpt: &Excerpt,
+    ends: Ends,
+    precision: Option<Precision>,
+    model: bool,
+) -> Value {
     let camera = &scene.camera;
     let (right, up) = (camera.view.u().normalize(), camera.view.v().normalize());
     let places: Vec<DVec3> = scene
@@ -196,6 +221,10 @@ fn circumstances(scene: &Scene, excerpt: &Excerpt, ends: Ends, model: bool) -> V
         "spots": scene.laser.spots.len(),
         "every": excerpt.every,
         "embedded": excerpt.spots,
+        "bits": match precision {
+            Some(Precision::Single(bits)) => Some(bits + 1),
+            _ => None,
+        },
         "places": places.iter().map(|p| p.to_array()).collect::<Vec<_>>(),
         "view": {
             "corner": camera.view.corner().to_array(),

@@ -78,6 +78,9 @@ upgrade(".explorer", async (root) => {
         ...(left.length > 0
             ? [make("p", { class: "note" }, `The whole matrix is too large for a page: here are ${left.join(" and ")}, unchanged. `, make("code", {}, "phicam serve DIR"), " shows every entry.")]
             : []),
+        ...(about.bits !== null && !source.served
+            ? [make("p", { class: "note" }, `So that the page stays small, fluxes are rounded here to ${about.bits} bits (a relative error of ${significant(2 ** -about.bits, 1)}); phi.npy has every digit.`)]
+            : []),
         make("div", { class: "explorer-top" }, drawing.element, controls),
         make("div", { class: "frames" }, ...panels.map((p) => p.element)),
         row.element,
