@@ -42,6 +42,7 @@ const DOORS: [(&str, &[&str]); 22] = [
     ("zune_jpeg", &["image/jpeg"]),
     ("resvg", &["report/raster"]),
     ("dejavu", &["report/raster"]),
+    ("flate2", &["report/page/packed"]),
     ("toml", &["scene"]),
     ("ply_rs_bw", &["scene/mesh/ply"]),
     ("gltf_json", &["scene/mesh/gltf"]),

@@ -58,7 +58,7 @@ pub(super) fn recoveries(results: &RunResults) -> String {
         let more = (unseen > 0)
             .then(|| format!("{unseen} of these recoveries are listed without a picture"));
         html.push_str(&format!(
-            "<h2>Recovered: {}</h2>\n<p>Reflectance of {nu} × {nv} elements, black 0, white 1, the same grey scale for \
+            "<h3>{}</h3>\n<p>Reflectance of {nu} × {nv} elements, black 0, white 1, the same grey scale for \
              all.</p>\n<div class=\"row\">\n{figures}</div>\n{}{}{}<div class=\"wide\"><table>\n<tr><th>method</th>\
              <th class=\"n\">MTF raw</th><th class=\"n\">MTF normalized</th><th class=\"n\">correlation</th>\
              <th class=\"n\">RMSE</th><th>parameter</th></tr>\n{table}</table></div>\n\

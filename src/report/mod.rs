@@ -34,6 +34,7 @@ mod projection;
 mod raster;
 mod relief;
 mod reproduce;
+mod run;
 #[cfg(test)]
 mod sample;
 mod shown;
@@ -57,7 +58,6 @@ pub use exposure::{counts_png, exposure_table};
 pub use indicator::{indicator_csv, indicator_noise_csv, indicator_svg, indicator_table};
 pub use mitsuba::{MitsubaError, mitsuba_script};
 pub use noise::{Measure, noise_csv, noise_svg, noise_table};
-pub use page::run_html;
 pub use picard::{picard_csv, picard_svg};
 pub use picture::{Panel, ScaleBar, colour_png, grey_png};
 pub use portrait::portrait_png;
@@ -66,6 +66,7 @@ pub use relief::{recovered_ply, texture_png};
 pub use reproduce::{
     ItemSummary, reproduction_files, reproduction_html, reproduction_markdown, reproduction_table,
 };
+pub use run::{run_html, served_html};
 pub use shown::Shown;
 pub use summary::summary_json;
 pub use table::{recovery_table, render_table, summary_table, verdict_table};

@@ -214,6 +214,10 @@ pub(super) fn well_formed(markup: &str) -> Result<(), String> {
             .split([' ', '\n', '/'])
             .next()
             .unwrap_or("");
+        // What a script holds is no markup.
+        if name == "script" && !tag.starts_with('/') {
+            rest = &rest[rest.find("</script>").ok_or("a script without an end")?..];
+        }
         if tag.starts_with('!')
             || tag.starts_with('?')
             || tag.ends_with('/')

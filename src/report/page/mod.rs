@@ -1,0 +1,179 @@
+//! Pages: one HTML file each, which needs no network and no other file.
+//!
+//! A page is readable without its script: figures are SVG, numbers are tables. The script (`script/*.js`, plain JavaScript whose types are checked)
+//! takes what is there and makes it answer: it explores, turns, hides, zooms. What it needs lies in the page as data blocks. Plots and the drawing in three
+//! dimensions are the work of libraries ([`Library`]), bundled from their packages by `tests/browser/vendor.js`, each in the pages that use it.
+
+mod packed;
+mod term;
+
+use std::collections::BTreeSet;
+
+use serde::Serialize;
+
+use super::colour::Map;
+use super::svg::escape;
+
+pub(super) use packed::{Packed, Precision};
+pub(super) use term::explained;
+
+/// A library that a page may use; each is one script, with its licence beside it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Library {
+    /// Observable Plot, ISC: the global `Plot`.
+    Plot,
+    /// three.js with its `OrbitControls`, MIT: the global `THREE`.
+    Three,
+}
+
+impl Library {
+    fn text(self) -> &'static str {
+        match self {
+            Self::Plot => include_str!("vendor/plot.min.js"),
+            Self::Three => include_str!("vendor/three.min.js"),
+        }
+    }
+}
+
+/// The licences of the libraries, whole: those of MIT and ISC ask to be wherever the code is.
+const LICENCES: &str = include_str!("vendor/LICENSES.txt");
+
+/// The page's own script, in the order in which it runs.
+const SCRIPT: [&str; 6] = [
+    include_str!("script/page.js"),
+    include_str!("script/explorer.js"),
+    include_str!("script/frames.js"),
+    include_str!("script/plan.js"),
+    include_str!("script/row.js"),
+    include_str!("script/source.js"),
+];
+
+/// How a verdict is marked, beside its words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Tone {
+    /// What was hoped for.
+    Good,
+    /// What was not.
+    Bad,
+    /// Neither.
+    Plain,
+}
+
+/// A page that grows section by section.
+pub(super) struct Page {
+    title: String,
+    verdict: String,
+    contents: String,
+    body: String,
+    data: String,
+    libraries: BTreeSet<Library>,
+}
+
+impl Page {
+    /// An empty page; `title` is text.
+    pub(super) fn new(title: &str) -> Self {
+        Self {
+            title: escape(title),
+            verdict: String::new(),
+            contents: String::new(),
+            body: String::new(),
+            data: String::new(),
+            libraries: BTreeSet::new(),
+        }
+    }
+
+    /// What was found, in a sentence (text), on top of the page.
+    pub(super) fn verdict(&mut self, tone: Tone, sentence: &str) {
+        let class = match tone {
+            Tone::Good => "verdict agree",
+            Tone::Bad => "verdict disagree",
+            Tone::Plain => "verdict",
+        };
+        self.verdict += &format!("<p class=\"{class}\">{}</p>\n", explained(sentence));
+    }
+
+    /// A section: its name in the address, its heading (text) and its HTML. Without HTML there is no section.
+    pub(super) fn section(&mut self, id: &str, heading: &str, html: &str) {
+        if html.is_empty() {
+            return;
+        }
+        let heading = escape(heading);
+        self.contents += &format!("<li><a href=\"#{id}\">{heading}</a></li>\n");
+        self.body += &format!("<section id=\"{id}\">\n<h2>{heading}</h2>\n{html}</section>\n");
+    }
+
+    /// Values for the script under a name.
+    pub(super) fn json(&mut self, id: &str, value: &impl Serialize) {
+        // What serialises to a file serialises here; a block that does not is left out, and the page stays as it is without script.
+        if let Ok(text) = serde_json::to_string(value) {
+            // Inside of a script element nothing may look like its end.
+            let text = text.replace('<', "\\u003c");
+            self.data +=
+                &format!("<script type=\"application/json\" id=\"{id}\">{text}</script>\n");
+        }
+    }
+
+    /// Numbers for the script under a name.
+    pub(super) fn numbers(&mut self, id: &str, packed: &Packed) {
+        self.data += &packed.element(id);
+    }
+
+    /// Says that the page's script uses a library.
+    pub(super) fn needs(&mut self, library: Library) {
+        self.libraries.insert(library);
+    }
+
+    /// The whole page.
+    pub(super) fn html(mut self) -> String {
+        self.json("colours", &colours());
+        let libraries: String = self.libraries.iter().map(|l| script(l.text())).collect();
+        let licences = match self.libraries.is_empty() {
+            true => String::new(),
+            false => format!(
+                "<details class=\"licences\"><summary>Libraries in this page</summary>\n<pre>{}</pre>\n</details>\n",
+                escape(LICENCES)
+            ),
+        };
+        format!(
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <meta name=\"generator\" content=\"phicam {}\">\n<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n\
+             <a class=\"skip\" href=\"#main\">To the content</a>\n<header>\n<h1>{}</h1>\n{}<nav aria-label=\"Contents\"><ul>\n{}</ul></nav>\n</header>\n\
+             <main id=\"main\">\n{}</main>\n<footer>\n{licences}</footer>\n{}{libraries}{}</body>\n</html>\n",
+            env!("CARGO_PKG_VERSION"),
+            self.title,
+            include_str!("page.css"),
+            self.title,
+            self.verdict,
+            self.contents,
+            self.body,
+            self.data,
+            script(&format!(
+                "(() => {{\n\"use strict\";\n{}}})();\n",
+                SCRIPT.concat()
+            )),
+        )
+    }
+}
+
+/// A script inside of a page.
+fn script(text: &str) -> String {
+    format!("<script>\n{text}</script>\n")
+}
+
+/// The colour maps of the static pictures for those that the script draws: 256 colours each, `#rrggbb` without the sign.
+fn colours() -> serde_json::Value {
+    let table = |map: Map| -> String {
+        (0..256)
+            .map(|i| {
+                let [r, g, b] = map.at(f64::from(i) / 255.0);
+                format!("{r:02x}{g:02x}{b:02x}")
+            })
+            .collect()
+    };
+    serde_json::json!({ "viridis": table(Map::Viridis), "grey": table(Map::Grey), "diverging": table(Map::Diverging) })
+}
+
+#[cfg(test)]
+#[path = "tests.rs"]
+mod tests;

@@ -1,0 +1,119 @@
+//! The page of a run.
+
+mod difference;
+mod explorer;
+mod frames;
+mod matrices;
+mod settings;
+
+use super::axis::significant;
+use super::drawing::bench_svg;
+use super::gallery::recoveries;
+use super::page::{Page, Tone, explained};
+use super::picard::picard_svg;
+use super::svg::number;
+use super::verdict::verdict;
+use crate::scene::Scene;
+use crate::study::{RunResults, Settings};
+use difference::difference;
+use explorer::{explorer, served_explorer};
+use frames::frames;
+use matrices::{deviations, matrices};
+use settings::{scene_file, scene_text, settings};
+
+/// The whole report as one HTML page that needs no network and no other file: verdict, drawing of the scene, frames,
+/// Φcam traced and modelled, z, recoveries beside the truth, light by bounce count, settings, times and the commands
+/// that repeat the run. What a run does not have is left out. Pictures larger than 256 (Φcam: 512) entries a side are
+/// averaged or thinned for display, and the page says so.
+pub fn run_html(results: &RunResults) -> String {
+    let mut page = Page::new(&format!("phicam: {}", results.scene.name));
+    let tone = match &results.agreement {
+        Some(a) if a.agrees => Tone::Good,
+        Some(_) => Tone::Bad,
+        None => Tone::Plain,
+    };
+    let mut sentence = verdict(results);
+    if let Some(first) = sentence.get(..1).map(str::to_uppercase) {
+        sentence.replace_range(..1, &first);
+    }
+    page.verdict(tone, &format!("{sentence}."));
+    let bench = format!(
+        "<figure class=\"bench\">\n{}</figure>\n",
+        bench_svg(&results.scene)
+    );
+    page.section("scene", "The scene", &bench);
+    let fallback = frames(results);
+    let explorer = explorer(&mut page, results, &fallback);
+    page.section("explorer", "Φcam, entry by entry", &explorer);
+    page.section("phi", "The matrix Φcam", &matrices(results));
+    page.section("z", "Traced minus modelled", &deviations(results));
+    page.section("recovered", "Recovered", &recoveries(results));
+    page.section(
+        "picard",
+        "What noise leaves of the signal",
+        &picards(results),
+    );
+    page.section("difference", "Error budget", &difference(results));
+    page.section("bounces", "Light by bounce count", &bounces(results));
+    page.section("settings", "What was run", &settings(results));
+    page.html()
+}
+
+/// The page of a folder that holds photographs and Φcam but no report, for a server that hands out its matrices: the scene, the explorer and what was
+/// rendered. `model` says whether modelled matrices lie there, too.
+pub fn served_html(scene: &Scene, rendered: &Settings, model: bool) -> String {
+    let mut page = Page::new(&format!("phicam: {}", scene.name));
+    let sentence = format!(
+        "{} pixels × {} spots, rendered by {} with {} samples, seed {}.",
+        scene.camera.pixels(),
+        scene.laser.spots.len(),
+        rendered.estimator,
+        rendered.samples,
+        rendered.seed
+    );
+    page.verdict(Tone::Plain, &sentence);
+    let bench = format!("<figure class=\"bench\">\n{}</figure>\n", bench_svg(scene));
+    page.section("scene", "The scene", &bench);
+    let explorer = served_explorer(&mut page, scene, model);
+    page.section("explorer", "Φcam, entry by entry", &explorer);
+    page.section("settings", "What was rendered", &scene_text(scene));
+    page.html()
+}
+
+/// Singular values with signal and noise in their directions.
+fn picards(results: &RunResults) -> String {
+    if results.picards.is_empty() {
+        return String::new();
+    }
+    let figure = |p| format!("<figure class=\"plot\">\n{}</figure>\n", picard_svg(p));
+    let figures: String = results.picards.iter().map(figure).collect();
+    format!(
+        "<p>{}</p>\n{figures}",
+        explained(
+            "A Picard plot: singular values fall, and where the signal has sunk into the noise an inversion must stop."
+        )
+    )
+}
+
+/// Light by the number of surfaces it met.
+fn bounces(results: &RunResults) -> String {
+    if results.bounces.is_empty() {
+        return String::new();
+    }
+    let mut html = "<div class=\"wide\"><table>\n<tr><th class=\"n\">surfaces met</th>\
+                    <th class=\"n\">share of the flux</th><th></th></tr>\n"
+        .to_owned();
+    for (n, share) in &results.bounces {
+        html.push_str(&format!(
+            "<tr><td class=\"n\">{n}</td><td class=\"n\">{} %</td><td><span class=\"bar\" style=\"width:{}px\"></span></td></tr>\n",
+            significant(100.0 * share, 3),
+            number((200.0 * share).clamp(0.0, 200.0))
+        ));
+    }
+    html.push_str("</table></div>\n");
+    html
+}
+
+#[cfg(test)]
+#[path = "tests.rs"]
+mod tests;
