@@ -40,7 +40,7 @@ assert np.allclose([cube.x[11], cube.y[3]], [3.25 + 11.5 * 3.25 / 16, 2.75 + 3.5
 
 (lines,) = blocks["matlab"]
 lines += "printf('%d %d', size(phi)); printf(' %.17g', phi(1, 1), phi(60, 8), phi(256, 120));"
-said = subprocess.run(["octave", "--no-gui", "--quiet", "--eval", lines], cwd=run.parent, capture_output=True, text=True, check=True).stdout.split()
+said = subprocess.run(["octave", "--no-gui", "--quiet", "--no-history", "--eval", lines], cwd=run.parent, capture_output=True, text=True, check=True).stdout.split()
 assert [int(n) for n in said[:2]] == list(phi.shape), said
 assert [float(x) for x in said[2:]] == [phi[0, 0], phi[59, 7], phi[255, 119]], said
 print(f"the README's lines for NumPy ({len(blocks['python'])} blocks) and Octave read what is in {run.name}/")

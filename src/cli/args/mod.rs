@@ -336,8 +336,8 @@ mod tests {
         Args::command().debug_assert();
     }
 
-    /// Commands whose result is a picture, a program or a text to be kept as it is, or that speak to Slurm.
-    const NO_JSON: [&str; 5] = ["view", "target", "slurm", "show", "export"];
+    /// Commands whose result is a picture, a program or a text to be kept as it is, or that speak to Slurm or to a browser.
+    const NO_JSON: [&str; 6] = ["view", "target", "slurm", "serve", "show", "export"];
 
     #[test]
     fn every_result_that_a_program_would_read_can_be_had_as_json() {
