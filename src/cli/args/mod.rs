@@ -5,6 +5,7 @@ mod laboratory;
 mod many;
 mod recover;
 mod reproduce;
+mod serve;
 mod study;
 mod sweep;
 mod target;
@@ -24,6 +25,7 @@ pub(in crate::cli) use laboratory::{BrdfArgs, CoverageArgs, ExperimentArgs};
 pub(in crate::cli) use many::{CleanArgs, MergeArgs, PlanArgs, ShardArgs, SlurmArgs, StatusArgs};
 pub(in crate::cli) use recover::{RecoverArgs, RuleName, WeightingName};
 pub(in crate::cli) use reproduce::ReproduceArgs;
+pub(in crate::cli) use serve::ServeArgs;
 pub(in crate::cli) use study::{
     BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs,
 };
@@ -67,6 +69,8 @@ pub(in crate::cli) enum Command {
     Expose(ExposeArgs),
     /// Look at a frame or a matrix in false colour, as PNG or in the terminal
     View(ViewArgs),
+    /// Show the report of a run or study over a local address, for what is too large to be in one page
+    Serve(ServeArgs),
     /// List, check, draw, look at or export scenes
     Scene(SceneArgs),
     /// Write a target picture, or list them: card, letters, star, edge, bars, ramp
