@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::gallery::Gallery;
 use crate::matrix::Matrix;
 use crate::scene::Scene;
 
@@ -149,6 +150,8 @@ pub struct RunResults {
     pub agreement: Option<Agreement>,
     /// Recovered objects, a method after the other.
     pub recovered: Vec<RecoveredObject>,
+    /// Recoveries over regularisation and noise; absent where nothing can be recovered.
+    pub gallery: Option<Gallery>,
     /// Wall time of each stage, s.
     pub times: Vec<(String, f64)>,
 }
