@@ -6,7 +6,7 @@ use super::axis::significant;
 use super::colour::Scale;
 use super::drawing::bench_svg;
 use super::figure::{Entries, MOST, Reduction, figure, legend, note, reduced};
-use super::gallery::recoveries;
+use super::gallery::{recoveries, slides};
 use super::page::{Page, Tone};
 use super::picture::Panel;
 use super::svg::{escape, number};
@@ -43,7 +43,8 @@ pub fn run_html(results: &RunResults) -> String {
     page.section("frames", "Frames", &frames(results));
     page.section("phi", "The matrix Φcam", &matrices(results));
     page.section("z", "Traced minus modelled", &deviations(results));
-    page.section("recovered", "Recovered", &recoveries(results));
+    let recovered = slides(&mut page, results) + &recoveries(results);
+    page.section("recovered", "Recovered", &recovered);
     page.section("bounces", "Light by bounce count", &bounces(results));
     page.section("settings", "What was run", &settings(results));
     page.html()
