@@ -63,6 +63,7 @@ pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
         z: None,
         agreement: None,
         recovered: Vec::new(),
+        picards: Vec::new(),
         gallery: None,
         times: Vec::new(),
         scene,
@@ -116,6 +117,7 @@ fn compare_and_recover(
         test,
     )?;
     model::write(&args.output, &matrices, &found.model)?;
+    model::write_z(&args.output, &found.z)?;
     results.model = Some(found.model);
     results.z = Some(found.z);
     results.agreement = Some(found.agreement);
@@ -140,7 +142,7 @@ fn compare_and_recover(
         &options,
     );
     results.recovered = recover::collect(attempts, false, talk)?;
-    let picards = study::picards(
+    results.picards = study::picards(
         &matrices,
         &results.phi,
         noise,
@@ -148,7 +150,12 @@ fn compare_and_recover(
         &Method::USUAL,
         &options,
     )?;
-    recover::write(&args.output, &results.scene, &results.recovered, &picards)?;
+    recover::write(
+        &args.output,
+        &results.scene,
+        &results.recovered,
+        &results.picards,
+    )?;
     clock.lap("recover")?;
 
     results.gallery = gallery(results, &matrices, talk);

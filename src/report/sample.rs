@@ -36,6 +36,7 @@ pub(super) fn of(scene: Scene) -> RunResults {
         z: None,
         agreement: None,
         recovered: Vec::new(),
+        picards: Vec::new(),
         gallery: None,
         times: vec![
             ("render".into(), 12.3),

@@ -157,15 +157,15 @@ fn frame(gallery: &Gallery) -> String {
          <label>method <select name=\"method\"></select></label>\n\
          <label class=\"tick\"><input type=\"checkbox\" name=\"stretched\"> stretched to its {stretched}</label>\n\
          </div>\n\
-         <div class=\"controls wide-ones\">\n\
-         <div><label for=\"slides-step\">regularisation: <output data-show=\"step\"></output></label>\n\
+         <div class=\"sliders\">\n\
+         <div><label class=\"slider\" for=\"slides-step\">regularisation: <output data-show=\"step\"></output></label>\n\
          <input type=\"range\" id=\"slides-step\" name=\"step\" min=\"0\" value=\"0\"><div class=\"ends\"><span>strong</span><span class=\"here\" data-show=\"marker\">▲</span><span>weak</span></div>\n\
-         <label class=\"tick\"><input type=\"checkbox\" name=\"automatic\" checked> {automatic}</label></div>\n\
-         <div><label for=\"slides-noise\">{noise}: <output data-show=\"noise\"></output></label>\n\
+         <label class=\"slider\"><input type=\"checkbox\" name=\"automatic\" checked> {automatic}</label></div>\n\
+         <div><label class=\"slider\" for=\"slides-noise\">{noise}: <output data-show=\"noise\"></output></label>\n\
          <input type=\"range\" id=\"slides-noise\" name=\"noise\" min=\"0\" value=\"0\"><div class=\"ends\"><span>none</span><span>loud</span></div></div>\n\
          </div>\n\
          <p class=\"note\" data-show=\"said\" aria-live=\"polite\"></p>\n\
-         <div class=\"row\">\n\
+         <div class=\"row pair\">\n\
          <figure data-picture><canvas role=\"img\" data-show=\"picture\"></canvas><figcaption><b>recovered</b> <span data-show=\"range\"></span></figcaption></figure>\n\
          <figure data-picture><canvas role=\"img\" data-show=\"truth\"></canvas><figcaption><b>truth</b> black 0, white 1</figcaption></figure>\n\
          <div class=\"read\"><table>\n{readout}</table>\n<p class=\"note\" data-show=\"parameter\"></p>\n\
@@ -175,7 +175,7 @@ fn frame(gallery: &Gallery) -> String {
          <p class=\"note\">{}</p>\n</div>\n",
         escape(
             "Values below 0 are blue and values above 1 orange; what is no number is purple. The curves follow the automatic choice, or the parameter that is set; \
-             the line marks what is shown."
+             the line marks what is shown, and an arrow stands for a value beyond the plot."
         )
     )
 }

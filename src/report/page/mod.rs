@@ -39,8 +39,13 @@ impl Library {
 const LICENCES: &str = include_str!("vendor/LICENSES.txt");
 
 /// The page's own script, in the order in which it runs.
-const SCRIPT: [&str; 2] = [
+const SCRIPT: [&str; 7] = [
     include_str!("script/page.js"),
+    include_str!("script/explorer.js"),
+    include_str!("script/frames.js"),
+    include_str!("script/plan.js"),
+    include_str!("script/row.js"),
+    include_str!("script/source.js"),
     include_str!("script/slides.js"),
 ];
 

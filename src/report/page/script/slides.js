@@ -61,7 +61,7 @@ upgrade("#slides", async (element) => {
         noise.setAttribute("aria-valuetext", added);
         const watts = slides.noises[level] > 0 ? ` (${significant(slides.noises[level] * slides.mean, 2)} W)` : "";
         show("noise").textContent = added + watts;
-        mark(show("marker"), own, series.steps.length);
+        markAutomatic(show("marker"), own, series.steps.length);
         const picture = series.pictures[level][at];
         const missing = picture === null ? `Nothing is recovered here: ${chosen.why ?? "the method gave nothing"}.` : "";
         const undecided = automatic.checked && chosen.why !== undefined ? `The method does not choose a parameter here: ${chosen.why}.` : "";
@@ -74,7 +74,7 @@ upgrade("#slides", async (element) => {
         element.dataset.picture = picture === null ? "" : String(picture);
         paintBoth(of, picture);
         const steps = series.automatic.map((a) => (automatic.checked ? a.step : at));
-        show("curves").replaceChildren(...curves(slides, series, steps, surface.selectedIndex, level));
+        show("curves").replaceChildren(...slideCurves(slides, series, steps, surface.selectedIndex, level));
     };
 
     /**
@@ -96,7 +96,7 @@ upgrade("#slides", async (element) => {
         const range = /** @type {[number, number]} */ (stretched.checked && picture !== null ? ownRange(found) : [0, 1]);
         paint(recovered, found, of.elements, "grey", range);
         recovered.setAttribute("aria-label", `recovered reflectance of ${of.name}`);
-        show("range").textContent = picture === null ? "nothing" : `black ${significant(range[0])}, white ${significant(range[1])}`;
+        show("range").textContent = picture === null ? "nothing" : stretched.checked ? `black ${significant(range[0])}, white ${significant(range[1])}` : "black 0, white 1";
     };
 
     for (const [canvas, name] of /** @type {const} */ ([["picture", "recovered"], ["truth", "truth"]])) {
@@ -138,7 +138,7 @@ function noiseWords(level) {
     if (level === 0) {
         return "none: the photographs as traced";
     }
-    return `${significant(100 * level, 1)} % of their mean`;
+    return `${significant(100 * level, 1)} % of the mean flux`;
 }
 
 /**
@@ -147,7 +147,7 @@ function noiseWords(level) {
  * @param {number | undefined} at
  * @param {number} count
  */
-function mark(marker, at, count) {
+function markAutomatic(marker, at, count) {
     marker.hidden = at === undefined || count === 1;
     marker.style.setProperty("--share", String((at ?? 0) / Math.max(1, count - 1)));
 }
@@ -175,19 +175,19 @@ function ownRange(values) {
  * @param {number} surface
  * @param {number} level
  */
-function curves(slides, series, steps, surface, level) {
+function slideCurves(slides, series, steps, surface, level) {
     const of = (/** @type {number} */ k) => steps.map((step, n) => (step === undefined ? null : series.measures[n][step]?.[surface]?.[k] ?? null));
     return [
-        curve("MTF over noise", slides.noises, level, [0, 1], [
+        slideCurve("MTF over noise", slides.noises, level, [0, 1], [
             { name: "normalized", mark: "second", values: of(1) },
             { name: "raw", mark: "first", values: of(0) },
         ]),
-        curve("RMSE over noise", slides.noises, level, null, [{ name: "RMSE", mark: "first", values: of(3) }]),
+        slideCurve("RMSE over noise", slides.noises, level, null, [{ name: "RMSE", mark: "first", values: of(3) }]),
     ];
 }
 
 /** Size of a plot, and its margins: left, right, top, bottom. */
-const PLOT = { width: 300, height: 170, left: 44, right: 12, top: 26, bottom: 34 };
+const SLIDE_CURVE = { width: 300, height: 170, left: 44, right: 12, top: 26, bottom: 34 };
 
 /**
  * A plot over the noise levels, which stand side by side. Without a range the values are drawn over decades.
@@ -197,8 +197,8 @@ const PLOT = { width: 300, height: 170, left: 44, right: 12, top: 26, bottom: 34
  * @param {[number, number] | null} range
  * @param {{ name: string, mark: string, values: (number | null)[] }[]} lines
  */
-function curve(title, noises, level, range, lines) {
-    const { width, height, left, right, top, bottom } = PLOT;
+function slideCurve(title, noises, level, range, lines) {
+    const { width, height, left, right, top, bottom } = SLIDE_CURVE;
     const positive = lines.flatMap((l) => l.values).filter((v) => v !== null && v > 0 && Number.isFinite(v)).map((v) => Math.log10(Number(v)));
     const [low, high] = range ?? [Math.floor(Math.min(0, ...positive)), Math.ceil(Math.max(0, ...positive))];
     const span = Math.max(1, high - low);
@@ -207,7 +207,7 @@ function curve(title, noises, level, range, lines) {
     const place = (/** @type {number} */ v) => (range === null ? Math.log10(v) : v);
     const text = (/** @type {number} */ at, /** @type {number} */ up, /** @type {string} */ anchor, /** @type {string} */ what) =>
         makeSvg("text", { x: at, y: up, "text-anchor": anchor }, what);
-    const plot = makeSvg("svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: "img", class: "curve", "aria-label": `${title}: ${spoken(noises, lines)}` });
+    const plot = makeSvg("svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: "img", class: "curve", "aria-label": `${title}: ${slideWords(noises, lines)}` });
     const every = Math.ceil(span / 4);
     const ticks = range === null ? Array.from({ length: Math.floor(span / every) + 1 }, (_, i) => low + i * every) : [0, 0.5, 1];
     for (const tick of ticks) {
@@ -217,8 +217,8 @@ function curve(title, noises, level, range, lines) {
     noises.forEach((noise, n) => plot.append(text(x(n), height - bottom + 16, "middle", noise === 0 ? "0" : `10${raised(Math.round(Math.log10(noise)))}`)));
     plot.append(text((left + width - right) / 2, height - 3, "middle", "noise added, share of the mean"), makeSvg("line", { x1: x(level), x2: x(level), y1: top, y2: height - bottom, class: "now" }));
     lines.forEach((line, i) => {
-        plot.append(makeSvg("g", { class: `line ${line.mark}` }, ...points(line.values, x, (v) => (v > 0 || range !== null ? place(v) : NaN), y, [low, high])));
-        plot.append(makeSvg("g", { class: `line ${line.mark}` }, makeSvg("path", { d: `M${left + 96 * i},10h22` }), text(left + 28 + 96 * i, 14, "start", lines.length === 1 ? line.name : `MTF ${line.name}`)));
+        plot.append(makeSvg("g", { class: `line ${line.mark}` }, ...slidePoints(line.values, x, (v) => (v > 0 || range !== null ? place(v) : NaN), y, [low, high])));
+        plot.append(makeSvg("g", { class: `line ${line.mark}` }, makeSvg("path", { d: `M${left + 130 * i},10h22` }), text(left + 28 + 130 * i, 14, "start", lines.length === 1 ? line.name : `MTF ${line.name}`)));
     });
     return make("figure", { class: "plot" }, plot);
 }
@@ -231,7 +231,7 @@ function curve(title, noises, level, range, lines) {
  * @param {(v: number) => number} y
  * @param {[number, number]} range
  */
-function points(values, x, place, y, [low, high]) {
+function slidePoints(values, x, place, y, [low, high]) {
     /** @type {SVGElement[]} */
     const marks = [];
     let path = "";
@@ -256,6 +256,6 @@ function points(values, x, place, y, [low, high]) {
  * @param {number[]} noises
  * @param {{ name: string, values: (number | null)[] }[]} lines
  */
-function spoken(noises, lines) {
+function slideWords(noises, lines) {
     return lines.map((l) => `${l.name} ${l.values.map((v, n) => `${significant(v, 2)} at noise ${significant(noises[n], 1)}`).join(", ")}`).join("; ");
 }
