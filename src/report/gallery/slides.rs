@@ -130,23 +130,26 @@ fn frame(gallery: &Gallery) -> String {
         "own range",
         "black is then the smallest value of the picture and white the largest, as the published figures are drawn: contrast is shown, not reflectance",
     );
+    let correlation = term(
+        "correlation",
+        "Pearson's correlation of the recovered values with the true ones: 1 where the pattern is right, whatever its brightness and contrast",
+    );
     let several = match gallery.surfaces.len() {
         1 => " hidden",
         _ => "",
     };
     let row = |name: &str, key: &str| {
         format!(
-            "<tr><th scope=\"row\">{}</th><td class=\"n\"><output data-show=\"{key}\"></output></td></tr>\n",
-            explained(name)
+            "<tr><th scope=\"row\">{name}</th><td class=\"n\"><output data-show=\"{key}\"></output></td></tr>\n"
         )
     };
     let readout = [
-        ("MTF raw", "raw"),
-        ("MTF normalized", "normalized"),
-        ("correlation", "correlation"),
-        ("RMSE", "rmse"),
+        (explained("MTF raw"), "raw"),
+        (explained("MTF normalized"), "normalized"),
+        (correlation, "correlation"),
+        (explained("RMSE"), "rmse"),
     ]
-    .map(|(name, key)| row(name, key))
+    .map(|(name, key)| row(&name, key))
     .concat();
     format!(
         "<div class=\"slides\" id=\"slides\" hidden>\n\
@@ -157,6 +160,7 @@ fn frame(gallery: &Gallery) -> String {
          <label>method <select name=\"method\"></select></label>\n\
          <label class=\"tick\"><input type=\"checkbox\" name=\"stretched\"> stretched to its {stretched}</label>\n\
          </div>\n\
+         <p class=\"note\" data-show=\"meaning\"></p>\n\
          <div class=\"sliders\">\n\
          <div><label class=\"slider\" for=\"slides-step\">regularisation: <output data-show=\"step\"></output></label>\n\
          <input type=\"range\" id=\"slides-step\" name=\"step\" min=\"0\" value=\"0\"><div class=\"ends\"><span>strong</span><span class=\"here\" data-show=\"marker\">▲</span><span>weak</span></div>\n\

@@ -27,7 +27,7 @@ upgrade("#slides", async (element) => {
     const [surface, method] = ["surface", "method"].map((name) => /** @type {HTMLSelectElement} */ (element.querySelector(`select[name="${name}"]`)));
     const [step, noise, automatic, stretched] = ["step", "noise", "automatic", "stretched"].map(input);
     surface.append(...slides.surfaces.map((of, i) => make("option", { value: i }, of.name)));
-    method.append(...slides.series.map((of, i) => make("option", { value: i, title: of.meaning ?? undefined }, of.method)));
+    method.append(...slides.series.map((of, i) => make("option", { value: i }, of.method)));
     // What the run itself is judged by comes last, and is shown first.
     method.selectedIndex = slides.series.length - 1;
     noise.max = String(slides.noises.length - 1);
@@ -48,6 +48,7 @@ upgrade("#slides", async (element) => {
         const level = Number(noise.value);
         const chosen = series.automatic[level];
         const own = chosen.step;
+        show("meaning").textContent = series.meaning === null ? "" : `${series.method}: ${series.meaning}.`;
         step.max = String(series.steps.length - 1);
         step.disabled = series.steps.length === 1;
         if (automatic.checked && own !== undefined) {
