@@ -15,7 +15,7 @@ use super::colour::Map;
 use super::svg::escape;
 
 pub(super) use packed::{Packed, Precision};
-pub(super) use term::explained;
+pub(super) use term::{explained, meaning, term};
 
 /// A library that a page may use; each is one script, with its licence beside it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -39,13 +39,14 @@ impl Library {
 const LICENCES: &str = include_str!("vendor/LICENSES.txt");
 
 /// The page's own script, in the order in which it runs.
-const SCRIPT: [&str; 6] = [
+const SCRIPT: [&str; 7] = [
     include_str!("script/page.js"),
     include_str!("script/explorer.js"),
     include_str!("script/frames.js"),
     include_str!("script/plan.js"),
     include_str!("script/row.js"),
     include_str!("script/source.js"),
+    include_str!("script/slides.js"),
 ];
 
 /// How a verdict is marked, beside its words.

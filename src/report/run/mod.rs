@@ -8,7 +8,7 @@ mod settings;
 
 use super::axis::significant;
 use super::drawing::bench_svg;
-use super::gallery::recoveries;
+use super::gallery::{recoveries, slides};
 use super::page::{Page, Tone, explained};
 use super::picard::picard_svg;
 use super::svg::number;
@@ -47,7 +47,8 @@ pub fn run_html(results: &RunResults) -> String {
     page.section("explorer", "Φcam, entry by entry", &explorer);
     page.section("phi", "The matrix Φcam", &matrices(results));
     page.section("z", "Traced minus modelled", &deviations(results));
-    page.section("recovered", "Recovered", &recoveries(results));
+    let recovered = slides(&mut page, results) + &recoveries(results);
+    page.section("recovered", "Recovered", &recovered);
     page.section(
         "picard",
         "What noise leaves of the signal",
