@@ -39,7 +39,16 @@ impl Library {
 const LICENCES: &str = include_str!("vendor/LICENSES.txt");
 
 /// The page's own script, in the order in which it runs.
-const SCRIPT: [&str; 1] = [include_str!("script/page.js")];
+const SCRIPT: [&str; 8] = [
+    include_str!("script/page.js"),
+    include_str!("script/bench.js"),
+    include_str!("script/bench_build.js"),
+    include_str!("script/bench_choose.js"),
+    include_str!("script/bench_labels.js"),
+    include_str!("script/bench_parts.js"),
+    include_str!("script/bench_steer.js"),
+    include_str!("script/bench_view.js"),
+];
 
 /// How a verdict is marked, beside its words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,10 +1,11 @@
 //! The page of a run.
 
+mod bench;
+
 use std::collections::BTreeSet;
 
 use super::axis::significant;
 use super::colour::Scale;
-use super::drawing::bench_svg;
 use super::figure::{Entries, MOST, Reduction, figure, legend, note, reduced};
 use super::gallery::recoveries;
 use super::page::{Page, Tone};
@@ -35,11 +36,7 @@ pub fn run_html(results: &RunResults) -> String {
         sentence.replace_range(..1, &first);
     }
     page.verdict(tone, &format!("{sentence}."));
-    let bench = format!(
-        "<figure class=\"bench\">\n{}</figure>\n",
-        bench_svg(&results.scene)
-    );
-    page.section("scene", "The scene", &bench);
+    bench::section(&mut page, &results.scene);
     page.section("frames", "Frames", &frames(results));
     page.section("phi", "The matrix Φcam", &matrices(results));
     page.section("z", "Traced minus modelled", &deviations(results));
