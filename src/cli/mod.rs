@@ -13,6 +13,7 @@
 //! | `phi.npy`, `phi.stderr.npy` | Φcam and its standard error, f64, (pixels, spots), C order, W |
 //! | `model/g12.npy`, `g23.npy`, `phi.npy` | the analytic side |
 //! | `model/laser_side.npy`, `camera_side.npy` | D and C: G12 and G23 with the walls' BRDFs and in W, Φcam = C·diag(ρ)·D |
+//! | `model/z.npy` | z of every entry, what `run` compared by: deviation of the traced from the modelled flux in standard errors, (pixels, spots) |
 //! | `recovered/METHOD.npy`, `.png` | recovered reflectance, (nv, nu); `truth` beside it |
 //! | `recovered/METHOD.stderr.npy` | its standard error, (nv, nu), where the noise is known |
 //! | `recovered/METHOD.covariance.npy`, `METHOD.resolution.npy` | covariance and resolution matrix of a linear method, elements × elements of all surfaces |

@@ -6,6 +6,7 @@ use super::args::ModelArgs;
 use super::failure::Failure;
 use super::folder::Folder;
 use super::output::{self, Talk};
+use super::stale::remove_named;
 use super::trust;
 use super::{Outcome, settings};
 use crate::matrix::{Matrix, npy};
@@ -56,11 +57,21 @@ pub(super) fn execute(args: &ModelArgs, talk: Talk) -> Result<Outcome, Failure> 
     Ok(Outcome::Done)
 }
 
+/// Deviations of traced from modelled entries, in DIR/model.
+pub(super) const Z: &str = "z.npy";
+
+/// Writes DIR/model/z.npy, the deviate of every traced entry from the model that lies there.
+pub(super) fn write_z(dir: &Path, z: &Matrix) -> Result<(), Failure> {
+    Ok(npy::write(&dir.join("model").join(Z), z)?)
+}
+
 /// Writes DIR/model/g12.npy, g23.npy and phi.npy; and with the walls' BRDFs and the scale of the light, entry by entry, laser_side.npy (D, W) and
 /// camera_side.npy (C): Φcam = C·diag(ρ)·D.
 pub(super) fn write(dir: &Path, model: &MatrixModel, phi: &Matrix) -> Result<(), Failure> {
     let folder = dir.join("model");
     ensure_writable(&folder)?;
+    // Deviations from another model are none from this one.
+    remove_named(&folder, &[Z])?;
     for (name, matrix) in [
         ("g12.npy", &model.g12),
         ("g23.npy", &model.g23),

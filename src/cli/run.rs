@@ -61,6 +61,7 @@ pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
         z: None,
         agreement: None,
         recovered: Vec::new(),
+        picards: Vec::new(),
         times: Vec::new(),
         scene,
     };
@@ -113,6 +114,7 @@ fn compare_and_recover(
         test,
     )?;
     model::write(&args.output, &matrices, &found.model)?;
+    model::write_z(&args.output, &found.z)?;
     results.model = Some(found.model);
     results.z = Some(found.z);
     results.agreement = Some(found.agreement);
@@ -137,7 +139,7 @@ fn compare_and_recover(
         &options,
     );
     results.recovered = recover::collect(attempts, false, talk)?;
-    let picards = study::picards(
+    results.picards = study::picards(
         &matrices,
         &results.phi,
         noise,
@@ -145,7 +147,12 @@ fn compare_and_recover(
         &Method::USUAL,
         &options,
     )?;
-    recover::write(&args.output, &results.scene, &results.recovered, &picards)?;
+    recover::write(
+        &args.output,
+        &results.scene,
+        &results.recovered,
+        &results.picards,
+    )?;
     clock.lap("recover")?;
     Ok(())
 }

@@ -66,7 +66,7 @@ pub use relief::{recovered_ply, texture_png};
 pub use reproduce::{
     ItemSummary, reproduction_files, reproduction_html, reproduction_markdown, reproduction_table,
 };
-pub use run::run_html;
+pub use run::{run_html, served_html};
 pub use shown::Shown;
 pub use summary::summary_json;
 pub use table::{recovery_table, summary_table, verdict_table};

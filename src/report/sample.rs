@@ -36,6 +36,7 @@ pub(super) fn of(scene: Scene) -> RunResults {
         z: None,
         agreement: None,
         recovered: Vec::new(),
+        picards: Vec::new(),
         times: vec![
             ("render".into(), 12.3),
             ("model".into(), 0.01),

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::matrix::Matrix;
+use crate::recovery::Picard;
 use crate::scene::Scene;
 
 /// How a run was rendered.
@@ -149,6 +150,8 @@ pub struct RunResults {
     pub agreement: Option<Agreement>,
     /// Recovered objects, a method after the other.
     pub recovered: Vec<RecoveredObject>,
+    /// Signal and noise in the singular directions of what was inverted.
+    pub picards: Vec<Picard>,
     /// Wall time of each stage, s.
     pub times: Vec<(String, f64)>,
 }

@@ -39,7 +39,7 @@ impl Library {
 const LICENCES: &str = include_str!("vendor/LICENSES.txt");
 
 /// The page's own script, in the order in which it runs.
-const SCRIPT: [&str; 8] = [
+const SCRIPT: [&str; 13] = [
     include_str!("script/page.js"),
     include_str!("script/bench.js"),
     include_str!("script/bench_build.js"),
@@ -48,6 +48,11 @@ const SCRIPT: [&str; 8] = [
     include_str!("script/bench_parts.js"),
     include_str!("script/bench_steer.js"),
     include_str!("script/bench_view.js"),
+    include_str!("script/explorer.js"),
+    include_str!("script/frames.js"),
+    include_str!("script/plan.js"),
+    include_str!("script/row.js"),
+    include_str!("script/source.js"),
 ];
 
 /// How a verdict is marked, beside its words.

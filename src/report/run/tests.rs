@@ -34,7 +34,7 @@ fn a_whole_run_makes_a_whole_page() {
         "<h3>object</h3>",
         "joint-bounded",
         "phicam run bench -o out --estimator independent --sampler pcg --samples 4096 --seed 18446744073709551615",
-        "phicam validate out --kernel physical",
+        "phicam validate out\nphicam recover out",
     ] {
         assert!(html.contains(text), "{text}");
     }

@@ -11,6 +11,7 @@ upgrade("#bench-3d", async (element) => {
         element.append(make("p", { class: "note" }, "This browser shows no WebGL, so the bench does not turn here: its side and top views follow."));
         return;
     }
+    // From here on all of the script has run, constants of other files included.
     const [vertices, triangles, coordinates, spots] = await Promise.all(["vertices", "triangles", "coordinates", "spots"].map((id) => numbers(`bench-${id}`)));
     const bench = buildBench(block, { vertices: vertices ?? [], triangles: triangles ?? [], coordinates: coordinates ?? [], spots: spots ?? [] });
     const layer = make("div", { class: "bench-names", "aria-hidden": "true" });

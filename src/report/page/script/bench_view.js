@@ -146,7 +146,7 @@ function startDirection(bench, up) {
  * @param {Exclude<ViewName, "3-D">} name
  */
 function planeOf(bench, name) {
-    const [x, y, z] = bench.block.up;
+    const [x, y] = bench.block.up;
     const [up, depth] = y === 1 ? ["y", "z"] : x === 1 ? ["x", "z"] : ["z", "y"];
     const across = x === 1 ? "y" : "x";
     return name === "Top" ? `${across}, ${depth}` : name === "Side" ? `${depth}, ${up}` : `${across}, ${up}`;
