@@ -22,9 +22,9 @@ const ARGUMENTS = [
 /**
  * Opens a page from disk or from an address of this machine. What the console calls an error, what is thrown, and what is asked of any other place, is in `errors`.
  */
-export async function openPage(path, { width = 1280, height = 800, colorScheme = "light", args = [] } = {}) {
+export async function openPage(path, { width = 1280, height = 800, colorScheme = "light", args = [], ...device } = {}) {
     const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: [...ARGUMENTS, ...args] });
-    const page = await browser.newPage({ viewport: { width, height }, colorScheme, acceptDownloads: true });
+    const page = await browser.newPage({ viewport: { width, height }, colorScheme, acceptDownloads: true, ...device });
     const errors = [];
     page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
     page.on("pageerror", (error) => errors.push(String(error)));

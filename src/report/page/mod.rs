@@ -39,8 +39,15 @@ impl Library {
 const LICENCES: &str = include_str!("vendor/LICENSES.txt");
 
 /// The page's own script, in the order in which it runs.
-const SCRIPT: [&str; 7] = [
+const SCRIPT: [&str; 14] = [
     include_str!("script/page.js"),
+    include_str!("script/bench.js"),
+    include_str!("script/bench_build.js"),
+    include_str!("script/bench_choose.js"),
+    include_str!("script/bench_labels.js"),
+    include_str!("script/bench_parts.js"),
+    include_str!("script/bench_steer.js"),
+    include_str!("script/bench_view.js"),
     include_str!("script/explorer.js"),
     include_str!("script/frames.js"),
     include_str!("script/plan.js"),

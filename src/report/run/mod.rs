@@ -1,5 +1,6 @@
 //! The page of a run.
 
+mod bench;
 mod difference;
 mod explorer;
 mod frames;
@@ -7,7 +8,6 @@ mod matrices;
 mod settings;
 
 use super::axis::significant;
-use super::drawing::bench_svg;
 use super::gallery::{recoveries, slides};
 use super::page::{Page, Tone, explained};
 use super::picard::picard_svg;
@@ -37,11 +37,7 @@ pub fn run_html(results: &RunResults) -> String {
         sentence.replace_range(..1, &first);
     }
     page.verdict(tone, &format!("{sentence}."));
-    let bench = format!(
-        "<figure class=\"bench\">\n{}</figure>\n",
-        bench_svg(&results.scene)
-    );
-    page.section("scene", "The scene", &bench);
+    bench::section(&mut page, &results.scene);
     let fallback = frames(results);
     let explorer = explorer(&mut page, results, &fallback);
     page.section("explorer", "Φcam, entry by entry", &explorer);
@@ -73,8 +69,7 @@ pub fn served_html(scene: &Scene, rendered: &Settings, model: bool) -> String {
         rendered.seed
     );
     page.verdict(Tone::Plain, &sentence);
-    let bench = format!("<figure class=\"bench\">\n{}</figure>\n", bench_svg(scene));
-    page.section("scene", "The scene", &bench);
+    bench::section(&mut page, scene);
     let explorer = served_explorer(&mut page, scene, model);
     page.section("explorer", "Φcam, entry by entry", &explorer);
     page.section("settings", "What was rendered", &scene_text(scene));
