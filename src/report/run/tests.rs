@@ -6,7 +6,10 @@ use super::*;
 fn needs_no_network(html: &str) {
     let ours: String = html
         .split("<script")
-        .map(|part| part.split_once("</script>").map_or(part, |(_, after)| after))
+        .map(|part| {
+            part.split_once("</script>")
+                .map_or(part, |(_, after)| after)
+        })
         .collect();
     let ours = ours.split("<details class=\"licences\">").next().unwrap();
     let style_and_markup = ours.replace("http://www.w3.org/2000/svg", "");
