@@ -122,7 +122,10 @@ pub(super) fn sheet([width, height]: [u32; 2], title: &str, note: &str) -> Svg {
     svg.text([16.0, 28.0], &style, title);
     if !note.is_empty() {
         let size = fitting(13.0, REGULAR, note);
-        let style = format!("font-size=\"{size}\" fill=\"{}\"", ink::GREY);
+        let style = format!(
+            "class=\"remark\" font-size=\"{size}\" fill=\"{}\"",
+            ink::GREY
+        );
         svg.text([16.0, 48.0], &style, note);
     }
     svg

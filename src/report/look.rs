@@ -21,6 +21,8 @@ const PRINTED: &str = "fill=\"none\" stroke=\"#222222\" stroke-width=\"1.3\"";
 enum Outline {
     /// A circle of this radius.
     Disc(f64),
+    /// An upright square of this half side.
+    Square(f64),
     /// A polygon.
     Corners(&'static [[f64; 2]]),
 }
@@ -28,7 +30,7 @@ enum Outline {
 /// Disc, square, triangle, diamond, triangle upside down, cross.
 const MARKS: [Outline; 6] = [
     Outline::Disc(3.2),
-    Outline::Corners(&[[-2.9, -2.9], [2.9, -2.9], [2.9, 2.9], [-2.9, 2.9]]),
+    Outline::Square(2.9),
     Outline::Corners(&[[0.0, -4.2], [3.8, 2.7], [-3.8, 2.7]]),
     Outline::Corners(&[[0.0, -4.4], [4.0, 0.0], [0.0, 4.4], [-4.0, 0.0]]),
     Outline::Corners(&[[0.0, 4.2], [3.8, -2.7], [-3.8, -2.7]]),
@@ -51,7 +53,7 @@ const MARKS: [Outline; 6] = [
 /// Published points: an open circle for the first set, an open square for the second, a diamond for the third, around the computed mark where they agree.
 const PRINTED_MARKS: [Outline; 3] = [
     Outline::Disc(6.2),
-    Outline::Corners(&[[-5.8, -5.8], [5.8, -5.8], [5.8, 5.8], [-5.8, 5.8]]),
+    Outline::Square(5.8),
     Outline::Corners(&[[0.0, -7.6], [7.6, 0.0], [0.0, 7.6], [-7.6, 0.0]]),
 ];
 
@@ -59,6 +61,7 @@ impl Outline {
     fn draw(&self, svg: &mut Svg, [x, y]: [f64; 2], style: &str) {
         match self {
             Self::Disc(r) => svg.circle([x, y], *r, style),
+            Self::Square(h) => svg.rect([x - h, y - h], [2.0 * h; 2], style),
             Self::Corners(corners) => {
                 let placed: Vec<[f64; 2]> =
                     corners.iter().map(|[dx, dy]| [x + dx, y + dy]).collect();
@@ -71,6 +74,7 @@ impl Outline {
     fn told(&self) -> Value {
         match self {
             Self::Disc(r) => json!(r),
+            Self::Square(h) => json!([[-h, -h], [h, -h], [h, *h], [-h, *h]]),
             Self::Corners(corners) => json!(corners),
         }
     }

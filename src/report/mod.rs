@@ -40,6 +40,7 @@ mod run;
 #[cfg(test)]
 mod sample;
 mod shown;
+mod study;
 mod summary;
 mod svg;
 mod table;
@@ -70,6 +71,11 @@ pub use reproduce::{
 };
 pub use run::run_html;
 pub use shown::Shown;
+pub use study::{
+    Account, Asked, brdf_account, budget_account, convergence_account, coverage_account,
+    experiment_account, indicator_account, noise_account, power_account, study_html,
+    tolerance_account,
+};
 pub use summary::summary_json;
 pub use table::{recovery_table, summary_table, verdict_table};
 pub use target::target_png;

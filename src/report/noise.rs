@@ -166,7 +166,7 @@ fn best_table(study: &NoiseStudy) -> String {
 }
 
 /// The scene, and the sensor if the axis has one.
-fn place(study: &NoiseStudy) -> String {
+pub(super) fn place(study: &NoiseStudy) -> String {
     match &study.sensor {
         Some(sensor) => format!("{}, sensor {sensor}", study.scene),
         None => study.scene.clone(),
@@ -177,7 +177,7 @@ fn figure(x: Option<f64>, digits: usize) -> String {
     x.map_or("–".to_owned(), |x| significant(x, digits))
 }
 
-fn level(lost: Lost) -> String {
+pub(super) fn level(lost: Lost) -> String {
     match lost {
         Lost::At(level) => significant(level, 2),
         Lost::Before => "always".to_owned(),

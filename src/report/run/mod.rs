@@ -261,7 +261,7 @@ fn settings(results: &RunResults) -> String {
 }
 
 /// Whether the scene's name alone is enough to load it again.
-fn is_builtin(scene: &Scene) -> bool {
+pub(super) fn is_builtin(scene: &Scene) -> bool {
     builtins()
         .iter()
         .any(|b| b.name == scene.name && b.text == scene.text)

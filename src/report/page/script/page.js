@@ -1,21 +1,16 @@
 // What every part of the page's script stands on: elements, data, numbers as text, colours, and what is chosen.
 
 /**
- * Calls `start` for each element of the page that `selector` names. An error in one leaves the others alone, and that element says it.
+ * Calls `start` for each element of the page that `selector` names, once every part of the script is there. An error in one leaves the others alone, and that element says it.
  * @param {string} selector
  * @param {(element: HTMLElement) => void | Promise<void>} start
  */
 function upgrade(selector, start) {
     for (const element of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll(selector))) {
-        const said = (/** @type {unknown} */ error) => {
+        Promise.resolve().then(() => start(element)).catch((error) => {
             console.error(error);
             element.prepend(make("p", { class: "note" }, `This part of the page does not answer: ${error}`));
-        };
-        try {
-            Promise.resolve(start(element)).catch(said);
-        } catch (error) {
-            said(error);
-        }
+        });
     }
 }
 
