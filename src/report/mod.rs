@@ -67,7 +67,8 @@ pub use portrait::portrait_png;
 pub use power::power_table;
 pub use relief::{recovered_ply, texture_png};
 pub use reproduce::{
-    ItemSummary, reproduction_files, reproduction_html, reproduction_markdown, reproduction_table,
+    ItemSummary, ReproductionSettings, reproduction_files, reproduction_html,
+    reproduction_markdown, reproduction_table,
 };
 pub use run::run_html;
 pub use shown::Shown;

@@ -2,16 +2,83 @@
 
 use std::path::PathBuf;
 
-use clap::{Args as Arguments, Subcommand};
+use clap::error::Error;
+use clap::{ArgMatches, Args as Arguments, Command, FromArgMatches, Subcommand};
 
 use super::laboratory::{BrdfArgs, CoverageArgs, ExperimentArgs};
 use super::sweep::{IndicatorArgs, NoiseArgs};
 use super::{EstimatorName, SamplerName};
 
-#[derive(Debug, Arguments)]
+/// A study with every option of it as it was given, or as it is unless given.
+#[derive(Debug)]
 pub(in crate::cli) struct StudyArgs {
-    #[command(subcommand)]
     pub command: StudyCommand,
+    /// Name of the study.
+    pub name: String,
+    /// Options that decide what comes out, with their values.
+    pub options: Vec<(String, String)>,
+}
+
+/// What does not change what comes out, or is no option.
+const APART: [&str; 7] = [
+    "scene",
+    "output",
+    "threads",
+    "json",
+    "quiet",
+    "also_read",
+    "help",
+];
+
+impl StudyArgs {
+    fn command(base: Command) -> Command {
+        StudyCommand::augment_subcommands(base)
+            .subcommand_required(true)
+            .arg_required_else_help(true)
+    }
+
+    /// The options of the study that `matches` names, in the order in which its help lists them.
+    fn said(matches: &ArgMatches) -> (String, Vec<(String, String)>) {
+        let Some((name, given)) = matches.subcommand() else {
+            return Default::default();
+        };
+        let studies = Self::command(Command::new("study"));
+        let known = studies.find_subcommand(name).into_iter();
+        let option = |arg: &clap::Arg| {
+            let id = arg.get_id().as_str();
+            let values = given.get_raw(id).filter(|_| !APART.contains(&id))?;
+            let values: Vec<_> = values.map(|v| v.to_string_lossy()).collect();
+            Some((format!("--{}", arg.get_long()?), values.join(",")))
+        };
+        let options = known.flat_map(Command::get_arguments).filter_map(option);
+        (name.to_owned(), options.collect())
+    }
+}
+
+impl FromArgMatches for StudyArgs {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        let (name, options) = Self::said(matches);
+        Ok(Self {
+            command: StudyCommand::from_arg_matches(matches)?,
+            name,
+            options,
+        })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Arguments for StudyArgs {
+    fn augment_args(base: Command) -> Command {
+        Self::command(base)
+    }
+
+    fn augment_args_for_update(base: Command) -> Command {
+        Self::command(base)
+    }
 }
 
 #[derive(Debug, Subcommand)]
