@@ -215,3 +215,55 @@ pub(in crate::cli) struct BudgetArgs {
     #[arg(long)]
     pub json: bool,
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::super::{Args, Command as Top};
+    use super::*;
+
+    fn parsed(line: &str) -> StudyArgs {
+        let words = std::iter::once("phicam").chain(line.split_whitespace());
+        match Args::try_parse_from(words).unwrap().command {
+            Top::Study(args) => args,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// What is told of a study is the whole of it: asked for in these words it is the same study.
+    #[test]
+    fn the_options_that_are_told_repeat_the_study() {
+        for line in [
+            "study budget s.toml --samples 32 -o elsewhere --threads 1 --json",
+            "study power s.toml --estimator shared,factored --sampler pcg --samples=8,16",
+            "study tolerance --noise 1e-3",
+            "study convergence s.toml --samples 8,16 --seed 7",
+            "study noise s.toml --axis photons --noise 1e-3,1e-2 --seeds 3 --boards 2,4 --method pinv,joint",
+            "study indicator s.toml --seeds 3",
+            "study brdf s.toml --samples 64",
+            "study coverage s.toml --noise 0.02 --confidence 0.9",
+            "study experiment s.toml --glares 1 --exposures 1,2 --seeds 2 -q",
+        ] {
+            let first = parsed(line);
+            let told = |args: &StudyArgs| {
+                let options = args.options.iter().map(|(o, v)| format!(" {o} {v}"));
+                format!(
+                    "study {} {}{}",
+                    args.name,
+                    args.command.scene(),
+                    options.collect::<String>()
+                )
+            };
+            let again = parsed(&told(&first));
+            assert_eq!(first.options, again.options, "{line}");
+            let apart = |args: &StudyArgs| {
+                let text = format!("{:?}", args.command);
+                let text = text.replace("\"elsewhere\"", &format!("\"out/{}\"", args.name));
+                let text = text.replace("threads: Some(1)", "threads: None");
+                text.replace("json: true", "json: false")
+            };
+            assert_eq!(apart(&first), apart(&again), "{line}");
+        }
+    }
+}

@@ -42,7 +42,7 @@ impl Library {
 const LICENCES: &str = include_str!("vendor/LICENSES.txt");
 
 /// The page's own script, in the order in which it runs.
-const SCRIPT: [&str; 7] = [
+const SCRIPT: [&str; 8] = [
     include_str!("script/page.js"),
     include_str!("script/axes.js"),
     include_str!("script/download.js"),
@@ -50,6 +50,7 @@ const SCRIPT: [&str; 7] = [
     include_str!("script/look.js"),
     include_str!("script/plots.js"),
     include_str!("script/read.js"),
+    include_str!("script/thin.js"),
 ];
 
 /// The page's own style.

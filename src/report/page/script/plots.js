@@ -12,7 +12,7 @@
 
 /** More points of a line than this are not all marked. */
 const MOST_MARKS = 40;
-const MARGIN = { top: 8, right: 16, bottom: 46, left: 66 };
+const MARGIN = { top: 8, right: 16, bottom: 46, left: 62 };
 
 /** @type {WeakMap<object, { xs: ArrayLike<number>, ys: ArrayLike<number> }>} */
 const knownColumns = new WeakMap();
@@ -73,6 +73,9 @@ function plotElement(spec, width) {
     const height = spec.height ?? Math.round(Math.min(360, Math.max(230, 0.66 * width)));
     const [x, y] = /** @type {const} */ (["x", "y"]).map((side) => plotEnds(spec, side));
     const [ticksX, ticksY] = [ticksOf(spec.x.run, x, width < 420 ? 5 : 7), ticksOf(spec.y.run, y, 7)];
+    // Ticks that are long have room.
+    const longest = Math.max(0, ...Array.from(ticksY.values(), (text) => [...text].reduce((sum, c) => sum + (RAISED.has(c) ? 5.6 : 8), 0)));
+    const left = Math.max(MARGIN.left, 36 + longest);
     const [slackX, slackY] = [slack(spec.x.run, x), slack(spec.y.run, y)];
     const inside = (/** @type {number} */ a, /** @type {number} */ b) => a >= slackX[0] && a <= slackX[1] && b >= slackY[0] && b <= slackY[1];
     const grid = { stroke: "#d0d0d0", strokeOpacity: 1, strokeWidth: 0.6 };
@@ -82,26 +85,25 @@ function plotElement(spec, width) {
     for (const series of spec.series.filter((s) => s.hidden !== true)) {
         const { xs, ys } = columns(series);
         const { ink, dash, outline, fill, stroke, width: strokeWidth } = lookOf(series);
-        const shown = Array.from({ length: xs.length }, (_, i) => i).filter((i) => inside(xs[i], ys[i]));
+        const each = series.kind === "line" || series.kind === undefined ? Math.max(1, Math.ceil(xs.length / MOST_MARKS)) : 1;
+        const shown = Array.from({ length: xs.length }, (_, i) => i).filter((i) => inside(xs[i], ys[i])).filter((_, k) => k % each === 0);
         const at = (/** @type {number[]} */ rows) => ({ x: rows.map((i) => xs[i]), y: rows.map((i) => ys[i]) });
         if (series.kind === "points") {
             dots.push(Plot.dot(shown, { ...at(shown), r: 1.8, fill: ink, fillOpacity: 0.5, stroke: "none" }));
             continue;
         }
         if (series.kind !== "published") {
-            const all = Array.from({ length: xs.length }, (_, i) => i);
             if (series.low !== undefined && series.high !== undefined) {
                 const within = (/** @type {number} */ v) => Math.min(y[1], Math.max(y[0], v));
-                const [low, high] = [Array.from(series.low, within), Array.from(series.high, within)];
-                marks.push(Plot.areaY(all, { x: Array.from(xs), y1: low, y2: high, fill: ink, fillOpacity: 0.18 }));
+                const band = thinnedBand(xs, series.low, series.high, width);
+                marks.push(Plot.areaY(band.x, { x: band.x, y1: band.low.map(within), y2: band.high.map(within), fill: ink, fillOpacity: 0.18 }));
             }
             // Beyond the axes there is no line.
-            const line = Array.from(ys, (v, i) => (inside(xs[i], v) ? v : NaN));
-            marks.push(Plot.line(all, { x: Array.from(xs), y: line, stroke: ink, strokeWidth: 1.6, strokeLinejoin: "round", strokeDasharray: dash || undefined }));
+            const line = Float64Array.from(ys, (v, i) => (inside(xs[i], v) ? v : NaN));
+            const rows = thinned(line, width);
+            marks.push(Plot.line(rows, { x: rows.map((i) => xs[i]), y: rows.map((i) => line[i]), stroke: ink, strokeWidth: 1.6, strokeLinejoin: "round", strokeDasharray: dash || undefined }));
         }
-        const each = series.kind === "published" ? 1 : Math.max(1, Math.ceil(xs.length / MOST_MARKS));
-        const marked = shown.filter((_, k) => k % each === 0);
-        dots.push(Plot.dot(marked, { ...at(marked), r: 3, symbol: /** @type {any} */ (symbolOf(outline)), fill, stroke, strokeWidth }));
+        dots.push(Plot.dot(shown, { ...at(shown), r: 3, symbol: /** @type {any} */ (symbolOf(outline)), fill, stroke, strokeWidth }));
     }
     const scale = (/** @type {AxisRun} */ run, /** @type {[number, number]} */ domain, /** @type {Map<number, string>} */ ticks) => ({
         type: run === "logarithmic" ? /** @type {const} */ ("log") : /** @type {const} */ ("linear"),
@@ -118,14 +120,14 @@ function plotElement(spec, width) {
         marginTop: MARGIN.top,
         marginRight: MARGIN.right,
         marginBottom: MARGIN.bottom,
-        marginLeft: MARGIN.left,
+        marginLeft: left,
         style: { fontFamily: FAMILIES, fontSize: "13px", color: "#222222", background: "none", overflow: "visible" },
         x: scale(spec.x.run, x, ticksX),
         y: scale(spec.y.run, y, ticksY),
         marks: [...marks, ...dots],
     }));
     svg.querySelectorAll("text").forEach((text) => setRaised(text, text.textContent ?? ""));
-    const across = [MARGIN.left, width - MARGIN.right];
+    const across = [left, width - MARGIN.right];
     const up = [MARGIN.top, height - MARGIN.bottom];
     axisTitle(svg, spec.x.title, across[1] - across[0], `translate(${(across[0] + across[1]) / 2} ${height - 8})`);
     axisTitle(svg, spec.y.title, up[1] - up[0], `translate(14 ${(up[0] + up[1]) / 2}) rotate(-90)`);
