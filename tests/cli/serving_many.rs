@@ -71,7 +71,6 @@ fn a_thousand_clients_at_once_are_all_answered() {
     let server = Server::of(&workspace, "out");
     let answered = AtomicUsize::new(0);
     let start = Instant::now();
-    let mut most = 0;
     thread::scope(|scope| {
         for n in 0..CLIENTS {
             let (server, answered, phi, file) = (&server, &answered, &phi, &file);
@@ -106,17 +105,14 @@ fn a_thousand_clients_at_once_are_all_answered() {
         while answered.load(Ordering::Relaxed) < CLIENTS {
             let long = start.elapsed().as_secs();
             assert!(long < 100, "{answered:?} clients answered in {long} s");
-            most = most.max(server.connections());
-            thread::sleep(Duration::from_millis(1));
+            thread::sleep(Duration::from_millis(10));
         }
     });
     let peak = server.peak();
     eprintln!(
-        "{CLIENTS} clients, 3 questions each: {:?}, {most} connections at most, {peak} KiB",
+        "{CLIENTS} clients, 3 questions each: {:?}, {peak} KiB",
         start.elapsed()
     );
-    // While they are counted one may end and another begin.
-    assert!(most <= CONNECTIONS + 8, "{most} connections");
     assert!(peak < MEMORY, "{peak} KiB");
     server.ends();
 }
@@ -142,6 +138,17 @@ fn whoever_has_had_an_answer_makes_room_for_the_next() {
     let passed = start.elapsed();
     assert!(passed < Duration::from_secs(9), "{passed:?}");
     drop(kept);
+    // Of more that say nothing it holds as many as it may, and the system the others.
+    let silent: Vec<_> = (0..CONNECTIONS + 50)
+        .map(|_| connect(server.address()))
+        .collect();
+    let start = Instant::now();
+    while server.connections() < CONNECTIONS && start.elapsed() < Duration::from_secs(5) {
+        thread::sleep(Duration::from_millis(10));
+    }
+    thread::sleep(Duration::from_millis(500));
+    assert_eq!(server.connections(), CONNECTIONS);
+    drop(silent);
     server.ends();
 }
 
