@@ -51,6 +51,7 @@ mod render;
 mod reproduce;
 mod run;
 mod scene;
+pub mod serve;
 mod settings;
 mod stack;
 mod stale;
@@ -95,6 +96,7 @@ pub fn main() -> ExitCode {
         Command::Recover(a) => recover::execute(a, talk),
         Command::Expose(a) => expose::execute(a, talk),
         Command::View(a) => view::execute(a, talk),
+        Command::Serve(a) => serve::execute(a, talk),
         Command::Scene(a) => scene::execute(a, talk),
         Command::Target(a) => target::execute(a, talk),
         Command::Plan(a) => many::plan::execute(a, talk),

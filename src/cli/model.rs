@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use serde_json::json;
+
 use super::args::ModelArgs;
 use super::failure::Failure;
 use super::folder::Folder;
@@ -31,17 +33,30 @@ pub(super) fn execute(args: &ModelArgs, talk: Talk) -> Result<Outcome, Failure> 
     folder.refuse_foreign(&scene)?;
     ensure_writable(&args.output)?;
     talk.warn(&scene);
-    let (phi, how) = match settings::integration(args.integration) {
-        Integration::Centres => (model.phi(), "by centres".to_owned()),
+    let (phi, change, how) = match settings::integration(args.integration) {
+        Integration::Centres => (model.phi(), None, "by centres".to_owned()),
         Integration::Quadrature => {
             let integral = converged(&scene, kernel, Extent::FULL)?;
             let how = format!("by quadrature, last refinement {:.1e}", integral.change);
-            (integral.phi, how)
+            (integral.phi, Some(integral.change), how)
         }
     };
     // Which scene the matrices are of: nothing else in the folder says so if nothing is rendered into it.
     folder.write_scene(&scene)?;
     write(&args.output, &model, &phi)?;
+    if args.json {
+        let shape = |m: &Matrix| [m.nrows(), m.ncols()];
+        let text = output::json(&json!({
+            "folder": args.output.join("model").to_string_lossy(),
+            "kernel": kernel.name(),
+            "g12": shape(&model.g12),
+            "g23": shape(&model.g23),
+            "phi": shape(&phi),
+            "last_refinement": change,
+        }))?;
+        output::print(&text)?;
+        return Ok(Outcome::Done);
+    }
     let text = format!(
         "{}: g12.npy {} × {}, g23.npy {} × {}, phi.npy {} × {} ({} kernel, {how})\n",
         args.output.join("model").display(),

@@ -8,9 +8,10 @@ use super::args::ReproduceArgs;
 use super::failure::Failure;
 use super::interrupt::stop_flag;
 use super::output::{self, Talk};
+use super::record::version;
 use super::tasks::{Cut, encoded};
 use super::{Outcome, progress, settings};
-use crate::report::{self, ItemSummary};
+use crate::report::{self, ItemSummary, ReproductionSettings};
 use crate::store::{ensure_writable, write_whole};
 use crate::study::reproduce::{
     Item, ReproduceError, ReproducePlan, ReproduceTasks, Reproduction, reproduce,
@@ -117,9 +118,15 @@ fn finished(folder: &Path, item: Item, settings: &str) -> Option<ItemSummary> {
 fn pages(folder: &Path, plan: &ReproducePlan) -> Result<(), Failure> {
     let of = |i: &Item| finished(folder, *i, &plan.settings(*i));
     let found: Vec<ItemSummary> = Item::ALL.iter().filter_map(of).collect();
+    let settings = ReproductionSettings {
+        plan,
+        version: version(),
+    };
+    let read = |file: &str| fs::read(folder.join(file)).ok();
+    let html = report::reproduction_html(&found, settings, read);
     for (name, text) in [
         ("reproduction.md", report::reproduction_markdown(&found)),
-        ("reproduction.html", report::reproduction_html(&found)),
+        ("reproduction.html", html),
     ] {
         output::deliver(&text, Some(&folder.join(name)))?;
     }

@@ -8,6 +8,7 @@ use super::failure::Failure;
 use super::folder::{Keep, REPORT, SUMMARY};
 use super::interrupt::stop_flag;
 use super::output::{self, Talk};
+use super::progress;
 use super::record::Record;
 use super::render::{self, Rendered};
 use super::trust;
@@ -19,7 +20,8 @@ use crate::model::MatrixModel;
 use crate::recovery::{Method, Nuisance, Options};
 use crate::report;
 use crate::store::write_whole;
-use crate::study::{self, Noise, RunResults};
+use crate::study::{self, Gallery, GalleryPlan, GalleryTasks, Noise, RunResults};
+use crate::transport::Control;
 
 pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
     let scene = trust::load(&args.scene)?;
@@ -62,6 +64,7 @@ pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
         agreement: None,
         recovered: Vec::new(),
         picards: Vec::new(),
+        gallery: None,
         times: Vec::new(),
         scene,
     };
@@ -154,7 +157,29 @@ fn compare_and_recover(
         &results.picards,
     )?;
     clock.lap("recover")?;
+
+    results.gallery = gallery(results, &matrices, talk);
+    clock.lap("gallery")?;
     Ok(())
+}
+
+/// The object over regularisation and noise; none where there is nothing to show, and where it was stopped.
+fn gallery(results: &RunResults, matrices: &MatrixModel, talk: Talk) -> Option<Gallery> {
+    let tasks = GalleryTasks::new(
+        &results.scene,
+        matrices,
+        (&results.phi, &results.stderr),
+        &results.recovered,
+        GalleryPlan::of_run(results.settings.seed),
+    )?;
+    let bar = progress::steps(talk, "recovering over regularisation and noise");
+    bar.set_length(tasks.count());
+    let found = tasks.gallery(Control {
+        progress: &|steps| bar.inc(steps),
+        stop: stop_flag(),
+    });
+    bar.finish_and_clear();
+    found
 }
 
 /// Below 1.2e-38 numbers of f32 lose their digits; a frame whose brightest pixel is fainter than this has such in it.

@@ -70,18 +70,18 @@ pub fn brdf_table(study: &BrdfStudy) -> String {
     out
 }
 
-fn rows(study: &BrdfStudy) -> impl Iterator<Item = &Assumption> {
+pub(super) fn rows(study: &BrdfStudy) -> impl Iterator<Item = &Assumption> {
     study.assumptions.iter().chain([&study.lambertian_case])
 }
 
-fn verdict(a: &Assumption) -> &'static str {
+pub(super) fn verdict(a: &Assumption) -> &'static str {
     match a.agreement.agrees {
         true => "agrees",
         false => "rejected",
     }
 }
 
-fn spread(s: Option<Spread>) -> String {
+pub(super) fn spread(s: Option<Spread>) -> String {
     let Some(s) = s else {
         return "–".to_owned();
     };

@@ -1,7 +1,9 @@
 //! Line charts.
 
 use super::axis::{tick, ticks};
+use super::look::{colour, mark, printed_mark, sample, style};
 use super::picture::scientific;
+use super::plotted::{Kind, metadata};
 use super::raster::FAMILIES;
 use super::svg::{Close, Svg, escape, ink, number, raised};
 
@@ -95,89 +97,8 @@ pub(super) struct Series {
     pub points: Vec<[f64; 2]>,
 }
 
-/// Inks, dashes and marks that go together: each of them alone tells the first six series apart, with and without colour; the next six have hollow marks and
-/// other dashes.
-const INKS: [&str; 6] = [
-    ink::BLUE,
-    ink::VERMILLION,
-    ink::GREEN,
-    ink::PURPLE,
-    ink::ORANGE,
-    ink::BLACK,
-];
-const DASHES: [&str; 6] = ["", "8 3", "2 2.5", "9 3 2 3", "4 4", "10 3 2 3 2 3"];
 /// More points of a line than this are not all marked.
 const MOST_MARKS: usize = 40;
-
-/// The ink of series `i`.
-pub(super) fn colour(i: usize) -> &'static str {
-    INKS[i % INKS.len()]
-}
-
-/// The dash of series `i`; from the seventh on inks come again with other dashes.
-fn dash(i: usize) -> &'static str {
-    DASHES[(i + i / INKS.len()) % DASHES.len()]
-}
-
-/// The look of line `i`.
-pub(super) fn style(i: usize) -> String {
-    let dashes = match dash(i) {
-        "" => String::new(),
-        lengths => format!(" stroke-dasharray=\"{lengths}\""),
-    };
-    format!(
-        "fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\" stroke-linejoin=\"round\"{dashes}",
-        colour(i)
-    )
-}
-
-/// The mark of series `i`: disc, square, triangle, diamond, triangle upside down, cross.
-pub(super) fn mark(svg: &mut Svg, [x, y]: [f64; 2], i: usize) {
-    let ink = colour(i);
-    let fill = match (i / INKS.len()) % 2 {
-        0 => format!("fill=\"{ink}\""),
-        _ => format!("fill=\"white\" stroke=\"{ink}\" stroke-width=\"1.2\""),
-    };
-    let shape = |svg: &mut Svg, corners: &[[f64; 2]]| {
-        let placed: Vec<[f64; 2]> = corners.iter().map(|[dx, dy]| [x + dx, y + dy]).collect();
-        svg.path(&placed, Close::Yes, &fill);
-    };
-    match i % INKS.len() {
-        0 => svg.circle([x, y], 3.2, &fill),
-        1 => svg.rect([x - 2.9, y - 2.9], [5.8, 5.8], &fill),
-        2 => shape(svg, &[[0.0, -4.2], [3.8, 2.7], [-3.8, 2.7]]),
-        3 => shape(svg, &[[0.0, -4.4], [4.0, 0.0], [0.0, 4.4], [-4.0, 0.0]]),
-        4 => shape(svg, &[[0.0, 4.2], [3.8, -2.7], [-3.8, -2.7]]),
-        _ => {
-            let [a, b] = [1.1, 3.8];
-            shape(
-                svg,
-                &[
-                    [-a, -b],
-                    [a, -b],
-                    [a, -a],
-                    [b, -a],
-                    [b, a],
-                    [a, a],
-                    [a, b],
-                    [-a, b],
-                    [-a, a],
-                    [-b, a],
-                    [-b, -a],
-                    [-a, -a],
-                ],
-            );
-        }
-    }
-}
-
-/// A sample of line `i` with its mark for a legend, 30 px long.
-pub(super) fn sample(i: usize) -> String {
-    let mut svg = Svg::default();
-    svg.line([0.0, 0.0], [30.0, 0.0], &style(i));
-    mark(&mut svg, [15.0, 0.0], i);
-    svg.text
-}
 
 /// Width of a character over the size of its type, bold and regular, rounded up.
 const BOLD: f64 = 0.68;
@@ -201,7 +122,10 @@ pub(super) fn sheet([width, height]: [u32; 2], title: &str, note: &str) -> Svg {
     svg.text([16.0, 28.0], &style, title);
     if !note.is_empty() {
         let size = fitting(13.0, REGULAR, note);
-        let style = format!("font-size=\"{size}\" fill=\"{}\"", ink::GREY);
+        let style = format!(
+            "class=\"remark\" font-size=\"{size}\" fill=\"{}\"",
+            ink::GREY
+        );
         svg.text([16.0, 48.0], &style, note);
     }
     svg
@@ -225,18 +149,63 @@ impl Area {
     }
 }
 
-/// Where a point lies in the plotting area with that upper left corner and size; `None` where the axes do not reach.
-pub(super) fn place(
-    corner: [f64; 2],
-    size: [f64; 2],
-    axes: [&Axis; 2],
-    point: &[f64; 2],
-) -> Option<[f64; 2]> {
-    Area { corner, size }.place(axes, point)
+/// A panel of a figure: its plotting area (upper left corner, width and height), axes, lines, and the published points over them. The title is for those who read
+/// the figure's data; whoever draws the panel sets it where it has room.
+pub(super) struct Panel<'a> {
+    pub corner: [f64; 2],
+    pub size: [f64; 2],
+    pub axes: [&'a Axis; 2],
+    pub title: &'a str,
+    pub series: &'a [Series],
+    pub published: &'a [Series],
 }
 
-/// Draws a panel with its axes, grid and lines; `corner` is the upper left corner of the plotting area, `size` its width and
-/// height. Points beyond the axes are left out, and the line is broken there.
+impl Panel<'_> {
+    /// Draws axes, grid, lines and points, and leaves the data. Points beyond the axes are left out, and the line is broken there.
+    pub(super) fn draw(&self, svg: &mut Svg) {
+        let Self {
+            corner,
+            size,
+            axes,
+            series,
+            ..
+        } = *self;
+        let area = Area { corner, size };
+        svg.raw("<g class=\"panel\">");
+        let kinds = [(Kind::Line, series), (Kind::Published, self.published)];
+        svg.raw(&metadata(self.title, [corner, size], axes, &kinds));
+        frame(svg, area, axes);
+        // Lines first, so that no line hides a mark.
+        let runs = |s: &Series| -> Vec<Vec<[f64; 2]>> {
+            let placed: Vec<Option<[f64; 2]>> =
+                s.points.iter().map(|p| area.place(axes, p)).collect();
+            let runs = placed.split(Option::is_none);
+            runs.map(|run| run.iter().flatten().copied().collect())
+                .collect()
+        };
+        for (i, s) in series.iter().enumerate() {
+            for run in runs(s).iter().filter(|run| run.len() > 1) {
+                svg.path(run, Close::No, &style(i));
+            }
+        }
+        for (i, s) in series.iter().enumerate() {
+            let each = s.points.len().div_ceil(MOST_MARKS).max(1);
+            for run in runs(s) {
+                for p in run.into_iter().step_by(each) {
+                    mark(svg, p, i);
+                }
+            }
+        }
+        for (i, s) in self.published.iter().enumerate() {
+            for p in s.points.iter().filter_map(|p| area.place(axes, p)) {
+                printed_mark(svg, p, i);
+            }
+        }
+        svg.raw("</g>");
+    }
+}
+
+/// Draws a panel of lines that needs no title; see [`Panel`].
 pub(super) fn panel(
     svg: &mut Svg,
     corner: [f64; 2],
@@ -244,28 +213,15 @@ pub(super) fn panel(
     axes: [&Axis; 2],
     series: &[Series],
 ) {
-    let area = Area { corner, size };
-    frame(svg, area, axes);
-    // Lines first, so that no line hides a mark.
-    let runs = |s: &Series| -> Vec<Vec<[f64; 2]>> {
-        let placed: Vec<Option<[f64; 2]>> = s.points.iter().map(|p| area.place(axes, p)).collect();
-        let runs = placed.split(Option::is_none);
-        runs.map(|run| run.iter().flatten().copied().collect())
-            .collect()
-    };
-    for (i, s) in series.iter().enumerate() {
-        for run in runs(s).iter().filter(|run| run.len() > 1) {
-            svg.path(run, Close::No, &style(i));
-        }
+    Panel {
+        corner,
+        size,
+        axes,
+        title: "",
+        series,
+        published: &[],
     }
-    for (i, s) in series.iter().enumerate() {
-        let each = s.points.len().div_ceil(MOST_MARKS).max(1);
-        for run in runs(s) {
-            for p in run.into_iter().step_by(each) {
-                mark(svg, p, i);
-            }
-        }
-    }
+    .draw(svg);
 }
 
 /// Draws a panel with its axes, grid and points without lines; points beyond the axes are left out. Returns how many.
@@ -277,6 +233,13 @@ pub(super) fn scatter(
     series: &[Series],
 ) -> usize {
     let area = Area { corner, size };
+    svg.raw("<g class=\"panel\">");
+    svg.raw(&metadata(
+        "",
+        [corner, size],
+        axes,
+        &[(Kind::Points, series)],
+    ));
     frame(svg, area, axes);
     let mut beyond = 0;
     for (i, s) in series.iter().enumerate() {
@@ -288,6 +251,7 @@ pub(super) fn scatter(
             }
         }
     }
+    svg.raw("</g>");
     beyond
 }
 
@@ -359,26 +323,7 @@ pub(super) fn superscript(n: i32) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::svg::well_formed;
     use super::*;
-
-    /// Twelve series look different without their colours, and the first six by their marks alone.
-    #[test]
-    fn series_are_told_apart_without_colour() {
-        let grey = |text: String| INKS.iter().fold(text, |t, ink| t.replace(ink, "grey"));
-        let samples: Vec<String> = (0..12).map(|i| grey(sample(i))).collect();
-        for (i, a) in samples.iter().enumerate() {
-            well_formed(a).unwrap();
-            assert!(samples[..i].iter().all(|b| a != b), "{i}");
-        }
-        let marks = (0..6).map(|i| {
-            let mut svg = Svg::default();
-            mark(&mut svg, [0.0, 0.0], i);
-            grey(svg.text)
-        });
-        let marks: Vec<String> = marks.collect();
-        assert!((0..6).all(|i| marks[..i].iter().all(|m| *m != marks[i])));
-    }
 
     /// A title of any length ends on the sheet: its type times its letters is no wider.
     #[test]

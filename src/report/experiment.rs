@@ -45,7 +45,7 @@ fn block(settings: &[Setting], title: &str, head: impl Fn(&Setting) -> String) -
     out
 }
 
-fn spreads(settings: &[Setting]) -> Vec<&str> {
+pub(super) fn spreads(settings: &[Setting]) -> Vec<&str> {
     let mut found: Vec<&str> = Vec::new();
     for s in settings {
         if !found.contains(&s.spread.as_str()) {

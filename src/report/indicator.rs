@@ -195,7 +195,7 @@ pub fn indicator_svg(study: &Indicator) -> String {
         0 => "every point lies within the axes".to_owned(),
         n => format!("{n} points lie beyond the axes; all are in the tables"),
     };
-    svg.text([16.0, 46.0], "fill=\"#6b6b6b\"", &note);
+    svg.text([16.0, 46.0], "class=\"remark\" fill=\"#6b6b6b\"", &note);
     svg.raw("</svg>\n");
     svg.text
 }

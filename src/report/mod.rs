@@ -22,12 +22,14 @@ mod hull;
 mod indicator;
 mod key;
 mod label;
+mod look;
 mod mark;
 mod mitsuba;
 mod noise;
 mod page;
 mod picard;
 mod picture;
+mod plotted;
 mod portrait;
 mod power;
 mod projection;
@@ -38,6 +40,7 @@ mod run;
 #[cfg(test)]
 mod sample;
 mod shown;
+mod study;
 mod summary;
 mod svg;
 mod table;
@@ -64,12 +67,18 @@ pub use portrait::portrait_png;
 pub use power::power_table;
 pub use relief::{recovered_ply, texture_png};
 pub use reproduce::{
-    ItemSummary, reproduction_files, reproduction_html, reproduction_markdown, reproduction_table,
+    ItemSummary, ReproductionSettings, reproduction_files, reproduction_html,
+    reproduction_markdown, reproduction_table,
 };
 pub use run::{run_html, served_html};
 pub use shown::Shown;
+pub use study::{
+    Account, Asked, brdf_account, budget_account, convergence_account, coverage_account,
+    experiment_account, indicator_account, noise_account, power_account, study_html,
+    tolerance_account,
+};
 pub use summary::summary_json;
-pub use table::{recovery_table, summary_table, verdict_table};
+pub use table::{recovery_table, render_table, summary_table, verdict_table};
 pub use target::target_png;
 pub use terminal::{iterm, kitty};
 pub use tolerance::{tolerance_csv, tolerance_svg, tolerance_table};

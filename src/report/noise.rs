@@ -1,7 +1,7 @@
 //! The noise study as text and as figures.
 
 use super::axis::significant;
-use super::chart::{Axis, Run, Series, legend, panel, sheet};
+use super::chart::{Axis, Panel, Run, Series, legend, sheet};
 use crate::study::{Best, LIMITS, Lost, NoiseCurve, NoiseStudy, Point, Reach, Spacing, Spread};
 
 /// What a figure shows.
@@ -166,7 +166,7 @@ fn best_table(study: &NoiseStudy) -> String {
 }
 
 /// The scene, and the sensor if the axis has one.
-fn place(study: &NoiseStudy) -> String {
+pub(super) fn place(study: &NoiseStudy) -> String {
     match &study.sensor {
         Some(sensor) => format!("{}, sensor {sensor}", study.scene),
         None => study.scene.clone(),
@@ -177,7 +177,7 @@ fn figure(x: Option<f64>, digits: usize) -> String {
     x.map_or("–".to_owned(), |x| significant(x, digits))
 }
 
-fn level(lost: Lost) -> String {
+pub(super) fn level(lost: Lost) -> String {
     match lost {
         Lost::At(level) => significant(level, 2),
         Lost::Before => "always".to_owned(),
@@ -306,7 +306,15 @@ pub fn noise_svg(study: &NoiseStudy, measure: Measure) -> String {
         let [board, elements] = object;
         let what = format!("{board} × {board} checks, {elements} × {elements} elements");
         svg.text([corner[0], corner[1] - 10.0], "fill=\"#222222\"", &what);
-        panel(&mut svg, corner, [250.0, 230.0], [&x, &y], &series);
+        Panel {
+            corner,
+            size: [250.0, 230.0],
+            axes: [&x, &y],
+            title: &what,
+            series: &series,
+            published: &[],
+        }
+        .draw(&mut svg);
         key = series;
     }
     legend(&mut svg, [80.0, 90.0 + 330.0 * rows as f64], &key);

@@ -37,6 +37,7 @@ pub(super) fn of(scene: Scene) -> RunResults {
         agreement: None,
         recovered: Vec::new(),
         picards: Vec::new(),
+        gallery: None,
         times: vec![
             ("render".into(), 12.3),
             ("model".into(), 0.01),

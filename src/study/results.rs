@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::gallery::Gallery;
 use crate::matrix::Matrix;
 use crate::recovery::Picard;
 use crate::scene::Scene;
@@ -152,6 +153,8 @@ pub struct RunResults {
     pub recovered: Vec<RecoveredObject>,
     /// Signal and noise in the singular directions of what was inverted.
     pub picards: Vec<Picard>,
+    /// Recoveries over regularisation and noise; absent where nothing can be recovered.
+    pub gallery: Option<Gallery>,
     /// Wall time of each stage, s.
     pub times: Vec<(String, f64)>,
 }

@@ -19,11 +19,21 @@ const ARGUMENTS = [
     "--enable-unsafe-swiftshader",
 ];
 
+/** @type {Set<import("playwright-core").Browser>} */
+const running = new Set();
+
+/** Ends every browser that is still there. */
+export async function close() {
+    await Promise.all([...running].map((browser) => browser.close()));
+    running.clear();
+}
+
 /**
  * Opens a page from disk or from an address of this machine. What the console calls an error, what is thrown, and what is asked of any other place, is in `errors`.
  */
 export async function openPage(path, { width = 1280, height = 800, colorScheme = "light", args = [], ...device } = {}) {
     const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: [...ARGUMENTS, ...args] });
+    running.add(browser);
     const page = await browser.newPage({ viewport: { width, height }, colorScheme, acceptDownloads: true, ...device });
     const errors = [];
     page.on("console", (message) => message.type() === "error" && errors.push(message.text()));

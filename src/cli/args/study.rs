@@ -2,16 +2,83 @@
 
 use std::path::PathBuf;
 
-use clap::{Args as Arguments, Subcommand};
+use clap::error::Error;
+use clap::{ArgMatches, Args as Arguments, Command, FromArgMatches, Subcommand};
 
 use super::laboratory::{BrdfArgs, CoverageArgs, ExperimentArgs};
 use super::sweep::{IndicatorArgs, NoiseArgs};
 use super::{EstimatorName, SamplerName};
 
-#[derive(Debug, Arguments)]
+/// A study with every option of it as it was given, or as it is unless given.
+#[derive(Debug)]
 pub(in crate::cli) struct StudyArgs {
-    #[command(subcommand)]
     pub command: StudyCommand,
+    /// Name of the study.
+    pub name: String,
+    /// Options that decide what comes out, with their values.
+    pub options: Vec<(String, String)>,
+}
+
+/// What does not change what comes out, or is no option.
+const APART: [&str; 7] = [
+    "scene",
+    "output",
+    "threads",
+    "json",
+    "quiet",
+    "also_read",
+    "help",
+];
+
+impl StudyArgs {
+    fn command(base: Command) -> Command {
+        StudyCommand::augment_subcommands(base)
+            .subcommand_required(true)
+            .arg_required_else_help(true)
+    }
+
+    /// The options of the study that `matches` names, in the order in which its help lists them.
+    fn said(matches: &ArgMatches) -> (String, Vec<(String, String)>) {
+        let Some((name, given)) = matches.subcommand() else {
+            return Default::default();
+        };
+        let studies = Self::command(Command::new("study"));
+        let known = studies.find_subcommand(name).into_iter();
+        let option = |arg: &clap::Arg| {
+            let id = arg.get_id().as_str();
+            let values = given.get_raw(id).filter(|_| !APART.contains(&id))?;
+            let values: Vec<_> = values.map(|v| v.to_string_lossy()).collect();
+            Some((format!("--{}", arg.get_long()?), values.join(",")))
+        };
+        let options = known.flat_map(Command::get_arguments).filter_map(option);
+        (name.to_owned(), options.collect())
+    }
+}
+
+impl FromArgMatches for StudyArgs {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        let (name, options) = Self::said(matches);
+        Ok(Self {
+            command: StudyCommand::from_arg_matches(matches)?,
+            name,
+            options,
+        })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Arguments for StudyArgs {
+    fn augment_args(base: Command) -> Command {
+        Self::command(base)
+    }
+
+    fn augment_args_for_update(base: Command) -> Command {
+        Self::command(base)
+    }
 }
 
 #[derive(Debug, Subcommand)]
@@ -147,4 +214,56 @@ pub(in crate::cli) struct BudgetArgs {
     /// Print budget.json instead of the table
     #[arg(long)]
     pub json: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::super::{Args, Command as Top};
+    use super::*;
+
+    fn parsed(line: &str) -> StudyArgs {
+        let words = std::iter::once("phicam").chain(line.split_whitespace());
+        match Args::try_parse_from(words).unwrap().command {
+            Top::Study(args) => args,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// What is told of a study is the whole of it: asked for in these words it is the same study.
+    #[test]
+    fn the_options_that_are_told_repeat_the_study() {
+        for line in [
+            "study budget s.toml --samples 32 -o elsewhere --threads 1 --json",
+            "study power s.toml --estimator shared,factored --sampler pcg --samples=8,16",
+            "study tolerance --noise 1e-3",
+            "study convergence s.toml --samples 8,16 --seed 7",
+            "study noise s.toml --axis photons --noise 1e-3,1e-2 --seeds 3 --boards 2,4 --method pinv,joint",
+            "study indicator s.toml --seeds 3",
+            "study brdf s.toml --samples 64",
+            "study coverage s.toml --noise 0.02 --confidence 0.9",
+            "study experiment s.toml --glares 1 --exposures 1,2 --seeds 2 -q",
+        ] {
+            let first = parsed(line);
+            let told = |args: &StudyArgs| {
+                let options = args.options.iter().map(|(o, v)| format!(" {o} {v}"));
+                format!(
+                    "study {} {}{}",
+                    args.name,
+                    args.command.scene(),
+                    options.collect::<String>()
+                )
+            };
+            let again = parsed(&told(&first));
+            assert_eq!(first.options, again.options, "{line}");
+            let apart = |args: &StudyArgs| {
+                let text = format!("{:?}", args.command);
+                let text = text.replace("\"elsewhere\"", &format!("\"out/{}\"", args.name));
+                let text = text.replace("threads: Some(1)", "threads: None");
+                text.replace("json: true", "json: false")
+            };
+            assert_eq!(apart(&first), apart(&again), "{line}");
+        }
+    }
 }

@@ -9,11 +9,11 @@ use crate::cli::args::BrdfArgs;
 use crate::cli::failure::Failure;
 use crate::cli::{Outcome, settings};
 use crate::num::stream::Sampling;
-use crate::report;
+use crate::report::{self, Asked};
 use crate::scene::Scene;
 use crate::study::{BrdfError, BrdfPlan, BrdfTasks, NoiseAxis};
 
-pub(super) fn job(args: &BrdfArgs, scene: &Scene) -> Result<Job<BrdfTasks>, Failure> {
+pub(super) fn job(args: &BrdfArgs, scene: &Scene, asked: Asked) -> Result<Job<BrdfTasks>, Failure> {
     if scene.relay_is_lambertian() {
         return Err(BrdfError::Lambertian.into());
     }
@@ -36,15 +36,21 @@ pub(super) fn job(args: &BrdfArgs, scene: &Scene) -> Result<Job<BrdfTasks>, Fail
     Ok(Job {
         division: BrdfTasks::new(scene, plan),
         ground: OnceLock::new(),
+        asked,
         what: format!("wall BRDFs on {}", scene.name),
         count: Count::Tasks,
         threads: args.threads,
         output: args.output.clone(),
         json: args.json,
         findings: |found| {
-            let findings = Findings::new("brdf", found, report::brdf_table(found))?
-                .with("brdf.csv", report::brdf_csv(found))
-                .with("brdf.svg", report::brdf_svg(found));
+            let findings = Findings::new(
+                "brdf",
+                found,
+                report::brdf_table(found),
+                report::brdf_account(found),
+            )?
+            .with("brdf.csv", report::brdf_csv(found))
+            .with("brdf.svg", report::brdf_svg(found));
             Ok(match found.known().agreement.agrees {
                 true => (findings, Outcome::Done),
                 false => (findings, Outcome::Disagreed),

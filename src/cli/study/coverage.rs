@@ -9,11 +9,15 @@ use crate::cli::Outcome;
 use crate::cli::args::CoverageArgs;
 use crate::cli::failure::Failure;
 use crate::model::{Kernel, MatrixModel};
-use crate::report;
+use crate::report::{self, Asked};
 use crate::scene::Scene;
 use crate::study::{CoveragePlan, CoverageTasks};
 
-pub(super) fn job(args: &CoverageArgs, scene: &Scene) -> Result<Job<CoverageTasks>, Failure> {
+pub(super) fn job(
+    args: &CoverageArgs,
+    scene: &Scene,
+    asked: Asked,
+) -> Result<Job<CoverageTasks>, Failure> {
     let within = |name: &str, x: f64, range: &str, fine: bool| match fine {
         true => Ok(()),
         false => Err(Failure::new(
@@ -50,13 +54,19 @@ pub(super) fn job(args: &CoverageArgs, scene: &Scene) -> Result<Job<CoverageTask
     Ok(Job {
         division: CoverageTasks::new((&scene.name, &scene.hash), model, plan),
         ground: OnceLock::new(),
+        asked,
         what: format!("coverage on {}", scene.name),
         count: Count::Tasks,
         threads: args.threads,
         output: args.output.clone(),
         json: args.json,
         findings: |found| {
-            let findings = Findings::new("coverage", found, report::coverage_table(found))?;
+            let findings = Findings::new(
+                "coverage",
+                found,
+                report::coverage_table(found),
+                report::coverage_account(found),
+            )?;
             Ok((findings, Outcome::Done))
         },
     })

@@ -8,23 +8,33 @@ use crate::cli::args::ExperimentArgs;
 use crate::cli::failure::Failure;
 use crate::cli::{Outcome, settings};
 use crate::num::stream::Sampling;
-use crate::report;
+use crate::report::{self, Asked};
 use crate::scene::Scene;
 use crate::study::{ExperimentPlan, ExperimentTasks};
 
-pub(super) fn job(args: &ExperimentArgs, scene: &Scene) -> Result<Job<ExperimentTasks>, Failure> {
+pub(super) fn job(
+    args: &ExperimentArgs,
+    scene: &Scene,
+    asked: Asked,
+) -> Result<Job<ExperimentTasks>, Failure> {
     Ok(Job {
         division: ExperimentTasks::new(scene, plan(args, scene)?),
         ground: OnceLock::new(),
+        asked,
         what: format!("photographs of {}", scene.name),
         count: Count::Tasks,
         threads: args.threads,
         output: args.output.clone(),
         json: args.json,
         findings: |found| {
-            let findings = Findings::new("experiment", found, report::experiment_table(found))?
-                .with("experiment.csv", report::experiment_csv(found))
-                .with("experiment.svg", report::experiment_svg(found));
+            let findings = Findings::new(
+                "experiment",
+                found,
+                report::experiment_table(found),
+                report::experiment_account(found),
+            )?
+            .with("experiment.csv", report::experiment_csv(found))
+            .with("experiment.svg", report::experiment_svg(found));
             Ok((findings, Outcome::Done))
         },
     })

@@ -9,7 +9,7 @@ use crate::cli::Outcome;
 use crate::cli::args::IndicatorArgs;
 use crate::cli::failure::Failure;
 use crate::model::Kernel;
-use crate::report;
+use crate::report::{self, Asked};
 use crate::scene::Scene;
 use crate::study::{IndicatorPlan, IndicatorTasks, Layout, NoiseAxis};
 
@@ -18,20 +18,30 @@ const WIDEST: f64 = 1000.0;
 /// The most spots a layout is asked for.
 const MOST_SPOTS: usize = 10_000;
 
-pub(super) fn job(args: &IndicatorArgs, scene: &Scene) -> Result<Job<IndicatorTasks>, Failure> {
+pub(super) fn job(
+    args: &IndicatorArgs,
+    scene: &Scene,
+    asked: Asked,
+) -> Result<Job<IndicatorTasks>, Failure> {
     Ok(Job {
         division: IndicatorTasks::new(scene, plan(args)?)?,
         ground: OnceLock::new(),
+        asked,
         what: format!("indicators on {}", scene.name),
         count: Count::Tasks,
         threads: args.threads,
         output: args.output.clone(),
         json: args.json,
         findings: |found| {
-            let findings = Findings::new("indicator", found, report::indicator_table(found))?
-                .with("indicator.csv", report::indicator_csv(found))
-                .with("indicator-noise.csv", report::indicator_noise_csv(found))
-                .with("indicator.svg", report::indicator_svg(found));
+            let findings = Findings::new(
+                "indicator",
+                found,
+                report::indicator_table(found),
+                report::indicator_account(found),
+            )?
+            .with("indicator.csv", report::indicator_csv(found))
+            .with("indicator-noise.csv", report::indicator_noise_csv(found))
+            .with("indicator.svg", report::indicator_svg(found));
             Ok((findings, Outcome::Done))
         },
     })

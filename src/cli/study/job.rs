@@ -10,6 +10,7 @@ use crate::cli::interrupt::stop_flag;
 use crate::cli::output::Talk;
 use crate::cli::tasks::{Cut, encoded};
 use crate::cli::{Outcome, progress, settings};
+use crate::report::Asked;
 use crate::scene::Scene;
 use crate::store::ensure_writable;
 use crate::study::{Division, decode, whole};
@@ -32,6 +33,8 @@ pub(super) struct Job<D: Division> {
     pub division: D,
     /// What its tasks stand on, once it is worked out.
     pub ground: OnceLock<D::Ground>,
+    /// How it was asked for.
+    pub asked: Asked,
     /// What is done, in words.
     pub what: String,
     pub count: Count,
@@ -52,7 +55,7 @@ impl<D: Division> Job<D> {
         ensure_writable(&self.output)?;
         talk.warn(scene);
         let bar = match self.count {
-            Count::Paths(total) => progress::paths(talk, &self.what, total),
+            Count::Paths(total) => progress::samples(talk, &self.what, total),
             Count::Tasks => progress::steps(talk, &self.what),
         };
         let tick = |paths| match self.count {
@@ -89,7 +92,7 @@ impl<D: Division> Job<D> {
     /// Leaves the files of a finding in `output` and prints its table or JSON.
     pub(super) fn leave(&self, found: &D::Finding, output: &Path) -> Result<Outcome, Failure> {
         let (findings, outcome) = (self.findings)(found)?;
-        findings.deliver(output, self.json)?;
+        findings.deliver(output, &self.asked, self.json)?;
         Ok(outcome)
     }
 }

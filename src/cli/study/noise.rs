@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use super::findings::Findings;
 use super::job::{Count, Job};
-use crate::cli::args::{AxisName, NoiseArgs};
+use crate::cli::args::{AxisName, NoiseArgs, StudyArgs};
 use crate::cli::failure::Failure;
 use crate::cli::interrupt::stop_flag;
 use crate::cli::output::{self, Talk};
@@ -17,7 +17,7 @@ use crate::cli::trust;
 use crate::cli::{Outcome, progress, settings};
 use crate::num::stream::Sampling;
 use crate::recovery::Method;
-use crate::report::{self, Measure};
+use crate::report::{self, Asked, Measure};
 use crate::scene::{Scene, Spread};
 use crate::store::ensure_writable;
 use crate::study::{
@@ -28,9 +28,9 @@ use crate::transport::Control;
 /// Finished trials are on disk from the first few on, and at least this often.
 const KEEP_EVERY: Duration = Duration::from_secs(5);
 
-pub(super) fn execute(args: &NoiseArgs, talk: Talk) -> Result<Outcome, Failure> {
+pub(super) fn execute(args: &NoiseArgs, whole: &StudyArgs, talk: Talk) -> Result<Outcome, Failure> {
     let scene = trust::load(&args.scene)?;
-    let job = job(args, &scene)?;
+    let job = job(args, &scene, super::asked(whole, &scene))?;
     let pool = settings::pool(args.threads)?;
     let path = args.output.join("noise.csv");
     let name = job.division.name();
@@ -84,7 +84,11 @@ pub(super) fn execute(args: &NoiseArgs, talk: Talk) -> Result<Outcome, Failure> 
 }
 
 /// The study, ready: also without what an earlier run has finished.
-pub(super) fn job(args: &NoiseArgs, scene: &Scene) -> Result<Job<NoiseTasks>, Failure> {
+pub(super) fn job(
+    args: &NoiseArgs,
+    scene: &Scene,
+    asked: Asked,
+) -> Result<Job<NoiseTasks>, Failure> {
     let plan = plan(args, scene)?;
     for &samples in &args.render_samples {
         settings::budget("--render-samples", samples, Sampling::Sobol)?;
@@ -92,15 +96,21 @@ pub(super) fn job(args: &NoiseArgs, scene: &Scene) -> Result<Job<NoiseTasks>, Fa
     Ok(Job {
         division: NoiseTasks::new(scene, plan, args.render_samples.clone()),
         ground: OnceLock::new(),
+        asked,
         what: format!("noise on {}", scene.name),
         count: Count::Tasks,
         threads: args.threads,
         output: args.output.clone(),
         json: args.json,
         findings: |NoiseFinding { study, ledger }| {
-            let mut findings = Findings::new("noise", study, report::noise_table(study))?
-                .with("noise.csv", ledger.clone())
-                .with("noise-curves.csv", report::noise_csv(study));
+            let mut findings = Findings::new(
+                "noise",
+                study,
+                report::noise_table(study),
+                report::noise_account(study),
+            )?
+            .with("noise.csv", ledger.clone())
+            .with("noise-curves.csv", report::noise_csv(study));
             for measure in Measure::ALL {
                 let figure = report::noise_svg(study, measure);
                 findings = findings.with(&format!("noise-{}.svg", measure.name()), figure);

@@ -4,6 +4,7 @@
 //! takes what is there and makes it answer: it explores, turns, hides, zooms. What it needs lies in the page as data blocks. Plots and the drawing in three
 //! dimensions are the work of libraries ([`Library`]), bundled from their packages by `tests/browser/vendor.js`, each in the pages that use it.
 
+mod embed;
 mod packed;
 mod term;
 
@@ -12,10 +13,12 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 
 use super::colour::Map;
+use super::look::looks;
 use super::svg::escape;
 
+pub(super) use embed::Room;
 pub(super) use packed::{Packed, Precision};
-pub(super) use term::explained;
+pub(super) use term::{explained, meaning, term};
 
 /// A library that a page may use; each is one script, with its licence beside it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -39,8 +42,9 @@ impl Library {
 const LICENCES: &str = include_str!("vendor/LICENSES.txt");
 
 /// The page's own script, in the order in which it runs.
-const SCRIPT: [&str; 13] = [
+const SCRIPT: [&str; 21] = [
     include_str!("script/page.js"),
+    include_str!("script/axes.js"),
     include_str!("script/bench.js"),
     include_str!("script/bench_build.js"),
     include_str!("script/bench_choose.js"),
@@ -48,12 +52,22 @@ const SCRIPT: [&str; 13] = [
     include_str!("script/bench_parts.js"),
     include_str!("script/bench_steer.js"),
     include_str!("script/bench_view.js"),
+    include_str!("script/download.js"),
     include_str!("script/explorer.js"),
+    include_str!("script/figures.js"),
     include_str!("script/frames.js"),
+    include_str!("script/look.js"),
     include_str!("script/plan.js"),
+    include_str!("script/plots.js"),
+    include_str!("script/read.js"),
     include_str!("script/row.js"),
+    include_str!("script/slides.js"),
     include_str!("script/source.js"),
+    include_str!("script/thin.js"),
 ];
+
+/// The page's own style.
+const STYLE: [&str; 2] = [include_str!("page.css"), include_str!("plots.css")];
 
 /// How a verdict is marked, beside its words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,6 +147,7 @@ impl Page {
     /// The whole page.
     pub(super) fn html(mut self) -> String {
         self.json("colours", &colours());
+        self.json("looks", &looks());
         let libraries: String = self.libraries.iter().map(|l| script(l.text())).collect();
         let licences = match self.libraries.is_empty() {
             true => String::new(),
@@ -149,7 +164,7 @@ impl Page {
              <main id=\"main\">\n{}</main>\n<footer>\n{licences}</footer>\n{}{libraries}{}</body>\n</html>\n",
             env!("CARGO_PKG_VERSION"),
             self.title,
-            include_str!("page.css"),
+            STYLE.concat(),
             self.title,
             self.verdict,
             self.contents,

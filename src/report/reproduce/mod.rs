@@ -10,7 +10,9 @@ use super::picture::{Panel, ScaleBar, pictures_svg};
 use super::raster;
 use crate::study::reproduce::{Cell, Gallery, Picture, Reproduction, Shades};
 
-pub use page::{ItemSummary, reproduction_html, reproduction_markdown, reproduction_table};
+pub use page::{
+    ItemSummary, ReproductionSettings, reproduction_html, reproduction_markdown, reproduction_table,
+};
 
 /// The files of an item: name and bytes. `ITEM.csv`; where it has plots `ITEM.svg`; for its pictures `ITEM-images.svg`, further ones numbered. Beside each SVG
 /// the PNG that is drawn from it, 300 pixels an inch at the width of one (90 mm) or two (180 mm) columns of a journal.

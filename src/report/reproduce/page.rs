@@ -3,9 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::axis::significant;
+use super::super::page::{Library, Page, Room, Tone};
 use super::super::picture::scientific;
 use super::super::svg::escape;
-use crate::study::reproduce::{Cell, Check, Reproduction, Verdict, Weight};
+use crate::study::reproduce::{Cell, Check, ReproducePlan, Reproduction, Verdict, Weight};
 
 /// An item in short, as `ITEM.json` keeps it: what the page is made of, and what tells whether the item has to be computed again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -158,62 +159,151 @@ fn cell(text: &str) -> String {
     text.replace('|', "\\|")
 }
 
-const STYLE: &str = "body{font:15px/1.45 system-ui,sans-serif;max-width:75rem;margin:2rem auto;padding:0 1rem}table{border-collapse:collapse}\
-td,th{border:1px solid #bbb;padding:.2rem .5rem;text-align:left}img{max-width:100%}.no{font-weight:bold}";
+/// What the verdicts come to: how many items of each.
+fn verdict(items: &[ItemSummary]) -> String {
+    let all = [
+        Verdict::Reproduced,
+        Verdict::InTrend,
+        Verdict::NotReproducible,
+        Verdict::Refuted,
+    ];
+    let counts: Vec<String> = all
+        .iter()
+        .map(|v| {
+            let n = items.iter().filter(|i| i.verdict == *v).count();
+            format!("{n} {}", v.words())
+        })
+        .collect();
+    let checks = || items.iter().flat_map(|i| &i.checks);
+    format!(
+        "Of {} published items that were computed again, {}; {} of {} checks hold.",
+        items.len(),
+        counts.join(", "),
+        checks().filter(|c| c.holds).count(),
+        checks().count()
+    )
+}
 
-/// The page as HTML; figures are files beside it.
-pub fn reproduction_html(items: &[ItemSummary]) -> String {
-    let mut out = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>The published study, computed again</title>\n<style>{STYLE}</style>\n</head>\n<body>\n\
-         <h1>The published study, computed again</h1>\n<p>{}</p>\n<table>\n<tr><th>item</th><th>what</th><th>verdict</th></tr>\n",
+/// How the items were asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct ReproductionSettings<'a> {
+    /// What was free.
+    pub plan: &'a ReproducePlan,
+    /// Version of the program.
+    pub version: &'a str,
+}
+
+/// The page as HTML, whole in itself; `read` gives the bytes of an item's file. Of a file that is not there the page has the name.
+pub fn reproduction_html(
+    items: &[ItemSummary],
+    settings: ReproductionSettings<'_>,
+    read: impl Fn(&str) -> Option<Vec<u8>>,
+) -> String {
+    let mut page = Page::new("The published study, computed again");
+    page.verdict(Tone::Plain, &verdict(items));
+    page.needs(Library::Plot);
+    let mut summary = format!(
+        "<p>{}</p>\n<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Verdicts\"><table>\n<tr><th scope=\"col\">item</th><th scope=\"col\">what</th><th scope=\"col\">verdict</th></tr>\n",
         escape(HOW)
     );
     for i in items {
         let [name, title, reason] = [&i.item, &i.title, &i.reason()].map(|t| escape(t));
-        out += &format!(
+        summary += &format!(
             "<tr><td><a href=\"#{name}\">{name}</a></td><td>{title}</td><td>{reason}</td></tr>\n"
         );
     }
-    out += "</table>\n";
+    page.section("summary", "Verdicts", &(summary + "</table></div>\n"));
+    let mut room = Room::new();
     for i in items {
-        let [name, title, reason, caption] =
-            [&i.item, &i.title, &i.reason(), &i.caption].map(|t| escape(t));
-        out += &format!("<h2 id=\"{name}\">{name}: {title}</h2>\n<p><b>{reason}</b></p>\n");
-        for file in i.pictures().map(|f| escape(f)) {
-            out += &format!("<p><img src=\"{file}\" alt=\"{title}\"></p>\n");
-        }
-        out += &format!("<p>{caption}</p>\n");
-        for note in &i.notes {
-            out += &format!("<p>{}</p>\n", escape(note));
-        }
-        if !i.table.is_empty() {
-            out += "<table>\n";
-            for (k, row) in i.table.iter().enumerate() {
-                let tag = if k == 0 { "th" } else { "td" };
-                let cells = row.iter().map(|c| format!("<{tag}>{}</{tag}>", escape(c)));
-                out += &format!("<tr>{}</tr>\n", cells.collect::<String>());
-            }
-            out += "</table>\n";
-        }
-        let links = i
-            .files
-            .iter()
-            .map(|f| format!("<a href=\"{0}\">{0}</a>", escape(f)));
-        out += &format!("<p>Files: {}</p>\n", links.collect::<Vec<_>>().join(", "));
-        out += "<details><summary>Checks</summary>\n<table>\n<tr><th>holds</th><th>what</th><th>published</th><th>computed</th><th>criterion</th></tr>\n";
-        for c in &i.checks {
-            let fields = [&c.what, &c.published, &c.computed, &c.criterion]
-                .map(|t| format!("<td>{}</td>", escape(t)));
-            let holds = if c.holds {
-                "<td>yes</td>"
-            } else {
-                "<td class=\"no\">no</td>"
-            };
-            out += &format!("<tr>{holds}{}</tr>\n", fields.concat());
-        }
-        out += "</table>\n</details>\n";
+        let html = section(i, &mut room, &read);
+        page.section(&i.item, &format!("{}: {}", i.item, i.title), &html);
     }
-    out + "</body>\n</html>\n"
+    page.section("run", "What was run", &run(items, settings));
+    page.html()
+}
+
+/// An item: figures, caption, table, checks, files.
+fn section(i: &ItemSummary, room: &mut Room, read: &impl Fn(&str) -> Option<Vec<u8>>) -> String {
+    let mut out = format!("<p><b>{}</b></p>\n", escape(&i.reason()));
+    for file in i.pictures() {
+        let svg = read(file).and_then(|bytes| String::from_utf8(bytes).ok());
+        if let Some(svg) = svg {
+            out += &room.figure(file, &svg);
+        }
+    }
+    out += &format!("<p>{}</p>\n", escape(&i.caption));
+    for note in &i.notes {
+        out += &format!("<p>{}</p>\n", escape(note));
+    }
+    if !i.table.is_empty() {
+        out += &format!(
+            "<details><summary>The numbers of {0}</summary>\n<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"The numbers of {0}\"><table>\n",
+            escape(&i.item)
+        );
+        for (k, row) in i.table.iter().enumerate() {
+            let tag = if k == 0 { "th" } else { "td" };
+            let cells = row.iter().map(|c| format!("<{tag}>{}</{tag}>", escape(c)));
+            out += &format!("<tr>{}</tr>\n", cells.collect::<String>());
+        }
+        out += "</table></div>\n</details>\n";
+    }
+    out += &format!(
+        "<details open=\"\"><summary>The checks of {0}</summary>\n<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"The checks of {0}\"><table>\n\
+         <tr><th>holds</th><th>what</th><th>published</th><th>computed</th><th>criterion</th></tr>\n",
+        escape(&i.item)
+    );
+    for c in &i.checks {
+        let fields = [&c.what, &c.published, &c.computed, &c.criterion]
+            .map(|t| format!("<td>{}</td>", escape(t)));
+        let holds = if c.holds { "yes" } else { "<b>no</b>" };
+        out += &format!("<tr><td>{holds}</td>{}</tr>\n", fields.concat());
+    }
+    out += "</table></div>\n</details>\n";
+    let (kept, beside): (Vec<&String>, Vec<&String>) =
+        i.files.iter().partition(|f| f.ends_with(".csv"));
+    let kept: Vec<(&str, Vec<u8>)> = kept
+        .into_iter()
+        .filter_map(|f| Some((f.as_str(), read(f)?)))
+        .collect();
+    out += &room.files(kept.iter().map(|(name, bytes)| (*name, &bytes[..])));
+    let beside: Vec<String> = beside.into_iter().map(|f| escape(f)).collect();
+    match beside.is_empty() {
+        true => out,
+        false => format!(
+            "{out}<p class=\"note\">Beside this page: {}</p>\n",
+            beside.join(", ")
+        ),
+    }
+}
+
+/// Settings and command.
+fn run(
+    items: &[ItemSummary],
+    ReproductionSettings { plan, version }: ReproductionSettings<'_>,
+) -> String {
+    let names: Vec<&str> = items.iter().map(|i| i.item.as_str()).collect();
+    let facts = [
+        ("version", format!("phicam {version}")),
+        ("most elements a side", plan.most_elements.to_string()),
+        ("draws of noise", plan.seeds.to_string()),
+        ("first seed", plan.first_seed.to_string()),
+    ];
+    let rows = facts.map(|(key, value)| {
+        let [key, value] = [key, &value].map(escape);
+        format!("<tr><th scope=\"row\">{key}</th><td>{value}</td></tr>\n")
+    });
+    let command = format!(
+        "phicam reproduce {} --most-elements {} --seeds {} --seed {}",
+        names.join(" "),
+        plan.most_elements,
+        plan.seeds,
+        plan.first_seed
+    );
+    format!(
+        "<div class=\"wide\"><table>\n{}</table></div>\n<h3>To repeat it</h3>\n<pre>{}</pre>\n",
+        rows.concat(),
+        escape(&command)
+    )
 }
 
 /// A line an item, for the terminal.

@@ -2,11 +2,12 @@
 //!
 //! 830 units are 180 mm, the width of two columns of a journal: type of 13 units is then 8 pt, a line of 1.6 units 1 pt. A single plot takes one column, 90 mm.
 
-use super::super::chart::{Axis, Run, Series, panel, place, sample};
+use super::super::chart::{Axis, Panel, Run, Series};
 use super::super::label::legend;
+use super::super::look::{printed_mark, sample};
 use super::super::picture::lettered;
 use super::super::raster::FAMILIES;
-use super::super::svg::{Close, Svg, escape, number};
+use super::super::svg::{Svg, escape, number};
 use crate::study::reproduce::{Course, FigureAxis, FigureCurve, Plot, Reproduction, Source};
 
 /// Plots a row.
@@ -26,8 +27,6 @@ const BELOW: f64 = 64.0;
 const LEFT: f64 = 20.0;
 /// An even axis reaches beyond its ends by this share, so that no mark lies on the frame.
 const BEYOND: f64 = 0.03;
-/// Ink of what was published.
-const PRINTED: &str = "fill=\"none\" stroke=\"#222222\" stroke-width=\"1.3\"";
 
 /// Where the plotting area of plot `i` begins, areas being `height` high.
 fn corner(i: usize, height: f64) -> [f64; 2] {
@@ -81,14 +80,12 @@ fn axis(axis: &FigureAxis, values: impl Iterator<Item = f64>) -> Axis {
     }
 }
 
-/// The computed curves of a plot in the order of `names`, those that it lacks empty.
-fn series(plot: &Plot, names: &[&str]) -> Vec<Series> {
-    let points = |name: &str| {
-        let own = |c: &&FigureCurve| c.name == name && c.source == Source::Computed;
-        plot.curves
-            .iter()
-            .find(own)
-            .map_or(Vec::new(), |c| c.points.clone())
+/// The curves of a plot from `source` in the order of `names`, those that it lacks empty.
+fn series(plot: &Plot, source: Source, names: &[&str]) -> Vec<Series> {
+    let points = |name: &str| -> Vec<[f64; 2]> {
+        let own = |c: &&FigureCurve| c.name == name && c.source == source;
+        let own = plot.curves.iter().filter(own);
+        own.flat_map(|c| c.points.iter().copied()).collect()
     };
     names
         .iter()
@@ -135,22 +132,18 @@ pub(super) fn svg(r: &Reproduction) -> String {
     for (i, plot) in r.plots.iter().enumerate() {
         let corner = corner(i, area[1]);
         let [x, y] = axes(plot);
-        svg.text(
-            [corner[0], corner[1] - 9.0],
-            "fill=\"#222222\"",
-            &lettered(i, r.plots.len(), &plot.title),
-        );
-        panel(&mut svg, corner, area, [&x, &y], &series(plot, &computed));
-        for c in plot.curves.iter().filter(|c| c.source == Source::Published) {
-            let which = printed.iter().position(|n| *n == c.name).unwrap_or(0);
-            let placed = c
-                .points
-                .iter()
-                .filter_map(|p| place(corner, area, [&x, &y], p));
-            for p in placed {
-                printed_mark(&mut svg, p, which);
-            }
+        let title = lettered(i, r.plots.len(), &plot.title);
+        let dark = "fill=\"#222222\"";
+        svg.text([corner[0], corner[1] - 9.0], dark, &title);
+        Panel {
+            corner,
+            size: area,
+            axes: [&x, &y],
+            title: &title,
+            series: &series(plot, Source::Computed, &computed),
+            published: &series(plot, Source::Published, &printed),
         }
+        .draw(&mut svg);
     }
     svg.raw(&format!(
         "<g transform=\"translate({} {})\">{}</g></svg>",
@@ -159,17 +152,4 @@ pub(super) fn svg(r: &Reproduction) -> String {
         key.text
     ));
     svg.text
-}
-
-/// A published point: an open circle for the first set, an open square for the second, around the computed mark where they agree.
-fn printed_mark(svg: &mut Svg, [x, y]: [f64; 2], which: usize) {
-    match which % 3 {
-        0 => svg.circle([x, y], 6.2, PRINTED),
-        1 => svg.rect([x - 5.8, y - 5.8], [11.6, 11.6], PRINTED),
-        _ => svg.path(
-            &[[x, y - 7.6], [x + 7.6, y], [x, y + 7.6], [x - 7.6, y]],
-            Close::Yes,
-            PRINTED,
-        ),
-    }
 }

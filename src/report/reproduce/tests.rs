@@ -7,13 +7,16 @@ use crate::study::reproduce::{
     Course, FigureAxis, FigureCurve, Item, Plot, ReproducePlan, Source, Verdict, reproduce,
 };
 
-fn computed(item: Item) -> Reproduction {
-    let plan = ReproducePlan {
+fn plan() -> ReproducePlan {
+    ReproducePlan {
         most_elements: 8,
         seeds: 2,
         first_seed: 1,
-    };
-    reproduce(item, &plan, &AtomicBool::new(false)).unwrap()
+    }
+}
+
+fn computed(item: Item) -> Reproduction {
+    reproduce(item, &plan(), &AtomicBool::new(false)).unwrap()
 }
 
 fn file<'a>(files: &'a [(String, Vec<u8>)], name: &str) -> &'a [u8] {
@@ -48,8 +51,31 @@ fn an_item_becomes_files_and_a_page() {
     let names = files.iter().map(|f| f.0.clone()).collect();
     let summary = ItemSummary::new(&r, "settings".to_owned(), names);
     assert_eq!(summary.verdict, Verdict::Reproduced);
-    let html = reproduction_html(std::slice::from_ref(&summary));
+    let settings = ReproductionSettings {
+        plan: &plan(),
+        version: "0",
+    };
+    let read = |name: &str| files.iter().find(|f| f.0 == name).map(|f| f.1.clone());
+    let html = reproduction_html(std::slice::from_ref(&summary), settings, read);
     well_formed(html.trim_start_matches("<!DOCTYPE html>\n")).unwrap();
+    assert!(html.contains("1 reproduced, 0 reproduced in trend") && html.contains("26 of 26"));
+    assert!(!html.contains("src=\"http") && !html.contains("href=\"table3"));
+    assert!(html.contains("phicam reproduce table3 --most-elements 8 --seeds 2 --seed 1"));
+    // The figure is in the page with its data: the printed points are there as printed.
+    let json = html.split("<metadata>").nth(1).unwrap();
+    let json: serde_json::Value =
+        serde_json::from_str(json.split("</metadata>").next().unwrap()).unwrap();
+    let series = json["series"].as_array().unwrap();
+    let printed: Vec<_> = series.iter().filter(|s| s["kind"] == "published").collect();
+    assert_eq!(printed.len(), 2);
+    let curves = &r.plots[0].curves;
+    for s in printed {
+        let own = curves
+            .iter()
+            .find(|c| c.source == Source::Published && c.name == s["name"]);
+        let points: Vec<[f64; 2]> = serde_json::from_value(s["points"].clone()).unwrap();
+        assert_eq!(points, own.unwrap().points);
+    }
     let markdown = reproduction_markdown(std::slice::from_ref(&summary));
     assert!(
         markdown.contains("reproduced (26 of 26 checks hold)"),

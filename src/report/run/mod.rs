@@ -8,17 +8,19 @@ mod matrices;
 mod settings;
 
 use super::axis::significant;
-use super::gallery::recoveries;
+use super::gallery::{recoveries, slides};
 use super::page::{Page, Tone, explained};
 use super::picard::picard_svg;
 use super::svg::number;
 use super::verdict::verdict;
+use crate::recovery::{Directions, Picard};
 use crate::scene::Scene;
 use crate::study::{RunResults, Settings};
 use difference::difference;
 use explorer::{explorer, served_explorer};
 use frames::frames;
 use matrices::{deviations, matrices};
+pub(super) use settings::is_builtin;
 use settings::{scene_file, scene_text, settings};
 
 /// The whole report as one HTML page that needs no network and no other file: verdict, drawing of the scene, frames,
@@ -43,7 +45,8 @@ pub fn run_html(results: &RunResults) -> String {
     page.section("explorer", "Φcam, entry by entry", &explorer);
     page.section("phi", "The matrix Φcam", &matrices(results));
     page.section("z", "Traced minus modelled", &deviations(results));
-    page.section("recovered", "Recovered", &recoveries(results));
+    let recovered = slides(&mut page, results) + &recoveries(results);
+    page.section("recovered", "Recovered", &recovered);
     page.section(
         "picard",
         "What noise leaves of the signal",
@@ -80,7 +83,16 @@ fn picards(results: &RunResults) -> String {
     if results.picards.is_empty() {
         return String::new();
     }
-    let figure = |p| format!("<figure class=\"plot\">\n{}</figure>\n", picard_svg(p));
+    let figure = |p: &Picard| {
+        let name = match p.directions {
+            Directions::LaserSide => "picard",
+            Directions::Joint | Directions::JointWeighted => "picard-joint",
+        };
+        format!(
+            "<figure class=\"plot\" data-name=\"{name}\">\n{}</figure>\n",
+            picard_svg(p)
+        )
+    };
     let figures: String = results.picards.iter().map(figure).collect();
     format!(
         "<p>{}</p>\n{figures}",

@@ -94,7 +94,7 @@ pub(in super::super) fn scene_file(scene: &Scene) -> &str {
 }
 
 /// Whether the scene's name alone is enough to load it again.
-fn is_builtin(scene: &Scene) -> bool {
+pub(in super::super) fn is_builtin(scene: &Scene) -> bool {
     builtins()
         .iter()
         .any(|b| b.name == scene.name && b.text == scene.text)

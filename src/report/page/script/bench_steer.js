@@ -1,6 +1,6 @@
 // Buttons, keys, wheel and tick boxes of the bench.
 
-const KEYS =
+const STEERING_KEYS =
     "Drag, or the arrow keys, turn the bench; + and − zoom, Shift with an arrow key moves it, Home starts again. The wheel zooms once the drawing is clicked; with " +
     "fingers: sideways turns, two zoom and move, up and down scrolls the page. A click or tap on a spot, or on the wall inside the camera's view, chooses it. Walls, and the object's " +
     "back, are drawn as if they let light through, so that what is behind them shows.";

@@ -11,7 +11,7 @@
 /** How far the eye is from what it looks at: beyond everything that is drawn. */
 const EYE = 20;
 /** Free room around the bench, as shares of width and height, and CSS pixels: for names and the scale bar. */
-const MARGIN = { share: 0.07, least: 26, most: 48 };
+const EDGE_MARGIN = { share: 0.07, least: 26, most: 48 };
 
 /**
  * A renderer on `canvas`, or `undefined` where the browser has no WebGL.
@@ -197,7 +197,7 @@ function fitView(bench, sight) {
         return [Math.min(...along), Math.max(...along)];
     };
     const [[left, rightmost], [lowest, top]] = [range(right), range(up)];
-    const margin = (/** @type {number} */ length) => 2 * Math.min(MARGIN.most, Math.max(MARGIN.least, MARGIN.share * length));
+    const margin = (/** @type {number} */ length) => 2 * Math.min(EDGE_MARGIN.most, Math.max(EDGE_MARGIN.least, EDGE_MARGIN.share * length));
     const scale = Math.min((width - margin(width)) / Math.max(1e-9, rightmost - left), (height - 20 - margin(height)) / Math.max(1e-9, top - lowest));
     controls.target.copy(right).multiplyScalar(0.5 * (left + rightmost)).addScaledVector(up, 0.5 * (lowest + top));
     camera.position.copy(controls.target).addScaledVector(back, EYE);

@@ -8,21 +8,17 @@ setTimeout(async () => {
 });
 
 /**
- * Calls `start` for each element of the page that `selector` names. An error in one leaves the others alone, and that element says it.
+ * Calls `start` for each element of the page that `selector` names, once every part of the script is there. An error in one leaves the others alone, and that element says it.
  * @param {string} selector
  * @param {(element: HTMLElement) => void | Promise<void>} start
  */
 function upgrade(selector, start) {
     for (const element of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll(selector))) {
-        const said = (/** @type {unknown} */ error) => {
+        const running = Promise.resolve().then(() => start(element)).catch((error) => {
             console.error(error);
             element.prepend(make("p", { class: "note" }, `This part of the page does not answer: ${error}`));
-        };
-        try {
-            started.push(Promise.resolve(start(element)).catch(said));
-        } catch (error) {
-            said(error);
-        }
+        });
+        started.push(running);
     }
 }
 
