@@ -26,7 +26,7 @@ const BESIDE: [(&str, &str); 4] = [
 
 /// Foreign crates and the one place that may name them. `exr` has two: frames are written and read with all their attributes, pictures of other
 /// programs are read without any; what both must know of a file's bytes stands in `image/exr/envelope`.
-const DOORS: [(&str, &[&str]); 22] = [
+const DOORS: [(&str, &[&str]); 28] = [
     ("obvhs", &["geometry/bvh"]),
     ("exr", &["film/exr", "image/exr"]),
     ("faer", &["num/linalg"]),
@@ -49,6 +49,12 @@ const DOORS: [(&str, &[&str]); 22] = [
     ("postcard", &["study/task/bytes"]),
     ("clap", &["cli"]),
     ("indicatif", &["cli"]),
+    ("terminal_size", &["cli/view/terminal"]),
+    ("cap_std", &["cli/serve/folder"]),
+    ("cap_fs_ext", &["cli/serve/folder"]),
+    ("hyper", &["cli/serve"]),
+    ("hyper_util", &["cli/serve/connection"]),
+    ("tokio", &["cli/serve"]),
 ];
 
 struct Source {

@@ -8,14 +8,14 @@ use super::checkpoint::{Checkpoint, Parts};
 use super::columns::{Columns, together};
 use super::failure::Failure;
 use super::folder::{Folder, own_identity};
-use super::interrupt::{stop_flag, warned};
+use super::interrupt::warned;
 use super::output::Talk;
-use super::progress;
+use super::progress::Tracing;
 use super::record::Record;
 use super::render::refuse_beyond_f32;
 use crate::matrix::Matrix;
 use crate::scene::Scene;
-use crate::transport::{Control, Plan, Tally};
+use crate::transport::{Plan, Tally};
 
 /// A render at work.
 pub(super) struct Work<'a> {
@@ -43,16 +43,11 @@ impl Work<'_> {
             false => todo.len(),
             true => batches.len(),
         };
-        let bar = progress::paths(
-            talk,
-            &format!("tracing {}", scene.name),
-            pixels * plan.budget.samples() * columns as u64,
-        );
-        let tick = |paths| bar.inc(paths);
-        let control = Control {
-            progress: &tick,
-            stop: stop_flag(),
-        };
+        let samples = pixels * plan.budget.samples() * columns as u64;
+        let mut tracing = Tracing::start(talk, &scene.name, samples);
+        kept.iter()
+            .flatten()
+            .for_each(|column| tracing.finished(column));
         let last = batches.len();
         for (number, range) in batches.into_iter().enumerate() {
             let columns = Columns {
@@ -68,18 +63,18 @@ impl Work<'_> {
             let blocks = columns.blocks();
             if self.resume {
                 columns.add(&mut tally, checkpoint.resume(&blocks, blocks.end))?;
-                self.say_resumed(&tally, &range, talk);
+                self.say_resumed(&tally, &range, (talk, &tracing));
                 let traced = u64::from(tally.range().end) * u64::from(plan.budget.size);
                 let each = if plan.estimator.serves_all_spots() {
                     1
                 } else {
                     range.len() as u64
                 };
-                bar.inc(pixels * traced * each);
+                tracing.skip(pixels * traced * each);
             }
             let nothing = Parts::new();
             let tally = self.pool.install(|| {
-                columns.trace(tally, blocks.end, control, (&mut checkpoint, &nothing))
+                columns.trace(tally, blocks.end, &mut tracing, (&mut checkpoint, &nothing))
             })?;
             let there = tally.range().end;
             let Some(traced) = tally.traced() else {
@@ -105,6 +100,7 @@ impl Work<'_> {
             };
             let columns = self.pool.install(written)?;
             for (spot, column) in range.clone().zip(columns) {
+                tracing.finished(&column);
                 kept[spot] = Some(column);
             }
             self.folder.remove_checkpoint(&range)?;
@@ -112,19 +108,20 @@ impl Work<'_> {
                 return Err(Failure::Stopped(String::new()));
             }
         }
-        bar.finish_and_clear();
+        tracing.end();
         Ok(())
     }
 
-    fn say_resumed(&self, tally: &Tally, range: &Range<usize>, talk: Talk) {
+    fn say_resumed(&self, tally: &Tally, range: &Range<usize>, (talk, tracing): (Talk, &Tracing)) {
         let there = tally.range().end;
         if there > 0 {
-            talk.say(format!(
+            let said = format!(
                 "going on after {there} of {} blocks of the spots {} to {}",
                 self.plan.budget.blocks,
                 range.start,
                 range.end - 1
-            ));
+            );
+            tracing.say(talk, said);
         }
     }
 

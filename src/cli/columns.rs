@@ -5,6 +5,8 @@ use std::time::Instant;
 
 use super::checkpoint::{Checkpoint, Parts};
 use super::failure::Failure;
+use super::interrupt::stop_flag;
+use super::progress::Tracing;
 use crate::scene::Scene;
 use crate::shard::Identity;
 use crate::transport::{Control, Estimator, NUMERICS, Plan, Tally, trace};
@@ -76,13 +78,13 @@ impl Columns<'_> {
             .collect()
     }
 
-    /// Traces on from where `tally` ends to block `end`, with `before` as what `checkpoint` holds besides. What comes back is shorter if it was
+    /// Traces on from where `tally` ends to block `end`, shown by `tracing`, with `before` as what `checkpoint` holds besides. What comes back is shorter if it was
     /// stopped; what is there is then in the checkpoint.
     pub(super) fn trace(
         &self,
         tally: Tally,
         end: u64,
-        control: Control<'_>,
+        tracing: &mut Tracing,
         (checkpoint, before): (&mut Checkpoint, &Parts),
     ) -> Result<Tally, Failure> {
         let all = |tally: &Tally| {
@@ -91,11 +93,18 @@ impl Columns<'_> {
             parts
         };
         let end = self.local(self.first..end).end;
+        let bar = tracing.bar();
+        let tick = |samples| bar.inc(samples);
+        let control = Control {
+            progress: &tick,
+            stop: stop_flag(),
+        };
         let mut pace = (Instant::now(), tally.range().end);
         let after = &mut |tally: &Tally| {
             let there = tally.range().end;
             let each = pace.0.elapsed().as_secs_f64() / f64::from(there - pace.1);
             pace = (Instant::now(), there);
+            tracing.look(tally);
             if there < end {
                 checkpoint.look(|| all(tally))?;
             }

@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 use super::columns;
 use super::expose;
 use super::failure::Failure;
+use super::model;
 use super::output::Talk;
 use super::record::Record;
 use super::stale::{remove_exposed, remove_files, remove_named, remove_numbered, remove_recovered};
@@ -300,6 +301,7 @@ impl Folder {
         remove_numbered(&self.frames(), "exr")?;
         remove_recovered(&self.path.join("recovered"))?;
         remove_exposed(&self.path.join(expose::FOLDER))?;
+        remove_named(&self.path.join("model"), &[model::Z])?;
         remove_named(&self.path, &[PHI, STDERR, Record::FILE, SUMMARY, REPORT])
     }
 

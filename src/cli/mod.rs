@@ -13,6 +13,7 @@
 //! | `phi.npy`, `phi.stderr.npy` | Φcam and its standard error, f64, (pixels, spots), C order, W |
 //! | `model/g12.npy`, `g23.npy`, `phi.npy` | the analytic side |
 //! | `model/laser_side.npy`, `camera_side.npy` | D and C: G12 and G23 with the walls' BRDFs and in W, Φcam = C·diag(ρ)·D |
+//! | `model/z.npy` | z of every entry, what `run` compared by: deviation of the traced from the modelled flux in standard errors, (pixels, spots) |
 //! | `recovered/METHOD.npy`, `.png` | recovered reflectance, (nv, nu); `truth` beside it |
 //! | `recovered/METHOD.stderr.npy` | its standard error, (nv, nu), where the noise is known |
 //! | `recovered/METHOD.covariance.npy`, `METHOD.resolution.npy` | covariance and resolution matrix of a linear method, elements × elements of all surfaces |
@@ -50,6 +51,7 @@ mod render;
 mod reproduce;
 mod run;
 mod scene;
+pub mod serve;
 mod settings;
 mod stack;
 mod stale;
@@ -94,6 +96,7 @@ pub fn main() -> ExitCode {
         Command::Recover(a) => recover::execute(a, talk),
         Command::Expose(a) => expose::execute(a, talk),
         Command::View(a) => view::execute(a, talk),
+        Command::Serve(a) => serve::execute(a, talk),
         Command::Scene(a) => scene::execute(a, talk),
         Command::Target(a) => target::execute(a, talk),
         Command::Plan(a) => many::plan::execute(a, talk),

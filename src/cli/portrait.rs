@@ -31,7 +31,7 @@ pub(super) fn execute(args: &PortraitArgs, talk: Talk) -> Result<Outcome, Failur
     };
     let [w, h] = args.size;
     let total = (w * h) as u64 * u64::from(args.samples);
-    let bar = progress::paths(talk, "looking", total);
+    let bar = progress::samples(talk, "looking", total);
     let control = Control {
         progress: &|n| bar.inc(n),
         stop: stop_flag(),

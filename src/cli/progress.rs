@@ -1,45 +1,210 @@
-//! Progress bars on standard error.
+//! Progress bars on standard error: two lines, which fit into 40 columns.
 
-use std::time::Duration;
+use std::fmt::Write;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-use super::output::Talk;
+use super::output::{Talk, harmless};
+use crate::matrix::Matrix;
+use crate::transport::Tally;
 
-/// A bar that counts `total` paths; silent with `--quiet` or where standard error is no terminal.
-pub(super) fn paths(talk: Talk, what: &str, total: u64) -> ProgressBar {
-    let target = if talk.quiet {
-        ProgressDrawTarget::hidden()
-    } else {
-        ProgressDrawTarget::stderr()
+/// Characters of what is done that are shown.
+const WORDS: usize = 20;
+/// What is done, the bar, its share and the time that is left.
+const TEMPLATE: &str = "{msg} {wide_bar} {percent:>3} % {left}\n{rate}";
+/// Time between two looks at a standard error at the least; and it takes at most one part in [`SHARE`] of the time.
+const LOOK: Duration = Duration::from_millis(200);
+const SHARE: u32 = 200;
+
+/// A bar that counts `total` samples; silent with `--quiet` or where standard error is no terminal.
+pub(super) fn samples(talk: Talk, what: &str, total: u64) -> ProgressBar {
+    let rate = |state: &ProgressState, w: &mut dyn Write| {
+        let _ = w.write_str(&per_second(state.per_sec()));
     };
-    let bar = ProgressBar::with_draw_target(Some(total), target);
-    let template = "{msg} {wide_bar} {percent:>3} %  {eta} left, {si} paths/s";
-    if let Ok(style) = ProgressStyle::with_template(template) {
-        let rate = |state: &indicatif::ProgressState, w: &mut dyn std::fmt::Write| {
-            let per_second = state.per_sec();
-            let _ = match per_second {
-                x if x >= 1e6 => write!(w, "{:.1} M", x / 1e6),
-                x => write!(w, "{:.0} k", x / 1e3),
-            };
-        };
-        bar.set_style(style.with_key("si", rate));
-    }
-    bar.set_message(what.to_owned());
-    bar.enable_steady_tick(Duration::from_millis(200));
-    bar
+    bar(talk, what, total, rate)
 }
 
 /// A bar that counts a few long steps.
 pub(super) fn steps(talk: Talk, what: &str) -> ProgressBar {
+    let rate = |state: &ProgressState, w: &mut dyn Write| {
+        let _ = write!(w, "{} of {}", state.pos(), state.len().unwrap_or(0));
+        let _ = match state.per_sec() {
+            x if x >= 1.0 => write!(w, ", {x:.0} per second"),
+            x if x > 0.0 => write!(w, ", {} each", duration(1.0 / x)),
+            _ => Ok(()),
+        };
+    };
+    bar(talk, what, 1, rate)
+}
+
+fn bar(
+    talk: Talk,
+    what: &str,
+    total: u64,
+    rate: impl Fn(&ProgressState, &mut dyn Write) + Clone + Send + Sync + 'static,
+) -> ProgressBar {
     let target = match talk.quiet {
         true => ProgressDrawTarget::hidden(),
         false => ProgressDrawTarget::stderr(),
     };
-    let bar = ProgressBar::with_draw_target(Some(1), target);
-    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos} of {len}  {eta} left") {
+    let bar = ProgressBar::with_draw_target(Some(total), target);
+    if let Some(style) = style(rate) {
         bar.set_style(style);
     }
-    bar.set_message(what.to_owned());
+    bar.set_message(shortened(&harmless(what)));
+    bar.enable_steady_tick(Duration::from_millis(200));
     bar
 }
+
+fn style(
+    rate: impl Fn(&ProgressState, &mut dyn Write) + Clone + Send + Sync + 'static,
+) -> Option<ProgressStyle> {
+    let left = |state: &ProgressState, w: &mut dyn Write| {
+        let _ = match state.pos() {
+            0 => Ok(()),
+            _ => write!(w, "{} left", duration(state.eta().as_secs_f64())),
+        };
+    };
+    let style = ProgressStyle::with_template(TEMPLATE).ok()?;
+    Some(style.with_key("left", left).with_key("rate", rate))
+}
+
+/// At most [`WORDS`] characters.
+fn shortened(text: &str) -> String {
+    match text.chars().count() > WORDS {
+        true => text.chars().take(WORDS - 1).chain(['…']).collect(),
+        false => text.to_owned(),
+    }
+}
+
+/// Seconds in the unit that suits them.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 99.5 => format!("{s:.0} s"),
+        s if s < 99.5 * 60.0 => format!("{:.0} min", s / 60.0),
+        s if s < 48.0 * 3600.0 => format!("{:.0} h", s / 3600.0),
+        s => format!("{:.0} days", s / 86400.0),
+    }
+}
+
+/// Samples a second with three digits.
+fn per_second(rate: f64) -> String {
+    let (value, unit) = match rate {
+        x if x >= 999.5e6 => (x / 1e9, "G "),
+        x if x >= 999.5e3 => (x / 1e6, "M "),
+        x if x >= 999.5 => (x / 1e3, "k "),
+        x => (x, ""),
+    };
+    let decimals = match value {
+        v if unit.is_empty() || v >= 99.95 => 0,
+        v if v >= 9.995 => 1,
+        _ => 2,
+    };
+    format!("{value:.decimals$} {unit}samples/s")
+}
+
+/// The bar of a render, which shows how precise it is so far as well: ‖σ‖/‖Φ‖ (Frobenius) over the finished columns, and until there is one over the
+/// finished blocks. Where nobody sees it, nothing is worked out.
+pub(super) struct Tracing {
+    bar: ProgressBar,
+    /// Bits of what is shown; not a number until it is known.
+    shown: Arc<AtomicU64>,
+    /// Σσ² and ΣΦ² of the finished columns, W².
+    finished: [f64; 2],
+    /// When the next look is due.
+    next: Instant,
+}
+
+impl Tracing {
+    /// Nothing yet, of `total` samples.
+    pub(super) fn start(talk: Talk, scene: &str, total: u64) -> Self {
+        let shown = Arc::new(AtomicU64::new(f64::NAN.to_bits()));
+        let own = Arc::clone(&shown);
+        let rate = move |state: &ProgressState, w: &mut dyn Write| {
+            let _ = w.write_str(&per_second(state.per_sec()));
+            let _ = match f64::from_bits(own.load(Ordering::Relaxed)) {
+                error if error.is_finite() => {
+                    write!(w, ", standard error {}", share(error))
+                }
+                _ => Ok(()),
+            };
+        };
+        Self {
+            bar: bar(talk, &format!("tracing {scene}"), total, rate),
+            shown,
+            finished: [0.0; 2],
+            next: Instant::now(),
+        }
+    }
+
+    /// The bar itself, to count on.
+    pub(super) fn bar(&self) -> ProgressBar {
+        self.bar.clone()
+    }
+
+    /// Leaves out samples of an earlier process: they say nothing of how fast this one is.
+    pub(super) fn skip(&self, samples: u64) {
+        self.bar.dec_length(samples);
+    }
+
+    /// A remark on a line of its own.
+    pub(super) fn say(&self, talk: Talk, text: impl AsRef<str>) {
+        self.bar.suspend(|| talk.say(text));
+    }
+
+    /// Takes in a column as it is kept: flux by the number of surfaces met, then the standard error of their sum.
+    pub(super) fn finished(&mut self, kept: &Matrix) {
+        if self.bar.is_hidden() {
+            return;
+        }
+        let orders = kept.ncols() - 1;
+        for row in kept.row_iter() {
+            let flux = row.columns(0, orders).sum();
+            self.finished[0] += row[orders] * row[orders];
+            self.finished[1] += flux * flux;
+        }
+        let [noise, flux] = self.finished;
+        if flux > 0.0 {
+            self.show((noise / flux).sqrt());
+        }
+    }
+
+    /// Looks at the blocks of the columns that are at work, if there are no finished columns and it is time.
+    pub(super) fn look(&mut self, tally: &Tally) {
+        let start = Instant::now();
+        if self.bar.is_hidden() || self.finished[1] > 0.0 || start < self.next {
+            return;
+        }
+        if let Some(error) = tally.relative_error() {
+            self.show(error);
+        }
+        let end = Instant::now();
+        self.next = end + (SHARE * (end - start)).max(LOOK);
+    }
+
+    fn show(&self, error: f64) {
+        self.shown.store(error.to_bits(), Ordering::Relaxed);
+    }
+
+    /// All is traced, or as much as there will be.
+    pub(super) fn end(self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// A small share with two digits.
+fn share(error: f64) -> String {
+    match 100.0 * error {
+        x if x >= 9.95 => format!("{x:.0} %"),
+        x if x >= 0.995 => format!("{x:.1} %"),
+        x if x >= 0.0995 => format!("{x:.2} %"),
+        x if x >= 0.00995 => format!("{x:.3} %"),
+        _ => format!("{error:.1e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -16,6 +16,7 @@ use super::trust;
 use super::{Outcome, settings};
 use crate::film;
 use crate::matrix::Matrix;
+use crate::report;
 use crate::scene::Scene;
 use crate::transport::{Plan, Traced, block_size};
 
@@ -45,19 +46,28 @@ pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure>
             complete(&scene, &plan, &args.output)?
         }
     };
-    let (record, phi) = match complete {
+    let (record, traced) = match complete {
         Some(record) => {
             // What the earlier process was killed over.
             Folder::at(&args.output).tidy()?;
-            (record, true)
+            (record, None)
         }
         None => {
             let rendered = into_folder(&scene, &args.trace, spots, keep, &args.output, talk)?;
-            (rendered.record, rendered.phi.is_some())
+            (rendered.record, rendered.phi)
         }
     };
     if args.json {
         output::print(&output::json(&record)?)?;
+    } else if let Some(traced) = traced {
+        let table = report::render_table(&scene, &record.to_settings(), &traced, record.seconds);
+        let Record {
+            finished, spots, ..
+        } = record;
+        let place = args.output.display();
+        output::print(&format!(
+            "{table}\n  {place}: {finished} of {spots} spots, frames, phi.npy and phi.stderr.npy\n"
+        ))?;
     } else {
         let Record {
             finished,
@@ -65,10 +75,9 @@ pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure>
             seconds,
             ..
         } = &record;
-        let what = if phi {
-            "frames, phi.npy and phi.stderr.npy"
-        } else {
-            "frames; phi.npy follows when every spot is there"
+        let what = match finished == spots {
+            true => "frames, phi.npy and phi.stderr.npy",
+            false => "frames; phi.npy follows when every spot is there",
         };
         let place = args.output.display();
         output::print(&format!(

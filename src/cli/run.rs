@@ -8,6 +8,7 @@ use super::failure::Failure;
 use super::folder::{Keep, REPORT, SUMMARY};
 use super::interrupt::stop_flag;
 use super::output::{self, Talk};
+use super::progress;
 use super::record::Record;
 use super::render::{self, Rendered};
 use super::trust;
@@ -19,7 +20,8 @@ use crate::model::MatrixModel;
 use crate::recovery::{Method, Nuisance, Options};
 use crate::report;
 use crate::store::write_whole;
-use crate::study::{self, Noise, RunResults};
+use crate::study::{self, Gallery, GalleryPlan, GalleryTasks, Noise, RunResults};
+use crate::transport::Control;
 
 pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
     let scene = trust::load(&args.scene)?;
@@ -61,6 +63,8 @@ pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
         z: None,
         agreement: None,
         recovered: Vec::new(),
+        picards: Vec::new(),
+        gallery: None,
         times: Vec::new(),
         scene,
     };
@@ -113,6 +117,7 @@ fn compare_and_recover(
         test,
     )?;
     model::write(&args.output, &matrices, &found.model)?;
+    model::write_z(&args.output, &found.z)?;
     results.model = Some(found.model);
     results.z = Some(found.z);
     results.agreement = Some(found.agreement);
@@ -137,7 +142,7 @@ fn compare_and_recover(
         &options,
     );
     results.recovered = recover::collect(attempts, false, talk)?;
-    let picards = study::picards(
+    results.picards = study::picards(
         &matrices,
         &results.phi,
         noise,
@@ -145,9 +150,36 @@ fn compare_and_recover(
         &Method::USUAL,
         &options,
     )?;
-    recover::write(&args.output, &results.scene, &results.recovered, &picards)?;
+    recover::write(
+        &args.output,
+        &results.scene,
+        &results.recovered,
+        &results.picards,
+    )?;
     clock.lap("recover")?;
+
+    results.gallery = gallery(results, &matrices, talk);
+    clock.lap("gallery")?;
     Ok(())
+}
+
+/// The object over regularisation and noise; none where there is nothing to show, and where it was stopped.
+fn gallery(results: &RunResults, matrices: &MatrixModel, talk: Talk) -> Option<Gallery> {
+    let tasks = GalleryTasks::new(
+        &results.scene,
+        matrices,
+        (&results.phi, &results.stderr),
+        &results.recovered,
+        GalleryPlan::of_run(results.settings.seed),
+    )?;
+    let bar = progress::steps(talk, "recovering over regularisation and noise");
+    bar.set_length(tasks.count());
+    let found = tasks.gallery(Control {
+        progress: &|steps| bar.inc(steps),
+        stop: stop_flag(),
+    });
+    bar.finish_and_clear();
+    found
 }
 
 /// Below 1.2e-38 numbers of f32 lose their digits; a frame whose brightest pixel is fainter than this has such in it.

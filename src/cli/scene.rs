@@ -2,18 +2,29 @@
 
 use std::fmt::Write as _;
 
+use serde_json::json;
+
 use super::Outcome;
 use super::args::{SceneArgs, SceneCommand};
 use super::failure::Failure;
 use super::output::{self, Talk};
 use super::{portrait, trust};
 use crate::report;
-use crate::scene::{Role, Scene, builtins};
+use crate::scene::{Builtin, Role, Scene, builtins};
 
 pub(super) fn execute(args: &SceneArgs, talk: Talk) -> Result<Outcome, Failure> {
     match &args.command {
-        SceneCommand::List => output::print(&list())?,
-        SceneCommand::Check { scene } => output::print(&check(&trust::load(scene)?))?,
+        SceneCommand::List { json } => output::print(&match json {
+            true => listed()?,
+            false => list(),
+        })?,
+        SceneCommand::Check { scene, json } => {
+            let scene = trust::load(scene)?;
+            output::print(&match json {
+                true => checked(&scene)?,
+                false => check(&scene),
+            })?;
+        }
         SceneCommand::Show { scene, output } => {
             let scene = trust::load(scene)?;
             talk.warn(&scene);
@@ -42,6 +53,35 @@ fn list() -> String {
         let _ = writeln!(text, "{:<12} {}", b.name, b.summary);
         text
     })
+}
+
+/// The same for programs.
+fn listed() -> Result<String, Failure> {
+    let each = |b: &Builtin| json!({ "name": b.name, "summary": b.summary });
+    output::json(&builtins().iter().map(each).collect::<Vec<_>>())
+}
+
+/// What [`check`] says, for programs.
+fn checked(scene: &Scene) -> Result<String, Failure> {
+    let surfaces = |role| -> Vec<&str> {
+        let of_role = scene.surfaces.iter().filter(|s| s.role == role);
+        of_role.map(|s| s.name.as_str()).collect()
+    };
+    let warnings: Vec<String> = scene.warnings().iter().map(ToString::to_string).collect();
+    output::json(&json!({
+        "name": scene.name,
+        "hash": scene.hash,
+        "surfaces": {
+            "relay": surfaces(Role::Relay),
+            "hidden": surfaces(Role::Hidden),
+            "occluder": surfaces(Role::Occluder),
+        },
+        "spots": scene.laser.spots.len(),
+        "pixels": [scene.camera.columns, scene.camera.rows],
+        "max_bounces": scene.max_bounces,
+        "unit": scene.unit.symbol(),
+        "suspicious": warnings,
+    }))
 }
 
 fn check(scene: &Scene) -> String {

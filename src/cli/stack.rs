@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use serde_json::json;
+
 use super::Outcome;
 use super::args::StackArgs;
 use super::failure::Failure;
@@ -15,7 +17,8 @@ pub(super) fn execute(args: &StackArgs, _: Talk) -> Result<Outcome, Failure> {
     let stack = film::stack(&args.dir)?;
     let dir = args.output.as_ref().unwrap_or(&args.dir);
     ensure_writable(dir)?;
-    let precision = if refuse_other(&dir.join(PHI), &stack.phi)? == Found::Exact {
+    let found = refuse_other(&dir.join(PHI), &stack.phi)?;
+    let precision = if found == Found::Exact {
         "left as it is: the frames agree with it, and it holds more digits than they do"
     } else {
         npy::write(&dir.join(STDERR), &stack.stderr)?;
@@ -23,11 +26,20 @@ pub(super) fn execute(args: &StackArgs, _: Talk) -> Result<Outcome, Failure> {
         "to the f32 precision of the frames"
     };
     let (pixels, spots) = stack.phi.shape();
-    output::print(&format!(
-        "{}: {pixels} pixels × {spots} spots of scene `{}`, {precision}\n",
-        dir.join(PHI).display(),
-        stack.run.scene_name
-    ))?;
+    let (path, scene) = (dir.join(PHI), &stack.run.scene_name);
+    let text = if args.json {
+        output::json(&json!({
+            "phi": path.to_string_lossy(),
+            "pixels": pixels,
+            "spots": spots,
+            "scene": scene,
+            "written": found == Found::Nothing,
+        }))?
+    } else {
+        let place = path.display();
+        format!("{place}: {pixels} pixels × {spots} spots of scene `{scene}`, {precision}\n")
+    };
+    output::print(&text)?;
     Ok(Outcome::Done)
 }
 

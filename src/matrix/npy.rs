@@ -15,8 +15,10 @@ use std::path::{Path, PathBuf};
 
 use npyz::{NpyHeader, Order, TypeChar, WriterBuilder};
 
+mod entries;
 mod rows;
 
+pub use entries::Entries;
 pub use rows::Rows;
 
 use super::Matrix;
@@ -124,8 +126,13 @@ struct Opened {
 }
 
 fn open(path: &Path) -> Result<Opened, NpyError> {
+    let file = File::open(path).map_err(|source| unreadable(path, source))?;
+    examine(path, file)
+}
+
+/// Looks at the header of an open file, which messages call `path`.
+fn examine(path: &Path, file: File) -> Result<Opened, NpyError> {
     let unreadable = |source| unreadable(path, source);
-    let file = File::open(path).map_err(unreadable)?;
     let length = file.metadata().map_err(unreadable)?.len();
     let mut file = BufReader::new(file);
     check_header(&mut file)

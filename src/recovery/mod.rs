@@ -78,6 +78,7 @@ pub use method::{Method, UnknownMethod};
 pub use options::{Options, Uncertainty, WeightRule};
 pub use outcome::{Choice, Parameter, Recovered, Solver};
 pub use picard::{Directions, Picard, picard};
+pub use pixelwise::laser_side::{LaserSide, Parts};
 pub use pixelwise::strips::{Strip, recover_strips};
 pub use problem::Problem;
 pub use rule::Rule;

@@ -70,7 +70,7 @@ pub use reproduce::{
     ItemSummary, ReproductionSettings, reproduction_files, reproduction_html,
     reproduction_markdown, reproduction_table,
 };
-pub use run::run_html;
+pub use run::{run_html, served_html};
 pub use shown::Shown;
 pub use study::{
     Account, Asked, brdf_account, budget_account, convergence_account, coverage_account,
@@ -78,7 +78,7 @@ pub use study::{
     tolerance_account,
 };
 pub use summary::summary_json;
-pub use table::{recovery_table, summary_table, verdict_table};
+pub use table::{recovery_table, render_table, summary_table, verdict_table};
 pub use target::target_png;
 pub use terminal::{iterm, kitty};
 pub use tolerance::{tolerance_csv, tolerance_svg, tolerance_table};

@@ -36,6 +36,8 @@ pub(super) fn of(scene: Scene) -> RunResults {
         z: None,
         agreement: None,
         recovered: Vec::new(),
+        picards: Vec::new(),
+        gallery: None,
         times: vec![
             ("render".into(), 12.3),
             ("model".into(), 0.01),

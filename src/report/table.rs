@@ -5,7 +5,10 @@ use super::picture::wrapped;
 use super::summary::relative_stderr;
 use super::svg::shortened;
 use super::verdict::{sentence, verdict};
-use crate::study::{Agreement, RecoveredObject, RunResults};
+use crate::matrix::Matrix;
+use crate::scene::Scene;
+use crate::study::{Agreement, RecoveredObject, RunResults, Settings};
+use crate::transport::Traced;
 
 /// Columns of the terminal that the tables keep to.
 const WIDTH: usize = 80;
@@ -19,9 +22,27 @@ pub fn summary_table(results: &RunResults) -> String {
     out + &recovery_table(&results.recovered)
 }
 
-/// Lines of the table: a key and what is to be said.
-pub(super) fn facts(results: &RunResults) -> Vec<(&'static str, String)> {
-    let (s, scene) = (&results.settings, &results.scene);
+/// What a render left, as plain text of at most 80 columns: flux and precision, `seconds` of wall time.
+pub fn render_table(scene: &Scene, settings: &Settings, traced: &Traced, seconds: f64) -> String {
+    let total = traced.flux.sum();
+    let share = |m: &Matrix| if total > 0.0 { m.sum() / total } else { 0.0 };
+    let bounces: Vec<(u32, f64)> = (1..).zip(traced.bounces.iter().map(share)).collect();
+    let norm = traced.flux.norm();
+    let error = (norm > 0.0).then(|| traced.stderr.norm() / norm);
+    let mut facts = traced_facts(scene, settings, (&traced.flux, error), &bounces);
+    facts.push(("time", format!("{}\u{a0}s", significant(seconds, 2))));
+    let mut out = String::new();
+    put_facts(&mut out, &facts);
+    out
+}
+
+/// Scene, settings, flux with its relative standard error, and what share of it met how many surfaces.
+fn traced_facts(
+    scene: &Scene,
+    s: &Settings,
+    (phi, error): (&Matrix, Option<f64>),
+    bounces: &[(u32, f64)],
+) -> Vec<(&'static str, String)> {
     let hash: String = scene.hash.chars().take(12).collect();
     let mut facts = vec![
         (
@@ -29,8 +50,8 @@ pub(super) fn facts(results: &RunResults) -> Vec<(&'static str, String)> {
             format!(
                 "{} ({hash}), {} pixels × {} spots",
                 scene.name,
-                results.phi.nrows(),
-                results.phi.ncols()
+                phi.nrows(),
+                phi.ncols()
             ),
         ),
         (
@@ -41,28 +62,34 @@ pub(super) fn facts(results: &RunResults) -> Vec<(&'static str, String)> {
             ),
         ),
     ];
-    let noise = relative_stderr(results).map_or(String::new(), |e| {
+    let noise = error.map_or(String::new(), |e| {
         format!(", standard error {}", percent(e))
     });
     facts.push((
         "flux",
         format!(
             "{}\u{a0}W over all pixels and spots{noise}",
-            significant(results.phi.sum(), 3)
+            significant(phi.sum(), 3)
         ),
     ));
-    if !results.bounces.is_empty() {
+    if !bounces.is_empty() {
         let share = |(n, share): &(u32, f64)| format!("{n} surfaces {}", percent(*share));
         facts.push((
             "light by path",
-            results
-                .bounces
-                .iter()
-                .map(share)
-                .collect::<Vec<_>>()
-                .join(", "),
+            bounces.iter().map(share).collect::<Vec<_>>().join(", "),
         ));
     }
+    facts
+}
+
+/// Lines of the table: a key and what is to be said.
+pub(super) fn facts(results: &RunResults) -> Vec<(&'static str, String)> {
+    let mut facts = traced_facts(
+        &results.scene,
+        &results.settings,
+        (&results.phi, relative_stderr(results)),
+        &results.bounces,
+    );
     if let Some(a) = &results.agreement {
         facts.extend(agreement_facts(a));
     }
@@ -210,6 +237,27 @@ mod tests {
             assert!(!table.contains('\u{1b}'));
             let sentence = verdict(&results);
             assert!(table.replace('\n', " ").starts_with(&sentence), "{table}");
+        }
+    }
+
+    #[test]
+    fn a_render_says_its_flux_and_its_precision() {
+        let results = run("bench");
+        let matrix = |x: f64| Matrix::from_element(2, 3, x);
+        // 6 entries of 2e-12 W, a quarter of it from three surfaces; σ is 1 % of Φ.
+        let traced = Traced {
+            bounces: vec![matrix(1.5e-12), matrix(0.0), matrix(0.5e-12)],
+            flux: matrix(2e-12),
+            stderr: matrix(2e-14),
+        };
+        let table = render_table(&results.scene, &results.settings, &traced, 8.04);
+        for words in [
+            "2 pixels × 3 spots",
+            "1.20e-11\u{a0}W over all pixels and spots, standard error 1.00\u{a0}%",
+            "1 surfaces 75.0\u{a0}%, 2 surfaces 0\u{a0}%, 3 surfaces 25.0\u{a0}%",
+            "time          8.0\u{a0}s",
+        ] {
+            assert!(table.contains(words), "no {words}: {table}");
         }
     }
 

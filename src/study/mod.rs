@@ -9,6 +9,7 @@
 //! * [`BrdfTasks`]: the model on a wall that is not Lambertian, its BRDF known, ignored, or wrong.
 //! * [`CoverageTasks`]: how often the bands of recovered reflectances cover the truth.
 //! * [`ExperimentTasks`]: the failed laboratory experiment, re-enacted.
+//! * [`GalleryTasks`]: one run's object by every usual method over regularisation and noise, to leaf through.
 //! * [`indicator`](fn@indicator): what predicts how well the published inversion works.
 //! * [`noise`](fn@noise): how much noise each recovery bears.
 //! * [`portrait`](fn@portrait): a picture of the scene in ordinary light, for people.
@@ -25,6 +26,7 @@ mod coverage;
 mod deviate;
 mod ensemble;
 mod experiment;
+mod gallery;
 mod indicator;
 mod inversion;
 mod noise;
@@ -46,6 +48,7 @@ pub use ensemble::Estimate;
 pub use experiment::{
     Experiment, ExperimentError, ExperimentPlan, ExperimentTasks, Reading, Setting, Threshold,
 };
+pub use gallery::{Automatic, Gallery, GalleryPlan, GallerySurface, GalleryTasks, Picture, Series};
 pub use indicator::{
     Coefficients, Comparison, Configuration, Indicator, IndicatorError, IndicatorPlan,
     IndicatorTasks, Layout, NoisyOutcome, NoisyPoint, NoisySummary, indicator,

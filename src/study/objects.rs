@@ -108,7 +108,7 @@ pub fn measured(model: &MatrixModel, found: &Recovered) -> Vec<RecoveredObject> 
             mtf_normalized: mtf_normalized(&reflectance, &truth),
             correlation: correlation(&reflectance, &truth),
             rmse: rmse(&reflectance, &truth).unwrap_or(f64::NAN),
-            parameter: parameter(found),
+            parameter: words(found),
             bands: found
                 .bands
                 .as_ref()
@@ -144,15 +144,28 @@ fn object_bands(bands: &Bands, range: Range<usize>) -> ObjectBands {
 }
 
 /// The regularisation used and why, in words.
-fn parameter(found: &Recovered) -> String {
-    let what = match found.parameter {
-        Parameter::None => format!("rank {}", found.rank),
+pub(super) fn words(found: &Recovered) -> String {
+    let solver = match &found.solver {
+        Some(s) => format!(
+            "; {} after {} iterations, gap {:.1e}",
+            s.status, s.iterations, s.gap
+        ),
+        None => String::new(),
+    };
+    let estimated = found.nuisance.as_ref().map_or(String::new(), estimated);
+    chosen_words(found.parameter, found.rank, found.choice) + &solver + &estimated
+}
+
+/// A parameter and why it is this one, in words; of a method without one the rank.
+pub(super) fn chosen_words(parameter: Parameter, rank: usize, choice: Choice) -> String {
+    let what = match parameter {
+        Parameter::None => format!("rank {rank}"),
         Parameter::Rank(k) => format!("{k} singular directions"),
         Parameter::Damping(lambda) => format!("damping {lambda:.2e} of σ1"),
         Parameter::TotalVariation(lambda) => format!("total variation {lambda:.2e} of σ1²"),
         Parameter::Levels([dark, light]) => format!("levels {dark:.3} and {light:.3}"),
     };
-    let why = match found.choice {
+    let why = match choice {
         Choice::Given => ", as given".to_owned(),
         Choice::Discrepancy {
             residual, target, ..
@@ -180,15 +193,7 @@ fn parameter(found: &Recovered) -> String {
         Choice::Tolerance { cutoff } => format!(", cut at {cutoff:.2e}"),
         Choice::None => String::new(),
     };
-    let solver = match &found.solver {
-        Some(s) => format!(
-            "; {} after {} iterations, gap {:.1e}",
-            s.status, s.iterations, s.gap
-        ),
-        None => String::new(),
-    };
-    let estimated = found.nuisance.as_ref().map_or(String::new(), estimated);
-    what + &why + &solver + &estimated
+    what + &why
 }
 
 /// What was estimated beside the reflectances, in words: means over frames or pixels.

@@ -2,7 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::gallery::Gallery;
 use crate::matrix::Matrix;
+use crate::recovery::Picard;
 use crate::scene::Scene;
 
 /// How a run was rendered.
@@ -149,6 +151,10 @@ pub struct RunResults {
     pub agreement: Option<Agreement>,
     /// Recovered objects, a method after the other.
     pub recovered: Vec<RecoveredObject>,
+    /// Signal and noise in the singular directions of what was inverted.
+    pub picards: Vec<Picard>,
+    /// Recoveries over regularisation and noise; absent where nothing can be recovered.
+    pub gallery: Option<Gallery>,
     /// Wall time of each stage, s.
     pub times: Vec<(String, f64)>,
 }

@@ -206,6 +206,40 @@ impl Tally {
         Ok(())
     }
 
+    /// ‖σ‖/‖Φ‖ (Frobenius) of the n blocks that are there, σ the standard error of their mean, entry by entry: with their totals T and their scatter M
+    ///
+    /// ```text
+    /// √(n/(n − 1)) · √ΣM / √ΣT²      M = Σᵢ Mᵢ + Σᵢ nᵢ (Tᵢ/nᵢ − T/n)² over the parts i
+    /// ```
+    ///
+    /// `None` of fewer than two blocks, or of no light.
+    pub fn relative_error(&self) -> Option<f64> {
+        let nodes = self.tree.nodes();
+        let count = |range: &Range<u32>| f64::from(range.end - range.start);
+        let n: f64 = nodes.iter().map(|(range, _)| count(range)).sum();
+        if n < 2.0 {
+            return None;
+        }
+        let entries = self.pixels * self.columns;
+        let (mut scatter, mut square) = (0.0, 0.0);
+        let mut totals = vec![0.0; nodes.len()];
+        for at in 0..entries {
+            for (total, (_, moments)) in totals.iter_mut().zip(nodes) {
+                *total = (0..self.orders)
+                    .map(|k| moments.sums[k * entries + at])
+                    .sum();
+                scatter += moments.scatter[at];
+            }
+            let whole: f64 = totals.iter().sum();
+            square += whole * whole;
+            for (total, (range, _)) in totals.iter().zip(nodes) {
+                let apart = total / count(range) - whole / n;
+                scatter += count(range) * apart * apart;
+            }
+        }
+        (square > 0.0).then(|| (n / (n - 1.0) * scatter / square).sqrt())
+    }
+
     /// Means and standard errors over K blocks, Σx/K and √(M/(K(K − 1))), once all are there. The error of a single block is not known: it is
     /// infinite.
     pub fn traced(&self) -> Option<Traced> {

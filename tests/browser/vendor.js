@@ -20,11 +20,14 @@ const libraries = [
         name: "THREE",
         source: `export {
             AmbientLight, BoxGeometry, BufferAttribute, BufferGeometry, CanvasTexture, Color, ConeGeometry, CylinderGeometry, DataTexture, DirectionalLight,
-            DoubleSide, FrontSide, BackSide, EdgesGeometry, Float32BufferAttribute, Group, InstancedMesh, Line, LineBasicMaterial, LineDashedMaterial, LineLoop, LineSegments,
+            DoubleSide, FrontSide, BackSide, EdgesGeometry, Float32BufferAttribute, Group, InstancedMesh, Line, LineBasicMaterial, LineDashedMaterial, LineLoop, LinearFilter, LinearMipmapLinearFilter, LineSegments,
             Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, NearestFilter, OrthographicCamera, PerspectiveCamera, Plane, PlaneGeometry, Points, PointsMaterial,
-            Quaternion, Raycaster, Scene, SphereGeometry, Sprite, SpriteMaterial, SRGBColorSpace, Vector2, Vector3, WebGLRenderer, Box3, Sphere,
+            Quaternion, Raycaster, RepeatWrapping, Scene, SphereGeometry, Sprite, SpriteMaterial, SRGBColorSpace, Vector2, Vector3, WebGLRenderer, Box3, Sphere,
         } from "three";
-        export { OrbitControls } from "three/addons/controls/OrbitControls.js";`,
+        export { OrbitControls } from "three/addons/controls/OrbitControls.js";
+        export { LineMaterial } from "three/addons/lines/LineMaterial.js";
+        export { LineSegments2 } from "three/addons/lines/LineSegments2.js";
+        export { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";`,
     },
 ];
 

@@ -43,6 +43,9 @@ pub(in crate::cli) struct ShardArgs {
     /// Threads; all cores unless given. Does not change a byte of the result
     #[arg(long, allow_negative_numbers = true)]
     pub threads: Option<usize>,
+    /// Print the shard's blocks and the files computed as JSON
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Arguments)]
@@ -50,6 +53,9 @@ pub(in crate::cli) struct ShardArgs {
 pub(in crate::cli) struct StatusArgs {
     /// Folder of a plan
     pub dir: PathBuf,
+    /// Print the missing shards as JSON
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Arguments)]
@@ -96,4 +102,7 @@ pub(in crate::cli) struct CleanArgs {
     /// Only say what would be removed
     #[arg(long)]
     pub dry_run: bool,
+    /// Print the files and their bytes as JSON
+    #[arg(long)]
+    pub json: bool,
 }

@@ -5,6 +5,7 @@ mod laboratory;
 mod many;
 mod recover;
 mod reproduce;
+mod serve;
 mod study;
 mod sweep;
 mod target;
@@ -24,6 +25,7 @@ pub(in crate::cli) use laboratory::{BrdfArgs, CoverageArgs, ExperimentArgs};
 pub(in crate::cli) use many::{CleanArgs, MergeArgs, PlanArgs, ShardArgs, SlurmArgs, StatusArgs};
 pub(in crate::cli) use recover::{RecoverArgs, RuleName, WeightingName};
 pub(in crate::cli) use reproduce::ReproduceArgs;
+pub(in crate::cli) use serve::ServeArgs;
 pub(in crate::cli) use study::{
     BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs,
 };
@@ -67,6 +69,8 @@ pub(in crate::cli) enum Command {
     Expose(ExposeArgs),
     /// Look at a frame or a matrix in false colour, as PNG or in the terminal
     View(ViewArgs),
+    /// Show the report of a run or study over a local address, for what is too large to be in one page
+    Serve(ServeArgs),
     /// List, check, draw, look at or export scenes
     Scene(SceneArgs),
     /// Write a target picture, or list them: card, letters, star, edge, bars, ramp
@@ -205,6 +209,9 @@ pub(in crate::cli) struct StackArgs {
     /// Folder to write phi.npy and phi.stderr.npy to; DIR unless given
     #[arg(long, short)]
     pub output: Option<PathBuf>,
+    /// Print what was stacked as JSON
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -242,6 +249,9 @@ pub(in crate::cli) struct ModelArgs {
     /// Where Φcam is evaluated; G12 and G23 are always those of the centres
     #[arg(long, value_enum, default_value_t = IntegrationName::Centres)]
     pub integration: IntegrationName,
+    /// Print the shapes of the matrices as JSON
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// How traced and modelled are compared.
@@ -284,11 +294,18 @@ pub(in crate::cli) struct SceneArgs {
 #[derive(Debug, Subcommand)]
 pub(in crate::cli) enum SceneCommand {
     /// List the built-in scenes
-    List,
+    List {
+        /// Print their names and summaries as JSON
+        #[arg(long)]
+        json: bool,
+    },
     /// Say what is wrong (exit 2) or suspicious in a scene
     Check {
         /// Built-in scene or path of a scene file
         scene: String,
+        /// Print what is in the scene, and what is suspicious, as JSON
+        #[arg(long)]
+        json: bool,
     },
     /// Draw the bench from the side and from above, as SVG
     Show {
@@ -321,5 +338,20 @@ mod tests {
     #[test]
     fn the_arguments_are_consistent() {
         Args::command().debug_assert();
+    }
+
+    /// Commands whose result is a picture, a program or a text to be kept as it is, or that speak to Slurm or to a browser.
+    const NO_JSON: [&str; 6] = ["view", "target", "slurm", "serve", "show", "export"];
+
+    #[test]
+    fn every_result_that_a_program_would_read_can_be_had_as_json() {
+        fn walk(command: &clap::Command) {
+            let name = command.get_name();
+            let has = command.get_arguments().any(|a| a.get_id() == "json");
+            let leads_on = command.has_subcommands();
+            assert_eq!(has, !leads_on && !NO_JSON.contains(&name), "{name}");
+            command.get_subcommands().for_each(walk);
+        }
+        Args::command().get_subcommands().for_each(walk);
     }
 }

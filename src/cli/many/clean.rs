@@ -4,6 +4,8 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use serde_json::json;
+
 use super::folder::PlanFolder;
 use super::shards::{CHECKPOINT, files, find, named_range};
 use crate::cli::Outcome;
@@ -43,7 +45,7 @@ pub(in crate::cli) fn execute(args: &CleanArgs, talk: Talk) -> Result<Outcome, F
     needless.sort();
     needless.dedup();
     let mut bytes = 0;
-    let mut words = String::new();
+    let mut removed = Vec::new();
     for path in &needless {
         let spoilt = || ShardFile::open(path, &plan.file.identity, plan.file.blocks).is_err();
         if !args.shards && path.extension().is_some_and(|e| e == EXTENSION) && !spoilt() {
@@ -51,12 +53,20 @@ pub(in crate::cli) fn execute(args: &CleanArgs, talk: Talk) -> Result<Outcome, F
             continue;
         }
         bytes += fs::metadata(path).map_or(0, |m| m.len());
-        words += &format!("{}\n", path.display());
+        removed.push(path.to_string_lossy());
         if !args.dry_run {
             remove(path)?;
         }
     }
-    output::print(&words)?;
+    let text = match args.json {
+        true => output::json(&json!({
+            "files": removed,
+            "bytes": bytes,
+            "removed": !args.dry_run,
+        }))?,
+        false => removed.iter().map(|path| format!("{path}\n")).collect(),
+    };
+    output::print(&text)?;
     let did = if args.dry_run {
         "would be removed"
     } else {

@@ -10,15 +10,15 @@ use crate::cli::checkpoint::{Checkpoint, Parts};
 use crate::cli::columns::{self, Columns, together};
 use crate::cli::failure::Failure;
 use crate::cli::folder::{Folder, Keep};
-use crate::cli::interrupt::stop_flag;
 use crate::cli::output::{self, Talk};
+use crate::cli::progress::Tracing;
 use crate::cli::record::Record;
 use crate::cli::render::{complete, refuse_beyond_f32, refuse_too_large};
-use crate::cli::{Outcome, progress, settings};
+use crate::cli::{Outcome, settings};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
 use crate::shard::{Identity, Settings};
-use crate::transport::{Control, Plan};
+use crate::transport::Plan;
 
 /// A render. Its blocks are the sample blocks of the first columns of Φcam that are traced together, then those of the next.
 #[derive(Debug)]
@@ -90,7 +90,7 @@ impl Render {
             let blocks = columns.blocks();
             from.max(blocks.start)..range.end.min(blocks.end)
         };
-        let paths: u64 = self
+        let samples: u64 = self
             .groups()
             .map(|columns| {
                 let todo = own(&columns, begin);
@@ -102,12 +102,7 @@ impl Render {
                 block * each * todo.end.saturating_sub(todo.start)
             })
             .sum();
-        let bar = progress::paths(talk, &format!("tracing {}", self.scene.name), paths);
-        let tick = |paths| bar.inc(paths);
-        let control = Control {
-            progress: &tick,
-            stop: stop_flag(),
-        };
+        let mut tracing = Tracing::start(talk, &self.scene.name, samples);
         let mut parts = Parts::new();
         for columns in self.groups() {
             let todo = own(&columns, range.start);
@@ -118,7 +113,7 @@ impl Render {
             let mine = std::mem::replace(&mut done, rest);
             let mut tally = columns.tally(todo.start);
             columns.add(&mut tally, mine)?;
-            let tally = columns.trace(tally, todo.end, control, (checkpoint, &parts))?;
+            let tally = columns.trace(tally, todo.end, &mut tracing, (checkpoint, &parts))?;
             let whole = columns.first + u64::from(tally.range().end) == todo.end;
             parts.extend(columns.parts(&tally));
             if !whole {
@@ -129,7 +124,7 @@ impl Render {
                 break;
             }
         }
-        bar.finish_and_clear();
+        tracing.end();
         Ok(parts)
     }
 

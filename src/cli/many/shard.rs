@@ -1,5 +1,7 @@
 //! `phicam shard`.
 
+use serde_json::json;
+
 use super::folder::PlanFolder;
 use super::shards::{CHECKPOINT, file_name, find};
 use crate::cli::args::ShardArgs;
@@ -25,13 +27,14 @@ pub(in crate::cli) fn execute(args: &ShardArgs, talk: Talk) -> Result<Outcome, F
     let range = plan.file.range(args.index);
     let (there, wrong) = find(&plan, &range)?;
     refuse_strangers(wrong, talk)?;
-    let missing = gaps(range, there.iter().map(|s| s.range.clone()));
+    let missing = gaps(range.clone(), there.iter().map(|s| s.range.clone()));
     let place = plan.shards_path();
     if missing.is_empty() {
         talk.say(format!("shard {} is there", args.index));
     } else {
         ensure_writable(&place)?;
     }
+    let mut computed = Vec::new();
     let _gentle = Gentle::new();
     for range in missing {
         let path = place.join(file_name(plan.id(), &range, EXTENSION));
@@ -60,7 +63,17 @@ pub(in crate::cli) fn execute(args: &ShardArgs, talk: Talk) -> Result<Outcome, F
             )));
         }
         write(&path, &plan.file.identity, &parts, checkpoint.provenance())?;
-        output::print(&format!("{}\n", path.display()))?;
+        if !args.json {
+            output::print(&format!("{}\n", path.display()))?;
+        }
+        computed.push(path.to_string_lossy().into_owned());
+    }
+    if args.json {
+        output::print(&output::json(&json!({
+            "index": args.index,
+            "blocks": [range.start, range.end],
+            "computed": computed,
+        }))?)?;
     }
     Ok(Outcome::Done)
 }

@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use serde_json::json;
+
 use super::folder::PlanFolder;
 use super::shards::find;
 use crate::cli::Outcome;
@@ -17,6 +19,18 @@ pub(in crate::cli) fn execute(args: &StatusArgs, talk: Talk) -> Result<Outcome, 
     let missing = missing_shards(&plan, talk)?;
     let (all, lack) = (plan.file.shards, missing.len() as u64);
     talk.say(format!("{} of {all} shards are there", all - lack));
+    if args.json {
+        output::print(&output::json(&json!({
+            "plan": plan.id().short(),
+            "shards": all,
+            "missing": missing,
+            "complete": missing.is_empty(),
+        }))?)?;
+        return Ok(match missing.is_empty() {
+            true => Outcome::Done,
+            false => Outcome::Incomplete,
+        });
+    }
     if missing.is_empty() {
         return Ok(Outcome::Done);
     }

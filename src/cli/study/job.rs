@@ -55,7 +55,7 @@ impl<D: Division> Job<D> {
         ensure_writable(&self.output)?;
         talk.warn(scene);
         let bar = match self.count {
-            Count::Paths(total) => progress::paths(talk, &self.what, total),
+            Count::Paths(total) => progress::samples(talk, &self.what, total),
             Count::Tasks => progress::steps(talk, &self.what),
         };
         let tick = |paths| match self.count {

@@ -3,6 +3,8 @@
 use std::env;
 use std::io::{IsTerminal, stdout};
 
+use terminal_size::terminal_size_of;
+
 use super::super::args::TerminalName;
 
 /// Columns of a terminal that does not say how wide it is, and the most that a picture takes.
@@ -56,10 +58,11 @@ fn told(variable: impl Fn(&str) -> Option<String>) -> Option<Terminal> {
     }
 }
 
-/// How wide a picture may be, in cells.
+/// How wide a picture may be, in cells: what COLUMNS says, or the terminal itself.
 pub(super) fn columns() -> usize {
     let said = env::var("COLUMNS").ok().and_then(|c| c.parse().ok());
-    said.unwrap_or(COLUMNS).clamp(20, MOST)
+    let measured = || Some(usize::from(terminal_size_of(stdout())?.0.0));
+    said.or_else(measured).unwrap_or(COLUMNS).clamp(20, MOST)
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 mod damping;
 mod gradient;
 mod laplacian;
+pub(super) mod laser_side;
 mod one_sided;
 mod pinv;
 mod rdivide;

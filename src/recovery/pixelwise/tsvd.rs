@@ -29,7 +29,7 @@ pub(super) fn inverse(problem: &Problem<'_>, options: &Options) -> Result<Invers
 }
 
 /// How many directions the rule keeps, and why.
-fn choose(
+pub(super) fn choose(
     problem: &Problem<'_>,
     rule: Rule,
     spectrum: &Spectrum,

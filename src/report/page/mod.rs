@@ -18,7 +18,7 @@ use super::svg::escape;
 
 pub(super) use embed::Room;
 pub(super) use packed::{Packed, Precision};
-pub(super) use term::explained;
+pub(super) use term::{explained, meaning, term};
 
 /// A library that a page may use; each is one script, with its licence beside it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -42,14 +42,27 @@ impl Library {
 const LICENCES: &str = include_str!("vendor/LICENSES.txt");
 
 /// The page's own script, in the order in which it runs.
-const SCRIPT: [&str; 8] = [
+const SCRIPT: [&str; 21] = [
     include_str!("script/page.js"),
     include_str!("script/axes.js"),
+    include_str!("script/bench.js"),
+    include_str!("script/bench_build.js"),
+    include_str!("script/bench_choose.js"),
+    include_str!("script/bench_labels.js"),
+    include_str!("script/bench_parts.js"),
+    include_str!("script/bench_steer.js"),
+    include_str!("script/bench_view.js"),
     include_str!("script/download.js"),
+    include_str!("script/explorer.js"),
     include_str!("script/figures.js"),
+    include_str!("script/frames.js"),
     include_str!("script/look.js"),
+    include_str!("script/plan.js"),
     include_str!("script/plots.js"),
     include_str!("script/read.js"),
+    include_str!("script/row.js"),
+    include_str!("script/slides.js"),
+    include_str!("script/source.js"),
     include_str!("script/thin.js"),
 ];
 

@@ -1,6 +1,6 @@
 //! Numbers inside of a page.
 //!
-//! The values, as f64 or as f32 with so many bits of their mantissa, are taken as integers; of these differences along the block are taken none, one or two times,
+//! The values, as f64 or as f32 with so many bits of their mantissa, are taken as integers; of these differences along the block are taken none to three times,
 //! whichever packs best (smooth matrices shrink, noise does not); all first bytes come first, then all second ones, and so on; the whole is deflated and written in base64.
 //! `page.js` takes the same steps back.
 
@@ -8,7 +8,6 @@ use std::io::Write;
 
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use rayon::prelude::*;
 
 use super::super::figure::encoded;
 
@@ -30,7 +29,9 @@ pub(in super::super) struct Packed {
 }
 
 /// Differences are taken at most so often.
-const MOST_ORDER: u32 = 2;
+const MOST_ORDER: u32 = 3;
+/// Words on which the number of differences is tried.
+const TRIED: usize = 1 << 15;
 
 impl Packed {
     /// Packs values.
@@ -45,17 +46,12 @@ impl Packed {
                     .collect(),
             ),
         };
-        let pack = |order: u32| {
-            (
-                order,
-                deflated(&planes(&differences(&words, order, width), width)),
-            )
-        };
-        let orders: Vec<(u32, Vec<u8>)> = (0..=MOST_ORDER).into_par_iter().map(pack).collect();
-        let best = orders
-            .into_iter()
-            .min_by_key(|(order, bytes)| (bytes.len(), *order));
-        let (order, bytes) = best.unwrap_or_default();
+        // What packs best in the beginning packs best.
+        let beginning = &words[..words.len().min(TRIED)];
+        let tried =
+            |order: &u32| deflated(&planes(&differences(beginning, *order, width), width)).len();
+        let order = (0..=MOST_ORDER).min_by_key(tried).unwrap_or(0);
+        let bytes = deflated(&planes(&differences(&words, order, width), width));
         Self {
             count: values.len(),
             width,

@@ -113,8 +113,14 @@ pub(in super::super) fn explained(text: &str) -> String {
     out + &escape(rest)
 }
 
+/// What a word of the field means.
+pub(in super::super) fn meaning(word: &str) -> Option<&'static str> {
+    let found = TERMS.iter().find(|(of, _)| *of == word);
+    found.map(|(_, meaning)| *meaning)
+}
+
 /// A word with its explanation.
-fn term(word: &str, meaning: &str) -> String {
+pub(in super::super) fn term(word: &str, meaning: &str) -> String {
     format!(
         "<abbr tabindex=\"0\" title=\"{}\">{}</abbr>",
         escape(meaning),

@@ -40,6 +40,7 @@ pub use plan::NoisePlan;
 pub use render::RenderNoise;
 pub(super) use stage::relative;
 pub use tasks::{NoiseFinding, NoiseTasks};
+pub(super) use trial::measures;
 pub use trial::{Measures, Trial};
 
 /// One method on one object.

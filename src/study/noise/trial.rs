@@ -62,7 +62,8 @@ pub(super) fn measure(
     Ok(measures(found.reflectance.as_slice(), &model.albedo))
 }
 
-fn measures(found: &[f64], truth: &[f64]) -> Measures {
+/// How far recovered values are from the true ones.
+pub(in super::super) fn measures(found: &[f64], truth: &[f64]) -> Measures {
     Measures {
         mtf_raw: mtf_raw(found, truth),
         light_plus_dark: light_and_dark(found, truth).map(|(light, dark)| light + dark),

@@ -50,6 +50,35 @@ fn means_and_standard_errors_are_the_two_pass_ones() {
     }
 }
 
+/// Against the norms of the two-pass means and standard errors of the blocks that are there, however many parts they make.
+#[test]
+fn the_relative_error_is_that_of_the_blocks_that_are_there() {
+    for part in [0..11, 0..7, 0..2, 4..9, 1..4] {
+        let (mut noise, mut flux) = (0.0, 0.0);
+        for (p, l) in (0..PIXELS).flat_map(|p| (0..COLUMNS).map(move |l| (p, l))) {
+            let totals: Vec<f64> = part
+                .clone()
+                .map(|b| value(b, 0, p, l) + value(b, 1, p, l))
+                .collect();
+            let (mean, stderr) = mean_and_stderr(&totals);
+            noise += stderr * stderr;
+            flux += mean * mean;
+        }
+        let want = (noise / flux).sqrt();
+        let found = tally(11, part).relative_error().unwrap();
+        assert!((found / want - 1.0).abs() < 1e-6, "{found:e} {want:e}");
+    }
+    let traced = tally(11, 0..11).traced().unwrap();
+    let found = tally(11, 0..11).relative_error().unwrap();
+    let want = traced.stderr.norm() / traced.flux.norm();
+    assert!((found / want - 1.0).abs() < 1e-9, "{found:e} {want:e}");
+    assert_eq!(tally(11, 3..4).relative_error(), None);
+    assert_eq!(tally(11, 0..0).relative_error(), None);
+    let mut dark = tally(11, 0..0);
+    dark.add_part(0..8, &vec![0; dark.part_bytes()]).unwrap();
+    assert_eq!(dark.relative_error(), None);
+}
+
 #[test]
 fn parts_go_through_bytes_and_come_out_as_the_whole() {
     let whole = tally(11, 0..11);

@@ -1,5 +1,12 @@
 // What every part of the page's script stands on: elements, data, numbers as text, colours, and what is chosen.
 
+/** What has been started; when all of it is there the page says so: `data-ready` of its root. @type {Promise<void>[]} */
+const started = [];
+setTimeout(async () => {
+    await Promise.allSettled(started);
+    document.documentElement.dataset.ready = "yes";
+});
+
 /**
  * Calls `start` for each element of the page that `selector` names, once every part of the script is there. An error in one leaves the others alone, and that element says it.
  * @param {string} selector
@@ -7,10 +14,11 @@
  */
 function upgrade(selector, start) {
     for (const element of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll(selector))) {
-        Promise.resolve().then(() => start(element)).catch((error) => {
+        const running = Promise.resolve().then(() => start(element)).catch((error) => {
             console.error(error);
             element.prepend(make("p", { class: "note" }, `This part of the page does not answer: ${error}`));
         });
+        started.push(running);
     }
 }
 

@@ -1,10 +1,14 @@
 //! The gallery of recovered objects.
 
+mod slides;
+
 use super::axis::significant;
 use super::colour::Scale;
 use super::figure::{Entries, MOST, Reduction, figure, legend, note, reduced};
 use super::svg::escape;
 use crate::study::{RecoveredObject, RunResults};
+
+pub(super) use slides::slides;
 
 /// More recoveries than this are listed, not shown.
 const MOST_PICTURES: usize = 16;

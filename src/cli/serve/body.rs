@@ -1,0 +1,131 @@
+//! What follows the headers of an answer, a piece at a time.
+
+use std::io::{self, ErrorKind};
+use std::pin::Pin;
+use std::task::{Context, Poll};
+
+use hyper::body::{Body, Bytes, Frame, SizeHint};
+use tokio::task::{JoinHandle, spawn_blocking};
+
+use super::pace::Pace;
+
+/// Most bytes of a piece: what an answer holds in memory, however long it is.
+pub(super) const PIECE: usize = 64 * 1024;
+
+/// Where the bytes of an answer come from.
+pub(super) trait Source: Send + 'static {
+    /// The next bytes: at least one and at most [`PIECE`]. Asked only while some are left; may wait for a device.
+    fn piece(&mut self) -> io::Result<Vec<u8>>;
+}
+
+/// What a thread is reading, and the source back.
+type Reading = JoinHandle<(Box<dyn Source>, io::Result<Vec<u8>>)>;
+
+/// The bytes of an answer, of a length known before.
+pub(super) enum Content {
+    Bytes(Bytes),
+    Pieces(Pieces),
+}
+
+/// Bytes that are read when the client has taken those before.
+pub(super) struct Pieces {
+    left: u64,
+    state: State,
+    pace: Pace,
+}
+
+enum State {
+    Waiting(Box<dyn Source>),
+    Reading(Reading),
+    /// The source was cut short or could not be read: the connection ends, so that nobody takes what was sent for the whole.
+    Broken,
+}
+
+impl Pieces {
+    /// `length` bytes of `source`. From now on, and until the last one is handed over, the client has to keep pace.
+    pub(super) fn new(source: Box<dyn Source>, length: u64, pace: Pace) -> Self {
+        pace.step();
+        Self {
+            left: length,
+            state: State::Waiting(source),
+            pace,
+        }
+    }
+
+    fn poll_piece(&mut self, context: &mut Context<'_>) -> Poll<Option<io::Result<Bytes>>> {
+        if self.left == 0 {
+            return Poll::Ready(None);
+        }
+        loop {
+            match std::mem::replace(&mut self.state, State::Broken) {
+                State::Broken => return Poll::Ready(None),
+                State::Waiting(mut source) => {
+                    let read = move || {
+                        let piece = source.piece();
+                        (source, piece)
+                    };
+                    self.state = State::Reading(spawn_blocking(read));
+                }
+                State::Reading(mut reading) => match Pin::new(&mut reading).poll(context) {
+                    Poll::Pending => {
+                        self.state = State::Reading(reading);
+                        return Poll::Pending;
+                    }
+                    Poll::Ready(Err(lost)) => return Poll::Ready(Some(Err(lost.into()))),
+                    Poll::Ready(Ok((_, Err(error)))) => return Poll::Ready(Some(Err(error))),
+                    Poll::Ready(Ok((source, Ok(piece)))) => {
+                        let length = piece.len() as u64;
+                        if length == 0 || length > self.left {
+                            let wrong = ErrorKind::UnexpectedEof.into();
+                            return Poll::Ready(Some(Err(wrong)));
+                        }
+                        self.left -= length;
+                        self.state = State::Waiting(source);
+                        self.pace.step();
+                        return Poll::Ready(Some(Ok(piece.into())));
+                    }
+                },
+            }
+        }
+    }
+}
+
+impl Drop for Pieces {
+    fn drop(&mut self) {
+        self.pace.rest();
+    }
+}
+
+impl Body for Content {
+    type Data = Bytes;
+    type Error = io::Error;
+
+    fn poll_frame(
+        self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+    ) -> Poll<Option<Result<Frame<Bytes>, io::Error>>> {
+        let bytes = match self.get_mut() {
+            Self::Bytes(bytes) if bytes.is_empty() => Poll::Ready(None),
+            Self::Bytes(bytes) => Poll::Ready(Some(Ok(std::mem::take(bytes)))),
+            Self::Pieces(pieces) => pieces.poll_piece(context),
+        };
+        bytes.map(|next| next.map(|piece| piece.map(Frame::data)))
+    }
+
+    fn is_end_stream(&self) -> bool {
+        self.left() == 0
+    }
+
+    fn size_hint(&self) -> SizeHint {
+        SizeHint::with_exact(self.left())
+    }
+}
+
+impl Content {
+    fn left(&self) -> u64 {
+        match self {
+            Self::Bytes(bytes) => bytes.len() as u64,
+            Self::Pieces(pieces) => pieces.left,
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! From a request to its answer.
+
+use std::net::IpAddr;
+
+use hyper::body::{Body, Incoming};
+use hyper::header::{ALLOW, IF_RANGE, LOCATION, RANGE};
+use hyper::{Method, Request, Response, StatusCode, Uri};
+use tokio::task::spawn_blocking;
+
+use super::answer::Answer;
+use super::body::Content;
+use super::folder::Served;
+use super::pace::Pace;
+use super::refusal::Refusal;
+use super::{files, host, tiles};
+use crate::cli::folder::REPORT;
+
+/// The page of `phicam reproduce`.
+pub(super) const REPRODUCTION: &str = "reproduction.html";
+
+/// What is served, and by which address.
+#[derive(Debug)]
+pub(super) struct Site {
+    pub folder: Served,
+    pub address: IpAddr,
+}
+
+/// Answers a request. Files are read on a thread for that, not on one that others wait for.
+pub(super) async fn respond(
+    site: &'static Site,
+    request: Request<Incoming>,
+    pace: &Pace,
+) -> Response<Content> {
+    let answer = match check(&request, site.address) {
+        Ok(()) => {
+            let range = range(&request);
+            let uri = request.uri().clone();
+            let found = spawn_blocking(move || find(&site.folder, &uri, range.as_deref())).await;
+            found.unwrap_or_else(|e| Err(Refusal::broken(e.to_string())))
+        }
+        Err(refusal) => Err(refusal),
+    };
+    let answer = answer.unwrap_or_else(|refusal| {
+        let method = refusal.status == StatusCode::METHOD_NOT_ALLOWED;
+        let answer = Answer::from(refusal);
+        match method {
+            true => answer.with(ALLOW, "GET, HEAD"),
+            false => answer,
+        }
+    });
+    answer.response(request.method(), pace)
+}
+
+/// Whether the request is one to this server that only reads.
+fn check(request: &Request<Incoming>, address: IpAddr) -> Result<(), Refusal> {
+    host::check(request, address)?;
+    if ![Method::GET, Method::HEAD].contains(request.method()) {
+        let status = StatusCode::METHOD_NOT_ALLOWED;
+        return Err(Refusal::new(
+            status,
+            "only GET and HEAD: nothing here can be changed",
+        ));
+    }
+    match request.body().is_end_stream() {
+        true => Ok(()),
+        false => Err(Refusal::new(
+            StatusCode::PAYLOAD_TOO_LARGE,
+            "a request has no body here",
+        )),
+    }
+}
+
+/// The `Range`, if there is one that counts: of a GET, and without `If-Range`, which no answer of this server gives anything for to compare with.
+fn range(request: &Request<Incoming>) -> Option<String> {
+    let headers = request.headers();
+    let mut ranges = headers.get_all(RANGE).iter();
+    let (Some(range), None) = (ranges.next(), ranges.next()) else {
+        return None;
+    };
+    let counts = request.method() == Method::GET && !headers.contains_key(IF_RANGE);
+    range.to_str().ok().filter(|_| counts).map(str::to_owned)
+}
+
+fn find(folder: &Served, uri: &Uri, range: Option<&str>) -> Result<Answer, Refusal> {
+    match uri.path() {
+        "/" => page(folder),
+        "/api/about" => tiles::about(folder, uri.query()),
+        "/api/frame" => tiles::frame(folder, uri.query()),
+        "/api/row" => tiles::row(folder, uri.query()),
+        path => match path.strip_prefix("/files/").and_then(decoded) {
+            Some(name) => files::file(folder, &name, range),
+            None => Err(Refusal::new(StatusCode::NOT_FOUND, "nothing is here")),
+        },
+    }
+}
+
+/// Sends to the page of the folder, under the address where what it names beside it is too.
+fn page(folder: &Served) -> Result<Answer, Refusal> {
+    let Some(name) = [REPORT, REPRODUCTION].into_iter().find(|n| folder.has(n)) else {
+        return Err(Refusal::new(
+            StatusCode::NOT_FOUND,
+            format!(
+                "there is no {REPORT} in this folder: `phicam run SCENE -o DIR` makes one of a run, `phicam reproduce -o DIR` a {REPRODUCTION}"
+            ),
+        ));
+    };
+    let words = format!("the report is files/{name}");
+    let found = Refusal::new(StatusCode::TEMPORARY_REDIRECT, words);
+    Ok(Answer::from(found).with(LOCATION, &format!("/files/{name}")))
+}
+
+/// A path with its percent codes replaced, once. `None` for half a code, a slash in a code, or what is not UTF-8 then.
+fn decoded(path: &str) -> Option<String> {
+    let mut rest = path.as_bytes();
+    let mut bytes = Vec::with_capacity(rest.len());
+    while let [first, later @ ..] = rest {
+        rest = later;
+        if *first != b'%' {
+            bytes.push(*first);
+            continue;
+        }
+        let (code, later) = rest.split_at_checked(2)?;
+        let digit = |c: u8| char::from(c).to_digit(16);
+        let byte = (digit(code[0])? * 16 + digit(code[1])?) as u8;
+        if byte == b'/' {
+            return None;
+        }
+        bytes.push(byte);
+        rest = later;
+    }
+    String::from_utf8(bytes).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_replaced_once() {
+        for (path, expected) in [
+            ("a/b.npy", Some("a/b.npy")),
+            ("a%20b", Some("a b")),
+            ("%ce%a6cam", Some("Φcam")),
+            ("%252e%252e", Some("%2e%2e")),
+            ("%2e%2E/a", Some("../a")),
+            ("%00", Some("\0")),
+            ("a%2fb", None),
+            ("a%2Fb", None),
+            ("a%", None),
+            ("a%2", None),
+            ("a%zz", None),
+            ("a%+1", None),
+            ("%ff", None),
+        ] {
+            assert_eq!(decoded(path).as_deref(), expected, "{path}");
+        }
+    }
+}

@@ -1,0 +1,330 @@
+//! The recoveries with sliders over method, regularisation and noise.
+//!
+//! What stands here is the frame: controls and read-out, which `slides.js` fills. Without script nothing of it is seen, and the pictures of
+//! [`recoveries`](super::recoveries) stay.
+
+use serde_json::{Value, json};
+
+use super::super::page::{Packed, Page, Precision, explained, meaning, term};
+use super::super::svg::escape;
+use crate::recovery::Parameter;
+use crate::study::{Gallery, Picture, RunResults, Series};
+
+/// The frame of the gallery, its data in `page`; nothing where there is none.
+pub(in super::super) fn slides(page: &mut Page, results: &RunResults) -> String {
+    let Some(gallery) = &results.gallery else {
+        return String::new();
+    };
+    let left_out: String = gallery
+        .left_out
+        .iter()
+        .map(|text| format!("<p class=\"note\">{}</p>\n", explained(text)))
+        .collect();
+    if gallery.series.is_empty() {
+        return left_out;
+    }
+    let (values, places) = packed(gallery);
+    page.json("slides-data", &described(gallery, &places));
+    page.numbers(
+        "slides-values",
+        &Packed::new(&values, Precision::Single(23)),
+    );
+    frame(gallery) + &left_out
+}
+
+/// The truth of all surfaces, then the pictures one after the other; and for each series, noise and step the index of its picture, truth being 0.
+fn packed(gallery: &Gallery) -> (Vec<f64>, Vec<Vec<Vec<Option<usize>>>>) {
+    let truth = gallery
+        .surfaces
+        .iter()
+        .flat_map(|s| s.truth.iter().copied());
+    let mut values: Vec<f64> = truth.collect();
+    let mut count = 1;
+    let mut place = |picture: &Option<Picture>| {
+        let picture = picture.as_ref()?;
+        values.extend(&picture.reflectance);
+        count += 1;
+        Some(count - 1)
+    };
+    let places = gallery.series.iter().map(|series| {
+        let noises = series.pictures.iter();
+        noises
+            .map(|steps| steps.iter().map(&mut place).collect())
+            .collect()
+    });
+    let places = places.collect();
+    (values, places)
+}
+
+fn described(gallery: &Gallery, places: &[Vec<Vec<Option<usize>>>]) -> Value {
+    let mut first = 0;
+    let surfaces = gallery.surfaces.iter().map(|surface| {
+        let at = first;
+        first += surface.truth.len();
+        json!({ "name": surface.name, "elements": surface.elements, "cells": surface.cells, "first": at })
+    });
+    let surfaces: Vec<Value> = surfaces.collect();
+    let series = gallery.series.iter().zip(places).map(one);
+    json!({
+        "elements": first,
+        "surfaces": surfaces,
+        "noises": gallery.noises,
+        "mean": gallery.mean,
+        "series": series.collect::<Vec<Value>>(),
+    })
+}
+
+fn one((series, places): (&Series, &Vec<Vec<Option<usize>>>)) -> Value {
+    let automatic = series.automatic.iter().map(|chosen| match chosen {
+        Ok(chosen) => json!({ "step": chosen.step, "words": chosen.words }),
+        Err(why) => json!({ "why": why }),
+    });
+    let measures = |picture: &Option<Picture>| {
+        let of = picture.as_ref().map_or(&[][..], |p| &p.measures);
+        let of = of.iter();
+        of.map(|m| json!([m.mtf_raw, m.mtf_normalized, m.correlation, m.rmse]))
+            .collect()
+    };
+    let noises = series.pictures.iter();
+    let measures: Vec<Vec<Vec<Value>>> =
+        noises.map(|of| of.iter().map(measures).collect()).collect();
+    json!({
+        "method": series.method.name(),
+        "meaning": meaning(series.method.name()),
+        "steps": series.steps.iter().map(words).collect::<Vec<String>>(),
+        "automatic": automatic.collect::<Vec<Value>>(),
+        "pictures": places,
+        "measures": measures,
+    })
+}
+
+/// A parameter in words.
+fn words(parameter: &Parameter) -> String {
+    match *parameter {
+        Parameter::Rank(1) => "1 singular direction".to_owned(),
+        Parameter::Rank(kept) => format!("{kept} singular directions"),
+        Parameter::Damping(damping) => format!("damping {damping:.2e} of σ1"),
+        Parameter::TotalVariation(lambda) => format!("total variation {lambda:.2e} of σ1²"),
+        Parameter::Levels([dark, light]) => format!("levels {dark:.3} and {light:.3}"),
+        Parameter::None => "no parameter".to_owned(),
+    }
+}
+
+fn frame(gallery: &Gallery) -> String {
+    let regularisation = term(
+        "regularisation",
+        "how much of what drowns in noise is left out: tsvd inverts the strongest singular directions alone, tikhonov turns the weak ones down. \
+         Too little, and noise is all that is seen; too much, and the picture blurs",
+    );
+    let noise = term(
+        "noise added",
+        "standard deviation of normal noise on top of the photographs, the same in every entry, as a fraction of their mean. It is one draw, made \
+         larger or smaller",
+    );
+    let automatic = term(
+        "automatic",
+        "the parameter that the method takes of itself when it is told the noise: the strongest regularisation whose misfit the noise explains \
+         (discrepancy principle)",
+    );
+    let stretched = term(
+        "own range",
+        "black is then the smallest value of the picture and white the largest, as the published figures are drawn: contrast is shown, not reflectance",
+    );
+    let correlation = term(
+        "correlation",
+        "Pearson's correlation of the recovered values with the true ones: 1 where the pattern is right, whatever its brightness and contrast",
+    );
+    let several = match gallery.surfaces.len() {
+        1 => " hidden",
+        _ => "",
+    };
+    let row = |name: &str, key: &str| {
+        format!(
+            "<tr><th scope=\"row\">{name}</th><td class=\"n\"><output data-show=\"{key}\"></output></td></tr>\n"
+        )
+    };
+    let readout = [
+        (explained("MTF raw"), "raw"),
+        (explained("MTF normalized"), "normalized"),
+        (correlation, "correlation"),
+        (explained("RMSE"), "rmse"),
+    ]
+    .map(|(name, key)| row(&name, key))
+    .concat();
+    format!(
+        "<div class=\"slides\" id=\"slides\" hidden>\n\
+         <p>Every picture here was recovered by the run itself, none is interpolated: move the sliders and see what the method, its {regularisation} and \
+         noise make of the object.</p>\n\
+         <div class=\"controls\">\n\
+         <label{several}>surface <select name=\"surface\"></select></label>\n\
+         <label>method <select name=\"method\"></select></label>\n\
+         <label class=\"tick\"><input type=\"checkbox\" name=\"stretched\"> stretched to its {stretched}</label>\n\
+         </div>\n\
+         <p class=\"note\" data-show=\"meaning\"></p>\n\
+         <div class=\"sliders\">\n\
+         <div><label class=\"slider\" for=\"slides-step\">regularisation: <output data-show=\"step\"></output></label>\n\
+         <input type=\"range\" id=\"slides-step\" name=\"step\" min=\"0\" value=\"0\"><div class=\"ends\"><span>strong</span><span class=\"here\" data-show=\"marker\">▲</span><span>weak</span></div>\n\
+         <label class=\"slider\"><input type=\"checkbox\" name=\"automatic\" checked> {automatic}</label></div>\n\
+         <div><label class=\"slider\" for=\"slides-noise\">{noise}: <output data-show=\"noise\"></output></label>\n\
+         <input type=\"range\" id=\"slides-noise\" name=\"noise\" min=\"0\" value=\"0\"><div class=\"ends\"><span>none</span><span>loud</span></div></div>\n\
+         </div>\n\
+         <p class=\"note\" data-show=\"said\" aria-live=\"polite\"></p>\n\
+         <div class=\"row pair\">\n\
+         <figure data-picture><canvas role=\"img\" data-show=\"picture\"></canvas><figcaption><b>recovered</b> <span data-show=\"range\"></span></figcaption></figure>\n\
+         <figure data-picture><canvas role=\"img\" data-show=\"truth\"></canvas><figcaption><b>truth</b> black 0, white 1</figcaption></figure>\n\
+         <div class=\"read\"><table>\n{readout}</table>\n<p class=\"note\" data-show=\"parameter\"></p>\n\
+         <p class=\"note\" data-show=\"element\">Point at an element to read its value.</p></div>\n\
+         </div>\n\
+         <div class=\"row\" data-show=\"curves\"></div>\n\
+         <p class=\"note\">{}</p>\n</div>\n",
+        escape(
+            "Values below 0 are blue and values above 1 orange; what is no number is purple. The curves follow the automatic choice, or the parameter that is set; \
+             the line marks what is shown, and an arrow stands for a value beyond the plot."
+        )
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::sample;
+    use super::super::super::svg::well_formed;
+    use super::*;
+    use crate::recovery::Method;
+    use crate::study::{Automatic, GallerySurface, Measures};
+
+    fn picture(values: &[f64], raw: Option<f64>) -> Option<Picture> {
+        let measures = Measures {
+            mtf_raw: raw,
+            light_plus_dark: None,
+            mtf_normalized: Some(0.5),
+            correlation: None,
+            rmse: Some(0.25),
+        };
+        Some(Picture {
+            reflectance: values.to_vec(),
+            measures: vec![measures; 2],
+        })
+    }
+
+    /// Two surfaces, the second of triangles; two noises; a method with two steps, and one that gives nothing with noise.
+    fn gallery() -> Gallery {
+        let surface = |name: &str, cells, truth: &[f64]| GallerySurface {
+            name: name.to_owned(),
+            elements: [truth.len(), 1],
+            cells,
+            truth: truth.to_vec(),
+        };
+        let automatic = |step, words: &str| {
+            Ok(Automatic {
+                step,
+                words: words.to_owned(),
+            })
+        };
+        let tsvd = Series {
+            method: Method::Tsvd,
+            steps: vec![Parameter::Rank(1), Parameter::Rank(3)],
+            automatic: vec![automatic(1, "3 of <all>"), Err("no & signal".to_owned())],
+            pictures: vec![
+                vec![
+                    picture(&[0.1, 0.2, 0.3], None),
+                    picture(&[1.1, 1.2, 1.3], Some(-1e6)),
+                ],
+                vec![picture(&[2.1, 2.2, 2.3], None), None],
+            ],
+        };
+        let joint = Series {
+            method: Method::Joint,
+            steps: vec![Parameter::None],
+            automatic: vec![automatic(0, "rank 3"), Err("left out".to_owned())],
+            pictures: vec![vec![picture(&[3.1, 3.2, 3.3], None)], vec![None]],
+        };
+        Gallery {
+            surfaces: vec![
+                surface("a <b>", true, &[0.0, 1.0]),
+                surface("mesh", false, &[0.5]),
+            ],
+            noises: vec![0.0, 1e-2],
+            mean: 2e-12,
+            series: vec![tsvd, joint],
+            left_out: vec!["5 of 7 noises & more.".to_owned()],
+        }
+    }
+
+    fn page(gallery: Gallery) -> String {
+        let mut results = sample::run("bench");
+        results.gallery = Some(gallery);
+        let mut page = Page::new("slides");
+        let html = slides(&mut page, &results);
+        page.section("recovered", "Recovered", &html);
+        page.html()
+    }
+
+    fn described_in(html: &str) -> Value {
+        let block = html.split("id=\"slides-data\">").nth(1).unwrap();
+        serde_json::from_str(block.split("</script>").next().unwrap()).unwrap()
+    }
+
+    #[test]
+    fn data_and_frame_are_whole() {
+        let html = page(gallery());
+        well_formed(&html).unwrap();
+        let said = described_in(&html);
+        assert_eq!(said["elements"], 3);
+        assert_eq!(
+            said["surfaces"][1],
+            json!({ "name": "mesh", "elements": [1, 1], "cells": false, "first": 2 })
+        );
+        assert_eq!(said["noises"], json!([0.0, 0.01]));
+        let tsvd = &said["series"][0];
+        assert_eq!(
+            tsvd["steps"],
+            json!(["1 singular direction", "3 singular directions"])
+        );
+        assert_eq!(
+            tsvd["automatic"],
+            json!([{ "step": 1, "words": "3 of <all>" }, { "why": "no & signal" }])
+        );
+        assert_eq!(tsvd["measures"][0][1][0], json!([-1e6, 0.5, null, 0.25]));
+        assert_eq!(tsvd["measures"][1][1], json!([]));
+        assert!(tsvd["meaning"].as_str().unwrap().contains("strongest"));
+        assert!(html.contains("5 of 7 noises &amp; more."));
+        // The truth, and the four pictures that there are: three values each.
+        assert!(html.contains("id=\"slides-values\" data-count=\"15\""));
+    }
+
+    /// Every index that the data hand out leads to the values of that picture.
+    #[test]
+    fn every_picture_is_where_the_data_say() {
+        let gallery = gallery();
+        let (values, places) = packed(&gallery);
+        let mut seen = 0;
+        assert_eq!(values[..3], [0.0, 1.0, 0.5]);
+        for (series, places) in gallery.series.iter().zip(&places) {
+            for (pictures, places) in series.pictures.iter().zip(places) {
+                assert_eq!(pictures.len(), places.len());
+                for (picture, place) in pictures.iter().zip(places) {
+                    assert_eq!(picture.is_some(), place.is_some());
+                    if let (Some(picture), Some(place)) = (picture, place) {
+                        assert_eq!(values[3 * place..3 * place + 3], picture.reflectance);
+                        seen += 1;
+                    }
+                }
+            }
+        }
+        assert_eq!(values.len(), 3 * (1 + seen));
+    }
+
+    #[test]
+    fn where_there_is_no_gallery_there_is_no_frame() {
+        let empty = Gallery {
+            series: Vec::new(),
+            noises: Vec::new(),
+            ..gallery()
+        };
+        let html = page(empty);
+        assert!(html.contains("5 of 7 noises") && !html.contains("id=\"slides\""));
+        let mut results = sample::run("bench");
+        results.gallery = None;
+        assert!(slides(&mut Page::new("none"), &results).is_empty());
+    }
+}

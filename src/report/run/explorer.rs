@@ -1,0 +1,281 @@
+//! The explorer of Φcam: what of the matrices lies in the page, and what the script must know of them.
+
+use rayon::prelude::*;
+use serde_json::{Value, json};
+
+use super::super::page::{Library, Packed, Page, Precision};
+use crate::geometry::DVec3;
+use crate::matrix::Matrix;
+use crate::scene::Scene;
+use crate::study::RunResults;
+
+/// What the packed matrices may take of the page, bytes: with libraries, pictures and recoveries it stays below 10 MB.
+const MOST: usize = 7_700_000;
+/// More positions of spots than this are not in the page.
+const MOST_PLACES: usize = 20_000;
+/// Bytes that an entry takes at the very least, as the start of a search.
+const LEAST_EACH: f64 = 5.0;
+
+/// How exactly traced and modelled flux, standard error and z are kept; the first set that fits.
+const PRECISIONS: [[Precision; 4]; 4] = {
+    use Precision::{Exact, Single};
+    [
+        [Exact; 4],
+        [Single(23), Single(23), Single(12), Single(10)],
+        [Single(20), Single(20), Single(8), Single(7)],
+        [Single(18), Single(18), Single(7), Single(6)],
+    ]
+};
+
+/// The part of Φcam that lies in the page: every pixel and spot, or the middle one of each block of pixels and every so-manieth spot.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Excerpt {
+    /// Every so many columns and rows of the camera.
+    pub every: usize,
+    /// The spots.
+    pub spots: Vec<usize>,
+    /// The pixels, columns first.
+    pub pixels: Vec<usize>,
+}
+
+/// Indices of the middle ones of blocks of `every` out of n.
+fn middles(n: usize, every: usize) -> impl Iterator<Item = usize> {
+    (0..n)
+        .step_by(every)
+        .map(move |start| (start + (start + every).min(n) - 1) / 2)
+}
+
+impl Excerpt {
+    /// At most `entries` of them: spots are left out first, down to a few, then pixels.
+    pub(super) fn new([columns, rows]: [usize; 2], spots: usize, entries: f64) -> Self {
+        let all = (columns * rows) as f64 * spots as f64;
+        let few = spots.div_ceil(12).max(1);
+        let step = ((all / entries).ceil() as usize).clamp(1, few);
+        let spots: Vec<usize> = middles(spots, step).collect();
+        let mut every = 1;
+        while (columns.div_ceil(every) * rows.div_ceil(every)) as f64 * spots.len() as f64 > entries
+            && every < columns.max(rows)
+        {
+            every += 1;
+        }
+        let across: Vec<usize> = middles(columns, every).collect();
+        let pixels = middles(rows, every)
+            .flat_map(|row| across.iter().map(move |column| column + row * columns))
+            .collect();
+        Self {
+            every,
+            spots,
+            pixels,
+        }
+    }
+
+    /// One frame in sixteen of it.
+    fn few(&self) -> Self {
+        Self {
+            spots: self.spots.iter().copied().step_by(16).collect(),
+            ..self.clone()
+        }
+    }
+
+    /// Its entries of a matrix, frame after frame.
+    pub(super) fn of(&self, matrix: &Matrix) -> Vec<f64> {
+        let frame = |&spot: &usize| self.pixels.iter().map(move |&pixel| matrix[(pixel, spot)]);
+        self.spots.iter().flat_map(frame).collect()
+    }
+}
+
+/// Puts Φcam, as much of it as the page may hold, and its circumstances into the page; the element that the script turns into the explorer.
+pub(super) fn explorer(page: &mut Page, results: &RunResults, fallback: &str) -> String {
+    let phi = &results.phi;
+    if phi.is_empty() {
+        return String::new();
+    }
+    let camera = &results.scene.camera;
+    let size = [camera.columns, camera.rows];
+    let named = [
+        ("traced", Some(phi)),
+        ("modelled", results.model.as_ref()),
+        ("stderr", Some(&results.stderr)),
+        ("z", results.z.as_ref()),
+    ];
+    let mut entries = MOST as f64 / LEAST_EACH;
+    let (excerpt, precision, blocks) = loop {
+        let excerpt = Excerpt::new(size, phi.ncols(), entries);
+        let fitting = PRECISIONS.into_iter().find_map(|precisions| {
+            let blocks = packed(&excerpt, &named, precisions)?;
+            Some((precisions[0], blocks))
+        });
+        if let Some((precision, blocks)) = fitting {
+            break (excerpt, precision, blocks);
+        }
+        entries *= 0.7;
+    };
+    for (name, block) in &blocks {
+        page.numbers(&format!("phi-{name}"), block);
+    }
+    let about = circumstances(
+        &results.scene,
+        &excerpt,
+        Ends::of(results),
+        Some(precision),
+        results.model.is_some(),
+    );
+    page.json("explorer-data", &about);
+    page.needs(Library::Plot);
+    format!("<div class=\"explorer\">\n{fallback}</div>\n")
+}
+
+/// The matrices at a precision, if they fit.
+fn packed(
+    excerpt: &Excerpt,
+    named: &[(&'static str, Option<&Matrix>); 4],
+    precisions: [Precision; 4],
+) -> Option<Vec<(&'static str, Packed)>> {
+    let there = || {
+        let both = named.iter().zip(precisions);
+        both.filter_map(|((name, matrix), precision)| Some((*name, (*matrix)?, precision)))
+    };
+    // A few frames tell how many bytes all will take: what misses by far is not tried.
+    let few = excerpt.few();
+    let all = excerpt.spots.len() as f64 / few.spots.len().max(1) as f64;
+    let sample: usize = there()
+        .map(|(_, matrix, precision)| Packed::new(&few.of(matrix), precision).len())
+        .sum();
+    if sample as f64 * all > 1.05 * MOST as f64 {
+        return None;
+    }
+    let blocks: Vec<(&'static str, Packed)> = there()
+        .collect::<Vec<_>>()
+        .into_par_iter()
+        .map(|(name, matrix, precision)| (name, Packed::new(&excerpt.of(matrix), precision)))
+        .collect();
+    let size: usize = blocks.iter().map(|(_, block)| block.len()).sum();
+    (size <= MOST).then_some(blocks)
+}
+
+/// The ends of scales, as far as they are known.
+#[derive(Clone, Copy, Debug, Default)]
+struct Ends {
+    /// Least and greatest flux, traced or modelled, W.
+    range: Option<[f64; 2]>,
+    /// Largest |traced − modelled|, W.
+    residual: Option<f64>,
+    /// Largest standard error, W.
+    stderr: Option<f64>,
+    /// The limit for the largest |z|.
+    limit: Option<f64>,
+}
+
+impl Ends {
+    fn of(results: &RunResults) -> Self {
+        let flux = results.model.iter().chain([&results.phi]);
+        let range = flux
+            .flat_map(|m| m.iter())
+            .filter(|x| x.is_finite())
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| {
+                [l.min(*x), h.max(*x)]
+            });
+        Self {
+            range: (range[0] < range[1]).then_some(range),
+            residual: results.model.as_ref().map(|m| (&results.phi - m).amax()),
+            stderr: Some(results.stderr.amax()),
+            limit: results.agreement.as_ref().map(|a| a.z_limit),
+        }
+    }
+}
+
+/// The element that the script turns into the explorer where a server hands out the matrices; `model` says whether there are modelled ones.
+pub(super) fn served_explorer(page: &mut Page, scene: &Scene, model: bool) -> String {
+    let nothing = Excerpt {
+        every: 1,
+        spots: Vec::new(),
+        pixels: Vec::new(),
+    };
+    let about = circumstances(scene, &nothing, Ends::default(), None, model);
+    page.json("explorer-data", &about);
+    page.needs(Library::Plot);
+    "<div class=\"explorer\">\n<p>The entries are read when they are asked for, by the page's script.</p>\n</div>\n".to_owned()
+}
+
+/// What the script must know beside the numbers.
+fn circumstances(
+    scene: &Scene,
+    excerpt: &Excerpt,
+    ends: Ends,
+    precision: Option<Precision>,
+    model: bool,
+) -> Value {
+    let camera = &scene.camera;
+    let (right, up) = (camera.view.u().normalize(), camera.view.v().normalize());
+    let places: Vec<DVec3> = scene
+        .laser
+        .spots
+        .iter()
+        .take(MOST_PLACES)
+        .map(|s| s.target.position)
+        .collect();
+    json!({
+        "unit": scene.unit.symbol(),
+        "columns": camera.columns,
+        "rows": camera.rows,
+        "spots": scene.laser.spots.len(),
+        "every": excerpt.every,
+        "embedded": excerpt.spots,
+        "bits": match precision {
+            Some(Precision::Single(bits)) => Some(bits + 1),
+            _ => None,
+        },
+        "places": places.iter().map(|p| p.to_array()).collect::<Vec<_>>(),
+        "view": {
+            "corner": camera.view.corner().to_array(),
+            "u": camera.view.u().to_array(),
+            "v": camera.view.v().to_array(),
+        },
+        "axes": { "right": right.to_array(), "up": up.to_array() },
+        "flat": places.iter().map(|p| [p.dot(right), p.dot(up)]).collect::<Vec<_>>(),
+        "range": ends.range,
+        "residual": ends.residual,
+        "stderr": ends.stderr,
+        "limit": ends.limit,
+        "model": model,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_matrix_is_taken_whole() {
+        let excerpt = Excerpt::new([3, 2], 4, 1e6);
+        assert_eq!(excerpt.every, 1);
+        assert_eq!(excerpt.spots, [0, 1, 2, 3]);
+        assert_eq!(excerpt.pixels, [0, 1, 2, 3, 4, 5]);
+        let matrix = Matrix::from_fn(6, 4, |p, l| (10 * l + p) as f64);
+        let found = excerpt.of(&matrix);
+        assert_eq!(found[..7], [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 10.0]);
+    }
+
+    /// Never more entries than asked for, every index within the matrix, each the middle of its block.
+    #[test]
+    fn a_large_matrix_is_thinned_to_what_fits() {
+        for (size, spots, entries) in [
+            ([1000, 700], 300, 1e6),
+            ([64, 64], 10_000, 1e6),
+            ([5, 4000], 13, 5000.0),
+            ([1, 1], 100_000, 500.0),
+        ] {
+            let e = Excerpt::new(size, spots, entries);
+            assert!(
+                (e.spots.len() * e.pixels.len()) as f64 <= entries.max(12.0),
+                "{size:?}"
+            );
+            assert!(e.spots.iter().all(|s| *s < spots) && e.spots.len() >= 7.min(spots));
+            assert!(e.pixels.iter().all(|p| *p < size[0] * size[1]));
+            assert!(e.pixels.windows(2).all(|w| w[0] < w[1]));
+        }
+        let e = Excerpt::new([7, 4], 1, 6.0);
+        // Blocks of 3: columns 0–2, 3–5, 6; rows 0–2, 3.
+        assert_eq!((e.every, &e.pixels[..]), (3, &[8, 11, 13, 22, 25, 27][..]));
+    }
+}

@@ -1,0 +1,95 @@
+//! Φcam as a whole: traced, modelled, and z.
+
+use super::super::axis::significant;
+use super::super::colour::Scale;
+use super::super::figure::{Entries, MOST, Reduction, figure, legend, note, reduced};
+use super::super::picture::Panel;
+use super::super::svg::escape;
+use crate::matrix::Matrix;
+use crate::study::RunResults;
+
+/// A matrix of pixels × spots: spots to the right, pixels upwards.
+fn map(title: &str, matrix: &Matrix, reduction: Reduction) -> (Panel, Option<String>) {
+    let size = [matrix.ncols(), matrix.nrows()];
+    let value = |spot: usize, pixel: usize| matrix[(pixel, spot)];
+    reduced(
+        title.to_owned(),
+        ["spot", "pixel"],
+        size,
+        2 * MOST,
+        reduction,
+        value,
+    )
+}
+
+fn ends(matrix: &Matrix) -> [usize; 2] {
+    [matrix.ncols(), matrix.nrows()].map(|n| n.saturating_sub(1))
+}
+
+/// Φcam, traced and modelled.
+pub(super) fn matrices(results: &RunResults) -> String {
+    if results.phi.is_empty() {
+        return String::new();
+    }
+    let (traced, said) = map("Φcam, traced", &results.phi, Reduction::Mean);
+    let mut panels = vec![traced];
+    if let Some(model) = &results.model {
+        panels.push(map("Φcam, modelled", model, Reduction::Mean).0);
+    }
+    let scale = Scale::sequential(panels.iter().flat_map(|p| &p.values));
+    let figures: String = panels
+        .iter()
+        .map(|p| figure(p, ends(&results.phi), Entries::Stretched, &scale, ""))
+        .collect();
+    format!(
+        "<p>Flux into every pixel (upwards: column + row · {} columns) for every spot (to the \
+         right), on one scale.</p>\n<div class=\"row\">\n{figures}</div>\n{}{}",
+        results.scene.camera.columns,
+        legend(&scale, "W", &panels),
+        note(said)
+    )
+}
+
+/// z of every entry, and the entries that stand out most.
+pub(super) fn deviations(results: &RunResults) -> String {
+    let mut html = String::new();
+    let limit = results.agreement.as_ref().map_or(4.0, |a| a.z_limit);
+    if let Some(z) = results.z.as_ref().filter(|z| !z.is_empty()) {
+        let scale = Scale::symmetric(limit);
+        let (panel, said) = map("z", z, Reduction::Pick);
+        let [_, shown] = scale.range();
+        html.push_str(&format!(
+            "<p>z: the difference of every entry in units of its standard error. If the \
+             model is right it is noise, without pattern, and stays within ±{}.</p>\n<div class=\"row\">\n{}</div>\n{}{}",
+            significant(shown, 2),
+            figure(&panel, ends(z), Entries::Stretched, &scale, ""),
+            legend(&scale, "standard errors", &[panel]),
+            note(said)
+        ));
+    }
+    let worst = results.agreement.as_ref().map_or(&[][..], |a| &a.worst);
+    if !worst.is_empty() {
+        html.push_str("<p>The entries that differ most:</p>\n<div class=\"wide\"><table>\n<tr><th class=\"n\">pixel</th><th class=\"n\">spot</th><th class=\"n\">traced / W</th><th class=\"n\">modelled / W</th><th class=\"n\">z</th></tr>\n");
+        for e in worst.iter().take(10) {
+            let row = [
+                e.pixel.to_string(),
+                e.spot.to_string(),
+                significant(e.traced, 4),
+                significant(e.modelled, 4),
+                significant(e.z, 3),
+            ];
+            html.push_str(&cells(&row));
+        }
+        html.push_str("</table></div>\n");
+    }
+    html
+}
+
+/// A row of numbers.
+fn cells(row: &[String]) -> String {
+    let cells: String = row
+        .iter()
+        .map(|c| format!("<td class=\"n\">{}</td>", escape(c)))
+        .collect();
+    format!("<tr>{cells}</tr>\n")
+}

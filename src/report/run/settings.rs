@@ -1,0 +1,101 @@
+//! What was run, and the commands that repeat it.
+
+use super::super::svg::escape;
+use super::super::table::facts;
+use crate::scene::{Scene, builtins};
+use crate::study::{Agreement, RunResults};
+
+/// More of the scene's text than this is left out, bytes.
+const MOST_TEXT: usize = 200_000;
+/// The significance of a test for which none is given.
+const USUAL_SIGNIFICANCE: f64 = 1e-3;
+
+/// Settings, times, commands, and the scene file.
+pub(super) fn settings(results: &RunResults) -> String {
+    let (s, scene) = (&results.settings, &results.scene);
+    let mut html = "<div class=\"wide\"><table>\n".to_owned();
+    let version = [
+        ("version", format!("phicam {}", s.version)),
+        ("scene hash", scene.hash.clone()),
+    ];
+    for (key, text) in facts(results).into_iter().chain(version) {
+        html.push_str(&format!(
+            "<tr><th>{}</th><td>{}</td></tr>\n",
+            escape(key),
+            escape(&text)
+        ));
+    }
+    html.push_str("</table></div>\n<h3>To repeat it</h3>\n");
+    let file = scene_file(scene);
+    let traced = format!(
+        "{file} -o out --estimator {} --sampler {} --samples {} --seed {}",
+        s.estimator, s.sampler, s.samples, s.seed
+    );
+    let test = results
+        .agreement
+        .as_ref()
+        .map_or(String::new(), test_options);
+    let mut commands = format!("phicam run {traced}{test}\n");
+    if results.model.is_some() {
+        commands += &format!("phicam validate out{test}\nphicam recover out\n");
+    }
+    html.push_str(&format!("<pre>{}</pre>\n", escape(&commands)));
+    html + &scene_text(scene)
+}
+
+/// The options of a test that are not the usual ones.
+fn test_options(a: &Agreement) -> String {
+    let mut options = String::new();
+    let given = [
+        ("kernel", a.kernel.as_str(), "physical"),
+        ("integration", a.integration.as_str(), "centres"),
+    ];
+    for (name, value, usual) in given {
+        if value != usual {
+            options += &format!(" --{name} {value}");
+        }
+    }
+    if a.significance.to_bits() != USUAL_SIGNIFICANCE.to_bits() {
+        options += &format!(" --significance {}", a.significance);
+    }
+    options
+}
+
+/// The scene's file, as much of it as there is room for.
+pub(in super::super) fn scene_text(scene: &Scene) -> String {
+    let mut html = String::new();
+    if !is_builtin(scene) {
+        html.push_str(
+            "<p><code>scene.toml</code> lies in the folder of this run; this is its text:</p>\n",
+        );
+    }
+    let mut end = scene.text.len().min(MOST_TEXT);
+    while !scene.text.is_char_boundary(end) {
+        end -= 1;
+    }
+    let cut = if end < scene.text.len() {
+        "\n… (the rest is left out here)"
+    } else {
+        ""
+    };
+    html.push_str(&format!(
+        "<details><summary>The scene file</summary>\n<pre>{}{cut}</pre>\n</details>\n",
+        escape(&scene.text[..end])
+    ));
+    html
+}
+
+/// What commands call the scene: its name, or the file in the folder of the run.
+pub(in super::super) fn scene_file(scene: &Scene) -> &str {
+    match is_builtin(scene) {
+        true => &scene.name,
+        false => "scene.toml",
+    }
+}
+
+/// Whether the scene's name alone is enough to load it again.
+pub(in super::super) fn is_builtin(scene: &Scene) -> bool {
+    builtins()
+        .iter()
+        .any(|b| b.name == scene.name && b.text == scene.text)
+}

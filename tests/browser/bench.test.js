@@ -1,0 +1,294 @@
+// The bench in three dimensions, in the page of a run.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { existsSync, mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { openPage } from "./browser.js";
+
+const program = process.env.PHICAM ?? join(import.meta.dirname, "../../target/debug/phicam");
+const folder = mkdtempSync(join(tmpdir(), "phicam-bench-"));
+
+/** The page of a run of a built-in scene: made ready in the folder PHICAM_PAGES, or by a short run. */
+function report(scene) {
+    const ready = join(process.env.PHICAM_PAGES ?? folder, `${scene}.html`);
+    if (existsSync(ready)) {
+        return ready;
+    }
+    const out = join(folder, scene);
+    if (!existsSync(out)) {
+        execFileSync(program, ["run", scene, "-o", out, "--samples", "16", "--quiet"], { stdio: ["ignore", "ignore", "inherit"] });
+    }
+    return join(out, "report.html");
+}
+
+/** A page whose bench has been drawn and stands still. */
+async function open(scene, options) {
+    const { page, browser, errors } = await openPage(report(scene), options);
+    const canvas = page.locator("#bench-3d canvas");
+    await canvas.scrollIntoViewIfNeeded();
+    await still(page);
+    return { page, browser, errors, canvas };
+}
+
+/** Until the fine picture is there: it follows the last moving one after 160 ms. */
+const still = (page) => page.waitForTimeout(600);
+
+/** What is on the screen of the drawing, without the names over it: one number per pixel. */
+async function picture(page) {
+    const style = await page.addStyleTag({ content: ".bench-names, .bench-scale { visibility: hidden }" });
+    const png = await page.locator("#bench-3d canvas").screenshot();
+    await style.evaluate((element) => element.remove());
+    return page.evaluate(async (url) => {
+        const image = await createImageBitmap(await (await fetch(url)).blob());
+        const canvas = new OffscreenCanvas(image.width, image.height);
+        const context = canvas.getContext("2d");
+        context.drawImage(image, 0, 0);
+        const { data } = context.getImageData(0, 0, image.width, image.height);
+        return { width: image.width, values: Array.from(new Uint32Array(data.buffer)) };
+    }, `data:image/png;base64,${png.toString("base64")}`);
+}
+
+/** The box around the pixels in which two pictures differ, [left, top, right, bottom], and how many they are. */
+function difference(a, b) {
+    const box = [Infinity, Infinity, -Infinity, -Infinity];
+    let count = 0;
+    a.values.forEach((value, i) => {
+        if (value !== b.values[i]) {
+            const [x, y] = [i % a.width, Math.floor(i / a.width)];
+            [box[0], box[1], box[2], box[3]] = [Math.min(box[0], x), Math.min(box[1], y), Math.max(box[2], x + 1), Math.max(box[3], y + 1)];
+            count++;
+        }
+    });
+    return { box, count };
+}
+
+const projection = async (canvas) => JSON.parse(await canvas.getAttribute("data-projection"));
+const project = (rows, p) => rows.map((row) => row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3]);
+const block = (page) => page.evaluate(() => JSON.parse(document.getElementById("bench").textContent));
+const chosen = (page) => page.locator(".bench-choice").textContent();
+
+let first;
+before(async () => {
+    first = await open("bench");
+});
+after(async () => {
+    await first?.browser.close();
+    rmSync(folder, { recursive: true, force: true });
+});
+
+test("the bench is drawn, and nothing is complained of", async () => {
+    const { values } = await picture(first.page);
+    const colours = new Map();
+    values.forEach((value) => colours.set(value, (colours.get(value) ?? 0) + 1));
+    assert.ok(colours.size > 50, `${colours.size} colours`);
+    assert.ok(Math.max(...colours.values()) < 0.9 * values.length, "nearly one colour");
+    // The white and the black checks of the object.
+    for (const check of [0xffffffff, 0xff000000]) {
+        assert.ok((colours.get(check) ?? 0) > 500, check.toString(16));
+    }
+    assert.deepEqual(first.errors, []);
+});
+
+test("keys and a drag turn it, Home starts again", async () => {
+    const { page, canvas } = first;
+    const start = await picture(page);
+    await canvas.focus();
+    for (const key of ["ArrowLeft", "ArrowUp", "+"]) {
+        const before = await picture(page);
+        await page.keyboard.press(key);
+        await still(page);
+        assert.ok(difference(before, await picture(page)).count > 1000, key);
+    }
+    await page.keyboard.press("Home");
+    await still(page);
+    assert.equal(difference(start, await picture(page)).count, 0);
+    const { x, y, width, height } = await canvas.boundingBox();
+    const spot = await chosen(page);
+    await page.mouse.move(x + width / 2, y + height / 2);
+    await page.mouse.down();
+    await page.mouse.move(x + width / 2 + 90, y + height / 2 + 20, { steps: 6 });
+    await page.mouse.up();
+    await still(page);
+    assert.ok(difference(start, await picture(page)).count > 1000);
+    assert.equal(await chosen(page), spot, "a drag chooses nothing");
+    await page.getByRole("button", { name: "3-D" }).click();
+    await still(page);
+});
+
+/** The wall of the bench is 11.5 in. by 15.5 in. in the plane z = 0 (design.md, 1): measured on the screen, where it is what differs when the walls are hidden. */
+test("the views along the axes are to scale", async () => {
+    const { page, canvas } = first;
+    await page.getByRole("button", { name: "Top (x, y)" }).click();
+    await still(page);
+    const whole = await picture(page);
+    const walls = page.getByLabel("walls (relay)");
+    await walls.uncheck();
+    await still(page);
+    const { box } = difference(whole, await picture(page));
+    await walls.check();
+    // The outline is 2 px wide, half of it outside.
+    const [width, height] = [box[2] - box[0] - 2, box[3] - box[1] - 2];
+    assert.ok(Math.abs(width / height / (11.5 / 15.5) - 1) < 0.008, `${width} ${height}`);
+    const rows = await projection(canvas);
+    const [o, a, b] = [[0, 0, 0], [11.5, 0, 0], [0, 15.5, 0]].map((p) => project(rows, p));
+    assert.ok(Math.abs(a[0] - o[0] - width) < 2 && Math.abs(o[1] - b[1] - height) < 2);
+    assert.ok(Math.abs(a[1] - o[1]) < 0.01 && Math.abs(b[0] - o[0]) < 0.01, "x to the right, y upwards");
+    const bar = await page.locator(".bench-scale i").evaluate((line) => parseFloat(line.style.width));
+    const length = parseFloat(await page.locator(".bench-scale span").textContent());
+    assert.ok(Math.abs(bar / length / (width / 11.5) - 1) < 0.01, `${length} in. are ${bar} px`);
+    // From the side and from the front: the axes named on the button, to one scale.
+    for (const [name, across, up] of [["Side (y, z)", 1, 2], ["Front (x, z)", 0, 2]]) {
+        await page.getByRole("button", { name }).click();
+        await still(page);
+        const [right, down] = await projection(canvas);
+        assert.ok(right[across] > 1 && Math.abs(down[up] / right[across] + 1) < 1e-6, name);
+        assert.ok(Math.abs(right[up]) < 1e-6 * right[across] && Math.abs(down[across]) < 1e-6 * right[across], name);
+    }
+    await page.getByRole("button", { name: "3-D" }).click();
+    await still(page);
+});
+
+test("a click chooses the spot under it, on the wall in view its pixel", async () => {
+    const { page, canvas } = first;
+    const { camera } = await block(page);
+    await page.getByRole("button", { name: "Top (x, y)" }).click();
+    await still(page);
+    const before = await picture(page);
+    // Places of the layout in design.md, 6: centre (5, 4.37348), half-width 3, 30 a side, stagger −1, 1, 0.
+    const step = 6 / 29;
+    const spots = [
+        [0, [2, 4.373476808130942 - 4, 0]],
+        [2, [2 + 2 * step, 4.373476808130942 - 3, 0]],
+        [31, [8 + 1, 4.373476808130942 - 3 + step, 0]],
+    ];
+    for (const [spot, place] of spots) {
+        const [x, y] = project(await projection(canvas), place);
+        await canvas.click({ position: { x, y } });
+        assert.match(await chosen(page), new RegExp(`^Spot ${spot} at`));
+    }
+    await still(page);
+    assert.ok(difference(before, await picture(page)).count > 200, "the beams follow");
+    const [column, row] = [11, 6];
+    const place = [0, 1, 2].map((i) => camera.corner[i] + (camera.u[i] * (column + 0.5)) / 16 + (camera.v[i] * (row + 0.5)) / 16);
+    const [x, y] = project(await projection(canvas), place);
+    await canvas.click({ position: { x, y } });
+    assert.match(await chosen(page), /Pixel 107 \(column 11, row 6\)/);
+    await page.getByRole("button", { name: "3-D" }).click();
+    await still(page);
+});
+
+test("every tick box hides something, and shows it again", async () => {
+    const { page, browser } = await open("shelf");
+    const whole = await picture(page);
+    const boxes = page.locator(".bench-parts input");
+    assert.equal(await boxes.count(), 6);
+    for (const box of await boxes.all()) {
+        await box.uncheck();
+        await still(page);
+        assert.ok(difference(whole, await picture(page)).count > 100, await box.getAttribute("name"));
+        await box.check();
+        await still(page);
+        assert.equal(difference(whole, await picture(page)).count, 0);
+    }
+    await browser.close();
+});
+
+test("the wheel scrolls the page until the drawing is clicked", async () => {
+    const { page, browser, canvas } = await open("bench");
+    const [scale, scrolled] = [async () => (await projection(canvas))[0], () => page.evaluate(() => scrollY)];
+    await canvas.hover();
+    const [far, top] = [await scale(), await scrolled()];
+    await page.mouse.wheel(0, 120);
+    await still(page);
+    assert.ok((await scrolled()) > top);
+    assert.deepEqual(await scale(), far);
+    await canvas.scrollIntoViewIfNeeded();
+    await canvas.click({ position: { x: 5, y: 5 } });
+    const here = await scrolled();
+    await page.mouse.wheel(0, -120);
+    await still(page);
+    assert.equal(await scrolled(), here);
+    assert.notDeepEqual(await scale(), far);
+    await browser.close();
+});
+
+test("on a phone a finger scrolls the page upwards and turns the bench sideways", async () => {
+    const { page, browser, canvas, errors } = await open("bench", { width: 360, height: 740, hasTouch: true, isMobile: true, deviceScaleFactor: 2 });
+    assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 360, "nothing sticks out");
+    const session = await page.context().newCDPSession(page);
+    const swipe = async (dx, dy) => {
+        const { x, y, width, height } = await canvas.boundingBox();
+        const at = { x: x + width / 2, y: y + height / 2 };
+        await session.send("Input.synthesizeScrollGesture", { ...at, xDistance: dx, yDistance: dy, gestureSourceType: "touch", speed: 600, preventFling: true });
+        await still(page);
+    };
+    const [rows, top] = [await projection(canvas), await page.evaluate(() => scrollY)];
+    await swipe(0, -150);
+    assert.ok((await page.evaluate(() => scrollY)) > top + 100);
+    assert.deepEqual((await projection(canvas))[0], rows[0]);
+    await canvas.scrollIntoViewIfNeeded();
+    const here = await page.evaluate(() => scrollY);
+    await swipe(120, 0);
+    assert.equal(await page.evaluate(() => scrollY), here);
+    assert.notDeepEqual((await projection(canvas))[0], rows[0]);
+    assert.deepEqual(errors, []);
+    await browser.close();
+});
+
+test("without WebGL the static drawing stays, and a note says why", async () => {
+    const { page, browser, errors } = await openPage(report("bench"), { args: ["--disable-gpu", "--disable-webgl", "--disable-3d-apis"] });
+    assert.match(await page.locator("#bench-3d").textContent(), /no WebGL/);
+    assert.equal(await page.locator("#bench-3d canvas").count(), 0);
+    assert.ok(await page.locator("figure.bench svg").isVisible());
+    assert.deepEqual(errors, []);
+    await browser.close();
+});
+
+test("on paper the static drawing stands alone", async () => {
+    const { page } = first;
+    await page.emulateMedia({ media: "print" });
+    assert.ok(!(await page.locator("#bench-3d").isVisible()));
+    assert.ok(await page.locator("figure.bench svg").isVisible());
+    await page.emulateMedia({ media: null });
+});
+
+test("in dark colours it is drawn anew", async () => {
+    const { page } = first;
+    await still(page);
+    const light = await picture(page);
+    await page.emulateMedia({ colorScheme: "dark" });
+    await still(page);
+    const dark = await picture(page);
+    assert.ok(difference(light, dark).count > 0.9 * light.values.length);
+    await page.emulateMedia({ colorScheme: "light" });
+    await still(page);
+    assert.equal(difference(light, await picture(page)).count, 0);
+});
+
+/** Turning by key, one step a frame, drawn by the processor: the best of three rows of 60 frames, for other work on the machine slows the others. */
+test("it turns at more than 30 frames a second", async (t) => {
+    for (const scene of ["experiment", "room"]) {
+        const { page, browser } = await open(scene, { args: ["--disable-gpu", "--enable-unsafe-swiftshader"] });
+        const rates = [];
+        for (let row = 0; row < 3; row++) {
+            rates.push(
+                await page.evaluate(async () => {
+                    const canvas = document.querySelector("#bench-3d canvas");
+                    const frame = () => new Promise(requestAnimationFrame);
+                    let start = 0;
+                    for (let i = 0; i <= 75; i++) {
+                        start = i === 15 ? performance.now() : start;
+                        canvas.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowLeft" }));
+                        await frame();
+                    }
+                    return 60_000 / (performance.now() - start);
+                }),
+            );
+        }
+        t.diagnostic(`${scene}: ${rates.map((rate) => rate.toFixed(0)).join(", ")} frames a second`);
+        assert.ok(Math.max(...rates) > 30, scene);
+        await browser.close();
+    }
+});

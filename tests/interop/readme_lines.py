@@ -1,0 +1,46 @@
+"""Runs the lines that README.md shows for NumPy, xarray, Octave and MATLAB as they stand there, on the folder of a run of `bench`.
+
+usage: python readme_lines.py DIR
+
+DIR must be called `out`, as in the README. Needs NumPy and xarray, and octave on the path. What the lines leave in their variables is held against the files.
+"""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+run = Path(sys.argv[1]).resolve()
+assert run.name == "out", "the README's lines read the folder `out`"
+readme = (Path(__file__).parents[2] / "README.md").read_text()
+blocks = {language: re.findall(rf"^```{language}\n(.*?)^```", readme, re.M | re.S) for language in ("python", "matlab")}
+phi = np.load(run / "phi.npy")
+
+
+def python(block):
+    program = f"import os; os.chdir({str(run.parent)!r})\n" + block
+    variables = {}
+    exec(compile(program, "README.md", "exec"), variables)
+    return variables
+
+
+numpy_lines, xarray_lines = (python(block) for block in blocks["python"])
+assert np.array_equal(numpy_lines["phi"], phi)
+image = numpy_lines["image"]
+assert image.shape == np.load(run / "recovered/truth.npy").shape and np.isfinite(image).all()
+
+cube = xarray_lines["phi"]
+assert cube.dims == ("row", "column", "spot") and cube.attrs["units"] == "W"
+for row, column, spot in [(0, 0, 0), (3, 11, 7), (15, 2, 119)]:
+    assert cube[row, column, spot] == phi[column + row * cube.sizes["column"], spot]
+# The view of `bench` is x 3.25 to 6.5 and y 2.75 to 6 in 16 × 16 pixels: the middle of pixel (11, 3) by hand.
+assert np.allclose([cube.x[11], cube.y[3]], [3.25 + 11.5 * 3.25 / 16, 2.75 + 3.5 * 3.25 / 16], rtol=1e-15, atol=0)
+
+(lines,) = blocks["matlab"]
+lines += "printf('%d %d', size(phi)); printf(' %.17g', phi(1, 1), phi(60, 8), phi(256, 120));"
+said = subprocess.run(["octave", "--no-gui", "--quiet", "--no-history", "--eval", lines], cwd=run.parent, capture_output=True, text=True, check=True).stdout.split()
+assert [int(n) for n in said[:2]] == list(phi.shape), said
+assert [float(x) for x in said[2:]] == [phi[0, 0], phi[59, 7], phi[255, 119]], said
+print(f"the README's lines for NumPy ({len(blocks['python'])} blocks) and Octave read what is in {run.name}/")
