@@ -61,12 +61,23 @@ impl Failure {
     }
 
     pub(super) fn report(&self) {
-        let (kind, message) = match self {
-            Self::Error(m) | Self::Usage(m) | Self::System(m) => ("error", m),
-            Self::Missing(m) => ("missing", m),
-            Self::Stopped(m) => ("stopped", m),
+        let kind = match self {
+            Self::Error(_) | Self::Usage(_) | Self::System(_) => "error",
+            Self::Missing(_) => "missing",
+            Self::Stopped(_) => "stopped",
         };
-        complain(&format!("{kind}: {message}"));
+        complain(&format!("{kind}: {}", self.message()));
+    }
+
+    /// Cause and cure.
+    pub(super) fn message(&self) -> &str {
+        match self {
+            Self::Error(m)
+            | Self::Usage(m)
+            | Self::System(m)
+            | Self::Missing(m)
+            | Self::Stopped(m) => m,
+        }
     }
 }
 

@@ -155,11 +155,8 @@ pub(crate) fn reply(stream: &mut impl BufRead, head: bool) -> io::Result<Reply> 
     let first = line()?;
     let status = first.split(' ').nth(1).and_then(|s| s.parse().ok());
     let mut headers = BTreeMap::new();
-    loop {
-        match line()?.split_once(": ") {
-            Some((name, value)) => headers.insert(name.to_lowercase(), value.to_owned()),
-            None => break,
-        };
+    while let Some((name, value)) = line()?.split_once(": ") {
+        headers.insert(name.to_lowercase(), value.to_owned());
     }
     let length = headers.get("content-length").and_then(|l| l.parse().ok());
     let mut body = vec![0; if head { 0 } else { length.unwrap_or(0) }];

@@ -113,10 +113,15 @@ fn a_real_run_is_served_and_made_again_meanwhile() {
         .exits(0);
     let _ = workspace.phicam("model tiny.toml -o out").exits(0);
     let server = Server::of(&workspace, "out");
-    // There is no page yet, and it is said what makes one.
+    // There is no report yet: the page is made of what is there.
     let reply = server.get("/");
-    reply.refuses(404, "no page");
-    assert!(reply.text().contains("phicam run"), "{}", reply.text());
+    assert_eq!(reply.status, 200);
+    let page = reply.text();
+    assert!(
+        page.contains("6 pixels × 8 spots") && page.contains("class=\"explorer\""),
+        "{page}"
+    );
+    assert_eq!(reply.header("content-type"), "text/html; charset=utf-8");
     let values = |name: &str| {
         let reply = server.get(&format!("/api/row?matrix={name}&pixel=5"));
         reply
@@ -144,19 +149,13 @@ fn a_real_run_is_served_and_made_again_meanwhile() {
     assert_eq!(second, row("out/phi.npy"));
     assert_ne!(second, first);
 
-    workspace.write("out/reproduction.html", "<p>2");
-    assert_eq!(
-        server.get("/").header("location"),
-        "/files/reproduction.html"
-    );
-    workspace.write("out/report.html", "<p>1");
+    for (name, page) in [("reproduction.html", "<p>2"), ("report.html", "<p>1")] {
+        workspace.write(&format!("out/{name}"), page);
+        for path in ["/".to_owned(), format!("/files/{name}")] {
+            assert_eq!(server.get(&path).text(), page, "{path}");
+        }
+    }
     let reply = server.get("/");
-    assert_eq!(
-        (reply.status, reply.header("location")),
-        (307, "/files/report.html")
-    );
-    let reply = server.get("/files/report.html");
-    assert_eq!(reply.body, b"<p>1");
     assert_eq!(reply.header("content-type"), "text/html; charset=utf-8");
     let policy = reply.header("content-security-policy");
     assert!(policy.contains("default-src 'none'") && policy.contains("script-src 'unsafe-inline'"));
@@ -616,6 +615,9 @@ fn only_reading_by_this_host_is_allowed() {
     made_up(&workspace, "out", (3, 2, 5));
     let before = workspace.contents("");
     let server = Server::of(&workspace, "out");
+    let reply = server.get("/");
+    reply.refuses(404, "no page");
+    assert!(reply.text().contains("phicam run"), "{}", reply.text());
     let address = server.address();
     for method in [
         "POST", "PUT", "DELETE", "PATCH", "OPTIONS", "TRACE", "CONNECT", "PROPFIND", "get",

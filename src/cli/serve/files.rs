@@ -12,9 +12,11 @@ use super::folder::Served;
 use super::range::Part;
 use super::refusal::Refusal;
 
+/// The type of a page.
+pub(super) const PAGE: &str = "text/html; charset=utf-8";
 /// Types by extension; what is not among them is bytes.
 const TYPES: [(&str, &str); 10] = [
-    ("html", "text/html; charset=utf-8"),
+    ("html", PAGE),
     ("svg", "image/svg+xml"),
     ("png", "image/png"),
     ("jpg", "image/jpeg"),

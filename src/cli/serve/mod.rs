@@ -6,7 +6,7 @@
 //!
 //! | path | answer |
 //! | --- | --- |
-//! | `/` | sends to `files/report.html`, or `files/reproduction.html`, whichever is there: what a page names beside it is found there as on disk |
+//! | `/` | report.html, or reproduction.html, or a page made when the server started: the scene, what was rendered, and its matrices to look at |
 //! | `/files/PATH` | a regular file below DIR, as it is; one `Range` of bytes |
 //! | `/api/about` | JSON: `version`, `scene`, `pixels` \[columns, rows\], `spots`, `matrices` that are there and of the run's shape |
 //! | `/api/frame?matrix=M&spot=S&x=X&y=Y&w=W&h=H&step=K` | a part of the frame of spot S: of every K × K pixels the middle one, at column X + i·K + ⌊K/2⌋ and row Y + j·K + ⌊K/2⌋ or the last of the part, ⌈W/K⌉ × ⌈H/K⌉ numbers, at most 512 × 512; their counts in `X-Columns` and `X-Rows` |
@@ -47,12 +47,15 @@ use tokio::runtime;
 use super::Outcome;
 use super::args::ServeArgs;
 use super::failure::Failure;
-use super::folder::{PHI, REPORT};
+use super::folder::{PHI, REPORT, SCENE};
 use super::interrupt::stop_flag;
 use super::output::{self, Talk};
 use super::record::Record;
+use super::trust;
+use crate::report::served_html;
 use folder::Served;
 use routes::{REPRODUCTION, Site};
+use tiles::MODELLED;
 
 /// Threads that talk to clients.
 const TALKING: usize = 2;
@@ -61,8 +64,10 @@ const READING: usize = 8;
 
 pub(super) fn execute(args: &ServeArgs, talk: Talk) -> Result<Outcome, Failure> {
     let stop = stop_flag();
+    let folder = folder(args)?;
     let site = Site {
-        folder: folder(args)?,
+        page: page(args, &folder, talk),
+        folder,
         address: args.address,
     };
     // As long as the process, and so are its connections.
@@ -111,6 +116,32 @@ fn folder(args: &ServeArgs) -> Result<Served, Failure> {
             Err(Failure::new(cause, cure))
         }
     }
+}
+
+/// The page of a run, for as long as it has no report. That there is none is no reason not to serve its files.
+fn page(args: &ServeArgs, folder: &Served, talk: Talk) -> Option<String> {
+    if !folder.has(Record::FILE) || !folder.has(SCENE) {
+        return None;
+    }
+    let made = || {
+        let record = Record::read(&args.dir)?;
+        let scene = trust::load(&args.dir.join(SCENE).to_string_lossy())?;
+        match record.filter(|r| r.scene_hash == scene.hash) {
+            Some(r) => Ok(served_html(&scene, &r.to_settings(), folder.has(MODELLED))),
+            None => Err(Failure::new(
+                format!("{SCENE} is not the scene of {}", Record::FILE),
+                "render again into another folder",
+            )),
+        }
+    };
+    let page: Result<String, Failure> = made();
+    let remark = |e: Failure| {
+        format!(
+            "warning: no page for a run without {REPORT}: {}",
+            e.message()
+        )
+    };
+    page.map_err(|e| talk.say(remark(e))).ok()
 }
 
 /// Why nobody can be heard at this address.

@@ -3,7 +3,7 @@
 use std::net::IpAddr;
 
 use hyper::body::{Body, Incoming};
-use hyper::header::{ALLOW, IF_RANGE, LOCATION, RANGE};
+use hyper::header::{ALLOW, IF_RANGE, RANGE};
 use hyper::{Method, Request, Response, StatusCode, Uri};
 use tokio::task::spawn_blocking;
 
@@ -23,6 +23,8 @@ pub(super) const REPRODUCTION: &str = "reproduction.html";
 pub(super) struct Site {
     pub folder: Served,
     pub address: IpAddr,
+    /// The page of a run that has no report.
+    pub page: Option<String>,
 }
 
 /// Answers a request. Files are read on a thread for that, not on one that others wait for.
@@ -35,7 +37,7 @@ pub(super) async fn respond(
         Ok(()) => {
             let range = range(&request);
             let uri = request.uri().clone();
-            let found = spawn_blocking(move || find(&site.folder, &uri, range.as_deref())).await;
+            let found = spawn_blocking(move || find(site, &uri, range.as_deref())).await;
             found.unwrap_or_else(|e| Err(Refusal::broken(e.to_string())))
         }
         Err(refusal) => Err(refusal),
@@ -81,9 +83,10 @@ fn range(request: &Request<Incoming>) -> Option<String> {
     range.to_str().ok().filter(|_| counts).map(str::to_owned)
 }
 
-fn find(folder: &Served, uri: &Uri, range: Option<&str>) -> Result<Answer, Refusal> {
+fn find(site: &Site, uri: &Uri, range: Option<&str>) -> Result<Answer, Refusal> {
+    let folder = &site.folder;
     match uri.path() {
-        "/" => page(folder),
+        "/" => page(site),
         "/api/about" => tiles::about(folder, uri.query()),
         "/api/frame" => tiles::frame(folder, uri.query()),
         "/api/row" => tiles::row(folder, uri.query()),
@@ -94,19 +97,21 @@ fn find(folder: &Served, uri: &Uri, range: Option<&str>) -> Result<Answer, Refus
     }
 }
 
-/// Sends to the page of the folder, under the address where what it names beside it is too.
-fn page(folder: &Served) -> Result<Answer, Refusal> {
-    let Some(name) = [REPORT, REPRODUCTION].into_iter().find(|n| folder.has(n)) else {
-        return Err(Refusal::new(
-            StatusCode::NOT_FOUND,
-            format!(
-                "there is no {REPORT} in this folder: `phicam run SCENE -o DIR` makes one of a run, `phicam reproduce -o DIR` a {REPRODUCTION}"
-            ),
-        ));
-    };
-    let words = format!("the report is files/{name}");
-    let found = Refusal::new(StatusCode::TEMPORARY_REDIRECT, words);
-    Ok(Answer::from(found).with(LOCATION, &format!("/files/{name}")))
+/// The page of the folder: the one that lies in it, else the one that was made of what lies in it.
+fn page(site: &Site) -> Result<Answer, Refusal> {
+    for name in [REPORT, REPRODUCTION] {
+        match files::file(&site.folder, name, None) {
+            Err(refusal) if refusal.status == StatusCode::NOT_FOUND => {}
+            answer => return answer,
+        }
+    }
+    let made = site.page.as_ref().map(|p| p.clone().into_bytes());
+    made.map(|page| Answer::bytes(files::PAGE, page)).ok_or_else(|| {
+        let words = format!(
+            "there is no {REPORT} in this folder: `phicam run SCENE -o DIR` makes one of a run, `phicam study` of a study, `phicam reproduce -o DIR` a {REPRODUCTION}"
+        );
+        Refusal::new(StatusCode::NOT_FOUND, words)
+    })
 }
 
 /// A path with its percent codes replaced, once. `None` for half a code, a slash in a code, or what is not UTF-8 then.

@@ -15,12 +15,10 @@ use crate::cli::folder::{PHI, STDERR};
 use crate::cli::record::Record;
 use crate::matrix::npy::Entries;
 
+/// Φcam of the model.
+pub(super) const MODELLED: &str = "model/phi.npy";
 /// The matrices that can be asked for, all pixels × spots, and their files.
-const MATRICES: [(&str, &str); 3] = [
-    ("traced", PHI),
-    ("stderr", STDERR),
-    ("modelled", "model/phi.npy"),
-];
+const MATRICES: [(&str, &str); 3] = [("traced", PHI), ("stderr", STDERR), ("modelled", MODELLED)];
 /// Most columns and rows of a tile.
 const SIDE_MAX: usize = 512;
 /// Most entries of a row.
