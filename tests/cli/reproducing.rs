@@ -23,7 +23,11 @@ fn items_by_name_become_files_and_pages() {
     }
     let page = workspace.text("r/reproduction.md");
     assert!(page.contains("## table2") && page.contains("## fig17") && !page.contains("## table3"));
-    assert!(workspace.text("r/reproduction.html").contains("table2.svg"));
+    // The page is whole in itself: figures with their data, tables to be saved, no file beside it.
+    let page = workspace.text("r/reproduction.html");
+    assert!(page.contains("data-name=\"table2\"") && page.contains("<metadata>"));
+    assert!(page.contains("download=\"table2.csv\"") && !page.contains("href=\"table2"));
+    assert!(page.contains("phicam reproduce table2 fig17 --most-elements 64 --seeds 20 --seed 1"));
 
     // Finished items are not repeated, whatever is done to their numbers; one that lacks a file or has other settings is. Pages tell of all.
     workspace.write("r/table2.csv", "marked");
@@ -35,6 +39,13 @@ fn items_by_name_become_files_and_pages() {
     assert_eq!(workspace.text("r/table2.csv"), "marked");
     assert!(workspace.text("r/fig17.svg").contains("<svg"));
     assert!(workspace.text("r/reproduction.md").contains("## table3"));
+    // What was finished before is in the page from its files.
+    let page = workspace.text("r/reproduction.html");
+    assert!(
+        ["table2", "fig17", "table3"]
+            .iter()
+            .all(|i| page.contains(&format!("data-name=\"{i}\"")))
+    );
     let ended = workspace.phicam("reproduce table2 -o r --seed 2").exits(0);
     assert!(
         !ended.stderr.contains("finished already"),

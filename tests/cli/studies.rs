@@ -3,6 +3,16 @@
 use crate::small_scene::{SMALL, altered};
 use crate::workspace::Workspace;
 
+/// The page in `folder` is whole in itself and says these words.
+fn told(workspace: &Workspace, folder: &str, words: &[&str]) {
+    let page = workspace.text(&format!("{folder}/report.html"));
+    for word in words {
+        assert!(page.contains(word), "no `{word}` in the page of {folder}");
+    }
+    assert!(!page.contains("src=\"http") && page.len() < 10_000_000);
+    assert!(page.contains("class=\"verdict"));
+}
+
 #[test]
 fn a_budget_is_a_table_a_figure_and_json() {
     let workspace = Workspace::with_scenes();
@@ -26,6 +36,17 @@ fn a_budget_is_a_table_a_figure_and_json() {
     let terms = json["terms"].as_array().unwrap().len();
     // A header and a line a term.
     assert_eq!(workspace.text("b/budget.csv").lines().count(), terms + 1);
+    told(
+        &workspace,
+        "b",
+        &[
+            "phicam study budget tiny.toml --samples 512 --run-samples 64 --seed 1",
+            "the parts add up to",
+            "data-name=\"budget\"",
+            "download=\"budget.csv\"",
+            "pixels = [3, 2]",
+        ],
+    );
     let figure = workspace.text("b/budget.svg");
     assert!(figure.contains("<svg") && !figure.contains("NaN") && figure.contains("5 bounces"));
 }
@@ -44,6 +65,11 @@ fn tolerance_is_a_table_a_figure_and_json() {
     let json = workspace.json("t/tolerance.json");
     assert_eq!(json["parameters"].as_array().unwrap().len(), 12);
     assert!(workspace.text("t/tolerance.svg").contains("hinge angle"));
+    told(
+        &workspace,
+        "t",
+        &["tolerance small.toml --noise 0.01<", "<metadata>"],
+    );
     assert!(workspace.text("t/tolerance.csv").lines().count() > 60);
     workspace.refuses(
         "study tolerance small.toml -o u --noise 0",
@@ -60,6 +86,7 @@ fn power_is_a_table_and_json() {
     // Three estimators at two numbers of samples.
     assert_eq!(json["rows"].as_array().unwrap().len(), 6);
     assert_eq!(json, workspace.json("p/power.json"));
+    told(&workspace, "p", &["smallest scale error", "--seeds 4"]);
     workspace.refuses(
         "study power tiny.toml -o q --significance 1.5",
         &["--significance", "cure"],
@@ -92,6 +119,7 @@ fn convergence_is_a_table_a_figure_and_json() {
     assert!((slope(0) + 0.5).abs() < 0.05, "{json}");
     assert!(slope(1) < -0.75, "{json}");
     assert!(workspace.text("c/convergence.svg").contains("slope"));
+    told(&workspace, "c", &["--samples 64,256,1024", "<metadata>"]);
     let one = workspace
         .phicam("study convergence small.toml -o d --samples 64")
         .exits(2);
@@ -159,6 +187,11 @@ fn the_experiment_is_told_in_words_tables_and_a_figure() {
     // A header, then a line for every reading of 4 settings.
     let lines = workspace.text("e/experiment.csv").lines().count();
     assert_eq!(lines, 1 + 4 * readings);
+    told(
+        &workspace,
+        "e",
+        &["the published analysis finds", "--glares 1"],
+    );
     let figure = workspace.text("e/experiment.svg");
     assert!(figure.contains("glare over signal") && !figure.contains("NaN"));
     let again = workspace
@@ -189,6 +222,11 @@ fn coverage_is_a_table_and_json() {
     let json = workspace.json("c/coverage.json");
     assert_eq!(json["rows"].as_array().unwrap().len(), 3);
     assert!(json["rows"][0]["covered"].as_f64().unwrap() > 0.8);
+    told(
+        &workspace,
+        "c",
+        &["cover the true reflectance", "joint-tv has no bands"],
+    );
     for (wrong, word) in [
         ("--noise 0", "--noise"),
         ("--confidence 1", "--confidence"),
@@ -222,6 +260,11 @@ fn brdf_is_a_table_json_csv_and_a_figure() {
     // A header, then a line for each assumption and for the Lambertian case: one method, one level.
     let lines = workspace.text("b/brdf.csv").lines().count();
     assert_eq!(lines, 1 + assumptions + 1);
+    told(
+        &workspace,
+        "b",
+        &["agrees with the model that knows", "<metadata>"],
+    );
     let figure = workspace.text("b/brdf.svg");
     assert!(figure.contains("own BRDF (agrees)") && !figure.contains("NaN"));
     let again = workspace

@@ -274,6 +274,10 @@ fn indicator_is_a_table_a_figure_and_json() {
         workspace.text("i/indicator-noise.csv").lines().count(),
         9 * 4 + 1
     );
+    let page = workspace.text("i/report.html");
+    assert!(
+        page.contains("predicted best by") && page.contains("download=\"indicator-noise.csv\"")
+    );
     let figure = workspace.text("i/indicator.svg");
     assert!(figure.contains("condition number") && !figure.contains("NaN"));
 }

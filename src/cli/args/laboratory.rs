@@ -9,7 +9,7 @@ pub(in crate::cli) struct ExperimentArgs {
     /// Built-in scene or path of a scene file
     #[arg(default_value = "experiment")]
     pub scene: String,
-    /// Folder for experiment.json, experiment.csv and experiment.svg
+    /// Folder for experiment.json, experiment.csv, experiment.svg and report.html
     #[arg(long, short, default_value = "out/experiment")]
     pub output: PathBuf,
     /// Built-in sensor (ideal, ccd, dslr, machine-vision); that of the scene's [sensor] table unless given, or ccd if it has none
@@ -59,7 +59,7 @@ pub(in crate::cli) struct BrdfArgs {
     /// Built-in scene or path of a scene file
     #[arg(default_value = "satin")]
     pub scene: String,
-    /// Folder for brdf.json, brdf.csv and brdf.svg
+    /// Folder for brdf.json, brdf.csv, brdf.svg and report.html
     #[arg(long, short, default_value = "out/brdf")]
     pub output: PathBuf,
     /// Points, or paths per pixel where the hidden surface is not Lambertian, of each of the two renders
@@ -98,7 +98,7 @@ pub(in crate::cli) struct CoverageArgs {
     /// Built-in scene or path of a scene file
     #[arg(default_value = "bench")]
     pub scene: String,
-    /// Folder for coverage.json
+    /// Folder for coverage.json and report.html
     #[arg(long, short, default_value = "out/coverage")]
     pub output: PathBuf,
     /// Methods, separated by commas

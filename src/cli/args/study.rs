@@ -125,7 +125,7 @@ pub(in crate::cli) struct ConvergenceArgs {
     /// Built-in scene or path of a scene file
     #[arg(default_value = "thesis")]
     pub scene: String,
-    /// Folder for convergence.json and convergence.svg
+    /// Folder for convergence.json, convergence.svg and report.html
     #[arg(long, short, default_value = "out/convergence")]
     pub output: PathBuf,
     /// Numbers of paths, separated by commas
@@ -147,7 +147,7 @@ pub(in crate::cli) struct ToleranceArgs {
     /// Built-in scene or path of a scene file
     #[arg(default_value = "bench")]
     pub scene: String,
-    /// Folder for tolerance.json, tolerance.csv and tolerance.svg
+    /// Folder for tolerance.json, tolerance.csv, tolerance.svg and report.html
     #[arg(long, short, default_value = "out/tolerance")]
     pub output: PathBuf,
     /// Noise of the photographs, relative to each entry
@@ -163,7 +163,7 @@ pub(in crate::cli) struct PowerArgs {
     /// Built-in scene or path of a scene file
     #[arg(default_value = "bench")]
     pub scene: String,
-    /// Folder for power.json
+    /// Folder for power.json and report.html
     #[arg(long, short, default_value = "out/power")]
     pub output: PathBuf,
     /// Estimators, separated by commas; all unless given
@@ -196,7 +196,7 @@ pub(in crate::cli) struct PowerArgs {
 pub(in crate::cli) struct BudgetArgs {
     /// Built-in scene or path of a scene file
     pub scene: String,
-    /// Folder for budget.json, budget.csv and budget.svg
+    /// Folder for budget.json, budget.csv, budget.svg and report.html
     #[arg(long, short, default_value = "out/budget")]
     pub output: PathBuf,
     /// Paths per pixel of the precise renders, all together

@@ -26,7 +26,7 @@ pub(in crate::cli) struct NoiseArgs {
     /// Built-in scene or path of a scene file
     #[arg(default_value = "bench")]
     pub scene: String,
-    /// Folder for noise.csv (every trial: what a rerun goes on from), noise-curves.csv, noise.json and the figures
+    /// Folder for noise.csv (every trial: what a rerun goes on from), noise-curves.csv, noise.json, the figures and report.html
     #[arg(long, short, default_value = "out/noise")]
     pub output: PathBuf,
     /// Checks a side of the objects, separated by commas
@@ -86,7 +86,7 @@ pub(in crate::cli) struct IndicatorArgs {
     /// Built-in scene or path of a scene file; its wall is extended to hold every spot
     #[arg(default_value = "thesis")]
     pub scene: String,
-    /// Folder for indicator.json, indicator.csv, indicator-noise.csv and indicator.svg
+    /// Folder for indicator.json, indicator.csv, indicator-noise.csv, indicator.svg and report.html
     #[arg(long, short, default_value = "out/indicator")]
     pub output: PathBuf,
     /// Numbers of spots, separated by commas

@@ -300,7 +300,7 @@ fn run(
         plan.first_seed
     );
     format!(
-        "<div class=\"wide\"><table>\n{}</table></div>\n<h3>To repeat it</h3>\n<pre>{}</pre>\n",
+        "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Settings\"><table>\n{}</table></div>\n<h3>To repeat it</h3>\n<pre>{}</pre>\n",
         rows.concat(),
         escape(&command)
     )

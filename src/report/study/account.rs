@@ -12,6 +12,8 @@ pub struct Account {
     pub(super) tone: Tone,
     /// With its numbers; text.
     pub(super) sentence: String,
+    /// What else is said in words; text.
+    pub(super) words: String,
     pub(super) tables: Vec<Table>,
 }
 
@@ -62,9 +64,13 @@ impl Table {
 }
 
 impl Account {
-    /// The tables.
+    /// Words and tables.
     pub(super) fn html(&self) -> String {
-        self.tables.iter().map(Table::html).collect()
+        let words = match self.words.is_empty() {
+            true => String::new(),
+            false => format!("<p>{}</p>\n", explained(&self.words)),
+        };
+        words + &self.tables.iter().map(Table::html).collect::<String>()
     }
 }
 

@@ -140,6 +140,7 @@ pub fn brdf_account(study: &BrdfStudy) -> Account {
         title: format!("What knowing the wall's BRDF is worth: {}", study.scene),
         tone: if g.agrees { Tone::Good } else { Tone::Bad },
         sentence,
+        words: String::new(),
         tables,
     }
 }

@@ -65,6 +65,7 @@ pub fn budget_account(budget: &ErrorBudget) -> Account {
         title: format!("Error budget: {}", budget.scene),
         tone: if c.closes { Tone::Good } else { Tone::Bad },
         sentence,
+        words: String::new(),
         tables: vec![table],
     }
 }

@@ -18,7 +18,7 @@ pub fn convergence_account(study: &Convergence) -> Account {
             [l.min(c.slope), h.max(c.slope)]
         });
         format!(
-            "by {sampler} with a slope of {} to {}",
+            "of {sampler} by a slope of {} to {}",
             figure(low, 3),
             figure(high, 3)
         )
@@ -40,7 +40,7 @@ pub fn convergence_account(study: &Convergence) -> Account {
         ))
     });
     let sentence = format!(
-        "The relative error of Φcam on {} falls with the samples {} (the slope of independent random numbers is −½).{}",
+        "The relative error of Φcam on {} falls with the number of samples, that {} (−½ is what independent random numbers have).{}",
         study.scene,
         listed(&ranges),
         best.unwrap_or_default()
@@ -77,6 +77,7 @@ pub fn convergence_account(study: &Convergence) -> Account {
         title: format!("How fast the error falls: {}", study.scene),
         tone: Tone::Plain,
         sentence,
+        words: String::new(),
         tables: vec![slopes, steps],
     }
 }

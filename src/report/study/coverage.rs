@@ -45,7 +45,7 @@ pub fn coverage_account(study: &Coverage) -> Account {
         ),
     };
     let sentence = format!(
-        "Bands of {} on {} at a noise of {} cover the true reflectance as stated: {}{failing}.{silent}",
+        "Bands of {} on {} at a noise of {} cover the true reflectance no less than stated: {}{failing}.{silent}",
         percent(study.confidence),
         study.scene,
         figure(study.noise, 2),
@@ -105,6 +105,7 @@ pub fn coverage_account(study: &Coverage) -> Account {
             Tone::Bad
         },
         sentence,
+        words: String::new(),
         tables: vec![table],
     }
 }

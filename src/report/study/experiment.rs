@@ -71,7 +71,28 @@ pub fn experiment_account(study: &Experiment) -> Account {
     Account {
         title: format!("The experiment, again: {}", study.scene),
         tone: Tone::Plain,
-        sentence: study.words.clone(),
+        sentence: first(&study.words).to_owned(),
+        words: study.words.clone(),
         tables,
+    }
+}
+
+/// The first two sentences: how strong the glare is, and what the published analysis finds under it.
+fn first(words: &str) -> &str {
+    let ends = words.match_indices(". ").map(|(at, _)| at + 1);
+    ends.take(2).last().map_or(words, |end| &words[..end])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_sentences_are_told_on_top() {
+        assert_eq!(
+            first("It is 0.5 W. It `falls`. More. And more."),
+            "It is 0.5 W. It `falls`."
+        );
+        assert_eq!(first("Only one."), "Only one.");
     }
 }

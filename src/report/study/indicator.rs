@@ -84,6 +84,7 @@ pub fn indicator_account(study: &Indicator) -> Account {
             "{best}The projected object and the recovery differ by {} at most. {noisy}",
             figure(study.identity, 2)
         ),
+        words: String::new(),
         tables,
     }
 }

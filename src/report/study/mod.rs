@@ -109,7 +109,9 @@ fn run(asked: &Asked) -> String {
         .options
         .iter()
         .map(|(option, value)| (option.as_str(), value.clone()));
-    let mut html = "<div class=\"wide\"><table>\n".to_owned();
+    let mut html =
+        "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Settings\"><table>\n"
+            .to_owned();
     for (key, value) in facts.into_iter().chain(options) {
         let [key, value] = [key, &value].map(escape);
         html += &format!("<tr><th scope=\"row\">{key}</th><td>{value}</td></tr>\n");

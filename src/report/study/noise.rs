@@ -24,7 +24,7 @@ pub fn noise_account(study: &NoiseStudy) -> Account {
         _ => String::new(),
     };
     let sentence = format!(
-        "The mean raw MTF stays at {high} or more up to which {}? {}{more}.",
+        "The mean raw MTF stays at {high} or more up to this level ({}): {}{more}.",
         study.axis_title,
         said.join("; ")
     );
@@ -117,6 +117,7 @@ pub fn noise_account(study: &NoiseStudy) -> Account {
         title: format!("How much noise each recovery bears: {}", place(study)),
         tone: Tone::Plain,
         sentence,
+        words: String::new(),
         tables,
     }
 }

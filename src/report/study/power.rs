@@ -91,6 +91,7 @@ pub fn power_account(power: &Power) -> Account {
             Tone::Bad
         },
         sentence,
+        words: String::new(),
         tables: vec![right, wrong],
     }
 }

@@ -88,6 +88,7 @@ pub fn tolerance_account(study: &Tolerance) -> Account {
         title: format!("How wrong the assumed geometry may be: {}", study.scene),
         tone: Tone::Plain,
         sentence,
+        words: String::new(),
         tables: vec![slopes, rows],
     }
 }

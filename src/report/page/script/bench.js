@@ -20,7 +20,7 @@ upgrade("#bench-3d", async (element) => {
     const said = make("p", { class: "bench-choice" });
     element.classList.add("bench-live");
     const sight = lookAtBench(bench, stage, canvas, renderer);
-    element.append(viewButtons(bench, sight), stage, said, partBoxes(bench, sight), make("p", { class: "note", id: "bench-keys" }, KEYS));
+    element.append(viewButtons(bench, sight), stage, said, partBoxes(bench, sight), make("p", { class: "note", id: "bench-keys" }, STEERING_KEYS));
     const follows = followChoice(bench);
     const { lines, labels } = axesOf(bench);
     bench.root.add(lines);

@@ -2,8 +2,8 @@
 
 /**
  * A name at a place: tried right of it, left, above and below; left out where there is no room. `reach`: a length beside which the name would be
- * too large where it is short on the screen. `device`: held at the border, with an arrow, where it is outside.
- * @typedef {{ text: string, at: () => Point | undefined, ink: Ink, part: Part | "axes", device?: boolean, reach?: number, element?: HTMLElement, size?: [number, number] }} Label
+ * too large where it is short on the screen. `axis`: along which that length lies. `device`: held at the border, with an arrow, where it is outside.
+ * @typedef {{ text: string, at: () => Point | undefined, ink: Ink, part: Part | "axes", device?: boolean, reach?: number, axis?: number, element?: HTMLElement, size?: [number, number] }} Label
  */
 const ARROWS = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
 /** At most so many surfaces are named. */
@@ -94,7 +94,7 @@ function axesOf(bench) {
             /** @type {Point} */ (low.map((l, k) => (k === i ? x : l) + off[k] * size));
         const end = high[i] + 0.05 * size;
         segments.push(place(at(low[i])), place(at(end)));
-        ends.push({ text: `${"xyz"[i]} / ${unit}`, at: () => at(end), ink: "soft", part: "axes" });
+        ends.push({ text: `${"xyz"[i]} / ${unit}`, at: () => at(end), ink: "soft", part: "axes", reach: high[i] - low[i], axis: i });
         const step = roundLength((high[i] - low[i] || size) / 3);
         for (let k = Math.ceil(low[i] / step - 1e-9); k * step <= high[i] + 1e-9 * step; k++) {
             for (const other of [0, 1, 2].filter((j) => j !== i)) {
@@ -104,7 +104,7 @@ function axesOf(bench) {
             }
             // In the corner where the axes meet three numbers would be on top of each other.
             if (k * step > low[i] + 1e-9 * step) {
-                ticks.push({ text: plainNumber(k * step), at: () => at(k * step), ink: "soft", part: "axes", reach: step });
+                ticks.push({ text: plainNumber(k * step), at: () => at(k * step), ink: "soft", part: "axes", reach: step, axis: i });
             }
         }
     }
@@ -142,7 +142,8 @@ function placeLabels(bench, sight, layer, labels) {
     // Kept free: the scale bar.
     const taken = [[0, height - 30, 270, height]];
     for (const label of labels) {
-        const short = label.reach !== undefined && (label.reach * sight.camera.zoom) / bench.size < SHORTEST;
+        const [alongX, alongY] = label.axis === undefined ? [sight.camera.zoom / bench.size, 0] : [across[label.axis], down[label.axis]];
+        const short = label.reach !== undefined && label.reach * Math.hypot(alongX, alongY) < SHORTEST;
         const place = short ? undefined : label.part === "axes" || bench.parts[label.part].visible ? label.at() : undefined;
         const element = (label.element ??= layer.appendChild(make("span", { style: `color: color-mix(in srgb, var(${INKS[label.ink]}) 75%, var(--ink))` }, label.text)));
         if (place === undefined) {
@@ -164,7 +165,12 @@ function placeLabels(bench, sight, layer, labels) {
         }
         element.hidden = false;
         const [w, h] = (label.size ??= [element.offsetWidth, element.offsetHeight]);
-        const free = [[x + 8, y - h / 2], [x - 8 - w, y - h / 2], [x - w / 2, y - h - 6], [x - w / 2, y + 6], [x + 6, y - h - 4], [x - w - 6, y + 4]].find(
+        const [right, left, above, below] = [[x + 8, y - h / 2], [x - 8 - w, y - h / 2], [x - w / 2, y - h - 6], [x - w / 2, y + 6]];
+        const sides = [right, left, above, below, [x + 6, y - h - 4], [x - w - 6, y + 4]];
+        // The numbers of an axis stand below or left of it, its name goes on where it ends.
+        const tick = label.axis !== undefined && !label.text.includes("/");
+        const tried = !tick ? sides : Math.abs(alongX) > Math.abs(alongY) ? [below, ...sides] : [left, ...sides];
+        const free = tried.find(
             ([a, b]) => a >= 2 && b >= 2 && a + w <= width - 2 && b + h <= height - 2 && !taken.some((t) => a < t[2] && a + w > t[0] && b < t[3] && b + h > t[1]),
         );
         element.hidden = free === undefined;

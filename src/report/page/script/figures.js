@@ -20,7 +20,7 @@ upgrade("figure.plot", (figure) => {
     if (note) {
         live.append(make("p", { class: "note" }, note));
     }
-    const plots = make("div", { class: specs.length === 1 ? "panels one" : "panels" });
+    const plots = make("div", { class: specs.length === 1 ? "panels one" : [2, 4].includes(specs.length) ? "panels two" : "panels" });
     /** @type {DrawnPlot[]} */
     const drawn = [];
     live.append(legendOf(specs, (key, hidden) => {
@@ -31,7 +31,7 @@ upgrade("figure.plot", (figure) => {
     // Before the plots, so that these know their widths.
     figure.append(live);
     specs.forEach((spec, i) => {
-        const heading = spec.title || (specs.length === 1 ? title : spec.y.title);
+        const heading = spec.title || (specs.length === 1 ? title : `${spec.y.title} against ${spec.x.title}`);
         const panel = make("div", { class: "panel" });
         if (specs.length > 1) {
             panel.append(make("p", { class: "heading" }, heading));

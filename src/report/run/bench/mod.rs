@@ -18,8 +18,8 @@ use cluster::{Display, shares};
 use surface::SurfaceBlock;
 use ways::Ways;
 
-/// All meshes together are drawn with at most so many triangles.
-const MOST_TRIANGLES: usize = 20_000;
+/// All meshes together are drawn with at most so many triangles: a processor without graphics draws them 30 times a second.
+const MOST_TRIANGLES: usize = 12_000;
 /// Bits behind the leading one of a vertex's coordinate, relative to the mesh's box: 1.5e-5 of its size.
 const VERTEX_BITS: u32 = 15;
 /// Bits of a texture coordinate of a mesh.
