@@ -67,8 +67,12 @@ function pacer(stage, draw) {
     let [ratio, last, gap] = [Math.min(DOTS.still, devicePixelRatio), 0, 22];
     let waits = false;
     let rest = 0;
-    const fine = () => requestAnimationFrame(() => draw(DOTS.still));
+    const fine = () => requestAnimationFrame(() => {
+        draw(DOTS.still);
+        stage.dataset.still = "yes";
+    });
     return () => {
+        stage.dataset.still = "no";
         if (waits) {
             return;
         }
@@ -85,7 +89,6 @@ function pacer(stage, draw) {
                 }
             }
             last = now;
-            stage.dataset.ratio = ratio.toFixed(2);
             draw(ratio);
             rest = window.setTimeout(fine, PACE.still);
         });
