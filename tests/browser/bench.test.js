@@ -23,17 +23,25 @@ function report(scene) {
     return join(out, "report.html");
 }
 
+/** What a test that fails leaves open. */
+const opened = [];
+
 /** A page whose bench has been drawn and stands still. */
 async function open(scene, options) {
     const { page, browser, errors } = await openPage(report(scene), options);
+    opened.push(browser);
     const canvas = page.locator("#bench-3d canvas");
     await canvas.scrollIntoViewIfNeeded();
     await still(page);
     return { page, browser, errors, canvas };
 }
 
-/** Until the fine picture is there: it follows the last moving one after 160 ms. */
-const still = (page) => page.waitForTimeout(500);
+/** Until the page has answered what was done to it, and the fine picture that follows the last moving one is there. */
+async function still(page) {
+    await page.waitForTimeout(150);
+    await page.waitForFunction(() => document.querySelector(".bench-stage").dataset.still === "yes");
+    await page.waitForTimeout(50);
+}
 
 /** What is on the screen of the drawing, without the names over it: a number per pixel, kept in the page. */
 async function picture(page) {
@@ -78,7 +86,7 @@ before(async () => {
     first = await open("bench");
 });
 after(async () => {
-    await first?.browser.close();
+    await Promise.all(opened.map((browser) => browser.close()));
     rmSync(folder, { recursive: true, force: true });
 });
 
@@ -165,15 +173,18 @@ test("a click chooses the spot under it, on the wall in view its pixel", { timeo
     await page.getByRole("button", { name: "Top (x, y)" }).click();
     await still(page);
     const before = await picture(page);
-    // Places of the layout in design.md, 6: centre (5, 4.37348), half-width 3, 30 a side, stagger −1, 1, 0.
-    const step = 6 / 29;
-    const spots = [
-        [0, [2, 4.373476808130942 - 4, 0]],
-        [2, [2 + 2 * step, 4.373476808130942 - 3, 0]],
-        [31, [8 + 1, 4.373476808130942 - 3 + step, 0]],
+    // The layout of design.md, 6: bottom by growing x, right by growing y, top by falling x, left by falling y, 30 each; every third one staggered.
+    const [x0, y0, n] = [5, 4.373476808130942, 30];
+    const side = Array.from({ length: n }, (_, k) => [-3 + (6 * k) / (n - 1), [-1, 1, 0][k % 3]]);
+    const places = [
+        ...side.map(([t, off]) => [x0 + t, y0 - 3 + off, 0]),
+        ...side.map(([t, off]) => [x0 + 3 + off, y0 + t, 0]),
+        ...side.map(([t, off]) => [x0 - t, y0 + 3 + off, 0]),
+        ...side.map(([t, off]) => [x0 - 3 + off, y0 - t, 0]),
     ];
-    for (const [spot, place] of spots) {
-        const [x, y] = project(await projection(canvas), place);
+    const rows = await projection(canvas);
+    for (let spot = 0; spot < places.length; spot += 7) {
+        const [x, y] = project(rows, places[spot]);
         await canvas.click({ position: { x, y } });
         assert.match(await chosen(page), new RegExp(`^Spot ${spot} at`));
     }
@@ -181,7 +192,7 @@ test("a click chooses the spot under it, on the wall in view its pixel", { timeo
     assert.ok((await difference(page, before, await picture(page))).count > 200, "the beams follow");
     const [column, row] = [11, 6];
     const place = [0, 1, 2].map((i) => camera.corner[i] + (camera.u[i] * (column + 0.5)) / 16 + (camera.v[i] * (row + 0.5)) / 16);
-    const [x, y] = project(await projection(canvas), place);
+    const [x, y] = project(rows, place);
     await canvas.click({ position: { x, y } });
     assert.match(await chosen(page), /Pixel 107 \(column 11, row 6\)/);
     await page.getByRole("button", { name: "3-D" }).click();
@@ -257,6 +268,7 @@ test("on a phone a finger scrolls the page upwards and turns the bench sideways"
 
 test("without WebGL the static drawing stays, and a note says why", { timeout: 120_000 }, async () => {
     const { page, browser, errors } = await openPage(report("bench"), { args: ["--disable-gpu", "--disable-webgl", "--disable-3d-apis"] });
+    opened.push(browser);
     assert.match(await page.locator("#bench-3d").textContent(), /no WebGL/);
     assert.equal(await page.locator("#bench-3d canvas").count(), 0);
     assert.ok(await page.locator("figure.bench svg").isVisible());

@@ -67,7 +67,10 @@ function pacer(stage, draw) {
     let [ratio, last, gap] = [Math.min(DOTS.still, devicePixelRatio), 0, 22];
     let waits = false;
     let rest = 0;
-    const fine = () => requestAnimationFrame(() => draw(DOTS.still));
+    const fine = () => requestAnimationFrame(() => {
+        draw(DOTS.still);
+        stage.dataset.still = "yes";
+    });
     let [seen, stale] = [true, false];
     new IntersectionObserver((entries) => {
         seen = entries[entries.length - 1].isIntersecting;
@@ -77,6 +80,7 @@ function pacer(stage, draw) {
         }
     }).observe(stage);
     return () => {
+        stage.dataset.still = "no";
         if (!seen) {
             stale = true;
             return;
@@ -97,7 +101,6 @@ function pacer(stage, draw) {
                 }
             }
             last = now;
-            stage.dataset.ratio = ratio.toFixed(2);
             draw(ratio);
             rest = window.setTimeout(fine, PACE.still);
         });
