@@ -4,7 +4,7 @@ import { mkdirSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { after, before, describe, test } from "node:test";
 
-import { axe, npy, openPage, random, tabbed } from "./browser.js";
+import { axe, close, npy, openPage, random, tabbed } from "./browser.js";
 
 const run = resolve(process.env.PHICAM_RUN ?? "out");
 const report = join(run, "report.html");
@@ -41,6 +41,8 @@ async function readout(page, spot, pixel) {
     );
     return page.$$eval(".readout data", (all) => Object.fromEntries(all.map((d) => [d.dataset.of, { value: Number(d.value), text: d.textContent }])));
 }
+
+after(close);
 
 describe("the report of a run", () => {
     let page, browser, errors, about;
@@ -157,7 +159,7 @@ describe("pictures for people", { skip: pictures === undefined && "PHICAM_PICTUR
         phone: { width: 360, height: 740 },
     })) {
         test(name, async () => {
-            const { page, browser, errors } = await openPage(report, options);
+            const { page, errors } = await openPage(report, options);
             mkdirSync(pictures, { recursive: true });
             await page.waitForTimeout(500);
             await page.screenshot({ path: join(pictures, `report-${name}.png`), fullPage: true });
@@ -168,7 +170,6 @@ describe("pictures for people", { skip: pictures === undefined && "PHICAM_PICTUR
                 await page.pdf({ path: join(pictures, "report.pdf"), format: "A4", printBackground: true });
             }
             assert.deepEqual(errors, []);
-            await browser.close();
         });
     }
 });

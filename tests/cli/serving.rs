@@ -13,12 +13,12 @@ use crate::workspace::{Workspace, assert_same};
 const SHAPES: [(usize, usize, usize); 2] = [(37, 29, 130), (21, 33, 700)];
 
 /// A run's folder `name` with made-up matrices, in which no two numbers are equal; some are not finite.
-fn made_up(workspace: &Workspace, name: &str, shape: (usize, usize, usize)) -> [Matrix; 3] {
+fn made_up(workspace: &Workspace, name: &str, shape: (usize, usize, usize)) -> [Matrix; 4] {
     let (columns, rows, spots) = shape;
     let folder = workspace.path(name);
     record(&folder, columns, rows, spots);
-    let files = ["phi.npy", "phi.stderr.npy", "model/phi.npy"];
-    [0, 1, 2].map(|kind| {
+    let files = ["phi.npy", "phi.stderr.npy", "model/phi.npy", "model/z.npy"];
+    [0, 1, 2, 3].map(|kind| {
         let matrix = Matrix::from_fn(columns * rows, spots, |p, s| match (p, s) {
             (3, 2) => f64::NAN,
             (4, 2) => f64::NEG_INFINITY,
@@ -57,22 +57,22 @@ fn frames_and_rows_are_those_of_the_matrices() {
         let about: serde_json::Value = serde_json::from_slice(&about.body).expect("JSON");
         let expected = serde_json::json!({
             "version": "0.1.0", "scene": "made up", "pixels": [columns, rows], "spots": spots,
-            "matrices": ["traced", "stderr", "modelled"]
+            "matrices": ["traced", "stderr", "modelled", "z"]
         });
         assert_eq!(about, expected);
         for n in 0..90 {
-            let matrix = &matrices[n % 3];
-            let name = ["traced", "stderr", "modelled"][n % 3];
+            let matrix = &matrices[n % 4];
+            let name = ["traced", "stderr", "modelled", "z"][n % 4];
             let (x, y) = (draw(&mut state, columns), draw(&mut state, rows));
             let w = 1 + draw(&mut state, columns - x);
             let h = 1 + draw(&mut state, rows - y);
             // The first are whole frames, one of them with what is not finite.
-            let (x, y, w, h) = if n < 6 {
+            let (x, y, w, h) = if n < 8 {
                 (0, 0, columns, rows)
             } else {
                 (x, y, w, h)
             };
-            let step = if n < 3 { 1 } else { 1 + draw(&mut state, 9) };
+            let step = if n < 4 { 1 } else { 1 + draw(&mut state, 9) };
             let spot = if n < 3 { 2 } else { draw(&mut state, spots) };
             let path =
                 format!("/api/frame?matrix={name}&spot={spot}&x={x}&y={y}&w={w}&h={h}&step={step}");
@@ -563,7 +563,7 @@ fn forged_files_are_refused() {
             serde_json::from_slice(&server.get("/api/about").body).expect("JSON");
         assert_eq!(
             about["matrices"],
-            serde_json::json!(["stderr", "modelled"]),
+            serde_json::json!(["stderr", "modelled", "z"]),
             "forgery {n}"
         );
     }

@@ -12,7 +12,7 @@
 //! | `/api/frame?matrix=M&spot=S&x=X&y=Y&w=W&h=H&step=K` | a part of the frame of spot S: of every K × K pixels the middle one, at column X + i·K + ⌊K/2⌋ and row Y + j·K + ⌊K/2⌋ or the last of the part, ⌈W/K⌉ × ⌈H/K⌉ numbers, at most 512 × 512; their counts in `X-Columns` and `X-Rows` |
 //! | `/api/row?matrix=M&pixel=P` | what pixel P sees of all spots, at most 10⁶ numbers |
 //!
-//! Matrices are `traced` (phi.npy), `stderr` (phi.stderr.npy) and `modelled` (model/phi.npy), pixels × spots, W. Numbers are f64, little-endian, bit by bit those of the file, a
+//! Matrices are `traced` (phi.npy), `stderr` (phi.stderr.npy), `modelled` (model/phi.npy), in W, and `z` (model/z.npy), pixels × spots. Numbers are f64, little-endian, bit by bit those of the file, a
 //! frame row by row from Y upwards. A request has every key once and no other.
 //!
 //! # Guarantees

@@ -17,8 +17,15 @@ use crate::matrix::npy::Entries;
 
 /// Φcam of the model.
 pub(super) const MODELLED: &str = "model/phi.npy";
+/// Deviates of the traced entries from the model.
+const Z: &str = "model/z.npy";
 /// The matrices that can be asked for, all pixels × spots, and their files.
-const MATRICES: [(&str, &str); 3] = [("traced", PHI), ("stderr", STDERR), ("modelled", MODELLED)];
+const MATRICES: [(&str, &str); 4] = [
+    ("traced", PHI),
+    ("stderr", STDERR),
+    ("modelled", MODELLED),
+    ("z", Z),
+];
 /// Most columns and rows of a tile.
 const SIDE_MAX: usize = 512;
 /// Most entries of a row.

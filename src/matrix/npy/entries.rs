@@ -1,7 +1,7 @@
 //! Single entries of a matrix that stays on disk.
 
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{self, Seek};
 use std::path::{Path, PathBuf};
 
 use npyz::{DType, Endianness, Order};
@@ -123,11 +123,21 @@ impl Entries {
     fn bytes(&mut self, row: usize, column: usize, bytes: &mut [u8]) -> Result<(), NpyError> {
         // No further than the file is long, which was held against the shape.
         let at = self.start + (row as u64 * self.shape.1 as u64 + column as u64) * BYTES;
-        let found = self.file.seek(SeekFrom::Start(at));
-        found
-            .and_then(|_| self.file.read_exact(bytes))
-            .map_err(|source| unreadable(&self.path, source))
+        read_at(&mut self.file, at, bytes).map_err(|source| unreadable(&self.path, source))
     }
+}
+
+/// One call of the system, not two: single entries are read by the hundred thousand.
+#[cfg(unix)]
+fn read_at(file: &mut File, at: u64, bytes: &mut [u8]) -> io::Result<()> {
+    std::os::unix::fs::FileExt::read_exact_at(file, bytes, at)
+}
+
+#[cfg(not(unix))]
+fn read_at(file: &mut File, at: u64, bytes: &mut [u8]) -> io::Result<()> {
+    use std::io::{Read, SeekFrom};
+    file.seek(SeekFrom::Start(at))?;
+    file.read_exact(bytes)
 }
 
 fn number(bytes: &[u8]) -> f64 {

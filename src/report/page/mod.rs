@@ -13,6 +13,7 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 
 use super::colour::Map;
+use super::figure::encoded;
 use super::look::looks;
 use super::svg::escape;
 
@@ -68,6 +69,9 @@ const SCRIPT: [&str; 21] = [
 
 /// The page's own style.
 const STYLE: [&str; 2] = [include_str!("page.css"), include_str!("plots.css")];
+
+/// A picture of 16 × 16 px for the tab: a wall, what leans over it, a spot. A server is asked for none then.
+const ICON: &str = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 16 16\"><path d=\"M1 14h14\" stroke=\"#888\" stroke-width=\"2\"/><path d=\"M8 2l6 6\" stroke=\"#0072b2\" stroke-width=\"2.4\"/><circle cx=\"3.5\" cy=\"12.5\" r=\"2\" fill=\"#d55e00\"/></svg>";
 
 /// How a verdict is marked, beside its words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -159,10 +163,11 @@ impl Page {
         format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-             <meta name=\"generator\" content=\"phicam {}\">\n<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n\
+             <meta name=\"generator\" content=\"phicam {}\">\n<link rel=\"icon\" href=\"data:image/svg+xml;base64,{}\">\n<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n\
              <a class=\"skip\" href=\"#main\">To the content</a>\n<header>\n<h1>{}</h1>\n{}<nav aria-label=\"Contents\"><ul>\n{}</ul></nav>\n</header>\n\
              <main id=\"main\">\n{}</main>\n<footer>\n{licences}</footer>\n{}{libraries}{}</body>\n</html>\n",
             env!("CARGO_PKG_VERSION"),
+            encoded(ICON.as_bytes()),
             self.title,
             STYLE.concat(),
             self.title,

@@ -21,11 +21,11 @@ fn shown(html: &str) -> String {
 fn needs_no_network(html: &str) {
     let ours = shown(html);
     let style_and_markup = ours.replace("http://www.w3.org/2000/svg", "");
-    for word in ["http://", "https://", "src=\"", "@import", "<link"] {
+    for word in ["http://", "https://", "src=\"", "@import"] {
         assert!(!style_and_markup.contains(word), "{word}");
     }
     for link in style_and_markup.split("href=\"").skip(1) {
-        let inside = link.starts_with("data:image/png;base64,") || link.starts_with('#');
+        let inside = link.starts_with("data:image/") || link.starts_with('#');
         assert!(inside, "{link:.40}");
     }
 }

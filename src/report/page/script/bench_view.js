@@ -59,7 +59,7 @@ const DOTS = { still: 2, fewest: 0.5 };
 const PACE = { slow: 27, fast: 18, still: 160 };
 
 /**
- * Frames on demand: `draw(ratio)` at the next one, coarse enough to keep up while they follow each other, and fine once they stop.
+ * Frames on demand: `draw(ratio)` at the next one, coarse enough to keep up while they follow each other, and fine once they stop. Out of sight nothing is drawn.
  * @param {HTMLElement} stage
  * @param {(ratio: number) => void} draw
  */
@@ -68,7 +68,19 @@ function pacer(stage, draw) {
     let waits = false;
     let rest = 0;
     const fine = () => requestAnimationFrame(() => draw(DOTS.still));
+    let [seen, stale] = [true, false];
+    new IntersectionObserver((entries) => {
+        seen = entries[entries.length - 1].isIntersecting;
+        if (seen && stale) {
+            stale = false;
+            fine();
+        }
+    }).observe(stage);
     return () => {
+        if (!seen) {
+            stale = true;
+            return;
+        }
         if (waits) {
             return;
         }

@@ -58,7 +58,7 @@ upgrade(".explorer", async (root) => {
 
     const controls = make(
         "div",
-        { class: "sliders" },
+        { class: "explorer-controls" },
         labelled("Spot ", spotRange, said[0]),
         labelled("Pixel column ", columnRange, said[1]),
         labelled("Pixel row ", rowRange, said[2]),

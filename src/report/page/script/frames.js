@@ -25,7 +25,7 @@ function framePanel({ title, unit, map, explanation }, pick) {
     const element = make(
         "figure",
         { class: "frame" },
-        make("figcaption", {}, make("b", {}, name)),
+        make("figcaption", {}, make("b", {}, name), ` / ${unit}`),
         make("div", { class: "picture" }, canvas, mark),
         make("div", { class: "legend" }, low, bar, high),
         outside,
@@ -66,7 +66,7 @@ function framePanel({ title, unit, map, explanation }, pick) {
             shown = { values, size };
             paint(canvas, values, size, map, range);
             low.textContent = significant(range[0]);
-            high.textContent = `${significant(range[1])} ${unit}`;
+            high.textContent = significant(range[1]);
             let beyond = 0;
             for (let i = 0; i < values.length; i++) {
                 beyond += values[i] >= range[0] && values[i] <= range[1] ? 0 : 1;
