@@ -88,7 +88,5 @@ function plotSvg(drawn, spec) {
         svg.append(sample);
         text(legendText(series), { x: 54, y: y + 12 });
     });
-    // What Plot leaves to the page's style is said here.
-    const markup = new XMLSerializer().serializeToString(svg).replaceAll("currentColor", "#222222");
-    return `<?xml version="1.0" encoding="UTF-8"?>\n${markup}\n`;
+    return `<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(svg)}\n`;
 }
