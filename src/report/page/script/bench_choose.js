@@ -118,14 +118,14 @@ function followChoice(bench) {
         ring.frustumCulled = false;
         changing.spots.add(ring);
         changing.beams.add(lineSegments(bench, [laser, place(from)], "spots", 2, { always: true }));
-        const seen = ways.spots[spot / block.spots.step] & (ways.pixels === undefined ? 255 : ways.pixels[pixel]);
+        const seen = ways.pixels ? ways.spots[spot / block.spots.step] & ways.pixels[pixel] : 0;
         const open = block.ways.points.filter((_, k) => ((seen >> k) & 1) === 1);
         const pairs = open.flatMap((p) => [place(from), place(p), place(p), place(to)]);
         if (pairs.length > 0) {
             changing.beams.add(lineSegments(bench, pairs, "object", 1.6, { opacity: 0.9, always: true }));
         }
         const all = block.ways.points.length;
-        const told = all === 0 ? "" : ` Of ${all} ways over the object ${open.length === all ? "all" : open.length} ${open.length === 1 ? "is" : "are"} free.`;
+        const told = all === 0 || !ways.pixels ? "" : ` Of ${all} ways over the object ${open.length === all ? "all" : open.length} ${open.length === 1 ? "is" : "are"} free.`;
         return `Spot ${spot} at ${pointWords(from, block.unit)}. ${pixelWords(block, pixel)}${told}`;
     };
 }

@@ -23,7 +23,16 @@ upgrade(".explorer", async (root) => {
         return inside(x, about.columns) + inside(y, about.rows) * about.columns;
     };
     const pickPixel = (/** @type {number} */ x, /** @type {number} */ y) => choose({ pixel: snapped(x, y) });
-    const pickShare = (/** @type {number} */ x, /** @type {number} */ y) => pickPixel(Math.floor(box.x + x * box.w), Math.floor(box.y + y * box.h));
+    const pickShare = (/** @type {number} */ x, /** @type {number} */ y) => {
+        const [columns, rows] = extent(box);
+        const inside = (/** @type {number} */ cell, /** @type {number} */ from, /** @type {number} */ length) =>
+            Math.min(from + length - 1, from + cell * box.step + Math.floor((box.step - 1) / 2));
+        pickPixel(inside(Math.floor(x * columns), box.x, box.w), inside(Math.floor(y * rows), box.y, box.h));
+    };
+    limitChoice(({ spot, pixel }) => ({
+        spot: source.spots.reduce((a, b) => (Math.abs(b - spot) < Math.abs(a - spot) ? b : a)),
+        pixel: snapped(pixel % about.columns, Math.floor(pixel / about.columns)),
+    }));
 
     const layers = about.model
         ? [
@@ -72,14 +81,14 @@ upgrade(".explorer", async (root) => {
         make("div", { "aria-live": "polite" }, table),
     );
     const [stepped, thinned] = [source.every > 1, source.spots.length < about.spots];
-    const left = [thinned ? `every ${Math.round(about.spots / source.spots.length)}th spot` : "", stepped ? `the middle pixel of every ${source.every} × ${source.every}` : ""].filter((t) => t);
+    const left = [thinned ? `one spot of every ${about.step}` : "", stepped ? `the middle pixel of every ${source.every} × ${source.every}` : ""].filter((t) => t);
     root.replaceChildren(
         make("p", {}, "Choose a spot to see its photograph, and a pixel to see its row of the matrix. Sliders move by arrow keys; spots and pixels can be clicked."),
         ...(left.length > 0
             ? [make("p", { class: "note" }, `The whole matrix is too large for a page: here are ${left.join(" and ")}, unchanged. `, make("code", {}, "phicam serve DIR"), " shows every entry.")]
             : []),
         ...(about.bits !== null && !source.served
-            ? [make("p", { class: "note" }, `So that the page stays small, fluxes are rounded here to ${about.bits} bits (a relative error of ${significant(2 ** -about.bits, 1)}); phi.npy has every digit.`)]
+            ? [make("p", { class: "note" }, rounding(about.bits))]
             : []),
         make("div", { class: "explorer-top" }, drawing.element, controls),
         make("div", { class: "frames" }, ...panels.map((p) => p.element)),
@@ -98,8 +107,8 @@ upgrade(".explorer", async (root) => {
     }
 
     /** Values of every layer of a spot. */
-    async function values(/** @type {number} */ spot) {
-        const get = (/** @type {MatrixName} */ name) => (source.has(name) ? source.frame(name, spot, box) : new Float64Array(extent(box)[0] * extent(box)[1]).fill(NaN));
+    async function values(/** @type {number} */ spot, /** @type {Box} */ part) {
+        const get = (/** @type {MatrixName} */ name) => (source.has(name) ? source.frame(name, spot, part) : new Float64Array(extent(part)[0] * extent(part)[1]).fill(NaN));
         if (!about.model) {
             return Promise.all([get("traced"), get("stderr")]);
         }
@@ -111,7 +120,7 @@ upgrade(".explorer", async (root) => {
     function ranges(/** @type {ArrayLike<number>[]} */ found) {
         const all = span.value === "all";
         if (!about.model) {
-            return [all ? (about.range ?? rangeOf([found[0]])) : rangeOf([found[0]]), all ? [0, about.stderr || 1] : rangeOf([found[1]])];
+            return [all ? (about.range ?? rangeOf([found[0]])) : rangeOf([found[0]]), all && about.stderr !== null ? [0, about.stderr || 1] : rangeOf([found[1]])];
         }
         const flux = (all && about.range) || rangeOf(found.slice(0, 2));
         const largest = Math.max(...rangeOf([found[2]]).map(Math.abs));
@@ -119,20 +128,24 @@ upgrade(".explorer", async (root) => {
         return [flux, flux, residual, around(about.limit ?? 4)];
     }
 
+    let turn = 0;
     async function show() {
-        const { spot, pixel } = { ...chosen };
-        const found = await values(spot);
-        if (spot !== chosen.spot) {
+        const mine = ++turn;
+        const [{ spot, pixel }, part] = [{ ...chosen }, box];
+        const found = await values(spot, part);
+        // Meanwhile something else was asked for.
+        if (mine !== turn) {
             return;
         }
         const limits = ranges(found);
-        const size = extent(box);
+        const size = extent(part);
         const [column, line] = [pixel % about.columns, Math.floor(pixel / about.columns)];
         /** @type {[number, number]} */
-        const at = [(column + 0.5 - box.x) / box.w, (line + 0.5 - box.y) / box.h];
+        const at = [(Math.floor((column - part.x) / part.step) + 0.5) / size[0], (Math.floor((line - part.y) / part.step) + 0.5) / size[1]];
         /** @type {[number, number]} */
-        const each = [box.step / box.w, box.step / box.h];
-        panels.forEach((panel, i) => panel.show(found[i], size, limits[i], at, each));
+        const each = [1 / size[0], 1 / size[1]];
+        const aspect = (lengthOf(about.view.u) * size[0] * about.rows) / (lengthOf(about.view.v) * size[1] * about.columns);
+        panels.forEach((panel, i) => panel.show(found[i], size, limits[i], at, each, aspect));
         const k = source.spots.indexOf(spot);
         spotRange.value = String(k);
         columnRange.value = String(column);
@@ -165,6 +178,13 @@ upgrade(".explorer", async (root) => {
         readout.dataset.pixel = String(pixel);
     }
 
+    const failed = make("p", { class: "note", role: "status" });
+    root.append(failed);
+    if (about.range === null) {
+        // The ends of all spots' values are not known.
+        span.value = "one";
+        span.disabled = true;
+    }
     let waiting = false;
     /** Shows what is chosen at the next frame of the screen, once. */
     function later() {
@@ -172,7 +192,10 @@ upgrade(".explorer", async (root) => {
             waiting = true;
             requestAnimationFrame(() => {
                 waiting = false;
-                show().catch((error) => root.prepend(make("p", { class: "note" }, String(error))));
+                show().then(
+                    () => (failed.textContent = ""),
+                    (error) => (failed.textContent = String(error)),
+                );
             });
         }
     }
@@ -187,6 +210,20 @@ upgrade(".explorer", async (root) => {
     choose({ spot: source.spots[Math.floor(source.spots.length / 2)], pixel: snapped(Math.floor(about.columns / 2), Math.floor(about.rows / 2)) });
     await show();
 });
+
+/**
+ * How exact the numbers in the page are, in words: of fluxes, standard errors and z so many bits are kept.
+ * @param {[number, number, number]} bits
+ */
+function rounding([flux, error, z]) {
+    const share = (/** @type {number} */ bits) => significant(2 ** -bits, 1);
+    return `So that the page stays small, its fluxes are rounded by at most ${share(flux)} of their value (a residual, the difference of two, by twice that share of the flux), standard errors by ${share(error)}, z by ${share(z)}. phi.npy has every digit.`;
+}
+
+/** @param {number[]} v */
+function lengthOf(v) {
+    return Math.hypot(...v);
+}
 
 /**
  * The step at which so many pixels can be drawn: a multiple of what there is.

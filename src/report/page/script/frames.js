@@ -1,15 +1,6 @@
 // Frames side by side: traced, modelled, residual and z, with their colour scales.
 
 /**
- * @typedef {{
- *   name: string, unit: string, map: MapName,
- *   values: (spot: number, box: Box) => Promise<ArrayLike<number>>,
- *   range: (values: ArrayLike<number>[]) => [number, number],
- *   title: string,
- * }} Layer
- */
-
-/**
  * A frame with its title, its legend and the value under the pointer.
  * @param {{ title: string, unit: string, map: MapName, explanation: string }} layer
  * @param {(x: number, y: number) => void} pick shares of the width and of the height (from below) that are pointed at
@@ -61,8 +52,9 @@ function framePanel({ title, unit, map, explanation }, pick) {
          * @param {[number, number]} range
          * @param {[number, number]} at shares of width and height of the chosen pixel's middle
          * @param {[number, number]} each its width and height as shares
+         * @param {number} aspect width over height
          */
-        show(values, size, range, at, each) {
+        show(values, size, range, at, each, aspect) {
             shown = { values, size };
             paint(canvas, values, size, map, range);
             low.textContent = significant(range[0]);
@@ -77,7 +69,8 @@ function framePanel({ title, unit, map, explanation }, pick) {
             mark.style.bottom = `${100 * at[1]}%`;
             mark.style.width = `max(${100 * each[0]}%, 7px)`;
             mark.style.height = `max(${100 * each[1]}%, 7px)`;
-            canvas.style.aspectRatio = `${size[0]} / ${size[1]}`;
+            // A strip is widened until it can be seen.
+            canvas.style.aspectRatio = String(Math.min(4, Math.max(0.25, aspect)));
         },
     };
 }

@@ -236,12 +236,23 @@ function onChoice(listener) {
     listeners.push(listener);
 }
 
+/** What can be chosen: the nearest spot and pixel of which the page has numbers. @type {(choice: { spot: number, pixel: number }) => { spot: number, pixel: number }} */
+let nearestKnown = (choice) => choice;
+
+/**
+ * Says what can be chosen.
+ * @param {(choice: { spot: number, pixel: number }) => { spot: number, pixel: number }} nearest
+ */
+function limitChoice(nearest) {
+    nearestKnown = nearest;
+}
+
 /**
  * Chooses a spot, a pixel or both.
  * @param {{ spot?: number, pixel?: number }} choice
  */
 function choose(choice) {
-    Object.assign(chosen, choice);
+    Object.assign(chosen, nearestKnown({ ...chosen, ...choice }));
     for (const listener of listeners) {
         listener(chosen);
     }

@@ -11,8 +11,9 @@ function plan(about, source, pick) {
     const corner = [dot(about.view.corner, right), dot(about.view.corner, up)];
     const size = [dot(about.view.u, right), dot(about.view.v, up)];
     const places = about.flat;
-    const xs = [corner[0], corner[0] + size[0], ...places.map((p) => p[0])];
-    const ys = [corner[1], corner[1] + size[1], ...places.map((p) => p[1])];
+    const here = places.flatMap((p) => (p === null ? [] : [p]));
+    const xs = [corner[0], corner[0] + size[0], ...here.map((p) => p[0])];
+    const ys = [corner[1], corner[1] + size[1], ...here.map((p) => p[1])];
     const [left, bottom] = [Math.min(...xs), Math.min(...ys)];
     const span = Math.max(Math.max(...xs) - left, Math.max(...ys) - bottom) || 1;
     const room = 300;
@@ -33,13 +34,14 @@ function plan(about, source, pick) {
     });
     svg.append(view);
     const pixel = makeSvg("rect", { class: "pixel" });
-    const radius = Math.min(4.5, Math.max(1.6, 90 / Math.sqrt(places.length)));
+    const radius = Math.min(4.5, Math.max(1.6, 90 / Math.sqrt(here.length)));
     const spots = makeSvg("g", { class: "spots" });
     source.spots.forEach((spot) => {
-        if (places[spot] === undefined) {
+        const found = places[spot];
+        if (found === undefined || found === null) {
             return;
         }
-        const [cx, cy] = at(places[spot]);
+        const [cx, cy] = at(found);
         const title = makeSvg("title", {}, `spot ${spot} at ${place(about, spot)}`);
         spots.append(makeSvg("circle", { cx, cy, r: radius, click: () => choose({ spot }) }, title));
     });
@@ -50,12 +52,12 @@ function plan(about, source, pick) {
         "figure",
         { class: "plan" },
         svg,
-        make("figcaption", {}, `The wall as the camera sees it, to scale, ${round(span)} ${about.unit} across: spots (click one) and the view (click a pixel).`),
+        make("figcaption", {}, `The wall as the camera sees it, to scale, ${round(span)} ${about.unit} across: spots (click one) and the view (click a pixel).${here.length < places.length ? ` ${places.length - here.length} spots on other walls are not drawn here.` : ""}`),
     );
     return {
         element,
         show(/** @type {{ spot: number, pixel: number }} */ { spot, pixel: index }) {
-            const found = places[spot];
+            const found = places[spot] ?? undefined;
             ring.style.display = found === undefined ? "none" : "";
             if (found !== undefined) {
                 const [cx, cy] = at(found);

@@ -11,16 +11,16 @@ function rowPlot(about, source) {
     const names = { flux: model ? "traced and modelled flux" : "traced flux", residual: "traced − modelled", z: "z" };
     what.append(...kinds.map((k) => make("option", { value: k }, names[/** @type {keyof typeof names} */ (k)])));
     const legend = make("div");
-    const panel = make("div", { class: "panel" });
+    const panels = make("div", { class: "panels one" });
     const element = make(
         "div",
         { class: "row-of-pixel" },
         make("div", { class: "controls" }, make("label", {}, "The pixel over all spots", what)),
-        make("figure", { class: "plot upgraded" }, make("div", { class: "live" }, legend, make("div", { class: "panels one" }, panel))),
+        make("figure", { class: "plot upgraded" }, make("div", { class: "live" }, legend, panels)),
     );
     /** @type {DrawnPlot | undefined} */
     let plot;
-    let [drawn, legendFor] = ["", ""];
+    let [drawn, shownKind] = ["", ""];
 
     /**
      * The series of a kind.
@@ -53,26 +53,34 @@ function rowPlot(about, source) {
 
     const show = async () => {
         const { pixel } = chosen;
-        const wanted = `${what.value} ${pixel}`;
+        const kind = what.value;
+        const wanted = `${kind} ${pixel}`;
         if (wanted !== drawn) {
             const { title, series } = await found(pixel);
-            if (pixel !== chosen.pixel || wanted !== `${what.value} ${pixel}`) {
+            if (wanted !== `${what.value} ${chosen.pixel}`) {
                 return;
             }
             drawn = wanted;
-            const change = { y: { title, run: /** @type {AxisRun} */ ("linear") }, series, title: `${title}, pixel ${pixel}` };
-            if (plot === undefined) {
-                plot = drawPlot(panel, { x: { title: "spot", run: "linear" }, height: 260, onPick: (spot) => choose({ spot }), ...change });
-                panel.append(toolsOf(plot, "row", plot.spec));
-            } else {
-                plot.update(change);
-            }
-            if (legendFor !== what.value) {
-                legendFor = what.value;
-                const all = plot;
+            if (plot === undefined || shownKind !== kind) {
+                shownKind = kind;
+                const panel = make("div", { class: "panel" });
+                panels.replaceChildren(panel);
+                const fresh = drawPlot(panel, {
+                    title: `${title}, of the chosen pixel`,
+                    x: { title: "spot", run: "linear" },
+                    y: { title, run: "linear" },
+                    series,
+                    height: 260,
+                    onPick: (spot) => choose({ spot }),
+                });
+                plot = fresh;
+                panel.append(toolsOf(fresh, "row", { ...fresh.spec }));
                 legend.replaceChildren(
-                    legendOf([plot.spec], (key, hidden) => all.update({ series: all.spec.series.map((s) => (keyOf(s) === key ? { ...s, hidden } : s)) })),
+                    legendOf([fresh.spec], (key, hidden) => fresh.update({ series: fresh.spec.series.map((s) => (keyOf(s) === key ? { ...s, hidden } : s)) })),
                 );
+            } else {
+                const hidden = new Set(plot.spec.series.filter((s) => s.hidden).map(keyOf));
+                plot.update({ series: series.map((s) => ({ ...s, hidden: hidden.has(keyOf(s)) })) });
             }
         }
         plot?.update({ marked: [chosen.spot] });

@@ -97,6 +97,8 @@ upgrade("#slides", async (element) => {
         const range = /** @type {[number, number]} */ (stretched.checked && picture !== null ? ownRange(found) : [0, 1]);
         paint(recovered, found, of.elements, "grey", range);
         recovered.setAttribute("aria-label", `recovered reflectance of ${of.name}`);
+        // What the pointer has read is of another picture now.
+        show("element").textContent = "Point at an element to read its value.";
         show("range").textContent = picture === null ? "nothing" : stretched.checked ? `black ${significant(range[0])}, white ${significant(range[1])}` : "black 0, white 1";
     };
 

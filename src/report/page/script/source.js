@@ -3,10 +3,10 @@
 /**
  * What the page says about the run; see `circumstances` of explorer.rs.
  * @typedef {{
- *   unit: string, columns: number, rows: number, spots: number, every: number, embedded: number[], bits: number | null,
- *   places: [number, number, number][], flat: [number, number][],
+ *   unit: string, columns: number, rows: number, spots: number, every: number, embedded: number[], step: number, bits: [number, number, number] | null,
+ *   places: [number, number, number][], flat: ([number, number] | null)[],
  *   view: { corner: number[], u: number[], v: number[] }, axes: { right: number[], up: number[] },
- *   range: [number, number] | null, residual: number | null, stderr: number | null, limit: number | null, model: boolean,
+ *   range: [number, number] | null, residual: number | null, stderr: number | null, limit: number | null, model: boolean, hash: string, seed: string,
  * }} Circumstances
  */
 
@@ -75,8 +75,11 @@ async function embedded(about) {
         served: false,
         has: (name) => all.has(name),
         frame(name, spot, box) {
-            const from = each * Math.max(0, spots.indexOf(spot));
-            const frame = block(name).subarray(from, from + each);
+            const k = spots.indexOf(spot);
+            if (k < 0) {
+                throw new Error(`the page has no frame of spot ${spot}`);
+            }
+            const frame = block(name).subarray(k * each, (k + 1) * each);
             const [w, h] = extent(box);
             if (w === columns && h === rows && box.x === 0 && box.y === 0) {
                 return frame;
@@ -100,7 +103,7 @@ async function embedded(about) {
 }
 
 /**
- * What `phicam serve` hands out, every entry of it; `undefined` where the page was opened from disk or the server has another run.
+ * What `phicam serve` hands out, every entry of it; `undefined` where the page was opened from disk, or the server has a run of another scene or seed.
  * @param {Circumstances} about
  * @returns {Promise<Source | undefined>}
  */
@@ -112,8 +115,9 @@ async function served(about) {
     if (answer === undefined || !answer.ok) {
         return undefined;
     }
-    const { pixels, spots, matrices } = await answer.json();
-    if (pixels[0] !== about.columns || pixels[1] !== about.rows || spots !== about.spots) {
+    const { pixels, spots, matrices, hash, seed } = await answer.json();
+    const same = hash === about.hash && String(seed) === about.seed;
+    if (!same || pixels[0] !== about.columns || pixels[1] !== about.rows || spots !== about.spots) {
         return undefined;
     }
     /** @type {Map<string, Promise<Float64Array>>} */
@@ -127,6 +131,8 @@ async function served(about) {
                 }
                 return new Float64Array(await a.arrayBuffer());
             });
+            // What went wrong once may go well the next time.
+            values.catch(() => kept.delete(address));
             kept.set(address, values);
             // A few dozen answers of at most 2 MiB are kept.
             if (kept.size > 48) {
