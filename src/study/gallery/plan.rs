@@ -25,7 +25,7 @@ impl GalleryPlan {
         Self {
             methods: Method::USUAL.to_vec(),
             noises: vec![0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1],
-            steps: 12,
+            steps: 15,
             seed,
             work: 2e10,
             values: 400_000,
@@ -197,7 +197,7 @@ pub(super) fn ladder(
         Method::Tsvd => (0..count)
             .map(|i| Parameter::Rank(libm::pow(sigma.len() as f64, share(i)).round() as usize))
             .collect(),
-        // Powers of ten from 1 to below the last singular value, where nothing more is damped.
+        // Powers of ten from 1 to below the last singular value, where nothing more is damped: every one where there are steps enough.
         Method::Tikhonov => {
             let decades = -libm::log10(last / first).floor();
             (0..count)
