@@ -17,15 +17,27 @@ fn optional(x: Option<f64>) -> String {
     x.map_or("–".to_owned(), |x| significant(x, 3))
 }
 
+/// What was recovered of each surface, in the order in which they first appear: a run lists it method by method.
+pub(super) fn by_surface(recovered: &[RecoveredObject]) -> Vec<Vec<&RecoveredObject>> {
+    let mut groups: Vec<Vec<&RecoveredObject>> = Vec::new();
+    for object in recovered {
+        let same = |group: &&mut Vec<&RecoveredObject>| {
+            group[0].surface == object.surface && group[0].elements == object.elements
+        };
+        match groups.iter_mut().find(same) {
+            Some(group) => group.push(object),
+            None => groups.push(vec![object]),
+        }
+    }
+    groups
+}
+
 /// Recovered objects, surface by surface, beside the truth.
 pub(super) fn recoveries(results: &RunResults) -> String {
     let mut html = String::new();
     let mut left = MOST_PICTURES;
-    let groups = results
-        .recovered
-        .chunk_by(|a, b| a.surface == b.surface && a.elements == b.elements);
-    for group in groups {
-        let first = &group[0];
+    for group in by_surface(&results.recovered) {
+        let first = group[0];
         let [nu, nv] = first.elements;
         let scale = Scale::reflectance();
         let picture = |title: &str, values: &[f64]| {
@@ -63,7 +75,7 @@ pub(super) fn recoveries(results: &RunResults) -> String {
             .then(|| format!("{unseen} of these recoveries are listed without a picture"));
         html.push_str(&format!(
             "<h3>{}</h3>\n<p>Reflectance of {nu} × {nv} elements, black 0, white 1, the same grey scale for \
-             all.</p>\n<div class=\"row\">\n{figures}</div>\n{}{}{}<div class=\"wide\"><table>\n<tr><th>method</th>\
+             all.</p>\n<div class=\"row\">\n{figures}</div>\n{}{}{}<div class=\"wide\" tabindex=\"0\" role=\"group\" aria-label=\"Table\"><table>\n<tr><th>method</th>\
              <th class=\"n\">MTF raw</th><th class=\"n\">MTF normalized</th><th class=\"n\">correlation</th>\
              <th class=\"n\">RMSE</th><th>parameter</th></tr>\n{table}</table></div>\n\
              <p class=\"note\">MTF: (white − black)/(white + black) over the elements that are white and black in truth; \

@@ -148,6 +148,16 @@ impl Page {
         self.libraries.insert(library);
     }
 
+    /// Bytes of the page as it is now, without the colour maps and the markup around its parts: a few kB.
+    pub(super) fn len(&self) -> usize {
+        let parts = [&self.verdict, &self.contents, &self.body, &self.data];
+        let own: usize = SCRIPT.iter().chain(&STYLE).map(|text| text.len()).sum();
+        let libraries: usize = self.libraries.iter().map(|l| l.text().len()).sum();
+        // Every `<` of the licences is written with four characters.
+        let rest = own + libraries + LICENCES.len() + 20_000;
+        parts.into_iter().map(String::len).sum::<usize>() + rest
+    }
+
     /// The whole page.
     pub(super) fn html(mut self) -> String {
         self.json("colours", &colours());

@@ -17,12 +17,9 @@ pub(super) fn difference(results: &RunResults) -> String {
     let shape = (a.relative_difference.powi(2) - scale.powi(2))
         .max(0.0)
         .sqrt();
-    let beyond: f64 = results
-        .bounces
-        .iter()
-        .filter(|(n, _)| *n > 3)
-        .map(|(_, share)| share)
-        .sum();
+    let beyond = results.bounces.iter().filter(|(n, _)| *n > 3);
+    let beyond: f64 = beyond.map(|(_, share)| share).sum();
+    let traced = results.scene.max_bounces > 3;
     let rows = [
         ("measured: ‖traced − modelled‖", a.relative_difference, ""),
         (
@@ -43,8 +40,12 @@ pub(super) fn difference(results: &RunResults) -> String {
         ),
         (
             "light that met more than three surfaces",
-            beyond,
-            "share of the traced flux; the model has three surfaces",
+            if traced { beyond } else { f64::NAN },
+            if traced {
+                "share of the traced flux; the model has three surfaces"
+            } else {
+                "not traced: the scene's max_bounces is 3"
+            },
         ),
     ];
     let most = rows
@@ -53,17 +54,20 @@ pub(super) fn difference(results: &RunResults) -> String {
         .fold(0.0, f64::max)
         .max(f64::MIN_POSITIVE);
     let row = |(what, share, how): &(&str, f64, &str)| {
+        let percent = match share.is_nan() {
+            true => "unknown".to_owned(),
+            false => format!("{} %", significant(100.0 * share, 3)),
+        };
         format!(
-            "<tr><td>{}</td><td class=\"n\">{} %</td><td><span class=\"bar\" style=\"width:{}px\"></span></td><td class=\"note\">{}</td></tr>\n",
+            "<tr><td>{}</td><td class=\"n\">{percent}</td><td><span class=\"bar\" style=\"width:{}px\"></span></td><td class=\"note\">{}</td></tr>\n",
             explained(what),
-            significant(100.0 * share, 3),
-            number(160.0 * share / most),
+            number(160.0 * share.max(0.0) / most),
             escape(how)
         )
     };
     let file = super::scene_file(&results.scene);
     format!(
-        "<p>Shares of ‖modelled Φcam‖ (root of the sum of squares over all entries).</p>\n<div class=\"wide\"><table>\n\
+        "<p>Shares of ‖modelled Φcam‖ (root of the sum of squares over all entries).</p>\n<div class=\"wide\" tabindex=\"0\" role=\"group\" aria-label=\"Table\"><table>\n\
          <tr><th>what</th><th class=\"n\">share</th><th><span class=\"hidden\">bar</span></th><th>how it is known</th></tr>\n{}</table></div>\n\
          <p class=\"note\"><code>phicam study budget {}</code> takes it apart cause by cause: elements, pixels, spots, bounces, occlusion.</p>\n",
         rows.iter().map(row).collect::<String>(),

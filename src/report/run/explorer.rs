@@ -4,25 +4,27 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::super::page::{Library, Packed, Page, Precision};
-use crate::geometry::DVec3;
 use crate::matrix::Matrix;
 use crate::scene::Scene;
 use crate::study::RunResults;
 
-/// What the packed matrices may take of the page, bytes: with libraries, pictures and recoveries it stays below 10 MB.
-const MOST: usize = 7_700_000;
+/// What a page may have, bytes: below 10 MB, with room for the words around the last blocks.
+const PAGE: usize = 9_900_000;
+/// What the packed matrices may take in any case; where the rest of a page leaves less, it is too large without them.
+const LEAST: usize = 500_000;
 /// More positions of spots than this are not in the page.
 const MOST_PLACES: usize = 20_000;
 /// Bytes that an entry takes at the very least, as the start of a search.
 const LEAST_EACH: f64 = 5.0;
 
 /// How exactly traced and modelled flux, standard error and z are kept; the first set that fits.
-const PRECISIONS: [[Precision; 4]; 4] = {
+const PRECISIONS: [[Precision; 4]; 5] = {
     use Precision::{Exact, Single};
     [
         [Exact; 4],
         [Single(23), Single(23), Single(12), Single(10)],
-        [Single(20), Single(20), Single(8), Single(7)],
+        [Single(23), Single(23), Single(8), Single(7)],
+        [Single(21), Single(21), Single(7), Single(6)],
         [Single(18), Single(18), Single(7), Single(6)],
     ]
 };
@@ -32,6 +34,8 @@ const PRECISIONS: [[Precision; 4]; 4] = {
 pub(super) struct Excerpt {
     /// Every so many columns and rows of the camera.
     pub every: usize,
+    /// One spot of so many.
+    pub step: usize,
     /// The spots.
     pub spots: Vec<usize>,
     /// The pixels, columns first.
@@ -64,6 +68,7 @@ impl Excerpt {
             .collect();
         Self {
             every,
+            step,
             spots,
             pixels,
         }
@@ -84,11 +89,20 @@ impl Excerpt {
     }
 }
 
-/// Puts Φcam, as much of it as the page may hold, and its circumstances into the page; the element that the script turns into the explorer.
+/// The element that the script turns into the explorer.
 pub(super) fn explorer(page: &mut Page, results: &RunResults, fallback: &str) -> String {
+    if results.phi.is_empty() {
+        return String::new();
+    }
+    page.needs(Library::Plot);
+    format!("<div class=\"explorer\">\n{fallback}</div>\n")
+}
+
+/// Puts Φcam, as much of it as the rest of the page leaves room for, and its circumstances into the page: the last of its parts.
+pub(super) fn embed(page: &mut Page, results: &RunResults) {
     let phi = &results.phi;
     if phi.is_empty() {
-        return String::new();
+        return;
     }
     let camera = &results.scene.camera;
     let size = [camera.columns, camera.rows];
@@ -98,12 +112,14 @@ pub(super) fn explorer(page: &mut Page, results: &RunResults, fallback: &str) ->
         ("stderr", Some(&results.stderr)),
         ("z", results.z.as_ref()),
     ];
-    let mut entries = MOST as f64 / LEAST_EACH;
+    page.json("explorer-places", &places(&results.scene));
+    let room = PAGE.saturating_sub(page.len()).max(LEAST);
+    let mut entries = room as f64 / LEAST_EACH;
     let (excerpt, precision, blocks) = loop {
         let excerpt = Excerpt::new(size, phi.ncols(), entries);
         let fitting = PRECISIONS.into_iter().find_map(|precisions| {
-            let blocks = packed(&excerpt, &named, precisions)?;
-            Some((precisions[0], blocks))
+            let blocks = packed(&excerpt, &named, precisions, room)?;
+            Some((precisions, blocks))
         });
         if let Some((precision, blocks)) = fitting {
             break (excerpt, precision, blocks);
@@ -114,15 +130,26 @@ pub(super) fn explorer(page: &mut Page, results: &RunResults, fallback: &str) ->
         page.numbers(&format!("phi-{name}"), block);
     }
     let about = circumstances(
-        &results.scene,
+        (&results.scene, results.settings.seed),
         &excerpt,
         Ends::of(results),
-        Some(precision),
+        precision,
         results.model.is_some(),
     );
     page.json("explorer-data", &about);
-    page.needs(Library::Plot);
-    format!("<div class=\"explorer\">\n{fallback}</div>\n")
+}
+
+/// The places of the spots, to a millionth of the length unit.
+fn places(scene: &Scene) -> Vec<[f64; 3]> {
+    let spots = scene.laser.spots.iter().take(MOST_PLACES);
+    spots
+        .map(|s| {
+            s.target
+                .position
+                .to_array()
+                .map(|x| (1e6 * x).round() / 1e6)
+        })
+        .collect()
 }
 
 /// The matrices at a precision, if they fit.
@@ -130,6 +157,7 @@ fn packed(
     excerpt: &Excerpt,
     named: &[(&'static str, Option<&Matrix>); 4],
     precisions: [Precision; 4],
+    room: usize,
 ) -> Option<Vec<(&'static str, Packed)>> {
     let there = || {
         let both = named.iter().zip(precisions);
@@ -141,7 +169,7 @@ fn packed(
     let sample: usize = there()
         .map(|(_, matrix, precision)| Packed::new(&few.of(matrix), precision).len())
         .sum();
-    if sample as f64 * all > 1.05 * MOST as f64 {
+    if sample as f64 * all > 1.05 * room as f64 {
         return None;
     }
     let blocks: Vec<(&'static str, Packed)> = there()
@@ -150,7 +178,7 @@ fn packed(
         .map(|(name, matrix, precision)| (name, Packed::new(&excerpt.of(matrix), precision)))
         .collect();
     let size: usize = blocks.iter().map(|(_, block)| block.len()).sum();
-    (size <= MOST).then_some(blocks)
+    (size <= room).then_some(blocks)
 }
 
 /// The ends of scales, as far as they are known.
@@ -185,54 +213,53 @@ impl Ends {
 }
 
 /// The element that the script turns into the explorer where a server hands out the matrices; `model` says whether there are modelled ones.
-pub(super) fn served_explorer(page: &mut Page, scene: &Scene, model: bool) -> String {
+pub(super) fn served_explorer(page: &mut Page, scene: &Scene, seed: u64, model: bool) -> String {
     let nothing = Excerpt {
         every: 1,
+        step: 1,
         spots: Vec::new(),
         pixels: Vec::new(),
     };
-    let about = circumstances(scene, &nothing, Ends::default(), None, model);
+    let exact = [Precision::Exact; 4];
+    let about = circumstances((scene, seed), &nothing, Ends::default(), exact, model);
     page.json("explorer-data", &about);
+    page.json("explorer-places", &places(scene));
     page.needs(Library::Plot);
     "<div class=\"explorer\">\n<p>The entries are read when they are asked for, by the page's script.</p>\n</div>\n".to_owned()
 }
 
 /// What the script must know beside the numbers.
 fn circumstances(
-    scene: &Scene,
+    (scene, seed): (&Scene, u64),
     excerpt: &Excerpt,
     ends: Ends,
-    precision: Option<Precision>,
+    precision: [Precision; 4],
     model: bool,
 ) -> Value {
     let camera = &scene.camera;
     let (right, up) = (camera.view.u().normalize(), camera.view.v().normalize());
-    let places: Vec<DVec3> = scene
-        .laser
-        .spots
-        .iter()
-        .take(MOST_PLACES)
-        .map(|s| s.target.position)
-        .collect();
+    let bits = |p: Precision| match p {
+        Precision::Exact => None,
+        Precision::Single(bits) => Some(bits + 1),
+    };
+    let [flux, _, stderr, z] = precision.map(bits);
     json!({
         "unit": scene.unit.symbol(),
         "columns": camera.columns,
         "rows": camera.rows,
         "spots": scene.laser.spots.len(),
+        "hash": scene.hash,
+        "seed": seed.to_string(),
         "every": excerpt.every,
+        "step": excerpt.step,
         "embedded": excerpt.spots,
-        "bits": match precision {
-            Some(Precision::Single(bits)) => Some(bits + 1),
-            _ => None,
-        },
-        "places": places.iter().map(|p| p.to_array()).collect::<Vec<_>>(),
+        "bits": flux.map(|flux| [Some(flux), stderr, z]),
         "view": {
             "corner": camera.view.corner().to_array(),
             "u": camera.view.u().to_array(),
             "v": camera.view.v().to_array(),
         },
         "axes": { "right": right.to_array(), "up": up.to_array() },
-        "flat": places.iter().map(|p| [p.dot(right), p.dot(up)]).collect::<Vec<_>>(),
         "range": ends.range,
         "residual": ends.residual,
         "stderr": ends.stderr,

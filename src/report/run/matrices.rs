@@ -3,7 +3,7 @@
 use super::super::axis::significant;
 use super::super::colour::Scale;
 use super::super::figure::{Entries, MOST, Reduction, figure, legend, note, reduced};
-use super::super::picture::Panel;
+use super::super::picture::{Panel, scientific};
 use super::super::svg::escape;
 use crate::matrix::Matrix;
 use crate::study::RunResults;
@@ -69,13 +69,13 @@ pub(super) fn deviations(results: &RunResults) -> String {
     }
     let worst = results.agreement.as_ref().map_or(&[][..], |a| &a.worst);
     if !worst.is_empty() {
-        html.push_str("<p>The entries that differ most:</p>\n<div class=\"wide\"><table>\n<tr><th class=\"n\">pixel</th><th class=\"n\">spot</th><th class=\"n\">traced / W</th><th class=\"n\">modelled / W</th><th class=\"n\">z</th></tr>\n");
+        html.push_str("<p>The entries that differ most:</p>\n<div class=\"wide\" tabindex=\"0\" role=\"group\" aria-label=\"Table\"><table>\n<tr><th class=\"n\">pixel</th><th class=\"n\">spot</th><th class=\"n\">traced / W</th><th class=\"n\">modelled / W</th><th class=\"n\">z</th></tr>\n");
         for e in worst.iter().take(10) {
             let row = [
                 e.pixel.to_string(),
                 e.spot.to_string(),
-                significant(e.traced, 4),
-                significant(e.modelled, 4),
+                scientific(&significant(e.traced, 3)),
+                scientific(&significant(e.modelled, 3)),
                 significant(e.z, 3),
             ];
             html.push_str(&cells(&row));

@@ -17,11 +17,11 @@ use crate::recovery::{Directions, Picard};
 use crate::scene::Scene;
 use crate::study::{RunResults, Settings};
 use difference::difference;
-use explorer::{explorer, served_explorer};
+use explorer::{embed, explorer, served_explorer};
 use frames::frames;
 use matrices::{deviations, matrices};
-pub(super) use settings::is_builtin;
-use settings::{scene_file, scene_text, settings};
+pub(super) use settings::{is_builtin, scene_text};
+use settings::{scene_file, settings};
 
 /// The whole report as one HTML page that needs no network and no other file: verdict, drawing of the scene, frames,
 /// Φcam traced and modelled, z, recoveries beside the truth, light by bounce count, settings, times and the commands
@@ -55,6 +55,7 @@ pub fn run_html(results: &RunResults) -> String {
     page.section("difference", "Error budget", &difference(results));
     page.section("bounces", "Light by bounce count", &bounces(results));
     page.section("settings", "What was run", &settings(results));
+    embed(&mut page, results);
     page.html()
 }
 
@@ -72,7 +73,7 @@ pub fn served_html(scene: &Scene, rendered: &Settings, model: bool) -> String {
     );
     page.verdict(Tone::Plain, &sentence);
     bench::section(&mut page, scene);
-    let explorer = served_explorer(&mut page, scene, model);
+    let explorer = served_explorer(&mut page, scene, rendered.seed, model);
     page.section("explorer", "Φcam, entry by entry", &explorer);
     page.section("settings", "What was rendered", &scene_text(scene));
     page.html()
@@ -107,7 +108,7 @@ fn bounces(results: &RunResults) -> String {
     if results.bounces.is_empty() {
         return String::new();
     }
-    let mut html = "<div class=\"wide\"><table>\n<tr><th class=\"n\">surfaces met</th>\
+    let mut html = "<div class=\"wide\" tabindex=\"0\" role=\"group\" aria-label=\"Table\"><table>\n<tr><th class=\"n\">surfaces met</th>\
                     <th class=\"n\">share of the flux</th><th></th></tr>\n"
         .to_owned();
     for (n, share) in &results.bounces {

@@ -13,7 +13,9 @@ const USUAL_SIGNIFICANCE: f64 = 1e-3;
 /// Settings, times, commands, and the scene file.
 pub(super) fn settings(results: &RunResults) -> String {
     let (s, scene) = (&results.settings, &results.scene);
-    let mut html = "<div class=\"wide\"><table>\n".to_owned();
+    let mut html =
+        "<div class=\"wide\" tabindex=\"0\" role=\"group\" aria-label=\"Table\"><table>\n"
+            .to_owned();
     let version = [
         ("version", format!("phicam {}", s.version)),
         ("scene hash", scene.hash.clone()),
@@ -66,7 +68,7 @@ pub(in super::super) fn scene_text(scene: &Scene) -> String {
     let mut html = String::new();
     if !is_builtin(scene) {
         html.push_str(
-            "<p><code>scene.toml</code> lies in the folder of this run; this is its text:</p>\n",
+            "<p>The scene is one of its own, not a built-in one; this is its text:</p>\n",
         );
     }
     let mut end = scene.text.len().min(MOST_TEXT);

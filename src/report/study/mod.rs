@@ -12,7 +12,7 @@ mod power;
 mod tolerance;
 
 use super::page::{Library, Page, Room};
-use super::run::is_builtin;
+use super::run::{is_builtin, scene_text};
 use super::svg::escape;
 use crate::scene::Scene;
 
@@ -120,10 +120,7 @@ fn run(asked: &Asked) -> String {
         "</table></div>\n<h3>To repeat it</h3>\n<pre>{}</pre>\n",
         escape(&asked.command())
     );
-    html + &format!(
-        "<details><summary>The scene file</summary>\n<pre>{}</pre>\n</details>\n",
-        escape(&scene.text)
-    )
+    html + &scene_text(scene)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 const MOST_SHOWN = 512;
 
 upgrade(".explorer", async (root) => {
-    const about = /** @type {Circumstances} */ (data("explorer-data"));
+    const about = /** @type {Circumstances} */ ({ ...data("explorer-data"), places: data("explorer-places") });
     const source = (await served(about)) ?? (await embedded(about));
     if (source.spots.length === 0) {
         root.append(make("p", { class: "note" }, "The matrices are not in this page: ", make("code", {}, "phicam serve DIR"), " shows them."));

@@ -10,7 +10,11 @@ function plan(about, source, pick) {
     const { right, up } = about.axes;
     const corner = [dot(about.view.corner, right), dot(about.view.corner, up)];
     const size = [dot(about.view.u, right), dot(about.view.v, up)];
-    const places = about.flat;
+    const normal = [right[1] * up[2] - right[2] * up[1], right[2] * up[0] - right[0] * up[2], right[0] * up[1] - right[1] * up[0]];
+    const level = dot(about.view.corner, normal);
+    const near = 1e-4 * (Math.abs(size[0]) + Math.abs(size[1]));
+    /** Where spots lie on the wall in view; those on other walls are not on this drawing. */
+    const places = about.places.map((p) => (Math.abs(dot(p, normal) - level) <= near ? [dot(p, right), dot(p, up)] : null));
     const here = places.flatMap((p) => (p === null ? [] : [p]));
     const xs = [corner[0], corner[0] + size[0], ...here.map((p) => p[0])];
     const ys = [corner[1], corner[1] + size[1], ...here.map((p) => p[1])];

@@ -4,7 +4,7 @@
  * What the page says about the run; see `circumstances` of explorer.rs.
  * @typedef {{
  *   unit: string, columns: number, rows: number, spots: number, every: number, embedded: number[], step: number, bits: [number, number, number] | null,
- *   places: [number, number, number][], flat: ([number, number] | null)[],
+ *   places: [number, number, number][],
  *   view: { corner: number[], u: number[], v: number[] }, axes: { right: number[], up: number[] },
  *   range: [number, number] | null, residual: number | null, stderr: number | null, limit: number | null, model: boolean, hash: string, seed: string,
  * }} Circumstances
