@@ -131,5 +131,9 @@ pub(super) fn whole(mut run: RunResults) -> RunResults {
             });
         }
     }
+    // As a run lists them: every surface by the first method, then by the next.
+    let methods: Vec<String> = run.recovered.iter().map(|r| r.method.clone()).collect();
+    run.recovered
+        .sort_by_key(|r| methods.iter().position(|m| *m == r.method));
     run
 }

@@ -1,6 +1,7 @@
 //! Results as plain text for the terminal, at most 80 columns wide.
 
 use super::axis::significant;
+use super::gallery::by_surface;
 use super::picture::wrapped;
 use super::summary::relative_stderr;
 use super::svg::shortened;
@@ -142,27 +143,26 @@ pub fn verdict_table(agreement: &Agreement) -> String {
 /// Recovered objects as plain text: a table per hidden surface, below each method the parameter it used.
 pub fn recovery_table(objects: &[RecoveredObject]) -> String {
     let mut out = String::new();
-    let mut surface = None;
-    for r in objects {
-        if surface != Some(&r.surface) {
-            surface = Some(&r.surface);
-            let [nu, nv] = r.elements;
-            put(&mut out, "");
-            put_wrapped(
-                &mut out,
-                &clean(&format!("recovered: {}, {nu} × {nv} elements", r.surface)),
-            );
-            let heads = ["MTF raw", "normalized", "correlation", "RMSE"];
-            put_row(&mut out, "method", heads.map(str::to_owned));
-        }
-        let number = |x: Option<f64>| x.map_or("–".to_owned(), |x| significant(x, 3));
-        let row = [r.mtf_raw, r.mtf_normalized, r.correlation, Some(r.rmse)].map(number);
-        put_row(&mut out, &shortened(&clean(&r.method), 20), row);
-        for line in wrapped(&clean(&r.parameter), WIDTH - 4) {
-            put(&mut out, &format!("    {line}"));
-        }
+    for group in by_surface(objects) {
+        let [nu, nv] = group[0].elements;
+        put(&mut out, "");
+        let head = format!("recovered: {}, {nu} × {nv} elements", group[0].surface);
+        put_wrapped(&mut out, &clean(&head));
+        let heads = ["MTF raw", "normalized", "correlation", "RMSE"];
+        put_row(&mut out, "method", heads.map(str::to_owned));
+        group.into_iter().for_each(|r| put_recovery(&mut out, r));
     }
     out
+}
+
+/// A method's line, and below it what it chose.
+fn put_recovery(out: &mut String, r: &RecoveredObject) {
+    let number = |x: Option<f64>| x.map_or("–".to_owned(), |x| significant(x, 3));
+    let row = [r.mtf_raw, r.mtf_normalized, r.correlation, Some(r.rmse)].map(number);
+    put_row(out, &shortened(&clean(&r.method), 20), row);
+    for line in wrapped(&clean(&r.parameter), WIDTH - 4) {
+        put(out, &format!("    {line}"));
+    }
 }
 
 fn put(out: &mut String, line: &str) {

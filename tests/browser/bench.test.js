@@ -1,6 +1,6 @@
 // The bench in three dimensions, in the page of a run.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
+import { spawnSync } from "node:child_process";
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -18,7 +18,9 @@ function report(scene) {
     }
     const out = join(folder, scene);
     if (!existsSync(out)) {
-        execFileSync(program, ["run", scene, "-o", out, "--samples", "16", "--quiet"], { stdio: ["ignore", "ignore", "inherit"] });
+        // That model and light disagree, as behind a plank, is no failure here.
+        const { status } = spawnSync(program, ["run", scene, "-o", out, "--samples", "16", "--quiet"], { stdio: ["ignore", "ignore", "inherit"] });
+        assert.ok(status === 0 || status === 1, `phicam run ${scene} ended with ${status}`);
     }
     return join(out, "report.html");
 }

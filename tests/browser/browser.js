@@ -31,7 +31,7 @@ export async function close() {
 /**
  * Opens a page from disk or from an address of this machine. What the console calls an error, what is thrown, and what is asked of any other place, is in `errors`.
  */
-export async function openPage(path, { width = 1280, height = 800, colorScheme = "light", args = [], ...device } = {}) {
+export async function openPage(path, { width = 1280, height = 800, colorScheme = "light", args = [], rewrite = undefined, ...device } = {}) {
     const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: [...ARGUMENTS, ...args] });
     running.add(browser);
     const page = await browser.newPage({ viewport: { width, height }, colorScheme, acceptDownloads: true, ...device });
@@ -45,6 +45,12 @@ export async function openPage(path, { width = 1280, height = 800, colorScheme =
             errors.push(`asked for ${request.url().slice(0, 200)}`);
         }
     });
+    if (rewrite !== undefined) {
+        await page.route(address, async (route) => {
+            const answer = await route.fetch();
+            await route.fulfill({ response: answer, body: rewrite(await answer.text()) });
+        });
+    }
     const start = performance.now();
     await page.goto(address, { waitUntil: "load" });
     await page.waitForFunction(() => document.documentElement.dataset.ready === "yes");

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::axis::significant;
-use super::super::page::{Library, Page, Room, Tone};
+use super::super::page::{Library, Page, Room, Tone, explained};
 use super::super::picture::scientific;
 use super::super::svg::escape;
 use crate::study::reproduce::{Cell, Check, ReproducePlan, Reproduction, Verdict, Weight};
@@ -231,9 +231,9 @@ fn section(i: &ItemSummary, room: &mut Room, read: &impl Fn(&str) -> Option<Vec<
             out += &room.figure(file, &svg);
         }
     }
-    out += &format!("<p>{}</p>\n", escape(&i.caption));
+    out += &format!("<p>{}</p>\n", explained(&i.caption));
     for note in &i.notes {
-        out += &format!("<p>{}</p>\n", escape(note));
+        out += &format!("<p>{}</p>\n", explained(note));
     }
     if !i.table.is_empty() {
         out += &format!(

@@ -23,8 +23,9 @@ pub fn noise_account(study: &NoiseStudy) -> Account {
         n if n > MOST_NAMED => format!(" ({} further objects in the table)", n - MOST_NAMED),
         _ => String::new(),
     };
+    let to = if falls(study) { "down" } else { "up" };
     let sentence = format!(
-        "The mean raw MTF stays at {high} or more up to this level ({}): {}{more}.",
+        "The mean raw MTF stays at {high} or more {to} to this level ({}): {}{more}.",
         study.axis_title,
         said.join("; ")
     );
@@ -122,6 +123,15 @@ pub fn noise_account(study: &NoiseStudy) -> Account {
     }
 }
 
+/// Whether the level falls as the noise grows: photons, exposures, bits.
+fn falls(study: &NoiseStudy) -> bool {
+    let ends = study
+        .curves
+        .first()
+        .map(|c| (c.points.first(), c.points.last()));
+    matches!(ends, Some((Some(quiet), Some(loud))) if quiet.level > loud.level)
+}
+
 /// The best method of an object beside the published one.
 fn best(study: &NoiseStudy, b: &Best) -> String {
     let object = format!(
@@ -145,10 +155,10 @@ fn best(study: &NoiseStudy, b: &Best) -> String {
         });
     match (&b.method, b.level) {
         (Some(method), Some(level)) => {
-            let sign = if b.reach == Some(Reach::AtLeast) {
-                "at least "
-            } else {
-                ""
+            let sign = match (b.reach, falls(study)) {
+                (Some(Reach::AtLeast), false) => "at least ",
+                (Some(Reach::AtLeast), true) => "at most ",
+                _ => "",
             };
             format!(
                 "{object}: {sign}{} by {method}{published}",

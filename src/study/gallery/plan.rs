@@ -50,7 +50,7 @@ impl GalleryPlan {
         while !fits(&noises) && noises.len() > 1 {
             noises = thinned(&noises);
         }
-        if !fits(&noises) {
+        if !fits(&noises) || pixels as f64 * spots as f64 > MOST_ENTRIES {
             return Fitted::nothing(size);
         }
         if noises.len() < self.noises.len() {
@@ -94,6 +94,9 @@ impl GalleryPlan {
         (left / regularised.max(1)).min(self.steps)
     }
 }
+
+/// More entries of Φcam than this are not copied for noise to be added: each copy takes eight bytes an entry, and each thread has three.
+const MOST_ENTRIES: f64 = 4e7;
 
 /// Fewer steps than these are no slider.
 const FEWEST: usize = 4;
