@@ -43,7 +43,7 @@
 //! ```text
 //!    9  main.rs                      parse → run → exit code
 //!    8  cli/         arguments, checked settings, progress, one file per subcommand; the only floor that prints
-//!    7  report/      results → json, svg, png, html: results in, bytes out
+//!    7  report/      results → json, svg, png, html: results in, bytes out; page/script: what makes a page answer, in JavaScript
 //!    6  study/       experiments that compose the floors below: validation, recovered objects, budget, tolerance, power, noise,
 //!                    indicators, coverage, wall BRDFs, the laboratory experiment, the published study
 //!    5  recovery/    Φcam → reflectance              metrics/   how far two things are apart
@@ -118,6 +118,7 @@
 //! * [`recovery`]: the methods, their parameters, their uncertainty.
 //! * [`study::reproduce`](mod@study::reproduce): the published study computed again, and the ledger of its contradictions.
 //! * [`cli`]: what a run leaves on disk.
+//! * [`report`]: the report of a run and of a study, one page each; how `phicam serve` hands out what is too large for one.
 //! * [`cli::many_machines`](mod@cli::many_machines): thousands of frames on a cluster, on Slurm and other schedulers.
 
 pub mod cli;

@@ -2,8 +2,9 @@
 //!
 //! [`bench_svg`] draws a scene to scale; [`grey_png`] and [`colour_png`] turn matrices into pictures with a legend;
 //! every PNG of a figure is its SVG, rendered with type of its own;
-//! [`summary_json`], [`summary_table`] and their kin say in short what was found, and [`run_html`] shows it on one
-//! self-contained page. Pictures clip at the ends of their scale and say so; numbers are never clipped.
+//! [`summary_json`], [`summary_table`] and their kin say in short what was found, and [`run_html`] and [`study_html`] show it on one
+//! self-contained page each, below 10 MB: of Φcam lies in the page what fits, first with fewer bits, then with fewer spots, and the page says so;
+//! `phicam serve` reads every entry from the files. A page is put together in `page`, whose script makes it answer. Pictures clip at the ends of their scale and say so; numbers are never clipped.
 
 mod axis;
 mod brdf;

@@ -85,12 +85,12 @@ describe("the recoveries with sliders", () => {
             const recovered = npy(join(resolve(process.env.PHICAM_RUN ?? "out"), "recovered", `${method}.npy`));
             assert.deepEqual(recovered.shape, [nv, nu]);
             const from = pictures[0][automatic[0].step] * about.elements + first;
-            for (let at = 0; at < nu * nv; at++) {
-                const truth = recovered.at(Math.floor(at / nu), at % nu);
-                // Two ways of adding up the same inversion, and f32: what rounding makes of a condition of 1e13 is left to `pinv`.
-                const scale = method === "pinv" ? 1e-2 : 1e-6;
-                assert.ok(Math.abs(values[from + at] - truth) <= scale * Math.max(1, Math.abs(truth)), `${method} of ${name}, ${at}: ${values[from + at]}, ${truth}`);
-            }
+            const truth = Array.from({ length: nu * nv }, (_, at) => recovered.at(Math.floor(at / nu), at % nu));
+            // Both add up the same inversion in another order. That of `pinv` has a condition of 1e13, which makes of rounding, 1.1e-16, 1e-3 of the largest value.
+            const exact = Math.max(...truth.map(Math.abs)) * (method === "pinv" ? 1e13 * 1.1e-16 : 1e-6);
+            truth.forEach((value, at) => {
+                assert.ok(Math.abs(values[from + at] - value) <= exact, `${method} of ${name}, ${at}: ${values[from + at]}, ${value}`);
+            });
         }
     });
 
