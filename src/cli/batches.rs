@@ -45,8 +45,11 @@ impl Work<'_> {
         };
         let samples = pixels * plan.budget.samples() * columns as u64;
         let mut tracing = Tracing::start(talk, &scene.name, samples);
-        kept.iter()
-            .flatten()
+        // Those that a begun batch traces once more count when it is finished.
+        let again = |spot: usize| batches.iter().any(|range| range.contains(&spot));
+        let apart = (0..).zip(kept.iter()).filter(|(spot, _)| !again(*spot));
+        apart
+            .filter_map(|(_, column)| column.as_ref())
             .for_each(|column| tracing.finished(column));
         let last = batches.len();
         for (number, range) in batches.into_iter().enumerate() {

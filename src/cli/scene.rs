@@ -18,12 +18,18 @@ pub(super) fn execute(args: &SceneArgs, talk: Talk) -> Result<Outcome, Failure> 
             true => listed()?,
             false => list(),
         })?,
-        SceneCommand::Check { scene, json } => {
-            let scene = trust::load(scene)?;
-            output::print(&match json {
-                true => checked(&scene)?,
-                false => check(&scene),
+        SceneCommand::Check { scene, json: false } => output::print(&check(&trust::load(scene)?))?,
+        SceneCommand::Check { scene, json: true } => {
+            let loaded = trust::load(scene).map_err(Failure::from);
+            output::print(&match &loaded {
+                Ok(loaded) => checked(scene, loaded)?,
+                Err(failure) => output::json(&json!({
+                    "scene": scene,
+                    "ok": false,
+                    "error": failure.message(),
+                }))?,
             })?;
+            let _ = loaded?;
         }
         SceneCommand::Show { scene, output } => {
             let scene = trust::load(scene)?;
@@ -61,14 +67,16 @@ fn listed() -> Result<String, Failure> {
     output::json(&builtins().iter().map(each).collect::<Vec<_>>())
 }
 
-/// What [`check`] says, for programs.
-fn checked(scene: &Scene) -> Result<String, Failure> {
+/// What [`check`] says, for programs; `given` is the name or path that was asked for.
+fn checked(given: &str, scene: &Scene) -> Result<String, Failure> {
     let surfaces = |role| -> Vec<&str> {
         let of_role = scene.surfaces.iter().filter(|s| s.role == role);
         of_role.map(|s| s.name.as_str()).collect()
     };
     let warnings: Vec<String> = scene.warnings().iter().map(ToString::to_string).collect();
     output::json(&json!({
+        "scene": given,
+        "ok": true,
         "name": scene.name,
         "hash": scene.hash,
         "surfaces": {

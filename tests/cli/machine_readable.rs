@@ -43,10 +43,34 @@ fn what_is_stacked_modelled_and_checked() {
     );
     assert_eq!(scene["pixels"], json!([3, 2]));
     assert_eq!(scene["suspicious"], json!([]));
+    assert_eq!(
+        [&scene["scene"], &scene["ok"]],
+        [&json!("tiny.toml"), &json!(true)]
+    );
     let list = said(&workspace, "scene list --json", 0);
     let words = workspace.phicam("scene list").exits(0).stdout;
     assert_eq!(list.as_array().unwrap().len(), words.lines().count());
     assert_eq!(list[0]["name"], "bench");
+}
+
+#[test]
+fn a_wrong_scene_has_its_verdict() {
+    let workspace = Workspace::new();
+    workspace.write("bad.toml", "name = 3\n");
+    for name in ["bad.toml", "there_is_none.toml"] {
+        let ended = workspace
+            .phicam(&format!("scene check {name} --json"))
+            .exits(2);
+        let verdict: Value = serde_json::from_str(&ended.stdout).unwrap();
+        let error = verdict["error"].as_str().unwrap();
+        assert_eq!(
+            verdict,
+            json!({ "scene": name, "ok": false, "error": error })
+        );
+        // Standard error says the same.
+        assert!(error.contains(name) && error.contains("cure: "), "{error}");
+        assert_eq!(ended.stderr.trim_end(), format!("error: {error}"));
+    }
 }
 
 #[test]

@@ -74,7 +74,7 @@ pub(in crate::cli) fn execute(args: &CleanArgs, talk: Talk) -> Result<Outcome, F
     };
     talk.say(format!(
         "{} files, {:.1} MiB, {did}",
-        needless.len(),
+        removed.len(),
         bytes as f64 / f64::from(1 << 20)
     ));
     Ok(Outcome::Done)

@@ -110,7 +110,10 @@ impl Study {
         talk: Talk,
     ) -> Result<Parts, Failure> {
         let bar = progress::steps(talk, &self.arguments.join(" "));
-        bar.set_length(range.end - range.start);
+        let next_of = |parts: &Parts| parts.last().map_or(range.start, |(part, _)| part.end);
+        // Tasks of an earlier process say nothing of how fast this one is.
+        let resumed = next_of(&done);
+        bar.set_length(range.end - resumed);
         let tick = |_| bar.tick();
         let control = Control {
             progress: &tick,
@@ -119,8 +122,8 @@ impl Study {
         let mut parts = done;
         let mut together = 1;
         loop {
-            let first = parts.last().map_or(range.start, |(part, _)| part.end);
-            bar.set_position(first - range.start);
+            let first = next_of(&parts);
+            bar.set_position(first - resumed);
             let tasks = first..range.end.min(first + together);
             if tasks.is_empty() {
                 break;
