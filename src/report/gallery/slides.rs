@@ -32,8 +32,11 @@ pub(in super::super) fn slides(page: &mut Page, results: &RunResults) -> String 
     frame(gallery) + &left_out
 }
 
+/// Indices of the pictures of a series, noise by noise and step by step; none where there is no picture.
+type Places = Vec<Vec<Option<usize>>>;
+
 /// The truth of all surfaces, then the pictures one after the other; and for each series, noise and step the index of its picture, truth being 0.
-fn packed(gallery: &Gallery) -> (Vec<f64>, Vec<Vec<Vec<Option<usize>>>>) {
+fn packed(gallery: &Gallery) -> (Vec<f64>, Vec<Places>) {
     let truth = gallery
         .surfaces
         .iter()
@@ -74,7 +77,7 @@ fn described(gallery: &Gallery, places: &[Vec<Vec<Option<usize>>>]) -> Value {
     })
 }
 
-fn one((series, places): (&Series, &Vec<Vec<Option<usize>>>)) -> Value {
+fn one((series, places): (&Series, &Places)) -> Value {
     let automatic = series.automatic.iter().map(|chosen| match chosen {
         Ok(chosen) => json!({ "step": chosen.step, "words": chosen.words }),
         Err(why) => json!({ "why": why }),

@@ -5,10 +5,13 @@ use super::super::page::Tone;
 use super::account::{Account, Table, figure, perhaps};
 use crate::study::{Experiment, Setting};
 
+/// What is said of a setting in the head of its column.
+type Head = fn(&Setting) -> String;
+
 /// The findings in plain words, and the modulation under every setting.
 pub fn experiment_account(study: &Experiment) -> Account {
     let mut tables = Vec::new();
-    let sweeps: [(&[Setting], &str, fn(&Setting) -> String); 2] = [
+    let sweeps: [(&[Setting], &str, Head); 2] = [
         (
             &study.by_glare,
             "by glare over signal, at the longest exposure",
