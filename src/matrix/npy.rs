@@ -5,12 +5,12 @@
 //! numbers. C order means row after row.
 //!
 //! The header comes from outside and `npyz` trusts it: it multiplies the shape without a check, allocates the length a
-//! header claims and parses nested brackets by recursion. So a header is looked at before `npyz` sees it: its length, its
+//! header claims and parses nested brackets by recursion. So a header is looked at before `npyz` sees it, which then gets the bytes that were looked at: its length, its
 //! brackets and its digits are bounded (a product of integers is less than ten to the number of all their digits, so 19
 //! digits cannot overflow an u64), and its claim is held against the length of the file before anything is allocated.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek};
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use npyz::{NpyHeader, Order, TypeChar, WriterBuilder};
@@ -135,12 +135,13 @@ fn examine(path: &Path, file: File) -> Result<Opened, NpyError> {
     let unreadable = |source| unreadable(path, source);
     let length = file.metadata().map_err(unreadable)?.len();
     let mut file = BufReader::new(file);
-    check_header(&mut file)
+    let checked = checked_header(&mut file)
         .map_err(unreadable)?
         .map_err(|r| not_npy(path, &r))?;
-    file.rewind().map_err(unreadable)?;
-    let header = NpyHeader::from_reader(&mut file).map_err(|e| not_npy(path, &e.to_string()))?;
-    let start = file.stream_position().map_err(unreadable)?;
+    // Of the bytes that were checked: those on disk may have become others.
+    let header = NpyHeader::from_reader(&checked[..]).map_err(|e| not_npy(path, &e.to_string()))?;
+    let start = checked.len() as u64;
+    file.seek(SeekFrom::Start(start)).map_err(unreadable)?;
 
     let dtype = header.dtype();
     let bytes = match &dtype {
@@ -152,7 +153,7 @@ fn examine(path: &Path, file: File) -> Result<Opened, NpyError> {
         other => {
             return Err(NpyError::Type {
                 path: path.into(),
-                dtype: other.descr(),
+                dtype: one_line(&other.descr()),
             });
         }
     };
@@ -255,12 +256,19 @@ fn unreadable(path: &Path, source: io::Error) -> NpyError {
 fn not_npy(path: &Path, reason: &str) -> NpyError {
     NpyError::NotNpy {
         path: path.into(),
-        reason: reason.into(),
+        reason: one_line(reason),
     }
 }
 
-/// Reads the header without trusting it; the inner error says why it is refused.
-fn check_header(file: &mut impl Read) -> io::Result<Result<(), String>> {
+/// A file may be quoted, line breaks and what moves a cursor included: not these.
+fn one_line(words: &str) -> String {
+    let parts = words.split(|c: char| c.is_whitespace() || c.is_control());
+    let parts: Vec<&str> = parts.filter(|p| !p.is_empty()).collect();
+    parts.join(" ")
+}
+
+/// Reads the file up to the end of its header without trusting it; the inner error says why it is refused.
+fn checked_header(file: &mut impl Read) -> io::Result<Result<Vec<u8>, String>> {
     let mut start = Vec::new();
     file.take(12 + HEADER_MAX as u64).read_to_end(&mut start)?;
     Ok((|| {
@@ -279,7 +287,10 @@ fn check_header(file: &mut impl Read) -> io::Result<Result<(), String>> {
                 "its header claims {length} bytes, more than {HEADER_MAX}"
             ));
         }
-        let text = text.get(..length).ok_or("its header is cut short")?;
+        let (text, after) = text
+            .split_at_checked(length)
+            .map(|(text, after)| (text, after.len()))
+            .ok_or("its header is cut short")?;
         let brackets = text.iter().filter(|b| b"([{".contains(b)).count();
         let digits = text.iter().filter(|b| b.is_ascii_digit()).count();
         let radix = text
@@ -290,7 +301,8 @@ fn check_header(file: &mut impl Read) -> io::Result<Result<(), String>> {
                 "its header describes more than one plain array, or one too large".to_owned(),
             );
         }
-        Ok(())
+        let end = start.len() - after;
+        Ok(start[..end].to_vec())
     })())
 }
 

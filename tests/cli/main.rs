@@ -19,6 +19,8 @@ mod reproducing;
 mod scenes;
 mod server;
 mod serving;
+mod serving_deaf;
+mod serving_forged;
 mod serving_many;
 mod small_scene;
 mod stacking;

@@ -6,7 +6,10 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpStream};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
+
+use phicam::matrix::{Matrix, npy};
 
 use crate::workspace::Workspace;
 
@@ -143,6 +146,21 @@ pub(crate) fn connect(address: SocketAddr) -> TcpStream {
     }
 }
 
+/// A connection of which the system takes next to nothing that is not read.
+pub(crate) fn narrow(address: SocketAddr) -> TcpStream {
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_io()
+        .build();
+    let stream = runtime.expect("a runtime").block_on(async {
+        let socket = tokio::net::TcpSocket::new_v4()?;
+        socket.set_recv_buffer_size(2304)?;
+        socket.connect(address).await?.into_std()
+    });
+    let stream = stream.expect("a connection");
+    stream.set_nonblocking(false).expect("a socket");
+    stream
+}
+
 /// Reads an answer up to its last byte, and no further.
 pub(crate) fn reply(stream: &mut impl BufRead, head: bool) -> io::Result<Reply> {
     let mut line = || -> io::Result<String> {
@@ -201,9 +219,40 @@ impl Reply {
 pub(crate) fn record(folder: &Path, columns: usize, rows: usize, spots: usize) {
     fs::create_dir_all(folder.join("model")).expect("a folder");
     let record = serde_json::json!({
-        "version": "0.1.0", "scene": "made up", "scene_hash": "0", "unit": "in", "seed": 1, "samples": 32, "blocks": 32,
+        "version": "0.1.0", "scene": "made up", "scene_hash": "0", "unit": "in", "seed": u64::MAX, "samples": 32, "blocks": 32,
         "estimator": "independent", "sampler": "sobol", "pixels": [columns, rows], "spots": spots, "finished": spots,
         "threads": 1, "seconds": 0.0
     });
     fs::write(folder.join("run.json"), record.to_string()).expect("written");
+}
+
+/// A run's folder `name` with made-up matrices, in which no two numbers are equal; some are not finite.
+pub(crate) fn made_up(
+    workspace: &Workspace,
+    name: &str,
+    shape: (usize, usize, usize),
+) -> [Matrix; 4] {
+    let (columns, rows, spots) = shape;
+    let folder = workspace.path(name);
+    record(&folder, columns, rows, spots);
+    let files = ["phi.npy", "phi.stderr.npy", "model/phi.npy", "model/z.npy"];
+    [0, 1, 2, 3].map(|kind| {
+        let matrix = Matrix::from_fn(columns * rows, spots, |p, s| match (p, s) {
+            (3, 2) => f64::NAN,
+            (4, 2) => f64::NEG_INFINITY,
+            (5, 2) => -0.0,
+            _ => (kind * 10_000_000 + p * 1000 + s) as f64 * 1e-15,
+        });
+        npy::write(&folder.join(files[kind]), &matrix).expect("written");
+        matrix
+    })
+}
+
+/// Set when the test is over, failed or not.
+pub(crate) struct Ends<'a>(pub &'a AtomicBool);
+
+impl Drop for Ends<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
 }

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use phicam::matrix::{Matrix, npy};
 
-use crate::server::{Reply, Server, connect, record, reply, request};
+use crate::server::{Ends, Reply, Server, connect, record, reply, request};
 use crate::workspace::Workspace;
 
 /// What the server may ever have in memory, KiB: 22 MiB when it starts, two pieces of 64 KiB of each of 256 connections, and the allocator's share.
@@ -52,15 +52,6 @@ impl Client<'_> {
     }
 }
 
-/// Set when the test is over, failed or not.
-struct Ends<'a>(&'a AtomicBool);
-
-impl Drop for Ends<'_> {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-}
-
 #[test]
 fn a_thousand_clients_at_once_are_all_answered() {
     let workspace = Workspace::new();
@@ -70,6 +61,7 @@ fn a_thousand_clients_at_once_are_all_answered() {
     let file = workspace.read("out/phi.npy");
     let server = Server::of(&workspace, "out");
     let answered = AtomicUsize::new(0);
+    let mut most = 0;
     let start = Instant::now();
     thread::scope(|scope| {
         for n in 0..CLIENTS {
@@ -105,14 +97,16 @@ fn a_thousand_clients_at_once_are_all_answered() {
         while answered.load(Ordering::Relaxed) < CLIENTS {
             let long = start.elapsed().as_secs();
             assert!(long < 100, "{answered:?} clients answered in {long} s");
+            most = most.max(server.connections());
             thread::sleep(Duration::from_millis(10));
         }
     });
     let peak = server.peak();
     eprintln!(
-        "{CLIENTS} clients, 3 questions each: {:?}, {peak} KiB",
+        "{CLIENTS} clients, 3 questions each: {:?}, {most} at once, {peak} KiB",
         start.elapsed()
     );
+    assert!(most >= 200, "{most} at once");
     assert!(peak < MEMORY, "{peak} KiB");
     server.ends();
 }

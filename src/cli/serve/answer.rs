@@ -7,8 +7,7 @@ use hyper::header::{
 };
 use hyper::{Method, Response, StatusCode};
 
-use super::body::{Content, Pieces, Source};
-use super::pace::Pace;
+use super::body::{Content, Pieces, Place, Source};
 use super::refusal::Refusal;
 
 /// What a page may do: its own inline script and style, pictures of this server, questions to this server, nothing else.
@@ -29,13 +28,14 @@ pub(super) struct Answer {
 }
 
 enum Origin {
-    Memory(Vec<u8>),
+    Memory(Bytes),
     Source(Box<dyn Source>),
 }
 
 impl Answer {
     /// An answer that is there.
-    pub(super) fn bytes(kind: &'static str, bytes: Vec<u8>) -> Self {
+    pub(super) fn bytes(kind: &'static str, bytes: impl Into<Bytes>) -> Self {
+        let bytes = bytes.into();
         Self {
             status: StatusCode::OK,
             headers: Vec::new(),
@@ -50,7 +50,7 @@ impl Answer {
         Self {
             length,
             bytes: Origin::Source(source),
-            ..Self::bytes(kind, Vec::new())
+            ..Self::bytes(kind, Bytes::new())
         }
     }
 
@@ -68,12 +68,12 @@ impl Answer {
     }
 
     /// What is sent to a request of this method.
-    pub(super) fn response(self, method: &Method, pace: &Pace) -> Response<Content> {
+    pub(super) fn response(self, method: &Method, place: &Place) -> Response<Content> {
         let content = match self.bytes {
             _ if method == Method::HEAD => Content::Bytes(Bytes::new()),
-            Origin::Memory(bytes) => Content::Bytes(bytes.into()),
+            Origin::Memory(bytes) => Content::Bytes(bytes),
             Origin::Source(source) => {
-                Content::Pieces(Pieces::new(source, self.length, pace.clone()))
+                Content::Pieces(Pieces::new(source, self.length, place.clone()))
             }
         };
         let policy = match self.kind.starts_with("text/html") {
@@ -103,6 +103,6 @@ impl Answer {
 
 impl From<Refusal> for Answer {
     fn from(refusal: Refusal) -> Self {
-        Self::bytes(TEXT, (refusal.words + "\n").into()).status(refusal.status)
+        Self::bytes(TEXT, refusal.words + "\n").status(refusal.status)
     }
 }

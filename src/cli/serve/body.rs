@@ -2,15 +2,19 @@
 
 use std::io::{self, ErrorKind};
 use std::pin::Pin;
+use std::sync::Arc;
 use std::task::{Context, Poll};
 
 use hyper::body::{Body, Bytes, Frame, SizeHint};
+use tokio::sync::OwnedSemaphorePermit;
 use tokio::task::{JoinHandle, spawn_blocking};
-
-use super::pace::Pace;
 
 /// Most bytes of a piece: what an answer holds in memory, however long it is.
 pub(super) const PIECE: usize = 64 * 1024;
+
+/// The place of a connection among those that may be open at once. What is done for it on another thread keeps the place until it is done, whether or not the
+/// client is still there: so that what is begun is bounded too.
+pub(super) type Place = Arc<OwnedSemaphorePermit>;
 
 /// Where the bytes of an answer come from.
 pub(super) trait Source: Send + 'static {
@@ -31,7 +35,7 @@ pub(super) enum Content {
 pub(super) struct Pieces {
     left: u64,
     state: State,
-    pace: Pace,
+    place: Place,
 }
 
 enum State {
@@ -42,13 +46,12 @@ enum State {
 }
 
 impl Pieces {
-    /// `length` bytes of `source`. From now on, and until the last one is handed over, the client has to keep pace.
-    pub(super) fn new(source: Box<dyn Source>, length: u64, pace: Pace) -> Self {
-        pace.step();
+    /// `length` bytes of `source`.
+    pub(super) fn new(source: Box<dyn Source>, length: u64, place: Place) -> Self {
         Self {
             left: length,
             state: State::Waiting(source),
-            pace,
+            place,
         }
     }
 
@@ -60,8 +63,10 @@ impl Pieces {
             match std::mem::replace(&mut self.state, State::Broken) {
                 State::Broken => return Poll::Ready(None),
                 State::Waiting(mut source) => {
+                    let place = self.place.clone();
                     let read = move || {
                         let piece = source.piece();
+                        drop(place);
                         (source, piece)
                     };
                     self.state = State::Reading(spawn_blocking(read));
@@ -81,18 +86,11 @@ impl Pieces {
                         }
                         self.left -= length;
                         self.state = State::Waiting(source);
-                        self.pace.step();
                         return Poll::Ready(Some(Ok(piece.into())));
                     }
                 },
             }
         }
-    }
-}
-
-impl Drop for Pieces {
-    fn drop(&mut self) {
-        self.pace.rest();
     }
 }
 
@@ -127,5 +125,44 @@ impl Content {
             Self::Bytes(bytes) => bytes.len() as u64,
             Self::Pieces(pieces) => pieces.left,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::{Receiver, Sender, channel};
+
+    use tokio::sync::Semaphore;
+
+    use super::*;
+
+    /// Says that it reads, and reads until it is told that it has.
+    struct Slow(Sender<()>, Receiver<()>);
+
+    impl Source for Slow {
+        fn piece(&mut self) -> io::Result<Vec<u8>> {
+            self.0.send(()).unwrap();
+            self.1.recv().unwrap();
+            Ok(vec![1])
+        }
+    }
+
+    #[test]
+    fn what_is_read_for_a_client_that_has_gone_keeps_its_place() {
+        let runtime = tokio::runtime::Builder::new_multi_thread().build().unwrap();
+        let _inside = runtime.enter();
+        let places = Arc::new(Semaphore::new(1));
+        let place = Arc::new(places.clone().try_acquire_owned().unwrap());
+        let (began, begins) = channel();
+        let (ends, ended) = channel();
+        let mut pieces = Pieces::new(Box::new(Slow(began, ended)), 2, place.clone());
+        let mut context = Context::from_waker(std::task::Waker::noop());
+        assert!(pieces.poll_piece(&mut context).is_pending());
+        begins.recv().unwrap();
+        drop((pieces, place));
+        assert_eq!(places.available_permits(), 0, "while it reads");
+        ends.send(()).unwrap();
+        let free = places.acquire();
+        drop(runtime.block_on(free).unwrap());
     }
 }

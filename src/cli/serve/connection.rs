@@ -16,7 +16,8 @@ use tokio::net::{TcpListener, TcpSocket, TcpStream};
 use tokio::sync::{Notify, Semaphore};
 use tokio::time::{sleep, timeout};
 
-use super::pace::{HEADERS, Pace};
+use super::body::Place;
+use super::pace::Paced;
 use super::routes::{Site, respond};
 
 /// Most connections at once. Each has one file open at most, so that both fit into the 1024 files that a process is commonly allowed.
@@ -27,6 +28,8 @@ const BACKLOG: u32 = 4096;
 const SOCKET_BUFFER: u32 = 128 * 1024;
 /// Longest first line and headers of a request together, bytes.
 const REQUEST_MAX: usize = 16 * 1024;
+/// How long the headers of a request may take, and how long a connection may be idle.
+const HEADERS: Duration = Duration::from_secs(10);
 /// How often the server looks whether it shall end, and tries again to accept where the system has no room.
 const LOOK: Duration = Duration::from_millis(100);
 /// How long answers under way may take after Ctrl-C.
@@ -68,8 +71,7 @@ pub(super) async fn serve(listener: TcpListener, site: &'static Site, stop: &Ato
                 (Ok(place), Ok((stream, _))) => {
                     let room = room.clone();
                     tokio::spawn(async move {
-                        converse(stream, site, &room).await;
-                        drop(place);
+                        converse(stream, site, &room, Arc::new(place)).await;
                     });
                 }
                 // No file descriptors are left, or the client has gone.
@@ -99,14 +101,13 @@ struct Room {
 }
 
 /// One connection, until the client ends it or takes too long, or others wait and it has had an answer.
-async fn converse(stream: TcpStream, site: &'static Site, room: &Room) {
-    let pace = Pace::new();
+async fn converse(stream: TcpStream, site: &'static Site, room: &Room, place: Place) {
     let asked = AtomicBool::new(false);
     let service = service_fn(|request| {
-        let (pace, asked) = (&pace, &asked);
+        let (place, asked) = (&place, &asked);
         async move {
             asked.store(true, Ordering::Relaxed);
-            let mut response = respond(site, request, pace).await;
+            let mut response = respond(site, request, place).await;
             if room.places.available_permits() == 0 {
                 let close = HeaderValue::from_static("close");
                 response.headers_mut().insert(CONNECTION, close);
@@ -118,15 +119,16 @@ async fn converse(stream: TcpStream, site: &'static Site, room: &Room) {
     builder
         .timer(TokioTimer::new())
         .header_read_timeout(HEADERS)
+        // Bytes that are shared are not copied to be sent.
+        .writev(true)
         .max_buf_size(REQUEST_MAX);
-    let mut connection = pin!(builder.serve_connection(TokioIo::new(stream), service));
-    let mut lost = pin!(pace.lost());
+    let stream = TokioIo::new(Paced::new(stream));
+    let mut connection = pin!(builder.serve_connection(stream, service));
     let mut last = false;
     loop {
         tokio::select! {
             // What went wrong with a connection concerns nobody else, and there is nobody to tell.
             _ = connection.as_mut() => break,
-            () = lost.as_mut() => break,
             () = room.crowded.notified(), if !last => {
                 // Whoever has not asked yet is not sent away without an answer.
                 last = asked.load(Ordering::Relaxed);

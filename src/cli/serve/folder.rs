@@ -13,6 +13,13 @@ use super::refusal::Refusal;
 /// Longest path that is looked for, bytes.
 const PATH_MAX: usize = 4096;
 
+/// ELOOP, what Unix says of a link that leads to itself.
+const LINK_LOOP: i32 = if cfg!(any(target_os = "linux", target_os = "android")) {
+    40
+} else {
+    62
+};
+
 /// A folder, by its absolute path: opened again for every request, so that one made anew is served too.
 #[derive(Debug)]
 pub(super) struct Served {
@@ -34,6 +41,11 @@ impl Served {
         };
         served.dir()?;
         Ok(served)
+    }
+
+    /// Where it is.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
     }
 
     fn dir(&self) -> io::Result<Dir> {
@@ -96,5 +108,5 @@ fn is_absence(error: &io::Error) -> bool {
         InvalidInput,
         InvalidFilename,
     ];
-    absent.contains(&error.kind())
+    absent.contains(&error.kind()) || cfg!(unix) && error.raw_os_error() == Some(LINK_LOOP)
 }

@@ -6,9 +6,9 @@
 //!
 //! | path | answer |
 //! | --- | --- |
-//! | `/` | report.html, or reproduction.html, or a page made when the server started: the scene, what was rendered, and its matrices to look at |
+//! | `/` | report.html, or reproduction.html, or a page made of the scene and run.json, and again when run.json is another or model/phi.npy comes or goes: the scene, what was rendered, and its matrices to look at |
 //! | `/files/PATH` | a regular file below DIR, as it is; one `Range` of bytes |
-//! | `/api/about` | JSON: `version`, `scene`, `pixels` \[columns, rows\], `spots`, `matrices` that are there and of the run's shape |
+//! | `/api/about` | JSON: `version`, `scene`, `hash` of the scene, `seed` as text (an u64 is no number of JavaScript), `pixels` \[columns, rows\], `spots`, `matrices` that are there and of the run's shape |
 //! | `/api/frame?matrix=M&spot=S&x=X&y=Y&w=W&h=H&step=K` | a part of the frame of spot S: of every K × K pixels the middle one, at column X + i·K + ⌊K/2⌋ and row Y + j·K + ⌊K/2⌋ or the last of the part, ⌈W/K⌉ × ⌈H/K⌉ numbers, at most 512 × 512; their counts in `X-Columns` and `X-Rows` |
 //! | `/api/row?matrix=M&pixel=P` | what pixel P sees of all spots, at most 10⁶ numbers |
 //!
@@ -19,10 +19,13 @@
 //!
 //! * Nothing is written. Nothing outside DIR is read, whatever a path or a link says and whoever swaps one for the other meanwhile; no hidden file, no unfinished one.
 //! * It listens on a loopback address unless another one is given. Requests that name another host are refused (DNS rebinding), no other origin may read answers, and what
-//!   a page may do is bounded by a policy: its own script, no other server.
-//! * Memory is bounded: at most 256 connections at once, each with two pieces of 64 KiB of its answer, 16 KiB of its request and what the system buffers; the others wait.
+//!   a page may load and ask is bounded by a policy: its own script, no other server. It does not keep a page from being left for another address. Who has an account on this
+//!   machine reaches a loopback address too.
+//! * Memory is bounded: at most 256 connections at once, each with two pieces of 64 KiB of its answer, 16 KiB of its request and what the system buffers; the others wait. The
+//!   page that is made is there once, however many want it, and once more for those who still get the one before.
 //!   Matrices stay on disk: only the numbers asked for are read, or the pages they are on.
-//! * A client has 10 s for its headers and 15 s for each piece of an answer; then its connection is closed. Others do not wait for it. Eight threads read files.
+//! * A client has 10 s for its headers, and 15 s for each 64 KiB of an answer, and for what is left at its end, from when the system takes no more for it; then its connection
+//!   is closed. Up to 255 of them hold up nobody; if more hang, the others wait those 15 s. Eight threads read files, and what they read for a client that has gone counts as a connection.
 //! * What stands in a file is not trusted: a header that lies, a file that is cut short, also while it is read, ends one answer and nothing else. Files are opened for
 //!   every request, so that a run made again is what is shown.
 
@@ -32,11 +35,13 @@ mod connection;
 mod files;
 mod folder;
 mod host;
+mod made;
 mod pace;
 mod query;
 mod range;
 mod refusal;
 mod routes;
+mod run;
 mod tiles;
 
 use std::io::{self, ErrorKind};
@@ -47,15 +52,13 @@ use tokio::runtime;
 use super::Outcome;
 use super::args::ServeArgs;
 use super::failure::Failure;
-use super::folder::{PHI, REPORT, SCENE};
+use super::folder::{PHI, REPORT};
 use super::interrupt::stop_flag;
 use super::output::{self, Talk};
 use super::record::Record;
-use super::trust;
-use crate::report::served_html;
 use folder::Served;
+use made::Kept;
 use routes::{REPRODUCTION, Site};
-use tiles::MODELLED;
 
 /// Threads that talk to clients.
 const TALKING: usize = 2;
@@ -66,7 +69,7 @@ pub(super) fn execute(args: &ServeArgs, talk: Talk) -> Result<Outcome, Failure> 
     let stop = stop_flag();
     let folder = folder(args)?;
     let site = Site {
-        page: page(args, &folder, talk),
+        page: page(&folder, talk).into(),
         folder,
         address: args.address,
     };
@@ -118,30 +121,17 @@ fn folder(args: &ServeArgs) -> Result<Served, Failure> {
     }
 }
 
-/// The page of a run, for as long as it has no report. That there is none is no reason not to serve its files.
-fn page(args: &ServeArgs, folder: &Served, talk: Talk) -> Option<String> {
-    if !folder.has(Record::FILE) || !folder.has(SCENE) {
-        return None;
+/// Makes the page of a run, for as long as it has no report. That there is none is no reason not to serve its files.
+fn page(folder: &Served, talk: Talk) -> Kept {
+    let mut kept = Kept::default();
+    let mut details = String::new();
+    if let Err(refusal) = kept.page(folder, |why| details = format!(" ({why})")) {
+        talk.say(format!(
+            "warning: no page for a run without {REPORT}: {}{details}",
+            refusal.words
+        ));
     }
-    let made = || {
-        let record = Record::read(&args.dir)?;
-        let scene = trust::load(&args.dir.join(SCENE).to_string_lossy())?;
-        match record.filter(|r| r.scene_hash == scene.hash) {
-            Some(r) => Ok(served_html(&scene, &r.to_settings(), folder.has(MODELLED))),
-            None => Err(Failure::new(
-                format!("{SCENE} is not the scene of {}", Record::FILE),
-                "render again into another folder",
-            )),
-        }
-    };
-    let page: Result<String, Failure> = made();
-    let remark = |e: Failure| {
-        format!(
-            "warning: no page for a run without {REPORT}: {}",
-            e.message()
-        )
-    };
-    page.map_err(|e| talk.say(remark(e))).ok()
+    kept
 }
 
 /// Why nobody can be heard at this address.

@@ -1,55 +1,105 @@
-//! How long a client may take.
+//! A socket whose other end has to keep pace.
 
-use std::future::pending;
-use std::sync::Arc;
+use std::io::{self, ErrorKind, IoSlice};
+use std::pin::Pin;
+use std::task::{Context, Poll};
 use std::time::Duration;
 
-use tokio::sync::watch;
-use tokio::time::{Instant, timeout_at};
+use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+use tokio::time::{Sleep, sleep};
 
-/// How long the headers of a request may take, and how long a connection may be idle.
-pub(super) const HEADERS: Duration = Duration::from_secs(10);
-/// How long a client may take for one piece of an answer.
-const PIECE: Duration = Duration::from_secs(15);
+/// How long a client may take for [`ENOUGH`] bytes, or for all that is to be sent if that is less.
+pub(super) const PATIENCE: Duration = Duration::from_secs(15);
+/// After so many bytes its time starts anew.
+pub(super) const ENOUGH: usize = 64 * 1024;
 
-/// By when the client of a connection has to take something of its answer: the connection waits for that time to pass, and the bodies of its answers
-/// move it on.
-#[derive(Clone, Debug)]
-pub(super) struct Pace {
-    until: Arc<watch::Sender<Option<Instant>>>,
+/// A socket on which bytes wait [`PATIENCE`] for the client and no longer: then writing fails, whatever is being sent and whoever sends it. The time runs
+/// while the system takes no more bytes, until it has taken [`ENOUGH`] or the writer flushes, which is to say that it has nothing left. What the server
+/// needs to have its bytes ready does not count.
+pub(super) struct Paced<S> {
+    socket: S,
+    waiting: Option<Waiting>,
 }
 
-impl Pace {
-    pub(super) fn new() -> Self {
-        let until = Arc::new(watch::Sender::new(None));
-        Self { until }
+/// That bytes wait.
+struct Waiting {
+    until: Pin<Box<Sleep>>,
+    /// Bytes taken since it began.
+    taken: usize,
+}
+
+impl<S> Paced<S> {
+    pub(super) fn new(socket: S) -> Self {
+        let waiting = None;
+        Self { socket, waiting }
     }
 
-    /// Something was taken, or begins.
-    pub(super) fn step(&self) {
-        self.until.send_replace(Some(Instant::now() + PIECE));
-    }
-
-    /// Nothing is to be taken.
-    pub(super) fn rest(&self) {
-        self.until.send_replace(None);
-    }
-
-    /// Returns when the client has taken too long.
-    pub(super) async fn lost(&self) {
-        let mut until = self.until.subscribe();
-        loop {
-            let now = *until.borrow_and_update();
-            let changed = match now {
-                Some(time) => timeout_at(time, until.changed()).await,
-                None => Ok(until.changed().await),
-            };
-            match changed {
-                Err(_) => return,
-                Ok(Ok(())) => {}
-                // `self` has the sender.
-                Ok(Err(_)) => pending().await,
+    /// What is to be said of a write of which the system says `written`.
+    fn judged(
+        &mut self,
+        context: &mut Context<'_>,
+        written: Poll<io::Result<usize>>,
+    ) -> Poll<io::Result<usize>> {
+        match (written, &mut self.waiting) {
+            (Poll::Pending, waiting) => {
+                let waiting = waiting.get_or_insert_with(|| Waiting {
+                    until: Box::pin(sleep(PATIENCE)),
+                    taken: 0,
+                });
+                let over = waiting.until.as_mut().poll(context);
+                over.map(|()| Err(ErrorKind::TimedOut.into()))
             }
+            (Poll::Ready(Ok(count)), Some(waiting)) => {
+                waiting.taken += count;
+                if waiting.taken >= ENOUGH {
+                    self.waiting = None;
+                }
+                Poll::Ready(Ok(count))
+            }
+            (written, _) => written,
         }
+    }
+}
+
+impl<S: AsyncRead + Unpin> AsyncRead for Paced<S> {
+    fn poll_read(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        buffer: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.socket).poll_read(context, buffer)
+    }
+}
+
+impl<S: AsyncWrite + Unpin> AsyncWrite for Paced<S> {
+    fn poll_write(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        bytes: &[u8],
+    ) -> Poll<io::Result<usize>> {
+        let written = Pin::new(&mut self.socket).poll_write(context, bytes);
+        self.judged(context, written)
+    }
+
+    fn poll_write_vectored(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        slices: &[IoSlice<'_>],
+    ) -> Poll<io::Result<usize>> {
+        let written = Pin::new(&mut self.socket).poll_write_vectored(context, slices);
+        self.judged(context, written)
+    }
+
+    fn is_write_vectored(&self) -> bool {
+        self.socket.is_write_vectored()
+    }
+
+    fn poll_flush(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
+        self.waiting = None;
+        Pin::new(&mut self.socket).poll_flush(context)
+    }
+
+    fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.socket).poll_shutdown(context)
     }
 }

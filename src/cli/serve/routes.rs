@@ -5,12 +5,13 @@ use std::net::IpAddr;
 use hyper::body::{Body, Incoming};
 use hyper::header::{ALLOW, IF_RANGE, RANGE};
 use hyper::{Method, Request, Response, StatusCode, Uri};
+use tokio::sync::{Mutex, MutexGuard};
 use tokio::task::spawn_blocking;
 
 use super::answer::Answer;
-use super::body::Content;
+use super::body::{Content, Place};
 use super::folder::Served;
-use super::pace::Pace;
+use super::made::Kept;
 use super::refusal::Refusal;
 use super::{files, host, tiles};
 use crate::cli::folder::REPORT;
@@ -24,20 +25,31 @@ pub(super) struct Site {
     pub folder: Served,
     pub address: IpAddr,
     /// The page of a run that has no report.
-    pub page: Option<String>,
+    pub page: Mutex<Kept>,
 }
 
 /// Answers a request. Files are read on a thread for that, not on one that others wait for.
 pub(super) async fn respond(
     site: &'static Site,
     request: Request<Incoming>,
-    pace: &Pace,
+    place: &Place,
 ) -> Response<Content> {
     let answer = match check(&request, site.address) {
         Ok(()) => {
             let range = range(&request);
             let uri = request.uri().clone();
-            let found = spawn_blocking(move || find(site, &uri, range.as_deref())).await;
+            let place = place.clone();
+            // One at a time makes the page; the others wait, on no thread.
+            let kept = match uri.path() {
+                "/" => Some(site.page.lock().await),
+                _ => None,
+            };
+            let read = move || {
+                let found = find(&site.folder, &uri, range.as_deref(), kept);
+                drop(place);
+                found
+            };
+            let found = spawn_blocking(read).await;
             found.unwrap_or_else(|e| Err(Refusal::broken(e.to_string())))
         }
         Err(refusal) => Err(refusal),
@@ -50,7 +62,7 @@ pub(super) async fn respond(
             false => answer,
         }
     });
-    answer.response(request.method(), pace)
+    answer.response(request.method(), place)
 }
 
 /// Whether the request is one to this server that only reads.
@@ -83,30 +95,33 @@ fn range(request: &Request<Incoming>) -> Option<String> {
     range.to_str().ok().filter(|_| counts).map(str::to_owned)
 }
 
-fn find(site: &Site, uri: &Uri, range: Option<&str>) -> Result<Answer, Refusal> {
-    let folder = &site.folder;
-    match uri.path() {
-        "/" => page(site),
-        "/api/about" => tiles::about(folder, uri.query()),
-        "/api/frame" => tiles::frame(folder, uri.query()),
-        "/api/row" => tiles::row(folder, uri.query()),
-        path => match path.strip_prefix("/files/").and_then(decoded) {
+fn find(
+    folder: &Served,
+    uri: &Uri,
+    range: Option<&str>,
+    kept: Option<MutexGuard<'_, Kept>>,
+) -> Result<Answer, Refusal> {
+    match (uri.path(), kept) {
+        (_, Some(mut kept)) => page(folder, &mut kept),
+        ("/api/about", _) => tiles::about(folder, uri.query()),
+        ("/api/frame", _) => tiles::frame(folder, uri.query()),
+        ("/api/row", _) => tiles::row(folder, uri.query()),
+        (path, _) => match path.strip_prefix("/files/").and_then(decoded) {
             Some(name) => files::file(folder, &name, range),
             None => Err(Refusal::new(StatusCode::NOT_FOUND, "nothing is here")),
         },
     }
 }
 
-/// The page of the folder: the one that lies in it, else the one that was made of what lies in it.
-fn page(site: &Site) -> Result<Answer, Refusal> {
+/// The page of the folder: the one that lies in it, else the one that is made of what lies in it.
+fn page(folder: &Served, kept: &mut Kept) -> Result<Answer, Refusal> {
     for name in [REPORT, REPRODUCTION] {
-        match files::file(&site.folder, name, None) {
+        match files::file(folder, name, None) {
             Err(refusal) if refusal.status == StatusCode::NOT_FOUND => {}
             answer => return answer,
         }
     }
-    let made = site.page.as_ref().map(|p| p.clone().into_bytes());
-    made.map(|page| Answer::bytes(files::PAGE, page)).ok_or_else(|| {
+    kept.page(folder, |_| {})?.map(|page| Answer::bytes(files::PAGE, page)).ok_or_else(|| {
         let words = format!(
             "there is no {REPORT} in this folder: `phicam run SCENE -o DIR` makes one of a run, `phicam study` of a study, `phicam reproduce -o DIR` a {REPRODUCTION}"
         );

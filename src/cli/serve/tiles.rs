@@ -1,6 +1,6 @@
 //! `/api/…`: what was run, and parts of its matrices, which stay on disk.
 
-use std::io::{self, Read};
+use std::io;
 use std::path::Path;
 
 use hyper::header::HeaderName;
@@ -11,6 +11,7 @@ use super::body::{PIECE, Source};
 use super::folder::Served;
 use super::query::Query;
 use super::refusal::Refusal;
+use super::run::record;
 use crate::cli::folder::{PHI, STDERR};
 use crate::cli::record::Record;
 use crate::matrix::npy::Entries;
@@ -30,8 +31,6 @@ const MATRICES: [(&str, &str); 4] = [
 const SIDE_MAX: usize = 512;
 /// Most entries of a row.
 const ROW_MAX: usize = 1_000_000;
-/// Longest run.json that is read, bytes: phicam's own has 400.
-const RECORD_MAX: u64 = 1 << 20;
 /// Numbers in a piece of an answer.
 const NUMBERS: usize = PIECE / size_of::<f64>();
 
@@ -44,6 +43,9 @@ pub(super) fn about(folder: &Served, query: Option<&str>) -> Result<Answer, Refu
     struct About<'a> {
         version: &'a str,
         scene: &'a str,
+        hash: &'a str,
+        /// As text: JavaScript has no integers of 64 bits.
+        seed: String,
         pixels: [usize; 2],
         spots: usize,
         matrices: Vec<&'a str>,
@@ -54,6 +56,8 @@ pub(super) fn about(folder: &Served, query: Option<&str>) -> Result<Answer, Refu
     let about = About {
         version: &record.version,
         scene: &record.scene,
+        hash: &record.scene_hash,
+        seed: record.seed.to_string(),
         pixels: record.pixels,
         spots: record.spots,
         matrices: MATRICES
@@ -129,20 +133,6 @@ pub(super) fn row(folder: &Served, query: Option<&str>) -> Result<Answer, Refusa
         next: 0,
     };
     Ok(Answer::pieces(BYTES, Box::new(row), length))
-}
-
-fn record(folder: &Served) -> Result<Record, Refusal> {
-    let name = Record::FILE;
-    let damaged = |what: String| Refusal::broken(format!("{name} is damaged: {what}"));
-    let mut bytes = Vec::new();
-    let file = folder.open(name)?.file;
-    let read = file.take(RECORD_MAX).read_to_end(&mut bytes);
-    read.map_err(|e| Refusal::broken(format!("cannot read {name}: {e}")))?;
-    let record: Record = serde_json::from_slice(&bytes).map_err(|e| damaged(e.to_string()))?;
-    match record.pixels {
-        [columns, rows] if columns.checked_mul(rows).is_some() => Ok(record),
-        [columns, rows] => Err(damaged(format!("{columns} × {rows} pixels"))),
-    }
 }
 
 /// A matrix of the run, if it has the run's shape.

@@ -147,6 +147,58 @@ fn forged_headers_are_refused_without_harm() {
 }
 
 #[test]
+fn a_header_that_changes_meanwhile_is_still_the_one_that_was_checked() {
+    use std::io::{Seek, Write};
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("a.npy");
+    write(&path, &sample()).unwrap();
+    // Version 1, or version 2 with 256 MiB of header.
+    let whole = std::fs::read(&path).unwrap();
+    let huge = [2, 0, 0, 0, 0, 0x10];
+    let done = AtomicBool::new(false);
+    let mut counts = [0; 2];
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            let mut file = File::options().write(true).open(&path).unwrap();
+            while !done.load(Ordering::Relaxed) {
+                for bytes in [&huge[..], &whole[6..12]] {
+                    file.seek(io::SeekFrom::Start(6)).unwrap();
+                    file.write_all(bytes).unwrap();
+                }
+            }
+        });
+        let mut wrong = None;
+        for _ in 0..20_000 {
+            match open(&path) {
+                Ok(_) => counts[0] += 1,
+                // Said before anything of that length is allocated.
+                Err(e) if e.to_string().contains("claims 268435456 bytes") => counts[1] += 1,
+                Err(e) => wrong = Some(e.to_string()),
+            }
+        }
+        done.store(true, Ordering::Relaxed);
+        assert_eq!(wrong, None);
+    });
+    assert!(counts[0] > 0 && counts[1] > 0, "{counts:?}");
+}
+
+#[test]
+fn a_refusal_is_one_line() {
+    for (descr, fortran, shape) in [
+        ("<f8", "Maybe\n\n\n", "(6, 5)"),
+        ("<f8", "False", "\n(6\n\r\x1b[2J, 5"),
+        ("<\nf8", "False", "(6, 5)"),
+        ("|S8", "False", "(6,\n 5)"),
+    ] {
+        let refused = read_bytes(&file(descr, fortran, shape, &[0; 240]));
+        let words = refused.unwrap_err().to_string();
+        assert!(!words.contains(char::is_control), "{words:?}");
+    }
+}
+
+#[test]
 fn a_file_cut_anywhere_is_refused() {
     let whole = file("<f8", "False", "(2, 3)", &bytes_of(&[1.0; 6]));
     for length in 0..whole.len() {

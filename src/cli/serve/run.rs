@@ -1,0 +1,35 @@
+//! run.json of the folder.
+
+use std::io::Read;
+
+use super::folder::Served;
+use super::refusal::Refusal;
+use crate::cli::record::Record;
+
+/// Longest run.json that is read, bytes: phicam's own has 400.
+const RECORD_MAX: u64 = 1 << 20;
+
+/// Its bytes.
+pub(super) fn bytes(folder: &Served) -> Result<Vec<u8>, Refusal> {
+    let name = Record::FILE;
+    let mut bytes = Vec::new();
+    let file = folder.open(name)?.file;
+    let read = file.take(RECORD_MAX).read_to_end(&mut bytes);
+    read.map_err(|e| Refusal::broken(format!("cannot read {name}: {e}")))?;
+    Ok(bytes)
+}
+
+/// What `bytes` say, with a number of pixels that is one.
+pub(super) fn parsed(bytes: &[u8]) -> Result<Record, Refusal> {
+    let damaged = |what: String| Refusal::broken(format!("{} is damaged: {what}", Record::FILE));
+    let record: Record = serde_json::from_slice(bytes).map_err(|e| damaged(e.to_string()))?;
+    match record.pixels {
+        [columns, rows] if columns.checked_mul(rows).is_some() => Ok(record),
+        [columns, rows] => Err(damaged(format!("{columns} × {rows} pixels"))),
+    }
+}
+
+/// What was run.
+pub(super) fn record(folder: &Served) -> Result<Record, Refusal> {
+    parsed(&bytes(folder)?)
+}
