@@ -35,7 +35,10 @@ record = jsondecode(fileread([folder '/run.json']));
 
 % Recovery as published: X = Φ·D⁺, divided by C entry by entry, mean over the pixels. Singular values at or below max(r, l)·eps·σ1 count as zero (pinv), or all but
 % the first few (tsvd). How far two programs may be apart by rounding alone is derived in analyse_run.py: to first order in ‖E‖ = 2·√max(r, l)·eps·σ1,
-% |Δx_j| ≤ ‖E‖·(a·‖x‖ + a·‖r‖/gap + b·‖x‖/gap) + 2·√l·eps·a·‖w‖, gap = σ_k − σ_(k+1) − ‖E‖.
+% |Δx_j| ≤ ‖E‖·(a·‖x‖ + a·‖r‖/gap + b·‖x‖/gap) + 2·√l·eps·a·‖w‖, gap = σ_k − σ_(k+1) − ‖E‖. With so small a σ_k as that of pinv this allows half of the answer:
+% there phicam is held to the scatter of Octave's own answers to the same question in other words (D or its transpose, rows and columns in another order, entries
+% moved by up to eps/2 of themselves), and may be one decimal digit worse, since its decomposition is another algorithm than LAPACK's.
+worse = 10;
 [U, S, V] = svd(D, 'econ');
 sigma = [diag(S); 0];
 methods = {'pinv', 'tsvd'};
@@ -57,19 +60,38 @@ for k = 1:2
   x = (phi * v) ./ s * u';
   rho = mean(x ./ C, 1);
   found{k} = reshape(rho, fliplr(size(truth)))';
-  w = phi' * (1 ./ C) / size(C, 1);
-  x = u ./ s * (v' * w);
-  r = w - v * (v' * w);
-  perturbation = 2 * sqrt(max(size(D))) * eps * sigma(1);
-  gap = s(end) - sigma(rank_of_D + 1) - perturbation;
-  a = lengths((u ./ s)');
-  b = sqrt(max(1 - lengths(u') .^ 2, 0));
-  bound = perturbation * (a .* lengths(x) + a .* lengths(r) / gap + b .* lengths(x) / gap) + 2 * sqrt(max(size(D))) * eps * a .* lengths(w);
+  if k == 1
+    rand('twister', 1);
+    scatter = zeros(size(rho));
+    for draw = 1:40
+      [~, i] = sort(rand(1, size(D, 1)));
+      [~, j] = sort(rand(1, size(D, 2)));
+      same = D + eps / 2 * D .* (2 * rand(size(D)) - 1);
+      if mod(draw, 2) == 1
+        [u, s, v] = svd(same(i, j), 'econ');
+      else
+        [v, s, u] = svd(same(i, j)', 'econ');
+      end
+      kept_s = s(1:rank_of_D, 1:rank_of_D);
+      answer = mean(phi(:, j) * v(:, 1:rank_of_D) / kept_s * u(:, 1:rank_of_D)' ./ C(:, i), 1);
+      scatter(i) = max(scatter(i), abs(answer - rho(i)));
+    end
+    bound = worse * scatter;
+  else
+    w = phi' * (1 ./ C) / size(C, 1);
+    x = u ./ s * (v' * w);
+    r = w - v * (v' * w);
+    perturbation = 2 * sqrt(max(size(D))) * eps * sigma(1);
+    gap = s(end) - sigma(rank_of_D + 1) - perturbation;
+    a = lengths((u ./ s)');
+    b = sqrt(max(1 - lengths(u') .^ 2, 0));
+    bound = perturbation * (a .* lengths(x) + a .* lengths(r) / gap + b .* lengths(x) / gap) + 2 * sqrt(max(size(D))) * eps * a .* lengths(w);
+  end
   apart = abs(rho - reshape(theirs{k}', 1, []));
   largest = max(abs(theirs{k}(:)));
-  fprintf('%s: rank %d, differs by %.1e of the largest value, %.1e by rounding at most\n', methods{k}, rank_of_D, max(apart) / largest, max(bound) / largest);
+  fprintf('%s: rank %d, differs by %.1e of the largest value, %.1e allowed\n', methods{k}, rank_of_D, max(apart) / largest, max(bound) / largest);
   if rank_of_D ~= kept || ~all(apart <= bound)
-    wrong = sprintf('%s%s differs from phicam''s (its rank %d) by up to %.2g times what rounding explains\n', wrong, methods{k}, kept, max(apart ./ bound));
+    wrong = sprintf('%s%s differs from phicam''s (its rank %d) by up to %.2g times what is allowed\n', wrong, methods{k}, kept, max(apart ./ bound));
   end
 end
 
