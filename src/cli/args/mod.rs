@@ -303,7 +303,7 @@ pub(in crate::cli) enum SceneCommand {
     Check {
         /// Built-in scene or path of a scene file
         scene: String,
-        /// Print what is in the scene, and what is suspicious, as JSON
+        /// Print what is in the scene, and what is suspicious or wrong, as JSON
         #[arg(long)]
         json: bool,
     },
