@@ -133,15 +133,22 @@ fn a_real_run_is_served_and_made_again_meanwhile() {
     assert_ne!(second, first);
     let page = server.get("/").text();
     assert!(page.contains("seed 2."), "the page of the run before");
-    // A scene that is not that of the record has no page, until it is again.
-    let scene = workspace.text("out/scene.toml");
-    workspace.write("out/scene.toml", scene.clone() + "# another\n");
-    let changed = workspace
-        .text("out/run.json")
-        .replace("\"threads\"", " \"threads\"");
-    workspace.write("out/run.json", &changed);
-    server.get("/").refuses(500, "another scene");
+    // A scene that is damaged, or not that of the record, has no page, until it has again.
+    let (scene, record) = (
+        workspace.text("out/scene.toml"),
+        workspace.text("out/run.json"),
+    );
+    workspace.write("out/scene.toml", "[");
+    workspace.write("out/run.json", record.clone() + "\n");
+    server.get("/").refuses(500, "a damaged scene");
     workspace.write("out/scene.toml", &scene);
+    assert!(server.get("/").text().contains("seed 2."));
+    workspace.write(
+        "out/run.json",
+        record.replace("\"scene_hash\": \"", "\"scene_hash\": \"x"),
+    );
+    server.get("/").refuses(500, "another scene");
+    workspace.write("out/run.json", &record);
     assert!(server.get("/").text().contains("seed 2."));
 
     for (name, page) in [("reproduction.html", "<p>2"), ("report.html", "<p>1")] {

@@ -164,7 +164,7 @@ fn a_header_that_changes_meanwhile_is_still_the_one_that_was_checked() {
             let mut file = File::options().write(true).open(&path).unwrap();
             while !done.load(Ordering::Relaxed) {
                 for bytes in [&huge[..], &whole[6..12]] {
-                    file.seek(io::SeekFrom::Start(6)).unwrap();
+                    file.seek(SeekFrom::Start(6)).unwrap();
                     file.write_all(bytes).unwrap();
                 }
             }
