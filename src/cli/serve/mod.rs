@@ -18,11 +18,12 @@
 //! # Guarantees
 //!
 //! * Nothing is written. Nothing outside DIR is read, whatever a path or a link says and whoever swaps one for the other meanwhile; no hidden file, no unfinished one.
+//!   One exception: to make a page, scene.toml and what it names are read as `phicam render` reads them, by their paths, and shown if they are the scene of run.json by its hash.
 //! * It listens on a loopback address unless another one is given. Requests that name another host are refused (DNS rebinding), no other origin may read answers, and what
 //!   a page may load and ask is bounded by a policy: its own script, no other server. It does not keep a page from being left for another address. Who has an account on this
 //!   machine reaches a loopback address too.
 //! * Memory is bounded: at most 256 connections at once, each with two pieces of 64 KiB of its answer, 16 KiB of its request and what the system buffers; the others wait. The
-//!   page that is made is there once, however many want it, and once more for those who still get the one before.
+//!   page that is made is there once, however many want it, and each one before for as long as someone is still sent it.
 //!   Matrices stay on disk: only the numbers asked for are read, or the pages they are on.
 //! * A client has 10 s for its headers, and 15 s for each 64 KiB of an answer, and for what is left at its end, from when the system takes no more for it; then its connection
 //!   is closed. Up to 255 of them hold up nobody; if more hang, the others wait those 15 s. Eight threads read files, and what they read for a client that has gone counts as a connection.
