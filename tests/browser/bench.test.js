@@ -50,14 +50,16 @@ async function picture(page) {
     const style = await page.addStyleTag({ content: ".bench-names, .bench-scale { visibility: hidden }" });
     const png = await page.locator("#bench-3d canvas").screenshot();
     await style.evaluate((element) => element.remove());
-    return page.evaluateHandle(async (text) => {
+    return page.evaluateHandle(async ([text, EDGE]) => {
         const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
         const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
         const canvas = new OffscreenCanvas(image.width, image.height);
         const context = canvas.getContext("2d");
         context.drawImage(image, 0, 0);
-        return { width: image.width, values: new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer) };
-    }, png.toString("base64"));
+        // The outermost pixels are shared with the page where the drawing's edge is between two of them, and that differs with how far it is scrolled.
+        const [width, height] = [image.width - 2 * EDGE, image.height - 2 * EDGE];
+        return { width, values: new Uint32Array(context.getImageData(EDGE, EDGE, width, height).data.buffer) };
+    }, [png.toString("base64"), 2]);
 }
 
 /** The box around the pixels in which two pictures differ, [left, top, right, bottom], and how many they are, and of how many. */
@@ -298,30 +300,4 @@ test("in dark colours it is drawn anew", { timeout: 120_000 }, async () => {
     await page.emulateMedia({ colorScheme: "light" });
     await still(page);
     assert.equal((await difference(page, light, await picture(page))).count, 0);
-});
-
-/** Turning by key, one step a frame, drawn by the processor: the best of three rows of 60 frames, for other work on the machine slows the others. */
-test("it turns at more than 30 frames a second", { timeout: 120_000 }, async (t) => {
-    for (const scene of ["experiment", "room"]) {
-        const { page, browser } = await open(scene, { args: ["--disable-gpu", "--enable-unsafe-swiftshader"] });
-        const rates = [];
-        for (let row = 0; row < 3; row++) {
-            rates.push(
-                await page.evaluate(async () => {
-                    const canvas = document.querySelector("#bench-3d canvas");
-                    const frame = () => new Promise(requestAnimationFrame);
-                    let start = 0;
-                    for (let i = 0; i <= 75; i++) {
-                        start = i === 15 ? performance.now() : start;
-                        canvas.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowLeft" }));
-                        await frame();
-                    }
-                    return 60_000 / (performance.now() - start);
-                }),
-            );
-        }
-        t.diagnostic(`${scene}: ${rates.map((rate) => rate.toFixed(0)).join(", ")} frames a second`);
-        assert.ok(Math.max(...rates) > 30, scene);
-        await browser.close();
-    }
 });
