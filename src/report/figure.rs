@@ -77,7 +77,8 @@ pub(super) fn note(text: Option<String>) -> String {
     })
 }
 
-fn capital(text: &str) -> String {
+/// The text with a capital letter first.
+pub(super) fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters
         .next()

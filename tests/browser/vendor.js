@@ -13,16 +13,16 @@ const libraries = [
     {
         file: "plot.min.js",
         name: "Plot",
-        source: `export { areaY, crosshair, dot, frame, gridX, gridY, line, plot, pointer, pointerX, ruleX, ruleY, text, tip } from "@observablehq/plot";`,
+        source: `export { areaY, dot, frame, gridX, gridY, line, plot } from "@observablehq/plot";`,
     },
     {
         file: "three.min.js",
         name: "THREE",
         source: `export {
-            AmbientLight, BoxGeometry, BufferAttribute, BufferGeometry, CanvasTexture, Color, ConeGeometry, CylinderGeometry, DataTexture, DirectionalLight,
-            DoubleSide, FrontSide, BackSide, EdgesGeometry, Float32BufferAttribute, Group, InstancedMesh, Line, LineBasicMaterial, LineDashedMaterial, LineLoop, LinearFilter, LinearMipmapLinearFilter, LineSegments,
-            Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, NearestFilter, OrthographicCamera, PerspectiveCamera, Plane, PlaneGeometry, Points, PointsMaterial,
-            Quaternion, Raycaster, RepeatWrapping, Scene, SphereGeometry, Sprite, SpriteMaterial, SRGBColorSpace, Vector2, Vector3, WebGLRenderer, Box3, Sphere,
+            AmbientLight, BackSide, BufferAttribute, BufferGeometry, Color, DataTexture, DirectionalLight, DoubleSide, EdgesGeometry,
+            Float32BufferAttribute, FrontSide, Group, LinearFilter, LinearMipmapLinearFilter, Matrix4, Mesh, MeshBasicMaterial,
+            MeshLambertMaterial, NearestFilter, OrthographicCamera, Points, PointsMaterial, Quaternion, RepeatWrapping, SRGBColorSpace, Scene,
+            Vector3, WebGLRenderer,
         } from "three";
         export { OrbitControls } from "three/addons/controls/OrbitControls.js";
         export { LineMaterial } from "three/addons/lines/LineMaterial.js";

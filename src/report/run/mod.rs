@@ -8,6 +8,7 @@ mod matrices;
 mod settings;
 
 use super::axis::significant;
+use super::figure::capital;
 use super::gallery::{recoveries, slides};
 use super::page::{Page, Tone, explained};
 use super::picard::picard_svg;
@@ -34,11 +35,7 @@ pub fn run_html(results: &RunResults) -> String {
         Some(_) => Tone::Bad,
         None => Tone::Plain,
     };
-    let mut sentence = verdict(results);
-    if let Some(first) = sentence.get(..1).map(str::to_uppercase) {
-        sentence.replace_range(..1, &first);
-    }
-    page.verdict(tone, &format!("{sentence}."));
+    page.verdict(tone, &format!("{}.", capital(&verdict(results))));
     bench::section(&mut page, &results.scene);
     let fallback = frames(results);
     let explorer = explorer(&mut page, results, &fallback);

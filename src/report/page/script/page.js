@@ -163,17 +163,6 @@ function coloursOf(map) {
     return table;
 }
 
-/**
- * The colour of a map at a share of its range, as CSS.
- * @param {MapName} map
- * @param {number} share
- */
-function colourOf(map, share) {
-    const table = coloursOf(map);
-    const i = 3 * Math.round(255 * Math.min(1, Math.max(0, share)));
-    return `rgb(${table[i]} ${table[i + 1]} ${table[i + 2]})`;
-}
-
 /** Values below and above the range of a map, and such as are no numbers: the colours of the static pictures. */
 const OUTSIDE = {
     viridis: { below: [0x00, 0x00, 0x00], above: [0xd5, 0x5e, 0x00] },
