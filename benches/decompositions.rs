@@ -1,5 +1,6 @@
-//! What does the number of directions save over the full decomposition? Varied: elements and spots; G12 of the published scene, numerical rank about 100.
-//! Read as ratios: `full` decomposes all of the matrix, `needed` as far as its numerical rank needs, `inverse` is the Moore–Penrose inverse.
+//! What does the number of directions save over the full decomposition? Varied: elements and spots;
+//! G12 of the published scene, numerical rank about 100. Read as ratios: `full` decomposes all of
+//! the matrix, `needed` as far as its numerical rank needs, `inverse` is the Moore–Penrose inverse.
 //! `benches/peers/factorisations.py` sets them beside NumPy's.
 
 use std::hint::black_box;

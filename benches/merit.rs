@@ -1,10 +1,12 @@
-//! Which estimator makes the best use of time? Varied: estimator, sampler, samples; Φcam of the published scene with 100 spots.
+//! Which estimator makes the best use of time? Varied: estimator, sampler, samples; Φcam of the
+//! published scene with 100 spots.
 //!
-//! Printed is ε²T: ε the relative Frobenius error against converged quadrature (root mean square over the seeds), T the seconds on
-//! one thread (the least over the seeds, for whatever else runs on the machine only adds to it). Where ε² falls like 1/T, ε²T does not depend
-//! on the samples; where it falls faster, it falls with them. With `--test` each line runs once, at the fewest samples.
+//! Printed is ε²T: ε the relative Frobenius error against converged quadrature (root mean square
+//! over the seeds), T the seconds on one thread (the least over the seeds, for whatever else runs
+//! on the machine only adds to it). Where ε² falls like 1/T, ε²T does not depend on the samples;
+//! where it falls faster, it falls with them. With `--test` each line runs once, at the fewest
+//! samples.
 
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use phicam::matrix::Matrix;
@@ -34,11 +36,7 @@ impl Line {
             seed,
             budget: Budget::new(self.samples, self.sampling).expect("a number that can be traced"),
         };
-        let stop = AtomicBool::new(false);
-        let control = Control {
-            progress: &|_| (),
-            stop: &stop,
-        };
+        let control = Control::none();
         let start = Instant::now();
         let traced = render(scene, &plan, 0..truth.ncols(), control).expect("nothing stops it");
         self.seconds.push(start.elapsed().as_secs_f64());

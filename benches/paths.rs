@@ -1,8 +1,8 @@
-//! How long does a path take, by estimator and sampler? Varied: estimator, sampler. One spot of the bench counts as one
-//! entry under `independent`; `shared` is given all 120 spots, so its paths cost 120 connections.
+//! How long does a path take, by estimator and sampler? Varied: estimator, sampler. One spot of the
+//! bench counts as one entry under `independent`; `shared` is given all 120 spots, so its paths
+//! cost 120 connections.
 
 use std::hint::black_box;
-use std::sync::atomic::AtomicBool;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use phicam::num::stream::Sampling;
@@ -11,11 +11,7 @@ use phicam::transport::{Budget, Control, Estimator, Plan, render};
 
 fn paths(c: &mut Criterion) {
     let scene = Scene::load("bench").expect("the bench is built in");
-    let stop = AtomicBool::new(false);
-    let control = Control {
-        progress: &|_| (),
-        stop: &stop,
-    };
+    let control = Control::none();
     let mut group = c.benchmark_group("entries of Φcam per path");
     for (estimator, spots) in [(Estimator::Independent, 0..1), (Estimator::Shared, 0..120)] {
         for sampling in [Sampling::Pcg, Sampling::Sobol] {

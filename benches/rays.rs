@@ -1,5 +1,6 @@
-//! What does a ray cost as the scene grows, and where does the tree overtake the list? Varied: number of patches (up to 8 they are tested
-//! one by one, beyond that the BVH answers; batches go through the list up to 32), triangles of a mesh, one ray at a time or a batch.
+//! What does a ray cost as the scene grows, and where does the tree overtake the list? Varied:
+//! number of patches (up to 8 they are tested one by one, beyond that the BVH answers; batches go
+//! through the list up to 32), triangles of a mesh, one ray at a time or a batch.
 //! `peers/embree_rays.py` sets the rates beside Embree's.
 
 use std::f64::consts::TAU;
@@ -34,7 +35,8 @@ fn bench() -> Vec<Shape> {
     ]
 }
 
-/// The sphere r = 1 + sin(12x)·sin(12y)·sin(12z)/20 + sin(80x)·sin(80y)/100 of 12·n² triangles: a cube's faces, blown up.
+/// The sphere r = 1 + sin(12x)·sin(12y)·sin(12z)/20 + sin(80x)·sin(80y)/100 of 12·n² triangles: a
+/// cube's faces, blown up.
 fn sphere(n: u32) -> Mesh {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     for face in 0..6 {

@@ -1,4 +1,5 @@
-//! How does the time of each recovery method grow with the elements? Varied: method, elements a side; 256 pixels, 120 spots.
+//! How does the time of each recovery method grow with the elements? Varied: method, elements a
+//! side; 256 pixels, 120 spots.
 
 use std::hint::black_box;
 

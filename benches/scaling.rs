@@ -1,9 +1,9 @@
-//! How does the time grow with the size of the task? Varied, one at a time: pixels a side, spots, points, threads (each estimator, one entry
-//! of Φcam having the same paths throughout), and elements a side (the matrix model); otherwise the published scene with 100
-//! spots, 16 × 16 pixels and one thread.
+//! How does the time grow with the size of the task? Varied, one at a time: pixels a side, spots,
+//! points, threads (each estimator, one entry of Φcam having the same paths throughout), and
+//! elements a side (the matrix model); otherwise the published scene with 100 spots, 16 × 16 pixels
+//! and one thread.
 
 use std::hint::black_box;
-use std::sync::atomic::AtomicBool;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, criterion_group, criterion_main};
@@ -33,7 +33,8 @@ fn samples(estimator: Estimator) -> u64 {
     }
 }
 
-/// Times Φcam of `scene` with `samples` by `estimator` on `threads` threads, as `value` of the group.
+/// Times Φcam of `scene` with `samples` by `estimator` on `threads` threads, as `value` of the
+/// group.
 fn time(
     group: &mut BenchmarkGroup<'_, WallTime>,
     value: u64,
@@ -46,11 +47,7 @@ fn time(
         seed: 1,
         budget: Budget::new(samples, Sampling::Sobol).expect("a number that can be traced"),
     };
-    let stop = AtomicBool::new(false);
-    let control = Control {
-        progress: &|_| (),
-        stop: &stop,
-    };
+    let control = Control::none();
     let spots = scene.laser.spots.len();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.expect("threads can be started");

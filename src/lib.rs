@@ -1,11 +1,13 @@
-//! phicam: a physically based Monte Carlo renderer for *indirect photography*, and the laboratory around it.
+//! phicam: a physically based Monte Carlo renderer for *indirect photography*, and the laboratory
+//! around it.
 //!
 //! # The experiment
 //!
-//! A laser spot on a matt wall (S1) lights a surface that nobody can see (S2): it leans over the wall around a corner.
-//! The light comes back to the wall (S3), where a pinhole camera photographs it. The camera has no line of sight to the
-//! hidden surface; all it sees is a faint glow on the wall, which changes a little with the spot. One photograph per
-//! laser spot, stacked as columns, is the matrix \[Φcam\], pixels × spots.
+//! A laser spot on a matt wall (S1) lights a surface that nobody can see (S2): it leans over the
+//! wall around a corner. The light comes back to the wall (S3), where a pinhole camera photographs
+//! it. The camera has no line of sight to the hidden surface; all it sees is a faint glow on the
+//! wall, which changes a little with the spot. One photograph per laser spot, stacked as columns,
+//! is the matrix \[Φcam\], pixels × spots.
 //!
 //! ```text
 //!        laser, camera
@@ -21,9 +23,9 @@
 //!
 //! > Φcam\[p,l\] = Φlaser · E_p · (ρ3/π) · (ρ1/π) · Σ_j G23\[p,j\] · (ρ2_j/π) · A_j · G12\[j,l\]
 //!
-//! and inverting it gives ρ2, the picture of what was hidden. phicam *traces* the light without knowing that model,
-//! writes the frames that the camera would store, stacks them, tests with statistics whether model and transport
-//! agree, and recovers the hidden reflectance.
+//! and inverting it gives ρ2, the picture of what was hidden. phicam *traces* the light without
+//! knowing that model, writes the frames that the camera would store, stacks them, tests with
+//! statistics whether model and transport agree, and recovers the hidden reflectance.
 //!
 //! | symbol | meaning | shape, unit |
 //! | --- | --- | --- |
@@ -44,11 +46,12 @@
 //!    9  main.rs                      parse → run → exit code
 //!    8  cli/         arguments, checked settings, progress, one file per subcommand; the only floor that prints
 //!    7  report/      results → json, svg, png, html: results in, bytes out; page/script: what makes a page answer, in JavaScript
-//!    6  study/       experiments that compose the floors below: validation, recovered objects, budget, tolerance, power, noise,
+//!       jobs/        long work in numbered blocks: results of blocks on disk, shards of a plan, going on after a stop
+//!    6  lab/         experiments that compose the floors below: validation, recovered objects, budget, tolerance, power, noise,
 //!                    indicators, coverage, wall BRDFs, the laboratory experiment, the published study
 //!    5  recovery/    Φcam → reflectance              metrics/   how far two things are apart
 //!    4  transport/   the path tracer → Φcam          model/     G12, G23 → Φcam             sensor/  flux → electrons → counts
-//!    3  film/        frames, EXR                     matrix/    pixels × spots, .npy        store  whole files    shard  parts of a computation
+//!    3  film/        frames, EXR                     matrix/    pixels × spots, .npy        store  whole files
 //!    2  scene/       laser, surface, texture, camera, scene file
 //!    1  geometry/    basis, shapes, BVH              image/     PNG, JPEG, EXR bytes ↔ pictures
 //!    0  num/         constants, streams (random and Sobol'), warps, quadrature, statistics, linear algebra, summation, wide arithmetic
@@ -56,56 +59,61 @@
 //!
 //! Invariants, each kept by a test that reads the sources (`tests/architecture.rs`):
 //!
-//! 1. **Two witnesses.** [`transport`] and [`model`] never import each other. The model knows quadrature only, the
-//!    tracer knows random streams and warps only. If they shared code, their agreement would prove nothing.
-//! 2. **Blind recovery.** [`recovery`] imports [`num`] and [`matrix`] only; it never learns what scene it inverts.
-//! 3. **One door per foreign crate**: obvhs only in `geometry/bvh`, exr only in `film/exr` and `image/exr` (frames and pictures), png only in `image/png`, matrix decompositions only in
-//!    [`num::linalg`], random generators only in [`num::stream`], the argument parser only in [`cli`].
-//! 4. **A random number is a function of (seed, spot, pixel, sample block)**, never of the thread or the order. The same
-//!    seed gives the same bytes. Blocks are added along one fixed binary tree ([`num::tree`]), so that any part of a computation can be done
-//!    elsewhere or later, and comes out with the same bits.
+//! 1. **Two witnesses.** [`transport`] and [`model`] never import each other. The model knows
+//!    quadrature only, the tracer knows random streams and warps only. If they shared code, their
+//!    agreement would prove nothing.
+//! 2. **Blind recovery.** [`recovery`] imports [`num`] and [`matrix`] only; it never learns what
+//!    scene it inverts.
+//! 3. **One door per foreign crate**: obvhs only in `geometry/bvh`, exr only in `film/exr` and
+//!    `image/exr` (frames and pictures), png only in `image/png`, matrix decompositions only in
+//!    `num::linalg`, random generators only in [`num::stream`], the argument parser only in
+//!    [`cli`].
+//! 4. **A random number is a function of (seed, spot, pixel, sample block)**, never of the thread
+//!    or the order. The same seed gives the same bytes. Blocks are added along one fixed binary
+//!    tree (`num::tree`), so that any part of a computation can be done elsewhere or later, and
+//!    comes out with the same bits.
 //!
-//! Rays travel in f32 inside the BVH only; every intersection, and every point that enters a radiometric term, is computed
-//! in f64 on its own shape, and every sum is f64 in a fixed order.
+//! Rays travel in f32 inside the BVH only; every intersection, and every point that enters a
+//! radiometric term, is computed in f64 on its own shape, and every sum is f64 in a fixed order.
 //!
-//! # A toy run
+//! # Three programs
 //!
-//! The bench with four spots, traced and modelled:
+//! Trace a scene made in code and compare it with the model:
 //!
 //! ```
-//! use std::sync::atomic::AtomicBool;
+//! use phicam::lab::{Errors, Integration, Test, validate};
 //! use phicam::model::Kernel;
-//! use phicam::num::stream::Sampling;
-//! use phicam::scene::Scene;
-//! use phicam::study::{Errors, Integration, Test, validate};
-//! use phicam::transport::{Budget, Control, Estimator, Plan, render};
+//! use phicam::scene::{Scene, file::SceneFile};
+//! use phicam::transport::{Budget, Control, Estimator, Plan, Sampling, render};
 //!
-//! let text = Scene::load("bench")?.text.replace("per_side = 30", "per_side = 2");
-//! let scene = Scene::from_toml("toy", &text)?;
+//! // The bench with 8 spots in place of 120.
+//! let mut file = SceneFile::default();
+//! file.name = "toy".to_owned();
+//! file.laser.spots.per_side = Some(2);
+//! let scene = Scene::new(&file, None)?;
 //!
-//! // Trace: 8 spots, 256 pixels, 64 paths for each pair.
+//! // 64 paths for each pixel and spot.
 //! let plan = Plan {
 //!     estimator: Estimator::Independent,
 //!     sampling: Sampling::Pcg,
 //!     seed: 1,
-//!     budget: Budget::new(64, Sampling::Pcg).unwrap(),
+//!     budget: Budget::new(64, Sampling::Pcg)?,
 //! };
-//! let stop = AtomicBool::new(false);
-//! let control = Control { progress: &|_| (), stop: &stop };
-//! let traced = render(&scene, &plan, 0..scene.laser.spots.len(), control).unwrap();
+//! let traced = render(&scene, &plan, 0..scene.laser.spots.len(), Control::none())?;
 //!
-//! // Test against the model: within the error bars at a significance of 0.1 %.
+//! // Within the error bars at a significance of 0.1 %?
 //! let test = Test { significance: 1e-3, replicates: plan.budget.blocks, errors: Errors::Independent };
-//! let verdict =
-//!     validate(&scene, &traced.flux, &traced.stderr, Kernel::Physical, Integration::Centres, test)?;
-//! assert!(verdict.agreement.agrees);
-//!
+//! let against = |kernel| {
+//!     validate(&scene, &traced.flux, &traced.stderr, kernel, Integration::Centres, test)
+//! };
+//! assert!(against(Kernel::Physical)?.agreement.agrees);
 //! // The kernel of the published simulation is not what light does.
-//! let verdict =
-//!     validate(&scene, &traced.flux, &traced.stderr, Kernel::Published, Integration::Centres, test)?;
-//! assert!(!verdict.agreement.agrees);
+//! assert!(!against(Kernel::Published)?.agreement.agrees);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! * [`recovery`] has the second: reflectances from a matrix of one's own.
+//! * [`lab`] has the third: a study of one's own, in one file.
 //!
 //! # Where to read on
 //!
@@ -113,27 +121,32 @@
 //! * [`transport`]: the integral that is estimated, and how.
 //! * [`model`]: the matrices, and what they leave out.
 //! * [`sensor`]: from the flux to what a camera stores, and its noise.
-//! * [`study`]: what "agree" means.
+//! * [`lab`]: what "agree" means.
 //! * [`sensor`]: what a camera makes of the flux, and the built-in sensors with their sources.
 //! * [`recovery`]: the methods, their parameters, their uncertainty.
-//! * [`study::reproduce`](mod@study::reproduce): the published study computed again, and the ledger of its contradictions.
-//! * [`cli`]: what a run leaves on disk.
-//! * [`report`]: the report of a run and of a study, one page each; how `phicam serve` hands out what is too large for one.
-//! * [`cli::many_machines`](mod@cli::many_machines): thousands of frames on a cluster, on Slurm and other schedulers.
+//! * [`lab::published`](mod@lab::published): the published study computed again, and the ledger of
+//!   its contradictions.
+//! * [`cli`]: what a run leaves on disk, and the exit codes of the program.
+//! * [`cli::many_machines`](mod@cli::many_machines): thousands of frames on a cluster, on Slurm and
+//!   other schedulers.
 
 pub mod cli;
 pub mod film;
 pub mod geometry;
+#[doc(hidden)]
 pub mod image;
+#[doc(hidden)]
+pub mod jobs;
+pub mod lab;
 pub mod matrix;
 pub mod metrics;
 pub mod model;
 pub mod num;
 pub mod recovery;
+#[doc(hidden)]
 pub mod report;
 pub mod scene;
 pub mod sensor;
-pub mod shard;
+#[doc(hidden)]
 pub mod store;
-pub mod study;
 pub mod transport;

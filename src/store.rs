@@ -1,9 +1,10 @@
 //! Files that appear whole or not at all.
 //!
-//! A result that took hours must not be half a file because a disk filled up, and an older result must not be gone
-//! before the new one is safe. So every output is written under a temporary name in its own folder, flushed to the
-//! device, renamed over the final name (one step that a file system does entirely or not at all), and the folder is
-//! flushed so that the rename outlives a power cut.
+//! A result that took hours must not be half a file because a disk filled up, and an older result
+//! must not be gone before the new one is safe. So every output is written under a temporary name
+//! in its own folder, flushed to the device, renamed over the final name (one step that a file
+//! system does entirely or not at all), and the folder is flushed so that the rename outlives a
+//! power cut.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -11,15 +12,10 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
 
-/// Why a file or a folder could not be written. Each message names the path, the cause and the cure.
+/// Why a file or a folder could not be written. Each message names the path, the cause and the
+/// cure.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
-    /// A folder on the way to the file does not exist.
-    #[error("cannot write {}: its folder does not exist; create the folder or choose another output", path.display())]
-    FolderMissing {
-        /// What was to be written.
-        path: PathBuf,
-    },
     /// A file stands where a folder is needed.
     #[error("{} is a file, not a folder; move it away or choose another output folder", path.display())]
     NotAFolder {
@@ -32,55 +28,44 @@ pub enum StoreError {
         /// What stands in the way.
         path: PathBuf,
     },
-    /// The system does not allow it.
-    #[error("cannot write {}: permission denied; make its folder writable for you or choose another output", path.display())]
-    Denied {
-        /// What was to be written.
-        path: PathBuf,
-    },
-    /// The file system is mounted read-only.
-    #[error("cannot write {}: its file system is read-only; choose an output on a writable one", path.display())]
-    ReadOnly {
-        /// What was to be written.
-        path: PathBuf,
-    },
-    /// The device or the quota is full.
-    #[error("cannot write {}: the disk or the quota is full; free some space or choose another output", path.display())]
-    Full {
-        /// What was to be written.
-        path: PathBuf,
-    },
-    /// A limit on the size of files forbids it.
-    #[error("cannot write {}: it is larger than files may be here; raise the limit (`ulimit -f`), or choose an output on another file system", path.display())]
-    TooLarge {
-        /// What was to be written.
-        path: PathBuf,
-    },
-    /// Anything else.
-    #[error("cannot write {}: {source}; check the path and its device", path.display())]
+    /// The system refuses.
+    #[error("cannot write {}: {why}", path.display())]
     Failed {
         /// What was to be written.
         path: PathBuf,
-        /// What the system or the writer of the contents said.
-        source: io::Error,
+        /// Cause and cure.
+        why: String,
     },
 }
 
 impl StoreError {
     fn new(path: &Path, source: io::Error) -> Self {
         let path = path.to_path_buf();
-        match source.kind() {
-            ErrorKind::NotFound => Self::FolderMissing { path },
-            ErrorKind::NotADirectory => Self::NotAFolder {
-                path: first_file_in(&path),
-            },
-            ErrorKind::IsADirectory => Self::NotAFile { path },
-            ErrorKind::PermissionDenied => Self::Denied { path },
-            ErrorKind::ReadOnlyFilesystem => Self::ReadOnly { path },
-            ErrorKind::StorageFull | ErrorKind::QuotaExceeded => Self::Full { path },
-            ErrorKind::FileTooLarge => Self::TooLarge { path },
-            _ => Self::Failed { path, source },
-        }
+        let why = match source.kind() {
+            ErrorKind::NotADirectory => {
+                let path = first_file_in(&path);
+                return Self::NotAFolder { path };
+            }
+            ErrorKind::IsADirectory => return Self::NotAFile { path },
+            ErrorKind::NotFound => {
+                "its folder does not exist; create the folder or choose another output"
+            }
+            ErrorKind::PermissionDenied => {
+                "permission denied; make its folder writable for you or choose another output"
+            }
+            ErrorKind::ReadOnlyFilesystem => {
+                "its file system is read-only; choose an output on a writable one"
+            }
+            ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
+                "the disk or the quota is full; free some space or choose another output"
+            }
+            ErrorKind::FileTooLarge => {
+                "it is larger than files may be here; raise the limit (`ulimit -f`), or choose an output on another file system"
+            }
+            _ => &format!("{source}; check the path and its device"),
+        };
+        let why = why.to_owned();
+        Self::Failed { path, why }
     }
 }
 
@@ -101,8 +86,8 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// A temporary file in `folder`, readable as any new file would be (a bare temporary file is private to its owner). Its name says whose it is:
-/// `.phicam-MACHINE-PROCESS-RANDOM.part`.
+/// A temporary file in `folder`, readable as any new file would be (a bare temporary file is
+/// private to its owner). Its name says whose it is: `.phicam-MACHINE-PROCESS-RANDOM.part`.
 fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     let prefix = format!("{PREFIX}{}-{}-", machine(), std::process::id());
@@ -117,8 +102,8 @@ const SUFFIX: &str = ".part";
 /// A temporary file that nobody has written to for so long is nobody's.
 const FORSAKEN: Duration = Duration::from_secs(3600);
 
-/// Where process numbers are those of this process: the machine by its name and its last start, and the namespace of process numbers. Without
-/// dashes; empty where it is not known.
+/// Where process numbers are those of this process: the machine by its name and its last start, and
+/// the namespace of process numbers. Without dashes; empty where it is not known.
 pub fn machine() -> &'static str {
     static MACHINE: OnceLock<String> = OnceLock::new();
     MACHINE.get_or_init(found_machine)
@@ -145,8 +130,8 @@ fn found_machine() -> String {
     format!("{name}_{start}_{space}")
 }
 
-/// Whether the file is one that [`write_whole`] was writing when its process ended: by the process's number if it ran on this machine, else by
-/// its age.
+/// Whether the file is one that [`write_whole`] was writing when its process ended: by the
+/// process's number if it ran on this machine, else by its age.
 pub fn is_abandoned(path: &Path) -> bool {
     let name = path.file_name().and_then(|n| n.to_str()).unwrap_or("");
     let Some(own) = name
@@ -177,13 +162,14 @@ fn flush_folder(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes the file `path` whole or not at all: `contents` writes into a temporary file of the same folder, which then
-/// takes the name `path`, replacing what had it. If anything fails, what `path` held before is untouched and nothing is
-/// left behind. A symbolic link at `path` is itself replaced, never written through.
+/// Writes the file `path` whole or not at all: `contents` writes into a temporary file of the same
+/// folder, which then takes the name `path`, replacing what had it. If anything fails, what `path`
+/// held before is untouched and nothing is left behind. A symbolic link at `path` is itself
+/// replaced, never written through.
 ///
 /// # Errors
-/// [`StoreError`] if the folder is missing or cannot be written, if something other than a file has the name, if the
-/// device is full, or if `contents` fails.
+/// [`StoreError`] if the folder is missing or cannot be written, if something other than a file has
+/// the name, if the device is full, or if `contents` fails.
 pub fn write_whole(
     path: &Path,
     contents: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -208,11 +194,13 @@ pub fn write_whole(
     write().map_err(|e| StoreError::new(path, e))
 }
 
-/// Makes sure, before the long work starts, that files can be written into the folder `dir`: creates it and its parents
-/// where they are missing, and writes and removes a temporary file. If that fails, the folders it created are removed.
+/// Makes sure, before the long work starts, that files can be written into the folder `dir`:
+/// creates it and its parents where they are missing, and writes and removes a temporary file. If
+/// that fails, the folders it created are removed.
 ///
 /// # Errors
-/// [`StoreError`] if a file stands in the way (it is not touched), or if the folder cannot be created or written.
+/// [`StoreError`] if a file stands in the way (it is not touched), or if the folder cannot be
+/// created or written.
 pub fn ensure_writable(dir: &Path) -> Result<(), StoreError> {
     let mut created = Vec::new();
     let outcome = create_folders(dir, &mut created).and_then(|()| probe(dir));

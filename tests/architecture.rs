@@ -3,29 +3,26 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Floors from the ground up; a floor may import what stands before it, never what stands after or beside it.
+/// Floors from the ground up; a floor may import what stands before it, never what stands after or
+/// beside it.
 const FLOORS: [&[&str]; 9] = [
     &["num"],
     &["geometry", "image"],
     &["scene"],
-    &["film", "matrix", "shard", "store"],
+    &["film", "matrix", "store"],
     &["transport", "model", "sensor"],
     &["recovery", "metrics"],
-    &["study"],
-    &["report"],
+    &["lab"],
+    &["report", "jobs"],
     &["cli"],
 ];
 
 /// Imports beside the arrows: files of one floor that build on each other.
-const BESIDE: [(&str, &str); 4] = [
-    ("film", "matrix"),
-    ("film", "store"),
-    ("matrix", "store"),
-    ("shard", "store"),
-];
+const BESIDE: [(&str, &str); 3] = [("film", "matrix"), ("film", "store"), ("matrix", "store")];
 
-/// Foreign crates and the one place that may name them. `exr` has two: frames are written and read with all their attributes, pictures of other
-/// programs are read without any; what both must know of a file's bytes stands in `image/exr/envelope`.
+/// Foreign crates and the one place that may name them. `exr` has two: frames are written and read
+/// with all their attributes, pictures of other programs are read without any; what both must know
+/// of a file's bytes stands in `image/exr/envelope`.
 const DOORS: [(&str, &[&str]); 28] = [
     ("obvhs", &["geometry/bvh"]),
     ("exr", &["film/exr", "image/exr"]),
@@ -46,7 +43,7 @@ const DOORS: [(&str, &[&str]); 28] = [
     ("toml", &["scene"]),
     ("ply_rs_bw", &["scene/mesh/ply"]),
     ("gltf_json", &["scene/mesh/gltf"]),
-    ("postcard", &["study/task/bytes"]),
+    ("postcard", &["lab/bytes"]),
     ("clap", &["cli"]),
     ("indicatif", &["cli"]),
     ("terminal_size", &["cli/view/terminal"]),
@@ -102,7 +99,8 @@ fn sources() -> Vec<Source> {
         .collect()
 }
 
-/// Floors that the code names: after `crate::` or `phicam::`, alone or in the first level of a braced list.
+/// Floors that the code names: after `crate::` or `phicam::`, alone or in the first level of a
+/// braced list.
 fn imports(code: &str) -> Vec<String> {
     let ident = |s: &str| {
         s.chars()
@@ -188,7 +186,8 @@ fn every_file_belongs_to_a_floor() {
     }
 }
 
-/// Invariant 1: transport knows random streams and warps, model knows quadrature; neither knows the other.
+/// Invariant 1: transport knows random streams and warps, model knows quadrature; neither knows the
+/// other.
 #[test]
 fn two_witnesses() {
     for source in sources() {
@@ -256,8 +255,8 @@ fn one_door_per_crate() {
     }
 }
 
-/// Invariant 4: below the command line nothing asks which thread it runs on, what time it is, or for entropy, so a random
-/// number can only be a function of its key.
+/// Invariant 4: below the command line nothing asks which thread it runs on, what time it is, or
+/// for entropy, so a random number can only be a function of its key.
 #[test]
 fn random_numbers_are_functions_of_their_key() {
     let sources_of_chance = [
@@ -301,7 +300,8 @@ fn the_library_is_silent() {
     }
 }
 
-/// `f64::sin` and its kin call the system's C library, whose bits differ between machines; `libm` does not.
+/// `f64::sin` and its kin call the system's C library, whose bits differ between machines; `libm`
+/// does not.
 #[test]
 fn transcendental_functions_are_the_portable_ones() {
     let floors = [
@@ -316,7 +316,7 @@ fn transcendental_functions_are_the_portable_ones() {
         "sensor",
         "recovery",
         "metrics",
-        "study",
+        "lab",
     ];
     for source in sources().iter().filter(|s| floors.contains(&s.floor())) {
         let shipped = shipped(&source.code);
@@ -338,4 +338,262 @@ fn transcendental_functions_are_the_portable_ones() {
             assert!(!shipped.contains(call), "{} calls {call}…)", source.path);
         }
     }
+}
+
+/// Folders whose files still use one another in a circle: to be emptied.
+const CIRCULAR: &[&str] = &["cli", "geometry", "lab", "recovery", "scene"];
+
+/// The identifiers and marks of a source; `::` is one mark.
+fn tokens(code: &str) -> Vec<&str> {
+    let mut found = Vec::new();
+    let mut rest = code;
+    while let Some(first) = rest.chars().next() {
+        let name = |c: char| c.is_alphanumeric() || c == '_';
+        let length = match first {
+            c if name(c) => rest.find(|c| !name(c)).unwrap_or(rest.len()),
+            _ if rest.starts_with("::") => 2,
+            c => c.len_utf8(),
+        };
+        if !first.is_whitespace() {
+            found.push(&rest[..length]);
+        }
+        rest = &rest[length..];
+    }
+    found
+}
+
+/// A path that a source names.
+#[derive(Debug)]
+struct Named<'a> {
+    segments: Vec<&'a str>,
+    /// The name under which a `use` brings it in.
+    alias: Option<&'a str>,
+}
+
+/// Every path that the tokens name; the braced lists of a `use` are written out.
+fn paths<'a>(tokens: &[&'a str]) -> Vec<Named<'a>> {
+    fn tree<'a>(tokens: &[&'a str], at: &mut usize, before: &[&'a str], out: &mut Vec<Named<'a>>) {
+        let mut segments = before.to_vec();
+        loop {
+            match tokens.get(*at) {
+                Some(&"{") => {
+                    while tokens.get(*at).is_some_and(|t| *t != "}") {
+                        *at += 1;
+                        tree(tokens, at, &segments, out);
+                    }
+                    *at += 1;
+                    return;
+                }
+                Some(name) if name.starts_with(|c: char| c.is_alphabetic() || c == '_') => {
+                    segments.push(name);
+                    *at += 1;
+                }
+                _ => break,
+            }
+            if tokens.get(*at) != Some(&"::") {
+                break;
+            }
+            *at += 1;
+        }
+        let mut alias = segments.last().copied();
+        if tokens.get(*at) == Some(&"as") {
+            alias = tokens.get(*at + 1).copied();
+            *at += 2;
+        }
+        if segments.len() > before.len() {
+            out.push(Named { segments, alias });
+        }
+    }
+    let mut found = Vec::new();
+    let mut at = 0;
+    while at < tokens.len() {
+        if tokens[at] == "use" {
+            at += 1;
+            tree(tokens, &mut at, &[], &mut found);
+        } else if tokens.get(at + 1) == Some(&"::") && (at == 0 || tokens[at - 1] != "::") {
+            let mut end = at;
+            while tokens.get(end + 1) == Some(&"::")
+                && tokens.get(end + 2).is_some_and(|t| *t != "<")
+            {
+                end += 2;
+            }
+            let segments: Vec<&str> = tokens[at..=end].iter().step_by(2).copied().collect();
+            found.push(Named {
+                segments,
+                alias: None,
+            });
+            at = end.max(at) + 1;
+        } else {
+            at += 1;
+        }
+    }
+    found
+}
+
+/// The folders whose files use one another in a circle, with the files of the circle.
+///
+/// `a.rs` and the folder `a/` count as one file of the folder around them. The `mod.rs` of a folder
+/// is not counted: it declares and re-exports, and may dispatch to the types of its files. Whoever
+/// uses what it re-exports uses the file that defines it.
+fn circles(sources: &[(String, String)]) -> Vec<(String, Vec<String>)> {
+    use std::collections::{BTreeMap, BTreeSet};
+    type Module = Vec<String>;
+    let module = |path: &str| -> Module {
+        let path = path.trim_end_matches(".rs").trim_end_matches("/mod");
+        path.split('/')
+            .filter(|s| *s != "lib")
+            .map(str::to_owned)
+            .collect()
+    };
+    let tests = |path: &str| path.contains("tests") || path == "main.rs";
+    let files: BTreeMap<Module, Vec<&str>> = sources
+        .iter()
+        .filter(|(path, _)| !tests(path))
+        .map(|(path, code)| (module(path), tokens(shipped(code))))
+        .collect();
+    // The path from the root of the crate of a path that module `own` names.
+    let absolute = |own: &Module, segments: &[&str]| -> Option<Module> {
+        let mut at = own.clone();
+        let mut rest = segments;
+        match rest.first()? {
+            &"crate" => {
+                at.clear();
+                rest = &rest[1..];
+            }
+            &"self" => rest = &rest[1..],
+            &"super" => {
+                while rest.first() == Some(&"super") {
+                    at.pop()?;
+                    rest = &rest[1..];
+                }
+            }
+            child => {
+                let child: Module = at.iter().cloned().chain([child.to_string()]).collect();
+                files.contains_key(&child).then_some(())?;
+            }
+        }
+        at.extend(rest.iter().map(|s| s.to_string()));
+        Some(at)
+    };
+    let mut exported: BTreeMap<Module, BTreeMap<&str, Module>> = BTreeMap::new();
+    for (own, tokens) in &files {
+        for path in paths(tokens) {
+            if let (Some(alias), Some(to)) = (path.alias, absolute(own, &path.segments)) {
+                exported.entry(own.clone()).or_default().insert(alias, to);
+            }
+        }
+    }
+    let defined_in = |path: &Module| -> Option<Module> {
+        let mut path = path.clone();
+        for _ in 0..8 {
+            let known = (0..=path.len())
+                .rev()
+                .find(|n| files.contains_key(&path[..*n]))?;
+            let (at, rest) = path.split_at(known);
+            let on = rest
+                .first()
+                .and_then(|name| exported.get(at)?.get(name.as_str()));
+            match on {
+                Some(to) if *to != path => {
+                    path = to.iter().chain(&rest[1..]).cloned().collect();
+                }
+                _ => return Some(at.to_vec()),
+            }
+        }
+        None
+    };
+    let mut arrows: BTreeMap<Module, BTreeSet<(String, String)>> = BTreeMap::new();
+    for (own, tokens) in &files {
+        for path in paths(tokens) {
+            let Some(to) = absolute(own, &path.segments).and_then(|p| defined_in(&p)) else {
+                continue;
+            };
+            let common = own.iter().zip(&to).take_while(|(a, b)| a == b).count();
+            if let (Some(user), Some(used)) = (own.get(common), to.get(common)) {
+                let folder = arrows.entry(own[..common].to_vec()).or_default();
+                folder.insert((user.clone(), used.clone()));
+            }
+        }
+    }
+    let mut found = Vec::new();
+    for (folder, arrows) in arrows {
+        let mut reach = arrows;
+        loop {
+            let longer: Vec<_> = reach
+                .iter()
+                .flat_map(|(a, b)| {
+                    reach
+                        .iter()
+                        .filter(move |(c, _)| b == c)
+                        .map(move |(_, d)| (a.clone(), d.clone()))
+                })
+                .filter(|pair| !reach.contains(pair))
+                .collect();
+            if longer.is_empty() {
+                break;
+            }
+            reach.extend(longer);
+        }
+        let circle: Vec<String> = reach
+            .iter()
+            .filter(|(a, b)| a == b)
+            .map(|(a, _)| a.clone())
+            .collect();
+        if !circle.is_empty() {
+            found.push((folder.join("/"), circle));
+        }
+    }
+    found
+}
+
+#[test]
+fn no_circle_of_files_in_any_folder() {
+    let sources: Vec<_> = sources().into_iter().map(|s| (s.path, s.code)).collect();
+    let found = circles(&sources);
+    let new: Vec<_> = found
+        .iter()
+        .filter(|(folder, _)| !CIRCULAR.contains(&folder.as_str()))
+        .collect();
+    assert!(
+        new.is_empty(),
+        "files that use one another in a circle: {new:#?}"
+    );
+}
+
+/// The test above can fail: circles by name, by re-export and by a folder are found, a line is not.
+#[test]
+fn planted_circles_are_found() {
+    let of = |files: &[(&str, &str)]| {
+        let owned = files.iter().map(|(p, c)| (p.to_string(), c.to_string()));
+        circles(&owned.collect::<Vec<_>>())
+    };
+    let front = (
+        "f/mod.rs",
+        "mod a; mod b; pub use a::A; pub use b::{self, B};",
+    );
+    let circle = |names: &[&str]| {
+        vec![(
+            "f".to_owned(),
+            names.iter().map(|n| n.to_string()).collect::<Vec<_>>(),
+        )]
+    };
+    let named = [
+        ("f/a.rs", "use super::b::B;"),
+        ("f/b.rs", "fn g() { crate::f::a::h() }"),
+    ];
+    assert_eq!(of(&[front, named[0], named[1]]), circle(&["a", "b"]));
+    // Through what `mod.rs` re-exports, and through a folder below.
+    let exported = [
+        ("f/a/deep.rs", "use super::super::{B, C};"),
+        ("f/b.rs", "use crate::f::A;"),
+    ];
+    assert_eq!(
+        of(&[front, ("f/a.rs", "mod deep;"), exported[0], exported[1]]),
+        circle(&["a", "b"])
+    );
+    let down = [
+        ("f/a.rs", "use super::b::B;"),
+        ("f/b.rs", "#[cfg(test)] mod tests { use super::super::A; }"),
+    ];
+    assert_eq!(of(&[front, down[0], down[1]]), vec![]);
 }

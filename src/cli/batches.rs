@@ -1,21 +1,20 @@
-//! The columns of a render, traced batch by batch.
+//! The spots of a render, traced batch by batch.
 
 use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::checkpoint::{Checkpoint, Parts};
-use super::columns::{Columns, together};
 use super::failure::Failure;
 use super::folder::{Folder, own_identity};
-use super::interrupt::warned;
-use super::output::Talk;
+use super::interrupt::{process, stop_flag, warned};
+use super::output::Console;
 use super::progress::Tracing;
 use super::record::Record;
 use super::render::refuse_beyond_f32;
+use crate::jobs::{Checkpoint, Parts, Spots};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
-use crate::transport::{Plan, Tally};
+use crate::transport::{Control, Plan, Tally};
 
 /// A render at work.
 pub(super) struct Work<'a> {
@@ -24,90 +23,62 @@ pub(super) struct Work<'a> {
     pub folder: &'a Folder,
     pub record: &'a Record,
     pub pool: &'a rayon::ThreadPool,
-    /// Whether blocks that an earlier process has finished are gone on with.
+    /// Whether to go on from the blocks that an earlier process has finished.
     pub resume: bool,
 }
 
 impl Work<'_> {
-    /// Traces the spots of `todo`; blocks, frames and kept columns are written as soon as they are finished.
+    /// Traces the spots of `todo`; blocks, frames and kept spots are written as soon as they are
+    /// finished.
     pub(super) fn trace(
         &self,
         todo: &[usize],
         kept: &mut [Option<Matrix>],
-        talk: Talk,
+        console: Console,
     ) -> Result<(), Failure> {
         let Self { scene, plan, .. } = *self;
-        let batches = self.batches(todo, kept);
-        let pixels = scene.camera.pixels() as u64;
-        let columns = match plan.estimator.serves_all_spots() {
-            false => todo.len(),
-            true => batches.len(),
+        let spots = |range| Spots {
+            scene,
+            plan,
+            range,
+            first: 0,
         };
-        let samples = pixels * plan.budget.samples() * columns as u64;
-        let mut tracing = Tracing::start(talk, &scene.name, samples);
+        let batches: Vec<Spots<'_>> = self.batches(todo, kept).into_iter().map(spots).collect();
+        let blocks = u64::from(plan.budget.blocks);
+        let paths = batches.iter().map(|spots| spots.paths(blocks)).sum();
+        let mut tracing = Tracing::start(console, &scene.name, paths);
         // Those that a begun batch traces once more count when it is finished.
-        let again = |spot: usize| batches.iter().any(|range| range.contains(&spot));
+        let again = |spot: usize| batches.iter().any(|spots| spots.range.contains(&spot));
         let apart = (0..).zip(kept.iter()).filter(|(spot, _)| !again(*spot));
         apart
             .filter_map(|(_, column)| column.as_ref())
             .for_each(|column| tracing.finished(column));
-        let last = batches.len();
-        for (number, range) in batches.into_iter().enumerate() {
-            let columns = Columns {
-                scene,
-                plan,
-                spots: range.clone(),
-                first: 0,
-            };
-            let threads = self.pool.current_num_threads();
-            let path = self.folder.checkpoint(&range)?;
-            let mut checkpoint = Checkpoint::new(path, own_identity(scene, plan, &range), threads);
-            let mut tally = columns.tally(0);
-            let blocks = columns.blocks();
-            if self.resume {
-                columns.add(&mut tally, checkpoint.resume(&blocks, blocks.end))?;
-                self.say_resumed(&tally, &range, (talk, &tracing));
-                let traced = u64::from(tally.range().end) * u64::from(plan.budget.size);
-                let each = if plan.estimator.serves_all_spots() {
-                    1
-                } else {
-                    range.len() as u64
-                };
-                tracing.skip(pixels * traced * each);
-            }
-            let nothing = Parts::new();
-            let tally = self.pool.install(|| {
-                columns.trace(tally, blocks.end, &mut tracing, (&mut checkpoint, &nothing))
-            })?;
+        for (number, spots) in batches.iter().enumerate() {
+            let tally = self.trace_batch(spots, &mut tracing, console)?;
             let there = tally.range().end;
-            let Some(traced) = tally.traced() else {
-                let of = plan.budget.blocks;
-                return Err(Failure::Stopped(match there {
-                    0 => String::new(),
-                    _ => format!(" and {there} of {of} blocks of the next"),
-                }));
-            };
+            let traced = tally.traced().ok_or_else(|| {
+                Failure::Stopped(if there == 0 {
+                    String::new()
+                } else {
+                    format!(" and {there} of {blocks} blocks of the next")
+                })
+            })?;
             refuse_beyond_f32(&traced)?;
-            let write = |(column, spot): (usize, usize)| {
+            let write = |(column, spot)| {
                 self.folder
                     .write_frame(scene, self.record, spot, &traced, column)?;
                 self.folder.keep(spot, &traced, column)
             };
-            let written = || -> Result<Vec<Matrix>, Failure> {
-                range
-                    .clone()
-                    .into_par_iter()
-                    .enumerate()
-                    .map(write)
-                    .collect()
-            };
-            let columns = self.pool.install(written)?;
-            for (spot, column) in range.clone().zip(columns) {
+            let range = || spots.range.clone().into_par_iter();
+            let written: Result<Vec<Matrix>, Failure> = self
+                .pool
+                .install(|| range().enumerate().map(write).collect());
+            for (spot, column) in spots.range.clone().zip(written?) {
                 tracing.finished(&column);
                 kept[spot] = Some(column);
             }
-            self.folder.remove_checkpoint(&range)?;
-            if warned() && number + 1 < last {
+            self.folder.remove_checkpoint(&spots.range)?;
+            if warned() && number + 1 < batches.len() {
                 return Err(Failure::Stopped(String::new()));
             }
         }
@@ -115,27 +86,60 @@ impl Work<'_> {
         Ok(())
     }
 
-    fn say_resumed(&self, tally: &Tally, range: &Range<usize>, (talk, tracing): (Talk, &Tracing)) {
-        let there = tally.range().end;
+    /// The blocks of one batch; fewer if it was stopped, and those are then in its checkpoint.
+    fn trace_batch(
+        &self,
+        spots: &Spots<'_>,
+        tracing: &mut Tracing,
+        console: Console,
+    ) -> Result<Tally, Failure> {
+        let Range { start, end } = spots.range;
+        let blocks = spots.blocks();
+        let identity = own_identity(self.scene, self.plan, &spots.range);
+        let path = self.folder.checkpoint(&spots.range)?;
+        let mut checkpoint = Checkpoint::new(path, identity, process(self.pool));
+        let done = if self.resume {
+            checkpoint.resume(&blocks, blocks.end)
+        } else {
+            Parts::new()
+        };
+        let tally = spots.tally(0, done.into_iter().map(Ok))?;
+        let there = u64::from(tally.range().end);
         if there > 0 {
-            let said = format!(
-                "going on after {there} of {} blocks of the spots {} to {}",
-                self.plan.budget.blocks,
-                range.start,
-                range.end - 1
+            let all = blocks.end;
+            let last = end - 1;
+            tracing.say(
+                console,
+                format!("going on after {there} of {all} blocks of the spots {start} to {last}"),
             );
-            tracing.say(talk, said);
         }
+        tracing.skip(spots.paths(there));
+        let bar = tracing.bar();
+        let control = Control {
+            progress: &|paths| bar.inc(paths),
+            stop: stop_flag(),
+        };
+        let look = &mut |tally: &Tally| tracing.look(tally);
+        let tally = self.pool.install(|| {
+            let kept = (&mut checkpoint, &Parts::new());
+            spots.trace(tally, blocks.end, control, look, kept)
+        })?;
+        if u64::from(tally.range().end) < blocks.end {
+            checkpoint.keep(&spots.parts(&tally))?;
+        }
+        Ok(tally)
     }
 
-    /// Runs of neighbouring spots to be traced together: one spot each where nothing is shared, as many as memory bears where paths serve all
-    /// spots. Where an earlier process has left blocks of some of them, these stay together, with those of them that are finished: to write these
+    /// Runs of neighbouring spots to be traced together: one spot each where nothing is shared, as
+    /// many as memory bears where paths serve all spots. Where an earlier process has left blocks
+    /// of some of them, these stay together, with those of them that are finished: to write these
     /// again costs less than to trace the others anew.
     fn batches(&self, todo: &[usize], kept: &[Option<Matrix>]) -> Vec<Range<usize>> {
-        let most = together(self.scene, self.plan.estimator);
-        let begun = match self.resume {
-            true => self.folder.checkpoints(self.scene, self.plan),
-            false => Vec::new(),
+        let most = Spots::together(self.scene, self.plan.estimator);
+        let begun = if self.resume {
+            self.folder.checkpoints(self.scene, self.plan)
+        } else {
+            Vec::new()
         };
         let mut free: Vec<bool> = vec![false; kept.len()];
         todo.iter().for_each(|s| free[*s] = true);

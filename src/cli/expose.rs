@@ -14,14 +14,14 @@ use serde::Serialize;
 
 use super::Outcome;
 use super::args::ExposeArgs;
+use super::cleanup::remove_exposed;
 use super::failure::Failure;
-use super::finished::{read_matrix, read_run};
-use super::folder::{self, PHI, STDERR};
-use super::output::{self, Talk};
+use super::folder::{self, COUNTS, EXPOSED, EXPOSURE, PHI, SATURATED, STDERR};
+use super::load_run::{read_matrix, read_run};
+use super::output::{self, Console};
 use super::record::{Record, version};
-use super::settings::sensor_model;
-use super::stale::remove_exposed;
 use crate::film::{self, Channel, Frame, frame_name};
+use crate::lab::describe_exposure;
 use crate::matrix::{Matrix, npy};
 use crate::report;
 use crate::scene::{Glare, Quantity, Scene, SensorModel, SensorSettings, Spread};
@@ -29,12 +29,7 @@ use crate::sensor::{
     Exposed, Exposure, Figures, Light, Range, Sensor, Summary, builtin_summary, glare,
     glare_to_signal,
 };
-use crate::store::{StoreError, ensure_writable, write_whole};
-
-pub(super) const FOLDER: &str = "exposed";
-pub(super) const EXPOSURE: &str = "exposure.json";
-pub(super) const SATURATED: &str = "saturated.npy";
-pub(super) const COUNTS: &str = "counts";
+use crate::store::ensure_writable;
 
 /// exposure.json.
 #[derive(Debug, Serialize)]
@@ -57,12 +52,12 @@ struct Account {
     result: Summary,
 }
 
-pub(super) fn execute(args: &ExposeArgs, talk: Talk) -> Result<Outcome, Failure> {
+pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Failure> {
     let dir = match &args.dir {
         Some(dir) if !args.list => dir,
         _ => return output::print(&list()).map(|()| Outcome::Done),
     };
-    let (scene, record) = read_run(dir)?;
+    let (scene, record) = read_run(dir, console)?;
     let settings = settings(args, &scene)?;
     let sensor = Sensor::from_settings(&settings)?;
     let exposure = Exposure::from_settings(&settings)?;
@@ -82,12 +77,12 @@ pub(super) fn execute(args: &ExposeArgs, talk: Talk) -> Result<Outcome, Failure>
             "render a scene whose light reaches the camera",
         ));
     }
-    let out = args.output.clone().unwrap_or_else(|| dir.join(FOLDER));
+    let out = args.output.clone().unwrap_or_else(|| dir.join(EXPOSED));
     refuse_obstacles(&out)?;
     let exposed = sensor.expose(&light, &exposure, args.seed)?;
     let result = Summary::new(&sensor, &light, &exposure, &exposed);
-    remark(&result, args.strict, talk)?;
-    remark_dark(&result, &exposed, talk);
+    remark(&result, args.strict, console)?;
+    remark_dark(&result, &exposed, console);
     let account = Account {
         version: version().to_owned(),
         scene: scene.name.clone(),
@@ -108,7 +103,7 @@ pub(super) fn execute(args: &ExposeArgs, talk: Talk) -> Result<Outcome, Failure>
     output::print(&if args.json {
         json
     } else {
-        report::exposure_table(&account.result, &account.times)
+        report::finding_text(&describe_exposure(&account.result, &account.times))
     })?;
     Ok(Outcome::Done)
 }
@@ -127,7 +122,7 @@ fn settings(args: &ExposeArgs, scene: &Scene) -> Result<SensorSettings, Failure>
     let base = match &args.sensor {
         None => given,
         Some(name) => SensorSettings {
-            model: Some(sensor_model(name)?),
+            model: Some(name.parse().map_err(Failure::Error)?),
             exposure: given.exposure,
             frames: given.frames,
             dark_frames: given.dark_frames,
@@ -167,30 +162,20 @@ fn checked(glare: Glare) -> Result<Glare, Failure> {
     }
 }
 
-/// What stands in the way of an output shows before anything is written. The folder of a run is not overwritten.
+/// What stands in the way of an output shows before anything is written. The folder of a run is not
+/// overwritten.
 fn refuse_obstacles(out: &Path) -> Result<(), Failure> {
     if out.join(Record::FILE).exists() {
-        let cause = format!(
-            "{} is the folder of a run, with its clean flux",
-            out.display()
-        );
+        let out = out.display();
+        let cause = format!("{out} is the folder of a run, with its clean flux");
         return Err(Failure::new(cause, "choose another folder (-o)"));
     }
-    let counts = out.join(COUNTS);
-    if counts.exists() && !counts.is_dir() {
-        return Err(StoreError::NotAFolder { path: counts }.into());
-    }
-    for name in [PHI, STDERR, SATURATED, EXPOSURE] {
-        let path = out.join(name);
-        if path.exists() && !path.is_file() {
-            return Err(StoreError::NotAFile { path }.into());
-        }
-    }
-    Ok(())
+    let files = [PHI, STDERR, SATURATED, EXPOSURE];
+    folder::refuse_obstacles(out, &[COUNTS], &files)
 }
 
 /// What is wrong with the photographs.
-fn remark(result: &Summary, strict: bool, talk: Talk) -> Result<(), Failure> {
+fn remark(result: &Summary, strict: bool, console: Console) -> Result<(), Failure> {
     let (entries, saturated, floored) = (result.entries, result.saturated, result.floored);
     let cause = format!("{saturated} of {entries} entries are saturated, {floored} cut off below");
     let cure = "expose for a shorter time or in --brackets; a larger `offset` keeps counts above 0";
@@ -198,25 +183,26 @@ fn remark(result: &Summary, strict: bool, talk: Talk) -> Result<(), Failure> {
         if strict {
             return Err(Failure::new(cause, cure));
         }
-        talk.say(format!("warning: {cause}, see {SATURATED}; {cure}"));
+        console.say(format!("warning: {cause}, see {SATURATED}; {cure}"));
     }
     if result.snr_max.is_some_and(|snr| snr < 1.0) {
-        talk.say("warning: no entry rises above its noise; expose longer or average more frames");
+        console
+            .say("warning: no entry rises above its noise; expose longer or average more frames");
     }
     Ok(())
 }
 
 /// What of the frames without laser a recovery has to know.
-fn remark_dark(result: &Summary, exposed: &Exposed, talk: Talk) {
+fn remark_dark(result: &Summary, exposed: &Exposed, console: Console) {
     if result.pedestal > 0.1 * exposed.stderr.mean() {
-        talk.say(format!(
+        console.say(format!(
             "warning: {:.2e} W of dark current and ambient light stay in every entry; subtract --dark-frames, \
              or recover with --background",
             result.pedestal
         ));
     }
     if result.common * exposed.flux.ncols() as f64 > 0.1 {
-        talk.say(format!(
+        console.say(format!(
             "warning: {:.2} % of the variance is that of the dark frames, which all spots of a pixel share, and recover takes entries as independent; \
              take more --dark-frames, or recover with --background",
             100.0 * result.common
@@ -251,9 +237,7 @@ fn write(
     npy::write(&out.join(SATURATED), &mask)?;
     npy::write(&out.join(STDERR), &exposed.stderr)?;
     npy::write(&out.join(PHI), &exposed.flux)?;
-    Ok(write_whole(&out.join(EXPOSURE), |w| {
-        w.write_all(json.as_bytes())
-    })?)
+    output::write(&out.join(EXPOSURE), json)
 }
 
 /// The frame of one spot: its counts at each exposure time as EXR, those of the longest as PNG.
@@ -266,9 +250,10 @@ fn write_counts(
 ) -> Result<(), Failure> {
     let single = exposed.counts.len() == 1;
     let channel = |(k, counts): (usize, &Matrix)| Channel {
-        name: match single {
-            true => film::frame::COUNTS.to_owned(),
-            false => format!("{}.{k}", film::frame::COUNTS),
+        name: if single {
+            film::frame::COUNTS.to_owned()
+        } else {
+            format!("{}.{k}", film::frame::COUNTS)
         },
         values: counts.column(spot).iter().map(|x| *x as f32).collect(),
     };
@@ -286,9 +271,7 @@ fn write_counts(
         None => exposed.counts[0].max(),
     };
     let png = report::counts_png([frame.columns, frame.rows], &values, white)?;
-    Ok(write_whole(&path.with_extension("png"), |w| {
-        w.write_all(&png)
-    })?)
+    output::write(&path.with_extension("png"), &png)
 }
 
 fn list() -> String {

@@ -1,4 +1,4 @@
-//! What a user is told when a command cannot do its work.
+//! How a command ended, and what a user reads when it could not do its work.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -6,7 +6,21 @@ use std::io;
 
 use super::interrupt;
 use super::output::complain;
+use crate::jobs::JobError;
+use crate::lab::StudyError;
+use crate::lab::options::OptionError;
 use crate::store::StoreError;
+use crate::transport::Stopped;
+
+/// How a command ended that did its work, by its exit code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Outcome {
+    Done = 0,
+    /// Traced and modelled disagree.
+    Disagreed = 1,
+    /// Shards are missing.
+    Incomplete = 3,
+}
 
 /// Why a command ended without its result.
 #[derive(Debug)]
@@ -28,7 +42,8 @@ pub(super) enum Failure {
 pub(super) enum Codes {
     /// 2 for every error.
     Plain,
-    /// For a scheduler, which must know whether it is worth another try: those of `sysexits.h`, as far as they fit.
+    /// For a scheduler, which must know whether it is worth another try: those of `sysexits.h`, as
+    /// far as they fit.
     Scheduler,
 }
 
@@ -46,6 +61,14 @@ impl Failure {
     /// What the system could not do, by cause and cure.
     pub(super) fn system(cause: impl Into<String>, cure: impl AsRef<str>) -> Self {
         Self::System(words(cause, cure))
+    }
+
+    /// Says what is kept, if the command was stopped.
+    pub(super) fn if_stopped(self, kept: impl Into<String>) -> Self {
+        match self {
+            Self::Stopped(_) => Self::Stopped(kept.into()),
+            other => other,
+        }
     }
 
     pub(super) fn code(&self, codes: Codes) -> u8 {
@@ -88,8 +111,29 @@ fn words(cause: impl Into<String>, cure: impl AsRef<str>) -> String {
 /// The error of any floor below, whose message already names cause and cure.
 impl<E: Error + 'static> From<E> for Failure {
     fn from(error: E) -> Self {
+        Self::because(&error)
+    }
+}
+
+impl Failure {
+    /// The error of a study.
+    pub(super) fn of(error: StudyError) -> Self {
+        Self::because(&*error)
+    }
+
+    fn because(error: &(dyn Error + 'static)) -> Self {
         let mut message = error.to_string();
-        let mut system = is_of_the_system(&error);
+        match error.downcast_ref::<JobError>() {
+            Some(JobError::Usage(_)) => return Self::Usage(message),
+            Some(JobError::Missing(_)) => return Self::Missing(message),
+            Some(JobError::System(_)) => return Self::System(message),
+            _ => {}
+        }
+        if error.is::<OptionError>() {
+            return Self::Usage(message);
+        }
+        let mut system = is_of_the_system(error);
+        let mut stopped = error.is::<Stopped>();
         let mut source = error.source();
         while let Some(inner) = source {
             let text = inner.to_string();
@@ -97,11 +141,15 @@ impl<E: Error + 'static> From<E> for Failure {
                 let _ = write!(message, ": {text}");
             }
             system |= is_of_the_system(inner);
+            stopped |= inner.is::<Stopped>();
             source = inner.source();
         }
-        match system {
-            true => Self::System(message),
-            false => Self::Error(message),
+        if stopped {
+            Self::Stopped(message)
+        } else if system {
+            Self::System(message)
+        } else {
+            Self::Error(message)
         }
     }
 }

@@ -13,19 +13,17 @@ use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::columns;
-use super::expose;
+use super::cleanup::{
+    remove_exposed, remove_files, remove_named, remove_numbered, remove_recovered,
+};
 use super::failure::Failure;
-use super::model;
-use super::output::Talk;
+use super::output::{self, Console};
 use super::record::Record;
-use super::stale::{remove_exposed, remove_files, remove_named, remove_numbered, remove_recovered};
-use super::trust;
-use crate::film::{self, Channel, Frame, FrameMeta, frame_name};
+use crate::film::{self, Channel, Frame, FrameMeta, RunMeta, frame_name};
+use crate::jobs::{self, BlockFile, Identity, Spots};
 use crate::matrix::{Matrix, npy};
 use crate::scene::{COPIES, Scene};
-use crate::shard::{self, Identity, ShardFile};
-use crate::store::{StoreError, ensure_writable, write_whole};
+use crate::store::{StoreError, ensure_writable};
 use crate::transport::{Plan, Traced};
 
 pub(super) const PHI: &str = "phi.npy";
@@ -33,10 +31,21 @@ pub(super) const STDERR: &str = "phi.stderr.npy";
 pub(super) const SUMMARY: &str = "summary.json";
 pub(super) const REPORT: &str = "report.html";
 pub(super) const SCENE: &str = "scene.toml";
+/// The analytic side.
+pub(super) const MODEL: &str = "model";
+/// Deviations of traced from modelled entries, in [`MODEL`].
+pub(super) const Z: &str = "z.npy";
+/// Recovered reflectances.
+pub(super) const RECOVERED: &str = "recovered";
+/// Photographs of `phicam expose`: [`PHI`], [`STDERR`] and these.
+pub(super) const EXPOSED: &str = "exposed";
+pub(super) const EXPOSURE: &str = "exposure.json";
+pub(super) const SATURATED: &str = "saturated.npy";
+pub(super) const COUNTS: &str = "counts";
 
 /// What is kept of an earlier render into the same folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Keep {
+pub(super) enum Resume {
     /// Nothing: all spots are rendered.
     Nothing,
     /// Other spots, and none of those asked for.
@@ -59,27 +68,27 @@ impl Folder {
         }
     }
 
-    /// Makes sure that the run `record` may be written to `path`, and that it can be. Nothing is changed before every check
-    /// has passed.
+    /// Makes sure that the run `record` may be written to `path`, and that it can be. Nothing is
+    /// changed before every check has passed.
     pub(super) fn open(
         path: &Path,
         scene: &Scene,
         record: &Record,
-        keep: Keep,
-        talk: Talk,
+        keep: Resume,
+        console: Console,
     ) -> Result<Self, Failure> {
         let folder = Self {
             path: path.to_owned(),
         };
-        folder.refuse_foreign(scene)?;
+        folder.refuse_foreign(scene, console)?;
         let earlier = Record::read(path)?;
         let same = earlier.as_ref().is_some_and(|e| e.same_settings(record));
         if let Some(e) = earlier.filter(|_| !same) {
-            if keep != Keep::Nothing {
+            if keep != Resume::Nothing {
                 let cause = format!(
                     "{} holds a run with other settings ({})",
                     path.display(),
-                    e.settings()
+                    e.plan
                 );
                 return Err(Failure::new(
                     cause,
@@ -87,16 +96,16 @@ impl Folder {
                 ));
             }
             ensure_writable(path)?;
-            talk.say(format!(
+            console.say(format!(
                 "replacing the earlier run in {} ({})",
                 path.display(),
-                e.settings()
+                e.plan
             ));
             folder.remove_frames()?;
         } else {
             ensure_writable(path)?;
         }
-        if keep == Keep::Nothing {
+        if keep == Resume::Nothing {
             folder.remove_partial()?;
         }
         record.write(path)?;
@@ -106,10 +115,14 @@ impl Folder {
         Ok(folder)
     }
 
-    /// A folder that holds another scene, or frames of unknown origin, or something else under the name of an output, is not
-    /// written to.
-    pub(super) fn refuse_foreign(&self, scene: &Scene) -> Result<(), Failure> {
-        self.refuse_obstacles()?;
+    /// A folder that holds another scene, or frames of unknown origin, or something else under the
+    /// name of an output, is not written to.
+    pub(super) fn refuse_foreign(&self, scene: &Scene, console: Console) -> Result<(), Failure> {
+        refuse_obstacles(
+            &self.path,
+            &["frames", "partial", MODEL, RECOVERED, COPIES],
+            &[SCENE, PHI, STDERR, Record::FILE, SUMMARY, REPORT],
+        )?;
         let path = self.path.display();
         let cure = "choose another folder (-o), or remove this one";
         if let Some(record) = Record::read(&self.path)? {
@@ -122,7 +135,10 @@ impl Folder {
         let own = self.path.join(SCENE);
         if own.exists() {
             // What cannot be read as a scene is not this one either.
-            if !trust::load(&own.to_string_lossy()).is_ok_and(|s| s.hash == scene.hash) {
+            if !console
+                .load_scene(&own.to_string_lossy())
+                .is_ok_and(|s| s.hash == scene.hash)
+            {
                 return Err(Failure::new(
                     format!("{path} belongs to another scene ({SCENE})"),
                     cure,
@@ -137,23 +153,6 @@ impl Folder {
                 Record::FILE
             );
             return Err(Failure::new(cause, cure));
-        }
-        Ok(())
-    }
-
-    /// What stands where a folder or a file of a run has to stand shows before the long work, not after it.
-    fn refuse_obstacles(&self) -> Result<(), Failure> {
-        for name in ["frames", "partial", "model", "recovered", COPIES] {
-            let path = self.path.join(name);
-            if path.exists() && !path.is_dir() {
-                return Err(StoreError::NotAFolder { path }.into());
-            }
-        }
-        for name in [SCENE, PHI, STDERR, Record::FILE, SUMMARY, REPORT] {
-            let path = self.path.join(name);
-            if path.exists() && !path.is_file() {
-                return Err(StoreError::NotAFile { path }.into());
-            }
         }
         Ok(())
     }
@@ -178,11 +177,9 @@ impl Folder {
                 let cause = format!("`{}` has changed since the scene was read", file.name);
                 return Err(Failure::new(cause, "start again"));
             }
-            write_whole(&to, |w| w.write_all(&bytes))?;
+            output::write(&to, &bytes)?;
         }
-        Ok(write_whole(&self.path.join(SCENE), |w| {
-            w.write_all(scene.text.as_bytes())
-        })?)
+        output::write(&self.path.join(SCENE), &scene.text)
     }
 
     pub(super) fn frames(&self) -> PathBuf {
@@ -195,7 +192,8 @@ impl Folder {
             .join(format!("spot-{spot:04}.npy"))
     }
 
-    /// Keeps a finished spot (column `column` of `traced`) until the run is complete, and returns what it keeps.
+    /// Keeps a finished spot (column `column` of `traced`) until the run is complete, and returns
+    /// what it keeps.
     pub(super) fn keep(
         &self,
         spot: usize,
@@ -221,7 +219,7 @@ impl Folder {
             "spots-{:04}-{:04}.{}",
             spots.start,
             spots.end,
-            shard::EXTENSION
+            jobs::EXTENSION
         );
         self.path.join("partial").join(name)
     }
@@ -234,7 +232,7 @@ impl Folder {
             .flatten()
             .filter_map(|e| e.ok()?.file_name().into_string().ok());
         let spots = |name: String| {
-            let own = name.strip_suffix(shard::EXTENSION)?.strip_suffix('.')?;
+            let own = name.strip_suffix(jobs::EXTENSION)?.strip_suffix('.')?;
             let (from, to) = own.strip_prefix("spots-")?.split_once('-')?;
             Some(from.parse().ok()?..to.parse().ok()?)
         };
@@ -243,7 +241,7 @@ impl Folder {
             .filter_map(spots)
             .filter(|r| r.start < r.end && r.end <= scene.laser.spots.len())
             .filter(|r| {
-                ShardFile::open(
+                BlockFile::open(
                     &self.checkpoint_path(r),
                     &own_identity(scene, plan, r),
                     blocks,
@@ -265,8 +263,8 @@ impl Folder {
         remove_named(&self.path.join("partial"), &[name])
     }
 
-    /// A finished spot of the run `record`: one column per bounce count, then the standard error; `None` unless both this and
-    /// its frame are there and whole.
+    /// A finished spot of the run `record`: one column per bounce count, then the standard error;
+    /// `None` unless both this and its frame are there and whole.
     pub(super) fn kept(&self, spot: usize, scene: &Scene, record: &Record) -> Option<Matrix> {
         let matrix = npy::read_finite(&self.partial(spot)).ok()?;
         let shape = (scene.camera.pixels(), scene.max_bounces as usize + 1);
@@ -290,7 +288,7 @@ impl Folder {
     pub(super) fn remove_partial(&self) -> Result<(), Failure> {
         let partial = self.path.join("partial");
         remove_files(&partial, |stem, ext| {
-            stem.starts_with("spots-") && ext == shard::EXTENSION
+            stem.starts_with("spots-") && ext == jobs::EXTENSION
         })?;
         remove_numbered(&partial, "npy")
     }
@@ -299,9 +297,9 @@ impl Folder {
     fn remove_frames(&self) -> Result<(), Failure> {
         self.remove_partial()?;
         remove_numbered(&self.frames(), "exr")?;
-        remove_recovered(&self.path.join("recovered"))?;
-        remove_exposed(&self.path.join(expose::FOLDER))?;
-        remove_named(&self.path.join("model"), &[model::Z])?;
+        remove_recovered(&self.path.join(RECOVERED))?;
+        remove_exposed(&self.path.join(EXPOSED))?;
+        remove_named(&self.path.join(MODEL), &[Z])?;
         remove_named(&self.path, &[PHI, STDERR, Record::FILE, SUMMARY, REPORT])
     }
 
@@ -344,24 +342,49 @@ impl Folder {
     }
 }
 
+/// Refuses what stands in `dir` where `folders` and `files` have to stand: before the long work,
+/// not after it.
+pub(super) fn refuse_obstacles(
+    dir: &Path,
+    folders: &[&str],
+    files: &[&str],
+) -> Result<(), Failure> {
+    let paths = |names: &[&str]| -> Vec<PathBuf> { names.iter().map(|n| dir.join(n)).collect() };
+    if let Some(path) = paths(folders)
+        .into_iter()
+        .find(|p| p.exists() && !p.is_dir())
+    {
+        return Err(StoreError::NotAFolder { path }.into());
+    }
+    if let Some(path) = paths(files)
+        .into_iter()
+        .find(|p| p.exists() && !p.is_file())
+    {
+        return Err(StoreError::NotAFile { path }.into());
+    }
+    Ok(())
+}
+
 /// What the finished blocks of `spots` depend on.
 pub(super) fn own_identity(scene: &Scene, plan: &Plan, spots: &Range<usize>) -> Identity {
-    columns::identity(scene, plan).with("spots", format!("{}..{}", spots.start, spots.end))
+    Spots::identity(scene, plan).with("spots", format!("{}..{}", spots.start, spots.end))
 }
 
 /// What the frame of `spot` says of its origin.
 pub(super) fn meta(scene: &Scene, record: &Record, spot: usize) -> FrameMeta {
     FrameMeta {
-        scene_name: scene.name.clone(),
-        scene_hash: scene.hash.clone(),
-        unit: scene.unit.symbol().to_owned(),
+        run: RunMeta {
+            scene_name: scene.name.clone(),
+            scene_hash: scene.hash.clone(),
+            unit: scene.unit.symbol().to_owned(),
+            spot_count: record.spots as u32,
+            seed: record.plan.seed,
+            samples: record.plan.budget.samples(),
+            estimator: record.plan.estimator.to_string(),
+            sampler: record.plan.sampling.to_string(),
+            version: record.version.clone(),
+        },
         spot_index: spot as u32,
-        spot_count: record.spots as u32,
         spot_position: scene.laser.spots[spot].target.position.to_array(),
-        seed: record.seed,
-        samples: record.samples,
-        estimator: record.estimator.clone(),
-        sampler: record.sampler.clone(),
-        version: record.version.clone(),
     }
 }

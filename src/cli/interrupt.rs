@@ -1,21 +1,28 @@
 //! Ctrl-C, and the warning that a scheduler sends before it ends a job.
 
-use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{LazyLock, Once};
+use std::time::Instant;
+
+use rayon::ThreadPool;
+
+use super::record::version;
+use crate::jobs::Process;
 
 static STOP: AtomicBool = AtomicBool::new(false);
 static WARNED: AtomicBool = AtomicBool::new(false);
 static GENTLE: AtomicBool = AtomicBool::new(false);
 
-/// The flag that ends the work at once: Ctrl-C sets it, and SIGTERM where nothing can be finished first. A second Ctrl-C ends the process. What
-/// is finished is on disk by then.
+/// The flag that ends the work at once: Ctrl-C sets it, and SIGTERM where nothing can be finished
+/// first. A second Ctrl-C ends the process. What is finished is on disk by then.
 pub(super) fn stop_flag() -> &'static AtomicBool {
     static ONCE: Once = Once::new();
     ONCE.call_once(listen);
     &STOP
 }
 
-/// While it lives SIGTERM is a warning: the block at work is finished first. A second SIGTERM does not wait for it.
+/// While it lives SIGTERM is a warning: the block at work is finished first. A second SIGTERM does
+/// not wait for it.
 #[derive(Debug)]
 pub(super) struct Gentle;
 
@@ -34,6 +41,17 @@ impl Drop for Gentle {
         if warned() {
             STOP.store(true, Ordering::Relaxed);
         }
+    }
+}
+
+/// This process, with the threads of `pool`, for work in blocks.
+pub(super) fn process(pool: &ThreadPool) -> Process {
+    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+    Process {
+        version: version(),
+        threads: pool.current_num_threads(),
+        warned,
+        clock: || START.elapsed(),
     }
 }
 
@@ -69,7 +87,8 @@ fn listen() {
 #[cfg(not(unix))]
 fn listen() {}
 
-/// A file that grows beyond a limit on its size shall be an error with a name, not the end of the process.
+/// A file that grows beyond a limit on its size shall be an error with a name, not the end of the
+/// process.
 #[cfg(unix)]
 pub(super) fn outlive_size_limits() {
     static CAUGHT: AtomicBool = AtomicBool::new(false);

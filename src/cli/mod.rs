@@ -1,7 +1,8 @@
-//! Floor 8: the command line. The only floor that prints, reads the environment and decides exit codes.
+//! Floor 8: the command line. The only floor that prints, reads the environment and decides exit
+//! codes.
 //!
-//! Raw arguments become checked settings, then one file per subcommand does its work with the floors below.
-//! Results go to standard output, talk and progress to standard error.
+//! Raw arguments become checked settings, then one file per subcommand does its work with the
+//! floors below. Results go to standard output, console and progress to standard error.
 //!
 //! What a run leaves in its folder:
 //!
@@ -23,25 +24,24 @@
 //! | `partial/` | finished spots and blocks of an unfinished run; gone when it is complete |
 //! | `merged.json` | of which plan it is, where it was put together from shards |
 //!
-//! Exit codes: 0 done (and agreed), 1 traced and modelled disagree, 2 error, 75 stopped by SIGTERM and 130 by Ctrl-C with what is finished
-//! kept. The commands for many machines (`plan`, `shard`, `status`, `merge`, `slurm`, `clean`) tell schedulers more: 3 not complete
-//! (`status`), 64 wrong usage, 65 refused data, 66 missing blocks, 74 the system cannot read or write.
+//! Exit codes: 0 done (and agreed), 1 traced and modelled disagree, 2 error, 75 stopped by SIGTERM
+//! and 130 by Ctrl-C with what is finished kept. The commands for many machines (`plan`, `shard`,
+//! `status`, `merge`, `slurm`, `clean`) tell schedulers more: 3 not complete (`status`), 64 wrong
+//! usage, 65 refused data, 66 missing blocks, 74 the system cannot read or write.
 
 mod args;
 mod batches;
-mod checkpoint;
-mod columns;
+mod cleanup;
 mod expose;
 mod failure;
-mod finished;
 mod folder;
-mod indices;
 mod interrupt;
+mod load_run;
 mod many;
 pub mod many_machines;
 mod model;
 mod output;
-mod portrait;
+mod preview;
 mod progress;
 mod record;
 mod recover;
@@ -54,11 +54,9 @@ mod scene;
 pub mod serve;
 mod settings;
 mod stack;
-mod stale;
 mod study;
 mod target;
 mod tasks;
-mod trust;
 mod validate;
 mod view;
 
@@ -67,16 +65,8 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser};
 
 use args::{Args, Command};
-use failure::{Codes, Failure};
-use output::Talk;
-
-/// How a command ended, if it did not fail.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Outcome {
-    Done,
-    Disagreed,
-    Incomplete,
-}
+use failure::{Codes, Failure, Outcome};
+use output::Console;
 
 /// Parses the arguments, runs the command and returns its exit code.
 pub fn main() -> ExitCode {
@@ -85,33 +75,33 @@ pub fn main() -> ExitCode {
         Ok(args) => args,
         Err(error) => return refuse(&error),
     };
-    let talk = Talk { quiet: args.quiet };
-    trust::also_read(&args.also_read);
+    let console = Console {
+        quiet: args.quiet,
+        also_read: &args.also_read,
+    };
     let result = match &args.command {
-        Command::Run(a) => run::execute(a, talk),
-        Command::Render(a) => render::execute(a, talk),
-        Command::Stack(a) => stack::execute(a, talk),
-        Command::Model(a) => model::execute(a, talk),
-        Command::Validate(a) => validate::execute(a, talk),
-        Command::Recover(a) => recover::execute(a, talk),
-        Command::Expose(a) => expose::execute(a, talk),
-        Command::View(a) => view::execute(a, talk),
-        Command::Serve(a) => serve::execute(a, talk),
-        Command::Scene(a) => scene::execute(a, talk),
-        Command::Target(a) => target::execute(a, talk),
-        Command::Plan(a) => many::plan::execute(a, talk),
-        Command::Shard(a) => many::shard::execute(a, talk),
-        Command::Status(a) => many::status::execute(a, talk),
-        Command::Merge(a) => many::merge::execute(a, talk),
-        Command::Slurm(a) => many::slurm::execute(a, talk),
-        Command::Clean(a) => many::clean::execute(a, talk),
-        Command::Study(a) => study::execute(a, talk),
-        Command::Reproduce(a) => reproduce::execute(a, talk),
+        Command::Run(a) => run::execute(a, console),
+        Command::Render(a) => render::execute(a, console),
+        Command::Stack(a) => stack::execute(a, console),
+        Command::Model(a) => model::execute(a, console),
+        Command::Validate(a) => validate::execute(a, console),
+        Command::Recover(a) => recover::execute(a, console),
+        Command::Expose(a) => expose::execute(a, console),
+        Command::View(a) => view::execute(a, console),
+        Command::Serve(a) => serve::execute(a, console),
+        Command::Scene(a) => scene::execute(a, console),
+        Command::Target(a) => target::execute(a, console),
+        Command::Plan(a) => many::plan::execute(a, console),
+        Command::Shard(a) => many::shard::execute(a, console),
+        Command::Status(a) => many::status::execute(a, console),
+        Command::Merge(a) => many::merge::execute(a, console),
+        Command::Slurm(a) => many::slurm::execute(a, console),
+        Command::Clean(a) => many::clean::execute(a, console),
+        Command::Study(a) => study::execute(a, console),
+        Command::Reproduce(a) => reproduce::execute(a, console),
     };
     match result {
-        Ok(Outcome::Done) => ExitCode::SUCCESS,
-        Ok(Outcome::Disagreed) => ExitCode::from(1),
-        Ok(Outcome::Incomplete) => ExitCode::from(3),
+        Ok(outcome) => ExitCode::from(outcome as u8),
         Err(failure) => {
             failure.report();
             ExitCode::from(failure.code(args.command.codes()))
@@ -123,20 +113,18 @@ pub fn main() -> ExitCode {
 fn refuse(error: &clap::Error) -> ExitCode {
     // That nobody reads it is no reason for another code.
     let _ = error.print();
+    if !error.use_stderr() {
+        return ExitCode::SUCCESS;
+    }
     // The first word that is a command, whatever options stand before it.
     let commands = Args::command();
-    let is_command = |word: &String| commands.find_subcommand(word).is_some();
-    let words = || {
-        std::env::args_os()
-            .skip(1)
-            .filter_map(|a| a.into_string().ok())
+    let mut words = std::env::args_os()
+        .skip(1)
+        .filter_map(|word| word.into_string().ok());
+    let command = words.find(|word| commands.find_subcommand(word).is_some());
+    let codes = match command {
+        Some(name) if Command::SCHEDULED.contains(&name.as_str()) => Codes::Scheduler,
+        _ => Codes::Plain,
     };
-    let scheduled = || words().find(is_command);
-    match error.use_stderr() {
-        false => ExitCode::SUCCESS,
-        true if scheduled().is_some_and(|c| Command::SCHEDULED.contains(&c.as_str())) => {
-            ExitCode::from(Failure::Usage(String::new()).code(Codes::Scheduler))
-        }
-        true => ExitCode::from(2),
-    }
+    ExitCode::from(Failure::Usage(String::new()).code(codes))
 }

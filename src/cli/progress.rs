@@ -7,28 +7,43 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-use super::output::{Talk, harmless};
+use super::output::{Console, harmless};
+use crate::lab::Work;
 use crate::matrix::Matrix;
+use crate::num::digits::significant;
 use crate::transport::Tally;
 
 /// Characters of what is done that are shown.
 const WORDS: usize = 20;
 /// What is done, the bar, its share and the time that is left.
 const TEMPLATE: &str = "{msg} {wide_bar} {percent:>3} % {left}\n{rate}";
-/// Time between two looks at a standard error at the least; and it takes at most one part in [`SHARE`] of the time.
+/// Time between two looks at a standard error at the least; and it takes at most one part in
+/// [`SHARE`] of the time.
 const LOOK: Duration = Duration::from_millis(200);
 const SHARE: u32 = 200;
 
 /// A bar that counts `total` samples; silent with `--quiet` or where standard error is no terminal.
-pub(super) fn samples(talk: Talk, what: &str, total: u64) -> ProgressBar {
+pub(super) fn samples(console: Console, what: &str, total: u64) -> ProgressBar {
     let rate = |state: &ProgressState, w: &mut dyn Write| {
         let _ = w.write_str(&per_second(state.per_sec()));
     };
-    bar(talk, what, total, rate)
+    bar(console, what, total, rate)
+}
+
+/// A bar for the work of a study.
+pub(super) fn work(console: Console, what: &str, work: Work) -> ProgressBar {
+    match work {
+        Work::Samples(total) => samples(console, what, total),
+        Work::Tasks(total) => {
+            let bar = steps(console, what);
+            bar.set_length(total);
+            bar
+        }
+    }
 }
 
 /// A bar that counts a few long steps.
-pub(super) fn steps(talk: Talk, what: &str) -> ProgressBar {
+pub(super) fn steps(console: Console, what: &str) -> ProgressBar {
     let rate = |state: &ProgressState, w: &mut dyn Write| {
         let _ = write!(w, "{} of {}", state.pos(), state.len().unwrap_or(0));
         let _ = match state.per_sec() {
@@ -37,18 +52,19 @@ pub(super) fn steps(talk: Talk, what: &str) -> ProgressBar {
             _ => Ok(()),
         };
     };
-    bar(talk, what, 1, rate)
+    bar(console, what, 1, rate)
 }
 
 fn bar(
-    talk: Talk,
+    console: Console,
     what: &str,
     total: u64,
     rate: impl Fn(&ProgressState, &mut dyn Write) + Clone + Send + Sync + 'static,
 ) -> ProgressBar {
-    let target = match talk.quiet {
-        true => ProgressDrawTarget::hidden(),
-        false => ProgressDrawTarget::stderr(),
+    let target = if console.quiet {
+        ProgressDrawTarget::hidden()
+    } else {
+        ProgressDrawTarget::stderr()
     };
     let bar = ProgressBar::with_draw_target(Some(total), target);
     if let Some(style) = style(rate) {
@@ -74,10 +90,10 @@ fn style(
 
 /// At most [`WORDS`] characters.
 fn shortened(text: &str) -> String {
-    match text.chars().count() > WORDS {
-        true => text.chars().take(WORDS - 1).chain(['…']).collect(),
-        false => text.to_owned(),
+    if text.chars().count() > WORDS {
+        return text.chars().take(WORDS - 1).chain(['…']).collect();
     }
+    text.to_owned()
 }
 
 /// Seconds in the unit that suits them.
@@ -98,16 +114,17 @@ fn per_second(rate: f64) -> String {
         x if x >= 999.5 => (x / 1e3, "k "),
         x => (x, ""),
     };
-    let decimals = match value {
-        v if unit.is_empty() || v >= 99.95 => 0,
-        v if v >= 9.995 => 1,
-        _ => 2,
+    let value = if unit.is_empty() {
+        format!("{value:.0}")
+    } else {
+        significant(value, 3)
     };
-    format!("{value:.decimals$} {unit}samples/s")
+    format!("{value} {unit}samples/s")
 }
 
-/// The bar of a render, which shows how precise it is so far as well: ‖σ‖/‖Φ‖ (Frobenius) over the finished columns, and until there is one over the
-/// finished blocks. Where nobody sees it, nothing is worked out.
+/// The bar of a render, which shows how precise it is so far as well: ‖σ‖/‖Φ‖ (Frobenius) over the
+/// finished columns, and until there is one over the finished blocks. Where nobody sees it, nothing
+/// is worked out.
 pub(super) struct Tracing {
     bar: ProgressBar,
     /// Bits of what is shown; not a number until it is known.
@@ -120,7 +137,7 @@ pub(super) struct Tracing {
 
 impl Tracing {
     /// Nothing yet, of `total` samples.
-    pub(super) fn start(talk: Talk, scene: &str, total: u64) -> Self {
+    pub(super) fn start(console: Console, scene: &str, total: u64) -> Self {
         let shown = Arc::new(AtomicU64::new(f64::NAN.to_bits()));
         let own = Arc::clone(&shown);
         let rate = move |state: &ProgressState, w: &mut dyn Write| {
@@ -133,7 +150,7 @@ impl Tracing {
             };
         };
         Self {
-            bar: bar(talk, &format!("tracing {scene}"), total, rate),
+            bar: bar(console, &format!("tracing {scene}"), total, rate),
             shown,
             finished: [0.0; 2],
             next: Instant::now(),
@@ -151,11 +168,12 @@ impl Tracing {
     }
 
     /// A remark on a line of its own.
-    pub(super) fn say(&self, talk: Talk, text: impl AsRef<str>) {
-        self.bar.suspend(|| talk.say(text));
+    pub(super) fn say(&self, console: Console, text: impl AsRef<str>) {
+        self.bar.suspend(|| console.say(text));
     }
 
-    /// Takes in a column as it is kept: flux by the number of surfaces met, then the standard error of their sum.
+    /// Takes in a column as it is kept: flux by the number of surfaces met, then the standard error
+    /// of their sum.
     pub(super) fn finished(&mut self, kept: &Matrix) {
         if self.bar.is_hidden() {
             return;
@@ -172,7 +190,8 @@ impl Tracing {
         }
     }
 
-    /// Looks at the blocks of the columns that are at work, if there are no finished columns and it is time.
+    /// Looks at the blocks of the columns that are at work, if there are no finished columns and it
+    /// is time.
     pub(super) fn look(&mut self, tally: &Tally) {
         let start = Instant::now();
         if self.bar.is_hidden() || self.finished[1] > 0.0 || start < self.next {
@@ -197,12 +216,10 @@ impl Tracing {
 
 /// A small share with two digits.
 fn share(error: f64) -> String {
-    match 100.0 * error {
-        x if x >= 9.95 => format!("{x:.0} %"),
-        x if x >= 0.995 => format!("{x:.1} %"),
-        x if x >= 0.0995 => format!("{x:.2} %"),
-        x if x >= 0.00995 => format!("{x:.3} %"),
-        _ => format!("{error:.1e}"),
+    if error < 9.95e-5 {
+        format!("{error:.1e}")
+    } else {
+        format!("{} %", significant(100.0 * error, 2))
     }
 }
 

@@ -6,10 +6,8 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::failure::Failure;
-use super::settings;
+use super::output;
 use crate::scene::Scene;
-use crate::store::write_whole;
-use crate::study::Settings;
 use crate::transport::Plan;
 
 /// The record of a run.
@@ -19,11 +17,8 @@ pub(super) struct Record {
     pub scene: String,
     pub scene_hash: String,
     pub unit: String,
-    pub seed: u64,
-    pub samples: u64,
-    pub blocks: u32,
-    pub estimator: String,
-    pub sampler: String,
+    #[serde(flatten)]
+    pub plan: Plan,
     pub pixels: [usize; 2],
     pub spots: usize,
     /// Spots rendered so far; equal to `spots` when the run is complete.
@@ -48,11 +43,7 @@ impl Record {
             scene: scene.name.clone(),
             scene_hash: scene.hash.clone(),
             unit: scene.unit.symbol().to_owned(),
-            seed: plan.seed,
-            samples: plan.budget.samples(),
-            blocks: plan.budget.blocks,
-            estimator: plan.estimator.name().to_owned(),
-            sampler: plan.sampling.name().to_owned(),
+            plan: *plan,
             pixels: [scene.camera.columns, scene.camera.rows],
             spots: scene.laser.spots.len(),
             finished,
@@ -85,51 +76,14 @@ impl Record {
     }
 
     pub(super) fn write(&self, dir: &Path) -> Result<(), Failure> {
-        let text = super::output::json(self)?;
-        Ok(write_whole(&dir.join(Self::FILE), |w| {
-            w.write_all(text.as_bytes())
-        })?)
+        let text = output::json(self)?;
+        output::write(&dir.join(Self::FILE), text)
     }
 
     /// Whether the same scene was rendered by the same plan and program.
     pub(super) fn same_settings(&self, other: &Self) -> bool {
-        let key = |r: &Self| {
-            let names = [&r.scene_hash, &r.version, &r.estimator, &r.sampler].map(String::clone);
-            (names, r.seed, r.samples, r.blocks)
-        };
+        let key = |r: &'_ Self| (r.scene_hash.clone(), r.version.clone(), r.plan);
         key(self) == key(other)
-    }
-
-    /// Seed, samples, estimator and sampler in words.
-    pub(super) fn settings(&self) -> String {
-        let Self {
-            seed,
-            samples,
-            estimator,
-            sampler,
-            ..
-        } = self;
-        format!("{estimator}, {sampler}, {samples} samples, seed {seed}")
-    }
-
-    /// The plan that was rendered.
-    pub(super) fn plan(&self) -> Result<Plan, Failure> {
-        let plan = settings::named(&self.estimator, &self.sampler, self.seed, self.samples)?;
-        match plan.budget.blocks == self.blocks {
-            true => Ok(plan),
-            false => Err(settings::unknown("division into blocks")),
-        }
-    }
-
-    pub(super) fn to_settings(&self) -> Settings {
-        Settings {
-            version: self.version.clone(),
-            estimator: self.estimator.clone(),
-            sampler: self.sampler.clone(),
-            seed: self.seed,
-            samples: self.samples,
-            blocks: self.blocks,
-        }
     }
 }
 

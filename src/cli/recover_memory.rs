@@ -5,12 +5,13 @@ use std::path::Path;
 
 use super::args::RecoverArgs;
 use super::failure::Failure;
-use super::output::Talk;
+use super::load_run::refuse_shape;
+use super::output::Console;
+use crate::lab::{Attempt, measured};
 use crate::matrix::npy::Rows;
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Options, Strip, recover_strips};
 use crate::scene::Scene;
-use crate::study::{Attempt, measured};
 
 const GIB: f64 = (1u64 << 30) as f64;
 /// What the program takes besides.
@@ -40,36 +41,41 @@ impl Size {
         8.0 * 2.0 * self.elements * (self.pixels + self.spots)
     }
 
-    /// Everything at once, an upper bound: Φcam, its errors and three matrices of their size on the way, four of D's; of a joint method weighted copies of
-    /// both sides and three of its product besides.
+    /// Everything at once, an upper bound: Φcam, its errors and three matrices of their size on the
+    /// way, four of D's; of a joint method weighted copies of both sides and three of its product
+    /// besides.
     fn whole(self, joint: bool, budget: usize) -> f64 {
         let phi = self.pixels * self.spots;
         let sides = self.elements * (self.pixels + self.spots);
-        let more = match joint {
-            true => 2.0 * phi + 3.0 * sides + 3.0 * budget as f64,
-            false => 0.0,
+        let more = if joint {
+            2.0 * phi + 3.0 * sides + 3.0 * budget as f64
+        } else {
+            0.0
         };
         BASE + self.model() + 8.0 * (5.0 * phi + 4.0 * self.elements * self.spots + more)
     }
 
-    /// What strips need however low they are: the model, D decomposed, a matrix of spots × elements and another on the way.
+    /// What strips need however low they are: the model, D decomposed, a matrix of spots × elements
+    /// and another on the way.
     fn beside(self) -> f64 {
         BASE + self.model() + 8.0 * 6.0 * self.elements * self.spots
     }
 
-    /// One pixel of a strip: Φcam and its errors as they are read and on the way, C and what is divided by it.
+    /// One pixel of a strip: Φcam and its errors as they are read and on the way, C and what is
+    /// divided by it.
     fn pixel(self) -> f64 {
         8.0 * (6.0 * self.spots + 5.0 * self.elements)
     }
 }
 
-/// How the photographs are to be held within the memory allowed; says what will be taken where that is much.
+/// How the photographs are to be held within the memory allowed; says what will be taken where that
+/// is much.
 pub(super) fn plan(
     args: &RecoverArgs,
     scene: &Scene,
     methods: &[Method],
     options: &Options,
-    talk: Talk,
+    console: Console,
 ) -> Result<Held, Failure> {
     let elements = |surface: [usize; 2]| {
         let [nu, nv] = args.elements.unwrap_or(surface);
@@ -85,7 +91,7 @@ pub(super) fn plan(
     let whole = size.whole(joint, options.budget);
     if allowed.is_none_or(|allowed| whole <= allowed) {
         if whole > GIB {
-            talk.say(format!("memory: up to {:.1} GiB", whole / GIB));
+            console.say(format!("memory: up to {:.1} GiB", whole / GIB));
         }
         return Ok(Held::Whole);
     }
@@ -103,7 +109,7 @@ pub(super) fn plan(
         ));
     }
     let pixels = pixels.min(MOST_PIXELS).min(size.pixels);
-    talk.say(format!(
+    console.say(format!(
         "memory: up to {:.2} GiB (all of Φcam at once would take {:.2}, and {:.2} may be taken): Φcam is read by {pixels} pixels at a time",
         (size.beside() + pixels * size.pixel()) / GIB,
         whole / GIB,
@@ -120,96 +126,87 @@ fn free() -> Option<f64> {
     Some(0.75 * kib * 1024.0)
 }
 
-/// What a strip's standard errors come from.
-pub(super) enum Errors {
-    Unknown,
-    /// Relative to each entry.
-    Relative(f64),
-    File(Box<Rows>),
-}
-
 /// A file of Φcam's shape, opened.
 pub(super) fn open(path: &Path, scene: &Scene) -> Result<Rows, Failure> {
     let rows = Rows::open(path)?;
-    let wanted = (scene.camera.pixels(), scene.laser.spots.len());
-    if rows.shape() != wanted {
-        let (found, (pixels, spots)) = (rows.shape(), wanted);
-        let cause = format!(
-            "{} is {} × {}, but scene `{}` has {pixels} pixels and {spots} spots",
-            path.display(),
-            found.0,
-            found.1,
-            scene.name
-        );
-        return Err(Failure::new(
-            cause,
-            "give the matrix of this scene, pixels × spots",
-        ));
-    }
+    refuse_shape(path, rows.shape(), scene)?;
     Ok(rows)
 }
 
-/// The hidden objects by each method, from strips of so many pixels.
-pub(super) fn recover(
-    model: &MatrixModel,
-    phi: &mut Rows,
-    errors: &mut Errors,
-    pixels: usize,
-    methods: &[Method],
-    options: &Options,
-) -> Result<Vec<Attempt>, Failure> {
-    let mut attempts = Vec::new();
-    for &method in methods {
-        // What the files refuse is no matter of the method.
-        let mut broken = None;
-        let strip = |first: usize| match read(model, phi, errors, first, pixels) {
-            Ok(strip) => Ok(strip),
-            Err(failure) => {
-                broken = Some(failure);
-                Ok(None)
-            }
-        };
-        let found = recover_strips(method, &model.laser_side, options, strip);
-        if let Some(failure) = broken {
-            return Err(failure);
-        }
-        attempts.push(Attempt {
-            method,
-            outcome: found.map(|found| measured(model, &found)),
-        });
-    }
-    Ok(attempts)
+/// Where the standard errors of a strip come from.
+pub(super) enum StripErrors {
+    Unknown,
+    /// Relative to each entry.
+    Relative(f64),
+    Rows(Box<Rows>),
 }
 
-fn read(
-    model: &MatrixModel,
-    phi: &mut Rows,
-    errors: &mut Errors,
-    first: usize,
-    pixels: usize,
-) -> Result<Option<Strip>, Failure> {
-    let phi = phi.read(first, pixels)?;
-    let count = phi.nrows();
-    if count == 0 {
-        return Ok(None);
+/// Φcam, read by rows.
+pub(super) struct Strips<'a> {
+    pub model: &'a MatrixModel,
+    pub phi: Rows,
+    pub errors: StripErrors,
+    /// Of one strip.
+    pub pixels: usize,
+}
+
+impl Strips<'_> {
+    /// The hidden objects by each method.
+    pub(super) fn recover(
+        &mut self,
+        methods: &[Method],
+        options: &Options,
+    ) -> Result<Vec<Attempt>, Failure> {
+        let model = self.model;
+        let mut attempts = Vec::new();
+        for &method in methods {
+            // What the files refuse is not the method's failure.
+            let mut broken = None;
+            let strip = |first: usize| {
+                let strip = self.read(first);
+                Ok(strip.unwrap_or_else(|failure| {
+                    broken = Some(failure);
+                    None
+                }))
+            };
+            let found = recover_strips(method, &model.laser_side, options, strip);
+            if let Some(failure) = broken {
+                return Err(failure);
+            }
+            attempts.push(Attempt {
+                method,
+                outcome: found.map(|found| measured(model, &found)),
+            });
+        }
+        Ok(attempts)
     }
-    let stderr = match errors {
-        Errors::Unknown => None,
-        Errors::Relative(noise) => Some(phi.map(|x| x.abs() * *noise)),
-        Errors::File(rows) => Some(rows.read(first, count)?),
-    };
-    Ok(Some(Strip {
-        c: model.camera_side.rows(first, count).into_owned(),
-        phi,
-        stderr,
-    }))
+
+    /// The strip that begins at pixel `first`; `None` beyond the last.
+    fn read(&mut self, first: usize) -> Result<Option<Strip>, Failure> {
+        let phi = self.phi.read(first, self.pixels)?;
+        let count = phi.nrows();
+        if count == 0 {
+            return Ok(None);
+        }
+        let stderr = match &mut self.errors {
+            StripErrors::Unknown => None,
+            StripErrors::Relative(noise) => Some(phi.map(|x| x.abs() * *noise)),
+            StripErrors::Rows(rows) => Some(rows.read(first, count)?),
+        };
+        Ok(Some(Strip {
+            c: self.model.camera_side.rows(first, count).into_owned(),
+            phi,
+            stderr,
+        }))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// 64 GiB of photographs, 64 elements: a strip fits 4 GiB with room to spare, the whole does not.
+    /// 64 GiB of photographs, 64 elements: a strip fits 4 GiB with room to spare, the whole does
+    /// not.
     #[test]
     fn photographs_of_sixty_four_gib_fit_four() {
         let size = Size {

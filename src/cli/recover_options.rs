@@ -2,10 +2,10 @@
 
 use std::fmt::Display;
 
-use super::args::{RecoverArgs, RuleName, WeightingName};
+use super::args::RecoverArgs;
 use super::failure::Failure;
 use crate::num::linalg::Tolerance;
-use crate::recovery::{Method, Options, Rule, WeightRule};
+use crate::recovery::{Method, Options, WeightRule};
 
 /// The options that the arguments describe, for `methods`.
 pub(super) fn checked(args: &RecoverArgs, methods: &[Method]) -> Result<Options, Failure> {
@@ -47,18 +47,11 @@ pub(super) fn checked(args: &RecoverArgs, methods: &[Method]) -> Result<Options,
     let mut options = Options {
         rank: args.rank,
         damping: args.damping,
-        rule: match args.rule {
-            RuleName::Discrepancy => Rule::Discrepancy,
-            RuleName::Gcv => Rule::Gcv,
-            RuleName::LCurve => Rule::LCurve,
-        },
+        rule: args.rule,
         total_variation: args.joint.tv,
         levels: args.joint.levels,
         bands: args.bands,
-        weighting: match args.joint.weighting {
-            WeightingName::Noise => WeightRule::Noise,
-            WeightingName::None => WeightRule::Unweighted,
-        },
+        weighting: args.joint.weighting,
         ..Options::default()
     };
     if let Some(tolerance) = args.tolerance {
@@ -115,7 +108,7 @@ fn used(args: &RecoverArgs, methods: &[Method]) -> Result<(), Failure> {
         ),
         (
             "--weighting none",
-            joint.weighting == WeightingName::None,
+            joint.weighting == WeightRule::Unweighted,
             &all_joint,
         ),
         ("--frame-constant", joint.frame_constant, &all_joint),

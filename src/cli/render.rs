@@ -7,21 +7,21 @@ use std::time::Instant;
 use super::args::{RenderArgs, TraceArgs};
 use super::batches::Work;
 use super::failure::Failure;
-use super::finished::read_matrix;
-use super::folder::{Folder, Keep, PHI, STDERR};
+use super::folder::{Folder, PHI, Resume, STDERR};
 use super::interrupt::Gentle;
-use super::output::{self, Talk};
+use super::load_run::read_matrix;
+use super::output::{self, Console};
 use super::record::Record;
-use super::trust;
 use super::{Outcome, settings};
 use crate::film;
+use crate::lab::describe_render;
 use crate::matrix::Matrix;
 use crate::report;
 use crate::scene::Scene;
 use crate::transport::{Plan, Traced, block_size};
 
-pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = trust::load(&args.scene)?;
+pub(super) fn execute(args: &RenderArgs, console: Console) -> Result<Outcome, Failure> {
+    let scene = console.load_scene(&args.scene)?;
     let total = scene.laser.spots.len();
     let spots = args.spots.clone().unwrap_or(0..total);
     if spots.end > total {
@@ -35,16 +35,14 @@ pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure>
         ));
     }
     let keep = match (args.resume, spots.len() < total) {
-        (true, _) => Keep::Finished,
-        (false, true) => Keep::OtherSpots,
-        (false, false) => Keep::Nothing,
+        (true, _) => Resume::Finished,
+        (false, true) => Resume::OtherSpots,
+        (false, false) => Resume::Nothing,
     };
+    let plan = settings::plan(&args.trace.paths)?;
     let complete = match keep {
-        Keep::Nothing => None,
-        _ => {
-            let plan = settings::plan(&args.trace.paths, Talk { quiet: true })?;
-            complete(&scene, &plan, &args.output)?
-        }
+        Resume::Nothing => None,
+        _ => complete(&scene, &plan, &args.output)?,
     };
     let (record, traced) = match complete {
         Some(record) => {
@@ -53,14 +51,23 @@ pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure>
             (record, None)
         }
         None => {
-            let rendered = into_folder(&scene, &args.trace, spots, keep, &args.output, talk)?;
+            let rendered = into_folder(
+                &scene,
+                &plan,
+                &args.trace,
+                spots,
+                keep,
+                &args.output,
+                console,
+            )?;
             (rendered.record, rendered.phi)
         }
     };
     if args.json {
         output::print(&output::json(&record)?)?;
     } else if let Some(traced) = traced {
-        let table = report::render_table(&scene, &record.to_settings(), &traced, record.seconds);
+        let found = describe_render(&scene, &record.plan, &traced, record.seconds);
+        let table = report::finding_text(&found);
         let Record {
             finished, spots, ..
         } = record;
@@ -82,7 +89,7 @@ pub(super) fn execute(args: &RenderArgs, talk: Talk) -> Result<Outcome, Failure>
         let place = args.output.display();
         output::print(&format!(
             "{place}: {finished} of {spots} spots in {seconds:.1} s ({}): {what}\n",
-            record.settings()
+            record.plan
         ))?;
     }
     Ok(Outcome::Done)
@@ -113,38 +120,39 @@ pub(super) struct Rendered {
 /// Renders `spots` into the run folder `path`, every finished spot safe on disk.
 pub(super) fn into_folder(
     scene: &Scene,
+    plan: &Plan,
     args: &TraceArgs,
     spots: Range<usize>,
-    keep: Keep,
+    keep: Resume,
     path: &Path,
-    talk: Talk,
+    console: Console,
 ) -> Result<Rendered, Failure> {
-    let plan = settings::plan(&args.paths, talk)?;
-    settings::suited(scene, &plan)?;
+    settings::remark_rounding(&args.paths, plan, console);
+    settings::suited(scene, plan)?;
     let pool = settings::pool(args.threads)?;
     let threads = pool.current_num_threads();
-    let mut record = Record::new(scene, &plan, 0, threads, 0.0);
-    if keep == Keep::Finished
+    let mut record = Record::new(scene, plan, 0, threads, 0.0);
+    if keep == Resume::Finished
         && let Some(earlier) = Record::read(path)?
     {
         record.seconds = earlier.seconds;
     }
     refuse_too_large(scene)?;
-    let folder = Folder::open(path, scene, &record, keep, talk)?;
-    talk.warn(scene);
+    let folder = Folder::open(path, scene, &record, keep, console)?;
+    console.warn(scene);
     let total = scene.laser.spots.len();
     let there = |s: usize| match keep {
-        Keep::Finished => true,
-        Keep::OtherSpots => !spots.contains(&s),
-        Keep::Nothing => false,
+        Resume::Finished => true,
+        Resume::OtherSpots => !spots.contains(&s),
+        Resume::Nothing => false,
     };
     let mut kept: Vec<Option<Matrix>> = (0..total)
         .map(|s| there(s).then(|| folder.kept(s, scene, &record)).flatten())
         .collect();
     let todo: Vec<usize> = spots.filter(|s| kept[*s].is_none()).collect();
-    let points = block_size(scene, &plan) as u64;
+    let points = block_size(scene, plan) as u64;
     if points > u64::from(plan.budget.size) {
-        talk.say(format!(
+        console.say(format!(
             "a block takes {points} points in place of {}, so that every texture cell has its share",
             plan.budget.size
         ));
@@ -152,14 +160,14 @@ pub(super) fn into_folder(
     let start = Instant::now();
     let work = Work {
         scene,
-        plan: &plan,
+        plan,
         folder: &folder,
         record: &record,
         pool: &pool,
-        resume: keep == Keep::Finished,
+        resume: keep == Resume::Finished,
     };
     let gentle = Gentle::new();
-    let traced = work.trace(&todo, &mut kept, talk);
+    let traced = work.trace(&todo, &mut kept, console);
     drop(gentle);
     record.seconds += start.elapsed().as_secs_f64();
     record.finished = kept.iter().flatten().count();

@@ -1,4 +1,5 @@
-//! `phicam reproduce`: the published tables and figures, computed again; finished items are not repeated.
+//! `phicam reproduce`: the published tables and figures, computed again; finished items are not
+//! repeated.
 
 use std::fs;
 use std::ops::Range;
@@ -7,23 +8,24 @@ use std::path::Path;
 use super::args::ReproduceArgs;
 use super::failure::Failure;
 use super::interrupt::stop_flag;
-use super::output::{self, Talk};
+use super::output::{self, Console};
 use super::record::version;
-use super::tasks::{Cut, encoded};
+use super::tasks::Tasks;
 use super::{Outcome, progress, settings};
-use crate::report::{self, ItemSummary, ReproductionSettings};
-use crate::store::{ensure_writable, write_whole};
-use crate::study::reproduce::{
-    Item, ReproduceError, ReproducePlan, ReproduceTasks, Reproduction, reproduce,
+use crate::lab::finding::Finding;
+use crate::lab::published::{
+    Item, ItemSummary, ReproducePlan, ReproduceTasks, overview, reproduce,
 };
-use crate::study::{Division, decode};
+use crate::lab::{Study, decode, encoded};
+use crate::report::{self, ReproductionSettings};
+use crate::store::{ensure_writable, write_whole};
 use crate::transport::Control;
 
-pub(super) fn execute(args: &ReproduceArgs, talk: Talk) -> Result<Outcome, Failure> {
+pub(super) fn execute(args: &ReproduceArgs, console: Console) -> Result<Outcome, Failure> {
     let (items, plan) = asked(args)?;
     let pool = settings::pool(args.threads)?;
     ensure_writable(&args.output)?;
-    let bar = progress::steps(talk, "published items");
+    let bar = progress::steps(console, "published items");
     bar.set_length(items.len() as u64);
     let mut kept = 0;
     for &item in &items {
@@ -32,15 +34,18 @@ pub(super) fn execute(args: &ReproduceArgs, talk: Talk) -> Result<Outcome, Failu
         if finished(&args.output, item, &wanted).is_some() {
             kept += 1;
         } else {
-            match pool.install(|| reproduce(item, &plan, stop_flag())) {
-                Ok(found) => leave(&args.output, &found, &plan)?,
-                Err(ReproduceError::Stopped) => {
-                    return Err(Failure::Stopped(format!(
+            let control = Control {
+                stop: stop_flag(),
+                ..Control::none()
+            };
+            match pool.install(|| reproduce(item, &plan, control)) {
+                Ok(found) => leave(&args.output, item, &found, &plan)?,
+                Err(e) => {
+                    return Err(Failure::from(e).if_stopped(format!(
                         "finished items are kept in {}; go on with the same command",
                         args.output.display()
                     )));
                 }
-                Err(e) => return Err(e.into()),
             }
             pages(&args.output, &plan)?;
         }
@@ -48,7 +53,7 @@ pub(super) fn execute(args: &ReproduceArgs, talk: Talk) -> Result<Outcome, Failu
     }
     bar.finish_and_clear();
     if kept > 0 {
-        talk.say(format!(
+        console.say(format!(
             "{kept} of {} items were finished already in {}",
             items.len(),
             args.output.display()
@@ -75,9 +80,9 @@ fn asked(args: &ReproduceArgs) -> Result<(Vec<Item>, ReproducePlan), Failure> {
 }
 
 /// Leaves the files of a computed item.
-fn leave(folder: &Path, found: &Reproduction, plan: &ReproducePlan) -> Result<(), Failure> {
-    write(folder, &report::reproduction_files(found)?, |files| {
-        ItemSummary::new(found, plan.settings(found.item), files)
+fn leave(folder: &Path, item: Item, found: &Finding, plan: &ReproducePlan) -> Result<(), Failure> {
+    write(folder, &report::reproduction_files(item, found)?, |files| {
+        ItemSummary::new(item, found, plan.settings(item), files)
     })
 }
 
@@ -88,7 +93,7 @@ fn print(folder: &Path, items: &[Item], plan: &ReproducePlan, json: bool) -> Res
     pages(folder, plan)?;
     output::print(&match json {
         true => output::json(&found)?,
-        false => report::reproduction_table(&found),
+        false => report::finding_text(&overview(&found)),
     })
 }
 
@@ -135,48 +140,44 @@ fn pages(folder: &Path, plan: &ReproducePlan) -> Result<(), Failure> {
 
 /// The published items as tasks.
 struct Published {
-    division: ReproduceTasks,
+    study: ReproduceTasks,
     plan: ReproducePlan,
     items: Vec<Item>,
     json: bool,
 }
 
 /// The tasks of the items asked for.
-pub(in crate::cli) fn cut(args: &ReproduceArgs) -> Result<Box<dyn Cut>, Failure> {
+pub(in crate::cli) fn tasks(args: &ReproduceArgs) -> Result<Box<dyn Tasks>, Failure> {
     let (items, plan) = asked(args)?;
     Ok(Box::new(Published {
-        division: ReproduceTasks::new(plan, items.clone()),
+        study: ReproduceTasks::new(plan, items.clone()),
         plan,
         items,
         json: args.json,
     }))
 }
 
-impl Cut for Published {
-    fn tasks(&self) -> usize {
-        self.division.tasks()
+impl Tasks for Published {
+    fn count(&self) -> usize {
+        self.study.tasks()
     }
 
-    fn run(
-        &self,
-        tasks: Range<usize>,
-        control: Control<'_>,
-    ) -> Result<Option<Vec<Vec<u8>>>, Failure> {
-        encoded(&self.division, &(), tasks, control)
+    fn run(&self, tasks: Range<usize>, control: Control<'_>) -> Result<Vec<Vec<u8>>, Failure> {
+        encoded(&self.study, &(), tasks, control).map_err(Failure::of)
     }
 
     fn deliver(
         &self,
-        parts: &[Vec<u8>],
+        outputs: &[Vec<u8>],
         _: Control<'_>,
         output: &Path,
-    ) -> Result<Option<Outcome>, Failure> {
-        let parts = decode(&self.division, &(), parts)?;
+    ) -> Result<Outcome, Failure> {
+        let outputs = decode(&self.study, &(), outputs)?;
         ensure_writable(output)?;
-        for found in self.division.finish(&(), parts)? {
-            leave(output, &found, &self.plan)?;
+        for (item, found) in self.study.finish(&(), outputs)? {
+            leave(output, item, &found, &self.plan)?;
         }
         print(output, &self.items, &self.plan, self.json)?;
-        Ok(Some(Outcome::Done))
+        Ok(Outcome::Done)
     }
 }

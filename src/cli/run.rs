@@ -5,46 +5,52 @@ use std::time::Instant;
 
 use super::args::RunArgs;
 use super::failure::Failure;
-use super::folder::{Keep, REPORT, SUMMARY};
+use super::folder::{REPORT, Resume, SUMMARY};
 use super::interrupt::stop_flag;
-use super::output::{self, Talk};
+use super::output::{self, Console};
 use super::progress;
 use super::record::Record;
 use super::render::{self, Rendered};
-use super::trust;
 use super::{Outcome, model, recover, settings, validate};
 use crate::film;
+use crate::lab::finding::Describe;
+use crate::lab::{self, Gallery, GalleryPlan, GalleryTasks, Noise, RunResults};
 use crate::matrix::Matrix;
 use crate::metrics::relative_frobenius;
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Nuisance, Options};
 use crate::report;
-use crate::store::write_whole;
-use crate::study::{self, Gallery, GalleryPlan, GalleryTasks, Noise, RunResults};
 use crate::transport::Control;
 
-pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let scene = trust::load(&args.scene)?;
+pub(super) fn execute(args: &RunArgs, console: Console) -> Result<Outcome, Failure> {
+    let scene = console.load_scene(&args.scene)?;
     let mut clock = Clock::start();
-    let plan = settings::plan(&args.trace.paths, Talk { quiet: true })?;
-    let test = settings::test(&args.test, &plan, talk)?;
+    let plan = settings::plan(&args.trace.paths)?;
+    let test = settings::test(&args.test, &plan, console)?;
     let spots = 0..scene.laser.spots.len();
     let asked = Record::new(&scene, &plan, 0, 0, 0.0);
     let keep = match Record::read(&args.output)? {
         Some(earlier) if earlier.same_settings(&asked) && earlier.finished < earlier.spots => {
-            talk.say("going on with the unfinished run");
-            Keep::Finished
+            console.say("going on with the unfinished run");
+            Resume::Finished
         }
-        _ => Keep::Nothing,
+        _ => Resume::Nothing,
     };
-    let Rendered { record, phi } =
-        render::into_folder(&scene, &args.trace, spots, keep, &args.output, talk)?;
+    let Rendered { record, phi } = render::into_folder(
+        &scene,
+        &plan,
+        &args.trace,
+        spots,
+        keep,
+        &args.output,
+        console,
+    )?;
     let Some(traced) = phi else {
         return Err(Failure::new("not every spot was rendered", "run again"));
     };
     clock.lap("render")?;
 
-    talk.say("stacking the frames");
+    console.say("stacking the frames");
     refuse_unfaithful_frames(&args.output, &traced.flux)?;
     clock.lap("stack")?;
 
@@ -55,7 +61,8 @@ pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
         .map(|(n, m)| (n, share(m)))
         .collect();
     let mut results = RunResults {
-        settings: record.to_settings(),
+        version: record.version,
+        plan,
         phi: traced.flux,
         stderr: traced.stderr,
         bounces,
@@ -69,20 +76,20 @@ pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
         scene,
     };
     if results.scene.hidden().next().is_some() {
-        compare_and_recover(&mut results, args, test, &mut clock, talk)?;
+        compare_and_recover(&mut results, args, test, &mut clock, console)?;
     }
 
-    talk.say("writing the report");
+    console.say("writing the report");
     results.times = clock.laps;
     let path = |name| args.output.join(name);
     let summary = report::summary_json(&results);
-    write_whole(&path(SUMMARY), |w| w.write_all(summary.as_bytes()))?;
+    output::write(&path(SUMMARY), &summary)?;
     let page = report::run_html(&results);
-    write_whole(&path(REPORT), |w| w.write_all(page.as_bytes()))?;
+    output::write(&path(REPORT), page)?;
     let text = match args.json {
         true => summary,
         false => {
-            report::summary_table(&results)
+            report::finding_text(&results.describe())
                 + &format!(
                     "\n  everything is in {}, the report in report.html\n",
                     args.output.display()
@@ -100,15 +107,15 @@ pub(super) fn execute(args: &RunArgs, talk: Talk) -> Result<Outcome, Failure> {
 fn compare_and_recover(
     results: &mut RunResults,
     args: &RunArgs,
-    test: study::Test,
+    test: lab::Test,
     clock: &mut Clock,
-    talk: Talk,
+    console: Console,
 ) -> Result<(), Failure> {
-    let kernel = settings::kernel(args.test.kernel);
-    let integration = settings::integration(args.test.integration);
-    talk.say("computing the model and comparing");
+    let kernel = args.test.kernel;
+    let integration = args.test.integration;
+    console.say("computing the model and comparing");
     let matrices = MatrixModel::new(&results.scene, kernel, None)?;
-    let found = study::validate(
+    let found = lab::validate(
         &results.scene,
         &results.phi,
         &results.stderr,
@@ -124,16 +131,16 @@ fn compare_and_recover(
     clock.lap("model and validate")?;
 
     if results.phi.iter().all(|&x| x == 0.0) {
-        talk.say("no light reached the camera: there is nothing to recover");
+        console.say("no light reached the camera: there is nothing to recover");
         return Ok(());
     }
-    talk.say("recovering the object");
+    console.say("recovering the object");
     let noise = Noise::StandardError(&results.stderr);
     let options = Options {
-        uncertainty: recover::uncertainty(&matrices, talk),
+        uncertainty: recover::uncertainty(&matrices, console),
         ..Options::default()
     };
-    let attempts = study::recover_objects(
+    let attempts = lab::recover_objects(
         &matrices,
         &results.phi,
         noise,
@@ -141,8 +148,8 @@ fn compare_and_recover(
         &Method::USUAL,
         &options,
     );
-    results.recovered = recover::collect(attempts, false, talk)?;
-    results.picards = study::picards(
+    results.recovered = recover::collect(attempts, false, console)?;
+    results.picards = lab::picards(
         &matrices,
         &results.phi,
         noise,
@@ -158,21 +165,22 @@ fn compare_and_recover(
     )?;
     clock.lap("recover")?;
 
-    results.gallery = gallery(results, &matrices, talk);
+    results.gallery = gallery(results, &matrices, console);
     clock.lap("gallery")?;
     Ok(())
 }
 
-/// The object over regularisation and noise; none where there is nothing to show, and where it was stopped.
-fn gallery(results: &RunResults, matrices: &MatrixModel, talk: Talk) -> Option<Gallery> {
+/// The object over regularisation and noise; none where there is nothing to show, and where it was
+/// stopped.
+fn gallery(results: &RunResults, matrices: &MatrixModel, console: Console) -> Option<Gallery> {
     let tasks = GalleryTasks::new(
         &results.scene,
         matrices,
         (&results.phi, &results.stderr),
         &results.recovered,
-        GalleryPlan::of_run(results.settings.seed),
+        GalleryPlan::of_run(results.plan.seed),
     )?;
-    let bar = progress::steps(talk, "recovering over regularisation and noise");
+    let bar = progress::steps(console, "recovering over regularisation and noise");
     bar.set_length(tasks.count());
     let found = tasks.gallery(Control {
         progress: &|steps| bar.inc(steps),
@@ -182,7 +190,8 @@ fn gallery(results: &RunResults, matrices: &MatrixModel, talk: Talk) -> Option<G
     found
 }
 
-/// Below 1.2e-38 numbers of f32 lose their digits; a frame whose brightest pixel is fainter than this has such in it.
+/// Below 1.2e-38 numbers of f32 lose their digits; a frame whose brightest pixel is fainter than
+/// this has such in it.
 const FAINTEST: f64 = 1e-30;
 
 /// The frames must hold Φcam to f32 rounding: what is read back is compared with what was traced.

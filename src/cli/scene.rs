@@ -7,20 +7,24 @@ use serde_json::json;
 use super::Outcome;
 use super::args::{SceneArgs, SceneCommand};
 use super::failure::Failure;
-use super::output::{self, Talk};
-use super::{portrait, trust};
+use super::output::{self, Console};
+use super::preview;
 use crate::report;
 use crate::scene::{Builtin, Role, Scene, builtins};
 
-pub(super) fn execute(args: &SceneArgs, talk: Talk) -> Result<Outcome, Failure> {
+pub(super) fn execute(args: &SceneArgs, console: Console) -> Result<Outcome, Failure> {
     match &args.command {
-        SceneCommand::List { json } => output::print(&match json {
-            true => listed()?,
-            false => list(),
-        })?,
-        SceneCommand::Check { scene, json: false } => output::print(&check(&trust::load(scene)?))?,
+        SceneCommand::List { json: false } => output::print(&list())?,
+        SceneCommand::List { json: true } => {
+            let each = |b: &Builtin| json!({ "name": b.name, "summary": b.summary });
+            let all: Vec<_> = builtins().iter().map(each).collect();
+            output::print(&output::json(&all)?)?;
+        }
+        SceneCommand::Check { scene, json: false } => {
+            output::print(&check(&console.load_scene(scene)?))?;
+        }
         SceneCommand::Check { scene, json: true } => {
-            let loaded = trust::load(scene).map_err(Failure::from);
+            let loaded = console.load_scene(scene).map_err(Failure::from);
             output::print(&match &loaded {
                 Ok(loaded) => checked(scene, loaded)?,
                 Err(failure) => output::json(&json!({
@@ -32,17 +36,17 @@ pub(super) fn execute(args: &SceneArgs, talk: Talk) -> Result<Outcome, Failure> 
             let _ = loaded?;
         }
         SceneCommand::Show { scene, output } => {
-            let scene = trust::load(scene)?;
-            talk.warn(&scene);
+            let scene = console.load_scene(scene)?;
+            console.warn(&scene);
             output::deliver(&report::bench_svg(&scene), output.as_deref())?;
         }
-        SceneCommand::View(view) => return portrait::execute(view, talk),
+        SceneCommand::View(view) => return preview::execute(view, console),
         SceneCommand::Export {
             scene,
             mitsuba,
             output,
         } => {
-            let scene = trust::load(scene)?;
+            let scene = console.load_scene(scene)?;
             let text = if *mitsuba {
                 report::mitsuba_script(&scene)?
             } else {
@@ -59,12 +63,6 @@ fn list() -> String {
         let _ = writeln!(text, "{:<12} {}", b.name, b.summary);
         text
     })
-}
-
-/// The same for programs.
-fn listed() -> Result<String, Failure> {
-    let each = |b: &Builtin| json!({ "name": b.name, "summary": b.summary });
-    output::json(&builtins().iter().map(each).collect::<Vec<_>>())
 }
 
 /// What [`check`] says, for programs; `given` is the name or path that was asked for.

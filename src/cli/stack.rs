@@ -8,32 +8,34 @@ use super::Outcome;
 use super::args::StackArgs;
 use super::failure::Failure;
 use super::folder::{PHI, STDERR};
-use super::output::{self, Talk};
+use super::output::{self, Console};
 use crate::film;
 use crate::matrix::{Matrix, npy};
 use crate::store::ensure_writable;
 
-pub(super) fn execute(args: &StackArgs, _: Talk) -> Result<Outcome, Failure> {
+pub(super) fn execute(args: &StackArgs, _: Console) -> Result<Outcome, Failure> {
     let stack = film::stack(&args.dir)?;
     let dir = args.output.as_ref().unwrap_or(&args.dir);
     ensure_writable(dir)?;
-    let found = refuse_other(&dir.join(PHI), &stack.phi)?;
-    let precision = if found == Found::Exact {
+    let path = dir.join(PHI);
+    let there = path.exists();
+    let precision = if there {
+        refuse_other(&path, &stack.phi)?;
         "left as it is: the frames agree with it, and it holds more digits than they do"
     } else {
         npy::write(&dir.join(STDERR), &stack.stderr)?;
-        npy::write(&dir.join(PHI), &stack.phi)?;
+        npy::write(&path, &stack.phi)?;
         "to the f32 precision of the frames"
     };
     let (pixels, spots) = stack.phi.shape();
-    let (path, scene) = (dir.join(PHI), &stack.run.scene_name);
+    let scene = &stack.run.scene_name;
     let text = if args.json {
         output::json(&json!({
             "phi": path.to_string_lossy(),
             "pixels": pixels,
             "spots": spots,
             "scene": scene,
-            "written": found == Found::Nothing,
+            "written": !there,
         }))?
     } else {
         let place = path.display();
@@ -43,17 +45,8 @@ pub(super) fn execute(args: &StackArgs, _: Talk) -> Result<Outcome, Failure> {
     Ok(Outcome::Done)
 }
 
-#[derive(PartialEq, Eq)]
-enum Found {
-    Nothing,
-    Exact,
-}
-
-/// Whether there is a Φcam that rounds to `stacked`, which is then the better one; another one is not overwritten.
-fn refuse_other(path: &Path, stacked: &Matrix) -> Result<Found, Failure> {
-    if !path.exists() {
-        return Ok(Found::Nothing);
-    }
+/// Refuses to go on where the Φcam in `path` does not round to `stacked`: it is not overwritten.
+fn refuse_other(path: &Path, stacked: &Matrix) -> Result<(), Failure> {
     let cure = "give another folder with -o, or remove it";
     let there = npy::read(path).map_err(|e| Failure::new(e.to_string(), cure))?;
     let rounds = there.shape() == stacked.shape()
@@ -68,5 +61,5 @@ fn refuse_other(path: &Path, stacked: &Matrix) -> Result<Found, Failure> {
         );
         return Err(Failure::new(cause, cure));
     }
-    Ok(Found::Exact)
+    Ok(())
 }

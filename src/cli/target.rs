@@ -1,25 +1,26 @@
 //! `phicam target`: the built-in target pictures as PNG.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::Path;
 
 use super::Outcome;
 use super::args::TargetArgs;
 use super::failure::Failure;
-use super::output::{self, Talk};
+use super::output::{self, Console};
 use crate::image::Transfer;
 use crate::report;
 use crate::scene::mesh::{FaceValues, Generator, Triangles, to_ply};
 use crate::scene::target::Target;
-use crate::store::write_whole;
 
-pub(super) fn execute(args: &TargetArgs, talk: Talk) -> Result<Outcome, Failure> {
+pub(super) fn execute(args: &TargetArgs, console: Console) -> Result<Outcome, Failure> {
     let Some(name) = &args.name else {
         output::print(&list())?;
         return Ok(Outcome::Done);
     };
     if let Some(mesh) = mesh(name, args)? {
-        return write_mesh(name, &mesh, args, talk);
+        let bytes = to_ply(&mesh, FaceValues::default());
+        let what = format!("{} triangles", mesh.triangles.len());
+        return deliver(args, &format!("{name}.ply"), &bytes, &what, console);
     }
     if args.faces.is_some() {
         let cause = format!("`{name}` is a picture and has no --faces");
@@ -34,13 +35,10 @@ pub(super) fn execute(args: &TargetArgs, talk: Talk) -> Result<Outcome, Failure>
             format!("use one of {names}"),
         )
     })?;
-    let size = args.size.unwrap_or_else(|| target.usual_size());
-    let picture = target.picture(size).ok_or_else(|| {
-        let [w, h] = size;
-        Failure::new(
-            format!("a target of {w} × {h} pixels"),
-            "use 1 to 4096 a side",
-        )
+    let [w, h] = args.size.unwrap_or_else(|| target.usual_size());
+    let picture = target.picture([w, h]).ok_or_else(|| {
+        let cause = format!("a target of {w} × {h} pixels");
+        Failure::new(cause, "use 1 to 4096 a side")
     })?;
     let (transfer, word) = if args.linear {
         (Transfer::Linear, "linear")
@@ -48,17 +46,21 @@ pub(super) fn execute(args: &TargetArgs, talk: Talk) -> Result<Outcome, Failure>
         (Transfer::Srgb, "srgb")
     };
     let png = report::target_png(&picture, transfer)?;
-    let path = args
-        .output
-        .clone()
-        .unwrap_or_else(|| PathBuf::from(format!("{name}.png")));
-    write_whole(&path, |file| file.write_all(&png))?;
-    talk.say(format!(
-        "{}: {} × {} pixels, transfer = \"{word}\"",
-        path.display(),
-        size[0],
-        size[1]
-    ));
+    let what = format!("{w} × {h} pixels, transfer = \"{word}\"");
+    deliver(args, &format!("{name}.png"), &png, &what, console)
+}
+
+/// Writes the file, `usual` unless another is asked for, and says `what` is in it.
+fn deliver(
+    args: &TargetArgs,
+    usual: &str,
+    bytes: &[u8],
+    what: &str,
+    console: Console,
+) -> Result<Outcome, Failure> {
+    let path = args.output.as_deref().unwrap_or(Path::new(usual));
+    output::write(path, bytes)?;
+    console.say(format!("{}: {what}", path.display()));
     Ok(Outcome::Done)
 }
 
@@ -100,23 +102,6 @@ fn mesh(name: &str, args: &TargetArgs) -> Result<Option<Triangles>, Failure> {
         return Err(Failure::new(cause, format!("use 1 to {MOST_FACES}")));
     }
     Ok(Some(generator.triangles(faces as usize)))
-}
-
-fn write_mesh(
-    name: &str,
-    mesh: &Triangles,
-    args: &TargetArgs,
-    talk: Talk,
-) -> Result<Outcome, Failure> {
-    let path = args
-        .output
-        .clone()
-        .unwrap_or_else(|| PathBuf::from(format!("{name}.ply")));
-    let bytes = to_ply(mesh, FaceValues::default());
-    write_whole(&path, |file| file.write_all(&bytes))?;
-    let count = mesh.triangles.len();
-    talk.say(format!("{}: {count} triangles", path.display()));
-    Ok(Outcome::Done)
 }
 
 fn list() -> String {

@@ -1,4 +1,4 @@
-//! Commands cut into tasks, for many machines: `study …` and `reproduce`.
+//! Commands whose work is independent tasks, for many machines: `study …` and `reproduce`.
 
 use std::ops::Range;
 use std::path::Path;
@@ -6,70 +6,46 @@ use std::path::Path;
 use super::Outcome;
 use super::args::Command;
 use super::failure::Failure;
+use super::output::Console;
 use super::{reproduce, study};
 use crate::scene::Scene;
-use crate::study::{Division, encode, parts};
 use crate::transport::Control;
 
-/// A command whose work is independent tasks. Every process that has the same command and the same scene has the same tasks.
-pub(in crate::cli) trait Cut: Sync {
-    /// How many tasks there are.
-    fn tasks(&self) -> usize;
+/// The tasks of a command. Every process that has the same command and the same scene has the same
+/// tasks.
+pub(in crate::cli) trait Tasks: Sync {
+    /// How many there are.
+    fn count(&self) -> usize;
 
-    /// The results of some tasks as bytes, in the order of their numbers, on the threads of the pool. `Ok(None)` if stopped.
-    fn run(
-        &self,
-        tasks: Range<usize>,
-        control: Control<'_>,
-    ) -> Result<Option<Vec<Vec<u8>>>, Failure>;
+    /// The outputs of some tasks as bytes, in the order of their numbers, on the threads of the
+    /// pool.
+    fn run(&self, tasks: Range<usize>, control: Control<'_>) -> Result<Vec<Vec<u8>>, Failure>;
 
-    /// Makes of the results of all tasks, in their order, the files that the command itself would leave in `output`, and prints what it would print.
-    /// `Ok(None)` if stopped.
+    /// Makes of the outputs of all tasks, in their order, the files that the command itself would
+    /// leave in `folder`, and prints what it would print.
     fn deliver(
         &self,
-        parts: &[Vec<u8>],
+        outputs: &[Vec<u8>],
         control: Control<'_>,
-        output: &Path,
-    ) -> Result<Option<Outcome>, Failure>;
+        folder: &Path,
+    ) -> Result<Outcome, Failure>;
 }
 
-/// The tasks of a command; a study's scene is `scene`, or where there is none the one that the command names.
-pub(in crate::cli) fn cut(
+/// The tasks of a command; a study's scene is `scene`, or where there is none the one that the
+/// command names.
+pub(in crate::cli) fn tasks(
     command: &Command,
     scene: Option<Scene>,
-) -> Result<Box<dyn Cut>, Failure> {
+    console: Console,
+) -> Result<Box<dyn Tasks>, Failure> {
     match command {
-        Command::Study(args) => study::cut(args, scene),
-        Command::Reproduce(args) => reproduce::cut(args),
+        Command::Study(args) => study::tasks(args, scene, console),
+        Command::Reproduce(args) => reproduce::tasks(args),
         _ => Err(Failure::new(
             "this command cannot be cut into tasks",
             "plan a render (phicam plan SCENE), a study (… -- study NAME …) or the published items (… -- reproduce …)",
         )),
     }
-}
-
-/// The results of some tasks of `division` as bytes. `Ok(None)` if stopped.
-pub(in crate::cli) fn encoded<D: Division>(
-    division: &D,
-    ground: &D::Ground,
-    tasks: Range<usize>,
-    control: Control<'_>,
-) -> Result<Option<Vec<Vec<u8>>>, Failure> {
-    let all = division.tasks();
-    if tasks.start > tasks.end || tasks.end > all {
-        return Err(Failure::new(
-            format!(
-                "there are no tasks {} to {} among {all}",
-                tasks.start, tasks.end
-            ),
-            "plan again: the command, the scene or the program is another one",
-        ));
-    }
-    let Some(found) = parts(division, ground, tasks.clone(), control, &|_, _| ())? else {
-        return Ok(None);
-    };
-    let encoded = tasks.zip(&found).map(|(index, part)| encode(index, part));
-    Ok(Some(encoded.collect::<Result<_, _>>()?))
 }
 
 #[cfg(test)]

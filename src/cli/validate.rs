@@ -4,48 +4,45 @@ use std::path::Path;
 
 use super::args::ValidateArgs;
 use super::failure::Failure;
-use super::finished::{read_matrix, read_run, read_stderr};
 use super::folder::{self, PHI, STDERR};
-use super::output::{self, Talk};
+use super::load_run::{read_matrix, read_run, read_stderr};
+use super::output::{self, Console};
 use super::record::Record;
-use super::trust;
 use super::{Outcome, settings};
 use crate::film::{self, Channel, Frame};
+use crate::lab::finding::Describe;
+use crate::lab::{Agreement, validate};
 use crate::matrix::Matrix;
 use crate::num::statistics::normal_two_sided;
 use crate::report::{self, Panel, Scale};
 use crate::scene::Scene;
-use crate::store::{ensure_writable, write_whole};
-use crate::study::{Agreement, validate};
+use crate::store::ensure_writable;
 
-pub(super) fn execute(args: &ValidateArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let (own, record) = read_run(&args.dir)?;
+pub(super) fn execute(args: &ValidateArgs, console: Console) -> Result<Outcome, Failure> {
+    let (own, record) = read_run(&args.dir, console)?;
     let phi = read_matrix(&args.dir.join(PHI), &own)?;
     let stderr = read_stderr(&args.dir.join(STDERR), &own)?;
     let mut scene = match &args.against {
-        Some(other) => trust::load(other)?,
+        Some(other) => console.load_scene(other)?,
         None => own,
     };
     if let Some(by) = args.shift_spots {
         scene = scene.with_shifted_spots(by)?;
     }
-    let test = settings::test(&args.test, &record.plan()?, talk)?;
-    let kernel = settings::kernel(args.test.kernel);
-    let integration = settings::integration(args.test.integration);
+    let test = settings::test(&args.test, &record.plan, console)?;
+    let kernel = args.test.kernel;
+    let integration = args.test.integration;
     let found = validate(&scene, &phi, &stderr, kernel, integration, test)?;
     if !found.agreement.agrees {
         write_map(&args.dir, &scene, &record, &found.z)?;
-        talk.say(format!(
+        console.say(format!(
             "the probability of each entry is mapped in {}, pixels upwards and spots to the right",
             args.dir.join(MAP).join("p.exr").display()
         ));
     }
-    let text = if args.json {
-        output::json(&found.agreement)?
-    } else {
-        report::verdict_table(&found.agreement)
-    };
-    output::print(&text)?;
+    output::result(args.json, &found.agreement, || {
+        report::finding_text(&found.agreement.describe())
+    })?;
     Ok(outcome(&found.agreement))
 }
 
@@ -61,8 +58,8 @@ pub(super) fn outcome(agreement: &Agreement) -> Outcome {
 /// Folder of the map.
 const MAP: &str = "validation";
 
-/// Writes validation/p.exr (channels `p`, two-sided probability of each entry, and `z`; a row of pixels per matrix row, spots
-/// along it) and validation/p.png (−log10 p).
+/// Writes validation/p.exr (channels `p`, two-sided probability of each entry, and `z`; a row of
+/// pixels per matrix row, spots along it) and validation/p.png (−log10 p).
 fn write_map(dir: &Path, scene: &Scene, record: &Record, z: &Matrix) -> Result<(), Failure> {
     let folder = dir.join(MAP);
     ensure_writable(&folder)?;
@@ -95,5 +92,5 @@ fn write_map(dir: &Path, scene: &Scene, record: &Record, z: &Matrix) -> Result<(
         scale_bar: None,
     };
     let png = report::colour_png(&scene.name, &[panel], &scale, "−log10 p")?;
-    Ok(write_whole(&folder.join("p.png"), |w| w.write_all(&png))?)
+    output::write(&folder.join("p.png"), &png)
 }

@@ -8,5 +8,5 @@ pub mod exr;
 pub mod frame;
 pub mod stack;
 
-pub use frame::{Channel, Frame, FrameMeta, frame_name};
+pub use frame::{Channel, Frame, FrameMeta, RunMeta, frame_name};
 pub use stack::{Stack, StackError, stack};

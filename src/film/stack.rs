@@ -1,8 +1,9 @@
 //! The frames of a run, stacked into the matrix Φcam.
 //!
-//! Column l of Φcam is the frame of spot l, row p its pixel p. The frames alone decide: nothing else of the run is read,
-//! so that a folder of frames can be carried anywhere. Frames that do not belong together, or not all of them, would give
-//! a matrix that looks right and is not; they are refused.
+//! Column l of Φcam is the frame of spot l, row p its pixel p. The frames alone decide: nothing
+//! else of the run is read, so that a folder of frames can be carried anywhere. Frames that do not
+//! belong together, or not all of them, would give a matrix that looks right and is not; they are
+//! refused.
 
 mod run;
 mod spots;
@@ -11,12 +12,11 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::exr::{self, FrameError};
-use super::frame::{FLUX, FLUX_STDERR, Frame, frame_name};
+use super::frame::{FLUX, FLUX_STDERR, Frame, RunMeta, frame_name};
 use crate::matrix::Matrix;
 
-pub use run::RunMeta;
-
-/// What the frames of a run say together. Every matrix is pixels × spots, in W; f64 of what f32 kept.
+/// What the frames of a run say together. Every matrix is pixels × spots, in W; f64 of what f32
+/// kept.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stack {
     /// Pixels along x and y of each frame; row of a matrix = column + row·columns of the pixel.
@@ -135,13 +135,14 @@ pub enum StackError {
     },
 }
 
-/// Rebuilds Φcam from the frames `dir/frames/spot-NNNN.exr`, or `dir/spot-NNNN.exr` if `dir` has no folder `frames`. Files
-/// with other names are not looked at.
+/// Rebuilds Φcam from the frames `dir/frames/spot-NNNN.exr`, or `dir/spot-NNNN.exr` if `dir` has no
+/// folder `frames`. Files with other names are not looked at.
 ///
 /// # Errors
-/// [`StackError`] if there are no frames, if one cannot be read, if they disagree on scene, size, channels, unit, seed,
-/// samples, estimator, sampler, version or number of spots, if a spot is missing, double or contradicts its file name, if a
-/// value is NaN or infinite, or a standard error negative.
+/// [`StackError`] if there are no frames, if one cannot be read, if they disagree on scene, size,
+/// channels, unit, seed, samples, estimator, sampler, version or number of spots, if a spot is
+/// missing, double or contradicts its file name, if a value is NaN or infinite, or a standard error
+/// negative.
 pub fn stack(dir: &Path) -> Result<Stack, StackError> {
     let inner = dir.join("frames");
     let folder = if inner.is_dir() {
@@ -154,7 +155,7 @@ pub fn stack(dir: &Path) -> Result<Stack, StackError> {
         return Err(StackError::NoFrames { path: folder });
     };
     let first = exr::read(first_path)?;
-    spots::check_spots(&folder, &files, first.meta.spot_count)?;
+    spots::check_spots(&folder, &files, first.meta.run.spot_count)?;
 
     let pixels = first.pixels();
     let blank = || Matrix::zeros(pixels, files.len());
@@ -167,7 +168,7 @@ pub fn stack(dir: &Path) -> Result<Stack, StackError> {
             .map(|name| (name, blank()))
             .collect(),
         spot_positions: Vec::with_capacity(files.len()),
-        run: RunMeta::from(&first.meta),
+        run: first.meta.run.clone(),
     };
     for (l, (spot, path)) in files.iter().enumerate() {
         let frame = exr::read(path)?;

@@ -14,7 +14,8 @@ pub struct Basis {
 }
 
 impl Basis {
-    /// A basis around the unit vector `n` (Duff et al., *Building an orthonormal basis, revisited*, JCGT 6(1), 2017).
+    /// A basis around the unit vector `n` (Duff et al., *Building an orthonormal basis, revisited*,
+    /// JCGT 6(1), 2017).
     pub fn around(n: DVec3) -> Self {
         let sign = 1f64.copysign(n.z);
         let a = -1.0 / (sign + n.z);

@@ -1,10 +1,11 @@
 //! Which shape does a ray meet, and is a segment free? The one door to obvhs.
 //!
-//! Up to [`FLAT`] shapes are tested one by one; more stand behind obvhs' 8-wide compressed BVH. The tree works in f32
-//! on boxes only and decides nothing by itself: every intersection is computed in f64 on the shape. For that the boxes
-//! must hold whatever f32 does to the ray, and obvhs drops boxes that end nearer than 1e-4 along a unit direction. So
-//! the tree lives in a space in which the scene measures 1000, and every box is wider than its shape by 4e-3 there:
-//! 64 times the f32 spacing at 1000, and forty times obvhs' limit.
+//! Up to [`FLAT`] shapes are tested one by one; more stand behind obvhs' 8-wide compressed BVH. The
+//! tree works in f32 on boxes only and decides nothing by itself: every intersection is computed in
+//! f64 on the shape. For that the boxes must hold whatever f32 does to the ray, and obvhs drops
+//! boxes that end nearer than 1e-4 along a unit direction. So the tree lives in a space in which
+//! the scene measures 1000, and every box is wider than its shape by 4e-3 there: 64 times the f32
+//! spacing at 1000, and forty times obvhs' limit.
 
 mod collapse;
 mod space;
@@ -15,13 +16,15 @@ use obvhs::aabb::Aabb;
 use obvhs::cwbvh::{CwBvh, builder::build_cwbvh};
 use obvhs::ray::{Ray as TreeRay, RayHit};
 
-use super::{Contact, Ray, Shape, ShapeId, SurfacePoint};
+use super::{Contact, Interaction, Ray, Shape, ShapeId};
 use space::{PADDING, Space};
 pub(super) use wide::{Query, WideTree};
 
-/// Largest number of shapes tested one by one: from there on the tree is faster (`benches/rays.rs`).
+/// Largest number of shapes tested one by one: from there on the tree is faster
+/// (`benches/rays.rs`).
 const FLAT: usize = 8;
-/// Hits are at one place if their distances differ by no more than this, relative to the lengths involved.
+/// Hits are at one place if their distances differ by no more than this, relative to the lengths
+/// involved.
 pub(super) const TIE: f64 = 1e-12;
 /// Coordinates beyond this (in scene units) are refused.
 const LARGEST: f64 = 1e12;
@@ -94,9 +97,9 @@ impl Bvh {
         &self.shapes
     }
 
-    /// First shape met by `ray`, from either side; `from` is the shape that the ray starts on. Where two shapes are met at one
-    /// place (a panel of two faces back to back), the one that shows its front wins, then the one with the lower id,
-    /// whatever the order of the search.
+    /// First shape met by `ray`, from either side; `from` is the shape that the ray starts on.
+    /// Where two shapes are met at one place (a panel of two faces back to back), the one that
+    /// shows its front wins, then the one with the lower id, whatever the order of the search.
     pub fn closest(&self, ray: &Ray, from: Option<ShapeId>) -> Option<Hit> {
         let mut best: Option<Hit> = None;
         let slack = |t: f64| TIE * (t + ray.origin.abs().max_element());
@@ -127,7 +130,7 @@ impl Bvh {
     }
 
     /// The point that the ray hits, exactly on its shape.
-    pub fn point(&self, ray: &Ray, hit: Hit) -> SurfacePoint {
+    pub fn point(&self, ray: &Ray, hit: Hit) -> Interaction {
         let Hit { shape, t, triangle } = hit;
         self.shapes[shape as usize].at_contact(ray, Contact { t, triangle })
     }
@@ -145,7 +148,8 @@ impl Bvh {
         }
     }
 
-    /// Whether anything blocks the open segment `ray`, whose start and end lie on the shapes in `ends` (if on any).
+    /// Whether anything blocks the open segment `ray`, whose start and end lie on the shapes in
+    /// `ends` (if on any).
     pub fn blocked(&self, ray: &Ray, ends: [Option<ShapeId>; 2]) -> bool {
         let blocks = |id: usize| {
             let shape = Some(id as ShapeId);
@@ -176,7 +180,8 @@ impl Tree {
         (ray, advance)
     }
 
-    /// Visits the shapes whose box the ray meets; `test` keeps the nearest hit in f64 and returns its distance.
+    /// Visits the shapes whose box the ray meets; `test` keeps the nearest hit in f64 and returns
+    /// its distance.
     fn closest(&self, ray: &Ray, mut test: impl FnMut(usize) -> f64) {
         let (tree_ray, advance) = self.ray(ray);
         let mut hit = RayHit::none();

@@ -2,13 +2,14 @@
 
 use glam::DAffine3;
 
-use super::{Basis, DVec3, Parallelogram, Ray, SurfacePoint};
+use super::{Basis, DVec3, Interaction, Parallelogram, Ray};
 use crate::num::warp;
 
 /// Planes nearer than this fraction of the sizes involved are one.
 const SLACK: f64 = 1e-9;
 
-/// A flat disc. Its parameters are those of the equal-area map of the square to the disc (Shirley and Chiu, 1997).
+/// A flat disc. Its parameters are those of the equal-area map of the square to the disc (Shirley
+/// and Chiu, 1997).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disc {
     centre: DVec3,
@@ -17,7 +18,8 @@ pub struct Disc {
 }
 
 impl Disc {
-    /// The disc whose front shows along `normal`; `None` unless all is finite, the normal not zero and the radius positive.
+    /// The disc whose front shows along `normal`; `None` unless all is finite, the normal not zero
+    /// and the radius positive.
     pub fn new(centre: DVec3, normal: DVec3, radius: f64) -> Option<Self> {
         let proper = centre.is_finite() && (radius * radius).is_finite() && radius > 0.0;
         let normal = normal.try_normalize().filter(|_| proper)?;
@@ -68,9 +70,9 @@ impl Disc {
     }
 
     /// The point with the given parameters.
-    pub fn at(&self, uv: [f64; 2]) -> SurfacePoint {
+    pub fn at(&self, uv: [f64; 2]) -> Interaction {
         let [x, y] = warp::disc(uv).map(|c| c * self.radius);
-        SurfacePoint {
+        Interaction {
             position: self.centre + self.basis.to_world([x, y, 0.0]),
             normal: self.basis.n,
             uv,
@@ -84,12 +86,12 @@ impl Disc {
     }
 
     /// The point nearest to `p`.
-    pub fn at_position(&self, p: DVec3) -> SurfacePoint {
+    pub fn at_position(&self, p: DVec3) -> Interaction {
         let [x, y] = self.coordinates(p);
         let beyond = (x * x + y * y).sqrt().max(1.0);
         let [x, y] = [x / beyond, y / beyond];
         let place = self.basis.to_world([x, y, 0.0]) * self.radius;
-        SurfacePoint {
+        Interaction {
             position: self.centre + place,
             normal: self.basis.n,
             uv: warp::disc_inverse([x, y]).map(|c| c.clamp(0.0, 1.0)),
@@ -97,7 +99,7 @@ impl Disc {
     }
 
     /// The point above (x, y) along z, if the disc has one.
-    pub fn at_xy(&self, x: f64, y: f64) -> Option<SurfacePoint> {
+    pub fn at_xy(&self, x: f64, y: f64) -> Option<Interaction> {
         let n = self.basis.n;
         if n.z.abs() < 1e-9 {
             return None;
@@ -122,7 +124,8 @@ impl Disc {
         (height, height.abs() > ROUNDING * reach)
     }
 
-    /// Whether two discs lie in one plane (to a billionth of their size), face the same way and have more than a point in common.
+    /// Whether two discs lie in one plane (to a billionth of their size), face the same way and
+    /// have more than a point in common.
     pub fn overlaps(&self, other: &Self) -> bool {
         let size = self.radius + other.radius;
         self.faces_along(other.centre, other.basis.n, size)
@@ -142,7 +145,8 @@ impl Disc {
             && self.basis.n.dot(point - self.centre).abs() <= SLACK * size
     }
 
-    /// Intersection with the plane inside the disc. A ray that starts in the plane (to rounding) does not meet it.
+    /// Intersection with the plane inside the disc. A ray that starts in the plane (to rounding)
+    /// does not meet it.
     pub fn intersect(&self, ray: &Ray) -> Option<f64> {
         let (height, off) = self.height(ray.origin);
         let t = -height / self.basis.n.dot(ray.direction);
@@ -150,7 +154,8 @@ impl Disc {
         (within && self.contains(ray.origin + ray.direction * t)).then_some(t)
     }
 
-    /// Whether the disc stands between the two ends of the segment; one that starts or ends in its plane is not cut by it.
+    /// Whether the disc stands between the two ends of the segment; one that starts or ends in its
+    /// plane is not cut by it.
     pub fn blocks(&self, segment: &Ray) -> bool {
         let (_, off) = self.height(segment.origin + segment.direction * segment.length);
         off && self.intersect(segment).is_some()

@@ -1,14 +1,16 @@
 //! Many rays against few flat shapes: eight rays at a time against each shape.
 //!
-//! The arithmetic is that of one ray, operation by operation, so the answers are the same bit for bit.
+//! The arithmetic is that of one ray, operation by operation, so the answers are the same bit for
+//! bit.
 
 use super::bvh::TIE;
-use super::{Blockers, Body, Bvh, DVec3, Hit, Parallelogram, Ray, Shape, ShapeId};
+use super::{Blockers, Bvh, DVec3, Hit, Instance, Parallelogram, Ray, Shape, ShapeId};
 use crate::num::lanes::widest;
 
 /// Rays tested at a time: a register of AVX-512.
 const EIGHT: usize = 8;
-/// Up to so many shapes are tested one by one for a batch of rays; with more the tree is faster (`benches/rays.rs`).
+/// Up to so many shapes are tested one by one for a batch of rays; with more the tree is faster
+/// (`benches/rays.rs`).
 const FLAT: usize = 32;
 /// No shape.
 const NONE: u64 = u64::MAX;
@@ -67,7 +69,7 @@ impl Bvh {
         assert_eq!(rays.len(), from.len());
         let flat = |shape: &Shape| match shape {
             Shape::Parallelogram(patch) => Some(*patch),
-            Shape::Sphere(_) | Shape::Disc(_) | Shape::Body(_) => None,
+            Shape::Sphere(_) | Shape::Disc(_) | Shape::Instance(_) => None,
         };
         let few = self.shapes().len() <= FLAT && rays.len() >= WORTHWHILE;
         let patches: Option<Vec<_>> = few
@@ -130,7 +132,7 @@ impl Bvh {
             },
         );
         for &id in ids {
-            if let Shape::Body(body) = &self.shapes()[id as usize] {
+            if let Shape::Instance(body) = &self.shapes()[id as usize] {
                 block_by_body(body, segments, &mut blocked);
             }
         }
@@ -162,7 +164,7 @@ impl Bvh {
                         free[k] &= !(stands & (from[k] != own) & (to[k] != own));
                     }
                 }
-                Shape::Body(_) => {}
+                Shape::Instance(_) => {}
                 shape => {
                     for (k, ray) in segments.iter().enumerate().take(EIGHT) {
                         free[k] = free[k] && !shape.blocks(ray, from[k] == own, to[k] == own);
@@ -175,7 +177,7 @@ impl Bvh {
 }
 
 /// Meshes are asked last, for what is still free, many segments at once.
-fn block_by_body(body: &Body, segments: &[Ray], blocked: &mut [bool]) {
+fn block_by_body(body: &Instance, segments: &[Ray], blocked: &mut [bool]) {
     let free: Vec<usize> = (0..segments.len()).filter(|i| !blocked[*i]).collect();
     let asked: Vec<Ray> = free.iter().map(|i| segments[*i]).collect();
     for (i, stands) in free.iter().zip(body.blocks_many(&asked)) {

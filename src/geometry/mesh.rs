@@ -5,7 +5,7 @@ mod nearest;
 mod query;
 
 use super::bvh::WideTree;
-use super::{DVec3, Ray, SurfacePoint};
+use super::{DVec3, Interaction, Ray};
 use crate::num::lanes::widest;
 use crate::num::warp;
 use group::{GROUP, Group};
@@ -70,10 +70,12 @@ pub struct MeshHit {
     pub t: f64,
 }
 
-/// A surface of triangles, opaque from both sides, its front where the corners of a triangle run counterclockwise.
+/// A surface of triangles, opaque from both sides, its front where the corners of a triangle run
+/// counterclockwise.
 ///
-/// Triangles without area (|e₁ × e₂| below 1e-12·|e₁||e₂|) are kept in the list and met by nothing. Two triangles with a common edge
-/// leave no gap there: the test of the edge is one and the same number in both.
+/// Triangles without area (|e₁ × e₂| below 1e-12·|e₁||e₂|) are kept in the list and met by nothing.
+/// Two triangles with a common edge leave no gap there: the test of the edge is one and the same
+/// number in both.
 #[derive(Clone)]
 pub struct Mesh {
     positions: Vec<DVec3>,
@@ -97,8 +99,8 @@ impl Mesh {
     /// The mesh of the given vertices and of the triangles between them.
     ///
     /// # Errors
-    /// [`MeshError`] for coordinates that are not finite or beyond 1e12, for a vertex that is not there, for more than 2³⁰ triangles and
-    /// if no triangle has an area.
+    /// [`MeshError`] for coordinates that are not finite or beyond 1e12, for a vertex that is not
+    /// there, for more than 2³⁰ triangles and if no triangle has an area.
     pub fn new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         let reach = |p: &DVec3| {
             if p.is_nan() {
@@ -176,7 +178,8 @@ impl Mesh {
         })
     }
 
-    /// The same mesh with texture coordinates by triangle and corner, v growing upwards in the picture.
+    /// The same mesh with texture coordinates by triangle and corner, v growing upwards in the
+    /// picture.
     ///
     /// # Errors
     /// [`MeshError::Coordinates`] if there are not as many as triangles.
@@ -234,15 +237,15 @@ impl Mesh {
         self.triangles[triangle as usize].map(|c| self.positions[c as usize])
     }
 
-    /// The point of a triangle with the given weights of the second and the third corner. Its parameters are texture coordinates where the
-    /// mesh has them, else (0, 0).
-    fn point(&self, triangle: u32, [v, w]: [f64; 2]) -> SurfacePoint {
+    /// The point of a triangle with the given weights of the second and the third corner. Its
+    /// parameters are texture coordinates where the mesh has them, else (0, 0).
+    fn point(&self, triangle: u32, [v, w]: [f64; 2]) -> Interaction {
         let [a, b, c] = self.corners(triangle);
         let uv = self.uv.as_ref().map_or([0.0; 2], |uv| {
             let [p, q, r] = uv[triangle as usize].map(|c| c.map(f64::from));
             [0, 1].map(|d| p[d] + (q[d] - p[d]) * v + (r[d] - p[d]) * w)
         });
-        SurfacePoint {
+        Interaction {
             position: a + (b - a) * v + (c - a) * w,
             normal: cross([a, b, c]).normalize(),
             uv,
@@ -253,14 +256,15 @@ impl Mesh {
     ///
     /// # Panics
     /// If there is no such triangle.
-    pub fn on_triangle(&self, triangle: u32, p: DVec3) -> SurfacePoint {
+    pub fn on_triangle(&self, triangle: u32, p: DVec3) -> Interaction {
         let (_, weights) = nearest::on_triangle(self.corners(triangle), p);
         self.point(triangle, weights)
     }
 
-    /// An equal-area map of the unit square to the mesh: u chooses the triangle, in the order of the list and in proportion to its area,
-    /// and what is left of it places the point there together with v.
-    pub fn at(&self, [u, v]: [f64; 2]) -> SurfacePoint {
+    /// An equal-area map of the unit square to the mesh: u chooses the triangle, in the order of
+    /// the list and in proportion to its area, and what is left of it places the point there
+    /// together with v.
+    pub fn at(&self, [u, v]: [f64; 2]) -> Interaction {
         let target = u.clamp(0.0, 1.0 - f64::EPSILON) * self.area();
         let triangle = self.areas.partition_point(|a| *a <= target);
         let triangle = triangle.min(self.areas.len() - 1);
@@ -271,7 +275,7 @@ impl Mesh {
     }
 
     /// The point of the mesh nearest to `p`, and its triangle; of triangles equally near the first.
-    pub fn at_position(&self, p: DVec3) -> (u32, SurfacePoint) {
+    pub fn at_position(&self, p: DVec3) -> (u32, Interaction) {
         let mut best = (f64::INFINITY, u32::MAX, [0.0; 2]);
         self.tree.around(p, |leaf| {
             for group in self.leaf(leaf) {
@@ -288,8 +292,9 @@ impl Mesh {
         (triangle, self.point(triangle, weights))
     }
 
-    /// First triangle met by the ray at 0 < t < length, from either side. A ray that starts in the plane of a triangle (to rounding) does
-    /// not meet it. Where two are met at one distance, the first of the list counts.
+    /// First triangle met by the ray at 0 < t < length, from either side. A ray that starts in the
+    /// plane of a triangle (to rounding) does not meet it. Where two are met at one distance, the
+    /// first of the list counts.
     pub fn closest(&self, ray: &Ray) -> Option<MeshHit> {
         self.closest_many(std::slice::from_ref(ray))[0]
     }
@@ -299,7 +304,8 @@ impl Mesh {
         self.closest_of(rays, 0.0)
     }
 
-    /// [`Mesh::closest`] for a ray whose start was computed from numbers as large as `reach`, and has their rounding.
+    /// [`Mesh::closest`] for a ray whose start was computed from numbers as large as `reach`, and
+    /// has their rounding.
     pub(super) fn closest_beyond(&self, ray: &Ray, reach: f64) -> Option<MeshHit> {
         self.closest_of(std::slice::from_ref(ray), reach)[0]
     }
@@ -316,8 +322,8 @@ impl Mesh {
         found
     }
 
-    /// Whether a triangle stands between the two ends of the segment. A segment that starts or ends in the plane of a triangle (to
-    /// rounding) is not cut by it.
+    /// Whether a triangle stands between the two ends of the segment. A segment that starts or ends
+    /// in the plane of a triangle (to rounding) is not cut by it.
     pub fn blocks(&self, segment: &Ray) -> bool {
         self.blocks_many(std::slice::from_ref(segment))[0]
     }
@@ -327,7 +333,8 @@ impl Mesh {
         self.blocks_many_beyond(segments, 0.0)
     }
 
-    /// [`Mesh::blocks_many`] for segments whose ends were computed from numbers as large as `reach`, and have their rounding.
+    /// [`Mesh::blocks_many`] for segments whose ends were computed from numbers as large as
+    /// `reach`, and have their rounding.
     pub(super) fn blocks_many_beyond(&self, segments: &[Ray], reach: f64) -> Vec<bool> {
         let mut found = vec![false; segments.len()];
         widest(

@@ -1,13 +1,15 @@
-//! Floor 1: geometry. Directions, shapes and meshes with their own f64 arithmetic, and the one door to the BVH.
+//! Floor 1: geometry. Directions, shapes and meshes with their own f64 arithmetic, and the one door
+//! to the BVH.
 //!
-//! Lengths are in the unit of the scene. A [`Shape`] knows everything that is asked of a surface without naming its
-//! kind: bounds, intersection, parametrisation, area element. Nothing above this floor may assume rectangles.
+//! Lengths are in the unit of the scene. A [`Shape`] knows everything that is asked of a surface
+//! without naming its kind: bounds, intersection, parametrisation, area element. Nothing above this
+//! floor may assume rectangles.
 
 mod basis;
-mod body;
 mod bvh;
 mod disc;
 mod flat;
+mod instance;
 mod mesh;
 mod parallelogram;
 mod shaft;
@@ -15,12 +17,12 @@ mod shape;
 mod sphere;
 
 pub use basis::Basis;
-pub use body::{Body, Side};
 pub use bvh::{Bvh, GeometryError, Hit};
 pub use disc::Disc;
 pub use glam::{DAffine3, DQuat, DVec3};
+pub use instance::{Instance, Side};
 pub use mesh::{Mesh, MeshError, MeshHit};
 pub use parallelogram::Parallelogram;
 pub use shaft::{Blockers, Region};
-pub use shape::{Contact, Ray, Shape, ShapeId, SurfacePoint};
+pub use shape::{Contact, Interaction, Ray, Shape, ShapeId};
 pub use sphere::{Facing, Sphere};

@@ -2,7 +2,7 @@
 
 use glam::DAffine3;
 
-use super::{DVec3, Ray, SurfacePoint};
+use super::{DVec3, Interaction, Ray};
 
 /// The patch corner + a·u + b·v, a, b ∈ [0, 1]; its front normal is along u × v.
 ///
@@ -19,8 +19,8 @@ pub struct Parallelogram {
 }
 
 impl Parallelogram {
-    /// The patch spanned by `u` and `v` at `corner`; `None` if it has no area (|u × v| below 1e-12·|u||v|) or is not
-    /// finite.
+    /// The patch spanned by `u` and `v` at `corner`; `None` if it has no area (|u × v| below
+    /// 1e-12·|u||v|) or is not finite.
     pub fn new(corner: DVec3, u: DVec3, v: DVec3) -> Option<Self> {
         let cross = u.cross(v);
         let area = cross.length();
@@ -100,8 +100,8 @@ impl Parallelogram {
     }
 
     /// The point with the given (a, b).
-    pub fn at(&self, [a, b]: [f64; 2]) -> SurfacePoint {
-        SurfacePoint {
+    pub fn at(&self, [a, b]: [f64; 2]) -> Interaction {
+        Interaction {
             position: self.corner + self.u * a + self.v * b,
             normal: self.normal,
             uv: [a, b],
@@ -109,12 +109,12 @@ impl Parallelogram {
     }
 
     /// Projects `p` onto the patch.
-    pub fn at_position(&self, p: DVec3) -> SurfacePoint {
+    pub fn at_position(&self, p: DVec3) -> Interaction {
         self.at(self.coordinates(p).map(|x| x.clamp(0.0, 1.0)))
     }
 
-    /// Intersection with the plane inside the patch: t = n·(corner − o)/(n·d). A ray that starts in the plane (to rounding)
-    /// does not meet it.
+    /// Intersection with the plane inside the patch: t = n·(corner − o)/(n·d). A ray that starts in
+    /// the plane (to rounding) does not meet it.
     pub fn intersect(&self, ray: &Ray) -> Option<f64> {
         let (t, met) = self.crossing(ray);
         met.then_some(t)
@@ -130,8 +130,9 @@ impl Parallelogram {
         (t, off & (t > 0.0) & (t < ray.length) & inside)
     }
 
-    /// Whether the patch stands between the two ends of the segment. A segment that starts or ends in the patch's plane (to
-    /// rounding) is not cut by it: a point on a seam is not hidden by the neighbour, nor by what stands edge-on at its foot.
+    /// Whether the patch stands between the two ends of the segment. A segment that starts or ends
+    /// in the patch's plane (to rounding) is not cut by it: a point on a seam is not hidden by the
+    /// neighbour, nor by what stands edge-on at its foot.
     #[inline(always)]
     pub fn blocks(&self, segment: &Ray) -> bool {
         let (_, off) = self.height(segment.origin + segment.direction * segment.length);
@@ -147,7 +148,8 @@ impl Parallelogram {
         (height, height.abs() > ROUNDING * reach)
     }
 
-    /// Whether the two patches lie in one plane (to a billionth of their size) and have more than an edge in common.
+    /// Whether the two patches lie in one plane (to a billionth of their size) and have more than
+    /// an edge in common.
     pub fn overlaps(&self, other: &Self) -> bool {
         const SLACK: f64 = 1e-9;
         let size = |p: &Self| p.u.length() + p.v.length();
@@ -175,7 +177,7 @@ impl Parallelogram {
     }
 
     /// The point above (x, y) along z, if the patch has one.
-    pub fn at_xy(&self, x: f64, y: f64) -> Option<SurfacePoint> {
+    pub fn at_xy(&self, x: f64, y: f64) -> Option<Interaction> {
         let p = self.plane_at_xy(x, y)?;
         let uv = self.coordinates(p);
         contains(uv).then(|| self.at(uv.map(|c| c.clamp(0.0, 1.0))))
@@ -200,8 +202,8 @@ impl Parallelogram {
     }
 }
 
-/// Whether (a, b) lies in the patch. A few roundings outside still belong to it, so that no ray slips through between
-/// two patches that share an edge.
+/// Whether (a, b) lies in the patch. A few roundings outside still belong to it, so that no ray
+/// slips through between two patches that share an edge.
 #[inline(always)]
 fn contains([a, b]: [f64; 2]) -> bool {
     const EDGE: f64 = 1e-12;

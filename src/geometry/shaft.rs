@@ -1,9 +1,10 @@
 //! What can stand between two regions, judged before any ray is cast.
 //!
-//! Every segment from region a to region b lies in the convex hull of both, the *shaft* (Haines and Wallace, *Shaft culling for
-//! efficient ray-traced radiosity*, 1991). A shape that some plane separates from that hull (a mesh: its box) cannot block any of them. The test
-//! tries a finite set of planes and so errs to one side only: what it calls free is free; what it cannot separate has to be asked
-//! ray by ray.
+//! Every segment from region a to region b lies in the convex hull of both, the *shaft* (Haines and
+//! Wallace, *Shaft culling for efficient ray-traced radiosity*, 1991). A shape that some plane
+//! separates from that hull (a mesh: its box) cannot block any of them. The test tries a finite set
+//! of planes and so errs to one side only: what it calls free is free; what it cannot separate has
+//! to be asked ray by ray.
 
 use super::{Bvh, DVec3, Parallelogram, Ray, Shape, ShapeId};
 
@@ -81,8 +82,8 @@ impl Blockers {
 const MOST_SHAPES: usize = 64;
 
 impl Bvh {
-    /// The shapes that may block segments from `a` to `b`, whose ends lie on the shapes in `ends` (if on any): a flat shape never
-    /// blocks what starts or ends on it.
+    /// The shapes that may block segments from `a` to `b`, whose ends lie on the shapes in `ends`
+    /// (if on any): a flat shape never blocks what starts or ends on it.
     pub fn blockers(&self, a: &Region, b: &Region, ends: [Option<ShapeId>; 2]) -> Blockers {
         if self.shapes().len() > MOST_SHAPES {
             return Blockers::Any;
@@ -114,8 +115,9 @@ impl Bvh {
     }
 }
 
-/// Whether a plane is found with `shape` on one side and both regions on the other. Contact within rounding (1e-12 of the coordinates)
-/// counts as separate, as it does in [`Shape::blocks`]: what lies in the plane of a patch is not cut by it.
+/// Whether a plane is found with `shape` on one side and both regions on the other. Contact within
+/// rounding (1e-12 of the coordinates) counts as separate, as it does in [`Shape::blocks`]: what
+/// lies in the plane of a patch is not cut by it.
 fn separated(shape: &Shape, a: &Region, b: &Region) -> bool {
     const ROUNDING: f64 = 1e-12;
     let apart = |axis: DVec3| {
@@ -139,7 +141,7 @@ fn separated(shape: &Shape, a: &Region, b: &Region) -> bool {
         Shape::Parallelogram(p) => (vec![p.u(), p.v()], p.at([0.5, 0.5]).position),
         Shape::Sphere(s) => (Vec::new(), s.centre),
         Shape::Disc(d) => (Vec::new(), d.centre()),
-        Shape::Body(_) => (DVec3::AXES.to_vec(), shape.circumsphere().0),
+        Shape::Instance(_) => (DVec3::AXES.to_vec(), shape.circumsphere().0),
     };
     let face = match shape {
         Shape::Disc(d) => d.normal(),
@@ -185,7 +187,7 @@ fn extent(shape: &Shape, axis: DVec3) -> [f64; 2] {
             let half = d.radius() * (1.0 - along * along).max(0.0).sqrt();
             [middle - half, middle + half]
         }
-        Shape::Body(_) => Region::around(shape).range(axis),
+        Shape::Instance(_) => Region::around(shape).range(axis),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::DAffine3;
 
-use super::{Body, DVec3, Disc, Facing, Parallelogram, Sphere};
+use super::{DVec3, Disc, Facing, Instance, Parallelogram, Sphere};
 
 /// Index of a shape in its [`Bvh`](super::Bvh).
 pub type ShapeId = u32;
@@ -41,7 +41,7 @@ impl Ray {
 
 /// A point of a surface, exactly on it to f64 rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfacePoint {
+pub struct Interaction {
     /// Position.
     pub position: DVec3,
     /// Unit normal of the front.
@@ -59,8 +59,8 @@ pub struct Contact {
     pub triangle: u32,
 }
 
-/// A surface's geometry. Every shape is one-sided in its optics (front: where the normal points) and opaque from
-/// both sides.
+/// A surface's geometry. Every shape is one-sided in its optics (front: where the normal points)
+/// and opaque from both sides.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// A flat patch corner + a·u + b·v.
@@ -70,7 +70,7 @@ pub enum Shape {
     /// A flat disc.
     Disc(Disc),
     /// A mesh of triangles.
-    Body(Body),
+    Instance(Instance),
 }
 
 impl Shape {
@@ -80,7 +80,7 @@ impl Shape {
             Self::Parallelogram(p) => p.bounds(),
             Self::Sphere(s) => s.bounds(),
             Self::Disc(d) => d.bounds(),
-            Self::Body(b) => b.bounds(),
+            Self::Instance(b) => b.bounds(),
         }
     }
 
@@ -90,73 +90,73 @@ impl Shape {
             Self::Parallelogram(p) => p.area(),
             Self::Sphere(s) => s.area(),
             Self::Disc(d) => d.area(),
-            Self::Body(b) => b.area(),
+            Self::Instance(b) => b.area(),
         }
     }
 
-    /// Smallest t in (0, `ray.length`) at which the ray meets the shape from either side. `leaving`: the ray starts on
-    /// this very shape, so that the start itself is no hit.
+    /// Smallest t in (0, `ray.length`) at which the ray meets the shape from either side.
+    /// `leaving`: the ray starts on this very shape, so that the start itself is no hit.
     pub fn intersect(&self, ray: &Ray, leaving: bool) -> Option<Contact> {
         let plain = |t| Contact { t, triangle: 0 };
         match self {
             Self::Parallelogram(p) => (!leaving).then(|| p.intersect(ray)).flatten().map(plain),
             Self::Sphere(s) => s.intersect(ray, leaving).map(plain),
             Self::Disc(d) => (!leaving).then(|| d.intersect(ray)).flatten().map(plain),
-            Self::Body(b) => b
+            Self::Instance(b) => b
                 .intersect(ray)
                 .map(|(t, triangle)| Contact { t, triangle }),
         }
     }
 
     /// The point of the shape where the ray meets it: removes the rounding.
-    pub fn at_contact(&self, ray: &Ray, contact: Contact) -> SurfacePoint {
+    pub fn at_contact(&self, ray: &Ray, contact: Contact) -> Interaction {
         let at = ray.origin + ray.direction * contact.t;
         match self {
-            Self::Body(b) => b.on_triangle(contact.triangle, at),
+            Self::Instance(b) => b.on_triangle(contact.triangle, at),
             _ => self.at_position(at),
         }
     }
 
-    /// Whether the shape blocks the open segment `ray`, of which the start (`leaves`) or the end (`arrives`) may lie
-    /// on the shape itself.
+    /// Whether the shape blocks the open segment `ray`, of which the start (`leaves`) or the end
+    /// (`arrives`) may lie on the shape itself.
     pub fn blocks(&self, ray: &Ray, leaves: bool, arrives: bool) -> bool {
         match self {
             Self::Parallelogram(p) => !leaves && !arrives && p.blocks(ray),
             Self::Sphere(s) => s.blocks(ray, leaves, arrives),
             Self::Disc(d) => !leaves && !arrives && d.blocks(ray),
-            Self::Body(b) => b.blocks(ray),
+            Self::Instance(b) => b.blocks(ray),
         }
     }
 
-    /// The point of the shape nearest to `p`, which must lie on it up to rounding: removes the rounding. Of a mesh it takes a search;
-    /// [`Shape::at_contact`] does not.
-    pub fn at_position(&self, p: DVec3) -> SurfacePoint {
+    /// The point of the shape nearest to `p`, which must lie on it up to rounding: removes the
+    /// rounding. Of a mesh it takes a search; [`Shape::at_contact`] does not.
+    pub fn at_position(&self, p: DVec3) -> Interaction {
         match self {
             Self::Parallelogram(s) => s.at_position(p),
             Self::Sphere(s) => s.at_position(p),
             Self::Disc(d) => d.at_position(p),
-            Self::Body(b) => b.at_position(p),
+            Self::Instance(b) => b.at_position(p),
         }
     }
 
-    /// The point to which an equal-area map takes `uv` in [0, 1]². They are the point's parameters, but for a mesh, whose parameters are
-    /// its texture coordinates.
-    pub fn at(&self, uv: [f64; 2]) -> SurfacePoint {
+    /// The point to which an equal-area map takes `uv` in [0, 1]². They are the point's parameters,
+    /// but for a mesh, whose parameters are its texture coordinates.
+    pub fn at(&self, uv: [f64; 2]) -> Interaction {
         match self {
             Self::Parallelogram(p) => p.at(uv),
             Self::Sphere(s) => s.at(uv),
             Self::Disc(d) => d.at(uv),
-            Self::Body(b) => b.at(uv),
+            Self::Instance(b) => b.at(uv),
         }
     }
 
     /// The points straight above or below (x, y) along z, by growing z.
-    pub fn at_xy(&self, x: f64, y: f64) -> Vec<SurfacePoint> {
+    pub fn at_xy(&self, x: f64, y: f64) -> Vec<Interaction> {
         match self {
             Self::Parallelogram(p) => p.at_xy(x, y).into_iter().collect(),
             Self::Sphere(s) => s.at_xy(x, y),
             Self::Disc(d) => d.at_xy(x, y).into_iter().collect(),
-            Self::Body(b) => b.at_xy(x, y),
+            Self::Instance(b) => b.at_xy(x, y),
         }
     }
 
@@ -170,17 +170,17 @@ impl Shape {
         match self {
             Self::Parallelogram(_) | Self::Disc(_) => false,
             Self::Sphere(s) => s.facing == Facing::Inside,
-            Self::Body(_) => true,
+            Self::Instance(_) => true,
         }
     }
 
-    /// Whether any point of the shape lies in front of the plane through `point` with normal `normal`, by more than
-    /// `slack`.
+    /// Whether any point of the shape lies in front of the plane through `point` with normal
+    /// `normal`, by more than `slack`.
     pub fn reaches_above(&self, point: DVec3, normal: DVec3, slack: f64) -> bool {
         match self {
             Self::Parallelogram(p) => p.corners().iter().any(|c| (*c - point).dot(normal) > slack),
             Self::Sphere(s) => (s.centre - point).dot(normal) + s.radius > slack,
-            Self::Disc(_) | Self::Body(_) => {
+            Self::Disc(_) | Self::Instance(_) => {
                 let corners = self.box_corners();
                 corners.iter().any(|c| (*c - point).dot(normal) > slack)
             }
@@ -196,7 +196,7 @@ impl Shape {
                 Sphere::new(centre, s.radius, s.facing).map(Self::Sphere)
             }
             Self::Disc(d) => d.moved(motion).map(Self::Disc),
-            Self::Body(b) => b.moved(motion).map(Self::Body),
+            Self::Instance(b) => b.moved(motion).map(Self::Instance),
         }
     }
 
@@ -222,30 +222,32 @@ impl Shape {
             }
             Self::Sphere(s) => (s.centre, s.radius),
             Self::Disc(d) => (d.centre(), d.radius()),
-            Self::Body(b) => {
+            Self::Instance(b) => {
                 let (low, high) = b.bounds();
                 (0.5 * (low + high), 0.5 * (high - low).length())
             }
         }
     }
 
-    /// Distance from `p` to the shape: exact for rectangles and spheres; a skewed patch may be nearer than this says.
+    /// Distance from `p` to the shape: exact for rectangles and spheres; a skewed patch may be
+    /// nearer than this says.
     pub fn distance_to(&self, p: DVec3) -> f64 {
         match self {
             Self::Parallelogram(s) => (s.at_position(p).position - p).length(),
             Self::Sphere(s) => ((p - s.centre).length() - s.radius).abs(),
             Self::Disc(d) => (d.at_position(p).position - p).length(),
-            Self::Body(b) => (b.at_position(p).position - p).length(),
+            Self::Instance(b) => (b.at_position(p).position - p).length(),
         }
     }
 
-    /// Points spread over the shape, its corners or extremes among them, for conservative tests of what it can see.
-    pub fn outline(&self) -> Vec<SurfacePoint> {
+    /// Points spread over the shape, its corners or extremes among them, for conservative tests of
+    /// what it can see.
+    pub fn outline(&self) -> Vec<Interaction> {
         match self {
             Self::Parallelogram(_) => [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
                 .map(|uv| self.at(uv))
                 .to_vec(),
-            Self::Sphere(_) | Self::Disc(_) | Self::Body(_) => {
+            Self::Sphere(_) | Self::Disc(_) | Self::Instance(_) => {
                 let steps = [0.0, 0.25, 0.5, 0.75, 1.0];
                 steps
                     .iter()

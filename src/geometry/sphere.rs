@@ -1,10 +1,13 @@
 //! Spheres.
 
-use super::{DVec3, Ray, SurfacePoint};
+use serde::{Deserialize, Serialize};
+
+use super::{DVec3, Interaction, Ray};
 use crate::num::warp;
 
 /// Which side of a sphere is its front.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Facing {
     /// The convex side: a ball.
     Outside,
@@ -12,8 +15,8 @@ pub enum Facing {
     Inside,
 }
 
-/// A sphere. Its parameters are those of the uniform warp: v turns around z, u runs from the top (0) to the bottom (1)
-/// with equal areas.
+/// A sphere. Its parameters are those of the uniform warp: v turns around z, u runs from the top
+/// (0) to the bottom (1) with equal areas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
     /// Centre.
@@ -49,9 +52,9 @@ impl Sphere {
         (self.centre - r, self.centre + r)
     }
 
-    fn point(&self, outward: DVec3) -> SurfacePoint {
+    fn point(&self, outward: DVec3) -> Interaction {
         let [u, v] = warp::sphere_inverse(outward.to_array());
-        SurfacePoint {
+        Interaction {
             position: self.centre + outward * self.radius,
             normal: match self.facing {
                 Facing::Outside => outward,
@@ -62,19 +65,19 @@ impl Sphere {
     }
 
     /// The point with the given parameters.
-    pub fn at(&self, uv: [f64; 2]) -> SurfacePoint {
+    pub fn at(&self, uv: [f64; 2]) -> Interaction {
         let mut point = self.point(DVec3::from_array(warp::sphere(uv)));
         point.uv = uv;
         point
     }
 
     /// Projects `p` onto the sphere.
-    pub fn at_position(&self, p: DVec3) -> SurfacePoint {
+    pub fn at_position(&self, p: DVec3) -> Interaction {
         self.point((p - self.centre).try_normalize().unwrap_or(DVec3::Z))
     }
 
     /// The lower and the upper point above or below (x, y), if it is within the radius.
-    pub fn at_xy(&self, x: f64, y: f64) -> Vec<SurfacePoint> {
+    pub fn at_xy(&self, x: f64, y: f64) -> Vec<Interaction> {
         let [dx, dy] = [x - self.centre.x, y - self.centre.y];
         let height2 = self.radius * self.radius - dx * dx - dy * dy;
         if height2 < 0.0 {
@@ -88,7 +91,8 @@ impl Sphere {
     fn roots(&self, ray: &Ray) -> Option<[f64; 2]> {
         let offset = ray.origin - self.centre;
         let b = offset.dot(ray.direction);
-        // The discriminant from the foot of the perpendicular, not from b² − c (Haines et al., Ray Tracing Gems, ch. 7).
+        // The discriminant from the foot of the perpendicular, not from b² − c (Haines et al., Ray
+        // Tracing Gems, ch. 7).
         let foot = offset - ray.direction * b;
         let discriminant = self.radius * self.radius - foot.length_squared();
         if discriminant < 0.0 {
@@ -98,8 +102,8 @@ impl Sphere {
         Some([-b - root, -b + root])
     }
 
-    /// First root in (0, length). A ray that leaves the sphere itself has its start as one root, the one nearer to 0,
-    /// which is left out.
+    /// First root in (0, length). A ray that leaves the sphere itself has its start as one root,
+    /// the one nearer to 0, which is left out.
     pub fn intersect(&self, ray: &Ray, leaving: bool) -> Option<f64> {
         let [near, far] = self.roots(ray)?;
         let inside = |t: f64| (t > 0.0 && t < ray.length).then_some(t);

@@ -1,8 +1,9 @@
 //! JPEG bytes to pictures: the one door to the crate `zune_jpeg`.
 //!
-//! Baseline and progressive, grey or YCbCr; no vector instructions, whose roundings could differ between machines. What is cut short is an
-//! error (but not what was cut short and closed again by an end marker: such a file decodes). The orientation that a camera notes (EXIF) is not
-//! applied: turn the picture itself.
+//! Baseline and progressive, grey or YCbCr; no vector instructions, whose roundings could differ
+//! between machines. What is cut short is an error (but not what was cut short and closed again by
+//! an end marker: such a file decodes). The orientation that a camera notes (EXIF) is not applied:
+//! turn the picture itself.
 
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::zune_core::bytestream::ZCursor;

@@ -1,11 +1,15 @@
-//! Floor 1: pictures. PNG, JPEG and OpenEXR bytes into numbers, numbers into PNG bytes; the doors to the crates behind them.
+//! Floor 1: pictures. PNG, JPEG and OpenEXR bytes into numbers, numbers into PNG bytes; the doors
+//! to the crates behind them.
 //!
-//! A decoded [`Image`] has the values that the file stores, without any transfer function: what they mean is for the one who knows where the
-//! picture came from, and [`Transfer`] is how to say it. Profiles and gamma chunks within a file are not read.
+//! A decoded [`Image`] has the values that the file stores, without any transfer function: what
+//! they mean is for the one who knows where the picture came from, and [`Transfer`] is how to say
+//! it. Profiles and gamma chunks within a file are not read.
 //!
-//! A file is believed nothing. Width and height are read from its header and held against [`MOST_PIXELS`] and against the file's length before memory
-//! is taken for pixels: deflate (PNG, most OpenEXR) makes at most 1032 bytes of one, and a JPEG takes at least a bit for a block of 8 × 8 pixels.
-//! So decoding takes at most 48 bytes for each of [`MOST_PIXELS`], whatever a file claims.
+//! A file is believed nothing. Width and height are read from its header and held against
+//! [`MOST_PIXELS`] and against the file's length before memory is taken for pixels: deflate (PNG,
+//! most OpenEXR) makes at most 1032 bytes of one, and a JPEG takes at least a bit for a block of 8
+//! × 8 pixels. So decoding takes at most 48 bytes for each of [`MOST_PIXELS`], whatever a file
+//! claims.
 
 pub(crate) mod exr;
 mod jpeg;
@@ -43,7 +47,8 @@ pub enum Channel {
 /// How values are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
-    /// Integers of so many bits, divided by their largest: values in \[0, 1\] whose transfer the file does not reliably say.
+    /// Integers of so many bits, divided by their largest: values in \[0, 1\] whose transfer the
+    /// file does not reliably say.
     Integer,
     /// Floating-point numbers, linear in light by the definition of OpenEXR, of any size.
     Float,
@@ -56,7 +61,8 @@ pub struct Image {
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// What the values of a pixel are, in order: grey, or red, green and blue; then alpha, if there is any.
+    /// What the values of a pixel are, in order: grey, or red, green and blue; then alpha, if there
+    /// is any.
     pub channels: Vec<Channel>,
     /// Row by row from the top, each from the left, all channels of a pixel together.
     pub values: Vec<f32>,
@@ -124,7 +130,8 @@ impl Image {
     }
 }
 
-/// A picture's size, held against [`MOST_PIXELS`] and against the most pixels that its file can hold.
+/// A picture's size, held against [`MOST_PIXELS`] and against the most pixels that its file can
+/// hold.
 fn checked_size(name: &str, [width, height]: [usize; 2], held: usize) -> Result<(), ImageError> {
     let reason = match width.checked_mul(height) {
         Some(0) => "it has no pixels",

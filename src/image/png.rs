@@ -9,7 +9,8 @@ use super::{Channel, DEFLATE_RATIO_MAX, Encoding, Image, ImageError, checked_siz
 #[error("the picture could not be encoded as PNG: {0}")]
 pub struct EncodingError(#[from] png::EncodingError);
 
-/// A coloured picture as PNG bytes, three bytes a pixel, row by row from the top; with `pixels_per_metre` it says how large it is on paper.
+/// A coloured picture as PNG bytes, three bytes a pixel, row by row from the top; with
+/// `pixels_per_metre` it says how large it is on paper.
 ///
 /// # Errors
 /// [`EncodingError`].
@@ -49,7 +50,8 @@ pub fn grey16_png([width, height]: [u32; 2], pixels: &[u16]) -> Result<Vec<u8>, 
     Ok(bytes)
 }
 
-/// A PNG of any colour type and depth; palettes become colours, a transparent colour becomes alpha. Of an animation the still picture.
+/// A PNG of any colour type and depth; palettes become colours, a transparent colour becomes alpha.
+/// Of an animation the still picture.
 pub(super) fn read_png(name: &str, bytes: &[u8]) -> Result<Image, ImageError> {
     let fault = |e: png::DecodingError| damaged(name, e);
     let mut decoder = png::Decoder::new(Cursor::new(bytes));

@@ -53,7 +53,8 @@ fn integers_are_those_that_were_saved() {
     assert_eq!(codes(&read(&bytes::BITS), 255.0), [0, 255, 255, 0, 255]);
 }
 
-/// Four flat blocks of 8 × 8: quality 95 quantises their mean in steps of 2/8 codes. Colours pass through YCbCr, rounded to whole codes in between.
+/// Four flat blocks of 8 × 8: quality 95 quantises their mean in steps of 2/8 codes. Colours pass
+/// through YCbCr, rounded to whole codes in between.
 #[test]
 fn flat_blocks_of_a_jpeg_are_within_a_code() {
     let image = read(&bytes::JPEG_GREY);

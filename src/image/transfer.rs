@@ -1,7 +1,10 @@
 //! How stored values stand for light.
 
+use serde::{Deserialize, Serialize};
+
 /// The relation between a stored value e and the linear value x, both 1 for white.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
 pub enum Transfer {
     /// x = e.
     Linear,
@@ -33,11 +36,13 @@ impl Transfer {
 mod tests {
     use super::*;
 
-    /// The standard rounds the slope and the two ends of the straight part so that they meet to some 1e-7.
+    /// The standard rounds the slope and the two ends of the straight part so that they meet to
+    /// some 1e-7.
     #[test]
     fn the_curve_is_that_of_the_standard() {
         let x = |code: u8| Transfer::Srgb.decode(f64::from(code) / 255.0);
-        // Published values of linear light for codes of eight bits: 10 on the straight part, 128 and 188 on the curve.
+        // Published values of linear light for codes of eight bits: 10 on the straight part, 128
+        // and 188 on the curve.
         for (code, linear) in [
             (0, 0.0),
             (10, 0.003_035_3),

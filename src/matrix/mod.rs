@@ -1,13 +1,14 @@
 //! Floor 3: the pixels × spots matrix and its file format.
 //!
-//! One photograph per laser spot, each photograph a column: the stack of them is the light-transport matrix Φcam that the
-//! whole laboratory is about.
+//! One photograph per laser spot, each photograph a column: the stack of them is the
+//! light-transport matrix Φcam that the whole laboratory is about.
 //!
 //! * [`Matrix`]: the type every floor above uses.
 //! * [`npy`]: its `.npy` file, as NumPy writes and reads it.
 
 pub mod npy;
 
-/// A dense matrix of f64, stored by columns. As Φcam it has one row a camera pixel (row = column + row·columns of the
-/// pixel grid), one column a laser spot, and entries in W; G12, G23 and the standard errors of Φcam have the same type.
+/// A dense matrix of f64, stored by columns. As Φcam it has one row a camera pixel (row = column +
+/// row·columns of the pixel grid), one column a laser spot, and entries in W; G12, G23 and the
+/// standard errors of Φcam have the same type.
 pub type Matrix = nalgebra::DMatrix<f64>;

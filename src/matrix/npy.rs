@@ -1,13 +1,15 @@
 //! `.npy`, NumPy's file of one array: the only door of the crate `npyz`.
 //!
-//! Layout (NumPy format 1.0): `\x93NUMPY`, version (2 bytes), length of the header (u16), the header as a Python dict
-//! `{'descr': '<f8', 'fortran_order': False, 'shape': (p, l), }` padded with spaces and ended by a newline, then the
-//! numbers. C order means row after row.
+//! Layout (NumPy format 1.0): `\x93NUMPY`, version (2 bytes), length of the header (u16), the
+//! header as a Python dict `{'descr': '<f8', 'fortran_order': False, 'shape': (p, l), }` padded
+//! with spaces and ended by a newline, then the numbers. C order means row after row.
 //!
-//! The header comes from outside and `npyz` trusts it: it multiplies the shape without a check, allocates the length a
-//! header claims and parses nested brackets by recursion. So a header is looked at before `npyz` sees it, which then gets the bytes that were looked at: its length, its
-//! brackets and its digits are bounded (a product of integers is less than ten to the number of all their digits, so 19
-//! digits cannot overflow an u64), and its claim is held against the length of the file before anything is allocated.
+//! The header comes from outside and `npyz` trusts it: it multiplies the shape without a check,
+//! allocates the length a header claims and parses nested brackets by recursion. So a header is
+//! looked at before `npyz` sees it, which then gets the bytes that were looked at: its length, its
+//! brackets and its digits are bounded (a product of integers is less than ten to the number of all
+//! their digits, so 19 digits cannot overflow an u64), and its claim is held against the length of
+//! the file before anything is allocated.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -92,8 +94,8 @@ pub enum NpyError {
     },
 }
 
-/// Writes `matrix` to `path` as f64, little-endian, C order, shape (rows, columns): Φcam as (pixels, spots) in W. The file
-/// appears whole or not at all.
+/// Writes `matrix` to `path` as f64, little-endian, C order, shape (rows, columns): Φcam as
+/// (pixels, spots) in W. The file appears whole or not at all.
 ///
 /// # Errors
 /// [`StoreError`] if the file cannot be written.
@@ -189,12 +191,14 @@ fn examine(path: &Path, file: File) -> Result<Opened, NpyError> {
     })
 }
 
-/// Reads a matrix from `path`: f64 or f32 of either byte order, C or Fortran order, two dimensions, or one, which becomes
-/// a column. NaN and infinity are passed on: see [`read_finite`]. Allocates at most twice what its numbers
-/// take as f64: twice the length of the file, four times that of one of f32.
+/// Reads a matrix from `path`: f64 or f32 of either byte order, C or Fortran order, two dimensions,
+/// or one, which becomes a column. NaN and infinity are passed on: see [`read_finite`]. Allocates
+/// at most twice what its numbers take as f64: twice the length of the file, four times that of one
+/// of f32.
 ///
 /// # Errors
-/// [`NpyError`] if the file cannot be read, is no `.npy`, has another type or shape, or another length than it claims.
+/// [`NpyError`] if the file cannot be read, is no `.npy`, has another type or shape, or another
+/// length than it claims.
 pub fn read(path: &Path) -> Result<Matrix, NpyError> {
     let Opened {
         file,
@@ -267,7 +271,8 @@ fn one_line(words: &str) -> String {
     parts.join(" ")
 }
 
-/// Reads the file up to the end of its header without trusting it; the inner error says why it is refused.
+/// Reads the file up to the end of its header without trusting it; the inner error says why it is
+/// refused.
 fn checked_header(file: &mut impl Read) -> io::Result<Result<Vec<u8>, String>> {
     let mut start = Vec::new();
     file.take(12 + HEADER_MAX as u64).read_to_end(&mut start)?;

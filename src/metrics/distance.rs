@@ -6,7 +6,8 @@ fn comparable(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && !a.is_empty() && a.iter().chain(b).all(|x| x.is_finite())
 }
 
-/// Values divided by their largest absolute one, so that squares neither overflow nor vanish, and that divisor.
+/// Values divided by their largest absolute one, so that squares neither overflow nor vanish, and
+/// that divisor.
 fn scaled(values: impl Iterator<Item = f64> + Clone) -> Option<(Vec<f64>, f64)> {
     let largest = values.clone().fold(0.0f64, |m, x| m.max(x.abs()));
     let divisor = if largest > 0.0 { largest } else { 1.0 };
@@ -25,7 +26,8 @@ pub fn correlation(a: &[f64], b: &[f64]) -> Option<f64> {
     let centred = |values: &[f64]| {
         let (unit, _) = scaled(values.iter().copied())?;
         let mean = unit.iter().sum::<f64>() / unit.len() as f64;
-        // The scaled entries of a constant are all 1 or all −1, so its deviations are exactly 0 and the ratio below is not finite.
+        // The scaled entries of a constant are all 1 or all −1, so its deviations are exactly 0 and
+        // the ratio below is not finite.
         Some(unit.iter().map(|x| x - mean).collect::<Vec<f64>>())
     };
     let (a, b) = (centred(a)?, centred(b)?);

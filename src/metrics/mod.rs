@@ -1,4 +1,5 @@
-//! Floor 5: how far two things are apart. Recovered reflectances against the true object, one matrix against another.
+//! Floor 5: how far two things are apart. Recovered reflectances against the true object, one
+//! matrix against another.
 
 mod distance;
 mod modulation;

@@ -2,13 +2,15 @@
 //!
 //! > MTF = (W − B)/(W + B)
 //!
-//! W and B are the means of the recovered values over the object's light and its dark elements. Light elements are those above
-//! the middle of the truth's range, dark ones those below or on it.
+//! W and B are the means of the recovered values over the object's light and its dark elements.
+//! Light elements are those above the middle of the truth's range, dark ones those below or on it.
 //!
-//! Two conventions exist and are kept apart by name: [`mtf_raw`] is the equation, [`mtf_normalized`] what the published code
-//! computes, which stretches the recovered values to [0, 1] first and so hides any loss of contrast that all elements share.
+//! Two conventions exist and are kept apart by name: [`mtf_raw`] is the equation,
+//! [`mtf_normalized`] what the published code computes, which stretches the recovered values to [0,
+//! 1] first and so hides any loss of contrast that all elements share.
 
-/// W and B: the means of the recovered values over light and dark elements. `None` as for [`mtf_raw`], but W + B may be 0.
+/// W and B: the means of the recovered values over light and dark elements. `None` as for
+/// [`mtf_raw`], but W + B may be 0.
 pub fn light_and_dark(recovered: &[f64], truth: &[f64]) -> Option<(f64, f64)> {
     if recovered.len() != truth.len() || !recovered.iter().chain(truth).all(|x| x.is_finite()) {
         return None;
@@ -24,7 +26,8 @@ pub fn light_and_dark(recovered: &[f64], truth: &[f64]) -> Option<(f64, f64)> {
             .zip(truth)
             .filter(|(_, t)| (**t > middle) == light)
             .fold((0.0, 0.0), |(sum, count), (r, _)| (sum + r, count + 1.0));
-        // Neither class is empty between truths of two values; were one lost to rounding, 0/0 is caught below.
+        // Neither class is empty between truths of two values; were one lost to rounding, 0/0 is
+        // caught below.
         sum / count
     };
     let (light, dark) = (mean(true), mean(false));
@@ -42,19 +45,23 @@ fn range(values: &[f64]) -> Option<(f64, f64)> {
 
 /// (W − B)/(W + B) of the recovered values as they are, for `recovered` and `truth` of one length.
 ///
-/// 1 is perfect for a dark of zero, 0 is no contrast, below 0 the contrast is inverted. A recovery that swings below zero can
-/// make W + B small or negative; the equation's value is returned then, and its size may exceed 1.
+/// 1 is perfect for a dark of zero, 0 is no contrast, below 0 the contrast is inverted. A recovery
+/// that swings below zero can make W + B small or negative; the equation's value is returned then,
+/// and its size may exceed 1.
 ///
-/// `None` where the truth has no contrast, lengths differ, a value is not finite, or W + B is exactly 0.
+/// `None` where the truth has no contrast, lengths differ, a value is not finite, or W + B is
+/// exactly 0.
 pub fn mtf_raw(recovered: &[f64], truth: &[f64]) -> Option<f64> {
     let (light, dark) = light_and_dark(recovered, truth)?;
     let ratio = (light - dark) / (light + dark);
     ratio.is_finite().then_some(ratio)
 }
 
-/// The same after the recovered values have been stretched to fill [0, 1], (x − min)/(max − min). It lies between −1 and 1.
+/// The same after the recovered values have been stretched to fill [0, 1], (x − min)/(max − min).
+/// It lies between −1 and 1.
 ///
-/// `None` as for [`mtf_raw`], and where all recovered values are equal, so that nothing can be stretched.
+/// `None` as for [`mtf_raw`], and where all recovered values are equal, so that nothing can be
+/// stretched.
 pub fn mtf_normalized(recovered: &[f64], truth: &[f64]) -> Option<f64> {
     let (light, dark) = light_and_dark(recovered, truth)?;
     let (low, high) = range(recovered)?;

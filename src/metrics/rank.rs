@@ -2,7 +2,8 @@
 
 use super::correlation;
 
-/// Spearman's correlation: Pearson's of the ranks, equal values sharing their mean rank. 1 for any growing relation.
+/// Spearman's correlation: Pearson's of the ranks, equal values sharing their mean rank. 1 for any
+/// growing relation.
 ///
 /// `None` where [`correlation`] is.
 pub fn rank_correlation(a: &[f64], b: &[f64]) -> Option<f64> {

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_1_PI;
 use super::ModelError;
 use super::kernel::{HiddenPoint, Kernel};
 use super::sight::{self, WallPoint};
-use crate::geometry::{Basis, Body, DVec3, Shape};
+use crate::geometry::{Basis, DVec3, Instance, Shape};
 use crate::matrix::Matrix;
 use crate::num::quadrature::Rule;
 use crate::scene::{Element, Profile, Scene, Surface};
@@ -15,8 +15,8 @@ use crate::scene::{Element, Profile, Scene, Surface};
 pub struct Converged {
     /// Pixels × spots, W.
     pub phi: Matrix,
-    /// What the last refinement changed in each entry, W: an estimate of the error of the step before, and far more than
-    /// that of `phi` itself where the rule converges at all.
+    /// What the last refinement changed in each entry, W: an estimate of the error of the step
+    /// before, and far more than that of `phi` itself where the rule converges at all.
     pub bound: Matrix,
     /// Relative Frobenius norm of that change.
     pub change: f64,
@@ -34,7 +34,8 @@ pub enum Take {
 /// What the three-bounce integral is integrated over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Extent {
-    /// Elements of the hidden surfaces, with their mean albedo; or the surfaces with the albedo as it varies.
+    /// Elements of the hidden surfaces, with their mean albedo; or the surfaces with the albedo as
+    /// it varies.
     pub elements: Take,
     /// Pixels' footprints.
     pub footprints: Take,
@@ -55,19 +56,22 @@ impl Extent {
 const TARGET: f64 = 1e-10;
 /// Nodes on all hidden surfaces together beyond which no finer rule is tried.
 const MOST_NODES: usize = 400_000;
-/// A picture of more texels than that is taken at the middles of at most so many parts a side, each with its mean albedo.
+/// A picture of more texels than that is taken at the middles of at most so many parts a side, each
+/// with its mean albedo.
 const COARSE: usize = 512;
 /// Nodes a side of a footprint beyond which no finer rule is tried.
 const MOST_FOOTPRINT_NODES: usize = 8;
 /// Nodes handled at once.
 const CHUNK: usize = 4096;
-/// The Gaussian profile is cut at this many of its 1/e² radii, beyond which lies e^−32 of the power.
+/// The Gaussian profile is cut at this many of its 1/e² radii, beyond which lies e^−32 of the
+/// power.
 const GAUSSIAN_REACH: f64 = 4.0;
 
-/// The matrix model's integral: Gauss–Legendre over each smooth texture cell of each hidden surface, over each footprint and
-/// over each spot's profile, as far as `extent` asks for it, refined together until Φcam changes by less than 1e-10 or the
-/// rules are as large as they may be. As in the matrix model there is no occlusion, light meets three surfaces, and the hidden ones are
-/// Lambertian: one that is not is taken for [`Surface::matt`].
+/// The matrix model's integral: Gauss–Legendre over each smooth texture cell of each hidden
+/// surface, over each footprint and over each spot's profile, as far as `extent` asks for it,
+/// refined together until Φcam changes by less than 1e-10 or the rules are as large as they may be.
+/// As in the matrix model there is no occlusion, light meets three surfaces, and the hidden ones
+/// are Lambertian: one that is not is taken for [`Surface::lambertian_equivalent`].
 ///
 /// # Errors
 /// [`ModelError::NothingHidden`].
@@ -168,14 +172,14 @@ fn hidden_nodes(scene: &Scene, nodes: Nodes) -> Vec<(HiddenPoint, f64)> {
         }
     };
     for (_, surface) in scene.hidden() {
-        let surface = &*surface.matt();
+        let surface = &*surface.lambertian_equivalent();
         let whole = surface.shape.area();
         match (nodes.extent.elements, &surface.shape) {
             (Take::Centre, _) => {
                 let elements = surface.divided(surface.elements);
                 elements.iter().for_each(&mut add);
             }
-            (Take::Integral, Shape::Body(body)) => {
+            (Take::Integral, Shape::Instance(body)) => {
                 triangle_nodes(surface, body, nodes.hidden, |e| add(&e));
             }
             (Take::Integral, _) if texels(surface) > MOST_NODES => {
@@ -207,7 +211,7 @@ fn hidden_nodes(scene: &Scene, nodes: Nodes) -> Vec<(HiddenPoint, f64)> {
 /// Parts of a hidden surface within which the integrand is smooth.
 fn pieces(surface: &Surface) -> usize {
     match &surface.shape {
-        Shape::Body(body) => body.mesh().triangles().len(),
+        Shape::Instance(body) => body.mesh().triangles().len(),
         _ if texels(surface) > MOST_NODES => {
             let coarse = surface.albedo.smooth_cells().map(|n| n.min(COARSE));
             coarse.iter().product()
@@ -221,9 +225,10 @@ fn texels(surface: &Surface) -> usize {
     surface.albedo.smooth_cells().iter().product()
 }
 
-/// Every triangle by the product rule of n × n nodes on the square that is folded onto it: (u, v) → (1 − u, u·(1 − v), u·v), whose area
-/// element is twice the triangle's area times u. With one node its centroid.
-fn triangle_nodes(surface: &Surface, body: &Body, n: usize, mut visit: impl FnMut(Element)) {
+/// Every triangle by the product rule of n × n nodes on the square that is folded onto it: (u, v) →
+/// (1 − u, u·(1 − v), u·v), whose area element is twice the triangle's area times u. With one node
+/// its centroid.
+fn triangle_nodes(surface: &Surface, body: &Instance, n: usize, mut visit: impl FnMut(Element)) {
     for t in 0..body.mesh().triangles().len() as u32 {
         let [a, b, c] = body.corners(t);
         let area = body.triangle_area(t);
@@ -261,14 +266,16 @@ fn plane_nodes(n: usize) -> impl Iterator<Item = ([f64; 2], f64)> {
     })
 }
 
-/// Offsets in the wall's plane and shares of the power; the shares add up to 1 (a Gaussian's to 1 − e^−32).
+/// Offsets in the wall's plane and shares of the power; the shares add up to 1 (a Gaussian's to 1 −
+/// e^−32).
 fn profile_nodes(profile: Profile, n: usize) -> Vec<([f64; 2], f64)> {
     let (reach, gaussian) = match profile {
         Profile::Ideal => return vec![([0.0, 0.0], 1.0)],
         Profile::Disc { radius } => (radius, None),
         Profile::Gaussian { radius } => (GAUSSIAN_REACH * radius, Some(radius)),
     };
-    // Radially Gauss–Legendre in r, with r dr; around the circle the trapezoidal rule, exact for low orders.
+    // Radially Gauss–Legendre in r, with r dr; around the circle the trapezoidal rule, exact for
+    // low orders.
     let (radial, around) = (if gaussian.is_some() { 4 * n } else { n }, 2 * n);
     let mut nodes = Vec::with_capacity(radial * around);
     for (r, w) in Rule::gauss_legendre(radial).on(0.0, reach) {

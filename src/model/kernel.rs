@@ -8,9 +8,10 @@ use crate::scene::Element;
 pub enum Kernel {
     /// What light does: cosθ_wall · cosθ_S2 / R².
     Physical,
-    /// What the published simulation computes: cosθ_wall · √(½·|r⊥|²)/R / R², where r⊥ is the part of the line that is
-    /// perpendicular to S2's u axis (on the bench (y1 − y2, z2)) and √½ the cosine of the hinge angle. Only for
-    /// reproducing published curves: on the bench it misses the transport integral by a third.
+    /// What the published simulation computes: cosθ_wall · √(½·|r⊥|²)/R / R², where r⊥ is the part
+    /// of the line that is perpendicular to S2's u axis (on the bench (y1 − y2, z2)) and √½ the
+    /// cosine of the hinge angle. Only for reproducing published curves: on the bench it misses the
+    /// transport integral by a third.
     Published,
 }
 
@@ -42,7 +43,8 @@ impl Kernel {
         }
     }
 
-    /// G between a wall point with its normal and a hidden point, length⁻²; 0 where one sees only the other's back.
+    /// G between a wall point with its normal and a hidden point, length⁻²; 0 where one sees only
+    /// the other's back.
     pub(super) fn between(self, wall: DVec3, normal: DVec3, hidden: &HiddenPoint) -> f64 {
         let r = hidden.position - wall;
         let r2 = r.length_squared();

@@ -62,12 +62,14 @@ pub struct MatrixModel {
     pub g12: Matrix,
     /// Pixels × elements, length⁻².
     pub g23: Matrix,
-    /// Mean albedo of each element; of a surface that is not Lambertian that of the Lambertian one that reflects as much
-    /// ([`Surface::matt`](crate::scene::Surface::matt)).
+    /// Mean albedo of each element; of a surface that is not Lambertian that of the Lambertian one
+    /// that reflects as much
+    /// ([`Surface::lambertian_equivalent`](crate::scene::Surface::lambertian_equivalent)).
     pub albedo: Vec<f64>,
     /// C, pixels × elements: E_p·(ρ3/π)·G23/π.
     pub camera_side: Matrix,
-    /// D, elements × spots, W: Φlaser·(ρ1/π)·A_j·G12, so that Φcam\[p,l\] = Σ_j C\[p,j\]·ρ2_j·D\[j,l\].
+    /// D, elements × spots, W: Φlaser·(ρ1/π)·A_j·G12, so that Φcam\[p,l\] = Σ_j
+    /// C\[p,j\]·ρ2_j·D\[j,l\].
     pub laser_side: Matrix,
 }
 
@@ -167,8 +169,10 @@ impl MatrixModel {
         })
     }
 
-    /// The same model with occlusion: every entry of G12, G23, C and D between whose wall point and element (by their middles) something
-    /// stands is 0, and so are the rows of pixels and the columns of spots whose wall point camera or laser cannot see. The published model has none; where a scene's obstacles are known, this is what takes them in.
+    /// The same model with occlusion: every entry of G12, G23, C and D between whose wall point and
+    /// element (by their middles) something stands is 0, and so are the rows of pixels and the
+    /// columns of spots whose wall point camera or laser cannot see. The published model has none;
+    /// where a scene's obstacles are known, this is what takes them in.
     pub fn with_occlusion(mut self, scene: &Scene) -> Self {
         let hidden = scene.hidden().zip(&self.grids);
         let elements: Vec<(ShapeId, DVec3)> = hidden

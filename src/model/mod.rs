@@ -1,10 +1,13 @@
-//! Floor 4: the matrix model. G12, G23 and Φcam from the geometry, by formula, without sampling anything.
+//! Floor 4: the matrix model. G12, G23 and Φcam from the geometry, by formula, without sampling
+//! anything.
 //!
 //! > Φcam\[p,l\] = Φlaser · E_p · (ρ3/π) · (ρ1/π) · Σ_j G23\[p,j\] · (ρ2_j/π) · A_j · G12\[j,l\]
 //!
-//! with absolute scale: watts, and no free factor. Elements, pixels and spots are taken at their centres
-//! ([`MatrixModel`]), or everything is integrated until it no longer changes ([`converged`]). Three surfaces, a Lambertian object, and no occlusion
-//! unless asked for ([`MatrixModel::with_occlusion`]): what light does beyond that is for `transport` to show, which this floor never sees.
+//! with absolute scale: watts, and no free factor. Elements, pixels and spots are taken at their
+//! centres ([`MatrixModel`]), or everything is integrated until it no longer changes
+//! ([`converged`]). Three surfaces, a Lambertian object, and no occlusion unless asked for
+//! ([`MatrixModel::with_occlusion`]): what light does beyond that is for `transport` to show, which
+//! this floor never sees.
 
 mod converged;
 mod kernel;

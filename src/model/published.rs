@@ -1,7 +1,9 @@
-//! The published simulation, as it computes: its own grids, spots, kernel and measurement, without a scene.
+//! The published simulation, as it computes: its own grids, spots, kernel and measurement, without
+//! a scene.
 //!
-//! Lengths in inches. It differs from the bench of this crate in what the study's text does not say: the pixel grid is laid to the
-//! edges of the view, the spots leave the wall where the square is large, and neither unit nor power appears.
+//! Lengths in inches. It differs from the bench of this crate in what the study's text does not
+//! say: the pixel grid is laid to the edges of the view, the spots leave the wall where the square
+//! is large, and neither unit nor power appears.
 
 use super::Kernel;
 use crate::matrix::Matrix;
@@ -75,7 +77,8 @@ impl Published {
             .collect()
     }
 
-    /// Points of the wall that the pixels see, index row·columns + column, x falling fastest, then growing y.
+    /// Points of the wall that the pixels see, index row·columns + column, x falling fastest, then
+    /// growing y.
     pub fn pixel_centres(&self) -> Vec<[f64; 2]> {
         let n = self.pixels;
         let place = |[from, to]: [f64; 2], k: usize| match self.grid {
@@ -87,7 +90,8 @@ impl Published {
             .collect()
     }
 
-    /// The spots: lower side by growing x, right by growing y, upper by falling x, left by falling y; corners appear twice.
+    /// The spots: lower side by growing x, right by growing y, upper by falling x, left by falling
+    /// y; corners appear twice.
     pub fn spots(&self) -> Vec<[f64; 2]> {
         let (n, h) = (self.per_side, self.half_width);
         let [cx, cy] = centre();
@@ -119,7 +123,8 @@ impl Published {
         })
     }
 
-    /// G12 of one element over a grid of `side` × `side` wall points, from C − `reach` to C + `reach` along x (fastest) and y.
+    /// G12 of one element over a grid of `side` × `side` wall points, from C − `reach` to C +
+    /// `reach` along x (fastest) and y.
     pub fn g12_over(&self, element: usize, reach: f64, side: usize) -> Vec<f64> {
         let element = self.element_centres()[element];
         let [cx, cy] = centre();
@@ -137,7 +142,8 @@ impl Published {
         })
     }
 
-    /// z2·root/R⁴, the root √(½((y − y2)² + z2²)) for the published kernel and (15.5 − y)/√2 for the physical one.
+    /// z2·root/R⁴, the root √(½((y − y2)² + z2²)) for the published kernel and (15.5 − y)/√2 for
+    /// the physical one.
     fn g(&self, [x, y]: [f64; 2], [x2, y2, z2]: [f64; 3]) -> f64 {
         let (dx, dy) = (x - x2, y - y2);
         let r2 = dx * dx + dy * dy + z2 * z2;
@@ -170,8 +176,8 @@ impl Published {
     }
 }
 
-/// K of the published tables 2–4: the kernel in the flattened cross-section, by the law of sines in the triangle hinge – spot line –
-/// object row with 45° at the hinge,
+/// K of the published tables 2–4: the kernel in the flattened cross-section, by the law of sines in
+/// the triangle hinge – spot line – object row with 45° at the hinge,
 ///
 /// > K = sin α · sin β / r²,   sin α = d·sin 45°/r,   sin β = s·sin 45°/r,   r² = s² + d² − 2 s d cos 45°,
 ///
@@ -182,7 +188,8 @@ pub fn flattened_k(s: f64, d: f64) -> f64 {
     (d * half) * (s * half) / (r2 * r2)
 }
 
-/// Distances from the hinge of the eight rows of tables 2–4 and of their two spot lines, `apart` from y = 4.375: (rows, lower line, upper line).
+/// Distances from the hinge of the eight rows of tables 2–4 and of their two spot lines, `apart`
+/// from y = 4.375: (rows, lower line, upper line).
 pub fn table_distances(apart: f64) -> ([f64; 8], f64, f64) {
     let rows = std::array::from_fn(|k| NEAR + 0.25 + 0.5 * k as f64);
     (rows, HINGE - (4.375 - apart), HINGE - (4.375 + apart))
@@ -204,7 +211,8 @@ mod tests {
         stagger: Stagger::OneInch,
     };
 
-    /// With pixels at the centres of footprints it is the scene `thesis`, columns of pixels from the other side.
+    /// With pixels at the centres of footprints it is the scene `thesis`, columns of pixels from
+    /// the other side.
     #[test]
     fn it_is_the_scene_of_the_thesis() {
         let scene = Scene::load("thesis").unwrap();

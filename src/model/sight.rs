@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_1_PI;
 
 use super::kernel::{HiddenPoint, Kernel};
-use crate::geometry::{Contact, DVec3, Ray, ShapeId, SurfacePoint};
+use crate::geometry::{Contact, DVec3, Interaction, Ray, ShapeId};
 use crate::scene::{Role, Scene};
 
 /// A point of the wall that a line of sight ends on, or that the laser lights.
@@ -11,8 +11,8 @@ use crate::scene::{Role, Scene};
 pub(super) struct WallPoint {
     pub position: DVec3,
     pub normal: DVec3,
-    /// What the point contributes besides G and f_r: E_p (length² sr) on the camera's side, Φlaser (W) on the laser's; 0 where the line
-    /// ends on nothing, or on a back.
+    /// What the point contributes besides G and f_r: E_p (length² sr) on the camera's side, Φlaser
+    /// (W) on the laser's; 0 where the line ends on nothing, or on a back.
     pub weight: f64,
     /// How it reflects.
     pub reflection: Reflection,
@@ -20,12 +20,14 @@ pub(super) struct WallPoint {
     pub surface: Option<ShapeId>,
 }
 
-/// f_r of a wall point between the device (laser or camera) and the hidden surface: BRDF12, BRDF23cam.
+/// f_r of a wall point between the device (laser or camera) and the hidden surface: BRDF12,
+/// BRDF23cam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Reflection {
     /// ρ/π, whatever the directions.
     Constant(f64),
-    /// That of surface `surface`, whose texture has the value `albedo`, for the unit vector `device`.
+    /// That of surface `surface`, whose texture has the value `albedo`, for the unit vector
+    /// `device`.
     Directed {
         surface: usize,
         albedo: f64,
@@ -70,8 +72,9 @@ impl WallPoint {
     }
 }
 
-/// The wall point of pixel `pixel` behind (a, b) of its footprint, with the étendue of `share` of the footprint:
-/// A_lens·cosθ_cam·cosθ_view/d² · share · A_footprint. Its weight is 0 where the line of sight misses the wall.
+/// The wall point of pixel `pixel` behind (a, b) of its footprint, with the étendue of `share` of
+/// the footprint: A_lens·cosθ_cam·cosθ_view/d² · share · A_footprint. Its weight is 0 where the
+/// line of sight misses the wall.
 pub(super) fn seen(scene: &Scene, pixel: usize, ab: [f64; 2], share: f64) -> WallPoint {
     let camera = &scene.camera;
     let footprint = camera.footprint(pixel);
@@ -106,8 +109,8 @@ pub(super) fn seen(scene: &Scene, pixel: usize, ab: [f64; 2], share: f64) -> Wal
     }
 }
 
-/// The wall where the beam that is aimed at `offset` from the target of spot `spot` meets it, lit by `share` of the laser's
-/// power. Its weight is 0 where the beam misses the wall.
+/// The wall where the beam that is aimed at `offset` from the target of spot `spot` meets it, lit
+/// by `share` of the laser's power. Its weight is 0 where the beam misses the wall.
 pub(super) fn lit(scene: &Scene, spot: usize, offset: DVec3, share: f64) -> WallPoint {
     let laser = &scene.laser;
     let target = &laser.spots[spot].target;
@@ -128,11 +131,12 @@ pub(super) fn lit(scene: &Scene, spot: usize, offset: DVec3, share: f64) -> Wall
     }
 }
 
-/// A wall point of surface `id` met along `direction`, with `received` W or length² sr; nothing on the back.
+/// A wall point of surface `id` met along `direction`, with `received` W or length² sr; nothing on
+/// the back.
 fn reflecting(
     scene: &Scene,
     id: usize,
-    point: &SurfacePoint,
+    point: &Interaction,
     direction: DVec3,
     received: f64,
 ) -> WallPoint {

@@ -1,11 +1,12 @@
 //! Wide arithmetic: the same operations on many numbers at once. The one door to pulp.
 //!
-//! The loops are plain Rust; which instructions they become is decided when the program runs, by what the processor has. The bits do
-//! not depend on it: no operation is fused with another, and no sum is taken in another order than the one written here.
+//! The loops are plain Rust; which instructions they become is decided when the program runs, by
+//! what the processor has. The bits do not depend on it: no operation is fused with another, and no
+//! sum is taken in another order than the one written here.
 
 use pulp::Arch;
 
-/// Columns of a product are worked off in groups of this many: two registers of AVX-512.
+/// Columns of a product are computed in groups of this many: two registers of AVX-512.
 pub const LANES: usize = 16;
 
 /// `columns` rounded up to whole groups of [`LANES`].
@@ -13,14 +14,16 @@ pub fn padded(columns: usize) -> usize {
     columns.next_multiple_of(LANES)
 }
 
-/// Runs `f` compiled for the widest instructions of this processor. What `f` calls takes part only where it is inlined.
+/// Runs `f` compiled for the widest instructions of this processor. What `f` calls takes part only
+/// where it is inlined.
 #[inline]
 pub fn widest<R>(f: impl FnOnce() -> R) -> R {
     Arch::new().dispatch(f)
 }
 
-/// C += A·B for matrices stored by rows: A is rows × `inner`, B `inner` × `width`, C rows × `width`, `width` a multiple of
-/// [`LANES`]. Each entry receives its terms one after the other by growing inner index.
+/// C += A·B for matrices stored by rows: A is rows × `inner`, B `inner` × `width`, C rows ×
+/// `width`, `width` a multiple of [`LANES`]. Each entry receives its terms one after the other by
+/// growing inner index.
 ///
 /// # Panics
 /// If the lengths do not fit together.

@@ -1,15 +1,24 @@
-//! Floor 0: numbers. Constants, random and low-discrepancy streams, warps, quadrature, statistics, linear algebra,
-//! arithmetic beyond double precision, wide arithmetic.
+//! Floor 0: numbers. Constants, random and low-discrepancy streams, warps, quadrature, statistics,
+//! linear algebra, arithmetic beyond double precision, wide arithmetic.
 
+#[doc(hidden)]
+pub mod digits;
+#[doc(hidden)]
 pub mod lanes;
 pub mod linalg;
+#[doc(hidden)]
 pub mod multiprecision;
+#[doc(hidden)]
 pub mod poisson;
+#[doc(hidden)]
 pub mod quadratic;
 pub mod quadrature;
 pub mod statistics;
 pub mod stream;
+#[doc(hidden)]
 pub mod summation;
+#[doc(hidden)]
 pub mod tree;
 pub mod units;
+#[doc(hidden)]
 pub mod warp;

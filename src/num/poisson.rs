@@ -1,8 +1,9 @@
 //! The Poisson distribution: its probabilities, and numbers drawn from it.
 //!
-//! Crate `rand_distr` has a Poisson distribution too. It takes exp and ln from `num-traits`, which calls the system's C library as
-//! soon as any crate of the build asks for its feature `std` (the matrix crates do), and then the bits depend on the
-//! machine. So the two algorithms stand here, over `libm`.
+//! Crate `rand_distr` has a Poisson distribution too. It takes exp and ln from `num-traits`, which
+//! calls the system's C library as soon as any crate of the build asks for its feature `std` (the
+//! matrix crates do), and then the bits depend on the machine. So the two algorithms stand here,
+//! over `libm`.
 
 use std::f64::consts::PI;
 
@@ -10,13 +11,15 @@ use super::statistics::excess;
 
 /// Below it by inversion, from it on by transformed rejection.
 const FEW: f64 = 10.0;
-/// Up to here whole numbers are told apart with a bit to spare, and numbers are drawn from the exact distribution. Beyond it from the normal one of
-/// the same mean and variance, rounded: its skewness is wrong by 1/√mean < 1.5e-8.
+/// Up to here whole numbers are told apart with a bit to spare, and numbers are drawn from the
+/// exact distribution. Beyond it from the normal one of the same mean and variance, rounded: its
+/// skewness is wrong by 1/√mean < 1.5e-8.
 pub const LARGEST_EXACT_MEAN: f64 = (1u64 << 52) as f64;
 
 /// ln of the probability of `count` (a whole number, 0 or more) where `mean` > 0 is expected.
 ///
-/// By the saddle-point form (Loader, *Fast and accurate computation of binomial probabilities*, 2000), which has no cancellation between large terms:
+/// By the saddle-point form (Loader, *Fast and accurate computation of binomial probabilities*,
+/// 2000), which has no cancellation between large terms:
 ///
 /// > ln p = −s(k) − k·h((μ − k)/k) − ½ ln 2πk,   h(x) = x − ln(1 + x),   s(k) = ln k! − ½ ln 2πk − k ln k + k
 pub fn log_probability(count: f64, mean: f64) -> f64 {
@@ -62,8 +65,8 @@ fn by_inversion(mean: f64, u: f64) -> f64 {
     count
 }
 
-/// Hörmann's transformed rejection with squeeze (PTRS), *Insurance: Mathematics and Economics* 12, 39–45 (1993); exact for
-/// means of 10 or more.
+/// Hörmann's transformed rejection with squeeze (PTRS), *Insurance: Mathematics and Economics* 12,
+/// 39–45 (1993); exact for means of 10 or more.
 fn by_rejection(mean: f64, uniform: &mut impl FnMut() -> f64) -> f64 {
     let b = 0.931 + 2.53 * mean.sqrt();
     let a = -0.059 + 0.024_83 * b;

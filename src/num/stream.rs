@@ -1,21 +1,26 @@
-//! Random numbers as a pure function of (seed, spot, pixel, sample block): the one door to generators.
+//! Random numbers as a pure function of (seed, spot, pixel, sample block): the one door to
+//! generators.
 //!
-//! A [`Stream`] yields the sample points of one block. Which thread asks, and in which order the blocks are
-//! worked off, cannot change a bit of it. Two samplings are offered:
+//! A [`Stream`] yields the sample points of one block. Which thread asks, and in which order the
+//! blocks are traced, does not change a bit of it. Two samplings are offered:
 //!
-//! * [`Sampling::Pcg`]: independent uniform numbers from `Pcg64Mcg`, plain Monte Carlo; error ∝ N^−½.
-//! * [`Sampling::Sobol`]: Owen-scrambled Sobol' points (Burley, *Practical hash-based Owen scrambling*, JCGT
-//!   9(4), 2020). Each block is a net of its own with a scramble of its own, so that the block means are
-//!   independent replicates and their spread is an honest error bar. Dimensions come in sets of four; within a
-//!   set the points are a joint four-dimensional sequence, between sets they are independently shuffled.
+//! * [`Sampling::Pcg`]: independent uniform numbers from `Pcg64Mcg`, plain Monte Carlo; error ∝
+//!   N^−½.
+//! * [`Sampling::Sobol`]: Owen-scrambled Sobol' points (Burley, *Practical hash-based Owen
+//!   scrambling*, JCGT 9(4), 2020). Each block is a net of its own with a scramble of its own, so
+//!   that the block means are independent replicates and their spread is an honest error bar.
+//!   Dimensions come in sets of four; within a set the points are a joint four-dimensional
+//!   sequence, between sets they are independently shuffled.
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use serde::{Deserialize, Serialize};
 
 use super::{poisson, warp};
 
 /// The points that a path is built from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Sampling {
     /// Independent uniform numbers.
     Pcg,
@@ -23,7 +28,25 @@ pub enum Sampling {
     Sobol,
 }
 
+impl std::fmt::Display for Sampling {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl std::str::FromStr for Sampling {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|s| s.name() == text);
+        found.ok_or_else(|| format!("no sampler `{text}` (use pcg or sobol)"))
+    }
+}
+
 impl Sampling {
+    /// Every sampling.
+    pub const ALL: [Self; 2] = [Self::Pcg, Self::Sobol];
+
     /// The name used on the command line and in the files of a run.
     pub fn name(self) -> &'static str {
         match self {
@@ -64,7 +87,8 @@ impl Key {
     }
 }
 
-/// One step of SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a bijection of u64 that mixes every bit.
+/// One step of SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a bijection of u64 that mixes every
+/// bit.
 fn split_mix(x: u64) -> u64 {
     let mut z = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -102,14 +126,15 @@ impl Stream {
         Self { uniform, net }
     }
 
-    /// Opens the stream of one stratum among those that the points of `key` are divided into; streams of different strata are unrelated.
+    /// Opens the stream of one stratum among those that the points of `key` are divided into;
+    /// streams of different strata are unrelated.
     pub fn of_stratum(sampling: Sampling, key: Key, stratum: u32) -> Self {
         let seed = split_mix(key.seed ^ (u64::from(stratum) << 32 | 0x5354_5241));
         Self::new(sampling, Key { seed, ..key })
     }
 
-    /// Moves to sample `index` of the block (0 … size − 1; Sobol': below [`LARGEST_NET`]). Samples must be
-    /// visited in growing order.
+    /// Moves to sample `index` of the block (0 … size − 1; Sobol': below [`LARGEST_NET`]). Samples
+    /// must be visited in growing order.
     pub fn start(&mut self, index: u32) {
         if let Some(net) = &mut self.net {
             debug_assert!(index < LARGEST_NET);
@@ -120,8 +145,9 @@ impl Stream {
 
     /// The next four dimensions of the current sample, each in [0, 1).
     ///
-    /// The Sobol' generator gives 24 bits; the bits below are filled with independent uniform ones, which is
-    /// what Owen scrambling does to the digits that a finite net leaves free. No point sits on a lattice.
+    /// The Sobol' generator gives 24 bits; the bits below are filled with independent uniform ones,
+    /// which is what Owen scrambling does to the digits that a finite net leaves free. No point
+    /// sits on a lattice.
     pub fn next_four(&mut self) -> [f64; 4] {
         match &mut self.net {
             None => std::array::from_fn(|_| unit(self.uniform.next_u64())),
@@ -144,14 +170,16 @@ impl Stream {
         unit(self.uniform.next_u64())
     }
 
-    /// One number with the standard normal distribution (Box and Muller; its tail ends at 8.5), outside the sample's dimensions.
+    /// One number with the standard normal distribution (Box and Muller; its tail ends at 8.5),
+    /// outside the sample's dimensions.
     pub fn normal(&mut self) -> f64 {
         // The Gaussian spot of 1/e² radius 1 has a standard deviation of ½ along each axis.
         2.0 * warp::gaussian_spot([self.uniform(), self.uniform()])[0]
     }
 
-    /// One number with the Poisson distribution of `mean` (finite, 0 or more), outside the sample's dimensions: exact up to means of
-    /// [`LARGEST_EXACT_MEAN`](poisson::LARGEST_EXACT_MEAN), normal beyond.
+    /// One number with the Poisson distribution of `mean` (finite, 0 or more), outside the sample's
+    /// dimensions: exact up to means of [`LARGEST_EXACT_MEAN`](poisson::LARGEST_EXACT_MEAN), normal
+    /// beyond.
     pub fn poisson(&mut self, mean: f64) -> f64 {
         if mean > poisson::LARGEST_EXACT_MEAN {
             return (mean + mean.sqrt() * self.normal()).round();
@@ -214,8 +242,8 @@ mod tests {
         }
     }
 
-    /// A net of 2^m points has exactly one point in every interval of length 2^−m, in each dimension, and one in
-    /// every elementary box of the first two dimensions.
+    /// A net of 2^m points has exactly one point in every interval of length 2^−m, in each
+    /// dimension, and one in every elementary box of the first two dimensions.
     #[test]
     fn sobol_blocks_are_nets() {
         let m = 256;
@@ -260,7 +288,8 @@ mod tests {
         assert!((product / n).abs() < 4.0 * (1.0 / 144.0 / n).sqrt());
     }
 
-    /// The streams are pinned: a change of these numbers is a change of every rendered byte, and must be decided.
+    /// The streams are pinned: a change of these numbers is a change of every rendered byte, and
+    /// must be decided.
     #[test]
     fn the_streams_are_pinned() {
         let mut pcg = Stream::new(Sampling::Pcg, key(0));

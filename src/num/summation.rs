@@ -1,9 +1,10 @@
 //! Sums whose bits depend on the terms alone.
 
-/// Σ terms along the fixed binary tree over their positions: neighbours (0, 1), (2, 3), … first, then pairs of pairs.
+/// Σ terms along the fixed binary tree over their positions: neighbours (0, 1), (2, 3), … first,
+/// then pairs of pairs.
 ///
-/// Any aligned part of the terms can be summed elsewhere without changing a bit of the result; the rounding error grows
-/// with log₂ of their number.
+/// Any aligned part of the terms can be summed elsewhere without changing a bit of the result; the
+/// rounding error grows with log₂ of their number.
 pub fn tree_sum(terms: &[f64]) -> f64 {
     let mut level = terms.to_vec();
     while level.len() > 1 {

@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
-/// What neighbouring positions add up to, along the fixed binary tree of [`tree_sum`](super::summation::tree_sum): node i of level k stands
-/// for the positions i·2ᵏ … min((i + 1)·2ᵏ, n) − 1.
+/// What neighbouring positions add up to, along the fixed binary tree of
+/// [`tree_sum`](super::summation::tree_sum): node i of level k stands for the positions i·2ᵏ …
+/// min((i + 1)·2ᵏ, n) − 1.
 ///
-/// Held are the largest nodes that lie in the range pushed so far; which these are depends on the range alone. So the value of a node is
-/// put together from the same two halves by the same operation wherever and in whatever pieces it is computed, and comes out with the same
-/// bits.
+/// Held are the largest nodes that lie in the range pushed so far; which these are depends on the
+/// range alone. So the value of a node is put together from the same two halves by the same
+/// operation wherever and in whatever pieces it is computed, and comes out with the same bits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tree<T> {
     total: u32,
@@ -106,8 +107,8 @@ mod tests {
     }
 
     proptest! {
-        /// Against the sum level by level, which knows nothing of parts: any cutting, and parts of parts, give its bits; the number of nodes
-        /// held stays below twice the height.
+        /// Against the sum level by level, which knows nothing of parts: any cutting, and parts of
+        /// parts, give its bits; the number of nodes held stays below twice the height.
         #[test]
         fn any_cutting_gives_the_same_bits(n in 1u32..200, cuts in proptest::collection::vec(0u32..200, 0..8)) {
             let terms: Vec<f64> = (0..n).map(|i| libm::sin(f64::from(i) * 7.3) * 1e3 + 1e-9).collect();

@@ -1,9 +1,9 @@
-//! Warps: measure-preserving maps from the unit square, each with its density and its inverse.
+//! Warps: measure-preserving maps from the unit square.
 //!
-//! Every warp is three functions: the map of a point of [0, 1)², the density of the result with respect to the
-//! measure that the name states, and the inverse map.
+//! A warp maps a point of [0, 1)². Its density, with respect to the measure that the name states,
+//! and its inverse stand beside it where they are needed; the tests check every map against both.
 
-use std::f64::consts::{FRAC_1_PI, FRAC_PI_4, PI, TAU};
+use std::f64::consts::{FRAC_1_PI, FRAC_PI_4, TAU};
 
 /// A point of the plane.
 pub type Point2 = [f64; 2];
@@ -64,13 +64,8 @@ pub fn cosine_hemisphere_density(cos_theta: f64) -> f64 {
     cos_theta.max(0.0) * FRAC_1_PI
 }
 
-/// Inverse of [`cosine_hemisphere`].
-pub fn cosine_hemisphere_inverse(w: [f64; 3]) -> Point2 {
-    disc_inverse([w[0], w[1]])
-}
-
-/// Unit square → plane, density 2/(πw²)·exp(−2r²/w²): the profile of a Gaussian beam whose intensity has fallen to
-/// 1/e² at radius w = 1. Multiply by w.
+/// Unit square → plane, density 2/(πw²)·exp(−2r²/w²): the profile of a Gaussian beam whose
+/// intensity has fallen to 1/e² at radius w = 1. Multiply by w.
 pub fn gaussian_spot(u: Point2) -> Point2 {
     // P(r) = 1 − exp(−2r²), inverted; log1p keeps u → 0 exact and u < 1 keeps r finite.
     let r = (-0.5 * libm::log1p(-u[0])).sqrt();
@@ -83,31 +78,12 @@ pub fn gaussian_spot_density(p: Point2) -> f64 {
     2.0 * FRAC_1_PI * libm::exp(-2.0 * (p[0] * p[0] + p[1] * p[1]))
 }
 
-/// Inverse of [`gaussian_spot`].
-pub fn gaussian_spot_inverse(p: Point2) -> Point2 {
-    let u = -libm::expm1(-2.0 * (p[0] * p[0] + p[1] * p[1]));
-    let phi = libm::atan2(p[1], p[0]);
-    [
-        u,
-        if phi < 0.0 {
-            phi / TAU + 1.0
-        } else {
-            phi / TAU
-        },
-    ]
-}
-
 /// Unit square → unit sphere, uniform per steradian.
 pub fn sphere(u: Point2) -> [f64; 3] {
     let z = 1.0 - 2.0 * u[0];
     let r = (1.0 - z * z).max(0.0).sqrt();
     let (sin, cos) = libm::sincos(TAU * u[1]);
     [r * cos, r * sin, z]
-}
-
-/// Density of [`sphere`] per steradian: 1/(4π).
-pub fn sphere_density() -> f64 {
-    1.0 / (4.0 * PI)
 }
 
 /// Inverse of [`sphere`].
@@ -123,34 +99,18 @@ pub fn sphere_inverse(w: [f64; 3]) -> Point2 {
     ]
 }
 
-/// Unit square → triangle (0, 0), (1, 0), (0, 1), uniform in area, as the barycentric weights (b₁, b₂) of the last two
-/// vertices; the point of a triangle a, b, c is a + b₁ (b − a) + b₂ (c − a).
+/// Unit square → triangle (0, 0), (1, 0), (0, 1), uniform in area, as the barycentric weights (b₁,
+/// b₂) of the last two vertices; the point of a triangle a, b, c is a + b₁ (b − a) + b₂ (c − a).
 ///
 /// With r = √u₀ the weight of the first vertex is 1 − r, and u₁ divides the rest:
 ///
 /// > b₁ = r (1 − u₁),   b₂ = r u₁
 ///
-/// (Turk, *Generating random points in triangles*, Graphics Gems, 1990.) Continuous, so strata stay connected.
+/// (Turk, *Generating random points in triangles*, Graphics Gems, 1990.) Continuous, so strata stay
+/// connected.
 pub fn triangle(u: Point2) -> Point2 {
     let r = u[0].sqrt();
     [r * (1.0 - u[1]), r * u[1]]
-}
-
-/// Density of [`triangle`] per unit area of its (b₁, b₂) plane: 2 inside. Per area of a triangle in space it is 1 over that
-/// area.
-pub fn triangle_density(b: Point2) -> f64 {
-    if b[0] >= 0.0 && b[1] >= 0.0 && b[0] + b[1] <= 1.0 {
-        2.0
-    } else {
-        0.0
-    }
-}
-
-/// Inverse of [`triangle`].
-pub fn triangle_inverse(b: Point2) -> Point2 {
-    let r = b[0] + b[1];
-    // All of u₁ maps to the first vertex.
-    [r * r, if r > 0.0 { b[1] / r } else { 0.0 }]
 }
 
 #[cfg(test)]

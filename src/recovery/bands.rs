@@ -1,7 +1,8 @@
 //! Bands around recovered reflectances, and how often they cover.
 //!
-//! Measured: share of 4 × 4 elements of a board of levels 0.1 and 0.9 within their 95 % bands, 200 seeds, 120 spots at half-width 6, 8 × 8 pixels, normal noise
-//! relative to each entry. (Errors of the elements of a seed go together, so the shares scatter by about 1.5 %.)
+//! Measured: share of 4 × 4 elements of a board of levels 0.1 and 0.9 within their 95 % bands, 200
+//! seeds, 120 spots at half-width 6, 8 × 8 pixels, normal noise relative to each entry. (Errors of
+//! the elements of a seed go together, so the shares scatter by about 1.5 %.)
 //!
 //! | method | kind | noise 1e-2 | noise 1e-3 | mean width at 1e-3 |
 //! | --- | --- | --- | --- | --- |
@@ -12,7 +13,8 @@
 //! | `tsvd` | Gaussian around its mean | 0.008 | 0.108 | 0.016 |
 //! | `tikhonov` | Gaussian around its mean | 0.038 | 0.003 | 0.015 |
 //!
-//! Regularised methods are biased by far more than their noise: their bands say how well the estimate repeats, not where the reflectance is.
+//! Regularised methods are biased by far more than their noise: their bands say how well the
+//! estimate repeats, not where the reflectance is.
 
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -24,18 +26,23 @@ use crate::num::statistics::sidak_threshold;
 /// What a band is, and so what it promises of each element taken alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BandKind {
-    /// ρ̂ ± z σ of an unbiased linear estimate: covers with exactly its confidence under normal noise of the stated standard errors.
+    /// ρ̂ ± z σ of an unbiased linear estimate: covers with exactly its confidence under normal
+    /// noise of the stated standard errors.
     Gaussian,
-    /// ρ̂ ± z σ of a linear estimate with a bias (directions dropped or damped), or of an approximation of first order (free scale). The bias is left
-    /// out, so it covers the estimate's mean, **not** the reflectance, with its confidence.
+    /// ρ̂ ± z σ of a linear estimate with a bias (directions dropped or damped), or of an
+    /// approximation of first order (free scale). The bias is left out, so it covers the estimate's
+    /// mean, **not** the reflectance, with its confidence.
     GaussianAroundMean,
-    /// All values of ρ_j with which some reflectances within the bounds fit nearly as well as the best,
+    /// All values of ρ_j with which some reflectances within the bounds fit nearly as well as the
+    /// best,
     ///
     /// > { ρ_j : min χ² with ρ_j held ≤ min χ² + z² }.
     ///
-    /// Exact where no bound holds (it is ρ̂ ± z σ then). With bounds it is the interval of Rust and Burrus (1972), whose coverage of at least the
-    /// confidence was long conjectured; there are problems of several unknowns where it falls somewhat short (Batlle, Stanley, Patil, Kuusela and Owhadi
-    /// 2023), so no guarantee is given: count it ([`Bands::covered`]). Limits are certified from outside: an inexact solver makes a band wider.
+    /// Exact where no bound holds (it is ρ̂ ± z σ then). With bounds it is the interval of Rust and
+    /// Burrus (1972), whose coverage of at least the confidence was long conjectured; there are
+    /// problems of several unknowns where it falls somewhat short (Batlle, Stanley, Patil, Kuusela
+    /// and Owhadi 2023), so no guarantee is given: count it ([`Bands::covered`]). Limits are
+    /// certified from outside: an inexact solver makes a band wider.
     Profile,
 }
 
@@ -51,7 +58,8 @@ pub struct Bands {
 }
 
 impl Bands {
-    /// How many elements' `truth` lies within its interval. Elements beyond either list are not counted.
+    /// How many elements' `truth` lies within its interval. Elements beyond either list are not
+    /// counted.
     pub fn covered(&self, truth: &[f64]) -> usize {
         let within = |([lower, upper], x): (&[f64; 2], &f64)| lower <= x && x <= upper;
         self.intervals
@@ -187,7 +195,8 @@ mod tests {
         (bands, covered)
     }
 
-    /// 200 seeds of 16 elements. Were the elements of a seed independent, the share would scatter by 0.4 %; two in a hundred are allowed.
+    /// 200 seeds of 16 elements. Were the elements of a seed independent, the share would scatter
+    /// by 0.4 %; two in a hundred are allowed.
     #[test]
     fn bands_of_an_unbiased_method_cover_as_often_as_they_say() {
         let mut covered = 0;
@@ -232,7 +241,8 @@ mod tests {
                 .iter()
                 .zip(&free.bands.as_ref().unwrap().intervals)
             {
-                // Covariance by the noise itself against separable weights: the noise of this bench is not quite separable.
+                // Covariance by the noise itself against separable weights: the noise of this bench
+                // is not quite separable.
                 assert!((a[0] - b[0]).abs() < 0.05 * (b[1] - b[0]), "{a:?} {b:?}");
                 assert!((a[1] - b[1]).abs() < 0.05 * (b[1] - b[0]), "{a:?} {b:?}");
             }

@@ -1,4 +1,5 @@
-//! A small bench for the tests: spots on a square, a pixel grid, a leaning board, the kernel cosθs·cosθd/R² (inches).
+//! A small bench for the tests: spots on a square, a pixel grid, a leaning board, the kernel
+//! cosθs·cosθd/R² (inches).
 
 use nalgebra::{DMatrix, DVector};
 
@@ -19,7 +20,8 @@ fn kernel((x1, y1): (f64, f64), (x2, y2, z2): (f64, f64, f64)) -> f64 {
 }
 
 impl Bench {
-    /// 120 staggered spots at `half_width`, `elements`² elements on S2, `pixels`² pixels on the view.
+    /// 120 staggered spots at `half_width`, `elements`² elements on S2, `pixels`² pixels on the
+    /// view.
     pub(super) fn new(half_width: f64, elements: usize, pixels: usize) -> Self {
         let centre = |k: usize, n: usize| (k as f64 + 0.5) / n as f64;
         let (cx, cy, h) = (5.0, 15.5 - 7.86764 * 2f64.sqrt(), half_width);
@@ -75,7 +77,8 @@ impl Bench {
     }
 }
 
-/// Φ with independent normal noise of standard error `level` times each entry, and those standard errors.
+/// Φ with independent normal noise of standard error `level` times each entry, and those standard
+/// errors.
 pub(super) fn relative_noise(
     exact: &DMatrix<f64>,
     level: f64,

@@ -188,7 +188,8 @@ pub enum RecoveryError {
         "every entry of phi is zero: no light reached the camera, so there is nothing to recover; check the laser, the albedos and that the right file was given"
     )]
     Dark,
-    /// The discrepancy principle has no answer: the data lie further from the model than the noise allows.
+    /// The discrepancy principle has no answer: the data lie further from the model than the noise
+    /// allows.
     #[error(
         "even with the least regularisation the residual is {residual:.3e} W where the noise allows {limit:.3e} W: the standard errors \
          are too small or the model does not describe these photographs; correct either, or give the {parameter} yourself"

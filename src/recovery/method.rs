@@ -66,7 +66,8 @@ impl Method {
         Method::ALL.map(Method::name)
     }
 
-    /// Whether the method works on all pixels and spots at once, and so can estimate nuisance terms.
+    /// Whether the method works on all pixels and spots at once, and so can estimate nuisance
+    /// terms.
     pub fn is_joint(self) -> bool {
         matches!(
             self,

@@ -1,12 +1,14 @@
 //! Floor 5: from the photographs back to the hidden reflectance.
 //!
-//! The photographs are the p × l matrix Φ (pixels × laser spots). Light that meets the hidden surface once makes it
+//! The photographs are the p × l matrix Φ (pixels × laser spots). Light that meets the hidden
+//! surface once makes it
 //!
 //! > Φ\[p,l\] = Σ_j C\[p,j\] ρ_j D\[j,l\]
 //!
-//! with C (p × r) the way from element j to pixel p, D (r × l) the way from spot l to element j, and ρ the reflectances (albedos)
-//! of the r elements. Absolute scale is the caller's: it is folded into C and D. Nothing here knows what scene it inverts;
-//! it is given three matrices and, if there is one, the standard error of each entry of Φ.
+//! with C (p × r) the way from element j to pixel p, D (r × l) the way from spot l to element j,
+//! and ρ the reflectances (albedos) of the r elements. Absolute scale is the caller's: it is folded
+//! into C and D. Nothing here knows what scene it inverts; it is given three matrices and, if there
+//! is one, the standard error of each entry of Φ.
 //!
 //! | method | estimate |
 //! | --- | --- |
@@ -24,8 +26,9 @@
 //! | [`Method::JointTv`] | `joint` with λ Σ \|ρ_i − ρ_j\| over neighbours i, j: patches of one value |
 //! | [`Method::JointTwoValued`] | `joint` with two reflectances only, given or estimated |
 //!
-//! Measured: raw MTF of boards on 8 × 8 elements, 16 × 16 pixels, 120 staggered spots, relative normal noise; mean of 20 seeds (`joint-two-valued`: 6).
-//! At levels 0 and 1 the bounds say more than a total variation does; where only two values are possible, knowing that says most.
+//! Measured: raw MTF of boards on 8 × 8 elements, 16 × 16 pixels, 120 staggered spots, relative
+//! normal noise; mean of 20 seeds (`joint-two-valued`: 6). At levels 0 and 1 the bounds say more
+//! than a total variation does; where only two values are possible, knowing that says most.
 //!
 //! | half-width, board, noise | `nnls` | `joint` | `joint-tv` | `joint-two-valued` |
 //! | --- | --- | --- | --- | --- |
@@ -36,28 +39,55 @@
 //! | 3, 2 × 2, 0.01 | 0.918 | 0.994 | 0.985 | 1.000 |
 //! | 3, 4 × 4, 1e-4 | 0.559 | 0.752 | 0.606 | 0.846 |
 //!
-//! The joint methods can estimate other light of known form with the reflectances ([`Nuisance`]). [`cramer_rao`] says what no unbiased estimate can
-//! undercut; [`Bands`] what a recovery knows of itself.
+//! The joint methods can estimate other light of known form with the reflectances ([`Nuisance`]).
+//! [`cramer_rao`] says what no unbiased estimate can undercut; [`Bands`] what a recovery knows of
+//! itself.
 //!
-//! Those up to [`Method::JointUnbounded`] are linear in Φ: with a noise model they carry the covariance that it makes of their noise, and always the resolution matrix
-//! of what they make of the truth, from which their bias follows ([`Recovered::bias`]). [`picard`](picard()) and [`picard_joint`] show which singular
-//! directions rise above the noise.
+//! Those up to [`Method::JointUnbounded`] are linear in Φ: with a noise model they carry the
+//! covariance that it makes of their noise, and always the resolution matrix of what they make of
+//! the truth, from which their bias follows ([`Recovered::bias`]). [`picard`](picard()) and
+//! [`picard_joint`] show which singular directions rise above the noise.
 //!
-//! Large problems cost what their numerical rank costs: D of 4096 elements × 4000 spots has about 100 directions above rounding, and only those are
-//! looked for ([`svd_to`](crate::num::linalg::svd_to)); generalised inverses, products and residuals keep them as thin factors. Photographs that no memory
-//! holds are taken strip by strip ([`recover_strips`]).
+//! Large problems cost what their numerical rank costs: D of 4096 elements × 4000 spots has about
+//! 100 directions above rounding, and only those are looked for
+//! ([`svd_to`](crate::num::linalg::svd_to)); generalised inverses, products and residuals keep them
+//! as thin factors. Photographs that no memory holds are taken strip by strip ([`recover_strips`]).
+//!
+//! A matrix of one's own: the scene says where wall, camera and spots are, the model makes C and D
+//! of it, and Φ comes from a file.
 //!
 //! ```
-//! use nalgebra::DMatrix;
+//! use phicam::matrix::{Matrix, npy};
+//! use phicam::model::{Kernel, MatrixModel};
 //! use phicam::recovery::{Method, Options, Problem, recover};
+//! use phicam::scene::{Scene, file::SceneFile};
 //!
-//! // Two elements seen by one pixel under three spots; the first element is white, the second black.
-//! let c = DMatrix::from_row_slice(1, 2, &[1.0, 2.0]);
-//! let d = DMatrix::from_row_slice(2, 3, &[3.0, 2.0, 1.0, 1.0, 2.0, 3.0]);
-//! let phi = DMatrix::from_row_slice(1, 3, &[3.0, 2.0, 1.0]);
-//! let found = recover(Method::JointUnbounded, &Problem::new(&phi, &c, &d, None)?, &Options::default())?;
-//! assert!((found.reflectance[0] - 1.0).abs() < 1e-12 && found.reflectance[1].abs() < 1e-12);
-//! # Ok::<(), phicam::recovery::RecoveryError>(())
+//! // The geometry: the bench with 24 spots, and 2 × 2 elements on the hidden surface.
+//! let mut file = SceneFile::default();
+//! file.laser.spots.per_side = Some(6);
+//! let scene = Scene::new(&file, None)?;
+//! let model = MatrixModel::new(&scene, Kernel::Physical, Some([2, 2]))?;
+//!
+//! // The photographs, pixels × spots, W. In place of real ones: what two light and two dark
+//! // elements send, written and read as NumPy does.
+//! let board = [0.9, 0.2, 0.1, 0.8];
+//! let photographed =
+//!     &model.camera_side * Matrix::from_diagonal(&board.to_vec().into()) * &model.laser_side;
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("phi.npy");
+//! npy::write(&path, &photographed)?;
+//! let phi = npy::read_finite(&path)?;
+//!
+//! // Each entry is known to 0.1 %; the reflectances come with what that makes of them.
+//! let stderr = phi.map(|entry| 1e-3 * entry);
+//! let problem = Problem::new(&phi, &model.camera_side, &model.laser_side, Some(&stderr))?;
+//! let found = recover(Method::JointUnbounded, &problem, &Options::default())?;
+//! let sigma = found.standard_error.expect("a linear method with a noise model has one");
+//! for (element, truth) in board.iter().enumerate() {
+//!     assert!((found.reflectance[element] - truth).abs() < 1e-6);
+//!     assert!(sigma[element] > 0.0 && sigma[element] < 0.05);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod bands;

@@ -16,8 +16,9 @@ pub enum WeightRule {
 /// How much the methods that work pixel by pixel tell of their uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Uncertainty {
-    /// All: standard errors, their covariance matrix and the resolution matrix, r × r each; about p·r² + l·(p·k² + k·r²) operations for p pixels,
-    /// l spots, r elements and k the few numerical ranks of 1/C.
+    /// All: standard errors, their covariance matrix and the resolution matrix, r × r each; about
+    /// p·r² + l·(p·k² + k·r²) operations for p pixels, l spots, r elements and k the few numerical
+    /// ranks of 1/C.
     #[default]
     Full,
     /// Standard errors alone: p·l·r operations and no matrix of elements × elements.
@@ -31,23 +32,27 @@ pub struct Options {
     pub tolerance: Tolerance,
     /// How many singular directions `tsvd` keeps; by `rule` where not given.
     pub rank: Option<usize>,
-    /// The damping λ of `tikhonov` as a fraction of D's largest singular value (of `tikhonov-gradient`: of the largest in standard form); by `rule` where
-    /// not given.
+    /// The damping λ of `tikhonov` as a fraction of D's largest singular value (of
+    /// `tikhonov-gradient`: of the largest in standard form); by `rule` where not given.
     pub damping: Option<f64>,
     /// How `tsvd`, `tikhonov` and `tikhonov-gradient` choose what is not given.
     pub rule: Rule,
     /// How much the methods that work pixel by pixel tell of their uncertainty.
     pub uncertainty: Uncertainty,
-    /// Largest number of entries of the compressed Khatri–Rao product that `joint` forms (8 bytes each, up to three copies). Above it the rows that are
-    /// lost in rounding are left out, and where that is not enough the Gram matrix is used, whose condition is squared.
+    /// Largest number of entries of the compressed Khatri–Rao product that `joint` forms (8 bytes
+    /// each, up to three copies). Above it the rows that are lost in rounding are left out, and
+    /// where that is not enough the Gram matrix is used, whose condition is squared.
     pub budget: usize,
     /// Weights of the joint methods.
     pub weighting: WeightRule,
-    /// The strength λ of `joint-tv` as a fraction of σ₁², σ₁ the largest singular value of the weighted operator; by the discrepancy principle where not given.
+    /// The strength λ of `joint-tv` as a fraction of σ₁², σ₁ the largest singular value of the
+    /// weighted operator; by the discrepancy principle where not given.
     pub total_variation: Option<f64>,
-    /// The reflectances \[dark, light\] of `joint-two-valued`; estimated with the pattern where not given.
+    /// The reflectances \[dark, light\] of `joint-two-valued`; estimated with the pattern where not
+    /// given.
     pub levels: Option<[f64; 2]>,
-    /// Confidence level, in (0, 1), of the bands to be computed ([`Bands`](super::Bands)); none where not given.
+    /// Confidence level, in (0, 1), of the bands to be computed ([`Bands`](super::Bands)); none
+    /// where not given.
     pub bands: Option<f64>,
 }
 

@@ -12,9 +12,11 @@ pub enum Parameter {
     None,
     /// Singular directions kept.
     Rank(usize),
-    /// Tikhonov's λ, as a fraction of the largest singular value: of D, or of the standard form of `tikhonov-gradient`.
+    /// Tikhonov's λ, as a fraction of the largest singular value: of D, or of the standard form of
+    /// `tikhonov-gradient`.
     Damping(f64),
-    /// λ of the total variation, as a fraction of the largest squared singular value of the weighted operator.
+    /// λ of the total variation, as a fraction of the largest squared singular value of the
+    /// weighted operator.
     TotalVariation(f64),
     /// The two reflectances.
     Levels([f64; 2]),
@@ -34,7 +36,8 @@ pub enum Choice {
         /// The target two standard deviations of ‖noise‖² up: residuals to here are accepted.
         limit: f64,
     },
-    /// The same of weighted joint residuals, without unit: what the reduced problem leaves over, in standard deviations.
+    /// The same of weighted joint residuals, without unit: what the reduced problem leaves over, in
+    /// standard deviations.
     JointDiscrepancy {
         /// ‖R ρ − d‖².
         residual: f64,
@@ -58,10 +61,11 @@ pub enum Choice {
     LCurve {
         /// ‖Φ P − Φ‖.
         residual: f64,
-        /// What is weighed against it: ‖X‖ (C times ρ), or the norm of the differences, of `tikhonov-gradient`.
+        /// What is weighed against it: ‖X‖ (C times ρ), or the norm of the differences, of
+        /// `tikhonov-gradient`.
         penalty: f64,
-        /// How sharp the corner is: the curvature of the log–log curve where directions are damped, the angle by which it turns (rad) where they
-        /// are left out.
+        /// How sharp the corner is: the curvature of the log–log curve where directions are damped,
+        /// the angle by which it turns (rad) where they are left out.
         turn: f64,
     },
     /// A numerical rank cut.
@@ -82,10 +86,12 @@ pub struct Solver {
     pub iterations: u32,
     /// Active-set steps after them.
     pub refinements: usize,
-    /// The objective ½ Σ w_p v_l (Φ − C diag(ρ) D)², less what no ρ can change; of `joint-tv` with its penalty.
+    /// The objective ½ Σ w_p v_l (Φ − C diag(ρ) D)², less what no ρ can change; of `joint-tv` with
+    /// its penalty.
     pub objective: f64,
-    /// Upper bound on the objective's distance from its minimum, same unit. Of `joint-two-valued`: from a bound that no
-    /// pattern of two values can undercut; zero says that the pattern is the best of all.
+    /// Upper bound on the objective's distance from its minimum, same unit. Of `joint-two-valued`:
+    /// from a bound that no pattern of two values can undercut; zero says that the pattern is the
+    /// best of all.
     pub gap: f64,
 }
 
@@ -94,12 +100,15 @@ pub struct Solver {
 pub struct Recovered {
     /// ρ, one per element; not clipped, except by the bounds of `joint`.
     pub reflectance: DVector<f64>,
-    /// Standard error of each reflectance as the noise model makes it; none without a noise model, and none under bounds.
+    /// Standard error of each reflectance as the noise model makes it; none without a noise model,
+    /// and none under bounds.
     pub standard_error: Option<DVector<f64>>,
-    /// Covariance of the reflectances (r × r) as the noise model makes it: of every method without bounds.
+    /// Covariance of the reflectances (r × r) as the noise model makes it: of every method without
+    /// bounds.
     pub covariance: Option<DMatrix<f64>>,
-    /// The resolution matrix R (r × r) of E ρ̂ = R ρ, of every method without bounds: (R − 1) ρ is the bias, column k the image of element k alone. It
-    /// takes the parameter as given, not as chosen from the data.
+    /// The resolution matrix R (r × r) of E ρ̂ = R ρ, of every method without bounds: (R − 1) ρ is
+    /// the bias, column k the image of element k alone. It takes the parameter as given, not as
+    /// chosen from the data.
     pub resolution: Option<DMatrix<f64>>,
     /// The method used.
     pub method: Method,
@@ -109,12 +118,14 @@ pub struct Recovered {
     pub choice: Choice,
     /// How the entries of Φ were weighted.
     pub weighting: Weighting,
-    /// Singular values of the matrix inverted, descending: D for the methods that work pixel by pixel (its standard form for `tikhonov-gradient`),
-    /// the whole (weighted) operator for the joint ones. Of a large matrix of few directions only those above rounding.
+    /// Singular values of the matrix inverted, descending: D for the methods that work pixel by
+    /// pixel (its standard form for `tikhonov-gradient`), the whole (weighted) operator for the
+    /// joint ones. Of a large matrix of few directions only those above rounding.
     pub sigma: DVector<f64>,
     /// Singular directions that were not dropped.
     pub rank: usize,
-    /// Σ of the filter factors: `rank` where directions are kept or dropped, less where they are damped.
+    /// Σ of the filter factors: `rank` where directions are kept or dropped, less where they are
+    /// damped.
     pub effective_rank: f64,
     /// ‖Φ − C diag(ρ) D‖, Frobenius, W.
     pub residual: f64,
@@ -129,8 +140,10 @@ pub struct Recovered {
 }
 
 impl Recovered {
-    /// The bias (R − 1) ρ that regularisation gives an estimate of the reflectances `truth`; none without a resolution matrix, with a free scale, or for
-    /// another number of elements. Of dropped directions ρ̂ itself knows nothing: put it in place of the truth, and the bias of `tsvd` comes out near zero.
+    /// The bias (R − 1) ρ that regularisation gives an estimate of the reflectances `truth`; none
+    /// without a resolution matrix, with a free scale, or for another number of elements. Of
+    /// dropped directions ρ̂ itself knows nothing: put it in place of the truth, and the bias of
+    /// `tsvd` comes out near zero.
     pub fn bias(&self, truth: &[f64]) -> Option<DVector<f64>> {
         let scaled = self.nuisance.as_ref().is_some_and(|n| n.scale.is_some());
         let resolution = self.resolution.as_ref()?;

@@ -1,4 +1,5 @@
-//! The Picard condition: does the signal fall faster than the singular values, and where does noise take over?
+//! The Picard condition: does the signal fall faster than the singular values, and where does noise
+//! take over?
 
 use nalgebra::DVector;
 
@@ -16,17 +17,20 @@ pub enum Directions {
     JointWeighted,
 }
 
-/// The data in singular directions. Of the laser side D = U Σ Vᵀ ([`picard`]): an inverse divides each by its σ_i, so a direction is of use only while its
-/// coefficient lies above the noise. Root mean squares over the pixels. Of the joint operator: [`picard_joint`](super::picard_joint).
+/// The data in singular directions. Of the laser side D = U Σ Vᵀ ([`picard`]): an inverse divides
+/// each by its σ_i, so a direction is of use only while its coefficient lies above the noise. Root
+/// mean squares over the pixels. Of the joint operator: [`picard_joint`](super::picard_joint).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picard {
     /// Whose directions, and so the unit.
     pub directions: Directions,
-    /// Singular values of D, descending; C times D is in W. Or those of the joint operator. Of a large problem only those above rounding.
+    /// Singular values of D, descending; C times D is in W. Or those of the joint operator. Of a
+    /// large problem only those above rounding.
     pub sigma: DVector<f64>,
     /// √((1/p) Σ_p (Φ v_i)_p²), W. Or |⟨u_i, √W Φ⟩|.
     pub coefficient: DVector<f64>,
-    /// What noise alone makes of it, √((1/p) Σ_pl σ²\[p,l\] v_il²), W, or √(Σ_pl u_i\[p,l\]² w\[p,l\] σ²\[p,l\]); none without a noise model.
+    /// What noise alone makes of it, √((1/p) Σ_pl σ²\[p,l\] v_il²), W, or √(Σ_pl u_i\[p,l\]²
+    /// w\[p,l\] σ²\[p,l\]); none without a noise model.
     pub noise: Option<DVector<f64>>,
 }
 
@@ -102,7 +106,8 @@ mod tests {
         let phi = stderr.map(|s| s * normal());
         let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
         let found = picard(&problem).unwrap();
-        // A mean of 256 squares scatters by √(2/256) of itself, its root by half: five of those, a bit more for unequal weights.
+        // A mean of 256 squares scatters by √(2/256) of itself, its root by half: five of those, a
+        // bit more for unequal weights.
         let ratio = found.coefficient.component_div(&found.noise.unwrap());
         assert!(ratio.add_scalar(-1.0).amax() < 0.3, "{ratio}");
         assert!((ratio.mean() - 1.0).abs() < 0.05);

@@ -17,11 +17,14 @@ pub struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    /// The photographs `phi` (pixels × spots, W), the camera side `c` (pixels × elements), the laser side `d` (elements × spots; C times D in W),
-    /// and the standard errors of the entries of Φ (same shape, W) where they are known. The errors of different entries are taken as independent.
+    /// The photographs `phi` (pixels × spots, W), the camera side `c` (pixels × elements), the
+    /// laser side `d` (elements × spots; C times D in W), and the standard errors of the entries of
+    /// Φ (same shape, W) where they are known. The errors of different entries are taken as
+    /// independent.
     ///
     /// # Errors
-    /// [`RecoveryError::Shape`], [`RecoveryError::NotFinite`], [`RecoveryError::OutOfScale`], [`RecoveryError::NegativeStandardError`].
+    /// [`RecoveryError::Shape`], [`RecoveryError::NotFinite`], [`RecoveryError::OutOfScale`],
+    /// [`RecoveryError::NegativeStandardError`].
     pub fn new(
         phi: &'a DMatrix<f64>,
         c: &'a DMatrix<f64>,
@@ -84,8 +87,9 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// The same with the element grids known, \[nu, nv\] of each hidden surface in the order of the elements; element iu + iv·nu within each.
-    /// Methods that compare neighbouring elements need them.
+    /// The same with the element grids known, \[nu, nv\] of each hidden surface in the order of the
+    /// elements; element iu + iv·nu within each. Methods that compare neighbouring elements need
+    /// them.
     ///
     /// # Errors
     /// [`RecoveryError::Grids`] where the grids do not make up the elements.
@@ -103,10 +107,12 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// The same with terms of unknown size to be estimated together with the reflectances; the joint methods can.
+    /// The same with terms of unknown size to be estimated together with the reflectances; the
+    /// joint methods can.
     ///
     /// # Errors
-    /// [`RecoveryError::Shape`], [`RecoveryError::NotFinite`] or [`RecoveryError::OutOfScale`] of a glare pattern.
+    /// [`RecoveryError::Shape`], [`RecoveryError::NotFinite`] or [`RecoveryError::OutOfScale`] of a
+    /// glare pattern.
     pub fn with_nuisance(self, nuisance: Nuisance<'a>) -> Result<Self, RecoveryError> {
         if let Some(pattern) = nuisance.glare {
             let (rows, columns) = self.phi.shape();
@@ -166,7 +172,8 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// diag(ρ) D, where D is large and of few directions as the product of two thin factors, which is D to rounding.
+/// diag(ρ) D, where D is large and of few directions as the product of two thin factors, which is D
+/// to rounding.
 pub(super) struct Lit {
     /// diag(ρ) D or diag(ρ) Q, r rows.
     elements: DMatrix<f64>,

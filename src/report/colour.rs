@@ -8,9 +8,11 @@ pub type Rgb = [u8; 3];
 pub enum Map {
     /// Black to white, linear in the sRGB value.
     Grey,
-    /// viridis: perceptually uniform and safe for colour-blind eyes (S. van der Walt and N. Smith for matplotlib, CC0).
+    /// viridis: perceptually uniform and safe for colour-blind eyes (S. van der Walt and N. Smith
+    /// for matplotlib, CC0).
     Viridis,
-    /// Blue – white – red for signed values: `RdBu` of ColorBrewer 2.0 (C. Brewer and M. Harrower), reversed.
+    /// Blue – white – red for signed values: `RdBu` of ColorBrewer 2.0 (C. Brewer and M. Harrower),
+    /// reversed.
     Diverging,
 }
 
@@ -82,7 +84,8 @@ impl Scale {
         }
     }
 
-    /// `map` from `low` to `high`; `None` unless they are finite, in this order, and above 0 where the scale is logarithmic.
+    /// `map` from `low` to `high`; `None` unless they are finite, in this order, and above 0 where
+    /// the scale is logarithmic.
     pub fn between(map: Map, law: Law, [low, high]: [f64; 2]) -> Option<Self> {
         let ordered = low < high && low.is_finite() && high.is_finite();
         let proper = ordered && (law == Law::Linear || low > 0.0);
@@ -133,7 +136,8 @@ impl Scale {
         [self.low, self.high]
     }
 
-    /// The colour of `value`: of the map inside the range, [`below`](Self::below) or [`above`](Self::above) outside.
+    /// The colour of `value`: of the map inside the range, [`below`](Self::below) or
+    /// [`above`](Self::above) outside.
     pub fn colour(&self, value: f64) -> Rgb {
         if value.is_nan() {
             NOT_A_NUMBER.0
@@ -223,7 +227,8 @@ mod tests {
 
     #[test]
     fn maps_have_their_published_colours() {
-        // Published: viridis runs from #440154 through #21918c (entry 128) to #fde725; RdBu's middle is #f7f7f7.
+        // Published: viridis runs from #440154 through #21918c (entry 128) to #fde725; RdBu's
+        // middle is #f7f7f7.
         assert_eq!(Map::Viridis.at(0.0), [0x44, 0x01, 0x54]);
         assert_eq!(Map::Viridis.at(128.0 / 255.0), [0x21, 0x91, 0x8c]);
         assert_eq!(Map::Viridis.at(1.0), [0xfd, 0xe7, 0x25]);
@@ -235,7 +240,8 @@ mod tests {
 
     #[test]
     fn viridis_grows_lighter_all_the_way() {
-        // A sequential map must order by lightness: relative luminance of linear sRGB (IEC 61966-2-1).
+        // A sequential map must order by lightness: relative luminance of linear sRGB (IEC
+        // 61966-2-1).
         let luminance = |c: Rgb| {
             let linear = c.map(|x| {
                 let x = f64::from(x) / 255.0;

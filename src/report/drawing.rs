@@ -17,10 +17,11 @@ const TOP: f64 = 66.0;
 /// Room for both panels.
 const PANELS: [f64; 2] = [WIDTH - LEFT - GAP - 24.0, 470.0];
 
-/// The bench from the side (along −x) and from above the wall (along −z), both to the same scale, as SVG: surfaces with
-/// ticks on their front sides, the hidden surface's albedo, laser and camera (an arrow with their coordinates where they
-/// are far outside), some beams, all spots, the view with its pixel grid, axes in the scene's unit, a scale bar and a
-/// legend. Names from the scene are escaped and every number is finite.
+/// The bench from the side (along −x) and from above the wall (along −z), both to the same scale,
+/// as SVG: surfaces with ticks on their front sides, the hidden surface's albedo, laser and camera
+/// (an arrow with their coordinates where they are far outside), some beams, all spots, the view
+/// with its pixel grid, axes in the scene's unit, a scale bar and a legend. Names from the scene
+/// are escaped and every number is finite.
 pub fn bench_svg(scene: &Scene) -> String {
     let frames = [View::Side, View::Above].map(|view| (view, Frame::of(scene, view)));
     let [a, b] = [frames[0].1.extent(), frames[1].1.extent()];

@@ -47,7 +47,8 @@ fn every_built_in_scene_is_drawn() {
 #[test]
 fn the_drawing_is_to_scale() {
     let svg = bench_svg(&Scene::load("bench").unwrap());
-    // The wall's outline: x from 0 to 11.5 and y from 0 to 15.5, seen from above, as the second relay surface drawn.
+    // The wall's outline: x from 0 to 11.5 and y from 0 to 15.5, seen from above, as the second
+    // relay surface drawn.
     let walls: Vec<Vec<f64>> = svg
         .split("<path d=\"M")
         .filter(|p| p.contains("fill=\"#808080\""))
@@ -88,7 +89,8 @@ fn names_are_escaped_and_shortened() {
 
 #[test]
 fn odd_sizes_are_drawn() {
-    // A laser far away, a camera of many pixels, a texture of many cells, many spots, an occluder, a sphere.
+    // A laser far away, a camera of many pixels, a texture of many cells, many spots, an occluder,
+    // a sphere.
     let ball = "elements = [8, 8]\n[[surface]]\nname = \"ball\"\nrole = \"occluder\"\n\
                 sphere = { centre = [9, 9, 2], radius = 0.5, face = \"outside\" }\nmaterial = { lambertian = 0.5 }";
     let scene = bench_with(&[

@@ -1,4 +1,6 @@
-//! Pixels as PNG bytes, of a size that can be written.
+//! Pixels as PNG bytes, of a size that can be written; bytes as text.
+
+use base64::prelude::{BASE64_STANDARD, Engine};
 
 use crate::image::{EncodingError, grey16_png, rgb_png};
 
@@ -53,6 +55,11 @@ pub(super) fn rgb(
 /// [`PictureError`].
 pub(super) fn grey16(size: [usize; 2], pixels: &[u16]) -> Result<Vec<u8>, PictureError> {
     Ok(grey16_png(checked(size)?, pixels)?)
+}
+
+/// Bytes as base64.
+pub(super) fn base64(bytes: &[u8]) -> String {
+    BASE64_STANDARD.encode(bytes)
 }
 
 /// Width, height and RGB pixels of a PNG.

@@ -1,17 +1,15 @@
 //! Figures of a page: a matrix as an inline SVG with axes, and the legend of a scale.
 
-use base64::prelude::{BASE64_STANDARD, Engine};
-
 use super::colour::Scale;
-use super::encode::PictureError;
 use super::picture::{Panel, bar_ticks, legend_lines};
 use super::svg::{Svg, escape, number};
 
 /// Length of a picture's longer side on the page, px.
 const SIDE: f64 = 240.0;
 
-/// Frames and recoveries are shown with at most this many pixels a side, Φcam with twice as many. A picture of that
-/// size that cannot be compressed takes 0.26 MB (Φcam 1.05 MB): 3 frames, 3 maps and 16 recoveries stay below 10 MB.
+/// Frames and recoveries are shown with at most this many pixels a side, Φcam with twice as many. A
+/// picture of that size that cannot be compressed takes 0.26 MB (Φcam 1.05 MB): 3 frames, 3 maps
+/// and 16 recoveries stay below 10 MB.
 pub(super) const MOST: usize = 256;
 
 /// How a matrix that is too large for the page is made smaller; the data stay as they are.
@@ -23,7 +21,8 @@ pub(super) enum Reduction {
     Pick,
 }
 
-/// A panel of at most `most` entries a side made from `value(iu, iv)`, and what had to be done to the matrix.
+/// A panel of at most `most` entries a side made from `value(iu, iv)`, and what had to be done to
+/// the matrix.
 pub(super) fn reduced(
     title: String,
     axes: [&str; 2],
@@ -85,20 +84,6 @@ pub(super) fn capital(text: &str) -> String {
         .map_or(String::new(), |c| c.to_uppercase().chain(letters).collect())
 }
 
-/// Bytes as base64.
-pub(super) fn encoded(bytes: &[u8]) -> String {
-    BASE64_STANDARD.encode(bytes)
-}
-
-/// The entries of a matrix as a picture inside of markup.
-///
-/// # Errors
-/// [`PictureError`].
-pub(super) fn data_uri(panel: &Panel, scale: &Scale) -> Result<String, PictureError> {
-    let png = panel.plain_png(scale)?;
-    Ok(format!("data:image/png;base64,{}", encoded(&png)))
-}
-
 /// The shape of an entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Entries {
@@ -108,8 +93,8 @@ pub(super) enum Entries {
     Stretched,
 }
 
-/// A figure with its caption: first index to the right, second upwards. `ends` are the last indices of the matrix
-/// before any reduction; `more` is HTML below the title.
+/// A figure with its caption: first index to the right, second upwards. `ends` are the last indices
+/// of the matrix before any reduction; `more` is HTML below the title.
 pub(super) fn figure(
     panel: &Panel,
     ends: [usize; 2],
@@ -117,7 +102,7 @@ pub(super) fn figure(
     scale: &Scale,
     more: &str,
 ) -> String {
-    let uri = match data_uri(panel, scale) {
+    let uri = match panel.data_uri(scale) {
         Ok(uri) => uri,
         Err(e) => {
             return format!(
@@ -202,7 +187,7 @@ pub(super) fn legend(scale: &Scale, unit: &str, panels: &[Panel]) -> String {
             .map(|i| low * (1.0 - along(i)) + high * along(i))
             .collect(),
     );
-    let Ok(uri) = data_uri(&bar, scale) else {
+    let Ok(uri) = bar.data_uri(scale) else {
         return String::new();
     };
     let mut svg = Svg::default();

@@ -34,7 +34,8 @@ impl Labels {
         self.marks.push(area);
     }
 
-    /// Writes `text` as near to `anchor` as is free, in `colour` with a white halo; from farther away with a thin line.
+    /// Writes `text` as near to `anchor` as is free, in `colour` with a white halo; from farther
+    /// away with a thin line.
     pub(super) fn place(&mut self, svg: &mut Svg, anchor: [f64; 2], colour: &str, text: &str) {
         let text = shortened(text, LONGEST);
         let width = CHARACTER * text.chars().count() as f64;
@@ -81,7 +82,8 @@ impl Labels {
         self.taken.push(area);
     }
 
-    /// Area shared with marks, plus a hundred times that outside the frame or shared with other labels.
+    /// Area shared with marks, plus a hundred times that outside the frame or shared with other
+    /// labels.
     fn cost(&self, area: Area) -> f64 {
         let size = (area[2] - area[0]) * (area[3] - area[1]);
         let outside = size - overlap(area, self.frame);
@@ -105,7 +107,8 @@ pub(super) fn halo(svg: &mut Svg, at: [f64; 2], style: &str, text: &str) {
     svg.text(at, &format!("{style} font-size=\"{SIZE}\""), text);
 }
 
-/// Entries of a legend in rows of `width`, each a sample of up to 30 px and its text; returns the height.
+/// Entries of a legend in rows of `width`, each a sample of up to 30 px and its text; returns the
+/// height.
 pub(super) fn legend(
     svg: &mut Svg,
     [x, y]: [f64; 2],

@@ -1,9 +1,10 @@
-//! How series look: inks, dashes and marks that go together. Each of them alone tells the first six series apart, with and without colour; the next six have
-//! hollow marks and other dashes.
+//! How series look: inks, dashes and marks that go together. Each of them alone tells the first six
+//! series apart, with and without colour; the next six have hollow marks and other dashes.
 
 use serde_json::{Value, json};
 
 use super::svg::{Close, Svg, ink};
+use crate::lab::finding::Mark;
 
 const INKS: [&str; 6] = [
     ink::BLUE,
@@ -50,7 +51,8 @@ const MARKS: [Outline; 6] = [
     ]),
 ];
 
-/// Published points: an open circle for the first set, an open square for the second, a diamond for the third, around the computed mark where they agree.
+/// Published points: an open circle for the first set, an open square for the second, a diamond for
+/// the third, around the computed mark where they agree.
 const PRINTED_MARKS: [Outline; 3] = [
     Outline::Disc(6.2),
     Outline::Square(5.8),
@@ -80,49 +82,69 @@ impl Outline {
     }
 }
 
-/// The ink of series `i`.
-pub(super) fn colour(i: usize) -> &'static str {
-    INKS[i % INKS.len()]
+/// How a curve looks.
+#[derive(Clone, Copy)]
+pub(super) struct Look {
+    /// How it is drawn.
+    pub mark: Mark,
+    /// Its number among those of the figure: published ones have numbers of their own.
+    pub number: usize,
 }
 
-/// The dash of series `i`; from the seventh on inks come again with other dashes.
-fn dash(i: usize) -> &'static str {
-    DASHES[(i + i / INKS.len()) % DASHES.len()]
-}
+impl Look {
+    /// Its ink.
+    pub(super) fn ink(self) -> &'static str {
+        INKS[self.number % INKS.len()]
+    }
 
-/// The look of line `i`.
-pub(super) fn style(i: usize) -> String {
-    let dashes = match dash(i) {
-        "" => String::new(),
-        lengths => format!(" stroke-dasharray=\"{lengths}\""),
-    };
-    format!(
-        "fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\" stroke-linejoin=\"round\"{dashes}",
-        colour(i)
-    )
-}
+    /// The style of its line. From the seventh curve on inks come again with other dashes.
+    pub(super) fn line(self) -> String {
+        let dash = DASHES[(self.number + self.number / INKS.len()) % DASHES.len()];
+        let dashes = match dash {
+            "" => String::new(),
+            lengths => format!(" stroke-dasharray=\"{lengths}\""),
+        };
+        format!(
+            "fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\" stroke-linejoin=\"round\"{dashes}",
+            self.ink()
+        )
+    }
 
-/// The mark of series `i`.
-pub(super) fn mark(svg: &mut Svg, at: [f64; 2], i: usize) {
-    let ink = colour(i);
-    let fill = match (i / INKS.len()) % 2 {
-        0 => format!("fill=\"{ink}\""),
-        _ => format!("fill=\"white\" stroke=\"{ink}\" stroke-width=\"1.2\""),
-    };
-    MARKS[i % MARKS.len()].draw(svg, at, &fill);
-}
+    /// Marks a point.
+    pub(super) fn point(self, svg: &mut Svg, at: [f64; 2]) {
+        let (i, ink) = (self.number, self.ink());
+        match self.mark {
+            Mark::Line if (i / INKS.len()).is_multiple_of(2) => {
+                MARKS[i % MARKS.len()].draw(svg, at, &format!("fill=\"{ink}\""));
+            }
+            Mark::Line => {
+                let hollow = format!("fill=\"white\" stroke=\"{ink}\" stroke-width=\"1.2\"");
+                MARKS[i % MARKS.len()].draw(svg, at, &hollow);
+            }
+            Mark::Points => {
+                let dot = format!("fill=\"{ink}\" fill-opacity=\"0.5\"");
+                svg.circle(at, 1.8, &dot);
+            }
+            Mark::Published => PRINTED_MARKS[i % PRINTED_MARKS.len()].draw(svg, at, PRINTED),
+            Mark::Bars | Mark::Level => {}
+        }
+    }
 
-/// A published point of set `i`.
-pub(super) fn printed_mark(svg: &mut Svg, at: [f64; 2], i: usize) {
-    PRINTED_MARKS[i % PRINTED_MARKS.len()].draw(svg, at, PRINTED);
-}
-
-/// A sample of line `i` with its mark for a legend, 30 px long.
-pub(super) fn sample(i: usize) -> String {
-    let mut svg = Svg::default();
-    svg.line([0.0, 0.0], [30.0, 0.0], &style(i));
-    mark(&mut svg, [15.0, 0.0], i);
-    svg.text
+    /// A sample for a legend, 30 px long.
+    pub(super) fn sample(self) -> String {
+        let mut svg = Svg::default();
+        let fill = format!("fill=\"{}\"", self.ink());
+        match self.mark {
+            Mark::Line | Mark::Level => svg.line([0.0, 0.0], [30.0, 0.0], &self.line()),
+            Mark::Points => svg.circle([15.0, 0.0], 3.2, &fill),
+            Mark::Bars => svg.rect([0.0, -5.0], [30.0, 10.0], &fill),
+            Mark::Published => {}
+        }
+        if self.mark != Mark::Points {
+            self.point(&mut svg, [15.0, 0.0]);
+        }
+        svg.text
+    }
 }
 
 /// Inks, dashes and marks for the script of a page, which draws the same.
@@ -139,15 +161,19 @@ mod tests {
     /// Twelve series look different without their colours, and the first six by their marks alone.
     #[test]
     fn series_are_told_apart_without_colour() {
+        let line = |number| Look {
+            mark: Mark::Line,
+            number,
+        };
         let grey = |text: String| INKS.iter().fold(text, |t, ink| t.replace(ink, "grey"));
-        let samples: Vec<String> = (0..12).map(|i| grey(sample(i))).collect();
+        let samples: Vec<String> = (0..12).map(|i| grey(line(i).sample())).collect();
         for (i, a) in samples.iter().enumerate() {
             well_formed(a).unwrap();
             assert!(samples[..i].iter().all(|b| a != b), "{i}");
         }
         let marks = (0..6).map(|i| {
             let mut svg = Svg::default();
-            mark(&mut svg, [0.0, 0.0], i);
+            line(i).point(&mut svg, [0.0, 0.0]);
             grey(svg.text)
         });
         let marks: Vec<String> = marks.collect();

@@ -73,7 +73,7 @@ pub(super) fn surface(svg: &mut Svg, surface: &Surface, p: &Projection) {
             svg.path(&outline, Close::Yes, &style);
             vec![(disc.centre(), disc.normal())]
         }
-        Shape::Body(body) => {
+        Shape::Instance(body) => {
             let vertices = body.mesh().positions();
             let thin = vertices.len().div_ceil(MOST_VERTICES);
             let place = |v: &DVec3| p.at(body.placement().transform_point3(*v));

@@ -1,16 +1,16 @@
 //! Matrices as pictures with a title, axes and a legend.
 
-use super::axis::{significant, tick, ticks};
-use super::chart::superscript;
+use super::axis::{tick, ticks};
 use super::colour::{Law, NOT_A_NUMBER, Rgb, Scale};
-use super::encode::{PictureError, rgb};
-use super::figure::data_uri;
+use super::encode::{PictureError, base64, rgb};
 use super::raster::{self, DPI, FAMILIES};
 use super::svg::{Close, Svg, escape};
+use crate::num::digits::{scientific, significant};
 
 /// A bare matrix is enlarged to at least this on its longer side, px.
 const SIDE: usize = 256;
-/// Width of a sheet where no matrix needs more: 180 mm, two columns of a journal, px at 300 an inch as all lengths here.
+/// Width of a sheet where no matrix needs more: 180 mm, two columns of a journal, px at 300 an inch
+/// as all lengths here.
 const WIDTH: usize = 2126;
 /// Longer side of a panel at most, where it has no more entries than that.
 const LARGEST: usize = 600;
@@ -88,11 +88,18 @@ impl Panel {
         rgb([nu * factor, nv * factor], &pixels, None)
     }
 
+    /// The entries as a picture inside of markup.
+    pub(super) fn data_uri(&self, scale: &Scale) -> Result<String, PictureError> {
+        let png = self.plain_png(scale)?;
+        Ok(format!("data:image/png;base64,{}", base64(&png)))
+    }
+
     fn entries(&self) -> [usize; 2] {
         self.size.map(|n| n.max(1))
     }
 
-    /// Width and height on a sheet: the longer side as near below `most` as whole pixels an entry allow, but one at least.
+    /// Width and height on a sheet: the longer side as near below `most` as whole pixels an entry
+    /// allow, but one at least.
     pub(super) fn pixels(&self, most: usize) -> [usize; 2] {
         let [nu, nv] = self.entries();
         let factor = (most / nu.max(nv)).max(1);
@@ -100,9 +107,10 @@ impl Panel {
     }
 }
 
-/// Reflectances (or any values that belong in 0…1) side by side on the one fixed grey scale: black 0, white 1, whatever
-/// the data, values below 0 blue and above 1 orange. Entries are whole pixels, never smoothed; iu runs to the right and iv upwards, as the arrows say.
-/// Returns PNG bytes, 300 pixels an inch, 180 mm wide unless a matrix needs more.
+/// Reflectances (or any values that belong in 0…1) side by side on the one fixed grey scale: black
+/// 0, white 1, whatever the data, values below 0 blue and above 1 orange. Entries are whole pixels,
+/// never smoothed; iu runs to the right and iv upwards, as the arrows say. Returns PNG bytes, 300
+/// pixels an inch, 180 mm wide unless a matrix needs more.
 ///
 /// # Errors
 /// [`PictureError`] if the picture would be absurdly large.
@@ -110,7 +118,8 @@ pub fn grey_png(title: &str, panels: &[Panel]) -> Result<Vec<u8>, PictureError> 
     colour_png(title, panels, &Scale::reflectance(), "reflectance")
 }
 
-/// Matrices side by side on one shared `scale`, with a legend that is named `unit`. As [`grey_png`] else.
+/// Matrices side by side on one shared `scale`, with a legend that is named `unit`. As [`grey_png`]
+/// else.
 ///
 /// # Errors
 /// [`PictureError`] if the picture would be absurdly large.
@@ -197,7 +206,8 @@ pub(super) fn key(svg: &mut Svg, [x, y]: [usize; 2], lettering: &[(Rgb, String)]
     }
 }
 
-/// "(a) title" and so on where there are several panels, numbers in it as they are set and kept on the line of the word after them.
+/// "(a) title" and so on where there are several panels, numbers in it as they are set and kept on
+/// the line of the word after them.
 pub(super) fn lettered(i: usize, panels: usize, title: &str) -> String {
     let set = |word: &str| match word.parse::<f64>() {
         Ok(_) => scientific(word) + "\u{a0}",
@@ -211,7 +221,8 @@ pub(super) fn lettered(i: usize, panels: usize, title: &str) -> String {
     }
 }
 
-/// How long a panel may be so that as many stand in a row as leave no row half empty, if that can be.
+/// How long a panel may be so that as many stand in a row as leave no row half empty, if that can
+/// be.
 fn longest_side(panels: usize) -> usize {
     let columns = match panels {
         0..=MOST_COLUMNS => panels.max(1),
@@ -224,7 +235,8 @@ fn longest_side(panels: usize) -> usize {
     each.min(LARGEST)
 }
 
-/// Upper left corner of each panel, its axis and its title, in rows of [`WIDTH`], and the size of it all.
+/// Upper left corner of each panel, its axis and its title, in rows of [`WIDTH`], and the size of
+/// it all.
 fn arrange(sizes: &[[usize; 2]], most: usize, above: usize) -> (Vec<[usize; 2]>, [usize; 2]) {
     let (mut x, mut y, mut row, mut right) = (MARGIN, 0, 0, WIDTH - MARGIN);
     let mut places = Vec::with_capacity(sizes.len());
@@ -270,7 +282,7 @@ pub(super) fn draw(
     [w, h]: [usize; 2],
     scale: &Scale,
 ) -> Result<(), PictureError> {
-    image(svg, [left, top], [w, h], &data_uri(panel, scale)?);
+    image(svg, [left, top], [w, h], &panel.data_uri(scale)?);
     let [across, up] = &panel.axes;
     let bottom = top + h;
     arrow(svg, at([left, bottom + 30]), [1.0, 0.0]);
@@ -318,7 +330,7 @@ pub(super) fn bar(
     let steps = 256;
     let values = (0..steps).map(|i| scale.value(i as f64 / (steps - 1) as f64));
     let colours = Panel::elements("", [steps, 1], values.collect());
-    image(svg, [x, y], BAR, &data_uri(&colours, scale)?);
+    image(svg, [x, y], BAR, &colours.data_uri(scale)?);
     for (t, text) in bar_ticks(scale) {
         let across = x as f64 + t * BAR[0] as f64;
         let below = (y + BAR[1]) as f64;
@@ -329,8 +341,8 @@ pub(super) fn bar(
     Ok(())
 }
 
-/// Where along the bar there is a tick, and its text: 0, 0.5, 1 on the grey scale, both ends and round values between
-/// on the others.
+/// Where along the bar there is a tick, and its text: 0, 0.5, 1 on the grey scale, both ends and
+/// round values between on the others.
 pub(super) fn bar_ticks(scale: &Scale) -> Vec<(f64, String)> {
     let [low, high] = scale.range();
     let along = |x: f64| scale.share(x);
@@ -356,20 +368,6 @@ pub(super) fn bar_ticks(scale: &Scale) -> Vec<(f64, String)> {
         .collect::<Vec<_>>();
     all.extend(ends);
     all
-}
-
-/// A number as it is set: 1.2e-7 becomes 1.2 × 10⁻⁷.
-pub(super) fn scientific(text: &str) -> String {
-    let power = |(mantissa, exponent): (&str, &str)| {
-        let exponent = superscript(exponent.parse().ok()?);
-        Some(match mantissa {
-            "1" => format!("10{exponent}"),
-            _ => format!("{mantissa} × 10{exponent}"),
-        })
-    };
-    text.split_once('e')
-        .and_then(power)
-        .unwrap_or_else(|| text.to_owned())
 }
 
 /// What the colours outside the scale mean, where they occur.

@@ -6,8 +6,8 @@ fn panel(values: Vec<f64>) -> Panel {
     Panel::elements("board", [2, 2], values)
 }
 
-/// Colours at the centres of the four entries (iu, iv) = (0,0), (1,0), (0,1), (1,1) of the first panel of `panels` below one line of title each for the
-/// picture and for the panel.
+/// Colours at the centres of the four entries (iu, iv) = (0,0), (1,0), (0,1), (1,1) of the first
+/// panel of `panels` below one line of title each for the picture and for the panel.
 fn quarters(bytes: &[u8], panels: usize) -> [[u8; 3]; 4] {
     let (w, _, pixels) = decoded(bytes);
     let [left, top] = [MARGIN + AXIS, MARGIN + LINE + 12 + LINE + 8];

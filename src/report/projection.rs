@@ -1,11 +1,14 @@
-//! Orthographic views of a scene: which way they look, what they frame, where a point falls on the paper.
+//! Orthographic views of a scene: which way they look, what they frame, where a point falls on the
+//! paper.
 
 use crate::geometry::DVec3;
 use crate::scene::{Role, Scene};
 
-/// A wall or an occluder is cut at the frame where it would make it larger than this many times what matters.
+/// A wall or an occluder is cut at the frame where it would make it larger than this many times
+/// what matters.
 const ROOM: f64 = 3.0;
-/// A device is left outside the frame where it would make it larger than this many times the surfaces.
+/// A device is left outside the frame where it would make it larger than this many times the
+/// surfaces.
 const REACH: f64 = 1.35;
 
 /// The direction of sight.
@@ -58,7 +61,8 @@ impl Frame {
         high: [f64::NEG_INFINITY; 2],
     };
 
-    /// Spots, view and hidden surfaces; other surfaces and the devices as far as these stay readable; a margin.
+    /// Spots, view and hidden surfaces; other surfaces and the devices as far as these stay
+    /// readable; a margin.
     pub(super) fn of(scene: &Scene, view: View) -> Self {
         let mut frame = Self::EMPTY;
         let view_corners = scene.camera.view.corners();
@@ -111,7 +115,8 @@ impl Frame {
         w.max(h)
     }
 
-    /// Grown by 6 % of its size on all sides, and to at least a quarter of its size in height and width.
+    /// Grown by 6 % of its size on all sides, and to at least a quarter of its size in height and
+    /// width.
     fn with_margin(self) -> Self {
         let size = if self.size() > 0.0 { self.size() } else { 1.0 };
         let extent = self.extent();
@@ -166,8 +171,8 @@ impl Projection {
         self.frame.extent().map(|e| e * self.scale)
     }
 
-    /// Where the way from the frame's middle to a point outside crosses the frame, and its direction on the paper;
-    /// `None` for a point inside.
+    /// Where the way from the frame's middle to a point outside crosses the frame, and its
+    /// direction on the paper; `None` for a point inside.
     pub(super) fn exit(&self, p: DVec3) -> Option<([f64; 2], [f64; 2])> {
         let target = self.view.project(p);
         if self.frame.contains(target) {
@@ -195,7 +200,8 @@ mod tests {
         let scene = Scene::load("bench").unwrap();
         let side = Frame::of(&scene, View::Side);
         assert!(side.contains([0.0, 0.0]) && side.contains([15.5, 4.149]));
-        // The devices are at (−20, 10, 15): they fit into the side view, but would double the view from above.
+        // The devices are at (−20, 10, 15): they fit into the side view, but would double the view
+        // from above.
         assert!(side.contains([10.0, 15.0]));
         let above = Frame::of(&scene, View::Above);
         assert!(above.contains([11.5, 15.5]) && !above.contains([-20.0, 10.0]));

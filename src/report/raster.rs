@@ -1,8 +1,10 @@
-//! A drawing's SVG as PNG: the one door to the crates `resvg` (the renderer) and `dejavu` (its type).
+//! A drawing's SVG as PNG: the one door to the crates `resvg` (the renderer) and `dejavu` (its
+//! type).
 //!
-//! The type is DejaVu Sans 2.37 (licence of Bitstream Vera, changes in the public domain): it has every letter, sign and index that the figures write, and its
-//! widths are those of Verdana, which the SVG names next, so that text takes the same room in a viewer that has the one or the other. Neither the fonts nor
-//! the settings of the machine enter: the same SVG makes the same bytes.
+//! The type is DejaVu Sans 2.37 (licence of Bitstream Vera, changes in the public domain): it has
+//! every letter, sign and index that the figures write, and its widths are those of Verdana, which
+//! the SVG names next, so that text takes the same room in a viewer that has the one or the other.
+//! Neither the fonts nor the settings of the machine enter: the same SVG makes the same bytes.
 
 use std::sync::{Arc, OnceLock};
 
@@ -33,7 +35,8 @@ fn fonts() -> Arc<usvg::fontdb::Database> {
     Arc::clone(FONTS.get_or_init(load))
 }
 
-/// The drawing on white at [`DPI`] pixels for each inch of its stated width and height, as PNG bytes.
+/// The drawing on white at [`DPI`] pixels for each inch of its stated width and height, as PNG
+/// bytes.
 ///
 /// # Errors
 /// [`PictureError`].
@@ -76,7 +79,8 @@ mod tests {
         )
     }
 
-    /// An inch by half an inch at 300 an inch; a rectangle covers the pixels that its coordinates say.
+    /// An inch by half an inch at 300 an inch; a rectangle covers the pixels that its coordinates
+    /// say.
     #[test]
     fn millimetres_become_pixels() {
         let (w, h, pixels) = decoded(
@@ -96,7 +100,8 @@ mod tests {
         }
     }
 
-    /// Every sign of the figures has a glyph of its own: each leaves ink, and no two the same (a missing one would be a box).
+    /// Every sign of the figures has a glyph of its own: each leaves ink, and no two the same (a
+    /// missing one would be a box).
     #[test]
     fn every_sign_has_its_own_glyph() {
         let signs = "µ×²⁻⁺¹‖Φρσ–—−→↑∓±≤≥∘·Σᵀ≈√∞⊘°…";

@@ -6,8 +6,9 @@ use crate::image::Transfer;
 use crate::scene::Surface;
 use crate::scene::mesh::{FaceValues, Triangles, to_ply};
 
-/// Reflectances of elements iu + iv·nu as a 16-bit grey PNG of nu × nv pixels that a scene takes as a texture with `transfer = "linear"`:
-/// the row of the largest v is at the top. What is below 0 or above 1 no albedo can be, and is stored as 0 or 1.
+/// Reflectances of elements iu + iv·nu as a 16-bit grey PNG of nu × nv pixels that a scene takes as
+/// a texture with `transfer = "linear"`: the row of the largest v is at the top. What is below 0 or
+/// above 1 no albedo can be, and is stored as 0 or 1.
 ///
 /// # Errors
 /// [`PictureError`].
@@ -18,11 +19,12 @@ pub fn texture_png([nu, nv]: [usize; 2], values: &[f64]) -> Result<Vec<u8>, Pict
     grey16([nu, nv], &pixels)
 }
 
-/// The surface as a PLY mesh, each triangle with the reflectance of its element: as it is under the name `reflectance`, and as a grey
-/// between 0 and 1, by the transfer of sRGB, for the eye. A flat or round surface becomes two triangles for each element.
+/// The surface as a PLY mesh, each triangle with the reflectance of its element: as it is under the
+/// name `reflectance`, and as a grey between 0 and 1, by the transfer of sRGB, for the eye. A flat
+/// or round surface becomes two triangles for each element.
 pub fn recovered_ply(surface: &Surface, elements: [usize; 2], values: &[f64]) -> Vec<u8> {
     let (mesh, cells) = match &surface.shape {
-        Shape::Body(body) => {
+        Shape::Instance(body) => {
             let place = |p: &DVec3| body.placement().transform_point3(*p);
             let mesh = Triangles {
                 positions: body.mesh().positions().iter().map(place).collect(),
@@ -95,7 +97,8 @@ mod tests {
         );
     }
 
-    /// The mesh of a rectangle has its area, and each element a share of it with its own reflectance; that of a meshed rectangle too.
+    /// The mesh of a rectangle has its area, and each element a share of it with its own
+    /// reflectance; that of a meshed rectangle too.
     #[test]
     fn a_coloured_mesh_covers_the_surface() {
         let bench = Scene::load("bench")

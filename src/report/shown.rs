@@ -1,6 +1,5 @@
 //! One matrix by itself, for a look at it: as PNG, or in a terminal.
 
-use super::axis::significant;
 use super::colour::{NOT_A_NUMBER, Rgb, Scale};
 use super::encode::PictureError;
 use super::figure::{Reduction, reduced};
@@ -11,6 +10,7 @@ use super::picture::{
 use super::raster;
 use super::svg::Svg;
 use super::terminal::half_blocks;
+use crate::num::digits::significant;
 
 /// Longer side of the matrix on its sheet, px, where it has no more entries than that.
 const LARGEST: usize = 900;
@@ -19,7 +19,8 @@ const UNIT: usize = 380;
 /// Cells of the colour bar in a terminal.
 const CELLS: usize = 32;
 
-/// A matrix with its scale. What the scale does not hold is counted, never shown as if it did: there is no tone curve.
+/// A matrix with its scale. What the scale does not hold is counted, never shown as if it did:
+/// there is no tone curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
     panel: Panel,
@@ -42,7 +43,8 @@ impl Shown {
         }
     }
 
-    /// What the colours outside the scale mean and how many values have them: "3 of 256 above 1.2e-9 W".
+    /// What the colours outside the scale mean and how many values have them: "3 of 256 above
+    /// 1.2e-9 W".
     pub fn outside(&self) -> Vec<(Rgb, String)> {
         let [low, high] = self.scale.range();
         let values = &self.panel.values;
@@ -114,8 +116,9 @@ impl Shown {
         Ok(svg.text)
     }
 
-    /// Title, picture and legend for a terminal of 24-bit colours that is `columns` wide: each character ▀ is two entries, one above the other. A matrix with
-    /// more columns than that is shown by the means of blocks, and the legend says so.
+    /// Title, picture and legend for a terminal of 24-bit colours that is `columns` wide: each
+    /// character ▀ is two entries, one above the other. A matrix with more columns than that is
+    /// shown by the means of blocks, and the legend says so.
     pub fn blocks(&self, columns: usize) -> String {
         let panel = &self.panel;
         let most = columns.max(8);

@@ -2,13 +2,12 @@
 
 use serde_json::{Value, json};
 
-use super::verdict::verdict;
-use crate::study::{RecoveredObject, RunResults};
+use crate::lab::{RecoveredObject, RunResults};
 
-/// What a run found, without any matrix, as indented JSON. What is absent or not a finite number is `null`. Fluxes in
-/// W, times in s.
+/// What a run found, without any matrix, as indented JSON. What is absent or not a finite number is
+/// `null`. Fluxes in W, times in s.
 pub fn summary_json(results: &RunResults) -> String {
-    let scene = &results.scene;
+    let (scene, plan) = (&results.scene, &results.plan);
     let recovered = |r: &RecoveredObject| {
         json!({
             "surface": r.surface,
@@ -31,19 +30,26 @@ pub fn summary_json(results: &RunResults) -> String {
         .iter()
         .map(|(stage, s)| json!({ "stage": stage, "seconds": s }));
     let value = json!({
-        "verdict": verdict(results),
+        "verdict": results.verdict(),
         "scene": {
             "name": scene.name,
             "hash": scene.hash,
             "unit": scene.unit.symbol(),
             "max_bounces": scene.max_bounces,
         },
-        "settings": results.settings,
+        "settings": {
+            "version": results.version,
+            "estimator": plan.estimator,
+            "sampler": plan.sampling,
+            "seed": plan.seed,
+            "samples": plan.budget.samples(),
+            "blocks": plan.budget.blocks,
+        },
         "phi": {
             "pixels": results.phi.nrows(),
             "spots": results.phi.ncols(),
             "total": results.phi.sum(),
-            "relative_stderr": relative_stderr(results),
+            "relative_stderr": results.relative_stderr(),
         },
         "agreement": results.agreement,
         "bounces": bounces.collect::<Vec<Value>>(),
@@ -58,16 +64,10 @@ fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|x| x * x).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// ‖standard error‖/‖Φcam‖; `None` where there is no light.
-pub(super) fn relative_stderr(results: &RunResults) -> Option<f64> {
-    let norm = results.phi.norm();
-    (norm > 0.0).then(|| results.stderr.norm() / norm)
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::sample::{bare, run};
     use super::*;
+    use crate::lab::sample::{bare, run};
 
     #[test]
     fn json_parses_back_and_has_no_matrix() {

@@ -14,7 +14,8 @@ pub(super) mod ink {
     pub(in super::super) const ORANGE: &str = "#e69f00";
 }
 
-/// `text` for XML and HTML, as content or as a quoted attribute. Characters that XML 1.0 cannot hold become U+FFFD.
+/// `text` for XML and HTML, as content or as a quoted attribute. Characters that XML 1.0 cannot
+/// hold become U+FFFD.
 pub(super) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -135,7 +136,8 @@ const RAISED: [(char, char); 13] = [
     ('ᵀ', 'T'),
 ];
 
-/// `text` escaped, with raised signs as small ordinary ones above the line: a viewer's type need not have the raised ones, and they look alike.
+/// `text` escaped, with raised signs as small ordinary ones above the line: a viewer's type need
+/// not have the raised ones, and they look alike.
 pub(super) fn raised(text: &str) -> String {
     let plain = |c: char| RAISED.iter().find(|(r, _)| *r == c).map(|(_, p)| *p);
     let letters: Vec<char> = text.chars().collect();
@@ -167,8 +169,8 @@ pub(super) enum Close {
     No,
 }
 
-/// Whether markup is well formed: tags nest, attributes are quoted, no bare `&` or `<`. Void HTML elements count as
-/// closed. Enough for what this floor writes.
+/// Whether markup is well formed: tags nest, attributes are quoted, no bare `&` or `<`. Void HTML
+/// elements count as closed. Enough for what this floor writes.
 #[cfg(test)]
 pub(super) fn well_formed(markup: &str) -> Result<(), String> {
     let void = ["meta", "br", "hr", "img", "link", "input"];

@@ -4,7 +4,8 @@ use super::encode::{PictureError, grey16};
 use crate::image::Transfer;
 use crate::scene::target::Picture;
 
-/// A target as 16-bit grey PNG: 65535 stands for white, and reflectance is stored by `transfer`, rounded.
+/// A target as 16-bit grey PNG: 65535 stands for white, and reflectance is stored by `transfer`,
+/// rounded.
 ///
 /// # Errors
 /// [`PictureError`].

@@ -1,12 +1,13 @@
 //! Pictures in the languages of terminals.
 
 use super::colour::Rgb;
-use super::figure::encoded;
+use super::encode::base64;
 
 /// Bytes of a message of the kitty protocol.
 const MESSAGE: usize = 4096;
 
-/// A line of characters, each of an upper and a lower colour; without a lower one the terminal's own ground.
+/// A line of characters, each of an upper and a lower colour; without a lower one the terminal's
+/// own ground.
 pub(super) fn half_blocks(cells: impl Iterator<Item = (Option<Rgb>, Option<Rgb>)>) -> String {
     let mut line = String::new();
     for (upper, lower) in cells {
@@ -21,9 +22,10 @@ pub(super) fn half_blocks(cells: impl Iterator<Item = (Option<Rgb>, Option<Rgb>)
     line + "\x1b[0m"
 }
 
-/// A PNG as the kitty graphics protocol sends it, `columns` cells wide: in messages of 4096 bytes of base64, all but the last marked m=1.
+/// A PNG as the kitty graphics protocol sends it, `columns` cells wide: in messages of 4096 bytes
+/// of base64, all but the last marked m=1.
 pub fn kitty(png: &[u8], columns: usize) -> String {
-    let data = encoded(png);
+    let data = base64(png);
     let pieces = data.len().div_ceil(MESSAGE);
     let mut text = String::new();
     for k in 0..pieces {
@@ -41,7 +43,7 @@ pub fn kitty(png: &[u8], columns: usize) -> String {
 /// A PNG as an inline image of iTerm2, `columns` cells wide.
 pub fn iterm(png: &[u8], columns: usize) -> String {
     let size = png.len();
-    let data = encoded(png);
+    let data = base64(png);
     format!(
         "\x1b]1337;File=inline=1;size={size};width={columns};preserveAspectRatio=1:{data}\x07\n"
     )
@@ -76,7 +78,7 @@ mod tests {
             .iter()
             .map(|p| p.split_once(';').unwrap().1)
             .collect();
-        assert_eq!(data, encoded(&png));
+        assert_eq!(data, base64(&png));
         assert!(
             pieces
                 .iter()

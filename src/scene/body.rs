@@ -8,7 +8,7 @@ use super::file::{MeshTable, ScaleTable};
 use super::files::Files;
 use super::mesh::{self, Defects, Generator, Triangles};
 use super::surface::Surface;
-use crate::geometry::{Body, DAffine3, DQuat, DVec3, Mesh, Shape, Side};
+use crate::geometry::{DAffine3, DQuat, DVec3, Instance, Mesh, Shape, Side};
 
 /// A mesh file larger than this is not read: 1 GiB.
 const LARGEST_FILE: u64 = 1 << 30;
@@ -27,7 +27,7 @@ pub(super) struct Meshes {
 
 /// A placed mesh and what was wrong with it.
 pub(super) struct Placed {
-    pub body: Body,
+    pub body: Instance,
     pub defects: Defects,
 }
 
@@ -66,7 +66,7 @@ impl Meshes {
         }
         let shift = self.shift(table, &mesh, &turned, earlier)?;
         let placement = DAffine3::from_translation(shift) * turned;
-        let body = Body::new(mesh, placement, Side::Outer).ok_or_else(|| {
+        let body = Instance::new(mesh, placement, Side::Outer).ok_or_else(|| {
             let cure = "use finite factors, angles and places";
             Fault::new(keys![], "the mesh has no proper place", cure)
         })?;
@@ -102,7 +102,7 @@ impl Meshes {
                 "use two numbers from 0 to 1",
             ));
         }
-        if matches!(below.shape, Shape::Body(_)) {
+        if matches!(below.shape, Shape::Instance(_)) {
             let cause = format!(
                 "`{}` is a mesh, and has no places by parameters",
                 on.surface

@@ -4,13 +4,14 @@ use super::error::{Fault, keys};
 use super::file::CameraTable;
 use super::surface::{Role, Surface};
 use super::{FARTHEST, FINEST};
-use crate::geometry::{DVec3, Parallelogram, SurfacePoint};
+use crate::geometry::{DVec3, Interaction, Parallelogram};
 
 /// More pixels than this are taken for a mistake.
 const MOST_PIXELS: u64 = 1 << 26;
 
-/// A pinhole of small area, parallel to the view's plane. Pixel p collects what passes through its footprint on that
-/// plane towards the pinhole: étendue E_p = ∫ A_lens·cosθ_cam dΩ over the footprint.
+/// A pinhole of small area, parallel to the view's plane. Pixel p collects what passes through its
+/// footprint on that plane towards the pinhole: étendue E_p = ∫ A_lens·cosθ_cam dΩ over the
+/// footprint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
     /// The pinhole.
@@ -159,8 +160,8 @@ enum NoView {
     Behind,
 }
 
-/// The view as a patch of the relay's plane (of a curved relay: of its tangent plane at the view's centre), normal
-/// towards the relay's front.
+/// The view as a patch of the relay's plane (of a curved relay: of its tangent plane at the view's
+/// centre), normal towards the relay's front.
 fn view(
     x: [f64; 2],
     y: [f64; 2],
@@ -176,7 +177,7 @@ fn view(
         }
     }
     let (cx, cy) = (0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1]));
-    let distance = |p: &SurfacePoint| (p.position - camera).length_squared();
+    let distance = |p: &Interaction| (p.position - camera).length_squared();
     let centre = relays()
         .filter_map(|s| s.facing_at_xy(cx, cy, camera))
         .min_by(|a, b| distance(a).total_cmp(&distance(b)))
@@ -192,6 +193,7 @@ fn view(
     let corner = lift(x[0], y[0]);
     let (u, v) = (lift(x[1], y[0]) - corner, lift(x[0], y[1]) - corner);
     let patch = Parallelogram::new(corner, u, v).ok_or(NoView::OffTheWall)?;
-    // u × v points along +z; where the wall's front is below, the patch is kept and its normal turned.
+    // u × v points along +z; where the wall's front is below, the patch is kept and its normal
+    // turned.
     Ok(if n.z > 0.0 { patch } else { patch.turned() })
 }

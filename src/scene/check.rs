@@ -5,10 +5,10 @@ use super::laser::{Profile, Spot};
 use super::surface::{Role, Surface};
 use super::warning::Warning;
 use super::{Scene, Texture};
-use crate::geometry::{Basis, DVec3, Ray, Shape, ShapeId, SurfacePoint};
+use crate::geometry::{Basis, DVec3, Interaction, Ray, Shape, ShapeId};
 
 /// Points of a hidden surface at which visibility is tested: the centres of an n × n grid.
-fn probes(surface: &Surface, n: usize) -> Vec<SurfacePoint> {
+fn probes(surface: &Surface, n: usize) -> Vec<Interaction> {
     let centre = |i: usize| (i as f64 + 0.5) / n as f64;
     (0..n * n)
         .map(|i| surface.shape.at([centre(i % n), centre(i / n)]))
@@ -23,7 +23,8 @@ fn free(scene: &Scene, from: DVec3, on: Option<ShapeId>, to: DVec3, at: ShapeId)
 const CAMERA_PROBES: usize = 33;
 const SPOT_PROBES: usize = 9;
 
-/// A camera in front of a hidden surface with a free line to any of 33 × 33 points of it contradicts the experiment.
+/// A camera in front of a hidden surface with a free line to any of 33 × 33 points of it
+/// contradicts the experiment.
 pub(super) fn refuse_visible_hidden_face(scene: &Scene) -> Result<(), Fault> {
     for (id, surface) in scene.hidden() {
         let sees = probes(surface, CAMERA_PROBES).into_iter().any(|p| {
@@ -81,7 +82,7 @@ fn spots(scene: &Scene, found: &mut Vec<Warning>) {
     let mut shadowed = Vec::new();
     let mut overhanging = Vec::new();
     let mut blocked: Vec<(String, Vec<usize>)> = Vec::new();
-    let hidden: Vec<(ShapeId, Vec<SurfacePoint>)> = scene
+    let hidden: Vec<(ShapeId, Vec<Interaction>)> = scene
         .hidden()
         .map(|(id, s)| (id as ShapeId, probes(s, SPOT_PROBES)))
         .collect();
@@ -108,7 +109,7 @@ fn spots(scene: &Scene, found: &mut Vec<Warning>) {
             }
             continue;
         }
-        let facing = |p: &&SurfacePoint| (target - p.position).dot(p.normal) > 0.0;
+        let facing = |p: &&Interaction| (target - p.position).dot(p.normal) > 0.0;
         let mut faced = hidden
             .iter()
             .flat_map(|(id, points)| points.iter().filter(facing).map(move |p| (id, p)));
@@ -134,7 +135,7 @@ fn spots(scene: &Scene, found: &mut Vec<Warning>) {
     for (_, surface) in scene.hidden() {
         // A body has fronts to all sides: no plane has it all behind.
         let outline = match &surface.shape {
-            Shape::Body(_) | Shape::Sphere(_) => continue,
+            Shape::Instance(_) | Shape::Sphere(_) => continue,
             flat => flat.outline(),
         };
         let faces = |q: DVec3| outline.iter().any(|p| (q - p.position).dot(p.normal) > 0.0);
@@ -150,8 +151,9 @@ fn spots(scene: &Scene, found: &mut Vec<Warning>) {
     }
 }
 
-/// Whether the camera may see a spot of radius `reach` directly: its line of sight crosses the view's rectangle (or passes it no further
-/// away than the spot reaches), meets the front, and, for a point, nothing on its way.
+/// Whether the camera may see a spot of radius `reach` directly: its line of sight crosses the
+/// view's rectangle (or passes it no further away than the spot reaches), meets the front, and, for
+/// a point, nothing on its way.
 fn in_view_of(scene: &Scene, spot: &Spot, reach: f64) -> bool {
     let (camera, target) = (&scene.camera, &spot.target);
     let view = &camera.view;
@@ -171,7 +173,7 @@ fn in_view_of(scene: &Scene, spot: &Spot, reach: f64) -> bool {
 }
 
 /// Whether part of a spot's rim has no relay surface below it.
-fn rim_leaves(scene: &Scene, target: &SurfacePoint, radius: f64) -> bool {
+fn rim_leaves(scene: &Scene, target: &Interaction, radius: f64) -> bool {
     let basis = Basis::around(target.normal);
     (0..16).any(|k| {
         let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(k) / 16.0);

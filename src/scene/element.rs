@@ -2,7 +2,7 @@
 
 use super::surface::{Division, Surface};
 use super::texture::Texture;
-use crate::geometry::{Body, DVec3, Shape};
+use crate::geometry::{DVec3, Instance, Shape};
 
 /// An element as the matrix model takes it: one point with a normal, and an area.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,20 +15,23 @@ pub struct Element {
     pub area: f64,
     /// Unit vector along u, in the surface.
     pub u_axis: DVec3,
-    /// Its mean albedo, of a surface that is not Lambertian that of [`Surface::matt`]; of a cell of a mesh's texture coordinates that at its middle;
-    /// of a single point ([`Surface::element_at`]) the texture's value.
+    /// Its mean albedo, of a surface that is not Lambertian that of
+    /// [`Surface::lambertian_equivalent`]; of a cell of a mesh's texture coordinates that at its
+    /// middle; of a single point ([`Surface::element_at`]) the texture's value.
     pub albedo: f64,
 }
 
 impl Surface {
-    /// The elements, iu + iv·nu. Of rectangles, discs and spheres cells of equal area in their parameters, taken at their middle. Of a mesh
-    /// the triangles, at their centroids; or the cells of its texture coordinates: each has the area of what the coordinates put there (the
-    /// triangles clipped), the direction of that part's vector area as its normal, and the point of the mesh nearest to its centroid.
+    /// The elements, iu + iv·nu. Of rectangles, discs and spheres cells of equal area in their
+    /// parameters, taken at their middle. Of a mesh the triangles, at their centroids; or the cells
+    /// of its texture coordinates: each has the area of what the coordinates put there (the
+    /// triangles clipped), the direction of that part's vector area as its normal, and the point of
+    /// the mesh nearest to its centroid.
     pub fn divided(&self, [nu, nv]: [usize; 2]) -> Vec<Element> {
-        let matt = self.matt();
+        let matt = self.lambertian_equivalent();
         match (&matt.shape, matt.division) {
-            (Shape::Body(body), Division::Faces) => faces(body, &matt.albedo),
-            (Shape::Body(body), Division::Cells) => cells(body, &matt.albedo, [nu, nv]),
+            (Shape::Instance(body), Division::Faces) => faces(body, &matt.albedo),
+            (Shape::Instance(body), Division::Cells) => cells(body, &matt.albedo, [nu, nv]),
             (shape, _) => {
                 let area = shape.area() / (nu * nv) as f64;
                 let range = |i: usize, n: usize| [i as f64 / n as f64, (i + 1) as f64 / n as f64];
@@ -49,7 +52,7 @@ impl Surface {
 
     /// By triangle of a mesh: the element that most of it belongs to. Empty for other shapes.
     pub fn elements_of_triangles(&self, count: [usize; 2]) -> Vec<usize> {
-        let Shape::Body(body) = &self.shape else {
+        let Shape::Instance(body) = &self.shape else {
             return Vec::new();
         };
         let uv = match self.division {
@@ -64,12 +67,13 @@ impl Surface {
         uv.iter().map(largest).collect()
     }
 
-    /// The point of the surface with parameters `uv` (of a mesh: to which its equal-area map takes them), without area.
+    /// The point of the surface with parameters `uv` (of a mesh: to which its equal-area map takes
+    /// them), without area.
     pub fn element_at(&self, uv: [f64; 2]) -> Element {
         let at = |uv| self.shape.at(uv);
         let point = at(uv);
         let along = match self.shape {
-            Shape::Body(_) => DVec3::ZERO,
+            Shape::Instance(_) => DVec3::ZERO,
             _ => at([1.0, uv[1]]).position - at([0.0, uv[1]]).position,
         };
         Element {
@@ -82,7 +86,7 @@ impl Surface {
     }
 }
 
-fn faces(body: &Body, albedo: &Texture) -> Vec<Element> {
+fn faces(body: &Instance, albedo: &Texture) -> Vec<Element> {
     (0..body.mesh().triangles().len() as u32)
         .map(|t| {
             let [a, b, c] = body.corners(t);
@@ -121,7 +125,7 @@ struct Part {
 /// A corner of a polygon in texture coordinates (in cells), and its weights in the triangle.
 type Corner = ([f64; 2], DVec3);
 
-fn cells(body: &Body, albedo: &Texture, [nu, nv]: [usize; 2]) -> Vec<Element> {
+fn cells(body: &Instance, albedo: &Texture, [nu, nv]: [usize; 2]) -> Vec<Element> {
     let mut parts = vec![Part::default(); nu * nv];
     let uv = body.mesh().uv().unwrap_or_default();
     for (t, uv) in uv.iter().enumerate() {
@@ -159,8 +163,9 @@ fn cells(body: &Body, albedo: &Texture, [nu, nv]: [usize; 2]) -> Vec<Element> {
         .collect()
 }
 
-/// The cells that a triangle with these texture coordinates covers: cell, share of the triangle's area, and the weights of the three
-/// corners at the middle of that share. Coordinates beyond \[0, 1\] are taken modulo 1, a triangle as a whole.
+/// The cells that a triangle with these texture coordinates covers: cell, share of the triangle's
+/// area, and the weights of the three corners at the middle of that share. Coordinates beyond \[0,
+/// 1\] are taken modulo 1, a triangle as a whole.
 fn shares(uv: [[f64; 2]; 3], [nu, nv]: [usize; 2]) -> Vec<(usize, f64, DVec3)> {
     let count = [nu, nv];
     let mut corners = uv;
@@ -185,7 +190,8 @@ fn shares(uv: [[f64; 2]; 3], [nu, nv]: [usize; 2]) -> Vec<(usize, f64, DVec3)> {
     let whole: Vec<Corner> = corners.into_iter().zip(weights).collect();
     let total = area_and_middle(&whole).0;
     let [columns, rows] = [range(0), range(1)];
-    // A triangle within one cell, or without extent in the picture, counts whole where its middle is.
+    // A triangle within one cell, or without extent in the picture, counts whole where its middle
+    // is.
     if total <= 0.0 || (columns.start() == columns.end() && rows.start() == rows.end()) {
         let at = |d: usize| {
             let middle = (corners[0][d] + corners[1][d] + corners[2][d]) / 3.0;
@@ -254,8 +260,8 @@ fn area_and_middle(polygon: &[Corner]) -> (f64, DVec3) {
 mod tests {
     use super::*;
 
-    /// Shares add up to 1 and their middles to the triangle's; a right triangle over a 2 × 2 grid covers two cells of it by half a cell,
-    /// one whole, one not at all.
+    /// Shares add up to 1 and their middles to the triangle's; a right triangle over a 2 × 2 grid
+    /// covers two cells of it by half a cell, one whole, one not at all.
     #[test]
     fn shares_of_a_triangle_are_its_parts() {
         let half = shares([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], [2, 2]);

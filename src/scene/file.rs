@@ -1,50 +1,84 @@
-//! The scene file as written: TOML tables, strict, unchecked. [`Scene`](super::Scene) is what they mean.
+//! The scene file as written: TOML tables, strict, unchecked. [`Scene`](super::Scene) is what they
+//! mean.
 //!
 //! Unknown keys are errors. The doc comment of each field is the documentation of its key.
 
 use serde::{Deserialize, Serialize};
 
+use super::builtin::builtins;
+use super::error::SceneError;
 use super::material::MaterialTable;
 use super::mesh::Generator;
+use super::parse::{parse, write};
 use super::sensor::SensorSettings;
+use super::surface::Role;
+use super::unit::Unit;
+use crate::geometry::Facing;
+
+impl SceneFile {
+    /// A built-in scene to change, by name; `None` if there is none of that name.
+    pub fn builtin(name: &str) -> Option<Self> {
+        let builtin = builtins().iter().find(|b| b.name == name)?;
+        parse(name, builtin.text).ok()
+    }
+
+    /// The text of the scene file.
+    ///
+    /// # Errors
+    /// [`SceneError`] for what TOML cannot express: an integer beyond 2⁶³.
+    pub fn toml(&self) -> Result<String, SceneError> {
+        write(&self.name, self)
+    }
+
+    /// What the light depends on: known answers and sensor left out.
+    pub(super) fn of_the_light(&self) -> Self {
+        Self {
+            known: Vec::new(),
+            sensor: None,
+            ..self.clone()
+        }
+    }
+}
+
+impl Default for SceneFile {
+    /// The bench: [`SceneFile::builtin`] of that name.
+    fn default() -> Self {
+        Self::builtin("bench").expect("the bench is a valid scene")
+    }
+}
 
 /// Three coordinates, in the scene's unit.
-pub(super) type Triple = [f64; 3];
+pub type Triple = [f64; 3];
 
 /// A whole scene file.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct SceneFile {
+pub struct SceneFile {
     /// Name of the scene.
     pub name: String,
     /// Length unit of every number in the file: m, cm, mm or in.
-    pub unit: UnitName,
+    pub unit: Unit,
     /// Largest number of surfaces met between laser and camera (3: S1, S2, S3).
     pub max_bounces: u32,
+    /// Laser and spots.
     pub laser: LaserTable,
+    /// Camera and view.
     pub camera: CameraTable,
+    /// Surfaces, in the order of their shape ids.
     #[serde(default)]
     pub surface: Vec<SurfaceTable>,
-    /// Exact answers. They do not change the light, so they stay out of the hash, which is taken from what is serialised.
-    #[serde(default, skip_serializing)]
+    /// Exact answers. They do not change the light, so they stay out of the hash.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub known: Vec<KnownTable>,
     /// How the light is photographed. It does not change the light either.
-    #[serde(default, skip_serializing)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sensor: Option<SensorSettings>,
 }
 
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
-#[serde(rename_all = "lowercase")]
-pub(super) enum UnitName {
-    M,
-    Cm,
-    Mm,
-    In,
-}
-
+/// The `[laser]` table.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct LaserTable {
+pub struct LaserTable {
     /// Power that lands on the wall, W.
     pub power: f64,
     /// Wavelength, m (always metres).
@@ -56,35 +90,47 @@ pub(super) struct LaserTable {
     pub spot_diameter: f64,
     /// Irradiance over the spot: disc (uniform) or gaussian.
     #[serde(default)]
-    pub profile: ProfileName,
+    pub profile: ProfileShape,
+    /// The layout of the spots.
     pub spots: SpotsTable,
 }
 
+/// How the power of a wide spot is spread.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
-pub(super) enum ProfileName {
+pub enum ProfileShape {
+    /// Uniform irradiance.
     #[default]
     Disc,
+    /// Irradiance ∝ exp(−2r²/w²).
     Gaussian,
 }
 
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+/// A layout of spots; the table in [`crate::scene`] says which keys it takes.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
-pub(super) enum LayoutName {
+pub enum Layout {
+    /// The four sides of a square.
+    #[default]
     Square,
+    /// Straight lines.
     Lines,
+    /// A square grid.
     Grid,
+    /// A circle.
     Ring,
+    /// Random places in a square.
     Random,
+    /// Places as listed.
     List,
 }
 
 /// The keys of every layout; which of them a layout takes is checked in `spots`.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct SpotsTable {
+pub struct SpotsTable {
     /// square, lines, grid, ring, random or list.
-    pub layout: LayoutName,
+    pub layout: Layout,
     /// Centre on the wall (square, grid, ring, random).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub centre: Option<[f64; 2]>,
@@ -117,18 +163,22 @@ pub(super) struct SpotsTable {
     pub points: Option<Vec<[f64; 2]>>,
 }
 
+/// A straight line of spots.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct LineTable {
+pub struct LineTable {
+    /// Its first spot.
     pub from: [f64; 2],
+    /// Its last spot.
     pub to: [f64; 2],
     /// Spots on the line, both ends included.
     pub count: u32,
 }
 
+/// The `[camera]` table.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct CameraTable {
+pub struct CameraTable {
     /// The pinhole.
     pub position: Triple,
     /// Area of the aperture, unit²; it stands parallel to the wall.
@@ -139,83 +189,99 @@ pub(super) struct CameraTable {
     pub pixels: [u32; 2],
 }
 
+/// A rectangle on the wall.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct ViewTable {
+pub struct ViewTable {
+    /// Its ends in x.
     pub x: [f64; 2],
+    /// Its ends in y.
     pub y: [f64; 2],
 }
 
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
-#[serde(rename_all = "lowercase")]
-pub(super) enum RoleName {
-    Relay,
-    Hidden,
-    Occluder,
-}
-
+/// A `[[surface]]` table: exactly one of `rectangle`, `sphere`, `disc` and `mesh`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct SurfaceTable {
+pub struct SurfaceTable {
+    /// Name, unique in the scene.
     pub name: String,
     /// relay (S1 and S3), hidden (S2, recovered) or occluder.
-    pub role: RoleName,
+    pub role: Role,
+    /// A parallelogram.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rectangle: Option<RectangleTable>,
+    /// A sphere.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sphere: Option<SphereTable>,
+    /// A disc.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub disc: Option<DiscTable>,
+    /// A mesh.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<Box<MeshTable>>,
     /// one (default): the front reflects, the back is black; two: both reflect.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub sides: Option<SidesName>,
+    pub sides: Option<Sides>,
+    /// How its front reflects.
     pub material: MaterialTable,
-    /// Resolution of the matrix model and of the recovery along u and v, or "faces" for one element to each triangle (hidden surfaces).
+    /// Resolution of the matrix model and of the recovery along u and v, or "faces" for one element
+    /// to each triangle (hidden surfaces).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub elements: Option<ElementsTable>,
 }
 
+/// Which sides of a surface reflect.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
-pub(super) enum SidesName {
+pub enum Sides {
+    /// The front.
     One,
+    /// Front and back.
     Two,
 }
 
+/// What a hidden surface is divided into.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(
     untagged,
     expecting = "elements along u and v, e.g. [8, 8], or \"faces\""
 )]
-pub(super) enum ElementsTable {
+pub enum ElementsTable {
+    /// Cells along u and v.
     Grid([u32; 2]),
+    /// The triangles of a mesh.
     Faces(FacesName),
 }
 
+/// The word `faces`.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
-pub(super) enum FacesName {
+pub enum FacesName {
+    /// One element for each triangle.
     Faces,
 }
 
+/// A disc.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct DiscTable {
+pub struct DiscTable {
+    /// Centre.
     pub centre: Triple,
     /// Normal of the front, of any length but 0.
     pub normal: Triple,
+    /// Radius, above 0.
     pub radius: f64,
 }
 
+/// Triangles from a file, or made by phicam.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct MeshTable {
+pub struct MeshTable {
     /// PLY, OBJ, glTF or GLB file, relative to the scene file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
-    /// A mesh that phicam makes itself, in place of a file: bust, sphere, rectangle or box (the unit cube).
+    /// A mesh that phicam makes itself, in place of a file: bust, sphere, rectangle or box (the
+    /// unit cube).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub generate: Option<Generator>,
     /// At least so many triangles (generate).
@@ -238,36 +304,43 @@ pub(super) struct MeshTable {
     pub closed: Option<bool>,
 }
 
+/// A factor on coordinates.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(
     untagged,
     expecting = "a factor, or one for each axis: 2.5 or [1, 1, 2]"
 )]
-pub(super) enum ScaleTable {
+pub enum ScaleTable {
+    /// The same on every axis.
     Uniform(f64),
+    /// One for each axis.
     Axes(Triple),
 }
 
+/// A turn about an axis through the origin.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct RotationTable {
+pub struct RotationTable {
+    /// The axis, of any length but 0.
     pub axis: Triple,
     /// Degrees, counterclockwise seen from the tip of the axis.
     pub angle: f64,
 }
 
+/// A place on another surface.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct OnTable {
+pub struct OnTable {
     /// Name of a surface that comes earlier in the file.
     pub surface: String,
     /// The place on it, in its parameters.
     pub at: [f64; 2],
 }
 
-#[derive(Clone, Debug, Deserialize)]
+/// A `[[known]]` table: an entry of Φcam whose exact value is known.
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct KnownTable {
+pub struct KnownTable {
     /// Pixel index.
     pub pixel: u64,
     /// Spot index.
@@ -278,9 +351,11 @@ pub(super) struct KnownTable {
     pub bounces: Option<u32>,
 }
 
+/// A parallelogram; its front normal is u × v.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct RectangleTable {
+pub struct RectangleTable {
+    /// Where both edges begin.
     pub corner: Triple,
     /// First edge; the front normal is u × v.
     pub u: Triple,
@@ -288,18 +363,49 @@ pub(super) struct RectangleTable {
     pub v: Triple,
 }
 
+/// A sphere.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct SphereTable {
+pub struct SphereTable {
+    /// Centre.
     pub centre: Triple,
+    /// Radius, above 0.
     pub radius: f64,
     /// The side that reflects: outside (a ball) or inside (a cavity).
-    pub face: FaceName,
+    pub face: Facing,
 }
 
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
-#[serde(rename_all = "lowercase")]
-pub(super) enum FaceName {
-    Outside,
-    Inside,
+#[cfg(test)]
+mod tests {
+    use super::super::{Scene, builtins};
+    use super::*;
+
+    /// A file that is written and read again means the same scene, known answers and sensor too.
+    #[test]
+    fn a_scene_made_in_code_is_the_one_read_from_its_text() {
+        for builtin in builtins().iter().filter(|b| b.name != "room") {
+            let mut file = SceneFile::builtin(builtin.name).unwrap();
+            let own = Scene::load(builtin.name).unwrap();
+            let made = Scene::new(&file, None).unwrap();
+            assert_eq!(made.hash, own.hash, "{}", builtin.name);
+            assert_eq!((&made.known, &made.sensor), (&own.known, &own.sensor));
+            assert_eq!(
+                Scene::from_toml("again", &made.text).unwrap().hash,
+                own.hash
+            );
+
+            file.laser.power *= 2.0;
+            assert_ne!(Scene::new(&file, None).unwrap().hash, own.hash);
+        }
+    }
+
+    /// An error of a scene made in code names the line of the text that it would be written as.
+    #[test]
+    fn what_is_wrong_is_found_in_the_written_text() {
+        let mut file = SceneFile::default();
+        file.laser.power = -1.0;
+        let error = Scene::new(&file, None).unwrap_err();
+        assert_eq!(error.place.unwrap().text, "power = -1.0");
+        assert!(error.cause.contains("-1 W"));
+    }
 }

@@ -1,8 +1,9 @@
 //! Files that a scene names: meshes, pictures, measured materials.
 //!
-//! A scene may come from anyone. It reads ordinary files in its own folder and below, and nothing else; links that lead out of it
-//! included. Who starts phicam may name further folders. What was read is remembered with its digest, so that the scene's hash speaks of
-//! the contents, and a run can keep a copy.
+//! A scene may come from anyone. It reads ordinary files in its own folder and below, and nothing
+//! else; links that lead out of it included. Who starts phicam may name further folders. What was
+//! read is remembered with its digest, so that the scene's hash speaks of the contents, and a run
+//! can keep a copy.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -25,7 +26,8 @@ pub struct Referenced {
 }
 
 impl Referenced {
-    /// The name of its copy in [`COPIES`]: a part of the digest of its name, so that no two collide, and its last component.
+    /// The name of its copy in [`COPIES`]: a part of the digest of its name, so that no two
+    /// collide, and its last component.
     pub fn copy_name(&self) -> String {
         copy_name(&self.name)
     }
@@ -74,7 +76,8 @@ impl Files {
         }
     }
 
-    /// The bytes of the file that the scene calls `name`, at most `most` of them; or what is wrong, and the cure.
+    /// The bytes of the file that the scene calls `name`, at most `most` of them; or what is wrong,
+    /// and the cure.
     pub(super) fn bytes(&mut self, name: &str, most: u64) -> Result<Vec<u8>, (String, String)> {
         let path = self.find(name)?;
         let cannot = |e: std::io::Error| {

@@ -3,7 +3,8 @@
 use super::error::{Fault, keys};
 use super::file::KnownTable;
 
-/// An exact entry of Φcam, from a closed form or a converged quadrature: for tests, and for users' own checks.
+/// An exact entry of Φcam, from a closed form or a converged quadrature: for tests, and for users'
+/// own checks.
 ///
 /// It holds for the scene as it is written; a variant of the scene keeps the original's answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,7 +15,8 @@ pub struct Known {
     pub spot: usize,
     /// Flux into the pixel when that spot is lit, W.
     pub flux: f64,
-    /// Only light that met exactly so many surfaces; `None`: all light of up to `max_bounces` surfaces.
+    /// Only light that met exactly so many surfaces; `None`: all light of up to `max_bounces`
+    /// surfaces.
     pub bounces: Option<u32>,
 }
 

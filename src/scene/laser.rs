@@ -1,11 +1,11 @@
 //! The laser and its spots.
 
 use super::error::{Fault, keys};
-use super::file::{LaserTable, ProfileName};
+use super::file::{LaserTable, ProfileShape};
 use super::spots;
 use super::surface::{Role, Surface};
 use super::{FARTHEST, FINEST};
-use crate::geometry::{DVec3, ShapeId, SurfacePoint};
+use crate::geometry::{DVec3, Interaction, ShapeId};
 
 /// Powers in W beyond which fluxes would leave the range of f64.
 const LEAST_POWER: f64 = 1e-60;
@@ -32,7 +32,7 @@ pub enum Profile {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spot {
     /// The point of the wall that the beam is aimed at.
-    pub target: SurfacePoint,
+    pub target: Interaction,
     /// The relay surface it lies on.
     pub surface: ShapeId,
 }
@@ -88,8 +88,8 @@ impl Laser {
         }
         let profile = match table.profile {
             _ if d == 0.0 => Profile::Ideal,
-            ProfileName::Disc => Profile::Disc { radius: 0.5 * d },
-            ProfileName::Gaussian => Profile::Gaussian { radius: 0.5 * d },
+            ProfileShape::Disc => Profile::Disc { radius: 0.5 * d },
+            ProfileShape::Gaussian => Profile::Gaussian { radius: 0.5 * d },
         };
         let position = DVec3::from_array(table.position);
         let places = spots::places(&table.spots).map_err(|f| f.within(keys!["laser", "spots"]))?;
@@ -104,7 +104,8 @@ impl Laser {
     }
 }
 
-/// Puts every (x, y) on the relay surface above or below it that shows its front to the laser: of several the nearest.
+/// Puts every (x, y) on the relay surface above or below it that shows its front to the laser: of
+/// several the nearest.
 pub(super) fn place(
     places: &[[f64; 2]],
     laser: DVec3,

@@ -1,12 +1,13 @@
-//! Floor 2: the scene. Laser and spots, camera and view, surfaces with role, shape and albedo; the TOML file that
-//! describes them, and the scenes that are built in.
+//! Floor 2: the scene. Laser and spots, camera and view, surfaces with role, shape and albedo; the
+//! TOML file that describes them, and the scenes that are built in.
 //!
-//! A [`Scene`] that exists is consistent: its spots and its view lie on relay surfaces, nothing has zero area, albedos
-//! are in \[0, 1\], no two surfaces lie in one place facing the same way, and the camera does not see a hidden face (sampled at
-//! 33 × 33 points of it). What is merely suspicious is told by [`Scene::warnings`].
+//! A [`Scene`] that exists is consistent: its spots and its view lie on relay surfaces, nothing has
+//! zero area, albedos are in \[0, 1\], no two surfaces lie in one place facing the same way, and
+//! the camera does not see a hidden face (sampled at 33 × 33 points of it). What is merely
+//! suspicious is told by [`Scene::warnings`].
 //!
-//! All lengths are in the scene's [`Unit`]. Transport does not depend on it: étendue (length²) and form factors
-//! (length⁻²) cancel, and fluxes are in W.
+//! All lengths are in the scene's [`Unit`]. Transport does not depend on it: étendue (length²) and
+//! form factors (length⁻²) cancel, and fluxes are in W.
 //!
 //! # The scene file
 //!
@@ -42,9 +43,10 @@
 //!
 //! Surfaces reflect from their front; their back is black; both sides are opaque.
 //!
-//! Numbers that would leave the range of what is computed from them are refused: coordinates beyond 10¹⁵, extents below 10⁻¹⁵ that are not 0, areas beyond
-//! the squares of these, powers outside 10⁻⁶⁰ to 10⁶⁰ W, albedos below 10⁻³⁰ that are not 0. The textures of a scene have 2²⁶ cells at most together, and
-//! the meshes that it has phicam make 20 million triangles.
+//! Numbers that would leave the range of what is computed from them are refused: coordinates beyond
+//! 10¹⁵, extents below 10⁻¹⁵ that are not 0, areas beyond the squares of these, powers outside
+//! 10⁻⁶⁰ to 10⁶⁰ W, albedos below 10⁻³⁰ that are not 0. The textures of a scene have 2²⁶ cells at
+//! most together, and the meshes that it has phicam make 20 million triangles.
 //!
 //! | `surface.mesh` | meaning |
 //! | --- | --- |
@@ -57,15 +59,18 @@
 //! | `on` | `{ surface, at = [u, v] }`: put down, as it is turned, on that place of a rectangle, disc or sphere that comes earlier in the file: its lowest point along the normal there touches, its middle is above the place |
 //! | `closed` | `true`: meant to be a closed body, so that open edges are told |
 //!
-//! Faces that are degenerate, doubled or not finite are left out, and told by `phicam scene check` with what else is odd. Surfaces that name one file share one mesh and
-//! one tree, wherever they stand (unless they are stretched). A scene reads files in its own folder and below, and in folders named with `--also-read`; a
-//! run keeps copies of them in `files/`.
+//! Faces that are degenerate, doubled or not finite are left out, and told by `phicam scene check`
+//! with what else is odd. Surfaces that name one file share one mesh and one tree, wherever they
+//! stand (unless they are stretched). A scene reads files in its own folder and below, and in
+//! folders named with `--also-read`; a run keeps copies of them in `files/`.
 //!
-//! Known answers are for tests and for checks of one's own; they change neither the light nor the scene's hash. The
-//! scenes below `scenes/known/` of the repository state theirs, with the derivation in their headers.
+//! Known answers are for tests and for checks of one's own; they change neither the light nor the
+//! scene's hash. The scenes below `scenes/known/` of the repository state theirs, with the
+//! derivation in their headers.
 //!
-//! The sensor is for `phicam expose`; it does not change the hash either, so it may be edited in the folder of a finished run. Every key
-//! is optional; without `model` the others change the ideal sensor, which then has shot noise.
+//! The sensor is for `phicam expose`; it does not change the hash either, so it may be edited in
+//! the folder of a finished run. Every key is optional; without `model` the others change the ideal
+//! sensor, which then has shot noise.
 //!
 //! | `[sensor]` | meaning |
 //! | --- | --- |
@@ -86,10 +91,12 @@
 //! | `ambient` | ambient light, W into each pixel |
 //! | `glare` | `{ fraction, spread }`: the part of the spot's light entering the lens that is scattered over the image, `"uniform"` or `{ falloff = d0 }` ∝ 1/(1 + (d/d0)²) at the distance d from the spot on the view's plane |
 //!
-//! Albedo tables: `{ checkerboard = [nu, nv], dark = …, light = … }` with cell (0, 0), at the corner, dark;
-//! `{ cells = [[…], …] }` with rows along v, each along u; `{ ramp = [start, end] }` along u; `{ image = "FILE", … }` and
-//! `{ target = "NAME", … }`, pictures. A picture's lower left corner is at (u, v) = (0, 0), so it stands upright where u runs to the
-//! right and v upwards. Its linear value x becomes the albedo `dark` + (`light` − `dark`)·x; values outside \[0, 1\] are refused.
+//! Albedo tables: `{ checkerboard = [nu, nv], dark = …, light = … }` with cell (0, 0), at the
+//! corner, dark; `{ cells = [[…], …] }` with rows along v, each along u; `{ ramp = [start, end] }`
+//! along u; `{ image = "FILE", … }` and `{ target = "NAME", … }`, pictures. A picture's lower left
+//! corner is at (u, v) = (0, 0), so it stands upright where u runs to the right and v upwards. Its
+//! linear value x becomes the albedo `dark` + (`light` − `dark`)·x; values outside \[0, 1\] are
+//! refused.
 //!
 //! | picture | meaning |
 //! | --- | --- |
@@ -102,9 +109,11 @@
 //! | `wrap` | what lies outside \[0, 1\]: `"clamp"` (default), the nearest border, or `"repeat"`, the picture again |
 //! | `dark`, `light` | albedo for 0 and 1; default 0 and 1 |
 //!
-//! `channel = "wavelength"` interpolates between red, green and blue linearly in the laser's wavelength, from 464.2 nm (blue alone) over 549.1 nm (green alone) to
-//! 611.4 nm (red alone) and level beyond: the dominant wavelengths of the sRGB primaries seen from its white D65, where the lines from white through
-//! the primaries meet the spectral locus of CIE 1931. It is a rule, not a measurement: three numbers do not say how much a pigment reflects at one wavelength.
+//! `channel = "wavelength"` interpolates between red, green and blue linearly in the laser's
+//! wavelength, from 464.2 nm (blue alone) over 549.1 nm (green alone) to 611.4 nm (red alone) and
+//! level beyond: the dominant wavelengths of the sRGB primaries seen from its white D65, where the
+//! lines from white through the primaries meet the spectral locus of CIE 1931. It is a rule, not a
+//! measurement: three numbers do not say how much a pigment reflects at one wavelength.
 //!
 //! Layouts, in the order in which they list their spots:
 //!
@@ -117,10 +126,12 @@
 //! | `random` | `centre`, `half_width`, `count`, `seed` | uniform in the square |
 //! | `list` | `points = [[x, y], …]` | as listed |
 //!
-//! A spot or view given by (x, y) lies on the relay surface straight above or below it along z: of several that show their
-//! front the spot takes the one nearest to the laser, the view the one nearest to the camera (inside a cavity, the lower point). Of a wide spot what falls beside
-//! the wall is lost. The view's plane is that relay's plane; of a curved relay it is the
-//! tangent plane at the view's centre. Pixel index = column + row·columns, columns along +x and rows along +y of the view.
+//! A spot or view given by (x, y) lies on the relay surface straight above or below it along z: of
+//! several that show their front the spot takes the one nearest to the laser, the view the one
+//! nearest to the camera (inside a cavity, the lower point). Of a wide spot what falls beside the
+//! wall is lost. The view's plane is that relay's plane; of a curved relay it is the tangent plane
+//! at the view's centre. Pixel index = column + row·columns, columns along +x and rows along +y of
+//! the view.
 
 mod body;
 mod builtin;
@@ -128,7 +139,7 @@ mod camera;
 mod check;
 mod element;
 mod error;
-mod file;
+pub mod file;
 mod files;
 mod known;
 mod laser;
@@ -141,6 +152,7 @@ pub mod spots;
 mod surface;
 pub mod target;
 mod texture;
+mod unit;
 mod variants;
 mod walls;
 mod warning;
@@ -160,57 +172,26 @@ pub use material::Material;
 pub use quantity::Quantity;
 pub use sensor::{Glare, MOST_BRACKETS, SensorModel, SensorSettings, Spread};
 pub use surface::{Division, Role, Surface};
-pub use texture::{Bilinear, Cells, Texture, Wrap};
+pub use texture::{
+    AlbedoTable, Bilinear, Cells, Filter, PictureChannel, Texture, VariedTable, Wrap,
+};
+pub use unit::Unit;
 pub use warning::Warning;
 
 use crate::geometry::{Bvh, Shape};
 use error::{Fault, keys};
-use file::{SceneFile, UnitName};
+use file::SceneFile;
 use files::Files;
 
 /// Largest number of surfaces that a path may meet.
 pub const MOST_BOUNCES: u32 = 1000;
 
-/// Largest magnitude of a coordinate: rays travel in f32, where the square of a length may not pass 3.4e38.
+/// Largest magnitude of a coordinate: rays travel in f32, where the square of a length may not pass
+/// 3.4e38.
 const FARTHEST: f64 = 1e15;
 
 /// Smallest extent: areas and their inverses stay far from the ends of f64.
 const FINEST: f64 = 1e-15;
-
-/// The length unit of a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unit {
-    /// Metre.
-    Metre,
-    /// Centimetre.
-    Centimetre,
-    /// Millimetre.
-    Millimetre,
-    /// Inch, 25.4 mm.
-    Inch,
-}
-
-impl Unit {
-    /// How many of it make an inch of 25.4 mm.
-    pub fn per_inch(self) -> f64 {
-        match self {
-            Self::Metre => 0.0254,
-            Self::Centimetre => 2.54,
-            Self::Millimetre => 25.4,
-            Self::Inch => 1.0,
-        }
-    }
-
-    /// Its symbol: m, cm, mm, in.
-    pub fn symbol(self) -> &'static str {
-        match self {
-            Self::Metre => "m",
-            Self::Centimetre => "cm",
-            Self::Millimetre => "mm",
-            Self::Inch => "in",
-        }
-    }
-}
 
 /// A checked scene.
 #[derive(Clone, Debug)]
@@ -251,7 +232,8 @@ impl Scene {
         Self::load_with(name_or_path, &[])
     }
 
-    /// The same for a scene that may read meshes, pictures and materials in the folders `also` too, not only in its own.
+    /// The same for a scene that may read meshes, pictures and materials in the folders `also` too,
+    /// not only in its own.
     ///
     /// # Errors
     /// [`SceneError`] with file, line, cause and cure.
@@ -267,7 +249,31 @@ impl Scene {
         Self::read(name_or_path, &text, Files::of(folder, also))
     }
 
-    /// A scene from the text of a scene file; `source` names it in errors. It may name no other files, for a text has no folder.
+    /// A scene made in code. Its text is `file` as TOML. Meshes, pictures and materials are read
+    /// from `folder` and below, if there is one.
+    ///
+    /// ```
+    /// use phicam::scene::{Scene, file::SceneFile};
+    ///
+    /// let mut file = SceneFile::builtin("bench").unwrap();
+    /// file.name = "coarse".to_owned();
+    /// file.camera.pixels = [8, 8];
+    /// file.laser.spots.per_side = Some(5);
+    /// let scene = Scene::new(&file, None)?;
+    /// assert_eq!((scene.camera.pixels(), scene.laser.spots.len()), (64, 20));
+    /// # Ok::<(), phicam::scene::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SceneError`] with cause and cure; its line is that of [`Scene::text`].
+    pub fn new(file: &SceneFile, folder: Option<&Path>) -> Result<Self, SceneError> {
+        let text = file.toml()?;
+        let files = folder.map_or(Files::default(), |f| Files::of(f, &[]));
+        Self::assemble(file, &text, files).map_err(|fault| parse::locate(&file.name, &text, fault))
+    }
+
+    /// A scene from the text of a scene file; `source` names it in errors. It may name no other
+    /// files, for a text has no folder.
     ///
     /// # Errors
     /// [`SceneError`] with line, cause and cure.
@@ -314,8 +320,9 @@ impl Scene {
             .clone()
             .map(SensorSettings::checked)
             .transpose()?;
-        let json = serde_json::to_vec(file)
-            .map_err(|e| Fault::new(keys![], e.to_string(), "use finite numbers only"))?;
+        let unfinite =
+            |e: serde_json::Error| Fault::new(keys![], e.to_string(), "use finite numbers only");
+        let json = serde_json::to_vec(&file.of_the_light()).map_err(unfinite)?;
         let mut digest = Sha256::new_with_prefix(json);
         for file in &files.read {
             digest.update(&file.digest);
@@ -323,12 +330,7 @@ impl Scene {
         let hash = files::hex(&digest.finalize());
         let scene = Self {
             name: file.name.clone(),
-            unit: match file.unit {
-                UnitName::M => Unit::Metre,
-                UnitName::Cm => Unit::Centimetre,
-                UnitName::Mm => Unit::Millimetre,
-                UnitName::In => Unit::Inch,
-            },
+            unit: file.unit,
             max_bounces: file.max_bounces,
             laser,
             camera,

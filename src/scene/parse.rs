@@ -20,6 +20,16 @@ pub(super) fn parse(source: &str, text: &str) -> Result<SceneFile, SceneError> {
     })
 }
 
+/// The text of a scene file; `source` names it in errors.
+pub(super) fn write(source: &str, file: &SceneFile) -> Result<String, SceneError> {
+    toml::to_string(file).map_err(|e| SceneError {
+        source: source.to_owned(),
+        place: None,
+        cause: format!("TOML cannot hold this scene: {e}"),
+        cure: "use whole numbers below 2⁶³".to_owned(),
+    })
+}
+
 /// Names the place in `text` that a fault blames: the longest part of its path that exists there.
 pub(super) fn locate(source: &str, text: &str, fault: Fault) -> SceneError {
     let place = DeTable::parse(text).ok().and_then(|document| {

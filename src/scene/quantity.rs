@@ -1,6 +1,7 @@
 //! Numbers that describe a sensor or an exposure, each with its range.
 
-/// A number that describes a sensor or an exposure: its key and its range, for scene files, command line and library alike.
+/// A number that describes a sensor or an exposure: its key and its range, for scene files, command
+/// line and library alike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(
     missing_docs,

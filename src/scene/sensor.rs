@@ -1,12 +1,15 @@
-//! The `[sensor]` table: how the clean flux is to be photographed. What it means stands on the floor of the sensor.
+//! The `[sensor]` table: how the clean flux is to be photographed. What it means stands on the
+//! floor of the sensor.
 
-use serde::Deserialize;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
 
 use super::error::{Fault, keys};
 use super::quantity::Quantity;
 
 /// A sensor that is built in.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum SensorModel {
     /// Without any noise or limit.
@@ -34,18 +37,32 @@ impl SensorModel {
     }
 }
 
+impl FromStr for SensorModel {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|m| m.name() == name);
+        found.ok_or_else(|| {
+            let names = Self::ALL.map(Self::name).join(", ");
+            format!("there is no built-in sensor `{name}`\n  cure: use one of {names}")
+        })
+    }
+}
+
 /// How scattered light is spread over the image.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(rename_all = "lowercase")]
 pub enum Spread {
     /// Every pixel gets the same.
     Uniform,
-    /// ∝ 1/(1 + (d/d0)²), d the distance from the image of the spot on the view's plane, d0 this length.
+    /// ∝ 1/(1 + (d/d0)²), d the distance from the image of the spot on the view's plane, d0 this
+    /// length.
     Falloff(f64),
 }
 
-/// Veiling glare: a part of the light that comes from the spot straight into the lens is scattered over the image.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+/// Veiling glare: a part of the light that comes from the spot straight into the lens is scattered
+/// over the image.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Glare {
     /// Part of the flux entering the lens, 0 to 1.
@@ -54,41 +71,58 @@ pub struct Glare {
     pub spread: Spread,
 }
 
-/// What a scene file says of the sensor and its exposure; `None` where it says nothing. Every value is in its [`Quantity`]'s range.
-#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+/// What a scene file says of the sensor and its exposure; `None` where it says nothing. Every value
+/// is in its [`Quantity`]'s range.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct SensorSettings {
     /// The built-in sensor that the other figures change.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub model: Option<SensorModel>,
     /// Electrons per photon.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub quantum_efficiency: Option<f64>,
     /// Electrons per second and pixel.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub dark_current: Option<f64>,
     /// Electrons a pixel can hold.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub full_well: Option<f64>,
     /// Electrons, root mean square.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub read_noise: Option<f64>,
     /// Electrons per count.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub gain: Option<f64>,
     /// Bits of the converter; 0 for none.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub bits: Option<u32>,
     /// Counts of a pixel without electrons.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub offset: Option<f64>,
     /// Standard deviation of the factor on each finished entry.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub relative_noise: Option<f64>,
     /// Whether photons and dark electrons come at random.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub shot_noise: Option<bool>,
     /// Exposure time, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub exposure: Option<f64>,
     /// Frames averaged.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub frames: Option<u32>,
     /// Frames without laser, averaged and subtracted.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub dark_frames: Option<u32>,
     /// Exposure times in place of one, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub brackets: Option<Vec<f64>>,
     /// Ambient light, W into each pixel.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub ambient: Option<f64>,
     /// Veiling glare.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub glare: Option<Glare>,
 }
 
@@ -96,7 +130,8 @@ pub struct SensorSettings {
 pub const MOST_BRACKETS: usize = 16;
 
 impl SensorSettings {
-    /// Checks every value; `None` if all make sense, else the keys to blame below the table, cause and cure.
+    /// Checks every value; `None` if all make sense, else the keys to blame below the table, cause
+    /// and cure.
     fn fault(&self) -> Option<Fault> {
         let number = |quantity: Quantity, value: Option<f64>| Some((quantity, value?));
         let whole = |quantity, value: Option<u32>| number(quantity, value.map(f64::from));

@@ -3,7 +3,7 @@
 //! The order in which a layout lists its spots is the spot index everywhere.
 
 use super::error::{Fault, keys};
-use super::file::{LayoutName, LineTable, SpotsTable};
+use super::file::{Layout, LineTable, SpotsTable};
 use crate::num::stream::{Key, Sampling, Stream};
 
 /// More spots than this are taken for a mistake.
@@ -13,7 +13,7 @@ const MOST: u64 = 100_000;
 pub(super) fn places(table: &SpotsTable) -> Result<Vec<[f64; 2]>, Fault> {
     refuse_foreign_keys(table)?;
     let places = match table.layout {
-        LayoutName::Square => {
+        Layout::Square => {
             let stagger = table.stagger.as_deref().unwrap_or(&[]);
             square(
                 centre(table)?,
@@ -22,24 +22,24 @@ pub(super) fn places(table: &SpotsTable) -> Result<Vec<[f64; 2]>, Fault> {
                 stagger,
             )
         }
-        LayoutName::Grid => grid(centre(table)?, half_width(table)?, per_side(table)?),
-        LayoutName::Ring => ring(
+        Layout::Grid => grid(centre(table)?, half_width(table)?, per_side(table)?),
+        Layout::Ring => ring(
             centre(table)?,
             positive("radius", needed("radius", table.radius)?)?,
             at_least("count", needed("count", table.count)?, 1)?,
             table.start_angle.unwrap_or(0.0),
         ),
-        LayoutName::Random => random(
+        Layout::Random => random(
             centre(table)?,
             half_width(table)?,
             at_least("count", needed("count", table.count)?, 1)?,
             needed("seed", table.seed)?,
         ),
-        LayoutName::Lines => {
+        Layout::Lines => {
             let table_lines = table.lines.as_deref().unwrap_or(&[]);
             lines(table_lines, table.stagger.as_deref().unwrap_or(&[]))?
         }
-        LayoutName::List => table.points.clone().unwrap_or_default(),
+        Layout::List => table.points.clone().unwrap_or_default(),
     };
     if places.len() as u64 > MOST {
         return Err(too_many(places.len() as u64));
@@ -64,9 +64,9 @@ pub(super) fn places(table: &SpotsTable) -> Result<Vec<[f64; 2]>, Fault> {
     }
 }
 
-/// Sides of a square in turn: bottom by growing x, right by growing y, top by falling x, left by falling y; `n` spots
-/// each, both ends included, corners repeated. Offset k mod m of `stagger` is added to the y of bottom and top and
-/// to the x of left and right.
+/// Sides of a square in turn: bottom by growing x, right by growing y, top by falling x, left by
+/// falling y; `n` spots each, both ends included, corners repeated. Offset k mod m of `stagger` is
+/// added to the y of bottom and top and to the x of left and right.
 pub fn square([cx, cy]: [f64; 2], half: f64, n: u32, stagger: &[f64]) -> Vec<[f64; 2]> {
     let step = |k: u32| 2.0 * half * f64::from(k) / f64::from(n - 1) - half;
     let offset = |k: u32| {
@@ -107,7 +107,8 @@ pub fn ring([cx, cy]: [f64; 2], radius: f64, count: u32, start: f64) -> Vec<[f64
 
 /// Independent uniform places in a square.
 pub fn random([cx, cy]: [f64; 2], half: f64, count: u32, seed: u64) -> Vec<[f64; 2]> {
-    // No pixel has this index: the places are independent of every path of a render with the same seed.
+    // No pixel has this index: the places are independent of every path of a render with the same
+    // seed.
     let key = Key {
         seed,
         spot: Key::ALL_SPOTS,
@@ -126,8 +127,8 @@ pub fn random([cx, cy]: [f64; 2], half: f64, count: u32, seed: u64) -> Vec<[f64;
         .collect()
 }
 
-/// Lines one after the other, each from its first to its last spot. Offset k mod m of `stagger` moves spot k of a line
-/// to its left.
+/// Lines one after the other, each from its first to its last spot. Offset k mod m of `stagger`
+/// moves spot k of a line to its left.
 fn lines(lines: &[LineTable], stagger: &[f64]) -> Result<Vec<[f64; 2]>, Fault> {
     let mut places = Vec::new();
     for (i, line) in lines.iter().enumerate() {
@@ -188,7 +189,7 @@ fn half_width(table: &SpotsTable) -> Result<f64, Fault> {
 
 fn per_side(table: &SpotsTable) -> Result<u32, Fault> {
     let n = at_least("per_side", needed("per_side", table.per_side)?, 2)?;
-    let total = if table.layout == LayoutName::Grid {
+    let total = if table.layout == Layout::Grid {
         u64::from(n) * u64::from(n)
     } else {
         4 * u64::from(n)
@@ -220,8 +221,8 @@ fn at_least(key: &'static str, n: u32, least: u32) -> Result<u32, Fault> {
 
 /// A key that this layout would ignore is an error: it shows that something else was meant.
 fn refuse_foreign_keys(table: &SpotsTable) -> Result<(), Fault> {
-    use LayoutName::{Grid, Lines, List, Random, Ring, Square};
-    let given: [(&'static str, bool, &[LayoutName]); 10] = [
+    use Layout::{Grid, Lines, List, Random, Ring, Square};
+    let given: [(&'static str, bool, &[Layout]); 10] = [
         (
             "centre",
             table.centre.is_some(),

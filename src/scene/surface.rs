@@ -5,13 +5,16 @@ mod table;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::material::Material;
 use super::texture::Texture;
-use crate::geometry::{Basis, DVec3, Shape, SurfacePoint};
+use crate::geometry::{Basis, DVec3, Interaction, Shape};
 pub(super) use table::from_tables;
 
 /// What a surface is there for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
 pub enum Role {
     /// The wall: takes the laser spots (S1) and is what the camera sees (S3).
     Relay,
@@ -34,7 +37,8 @@ pub struct Surface {
     pub material: Material,
     /// Its albedo, or what the material makes of that number.
     pub albedo: Texture,
-    /// Elements along u and v into which the matrix model divides it (of triangles: all of them, and 1); \[0, 0\] unless hidden.
+    /// Elements along u and v into which the matrix model divides it (of triangles: all of them,
+    /// and 1); \[0, 0\] unless hidden.
     pub elements: [usize; 2],
     /// What the elements are.
     pub division: Division,
@@ -50,8 +54,9 @@ pub enum Division {
 }
 
 impl Surface {
-    /// f_r, sr⁻¹, at a point of the surface where its texture has the value `albedo` and its front the normal `normal`, between two unit
-    /// vectors that point away from it; 0 unless both are on the front.
+    /// f_r, sr⁻¹, at a point of the surface where its texture has the value `albedo` and its front
+    /// the normal `normal`, between two unit vectors that point away from it; 0 unless both are on
+    /// the front.
     pub fn brdf(&self, albedo: f64, normal: DVec3, incident: DVec3, exitant: DVec3) -> f64 {
         let basis = Basis::around(normal);
         self.material
@@ -63,10 +68,11 @@ impl Surface {
         self.material.is_lambertian()
     }
 
-    /// The Lambertian surface in its place that reflects as much of light that comes evenly from everywhere: its albedo is the material's white-sky
-    /// albedo at each value of the texture (between the texels of a bilinear picture, and along a ramp, interpolated). What the matrix model takes
-    /// for the hidden surface.
-    pub fn matt(&self) -> Cow<'_, Self> {
+    /// The Lambertian surface in its place that reflects as much of light that comes evenly from
+    /// everywhere: its albedo is the material's white-sky albedo at each value of the texture
+    /// (between the texels of a bilinear picture, and along a ramp, interpolated). What the matrix
+    /// model takes for the hidden surface.
+    pub fn lambertian_equivalent(&self) -> Cow<'_, Self> {
         if self.is_lambertian() {
             return Cow::Borrowed(self);
         }
@@ -88,20 +94,22 @@ impl Surface {
         self.material.is_black(self.albedo.largest())
     }
 
-    /// Cells along u and v within which the albedo is smooth; a mesh, whose texture knows nothing of the equal-area map, is one.
+    /// Cells along u and v within which the albedo is smooth; a mesh, whose texture knows nothing
+    /// of the equal-area map, is one.
     pub fn smooth_cells(&self) -> [usize; 2] {
         match self.shape {
-            Shape::Body(_) => [1, 1],
+            Shape::Instance(_) => [1, 1],
             _ => self.albedo.smooth_cells(),
         }
     }
 
-    /// About how much of the light cell iu + iv·nu of [`Surface::smooth_cells`] reflects: 0 where, and only where, it is black.
+    /// About how much of the light cell iu + iv·nu of [`Surface::smooth_cells`] reflects: 0 where,
+    /// and only where, it is black.
     pub fn cell_weight(&self, cell: usize) -> f64 {
         /// What is sampled of a surface that reflects though its texture is black there.
         const LEAST: f64 = 0.05;
         let mean = match self.shape {
-            Shape::Body(_) => self.albedo.largest(),
+            Shape::Instance(_) => self.albedo.largest(),
             _ => self.albedo.cell_mean(cell),
         };
         if self.material.is_lambertian() {
@@ -113,8 +121,9 @@ impl Surface {
         }
     }
 
-    /// The point above or below (x, y) that shows its front to `device`; of a sphere's two the lower one.
-    pub(super) fn facing_at_xy(&self, x: f64, y: f64, device: DVec3) -> Option<SurfacePoint> {
+    /// The point above or below (x, y) that shows its front to `device`; of a sphere's two the
+    /// lower one.
+    pub(super) fn facing_at_xy(&self, x: f64, y: f64, device: DVec3) -> Option<Interaction> {
         let mut points = self.shape.at_xy(x, y).into_iter();
         points.find(|p| (device - p.position).dot(p.normal) > 0.0)
     }

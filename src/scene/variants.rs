@@ -1,4 +1,5 @@
-//! Scenes that differ from a given one in a single respect, for studies. Their hash and text remain the original's.
+//! Scenes that differ from a given one in a single respect, for studies. Their hash and text remain
+//! the original's.
 
 use glam::DAffine3;
 
@@ -60,8 +61,8 @@ impl Scene {
         scene
     }
 
-    /// The same scene with each hidden surface a checkerboard of `checks` × `checks` checks of albedo 0 and 1, the one at its
-    /// corner dark.
+    /// The same scene with each hidden surface a checkerboard of `checks` × `checks` checks of
+    /// albedo 0 and 1, the one at its corner dark.
     pub fn with_checkerboard(&self, checks: usize) -> Self {
         let mut scene = self.clone();
         let check = |i: usize| f64::from(u8::from((i % checks + i / checks) % 2 == 1));
@@ -76,8 +77,8 @@ impl Scene {
         scene
     }
 
-    /// The same scene with each flat relay surface reaching further by `margin` on all four sides. An albedo that varies over it becomes its mean,
-    /// for the cells would be elsewhere.
+    /// The same scene with each flat relay surface reaching further by `margin` on all four sides.
+    /// An albedo that varies over it becomes its mean, for the cells would be elsewhere.
     ///
     /// # Errors
     /// [`SceneError`] if that leaves no proper shape.
@@ -135,8 +136,9 @@ impl Scene {
         scene
     }
 
-    /// The same scene with each flat relay bent to a sphere that touches it at its centre and stands off by `sagitta` (towards
-    /// the front) at half its longer edge: R = D²/(8·sagitta). Spots stay at their (x, y).
+    /// The same scene with each flat relay bent to a sphere that touches it at its centre and
+    /// stands off by `sagitta` (towards the front) at half its longer edge: R = D²/(8·sagitta).
+    /// Spots stay at their (x, y).
     ///
     /// # Errors
     /// [`SceneError`] if a spot is not on the bent wall.

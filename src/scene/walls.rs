@@ -1,5 +1,5 @@
-//! Scenes whose surfaces reflect in another way than those of a given one: what somebody assumes who does not know their BRDF. Their hash and text
-//! remain the original's.
+//! Scenes whose surfaces reflect in another way than those of a given one: what somebody assumes
+//! who does not know their BRDF. Their hash and text remain the original's.
 
 use super::{Material, Role, Scene, Surface};
 
@@ -10,25 +10,27 @@ impl Scene {
         relays.all(Surface::is_lambertian)
     }
 
-    /// The same scene with each relay surface Lambertian and of the same white-sky albedo ([`Surface::matt`]).
+    /// The same scene with each relay surface Lambertian and of the same white-sky albedo
+    /// ([`Surface::lambertian_equivalent`]).
     pub fn with_lambertian_relay(&self) -> Self {
         self.with_matt(Role::Relay)
     }
 
-    /// The same scene with each hidden surface Lambertian and of the same white-sky albedo ([`Surface::matt`]): what the matrix model takes
-    /// it for.
+    /// The same scene with each hidden surface Lambertian and of the same white-sky albedo
+    /// ([`Surface::lambertian_equivalent`]): what the matrix model takes it for.
     pub fn with_lambertian_hidden(&self) -> Self {
         self.with_matt(Role::Hidden)
     }
 
-    /// The same scene with `factor` times the roughness of each relay surface that has one ([`Material::with_roughness_times`]). `None` where none
-    /// has, or one leaves its range.
+    /// The same scene with `factor` times the roughness of each relay surface that has one
+    /// ([`Material::with_roughness_times`]). `None` where none has, or one leaves its range.
     pub fn with_relay_roughness_times(&self, factor: f64) -> Option<Self> {
         self.with_relays(Material::has_roughness, |m| m.with_roughness_times(factor))
     }
 
-    /// The same scene with the refractive index of each relay surface's coat off: 1 + `factor`·(n − 1) ([`Material::with_contrast_times`]).
-    /// `None` where none is coated, or an index leaves its range.
+    /// The same scene with the refractive index of each relay surface's coat off: 1 + `factor`·(n
+    /// − 1) ([`Material::with_contrast_times`]). `None` where none is coated, or an index leaves
+    /// its range.
     pub fn with_relay_contrast_times(&self, factor: f64) -> Option<Self> {
         self.with_relays(Material::has_coat, |m| m.with_contrast_times(factor))
     }
@@ -36,13 +38,14 @@ impl Scene {
     fn with_matt(&self, role: Role) -> Self {
         let mut scene = self.clone();
         for surface in scene.surfaces.iter_mut().filter(|s| s.role == role) {
-            let matt = surface.matt().into_owned();
+            let matt = surface.lambertian_equivalent().into_owned();
             *surface = matt;
         }
         scene
     }
 
-    /// The same scene with the materials of those relay surfaces changed that `concerned` picks; `None` where it picks none, or one cannot be changed.
+    /// The same scene with the materials of those relay surfaces changed that `concerned` picks;
+    /// `None` where it picks none, or one cannot be changed.
     fn with_relays(
         &self,
         concerned: impl Fn(&Material) -> bool,
@@ -68,8 +71,10 @@ mod tests {
         Scene::load("satin").unwrap()
     }
 
-    /// Its only surface that is not Lambertian is the wall. Below a smooth coat of index 1.5 a ground of ρ = 0.8 reflects R_e + (1 − R_e)(1 − R_i) ρ/(1 − ρ R_i)
-    /// of light from everywhere, 0.653 with R_e = 0.0918 and R_i = 0.5963; below a rough one less, for what meets a second facet is lost.
+    /// Its only surface that is not Lambertian is the wall. Below a smooth coat of index 1.5 a
+    /// ground of ρ = 0.8 reflects R_e + (1 − R_e)(1 − R_i) ρ/(1 − ρ R_i) of light from everywhere,
+    /// 0.653 with R_e = 0.0918 and R_i = 0.5963; below a rough one less, for what meets a second
+    /// facet is lost.
     #[test]
     fn a_lambertian_wall_reflects_as_much() {
         let satin = satin();

@@ -1,4 +1,5 @@
-//! Built-in sensors. Where their figures come from stands in `builtin.md`, which is part of this floor's documentation.
+//! Built-in sensors. Where their figures come from stands in `builtin.md`, which is part of this
+//! floor's documentation.
 
 use super::figures::{Figures, Sensor, ShotNoise};
 use crate::scene::SensorModel;

@@ -84,14 +84,13 @@ pub enum SensorError {
     },
 }
 
-/// Refuses a value out of its quantity's range.
-pub(super) fn check(quantity: Quantity, value: f64) -> Result<(), SensorError> {
-    match quantity.refuses(value) {
-        None => Ok(()),
-        Some(range) => Err(SensorError::Figure {
-            key: quantity.key(),
-            value,
-            range,
-        }),
+/// Refuses the first value that is out of its quantity's range.
+pub(super) fn check(given: impl IntoIterator<Item = (Quantity, f64)>) -> Result<(), SensorError> {
+    for (quantity, value) in given {
+        if let Some(range) = quantity.refuses(value) {
+            let key = quantity.key();
+            return Err(SensorError::Figure { key, value, range });
+        }
     }
+    Ok(())
 }

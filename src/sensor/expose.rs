@@ -21,7 +21,8 @@ pub enum Range {
     Within,
     /// The full well or the highest count was reached in a frame: the value is too low.
     Saturated,
-    /// The converter cut off counts below 0 in a frame: the value is too high. A larger offset prevents it.
+    /// The converter cut off counts below 0 in a frame: the value is too high. A larger offset
+    /// prevents it.
     Floored,
 }
 
@@ -30,7 +31,8 @@ pub enum Range {
 pub struct Exposed {
     /// Linearised flux, pixels × spots, W.
     pub flux: Matrix,
-    /// Its standard deviation by the law of the exposure that was used, W; that of a saturated entry means nothing.
+    /// Its standard deviation by the law of the exposure that was used, W; that of a saturated
+    /// entry means nothing.
     pub stderr: Matrix,
     /// Mean counts over the frames, pixels × spots, for each exposure time, the longest first.
     pub counts: Vec<Matrix>,
@@ -56,18 +58,21 @@ struct Reading {
 
 /// A column of [`Exposed`].
 struct Column {
+    /// Flux, its standard deviation, exposure and range of each pixel.
     entries: Vec<(f64, f64, usize, Range)>,
+    /// Mean counts of each exposure time.
     counts: Vec<Vec<f64>>,
 }
 
 impl Sensor {
     /// Photographs `light`. The same seed gives the same bits, whatever the threads.
     ///
-    /// Each frame of each entry has random numbers of its own; the frames without laser are taken once for each pixel and serve all spots, so that
-    /// their error is common to a row.
+    /// Each frame of each entry has random numbers of its own; the frames without laser are taken
+    /// once for each pixel and serve all spots, so that their error is common to a row.
     ///
     /// # Errors
-    /// [`SensorError::Overflow`] where there are more electrons than a number holds, [`SensorError::Unbounded`] where what comes out is infinite.
+    /// [`SensorError::Overflow`] where there are more electrons than a number holds,
+    /// [`SensorError::Unbounded`] where what comes out is infinite.
     pub fn expose(
         &self,
         light: &Light<'_>,
@@ -76,7 +81,10 @@ impl Sensor {
     ) -> Result<Exposed, SensorError> {
         let (pixels, spots) = light.shape();
         let laws = Law::of(self.figures(), light, exposure);
-        refuse_overflow(light, &laws, exposure)?;
+        if !laws[0].electrons(light.brightest()).is_finite() {
+            let time = exposure.times()[0];
+            return Err(SensorError::Overflow { time });
+        }
         let chain = Chain {
             figures: self.figures(),
             exposure,
@@ -106,34 +114,18 @@ impl Sensor {
     }
 }
 
-fn refuse_overflow(
-    light: &Light<'_>,
-    laws: &[Law],
-    exposure: &Exposure,
-) -> Result<(), SensorError> {
-    let (pixels, spots) = light.shape();
-    let mut entries = (0..spots).flat_map(|s| (0..pixels).map(move |p| (s, p)));
-    let bounded = |(spot, pixel)| laws[0].electrons(light.of_laser(pixel, spot)).is_finite();
-    match entries.all(bounded) {
-        true => Ok(()),
-        false => Err(SensorError::Overflow {
-            time: exposure.times()[0],
-        }),
-    }
-}
-
 fn refuse_infinities(exposed: Exposed) -> Result<Exposed, SensorError> {
     let pixels = exposed.flux.nrows();
     let mut entries = exposed.flux.iter().zip(&exposed.stderr);
-    match entries.position(|(x, s)| !(x.is_finite() && s.is_finite())) {
-        None => Ok(exposed),
-        Some(at) => Err(SensorError::Unbounded {
-            pixel: at % pixels,
-            spot: at / pixels,
-            flux: exposed.flux[at],
-            stderr: exposed.stderr[at],
-        }),
-    }
+    let Some(at) = entries.position(|(x, s)| !(x.is_finite() && s.is_finite())) else {
+        return Ok(exposed);
+    };
+    Err(SensorError::Unbounded {
+        pixel: at % pixels,
+        spot: at / pixels,
+        flux: exposed.flux[at],
+        stderr: exposed.stderr[at],
+    })
 }
 
 /// A sensor at work.
@@ -170,7 +162,8 @@ impl Chain<'_> {
         column
     }
 
-    /// Linearises the longest exposure that is not saturated: value, standard deviation, exposure, range.
+    /// Linearises the longest exposure that is not saturated: value, standard deviation, exposure,
+    /// range.
     fn entry(
         &self,
         flux: f64,
@@ -196,7 +189,8 @@ impl Chain<'_> {
         (value, law.deviation(flux), k, range(k))
     }
 
-    /// The frames of a pixel without laser, for each exposure time; the offset where there are none.
+    /// The frames of a pixel without laser, for each exposure time; the offset where there are
+    /// none.
     fn dark(&self, pixel: usize) -> Vec<Reading> {
         let frames = self.exposure.dark_frames();
         let none = Reading {
@@ -243,12 +237,15 @@ impl Chain<'_> {
         };
         let analog = (kept + noise) / figures.gain + figures.offset;
         if figures.bits.is_none() {
-            let range = if electrons > kept {
-                Range::Saturated
-            } else {
-                Range::Within
-            };
-            return (analog, range);
+            let full = electrons > kept;
+            return (
+                analog,
+                if full {
+                    Range::Saturated
+                } else {
+                    Range::Within
+                },
+            );
         }
         let rounded = analog.round();
         let top = figures.top();

@@ -50,25 +50,25 @@ impl<'a> Light<'a> {
         })
     }
 
-    /// With ambient light, W into each pixel, as if of the laser's wavelength. It is there without the laser too.
+    /// With ambient light, W into each pixel, as if of the laser's wavelength. It is there without
+    /// the laser too.
     ///
     /// # Errors
     /// [`SensorError::Figure`].
     pub fn with_ambient(self, ambient: f64) -> Result<Self, SensorError> {
-        check(Quantity::Ambient, ambient)?;
+        check([(Quantity::Ambient, ambient)])?;
         Ok(Self { ambient, ..self })
     }
 
     fn refuse(flux: &Matrix) -> Result<(), SensorError> {
         let wrong = flux.iter().position(|x| !(*x >= 0.0 && x.is_finite()));
-        match wrong {
-            None => Ok(()),
-            Some(at) => Err(SensorError::Flux {
+        wrong.map_or(Ok(()), |at| {
+            Err(SensorError::Flux {
                 pixel: at % flux.nrows(),
                 spot: at / flux.nrows(),
                 value: flux[at],
-            }),
-        }
+            })
+        })
     }
 
     /// Pixels and spots.
@@ -84,6 +84,15 @@ impl<'a> Light<'a> {
     /// Signal and glare: what is there with the laser only, W.
     pub(super) fn of_laser(&self, pixel: usize, spot: usize) -> f64 {
         self.signal(pixel, spot) + self.glare.map_or(0.0, |g| g[(pixel, spot)])
+    }
+
+    /// The most that is there with the laser only, W.
+    pub(super) fn brightest(&self) -> f64 {
+        let (pixels, spots) = self.shape();
+        let entries = (0..spots).flat_map(|spot| (0..pixels).map(move |pixel| (pixel, spot)));
+        entries
+            .map(|(pixel, spot)| self.of_laser(pixel, spot))
+            .fold(0.0, f64::max)
     }
 
     /// What is there without the laser, W into each pixel.
@@ -106,22 +115,23 @@ pub struct Exposure {
 }
 
 impl Exposure {
-    /// `frames` frames of each of the exposure times (s), and as many times `dark_frames` without the laser.
+    /// `frames` frames of each of the exposure times (s), and as many times `dark_frames` without
+    /// the laser.
     ///
     /// # Errors
     /// [`SensorError::NoTime`], [`SensorError::ManyTimes`], [`SensorError::Figure`].
     pub fn new(times: &[f64], frames: u32, dark_frames: u32) -> Result<Self, SensorError> {
-        if times.is_empty() {
-            return Err(SensorError::NoTime);
+        match times.len() {
+            0 => return Err(SensorError::NoTime),
+            1..=MOST_BRACKETS => {}
+            many => return Err(SensorError::ManyTimes(many)),
         }
-        if times.len() > MOST_BRACKETS {
-            return Err(SensorError::ManyTimes(times.len()));
-        }
-        for time in times {
-            check(Quantity::Exposure, *time)?;
-        }
-        check(Quantity::Frames, f64::from(frames))?;
-        check(Quantity::DarkFrames, f64::from(dark_frames))?;
+        let figures = [
+            (Quantity::Frames, f64::from(frames)),
+            (Quantity::DarkFrames, f64::from(dark_frames)),
+        ];
+        let exposures = times.iter().map(|time| (Quantity::Exposure, *time));
+        check(exposures.chain(figures))?;
         let mut times = times.to_vec();
         times.sort_by(|a, b| b.total_cmp(a));
         Ok(Self {

@@ -69,7 +69,7 @@ impl Sensor {
     /// # Errors
     /// [`SensorError::Figure`], [`SensorError::Offset`].
     pub fn new(figures: Figures) -> Result<Self, SensorError> {
-        for (quantity, value) in [
+        check([
             (Quantity::QuantumEfficiency, figures.quantum_efficiency),
             (Quantity::DarkCurrent, figures.dark_current),
             (Quantity::FullWell, figures.full_well),
@@ -78,9 +78,7 @@ impl Sensor {
             (Quantity::Bits, f64::from(figures.bits.unwrap_or(0))),
             (Quantity::Offset, figures.offset),
             (Quantity::RelativeNoise, figures.relative_noise),
-        ] {
-            check(quantity, value)?;
-        }
+        ])?;
         let figures = Figures {
             bits: figures.bits.filter(|bits| *bits > 0),
             ..figures

@@ -3,14 +3,16 @@
 use super::figures::Sensor;
 use crate::num::units::photon_energy;
 
-/// A photograph of the longest bearable exposure fills the fullest pixel to this share of what it holds.
+/// A photograph of the longest bearable exposure fills the fullest pixel to this share of what it
+/// holds.
 const FILLED: f64 = 0.5;
 /// Exposure of a sensor without limits, s.
 const UNLIMITED: f64 = 1.0;
 
 impl Sensor {
-    /// The exposure, s, after which the mean signal of a pixel of flux `brightest` (W, light of `wavelength` in m) is what well or converter hold:
-    /// min(full well, (top − offset)·K)/(ηΦλ/hc + D). Infinite without limits, or without light and dark current.
+    /// The exposure, s, after which the mean signal of a pixel of flux `brightest` (W, light of
+    /// `wavelength` in m) is what well or converter hold: min(full well, (top −
+    /// offset)·K)/(ηΦλ/hc + D). Infinite without limits, or without light and dark current.
     pub fn saturating_exposure(&self, brightest: f64, wavelength: f64) -> f64 {
         let figures = self.figures();
         let most = figures
@@ -20,7 +22,8 @@ impl Sensor {
         most / (figures.quantum_efficiency * photons + figures.dark_current)
     }
 
-    /// Half of [`Sensor::saturating_exposure`], so that noise saturates no pixel; 1 s where that is infinite.
+    /// Half of [`Sensor::saturating_exposure`], so that noise saturates no pixel; 1 s where that is
+    /// infinite.
     pub fn longest_exposure(&self, brightest: f64, wavelength: f64) -> f64 {
         match self.saturating_exposure(brightest, wavelength) {
             most if most.is_finite() => FILLED * most,
@@ -36,7 +39,8 @@ mod tests {
     use crate::scene::SensorModel;
     use crate::sensor::{Exposure, Light};
 
-    /// Of every built-in sensor with limits: the electrons that the law of an exposure expects are half of what well or converter hold.
+    /// Of every built-in sensor with limits: the electrons that the law of an exposure expects are
+    /// half of what well or converter hold.
     #[test]
     fn the_longest_exposure_fills_the_brightest_pixel_half() {
         let flux = Matrix::from_row_slice(1, 2, &[3e-15, 7e-15]);

@@ -7,28 +7,32 @@ use crate::scene::{Glare, Scene, Spread};
 /// A lit point: place, front normal, albedo, surface.
 type Lit = (DVec3, DVec3, f64, ShapeId);
 
-/// Flux that enters the lens straight from each spot, W, whether the camera has the spot in view or not:
+/// Flux that enters the lens straight from each spot, W, whether the camera has the spot in view or
+/// not:
 ///
 /// > Φ_lens\[l\] = Φlaser · (ρ1/π) · cosθ_spot · cosθ_lens · A_lens / R²
 ///
-/// R between the spot and the pinhole, θ_lens against the view's normal. A wide spot is taken at its centre. 0 where something stands between,
-/// where the beam meets a back, or where the lens looks away.
+/// R between the spot and the pinhole, θ_lens against the view's normal. A wide spot is taken at
+/// its centre. 0 where something stands between, where the beam meets a back, or where the lens
+/// looks away.
 pub fn entering_lens(scene: &Scene) -> Vec<f64> {
     (0..scene.laser.spots.len())
         .map(|spot| lit(scene, spot).map_or(0.0, |lit| enters(scene, &lit)))
         .collect()
 }
 
-/// Scattered flux into every pixel for every spot, W (pixels × spots): a column sums to fraction · Φ_lens\[l\] ([`entering_lens`]), shared out
+/// Scattered flux into every pixel for every spot, W (pixels × spots): a column sums to fraction ·
+/// Φ_lens\[l\] ([`entering_lens`]), shared out
 ///
 /// > evenly, or as w = 1/(1 + (d/d0)²),
 ///
-/// d the distance, on the view's plane, between the pixel's centre and the image of the spot: where the line from the pinhole through
-/// the spot meets that plane. Only the spot's own light is scattered, not the glow of the wall.
+/// d the distance, on the view's plane, between the pixel's centre and the image of the spot: where
+/// the line from the pinhole through the spot meets that plane. Only the spot's own light is
+/// scattered, not the glow of the wall.
 pub fn glare(scene: &Scene, glare: Glare) -> Matrix {
     let pixels = scene.camera.pixels();
     let mut scattered = Matrix::zeros(pixels, scene.laser.spots.len());
-    for spot in 0..scene.laser.spots.len() {
+    for (spot, mut column) in scattered.column_iter_mut().enumerate() {
         let Some(lit) = lit(scene, spot) else {
             continue;
         };
@@ -39,13 +43,14 @@ pub fn glare(scene: &Scene, glare: Glare) -> Matrix {
         let weights = weights(scene, lit.0, glare.spread);
         let total: f64 = weights.iter().sum();
         for (pixel, weight) in weights.iter().enumerate() {
-            scattered[(pixel, spot)] = all * weight / total;
+            column[pixel] = all * weight / total;
         }
     }
     scattered
 }
 
-/// Glare as a multiple of the signal: ΣΦ_glare/ΣΦ over all pixels and spots. Proportional to the fraction that is scattered.
+/// Glare as a multiple of the signal: ΣΦ_glare/ΣΦ over all pixels and spots. Proportional to the
+/// fraction that is scattered.
 pub fn glare_to_signal(glare: &Matrix, signal: &Matrix) -> f64 {
     glare.sum() / signal.sum()
 }

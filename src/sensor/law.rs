@@ -20,8 +20,9 @@ pub struct Expected {
 }
 
 impl Sensor {
-    /// Mean and standard deviation of every entry (pixels × spots) if each is taken from the longest exposure that does not saturate on average; where
-    /// all do, the shortest as if it did not. Entry (pixel, spot) of `bracket` stands at pixel + spot·pixels.
+    /// Mean and standard deviation of every entry (pixels × spots) if each is taken from the
+    /// longest exposure that does not saturate on average; where all do, the shortest as if it did
+    /// not. Entry (pixel, spot) of `bracket` stands at pixel + spot·pixels.
     pub fn expected(&self, light: &Light<'_>, exposure: &Exposure) -> Expected {
         let laws = Law::of(self.figures(), light, exposure);
         let (pixels, spots) = light.shape();
@@ -107,23 +108,24 @@ impl Law {
 
     /// The variance that the dark frames bring in, W²: one error for all spots of a pixel.
     pub(super) fn common(&self) -> f64 {
-        match self.dark_frames {
-            0 => 0.0,
-            frames => self.averaged(self.dark, frames) / (self.response * self.response),
-        }
+        self.averaged_dark() / (self.response * self.response)
     }
 
     /// Standard deviation of the linearised flux, W.
     pub(super) fn deviation(&self, flux: f64) -> f64 {
-        let dark = match self.dark_frames {
-            0 => 0.0,
-            frames => self.averaged(self.dark, frames),
-        };
-        let electrons = self.averaged(self.electrons(flux), self.frames) + dark;
+        let electrons = self.averaged(self.electrons(flux), self.frames) + self.averaged_dark();
         let variance = electrons / (self.response * self.response);
         let relative = self.figures.relative_noise * self.figures.relative_noise;
         let mean = self.mean(flux);
         (variance * (1.0 + relative) + relative * mean * mean).sqrt()
+    }
+
+    /// Variance of the mean of the dark frames, electrons²; 0 without any.
+    fn averaged_dark(&self) -> f64 {
+        match self.dark_frames {
+            0 => 0.0,
+            frames => self.averaged(self.dark, frames),
+        }
     }
 
     /// Variance of the mean over `frames` frames of `mean` electrons, electrons².
@@ -146,8 +148,9 @@ impl Law {
     }
 }
 
-/// Of the rounding of numbers with the variance `v` (in steps²) the part that is the same in every repetition: the variance, over the
-/// places that the mean can take between two steps, of the mean of the rounded numbers. For normal numbers
+/// Of the rounding of numbers with the variance `v` (in steps²) the part that is the same in every
+/// repetition: the variance, over the places that the mean can take between two steps, of the mean
+/// of the rounded numbers. For normal numbers
 ///
 /// > B = (1/2π²) Σ_{k≥1} e^{−4π²k²v}/k²,
 ///
@@ -172,7 +175,8 @@ fn common_rounding(v: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Against brute force: the mean of ⌊x + m⌉ − m, x normal, squared and averaged over m in [0, 1).
+    /// Against brute force: the mean of ⌊x + m⌉ − m, x normal, squared and averaged over m in [0,
+    /// 1).
     #[test]
     fn rounding_has_a_part_that_averaging_does_not_remove() {
         let phi = |z: f64| 0.5 * libm::erfc(-z / std::f64::consts::SQRT_2);

@@ -6,8 +6,9 @@ use super::figures::{Figures, Sensor, ShotNoise};
 use crate::scene::SensorSettings;
 
 impl Sensor {
-    /// The sensor of a scene's settings: the built-in one, with the figures that are given in place of its own. Without a model the
-    /// others are those of the ideal sensor, but for shot noise, which it then has.
+    /// The sensor of a scene's settings: the built-in one, with the figures that are given in place
+    /// of its own. Without a model the others are those of the ideal sensor, but for shot noise,
+    /// which it then has.
     ///
     /// # Errors
     /// [`SensorError::Figure`], [`SensorError::Offset`].

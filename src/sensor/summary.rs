@@ -22,11 +22,14 @@ pub struct Summary {
     pub floored: usize,
     /// Entries taken from each exposure time, the longest first.
     pub taken: Vec<usize>,
-    /// Dark current and ambient light that stay in every entry because no dark frames were subtracted, W.
+    /// Dark current and ambient light that stay in every entry because no dark frames were
+    /// subtracted, W.
     pub pedestal: f64,
-    /// Part of the variance that comes from the dark frames, mean over the entries: an error that all spots of a pixel have in common.
+    /// Part of the variance that comes from the dark frames, mean over the entries: an error that
+    /// all spots of a pixel have in common.
     pub common: f64,
-    /// Signal (the clean flux) over standard deviation, mean over the entries within range; `None` without such entries or without noise.
+    /// Signal (the clean flux) over standard deviation, mean over the entries within range; `None`
+    /// without such entries or without noise.
     pub snr_mean: Option<f64>,
     /// The largest of them.
     pub snr_max: Option<f64>,

@@ -1,102 +1,54 @@
 //! Where the laser's light lands.
 
-use std::f64::consts::FRAC_1_PI;
-
-use crate::geometry::{Basis, DVec3, Parallelogram, Ray, Region, Shape, ShapeId, SurfacePoint};
+use crate::geometry::{Basis, DVec3, Parallelogram, Ray, Region, Shape, ShapeId};
 use crate::num::warp;
 use crate::scene::{Profile, Scene};
 
-/// A point lit by the beam: the first surface in its way, seen from the front.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct LitPoint {
-    pub position: DVec3,
-    pub normal: DVec3,
-    pub shape: ShapeId,
-    pub albedo: f64,
-    /// Unit vector to the laser.
-    pub towards: DVec3,
-}
+use super::vertex::{Oriented, Vertex};
+use super::visibility::known_or_all;
 
-impl LitPoint {
-    fn new(scene: &Scene, shape: ShapeId, point: &SurfacePoint, direction: DVec3) -> Option<Self> {
-        let albedo = scene.surfaces[shape as usize].albedo.albedo(point.uv);
-        (point.normal.dot(direction) < 0.0).then_some(Self {
-            position: point.position,
-            normal: point.normal,
-            shape,
-            albedo,
-            towards: -direction,
-        })
-    }
-
-    /// f_r between the beam and the direction to the point `to`.
-    pub(super) fn brdf(&self, scene: &Scene, to: DVec3) -> f64 {
-        let surface = &scene.surfaces[self.shape as usize];
-        if surface.is_lambertian() {
-            return self.albedo * FRAC_1_PI;
-        }
-        let exitant = (to - self.position).normalize_or_zero();
-        surface.brdf(self.albedo, self.normal, self.towards, exitant)
-    }
-}
-
-/// The beams to all spots.
+/// The beams to all spots of the scene.
 #[derive(Debug)]
 pub(super) struct Beams<'a> {
     scene: &'a Scene,
-    /// Where the beam lands if it has no width.
-    ideal: Vec<Option<LitPoint>>,
-    /// Spots without width that a pixel may see directly.
-    in_view: Vec<bool>,
+    /// By spot, if beams have no width: where its light lands.
+    pub ideal: Vec<Option<Vertex>>,
 }
 
-/// What of a beam is asked for.
+/// Which part of a beam is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reach {
-    /// Its irradiance.
+    /// All of its irradiance.
     Density,
     /// The points that it is sampled at.
     Samples,
-    /// Nearly all of those; what lands beyond is asked ray by ray.
+    /// Nearly all of those; for what lands beyond, rays are cast.
     Expected,
 }
 
 impl<'a> Beams<'a> {
     pub(super) fn new(scene: &'a Scene) -> Self {
-        let spots = 0..scene.laser.spots.len();
         let mut beams = Self {
             scene,
             ideal: Vec::new(),
-            in_view: Vec::new(),
         };
         if !beams.has_width() {
-            beams.ideal = spots.clone().map(|l| beams.ideal_spot(l)).collect();
+            let spots = 0..scene.laser.spots.len();
+            beams.ideal = spots.map(|spot| beams.ideal_point(spot)).collect();
         }
-        beams.in_view = beams
-            .ideal
-            .iter()
-            .map(|point| point.is_some_and(|p| scene.camera.pixel_of(p.position).is_some()))
-            .collect();
         beams
     }
 
-    /// Whether the lit point is spread over an area and has to be sampled.
+    /// Whether the light of a spot is spread over an area and has to be sampled.
     pub(super) fn has_width(&self) -> bool {
         self.scene.laser.profile != Profile::Ideal
     }
 
-    /// The point where the beam of a spot without width lands, if a pixel may see it directly.
-    pub(super) fn point_in_view(&self, spot: usize) -> Option<LitPoint> {
-        match self.in_view.get(spot) {
-            Some(true) => self.ideal[spot],
-            _ => None,
-        }
-    }
-
-    /// How far from the target a beam with width reaches, in the plane across the spot's normal: where its density vanishes (a Gaussian's
-    /// underflows, exp(−2·19.4²) < 2⁻¹⁰⁷⁵), or where no sample falls any more (√(½·53·ln 2) < 4.3 of its 1/e² radii).
-    fn reach(&self, what: Reach) -> f64 {
-        match (self.scene.laser.profile, what) {
+    /// Radius of a beam around its target, in the plane across the spot's normal: where its density
+    /// vanishes (a Gaussian's underflows, exp(−2·19.4²) < 2⁻¹⁰⁷⁵), or where no sample falls any
+    /// more (√(½·53·ln 2) < 4.3 of its 1/e² radii).
+    fn radius(&self, reach: Reach) -> f64 {
+        match (self.scene.laser.profile, reach) {
             (Profile::Ideal, _) => 0.0,
             (Profile::Disc { radius }, _) => radius,
             (Profile::Gaussian { radius }, Reach::Density) => 19.4 * radius,
@@ -105,42 +57,50 @@ impl<'a> Beams<'a> {
         }
     }
 
-    /// The square around the target that holds all of that.
-    pub(super) fn square(&self, spot: usize, what: Reach) -> Option<Parallelogram> {
-        let reach = self.reach(what);
+    /// The square around the target that holds that part of the beam.
+    pub(super) fn square(&self, spot: usize, reach: Reach) -> Option<Parallelogram> {
+        let radius = self.radius(reach);
         let target = &self.scene.laser.spots[spot].target;
         let basis = Basis::around(target.normal);
-        let (s, t) = (basis.s * reach, basis.t * reach);
+        let (s, t) = (basis.s * radius, basis.t * radius);
         Parallelogram::new(target.position - s - t, s * 2.0, t * 2.0)
     }
 
-    /// The shape on which all of a beam with width lands, if that is known before a ray is cast: a flat one that reaches
-    /// as far as the beam, with nothing before it.
-    pub(super) fn surely_lands_on(&self, spot: usize, what: Reach) -> Option<ShapeId> {
+    /// The shape that all of a beam with width lands on, if that is known before a ray is cast: a
+    /// flat one that reaches as far as the beam, with nothing before it.
+    fn surely_lands_on(&self, spot: usize, reach: Reach) -> Option<ShapeId> {
         let id = self.scene.laser.spots[spot].surface;
         let Shape::Parallelogram(plane) = &self.scene.surfaces[id as usize].shape else {
             return None;
         };
-        let square = self.square(spot, what)?;
-        let inside = |c: &DVec3| {
-            let place = plane.coordinates(*c);
+        let square = self.square(spot, reach)?;
+        let mut corners = square.corners().into_iter();
+        let inside = corners.all(|c| {
+            let place = plane.coordinates(c);
             place.iter().all(|c| (0.0..=1.0).contains(c))
-        };
+        });
         let laser = Region::point(self.scene.laser.position);
         let ends = [None, Some(id)];
-        let free = || {
-            self.scene
-                .bvh()
-                .surely_free(&laser, &Region::patch(&square), ends)
-        };
-        (square.corners().iter().all(inside) && free()).then_some(id)
+        let bvh = self.scene.bvh();
+        (inside && bvh.surely_free(&laser, &Region::patch(&square), ends)).then_some(id)
     }
 
-    /// Whether a pixel may see the lit spot itself: no only where its light surely lands beside the view.
+    /// Shapes on which the light of any spot of the scene may land.
+    pub(super) fn lit_shapes(&self) -> Vec<ShapeId> {
+        let known: Option<Vec<ShapeId>> = if self.has_width() {
+            let spots = 0..self.scene.laser.spots.len();
+            spots
+                .map(|spot| self.surely_lands_on(spot, Reach::Samples))
+                .collect()
+        } else {
+            Some(self.ideal.iter().flatten().map(|p| p.shape).collect())
+        };
+        known_or_all(self.scene, known)
+    }
+
+    /// Whether a pixel may see the lit spot of a beam with width: no only where its light surely
+    /// lands beside the view.
     pub(super) fn may_be_seen(&self, spot: usize) -> bool {
-        if !self.has_width() {
-            return self.point_in_view(spot).is_some();
-        }
         let lands = self.surely_lands_on(spot, Reach::Density);
         let (Some(_), Some(square)) = (lands, self.square(spot, Reach::Density)) else {
             return true;
@@ -154,15 +114,15 @@ impl<'a> Beams<'a> {
             (t > 0.0).then(|| camera.view.coordinates(camera.position + direction * t))
         });
         let beside = |d: usize| {
-            let all = |f: &dyn Fn(f64) -> bool| places.iter().all(|p| p.is_some_and(|p| f(p[d])));
-            all(&|c| c < 0.0) || all(&|c| c > 1.0)
+            let all = |f: fn(f64) -> bool| places.iter().all(|p| p.is_some_and(|p| f(p[d])));
+            all(|c| c < 0.0) || all(|c| c > 1.0)
         };
         !(beside(0) || beside(1))
     }
 
-    /// A point lit by beam `spot`, distributed as its power: the irradiance integrates to Φlaser, so that each sample
-    /// carries all of it. `None` where the beam's ray lands nowhere or on a black back.
-    pub(super) fn point(&self, spot: usize, u: [f64; 2]) -> Option<LitPoint> {
+    /// A point lit by the beam of `spot`, distributed as its power: the irradiance integrates to
+    /// Φlaser, so that each sample carries all of it. `None` where its light is lost.
+    pub(super) fn point(&self, spot: usize, u: [f64; 2]) -> Option<Vertex> {
         let (offset, radius) = match self.scene.laser.profile {
             Profile::Ideal => return self.ideal[spot],
             Profile::Disc { radius } => (warp::disc(u), radius),
@@ -173,21 +133,18 @@ impl<'a> Beams<'a> {
         self.land(target.position + Basis::around(target.normal).to_world([x, y, 0.0]))
     }
 
-    /// Irradiance (W/area, per watt of power) that the beam of a wide spot makes at a point of the scene, seen from its front:
+    /// Irradiance (W/area, per watt of power) of the beam of a wide spot on the front of a surface:
     /// 0 where the beam does not reach.
     ///
-    /// The beam's rays carry f(o) per area of the plane through the target, o the offset there. Seen from the laser that plane and the
-    /// surface at x share solid angles, dω = cosθ_plane dA_plane/d_plane² = cosθ_x dA_x/d_x², so
-    /// E(x) = f(o) · (cosθ_x/d_x²)·(d_plane²/cosθ_plane), if nothing stands between.
-    pub(super) fn irradiance(&self, spot: usize, x: (DVec3, DVec3), shape: ShapeId) -> f64 {
-        let density: fn([f64; 2]) -> f64 = match self.scene.laser.profile {
+    /// The beam's rays carry f(o) per area of the plane through the target, o the offset there.
+    /// Seen from the laser that plane and the surface at x share solid angles, dω = cosθ_plane
+    /// dA_plane/d_plane² = cosθ_x dA_x/d_x², so E(x) = f(o) · (cosθ_x/d_x²)·(d_plane²/cosθ_plane),
+    /// if nothing stands between.
+    pub(super) fn irradiance(&self, spot: usize, x: Oriented, shape: ShapeId) -> f64 {
+        let (radius, density): (f64, fn([f64; 2]) -> f64) = match self.scene.laser.profile {
             Profile::Ideal => return 0.0,
-            Profile::Disc { .. } => warp::disc_density,
-            Profile::Gaussian { .. } => warp::gaussian_spot_density,
-        };
-        let (Profile::Disc { radius } | Profile::Gaussian { radius }) = self.scene.laser.profile
-        else {
-            return 0.0;
+            Profile::Disc { radius } => (radius, warp::disc_density),
+            Profile::Gaussian { radius } => (radius, warp::gaussian_spot_density),
         };
         let target = &self.scene.laser.spots[spot].target;
         let Some(ray) = Ray::between(self.scene.laser.position, x.0) else {
@@ -209,23 +166,23 @@ impl<'a> Beams<'a> {
     }
 
     /// Where a beam without width lands: exactly on its target, unless something stands in its way.
-    fn ideal_spot(&self, spot: usize) -> Option<LitPoint> {
+    fn ideal_point(&self, spot: usize) -> Option<Vertex> {
         let spot = &self.scene.laser.spots[spot];
         let target = &spot.target;
         let ray = Ray::between(self.scene.laser.position, target.position)?;
         if self.scene.bvh().blocked(&ray, [None, Some(spot.surface)]) {
             return self.land(target.position);
         }
-        LitPoint::new(self.scene, spot.surface, target, ray.direction)
+        Vertex::arrive(self.scene, spot.surface, target, ray.direction, 1.0)
     }
 
     /// First hit of the ray from the laser through `aim`.
-    fn land(&self, aim: DVec3) -> Option<LitPoint> {
+    fn land(&self, aim: DVec3) -> Option<Vertex> {
         let from = self.scene.laser.position;
         let direction = (aim - from).try_normalize()?;
         let ray = Ray::new(from, direction);
         let hit = self.scene.bvh().closest(&ray, None)?;
         let point = self.scene.bvh().point(&ray, hit);
-        LitPoint::new(self.scene, hit.shape, &point, direction)
+        Vertex::arrive(self.scene, hit.shape, &point, direction, 1.0)
     }
 }

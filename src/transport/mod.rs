@@ -1,5 +1,5 @@
-//! Floor 4: the tracer. Light transport from laser to camera by Monte Carlo, in absolute watts, without knowing any
-//! model of it.
+//! Floor 4: the tracer. Light transport from laser to camera by Monte Carlo, in absolute watts,
+//! without knowing any model of it.
 //!
 //! Φcam[p, l] is the flux that pixel p receives when the laser lights spot l:
 //!
@@ -7,42 +7,44 @@
 //! Φ = Σ_n ∫ E(x₁) · [ Π_{k=1}^{n−2} f_r(x_k) G(x_k, x_{k+1}) ] · f_r(x_{n−1}) G(x_{n−1}, s) · Φlaser f_r(s) dx₁ … dx_{n−1} dP(s)
 //! ```
 //!
-//! x₁ what the camera sees, s the point where the beam lands (dP its share of the power), G = V·cosθ·cosθ′/d² with the visibility V, f_r = ρ/π, E the
-//! étendue per unit of footprint area, and n the number of surfaces met. Paths start at the camera; at each vertex the spot
-//! is connected explicitly (it is far too small to be hit), and the path goes on by sampling the hidden surfaces' area
-//! or the cosine lobe, weighted against each other by the density of their mixture (the balance heuristic). Under
-//! [`Estimator::Factored`] they are points that all pixels and all spots share instead, which makes Φcam a product of two matrices.
+//! x₁ what the camera sees, s the point where the beam lands (dP its share of the power), G =
+//! V·cosθ·cosθ′/d² with the visibility V, f_r = ρ/π, E the étendue per unit of footprint area, and
+//! n the number of surfaces met. Paths start at the camera; at each vertex the spot is connected
+//! explicitly (it is far too small to be hit), and the path goes on by sampling the hidden
+//! surfaces' area or the material's lobe, weighted against each other by the density of their
+//! mixture (the balance heuristic).
 //!
-//! No ray is cast where nothing can stand in the way; what can is worked out once per pair of regions, conservatively
-//! ([`Region`](crate::geometry::Region)).
+//! One file an estimator, each with its equation: `independent` (every entry from paths of its
+//! own), `shared` (the paths of a pixel serve all spots), `factored` (points between the walls
+//! serve all pixels and all spots, which makes Φcam a product of two matrices). `points` takes the
+//! place of paths in the first two where a pixel is simple enough. They share `camera` (first
+//! vertex), `path` (next vertex), `beam` and `spots` (connection with every lit point), `vertex`
+//! (geometry term, BRDF), `visibility`, `area` and `strata` (points by area), and what is computed
+//! of them once, in `context`. `tally` adds up blocks, `render` traces them.
+//!
+//! No ray is cast where nothing can stand in the way; what can is computed once per pair of
+//! regions, conservatively ([`Region`](crate::geometry::Region)).
 //!
 //! This floor never sees `model`: agreement between the two is evidence.
 
+mod area;
 mod beam;
-mod direct;
-mod eye;
+mod camera;
+mod context;
 mod factored;
-mod form;
-mod gloss;
-mod hidden;
-mod lamp;
-mod layout;
-mod lit;
-mod lobe;
-mod own;
-mod packet;
-mod pinhole;
-mod pixel;
+mod independent;
+mod path;
+mod plan;
+mod points;
 mod render;
-mod setting;
-mod shadow;
-mod sight;
-mod steps;
+mod shared;
+mod spots;
 mod strata;
 mod tally;
-mod walk;
+mod vertex;
+mod visibility;
 
-pub use render::{
-    Budget, Control, Estimator, NUMERICS, Plan, Traced, block_size, obstacle, render, trace,
-};
+pub use crate::num::stream::Sampling;
+pub use plan::{Budget, Control, Estimator, Plan, RenderError, SamplesError, Stopped, Traced};
+pub use render::{NUMERICS, block_size, render, trace, unsupported_surface};
 pub use tally::{Moments, Tally, TallyError};

@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::render::{Plan, Traced};
+use super::plan::{Plan, Traced};
 use crate::matrix::Matrix;
 use crate::num::tree::Tree;
 use crate::scene::Scene;
 
-/// Numbers that are worked off by one thread at a time.
+/// Numbers that one thread handles at a time.
 const STRETCH: usize = 1 << 14;
 
 /// Sums and scatter of the estimates of n blocks, entry by entry.
@@ -28,8 +28,9 @@ impl Moments {
         Self { sums, scatter }
     }
 
-    /// Both numbers of blocks together. With n₁ and n₂ blocks of totals T₁ and T₂ (Chan, Golub, LeVeque, *Updating formulae and a pairwise
-    /// algorithm for computing sample variances*, COMPSTAT 1982):
+    /// Both numbers of blocks together. With n₁ and n₂ blocks of totals T₁ and T₂ (Chan, Golub,
+    /// LeVeque, *Updating formulae and a pairwise algorithm for computing sample variances*,
+    /// COMPSTAT 1982):
     ///
     /// ```text
     /// S = S₁ + S₂      M = M₁ + M₂ + (T₂/n₂ − T₁/n₁)² · n₁·n₂/(n₁ + n₂)
@@ -63,9 +64,11 @@ impl Moments {
     }
 }
 
-/// The blocks of some columns of Φcam that are finished, as the largest nodes of the fixed binary tree over all blocks of the plan.
+/// The blocks of some columns of Φcam that are finished, as the largest nodes of the fixed binary
+/// tree over all blocks of the plan.
 ///
-/// Neither the threads nor the pieces in which the blocks are worked off, on one machine or many, can change a bit of what comes out.
+/// Neither the number of threads nor the ranges in which the blocks are traced, on one machine or
+/// many, change a bit of the result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tally {
     orders: usize,
@@ -78,7 +81,7 @@ pub struct Tally {
 /// Why a part does not fit into a [`Tally`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TallyError {
-    /// Its range is no node of the tree of blocks, or does not follow what is there.
+    /// Its range is not a node of the tree of blocks, or does not follow the blocks that are there.
     #[error("blocks {}..{} are no part that follows block {after}; render these blocks again", range.start, range.end)]
     Misplaced {
         /// What was given.
@@ -96,7 +99,7 @@ pub enum TallyError {
         /// Bytes due.
         expected: usize,
     },
-    /// A sum that no light adds up to.
+    /// It holds a number that is not a flux.
     #[error("blocks {}..{} hold a sum that is not a finite flux of at least 0; render these blocks again", range.start, range.end)]
     NoFlux {
         /// What was given.
@@ -116,7 +119,7 @@ impl Tally {
         }
     }
 
-    /// Whether it is made for `columns` columns of this.
+    /// Whether it was made for `columns` columns of this scene and plan.
     pub(super) fn is_of(&self, scene: &Scene, plan: &Plan, columns: usize) -> bool {
         let own = [self.orders, self.pixels, self.columns];
         self.blocks == plan.budget.blocks
@@ -124,7 +127,7 @@ impl Tally {
     }
 
     /// No light at all.
-    pub(super) fn dark(&self) -> Traced {
+    pub(super) fn zeros(&self) -> Traced {
         let nothing = || Matrix::zeros(self.pixels, self.columns);
         Traced {
             bounces: (0..self.orders).map(|_| nothing()).collect(),
@@ -143,8 +146,8 @@ impl Tally {
         8 * self.columns * self.pixels * (self.orders + 1)
     }
 
-    /// The parts: ranges of blocks, with their sums as little-endian f64, first \[order\]\[pixel\]\[column\], then the scatter
-    /// \[pixel\]\[column\].
+    /// The parts: ranges of blocks, with their sums as little-endian f64, first
+    /// \[order\]\[pixel\]\[column\], then the scatter \[pixel\]\[column\].
     pub fn parts(&self) -> impl Iterator<Item = (Range<u32>, Vec<u8>)> {
         self.tree.nodes().iter().map(|(range, moments)| {
             let numbers = moments.sums.iter().chain(&moments.scatter);
@@ -184,7 +187,8 @@ impl Tally {
             .map_err(|range| TallyError::Misplaced { range, after })
     }
 
-    /// Adds what every pixel has of the same blocks: one tree a pixel, whose nodes hold a single pixel each.
+    /// Adds what every pixel has of the same blocks: one tree a pixel, whose nodes hold a single
+    /// pixel each.
     pub(super) fn add_rows(&mut self, rows: &[Tree<Moments>]) -> Result<(), TallyError> {
         let Some(first) = rows.first() else {
             return Ok(());
@@ -206,7 +210,8 @@ impl Tally {
         Ok(())
     }
 
-    /// ‖σ‖/‖Φ‖ (Frobenius) of the n blocks that are there, σ the standard error of their mean, entry by entry: with their totals T and their scatter M
+    /// ‖σ‖/‖Φ‖ (Frobenius) of the n blocks that are there, σ the standard error of their mean,
+    /// entry by entry: with their totals T and their scatter M
     ///
     /// ```text
     /// √(n/(n − 1)) · √ΣM / √ΣT²      M = Σᵢ Mᵢ + Σᵢ nᵢ (Tᵢ/nᵢ − T/n)² over the parts i
@@ -240,8 +245,8 @@ impl Tally {
         (square > 0.0).then(|| (n / (n - 1.0) * scatter / square).sqrt())
     }
 
-    /// Means and standard errors over K blocks, Σx/K and √(M/(K(K − 1))), once all are there. The error of a single block is not known: it is
-    /// infinite.
+    /// Means and standard errors over K blocks, Σx/K and √(M/(K(K − 1))), once all are there. The
+    /// error of a single block is not known: it is infinite.
     pub fn traced(&self) -> Option<Traced> {
         let Moments { sums, scatter } = self.tree.root()?;
         let k = f64::from(self.blocks);
@@ -252,7 +257,8 @@ impl Tally {
         let bounces: Vec<Matrix> = (0..self.orders)
             .map(|n| matrix(&sums[n * entries..(n + 1) * entries]) / k)
             .collect();
-        // The same order of additions as where the frames are read back, so that the bits are the same.
+        // The same order of additions as where the frames are read back, so that the bits are the
+        // same.
         let flux = Matrix::from_fn(pixels, columns, |p, l| {
             bounces.iter().map(|b| b[(p, l)]).sum()
         });

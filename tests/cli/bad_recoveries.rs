@@ -1,4 +1,5 @@
-//! Photographs and noise models from which nothing can be recovered: said by each method, with cause and cure, and nothing written.
+//! Photographs and noise models from which nothing can be recovered: said by each method, with
+//! cause and cure, and nothing written.
 
 use phicam::matrix::{Matrix, npy};
 use phicam::recovery::Method;

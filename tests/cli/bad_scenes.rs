@@ -14,8 +14,8 @@ fn line_of(text: &str, part: &str) -> usize {
     lines[0]
 }
 
-/// The tiny bench with `old` replaced by `new` is refused by every command that reads a scene; the message has the line
-/// that `blamed` stands in, and `words`.
+/// The tiny bench with `old` replaced by `new` is refused by every command that reads a scene; the
+/// message has the line that `blamed` stands in, and `words`.
 fn refuses_altered(old: &str, new: &str, blamed: &str, words: &[&str]) {
     let text = altered(TINY.iter().filter(|(o, _)| *o != old).chain([&(old, new)]));
     let place = format!("bad.toml:{}:", line_of(&text, blamed));

@@ -2,7 +2,8 @@
 
 use crate::workspace::Workspace;
 
-/// Every line is refused with its words, in a workspace with `tiny.toml` and a finished run of it in `done`.
+/// Every line is refused with its words, in a workspace with `tiny.toml` and a finished run of it
+/// in `done`.
 fn refuses_each(lines: &[(&str, &[&str])]) {
     let workspace = Workspace::with_scenes();
     let _ = workspace

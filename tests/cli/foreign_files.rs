@@ -1,9 +1,11 @@
-//! Scenes that name files: meshes, pictures and materials from anyone, broken and forged ones among them.
+//! Scenes that name files: meshes, pictures and materials from anyone, broken and forged ones among
+//! them.
 
 use crate::small_scene::{TINY, altered};
 use crate::workspace::{Workspace, assert_same};
 
-/// What every process may take of memory here, KiB: the program, its threads' stacks and a few hundred MiB.
+/// What every process may take of memory here, KiB: the program, its threads' stacks and a few
+/// hundred MiB.
 const MEMORY: u64 = 3 << 20;
 
 /// The tiny bench with one surface more, or another albedo of the board.
@@ -24,7 +26,8 @@ fn with_picture(file: &str) -> String {
     altered(TINY.iter().chain([&(BOARD, picture.as_str())]))
 }
 
-/// Refused with the scene's line, within bounded memory, by commands that read and by commands that would write.
+/// Refused with the scene's line, within bounded memory, by commands that read and by commands that
+/// would write.
 fn refused(workspace: &Workspace, scene: &str, words: &[&str]) {
     workspace.write("bad.toml", scene);
     let words = [&["error: bad.toml:", "cure: "], words].concat();
@@ -160,7 +163,8 @@ fn broken_materials() {
     refused(&w, &paint("lambertian = 0.5, coated = 0.5"), &["both"]);
 }
 
-/// A run keeps what its scene names: it is validated, recovered and continued after the originals are gone, and where it is moved to.
+/// A run keeps what its scene names: it is validated, recovered and continued after the originals
+/// are gone, and where it is moved to.
 #[test]
 fn a_run_carries_its_files() {
     let w = Workspace::new();

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use crate::workspace::{Workspace, assert_same};
 
-/// Starts a render of the tiny scene into `cut`, sends `signal` as soon as its second frame is on disk, and returns the exit
-/// code and standard error.
+/// Starts a render of the tiny scene into `cut`, sends `signal` as soon as its second frame is on
+/// disk, and returns the exit code and standard error.
 fn interrupted(workspace: &Workspace, samples: u64, signal: &str) -> (Option<i32>, String) {
     let child = Command::new(env!("CARGO_BIN_EXE_phicam"))
         .args(["render", "tiny.toml", "-o", "cut", "--samples"])

@@ -1,4 +1,5 @@
-//! A render killed at any moment: no visible file is ever half a file or another one, and going on ends with the same bytes.
+//! A render killed at any moment: no visible file is ever half a file or another one, and going on
+//! ends with the same bytes.
 #![cfg(unix)]
 
 use std::collections::BTreeMap;
@@ -35,7 +36,8 @@ fn is_temporary(name: &str) -> bool {
     name.contains(".phicam-") && name.ends_with(".part")
 }
 
-/// What can be seen in a folder whose render was killed: of the final files the final bytes, of the others whole ones.
+/// What can be seen in a folder whose render was killed: of the final files the final bytes, of the
+/// others whole ones.
 fn look(workspace: &Workspace, folder: &str, whole: &Contents) -> u64 {
     let mut blocks = 0;
     for (name, bytes) in workspace.contents(folder) {
@@ -110,7 +112,8 @@ fn killed_at_fifty_moments_it_ends_with_the_same_bytes() {
                 }
                 *killed.entry(plan).or_default() += 1;
                 let there = look(&workspace, &cut, &whole);
-                // What was finished is never forgotten, unless a whole spot, or all, has taken its place.
+                // What was finished is never forgotten, unless a whole spot, or all, has taken its
+                // place.
                 let kept = there >= blocks || there == 0;
                 assert!(kept, "{plan}: {blocks} blocks were there, now {there}");
                 resumed += u64::from(there > 0);
@@ -128,7 +131,8 @@ fn killed_at_fifty_moments_it_ends_with_the_same_bytes() {
     );
 }
 
-/// Spots so short that all their blocks are traced at one go: SIGTERM ends a render between two of them, and kill -9 leaves a shard what it had.
+/// Spots so short that all their blocks are traced at one go: SIGTERM ends a render between two of
+/// them, and kill -9 leaves a shard what it had.
 #[test]
 fn short_spots_are_kept_one_by_one() {
     let workspace = Workspace::new();
@@ -168,7 +172,8 @@ fn short_spots_are_kept_one_by_one() {
     assert!(unfinished());
 }
 
-/// SIGTERM is the scheduler's warning: the block at work is finished and kept, and the exit code says that going on is worth it.
+/// SIGTERM is the scheduler's warning: the block at work is finished and kept, and the exit code
+/// says that going on is worth it.
 #[test]
 fn a_warned_shard_keeps_its_blocks_and_goes_on() {
     let workspace = Workspace::new();

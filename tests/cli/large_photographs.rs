@@ -64,7 +64,8 @@ fn what_cannot_be_had_by_rows_is_refused() {
     );
 }
 
-/// 256 MiB of photographs, black but for the first pixel's, by a program that may not have so much: the address space is bounded by the system.
+/// 256 MiB of photographs, black but for the first pixel's, by a program that may not have so much:
+/// the address space is bounded by the system.
 #[cfg(target_os = "linux")]
 #[test]
 fn the_memory_stated_is_held() {

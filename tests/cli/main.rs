@@ -1,4 +1,5 @@
-//! The `phicam` command as its user meets it: the binary is run, its exit code, its words and its files are looked at.
+//! The `phicam` command as its user meets it: the binary is run, its exit code, its words and its
+//! files are looked at.
 
 mod bad_folders;
 mod bad_frames;

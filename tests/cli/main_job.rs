@@ -32,8 +32,9 @@ const FILES: [&str; 24] = [
 
 const PNG: [u8; 8] = [0x89, b'P', b'N', b'G', b'\r', b'\n', 0x1a, b'\n'];
 
-/// The page loads nothing from anywhere: its markup has no address but those that name an XML vocabulary, no foreign source, no script but inside. (That its scripts
-/// ask for nothing, a browser tells in `tests/browser`.)
+/// The page loads nothing from anywhere: its markup has no address but those that name an XML
+/// vocabulary, no foreign source, no script but inside. (That its scripts ask for nothing, a
+/// browser tells in `tests/browser`.)
 fn assert_self_contained(page: &str) {
     let inside: String = page
         .split("<script")

@@ -1,4 +1,5 @@
-//! One render divided among processes: the same bytes however it is cut, and nothing that is not a part of it accepted.
+//! One render divided among processes: the same bytes however it is cut, and nothing that is not a
+//! part of it accepted.
 
 use std::fs;
 use std::path::PathBuf;
@@ -26,7 +27,8 @@ fn compute(workspace: &Workspace, indices: impl IntoIterator<Item = usize>) {
     }
 }
 
-/// The files of the result, without the record, whose times differ, and without what says of which plan it is.
+/// The files of the result, without the record, whose times differ, and without what says of which
+/// plan it is.
 fn result(workspace: &Workspace, folder: &str) -> Contents {
     let mut contents = workspace.contents(folder);
     assert!(contents.remove("run.json").is_some());
@@ -178,7 +180,8 @@ fn spoilt_and_foreign_shards_are_refused_each_by_its_own_words() {
     );
 }
 
-/// A shard written by the library, with what it says of itself changed, and its closing digest right.
+/// A shard written by the library, with what it says of itself changed, and its closing digest
+/// right.
 #[test]
 fn a_shard_of_other_numerics_is_refused_by_that_name() {
     let workspace = planned("--shards 2");
@@ -192,13 +195,13 @@ fn a_shard_of_other_numerics_is_refused_by_that_name() {
         .expect("a pair");
     assert_eq!(last[0], "numerics");
     last[1] = "0".into();
-    let renewed: phicam::shard::Identity = serde_json::from_value(identity).expect("an identity");
-    let provenance = phicam::shard::Provenance {
+    let renewed: phicam::jobs::Identity = serde_json::from_value(identity).expect("an identity");
+    let provenance = phicam::jobs::Provenance {
         version: "0.0.0".to_owned(),
         threads: 1,
         seconds: 1.0,
     };
-    phicam::shard::write(&path, &renewed, &[(0..16, vec![0; 10])], provenance).expect("written");
+    phicam::jobs::write(&path, &renewed, &[(0..16, vec![0; 10])], provenance).expect("written");
     merge_refused(&workspace, 65, &["version 0 of the numerics", "do not mix"]);
 }
 
@@ -330,7 +333,8 @@ fn only_clean_removes_and_only_what_is_ours() {
     assert!(workspace.path("job/plan.json").exists());
 }
 
-/// A plan that was killed before its last file is planned again; a folder with another scene is not touched.
+/// A plan that was killed before its last file is planned again; a folder with another scene is not
+/// touched.
 #[test]
 fn a_plan_that_was_not_finished_is_planned_again() {
     let workspace = planned("--shards 2");

@@ -46,7 +46,8 @@ fn a_method_writes_its_matrix_and_its_picture() {
     let joint = workspace.matrix("done/recovered/joint.npy");
     assert_eq!(joint.shape(), (8, 8));
     assert!(joint.iter().all(|x| (0.0..=1.0).contains(x)), "{joint}");
-    // Cell (0, 0) of the 2 × 2 board is dark, its neighbours are light: element (iu, iv) is row iv, column iu.
+    // Cell (0, 0) of the 2 × 2 board is dark, its neighbours are light: element (iu, iv) is row iv,
+    // column iu.
     let truth = workspace.matrix("done/recovered/truth.npy");
     for iv in 0..8 {
         for iu in 0..8 {
@@ -372,7 +373,8 @@ fn what_the_run_has_left_is_not_touched() {
     crate::workspace::assert_same(&before, &after, "recover");
 }
 
-/// What an earlier recovery left and this one does not know is gone; Picard data and biases are there.
+/// What an earlier recovery left and this one does not know is gone; Picard data and biases are
+/// there.
 #[test]
 fn files_of_an_earlier_recovery_do_not_stay_beside_those_of_a_later() {
     let workspace = Workspace::with_scenes();

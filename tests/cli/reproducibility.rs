@@ -10,7 +10,8 @@ const PLANS: [&str; 4] = [
     "--estimator shared --sampler pcg",
 ];
 
-/// The tiny scene with light of 3, 5 and 7 bounces: the order in which three numbers are added shows in the last bit.
+/// The tiny scene with light of 3, 5 and 7 bounces: the order in which three numbers are added
+/// shows in the last bit.
 fn workspace() -> Workspace {
     let workspace = Workspace::new();
     let bounces = ("max_bounces = 3", "max_bounces = 7");
@@ -96,7 +97,8 @@ fn parts_of_a_run_in_any_order_give_its_bytes() {
                 "--resume --threads 1",
             ],
         ];
-        // How the work is divided is the estimator's; the sampler sees nothing of it but the first order, for certainty.
+        // How the work is divided is the estimator's; the sampler sees nothing of it but the first
+        // order, for certainty.
         let tried = if plan.contains("sobol") { 4 } else { 1 };
         for (k, parts) in orders.iter().take(tried).enumerate() {
             let dir = format!("{n}-parts-{k}");
@@ -133,8 +135,9 @@ fn a_damaged_part_is_rendered_again() {
     assert_same(&whole, &rendered(&workspace, "out", "--resume"), "resumed");
 }
 
-/// Elementary functions of the system's C library are chosen by the processor's features, and their last bits differ; those of the tracer come
-/// from elsewhere. Seen from outside: with the features taken away, the bytes stay. (Where the C library is not glibc, nothing is taken away.)
+/// Elementary functions of the system's C library are chosen by the processor's features, and their
+/// last bits differ; those of the tracer come from elsewhere. Seen from outside: with the features
+/// taken away, the bytes stay. (Where the C library is not glibc, nothing is taken away.)
 #[test]
 fn processor_features_change_no_byte() {
     let workspace = workspace();

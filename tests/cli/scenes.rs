@@ -83,8 +83,8 @@ fn check_names_a_spot_in_the_view() {
     );
 }
 
-/// The spots of `parallel-squares` lie above the view's rectangle but on the square that the camera does not look at, and those
-/// behind an occluder are out of its sight.
+/// The spots of `parallel-squares` lie above the view's rectangle but on the square that the camera
+/// does not look at, and those behind an occluder are out of its sight.
 #[test]
 fn check_names_no_spot_that_the_camera_cannot_see() {
     let workspace = Workspace::new();
@@ -92,7 +92,8 @@ fn check_names_no_spot_that_the_camera_cannot_see() {
     workspace.write("squares.toml", known);
     let text = workspace.phicam("scene check squares.toml").exits(0).stdout;
     assert!(!text.contains("camera's view"), "{text}");
-    // Half way from the camera (−20, 10, 15) to the spot (5, 4, 0): (−7.5, 7, 7.5), off the beam from (−20, 9, 15).
+    // Half way from the camera (−20, 10, 15) to the spot (5, 4, 0): (−7.5, 7, 7.5), off the beam
+    // from (−20, 9, 15).
     let beside = with_points_and_surface("[[5.0, 4.0]]", &baffle([-7.6, 6.9, 7.5], 0.2)).replacen(
         "position = [-20.0, 10.0, 15.0]",
         "position = [-20.0, 9.0, 15.0]",
@@ -108,7 +109,8 @@ fn check_names_no_spot_that_the_camera_cannot_see() {
 
 #[test]
 fn check_names_a_blocked_beam() {
-    // Nine tenths of the way from the laser (−20, 10, 15) to spot 0 at (1, 1, 0) is (−1.1, 1.9, 1.5).
+    // Nine tenths of the way from the laser (−20, 10, 15) to spot 0 at (1, 1, 0) is (−1.1, 1.9,
+    // 1.5).
     let text = remarks("[[1.0, 1.0], [9.0, 3.0]]", &baffle([-1.6, 1.4, 1.5], 1.0));
     assert!(
         text.contains("suspicious: the beam to spot 0 is stopped by `baffle`"),
@@ -119,8 +121,9 @@ fn check_names_a_blocked_beam() {
 
 #[test]
 fn check_names_a_blocked_line_of_sight() {
-    // The camera (−20, 10, 15) sees the view x ∈ [3.25, 6.5], y ∈ [2.75, 6] through x ∈ [0.925, 3.85], y ∈ [3.475, 6.4] of the
-    // plane z = 1.5; the pixels are 3 × 2, so a square over its lower left corner hides the pixel (0, 0) alone.
+    // The camera (−20, 10, 15) sees the view x ∈ [3.25, 6.5], y ∈ [2.75, 6] through x ∈ [0.925,
+    // 3.85], y ∈ [3.475, 6.4] of the plane z = 1.5; the pixels are 3 × 2, so a square over its
+    // lower left corner hides the pixel (0, 0) alone.
     let text = remarks("[[1.0, 1.0], [9.0, 3.0]]", &baffle([0.9, 3.4, 1.5], 1.2));
     assert!(
         text.contains("suspicious: the line of sight of 1 pixels is blocked by `baffle`"),

@@ -94,7 +94,8 @@ impl Server {
         sockets.count().saturating_sub(3)
     }
 
-    /// Ctrl-C ends it with exit code 0, and none of its threads has panicked; returns what it had said on standard error.
+    /// Ctrl-C ends it with exit code 0, and none of its threads has panicked; returns what it had
+    /// said on standard error.
     pub(crate) fn ends(mut self) -> String {
         let kill = format!("kill -INT {}", self.child.id());
         let sent = Command::new("sh").args(["-c", &kill]).status();
@@ -129,7 +130,8 @@ pub(crate) fn request(method: &str, path: &str, headers: &[&str]) -> String {
     format!("{method} {path} HTTP/1.1\r\nHost: localhost\r\n{more}\r\n")
 }
 
-/// A connection on which nothing is waited for longer than a minute. Tried again while this process has too many files open.
+/// A connection on which nothing is waited for longer than a minute. Tried again while this process
+/// has too many files open.
 pub(crate) fn connect(address: SocketAddr) -> TcpStream {
     let start = Instant::now();
     loop {
@@ -226,7 +228,8 @@ pub(crate) fn record(folder: &Path, columns: usize, rows: usize, spots: usize) {
     fs::write(folder.join("run.json"), record.to_string()).expect("written");
 }
 
-/// A run's folder `name` with made-up matrices, in which no two numbers are equal; some are not finite.
+/// A run's folder `name` with made-up matrices, in which no two numbers are equal; some are not
+/// finite.
 pub(crate) fn made_up(
     workspace: &Workspace,
     name: &str,

@@ -7,7 +7,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::server::{Ends, Server, made_up, request};
 use crate::workspace::{Workspace, assert_same};
 
-/// Columns, rows and spots of matrices: rows of 1040 bytes, which are read with what lies between, and of 5600 bytes.
+/// Columns, rows and spots of matrices: rows of 1040 bytes, which are read with what lies between,
+/// and of 5600 bytes.
 const SHAPES: [(usize, usize, usize); 2] = [(37, 29, 130), (21, 33, 700)];
 
 /// A sequence without a pattern, below `limit`.
@@ -18,7 +19,8 @@ fn draw(state: &mut u64, limit: usize) -> usize {
     (*state >> 33) as usize % limit
 }
 
-/// The middle of each block of `step` of the pixels `first` to `first + length − 1`, found by listing the block.
+/// The middle of each block of `step` of the pixels `first` to `first + length − 1`, found by
+/// listing the block.
 fn middles(first: usize, length: usize, step: usize) -> Vec<usize> {
     let all: Vec<usize> = (first..first + length).collect();
     let middle = |block: &[usize]| *block.get(step / 2).unwrap_or(&block[block.len() - 1]);

@@ -11,7 +11,8 @@ use crate::workspace::Workspace;
 
 /// More than the server holds at once.
 const CLIENTS: usize = 300;
-/// What the server may ever have in memory, KiB: a fraction of what the answers to all of them together have.
+/// What the server may ever have in memory, KiB: a fraction of what the answers to all of them
+/// together have.
 const MEMORY: u64 = 96 * 1024;
 /// Lengths of answers around what the system takes without a reader, 1000 bytes.
 const LENGTHS: [usize; 6] = [32, 64, 128, 164, 256, 1049];

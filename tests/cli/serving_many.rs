@@ -13,7 +13,8 @@ use phicam::matrix::{Matrix, npy};
 use crate::server::{Ends, Reply, Server, connect, record, reply, request};
 use crate::workspace::Workspace;
 
-/// What the server may ever have in memory, KiB: 22 MiB when it starts, two pieces of 64 KiB of each of 256 connections, and the allocator's share.
+/// What the server may ever have in memory, KiB: 22 MiB when it starts, two pieces of 64 KiB of
+/// each of 256 connections, and the allocator's share.
 const MEMORY: u64 = 96 * 1024;
 const CLIENTS: usize = 1000;
 /// Most connections that it holds at once.
@@ -163,7 +164,8 @@ fn clients_that_hang_are_left_and_hold_up_nobody() {
         stream.write_all(text.as_bytes()).expect("sent");
         stream
     };
-    // Nothing at all, half a header, a header that never ends, a whole one and then nothing is read.
+    // Nothing at all, half a header, a header that never ends, a whole one and then nothing is
+    // read.
     let silent: Vec<_> = (0..30).map(|_| send("")).collect();
     let halves: Vec<_> = (0..30).map(|_| send(&whole[..whole.len() / 2])).collect();
     let mut endless: Vec<_> = (0..30).map(|_| send(&whole[..whole.len() - 2])).collect();

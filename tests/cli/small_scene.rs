@@ -1,4 +1,5 @@
-//! Scenes small enough to be traced in a moment, made from the built-in bench by replacing parts of its text.
+//! Scenes small enough to be traced in a moment, made from the built-in bench by replacing parts of
+//! its text.
 
 use std::sync::OnceLock;
 

@@ -18,7 +18,8 @@ fn noise_is_a_table_figures_and_json() {
             ended.account()
         );
     }
-    // Objects (2, 2), (2, 4) and (4, 4), two methods, two levels, three draws; two lines above them.
+    // Objects (2, 2), (2, 4) and (4, 4), two methods, two levels, three draws; two lines above
+    // them.
     assert_eq!(
         workspace.text("n/noise.csv").lines().count(),
         3 * 2 * 2 * 3 + 2
@@ -39,7 +40,8 @@ fn noise_is_a_table_figures_and_json() {
     }
 }
 
-/// What an earlier run has finished is kept: a study that is cut, thinned out or extended ends with the bytes of one that ran through.
+/// What an earlier run has finished is kept: a study that is cut, thinned out or extended ends with
+/// the bytes of one that ran through.
 #[test]
 fn noise_goes_on_where_it_was_left() {
     let workspace = Workspace::with_scenes();
@@ -49,7 +51,8 @@ fn noise_goes_on_where_it_was_left() {
     let _ = workspace
         .phicam(&format!("{NOISE} -o part --seeds 2"))
         .exits(0);
-    // As a kill leaves it: some lines only. One trial is altered, to see that it is kept and not computed again.
+    // As a kill leaves it: some lines only. One trial is altered, to see that it is kept and not
+    // computed again.
     let text = workspace.text("part/noise.csv");
     let cut: Vec<&str> = text.lines().take(9).collect();
     workspace.write("part/noise.csv", cut.join("\n") + "\n");
@@ -91,7 +94,7 @@ fn every_axis_of_noise_names_its_levels() {
             .exits(0);
         let table = &ended.stdout;
         assert!(
-            table.contains(title) && table.contains("the best method"),
+            table.contains(title) && table.contains("The best method"),
             "{table}"
         );
         let curves = workspace.text(&format!("{axis}/noise-curves.csv"));
@@ -262,7 +265,8 @@ fn indicator_is_a_table_a_figure_and_json() {
         );
     }
     let json = workspace.json("i/indicator.json");
-    // Six layouts, two numbers, two half-widths, two numbers of elements, two kernels; under noise each eleventh by four methods.
+    // Six layouts, two numbers, two half-widths, two numbers of elements, two kernels; under noise
+    // each eleventh by four methods.
     assert_eq!(
         json["configurations"].as_array().unwrap().len(),
         96,
@@ -282,7 +286,8 @@ fn indicator_is_a_table_a_figure_and_json() {
     assert!(figure.contains("condition number") && !figure.contains("NaN"));
 }
 
-/// Ctrl-C as soon as the first trials are on disk: exit code 130, they are kept, and the same command goes on from them.
+/// Ctrl-C as soon as the first trials are on disk: exit code 130, they are kept, and the same
+/// command goes on from them.
 #[cfg(unix)]
 #[test]
 fn ctrl_c_keeps_the_finished_trials() {

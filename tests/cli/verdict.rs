@@ -62,8 +62,8 @@ fn light_agrees_with_the_physical_model() {
         }
         assert!(value["worst"][0]["z"].is_number());
     }
-    // By quadrature the difference is noise alone: the χ² of 1536 entries per degree of freedom scatters by √(2/1536) =
-    // 0.036, so five of that.
+    // By quadrature the difference is noise alone: the χ² of 1536 entries per degree of freedom
+    // scatters by √(2/1536) = 0.036, so five of that.
     let value = verdict("--integration quadrature", 0);
     assert!(
         (number(&value, "chi2_per_dof") - 1.0).abs() < 0.18,
@@ -81,7 +81,8 @@ fn it_disagrees_with_the_published_kernel() {
             1,
         );
         assert_eq!(value["kernel"], "published");
-        // The two kernels differ by tens of per cent, before and after a single scale (18 % at half-width 6).
+        // The two kernels differ by tens of per cent, before and after a single scale (18 % at
+        // half-width 6).
         assert!(number(&value, "relative_difference") > 0.1, "{value}");
         assert!(number(&value, "largest_z") > number(&value, "z_limit"));
     }

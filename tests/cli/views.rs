@@ -30,7 +30,8 @@ fn at(image: &Image, x: usize, y: usize) -> [f32; 3] {
     [values[0], values[1], values[2]]
 }
 
-/// The 3 × 2 pixels of a frame on a grey scale from 0 to the largest: each is its share of that, row 0 at the bottom.
+/// The 3 × 2 pixels of a frame on a grey scale from 0 to the largest: each is its share of that,
+/// row 0 at the bottom.
 #[test]
 fn a_frame_is_shown_as_the_camera_sees_it() {
     let workspace = with_run();
@@ -145,7 +146,8 @@ fn a_scene_is_drawn_in_the_size_that_is_asked_for() {
     assert!(ended.stderr.contains("--from"), "{}", ended.account());
     let image = picture(&workspace, "bench.png");
     assert_eq!([image.width, image.height], [60, 40]);
-    // From straight before the wall, whose albedo is even, its lower left corner in the middle: grey to the upper right, backdrop (bluish) elsewhere.
+    // From straight before the wall, whose albedo is even, its lower left corner in the middle:
+    // grey to the upper right, backdrop (bluish) elsewhere.
     let _ = workspace
         .phicam("scene view bench -o corner.png --size 60,40 --samples 4 --from=0,0,9 --to=0,0,0 --mark=no")
         .exits(0);

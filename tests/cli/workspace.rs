@@ -54,7 +54,8 @@ impl Workspace {
         npy::read_finite(&self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
     }
 
-    /// Runs `phicam` with the words of `line`. A panic of the program fails the test, whatever else it expects.
+    /// Runs `phicam` with the words of `line`. A panic of the program fails the test, whatever else
+    /// it expects.
     pub(crate) fn phicam(&self, line: &str) -> Ended {
         self.end(line, assert_cmd::cargo::cargo_bin_cmd!("phicam"))
     }
@@ -88,8 +89,8 @@ impl Workspace {
         ended
     }
 
-    /// Runs a command that must be refused: exit code 2, every one of `words` on standard error, nothing on standard
-    /// output, and not a byte of the workspace changed.
+    /// Runs a command that must be refused: exit code 2, every one of `words` on standard error,
+    /// nothing on standard output, and not a byte of the workspace changed.
     pub(crate) fn refuses(&self, line: &str, words: &[&str]) {
         let before = self.contents("");
         self.refused(self.phicam(line), line, words, &before);

@@ -1,9 +1,10 @@
-//! Forged and damaged input, read without any fuzzing tool: every seed of the fuzz targets, every input that a fuzzer ever found (kept in
-//! `tests/fuzz/found`), and headers and scenes that promise more than any machine holds. Each must end in a value or in an error, within the
-//! memory that its reader states.
+//! Forged and damaged input, read without any fuzzing tool: every seed of the fuzz targets, every
+//! input that a fuzzer ever found (kept in `tests/fuzz/found`), and headers and scenes that promise
+//! more than any machine holds. Each must end in a value or in an error, within the memory that its
+//! reader states.
 
 use std::path::Path;
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use peak_alloc::PeakAlloc;
 
@@ -22,32 +23,44 @@ use readers::{Outcome, Reader};
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// Memory is counted for the whole process: one input at a time.
+/// Memory is counted for the whole process: each test holds this from its first line to its last.
 static ALONE: Mutex<()> = Mutex::new(());
 
-/// Reads `bytes` within the reader's bound; what came out, and the most memory that it took.
-fn read(reader: &Reader, bytes: &[u8], what: &str) -> (Outcome, usize) {
-    let _alone = ALONE.lock();
-    let before = MEMORY.current_usage();
-    MEMORY.reset_peak_usage();
-    let outcome = (reader.read)(bytes);
-    let taken = MEMORY.peak_usage().saturating_sub(before);
-    let bound = (reader.memory)(bytes.len());
-    assert!(
-        taken <= bound,
-        "{} of {what} took {taken} bytes of {bound}",
-        reader.name
-    );
-    (outcome, taken)
+/// A running test, the only one that takes memory.
+struct Alone {
+    _held: MutexGuard<'static, ()>,
+}
+
+impl Alone {
+    fn new() -> Self {
+        let _held = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+        Self { _held }
+    }
+
+    /// Reads `bytes` within the reader's bound; what came out, and the most memory that it took.
+    fn read(&self, reader: &Reader, bytes: &[u8], what: &str) -> (Outcome, usize) {
+        let before = MEMORY.current_usage();
+        MEMORY.reset_peak_usage();
+        let outcome = (reader.read)(bytes);
+        let taken = MEMORY.peak_usage().saturating_sub(before);
+        let bound = (reader.memory)(bytes.len());
+        assert!(
+            taken <= bound,
+            "{} of {what} took {taken} bytes of {bound}",
+            reader.name
+        );
+        (outcome, taken)
+    }
 }
 
 #[test]
 fn every_seed_is_accepted() {
+    let alone = Alone::new();
     for reader in &readers::ALL {
         let seeds = seeds::of(reader.name);
         assert!(seeds.len() > 1 || reader.name == "frame");
         for (i, seed) in seeds.iter().enumerate() {
-            let (outcome, _) = read(reader, seed, &format!("seed {i}"));
+            let (outcome, _) = alone.read(reader, seed, &format!("seed {i}"));
             // One of them is a JPEG in four colours, which are not read.
             let refused = reader.name == "picture" && i == 8;
             assert_eq!(
@@ -63,6 +76,7 @@ fn every_seed_is_accepted() {
 /// Inputs that the fuzzers found, where they found any.
 #[test]
 fn nothing_that_was_found_comes_back() {
+    let alone = Alone::new();
     let mut read_again = 0;
     let found = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/found");
     for reader in &readers::ALL {
@@ -72,7 +86,7 @@ fn nothing_that_was_found_comes_back() {
         for file in files {
             let path = file.unwrap().path();
             let what = path.display().to_string();
-            read(reader, &std::fs::read(&path).unwrap(), &what);
+            alone.read(reader, &std::fs::read(&path).unwrap(), &what);
             read_again += 1;
         }
     }
@@ -82,14 +96,15 @@ fn nothing_that_was_found_comes_back() {
 /// A seed cut off anywhere, and with any byte changed, ends in an error or in a value.
 #[test]
 fn damaged_seeds_are_read_or_refused() {
+    let alone = Alone::new();
     for reader in &readers::ALL {
         for (i, seed) in seeds::of(reader.name).iter().enumerate() {
             let step = (seed.len() / 40).max(1);
             for at in (0..seed.len()).step_by(step) {
-                read(reader, &seed[..at], &format!("seed {i} up to byte {at}"));
+                alone.read(reader, &seed[..at], &format!("seed {i} up to byte {at}"));
                 let mut changed = seed.clone();
                 changed[at] ^= 0x80;
-                read(
+                alone.read(
                     reader,
                     &changed,
                     &format!("seed {i} with byte {at} changed"),

@@ -1,9 +1,10 @@
-//! Scenes with absurd numbers: refused where the format has a limit, within memory where it has none.
+//! Scenes with absurd numbers: refused where the format has a limit, within memory where it has
+//! none.
 
 use phicam::scene::Scene;
 
+use crate::Alone;
 use crate::readers::{Outcome, SCENE};
-use crate::{ALONE, read};
 
 const BENCH: &str = include_str!("../../scenes/bench.toml");
 
@@ -14,6 +15,7 @@ fn bench(old: &str, new: &str) -> String {
 
 #[test]
 fn absurd_sizes_are_refused_before_memory_is_taken() {
+    let alone = Alone::new();
     let board = "{ checkerboard = [2, 2], dark = 0.0, light = 1.0 }";
     for (old, new) in [
         (
@@ -49,16 +51,17 @@ fn absurd_sizes_are_refused_before_memory_is_taken() {
         ("light = 1.0", "light = 5e-324"),
         ("v = [0, 15.5, 0]", "v = [0, 1e-200, 0]"),
     ] {
-        let (outcome, taken) = read(&SCENE, bench(old, new).as_bytes(), new);
+        let (outcome, taken) = alone.read(&SCENE, bench(old, new).as_bytes(), new);
         assert_eq!(outcome, Outcome::Refused, "{new}");
         assert!(taken < 8 << 20, "{new}: {taken}");
     }
 }
 
-/// What a scene may ask for is counted over all its surfaces: eight boards of 4096 × 4096 cells would take a gigabyte, a hundred and twenty meshes of a
-/// million triangles more than that.
+/// What a scene may ask for is counted over all its surfaces: eight boards of 4096 × 4096 cells
+/// would take a gigabyte, a hundred and twenty meshes of a million triangles more than that.
 #[test]
 fn sizes_are_counted_together() {
+    let alone = Alone::new();
     let surface = |i: usize, rest: &str| {
         format!("[[surface]]\nname = \"{i}\"\nrole = \"occluder\"\n{rest}\n")
     };
@@ -84,11 +87,8 @@ fn sizes_are_counted_together() {
         (body(0) + &surface(1, large), "triangles"),
     ] {
         let text = format!("{BENCH}\n{text}");
-        let (outcome, taken) = read(&SCENE, text.as_bytes(), cause);
-        let error = {
-            let _alone = ALONE.lock();
-            Scene::from_toml("many", &text).unwrap_err()
-        };
+        let (outcome, taken) = alone.read(&SCENE, text.as_bytes(), cause);
+        let error = Scene::from_toml("many", &text).unwrap_err();
         assert!(
             error.cause.contains(cause) && error.cure.contains("together"),
             "{error}"

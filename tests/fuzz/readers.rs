@@ -1,5 +1,6 @@
-//! What reads bytes from outside, as the fuzz targets and `tests/forged` run it: bytes are refused with a reason, or give a value that keeps
-//! its promises. A panic is a finding, and so is memory beyond the stated bound.
+//! What reads bytes from outside, as the fuzz targets and `tests/forged` run it: bytes are refused
+//! with a reason, or give a value that keeps its promises. A panic is a finding, and so is memory
+//! beyond the stated bound.
 
 use std::io::Write;
 use std::path::Path;
@@ -7,10 +8,10 @@ use std::sync::OnceLock;
 
 use phicam::film::exr;
 use phicam::image::{self, DEFLATE_RATIO_MAX, MOST_PIXELS};
+use phicam::jobs::{BlockFile, Identity, PlanFile};
 use phicam::matrix::npy;
 use phicam::num::stream::Sampling;
 use phicam::scene::{Scene, mesh};
-use phicam::shard::{Identity, PlanFile, ShardFile};
 use phicam::transport::{Budget, Estimator, Plan, Tally};
 use sha2::{Digest, Sha256};
 
@@ -64,8 +65,8 @@ pub const SCENE: Reader = Reader {
     memory: |_| 1024 * MIB,
 };
 
-/// A mesh of any format: the first byte says which, the rest is the file, and any file beside it. Nodes of a glTF may multiply what it holds, to
-/// four million vertices and triangles.
+/// A mesh of any format: the first byte says which, the rest is the file, and any file beside it.
+/// Nodes of a glTF may multiply what it holds, to four million vertices and triangles.
 pub const MESH: Reader = Reader {
     name: "mesh",
     read: |bytes| {
@@ -111,7 +112,8 @@ pub const PICTURE: Reader = Reader {
     memory: |length| 48 * MOST_PIXELS.min(8 * DEFLATE_RATIO_MAX * length) + MIB,
 };
 
-/// A measured material, as a scene names it: the first byte says whether it is a text or a MERL table.
+/// A measured material, as a scene names it: the first byte says whether it is a text or a MERL
+/// table.
 pub const MEASURED: Reader = Reader {
     name: "measured",
     read: |bytes| {
@@ -139,7 +141,8 @@ pub const MEASURED: Reader = Reader {
     memory: |length| 64 * length + 16 * MIB,
 };
 
-/// A frame. Its pixels are at most what deflate makes of so many bytes; they are held twice while they are put in place.
+/// A frame. Its pixels are at most what deflate makes of so many bytes; they are held twice while
+/// they are put in place.
 pub const FRAME: Reader = Reader {
     name: "frame",
     read: |bytes| {
@@ -193,7 +196,7 @@ pub const SHARD: Reader = Reader {
             let mut outcome = Outcome::Refused;
             for name in ["a.phs", "b.phs"] {
                 let Ok(shard) =
-                    ShardFile::open(&folder.join(name), &identity, total).map_err(reason)
+                    BlockFile::open(&folder.join(name), &identity, total).map_err(reason)
                 else {
                     continue;
                 };
@@ -270,7 +273,8 @@ fn reason(error: impl std::fmt::Display) {
     assert!(error.to_string().len() > 10, "`{error}` is no reason");
 }
 
-/// Whether a text names a number of triangles beyond 20 000: the format allows it, and making them takes its time.
+/// Whether a text names a number of triangles beyond 20 000: the format allows it, and making them
+/// takes its time.
 fn asks_for_many_triangles(text: &str) -> bool {
     text.match_indices("faces").any(|(at, _)| {
         let rest = text[at + 5..].trim_start_matches([' ', '\t', '"', '\'', '=']);

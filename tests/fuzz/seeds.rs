@@ -1,11 +1,13 @@
 //! Valid inputs of each reader, small: where the fuzzers start.
 
-use phicam::film::{Channel, Frame, FrameMeta, exr};
+use phicam::film::{Channel, Frame, FrameMeta, RunMeta, exr};
 use phicam::image::{grey16_png, rgb_png};
+use phicam::jobs::{self, PlanFile, Provenance, Settings};
 use phicam::matrix::{Matrix, npy};
+use phicam::num::stream::Sampling;
 use phicam::scene::builtins;
 use phicam::scene::mesh::{FaceValues, Generator, to_ply};
-use phicam::shard::{self, PlanFile, Provenance, Settings};
+use phicam::transport::Estimator;
 
 use super::readers::work;
 
@@ -103,7 +105,7 @@ fn shards() -> Vec<Vec<u8>> {
         vec![(3..4, numbers(2)), (4..8, vec![]), (8..9, numbers(1))],
         vec![(31..32, vec![7; 3])],
     ] {
-        shard::write(&path, &identity, &parts, provenance()).expect("a shard");
+        jobs::write(&path, &identity, &parts, provenance()).expect("a shard");
         let bytes = std::fs::read(&path).expect("it was written");
         all.push(bytes[..bytes.len() - 32].to_vec());
         all.push(bytes);
@@ -115,8 +117,8 @@ fn plans() -> Vec<Vec<u8>> {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("plan.json");
     let render = Settings::Render {
-        estimator: "shared".to_owned(),
-        sampler: "sobol".to_owned(),
+        estimator: Estimator::Shared,
+        sampler: Sampling::Sobol,
         seed: 1,
         samples: 512,
     };
@@ -231,18 +233,21 @@ fn frame(names: [&str; 3]) -> Vec<u8> {
         name: name.to_owned(),
         values: (0..15).map(|i| i as f32 / 32.0).collect(),
     });
-    let meta = FrameMeta {
+    let run = RunMeta {
         scene_name: "a".into(),
         scene_hash: "0".repeat(64),
         unit: "m".into(),
-        spot_index: 1,
         spot_count: 2,
-        spot_position: [1.0, 2.0, 0.0],
         seed: 7,
         samples: 64,
         estimator: "shared".into(),
         sampler: "sobol".into(),
         version: "0".into(),
+    };
+    let meta = FrameMeta {
+        run,
+        spot_index: 1,
+        spot_position: [1.0, 2.0, 0.0],
     };
     let frame = Frame {
         columns: 5,

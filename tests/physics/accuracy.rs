@@ -14,7 +14,8 @@ fn shared_sobol_is_within_3e_4_of_the_thesis_integral() {
     let traced = trace(&scene, Way(Shared, Sampling::Sobol, 1, 8192));
     let error = relative(&traced.flux, &truth);
     assert!(error <= 3e-4, "relative Frobenius error {error:e}");
-    // The replicates know the error: within a third of it, 256 rows of 120 correlated entries considered.
+    // The replicates know the error: within a third of it, 256 rows of 120 correlated entries
+    // considered.
     let claimed = traced.stderr.norm() / truth.norm();
     assert!(
         (error / claimed - 1.0).abs() < 0.33,
@@ -22,8 +23,9 @@ fn shared_sobol_is_within_3e_4_of_the_thesis_integral() {
     );
 }
 
-/// Edges of checks on dyadic lines of the board, on others, and none of them along the axes of the wall: the board turned by 20° in its
-/// plane about its centre. The replicates know the error to a factor of three: all entries move together.
+/// Edges of checks on dyadic lines of the board, on others, and none of them along the axes of the
+/// wall: the board turned by 20° in its plane about its centre. The replicates know the error to a
+/// factor of three: all entries move together.
 #[test]
 fn factored_sobol_is_within_1e_5_whatever_the_edges() {
     let checks = |board: &'static str| [("checkerboard = [8, 8]", board)];
@@ -103,7 +105,8 @@ fn the_error_falls_as_it_should() {
     assert!(sobol < -0.75, "Sobol': slope {sobol}");
 }
 
-/// A spot of 0.5 in. against the mean over its disc, by a polar rule of the test's own: r² by Gauss–Legendre, 16 angles.
+/// A spot of 0.5 in. against the mean over its disc, by a polar rule of the test's own: r² by
+/// Gauss–Legendre, 16 angles.
 #[test]
 fn a_wide_spot_is_the_mean_over_its_disc() {
     let mut bench = Bench::new(3.0, 2);

@@ -1,5 +1,6 @@
-//! Surfaces that are not Lambertian: tracer and matrix model against each other and against quadratures of f·G·f·G·f that the tests write out
-//! themselves. What the BRDFs are is tested beside them, against another program and closed forms; here it is where they enter and between
+//! Surfaces that are not Lambertian: tracer and matrix model against each other and against
+//! quadratures of f·G·f·G·f that the tests write out themselves. What the BRDFs are is tested
+//! beside them, against another program and closed forms; here it is where they enter and between
 //! which directions.
 
 use phicam::geometry::DVec3;
@@ -8,7 +9,7 @@ use phicam::model::{Extent, Kernel, converged};
 use phicam::num::stream::Sampling;
 use phicam::scene::Scene;
 use phicam::transport::Estimator::{Factored, Independent, Shared};
-use phicam::transport::obstacle;
+use phicam::transport::unsupported_surface;
 
 use crate::closed_forms::TWO_WALLS;
 use crate::reference::gauss;
@@ -40,8 +41,8 @@ fn form(a: DVec3, normal_a: DVec3, b: DVec3, normal_b: DVec3) -> (f64, DVec3) {
 
 const DEVICE: DVec3 = DVec3::new(-20.0, 10.0, 15.0);
 
-/// Φ[p,l] = P Σ_x E Σ_y A f3(eye, x → y) G(x, y) f2(x, s) G(y, s) f1(y, laser) of the 4 × 4 pixels of [`bench`], by Gauss–Legendre over
-/// footprints and over the 2 × 2 checks of S2.
+/// Φ[p,l] = P Σ_x E Σ_y A f3(eye, x → y) G(x, y) f2(x, s) G(y, s) f1(y, laser) of the 4 × 4 pixels
+/// of [`bench`], by Gauss–Legendre over footprints and over the 2 × 2 checks of S2.
 fn brute_force(scene: &Scene) -> Matrix {
     let (wall, object) = (&scene.surfaces[0], &scene.surfaces[1]);
     let h = 0.5f64.sqrt();
@@ -104,13 +105,14 @@ fn ways(independent: u64, shared: u64, factored: u64) -> [Way; 3] {
     ]
 }
 
-/// How far two Gauss–Legendre rules may be apart, where the BRDF is smooth and where its derivative jumps: Oren and Nayar's does where
-/// the azimuths are at right angles and where the polar angles are equal.
+/// How far two Gauss–Legendre rules may be apart, where the BRDF is smooth and where its derivative
+/// jumps: Oren and Nayar's does where the azimuths are at right angles and where the polar angles
+/// are equal.
 const SMOOTH: f64 = 1e-7;
 const KINKED: f64 = 1e-5;
 
-/// The known model is the quadrature, the tracer agrees with it, and the same test rejects the wall that is Lambertian of equal albedo, also
-/// at its best single scale.
+/// The known model is the quadrature, the tracer agrees with it, and the same test rejects the wall
+/// that is Lambertian of equal albedo, also at its best single scale.
 fn known_is_accepted_and_lambertian_rejected(wall: &str, rounding: f64) {
     let scene = bench(wall, MATT);
     let known = model(&scene);
@@ -152,7 +154,8 @@ fn a_wall_of_a_mixture_is_known_and_not_lambertian() {
     known_is_accepted_and_lambertian_rejected(mixture, SMOOTH);
 }
 
-/// From a spot on a slope straight to a floor, both in satin paint: Σ E f(eye, x → s) G(x, s) f(x, laser).
+/// From a spot on a slope straight to a floor, both in satin paint: Σ E f(eye, x → s) G(x, s) f(x,
+/// laser).
 #[test]
 fn two_bounces_take_both_brdfs() {
     let text = TWO_WALLS
@@ -189,8 +192,8 @@ fn two_bounces_take_both_brdfs() {
     }
 }
 
-/// Helmholtz on a satin wall: laser and camera exchanged, and with them spot and pixel, flux per étendue stays. They stand apart, so that each
-/// BRDF meets other directions before and after.
+/// Helmholtz on a satin wall: laser and camera exchanged, and with them spot and pixel, flux per
+/// étendue stays. They stand apart, so that each BRDF meets other directions before and after.
 #[test]
 fn laser_and_camera_can_be_exchanged() {
     let devices = [DVec3::new(-20.0, 10.0, 15.0), DVec3::new(16.0, 14.0, 9.0)];
@@ -228,8 +231,9 @@ fn laser_and_camera_can_be_exchanged() {
 
 const GLOSSY: &str = "{ coated = 0.5, roughness = 0.3 }";
 
-/// S2 in satin paint: both estimators that can trace it find the quadrature of its BRDF; the model, which takes it for Lambertian of equal
-/// white-sky albedo, is the quadrature of that and is rejected; `factored` is refused by name.
+/// S2 in satin paint: both estimators that can trace it find the quadrature of its BRDF; the model,
+/// which takes it for Lambertian of equal white-sky albedo, is the quadrature of that and is
+/// rejected; `factored` is refused by name.
 #[test]
 fn a_glossy_hidden_surface_is_traced_as_it_is() {
     let scene = bench("{ lambertian = 0.8 }", GLOSSY);
@@ -244,18 +248,22 @@ fn a_glossy_hidden_surface_is_traced_as_it_is() {
     assert!(error < 1e-7, "{error:e}");
     let [independent, shared, factored] = ways(1 << 14, 1 << 15, 1 << 10);
     for way in [independent, shared] {
-        assert_eq!(obstacle(&scene, &way.plan()), None);
+        assert_eq!(unsupported_surface(&scene, &way.plan()), None);
         let traced = trace(&scene, way);
         let verdict = compare(&traced, &truth, way);
         assert!(verdict.agrees, "{way:?}: {verdict:?}");
         assert!(!compare(&traced, &model, way).agrees, "{way:?}");
     }
-    assert_eq!(obstacle(&scene, &factored.plan()), Some("object"));
-    assert_eq!(obstacle(&matt, &factored.plan()), None);
+    assert_eq!(
+        unsupported_surface(&scene, &factored.plan()),
+        Some("object")
+    );
+    assert_eq!(unsupported_surface(&matt, &factored.plan()), None);
 }
 
-/// The budget's row for it is the difference of the two quadratures, ‖f − Lambertian‖/‖Lambertian‖, and the parts add up with it. Standard errors are
-/// those of 8 renders: Student's t of 7 degrees of freedom exceeds 7 once in 5000 times.
+/// The budget's row for it is the difference of the two quadratures, ‖f − Lambertian‖/‖Lambertian‖,
+/// and the parts add up with it. Standard errors are those of 8 renders: Student's t of 7 degrees
+/// of freedom exceeds 7 once in 5000 times.
 #[test]
 fn the_budget_knows_a_glossy_hidden_surface() {
     let scene = bench("{ lambertian = 0.8 }", GLOSSY);

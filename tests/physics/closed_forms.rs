@@ -10,8 +10,8 @@ use phicam::transport::Estimator::{Factored, Independent, Shared};
 use crate::reference::gauss;
 use crate::{Way, builtin, compare, relative, trace};
 
-/// The étendue of pixel (column, row) of the furnace's camera by its closed form: ∫ cos²θ dA/d² over a rectangle as a signed
-/// sum of four corner values.
+/// The étendue of pixel (column, row) of the furnace's camera by its closed form: ∫ cos²θ dA/d²
+/// over a rectangle as a signed sum of four corner values.
 fn furnace_etendue(column: usize, row: usize) -> f64 {
     let (camera, aperture) = ([1.0f64, -0.5, 6.0], 0.01);
     let (x0, y0, step) = (-0.75, -0.75, 1.5 / 4.0);
@@ -83,8 +83,9 @@ rectangle = { corner = [4, 0, 0.5], u = [1, 0, 1], v = [0, 1, 0] }
 material = { lambertian = 0.4 }
 "#;
 
-/// Light from a spot on a slope straight to a floor: Φ·(ρ1/π)·cosθ·cosθ′/d²·(ρ3/π)·E_p, integrated over the footprint by
-/// the test's own quadrature. Inverse square and both cosines, with a tilted wall.
+/// Light from a spot on a slope straight to a floor: Φ·(ρ1/π)·cosθ·cosθ′/d²·(ρ3/π)·E_p, integrated
+/// over the footprint by the test's own quadrature. Inverse square and both cosines, with a tilted
+/// wall.
 #[test]
 fn two_bounces_follow_the_inverse_square_law() {
     let scene = Scene::from_toml("two walls", TWO_WALLS).unwrap();
@@ -120,7 +121,8 @@ fn two_bounces_follow_the_inverse_square_law() {
     }
 }
 
-/// A spot in the view sends Φ·(ρ/π)·cosθ·A_lens·cosθ/d² straight into its own pixel and nothing into the others.
+/// A spot in the view sends Φ·(ρ/π)·cosθ·A_lens·cosθ/d² straight into its own pixel and nothing
+/// into the others.
 #[test]
 fn a_spot_in_the_view_is_seen_directly() {
     let square = "layout = \"square\"\ncentre = [5.0, 4.373476808130942]\nhalf_width = 3.0\nper_side = 30\n\
@@ -151,8 +153,9 @@ fn a_spot_in_the_view_is_seen_directly() {
     }
 }
 
-/// A Gaussian spot beside the view: its tail lights the wall in view by Φ·2/(πw²)·exp(−2r²/w²), down to a millionth of the
-/// middle, and every pixel's share is its own integral. A disc in view is uniform inside its edge.
+/// A Gaussian spot beside the view: its tail lights the wall in view by Φ·2/(πw²)·exp(−2r²/w²),
+/// down to a millionth of the middle, and every pixel's share is its own integral. A disc in view
+/// is uniform inside its edge.
 #[test]
 fn wide_spots_are_seen_directly_down_to_their_tails() {
     let square = "layout = \"square\"\ncentre = [5.0, 4.373476808130942]\nhalf_width = 3.0\nper_side = 30\n\
@@ -196,7 +199,8 @@ fn wide_spots_are_seen_directly_down_to_their_tails() {
         let way = Way(Independent, Sampling::Sobol, 1, 4096);
         let traced = trace(&scene, way);
         if profile == "gaussian" {
-            // Each pixel within its own error bar, which is small against its own flux however faint that is.
+            // Each pixel within its own error bar, which is small against its own flux however
+            // faint that is.
             let verdict = compare(&traced, &truth, way);
             assert!(verdict.agrees, "{verdict:?}");
             let relative = traced.stderr.component_div(&truth).amax();

@@ -1,18 +1,16 @@
 //! What predicts the modulation of the published inversion.
 
-use std::sync::atomic::AtomicBool;
-
+use phicam::lab::{Coefficients, Indicator, IndicatorPlan, IndicatorTasks, Layout, run};
 use phicam::model::Kernel;
 use phicam::recovery::Method;
 use phicam::scene::Scene;
-use phicam::study::{Coefficients, Indicator, IndicatorPlan, Layout, indicator};
+use phicam::transport::Control;
 
-/// Every layout and both kernels, four numbers of spots from 8 to 240, half-widths 1, 3, 6 and 14 in., 4 × 4 and 8 × 8 elements with boards of 2, 4 and 8 checks.
+/// Every layout and both kernels, four numbers of spots from 8 to 240, half-widths 1, 3, 6 and 14
+/// in., 4 × 4 and 8 × 8 elements with boards of 2, 4 and 8 checks.
 fn sweep(plan: IndicatorPlan) -> Indicator {
     let scene = Scene::load("thesis").unwrap();
-    indicator(&scene, &plan, &AtomicBool::new(false), &|_, _| ())
-        .unwrap()
-        .unwrap()
+    run(&IndicatorTasks::new(&scene, plan).unwrap(), Control::none()).unwrap()
 }
 
 fn plan() -> IndicatorPlan {
@@ -31,8 +29,8 @@ fn plan() -> IndicatorPlan {
     }
 }
 
-/// The kept share of the pattern goes with the raw MTF at a Pearson of 0.99 or more; neither the condition number nor the smallest eigenvalue comes near, not
-/// even by its logarithm.
+/// The kept share of the pattern goes with the raw MTF at a Pearson of 0.99 or more; neither the
+/// condition number nor the smallest eigenvalue comes near, not even by its logarithm.
 #[test]
 fn the_kept_share_predicts_where_condition_and_eigenvalue_do_not() {
     let found = sweep(plan());
@@ -57,7 +55,8 @@ fn the_kept_share_predicts_where_condition_and_eigenvalue_do_not() {
     }
 }
 
-/// Under noise: predicted against measured mean over 50 draws. Each |z| is Student's t, above 3 once in 240; of n points at most as many as the binomial allows.
+/// Under noise: predicted against measured mean over 50 draws. Each |z| is Student's t, above 3
+/// once in 240; of n points at most as many as the binomial allows.
 #[test]
 fn the_mean_under_noise_is_predicted_for_linear_methods() {
     let found = sweep(IndicatorPlan {

@@ -5,7 +5,6 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 
 use phicam::num::stream::{LARGEST_NET, Sampling};
 use phicam::num::summation::mean_and_stderr;
@@ -24,15 +23,17 @@ const LARGEST_Z: f64 = 4.0;
 const REPLICATES: u32 = 64;
 /// Paths in each replicate of a pilot.
 const PILOT: u32 = 1 << 9;
-/// What the variance that the pilot saw is multiplied by. From 64 replicates it is known to 18 %, from the same number in
-/// the render again: their ratio to 25 %, and the worst of some forty scenes and ways lies three times that away.
+/// What the variance that the pilot saw is multiplied by. From 64 replicates it is known to 18 %,
+/// from the same number in the render again: their ratio to 25 %, and the worst of some forty
+/// scenes and ways lies three times that away.
 const MARGIN: f64 = 1.8;
-/// Renders, each with a seed of its own, from whose spread the error of a single order of bounces comes.
+/// Renders, each with a seed of its own, from whose spread the error of a single order of bounces
+/// comes.
 const SEEDS: u64 = 32;
 /// Paths in each replicate beyond which a scene is too noisy: the noisiest needs 2.9e5 of them.
 const MOST: f64 = (1u32 << 19) as f64;
-/// What a mean of equal samples may be off by: 2²⁴ additions of f64 in sequence, the roundings random (2¹² · 2⁻⁵³ ≈ 5e-13);
-/// the known values are printed with 16 digits.
+/// What a mean of equal samples may be off by: 2²⁴ additions of f64 in sequence, the roundings
+/// random (2¹² · 2⁻⁵³ ≈ 5e-13); the known values are printed with 16 digits.
 const ROUNDING: f64 = 1e-12;
 
 fn scenes() -> Vec<Scene> {
@@ -51,11 +52,7 @@ fn scenes() -> Vec<Scene> {
 }
 
 fn trace(scene: &Scene, plan: &Plan) -> Traced {
-    let stop = AtomicBool::new(false);
-    let control = Control {
-        progress: &|_| (),
-        stop: &stop,
-    };
+    let control = Control::none();
     render(scene, plan, 0..scene.laser.spots.len(), control).unwrap()
 }
 
@@ -73,7 +70,8 @@ fn estimate(
         budget,
     };
     let all = || trace(scene, &plan(seed, budget));
-    // One order of bounces carries no error of its own: it comes from renders of the same size in all.
+    // One order of bounces carries no error of its own: it comes from renders of the same size in
+    // all.
     let orders = || -> Vec<_> {
         let part = Budget {
             blocks: budget.blocks.div_ceil(SEEDS as u32),
@@ -125,7 +123,8 @@ fn relative_error(scene: &Scene, found: &[(f64, f64)]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The budget with which every answer is known to [`PRECISION`], from a pilot's largest relative error.
+/// The budget with which every answer is known to [`PRECISION`], from a pilot's largest relative
+/// error.
 fn budget(sampling: Sampling, pilot: f64) -> Option<Budget> {
     let size = ((pilot / PRECISION).powi(2) * MARGIN * f64::from(PILOT)).ceil();
     if size > MOST {

@@ -1,14 +1,15 @@
 //! Laws that every light transport obeys.
 
 use phicam::geometry::DVec3;
+use phicam::lab::Errors;
 use phicam::num::stream::Sampling;
 use phicam::scene::Scene;
-use phicam::study::Errors;
 use phicam::transport::Estimator::{Factored, Independent, Shared};
 
 use crate::{Way, assert_same, assert_same_under, builtin, relative, trace, trace_spots};
 
-/// An occluder that stands between wall and object and reflects, and room for light to go five ways.
+/// An occluder that stands between wall and object and reflects, and room for light to go five
+/// ways.
 const SHELF: &str = r#"
 [[surface]]
 name = "shelf"
@@ -30,7 +31,8 @@ fn shelf(changes: &[(&str, &str)]) -> Scene {
     Scene::from_toml("shelf", &text).unwrap()
 }
 
-/// All estimators, samplers and strategies see the same light: reflecting occluders, five bounces, a wide spot.
+/// All estimators, samplers and strategies see the same light: reflecting occluders, five bounces,
+/// a wide spot.
 #[test]
 fn estimators_agree_with_each_other() {
     for diameter in ["spot_diameter = 0.0", "spot_diameter = 0.8"] {
@@ -50,7 +52,8 @@ fn estimators_agree_with_each_other() {
     }
 }
 
-/// Power: exactly proportional. Albedo: light of n bounces by the product of what it met; powers of two are exact.
+/// Power: exactly proportional. Albedo: light of n bounces by the product of what it met; powers of
+/// two are exact.
 #[test]
 fn flux_is_linear_in_power_and_albedos() {
     let way = Way(Independent, Sampling::Sobol, 5, 64);
@@ -59,8 +62,8 @@ fn flux_is_linear_in_power_and_albedos() {
     assert_eq!(double.flux, &base.flux * 2.0);
     assert_eq!(double.stderr, &base.stderr * 2.0);
 
-    // Wall and object only: three bounces meet the wall twice and the object once, five the wall three times and the object
-    // twice.
+    // Wall and object only: three bounces meet the wall twice and the object once, five the wall
+    // three times and the object twice.
     let bench = |changes: &[(&str, &str)]| {
         let five = [("max_bounces = 3 ", "max_bounces = 5 ")];
         trace_spots(&builtin("bench", &[&five, changes].concat()), way, 0..4)
@@ -90,7 +93,8 @@ fn flux_is_linear_in_power_and_albedos() {
     }
 }
 
-/// Helmholtz: with spot and pixel point exchanged, flux per étendue stays. The footprint is so small that it is a point.
+/// Helmholtz: with spot and pixel point exchanged, flux per étendue stays. The footprint is so
+/// small that it is a point.
 #[test]
 fn spot_and_pixel_can_be_exchanged() {
     let points = [[4.1, 3.3], [7.2, 1.9]];
@@ -178,7 +182,8 @@ fn bits_do_not_depend_on_threads_or_spot_ranges() {
     }
 }
 
-/// The bench with three hidden or occluding things in many ways: a scene for tests of what must not matter.
+/// The bench with three hidden or occluding things in many ways: a scene for tests of what must not
+/// matter.
 fn cluttered(role: &str, elements: &str) -> Scene {
     let extra = format!(
         "[[surface]]\nname = \"ramp\"\nrole = \"{role}\"\n{elements}material = {{ lambertian = {{ ramp = [0.2, 0.9] }} }}\n\
@@ -195,8 +200,8 @@ fn cluttered(role: &str, elements: &str) -> Scene {
     Scene::from_toml("cluttered", &text).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Roles choose the sampling, not the light: the same surfaces as hidden (sampled by area) and as occluders (found by the
-/// cosine lobe) give the same flux. One of them touches the wall.
+/// Roles choose the sampling, not the light: the same surfaces as hidden (sampled by area) and as
+/// occluders (found by the cosine lobe) give the same flux. One of them touches the wall.
 #[test]
 fn roles_do_not_change_the_light() {
     let hidden = cluttered("hidden", "elements = [4, 4]\n");

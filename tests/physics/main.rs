@@ -1,4 +1,5 @@
-//! Tracer and model against an independent quadrature, closed forms and the laws of light transport.
+//! Tracer and model against an independent quadrature, closed forms and the laws of light
+//! transport.
 
 mod accuracy;
 mod brdf;
@@ -17,12 +18,11 @@ mod sensor;
 mod studies;
 
 use std::ops::Range;
-use std::sync::atomic::AtomicBool;
 
+use phicam::lab::{Agreement, Errors, Evidence, Test, agree};
 use phicam::matrix::Matrix;
 use phicam::num::stream::Sampling;
 use phicam::scene::Scene;
-use phicam::study::{Agreement, Errors, Evidence, Test, agree};
 use phicam::transport::{Budget, Control, Estimator, Plan, Traced, render};
 
 /// How to trace: estimator, sampling, seed, samples.
@@ -42,11 +42,7 @@ impl Way {
 }
 
 fn trace_spots(scene: &Scene, way: Way, spots: Range<usize>) -> Traced {
-    let stop = AtomicBool::new(false);
-    let control = Control {
-        progress: &|_| (),
-        stop: &stop,
-    };
+    let control = Control::none();
     render(scene, &way.plan(), spots, control).unwrap()
 }
 

@@ -10,16 +10,18 @@ use phicam::scene::{Role, Scene};
 use phicam::transport::Estimator;
 
 use super::{Way, assert_same, assert_same_under, builtin, compare, relative, trace};
-use phicam::study::Errors;
+use phicam::lab::Errors;
 
 const RECTANGLE: &str = "rectangle = { corner = [3, 11.350951966438567, 4.149048033561433], \
     u = [4, 0, 0], v = [0, -2.82842712474619, 2.82842712474619] }";
-/// The same: the unit square four times as large, leant over by 135° and moved; stretched by a hair, so that the mesh itself is.
+/// The same: the unit square four times as large, leant over by 135° and moved; stretched by a
+/// hair, so that the mesh itself is.
 const MESHED: &str = "mesh = { generate = \"rectangle\", faces = 450, scale = [4, 4.000000000001, 1], \
     rotate = [{ axis = [1, 0, 0], angle = 135 }], translate = [3, 11.350951966438567, 4.149048033561433] }";
 const FEW_SPOTS: (&str, &str) = ("per_side = 30", "per_side = 3");
 
-/// The board of the bench as 450 triangles: every estimator agrees with the quadrature over the rectangle, and with its own render of it.
+/// The board of the bench as 450 triangles: every estimator agrees with the quadrature over the
+/// rectangle, and with its own render of it.
 #[test]
 fn a_meshed_rectangle_is_the_rectangle() {
     let flat = builtin("bench", &[FEW_SPOTS]);
@@ -109,8 +111,8 @@ fn placed(triangles: &Triangles, place: DAffine3) -> Triangles {
     moved
 }
 
-/// Two busts that share one mesh, against two meshes whose vertices were moved before they were written: the same paths meet the same
-/// triangles, up to rounding.
+/// Two busts that share one mesh, against two meshes whose vertices were moved before they were
+/// written: the same paths meet the same triangles, up to rounding.
 #[test]
 fn instances_are_copies() {
     let dir = tempfile::tempdir().unwrap();
@@ -177,8 +179,9 @@ fn instances_are_copies() {
     }
 }
 
-/// Cells of the mesh's texture coordinates are cells of the rectangle, clipped out of triangles that straddle them: the same G12, G23, areas
-/// and albedos. One element to each triangle makes nearly the integral.
+/// Cells of the mesh's texture coordinates are cells of the rectangle, clipped out of triangles
+/// that straddle them: the same G12, G23, areas and albedos. One element to each triangle makes
+/// nearly the integral.
 #[test]
 fn elements_of_a_mesh_are_those_of_the_surface() {
     let four = ("elements = [8, 8]", "elements = [4, 4]");
@@ -232,8 +235,9 @@ fn two_sides_are_two_surfaces() {
     );
 }
 
-/// The shelf's model with occlusion comes to what is traced as its elements become finer, the spot that the rod takes for itself included; the
-/// plain one stays away from it, and by what stands between wall and object alone too.
+/// The shelf's model with occlusion comes to what is traced as its elements become finer, the spot
+/// that the rod takes for itself included; the plain one stays away from it, and by what stands
+/// between wall and object alone too.
 #[test]
 fn occlusion_brings_the_model_nearer() {
     let shelf = builtin("shelf", &[FEW_SPOTS]).with_black_occluders();

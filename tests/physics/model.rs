@@ -1,5 +1,5 @@
-//! The matrix model against the test's own quadrature, and against the sizes of its idealisations as they were measured
-//! independently (design of the project, section 1).
+//! The matrix model against the test's own quadrature, and against the sizes of its idealisations
+//! as they were measured independently (design of the project, section 1).
 
 use phicam::matrix::Matrix;
 use phicam::model::{Extent, Kernel, Take, converged};
@@ -28,8 +28,9 @@ fn without(scene: &Scene, extent: Extent) -> f64 {
     relative(&part, &integral(scene, Kernel::Physical))
 }
 
-/// Elements by their centres: 1.7e-3 at 8 × 8, 4e-4 at 16 × 16 (measured figures, printed to a tenth), and like every
-/// midpoint rule a quarter of it with each doubling, up to terms of the next order in h² (h/R ≈ 0.05).
+/// Elements by their centres: 1.7e-3 at 8 × 8, 4e-4 at 16 × 16 (measured figures, printed to a
+/// tenth), and like every midpoint rule a quarter of it with each doubling, up to terms of the next
+/// order in h² (h/R ≈ 0.05).
 #[test]
 fn elements_by_their_centres_cost_what_was_measured() {
     let elements = Extent {
@@ -51,7 +52,8 @@ fn elements_by_their_centres_cost_what_was_measured() {
     }
 }
 
-/// Spots: 4.6e-5 at 0.1 in. and 1.2e-3 at 0.5 in. Footprints: a quarter with each doubling of the pixels.
+/// Spots: 4.6e-5 at 0.1 in. and 1.2e-3 at 0.5 in. Footprints: a quarter with each doubling of the
+/// pixels.
 #[test]
 fn footprints_and_spots_cost_what_was_measured() {
     for (diameter, cost) in [("0.1", 4.6e-5), ("0.5", 1.2e-3)] {

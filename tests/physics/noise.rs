@@ -1,14 +1,13 @@
 //! The noise study against what the published simulation reports of its own method.
 
-use std::ops::ControlFlow;
-use std::sync::atomic::AtomicBool;
-
+use phicam::lab::{NoiseAxis, NoisePlan, NoiseTasks, Spread, run};
 use phicam::model::Kernel;
 use phicam::recovery::Method;
 use phicam::scene::Scene;
-use phicam::study::{NoiseAxis, NoisePlan, Spread, noise};
+use phicam::transport::Control;
 
-/// Normalized MTF of `pinv` on the published kernel: the published spots (120, staggered, half-width 6), 2 × 2 checks, 16 × 16 pixels; mean over 40 draws.
+/// Normalized MTF of `pinv` on the published kernel: the published spots (120, staggered,
+/// half-width 6), 2 × 2 checks, 16 × 16 pixels; mean over 40 draws.
 fn published(elements: usize, level: f64) -> Spread {
     let scene = Scene::load("thesis").unwrap();
     let plan = NoisePlan {
@@ -21,22 +20,14 @@ fn published(elements: usize, level: f64) -> Spread {
         seeds: 40,
         first_seed: 1,
     };
-    let stop = AtomicBool::new(false);
-    let study = noise(
-        &scene,
-        &plan,
-        &[],
-        &stop,
-        &mut |_| ControlFlow::Continue(()),
-    );
-    let found = study.unwrap().unwrap().curves[0].points[0]
-        .mtf_normalized
-        .unwrap();
+    let study = run(&NoiseTasks::new(&scene, plan, Vec::new()), Control::none());
+    let found = study.unwrap().curves[0].points[0].mtf_normalized.unwrap();
     println!("{elements} elements, {level:e}: {found:?}");
     found
 }
 
-/// Published: 0.99 at 10 % with 2 × 2 elements; 0.46 at 0.1 % and at least 0.95 at 1e-3 % with 4 × 4.
+/// Published: 0.99 at 10 % with 2 × 2 elements; 0.46 at 0.1 % and at least 0.95 at 1e-3 % with 4
+/// × 4.
 #[test]
 fn few_elements_bear_the_published_noise() {
     assert!((published(2, 0.1).mean - 0.99).abs() < 0.01);

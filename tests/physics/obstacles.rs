@@ -1,15 +1,16 @@
 //! What stands in the way, on the seam, or beside the wall.
 
+use phicam::lab::Errors;
 use phicam::model::{Extent, Kernel, converged};
 use phicam::num::stream::Sampling;
 use phicam::scene::Scene;
-use phicam::study::Errors;
 use phicam::transport::Estimator::{Factored, Independent, Shared};
 
 use crate::{Way, assert_same, assert_same_under, builtin, trace, trace_spots};
 
-/// The trap of overlapping hidden faces: what stands behind another hidden face must add nothing, and what is seen partly
-/// must add up: Φ(both) = Φ(front, black back) + Φ(back behind a black front) for three bounces.
+/// The trap of overlapping hidden faces: what stands behind another hidden face must add nothing,
+/// and what is seen partly must add up: Φ(both) = Φ(front, black back) + Φ(back behind a black
+/// front) for three bounces.
 #[test]
 fn hidden_faces_that_overlap_are_not_counted_twice() {
     let with_back = |front: &str, back: &str, shrink: f64| {
@@ -53,7 +54,8 @@ fn hidden_faces_that_overlap_are_not_counted_twice() {
     assert_same(&both, &parts, "parts");
 }
 
-/// A beam that something stands in lights that, and no longer the wall; pixels whose sight is blocked see what blocks it.
+/// A beam that something stands in lights that, and no longer the wall; pixels whose sight is
+/// blocked see what blocks it.
 #[test]
 fn what_stands_in_the_way_stops_the_light() {
     let black =
@@ -80,8 +82,8 @@ fn what_stands_in_the_way_stops_the_light() {
     }
 }
 
-/// A wall cut into 3 × 4 tiles and an object cut into 3 × 3, with spots exactly on the seams and through the BVH, is the wall
-/// and the object.
+/// A wall cut into 3 × 4 tiles and an object cut into 3 × 3, with spots exactly on the seams and
+/// through the BVH, is the wall and the object.
 #[test]
 fn cut_surfaces_are_whole_ones() {
     let spots = "layout = \"list\"\npoints = [[4, 2], [8, 6], [2, 8], [3, 1], [4, 10]]\n";
@@ -136,8 +138,8 @@ fn cut_surfaces_are_whole_ones() {
     );
 }
 
-/// A spot that hangs over the wall's edge loses what falls beside it: a disc cut at its middle keeps half its power, so that a
-/// symmetric pair of half discs makes one whole.
+/// A spot that hangs over the wall's edge loses what falls beside it: a disc cut at its middle
+/// keeps half its power, so that a symmetric pair of half discs makes one whole.
 #[test]
 fn what_misses_the_wall_is_lost() {
     let at = |x: f64| {
@@ -163,8 +165,9 @@ fn what_misses_the_wall_is_lost() {
     );
     let way = Way(Shared, Sampling::Sobol, 1, 1 << 15);
     let half = trace(&scene, way).flux.sum();
-    // The lost half lies on the far side; its centroid is 4r/3π beside the edge: to first order the kept half is half the light
-    // of a point at the kept centroid. The second order, (r/R)² ≈ (0.2/8)², bounds the error.
+    // The lost half lies on the far side; its centroid is 4r/3π beside the edge: to first order the
+    // kept half is half the light of a point at the kept centroid. The second order, (r/R)² ≈
+    // (0.2/8)², bounds the error.
     let centroid = 11.5 - 4.0 * 0.2 / (3.0 * std::f64::consts::PI);
     let point = builtin("bench", &[("pixels = [16, 16]", "pixels = [2, 2]")]).text;
     let (head, rest) = point.split_once("layout = ").unwrap();

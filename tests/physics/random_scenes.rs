@@ -1,14 +1,14 @@
 //! Random scenes: whatever is accepted gives light that could be, by every estimator and sampler.
 //!
-//! Each scene is told by a tape of numbers in \[0, 1), which proptest draws and, where something fails, shrinks: a wall (or the inside of a sphere)
-//! seen from above, over it a hidden surface whose front looks down, sometimes occluders, any material, any layout of the spots.
+//! Each scene is told by a tape of numbers in \[0, 1), which proptest draws and, where something
+//! fails, shrinks: a wall (or the inside of a sphere) seen from above, over it a hidden surface
+//! whose front looks down, sometimes occluders, any material, any layout of the spots.
 
 use std::cell::Cell;
-use std::sync::atomic::AtomicBool;
 
 use phicam::num::stream::Sampling;
 use phicam::scene::Scene;
-use phicam::transport::{Budget, Control, Estimator, Plan, Traced, obstacle, render};
+use phicam::transport::{Budget, Control, Estimator, Plan, Traced, render, unsupported_surface};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 
@@ -114,7 +114,8 @@ impl Tape<'_> {
         }
     }
 
-    /// A hidden surface whose front looks down from about `height`; a sphere under a roof, which hides it from above.
+    /// A hidden surface whose front looks down from about `height`; a sphere under a roof, which
+    /// hides it from above.
     fn hidden(&mut self, name: &str, [w, h]: [f64; 2], height: f64) -> String {
         let material = self.material();
         let [x, y] = [w * self.between(0.4, 0.7), h * self.between(0.2, 0.6)];
@@ -270,9 +271,11 @@ fn plan(tape: &mut Tape<'_>) -> Plan {
     }
 }
 
-/// Every number finite and not negative; the flux is the sum of its bounces, and the pixels together receive no more than the laser gives.
+/// Every number finite and not negative; the flux is the sum of its bounces, and the pixels
+/// together receive no more than the laser gives.
 ///
-/// The last holds of an estimate only because a pinhole takes so little: apertures here are smaller than a thousandth of the sphere around them.
+/// The last holds of an estimate only because a pinhole takes so little: apertures here are smaller
+/// than a thousandth of the sphere around them.
 fn check(scene: &Scene, traced: &Traced) -> Result<(), TestCaseError> {
     let matrices = traced.bounces.iter().chain([&traced.flux, &traced.stderr]);
     for (i, matrix) in matrices.enumerate() {
@@ -300,8 +303,9 @@ fn check(scene: &Scene, traced: &Traced) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// Laser and camera look down on a lid that covers everything; no surface can send light on to what they see of it. The points that `factored` draws
-/// all the same lie on the wall, whose material has to know where its light goes: what they gave was NaN. Found by the random scenes.
+/// Laser and camera look down on a lid that covers everything; no surface can send light on to what
+/// they see of it. The points that `factored` draws all the same lie on the wall, whose material
+/// has to know where its light goes: what they gave was NaN. Found by the random scenes.
 #[test]
 fn below_a_lid_there_is_no_light() {
     let wall = (
@@ -328,7 +332,8 @@ fn below_a_lid_there_is_no_light() {
             Estimator::Factored,
         ] {
             let traced = crate::trace(&scene, crate::Way(estimator, sampling, 1, 64));
-            // Camera and laser are in one place: the spots on the lid are beside what the pixels see of it.
+            // Camera and laser are in one place: the spots on the lid are beside what the pixels
+            // see of it.
             let dark = traced.flux.iter().chain(&traced.stderr).all(|x| *x == 0.0);
             assert!(dark, "{estimator:?} {sampling:?}");
         }
@@ -363,17 +368,13 @@ fn light_is_finite_and_never_negative() {
             }
         };
         accepted.set(accepted.get() + 1);
-        if obstacle(&scene, &plan).is_some() {
+        if unsupported_surface(&scene, &plan).is_some() {
             return Ok(());
         }
         scene.warnings();
-        let stop = AtomicBool::new(false);
-        let control = Control {
-            progress: &|_| (),
-            stop: &stop,
-        };
+        let control = Control::none();
         let traced = render(&scene, &plan, 0..scene.laser.spots.len(), control);
-        let traced = traced.ok_or_else(|| TestCaseError::fail("nobody stopped it"))?;
+        let traced = traced.map_err(|e| TestCaseError::fail(e.to_string()))?;
         lit.set(lit.get() + usize::from(traced.flux.amax() > 0.0));
         check(&scene, &traced).map_err(|e| TestCaseError::fail(format!("{e}\n{plan:?}\n{text}")))
     });

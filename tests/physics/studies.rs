@@ -1,30 +1,24 @@
 //! The studies against what was measured independently, and against their own statistics.
 
-use std::sync::atomic::AtomicBool;
-
+use phicam::lab::{BudgetPlan, BudgetTasks, ErrorBudget, PowerPlan, PowerTasks, run};
 use phicam::num::stream::Sampling;
 use phicam::scene::Scene;
-use phicam::study::{BudgetPlan, ErrorBudget, PowerPlan, error_budget, power};
 use phicam::transport::{Control, Estimator};
 
 use crate::builtin;
 
 pub(crate) fn budget(scene: &Scene, ensemble_samples: u64) -> ErrorBudget {
-    let stop = AtomicBool::new(false);
-    let control = Control {
-        progress: &|_| (),
-        stop: &stop,
-    };
+    let control = Control::none();
     let plan = BudgetPlan {
         seed: 1,
         ensemble_samples,
         run_samples: 256,
     };
-    error_budget(scene, plan, control).unwrap().unwrap()
+    run(&BudgetTasks::new(scene, plan), control).unwrap()
 }
 
-/// The thesis bench: element area 1.6e-3 ± 0.2e-3, five bounces 1.2 to 1.4 % with 7e-4 left after the best scale, a signal of
-/// 0.32 %; and the parts add up.
+/// The thesis bench: element area 1.6e-3 ± 0.2e-3, five bounces 1.2 to 1.4 % with 7e-4 left after
+/// the best scale, a signal of 0.32 %; and the parts add up.
 #[test]
 fn the_budget_of_the_thesis_is_the_measured_one() {
     let scene = builtin("thesis", &[("pixels = [16, 16]", "pixels = [8, 8]")]);
@@ -54,7 +48,8 @@ fn the_budget_of_the_thesis_is_the_measured_one() {
     );
 }
 
-/// With an occluder in the way, which also reflects, the parts add up all the same, and occlusion is the largest of them.
+/// With an occluder in the way, which also reflects, the parts add up all the same, and occlusion
+/// is the largest of them.
 #[test]
 fn the_budget_knows_occlusion() {
     let shelf = "[[surface]]\nname = \"shelf\"\nrole = \"occluder\"\nmaterial = { lambertian = 0.5 }\n\
@@ -70,8 +65,8 @@ fn the_budget_knows_occlusion() {
     );
 }
 
-/// 200 seeds at a level of 5 %: false alarms within the 99 % interval of the binomial for both estimators, the published kernel
-/// always found.
+/// 200 seeds at a level of 5 %: false alarms within the 99 % interval of the binomial for both
+/// estimators, the published kernel always found.
 #[test]
 fn verdicts_err_at_their_stated_rate() {
     let scene = builtin(
@@ -81,11 +76,7 @@ fn verdicts_err_at_their_stated_rate() {
             ("per_side = 30", "per_side = 6"),
         ],
     );
-    let stop = AtomicBool::new(false);
-    let control = Control {
-        progress: &|_| (),
-        stop: &stop,
-    };
+    let control = Control::none();
     let plan = PowerPlan {
         estimators: vec![Estimator::Independent, Estimator::Shared],
         sampling: Sampling::Sobol,
@@ -94,7 +85,7 @@ fn verdicts_err_at_their_stated_rate() {
         first_seed: 1,
         significance: 0.05,
     };
-    for row in power(&scene, &plan, control).unwrap().unwrap().rows {
+    for row in run(&PowerTasks::new(&scene, plan), control).unwrap().rows {
         let [low, high] = row.expected;
         assert!((low..=high).contains(&row.false_alarms), "{row:?}");
         let published = row

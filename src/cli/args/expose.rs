@@ -36,7 +36,8 @@ pub(in crate::cli) struct ExposeArgs {
     /// Multiply each finished entry by 1 + NOISE·N(0, 1)
     #[arg(long, value_name = "NOISE", allow_negative_numbers = true)]
     pub noise: Option<f64>,
-    /// Part of the spot's light entering the lens that is scattered, evenly unless the scene says otherwise
+    /// Part of the spot's light entering the lens that is scattered, evenly unless the scene says
+    /// otherwise
     #[arg(long, value_name = "FRACTION", allow_negative_numbers = true)]
     pub glare: Option<f64>,
     /// Ambient light, W into each pixel

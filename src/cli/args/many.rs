@@ -16,13 +16,15 @@ pub(in crate::cli) struct PlanArgs {
     pub output: PathBuf,
     #[command(flatten)]
     pub paths: PathArgs,
-    /// Into how many shards the work is divided, 32 unless there are fewer blocks; does not change a byte of the result
+    /// Into how many shards the work is divided, 32 unless there are fewer blocks; does not change
+    /// a byte of the result
     #[arg(long, allow_negative_numbers = true)]
     pub shards: Option<u64>,
     /// Print plan.json
     #[arg(long)]
     pub json: bool,
-    /// A study or published items in place of a render: `study NAME SCENE …` or `reproduce …`, without its output folder
+    /// A study or published items in place of a render: `study NAME SCENE …` or `reproduce …`,
+    /// without its output folder
     #[arg(last = true, conflicts_with_all = ["estimator", "sampler", "samples", "seed"])]
     pub command: Vec<String>,
 }

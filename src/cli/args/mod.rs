@@ -1,13 +1,12 @@
 //! Raw arguments, as clap reads them.
 
+mod choice;
 mod expose;
-mod laboratory;
 mod many;
 mod recover;
 mod reproduce;
 mod serve;
 mod study;
-mod sweep;
 mod target;
 mod value;
 mod view;
@@ -15,23 +14,23 @@ mod view;
 use std::ops::Range;
 use std::path::PathBuf;
 
-use clap::{Args as Arguments, Parser, Subcommand, ValueEnum};
+use clap::{Args as Arguments, Parser, Subcommand};
 
 use super::failure::Codes;
+use crate::lab::Integration;
+use crate::model::Kernel;
+use crate::num::stream::Sampling;
+use crate::transport::Estimator;
 use value::{elements, shift, spot_range};
 
 pub(in crate::cli) use expose::ExposeArgs;
-pub(in crate::cli) use laboratory::{BrdfArgs, CoverageArgs, ExperimentArgs};
 pub(in crate::cli) use many::{CleanArgs, MergeArgs, PlanArgs, ShardArgs, SlurmArgs, StatusArgs};
-pub(in crate::cli) use recover::{RecoverArgs, RuleName, WeightingName};
+pub(in crate::cli) use recover::RecoverArgs;
 pub(in crate::cli) use reproduce::ReproduceArgs;
 pub(in crate::cli) use serve::ServeArgs;
-pub(in crate::cli) use study::{
-    BudgetArgs, ConvergenceArgs, PowerArgs, StudyArgs, StudyCommand, ToleranceArgs,
-};
-pub(in crate::cli) use sweep::{AxisName, IndicatorArgs, NoiseArgs};
+pub(in crate::cli) use study::StudyArgs;
 pub(in crate::cli) use target::TargetArgs;
-pub(in crate::cli) use view::{LawName, MapName, PortraitArgs, TerminalName, ViewArgs, YesNo};
+pub(in crate::cli) use view::{PreviewArgs, Terminal, ViewArgs};
 
 /// phicam: a physically based renderer for indirect photography, and the laboratory around it.
 #[derive(Debug, Parser)]
@@ -44,7 +43,8 @@ pub(in crate::cli) struct Args {
     /// No progress and no remarks on standard error
     #[arg(long, short, global = true)]
     pub quiet: bool,
-    /// Let scenes read meshes, pictures and materials in this folder too, not only beside the scene file; may be given several times
+    /// Let scenes read meshes, pictures and materials in this folder too, not only beside the scene
+    /// file; may be given several times
     #[arg(long, value_name = "DIR", global = true)]
     pub also_read: Vec<PathBuf>,
     #[command(subcommand)]
@@ -69,7 +69,8 @@ pub(in crate::cli) enum Command {
     Expose(ExposeArgs),
     /// Look at a frame or a matrix in false colour, as PNG or in the terminal
     View(ViewArgs),
-    /// Show the report of a run or study over a local address, for what is too large to be in one page
+    /// Show the report of a run or study over a local address, for what is too large to be in one
+    /// page
     Serve(ServeArgs),
     /// List, check, draw, look at or export scenes
     Scene(SceneArgs),
@@ -101,7 +102,7 @@ impl Command {
     /// The scene of a study.
     pub(in crate::cli) fn planned_scene(&self) -> Option<&str> {
         match self {
-            Self::Study(args) => Some(args.command.scene()),
+            Self::Study(args) => Some(&args.scene),
             _ => None,
         }
     }
@@ -124,12 +125,13 @@ impl Command {
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct PathArgs {
     /// Which paths are shared
-    #[arg(long, value_enum, default_value_t = EstimatorName::Independent)]
-    pub estimator: EstimatorName,
+    #[arg(long, value_parser = choice::estimator(), default_value = "independent")]
+    pub estimator: Estimator,
     /// Where random numbers come from
-    #[arg(long, value_enum, default_value_t = SamplerName::Sobol)]
-    pub sampler: SamplerName,
-    /// Paths per pixel and spot (independent) or per pixel (shared), points on the hidden surface (factored); rounded up to whole blocks
+    #[arg(long, value_parser = choice::sampler(), default_value = "sobol")]
+    pub sampler: Sampling,
+    /// Paths per pixel and spot (independent) or per pixel (shared), points on the hidden surface
+    /// (factored); rounded up to whole blocks
     #[arg(long, default_value_t = 512, allow_negative_numbers = true)]
     pub samples: u64,
     /// Seed: the same seed gives the same bytes
@@ -145,24 +147,6 @@ pub(in crate::cli) struct TraceArgs {
     /// Threads; all cores unless given. Does not change a byte of the result
     #[arg(long, allow_negative_numbers = true)]
     pub threads: Option<usize>,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(in crate::cli) enum EstimatorName {
-    /// Every (pixel, spot) entry has its own paths
-    Independent,
-    /// The paths of a pixel serve all spots
-    Shared,
-    /// The points on the hidden surface serve all pixels and all spots
-    Factored,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(in crate::cli) enum SamplerName {
-    /// Independent random numbers
-    Pcg,
-    /// Owen-scrambled Sobol' points
-    Sobol,
 }
 
 #[derive(Debug, Arguments)]
@@ -214,22 +198,6 @@ pub(in crate::cli) struct StackArgs {
     pub json: bool,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(in crate::cli) enum KernelName {
-    /// The true cosine at the hidden surface
-    Physical,
-    /// The one in the published simulation
-    Published,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(in crate::cli) enum IntegrationName {
-    /// Elements, pixels and spots by their centres, with a bound on what that leaves out
-    Centres,
-    /// Converged quadrature over elements, footprints and spots
-    Quadrature,
-}
-
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct ModelArgs {
     /// Built-in scene or path of a scene file
@@ -238,17 +206,18 @@ pub(in crate::cli) struct ModelArgs {
     #[arg(long, short)]
     pub output: PathBuf,
     /// Kernel of G12 and G23
-    #[arg(long, value_enum, default_value_t = KernelName::Physical)]
-    pub kernel: KernelName,
+    #[arg(long, value_parser = choice::kernel(), default_value = "physical")]
+    pub kernel: Kernel,
     /// Elements along u and v, in place of the scene's: N or NxM
     #[arg(long, value_name = "N", value_parser = elements)]
     pub elements: Option<[usize; 2]>,
-    /// Leave out, entry by entry, what the scene's surfaces stand in the way of: the published model knows no occlusion
+    /// Leave out, entry by entry, what the scene's surfaces stand in the way of: the published
+    /// model knows no occlusion
     #[arg(long)]
     pub occlusion: bool,
     /// Where Φcam is evaluated; G12 and G23 are always those of the centres
-    #[arg(long, value_enum, default_value_t = IntegrationName::Centres)]
-    pub integration: IntegrationName,
+    #[arg(long, value_parser = choice::integration(), default_value = "centres")]
+    pub integration: Integration,
     /// Print the shapes of the matrices as JSON
     #[arg(long)]
     pub json: bool,
@@ -258,11 +227,11 @@ pub(in crate::cli) struct ModelArgs {
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct TestArgs {
     /// Kernel of the model
-    #[arg(long, value_enum, default_value_t = KernelName::Physical)]
-    pub kernel: KernelName,
+    #[arg(long, value_parser = choice::kernel(), default_value = "physical")]
+    pub kernel: Kernel,
     /// How the model integrates
-    #[arg(long, value_enum, default_value_t = IntegrationName::Centres)]
-    pub integration: IntegrationName,
+    #[arg(long, value_parser = choice::integration(), default_value = "centres")]
+    pub integration: Integration,
     /// Probability of rejecting a right model
     #[arg(long, default_value_t = 1e-3, allow_negative_numbers = true)]
     pub significance: f64,
@@ -316,7 +285,7 @@ pub(in crate::cli) enum SceneCommand {
         output: Option<PathBuf>,
     },
     /// Look at a scene from any place, in ordinary light, as PNG
-    View(Box<PortraitArgs>),
+    View(Box<PreviewArgs>),
     /// Write the text of a scene, as a start for one's own
     Export {
         /// Built-in scene or path of a scene file
@@ -340,7 +309,8 @@ mod tests {
         Args::command().debug_assert();
     }
 
-    /// Commands whose result is a picture, a program or a text to be kept as it is, or that speak to Slurm or to a browser.
+    /// Commands whose result is a picture, a program or a text to be kept as it is, or that speak
+    /// to Slurm or to a browser.
     const NO_JSON: [&str; 6] = ["view", "target", "slurm", "serve", "show", "export"];
 
     #[test]

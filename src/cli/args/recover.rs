@@ -2,27 +2,20 @@
 
 use std::path::PathBuf;
 
-use clap::{Args as Arguments, ValueEnum};
+use clap::Args as Arguments;
 
-use super::KernelName;
+use super::choice;
 use super::value::{elements, levels};
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(in crate::cli) enum RuleName {
-    /// The strongest regularisation whose residual the noise explains
-    Discrepancy,
-    /// Generalised cross-validation; needs no noise model
-    Gcv,
-    /// The corner of the L-curve; needs no noise model
-    LCurve,
-}
+use crate::model::Kernel;
+use crate::recovery::{Rule, WeightRule};
 
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct RecoverArgs {
     /// Folder of a run; with --phi a folder with a scene.toml is enough
     pub dir: PathBuf,
-    /// Methods, separated by commas: pinv, left-inverse, right-inverse, rdivide, rdivide-min-norm, tsvd, tikhonov, tikhonov-gradient,
-    /// joint-unbounded, joint, nnls, joint-tv, joint-two-valued; pinv, tsvd, tikhonov, joint-unbounded and joint unless given
+    /// Methods, separated by commas: pinv, left-inverse, right-inverse, rdivide, rdivide-min-norm,
+    /// tsvd, tikhonov, tikhonov-gradient, joint-unbounded, joint, nnls, joint-tv, joint-two-valued;
+    /// pinv, tsvd, tikhonov, joint-unbounded and joint unless given
     #[arg(long, value_delimiter = ',', value_name = "METHOD")]
     pub method: Vec<String>,
     /// Φcam to invert, pixels × spots in W, in place of DIR/phi.npy
@@ -31,31 +24,35 @@ pub(in crate::cli) struct RecoverArgs {
     /// Its standard error, in place of DIR/phi.stderr.npy
     #[arg(long, value_name = "FILE", conflicts_with = "noise")]
     pub stderr: Option<PathBuf>,
-    /// Noise model: standard deviation of each entry relative to its value, in place of a standard error
+    /// Noise model: standard deviation of each entry relative to its value, in place of a standard
+    /// error
     #[arg(long, value_name = "RELATIVE", allow_negative_numbers = true)]
     pub noise: Option<f64>,
-    /// Use entries that `expose` has marked as saturated or cut off beside the --phi file (saturated.npy) as if they were right
+    /// Use entries that `expose` has marked as saturated or cut off beside the --phi file
+    /// (saturated.npy) as if they were right
     #[arg(long, requires = "phi")]
     pub keep_clipped: bool,
     /// Kernel of the model that is inverted
-    #[arg(long, value_enum, default_value_t = KernelName::Physical)]
-    pub kernel: KernelName,
+    #[arg(long, value_parser = choice::kernel(), default_value = "physical")]
+    pub kernel: Kernel,
     /// Elements along u and v, in place of the scene's: N or NxM
     #[arg(long, value_name = "N", value_parser = elements)]
     pub elements: Option<[usize; 2]>,
-    /// Leave out, entry by entry, what the scene's surfaces stand in the way of: the published model knows no occlusion
+    /// Leave out, entry by entry, what the scene's surfaces stand in the way of: the published
+    /// model knows no occlusion
     #[arg(long)]
     pub occlusion: bool,
     /// How tsvd, tikhonov and tikhonov-gradient choose their parameter
-    #[arg(long, value_enum, default_value_t = RuleName::Discrepancy)]
-    pub rule: RuleName,
+    #[arg(long, value_parser = choice::rule(), default_value = "discrepancy")]
+    pub rule: Rule,
     /// Singular directions that tsvd keeps, in place of the rule's choice
     #[arg(long, value_name = "K", allow_negative_numbers = true)]
     pub rank: Option<usize>,
     /// Damping of tikhonov and tikhonov-gradient relative to σ1, in place of the rule's choice
     #[arg(long, value_name = "LAMBDA", allow_negative_numbers = true)]
     pub damping: Option<f64>,
-    /// Relative singular value below which pinv, the divisions and joint-unbounded cut; max(size)·eps unless given
+    /// Relative singular value below which pinv, the divisions and joint-unbounded cut;
+    /// max(size)·eps unless given
     #[arg(long, value_name = "RELATIVE", allow_negative_numbers = true)]
     pub tolerance: Option<f64>,
     #[command(flatten)]
@@ -63,7 +60,8 @@ pub(in crate::cli) struct RecoverArgs {
     /// Bands that cover each element with this probability: METHOD.lower.npy and METHOD.upper.npy
     #[arg(long, value_name = "LEVEL", allow_negative_numbers = true)]
     pub bands: Option<f64>,
-    /// Memory that may be taken, GiB: where Φcam is larger it is read by rows, by the methods that can; three quarters of what is free unless given
+    /// Memory that may be taken, GiB: where Φcam is larger it is read by rows, by the methods that
+    /// can; three quarters of what is free unless given
     #[arg(long, value_name = "GIB", allow_negative_numbers = true)]
     pub memory: Option<f64>,
     /// Print the results as JSON
@@ -75,8 +73,8 @@ pub(in crate::cli) struct RecoverArgs {
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct JointArgs {
     /// By what the joint methods weigh the entries of Φcam
-    #[arg(long, value_enum, default_value_t = WeightingName::Noise)]
-    pub weighting: WeightingName,
+    #[arg(long, value_parser = choice::weighting(), default_value = "noise")]
+    pub weighting: WeightRule,
     /// Weight of joint-tv's total variation relative to σ1², in place of the discrepancy principle
     #[arg(long, value_name = "LAMBDA", allow_negative_numbers = true)]
     pub tv: Option<f64>,
@@ -95,12 +93,4 @@ pub(in crate::cli) struct JointArgs {
     /// Estimate the strength of this pattern in each frame: pixels × spots
     #[arg(long, value_name = "FILE")]
     pub glare_pattern: Option<PathBuf>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum WeightingName {
-    /// By the noise, where it is known
-    Noise,
-    /// All alike
-    None,
 }

@@ -6,10 +6,12 @@ use clap::Args as Arguments;
 
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct ReproduceArgs {
-    /// Tables and figures: table1, table2, …, fig12, …, precision, dual, moving-view; all unless given
+    /// Tables and figures: table1, table2, …, fig12, …, precision, dual, moving-view; all unless
+    /// given
     #[arg(value_name = "ITEM")]
     pub items: Vec<String>,
-    /// Folder for ITEM.csv, ITEM.svg and ITEM-images.svg, each with a PNG beside it, ITEM.json, reproduction.md and reproduction.html, a page with all figures in it
+    /// Folder for ITEM.csv, ITEM.svg and ITEM-images.svg, each with a PNG beside it, ITEM.json,
+    /// reproduction.md and reproduction.html, a page with all figures in it
     #[arg(long, short, default_value = "out/reproduce")]
     pub output: PathBuf,
     /// Leave out curves with more elements a side than this

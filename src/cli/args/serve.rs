@@ -16,7 +16,8 @@ pub(in crate::cli) struct ServeArgs {
     /// Port to listen on; 0: any that is free
     #[arg(long, default_value_t = 8017)]
     pub port: u16,
-    /// Address of this machine to listen on; by any but a loopback address others on the network can read DIR; by a loopback address whoever has an account on this machine
+    /// Address of this machine to listen on; by any but a loopback address others on the network
+    /// can read DIR; by a loopback address whoever has an account on this machine
     #[arg(long, value_name = "IP", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
     pub address: IpAddr,
 }

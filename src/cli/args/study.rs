@@ -1,67 +1,140 @@
-//! Arguments of `phicam study`.
+//! Arguments of `phicam study`, from the registry of studies.
 
 use std::path::PathBuf;
 
-use clap::error::Error;
-use clap::{ArgMatches, Args as Arguments, Command, FromArgMatches, Subcommand};
+use clap::builder::ValueParser;
+use clap::error::{Error, ErrorKind};
+use clap::{Arg, ArgAction, ArgMatches, Args as Arguments, Command, FromArgMatches, value_parser};
 
-use super::laboratory::{BrdfArgs, CoverageArgs, ExperimentArgs};
-use super::sweep::{IndicatorArgs, NoiseArgs};
-use super::{EstimatorName, SamplerName};
+use super::choice::possible;
+use crate::lab::options::{Kind, Opt, OptionError, Values};
+use crate::lab::{Registered, STUDIES};
 
-/// A study with every option of it as it was given, or as it is unless given.
+/// A study that is asked for.
 #[derive(Debug)]
 pub(in crate::cli) struct StudyArgs {
-    pub command: StudyCommand,
-    /// Name of the study.
-    pub name: String,
-    /// Options that decide what comes out, with their values.
-    pub options: Vec<(String, String)>,
+    pub study: &'static Registered,
+    pub scene: String,
+    pub output: PathBuf,
+    pub threads: Option<usize>,
+    pub json: bool,
+    /// Every option with its values as they were given, or as they are unless given.
+    pub options: Vec<(&'static str, Vec<String>)>,
 }
 
-/// What does not change what comes out, or is no option.
-const APART: [&str; 7] = [
-    "scene",
-    "output",
-    "threads",
-    "json",
-    "quiet",
-    "also_read",
-    "help",
-];
-
 impl StudyArgs {
-    fn command(base: Command) -> Command {
-        StudyCommand::augment_subcommands(base)
-            .subcommand_required(true)
-            .arg_required_else_help(true)
+    /// The values of the options.
+    pub(in crate::cli) fn values(&self) -> Result<Values, OptionError> {
+        let set =
+            |values: Values, (name, given): &(&str, Vec<String>)| values.with(name, given.clone());
+        let values = Values::defaults(self.study.options);
+        self.options.iter().try_fold(values, set)
     }
 
-    /// The options of the study that `matches` names, in the order in which its help lists them.
-    fn said(matches: &ArgMatches) -> (String, Vec<(String, String)>) {
-        let Some((name, given)) = matches.subcommand() else {
-            return Default::default();
-        };
-        let studies = Self::command(Command::new("study"));
-        let known = studies.find_subcommand(name).into_iter();
-        let option = |arg: &clap::Arg| {
-            let id = arg.get_id().as_str();
-            let values = given.get_raw(id).filter(|_| !APART.contains(&id))?;
-            let values: Vec<_> = values.map(|v| v.to_string_lossy()).collect();
-            Some((format!("--{}", arg.get_long()?), values.join(",")))
-        };
-        let options = known.flat_map(Command::get_arguments).filter_map(option);
-        (name.to_owned(), options.collect())
+    /// The options that have values, with them, as a command line spells them.
+    pub(in crate::cli) fn spelled(&self) -> Vec<(String, String)> {
+        let given = self.options.iter().filter(|(_, values)| !values.is_empty());
+        let spelled =
+            |(name, values): &(&str, Vec<String>)| (format!("--{name}"), values.join(","));
+        given.map(spelled).collect()
+    }
+}
+
+fn command(study: &'static Registered) -> Command {
+    let name = study.name;
+    let files = match study.files {
+        "" => format!("{name}.json"),
+        files => format!("{name}.json, {files}"),
+    };
+    let scene = Arg::new("scene")
+        .value_name("SCENE")
+        .help("Built-in scene or path of a scene file");
+    Command::new(name)
+        .about(study.about)
+        .arg(match study.scene {
+            Some(scene_name) => scene.default_value(scene_name),
+            None => scene.required(true),
+        })
+        .arg(
+            Arg::new("output")
+                .long("output")
+                .short('o')
+                .value_name("OUTPUT")
+                .help(format!("Folder for {files} and report.html"))
+                .default_value(format!("out/{name}"))
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .args(study.options.iter().map(argument))
+        .arg(
+            Arg::new("threads")
+                .long("threads")
+                .value_name("THREADS")
+                .help("Threads; all cores unless given")
+                .value_parser(value_parser!(usize)),
+        )
+        .arg(
+            Arg::new("json")
+                .long("json")
+                .action(ArgAction::SetTrue)
+                .help(format!("Print {name}.json instead of the table")),
+        )
+}
+
+fn argument(option: &'static Opt) -> Arg {
+    let name = option.value.map_or_else(
+        || option.name.to_uppercase().replace('-', "_"),
+        str::to_owned,
+    );
+    let parser = match option.kind {
+        Kind::Name(names) => possible(names).into(),
+        _ => ValueParser::new(|text: &str| option.parses(text).map(|()| text.to_owned())),
+    };
+    let argument = Arg::new(option.name)
+        .long(option.name)
+        .value_name(name)
+        .help(option.help)
+        .value_parser(parser)
+        .allow_negative_numbers(matches!(option.kind, Kind::Number));
+    let argument = match option.default {
+        Some(default) => argument.default_value(default),
+        None => argument,
+    };
+    let argument = match option.alias {
+        Some(alias) => argument.visible_alias(alias),
+        None => argument,
+    };
+    if option.list {
+        argument.value_delimiter(',').action(ArgAction::Append)
+    } else {
+        argument
     }
 }
 
 impl FromArgMatches for StudyArgs {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
-        let (name, options) = Self::said(matches);
+        let chosen = matches.subcommand().and_then(|(name, given)| {
+            let study = STUDIES.iter().find(|s| s.name == name)?;
+            Some((study, given))
+        });
+        let (study, given) = chosen.ok_or_else(|| Error::new(ErrorKind::MissingSubcommand))?;
+        let text = |option: &'static Opt| {
+            let values = given.get_many::<String>(option.name);
+            (option.name, values.into_iter().flatten().cloned().collect())
+        };
+        let missing = || Error::new(ErrorKind::MissingRequiredArgument);
         Ok(Self {
-            command: StudyCommand::from_arg_matches(matches)?,
-            name,
-            options,
+            study,
+            scene: given
+                .get_one::<String>("scene")
+                .cloned()
+                .ok_or_else(missing)?,
+            output: given
+                .get_one::<PathBuf>("output")
+                .cloned()
+                .ok_or_else(missing)?,
+            threads: given.get_one("threads").copied(),
+            json: given.get_flag("json"),
+            options: study.options.iter().map(text).collect(),
         })
     }
 
@@ -73,147 +146,14 @@ impl FromArgMatches for StudyArgs {
 
 impl Arguments for StudyArgs {
     fn augment_args(base: Command) -> Command {
-        Self::command(base)
+        base.subcommands(STUDIES.iter().copied().map(command))
+            .subcommand_required(true)
+            .arg_required_else_help(true)
     }
 
     fn augment_args_for_update(base: Command) -> Command {
-        Self::command(base)
+        Self::augment_args(base)
     }
-}
-
-#[derive(Debug, Subcommand)]
-pub(in crate::cli) enum StudyCommand {
-    /// What the matrix model leaves out, cause by cause: table, JSON, CSV, figure
-    Budget(BudgetArgs),
-    /// How small a model error validate detects, and how often it errs: table and JSON
-    Power(PowerArgs),
-    /// How wrong the assumed geometry may be: table, JSON, CSV, figure
-    Tolerance(ToleranceArgs),
-    /// How fast the error of each estimator falls: table, JSON, figure
-    Convergence(ConvergenceArgs),
-    /// How much noise each recovery bears: table, JSON, CSV, figures; a rerun goes on where the last one stopped
-    Noise(NoiseArgs),
-    /// What predicts the modulation of the published inversion: table, JSON, CSV, figure
-    Indicator(IndicatorArgs),
-    /// The matrix model on a wall that is not Lambertian, its BRDF known, ignored, or wrong: table, JSON, CSV, figure
-    Brdf(BrdfArgs),
-    /// How often bands around recovered reflectances cover the truth: table and JSON
-    Coverage(CoverageArgs),
-    /// The failed laboratory experiment with a real sensor and glare: findings in words, tables, JSON, CSV, figure
-    Experiment(ExperimentArgs),
-}
-
-impl StudyCommand {
-    /// The scene that is studied.
-    pub(in crate::cli) fn scene(&self) -> &str {
-        match self {
-            Self::Budget(a) => &a.scene,
-            Self::Power(a) => &a.scene,
-            Self::Tolerance(a) => &a.scene,
-            Self::Convergence(a) => &a.scene,
-            Self::Noise(a) => &a.scene,
-            Self::Indicator(a) => &a.scene,
-            Self::Brdf(a) => &a.scene,
-            Self::Coverage(a) => &a.scene,
-            Self::Experiment(a) => &a.scene,
-        }
-    }
-}
-
-#[derive(Debug, Arguments)]
-pub(in crate::cli) struct ConvergenceArgs {
-    /// Built-in scene or path of a scene file
-    #[arg(default_value = "thesis")]
-    pub scene: String,
-    /// Folder for convergence.json, convergence.svg and report.html
-    #[arg(long, short, default_value = "out/convergence")]
-    pub output: PathBuf,
-    /// Numbers of paths, separated by commas
-    #[arg(long, value_delimiter = ',', default_value = "64,128,256,512,1024")]
-    pub samples: Vec<u64>,
-    /// Seed
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
-    /// Threads; all cores unless given
-    #[arg(long)]
-    pub threads: Option<usize>,
-    /// Print convergence.json instead of the table
-    #[arg(long)]
-    pub json: bool,
-}
-
-#[derive(Debug, Arguments)]
-pub(in crate::cli) struct ToleranceArgs {
-    /// Built-in scene or path of a scene file
-    #[arg(default_value = "bench")]
-    pub scene: String,
-    /// Folder for tolerance.json, tolerance.csv, tolerance.svg and report.html
-    #[arg(long, short, default_value = "out/tolerance")]
-    pub output: PathBuf,
-    /// Noise of the photographs, relative to each entry
-    #[arg(long, default_value_t = 0.01)]
-    pub noise: f64,
-    /// Print tolerance.json instead of the table
-    #[arg(long)]
-    pub json: bool,
-}
-
-#[derive(Debug, Arguments)]
-pub(in crate::cli) struct PowerArgs {
-    /// Built-in scene or path of a scene file
-    #[arg(default_value = "bench")]
-    pub scene: String,
-    /// Folder for power.json and report.html
-    #[arg(long, short, default_value = "out/power")]
-    pub output: PathBuf,
-    /// Estimators, separated by commas; all unless given
-    #[arg(long, value_enum, value_delimiter = ',')]
-    pub estimator: Vec<EstimatorName>,
-    /// Where random numbers come from
-    #[arg(long, value_enum, default_value_t = SamplerName::Sobol)]
-    pub sampler: SamplerName,
-    /// Numbers of paths, separated by commas
-    #[arg(long, value_delimiter = ',', default_value = "64,256")]
-    pub samples: Vec<u64>,
-    /// Renders of each kind
-    #[arg(long, default_value_t = 40, value_parser = clap::value_parser!(u64).range(1..=100_000))]
-    pub seeds: u64,
-    /// First seed
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
-    /// Probability of rejecting a right model
-    #[arg(long, default_value_t = 0.01)]
-    pub significance: f64,
-    /// Threads; all cores unless given
-    #[arg(long)]
-    pub threads: Option<usize>,
-    /// Print power.json instead of the table
-    #[arg(long)]
-    pub json: bool,
-}
-
-#[derive(Debug, Arguments)]
-pub(in crate::cli) struct BudgetArgs {
-    /// Built-in scene or path of a scene file
-    pub scene: String,
-    /// Folder for budget.json, budget.csv, budget.svg and report.html
-    #[arg(long, short, default_value = "out/budget")]
-    pub output: PathBuf,
-    /// Paths per pixel of the precise renders, all together
-    #[arg(long, default_value_t = 16384)]
-    pub samples: u64,
-    /// Paths per pixel and spot of the run that is taken apart
-    #[arg(long, default_value_t = 512)]
-    pub run_samples: u64,
-    /// Seed of everything
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
-    /// Threads; all cores unless given
-    #[arg(long)]
-    pub threads: Option<usize>,
-    /// Print budget.json instead of the table
-    #[arg(long)]
-    pub json: bool,
 }
 
 #[cfg(test)]
@@ -247,23 +187,19 @@ mod tests {
         ] {
             let first = parsed(line);
             let told = |args: &StudyArgs| {
-                let options = args.options.iter().map(|(o, v)| format!(" {o} {v}"));
+                let options = args.spelled().into_iter().map(|(o, v)| format!(" {o} {v}"));
                 format!(
                     "study {} {}{}",
-                    args.name,
-                    args.command.scene(),
+                    args.study.name,
+                    args.scene,
                     options.collect::<String>()
                 )
             };
             let again = parsed(&told(&first));
             assert_eq!(first.options, again.options, "{line}");
-            let apart = |args: &StudyArgs| {
-                let text = format!("{:?}", args.command);
-                let text = text.replace("\"elsewhere\"", &format!("\"out/{}\"", args.name));
-                let text = text.replace("threads: Some(1)", "threads: None");
-                text.replace("json: true", "json: false")
-            };
-            assert_eq!(apart(&first), apart(&again), "{line}");
+            let values = |args: &StudyArgs| format!("{:?}", args.values().unwrap());
+            assert_eq!(values(&first), values(&again), "{line}");
+            assert_eq!(first.scene, again.scene, "{line}");
         }
     }
 }

@@ -15,60 +15,56 @@ pub(super) fn spot_range(text: &str) -> Result<Range<usize>, String> {
 
 /// "N" or "NxM", both from 1 to 1024.
 pub(super) fn elements(text: &str) -> Result<[usize; 2], String> {
-    let side = |s: &str| s.parse().ok().filter(|n| (1..=1024).contains(n));
-    let parts = match text.split_once('x') {
-        None => side(text).map(|n| [n, n]),
-        Some((a, b)) => side(a).zip(side(b)).map(|(a, b)| [a, b]),
-    };
-    parts.ok_or_else(|| "write it as 8 or 8x6, 1 to 1024 a side".to_owned())
+    let (a, b) = text.split_once('x').unwrap_or((text, text));
+    sides([a, b], 1024).ok_or_else(|| "write it as 8 or 8x6, 1 to 1024 a side".to_owned())
 }
 
 /// "W,H", both from 1 to 4096.
 pub(super) fn size(text: &str) -> Result<[usize; 2], String> {
-    let side = |s: &str| s.trim().parse().ok().filter(|n| (1..=4096).contains(n));
-    let parts = text
-        .split_once(',')
-        .and_then(|(w, h)| Some([side(w)?, side(h)?]));
-    parts.ok_or_else(|| "write it as W,H, e.g. 47,31, 1 to 4096 a side".to_owned())
+    let parts = text.split_once(',');
+    parts
+        .and_then(|(w, h)| sides([w.trim(), h.trim()], 4096))
+        .ok_or_else(|| "write it as W,H, e.g. 47,31, 1 to 4096 a side".to_owned())
+}
+
+/// Two whole numbers from 1 to `most`.
+fn sides([a, b]: [&str; 2], most: usize) -> Option<[usize; 2]> {
+    let sides = [a.parse().ok()?, b.parse().ok()?];
+    sides
+        .iter()
+        .all(|n| (1..=most).contains(n))
+        .then_some(sides)
 }
 
 /// "DX,DY", finite.
 pub(super) fn shift(text: &str) -> Result<[f64; 2], String> {
-    let number = |s: &str| s.trim().parse().ok().filter(|x: &f64| x.is_finite());
-    let parts = text
-        .split_once(',')
-        .and_then(|(a, b)| Some([number(a)?, number(b)?]));
-    parts.ok_or_else(|| "write it as DX,DY, e.g. 0.05,0".to_owned())
+    numbers(text).ok_or_else(|| "write it as DX,DY, e.g. 0.05,0".to_owned())
 }
 
 /// "LOW,HIGH", finite, LOW < HIGH.
 pub(super) fn range(text: &str) -> Result<[f64; 2], String> {
-    let number = |s: &str| s.trim().parse().ok().filter(|x: &f64| x.is_finite());
-    let parts = text
-        .split_once(',')
-        .and_then(|(a, b)| Some([number(a)?, number(b)?]));
-    parts
+    numbers(text)
         .filter(|[low, high]| low < high)
         .ok_or_else(|| "write it as LOW,HIGH with LOW below HIGH, e.g. 0,2e-12".to_owned())
 }
 
 /// "X,Y,Z", finite.
 pub(super) fn point(text: &str) -> Result<[f64; 3], String> {
-    let number = |s: &str| s.trim().parse().ok().filter(|x: &f64| x.is_finite());
-    let parts: Option<Vec<f64>> = text.split(',').map(number).collect();
-    parts
-        .and_then(|p| p.try_into().ok())
-        .ok_or_else(|| "write it as X,Y,Z, e.g. 5,-8,12".to_owned())
+    numbers(text).ok_or_else(|| "write it as X,Y,Z, e.g. 5,-8,12".to_owned())
 }
 
 /// "DARK,LIGHT", 0 ≤ DARK < LIGHT ≤ 1.
 pub(super) fn levels(text: &str) -> Result<[f64; 2], String> {
-    let parts = text
-        .split_once(',')
-        .and_then(|(a, b)| Some([a.trim().parse().ok()?, b.trim().parse().ok()?]));
-    parts
-        .filter(|[dark, light]: &[f64; 2]| 0.0 <= *dark && dark < light && *light <= 1.0)
+    numbers(text)
+        .filter(|[dark, light]| 0.0 <= *dark && dark < light && *light <= 1.0)
         .ok_or_else(|| "write it as DARK,LIGHT with 0 ≤ DARK < LIGHT ≤ 1, e.g. 0.05,0.9".to_owned())
+}
+
+/// Finite numbers, separated by commas.
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let number = |s: &str| s.trim().parse().ok().filter(|x: &f64| x.is_finite());
+    let numbers: Option<Vec<f64>> = text.split(',').map(number).collect();
+    numbers?.try_into().ok()
 }
 
 #[cfg(test)]

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args as Arguments;
 
+use super::choice::{self, one_of};
 use super::value::{point, range, size};
+use crate::report::{Law, Map};
 
 #[derive(Debug, Arguments)]
 #[command(
@@ -12,13 +14,14 @@ use super::value::{point, range, size};
     do with the laser, and it is the one picture with a tone curve (sRGB, whiter than white clipped). Backs of surfaces are hatched: grey relay, blue hidden, \
     purple occluder. Outer walls are clear as glass from behind. Marks: red spots, beams and laser; green view, lines of sight and camera."
 )]
-pub(in crate::cli) struct PortraitArgs {
+pub(in crate::cli) struct PreviewArgs {
     /// Built-in scene or path of a scene file
     pub scene: String,
     /// PNG file to write
     #[arg(long, short)]
     pub output: PathBuf,
-    /// Where the viewer stands, in the scene's unit; chosen unless given, so that all is in the picture and much of it seen from its front
+    /// Where the viewer stands, in the scene's unit; chosen unless given, so that all is in the
+    /// picture and much of it seen from its front
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub from: Option<[f64; 3]>,
     /// What is in the middle of the picture
@@ -42,16 +45,8 @@ pub(in crate::cli) struct PortraitArgs {
     #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=65536), allow_negative_numbers = true)]
     pub samples: u32,
     /// Draw spots, view, beams and devices, or not
-    #[arg(long, value_name = "YES|NO", default_value = "yes", default_missing_value = "yes", num_args = 0..=1, require_equals = true)]
-    pub mark: YesNo,
-}
-
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub(in crate::cli) enum YesNo {
-    /// Draw them
-    Yes,
-    /// Surfaces alone
-    No,
+    #[arg(long, value_name = "YES|NO", value_parser = one_of([("yes", true, "Draw them"), ("no", false, "Surfaces alone")]), default_value = "yes", default_missing_value = "yes", num_args = 0..=1, require_equals = true)]
+    pub mark: bool,
 }
 
 #[derive(Debug, Arguments)]
@@ -86,39 +81,23 @@ pub(in crate::cli) struct ViewArgs {
     #[arg(long, value_name = "LOW,HIGH", value_parser = range, allow_hyphen_values = true)]
     pub range: Option<[f64; 2]>,
     /// How colours are spread over values
-    #[arg(long, value_enum, default_value_t = LawName::Linear)]
-    pub scale: LawName,
+    #[arg(long, value_parser = choice::law(), default_value = "linear")]
+    pub scale: Law,
     /// Colours; viridis unless given, grey for a recovered reflectance
-    #[arg(long, value_enum)]
-    pub map: Option<MapName>,
+    #[arg(long, value_parser = choice::map())]
+    pub map: Option<Map>,
     /// The entries alone: no title, axes, colour bar and legend
     #[arg(long)]
     pub bare: bool,
-    /// Show it in the terminal, whatever standard output is; HOW is chosen by the environment unless given
-    #[arg(long, value_name = "HOW", num_args = 0..=1, require_equals = true, default_missing_value = "auto", conflicts_with = "output")]
-    pub terminal: Option<TerminalName>,
+    /// Show it in the terminal, whatever standard output is; HOW is chosen by the environment
+    /// unless given
+    #[arg(long, value_name = "HOW", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum, conflicts_with = "output")]
+    pub terminal: Option<Terminal>,
 }
 
+/// A way to show a picture in a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(in crate::cli) enum LawName {
-    /// Evenly
-    Linear,
-    /// Evenly over the logarithm
-    Log,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(in crate::cli) enum MapName {
-    /// Black to white
-    Grey,
-    /// Dark blue to yellow, perceptually uniform
-    Viridis,
-    /// Blue, white, red: for signed values, symmetric about 0 unless --range is given
-    Diverging,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(in crate::cli) enum TerminalName {
+pub(in crate::cli) enum Terminal {
     /// By the environment
     Auto,
     /// kitty graphics protocol

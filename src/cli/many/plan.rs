@@ -3,23 +3,23 @@
 use std::fs;
 use std::path::Path;
 
-use super::folder::PlanFolder;
+use super::planned::Planned;
 use super::render::Render;
 use super::study::Study;
 use super::work::Work;
 use crate::cli::args::PlanArgs;
 use crate::cli::failure::Failure;
 use crate::cli::folder::{Folder, SCENE};
-use crate::cli::output::{self, Talk};
-use crate::cli::{Outcome, settings, trust};
-use crate::shard::PlanFile;
+use crate::cli::output::{self, Console};
+use crate::cli::{Outcome, settings};
+use crate::jobs::PlanFile;
 use crate::store::ensure_writable;
 
 /// Shards of a plan unless told otherwise.
 const USUAL_SHARDS: u64 = 32;
 
-pub(in crate::cli) fn execute(args: &PlanArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let work = work(args, talk)?;
+pub(in crate::cli) fn execute(args: &PlanArgs, console: Console) -> Result<Outcome, Failure> {
+    let work = &*work(args, console)?;
     let most = work.blocks().min(PlanFile::MOST_SHARDS);
     let shards = args.shards.unwrap_or(most.min(USUAL_SHARDS));
     if !(1..=most).contains(&shards) {
@@ -41,19 +41,19 @@ pub(in crate::cli) fn execute(args: &PlanArgs, talk: Talk) -> Result<Outcome, Fa
         );
         return Err(Failure::new(cause, "plan into another folder (-o)"));
     }
-    if earlier.is_none() && !is_free(dir, &work) {
+    if earlier.is_none() && !is_free(dir, work) {
         let cause = format!("{} holds a {SCENE} that is not of a plan", dir.display());
         return Err(Failure::new(cause, "plan into another folder (-o)"));
     }
     ensure_writable(dir)?;
     if let Some(scene) = work.scene() {
-        talk.warn(scene);
+        console.warn(scene);
         Folder::at(dir).write_scene(scene)?;
     }
     file.write(&dir.join(PlanFile::NAME))?;
     ensure_writable(&dir.join("shards"))?;
     // What was written is what every machine will read.
-    let read = PlanFolder::open(dir)?;
+    let read = Planned::open(dir, console)?.folder;
     if args.json {
         output::print(&output::json(&read.file)?)?;
     } else {
@@ -70,22 +70,24 @@ pub(in crate::cli) fn execute(args: &PlanArgs, talk: Talk) -> Result<Outcome, Fa
     Ok(Outcome::Done)
 }
 
-/// Whether no scene is in `dir`, or the very same: what a process leaves that was killed while it planned.
-fn is_free(dir: &Path, work: &Work) -> bool {
+/// Whether no scene is in `dir`, or the very same: what a process leaves that was killed while it
+/// planned.
+fn is_free(dir: &Path, work: &dyn Work) -> bool {
     let path = dir.join(SCENE);
     let own = || work.scene().map(|s| s.text.as_bytes().to_vec());
     !path.exists() || fs::read(path).ok() == own()
 }
 
 /// A render of the scene, or the command after `--`.
-fn work(args: &PlanArgs, talk: Talk) -> Result<Work, Failure> {
+fn work(args: &PlanArgs, console: Console) -> Result<Box<dyn Work>, Failure> {
     match (&args.scene, args.command.is_empty()) {
         (Some(scene), true) => {
-            let scene = trust::load(scene)?;
-            let plan = settings::plan(&args.paths, talk)?;
-            Ok(Work::Render(Box::new(Render::new(scene, plan)?)))
+            let scene = console.load_scene(scene)?;
+            let plan = settings::plan(&args.paths)?;
+            settings::remark_rounding(&args.paths, &plan, console);
+            Ok(Box::new(Render::new(scene, plan)?))
         }
-        (None, false) => Ok(Work::Study(Box::new(Study::plan(&args.command)?))),
+        (None, false) => Ok(Box::new(Study::plan(&args.command, console)?)),
         _ => Err(Failure::usage(
             "a plan is of a scene that is rendered, or of a command after `--`",
             "phicam plan SCENE -o DIR, or phicam plan -o DIR -- study noise SCENE …",

@@ -5,22 +5,22 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use super::shards::Shards;
-use crate::cli::checkpoint::{Checkpoint, Parts};
-use crate::cli::columns::{self, Columns, together};
+use super::work::Work;
 use crate::cli::failure::Failure;
-use crate::cli::folder::{Folder, Keep};
-use crate::cli::output::{self, Talk};
+use crate::cli::folder::{Folder, Resume};
+use crate::cli::interrupt::stop_flag;
+use crate::cli::output::{self, Console};
 use crate::cli::progress::Tracing;
 use crate::cli::record::Record;
 use crate::cli::render::{complete, refuse_beyond_f32, refuse_too_large};
 use crate::cli::{Outcome, settings};
+use crate::jobs::{Checkpoint, Identity, Parts, Settings, Shards, Spots, end};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
-use crate::shard::{Identity, Settings};
-use crate::transport::Plan;
+use crate::transport::{Control, Plan, Tally};
 
-/// A render. Its blocks are the sample blocks of the first columns of Φcam that are traced together, then those of the next.
+/// A render. Its blocks are the sample blocks of the first columns of Φcam that are traced
+/// together, then those of the next.
 #[derive(Debug)]
 pub(super) struct Render {
     pub scene: Scene,
@@ -34,106 +34,60 @@ impl Render {
         refuse_too_large(&scene)?;
         Ok(Self { scene, plan })
     }
+}
 
-    pub(super) fn read(
-        scene: Scene,
-        (estimator, sampler): (&str, &str),
-        seed: u64,
-        samples: u64,
-    ) -> Result<Self, Failure> {
-        let plan = settings::named(estimator, sampler, seed, samples)?;
-        Self::new(scene, plan)
+impl Work for Render {
+    fn scene(&self) -> Option<&Scene> {
+        Some(&self.scene)
     }
 
-    pub(super) fn settings(&self) -> Settings {
+    fn settings(&self) -> Settings {
         Settings::Render {
-            estimator: self.plan.estimator.name().to_owned(),
-            sampler: self.plan.sampling.name().to_owned(),
+            estimator: self.plan.estimator,
+            sampler: self.plan.sampling,
             seed: self.plan.seed,
             samples: self.plan.budget.samples(),
         }
     }
 
-    pub(super) fn identity(&self) -> Identity {
-        columns::identity(&self.scene, &self.plan)
+    fn identity(&self) -> Identity {
+        Spots::identity(&self.scene, &self.plan)
     }
 
-    pub(super) fn blocks(&self) -> u64 {
-        self.groups().len() as u64 * u64::from(self.plan.budget.blocks)
+    fn blocks(&self) -> u64 {
+        let groups = Spots::all(&self.scene, &self.plan).len() as u64;
+        groups * u64::from(self.plan.budget.blocks)
     }
 
-    /// The columns that are traced together, in order.
-    fn groups(&self) -> impl ExactSizeIterator<Item = Columns<'_>> {
-        let spots = self.scene.laser.spots.len();
-        let most = together(&self.scene, self.plan.estimator);
-        let groups = 0..spots.div_ceil(most);
-        groups.map(move |g| Columns {
-            scene: &self.scene,
-            plan: &self.plan,
-            spots: g * most..spots.min((g + 1) * most),
-            first: g as u64 * u64::from(self.plan.budget.blocks),
-        })
-    }
-
-    pub(super) fn compute(
+    fn compute(
         &self,
-        range: Range<u64>,
-        mut done: Parts,
+        range: &Range<u64>,
+        done: Parts,
         checkpoint: &mut Checkpoint,
-        talk: Talk,
+        console: Console,
     ) -> Result<Parts, Failure> {
-        let plan = &self.plan;
-        let all_spots = plan.estimator.serves_all_spots();
-        let block = self.scene.camera.pixels() as u64 * u64::from(plan.budget.size);
-        let begin = done.last().map_or(range.start, |(part, _)| part.end);
-        let own = |columns: &Columns<'_>, from: u64| {
-            let blocks = columns.blocks();
-            from.max(blocks.start)..range.end.min(blocks.end)
+        let todo = end(&done, range)..range.end;
+        let Self { scene, plan } = self;
+        let paths = |spots: Spots<'_>| spots.paths(spots.within(&todo).count() as u64);
+        let paths = Spots::all(scene, plan).map(paths).sum();
+        let mut tracing = Tracing::start(console, &scene.name, paths);
+        let bar = tracing.bar();
+        let control = Control {
+            progress: &|paths| bar.inc(paths),
+            stop: stop_flag(),
         };
-        let samples: u64 = self
-            .groups()
-            .map(|columns| {
-                let todo = own(&columns, begin);
-                let each = if all_spots {
-                    1
-                } else {
-                    columns.spots.len() as u64
-                };
-                block * each * todo.end.saturating_sub(todo.start)
-            })
-            .sum();
-        let mut tracing = Tracing::start(talk, &self.scene.name, samples);
-        let mut parts = Parts::new();
-        for columns in self.groups() {
-            let todo = own(&columns, range.start);
-            if todo.is_empty() {
-                continue;
-            }
-            let rest = done.split_off(done.partition_point(|(part, _)| part.end <= todo.end));
-            let mine = std::mem::replace(&mut done, rest);
-            let mut tally = columns.tally(todo.start);
-            columns.add(&mut tally, mine)?;
-            let tally = columns.trace(tally, todo.end, &mut tracing, (checkpoint, &parts))?;
-            let whole = columns.first + u64::from(tally.range().end) == todo.end;
-            parts.extend(columns.parts(&tally));
-            if !whole {
-                break;
-            }
-            if todo.end < range.end && checkpoint.look(|| parts.clone()).is_break() {
-                checkpoint.leave(&parts)?;
-                break;
-            }
-        }
+        let look = &mut |tally: &Tally| tracing.look(tally);
+        let parts = Spots::compute(scene, plan, range, done, checkpoint, control, look)?;
         tracing.end();
         Ok(parts)
     }
 
-    pub(super) fn merge(
+    fn merge(
         &self,
         shards: &Shards,
         output: &Path,
         json: bool,
-        talk: Talk,
+        console: Console,
     ) -> Result<Outcome, Failure> {
         let Self { scene, plan } = self;
         let mut record = Record::new(scene, plan, 0, shards.threads(), shards.seconds());
@@ -142,7 +96,7 @@ impl Render {
                 let cause = format!(
                     "{} holds a run with other settings ({})",
                     output.display(),
-                    there.settings()
+                    there.plan
                 );
                 return Err(Failure::new(cause, "merge into another folder (-o)"));
             }
@@ -150,31 +104,28 @@ impl Render {
                 return told(&there, output, json);
             }
         }
-        let folder = Folder::open(output, scene, &record, Keep::Finished, talk)?;
+        let folder = Folder::open(output, scene, &record, Resume::Finished, console)?;
         let (pixels, spots) = (scene.camera.pixels(), scene.laser.spots.len());
         let [mut flux, mut stderr] = [(); 2].map(|()| Matrix::zeros(pixels, spots));
-        for columns in self.groups() {
-            let mut tally = columns.tally(columns.first);
-            for part in shards.parts(columns.blocks()) {
-                columns.add(&mut tally, vec![part?])?;
-            }
+        for group in Spots::all(scene, plan) {
+            let tally = group.tally(group.first, shards.parts(group.blocks()))?;
             let traced = tally.traced().ok_or_else(|| {
                 let cause = format!(
                     "the shards in {} do not make up every block",
-                    shards.place().display()
+                    shards.place.display()
                 );
                 Failure::new(cause, "merge again, and do not change the folder meanwhile")
             })?;
             refuse_beyond_f32(&traced)?;
-            columns
-                .spots
+            group
+                .range
                 .clone()
                 .into_par_iter()
                 .enumerate()
                 .try_for_each(|(column, spot)| {
                     folder.write_frame(scene, &record, spot, &traced, column)
                 })?;
-            let (first, n) = (columns.spots.start, columns.spots.len());
+            let (first, n) = (group.range.start, group.range.len());
             flux.columns_mut(first, n).copy_from(&traced.flux);
             stderr.columns_mut(first, n).copy_from(&traced.stderr);
         }
@@ -193,7 +144,7 @@ fn told(record: &Record, dir: &Path, json: bool) -> Result<Outcome, Failure> {
             "{}: {} spots merged ({}): frames, phi.npy and phi.stderr.npy\n",
             dir.display(),
             record.spots,
-            record.settings()
+            record.plan
         ),
     })?;
     Ok(Outcome::Done)

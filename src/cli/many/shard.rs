@@ -2,19 +2,17 @@
 
 use serde_json::json;
 
-use super::folder::PlanFolder;
-use super::shards::{CHECKPOINT, file_name, find};
+use super::planned::Planned;
 use crate::cli::args::ShardArgs;
-use crate::cli::checkpoint::Checkpoint;
 use crate::cli::failure::Failure;
-use crate::cli::interrupt::Gentle;
-use crate::cli::output::{self, Talk};
+use crate::cli::interrupt::{Gentle, process};
+use crate::cli::output::{self, Console};
 use crate::cli::{Outcome, settings};
-use crate::shard::{EXTENSION, ShardError, gaps, write};
+use crate::jobs::{Checkpoint, JobError, end, gaps, write};
 use crate::store::ensure_writable;
 
-pub(in crate::cli) fn execute(args: &ShardArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let plan = PlanFolder::open(&args.dir)?;
+pub(in crate::cli) fn execute(args: &ShardArgs, console: Console) -> Result<Outcome, Failure> {
+    let Planned { folder: plan, work } = Planned::open(&args.dir, console)?;
     let shards = plan.file.shards;
     if args.index >= shards {
         let cause = format!(
@@ -25,34 +23,31 @@ pub(in crate::cli) fn execute(args: &ShardArgs, talk: Talk) -> Result<Outcome, F
     }
     let pool = settings::pool(args.threads)?;
     let range = plan.file.range(args.index);
-    let (there, wrong) = find(&plan, &range)?;
-    refuse_strangers(wrong, talk)?;
+    let (there, wrong) = plan.find(&range)?;
+    refuse_strangers(wrong, console)?;
     let missing = gaps(range.clone(), there.iter().map(|s| s.range.clone()));
-    let place = plan.shards_path();
     if missing.is_empty() {
-        talk.say(format!("shard {} is there", args.index));
+        console.say(format!("shard {} is there", args.index));
     } else {
-        ensure_writable(&place)?;
+        ensure_writable(&plan.shards())?;
     }
     let mut computed = Vec::new();
     let _gentle = Gentle::new();
     for range in missing {
-        let path = place.join(file_name(plan.id(), &range, EXTENSION));
-        let unfinished = place.join(file_name(plan.id(), &range, CHECKPOINT));
-        let threads = pool.current_num_threads();
-        let mut checkpoint = Checkpoint::new(unfinished, plan.file.identity.clone(), threads);
+        let [path, unfinished] = plan.files_of(&range);
+        let identity = plan.file.identity.clone();
+        let mut checkpoint = Checkpoint::new(unfinished, identity, process(&pool));
         let done = checkpoint.resume(&range, plan.file.blocks);
-        if let Some((part, _)) = done.last() {
-            talk.say(format!(
+        if !done.is_empty() {
+            console.say(format!(
                 "going on at block {} of {}..{}",
-                part.end, range.start, range.end
+                end(&done, &range),
+                range.start,
+                range.end
             ));
         }
-        let parts = pool.install(|| {
-            plan.work
-                .compute(range.clone(), done, &mut checkpoint, talk)
-        })?;
-        let end = parts.last().map_or(range.start, |(part, _)| part.end);
+        let parts = pool.install(|| work.compute(&range, done, &mut checkpoint, console))?;
+        let end = end(&parts, &range);
         if end < range.end {
             return Err(Failure::Stopped(format!(
                 "{} of the {} blocks {}..{} are finished and kept; the same command goes on",
@@ -78,13 +73,14 @@ pub(in crate::cli) fn execute(args: &ShardArgs, talk: Talk) -> Result<Outcome, F
     Ok(Outcome::Done)
 }
 
-/// A spoilt shard of ours is computed again and replaced; a file that somebody else put under the name of this one is not.
-fn refuse_strangers(wrong: Vec<ShardError>, talk: Talk) -> Result<(), Failure> {
+/// A spoilt shard of ours is computed again and replaced; a file that somebody else put under the
+/// name of this one is not.
+fn refuse_strangers(wrong: Vec<JobError>, console: Console) -> Result<(), Failure> {
     for error in wrong {
         if error.spoilt().is_none() {
             return Err(error.into());
         }
-        talk.say(format!("warning: {error}"));
+        console.say(format!("warning: {error}"));
     }
     Ok(())
 }

@@ -1,58 +1,53 @@
 //! A study, or published items, in tasks.
 
-use std::fmt;
-use std::ops::{ControlFlow, Range};
+use std::ops::Range;
 use std::path::Path;
-use std::time::Instant;
 
 use clap::Parser;
 
-use super::shards::Shards;
+use super::work::Work;
 use crate::cli::args::{Args, Command};
-use crate::cli::checkpoint::{Checkpoint, Parts};
 use crate::cli::failure::Failure;
 use crate::cli::interrupt::stop_flag;
-use crate::cli::output::Talk;
+use crate::cli::output::Console;
 use crate::cli::record::version;
-use crate::cli::tasks::{Cut, cut};
-use crate::cli::{Outcome, progress, settings, trust};
+use crate::cli::tasks::{Tasks, tasks};
+use crate::cli::{Outcome, progress, settings};
+use crate::jobs::{Checkpoint, Identity, Parts, Settings, Shards, compute_tasks, end};
+use crate::lab::LAYOUT as TASKS;
 use crate::scene::Scene;
-use crate::shard::{Identity, Settings};
 use crate::store::ensure_writable;
-use crate::study::LAYOUT as TASKS;
 use crate::transport::{Control, NUMERICS};
 
 /// A command whose blocks are its tasks.
 pub(super) struct Study {
-    pub scene: Option<Scene>,
+    scene: Option<Scene>,
     arguments: Vec<String>,
-    cut: Box<dyn Cut>,
-}
-
-impl fmt::Debug for Study {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut out = f.debug_struct("Study");
-        out.field("arguments", &self.arguments)
-            .finish_non_exhaustive()
-    }
+    tasks: Box<dyn Tasks>,
 }
 
 /// What the plan decides, or the shard, or the merge; the command as planned has none of it.
 const NOT_PLANNED: [&str; 5] = ["--output", "--threads", "--json", "--quiet", "--also-read"];
 
-/// Time between two looks at what is finished where tasks are shorter, s.
-const LOOK: f64 = 2.0;
-
 impl Study {
-    /// The command `arguments` of the phicam command line, whose scene is read from where it names it.
-    pub(super) fn plan(arguments: &[String]) -> Result<Self, Failure> {
+    /// The command `arguments` of the phicam command line, whose scene is read from where it names
+    /// it.
+    pub(super) fn plan(arguments: &[String], console: Console) -> Result<Self, Failure> {
         let command = parse(arguments)?;
-        let scene = command.planned_scene().map(trust::load).transpose()?;
-        Self::new(&command, scene, arguments)
+        let scene = command
+            .planned_scene()
+            .map(|scene| console.load_scene(scene))
+            .transpose()?;
+        Self::new(&command, scene, arguments, console)
     }
 
     /// The same from a plan's folder, where the scene is `scene`.
-    pub(super) fn read(arguments: &[String], scene: &Path, json: bool) -> Result<Self, Failure> {
+    pub(super) fn read(
+        arguments: &[String],
+        scene: &Path,
+        json: bool,
+        console: Console,
+    ) -> Result<Self, Failure> {
         let mut all = arguments.to_vec();
         let _ = parse(arguments)?;
         if json {
@@ -60,28 +55,40 @@ impl Study {
         }
         let command = command(&all)?;
         let scene = match command.planned_scene() {
-            Some(_) => Some(trust::load(&scene.to_string_lossy())?),
+            Some(_) => Some(console.load_scene(&scene.to_string_lossy())?),
             None => None,
         };
-        Self::new(&command, scene, arguments)
+        Self::new(&command, scene, arguments, console)
     }
 
-    fn new(command: &Command, scene: Option<Scene>, arguments: &[String]) -> Result<Self, Failure> {
+    fn new(
+        command: &Command,
+        scene: Option<Scene>,
+        arguments: &[String],
+        console: Console,
+    ) -> Result<Self, Failure> {
         Ok(Self {
-            cut: cut(command, scene.clone())?,
+            tasks: tasks(command, scene.clone(), console)?,
             scene,
             arguments: arguments.to_vec(),
         })
     }
+}
 
-    pub(super) fn settings(&self) -> Settings {
+impl Work for Study {
+    fn scene(&self) -> Option<&Scene> {
+        self.scene.as_ref()
+    }
+
+    fn settings(&self) -> Settings {
         Settings::Command(self.arguments.clone())
     }
 
-    pub(super) fn identity(&self) -> Identity {
+    fn identity(&self) -> Identity {
         let none = "none".to_owned();
         let scene = self.scene.as_ref().map(|s| {
-            // Of the sensor and the known answers the scene's digest says nothing; a study may use them.
+            // Of the sensor and the known answers the scene's digest says nothing; a study may use
+            // them.
             let text = Identity::default().with("text", &s.text).id();
             [s.name.clone(), s.hash.clone(), text.to_string()]
         });
@@ -92,71 +99,52 @@ impl Study {
             .with("scene's digest", hash)
             .with("scene's text", text)
             .with("command", format!("{:?}", self.arguments))
-            .with("tasks", self.cut.tasks())
+            .with("tasks", self.tasks.count())
             .with("program", version())
             .with("layout of tasks", TASKS)
             .with(Identity::NUMERICS, NUMERICS)
     }
 
-    pub(super) fn blocks(&self) -> u64 {
-        self.cut.tasks() as u64
+    fn blocks(&self) -> u64 {
+        self.tasks.count() as u64
     }
 
-    pub(super) fn compute(
+    fn compute(
         &self,
-        range: Range<u64>,
+        range: &Range<u64>,
         done: Parts,
         checkpoint: &mut Checkpoint,
-        talk: Talk,
+        console: Console,
     ) -> Result<Parts, Failure> {
-        let bar = progress::steps(talk, &self.arguments.join(" "));
-        let next_of = |parts: &Parts| parts.last().map_or(range.start, |(part, _)| part.end);
+        let bar = progress::steps(console, &self.arguments.join(" "));
         // Tasks of an earlier process say nothing of how fast this one is.
-        let resumed = next_of(&done);
+        let resumed = end(&done, range);
         bar.set_length(range.end - resumed);
-        let tick = |_| bar.tick();
         let control = Control {
-            progress: &tick,
+            progress: &|_| bar.tick(),
             stop: stop_flag(),
         };
-        let mut parts = done;
-        let mut together = 1;
-        loop {
-            let first = next_of(&parts);
-            bar.set_position(first - resumed);
-            let tasks = first..range.end.min(first + together);
-            if tasks.is_empty() {
-                break;
-            }
-            let start = Instant::now();
-            let Some(found) = self
-                .cut
-                .run(tasks.start as usize..tasks.end as usize, control)?
-            else {
-                checkpoint.leave(&parts)?;
-                break;
-            };
-            parts.extend(tasks.clone().map(|task| task..task + 1).zip(found));
-            if tasks.end < range.end && checkpoint.look(|| parts.clone()) == ControlFlow::Break(())
-            {
-                checkpoint.leave(&parts)?;
-                break;
-            }
-            let each = start.elapsed().as_secs_f64() / (tasks.end - tasks.start) as f64;
-            together = ((LOOK / each) as u64).clamp(1, 2 * together);
-        }
+        let shown = |first| bar.set_position(first - resumed);
+        let run = |tasks| self.tasks.run(tasks, control);
+        let parts = compute_tasks(range, done, checkpoint, control, &shown, &run)?;
         bar.finish_and_clear();
         Ok(parts)
     }
 
-    pub(super) fn merge(&self, shards: &Shards, output: &Path) -> Result<Outcome, Failure> {
+    fn merge(
+        &self,
+        shards: &Shards,
+        output: &Path,
+        _: bool,
+        _: Console,
+    ) -> Result<Outcome, Failure> {
         let mut results = Vec::new();
         for (task, part) in (0..self.blocks()).zip(shards.parts(0..self.blocks())) {
             let (range, bytes) = part?;
             if range != (task..task + 1) {
                 let cause = format!(
                     "the shards in {} hold tasks {}..{} as one",
-                    shards.place().display(),
+                    shards.place.display(),
                     range.start,
                     range.end
                 );
@@ -170,8 +158,8 @@ impl Study {
             stop: stop_flag(),
         };
         let pool = settings::pool(None)?;
-        let delivered = pool.install(|| self.cut.deliver(&results, control, output))?;
-        delivered.ok_or_else(|| Failure::Stopped("nothing was written; merge again".to_owned()))
+        pool.install(|| self.tasks.deliver(&results, control, output))
+            .map_err(|e| e.if_stopped("nothing was written; merge again"))
     }
 }
 

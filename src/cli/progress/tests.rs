@@ -113,14 +113,22 @@ fn numbers_have_two_or_three_digits_and_a_unit() {
 
 #[test]
 fn the_error_of_finished_columns_is_that_of_all_of_them_together() {
-    let mut tracing = Tracing::start(Talk { quiet: false }, "test", 10);
+    let mut tracing = Tracing::start(
+        Console {
+            quiet: false,
+            also_read: &[],
+        },
+        "test",
+        10,
+    );
     let paper = Paper {
         width: 80,
         written: Arc::default(),
     };
     let target = ProgressDrawTarget::term_like(Box::new(paper));
     tracing.bar.set_draw_target(target);
-    // Two pixels, light of two orders, then the standard error: Φ = 3, 4 and 12, 0; σ = 0.3, 0.4 and 0, 1.2.
+    // Two pixels, light of two orders, then the standard error: Φ = 3, 4 and 12, 0; σ = 0.3, 0.4
+    // and 0, 1.2.
     tracing.finished(&Matrix::from_row_slice(
         2,
         3,

@@ -7,23 +7,22 @@ use std::task::{Context, Poll};
 
 use hyper::body::{Body, Bytes, Frame, SizeHint};
 use tokio::sync::OwnedSemaphorePermit;
-use tokio::task::{JoinHandle, spawn_blocking};
+use tokio::task::{JoinError, JoinHandle, spawn_blocking};
 
 /// Most bytes of a piece: what an answer holds in memory, however long it is.
 pub(super) const PIECE: usize = 64 * 1024;
 
-/// The place of a connection among those that may be open at once. What is done for it on another thread keeps the place until it is done, whether or not the
-/// client is still there: so that what is begun is bounded too.
+/// The place of a connection among those that may be open at once. What is done for it on another
+/// thread keeps the place until it is done, whether or not the client is still there: so that what
+/// is begun is bounded too.
 pub(super) type Place = Arc<OwnedSemaphorePermit>;
 
-/// Where the bytes of an answer come from.
-pub(super) trait Source: Send + 'static {
-    /// The next bytes: at least one and at most [`PIECE`]. Asked only while some are left; may wait for a device.
-    fn piece(&mut self) -> io::Result<Vec<u8>>;
-}
+/// Reads the next bytes of an answer: at least one and at most [`PIECE`]. Called while some are
+/// left; may wait for a device.
+pub(super) type Source = Box<dyn FnMut() -> io::Result<Vec<u8>> + Send>;
 
-/// What a thread is reading, and the source back.
-type Reading = JoinHandle<(Box<dyn Source>, io::Result<Vec<u8>>)>;
+/// A source, back from the thread that has read from it, and what it has read.
+type Read = (Source, io::Result<Vec<u8>>);
 
 /// The bytes of an answer, of a length known before.
 pub(super) enum Content {
@@ -35,23 +34,25 @@ pub(super) enum Content {
 pub(super) struct Pieces {
     left: u64,
     state: State,
-    place: Place,
+    /// Of the connection on which they are sent.
+    pub place: Option<Place>,
 }
 
 enum State {
-    Waiting(Box<dyn Source>),
-    Reading(Reading),
-    /// The source was cut short or could not be read: the connection ends, so that nobody takes what was sent for the whole.
+    Waiting(Source),
+    Reading(JoinHandle<Read>),
+    /// The source was cut short or could not be read: the connection ends, so that nobody takes
+    /// what was sent for the whole.
     Broken,
 }
 
 impl Pieces {
     /// `length` bytes of `source`.
-    pub(super) fn new(source: Box<dyn Source>, length: u64, place: Place) -> Self {
+    pub(super) fn new(source: Source, length: u64) -> Self {
         Self {
             left: length,
             state: State::Waiting(source),
-            place,
+            place: None,
         }
     }
 
@@ -59,38 +60,37 @@ impl Pieces {
         if self.left == 0 {
             return Poll::Ready(None);
         }
-        loop {
-            match std::mem::replace(&mut self.state, State::Broken) {
-                State::Broken => return Poll::Ready(None),
-                State::Waiting(mut source) => {
-                    let place = self.place.clone();
-                    let read = move || {
-                        let piece = source.piece();
-                        drop(place);
-                        (source, piece)
-                    };
-                    self.state = State::Reading(spawn_blocking(read));
-                }
-                State::Reading(mut reading) => match Pin::new(&mut reading).poll(context) {
-                    Poll::Pending => {
-                        self.state = State::Reading(reading);
-                        return Poll::Pending;
-                    }
-                    Poll::Ready(Err(lost)) => return Poll::Ready(Some(Err(lost.into()))),
-                    Poll::Ready(Ok((_, Err(error)))) => return Poll::Ready(Some(Err(error))),
-                    Poll::Ready(Ok((source, Ok(piece)))) => {
-                        let length = piece.len() as u64;
-                        if length == 0 || length > self.left {
-                            let wrong = ErrorKind::UnexpectedEof.into();
-                            return Poll::Ready(Some(Err(wrong)));
-                        }
-                        self.left -= length;
-                        self.state = State::Waiting(source);
-                        return Poll::Ready(Some(Ok(piece.into())));
-                    }
-                },
+        let mut reading = match std::mem::replace(&mut self.state, State::Broken) {
+            State::Waiting(mut source) => {
+                let place = self.place.clone();
+                spawn_blocking(move || {
+                    let piece = source();
+                    drop(place);
+                    (source, piece)
+                })
             }
+            State::Reading(reading) => reading,
+            State::Broken => return Poll::Ready(None),
+        };
+        match Pin::new(&mut reading).poll(context) {
+            Poll::Pending => {
+                self.state = State::Reading(reading);
+                Poll::Pending
+            }
+            Poll::Ready(read) => Poll::Ready(Some(self.take(read))),
         }
+    }
+
+    fn take(&mut self, read: Result<Read, JoinError>) -> io::Result<Bytes> {
+        let (source, piece) = read?;
+        let piece = piece?;
+        let length = piece.len() as u64;
+        if length == 0 || length > self.left {
+            return Err(ErrorKind::UnexpectedEof.into());
+        }
+        self.left -= length;
+        self.state = State::Waiting(source);
+        Ok(piece.into())
     }
 }
 
@@ -130,22 +130,11 @@ impl Content {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::mpsc::{Receiver, Sender, channel};
+    use std::sync::mpsc::channel;
 
     use tokio::sync::Semaphore;
 
     use super::*;
-
-    /// Says that it reads, and reads until it is told that it has.
-    struct Slow(Sender<()>, Receiver<()>);
-
-    impl Source for Slow {
-        fn piece(&mut self) -> io::Result<Vec<u8>> {
-            self.0.send(()).unwrap();
-            self.1.recv().unwrap();
-            Ok(vec![1])
-        }
-    }
 
     #[test]
     fn what_is_read_for_a_client_that_has_gone_keeps_its_place() {
@@ -155,7 +144,14 @@ mod tests {
         let place = Arc::new(places.clone().try_acquire_owned().unwrap());
         let (began, begins) = channel();
         let (ends, ended) = channel();
-        let mut pieces = Pieces::new(Box::new(Slow(began, ended)), 2, place.clone());
+        // Says that it reads, and reads until it hears that it has.
+        let slow = move || {
+            began.send(()).unwrap();
+            ended.recv().unwrap();
+            Ok(vec![1])
+        };
+        let mut pieces = Pieces::new(Box::new(slow), 2);
+        pieces.place = Some(place.clone());
         let mut context = Context::from_waker(std::task::Waker::noop());
         assert!(pieces.poll_piece(&mut context).is_pending());
         begins.recv().unwrap();

@@ -20,17 +20,20 @@ use super::body::Place;
 use super::pace::Paced;
 use super::routes::{Site, respond};
 
-/// Most connections at once. Each has one file open at most, so that both fit into the 1024 files that a process is commonly allowed.
+/// Most connections at once. Each has one file open at most, so that both fit into the 1024 files
+/// that a process is commonly allowed.
 const CONNECTIONS: u32 = 256;
 /// Connections that the system holds until they are accepted.
 const BACKLOG: u32 = 4096;
-/// What the system keeps, each way, of what a client does not take or the server has not read, bytes.
+/// What the system keeps, each way, of what a client does not take or the server has not read,
+/// bytes.
 const SOCKET_BUFFER: u32 = 128 * 1024;
 /// Longest first line and headers of a request together, bytes.
 const REQUEST_MAX: usize = 16 * 1024;
 /// How long the headers of a request may take, and how long a connection may be idle.
 const HEADERS: Duration = Duration::from_secs(10);
-/// How often the server looks whether it shall end, and tries again to accept where the system has no room.
+/// How often the server looks whether it shall end, and tries again to accept where the system has
+/// no room.
 const LOOK: Duration = Duration::from_millis(100);
 /// How long answers under way may take after Ctrl-C.
 const FAREWELL: Duration = Duration::from_secs(1);
@@ -41,7 +44,8 @@ pub(super) fn listen(address: SocketAddr) -> io::Result<TcpListener> {
         SocketAddr::V4(_) => TcpSocket::new_v4()?,
         SocketAddr::V6(_) => TcpSocket::new_v6()?,
     };
-    // A server that has just ended leaves its port behind; on Windows this would mean that two can have it.
+    // A server that has just ended leaves its port behind; on Windows this would mean that two can
+    // have it.
     #[cfg(unix)]
     socket.set_reuseaddr(true)?;
     socket.set_send_buffer_size(SOCKET_BUFFER)?;
@@ -50,8 +54,9 @@ pub(super) fn listen(address: SocketAddr) -> io::Result<TcpListener> {
     socket.listen(BACKLOG)
 }
 
-/// Answers whoever comes, until `stop` is set. More than [`CONNECTIONS`] clients wait for each other, in the system's queue: whoever has had an answer then has to
-/// connect again for the next one.
+/// Answers whoever comes, until `stop` is set. More than [`CONNECTIONS`] clients wait for each
+/// other, in the system's queue: whoever has had an answer then has to connect again for the next
+/// one.
 pub(super) async fn serve(listener: TcpListener, site: &'static Site, stop: &AtomicBool) {
     let room = Arc::new(Room {
         places: Arc::new(Semaphore::new(CONNECTIONS as usize)),
@@ -100,7 +105,8 @@ struct Room {
     crowded: Notify,
 }
 
-/// One connection, until the client ends it or takes too long, or others wait and it has had an answer.
+/// One connection, until the client ends it or takes too long, or others wait and it has had an
+/// answer.
 async fn converse(stream: TcpStream, site: &'static Site, room: &Room, place: Place) {
     let asked = AtomicBool::new(false);
     let service = service_fn(|request| {

@@ -1,16 +1,14 @@
 //! `/files/…`: the files of the folder as they are.
 
-use std::fs::File;
-use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
+use std::io::{ErrorKind, Read, Seek, SeekFrom};
 
 use hyper::StatusCode;
 use hyper::header::{ACCEPT_RANGES, CONTENT_RANGE};
 
-use super::answer::Answer;
-use super::body::{PIECE, Source};
+use super::answer::{Answer, Refusal, pieces, set};
+use super::body::PIECE;
 use super::folder::Served;
 use super::range::Part;
-use super::refusal::Refusal;
 
 /// The type of a page.
 pub(super) const PAGE: &str = "text/html; charset=utf-8";
@@ -32,56 +30,44 @@ const TYPES: [(&str, &str); 10] = [
 pub(super) fn file(folder: &Served, name: &str, range: Option<&str>) -> Result<Answer, Refusal> {
     let mut found = folder.open(name)?;
     let length = found.length;
-    let part = range.map_or(Part::Whole, |r| Part::of(r, length));
-    let extension = name.rsplit_once('.').map_or("", |(_, ext)| ext);
-    let kind = TYPES.iter().find(|(ext, _)| *ext == extension);
-    let kind = kind.map_or("application/octet-stream", |(_, kind)| kind);
-    let (first, count, status, said) = match part {
+    let (first, count, status, part) = match range.map_or(Part::Whole, |r| Part::of(r, length)) {
         Part::Whole => (0, length, StatusCode::OK, None),
         Part::Bytes { first, last } => {
-            let said = format!("bytes {first}-{last}/{length}");
+            let part = format!("bytes {first}-{last}/{length}");
             let status = StatusCode::PARTIAL_CONTENT;
-            (first, last - first + 1, status, Some(said))
+            (first, last - first + 1, status, Some(part))
         }
         Part::Unsatisfiable => {
             let status = StatusCode::RANGE_NOT_SATISFIABLE;
             let words = format!("{name} has {length} bytes, none of them in this range");
-            let answer = Answer::from(Refusal::new(status, words));
-            return Ok(answer.with(CONTENT_RANGE, &format!("bytes */{length}")));
+            let mut answer = Refusal::new(status, words).answer();
+            set(&mut answer, CONTENT_RANGE, &format!("bytes */{length}"));
+            return Ok(answer);
         }
     };
     found
         .file
         .seek(SeekFrom::Start(first))
         .map_err(|e| Refusal::broken(format!("cannot read {name}: {e}")))?;
-    let span = Span {
-        file: found.file,
-        left: count,
-    };
-    let answer = Answer::pieces(kind, Box::new(span), count)
-        .status(status)
-        .with(ACCEPT_RANGES, "bytes");
-    Ok(match said {
-        Some(said) => answer.with(CONTENT_RANGE, &said),
-        None => answer,
-    })
-}
-
-/// The bytes of a file from where it stands.
-struct Span {
-    file: File,
-    left: u64,
-}
-
-impl Source for Span {
-    fn piece(&mut self) -> io::Result<Vec<u8>> {
-        let count = self.left.min(PIECE as u64);
-        let mut bytes = Vec::with_capacity(count as usize);
-        (&mut self.file).take(count).read_to_end(&mut bytes)?;
-        if (bytes.len() as u64) < count {
+    let mut left = count;
+    let source = move || {
+        let wanted = left.min(PIECE as u64);
+        let mut bytes = Vec::with_capacity(wanted as usize);
+        (&mut found.file).take(wanted).read_to_end(&mut bytes)?;
+        if (bytes.len() as u64) < wanted {
             return Err(ErrorKind::UnexpectedEof.into());
         }
-        self.left -= count;
+        left -= wanted;
         Ok(bytes)
+    };
+    let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
+    let kind = TYPES.iter().find(|(known, _)| *known == extension);
+    let kind = kind.map_or("application/octet-stream", |(_, kind)| kind);
+    let mut answer = pieces(kind, Box::new(source), count);
+    *answer.status_mut() = status;
+    set(&mut answer, ACCEPT_RANGES, "bytes");
+    if let Some(part) = part {
+        set(&mut answer, CONTENT_RANGE, &part);
     }
+    Ok(answer)
 }

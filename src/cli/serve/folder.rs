@@ -1,4 +1,5 @@
-//! The folder that is served: the only door of the crates `cap_std` and `cap_fs_ext`, which open what is below a folder and nothing else.
+//! The folder that is served: the only door of the crates `cap_std` and `cap_fs_ext`, which open
+//! what is below a folder and nothing else.
 
 use std::fs::File;
 use std::io::{self, ErrorKind};
@@ -8,7 +9,7 @@ use cap_fs_ext::OpenOptionsSyncExt;
 use cap_std::ambient_authority;
 use cap_std::fs::{Dir, OpenOptions};
 
-use super::refusal::Refusal;
+use super::answer::Refusal;
 
 /// Longest path that is looked for, bytes.
 const PATH_MAX: usize = 4096;
@@ -20,7 +21,8 @@ const LINK_LOOP: i32 = if cfg!(any(target_os = "linux", target_os = "android")) 
     62
 };
 
-/// A folder, by its absolute path: opened again for every request, so that one made anew is served too.
+/// A folder, by its absolute path: opened again for every request, so that one made anew is served
+/// too.
 #[derive(Debug)]
 pub(super) struct Served {
     path: PathBuf,
@@ -52,11 +54,13 @@ impl Served {
         Dir::open_ambient_dir(&self.path, ambient_authority())
     }
 
-    /// Opens the regular file `name`, a relative path with forward slashes. Every step of the way is taken below the folder, links included, by
-    /// the system itself or on handles: what is swapped for a link meanwhile cannot lead out either. A pipe is not waited for.
+    /// Opens the regular file `name`, a relative path with forward slashes. Every step of the way
+    /// is taken below the folder, links included, by the system itself or on handles: what is
+    /// swapped for a link meanwhile cannot lead out either. A pipe is not waited for.
     ///
     /// # Errors
-    /// 404 for what is not there, is no regular file, is hidden or unfinished, or lies outside; 500 for what the system cannot read.
+    /// 404 for what is not there, is no regular file, is hidden or unfinished, or lies outside; 500
+    /// for what the system cannot read.
     pub(super) fn open(&self, name: &str) -> Result<Found, Refusal> {
         if name.len() > PATH_MAX || !name.split('/').all(is_plain) {
             return Err(Refusal::not_found(name));
@@ -84,8 +88,8 @@ impl Served {
     }
 }
 
-/// Whether `segment` may be a step of a path: not empty, not hidden (nor `.` and `..`), not the unfinished file of a writer, without what has a
-/// meaning to some system.
+/// Whether `segment` may be a step of a path: not empty, not hidden (nor `.` and `..`), not the
+/// unfinished file of a writer, without what has a meaning to some system.
 fn is_plain(segment: &str) -> bool {
     let meaning =
         |c: char| c == '\\' || c.is_control() || (cfg!(windows) && ":<>\"|?*".contains(c));
@@ -95,7 +99,8 @@ fn is_plain(segment: &str) -> bool {
         && !segment.contains(meaning)
 }
 
-/// Not there, or not to be told from that: a way that leads out of the folder is refused as a lack of permission.
+/// Not there, or not to be told from that: a way that leads out of the folder is refused as a lack
+/// of permission.
 fn is_absence(error: &io::Error) -> bool {
     use ErrorKind::{
         InvalidFilename, InvalidInput, IsADirectory, NotADirectory, NotFound, PermissionDenied,

@@ -1,7 +1,7 @@
 //! Whom a request may be addressed to.
 //!
-//! A page from anywhere can make its own host name stand for 127.0.0.1 after it was loaded (DNS rebinding), and then read this server as its own.
-//! Its requests still carry that name.
+//! A page from anywhere can make its own host name stand for 127.0.0.1 after it was loaded (DNS
+//! rebinding), and then read this server as its own. Its requests still carry that name.
 
 use std::net::IpAddr;
 
@@ -9,10 +9,11 @@ use hyper::header::HOST;
 use hyper::http::uri::Authority;
 use hyper::{Request, StatusCode};
 
-use super::refusal::Refusal;
+use super::answer::Refusal;
 
-/// Refuses a request that does not name this server, which listens on `address`: by `localhost`, a loopback address, `address` itself, or any number
-/// where `address` stands for all of this machine. Ports do not matter: a tunnel has another one.
+/// Refuses a request that does not name this server, which listens on `address`: by `localhost`, a
+/// loopback address, `address` itself, or any number where `address` stands for all of this
+/// machine. Ports do not matter: a tunnel has another one.
 ///
 /// # Errors
 /// 400 for no name or several, 403 for another name.

@@ -1,16 +1,18 @@
 //! The page of a run that has no report.
 
+use std::path::PathBuf;
+
 use hyper::StatusCode;
 use hyper::body::Bytes;
 
+use super::answer::Refusal;
 use super::folder::Served;
-use super::refusal::Refusal;
 use super::run;
 use super::tiles::MODELLED;
 use crate::cli::folder::SCENE;
 use crate::cli::record::Record;
-use crate::cli::trust;
 use crate::report::served_html;
+use crate::scene::Scene;
 
 /// A page, and what it was made of: the scene is known by its hash, which is in the record.
 #[derive(Debug)]
@@ -21,14 +23,28 @@ struct Made {
 }
 
 /// The page that was made last, for as long as the folder has the run that it shows.
-#[derive(Debug, Default)]
-pub(super) struct Kept(Option<Made>);
+#[derive(Debug)]
+pub(super) struct Kept {
+    /// Folders that scenes may read besides their own.
+    also_read: Vec<PathBuf>,
+    made: Option<Made>,
+}
 
 impl Kept {
-    /// The page of what lies in the folder now: the one that is kept, or a new one. `None` without a run or its scene.
+    /// No page yet.
+    pub(super) fn new(also_read: &[PathBuf]) -> Self {
+        Self {
+            also_read: also_read.to_vec(),
+            made: None,
+        }
+    }
+
+    /// The page of what lies in the folder now: the one that is kept, or a new one. `None` without
+    /// a run or its scene.
     ///
     /// # Errors
-    /// 500 for a record or a scene that is damaged, or for a scene that is not that of the record; `why` is told the details. The next call tries again.
+    /// 500 for a record or a scene that is damaged, or for a scene that is not that of the record;
+    /// `why` is told the details. The next call tries again.
     pub(super) fn page(
         &mut self,
         folder: &Served,
@@ -40,15 +56,19 @@ impl Kept {
             _ => return Ok(None),
         };
         let model = folder.has(MODELLED);
-        match &self.0 {
+        match &self.made {
             Some(made) if made.record == record && made.model == model => {
                 return Ok(Some(made.page.clone()));
             }
-            _ => self.0 = None,
+            _ => self.made = None,
         }
         let run = run::parsed(&record)?;
         let name = Record::FILE;
-        let scene = trust::load(&folder.path().join(SCENE).to_string_lossy()).map_err(|e| {
+        let scene = Scene::load_with(
+            &folder.path().join(SCENE).to_string_lossy(),
+            &self.also_read,
+        )
+        .map_err(|e| {
             why(&e.to_string());
             Refusal::broken(format!("{SCENE} cannot be read, or is none; render again"))
         })?;
@@ -57,8 +77,8 @@ impl Kept {
                 format!("{SCENE} is not the scene of {name}: render again into another folder");
             return Err(Refusal::broken(words));
         }
-        let page = Bytes::from(served_html(&scene, &run.to_settings(), model));
-        self.0 = Some(Made {
+        let page = Bytes::from(served_html(&scene, &run.plan, model));
+        self.made = Some(Made {
             record,
             model,
             page: page.clone(),

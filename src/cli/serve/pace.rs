@@ -13,9 +13,10 @@ pub(super) const PATIENCE: Duration = Duration::from_secs(15);
 /// After so many bytes its time starts anew.
 pub(super) const ENOUGH: usize = 64 * 1024;
 
-/// A socket on which bytes wait [`PATIENCE`] for the client and no longer: then writing fails, whatever is being sent and whoever sends it. The time runs
-/// while the system takes no more bytes, until it has taken [`ENOUGH`] or the writer flushes, which is to say that it has nothing left. What the server
-/// needs to have its bytes ready does not count.
+/// A socket on which bytes wait [`PATIENCE`] for the client and no longer: then writing fails,
+/// whatever is being sent and whoever sends it. The time runs while the system takes no more bytes,
+/// until it has taken [`ENOUGH`] or the writer flushes, which is to say that it has nothing left.
+/// What the server needs to have its bytes ready does not count.
 pub(super) struct Paced<S> {
     socket: S,
     waiting: Option<Waiting>,

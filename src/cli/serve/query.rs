@@ -1,6 +1,6 @@
 //! The query of a request: `key=value` pairs, values of letters and digits.
 
-use super::refusal::Refusal;
+use super::answer::Refusal;
 
 /// The pairs of a query, each key once.
 #[derive(Debug)]

@@ -14,8 +14,9 @@ pub(super) enum Part {
 }
 
 impl Part {
-    /// The part of a file of `length` bytes that `header` asks for. What is malformed, in another unit or more than one range is ignored, as the
-    /// standard allows: the whole file is an answer to every request.
+    /// The part of a file of `length` bytes that `header` asks for. What is malformed, in another
+    /// unit or more than one range is ignored, as the standard allows: the whole file is an answer
+    /// to every request.
     pub(super) fn of(header: &str, length: u64) -> Self {
         Self::single(header, length).unwrap_or(Self::Whole)
     }
@@ -46,13 +47,11 @@ impl Part {
         if last < first {
             return None;
         }
-        Some(match first < length {
-            true => Self::Bytes {
-                first,
-                last: last.min(length - 1),
-            },
-            false => Self::Unsatisfiable,
-        })
+        if first >= length {
+            return Some(Self::Unsatisfiable);
+        }
+        let last = last.min(length - 1);
+        Some(Self::Bytes { first, last })
     }
 }
 

@@ -2,17 +2,16 @@
 
 use std::net::IpAddr;
 
-use hyper::body::{Body, Incoming};
-use hyper::header::{ALLOW, IF_RANGE, RANGE};
-use hyper::{Method, Request, Response, StatusCode, Uri};
+use hyper::body::{Body, Bytes, Incoming};
+use hyper::header::{IF_RANGE, RANGE};
+use hyper::{Method, Request, StatusCode, Uri};
 use tokio::sync::{Mutex, MutexGuard};
 use tokio::task::spawn_blocking;
 
-use super::answer::Answer;
+use super::answer::{Answer, Refusal, bytes};
 use super::body::{Content, Place};
 use super::folder::Served;
 use super::made::Kept;
-use super::refusal::Refusal;
 use super::{files, host, tiles};
 use crate::cli::folder::REPORT;
 
@@ -33,8 +32,8 @@ pub(super) async fn respond(
     site: &'static Site,
     request: Request<Incoming>,
     place: &Place,
-) -> Response<Content> {
-    let answer = match check(&request, site.address) {
+) -> Answer {
+    let found = match check(&request, site.address) {
         Ok(()) => {
             let range = range(&request);
             let uri = request.uri().clone();
@@ -54,15 +53,13 @@ pub(super) async fn respond(
         }
         Err(refusal) => Err(refusal),
     };
-    let answer = answer.unwrap_or_else(|refusal| {
-        let method = refusal.status == StatusCode::METHOD_NOT_ALLOWED;
-        let answer = Answer::from(refusal);
-        match method {
-            true => answer.with(ALLOW, "GET, HEAD"),
-            false => answer,
-        }
-    });
-    answer.response(request.method(), place)
+    let mut answer = found.unwrap_or_else(Refusal::answer);
+    match answer.body_mut() {
+        body if request.method() == Method::HEAD => *body = Content::Bytes(Bytes::new()),
+        Content::Pieces(pieces) => pieces.place = Some(place.clone()),
+        Content::Bytes(_) => {}
+    }
+    answer
 }
 
 /// Whether the request is one to this server that only reads.
@@ -75,16 +72,15 @@ fn check(request: &Request<Incoming>, address: IpAddr) -> Result<(), Refusal> {
             "only GET and HEAD: nothing here can be changed",
         ));
     }
-    match request.body().is_end_stream() {
-        true => Ok(()),
-        false => Err(Refusal::new(
-            StatusCode::PAYLOAD_TOO_LARGE,
-            "a request has no body here",
-        )),
+    if !request.body().is_end_stream() {
+        let status = StatusCode::PAYLOAD_TOO_LARGE;
+        return Err(Refusal::new(status, "a request has no body here"));
     }
+    Ok(())
 }
 
-/// The `Range`, if there is one that counts: of a GET, and without `If-Range`, which no answer of this server gives anything for to compare with.
+/// The `Range`, if there is one that counts: of a GET, and without `If-Range`, which no answer of
+/// this server gives anything for to compare with.
 fn range(request: &Request<Incoming>) -> Option<String> {
     let headers = request.headers();
     let mut ranges = headers.get_all(RANGE).iter();
@@ -121,7 +117,7 @@ fn page(folder: &Served, kept: &mut Kept) -> Result<Answer, Refusal> {
             answer => return answer,
         }
     }
-    kept.page(folder, |_| {})?.map(|page| Answer::bytes(files::PAGE, page)).ok_or_else(|| {
+    kept.page(folder, |_| {})?.map(|page| bytes(files::PAGE, page)).ok_or_else(|| {
         let words = format!(
             "there is no {REPORT} in this folder: `phicam run SCENE -o DIR` makes one of a run, `phicam study` of a study, `phicam reproduce -o DIR` a {REPRODUCTION}"
         );
@@ -129,7 +125,8 @@ fn page(folder: &Served, kept: &mut Kept) -> Result<Answer, Refusal> {
     })
 }
 
-/// A path with its percent codes replaced, once. `None` for half a code, a slash in a code, or what is not UTF-8 then.
+/// A path with its percent codes replaced, once. `None` for half a code, a slash in a code, or what
+/// is not UTF-8 then.
 fn decoded(path: &str) -> Option<String> {
     let mut rest = path.as_bytes();
     let mut bytes = Vec::with_capacity(rest.len());

@@ -2,8 +2,8 @@
 
 use std::io::Read;
 
+use super::answer::Refusal;
 use super::folder::Served;
-use super::refusal::Refusal;
 use crate::cli::record::Record;
 
 /// Longest run.json that is read, bytes: phicam's own has 400.

@@ -6,15 +6,14 @@ use std::path::Path;
 use hyper::header::HeaderName;
 use serde::Serialize;
 
-use super::answer::Answer;
-use super::body::{PIECE, Source};
+use super::answer::{Answer, Refusal, bytes, pieces, set};
+use super::body::PIECE;
 use super::folder::Served;
 use super::query::Query;
-use super::refusal::Refusal;
 use super::run::record;
 use crate::cli::folder::{PHI, STDERR};
 use crate::cli::record::Record;
-use crate::matrix::npy::Entries;
+use crate::matrix::npy::{Entries, NpyError};
 
 /// Φcam of the model.
 pub(super) const MODELLED: &str = "model/phi.npy";
@@ -33,9 +32,6 @@ const SIDE_MAX: usize = 512;
 const ROW_MAX: usize = 1_000_000;
 /// Numbers in a piece of an answer.
 const NUMBERS: usize = PIECE / size_of::<f64>();
-
-const JSON: &str = "application/json";
-const BYTES: &str = "application/octet-stream";
 
 /// What was run, and which of its matrices are there and of the right shape.
 pub(super) fn about(folder: &Served, query: Option<&str>) -> Result<Answer, Refusal> {
@@ -57,7 +53,7 @@ pub(super) fn about(folder: &Served, query: Option<&str>) -> Result<Answer, Refu
         version: &record.version,
         scene: &record.scene,
         hash: &record.scene_hash,
-        seed: record.seed.to_string(),
+        seed: record.plan.seed.to_string(),
         pixels: record.pixels,
         spots: record.spots,
         matrices: MATRICES
@@ -67,7 +63,7 @@ pub(super) fn about(folder: &Served, query: Option<&str>) -> Result<Answer, Refu
             .collect(),
     };
     let text = serde_json::to_vec(&about).map_err(|e| Refusal::broken(e.to_string()))?;
-    Ok(Answer::bytes(JSON, text))
+    Ok(bytes("application/json", text))
 }
 
 /// A part of the frame of one spot.
@@ -94,28 +90,33 @@ pub(super) fn frame(folder: &Served, query: Option<&str>) -> Result<Answer, Refu
             across.count, up.count
         )));
     }
-    let tile = Tile {
-        entries: entries(folder, &record, query.word("matrix"))?,
-        spot,
-        columns,
-        across,
-        up,
-        next: 0,
+    let mut entries = entries(folder, &record, query.word("matrix"))?;
+    let pixel = move |n: usize| {
+        let (row, column) = (n / across.count, n % across.count);
+        across.pixel(column) + columns * up.pixel(row)
     };
-    let length = (across.count * up.count * size_of::<f64>()) as u64;
-    Ok(Answer::pieces(BYTES, Box::new(tile), length)
-        .with(
-            HeaderName::from_static("x-columns"),
-            &across.count.to_string(),
-        )
-        .with(HeaderName::from_static("x-rows"), &up.count.to_string()))
+    let mut left = 0..across.count * up.count;
+    let count = left.len();
+    let source = move || {
+        let pixels: Vec<usize> = left.by_ref().take(NUMBERS).map(pixel).collect();
+        entries.column(spot, &pixels)
+    };
+    let mut answer = numbers(source, count);
+    for (name, count) in [("x-columns", across.count), ("x-rows", up.count)] {
+        set(
+            &mut answer,
+            HeaderName::from_static(name),
+            &count.to_string(),
+        );
+    }
+    Ok(answer)
 }
 
 /// What one pixel sees of all spots.
 pub(super) fn row(folder: &Served, query: Option<&str>) -> Result<Answer, Refusal> {
     let query = Query::of(query, &["matrix", "pixel"])?;
     let record = record(folder)?;
-    let entries = entries(folder, &record, query.word("matrix"))?;
+    let mut entries = entries(folder, &record, query.word("matrix"))?;
     let pixel = query.number("pixel")?;
     let (pixels, spots) = entries.shape();
     if pixel >= pixels {
@@ -126,13 +127,27 @@ pub(super) fn row(folder: &Served, query: Option<&str>) -> Result<Answer, Refusa
         let words = format!("a row of {spots} numbers is longer than {ROW_MAX}");
         return Err(Refusal::meaningless(words));
     }
-    let length = (spots * size_of::<f64>()) as u64;
-    let row = Row {
-        entries,
-        pixel,
-        next: 0,
+    let mut next = 0;
+    let source = move || {
+        let count = NUMBERS.min(spots - next);
+        let values = entries.row(pixel, next, count);
+        next += count;
+        values
     };
-    Ok(Answer::pieces(BYTES, Box::new(row), length))
+    Ok(numbers(source, spots))
+}
+
+/// `count` numbers, little-endian; `source` reads up to [`NUMBERS`] of them at a time.
+fn numbers(
+    mut source: impl FnMut() -> Result<Vec<f64>, NpyError> + Send + 'static,
+    count: usize,
+) -> Answer {
+    let read = move || {
+        let values = source().map_err(io::Error::other)?;
+        Ok(values.into_iter().flat_map(f64::to_le_bytes).collect())
+    };
+    let length = (count * size_of::<f64>()) as u64;
+    pieces("application/octet-stream", Box::new(read), length)
 }
 
 /// A matrix of the run, if it has the run's shape.
@@ -153,7 +168,8 @@ fn entries(folder: &Served, record: &Record, name: &str) -> Result<Entries, Refu
     }
 }
 
-/// Pixels along one axis: of each block of `step` the middle one (the upper of two), and no further than the last.
+/// Pixels along one axis: of each block of `step` the middle one (the upper of two), and no further
+/// than the last.
 #[derive(Clone, Copy)]
 struct Samples {
     first: usize,
@@ -179,54 +195,6 @@ impl Samples {
         let start = self.first + block * self.step;
         start.saturating_add(self.step / 2).min(self.last)
     }
-}
-
-/// A part of a column, as a picture.
-struct Tile {
-    entries: Entries,
-    spot: usize,
-    /// Of the whole picture.
-    columns: usize,
-    across: Samples,
-    up: Samples,
-    /// The next number, row by row.
-    next: usize,
-}
-
-impl Source for Tile {
-    fn piece(&mut self) -> io::Result<Vec<u8>> {
-        let all = self.across.count * self.up.count;
-        let until = all.min(self.next + NUMBERS);
-        let pixel = |n: usize| {
-            let (row, column) = (n / self.across.count, n % self.across.count);
-            self.across.pixel(column) + self.columns * self.up.pixel(row)
-        };
-        let pixels: Vec<usize> = (self.next..until).map(pixel).collect();
-        self.next = until;
-        let values = self.entries.column(self.spot, &pixels);
-        values.map(little_endian).map_err(io::Error::other)
-    }
-}
-
-/// A row.
-struct Row {
-    entries: Entries,
-    pixel: usize,
-    next: usize,
-}
-
-impl Source for Row {
-    fn piece(&mut self) -> io::Result<Vec<u8>> {
-        let (_, spots) = self.entries.shape();
-        let count = NUMBERS.min(spots - self.next);
-        let values = self.entries.row(self.pixel, self.next, count);
-        self.next += count;
-        values.map(little_endian).map_err(io::Error::other)
-    }
-}
-
-fn little_endian(values: Vec<f64>) -> Vec<u8> {
-    values.into_iter().flat_map(f64::to_le_bytes).collect()
 }
 
 #[cfg(test)]

@@ -6,9 +6,12 @@ use clap::Parser;
 
 use super::*;
 use crate::cli::args::Args;
-use crate::cli::output::Talk;
+use crate::cli::output::Console;
 
-const TALK: Talk = Talk { quiet: true };
+const CONSOLE: Console<'static> = Console {
+    quiet: true,
+    also_read: &[],
+};
 
 fn command(line: &str) -> Command {
     let words = std::iter::once("phicam").chain(line.split_whitespace());
@@ -47,8 +50,8 @@ fn same(line: &str) {
         });
     let own = command(&format!("{line} -o {}", direct.display()));
     match &own {
-        Command::Study(args) => study::execute(args, TALK).map(|_| ()).unwrap(),
-        Command::Reproduce(args) => reproduce::execute(args, TALK).map(|_| ()).unwrap(),
+        Command::Study(args) => study::execute(args, CONSOLE).map(|_| ()).unwrap(),
+        Command::Reproduce(args) => reproduce::execute(args, CONSOLE).map(|_| ()).unwrap(),
         _ => panic!("{line}"),
     }
     let stop = AtomicBool::new(false);
@@ -56,29 +59,28 @@ fn same(line: &str) {
         progress: &|_| (),
         stop: &stop,
     };
-    let process = |tasks| {
-        let tasks: Range<usize> = tasks;
-        cut(&own, None)
+    let process = |range| {
+        let range: Range<usize> = range;
+        tasks(&own, None, CONSOLE)
             .unwrap()
-            .run(tasks, control)
-            .unwrap()
+            .run(range, control)
             .unwrap()
     };
-    let all = cut(&own, None).unwrap();
-    let half = all.tasks() / 2;
-    let second = process(half..all.tasks());
+    let all = tasks(&own, None, CONSOLE).unwrap();
+    let half = all.count() / 2;
+    let second = process(half..all.count());
     let parts = [process(0..half), second].concat();
-    all.deliver(&parts, control, &merged).unwrap().unwrap();
+    all.deliver(&parts, control, &merged).unwrap();
     assert!(files(&direct) == files(&merged), "{line}");
 
     let mut forged = parts.clone();
     forged[0].push(0);
     assert!(all.deliver(&forged, control, &merged).is_err(), "{line}");
-    let beyond = half..all.tasks() + 1;
+    let beyond = half..all.count() + 1;
     assert!(all.run(beyond, control).is_err(), "{line}");
     stop.store(true, std::sync::atomic::Ordering::Relaxed);
     assert!(
-        matches!(all.run(0..all.tasks(), control), Ok(None)),
+        matches!(all.run(0..all.count(), control), Err(Failure::Stopped(_))),
         "{line}"
     );
 }
@@ -113,8 +115,8 @@ fn published_items_leave_the_same_files() {
 
 #[test]
 fn other_commands_are_refused() {
-    let Err(Failure::Error(said)) = cut(&command("scene list"), None) else {
-        panic!("cut")
+    let Err(Failure::Error(said)) = tasks(&command("scene list"), None, CONSOLE) else {
+        panic!("divided")
     };
     assert!(said.contains("cannot be cut into tasks"), "{said}");
 }

@@ -6,49 +6,45 @@ mod terminal;
 use std::path::{Path, PathBuf};
 
 use super::Outcome;
-use super::args::{LawName, MapName, ViewArgs};
+use super::args::{Terminal, ViewArgs};
 use super::failure::Failure;
-use super::output::{self, Talk};
-use crate::report::{Law, Map, Panel, Scale, Shown, iterm, kitty};
-use crate::store::write_whole;
-use source::{Meaning, Source};
-use terminal::Terminal;
+use super::output::{self, Console};
+use crate::report::{Law, Map, Scale, Shown, iterm, kitty};
+use source::Source;
 
-/// Without --exposure and --range a logarithmic scale spans what is above 0; with --exposure so many decades.
+/// Without --exposure and --range a logarithmic scale spans what is above 0; with --exposure so
+/// many decades.
 const DECADES: i32 = 4;
 
-pub(super) fn execute(args: &ViewArgs, talk: Talk) -> Result<Outcome, Failure> {
-    let source = Source::read(args)?;
+pub(super) fn execute(args: &ViewArgs, console: Console) -> Result<Outcome, Failure> {
+    let source = Source::read(args, console)?;
     let scale = scale(args, &source)?;
-    let panel = Panel {
-        title: source.title,
-        size: source.size,
-        values: source.values,
-        axes: source.axes,
-        scale_bar: None,
-    };
-    let shown = Shown::new(panel, scale, source.unit);
-    let png = || match args.bare {
-        true => shown.bare_png(),
-        false => shown.sheet_png(),
+    let shown = Shown::new(source.panel, scale, source.unit);
+    let png = || {
+        if args.bare {
+            shown.bare_png()
+        } else {
+            shown.sheet_png()
+        }
     };
     let terminal = match (&args.output, args.terminal) {
         (Some(_), _) => None,
-        (None, Some(name)) => Some(terminal::named(name)),
+        (None, Some(Terminal::Auto)) => Some(terminal::chosen()),
+        (None, given @ Some(_)) => given,
         (None, None) => terminal::detected(),
     };
     let columns = terminal::columns();
     match terminal {
         Some(Terminal::Kitty) => output::print(&kitty(&png()?, columns))?,
         Some(Terminal::Iterm) => output::print(&iterm(&png()?, columns))?,
-        Some(Terminal::Blocks) => output::print(&shown.blocks(columns))?,
+        Some(Terminal::Blocks | Terminal::Auto) => output::print(&shown.blocks(columns))?,
         None => {
             let path = args.output.clone().unwrap_or_else(|| beside(&args.file));
             let png = png()?;
-            write_whole(&path, |file| file.write_all(&png))?;
-            talk.say(format!("{}: written", path.display()));
+            output::write(&path, &png)?;
+            console.say(format!("{}: written", path.display()));
             for (_, words) in shown.outside() {
-                talk.say(words);
+                console.say(words);
             }
         }
     }
@@ -63,23 +59,21 @@ fn beside(file: &Path) -> PathBuf {
 }
 
 fn scale(args: &ViewArgs, source: &Source) -> Result<Scale, Failure> {
-    let law = match args.scale {
-        LawName::Linear => Law::Linear,
-        LawName::Log => Law::Logarithmic,
-    };
+    let law = args.scale;
     let plain = args.range.is_none() && args.exposure.is_none() && law == Law::Linear;
-    if source.meaning == Meaning::Reflectance
-        && plain
-        && args.map.is_none_or(|m| m == MapName::Grey)
-    {
+    let grey = args.map.is_none_or(|map| map == Map::Grey);
+    if source.reflectance && plain && grey {
         return Ok(Scale::reflectance());
     }
-    let map = match args.map {
-        None | Some(MapName::Viridis) => Map::Viridis,
-        Some(MapName::Grey) => Map::Grey,
-        Some(MapName::Diverging) => Map::Diverging,
+    let map = args.map.unwrap_or(Map::Viridis);
+    let finite = || {
+        source
+            .panel
+            .values
+            .iter()
+            .copied()
+            .filter(|v| v.is_finite())
     };
-    let finite = || source.values.iter().copied().filter(|v| v.is_finite());
     let largest = finite().fold(f64::NEG_INFINITY, f64::max);
     let range = match (args.range, args.exposure) {
         (Some(range), _) => range,
@@ -110,7 +104,7 @@ fn scale(args: &ViewArgs, source: &Source) -> Result<Scale, Failure> {
                 [0.1 * largest, largest]
             }
         }
-        (None, None) => Scale::sequential(&source.values).range(),
+        (None, None) => Scale::sequential(&source.panel.values).range(),
     };
     Scale::between(map, law, range).ok_or_else(|| {
         let [low, high] = range;

@@ -6,54 +6,43 @@ use std::path::Path;
 
 use super::super::args::ViewArgs;
 use super::super::failure::Failure;
-use super::super::output::harmless;
+use super::super::folder;
+use super::super::output::{Console, harmless};
 use super::super::record::Record;
-use super::super::{folder, trust};
 use crate::film;
 use crate::film::exr::FrameError;
 use crate::film::frame::{COUNTS, FLUX};
 use crate::image::{self, Channel, Image};
 use crate::matrix::npy;
+use crate::report::Panel;
 
 /// Pictures of more bytes than this are not read: 1 GiB.
 const LARGEST: u64 = 1 << 30;
 /// Luminance of linear R, G, B (ITU-R BT.709).
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
-/// What the values are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Meaning {
-    /// They belong between 0 and 1.
-    Reflectance,
-    /// Anything.
-    Any,
-}
-
-/// Values by column + row·columns, row 0 at the bottom.
+/// A matrix or picture to be viewed.
 pub(super) struct Source {
-    pub title: String,
-    pub size: [usize; 2],
-    pub values: Vec<f64>,
-    pub unit: String,
-    pub axes: [String; 2],
-    pub meaning: Meaning,
+    pub panel: Panel,
+    /// Of its values; empty for none.
+    pub unit: &'static str,
+    /// Whether the values are reflectances, between 0 and 1.
+    pub reflectance: bool,
 }
 
 impl Source {
-    pub(super) fn read(args: &ViewArgs) -> Result<Self, Failure> {
+    pub(super) fn read(args: &ViewArgs, console: Console) -> Result<Self, Failure> {
         let path = &args.file;
         if path.extension().is_some_and(|e| e == "npy") {
             if args.channel.is_some() {
                 let cause = format!("{} is a matrix: it has no channels", path.display());
                 return Err(Failure::new(cause, "leave out --channel"));
             }
-            return matrix(path, args.spot);
+            return matrix(path, args.spot, console);
         }
         if args.spot.is_some() {
-            let cause = format!(
-                "{} is no matrix: --spot names a column of one",
-                path.display()
-            );
+            let path = path.display();
+            let cause = format!("{path} is no matrix: --spot names a column of one");
             return Err(Failure::new(cause, "leave out --spot, or give a file .npy"));
         }
         let channel = args.channel.as_deref();
@@ -63,11 +52,32 @@ impl Source {
             Err(error) => Err(error.into()),
         }
     }
-}
 
-/// Axes of anything that a camera sees.
-fn seen() -> [String; 2] {
-    ["x", "y"].map(str::to_owned)
+    /// What a camera sees, by column + row·columns, row 0 at the bottom.
+    fn seen(title: String, size: [usize; 2], values: Vec<f64>, unit: &'static str) -> Self {
+        Self::of(title, size, values, unit, ["x", "y"])
+    }
+
+    fn of(
+        title: String,
+        size: [usize; 2],
+        values: Vec<f64>,
+        unit: &'static str,
+        axes: [&str; 2],
+    ) -> Self {
+        let panel = Panel {
+            title,
+            size,
+            values,
+            axes: axes.map(str::to_owned),
+            scale_bar: None,
+        };
+        Self {
+            panel,
+            unit,
+            reflectance: false,
+        }
+    }
 }
 
 fn no_channel(path: &Path, asked: &str, there: &[&str]) -> Failure {
@@ -77,12 +87,8 @@ fn no_channel(path: &Path, asked: &str, there: &[&str]) -> Failure {
 
 fn frame(path: &Path, frame: &film::Frame, channel: Option<&str>) -> Result<Source, Failure> {
     let names: Vec<&str> = frame.channels.iter().map(|c| c.name.as_str()).collect();
-    let usual = if names.contains(&FLUX) {
-        Some(FLUX)
-    } else {
-        names.first().copied()
-    };
-    let name = channel.or(usual).unwrap_or(FLUX);
+    let usual = names.iter().find(|name| **name == FLUX).or(names.first());
+    let name = channel.or(usual.copied()).unwrap_or(FLUX);
     let values = frame.channel(name);
     let values = values.ok_or_else(|| no_channel(path, name, &names))?;
     let unit = match name {
@@ -90,18 +96,11 @@ fn frame(path: &Path, frame: &film::Frame, channel: Option<&str>) -> Result<Sour
         _ if name.starts_with(COUNTS) => "counts",
         _ => "",
     };
-    let meta = &frame.meta;
-    Ok(Source {
-        title: harmless(&format!(
-            "{}, spot {}: {name}",
-            meta.scene_name, meta.spot_index
-        )),
-        size: [frame.columns, frame.rows],
-        values: values.iter().copied().map(f64::from).collect(),
-        unit: unit.to_owned(),
-        axes: seen(),
-        meaning: Meaning::Any,
-    })
+    let (scene, spot) = (&frame.meta.run.scene_name, frame.meta.spot_index);
+    let title = harmless(&format!("{scene}, spot {spot}: {name}"));
+    let values = values.iter().copied().map(f64::from).collect();
+    let size = [frame.columns, frame.rows];
+    Ok(Source::seen(title, size, values, unit))
 }
 
 /// A picture of another program; its first row is the top one.
@@ -118,25 +117,17 @@ fn picture(path: &Path, channel: Option<&str>) -> Result<Source, Failure> {
         .map_err(unreadable)?;
     if !bytes.starts_with(b"v/1\x01") {
         let cause = format!("{name} is neither OpenEXR nor .npy");
-        return Err(Failure::new(
-            cause,
-            "give a frame, an OpenEXR picture or a matrix; other pictures open in any viewer",
-        ));
+        let cure =
+            "give a frame, an OpenEXR picture or a matrix; other pictures open in any viewer";
+        return Err(Failure::new(cause, cure));
     }
     let image = image::decode(&name, &bytes)?;
     let (chosen, values) = chosen(path, &image, channel)?;
-    let [columns, rows] = [image.width, image.height];
-    let upright = (0..rows)
-        .rev()
-        .flat_map(|y| &values[y * columns..(y + 1) * columns]);
-    Ok(Source {
-        title: format!("{}: {chosen}", file_name(path)),
-        size: [columns, rows],
-        values: upright.copied().collect(),
-        unit: String::new(),
-        axes: seen(),
-        meaning: Meaning::Any,
-    })
+    let rows = values.chunks(image.width).rev();
+    let upright = rows.flatten().copied().collect();
+    let title = format!("{}: {chosen}", file_name(path));
+    let size = [image.width, image.height];
+    Ok(Source::seen(title, size, upright, ""))
 }
 
 /// The name and the values, from the top, of the channel that is asked for.
@@ -156,17 +147,16 @@ fn chosen(path: &Path, image: &Image, asked: Option<&str>) -> Result<(String, Ve
     let asked = asked.unwrap_or(if coloured { "luminance" } else { "Y" });
     let values =
         |channel| -> Option<Vec<f64>> { Some(image.channel(channel)?.map(f64::from).collect()) };
+    let luminance = || {
+        let [r, g, b] = [Channel::Red, Channel::Green, Channel::Blue].map(values);
+        let [lr, lg, lb] = LUMINANCE;
+        let (g, b) = (g?, b?);
+        let rgb = r?.into_iter().zip(g).zip(b);
+        Some(rgb.map(|((r, g), b)| lr * r + lg * g + lb * b).collect())
+    };
     let found = match image.channels.iter().find(|c| letter(c) == asked) {
         Some(channel) => values(*channel),
-        None if asked == "luminance" && coloured => {
-            let parts = [Channel::Red, Channel::Green, Channel::Blue].map(values);
-            let [Some(r), Some(g), Some(b)] = parts else {
-                return Err(no_channel(path, asked, &names));
-            };
-            let [lr, lg, lb] = LUMINANCE;
-            let rgb = r.iter().zip(&g).zip(&b);
-            Some(rgb.map(|((r, g), b)| lr * r + lg * g + lb * b).collect())
-        }
+        None if asked == "luminance" && coloured => luminance(),
         None => None,
     };
     let values = found.ok_or_else(|| no_channel(path, asked, &names))?;
@@ -180,8 +170,9 @@ fn file_name(path: &Path) -> String {
     )
 }
 
-/// Columns, rows and spots of the run or scene to which a file belongs: that of its folder, or of the one above.
-fn camera(path: &Path) -> Result<Option<([usize; 2], usize)>, Failure> {
+/// Columns, rows and spots of the run or scene to which a file belongs: that of its folder, or of
+/// the one above.
+fn camera(path: &Path, console: Console) -> Result<Option<([usize; 2], usize)>, Failure> {
     let full = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     for dir in full.ancestors().skip(1).take(2) {
         if let Some(record) = Record::read(dir)? {
@@ -189,7 +180,7 @@ fn camera(path: &Path) -> Result<Option<([usize; 2], usize)>, Failure> {
         }
         let scene = dir.join(folder::SCENE);
         if scene.is_file() {
-            let scene = trust::load(&scene.to_string_lossy())?;
+            let scene = console.load_scene(&scene.to_string_lossy())?;
             let pixels = [scene.camera.columns, scene.camera.rows];
             return Ok(Some((pixels, scene.laser.spots.len())));
         }
@@ -197,60 +188,51 @@ fn camera(path: &Path) -> Result<Option<([usize; 2], usize)>, Failure> {
     Ok(None)
 }
 
-fn matrix(path: &Path, spot: Option<usize>) -> Result<Source, Failure> {
+fn matrix(path: &Path, spot: Option<usize>, console: Console) -> Result<Source, Failure> {
     let matrix = npy::read(path)?;
     let (rows, columns) = matrix.shape();
-    let camera = camera(path)?;
-    let stacked =
-        camera.is_some_and(|(pixels, spots)| (pixels[0] * pixels[1], spots) == (rows, columns));
+    let camera = camera(path, console)?;
     let name = file_name(path);
+    // By the names that a run gives.
+    let unit = if name.starts_with("phi") { "W" } else { "" };
     if let Some(spot) = spot {
-        let Some((size, _)) = camera.filter(|([w, h], _)| w * h == rows) else {
-            let cause = match camera {
-                Some(([w, h], _)) => {
-                    format!("{name} has {rows} rows, and the camera of its run {w} × {h} pixels")
-                }
-                None => {
-                    format!("nothing beside {name} says how many columns and rows the camera has")
-                }
-            };
-            let cure = "give the matrix in the folder of its run, with run.json or scene.toml, or leave out --spot";
-            return Err(Failure::new(cause, cure));
+        let size = match camera {
+            Some((size, _)) if size[0] * size[1] == rows => size,
+            camera => {
+                let cause = match camera {
+                    Some(([w, h], _)) => format!(
+                        "{name} has {rows} rows, and the camera of its run {w} × {h} pixels"
+                    ),
+                    None => format!(
+                        "nothing beside {name} says how many columns and rows the camera has"
+                    ),
+                };
+                let cure = "give the matrix in the folder of its run, with run.json or scene.toml, or leave out --spot";
+                return Err(Failure::new(cause, cure));
+            }
         };
         if spot >= columns {
             let cause = format!("{name} has no spot {spot}");
             return Err(Failure::new(cause, format!("use 0 to {}", columns - 1)));
         }
-        return Ok(Source {
-            title: format!("{name}, spot {spot}"),
-            size,
-            values: matrix.column(spot).iter().copied().collect(),
-            unit: unit(&name).to_owned(),
-            axes: seen(),
-            meaning: Meaning::Any,
-        });
+        let values = matrix.column(spot).iter().copied().collect();
+        let title = format!("{name}, spot {spot}");
+        return Ok(Source::seen(title, size, values, unit));
     }
+    let stacked = camera.is_some_and(|([w, h], spots)| (w * h, spots) == (rows, columns));
     let recovered = path.parent().is_some_and(|p| p.ends_with("recovered")) && !stacked;
     // METHOD.npy and truth.npy; what has another dot is something else about them.
     let reflectance = recovered && name.matches('.').count() == 1;
-    let (axes, unit, meaning) = match (stacked, recovered) {
-        (true, _) => (["spot", "pixel"], unit(&name), Meaning::Any),
-        (_, true) if reflectance => (["iu", "iv"], "reflectance", Meaning::Reflectance),
-        (_, true) => (["iu", "iv"], "", Meaning::Any),
-        _ => (["column", "row"], "", Meaning::Any),
+    let (axes, unit) = match (stacked, recovered) {
+        (true, _) => (["spot", "pixel"], unit),
+        (_, true) if reflectance => (["iu", "iv"], "reflectance"),
+        (_, true) => (["iu", "iv"], ""),
+        _ => (["column", "row"], ""),
     };
-    let across = (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j)));
+    let values = matrix.transpose().iter().copied().collect();
+    let source = Source::of(name, [columns, rows], values, unit, axes);
     Ok(Source {
-        title: name,
-        size: [columns, rows],
-        values: across.map(|ij| matrix[ij]).collect(),
-        unit: unit.to_owned(),
-        axes: axes.map(str::to_owned),
-        meaning,
+        reflectance,
+        ..source
     })
-}
-
-/// The unit of a matrix pixels × spots, by the names that a run gives.
-fn unit(name: &str) -> &'static str {
-    if name.starts_with("phi") { "W" } else { "" }
 }

@@ -1,46 +1,31 @@
-//! What the terminal can show, as far as the environment says.
+//! What the terminal can show, by its environment.
 
 use std::env;
 use std::io::{IsTerminal, stdout};
 
 use terminal_size::terminal_size_of;
 
-use super::super::args::TerminalName;
+use super::super::args::Terminal;
 
 /// Columns of a terminal that does not say how wide it is, and the most that a picture takes.
 const COLUMNS: usize = 80;
 const MOST: usize = 120;
 
-/// A way to show a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Terminal {
-    /// kitty graphics protocol.
-    Kitty,
-    /// Inline images of iTerm2.
-    Iterm,
-    /// Half-block characters.
-    Blocks,
-}
-
-/// The way that is asked for.
-pub(super) fn named(name: TerminalName) -> Terminal {
-    match name {
-        TerminalName::Auto => told(|key| env::var(key).ok()).unwrap_or(Terminal::Blocks),
-        TerminalName::Kitty => Terminal::Kitty,
-        TerminalName::Iterm => Terminal::Iterm,
-        TerminalName::Blocks => Terminal::Blocks,
-    }
+/// The way that the environment names, or half-blocks.
+pub(super) fn chosen() -> Terminal {
+    suited(|key| env::var(key).ok()).unwrap_or(Terminal::Blocks)
 }
 
 /// The way for standard output; `None` if that is no terminal, or one without colours.
 pub(super) fn detected() -> Option<Terminal> {
     stdout()
         .is_terminal()
-        .then(|| told(|key| env::var(key).ok()))?
+        .then(|| suited(|key| env::var(key).ok()))?
 }
 
-/// What the environment tells. Within tmux and screen, which pass on no pictures, half-blocks.
-fn told(variable: impl Fn(&str) -> Option<String>) -> Option<Terminal> {
+/// The way that suits the environment. Half-blocks within tmux and screen, which pass on no
+/// pictures.
+fn suited(variable: impl Fn(&str) -> Option<String>) -> Option<Terminal> {
     let is = |key: &str| variable(key).is_some_and(|v| !v.is_empty());
     let term = variable("TERM").unwrap_or_default();
     let program = variable("TERM_PROGRAM").unwrap_or_default();
@@ -72,7 +57,7 @@ mod tests {
     #[test]
     fn the_environment_says_what_a_terminal_can() {
         let given = |pairs: &'static [(&str, &str)]| {
-            told(|key| pairs.iter().find(|p| p.0 == key).map(|p| p.1.to_owned()))
+            suited(|key| pairs.iter().find(|p| p.0 == key).map(|p| p.1.to_owned()))
         };
         for (pairs, want) in [
             (&[("TERM", "xterm-kitty")][..], Some(Terminal::Kitty)),

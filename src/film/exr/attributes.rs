@@ -14,7 +14,7 @@
 use exr::meta::attribute::{AttributeValue, Text};
 use exr::meta::header::LayerAttributes;
 
-use crate::film::FrameMeta;
+use crate::film::{FrameMeta, RunMeta};
 
 const SCENE: &str = "phicam.scene";
 const SCENE_HASH: &str = "phicam.sceneHash";
@@ -42,25 +42,26 @@ pub(super) fn record(meta: &FrameMeta) -> Result<LayerAttributes, String> {
             .map(AttributeValue::I32)
             .map_err(|_| format!("{n} spots are too many for its header"))
     };
+    let run = &meta.run;
     let mut attributes = LayerAttributes {
-        software_name: Some(text(&format!("phicam {}", meta.version))),
+        software_name: Some(text(&format!("phicam {}", run.version))),
         ..Default::default()
     };
     let mut set = |name: &str, value| attributes.other.insert(text(name), value);
-    set(SCENE, string(&meta.scene_name));
-    set(SCENE_HASH, string(&meta.scene_hash));
-    set(LENGTH_UNIT, string(&meta.unit));
+    set(SCENE, string(&run.scene_name));
+    set(SCENE_HASH, string(&run.scene_hash));
+    set(LENGTH_UNIT, string(&run.unit));
     set(FLUX_UNIT, string("W"));
     set(SPOT_INDEX, int(meta.spot_index)?);
-    set(SPOT_COUNT, int(meta.spot_count)?);
+    set(SPOT_COUNT, int(run.spot_count)?);
     for (name, coordinate) in SPOT_POSITION.iter().zip(meta.spot_position) {
         set(name, AttributeValue::F64(coordinate));
     }
-    set(SEED, string(&format!("{:#018x}", meta.seed)));
-    set(SAMPLES, string(&meta.samples.to_string()));
-    set(ESTIMATOR, string(&meta.estimator));
-    set(SAMPLER, string(&meta.sampler));
-    set(VERSION, string(&meta.version));
+    set(SEED, string(&format!("{:#018x}", run.seed)));
+    set(SAMPLES, string(&run.samples.to_string()));
+    set(ESTIMATOR, string(&run.estimator));
+    set(SAMPLER, string(&run.sampler));
+    set(VERSION, string(&run.version));
     Ok(attributes)
 }
 
@@ -96,21 +97,21 @@ pub(super) fn recall(attributes: &LayerAttributes) -> Result<FrameMeta, String> 
     let seed = seed
         .strip_prefix("0x")
         .and_then(|digits| u64::from_str_radix(digits, 16).ok());
-    Ok(FrameMeta {
+    let run = RunMeta {
         scene_name: string(SCENE)?,
         scene_hash: hash,
         unit: string(LENGTH_UNIT)?,
-        spot_index: int(SPOT_INDEX)?,
         spot_count: int(SPOT_COUNT)?,
-        spot_position: [
-            double(SPOT_POSITION[0])?,
-            double(SPOT_POSITION[1])?,
-            double(SPOT_POSITION[2])?,
-        ],
         seed: seed.ok_or_else(|| bad(SEED))?,
         samples: string(SAMPLES)?.parse().map_err(|_| bad(SAMPLES))?,
         estimator: string(ESTIMATOR)?,
         sampler: string(SAMPLER)?,
         version: string(VERSION)?,
+    };
+    let [x, y, z] = SPOT_POSITION.map(double);
+    Ok(FrameMeta {
+        run,
+        spot_index: int(SPOT_INDEX)?,
+        spot_position: [x?, y?, z?],
     })
 }

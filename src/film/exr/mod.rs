@@ -1,13 +1,14 @@
-//! A frame as an OpenEXR file. Pictures for textures, which come from other programs, are read by `image/exr`; these two
-//! are the doors of the crate `exr`: a frame's reader is strict in every attribute, a picture's knows none.
+//! A frame as an OpenEXR file. Pictures for textures, which come from other programs, are read by
+//! `image/exr`; these two are the doors of the crate `exr`: a frame's reader is strict in every
+//! attribute, a picture's knows none.
 //!
-//! One part, scan lines, every channel f32 (FLOAT), ZIP compression in blocks of 16 lines: lossless, and its checksum
-//! notices damaged pixels. What the frame knows of its origin stands in the header, see the table in `attributes.rs`.
-//! The same frame always gives the same bytes.
+//! One part, scan lines, every channel f32 (FLOAT), ZIP compression in blocks of 16 lines:
+//! lossless, and its checksum notices damaged pixels. What the frame knows of its origin stands in
+//! the header, see the table in `attributes.rs`. The same frame always gives the same bytes.
 //!
-//! A file is believed nothing: before memory is taken for pixels, their size is held against the length of the file
-//! (deflate shrinks at most by [`DEFLATE_RATIO_MAX`]) and against
-//! [`PIXEL_BYTES_MAX`], and every block of lines has been found where it should be.
+//! A reader trusts no number in a file: before it takes memory for pixels, it compares their size
+//! with the length of the file (deflate shrinks at most by [`DEFLATE_RATIO_MAX`]) and with
+//! [`PIXEL_BYTES_MAX`], and finds every block of lines where it should be.
 
 mod attributes;
 
@@ -28,7 +29,8 @@ use crate::image::DEFLATE_RATIO_MAX;
 use crate::image::exr::{channels, envelope};
 use crate::store::{self, StoreError};
 
-/// Most bytes that the pixels of a frame may take, all channels together: 1 GiB, sixteen channels of 4096 × 4096.
+/// Most bytes that the pixels of a frame may take, all channels together: 1 GiB, sixteen channels
+/// of 4096 × 4096.
 pub const PIXEL_BYTES_MAX: usize = 1 << 30;
 /// Longest channel name that every OpenEXR reader accepts, bytes.
 const NAME_MAX: usize = 31;
@@ -73,12 +75,13 @@ pub enum FrameError {
     Store(#[from] StoreError),
 }
 
-/// Writes `frame` to `path`, whole or not at all. Every bit of every value is kept, of NaN and infinity too.
+/// Writes `frame` to `path`, whole or not at all. Every bit of every value is kept, of NaN and
+/// infinity too.
 ///
 /// # Errors
-/// [`FrameError::Malformed`] if a channel has not columns·rows values, if names are empty, double, longer than 31 bytes or
-/// not printable ASCII, or if the frame has no pixels or more than [`PIXEL_BYTES_MAX`]; [`FrameError::Store`] if the file
-/// cannot be written.
+/// [`FrameError::Malformed`] if a channel has not columns·rows values, if names are empty, double,
+/// longer than 31 bytes or not printable ASCII, or if the frame has no pixels or more than
+/// [`PIXEL_BYTES_MAX`]; [`FrameError::Store`] if the file cannot be written.
 pub fn write(path: &Path, frame: &Frame) -> Result<(), FrameError> {
     let bytes = encode(frame).map_err(|reason| FrameError::Malformed {
         path: path.into(),
@@ -87,7 +90,8 @@ pub fn write(path: &Path, frame: &Frame) -> Result<(), FrameError> {
     Ok(store::write_whole(path, |file| file.write_all(&bytes))?)
 }
 
-/// Reads the frame at `path`; its channels come in order of name. NaN and infinity are passed on: stacking refuses them.
+/// Reads the frame at `path`; its channels come in order of name. NaN and infinity are passed on:
+/// stacking refuses them.
 ///
 /// # Errors
 /// [`FrameError::Unreadable`], [`FrameError::Foreign`] or [`FrameError::Damaged`].
@@ -116,10 +120,15 @@ pub fn read(path: &Path) -> Result<Frame, FrameError> {
         .read_to_end(&mut bytes)
         .map_err(unreadable)?;
 
-    let table = envelope::check_list(&bytes).map_err(|fault| match bytes.is_empty() {
-        true => damaged("it is empty".into()),
-        false if bytes.starts_with(b"v/1\x01") => damaged(fault.into()),
-        false => foreign(fault.into()),
+    if bytes.is_empty() {
+        return Err(damaged("it is empty".into()));
+    }
+    let table = envelope::check_list(&bytes).map_err(|fault| {
+        if bytes.starts_with(b"v/1\x01") {
+            damaged(fault.into())
+        } else {
+            foreign(fault.into())
+        }
     })?;
     let metadata =
         MetaData::read_from_buffered(bytes.as_slice(), true).map_err(|e| damaged(e.to_string()))?;
@@ -201,7 +210,8 @@ fn encode(frame: &Frame) -> Result<Vec<u8>, String> {
     Ok(file)
 }
 
-/// Checks that a header describes f32 pixels of one plain image that `length` bytes of file can hold.
+/// Checks that a header describes f32 pixels of one plain image that `length` bytes of file can
+/// hold.
 fn check_header(header: &Header, length: usize) -> Result<(), String> {
     use exr::meta::attribute::Compression;
     let Vec2(columns, rows) = header.layer_size;
@@ -248,7 +258,8 @@ fn check_header(header: &Header, length: usize) -> Result<(), String> {
     }
 }
 
-/// The channels of a file whose header and blocks have been checked; the error says what is damaged.
+/// The channels of a file whose header and blocks have been checked; the error says what is
+/// damaged.
 fn decode(bytes: &[u8]) -> Result<Vec<Channel>, String> {
     let channel = |c: AnyChannel<FlatSamples>| {
         let name = String::from_utf8(c.name.as_slice().to_vec())

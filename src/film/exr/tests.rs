@@ -1,5 +1,5 @@
 use super::*;
-use crate::film::FrameMeta;
+use crate::film::{FrameMeta, RunMeta};
 
 mod forgery;
 
@@ -29,18 +29,21 @@ fn frame(columns: usize, rows: usize, names: &[&str]) -> Frame {
             values: values(c),
         })
         .collect();
-    let meta = FrameMeta {
+    let run = RunMeta {
         scene_name: "bänch – 试".into(),
         scene_hash: "0123456789abcdef".repeat(4),
         unit: "in".into(),
-        spot_index: 3,
         spot_count: 120,
-        spot_position: [0.1, f64::MIN_POSITIVE / 3.0, -1.0e300],
         seed: u64::MAX,
         samples: u64::MAX - 1,
         estimator: "independent".into(),
         sampler: "sobol".into(),
         version: "0.1.0".into(),
+    };
+    let meta = FrameMeta {
+        run,
+        spot_index: 3,
+        spot_position: [0.1, f64::MIN_POSITIVE / 3.0, -1.0e300],
     };
     Frame {
         columns,
@@ -113,15 +116,16 @@ fn every_bit_survives_whatever_the_order_of_channels() {
 
 #[test]
 fn the_same_frame_gives_the_same_bytes() {
-    // The crate writes attributes in the order of a hash map with a random key: 20 writings agree by chance never.
+    // The crate writes attributes in the order of a hash map with a random key: 20 writings agree
+    // by chance never.
     let first = file();
     assert!((0..20).all(|_| file() == first));
 }
 
 #[test]
 fn values_lie_where_the_format_puts_them() {
-    // Noise does not compress, so the block is stored raw: y, size, then for each line each channel by name. Row 0 first,
-    // columns along x.
+    // Noise does not compress, so the block is stored raw: y, size, then for each line each channel
+    // by name. Row 0 first, columns along x.
     let mut frame = frame(2, 2, &["flux"]);
     frame.channels[0].values = vec![1.5, -2.25, 1.0e-20, 7.75e9];
     let bytes = encode(&frame).unwrap();
@@ -151,7 +155,7 @@ fn a_frame_that_contradicts_itself_is_not_written() {
     let mut vast = good.clone();
     (vast.rows, vast.columns) = (usize::MAX, 2);
     let mut many = good;
-    many.meta.spot_count = u32::MAX;
+    many.meta.run.spot_count = u32::MAX;
     for bad in [short, double, unnamed, empty, flat, vast, many] {
         let refused = write(&path, &bad);
         assert!(
@@ -241,7 +245,8 @@ fn a_black_frame_is_not_taken_for_a_forgery() {
 
 #[test]
 fn a_line_block_that_is_missing_is_noticed() {
-    // 33 lines are blocks at y = 0, 16 and 32. Pointing the second at the first would leave lines 16 to 31 black.
+    // 33 lines are blocks at y = 0, 16 and 32. Pointing the second at the first would leave lines
+    // 16 to 31 black.
     let whole = file();
     let table = envelope::check_list(&whole).unwrap();
     let mut forged = whole.clone();

@@ -32,7 +32,8 @@ pub(super) fn frame_files(folder: &Path) -> Result<Vec<(u32, PathBuf)>, StackErr
     }
 }
 
-/// Checks that `files`, sorted by spot and without doubles, are of the spots 0 to `spot_count` − 1, all of them.
+/// Checks that `files`, sorted by spot and without doubles, are of the spots 0 to `spot_count` − 1,
+/// all of them.
 pub(super) fn check_spots(
     folder: &Path,
     files: &[(u32, PathBuf)],

@@ -1,5 +1,5 @@
 use super::*;
-use crate::film::{Channel, FrameMeta};
+use crate::film::{Channel, FrameMeta, RunMeta};
 
 const SPOTS: u32 = 12;
 
@@ -15,18 +15,21 @@ fn frame(spot: u32) -> Frame {
         name: (*name).into(),
         values: values(c),
     });
-    let meta = FrameMeta {
+    let run = RunMeta {
         scene_name: "bench".into(),
         scene_hash: "ab".repeat(32),
         unit: "in".into(),
-        spot_index: spot,
         spot_count: SPOTS,
-        spot_position: [f64::from(spot), 0.1, 0.0],
         seed: 7,
         samples: 64,
         estimator: "independent".into(),
         sampler: "pcg".into(),
         version: "0.1.0".into(),
+    };
+    let meta = FrameMeta {
+        run,
+        spot_index: spot,
+        spot_position: [f64::from(spot), 0.1, 0.0],
     };
     Frame {
         columns: 3,
@@ -81,7 +84,7 @@ fn columns_are_spots_and_rows_are_pixels() {
         ]
     );
     assert_eq!(whole.spot_positions[11], [11.0, 0.1, 0.0]);
-    assert_eq!(whole.run, RunMeta::from(&frame(0).meta));
+    assert_eq!(whole.run, frame(0).meta.run);
     assert_eq!(stack(&dir.path().join("frames")).unwrap(), whole);
 }
 
@@ -123,17 +126,17 @@ fn no_frames_is_said() {
 fn frames_of_different_runs_are_refused() {
     type Change = fn(&mut Frame);
     let changes: [(&str, Change); 11] = [
-        ("scene hash", |f| f.meta.scene_hash = "cd".repeat(32)),
-        ("scene", |f| f.meta.scene_name = "thesis".into()),
+        ("scene hash", |f| f.meta.run.scene_hash = "cd".repeat(32)),
+        ("scene", |f| f.meta.run.scene_name = "thesis".into()),
         ("size", |f| (f.columns, f.rows) = (2, 3)),
         ("channels", |f| drop(f.channels.pop())),
-        ("length unit", |f| f.meta.unit = "cm".into()),
-        ("number of spots", |f| f.meta.spot_count += 1),
-        ("seed", |f| f.meta.seed += 1),
-        ("samples", |f| f.meta.samples += 1),
-        ("estimator", |f| f.meta.estimator = "shared".into()),
-        ("sampler", |f| f.meta.sampler = "sobol".into()),
-        ("version", |f| f.meta.version = "0.2.0".into()),
+        ("length unit", |f| f.meta.run.unit = "cm".into()),
+        ("number of spots", |f| f.meta.run.spot_count += 1),
+        ("seed", |f| f.meta.run.seed += 1),
+        ("samples", |f| f.meta.run.samples += 1),
+        ("estimator", |f| f.meta.run.estimator = "shared".into()),
+        ("sampler", |f| f.meta.run.sampler = "sobol".into()),
+        ("version", |f| f.meta.run.version = "0.2.0".into()),
     ];
     for (expected, change) in changes {
         let refused = stack(fifth(change).path());
@@ -213,7 +216,7 @@ fn a_truncated_frame_and_one_without_flux_are_refused() {
 
 #[test]
 fn a_forged_number_of_spots_takes_no_memory() {
-    let dir = run(|f| f.meta.spot_count = 2_000_000_000);
+    let dir = run(|f| f.meta.run.spot_count = 2_000_000_000);
     assert!(
         refusal(&dir).contains("1999999988 of 2000000000 spots: 12-1999999999"),
         "{}",

@@ -1,7 +1,8 @@
 //! Which nodes of a binary tree become the nodes of a wide one?
 //!
-//! The choice with the least expected cost of a ray, found from the leaves upwards (Ylitie, Karras and Laine, *Efficient incoherent ray
-//! traversal on GPUs through compressed wide BVHs*, 2017, section 3): of a subtree n with surface A and P primitives,
+//! The choice with the least expected cost of a ray, found from the leaves upwards (Ylitie, Karras
+//! and Laine, *Efficient incoherent ray traversal on GPUs through compressed wide BVHs*, 2017,
+//! section 3): of a subtree n with surface A and P primitives,
 //!
 //! - C(n, 1) = A as a leaf where P is at most a group, A + D(n, 8) as a node otherwise,
 //! - C(n, i) = min(C(n, i − 1), D(n, i)) as up to i children of one node,
@@ -17,7 +18,8 @@ pub(super) struct Collapse<'a> {
     tree: &'a Bvh2,
     /// Number of primitives below.
     count: Vec<u32>,
-    /// Of the i + 1 children that a subtree may become, how many are from its left; 0: as with one fewer.
+    /// Of the i + 1 children that a subtree may become, how many are from its left; 0: as with one
+    /// fewer.
     left: Vec<[u8; WIDTH]>,
     leaf: Vec<bool>,
 }

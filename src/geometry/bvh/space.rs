@@ -42,8 +42,8 @@ impl Space {
         (p - self.origin) * self.scale
     }
 
-    /// Where the ray reaches the scene's bounding sphere (so that a camera far away does not cost the f32 origin its digits), and how
-    /// far that is from its own start.
+    /// Where the ray reaches the scene's bounding sphere (so that a camera far away does not cost
+    /// the f32 origin its digits), and how far that is from its own start.
     #[inline(always)]
     pub(super) fn start(&self, ray: &Ray) -> (Vec3A, f64) {
         let local = self.local(ray.origin);
@@ -52,7 +52,8 @@ impl Space {
         ((local + ray.direction * advance).as_vec3a(), advance)
     }
 
-    /// Where in the tree lies what is met at distance `t` by a ray whose start was moved by `advance`, at the latest.
+    /// Where in the tree lies what is met at distance `t` by a ray whose start was moved by
+    /// `advance`, at the latest.
     #[inline(always)]
     pub(super) fn limit(&self, t: f64, advance: f64) -> f32 {
         ((t * self.scale - advance).min(1e30) as f32) + 4.0 * PADDING

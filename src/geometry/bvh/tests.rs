@@ -43,7 +43,8 @@ fn clutter(scale: f64) -> Vec<Shape> {
     shapes
 }
 
-/// The tree must agree with the list on every ray: from surfaces, along axes, from far away, at three scales.
+/// The tree must agree with the list on every ray: from surfaces, along axes, from far away, at
+/// three scales.
 #[test]
 fn the_tree_answers_as_the_list_does() {
     for scale in [1e-3, 1.0, 1e4] {
@@ -82,7 +83,8 @@ fn the_tree_answers_as_the_list_does() {
     }
 }
 
-/// Every ray from the middle of a closed box of six patches meets a wall, its edges and diagonals included.
+/// Every ray from the middle of a closed box of six patches meets a wall, its edges and diagonals
+/// included.
 #[test]
 fn a_closed_box_does_not_leak() {
     let e = [DVec3::X, DVec3::Y, DVec3::Z];

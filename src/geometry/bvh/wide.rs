@@ -1,9 +1,10 @@
 //! The tree for many primitives: obvhs' binary tree, opened to eight children a node.
 //!
-//! A node keeps the boxes of its children coordinate by coordinate, so that one pass of wide instructions tests all eight (Wald,
-//! Benthin and Boulos, *Getting rid of packets*, 2008). A large tree waits for memory most of the time; so several rays are under way at
-//! once, and what each needs next is asked for before any of them goes on. Boxes and rays are in f32, in the padded space of [`Space`]:
-//! the tree culls, its caller decides.
+//! A node keeps the boxes of its children coordinate by coordinate, so that one pass of wide
+//! instructions tests all eight (Wald, Benthin and Boulos, *Getting rid of packets*, 2008). A large
+//! tree waits for memory most of the time; so several rays are under way at once, and what each
+//! needs next is asked for before any of them goes on. Boxes and rays are in f32, in the padded
+//! space of [`Space`]: the tree culls, its caller decides.
 
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -43,13 +44,15 @@ pub(in crate::geometry) trait Query {
     fn begin(&self, ray: &Ray) -> Self::State;
     /// A number that depends on the memory of a leaf.
     fn touch(&self, leaf: u32) -> u32;
-    /// Looks into a leaf; returns the distance beyond which nothing matters any more, a negative one to end the search.
+    /// Looks into a leaf; returns the distance beyond which nothing matters any more, a negative
+    /// one to end the search.
     fn visit(&self, ray: &Ray, state: &mut Self::State, leaf: u32) -> f64;
 }
 
 impl WideTree {
-    /// The tree over `boxes` (lower and upper corners, finite). `leaf` is told the boxes that share a leaf and returns the number, below
-    /// 2³¹, by which the leaf is later visited. What is looked at in a leaf at once is a `group`.
+    /// The tree over `boxes` (lower and upper corners, finite). `leaf` is told the boxes that share
+    /// a leaf and returns the number, below 2³¹, by which the leaf is later visited. What is looked
+    /// at in a leaf at once is a `group`.
     pub(in crate::geometry) fn new(
         boxes: &[(DVec3, DVec3)],
         group: u32,
@@ -86,8 +89,8 @@ impl WideTree {
         Self { nodes, space }
     }
 
-    /// Takes each ray through the leaves whose boxes it meets before a distance that starts as its length; `done` receives the number of
-    /// the ray and what has become of its state.
+    /// Takes each ray through the leaves whose boxes it meets before a distance that starts as its
+    /// length; `done` receives the number of the ray and what has become of its state.
     #[inline(always)]
     pub(in crate::geometry) fn traverse<Q: Query>(
         &self,
@@ -130,7 +133,8 @@ impl WideTree {
         }
     }
 
-    /// Visits leaves, near ones first, as long as their boxes are nearer to `p` than what `visit` last returned.
+    /// Visits leaves, near ones first, as long as their boxes are nearer to `p` than what `visit`
+    /// last returned.
     pub(in crate::geometry) fn around(&self, p: DVec3, mut visit: impl FnMut(u32) -> f64) {
         let p = self.space.local(p).as_vec3a().to_array();
         let mut reach = f32::INFINITY;
@@ -151,7 +155,8 @@ impl WideTree {
     }
 }
 
-/// The distinct boxes, and which of the given ones each stands for: thousands of equal boxes would make a tree as deep as their number.
+/// The distinct boxes, and which of the given ones each stands for: thousands of equal boxes would
+/// make a tree as deep as their number.
 fn distinct(boxes: impl Iterator<Item = Aabb>) -> (Vec<Aabb>, Vec<Vec<u32>>) {
     let key = |b: &Aabb| [b.min, b.max].map(|v| v.to_array().map(f32::to_bits));
     let mut keyed: Vec<_> = boxes.zip(0_u32..).map(|(b, i)| (key(&b), i, b)).collect();

@@ -17,7 +17,8 @@ pub(super) struct Group {
     pub(super) last: bool,
 }
 
-/// A ray, sheared so that it runs along the third of its axes (Woop, Benthin and Wald, *Watertight ray/triangle intersection*, 2013).
+/// A ray, sheared so that it runs along the third of its axes (Woop, Benthin and Wald, *Watertight
+/// ray/triangle intersection*, 2013).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sheared {
     axes: [usize; 3],
@@ -47,7 +48,8 @@ impl Sheared {
     }
 }
 
-/// What the ray finds in a group: by triangle the distance, and a bit for each that it meets at 0 < t ≤ limit.
+/// What the ray finds in a group: by triangle the distance, and a bit for each that it meets at 0 <
+/// t ≤ limit.
 pub(super) type Met = ([f64; GROUP], u32);
 
 impl Group {
@@ -93,9 +95,10 @@ impl Group {
         present.map(|k| (self.triangles[k], self.corners(k)))
     }
 
-    /// With the corners a, b, c in the sheared space of the ray, where it is the axis, it passes inside if u = c×b, v = a×c and w = b×a
-    /// (cross products in the plane) have one sign; then t = (u·a_z + v·b_z + w·c_z)/(u + v + w). The edge of two neighbours has the
-    /// same product in both up to its sign, bit for bit, and 0 belongs to both: nothing passes between them.
+    /// With the corners a, b, c in the sheared space of the ray, where it is the axis, it passes
+    /// inside if u = c×b, v = a×c and w = b×a (cross products in the plane) have one sign; then t =
+    /// (u·a_z + v·b_z + w·c_z)/(u + v + w). The edge of two neighbours has the same product in both
+    /// up to its sign, bit for bit, and 0 belongs to both: nothing passes between them.
     #[inline(always)]
     pub(super) fn meet(&self, ray: &Sheared, limit: f64) -> Met {
         let [ax, ay, az] = ray.axes;

@@ -2,8 +2,8 @@
 
 use crate::geometry::DVec3;
 
-/// Distance of `p` from the triangle, and the weights of the second and the third corner at the nearest point: inside if p projects
-/// there, else the nearest of the three edges.
+/// Distance of `p` from the triangle, and the weights of the second and the third corner at the
+/// nearest point: inside if p projects there, else the nearest of the three edges.
 pub(super) fn on_triangle([a, b, c]: [DVec3; 3], p: DVec3) -> (f64, [f64; 2]) {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let normal = ab.cross(ac);

@@ -5,7 +5,8 @@ use super::{Mesh, MeshHit};
 use crate::geometry::bvh::Query;
 use crate::geometry::{DVec3, Ray};
 
-/// Which triangle is met first, by rays that start at points computed from numbers as large as the second field?
+/// Which triangle is met first, by rays that start at points computed from numbers as large as the
+/// second field?
 pub(super) struct Closest<'a>(pub(super) &'a Mesh, pub(super) f64);
 
 impl Query for Closest<'_> {
@@ -52,7 +53,8 @@ impl Query for Closest<'_> {
     }
 }
 
-/// Is any triangle met, by segments whose ends were computed from numbers as large as the second field?
+/// Is any triangle met, by segments whose ends were computed from numbers as large as the second
+/// field?
 pub(super) struct Any<'a>(pub(super) &'a Mesh, pub(super) f64);
 
 impl Query for Any<'_> {
@@ -94,7 +96,8 @@ impl Query for Any<'_> {
     }
 }
 
-/// Whether `p`, computed from numbers as large as `reach`, is farther from the triangle's plane than rounding; what is not finite is.
+/// Whether `p`, computed from numbers as large as `reach`, is farther from the triangle's plane
+/// than rounding; what is not finite is.
 #[inline(always)]
 fn is_off_plane([a, b, c]: [DVec3; 3], p: DVec3, reach: f64) -> bool {
     const ROUNDING: f64 = 1e-12;

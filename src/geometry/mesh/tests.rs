@@ -12,7 +12,8 @@ fn numbers() -> impl FnMut() -> f64 {
     move || stream.uniform()
 }
 
-/// A bumpy ball around the origin: a cube of 6·n² squares blown up to radius `scale`; without bumps for `bump` = 0. Fronts outside.
+/// A bumpy ball around the origin: a cube of 6·n² squares blown up to radius `scale`; without bumps
+/// for `bump` = 0. Fronts outside.
 fn ball(n: u32, bump: f64, scale: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     for face in 0..6 {
@@ -45,7 +46,8 @@ fn direction(x: &mut impl FnMut() -> f64) -> DVec3 {
     DVec3::new(x() - 0.5, x() - 0.5, x() - 0.5).normalize()
 }
 
-/// Every distance at which the ray meets a triangle, by Cramer's rule (Möller and Trumbore, 1997), with how near to an edge it passes.
+/// Every distance at which the ray meets a triangle, by Cramer's rule (Möller and Trumbore, 1997),
+/// with how near to an edge it passes.
 fn all_hits(mesh: &Mesh, ray: &Ray) -> Vec<(f64, u32, f64)> {
     let hit = |i: u32| {
         let [a, b, c] = mesh.corners(i);
@@ -63,7 +65,8 @@ fn all_hits(mesh: &Mesh, ray: &Ray) -> Vec<(f64, u32, f64)> {
         .collect()
 }
 
-/// Tree and batch against every triangle one by one: from inside, along axes, from far away, at three scales.
+/// Tree and batch against every triangle one by one: from inside, along axes, from far away, at
+/// three scales.
 #[test]
 fn the_tree_answers_as_the_list_does() {
     for scale in [1e-3, 1.0, 1e4] {
@@ -119,7 +122,8 @@ fn the_tree_answers_as_the_list_does() {
     }
 }
 
-/// From inside a closed surface every ray meets it, those towards its vertices and the middles of its edges included.
+/// From inside a closed surface every ray meets it, those towards its vertices and the middles of
+/// its edges included.
 #[test]
 fn a_closed_surface_does_not_leak() {
     let (positions, triangles) = ball(20, 0.1, 3.7);
@@ -144,7 +148,8 @@ fn a_closed_surface_does_not_leak() {
     assert!(mesh.blocks_many(&rays).iter().all(|b| *b));
 }
 
-/// Rays straight through the vertices, edges and diagonals of a grid of exact coordinates, whichever way its triangles turn.
+/// Rays straight through the vertices, edges and diagonals of a grid of exact coordinates,
+/// whichever way its triangles turn.
 #[test]
 fn what_belongs_to_two_triangles_is_met() {
     for turned in [false, true] {
@@ -243,7 +248,8 @@ fn the_nearest_point_is_found() {
     }
 }
 
-/// Coincident and degenerate triangles neither break the tree nor the answer: the first of the proper ones counts.
+/// Coincident and degenerate triangles neither break the tree nor the answer: the first of the
+/// proper ones counts.
 #[test]
 fn thousands_of_coincident_triangles_are_survived() {
     let positions = vec![

@@ -66,7 +66,8 @@ fn hits_inside_and_misses_outside_and_behind() {
     );
 }
 
-/// A wall of two tiles: a spot exactly on the seam is free from everywhere in front, however t rounds.
+/// A wall of two tiles: a spot exactly on the seam is free from everywhere in front, however t
+/// rounds.
 #[test]
 fn a_point_on_a_seam_is_not_blocked_by_the_neighbour() {
     let tile = |x: f64| {
@@ -98,7 +99,8 @@ fn overlap_is_more_than_an_edge_in_one_plane() {
         "neighbours share an edge"
     );
     assert!(!base.overlaps(&square(0.0, 0.0, 1e-6)), "lifted");
-    // The bounding boxes share [1, 1.2] × [0, 0.1], where the slanted square is not: its edge is x = 1 + y/5.
+    // The bounding boxes share [1, 1.2] × [0, 0.1], where the slanted square is not: its edge is x
+    // = 1 + y/5.
     let corner = DVec3::new(1.05, 0.0, 0.0);
     let low = Parallelogram::new(corner, DVec3::X, DVec3::Y * 0.1).unwrap();
     assert!(!base.overlaps(&low) && !low.overlaps(&base));

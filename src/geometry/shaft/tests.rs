@@ -23,8 +23,8 @@ fn shape() -> impl Strategy<Value = Shape> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
-    /// What is called free is free: no segment between random points of the two ends is ever blocked, and the short list of
-    /// blockers gives the answer of all shapes.
+    /// What is called free is free: no segment between random points of the two ends is ever
+    /// blocked, and the short list of blockers gives the answer of all shapes.
     #[test]
     fn nothing_that_blocks_is_left_out(
         ends in (patch(3.0, 2.0), patch(3.0, 2.0)),
@@ -44,8 +44,8 @@ proptest! {
     }
 }
 
-/// The bench: nothing can stand between wall and object, a screen between them can, one behind the wall, behind the object or beside
-/// both cannot.
+/// The bench: nothing can stand between wall and object, a screen between them can, one behind the
+/// wall, behind the object or beside both cannot.
 #[test]
 fn the_bench_is_free_and_a_screen_is_found() {
     let patch = |corner, u, v| {
@@ -94,7 +94,8 @@ fn the_bench_is_free_and_a_screen_is_found() {
     }
 }
 
-/// From one point of the wall the shaft is narrow: a screen that stands between other points does not disturb.
+/// From one point of the wall the shaft is narrow: a screen that stands between other points does
+/// not disturb.
 #[test]
 fn a_point_sees_past_a_screen_that_others_do_not() {
     let patch = |corner, u, v| {

@@ -1,13 +1,16 @@
 //! The bytes of an OpenEXR file around its pixels: the list of attributes and the table of blocks.
 //!
-//! Layout of a single-part scan-line file: magic number and version (4 + 4 bytes), attributes (name, NUL, type, NUL, size
-//! as i32, value), a NUL, one u64 offset a block of lines, the blocks (y as i32, size as i32, data). All little-endian.
+//! Layout of a single-part scan-line file: magic number and version (4 + 4 bytes), attributes
+//! (name, NUL, type, NUL, size as i32, value), a NUL, one u64 offset a block of lines, the blocks
+//! (y as i32, size as i32, data). All little-endian.
 //!
-//! The crate `exr` needs help with these bytes twice. It keeps attributes in a hash map, so that the same frame gives
-//! other bytes at each writing: [`sort_attributes`] puts them in order of name. And it believes what a file says of
-//! itself, leaving lines that no block covers black without a word: [`check_list`] and [`check_blocks`] look first.
+//! The crate `exr` needs help with these bytes twice. It keeps attributes in a hash map, so that
+//! the same frame gives other bytes at each writing: [`sort_attributes`] puts them in order of
+//! name. And it believes what a file says of itself, leaving lines that no block covers black
+//! without a word: [`check_list`] and [`check_blocks`] look first.
 
-/// Magic number, then version 2 of a single-part scan-line file; bit 10 (names longer than 31 bytes) may be set.
+/// Magic number, then version 2 of a single-part scan-line file; bit 10 (names longer than 31
+/// bytes) may be set.
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 const VERSION: u32 = 2;
 const LONG_NAMES: u32 = 1 << 10;
@@ -55,8 +58,8 @@ fn attributes(file: &[u8]) -> Result<(Vec<Attribute<'_>>, usize), Fault> {
     Ok((list, file.len() - rest.len() + 1))
 }
 
-/// Checks that the attribute list lies within the file and names nothing twice; returns the position after it, where the
-/// table of blocks begins.
+/// Checks that the attribute list lies within the file and names nothing twice; returns the
+/// position after it, where the table of blocks begins.
 pub(crate) fn check_list(file: &[u8]) -> Result<usize, Fault> {
     let (list, end) = attributes(file)?;
     let mut names: Vec<&[u8]> = list.iter().map(|a| a.name).collect();
@@ -76,8 +79,8 @@ pub(crate) fn sort_attributes(file: &mut [u8]) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Checks that the table at `table` leads to one block for each `lines` of the `rows` lines, each with the y it should
-/// have, counted from `first`, and wholly within the file.
+/// Checks that the table at `table` leads to one block for each `lines` of the `rows` lines, each
+/// with the y it should have, counted from `first`, and wholly within the file.
 pub(crate) fn check_blocks(
     file: &[u8],
     table: usize,

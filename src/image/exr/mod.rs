@@ -1,7 +1,8 @@
-//! OpenEXR bytes to pictures. Frames of the simulated camera have their own, stricter reader in `film/exr`, which shares [`envelope`] with this one;
-//! these two are the doors of the crate `exr`.
+//! OpenEXR bytes to pictures. Frames of the simulated camera have their own, stricter reader in
+//! `film/exr`, which shares [`envelope`] with this one; these two are the doors of the crate `exr`.
 //!
-//! Single-part scan lines of any compression that the crate reads; R, G, B, or Y, each with or without A, at every pixel. Other channels are passed over.
+//! Single-part scan lines of any compression that the crate reads; R, G, B, or Y, each with or
+//! without A, at every pixel. Other channels are passed over.
 
 pub(crate) mod envelope;
 

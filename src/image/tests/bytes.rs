@@ -1,4 +1,5 @@
-//! Small pictures as other programs wrote them: Pillow 13 (PNG, JPEG) and the reference library OpenEXR 3 with its Python binding.
+//! Small pictures as other programs wrote them: Pillow 13 (PNG, JPEG) and the reference library
+//! OpenEXR 3 with its Python binding.
 
 pub(crate) const GREY_8: [u8; 73] = [
     0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52,

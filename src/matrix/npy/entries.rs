@@ -10,13 +10,14 @@ use super::{NpyError, Opened, examine, not_npy, unreadable};
 
 /// Bytes of an f64.
 const BYTES: u64 = 8;
-/// Entries of a column no farther apart than this, in bytes, are read with what lies between them: a page of memory costs about what a call of the system does.
+/// Entries of a column no farther apart than this, in bytes, are read with what lies between them:
+/// a page of memory costs about what a call of the system does.
 const GAP: u64 = 4096;
 /// Most bytes read at once.
 const SPAN: u64 = 64 * 1024;
 
-/// An open file of a matrix of f64, little-endian and in C order (as [`write`](super::write) leaves it), of which any entries can be read
-/// without the rest. NaN and infinity are passed on.
+/// An open file of a matrix of f64, little-endian and in C order (as [`write`](super::write) leaves
+/// it), of which any entries can be read without the rest. NaN and infinity are passed on.
 pub struct Entries {
     path: PathBuf,
     file: File,
@@ -29,7 +30,8 @@ impl Entries {
     /// Looks at the header of `file`, which messages call `path`; no number is read.
     ///
     /// # Errors
-    /// Those of [`read`](super::read), and [`NpyError::NotNpy`] for another type or order of the numbers.
+    /// Those of [`read`](super::read), and [`NpyError::NotNpy`] for another type or order of the
+    /// numbers.
     pub fn of(file: File, path: &Path) -> Result<Self, NpyError> {
         let Opened {
             mut file,

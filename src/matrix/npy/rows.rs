@@ -25,7 +25,8 @@ impl Rows {
     /// Opens `path` and looks at its header; no number is read.
     ///
     /// # Errors
-    /// Those of [`read`](super::read), and [`NpyError::NotNpy`] for Fortran order, whose rows are scattered over the file.
+    /// Those of [`read`](super::read), and [`NpyError::NotNpy`] for Fortran order, whose rows are
+    /// scattered over the file.
     pub fn open(path: &Path) -> Result<Self, NpyError> {
         let Opened {
             file,
@@ -55,7 +56,8 @@ impl Rows {
         self.shape
     }
 
-    /// Up to `count` rows from row `first` on, all finite; fewer at the end of the file, none beyond it.
+    /// Up to `count` rows from row `first` on, all finite; fewer at the end of the file, none
+    /// beyond it.
     ///
     /// # Errors
     /// [`NpyError::Unreadable`], [`NpyError::NotFinite`].

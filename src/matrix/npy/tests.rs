@@ -3,8 +3,8 @@
 use super::*;
 use proptest::prelude::*;
 
-/// A `.npy` file of version 1.0 as the format description asks: the header padded so that the numbers start at a multiple
-/// of 64 bytes.
+/// A `.npy` file of version 1.0 as the format description asks: the header padded so that the
+/// numbers start at a multiple of 64 bytes.
 fn file(descr: &str, fortran: &str, shape: &str, numbers: &[u8]) -> Vec<u8> {
     let mut text =
         format!("{{'descr': '{descr}', 'fortran_order': {fortran}, 'shape': {shape}, }}");

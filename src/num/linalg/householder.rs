@@ -1,4 +1,5 @@
-//! Householder reduction, with or without a choice of columns, and the orthogonal complement that it gives.
+//! Householder reduction, with or without a choice of columns, and the orthogonal complement that
+//! it gives.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -14,7 +15,8 @@ pub(super) struct Reflections {
 /// Whether a reduction may choose the order of the columns.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Pivoting {
-    /// The column with the largest part left is taken next (Businger and Golub 1965). What is left is summed anew at every step, not downdated.
+    /// The column with the largest part left is taken next (Businger and Golub 1965). What is left
+    /// is summed anew at every step, not downdated.
     Largest,
     /// None.
     Never,
@@ -95,7 +97,8 @@ impl Reflections {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Complement(Reflections);
 
-/// The complement of the k independent columns of an m × k matrix, k ≤ m (none for k = 0): m − k orthonormal vectors, as reflections.
+/// The complement of the k independent columns of an m × k matrix, k ≤ m (none for k = 0): m − k
+/// orthonormal vectors, as reflections.
 ///
 /// # Errors
 /// [`LinalgError::NotFinite`], [`LinalgError::Shape`] for more columns than rows.

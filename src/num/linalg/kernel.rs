@@ -7,8 +7,9 @@ pub(super) fn hilbert(m: usize, n: usize) -> DMatrix<f64> {
     DMatrix::from_fn(m, n, |i, j| 1.0 / (i + j + 1) as f64)
 }
 
-/// Kahan's n × n matrix diag(1, s, s², …) (1 on the diagonal, −c above), s = sin θ, c = cos θ; its columns are made to fall in norm
-/// by a factor 1 − 25 eps each, so that rounding does not decide the pivots.
+/// Kahan's n × n matrix diag(1, s, s², …) (1 on the diagonal, −c above), s = sin θ, c = cos θ; its
+/// columns are made to fall in norm by a factor 1 − 25 eps each, so that rounding does not decide
+/// the pivots.
 pub(super) fn kahan(n: usize, theta: f64) -> DMatrix<f64> {
     let (s, c) = (libm::sin(theta), libm::cos(theta));
     DMatrix::from_fn(n, n, |i, j| {
@@ -21,8 +22,9 @@ pub(super) fn kahan(n: usize, theta: f64) -> DMatrix<f64> {
     })
 }
 
-/// The kernel cosθs·cosθd/R² of a bench with 120 spots on a square of the given half-width (lengths in inches) and 8 × 8 elements
-/// on a plane leaning 45° over the wall: 64 × 120, smooth and so numerically rank deficient.
+/// The kernel cosθs·cosθd/R² of a bench with 120 spots on a square of the given half-width (lengths
+/// in inches) and 8 × 8 elements on a plane leaning 45° over the wall: 64 × 120, smooth and so
+/// numerically rank deficient.
 pub(super) fn bench_g12(half_width: f64) -> DMatrix<f64> {
     leaning(8, 30, half_width)
 }

@@ -1,101 +1,21 @@
-//! Linear least squares, by orthogonal reduction where the matrix fits and by normal equations where it does not.
+//! Linear least squares, by orthogonal reduction where the matrix fits and by normal equations
+//! where it does not.
 
 use nalgebra::{DMatrix, DVector};
 
+use super::solution::{LeastSquares, Route, by_directions, solve_by_svd};
 use super::triangle::{same_length, scaled_vector};
-use super::{LinalgError, Svd, Tolerance, cut, svd, svd_of_range, triangle};
+use super::{LinalgError, Tolerance, svd_of_range, triangle};
 
-/// Singular values below this fraction of σ₁ are not trusted after an unpivoted QR, whose error on numerically
-/// rank-deficient input is about 4e-14 σ₁ (measured): three digits are kept above that.
+/// Singular values below this fraction of σ₁ are not trusted after an unpivoted QR, whose error on
+/// numerically rank-deficient input is about 4e-14 σ₁ (measured): three digits are kept above that.
 const QR_TRUST: f64 = 1e-10;
-
-/// Which decomposition a solution rests on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Route {
-    /// Householder QR of A, then the singular values of R: the condition of A, not its square.
-    Qr,
-    /// The singular value decomposition of A itself, because A is close to rank deficient.
-    Svd,
-    /// Cholesky of AᵀA: the square of A's condition, singular values below √eps σ₁ lost.
-    Normal,
-}
-
-/// The minimum-norm solution of min ‖A x − b‖.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LeastSquares {
-    /// x, n entries.
-    pub solution: DVector<f64>,
-    /// Singular values of A, descending: min(m, n) of them, or those above rounding ([`svd_to`](super::svd_to)).
-    pub sigma: DVector<f64>,
-    /// How many singular values were kept.
-    pub rank: usize,
-    /// Singular values at or below this were taken as zero.
-    pub cutoff: f64,
-    /// ‖A x − b‖.
-    pub residual: f64,
-    /// Which decomposition was used.
-    pub route: Route,
-    /// Kept right singular vectors as rows, rank × n.
-    pub vt: DMatrix<f64>,
-}
-
-impl LeastSquares {
-    /// (AᵀA)⁺ = V_k Σ_k⁻² V_kᵀ, n × n: the covariance of the solution where the entries of b carry independent noise of unit variance.
-    pub fn covariance(&self) -> DMatrix<f64> {
-        let mut scaled = self.vt.clone();
-        for (mut row, &s) in scaled.row_iter_mut().zip(self.sigma.iter()) {
-            row /= s;
-        }
-        scaled.transpose() * scaled
-    }
-}
-
-pub(super) fn solve_by_svd(
-    a: &DMatrix<f64>,
-    b: &DVector<f64>,
-    rest: f64,
-    rows: usize,
-    tolerance: Tolerance,
-    route: Route,
-) -> Result<LeastSquares, LinalgError> {
-    by_directions(a, svd(a)?, (b, rest), rows, tolerance, route)
-}
-
-/// From the directions of A.
-fn by_directions(
-    a: &DMatrix<f64>,
-    decomposed: Svd,
-    (b, rest): (&DVector<f64>, f64),
-    rows: usize,
-    tolerance: Tolerance,
-    route: Route,
-) -> Result<LeastSquares, LinalgError> {
-    let (rank, cutoff) = cut(decomposed.sigma.as_slice(), rows, a.ncols(), tolerance)?;
-    let vt = decomposed.vt.rows(0, rank).into_owned();
-    let mut along = decomposed.u.columns(0, rank).transpose() * b;
-    for (x, &s) in along.iter_mut().zip(decomposed.sigma.iter()) {
-        *x /= s;
-    }
-    let solution = vt.transpose() * along;
-    if solution.iter().any(|x| !x.is_finite()) {
-        return Err(LinalgError::Overflow("the least-squares solution"));
-    }
-    let residual = libm::hypot((a * &solution - b).norm(), rest);
-    Ok(LeastSquares {
-        solution,
-        sigma: decomposed.sigma,
-        rank,
-        cutoff,
-        residual,
-        route,
-        vt,
-    })
-}
 
 /// The x of least norm among those that minimise ‖A x − b‖, for an m × n matrix.
 ///
-/// A large matrix of few directions is decomposed by its [`range`](super::range()). Of any other QR first; where that shows σ_n < 1e-10 σ₁, or the tolerance is not [`Tolerance::Auto`], the singular value
-/// decomposition of A itself, cut at `tolerance`.
+/// A large matrix of few directions is decomposed by its [`range`](super::range()). Of any other QR
+/// first; where that shows σ_n < 1e-10 σ₁, or the tolerance is not [`Tolerance::Auto`], the
+/// singular value decomposition of A itself, cut at `tolerance`.
 ///
 /// # Errors
 /// Empty or non-finite input, shapes that do not fit, a tolerance without meaning, overflow.
@@ -128,7 +48,8 @@ mod tests {
 
     #[test]
     fn planted_solution_of_a_tall_system() {
-        // A = columns 1, t, t² at t = 0..9, b = 3 − 2t + 0.5t² plus a vector orthogonal to all three columns.
+        // A = columns 1, t, t² at t = 0..9, b = 3 − 2t + 0.5t² plus a vector orthogonal to all
+        // three columns.
         let a = DMatrix::from_fn(10, 3, |i, j| (i as f64).powi(j as i32));
         let x = DVector::from_row_slice(&[3.0, -2.0, 0.5]);
         // Fourth difference-type vector: (1, −3, 3, −1) annihilates polynomials of degree ≤ 2.

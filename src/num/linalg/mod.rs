@@ -1,17 +1,20 @@
 //! Dense linear algebra: the one door to matrix decompositions.
 //!
-//! Matrices are [`nalgebra::DMatrix<f64>`] (column-major) on both sides of the door; behind it the decompositions are
-//! those of `faer` (and Householder reductions of its own, [`pivoted_qr`](pivoted_qr()) and [`complement`](complement())), on one thread so that their bits do not depend on
-//! the number of cores. What this door adds to them:
+//! Matrices are [`nalgebra::DMatrix<f64>`] (column-major) on both sides of the door; behind it the
+//! decompositions are those of `faer` (and Householder reductions of its own,
+//! [`pivoted_qr`](pivoted_qr()) and [`complement`](complement())), on one thread so that their bits
+//! do not depend on the number of cores. What this door adds to them:
 //!
-//! * empty, NaN and infinite input is refused with an error ([`LinalgError`]), never looped over and never a panic;
-//! * the matrix is scaled by a power of two to a largest entry in [1, 2) first, so entries near 1e300 or 1e-160
-//!   lose nothing;
-//! * the singular value decomposition of a tall or wide matrix never goes through an unpivoted QR first, which
-//!   would blur the singular values near the rank by three digits;
-//! * every singular value decomposition and every pivoted QR checks itself afterwards (see [`svd`]);
-//! * a large matrix of few directions is decomposed at the cost of those ([`svd_to`], [`range`](range())), where what is left over, measured, cannot
-//!   change the numerical rank.
+//! * empty, NaN and infinite input is refused with an error ([`LinalgError`]), never looped over
+//!   and never a panic;
+//! * the matrix is scaled by a power of two to a largest entry in [1, 2) first, so entries near
+//!   1e300 or 1e-160 lose nothing;
+//! * the singular value decomposition of a tall or wide matrix never goes through an unpivoted QR
+//!   first, which would blur the singular values near the rank by three digits;
+//! * every singular value decomposition and every pivoted QR checks itself afterwards (see
+//!   [`svd`]);
+//! * a large matrix of few directions is decomposed at the cost of those ([`svd_to`],
+//!   [`range`](range())), where what is left over, measured, cannot change the numerical rank.
 //!
 //! [`svd`]: svd()
 //! [`svd_to`]: svd_to()
@@ -22,15 +25,17 @@ mod pinv;
 mod pivoted_qr;
 mod product;
 mod range;
+mod solution;
 mod svd;
 mod triangle;
 
 pub use householder::{Complement, complement};
-pub use least_squares::{LeastSquares, Route, least_squares};
+pub use least_squares::least_squares;
 pub use pinv::{Pinv, pinv};
 pub use pivoted_qr::{PivotedQr, pivoted_qr, pivoted_qr_to};
 pub use product::{product, subtract_product, tr_product};
 pub use range::{Range, range};
+pub use solution::{LeastSquares, Route};
 pub use svd::{Svd, svd, svd_of_range, svd_to};
 pub use triangle::{Triangle, normal_triangle, triangle};
 
@@ -42,7 +47,8 @@ pub enum Tolerance {
     /// max(m, n) · eps · σ₁: what rounding of the entries alone can make of an exact zero.
     #[default]
     Auto,
-    /// max(m, n) · spacing of doubles at σ₁, 2^(⌊log₂ σ₁⌋ − 52): MATLAB's rule, up to half of `Auto`. Unlike the others it depends on the unit of A.
+    /// max(m, n) · spacing of doubles at σ₁, 2^(⌊log₂ σ₁⌋ − 52): MATLAB's rule, up to half of
+    /// `Auto`. Unlike the others it depends on the unit of A.
     Spacing,
     /// The given fraction of σ₁, in [0, 1).
     Relative(f64),
@@ -149,8 +155,8 @@ fn scaled(a: &DMatrix<f64>) -> Result<(DMatrix<f64>, i32), LinalgError> {
     Ok((a.map(|value| libm::scalbn(value, -exponent)), exponent))
 }
 
-/// How many of the descending singular values survive `tolerance` for a rows × columns matrix, and the value at or
-/// below which they were cut (same unit as σ).
+/// How many of the descending singular values survive `tolerance` for a rows × columns matrix, and
+/// the value at or below which they were cut (same unit as σ).
 ///
 /// # Errors
 /// [`LinalgError::Tolerance`], [`LinalgError::Rank`].

@@ -11,23 +11,26 @@ pub struct Pinv {
     pub matrix: DMatrix<f64>,
     /// k: how many singular values were inverted; 0 for a zero matrix, whose A⁺ is zero.
     pub rank: usize,
-    /// Singular values, descending: all min(m, n), or those above rounding ([`svd_to`](super::svd_to)).
+    /// Singular values, descending: all min(m, n), or those above rounding
+    /// ([`svd_to`](super::svd_to)).
     pub sigma: DVector<f64>,
     /// Singular values at or below this were taken as zero.
     pub cutoff: f64,
 }
 
-/// The Moore–Penrose inverse of an m × n matrix, the one matrix A⁺ with AA⁺A = A, A⁺AA⁺ = A⁺ and AA⁺, A⁺A symmetric,
-/// singular values cut at `tolerance`.
+/// The Moore–Penrose inverse of an m × n matrix, the one matrix A⁺ with AA⁺A = A, A⁺AA⁺ = A⁺ and
+/// AA⁺, A⁺A symmetric, singular values cut at `tolerance`.
 ///
 /// # Errors
-/// Those of [`svd`](super::svd()), [`LinalgError::Tolerance`], [`LinalgError::Rank`], and [`LinalgError::Overflow`] where 1/σ exceeds f64.
+/// Those of [`svd`](super::svd()), [`LinalgError::Tolerance`], [`LinalgError::Rank`], and
+/// [`LinalgError::Overflow`] where 1/σ exceeds f64.
 pub fn pinv(a: &DMatrix<f64>, tolerance: Tolerance) -> Result<Pinv, LinalgError> {
     let decomposed = svd_to(a, tolerance)?;
     let (rank, cutoff) = cut(decomposed.sigma.as_slice(), a.nrows(), a.ncols(), tolerance)?;
     let mut v = decomposed.vt.rows(0, rank).transpose();
     for (mut column, &s) in v.column_iter_mut().zip(decomposed.sigma.iter()) {
-        // Division, not multiplication by 1/σ: 1/σ of a subnormal σ would overflow before the entry is small enough.
+        // Division, not multiplication by 1/σ: 1/σ of a subnormal σ would overflow before the entry
+        // is small enough.
         column /= s;
     }
     let matrix = product(&v, &decomposed.u.columns(0, rank).transpose());
@@ -47,8 +50,9 @@ mod tests {
     use super::*;
     use crate::num::linalg::kernel::{bench_g12, hilbert};
 
-    /// Largest violation of the four Penrose conditions, each relative to the size that rounding gives it:
-    /// A⁺ carries an error of eps·cond·‖A⁺‖, so AA⁺ and A⁺A are symmetric, and the products return, to eps·cond.
+    /// Largest violation of the four Penrose conditions, each relative to the size that rounding
+    /// gives it: A⁺ carries an error of eps·cond·‖A⁺‖, so AA⁺ and A⁺A are symmetric, and the
+    /// products return, to eps·cond.
     fn penrose(a: &DMatrix<f64>, p: &Pinv) -> f64 {
         let condition = p.sigma[0] / p.sigma[p.rank - 1];
         let rounding = a.nrows().max(a.ncols()) as f64 * f64::EPSILON * condition;
@@ -139,7 +143,8 @@ mod tests {
         assert!(p.rank > 20 && p.rank < 64, "rank {}", p.rank);
     }
 
-    /// Doubles lie 2⁻⁵¹ apart at σ₁ = 3, so the rule of `Spacing` cuts at 2 · 2⁻⁵⁰ for a side of 4, that of `Auto` at 3 · 2⁻⁵⁰; at a power of two both are one.
+    /// Doubles lie 2⁻⁵¹ apart at σ₁ = 3, so the rule of `Spacing` cuts at 2 · 2⁻⁵⁰ for a side of 4,
+    /// that of `Auto` at 3 · 2⁻⁵⁰; at a power of two both are one.
     #[test]
     fn spacing_is_the_distance_of_doubles() {
         let unit = libm::exp2(-50.0);

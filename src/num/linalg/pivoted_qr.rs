@@ -1,7 +1,8 @@
 //! QR with column pivoting, and the two solutions of a rank-deficient system that rest on it.
 //!
-//! Businger and Golub's Householder reduction (1965): at every step the column with the largest part left is taken next. The columns' remaining
-//! norms are summed anew at every step, not downdated, so the choice and the diagonal of R hold to rounding however deficient the matrix is;
+//! Businger and Golub's Householder reduction (1965): at every step the column with the largest
+//! part left is taken next. The columns' remaining norms are summed anew at every step, not
+//! downdated, so the choice and the diagonal of R hold to rounding however deficient the matrix is;
 //! faer's own pivoted QR updates them by differences and its diagonal then need not fall.
 
 use nalgebra::DMatrix;
@@ -24,11 +25,12 @@ pub struct PivotedQr {
 
 /// The pivoted QR of an m × n matrix.
 ///
-/// Before it is returned it must reproduce the matrix to rounding, ‖A P − Q R‖ ≤ 10 N eps ‖A‖ with N = max(m, n), and Q must be orthonormal,
-/// ‖QᵀQ − 1‖ ≤ 10 N eps √k (Frobenius norms).
+/// Before it is returned it must reproduce the matrix to rounding, ‖A P − Q R‖ ≤ 10 N eps ‖A‖ with
+/// N = max(m, n), and Q must be orthonormal, ‖QᵀQ − 1‖ ≤ 10 N eps √k (Frobenius norms).
 ///
 /// # Errors
-/// [`LinalgError::Empty`], [`LinalgError::NotFinite`], [`LinalgError::Inaccurate`] if a check fails.
+/// [`LinalgError::Empty`], [`LinalgError::NotFinite`], [`LinalgError::Inaccurate`] if a check
+/// fails.
 pub fn pivoted_qr(a: &DMatrix<f64>) -> Result<PivotedQr, LinalgError> {
     let (scaled, exponent) = scaled(a)?;
     let (reflections, r, order) = reduce(scaled.clone(), Pivoting::Largest);
@@ -42,9 +44,10 @@ pub fn pivoted_qr(a: &DMatrix<f64>) -> Result<PivotedQr, LinalgError> {
     Ok(result)
 }
 
-/// The pivoted QR as far as a cut at `tolerance` needs it: of a large matrix of few directions that of its [`Range`](super::Range), A P = Q_range (B P), whose
-/// columns have the norms of A's columns but for what the range misses, at the cost of B; of any other, or where what is missed leaves the rank in
-/// doubt, of all of A.
+/// The pivoted QR as far as a cut at `tolerance` needs it: of a large matrix of few directions that
+/// of its [`Range`](super::Range), A P = Q_range (B P), whose columns have the norms of A's columns
+/// but for what the range misses, at the cost of B; of any other, or where what is missed leaves
+/// the rank in doubt, of all of A.
 ///
 /// # Errors
 /// Those of [`pivoted_qr`](pivoted_qr()), and [`LinalgError::Tolerance`].
@@ -92,8 +95,9 @@ impl PivotedQr {
         (0..self.q.ncols()).map(|i| self.r[(i, i)].abs()).collect()
     }
 
-    /// How many diagonal entries of R survive `tolerance`, and the value at or below which they were cut. [`Tolerance::Auto`] is
-    /// max(m, n) · eps · |R₁₁|, the tolerance that MATLAB's `\` and `/` name in their warning of rank deficiency.
+    /// How many diagonal entries of R survive `tolerance`, and the value at or below which they
+    /// were cut. [`Tolerance::Auto`] is max(m, n) · eps · |R₁₁|, the tolerance that MATLAB's `\`
+    /// and `/` name in their warning of rank deficiency.
     ///
     /// # Errors
     /// [`LinalgError::Tolerance`], [`LinalgError::Rank`].
@@ -103,7 +107,8 @@ impl PivotedQr {
         Ok((rank, libm::scalbn(cutoff, self.exponent)))
     }
 
-    /// The basic solution of min ‖A X − B‖ (B m × c, X n × c) with the first `rank` columns of A P: all other rows of X are zero.
+    /// The basic solution of min ‖A X − B‖ (B m × c, X n × c) with the first `rank` columns of A P:
+    /// all other rows of X are zero.
     ///
     /// # Errors
     /// A B of other rows than A, not finite or empty; a rank that R does not have; overflow.
@@ -117,8 +122,9 @@ impl PivotedQr {
         self.unscaled(x, exponent)
     }
 
-    /// The solution of least norm of the same system, R beyond row `rank` taken as zero: by a complete orthogonal decomposition
-    /// \[R₁₁ R₁₂\] = Sᵀ Zᵀ, X = P Z S⁻ᵀ Qᵀ B, as LAPACK's `gelsy`.
+    /// The solution of least norm of the same system, R beyond row `rank` taken as zero: by a
+    /// complete orthogonal decomposition \[R₁₁ R₁₂\] = Sᵀ Zᵀ, X = P Z S⁻ᵀ Qᵀ B, as LAPACK's
+    /// `gelsy`.
     ///
     /// # Errors
     /// Those of [`PivotedQr::basic`].
@@ -197,8 +203,9 @@ mod tests {
         }
     }
 
-    /// Kahan's matrix is triangular, its columns fall by a hair in norm, and its last singular value lies far below its last diagonal
-    /// entry: with pivoting nothing moves, so R is the matrix itself. The diagonal therefore overstates: |R_nn| ≥ σ_n, known from theory.
+    /// Kahan's matrix is triangular, its columns fall by a hair in norm, and its last singular
+    /// value lies far below its last diagonal entry: with pivoting nothing moves, so R is the
+    /// matrix itself. The diagonal therefore overstates: |R_nn| ≥ σ_n, known from theory.
     #[test]
     fn kahans_matrix_is_its_own_factor() {
         let a = kahan(60, 1.2);
@@ -213,7 +220,8 @@ mod tests {
 
     #[test]
     fn both_solutions_of_a_hand_made_system() {
-        // 2 x₁ + x₂ + 0 x₃ = 4 twice: the first column is the longest, so the basic solution is (2, 0, 0); least norm is 4 (2, 1, 0)/5.
+        // 2 x₁ + x₂ + 0 x₃ = 4 twice: the first column is the longest, so the basic solution is (2,
+        // 0, 0); least norm is 4 (2, 1, 0)/5.
         let a = DMatrix::from_row_slice(2, 3, &[2.0, 1.0, 0.0, 2.0, 1.0, 0.0]);
         let b = DMatrix::from_element(2, 1, 4.0);
         let qr = pivoted_qr(&a).unwrap();

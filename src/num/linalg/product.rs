@@ -1,4 +1,5 @@
-//! Products of large matrices: faer's, on one thread, so that their bits do not depend on the number of cores.
+//! Products of large matrices: faer's, on one thread, so that their bits do not depend on the
+//! number of cores.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};

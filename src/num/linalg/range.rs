@@ -1,11 +1,12 @@
 //! The range of a matrix that has far fewer directions than rows and columns, at the cost of those.
 //!
-//! Randomised range finder (Halko, Martinsson and Tropp 2011) with one power step, block after block, each taken out of the matrix before the next is
-//! looked for (Martinsson and Voronin 2016):
+//! Randomised range finder (Halko, Martinsson and Tropp 2011) with one power step, block after
+//! block, each taken out of the matrix before the next is looked for (Martinsson and Voronin 2016):
 //!
 //! > E ← A;   Y = E Eᵀ E Ω,   Q_new = orth(Y) ⟂ Q,   B_new = Q_newᵀ E,   E ← E − Q_new B_new
 //!
-//! What is missed, E = A − Q B, is therefore always at hand and its norm no estimate: chance can make the search longer, not the answer wrong.
+//! What is missed, E = A − Q B, is therefore always at hand and its norm no estimate: chance can
+//! make the search longer, not the answer wrong.
 
 use nalgebra::DMatrix;
 
@@ -17,7 +18,8 @@ use crate::num::stream::{Key, Sampling, Stream};
 const BLOCK: usize = 64;
 /// A search beyond this fraction of the shorter side costs more than it saves.
 const LARGEST_SHARE: f64 = 1.0 / 3.0;
-/// ‖E‖ accepted, in roundings of ‖A‖ (Frobenius norms): some six are what the search itself leaves (measured).
+/// ‖E‖ accepted, in roundings of ‖A‖ (Frobenius norms): some six are what the search itself leaves
+/// (measured).
 const ROUNDINGS: f64 = 32.0;
 
 /// A = Q B + E, m × n, with E of the size of rounding.
@@ -27,12 +29,13 @@ pub struct Range {
     pub q: DMatrix<f64>,
     /// B = QᵀA, k × n.
     pub b: DMatrix<f64>,
-    /// ‖E‖, Frobenius, in the unit of A; E is orthogonal to Q to rounding, so that σ_i(B)² ≤ σ_i(A)² ≤ σ_i(B)² + ‖E‖².
+    /// ‖E‖, Frobenius, in the unit of A; E is orthogonal to Q to rounding, so that σ_i(B)² ≤
+    /// σ_i(A)² ≤ σ_i(B)² + ‖E‖².
     pub rest: f64,
 }
 
-/// The range of A; `None` where no more than a third of the shorter side is not enough to come within 32 eps ‖A‖, or where the matrix is too small
-/// for a search: decompose A itself then.
+/// The range of A; `None` where no more than a third of the shorter side is not enough to come
+/// within 32 eps ‖A‖, or where the matrix is too small for a search: decompose A itself then.
 ///
 /// The random numbers are a function of the shape alone.
 ///
@@ -56,7 +59,8 @@ pub fn range(a: &DMatrix<f64>) -> Result<Option<Range>, LinalgError> {
     }))
 }
 
-/// Q and B with ‖`left` − Q B‖ ≤ `allowed`, at most `most` directions; `left` becomes the difference.
+/// Q and B with ‖`left` − Q B‖ ≤ `allowed`, at most `most` directions; `left` becomes the
+/// difference.
 fn search(
     left: &mut DMatrix<f64>,
     most: usize,
@@ -99,7 +103,8 @@ fn random(n: usize, found: usize) -> DMatrix<f64> {
     DMatrix::from_fn(n, BLOCK, |_, _| stream.normal())
 }
 
-/// An orthonormal basis of the columns, by Householder reductions, which stay orthogonal where columns depend on each other.
+/// An orthonormal basis of the columns, by Householder reductions, which stay orthogonal where
+/// columns depend on each other.
 fn orthonormal(y: DMatrix<f64>) -> DMatrix<f64> {
     reduce(y, Pivoting::Never).0.thin()
 }

@@ -1,4 +1,5 @@
-//! The thin singular value decomposition, scaled and checked, of all directions or of those above rounding.
+//! The thin singular value decomposition, scaled and checked, of all directions or of those above
+//! rounding.
 
 use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -28,8 +29,9 @@ pub struct Svd {
 /// > |Σσ² − ‖A‖²| ≤ 10 N eps ‖A‖²,   ‖A − U Σ Vᵀ‖ ≤ 10 N eps ‖A‖   (Frobenius norms)
 ///
 /// # Errors
-/// [`LinalgError::Empty`], [`LinalgError::NotFinite`], [`LinalgError::NoConvergence`], [`LinalgError::Inaccurate`] if
-/// a check fails, [`LinalgError::Overflow`] if a singular value exceeds f64.
+/// [`LinalgError::Empty`], [`LinalgError::NotFinite`], [`LinalgError::NoConvergence`],
+/// [`LinalgError::Inaccurate`] if a check fails, [`LinalgError::Overflow`] if a singular value
+/// exceeds f64.
 pub fn svd(a: &DMatrix<f64>) -> Result<Svd, LinalgError> {
     let (scaled, exponent) = scaled(a)?;
     let mut result = decompose(&scaled)?;
@@ -41,13 +43,15 @@ pub fn svd(a: &DMatrix<f64>) -> Result<Svd, LinalgError> {
     Ok(result)
 }
 
-/// The singular value decomposition as far as a cut at `tolerance` needs it: of large matrices with few directions only those above rounding, in
-/// time proportional to their number.
+/// The singular value decomposition as far as a cut at `tolerance` needs it: of large matrices with
+/// few directions only those above rounding, in time proportional to their number.
 ///
-/// From the [`Range`](super::Range) A = Q B + E and the decomposition of B. As σ_i(B)² ≤ σ_i(A)² ≤ σ_i(B)² + ‖E‖² with ‖E‖ measured, the rank at the cut is
-/// that of A itself wherever both ends of this interval lie on the same side of it; where one does not, where a rank is asked for whose last direction
-/// is below the rounding max(m, n) · eps · σ₁, or where the range is too large to pay, all of A is decomposed as by [`svd`](svd()). Kept singular vectors differ
-/// from those of A by no more than ‖E‖/σ_k, as those of any other decomposition do by rounding of its own.
+/// From the [`Range`](super::Range) A = Q B + E and the decomposition of B. As σ_i(B)² ≤ σ_i(A)² ≤
+/// σ_i(B)² + ‖E‖² with ‖E‖ measured, the rank at the cut is that of A itself wherever both ends of
+/// this interval lie on the same side of it; where one does not, where a rank is asked for whose
+/// last direction is below the rounding max(m, n) · eps · σ₁, or where the range is too large to
+/// pay, all of A is decomposed as by [`svd`](svd()). Kept singular vectors differ from those of A
+/// by no more than ‖E‖/σ_k, as those of any other decomposition do by rounding of its own.
 ///
 /// # Errors
 /// Those of [`svd`](svd()), and [`LinalgError::Tolerance`].
@@ -58,7 +62,8 @@ pub fn svd_to(a: &DMatrix<f64>, tolerance: Tolerance) -> Result<Svd, LinalgError
     }
 }
 
-/// The decomposition of [`svd_to`] by the range of A; `None` where all of A would have to be decomposed.
+/// The decomposition of [`svd_to`] by the range of A; `None` where all of A would have to be
+/// decomposed.
 ///
 /// # Errors
 /// Those of [`svd_to`].
@@ -85,7 +90,8 @@ pub fn svd_of_range(a: &DMatrix<f64>, tolerance: Tolerance) -> Result<Option<Svd
     }))
 }
 
-/// Whether singular values from `sigma` up to the root of `sigma`² + `rest`², and others of no more than `rest`, leave no doubt about the cut.
+/// Whether singular values from `sigma` up to the root of `sigma`² + `rest`², and others of no more
+/// than `rest`, leave no doubt about the cut.
 pub(super) fn certain(
     sigma: &[f64],
     rest: f64,
@@ -106,7 +112,8 @@ pub(super) fn certain(
 fn decompose(a: &DMatrix<f64>) -> Result<Svd, LinalgError> {
     let (m, n) = a.shape();
     let k = m.min(n);
-    // A QR before the bidiagonalisation costs three digits where the matrix is numerically rank deficient.
+    // A QR before the bidiagonalisation costs three digits where the matrix is numerically rank
+    // deficient.
     let mut params = <SvdParams as Auto<f64>>::auto();
     params.qr_ratio_threshold = f64::INFINITY;
     let params: Spec<SvdParams, f64> = params.into();
@@ -219,15 +226,16 @@ mod tests {
         ] {
             assert!(orthonormality(&svd(&a).unwrap()) < 1e-13);
         }
-        // The 12 × 12 Hilbert matrix: σ₁ = 1.7953720595619977 (its largest eigenvalue), determinant 2.6e-78.
+        // The 12 × 12 Hilbert matrix: σ₁ = 1.7953720595619977 (its largest eigenvalue), determinant
+        // 2.6e-78.
         let sigma = svd(&hilbert(12, 12)).unwrap().sigma;
         assert!((sigma[0] - 1.795_372_059_561_997_7).abs() < 1e-14);
     }
 
     #[test]
     fn a_tall_smooth_kernel_keeps_its_tail_small() {
-        // Analytic kernel: exact singular values fall below 1e-25 σ₁ by the 60th. Rounding of the entries lifts them to about
-        // eps/√1024 each; an unpivoted QR first would make it 6e-15.
+        // Analytic kernel: exact singular values fall below 1e-25 σ₁ by the 60th. Rounding of the
+        // entries lifts them to about eps/√1024 each; an unpivoted QR first would make it 6e-15.
         let kernel = |i: usize, j: usize| 3.0 * (i as f64 / 1024.0 - j as f64 / 120.0);
         let tall = DMatrix::from_fn(1024, 120, |i, j| (1.0 + kernel(i, j).powi(2)).powi(-2));
         for a in [tall.transpose(), tall] {

@@ -1,11 +1,12 @@
-//! Orthogonal reduction of a least-squares problem to a square one, and the same from normal equations.
+//! Orthogonal reduction of a least-squares problem to a square one, and the same from normal
+//! equations.
 
 use faer::linalg::solvers::{Llt, Qr};
 use faer::{MatRef, Side};
 use nalgebra::{DMatrix, DVector};
 
-use super::least_squares::solve_by_svd;
-use super::{LeastSquares, LinalgError, Route, Tolerance, cut, scaled, svd};
+use super::solution::{LeastSquares, Route, solve_by_svd};
+use super::{LinalgError, Tolerance, cut, scaled, svd};
 
 /// The reduction of min ‖A x − b‖ for an m × n matrix to k = min(m, n) rows:
 /// ‖A x − b‖² = ‖R x − d‖² + rest² for every x.
@@ -78,9 +79,10 @@ pub fn triangle(a: &DMatrix<f64>, b: &DVector<f64>) -> Result<Triangle, LinalgEr
     }
 }
 
-/// The same reduction from the normal equations: `gram` = AᵀA (n × n, symmetric), `moment` = Aᵀb (n), `square` = ‖b‖².
-/// By Cholesky, G = LLᵀ, R = Lᵀ, d = L⁻¹Aᵀb; where G is not positive definite to rounding by its singular values.
-/// Solve the result with a [`Tolerance`] no tighter than √(n eps), below which a Gram matrix holds only rounding.
+/// The same reduction from the normal equations: `gram` = AᵀA (n × n, symmetric), `moment` = Aᵀb
+/// (n), `square` = ‖b‖². By Cholesky, G = LLᵀ, R = Lᵀ, d = L⁻¹Aᵀb; where G is not positive definite
+/// to rounding by its singular values. Solve the result with a [`Tolerance`] no tighter than √(n
+/// eps), below which a Gram matrix holds only rounding.
 ///
 /// # Errors
 /// Empty, non-finite or non-square input, a `moment` of another length.
@@ -145,7 +147,8 @@ pub fn normal_triangle(
 }
 
 impl Triangle {
-    /// [R | d] above the row (0 | rest): an (k + 1) × (n + 1) matrix whose distances are those of [A | b].
+    /// [R | d] above the row (0 | rest): an (k + 1) × (n + 1) matrix whose distances are those of
+    /// [A | b].
     pub fn joined(&self) -> DMatrix<f64> {
         let (k, n) = self.r.shape();
         DMatrix::from_fn(k + 1, n + 1, |i, j| match (i < k, j < n) {
@@ -156,8 +159,8 @@ impl Triangle {
         })
     }
 
-    /// x by back substitution, of a triangle from [`triangle`]; none where a pivot is below `trust` times the largest, so that the
-    /// solution is not unique to rounding.
+    /// x by back substitution, of a triangle from [`triangle`]; none where a pivot is below `trust`
+    /// times the largest, so that the solution is not unique to rounding.
     pub fn substitute(&self, trust: f64) -> Option<DVector<f64>> {
         let (k, n) = self.r.shape();
         let largest = (0..k).map(|i| self.r[(i, i)].abs()).fold(0.0, f64::max);

@@ -1,6 +1,8 @@
-//! Arithmetic with as many digits as are asked for, and the one decomposition that is done with it. The one door to the crate `dashu-float`.
+//! Arithmetic with as many digits as are asked for, and the one decomposition that is done with it.
+//! The one door to the crate `dashu-float`.
 //!
-//! Numbers are binary, rounded to nearest even in each operation; they carry their precision, and an operation has that of its more precise operand.
+//! Numbers are binary, rounded to nearest even in each operation; they carry their precision, and
+//! an operation has that of its more precise operand.
 
 mod orthogonal;
 

@@ -38,8 +38,9 @@ enum Shape {
 
 /// Decomposes the matrix with the given rows.
 ///
-/// Gram–Schmidt leaves QᵀQ = I up to 10^−digits/ratio, so the digits are enough where ratio is above 10^(−digits/2): half of them are then left.
-/// `stop` is looked at before each column; `Ok(None)` if it was set.
+/// Gram–Schmidt leaves QᵀQ = I up to 10^−digits/ratio, so the digits are enough where ratio is
+/// above 10^(−digits/2): half of them are then left. `stop` is looked at before each column;
+/// `Ok(None)` if it was set.
 ///
 /// # Errors
 /// [`TooFewDigits`].
@@ -132,7 +133,8 @@ impl Inverse {
 mod tests {
     use super::*;
 
-    /// Hilbert's matrix of 30 columns, condition about 1e44, tall and wide: b·A·A⁺ is b where A has full row rank, and b·A⁺·A is b where it has full column rank.
+    /// Hilbert's matrix of 30 columns, condition about 1e44, tall and wide: b·A·A⁺ is b where A has
+    /// full row rank, and b·A⁺·A is b where it has full column rank.
     #[test]
     fn hilberts_matrix_is_inverted() {
         let d = Digits(120);
@@ -168,7 +170,8 @@ mod tests {
         assert!(inverse(Digits(120), &hilbert(Digits(120)), &stop).is_ok());
     }
 
-    /// 200 columns of 200 numbers take tens of seconds with 2000 digits: with the flag set none of them is worked on.
+    /// 200 columns of 200 numbers take tens of seconds with 2000 digits: with the flag set none of
+    /// them is worked on.
     #[test]
     fn it_stops_when_it_is_told() {
         let d = Digits(2000);

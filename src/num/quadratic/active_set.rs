@@ -11,8 +11,9 @@ const REFINEMENT_BUDGET: f64 = 1e11;
 /// A pivot below this fraction of the largest makes columns dependent.
 const PIVOT: f64 = 1e-11;
 
-/// Bounded-variable least squares, 0 ≤ x ≤ u, from a given start. Stops at a point where all optimality conditions hold to
-/// rounding, or when its budget is spent; the objective never rises from the start's.
+/// Bounded-variable least squares, 0 ≤ x ≤ u, from a given start. Stops at a point where all
+/// optimality conditions hold to rounding, or when its budget is spent; the objective never rises
+/// from the start's.
 pub(super) fn refine(
     r: &DMatrix<f64>,
     d: &DVector<f64>,
@@ -78,8 +79,9 @@ pub(super) fn refine(
         if released.is_some() {
             banned.fill(false);
         }
-        // Multipliers from the part that the free variables cannot change: of the whole residual, rounding of a large d
-        // would leave eps·‖d‖ along them, which may outweigh a small multiplier.
+        // Multipliers from the part that the free variables cannot change: of the whole residual,
+        // rounding of a large d would leave eps·‖d‖ along them, which may outweigh a small
+        // multiplier.
         let left = orthogonal_to(r, &(r * &x - d), &free)?;
         let unit = left.norm();
         if unit <= f64::EPSILON * d.norm() {

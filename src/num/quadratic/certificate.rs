@@ -4,9 +4,10 @@
 //!
 //! > f(x) − f* ≤ ½‖R x − d − ν‖² + Σ_j max(g_j x_j, −g_j (u_j − x_j)).
 //!
-//! Where u_j is infinite that is finite only for g_j ≥ 0. A ν that fails there is moved to ν + ε h with Rᵀh > 0 on those columns
-//! and ε just large enough: h = R 1 does for a matrix without negative entries (RᵀR 1 is then positive), h = (R⁺)ᵀ 1 for every
-//! matrix of full column rank (Rᵀh = 1). The proof holds for whatever h; a bad one only proves less.
+//! Where u_j is infinite that is finite only for g_j ≥ 0. A ν that fails there is moved to ν + ε h
+//! with Rᵀh > 0 on those columns and ε just large enough: h = R 1 does for a matrix without
+//! negative entries (RᵀR 1 is then positive), h = (R⁺)ᵀ 1 for every matrix of full column rank (Rᵀh
+//! = 1). The proof holds for whatever h; a bad one only proves less.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -71,7 +72,8 @@ impl Lift {
             .collect())
     }
 
-    /// The dual point moved until Rᵀν + c ≥ 0 on those columns: by twice the need, so that rounding does not undo it.
+    /// The dual point moved until Rᵀν + c ≥ 0 on those columns: by twice the need, so that rounding
+    /// does not undo it.
     pub(super) fn apply(
         &self,
         r: &DMatrix<f64>,

@@ -7,7 +7,8 @@ use super::program::{Program, half_square};
 use super::{Bounds, BoxSolution, GAP_ALLOWED, QuadraticError, certificate};
 use crate::num::linalg::{Tolerance, least_squares};
 
-/// Values nearer than this fraction of the solution's size count as one, and as their bound, before the rest is solved for anew.
+/// Values nearer than this fraction of the solution's size count as one, and as their bound, before
+/// the rest is solved for anew.
 const ONE: f64 = 1e-6;
 
 /// The minimiser, and what it consists of.
@@ -15,20 +16,24 @@ const ONE: f64 = 1e-6;
 pub struct Fused {
     /// x; the objective and its gap include the penalty.
     pub found: BoxSolution,
-    /// Connected sets of pairwise equal variables that lie strictly between their bounds: the degrees of freedom (Tibshirani and Taylor 2012).
+    /// Connected sets of pairwise equal variables that lie strictly between their bounds: the
+    /// degrees of freedom (Tibshirani and Taylor 2012).
     pub free_sets: usize,
 }
 
-/// min ½‖R x − d‖² + λ Σ_(a,b) |x_a − x_b| over l ≤ x ≤ u, the sum over `pairs`; λ ≥ 0 in the unit of the objective.
+/// min ½‖R x − d‖² + λ Σ_(a,b) |x_a − x_b| over l ≤ x ≤ u, the sum over `pairs`; λ ≥ 0 in the unit
+/// of the objective.
 ///
-/// A quadratic program, solved for x − x₀ and R(x − x₀) (x₀ = `start`, best the solution without penalty, so that the size of d does not blur small
-/// misfits). The sets of equal values that it finds are then solved for by QR, and that is taken where it lowers the objective. The gap is
+/// A quadratic program, solved for x − x₀ and R(x − x₀) (x₀ = `start`, best the solution without
+/// penalty, so that the size of d does not blur small misfits). The sets of equal values that it
+/// finds are then solved for by QR, and that is taken where it lowers the objective. The gap is
 /// proved by weak duality: for |w| ≤ λ and any ν, g = Rᵀν + Tᵀw,
 ///
 /// > f(x) − f* ≤ ½‖R x − d − ν‖² + Σ_pairs (λ|T x| − w T x) + Σ_j max(g_j (x_j − l_j), −g_j (u_j − x_j)).
 ///
 /// # Errors
-/// [`QuadraticError`], or a gap above 1e-9 · ½(‖d − R l‖² + ‖R‖²). Shapes are the caller's, as of a finished [`box_least_squares`](super::box_least_squares).
+/// [`QuadraticError`], or a gap above 1e-9 · ½(‖d − R l‖² + ‖R‖²). Shapes are the caller's, as of a
+/// finished [`box_least_squares`](super::box_least_squares).
 pub fn fused_least_squares(
     r: &DMatrix<f64>,
     d: &DVector<f64>,
@@ -138,7 +143,8 @@ impl Problem<'_> {
         let unit = [e.norm(), self.lambda.sqrt(), f64::EPSILON * largest]
             .into_iter()
             .fold(f64::MIN_POSITIVE, f64::max);
-        // Variables v = (x − x₀)·length/unit, y = R(x − x₀)/unit, t ≥ |T x|. Rows: y − R v = 0; bounds; ±T v − t ≤ ∓T x₀.
+        // Variables v = (x − x₀)·length/unit, y = R(x − x₀)/unit, t ≥ |T x|. Rows: y − R v = 0;
+        // bounds; ±T v − t ≤ ∓T x₀.
         let first = k + n + closed.len();
         for (i, &[a, b]) in pairs.iter().enumerate() {
             for (at, sign) in [(first + i, 1.0), (first + m + i, -1.0)] {
@@ -239,7 +245,8 @@ impl Problem<'_> {
         (of, sets)
     }
 
-    /// The values of the free sets solved for with the sets and the order of neighbours held, and the number of free sets.
+    /// The values of the free sets solved for with the sets and the order of neighbours held, and
+    /// the number of free sets.
     fn polish(&self, x: &DVector<f64>) -> Result<(DVector<f64>, usize), QuadraticError> {
         let (of, sets) = self.sets(x);
         let free: Vec<usize> = (0..sets.len()).filter(|&s| sets[s].free).collect();

@@ -8,17 +8,20 @@ use super::certificate::Lift;
 use super::program::Program;
 use super::{Bounds, QuadraticError};
 
-/// The least and the largest x_j among all l ≤ x ≤ u with ‖R x − d‖² ≤ ‖R x̂ − d‖² + slack, x̂ = `best` being one of them.
+/// The least and the largest x_j among all l ≤ x ≤ u with ‖R x − d‖² ≤ ‖R x̂ − d‖² + slack, x̂ =
+/// `best` being one of them.
 ///
-/// Two second-order cone problems. What is returned is not the solver's x_j but what its multipliers z prove: with e = R x̂ − d, radius² = ‖e‖² + slack,
-/// and h = e_j + Rᵀz,
+/// Two second-order cone problems. What is returned is not the solver's x_j but what its
+/// multipliers z prove: with e = R x̂ − d, radius² = ‖e‖² + slack, and h = e_j + Rᵀz,
 ///
 /// > x_j − x̂_j ≥ Σ_i min over l_i ≤ x_i ≤ u_i of h_i (x_i − x̂_i) + zᵀe − radius ‖z‖   for every z,
 ///
-/// so the true extent is never wider than the returned one, whatever the accuracy of the solver; the bounds hold besides.
+/// so the true extent is never wider than the returned one, whatever the accuracy of the solver;
+/// the bounds hold besides.
 ///
 /// # Errors
-/// [`QuadraticError::Refused`]. Shapes are the caller's, as of a finished [`box_least_squares`](super::box_least_squares).
+/// [`QuadraticError::Refused`]. Shapes are the caller's, as of a finished
+/// [`box_least_squares`](super::box_least_squares).
 pub fn extent(
     r: &DMatrix<f64>,
     d: &DVector<f64>,
@@ -72,7 +75,8 @@ fn multipliers(
     let (k, n) = r.shape();
     let mut program = Program::new(r, bounds.upper.as_slice());
     let (lengths, closed) = (program.lengths.clone(), program.closed.clone());
-    // Variables v = (x − x̂)·length/radius and y = R(x − x̂)/radius. Rows: y − R v = 0; −v ≤ (x̂ − l)…; v ≤ (u − x̂)…; (1, y + e/radius) in the cone.
+    // Variables v = (x − x̂)·length/radius and y = R(x − x̂)/radius. Rows: y − R v = 0; −v ≤ (x̂ −
+    // l)…; v ≤ (u − x̂)…; (1, y + e/radius) in the cone.
     let cone = k + n + closed.len();
     for a in 0..k {
         program.put(cone + 1 + a, n + a, -1.0);
@@ -94,7 +98,8 @@ fn multipliers(
     let cost = CscMatrix::zeros((n + k, n + k));
     let mut settings = DefaultSettingsBuilder::default();
     let solver = program.solve(&cost, &linear, &right, &cones, &mut settings)?;
-    // Of x_j itself: v_j carries length_j/radius, the residuals 1/radius. A z that is not finite proves nothing and is none.
+    // Of x_j itself: v_j carries length_j/radius, the residuals 1/radius. A z that is not finite
+    // proves nothing and is none.
     let z = DVector::from_fn(k, |a, _| -solver.solution.z[cone + 1 + a] / lengths[j]);
     Ok(match z.iter().all(|x| x.is_finite()) {
         true => z,
@@ -124,7 +129,8 @@ mod tests {
         }
     }
 
-    /// Against a fine grid over the box: nothing feasible lies outside, something feasible lies near each end.
+    /// Against a fine grid over the box: nothing feasible lies outside, something feasible lies
+    /// near each end.
     #[test]
     fn with_active_bounds_it_encloses_what_a_search_finds() {
         let r = DMatrix::from_row_slice(3, 2, &[3.0, 2.5, 2.0, 2.2, 0.3, -0.4]);

@@ -19,7 +19,8 @@ pub(super) struct Interior {
     pub(super) iterations: u32,
 }
 
-/// Solves min ½yᵀy, y = R x − d, 0 ≤ x ≤ u to the solver's own tolerance; an infinite u_j is no constraint.
+/// Solves min ½yᵀy, y = R x − d, 0 ≤ x ≤ u to the solver's own tolerance; an infinite u_j is no
+/// constraint.
 pub(super) fn solve(
     r: &DMatrix<f64>,
     d: &DVector<f64>,
@@ -29,7 +30,8 @@ pub(super) fn solve(
     let program = Program::new(r, upper.as_slice());
     let (lengths, closed) = (program.lengths.clone(), program.closed.clone());
     let size = d.norm().max(lengths.iter().copied().fold(0.0, f64::max));
-    // Variables (x_j·length_j/size, y/size); rows: y − R x = −d, then −x ≤ 0, then x ≤ u·length/size where u is finite.
+    // Variables (x_j·length_j/size, y/size); rows: y − R x = −d, then −x ≤ 0, then x ≤
+    // u·length/size where u is finite.
     let linear = vec![0.0; n + k];
     let ceilings = closed.iter().map(|&j| upper[j] * lengths[j] / size);
     let bounds: Vec<f64> = d
@@ -87,7 +89,8 @@ mod tests {
 
     #[test]
     fn it_stands_near_the_minimum_and_knows_the_bounds() {
-        // min (100 x₁ + 2x₂ − 1)² + (100 x₁ + 1)² + (x₃ − 3)² + (x₄ − ½)²: x = (0, ½, 1, ½), see the module above.
+        // min (100 x₁ + 2x₂ − 1)² + (100 x₁ + 1)² + (x₃ − 3)² + (x₄ − ½)²: x = (0, ½, 1, ½), see
+        // the module above.
         let mut r = DMatrix::zeros(4, 4);
         for (i, j, v) in [
             (0, 0, 100.0),

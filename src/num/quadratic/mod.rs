@@ -53,8 +53,8 @@ pub struct BoxSolution {
     pub refinements: usize,
     /// ½‖R x − d‖².
     pub objective: f64,
-    /// Upper bound on how far the objective lies above its minimum, from the optimality conditions at x and so
-    /// independent of either solver.
+    /// Upper bound on how far the objective lies above its minimum, from the optimality conditions
+    /// at x and so independent of either solver.
     pub gap: f64,
 }
 
@@ -106,18 +106,21 @@ enum Place {
 
 /// min ½‖R x − d‖² subject to l ≤ x ≤ u, for R of k × n.
 ///
-/// The condition of R is never squared: the interior-point solver works on the residuals as variables,
+/// The condition of R is never squared: the interior-point solver works on the residuals as
+/// variables,
 ///
 /// > min ½ yᵀy   subject to   y = R x − d,   l ≤ x ≤ u,
 ///
-/// with R's columns scaled to unit length. Its answer tells which bounds hold; an active-set refinement (Stark and
-/// Parker's bounded-variable least squares, started there) then solves for the rest by QR to full precision, never
-/// raising the objective. The returned gap is the least that three dual points prove by weak duality:
-/// the residual R x − d, its part orthogonal to the columns of the variables between their bounds (which rounding of a
-/// large d disturbs least), and the solver's own y.
+/// with R's columns scaled to unit length. Its answer tells which bounds hold; an active-set
+/// refinement (Stark and Parker's bounded-variable least squares, started there) then solves for
+/// the rest by QR to full precision, never raising the objective. The returned gap is the least
+/// that three dual points prove by weak duality: the residual R x − d, its part orthogonal to the
+/// columns of the variables between their bounds (which rounding of a large d disturbs least), and
+/// the solver's own y.
 ///
 /// # Errors
-/// Empty or non-finite input, shapes that do not fit, bounds that no number keeps, or a gap above 1e-9 · ½(‖d − R l‖² + ‖R‖²).
+/// Empty or non-finite input, shapes that do not fit, bounds that no number keeps, or a gap above
+/// 1e-9 · ½(‖d − R l‖² + ‖R‖²).
 pub fn box_least_squares(
     r: &DMatrix<f64>,
     d: &DVector<f64>,
@@ -128,7 +131,8 @@ pub fn box_least_squares(
     scaled.finish(bounds, start)
 }
 
-/// The same from a point near the minimum, by active sets alone; from anew where their gap is above 1e-6 of the objective.
+/// The same from a point near the minimum, by active sets alone; from anew where their gap is above
+/// 1e-6 of the objective.
 ///
 /// # Errors
 /// Those of [`box_least_squares`]; a `start` that has not as many entries as R has columns.

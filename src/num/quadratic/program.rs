@@ -8,8 +8,8 @@ use nalgebra::DMatrix;
 
 use super::QuadraticError;
 
-/// A conic program whose first variables are x, each times the length of its column of R, and y, one for each row of R, all over one unit. Its
-/// first rows say
+/// A conic program whose first variables are x, each times the length of its column of R, and y,
+/// one for each row of R, all over one unit. Its first rows say
 ///
 /// > y − R x = …  (k rows),   −x ≤ …  (n rows),   x ≤ …  (a row for each finite upper bound).
 pub(super) struct Program {
@@ -57,7 +57,8 @@ impl Program {
         }
     }
 
-    /// Solves min ½ vᵀ cost v + linearᵀ v with the constraints' matrix times v and `right` apart by a point of the cones.
+    /// Solves min ½ vᵀ cost v + linearᵀ v with the constraints' matrix times v and `right` apart by
+    /// a point of the cones.
     pub(super) fn solve(
         self,
         cost: &CscMatrix<f64>,

@@ -35,7 +35,8 @@ fn ill_conditioned_corner_is_found_at_any_scale() {
     let corner = DVector::from_fn(10, |j, _| f64::from(u8::from(j % 3 == 0)));
     for factor in [1.0, 1e-13, 1e120] {
         let found = unit(&(&r * factor), &(&r * &corner * factor)).unwrap();
-        // Conditioned by the corner: the bounds decide what the matrix cannot; eps·cond = 3e-3 without them.
+        // Conditioned by the corner: the bounds decide what the matrix cannot; eps·cond = 3e-3
+        // without them.
         assert!(
             (&found.solution - &corner).amax() < 1e-3,
             "{factor}: {}",

@@ -1,8 +1,9 @@
 //! The binomial distribution.
 
-/// The counts between which a binomial variable of `n` trials and probability `p` lies with probability ≥ `level`, cut off
-/// equally at both ends: the smallest k with P(X ≤ k) > ½(1 − level) and the smallest with P(X ≤ k) ≥ ½(1 + level).
-/// Exact sums of the probabilities n!/(k!(n − k)!)·pᵏ(1 − p)ⁿ⁻ᵏ.
+/// The counts between which a binomial variable of `n` trials and probability `p` lies with
+/// probability ≥ `level`, cut off equally at both ends: the smallest k with P(X ≤ k) > ½(1 − level)
+/// and the smallest with P(X ≤ k) ≥ ½(1 + level). Exact sums of the probabilities n!/(k!(n −
+/// k)!)·pᵏ(1 − p)ⁿ⁻ᵏ.
 pub fn binomial_interval(n: u64, p: f64, level: f64) -> [u64; 2] {
     let ln_factorial = |k: u64| libm::lgamma(k as f64 + 1.0);
     let probability = |k: u64| {
@@ -30,7 +31,8 @@ pub fn binomial_interval(n: u64, p: f64, level: f64) -> [u64; 2] {
 mod tests {
     use super::*;
 
-    /// Ten throws of a coin: P(X ≤ 1) = 11/1024, P(X ≤ 2) = 56/1024; by hand the 95 % interval is 2 … 8. A certain event.
+    /// Ten throws of a coin: P(X ≤ 1) = 11/1024, P(X ≤ 2) = 56/1024; by hand the 95 % interval is 2
+    /// … 8. A certain event.
     #[test]
     fn small_cases_are_those_of_pascals_triangle() {
         assert_eq!(binomial_interval(10, 0.5, 0.95), [2, 8]);

@@ -5,13 +5,15 @@ use std::f64::consts::PI;
 use libm::erfc;
 use statrs::function::gamma::gamma_ur;
 
-/// From here on Temme's expansion is exact to about 1e-10 of the p-value, and the series of the incomplete gamma function long.
+/// From here on Temme's expansion is exact to about 1e-10 of the p-value, and the series of the
+/// incomplete gamma function long.
 const MANY: f64 = 1e4;
 
-/// Probability that χ² with `dof` > 0 degrees of freedom exceeds `x`: Q(dof/2, x/2), the regularised upper incomplete gamma function.
+/// Probability that χ² with `dof` > 0 degrees of freedom exceeds `x`: Q(dof/2, x/2), the
+/// regularised upper incomplete gamma function.
 ///
-/// Good to about 1e-10 (relative) from 1 to 1e8 degrees of freedom and beyond, in both tails, until it underflows to 0. 1 for x ≤ 0; NaN where
-/// x is NaN or dof is not positive and finite.
+/// Good to about 1e-10 (relative) from 1 to 1e8 degrees of freedom and beyond, in both tails, until
+/// it underflows to 0. 1 for x ≤ 0; NaN where x is NaN or dof is not positive and finite.
 pub fn chi_square_sf(x: f64, dof: f64) -> f64 {
     if x.is_nan() || !dof.is_finite() || dof <= 0.0 {
         return f64::NAN;
@@ -87,7 +89,8 @@ mod tests {
 
     #[test]
     fn table_values() {
-        // By 40-digit quadrature of the density; the first two are the table's 5 % points of 20 and 100.
+        // By 40-digit quadrature of the density; the first two are the table's 5 % points of 20
+        // and 100.
         for (x, dof, exact) in [
             (31.41, 20.0, 0.050_005_239_202_315_17),
             (124.342, 100.0, 0.050_000_715_769_971_77),

@@ -4,7 +4,8 @@ use std::f64::consts::LN_2;
 
 use super::normal::from_log_upper_tail;
 
-/// Probability that the smallest of n independent p-values is at most `p` by chance: 1 − (1 − p)ⁿ, without cancellation. NaN where p is not in [0, 1].
+/// Probability that the smallest of n independent p-values is at most `p` by chance: 1 − (1 − p)ⁿ,
+/// without cancellation. NaN where p is not in [0, 1].
 pub fn sidak_p(p: f64, n: u64) -> f64 {
     if !(0.0..=1.0).contains(&p) {
         return f64::NAN;
@@ -16,7 +17,8 @@ pub fn sidak_p(p: f64, n: u64) -> f64 {
     }
 }
 
-/// The |z| that the largest of n independent standard normal numbers exceeds with probability `alpha`:
+/// The |z| that the largest of n independent standard normal numbers exceeds with probability
+/// `alpha`:
 ///
 /// > erfc(z/√2) = 1 − (1 − α)^(1/n)
 ///

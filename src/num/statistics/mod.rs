@@ -1,4 +1,5 @@
-//! Statistics of agreement: tail probabilities and the test of a whole family. The one door to crate `statrs`.
+//! Statistics of agreement: tail probabilities and the test of a whole family. The one door to
+//! crate `statrs`.
 
 mod binomial;
 mod chi_square;

@@ -7,7 +7,8 @@ use std::f64::consts::{PI, SQRT_2};
 use libm::erfc;
 use statrs::function::erf::erfc_inv;
 
-/// Probability that a standard normal number lies at least |z| from zero: erfc(|z|/√2). NaN for NaN.
+/// Probability that a standard normal number lies at least |z| from zero: erfc(|z|/√2). NaN for
+/// NaN.
 pub fn normal_two_sided(z: f64) -> f64 {
     erfc(z.abs() / SQRT_2)
 }
@@ -26,7 +27,8 @@ pub(super) fn log_upper_tail(z: f64) -> f64 {
     -0.5 * z * z - libm::log(z) - 0.5 * libm::log(2.0 * PI) + libm::log(series)
 }
 
-/// The z ≥ 0 with ln Q(z) = `log_tail`, for log_tail ≤ ln ½. Newton's method on the concave ln Q, which cannot overshoot twice.
+/// The z ≥ 0 with ln Q(z) = `log_tail`, for log_tail ≤ ln ½. Newton's method on the concave ln Q,
+/// which cannot overshoot twice.
 pub(super) fn from_log_upper_tail(log_tail: f64) -> f64 {
     if log_tail == f64::NEG_INFINITY {
         return f64::INFINITY;
@@ -69,7 +71,8 @@ mod tests {
 
     #[test]
     fn the_tail_is_continuous_and_inverts() {
-        // d ln Q/dz = −(z + 1/z − 2/z³ …) at z = 20, so the two branches may differ by rounding only.
+        // d ln Q/dz = −(z + 1/z − 2/z³ …) at z = 20, so the two branches may differ by rounding
+        // only.
         let (below, above) = (log_upper_tail(20.0 - 1e-9), log_upper_tail(20.0));
         assert!(
             (below - above - 20.0499 * 1e-9).abs() < 1e-12,

@@ -6,13 +6,15 @@ use statrs::function::gamma::ln_gamma;
 
 use super::normal::from_log_upper_tail;
 
-/// From here on the expansion in 1/dof is exact to rounding (its next term is below 1e-11), and the continued fraction slow.
+/// From here on the expansion in 1/dof is exact to rounding (its next term is below 1e-11), and the
+/// continued fraction slow.
 const MANY: f64 = 1e4;
 
-/// The z that a standard normal number exceeds as often as Student's t with `dof` > 0 degrees of freedom exceeds `t`.
+/// The z that a standard normal number exceeds as often as Student's t with `dof` > 0 degrees of
+/// freedom exceeds `t`.
 ///
-/// Odd and increasing in t; for |t| = 40 it is as good as for 4 (the tail is followed in its logarithm). Infinite dof returns t. NaN where t is NaN
-/// or dof is not positive.
+/// Odd and increasing in t; for |t| = 40 it is as good as for 4 (the tail is followed in its
+/// logarithm). Infinite dof returns t. NaN where t is NaN or dof is not positive.
 pub fn student_to_normal(t: f64, dof: f64) -> f64 {
     if t.is_nan() || dof.is_nan() || dof <= 0.0 {
         return f64::NAN;
@@ -78,8 +80,8 @@ fn log_gamma_ratio(a: f64) -> f64 {
     0.5 * libm::log(a) + (-1.0 / 8.0 + w * (1.0 / 192.0 - w / 640.0)) / a
 }
 
-/// The continued fraction of the incomplete beta function by Lentz's method: I_x(a, b) = x^a (1 − x)^b/(a B(a, b)) times this,
-/// for x < (a + 1)/(a + b + 2). It needs some √max(a, b) terms.
+/// The continued fraction of the incomplete beta function by Lentz's method: I_x(a, b) = x^a (1 −
+/// x)^b/(a B(a, b)) times this, for x < (a + 1)/(a + b + 2). It needs some √max(a, b) terms.
 fn beta_fraction(a: f64, b: f64, x: f64) -> f64 {
     let guard = |v: f64| if v.abs() < 1e-300 { 1e-300 } else { v };
     let mut c = 1.0;
@@ -131,7 +133,8 @@ mod tests {
     #[test]
     fn table_values() {
         for (t, dof, exact) in TABLE {
-            // Rounding of ln S, up to some hundred, over the slope z; and the next term of Hill's expansion.
+            // Rounding of ln S, up to some hundred, over the slope z; and the next term of Hill's
+            // expansion.
             let z = student_to_normal(t, dof);
             assert!((z / exact - 1.0).abs() < 2e-12, "{t} {dof}: {z} {exact}");
             assert_eq!(student_to_normal(-t, dof), -z);

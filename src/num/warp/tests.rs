@@ -1,6 +1,49 @@
+use std::f64::consts::PI;
+
 use super::*;
 use crate::num::statistics::chi_square_sf;
 use crate::num::stream::{Key, Sampling, Stream};
+
+/// Inverse of [`cosine_hemisphere`].
+fn cosine_hemisphere_inverse(w: [f64; 3]) -> Point2 {
+    disc_inverse([w[0], w[1]])
+}
+
+/// Inverse of [`gaussian_spot`].
+fn gaussian_spot_inverse(p: Point2) -> Point2 {
+    let u = -libm::expm1(-2.0 * (p[0] * p[0] + p[1] * p[1]));
+    let phi = libm::atan2(p[1], p[0]);
+    [
+        u,
+        if phi < 0.0 {
+            phi / TAU + 1.0
+        } else {
+            phi / TAU
+        },
+    ]
+}
+
+/// Density of [`sphere`] per steradian: 1/(4π).
+fn sphere_density() -> f64 {
+    1.0 / (4.0 * PI)
+}
+
+/// Density of [`triangle`] per unit area of its (b₁, b₂) plane: 2 inside. Per area of a triangle in
+/// space it is 1 over that area.
+fn triangle_density(b: Point2) -> f64 {
+    if b[0] >= 0.0 && b[1] >= 0.0 && b[0] + b[1] <= 1.0 {
+        2.0
+    } else {
+        0.0
+    }
+}
+
+/// Inverse of [`triangle`].
+fn triangle_inverse(b: Point2) -> Point2 {
+    let r = b[0] + b[1];
+    // All of u₁ maps to the first vertex.
+    [r * r, if r > 0.0 { b[1] / r } else { 0.0 }]
+}
 
 fn points(n: u32) -> impl Iterator<Item = Point2> {
     let key = Key {
@@ -16,8 +59,8 @@ fn points(n: u32) -> impl Iterator<Item = Point2> {
     })
 }
 
-/// χ² of the warped points over a grid of bins in `coordinates` (both in [0, 1)), against the density
-/// integrated over each bin by the midpoint rule.
+/// χ² of the warped points over a grid of bins in `coordinates` (both in [0, 1)), against the
+/// density integrated over each bin by the midpoint rule.
 fn chi_square(
     coordinates: impl Fn(Point2) -> Point2,
     bin_probability: impl Fn(Point2, f64) -> f64,
@@ -136,7 +179,8 @@ fn triangle_has_its_moments() {
         }
     }
     let [a, b, aa, bb, ab] = sums;
-    // Standard errors: √(1/18/n) = 5e-4 of the means; those of the second moments are smaller. Five of them.
+    // Standard errors: √(1/18/n) = 5e-4 of the means; those of the second moments are smaller. Five
+    // of them.
     for (found, exact) in [
         (a, 1.0 / 3.0),
         (b, 1.0 / 3.0),
@@ -159,8 +203,8 @@ fn every_warp_returns_by_its_inverse() {
             ("triangle", triangle_inverse(triangle(u))),
         ] {
             for d in 0..2 {
-                // The maps and their inverses are a few roundings long; acos-like cancellation near the
-                // poles costs half the digits at worst.
+                // The maps and their inverses are a few roundings long; acos-like cancellation near
+                // the poles costs half the digits at worst.
                 assert!((u[d] - back[d]).abs() < 1e-7, "{name}: {u:?} -> {back:?}");
             }
         }

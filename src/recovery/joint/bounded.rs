@@ -1,4 +1,5 @@
-//! Least squares over all pixels and spots with reflectances that a surface can have: 0 ≤ ρ ≤ 1 (`joint`), or ρ ≥ 0 alone (`nnls`).
+//! Least squares over all pixels and spots with reflectances that a surface can have: 0 ≤ ρ ≤ 1
+//! (`joint`), or ρ ≥ 0 alone (`nnls`).
 
 use super::reduced::{Reduced, report};
 use crate::num::quadratic::{Bounds, box_least_squares};
@@ -49,7 +50,8 @@ mod tests {
             let phi = bench.phi(&board);
             let problem = Problem::new(&phi, &bench.c, &bench.d, None).unwrap();
             let found = recover(Method::Joint, &problem, &Options::default()).unwrap();
-            // Rounding of Φ, one eps of its norm, reaches the weakest direction divided by its singular value.
+            // Rounding of Φ, one eps of its norm, reaches the weakest direction divided by its
+            // singular value.
             let condition = found.sigma[0] / found.sigma[63];
             let error = (&found.reflectance - &board).amax();
             assert!(
@@ -82,7 +84,8 @@ mod tests {
         }
     }
 
-    /// 0.967 and 0.947 were measured over 20 seeds; the standard deviation of one seed is about 0.04.
+    /// 0.967 and 0.947 were measured over 20 seeds; the standard deviation of one seed is about
+    /// 0.04.
     #[test]
     fn a_board_of_two_checks_survives_a_tenth_of_noise() {
         for half_width in [6.0, 3.0] {
@@ -102,8 +105,8 @@ mod tests {
         }
     }
 
-    /// In units of the noise the data are 1e8 here, their misfit some units: the solver's relative tolerance alone would
-    /// stop where the misfit is still wrong in its first digit.
+    /// In units of the noise the data are 1e8 here, their misfit some units: the solver's relative
+    /// tolerance alone would stop where the misfit is still wrong in its first digit.
     #[test]
     fn little_noise_is_used_to_the_last_digit() {
         let bench = Bench::new(3.0, 8, 16);

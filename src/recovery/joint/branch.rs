@@ -5,8 +5,9 @@ use nalgebra::{DMatrix, DVector};
 use crate::num::linalg::{Tolerance, least_squares};
 use crate::num::quadratic::{Bounds, QuadraticError, box_least_squares_from};
 
-/// Searches for a pattern within these multiples of the relaxation's objective, one after the other, and the relaxations that each may solve: without a good
-/// pattern known, a search that goes down first would spend itself where nothing fits any more.
+/// Searches for a pattern within these multiples of the relaxation's objective, one after the
+/// other, and the relaxations that each may solve: without a good pattern known, a search that goes
+/// down first would spend itself where nothing fits any more.
 const SEARCHES: [(f64, usize); 3] = [(4.0, 800), (64.0, 200), (f64::INFINITY, 100)];
 /// Nearer to a level than this fraction of their distance is at it.
 const AT: f64 = 1e-7;
@@ -28,9 +29,11 @@ struct Node {
     bound: f64,
 }
 
-/// The best pattern x_j ∈ {dark, light}, depth first: the relaxation to dark ≤ x ≤ light bounds a node from below, of the variables at no level the clearest case
-/// is put to its nearer level first, to the other later. Nodes whose bound reaches `incumbent` (½‖R x − d‖² of a known pattern) hold nothing better.
-/// Ends when no node is left, and the bound is then the minimum itself, or after a fixed number of relaxations.
+/// The best pattern x_j ∈ {dark, light}, depth first: the relaxation to dark ≤ x ≤ light bounds a
+/// node from below, of the variables at no level the clearest case is put to its nearer level
+/// first, to the other later. Nodes whose bound reaches `incumbent` (½‖R x − d‖² of a known
+/// pattern) hold nothing better. Ends when no node is left, and the bound is then the minimum
+/// itself, or after a fixed number of relaxations.
 pub(super) fn search(
     r: &DMatrix<f64>,
     d: &DVector<f64>,
@@ -112,8 +115,9 @@ fn within(
     })
 }
 
-/// Of the variables at neither level the one whose other level would cost most, as far as the curvature around x says: moving x_j by δ while the others
-/// at no level follow raises the objective by ½ δ²/(RᵀR)⁻¹_jj.
+/// Of the variables at neither level the one whose other level would cost most, as far as the
+/// curvature around x says: moving x_j by δ while the others at no level follow raises the
+/// objective by ½ δ²/(RᵀR)⁻¹_jj.
 fn clearest(
     r: &DMatrix<f64>,
     [dark, light]: [f64; 2],

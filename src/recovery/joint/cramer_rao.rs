@@ -6,7 +6,8 @@ use super::{stacked, weights};
 use crate::num::linalg::{Tolerance, cut, svd};
 use crate::recovery::{Method, Problem, RecoveryError};
 
-/// Directions below this fraction of the strongest are lost: QR without pivoting has an error of about 4e-14 (measured).
+/// Directions below this fraction of the strongest are lost: QR without pivoting has an error of
+/// about 4e-14 (measured).
 const LOST: f64 = 1e-13;
 
 /// The Cramér–Rao bound of all reflectances.
@@ -14,7 +15,8 @@ const LOST: f64 = 1e-13;
 pub struct CramerRao {
     /// (KᵀΣ⁻¹K)⁻¹ (r × r); the pseudo-inverse where directions are lost.
     pub covariance: DMatrix<f64>,
-    /// Roots of its diagonal; infinite for an element that lost directions concern, of which no unbiased estimate exists in f64.
+    /// Roots of its diagonal; infinite for an element that lost directions concern, of which no
+    /// unbiased estimate exists in f64.
     pub standard_error: DVector<f64>,
     /// Singular values of Σ^(−½) K without what the nuisance terms take, descending.
     pub sigma: DVector<f64>,
@@ -22,16 +24,20 @@ pub struct CramerRao {
     pub rank: usize,
 }
 
-/// The covariance that no unbiased estimate of ρ has less than, for normal noise of the problem's standard errors:
+/// The covariance that no unbiased estimate of ρ has less than, for normal noise of the problem's
+/// standard errors:
 ///
 /// > Cov(ρ̂) ⪰ (KᵀΣ⁻¹K)⁻¹,   row (p, l) of Σ^(−½)K: C\[p,j\] D\[j,l\]/σ\[p,l\]
 ///
-/// with each entry's own σ, no separable fit. Nuisance terms of the problem are unknown too and cost what they cost (Schur complement, by QR: no Gram matrix
-/// is formed, and never more than a block of rows). A free scale asks about s ρ, and is counted nothing. Entries whose σ is zero get that of the
-/// separable fit. The bound does not depend on ρ or Φ, except through the standard errors.
+/// with each entry's own σ, no separable fit. Nuisance terms of the problem are unknown too and
+/// cost what they cost (Schur complement, by QR: no Gram matrix is formed, and never more than a
+/// block of rows). A free scale asks about s ρ, and is counted nothing. Entries whose σ is zero get
+/// that of the separable fit. The bound does not depend on ρ or Φ, except through the standard
+/// errors.
 ///
 /// # Errors
-/// [`RecoveryError::NotForMethod`] without a noise model, [`RecoveryError::RankZero`], or a failed decomposition.
+/// [`RecoveryError::NotForMethod`] without a noise model, [`RecoveryError::RankZero`], or a failed
+/// decomposition.
 pub fn cramer_rao(problem: &Problem<'_>) -> Result<CramerRao, RecoveryError> {
     let stderr = problem.noise().ok_or(RecoveryError::NotForMethod {
         method: Method::JointUnbounded,

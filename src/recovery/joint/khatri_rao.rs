@@ -2,15 +2,17 @@
 //!
 //! > minimise Σ_pl w_p v_l (Φ\[p,l\] − Σ_j C\[p,j\] ρ_j D\[j,l\])²
 //!
-//! Its matrix has a row for every (pixel, spot) and is the Khatri–Rao (column-wise Kronecker) product of C̃ = √W C and (D √V)ᵀ = D̃ᵀ. With
-//! C̃ = U_c Σ_c V_cᵀ and D̃ = U_d Σ_d V_dᵀ the sum above is, but for a constant,
+//! Its matrix has a row for every (pixel, spot) and is the Khatri–Rao (column-wise Kronecker)
+//! product of C̃ = √W C and (D √V)ᵀ = D̃ᵀ. With C̃ = U_c Σ_c V_cᵀ and D̃ = U_d Σ_d V_dᵀ the sum
+//! above is, but for a constant,
 //!
 //! > Σ_ab (F\[a,b\] − Σ_j (Σ_c V_cᵀ)\[a,j\] (U_d Σ_d)\[j,b\] ρ_j)²,   F = U_cᵀ √W Φ √V V_d,
 //!
-//! so only rank(C̃)·rank(D̃) rows remain. Directions below the rounding of C̃ and D̃ are dropped; of large products also the pairs (a, b) of two weak
-//! directions, whose rows together are less than one rounding of the whole. Frame constants and a background are projected out of
-//! both sides first ([`super::nuisance`]); with glare patterns there is no such product, and the rows are stacked instead ([`super::stacked`]),
-//! each with its own weight.
+//! so only rank(C̃)·rank(D̃) rows remain. Directions below the rounding of C̃ and D̃ are dropped;
+//! of large products also the pairs (a, b) of two weak directions, whose rows together are less
+//! than one rounding of the whole. Frame constants and a background are projected out of both sides
+//! first ([`super::nuisance`]); with glare patterns there is no such product, and the rows are
+//! stacked instead ([`super::stacked`]), each with its own weight.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -70,7 +72,8 @@ enum Form {
     },
 }
 
-/// U_k, Σ_k V_kᵀ of a side, cut at its rounding; `before` is its norm before anything was projected out of it.
+/// U_k, Σ_k V_kᵀ of a side, cut at its rounding; `before` is its norm before anything was projected
+/// out of it.
 fn compress(
     side: &DMatrix<f64>,
     before: f64,
@@ -100,8 +103,9 @@ fn compress(
     }
 }
 
-/// The pairs (a, b) of rows of T and columns of S whose rows T\[a,j\] S\[j,b\] of the product carry it to rounding: all of them, unless their number
-/// times the elements is beyond the budget. Then the least are left out, so many that their common norm stays below one rounding of the whole's.
+/// The pairs (a, b) of rows of T and columns of S whose rows T\[a,j\] S\[j,b\] of the product carry
+/// it to rounding: all of them, unless their number times the elements is beyond the budget. Then
+/// the least are left out, so many that their common norm stays below one rounding of the whole's.
 fn pairs(t: &DMatrix<f64>, s: &DMatrix<f64>, budget: usize) -> Vec<[usize; 2]> {
     let (rc, rd) = (t.nrows(), s.ncols());
     let all = (0..rc * rd).map(|row| [row % rc, row / rc]);
@@ -236,7 +240,8 @@ impl Operator {
         }
     }
 
-    /// Covariance of the solution as the standard errors make it, whether or not the weights are theirs:
+    /// Covariance of the solution as the standard errors make it, whether or not the weights are
+    /// theirs:
     ///
     /// > (KᵀWK)⁺ KᵀW Σ W K (KᵀWK)⁺ = Σ_kk' v_k (1/s_k) N_kk' (1/s_k') v_k'ᵀ,
     ///
@@ -251,13 +256,15 @@ impl Operator {
         Some(product(&product(&towards, &noise), &towards.transpose()))
     }
 
-    /// Covariance of the data along the left singular vectors, as the standard errors make it, rank × rank:
+    /// Covariance of the data along the left singular vectors, as the standard errors make it, rank
+    /// × rank:
     ///
     /// > N_kk' = Σ_pl u_k\[p,l\] u_k'\[p,l\] w_p v_l σ²\[p,l\],   u_k = √W K v_k/s_k as pixels × spots.
     ///
-    /// The unit matrix where the weights are the entries' own; none without a noise model, and none for unweighted rows with glare patterns.
-    /// C̃ = U T and D̃ = S V with few (c, d) orthonormal columns to rounding, so that the sums cost d·c·r·k + l·(p·c² + c·k·(d + c + k)) operations and not
-    /// l·p·k·(r + k).
+    /// The unit matrix where the weights are the entries' own; none without a noise model, and none
+    /// for unweighted rows with glare patterns. C̃ = U T and D̃ = S V with few (c, d) orthonormal
+    /// columns to rounding, so that the sums cost d·c·r·k + l·(p·c² + c·k·(d + c + k)) operations
+    /// and not l·p·k·(r + k).
     pub(super) fn noise(
         &self,
         problem: &Problem<'_>,
@@ -332,7 +339,8 @@ impl Operator {
         Ok(solved)
     }
 
-    /// The directions of the operator, U Σ Vᵀ, and Uᵀ times the data: Σ Vᵀ ρ against it is the same objective but for a constant.
+    /// The directions of the operator, U Σ Vᵀ, and Uᵀ times the data: Σ Vᵀ ρ against it is the same
+    /// objective but for a constant.
     pub(super) fn directions(&self) -> Result<(Svd, DVector<f64>), RecoveryError> {
         let reduced = match &self.form {
             Form::Small { a, b, .. } => match svd_of_range(a, Tolerance::Auto)? {

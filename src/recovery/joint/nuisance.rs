@@ -2,13 +2,16 @@
 //!
 //! > Φ\[p,l\] = s Σ_j C\[p,j\] ρ_j D\[j,l\] + b_l + a_p + g_l P\[p,l\] + noise
 //!
-//! Everything but ρ enters linearly once s ρ is one unknown, so it is eliminated exactly (variable projection), never guessed first.
-//! With weights w_p v_l the constants b_l are all matrices u b'ᵀ of the weighted problem, u_p = √w_p, and the background all a' vᵀ, v_l = √v_l; what
-//! either cannot reach is the tensor product of what is orthogonal to u and what is orthogonal to v. So both at once are eliminated by
+//! Everything but ρ enters linearly once s ρ is one unknown, so it is eliminated exactly (variable
+//! projection), never guessed first. With weights w_p v_l the constants b_l are all matrices u b'ᵀ
+//! of the weighted problem, u_p = √w_p, and the background all a' vᵀ, v_l = √v_l; what either
+//! cannot reach is the tensor product of what is orthogonal to u and what is orthogonal to v. So
+//! both at once are eliminated by
 //!
 //! > C̃ → (1 − û ûᵀ) C̃,   D̃ → D̃ (1 − v̂ v̂ᵀ),   Φ̃ → (1 − û ûᵀ) Φ̃ (1 − v̂ v̂ᵀ)
 //!
-//! and the product form stays. A glare pattern that differs from spot to spot has no such form: [`super::stacked`].
+//! and the product form stays. A glare pattern that differs from spot to spot has no such form:
+//! [`super::stacked`].
 
 use nalgebra::{DMatrix, DVector};
 
@@ -23,10 +26,12 @@ pub struct Nuisance<'a> {
     pub frame_constant: bool,
     /// An image that is the same in all frames, a_p: ambient light.
     pub background: bool,
-    /// A pattern P\[p,l\] (pixels × spots, any unit) whose strength g_l in each frame is unknown: glare of the spot.
+    /// A pattern P\[p,l\] (pixels × spots, any unit) whose strength g_l in each frame is unknown:
+    /// glare of the spot.
     pub glare: Option<&'a DMatrix<f64>>,
-    /// One unknown factor s of the whole model. Only s ρ is seen, so by convention **the brightest element has ρ = 1**; a surface without
-    /// a white element is recovered relative to its brightest. Bounds from above mean nothing then: `joint` keeps ρ ≥ 0 alone.
+    /// One unknown factor s of the whole model. Only s ρ is seen, so by convention **the brightest
+    /// element has ρ = 1**; a surface without a white element is recovered relative to its
+    /// brightest. Bounds from above mean nothing then: `joint` keeps ρ ≥ 0 alone.
     pub free_scale: bool,
 }
 
@@ -40,7 +45,8 @@ impl Nuisance<'_> {
 /// The estimated sizes; each is there if it was asked for.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Estimated {
-    /// b_l, W. Where a background is estimated too, the common level of all entries is counted here: Σ_p w_p a_p = 0.
+    /// b_l, W. Where a background is estimated too, the common level of all entries is counted
+    /// here: Σ_p w_p a_p = 0.
     pub frame_constant: Option<DVector<f64>>,
     /// a_p, W.
     pub background: Option<DVector<f64>>,
@@ -90,8 +96,9 @@ pub(super) fn without_right(m: &mut DMatrix<f64>, v: &DVector<f64>) {
     }
 }
 
-/// The sizes that fit best, in the weighted sum of squares, what the surface's light leaves over (`left`, pixels × spots). `root`(p, l) is the
-/// square root of the weight; `coupled` the solution of the terms of single frames where a background ties them together.
+/// The sizes that fit best, in the weighted sum of squares, what the surface's light leaves over
+/// (`left`, pixels × spots). `root`(p, l) is the square root of the weight; `coupled` the solution
+/// of the terms of single frames where a background ties them together.
 pub(super) fn estimate(
     nuisance: &Nuisance<'_>,
     left: &DMatrix<f64>,

@@ -6,12 +6,15 @@ use super::Weighting;
 use super::khatri_rao::Operator;
 use crate::recovery::{Directions, Options, Picard, Problem, RecoveryError};
 
-/// The Picard data of all pixels and spots at once: of √W K = U S Vᵀ, K the Khatri–Rao product of C and D without what the nuisance terms take, the
-/// singular values s_i, the data |⟨u_i, √W Φ⟩| along each direction, and what noise alone makes of them, √(Σ_pl u_i\[p,l\]² w\[p,l\] σ²\[p,l\]): 1 in all
-/// directions where the weights are 1/σ². Directions below the rounding of K are left out.
+/// The Picard data of all pixels and spots at once: of √W K = U S Vᵀ, K the Khatri–Rao product of C
+/// and D without what the nuisance terms take, the singular values s_i, the data |⟨u_i, √W Φ⟩|
+/// along each direction, and what noise alone makes of them, √(Σ_pl u_i\[p,l\]² w\[p,l\]
+/// σ²\[p,l\]): 1 in all directions where the weights are 1/σ². Directions below the rounding of K
+/// are left out.
 ///
 /// # Errors
-/// [`RecoveryError::Dark`], [`RecoveryError::TooManyElements`], [`RecoveryError::RankZero`], a decomposition that failed.
+/// [`RecoveryError::Dark`], [`RecoveryError::TooManyElements`], [`RecoveryError::RankZero`], a
+/// decomposition that failed.
 pub fn picard_joint(problem: &Problem<'_>, options: &Options) -> Result<Picard, RecoveryError> {
     problem.refuse_darkness()?;
     let operator = Operator::new(problem, options)?;

@@ -1,4 +1,5 @@
-//! What the bounded methods share: the operator reduced to as many rows as it has directions, and the way back to reflectances.
+//! What the bounded methods share: the operator reduced to as many rows as it has directions, and
+//! the way back to reflectances.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -35,7 +36,8 @@ impl Reduced {
                 side: "model C, D as a whole",
             });
         }
-        // Directions below one rounding of the strongest carry nothing: k rows Σ_k V_kᵀ stand for R.
+        // Directions below one rounding of the strongest carry nothing: k rows Σ_k V_kᵀ stand for
+        // R.
         let (rows, _) = cut(sigma.as_slice(), 1, 1, Tolerance::Relative(f64::EPSILON))?;
         let mut strong = vt.rows(0, rows).into_owned();
         for (mut row, &s) in strong.row_iter_mut().zip(sigma.iter()) {
@@ -102,7 +104,8 @@ pub(super) fn report(solved: &BoxSolution) -> Solver {
     }
 }
 
-/// The recovery from x = s ρ: scale by the brightest element where that is the convention, nuisance terms, residual with them.
+/// The recovery from x = s ρ: scale by the brightest element where that is the convention, nuisance
+/// terms, residual with them.
 pub(super) fn finish(
     method: Method,
     problem: &Problem<'_>,

@@ -1,13 +1,17 @@
-//! The weighted rows of all pixels and spots, block after block, for weights or nuisance terms that no product of two sides holds.
+//! The weighted rows of all pixels and spots, block after block, for weights or nuisance terms that
+//! no product of two sides holds.
 //!
-//! Row (p, l) is √w\[p,l\] · (nuisance columns | C\[p,j\] D\[j,l\] | Φ\[p,l\]) with a weight of its own. The rows are never all held: a block of them is
-//! reduced by Householder QR, its nuisance columns are eliminated, and the triangles are stacked and reduced again (TSQR). Condition is never
-//! squared. Elimination is the QR with the nuisance columns first: the rows below theirs hold what no nuisance can change, for any size of it.
-//! Nuisance columns that depend on each other (a pattern that is constant over the frame beside a frame constant) are told by the singular
-//! values of their own corner, columns scaled to unit length, and only what they span is eliminated.
+//! Row (p, l) is √w\[p,l\] · (nuisance columns | C\[p,j\] D\[j,l\] | Φ\[p,l\]) with a weight of its
+//! own. The rows are never all held: a block of them is reduced by Householder QR, its nuisance
+//! columns are eliminated, and the triangles are stacked and reduced again (TSQR). Condition is
+//! never squared. Elimination is the QR with the nuisance columns first: the rows below theirs hold
+//! what no nuisance can change, for any size of it. Nuisance columns that depend on each other (a
+//! pattern that is constant over the frame beside a frame constant) are told by the singular values
+//! of their own corner, columns scaled to unit length, and only what they span is eliminated.
 //!
-//! Without a background the blocks are frames, whose constant and glare concern that frame alone. With one the blocks are pixels, whose background
-//! concerns that pixel alone; the terms of all frames are then carried along and eliminated from the last triangle. Memory: one block and two
+//! Without a background the blocks are frames, whose constant and glare concern that frame alone.
+//! With one the blocks are pixels, whose background concerns that pixel alone; the terms of all
+//! frames are then carried along and eliminated from the last triangle. Memory: one block and two
 //! triangles of elements (and, with a background, of the terms of all frames).
 
 use nalgebra::{DMatrix, DVector};
@@ -15,7 +19,8 @@ use nalgebra::{DMatrix, DVector};
 use crate::num::linalg::{Triangle, svd, triangle};
 use crate::recovery::{Problem, RecoveryError};
 
-/// Singular values of unit nuisance columns at or below this count as zero: some thousand roundings.
+/// Singular values of unit nuisance columns at or below this count as zero: some thousand
+/// roundings.
 const DEPENDENT: f64 = 1e-12;
 
 /// ‖data − …‖ after elimination: ‖R ρ − d‖² + rest².

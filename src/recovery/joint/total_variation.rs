@@ -2,20 +2,25 @@
 //!
 //! > minimise ½ Σ w_p v_l (Φ − C diag(ρ) D)² + λ TV(ρ)   over 0 ≤ ρ ≤ 1
 //!
-//! TV is the anisotropic total variation, Σ |ρ_a − ρ_b| over all pairs of neighbours along u and along v of each grid: edges along the rows and columns of
-//! elements cost their length. With a free scale the penalty is on s ρ, and only s ρ ≥ 0 is asked.
+//! TV is the anisotropic total variation, Σ |ρ_a − ρ_b| over all pairs of neighbours along u and
+//! along v of each grid: edges along the rows and columns of elements cost their length. With a
+//! free scale the penalty is on s ρ, and only s ρ ≥ 0 is asked.
 //!
-//! λ is given as a fraction of σ₁², σ₁ the largest singular value of the weighted operator, or it is the largest that the noise allows. Of the
-//! pixels·spots weighted residuals, those outside the range of the operator say nothing of ρ, but their scatter, √(2 N), would hide any pattern of less. So
-//! the test is on what is left inside, where the unbounded fit has no residual at all: with noise of unit variance (that is what the weights make) and k
-//! singular values above rounding,
+//! λ is given as a fraction of σ₁², σ₁ the largest singular value of the weighted operator, or it
+//! is the largest that the noise allows. Of the pixels·spots weighted residuals, those outside the
+//! range of the operator say nothing of ρ, but their scatter, √(2 N), would hide any pattern of
+//! less. So the test is on what is left inside, where the unbounded fit has no residual at all:
+//! with noise of unit variance (that is what the weights make) and k singular values above
+//! rounding,
 //!
 //! > ‖R ρ_λ − d‖² ≤ target = k − dof(λ),
 //!
-//! dof(λ) the number of patches of one value strictly between the bounds (Tibshirani and Taylor 2012). No deviation is allowed on top: two of them,
-//! 2 √(2 k), are negligible against the thousands of residuals of the methods that work pixel by pixel, but a third of the few tens here, and
-//! a λ that spends them flattens the pattern. Where the unpenalised fit (λ = 0) is above the target already, but by no more than four, it is kept;
-//! where it is above that, the noise is understated.
+//! dof(λ) the number of patches of one value strictly between the bounds (Tibshirani and Taylor
+//! 2012). No deviation is allowed on top: two of them, 2 √(2 k), are negligible against the
+//! thousands of residuals of the methods that work pixel by pixel, but a third of the few tens
+//! here, and a λ that spends them flattens the pattern. Where the unpenalised fit (λ = 0) is above
+//! the target already, but by no more than four, it is kept; where it is above that, the noise is
+//! understated.
 
 use super::reduced::{Reduced, report};
 use crate::num::quadratic::{Bounds, Fused, box_least_squares, fused_least_squares};
@@ -23,10 +28,12 @@ use crate::recovery::{
     Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, WeightRule,
 };
 
-/// Trial values of λ/σ₁² fall from 1 by this factor until one is accepted, and bisection goes on to within this of the answer.
+/// Trial values of λ/σ₁² fall from 1 by this factor until one is accepted, and bisection goes on to
+/// within this of the answer.
 const STEP: f64 = 0.1;
 const NEAR: f64 = 1.02;
-/// Standard deviations of χ² above its mean, √(2 target) each, beyond which noise does not explain a residual.
+/// Standard deviations of χ² above its mean, √(2 target) each, beyond which noise does not explain
+/// a residual.
 const DEVIATIONS: f64 = 4.0;
 /// The smallest λ/σ₁² tried: some roundings.
 const LEAST: f64 = 1e-24;

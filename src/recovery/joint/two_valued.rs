@@ -1,13 +1,19 @@
-//! Least squares over all pixels and spots with reflectances of two values only, ρ_j ∈ {dark, light}.
+//! Least squares over all pixels and spots with reflectances of two values only, ρ_j ∈ {dark,
+//! light}.
 //!
-//! A combinatorial problem, searched in two ways. Descent: from the minimiser over all 0 ≤ ρ ≤ 1, cut at several thresholds, the change of one or two elements
-//! that lowers ‖R ρ − d‖ most is made until none lowers it. Branch and bound ([`super::branch`]): with the levels held, elements are put to one level after the
-//! other, and what relaxation shows to be hopeless is left out; it ends with a proof or after a fixed number of relaxations. Where the levels are not given
-//! they are the best for each pattern (least squares in [0, 1]), found anew after every search, until nothing improves. Misfits are norms of R ρ − d itself,
-//! never differences of Gram products, which would lose what little noise leaves.
+//! A combinatorial problem, searched in two ways. Descent: from the minimiser over all 0 ≤ ρ ≤ 1,
+//! cut at several thresholds, the change of one or two elements that lowers ‖R ρ − d‖ most is made
+//! until none lowers it. Branch and bound ([`super::branch`]): with the levels held, elements are
+//! put to one level after the other, and what relaxation shows to be hopeless is left out; it ends
+//! with a proof or after a fixed number of relaxations. Where the levels are not given they are the
+//! best for each pattern (least squares in [0, 1]), found anew after every search, until nothing
+//! improves. Misfits are norms of R ρ − d itself, never differences of Gram products, which would
+//! lose what little noise leaves.
 //!
-//! So the result is a pattern that no change of one or two elements improves, and not always the best of all. The reported gap says how far it can be above
-//! that: with given levels above what branch and bound left open (zero: proved best), with estimated ones above the minimum over all 0 ≤ ρ ≤ 1.
+//! So the result is a pattern that no change of one or two elements improves, and not always the
+//! best of all. The reported gap says how far it can be above that: with given levels above what
+//! branch and bound left open (zero: proved best), with estimated ones above the minimum over all 0
+//! ≤ ρ ≤ 1.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -20,13 +26,15 @@ use crate::recovery::{
 
 /// Thresholds that the relaxation is cut at.
 const STARTS: usize = 12;
-/// Above this many elements pairs are not tried: their number times the rows is the cost of one step.
+/// Above this many elements pairs are not tried: their number times the rows is the cost of one
+/// step.
 const MOST_PAIRED: usize = 512;
 /// Searches by branch and bound, each with the levels of the best pattern so far.
 const ROUNDS: usize = 5;
 /// Levels that differ by less, relative to the light one, are searched with once.
 const SAME: f64 = 1e-3;
-/// A change must lower ‖R ρ − d‖² by more than this fraction, or rounding would go round in circles.
+/// A change must lower ‖R ρ − d‖² by more than this fraction, or rounding would go round in
+/// circles.
 const WORTH: f64 = 1e-10;
 
 pub(in crate::recovery) fn recover(
@@ -259,7 +267,8 @@ impl Search<'_> {
     }
 }
 
-/// Patterns of a relaxation: light where it exceeds a threshold, thresholds between neighbouring values, spread over the values' ranks.
+/// Patterns of a relaxation: light where it exceeds a threshold, thresholds between neighbouring
+/// values, spread over the values' ranks.
 fn thresholds(relaxed: &DVector<f64>) -> Vec<Vec<bool>> {
     let mut values: Vec<f64> = relaxed.iter().copied().collect();
     values.sort_by(f64::total_cmp);

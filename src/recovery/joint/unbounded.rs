@@ -1,10 +1,12 @@
 //! Least squares over all pixels and spots at once.
 //!
-//! ρ̂ = argmin Σ w_p v_l (Φ − C diag(ρ) D)², of minimum norm where that is not unique. Unbiased wherever the model has full rank; its
-//! covariance under the noise model Σ is (KᵀWK)⁻¹ KᵀWΣWK (KᵀWK)⁻¹, K the Khatri–Rao product, and (KᵀWK)⁻¹ where W = Σ⁻¹.
+//! ρ̂ = argmin Σ w_p v_l (Φ − C diag(ρ) D)², of minimum norm where that is not unique. Unbiased
+//! wherever the model has full rank; its covariance under the noise model Σ is (KᵀWK)⁻¹ KᵀWΣWK
+//! (KᵀWK)⁻¹, K the Khatri–Rao product, and (KᵀWK)⁻¹ where W = Σ⁻¹.
 //!
-//! With a free scale ρ̂ = x̂/x̂_m, m the brightest element; its covariance is then that of first order in the noise, (1 − ρ̂ e_mᵀ) Cov(x̂) (1 − e_m ρ̂ᵀ)/x̂_m²,
-//! and element m, the unit, has none.
+//! With a free scale ρ̂ = x̂/x̂_m, m the brightest element; its covariance is then that of first
+//! order in the noise, (1 − ρ̂ e_mᵀ) Cov(x̂) (1 − e_m ρ̂ᵀ)/x̂_m², and element m, the unit, has
+//! none.
 
 use nalgebra::DMatrix;
 
@@ -74,7 +76,8 @@ mod tests {
             let problem = Problem::new(&phi, &bench.c, &bench.d, None).unwrap();
             let found = recover(Method::JointUnbounded, &problem, &Options::default()).unwrap();
             assert_eq!((found.rank, found.choice), (36, Choice::None));
-            // Rounding of Φ, one eps of its norm, reaches the weakest direction divided by its singular value.
+            // Rounding of Φ, one eps of its norm, reaches the weakest direction divided by its
+            // singular value.
             let condition = found.sigma[0] / found.sigma[35];
             let error = (&found.reflectance - &board).amax();
             assert!(
@@ -86,7 +89,8 @@ mod tests {
 
     #[test]
     fn the_bench_at_full_resolution_keeps_its_board() {
-        // 8 × 8 elements are numerically deficient by a direction or so; what is lost is its share of the board.
+        // 8 × 8 elements are numerically deficient by a direction or so; what is lost is its share
+        // of the board.
         let bench = Bench::new(3.0, 8, 16);
         let board = bench.board(2);
         let phi = bench.phi(&board);
@@ -97,8 +101,9 @@ mod tests {
         assert!(found.relative_residual < 1e-12);
     }
 
-    /// z = L⁻¹(ρ̂ − ρ) with the reported covariance LLᵀ is standard normal: over T trials of r elements the mean of z² is 1
-    /// with standard deviation √(2/(T r)), and each element's mean error lies within its standard error over √T.
+    /// z = L⁻¹(ρ̂ − ρ) with the reported covariance LLᵀ is standard normal: over T trials of r
+    /// elements the mean of z² is 1 with standard deviation √(2/(T r)), and each element's mean
+    /// error lies within its standard error over √T.
     #[test]
     fn the_estimate_is_unbiased_within_its_covariance() {
         let bench = Bench::new(3.0, 4, 8);
@@ -155,7 +160,8 @@ mod tests {
             ..Options::default()
         };
         let found = recover(Method::JointUnbounded, &problem, &gram).unwrap();
-        // Kept directions lie above √(64 eps) = 1.2e-7 of σ₁, where rounding of Gram matrix and moment stays small.
+        // Kept directions lie above √(64 eps) = 1.2e-7 of σ₁, where rounding of Gram matrix and
+        // moment stays small.
         assert!(found.sigma[found.rank - 1] > 1.1e-7 * found.sigma[0] && found.rank < 63);
         assert!(
             found.reflectance.amax() < 3.0 && found.relative_residual < 1e-6,

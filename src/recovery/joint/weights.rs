@@ -9,7 +9,8 @@ pub enum Weighting {
     Unweighted,
     /// By w_p v_l, fitted to 1/σ².
     Separable {
-        /// Root mean square of ln σ\[p,l\] about the fit: 0 where σ² is separable, and then no weights are more efficient.
+        /// Root mean square of ln σ\[p,l\] about the fit: 0 where σ² is separable, and then no
+        /// weights are more efficient.
         misfit: f64,
     },
     /// By 1/σ²\[p,l\] itself; where σ is zero, by the separable fit.
@@ -38,10 +39,11 @@ impl Weights {
 ///
 /// > ln σ\[p,l\] ≈ α_p + β_l in least squares,   √w_p = e^(−α_p),   √v_l = e^(−β_l),
 ///
-/// which is the two-way table of row and column means: positive by construction, and unmoved by a common factor in the
-/// estimated errors. Any positive weights leave the estimate unbiased; only its efficiency depends on the fit.
-/// A standard error of exactly zero says nothing of the noise level, so such entries are left out of the fit, and the means are
-/// iterated over what remains. Without a noise model, or with an all-zero one, every weight is 1.
+/// which is the two-way table of row and column means: positive by construction, and unmoved by a
+/// common factor in the estimated errors. Any positive weights leave the estimate unbiased; only
+/// its efficiency depends on the fit. A standard error of exactly zero says nothing of the noise
+/// level, so such entries are left out of the fit, and the means are iterated over what remains.
+/// Without a noise model, or with an all-zero one, every weight is 1.
 pub(super) fn fit(stderr: Option<&DMatrix<f64>>, pixels: usize, spots: usize) -> Weights {
     let Some(stderr) = stderr.filter(|s| s.iter().any(|&x| x > 0.0)) else {
         return Weights {

@@ -5,9 +5,11 @@ use crate::recovery::rule::discrepancy::Discrepancy;
 use crate::recovery::rule::{Data, Rule};
 use crate::recovery::{Choice, Method, Options, Problem, RecoveryError};
 
-/// Trial values of λ/σ₁ fall from 1e3 by this factor until one is accepted; bisection finds the rest.
+/// Trial values of λ/σ₁ fall from 1e3 by this factor until one is accepted; bisection finds the
+/// rest.
 const STEP: f64 = 0.5;
-/// Below this fraction of the last singular value kept, with room for a STEP, damping does nothing: (λ/σ)² is lost in the rounding of 1 + (λ/σ)².
+/// Below this fraction of the last singular value kept, with room for a STEP, damping does nothing:
+/// (λ/σ)² is lost in the rounding of 1 + (λ/σ)².
 const NOTHING: f64 = 4e-9;
 
 /// λ as a fraction of the spectrum's largest singular value, and why.

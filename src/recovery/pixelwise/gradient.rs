@@ -1,16 +1,21 @@
-//! Generalised Tikhonov: differences between neighbouring elements are damped, not the values themselves.
+//! Generalised Tikhonov: differences between neighbouring elements are damped, not the values
+//! themselves.
 //!
-//! Pixel p sees X\[p,j\] = C\[p,j\] ρ_j, which falls over the surface with C however even ρ is; so it is not X that should be smooth but X over C's mean
-//! profile c̄_j = (1/p) Σ_p |C\[p,j\]|. With X = Z diag(c̄), D̄ = diag(c̄) D,
+//! Pixel p sees X\[p,j\] = C\[p,j\] ρ_j, which falls over the surface with C however even ρ is; so
+//! it is not X that should be smooth but X over C's mean profile c̄_j = (1/p) Σ_p |C\[p,j\]|. With
+//! X = Z diag(c̄), D̄ = diag(c̄) D,
 //!
 //! > minimise ‖Z D̄ − Φ‖² + λ² ‖Z Lᵀ‖²,
 //!
-//! L the differences along u and along v within each grid. A constant on a grid costs nothing: where C\[p,j\] = w_p c̄_j an even board is recovered
-//! unbiased at any λ; where pixels see the elements by different profiles it is biased by the difference of their profiles.
+//! L the differences along u and along v within each grid. A constant on a grid costs nothing:
+//! where C\[p,j\] = w_p c̄_j an even board is recovered unbiased at any λ; where pixels see the
+//! elements by different profiles it is biased by the difference of their profiles.
 //!
-//! Standard form (Eldén 1982), A = D̄ᵀ: LᵀL is the Laplacian of the grid with free edges, whose eigenvectors are products of cosines, its null
-//! vectors N the constants. With L̃⁺ = V Λ^{−½} of the others and L⁺_A = (1 − N (A N)⁺ A) L̃⁺ the singular directions of A L⁺_A are damped as those of D are
-//! in plain Tikhonov, and those of A N not at all. λ is stated as a fraction of the largest singular value of A L⁺_A.
+//! Standard form (Eldén 1982), A = D̄ᵀ: LᵀL is the Laplacian of the grid with free edges, whose
+//! eigenvectors are products of cosines, its null vectors N the constants. With L̃⁺ = V Λ^{−½} of
+//! the others and L⁺_A = (1 − N (A N)⁺ A) L̃⁺ the singular directions of A L⁺_A are damped as those
+//! of D are in plain Tikhonov, and those of A N not at all. λ is stated as a fraction of the
+//! largest singular value of A L⁺_A.
 
 use nalgebra::DMatrix;
 
@@ -69,7 +74,8 @@ fn spectrum(problem: &Problem<'_>, grids: &[[usize; 2]]) -> Result<Spectrum, Rec
 
     let steep = product(&a, &smooth);
     let oblique = smooth - &even * tr_product(&seen, &steep);
-    // Decomposed within the complement of what the constants reach, the directions are orthogonal to it to rounding, however weak.
+    // Decomposed within the complement of what the constants reach, the directions are orthogonal
+    // to it to rounding, however weak.
     let outside = complement(&seen)?;
     let rest = outside.coordinates(&steep);
     let uneven = match rest.nrows() {

@@ -1,11 +1,13 @@
-//! The Laplacian LᵀL of element grids with free edges, L the differences between neighbours along u and along v.
+//! The Laplacian LᵀL of element grids with free edges, L the differences between neighbours along u
+//! and along v.
 
 use std::f64::consts::PI;
 
 use nalgebra::{DMatrix, DVector};
 
-/// Eigenvectors of the Laplacians LᵀL of all grids: the constants as columns, and all others divided by the root of their eigenvalue
-/// 4 sin²(πa/2nu) + 4 sin²(πb/2nv). On a line of n elements mode a is cos(πa(i + ½)/n), normalised.
+/// Eigenvectors of the Laplacians LᵀL of all grids: the constants as columns, and all others
+/// divided by the root of their eigenvalue 4 sin²(πa/2nu) + 4 sin²(πb/2nv). On a line of n elements
+/// mode a is cos(πa(i + ½)/n), normalised.
 pub(super) fn modes(grids: &[[usize; 2]]) -> (DMatrix<f64>, DMatrix<f64>) {
     let elements: usize = grids.iter().map(|[nu, nv]| nu * nv).sum();
     let wave = |mode: usize, n: usize, i: usize| {
@@ -37,7 +39,8 @@ pub(super) fn modes(grids: &[[usize; 2]]) -> (DMatrix<f64>, DMatrix<f64>) {
     )
 }
 
-/// The difference operator L of one grid as it is written down: a row of −1, +1 for every pair of neighbours.
+/// The difference operator L of one grid as it is written down: a row of −1, +1 for every pair of
+/// neighbours.
 #[cfg(test)]
 pub(super) fn differences([nu, nv]: [usize; 2]) -> DMatrix<f64> {
     let mut rows = Vec::new();

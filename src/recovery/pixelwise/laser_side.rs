@@ -4,8 +4,9 @@
 //!
 //! > ρ_j = Σ_i f_i a_ij,   a_ij = (u_ji/σ_i) · (1/p) Σ_p (Φ V)\[p,i\]/C\[p,j\],
 //!
-//! and only the filter factors f_i know of the parameter. So D is decomposed once, the parts are summed once for each Φ (p·l·k + p·k·r operations for p pixels,
-//! l spots, r elements, k directions), and one more parameter costs k·r.
+//! and only the filter factors f_i know of the parameter. So D is decomposed once, the parts are
+//! summed once for each Φ (p·l·k + p·k·r operations for p pixels, l spots, r elements, k
+//! directions), and one more parameter costs k·r.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -30,7 +31,8 @@ impl LaserSide {
     /// Decomposes D of `problem`.
     ///
     /// # Errors
-    /// [`RecoveryError::Unseen`] where C cannot be divided by, [`RecoveryError::RankZero`] where D is zero.
+    /// [`RecoveryError::Unseen`] where C cannot be divided by, [`RecoveryError::RankZero`] where D
+    /// is zero.
     pub fn new(problem: &Problem<'_>) -> Result<Self, RecoveryError> {
         let laser = decompose(Method::Pinv, problem, Tolerance::Auto)?;
         let (rows, columns) = problem.d.shape();
@@ -45,8 +47,8 @@ impl LaserSide {
         self.spectrum.filtered()
     }
 
-    /// The parameter that [`recover`](crate::recovery::recover) gives `tsvd` or `tikhonov` by the discrepancy principle, and that of `pinv`; `problem` has the D
-    /// of this laser side.
+    /// The parameter that [`recover`](crate::recovery::recover) gives `tsvd` or `tikhonov` by the
+    /// discrepancy principle, and that of `pinv`; `problem` has the D of this laser side.
     ///
     /// # Errors
     /// What the rule refuses; [`RecoveryError::NotForMethod`] for other methods.
@@ -88,7 +90,8 @@ impl LaserSide {
 }
 
 impl Parts<'_> {
-    /// The reflectances for a number of directions kept, or a damping as a fraction of the largest singular value; `None` for other parameters.
+    /// The reflectances for a number of directions kept, or a damping as a fraction of the largest
+    /// singular value; `None` for other parameters.
     pub fn reflectance(&self, parameter: Parameter) -> Option<DVector<f64>> {
         let filter = match parameter {
             Parameter::Rank(kept) => self.spectrum.truncated(kept),
@@ -105,7 +108,8 @@ mod tests {
     use crate::recovery::bench::{Bench, relative_noise};
     use crate::recovery::recover;
 
-    /// The parts make what `recover` makes, for every method, parameter and noise, with the parameter that it chooses.
+    /// The parts make what `recover` makes, for every method, parameter and noise, with the
+    /// parameter that it chooses.
     #[test]
     fn parts_add_up_to_the_recovery() {
         let bench = Bench::new(3.0, 8, 9);
@@ -117,7 +121,8 @@ mod tests {
             let same = |method, options: &Options, parameter| {
                 let known = recover(method, &problem, options).unwrap();
                 let found = parts.reflectance(parameter).unwrap();
-                // Both sum the same terms in another order: some hundred roundings of the largest value.
+                // Both sum the same terms in another order: some hundred roundings of the largest
+                // value.
                 let scale = known.reflectance.amax();
                 let off = (&found - &known.reflectance).amax();
                 assert!(off < 1e-10 * scale, "{method}: {off:e} of {scale:e}");

@@ -1,4 +1,5 @@
-//! What the linear methods share: a generalised inverse D^# (l × r) of the laser side, pixel by pixel.
+//! What the linear methods share: a generalised inverse D^# (l × r) of the laser side, pixel by
+//! pixel.
 //!
 //! > X = Φ D^#  (p × r),   ρ_j = (1/p) Σ_p X\[p,j\]/C\[p,j\]
 
@@ -27,7 +28,8 @@ use crate::recovery::{
     Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, Uncertainty,
 };
 
-/// The laser side decomposed as far as a cut at `tolerance` needs it, and the check that C can be divided by.
+/// The laser side decomposed as far as a cut at `tolerance` needs it, and the check that C can be
+/// divided by.
 fn decompose(
     method: Method,
     problem: &Problem<'_>,
@@ -62,7 +64,8 @@ const PIXELS: usize = 512;
 type Quotient = fn(&PivotedQr, usize, &DMatrix<f64>) -> Result<DMatrix<f64>, LinalgError>;
 type Solver = dyn Fn(&DMatrix<f64>) -> Result<DMatrix<f64>, LinalgError>;
 
-/// A generalised inverse of the laser side, D^# = Vᵀ S with as many rows of V and S as it has directions.
+/// A generalised inverse of the laser side, D^# = Vᵀ S with as many rows of V and S as it has
+/// directions.
 pub(super) struct Inverse {
     /// X = Φ D^# of any rows of Φ.
     apply: Box<Solver>,
@@ -104,7 +107,8 @@ impl Inverse {
         }
     }
 
-    /// From a solver of X D = B for any B (rows of l entries) that rests on the QR of Dᵀ, cut at the given rank; D^# is its answer for the unit matrix.
+    /// From a solver of X D = B for any B (rows of l entries) that rests on the QR of Dᵀ, cut at
+    /// the given rank; D^# is its answer for the unit matrix.
     fn solved(
         problem: &Problem<'_>,
         options: &Options,
@@ -174,7 +178,8 @@ fn whole(options: &Options) -> bool {
     options.uncertainty == Uncertainty::Full
 }
 
-/// The inverse of a method that works pixel by pixel; what `problem` holds of Φ serves the choice of a parameter that is not given.
+/// The inverse of a method that works pixel by pixel; what `problem` holds of Φ serves the choice
+/// of a parameter that is not given.
 pub(super) fn inverse(
     method: Method,
     problem: &Problem<'_>,

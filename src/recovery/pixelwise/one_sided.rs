@@ -1,10 +1,14 @@
 //! Inverses that exist from one side only.
 //!
-//! * left: D_L = (DᵀD)⁻¹Dᵀ, D_L D = 1, where the columns of D (spots) are independent, so with no more spots than elements;
-//! * right: D_R = Dᵀ(DDᵀ)⁻¹, D D_R = 1, where its rows (elements) are, so with no more elements than spots.
+//! * left: D_L = (DᵀD)⁻¹Dᵀ, D_L D = 1, where the columns of D (spots) are independent, so with no
+//!   more spots than elements;
+//! * right: D_R = Dᵀ(DDᵀ)⁻¹, D D_R = 1, where its rows (elements) are, so with no more elements
+//!   than spots.
 //!
-//! Neither product is formed, which would square the condition. Both are D⁺ where they exist, D_L giving the one exact solution of X D = Φ of least
-//! norm and D_R the one solution of least squares, and both come from the pivoted QR of Dᵀ; unlike `pinv` these methods refuse where they do not exist.
+//! Neither product is formed, which would square the condition. Both are D⁺ where they exist, D_L
+//! giving the one exact solution of X D = Φ of least norm and D_R the one solution of least
+//! squares, and both come from the pivoted QR of Dᵀ; unlike `pinv` these methods refuse where they
+//! do not exist.
 
 use super::{Inverse, Quotient, decompose};
 use crate::num::linalg::{PivotedQr, cut, pivoted_qr_to};
@@ -56,8 +60,8 @@ mod tests {
     use crate::recovery::bench::Bench;
     use crate::recovery::recover as by_method;
 
-    /// The laws D_L D = 1 and D D_R = 1 and, both being D⁺, the four Penrose conditions, through the map Φ → X of the method itself:
-    /// with C = 1 and one pixel, Φ = e_l gives row l of D^#.
+    /// The laws D_L D = 1 and D D_R = 1 and, both being D⁺, the four Penrose conditions, through
+    /// the map Φ → X of the method itself: with C = 1 and one pixel, Φ = e_l gives row l of D^#.
     #[test]
     fn each_inverts_from_its_side() {
         let bench = Bench::new(6.0, 3, 1);
@@ -95,7 +99,8 @@ mod tests {
         let bench = Bench::new(3.0, 8, 2);
         let phi = bench.phi(&bench.board(2));
         let problem = Problem::new(&phi, &bench.c, &bench.d, None).unwrap();
-        // 64 elements under 120 spots: never a left inverse; a right one only if no direction is lost in rounding.
+        // 64 elements under 120 spots: never a left inverse; a right one only if no direction is
+        // lost in rounding.
         for (method, needed) in [(Method::LeftInverse, 120), (Method::RightInverse, 64)] {
             let error = by_method(method, &problem, &Options::default()).unwrap_err();
             let said = error.to_string();

@@ -1,11 +1,14 @@
 //! Φ/D as matrix languages divide by a matrix that is not square.
 //!
-//! X D = Φ ⇔ Dᵀ Xᵀ = Φᵀ, in the least-squares sense, by a QR of Dᵀ with column pivoting. Entries of R's diagonal at or below
-//! max(r, l) · eps · |R₁₁| count as zero (the tolerance that MATLAB prints when it warns of rank deficiency), which gives the rank k. Then
+//! X D = Φ ⇔ Dᵀ Xᵀ = Φᵀ, in the least-squares sense, by a QR of Dᵀ with column pivoting. Entries of
+//! R's diagonal at or below max(r, l) · eps · |R₁₁| count as zero (the tolerance that MATLAB prints
+//! when it warns of rank deficiency), which gives the rank k. Then
 //!
-//! * `rdivide`: the basic solution, as MATLAB: only k elements, those of the first k pivots, differ from zero in any pixel;
-//! * `rdivide-min-norm`: the solution of least norm, as Octave and LAPACK's `gelsy`. (`gelsy` itself decides the rank by an estimate of the
-//!   condition of R; here both share one rank, so that they differ in nothing but the solution chosen.)
+//! * `rdivide`: the basic solution, as MATLAB: only k elements, those of the first k pivots, differ
+//!   from zero in any pixel;
+//! * `rdivide-min-norm`: the solution of least norm, as Octave and LAPACK's `gelsy`. (`gelsy`
+//!   itself decides the rank by an estimate of the condition of R; here both share one rank, so
+//!   that they differ in nothing but the solution chosen.)
 
 use super::{Inverse, Quotient, decompose};
 use crate::num::linalg::{PivotedQr, Tolerance, pivoted_qr_to};
@@ -57,8 +60,9 @@ mod tests {
 
     #[test]
     fn a_system_solved_by_hand() {
-        // Two equal elements of weight 2 and one of weight 1, three equal spots: X D = Φ sees 2 x₁ + 2 x₂ + x₃ = 9 only.
-        // Basic: the first longest row of D takes it all, x = (4.5, 0, 0); least norm: 9 (2, 2, 1)/9.
+        // Two equal elements of weight 2 and one of weight 1, three equal spots: X D = Φ sees 2
+        // x₁ + 2 x₂ + x₃ = 9 only. Basic: the first longest row of D takes it all, x = (4.5, 0,
+        // 0); least norm: 9 (2, 2, 1)/9.
         let d = DMatrix::from_fn(3, 3, |j, _| [2.0, 2.0, 1.0][j]);
         let c = DMatrix::from_element(1, 3, 1.0);
         let phi = DMatrix::from_element(1, 3, 9.0);
@@ -75,7 +79,8 @@ mod tests {
         }
     }
 
-    /// On the bench, deficient in rounding: at most rank non-zeros, and what is left over of Φ is the same for both.
+    /// On the bench, deficient in rounding: at most rank non-zeros, and what is left over of Φ is
+    /// the same for both.
     #[test]
     fn basic_and_least_norm_differ_only_in_the_solution() {
         let bench = Bench::new(3.0, 8, 8);
@@ -97,7 +102,8 @@ mod tests {
             assert_eq!(basic.rank, least.rank);
             let used = basic.reflectance.iter().filter(|x| **x != 0.0).count();
             assert!(used <= basic.rank, "{used} {}", basic.rank);
-            // At the automatic cut rounding is amplified to the size of the solution itself: norms are no longer known.
+            // At the automatic cut rounding is amplified to the size of the solution itself: norms
+            // are no longer known.
             let exact = tolerance != Tolerance::Auto;
             assert!(!exact || least.reflectance.norm() < basic.reflectance.norm());
             assert!(least.reflectance.iter().all(|x| *x != 0.0));

@@ -2,8 +2,8 @@
 //!
 //! > D^# = Σ_i f_i v_i s_iᵀ
 //!
-//! with orthonormal v_i in the space of the spots. Of D = U Σ Vᵀ itself v_i are its right singular vectors and s_i = u_i/σ_i; a penalty other
-//! than the norm of X has directions of its own.
+//! with orthonormal v_i in the space of the spots. Of D = U Σ Vᵀ itself v_i are its right singular
+//! vectors and s_i = u_i/σ_i; a penalty other than the norm of X has directions of its own.
 
 use nalgebra::DMatrix;
 
@@ -17,7 +17,8 @@ pub(in crate::recovery) struct Spectrum {
     pub(in crate::recovery) image: DMatrix<f64>,
     /// s_i as rows, k × r.
     pub(in crate::recovery) solution: DMatrix<f64>,
-    /// Singular values of the directions after the free ones, descending; those beyond k were dropped.
+    /// Singular values of the directions after the free ones, descending; those beyond k were
+    /// dropped.
     pub(in crate::recovery) sigma: Vec<f64>,
     /// How many directions come first that no penalty reaches.
     pub(in crate::recovery) free: usize,

@@ -1,7 +1,8 @@
 //! Photographs that are never held at once.
 //!
-//! ρ_j = (1/p) Σ_p X\[p,j\]/C\[p,j\] and its standard error are sums over pixels, and D^# knows nothing of Φ: some rows of Φ, C and the standard errors
-//! after the other are enough. What is held is one strip, D with its decomposition, and for standard errors a matrix of spots × elements.
+//! ρ_j = (1/p) Σ_p X\[p,j\]/C\[p,j\] and its standard error are sums over pixels, and D^# knows
+//! nothing of Φ: some rows of Φ, C and the standard errors after the other are enough. What is held
+//! is one strip, D with its decomposition, and for standard errors a matrix of spots × elements.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -22,12 +23,14 @@ pub struct Strip {
     pub stderr: Option<DMatrix<f64>>,
 }
 
-/// Recovers as [`recover`](crate::recovery::recover) does, from strips that follow each other: `strip`(p) gives rows of pixels from p on, `None` where there
-/// are no more. All of them are asked for twice, the second time for the residual. There is no covariance and no resolution matrix.
+/// Recovers as [`recover`](crate::recovery::recover) does, from strips that follow each other:
+/// `strip`(p) gives rows of pixels from p on, `None` where there are no more. All of them are asked
+/// for twice, the second time for the residual. There is no covariance and no resolution matrix.
 ///
 /// # Errors
-/// Those of [`recover`](crate::recovery::recover), and of `strip`; [`RecoveryError::NotForMethod`] for a method that needs all of Φ at once: the joint ones, and `tsvd`,
-/// `tikhonov` and `tikhonov-gradient` where their parameter is not given.
+/// Those of [`recover`](crate::recovery::recover), and of `strip`; [`RecoveryError::NotForMethod`]
+/// for a method that needs all of Φ at once: the joint ones, and `tsvd`, `tikhonov` and
+/// `tikhonov-gradient` where their parameter is not given.
 pub fn recover_strips<E: From<RecoveryError>>(
     method: Method,
     d: &DMatrix<f64>,

@@ -41,7 +41,8 @@ mod tests {
         }
     }
 
-    /// Noise so small beside the signal in every direction that even σ_last/1000 damps too much: what is left of the signal is (λ/σ)⁴ of its square.
+    /// Noise so small beside the signal in every direction that even σ_last/1000 damps too much:
+    /// what is left of the signal is (λ/σ)⁴ of its square.
     #[test]
     fn the_damping_is_as_small_as_the_noise_asks_for() {
         let bench = Bench::new(6.0, 2, 8);

@@ -70,7 +70,8 @@ mod tests {
             let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
             let found = recover(Method::Tsvd, &problem, &Options::default()).unwrap();
             let [residual, target, limit] = discrepancy(&found);
-            // Within the scatter allowed above; below by the same few standard deviations (1.2 % of the square each).
+            // Within the scatter allowed above; below by the same few standard deviations (1.2 % of
+            // the square each).
             assert!(
                 residual <= limit && residual > target * 0.97,
                 "{noise}: {residual:e} {target:e}"

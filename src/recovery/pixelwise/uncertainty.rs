@@ -1,4 +1,5 @@
-//! What noise and regularisation do to the mean over pixels ρ̂_j = (1/p) Σ_pl Φ\[p,l\] D^#\[l,j\]/C\[p,j\].
+//! What noise and regularisation do to the mean over pixels ρ̂_j = (1/p) Σ_pl Φ\[p,l\]
+//! D^#\[l,j\]/C\[p,j\].
 
 use nalgebra::{DMatrix, DVector};
 
@@ -7,7 +8,8 @@ use crate::num::linalg::{LinalgError, Tolerance, cut, product, svd_to, tr_produc
 /// Elements whose sums are held at once.
 const ELEMENTS: usize = 256;
 
-/// Standard errors for independent entries: var ρ̂_j = Σ_pl σ²\[p,l\] (D^#\[l,j\]/(p C\[p,j\]))², D^# = Vᵀ S. Cost p·l·r, memory that of Φ.
+/// Standard errors for independent entries: var ρ̂_j = Σ_pl σ²\[p,l\] (D^#\[l,j\]/(p C\[p,j\]))²,
+/// D^# = Vᵀ S. Cost p·l·r, memory that of Φ.
 pub(super) fn standard_error(
     stderr: &DMatrix<f64>,
     (data, solution): (&DMatrix<f64>, &DMatrix<f64>),
@@ -35,8 +37,9 @@ pub(super) fn standard_error(
 ///
 /// > cov_jk = (1/p²) Σ_l D^#\[l,j\] D^#\[l,k\] Σ_p σ²\[p,l\]/(C\[p,j\] C\[p,k\])
 ///
-/// The sums as they stand cost p·l·r². 1/C is smooth in p and j, so its columns, scaled to norm 1, are U T with few (k) orthonormal columns to
-/// rounding, and Σ_p σ² … = Tᵀ (Uᵀ diag(σ²_l) U) T: l·(p·k² + k²·r + k·r²) operations.
+/// The sums as they stand cost p·l·r². 1/C is smooth in p and j, so its columns, scaled to norm 1,
+/// are U T with few (k) orthonormal columns to rounding, and Σ_p σ² … = Tᵀ (Uᵀ diag(σ²_l) U) T:
+/// l·(p·k² + k²·r + k·r²) operations.
 pub(super) fn covariance(
     stderr: &DMatrix<f64>,
     sharp: &DMatrix<f64>,
@@ -75,7 +78,8 @@ pub(super) fn covariance(
     }))
 }
 
-/// The resolution matrix R of E ρ̂ = R ρ, r × r: R_jk = (D D^#)_kj · (1/p) Σ_p C\[p,k\]/C\[p,j\]. Cost p·r².
+/// The resolution matrix R of E ρ̂ = R ρ, r × r: R_jk = (D D^#)_kj · (1/p) Σ_p C\[p,k\]/C\[p,j\].
+/// Cost p·r².
 pub(super) fn resolution(c: &DMatrix<f64>, product: &DMatrix<f64>) -> DMatrix<f64> {
     let share = tr_product(&c.map(|x| 1.0 / x), c) / c.nrows() as f64;
     share.component_mul(&product.transpose())
@@ -139,7 +143,8 @@ mod tests {
         assert!((diagonal.component_div(&errors)).add_scalar(-1.0).amax() < 1e-12);
     }
 
-    /// z² = (ρ̂ − Rρ)ᵀ cov⁻¹ (ρ̂ − Rρ) is χ² of as many degrees as the covariance has rank, for every method.
+    /// z² = (ρ̂ − Rρ)ᵀ cov⁻¹ (ρ̂ − Rρ) is χ² of as many degrees as the covariance has rank, for
+    /// every method.
     #[test]
     fn noise_spreads_the_estimate_by_its_covariance() {
         let bench = Bench::new(6.0, 2, 3);

@@ -1,12 +1,14 @@
 //! Morozov's discrepancy principle with equivalent degrees of freedom.
 //!
-//! A regularised inverse with filter factors f_i maps Φ to Φ P, P = Σ f_i v_i v_iᵀ (v_i the right singular vectors of D). Of independent noise with
-//! variances σ²\[p,l\] it leaves over
+//! A regularised inverse with filter factors f_i maps Φ to Φ P, P = Σ f_i v_i v_iᵀ (v_i the right
+//! singular vectors of D). Of independent noise with variances σ²\[p,l\] it leaves over
 //!
 //! > target² = Σ_pl σ²\[p,l\] (1 − P_ll),
 //!
-//! exactly E‖N(1 − P)‖² where directions are kept or dropped, and for damped ones the equivalent-degrees-of-freedom form of it (Hall and Titterington 1987),
-//! whose root exists in expectation. ‖N(1 − P)‖² scatters about it by at most √(2 Σ σ⁴ (1 − P_ll)); two of those are allowed:
+//! exactly E‖N(1 − P)‖² where directions are kept or dropped, and for damped ones the
+//! equivalent-degrees-of-freedom form of it (Hall and Titterington 1987), whose root exists in
+//! expectation. ‖N(1 − P)‖² scatters about it by at most √(2 Σ σ⁴ (1 − P_ll)); two of those are
+//! allowed:
 //!
 //! > ‖Φ P − Φ‖² ≤ limit² = target² + 2 √(2 Σ σ⁴ (1 − P_ll))
 //!
@@ -50,7 +52,8 @@ impl Level {
 }
 
 impl<'s> Discrepancy<'s> {
-    /// For filters on the directions of `spectrum`. Errors name `parameter` as what could be given instead.
+    /// For filters on the directions of `spectrum`. Errors name `parameter` as what could be given
+    /// instead.
     pub(in crate::recovery) fn new(
         method: Method,
         parameter: &'static str,
@@ -127,7 +130,8 @@ mod tests {
     use crate::num::linalg::svd;
     use crate::recovery::bench::{Bench, normal_stream};
 
-    /// The target is the mean of ‖N(1 − P)‖² over noise, and two allowed deviations cover at least 95 of 100 draws.
+    /// The target is the mean of ‖N(1 − P)‖² over noise, and two allowed deviations cover at least
+    /// 95 of 100 draws.
     #[test]
     fn target_and_limit_describe_pure_noise() {
         let bench = Bench::new(3.0, 4, 4);

@@ -1,12 +1,15 @@
 //! Generalised cross-validation (Golub, Heath and Wahba 1979).
 //!
-//! Each entry of Φ is predicted from the others; the mean square of what is missed, made independent of the choice of axes, is
+//! Each entry of Φ is predicted from the others; the mean square of what is missed, made
+//! independent of the choice of axes, is
 //!
 //! > V = (‖Φ P − Φ‖²/(p l)) / (1 − tr P/l)²,
 //!
-//! P = Σ f_i v_i v_iᵀ the projector that all p pixels share, and the least V is taken. It needs no noise model. It takes the errors of the entries
-//! as independent and equal; so do the estimates themselves, which weigh all entries alike, and no weights are used here either. Where the errors are
-//! smaller in the weak directions than in the strong ones, as those of Monte Carlo are, it therefore keeps too many directions.
+//! P = Σ f_i v_i v_iᵀ the projector that all p pixels share, and the least V is taken. It needs no
+//! noise model. It takes the errors of the entries as independent and equal; so do the estimates
+//! themselves, which weigh all entries alike, and no weights are used here either. Where the errors
+//! are smaller in the weak directions than in the strong ones, as those of Monte Carlo are, it
+//! therefore keeps too many directions.
 
 use super::{Data, search};
 use crate::recovery::Choice;
@@ -31,7 +34,8 @@ impl Data<'_> {
         }
     }
 
-    /// The truncation with the least V that leaves a degree of freedom; `None` for a single spot, which leaves none.
+    /// The truncation with the least V that leaves a degree of freedom; `None` for a single spot,
+    /// which leaves none.
     pub(in crate::recovery) fn kept_by_gcv(&self) -> Option<(usize, Choice)> {
         let most = self.spectrum.len().min(self.spots as usize - 1);
         let score = |kept: &usize| self.predicted(&self.spectrum.truncated(*kept));
@@ -59,8 +63,9 @@ mod tests {
     use crate::recovery::rule::{Data, Rule};
     use crate::recovery::{Choice, Method, Options, Problem, recover};
 
-    /// Where the projector has equal diagonal entries, as that of a circulant D has, V is ordinary cross-validation: each entry is left out in turn,
-    /// the damped problem solved without it, and the entry predicted.
+    /// Where the projector has equal diagonal entries, as that of a circulant D has, V is ordinary
+    /// cross-validation: each entry is left out in turn, the damped problem solved without it, and
+    /// the entry predicted.
     #[test]
     fn it_is_the_error_of_entries_left_out() {
         let n = 9;
@@ -162,7 +167,8 @@ mod tests {
             },
             _ => Options::default(),
         };
-        // Whatever its rows, C with one relative profile c̄ leaves D^# the same but for scale: X = ρ ∘ C for one pixel.
+        // Whatever its rows, C with one relative profile c̄ leaves D^# the same but for scale: X =
+        // ρ ∘ C for one pixel.
         let pixels = problem.c.nrows() as f64;
         let mean = DMatrix::from_fn(1, problem.c.ncols(), |_, j| {
             problem.c.column(j).sum() / pixels

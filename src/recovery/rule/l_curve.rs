@@ -1,12 +1,14 @@
 //! The corner of the L-curve (Hansen and O'Leary 1993).
 //!
-//! Over log ‖residual‖ the curve log ‖solution‖ is steep where noise is amplified and flat where signal is lost; the parameter at the corner between is
-//! taken. It needs no noise model.
+//! Over log ‖residual‖ the curve log ‖solution‖ is steep where noise is amplified and flat where
+//! signal is lost; the parameter at the corner between is taken. It needs no noise model.
 //!
-//! * damping: the point of largest curvature κ = (a′b″ − a″b′)/(a′² + b′²)^{3/2}, a = ½ log ‖Φ P − Φ‖² and b = ½ log ‖X‖² as functions of t = log λ
-//!   between the smallest and the largest singular value, with the derivatives in closed form from f = σ²/(σ² + λ²), df/dt = −2 f (1 − f);
-//! * truncation, whose curve is a row of points P_k: the vertex of the sharpest triangle (P_j, P_k, P_n), j < k < n, n the last point, among those
-//!   that turn the way of an L by more than π/8 (Castellanos, Gómez and Guerra 2002).
+//! * damping: the point of largest curvature κ = (a′b″ − a″b′)/(a′² + b′²)^{3/2}, a = ½ log ‖Φ P −
+//!   Φ‖² and b = ½ log ‖X‖² as functions of t = log λ between the smallest and the largest singular
+//!   value, with the derivatives in closed form from f = σ²/(σ² + λ²), df/dt = −2 f (1 − f);
+//! * truncation, whose curve is a row of points P_k: the vertex of the sharpest triangle (P_j, P_k,
+//!   P_n), j < k < n, n the last point, among those that turn the way of an L by more than π/8
+//!   (Castellanos, Gómez and Guerra 2002).
 
 use std::f64::consts::PI;
 
@@ -57,7 +59,8 @@ impl Data<'_> {
         (turn > 0.0).then(|| (lambda, self.l_curve(&filter, turn)))
     }
 
-    /// The truncation at the corner; `None` where there is none. As many directions as spots leave no residual and so no point.
+    /// The truncation at the corner; `None` where there is none. As many directions as spots leave
+    /// no residual and so no point.
     pub(in crate::recovery) fn kept_by_l_curve(&self) -> Option<(usize, Choice)> {
         let point = |kept: usize| {
             let filter = self.spectrum.truncated(kept);
@@ -75,7 +78,8 @@ impl Data<'_> {
     }
 }
 
-/// The corner of a row of points that runs to the left and up, and by how much it turns there (rad).
+/// The corner of a row of points that runs to the left and up, and by how much it turns there
+/// (rad).
 fn corner(points: &[[f64; 2]]) -> Option<(usize, f64)> {
     let whole = |p: &[f64; 2]| p.iter().all(|x| x.is_finite());
     let last = points.iter().rposition(whole)?;
@@ -116,7 +120,8 @@ mod tests {
         let laser = svd(&bench.d).unwrap();
         let spectrum = Spectrum::of(&laser, 20);
         let data = Data::new(&problem, &spectrum);
-        // The curve by solving the damped normal equations, (DDᵀ + λ²) X = DΦᵀ; curvature by differences of its points.
+        // The curve by solving the damped normal equations, (DDᵀ + λ²) X = DΦᵀ; curvature by
+        // differences of its points.
         let point = |t: f64| {
             let filter = spectrum.damped(libm::exp(t));
             let (data, solution) = spectrum.factors(&filter);

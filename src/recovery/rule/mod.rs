@@ -14,11 +14,12 @@ use crate::num::linalg::{product, subtract_product};
 /// How the parameter of `tsvd`, `tikhonov` and `tikhonov-gradient` is chosen where it is not given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Rule {
-    /// Morozov's discrepancy principle: the strongest regularisation whose residual the noise explains. Needs the standard errors of Φ.
+    /// Morozov's discrepancy principle: the strongest regularisation whose residual the noise
+    /// explains. Needs the standard errors of Φ.
     #[default]
     Discrepancy,
-    /// Generalised cross-validation: the regularisation that best predicts entries left out. Needs no noise model; takes the errors as equal
-    /// and independent.
+    /// Generalised cross-validation: the regularisation that best predicts entries left out. Needs
+    /// no noise model; takes the errors as equal and independent.
     Gcv,
     /// The corner of the L-curve, log ‖solution‖ over log ‖residual‖. Needs no noise model.
     LCurve,
@@ -78,7 +79,8 @@ impl<'s> Data<'s> {
         self.outside + missed.map(|(z, f)| z * (1.0 - f) * (1.0 - f)).sum::<f64>()
     }
 
-    /// Square of what is penalised: ‖X‖², or ‖X diag(c̄)⁻¹ Lᵀ‖² of `tikhonov-gradient`; Σ (f_i/σ_i)² ‖Φ v_i‖² over the directions that are filtered.
+    /// Square of what is penalised: ‖X‖², or ‖X diag(c̄)⁻¹ Lᵀ‖² of `tikhonov-gradient`; Σ
+    /// (f_i/σ_i)² ‖Φ v_i‖² over the directions that are filtered.
     fn penalty(&self, filter: &[f64]) -> f64 {
         let free = self.spectrum.free;
         let directions = self.along[free..].iter().zip(&filter[free..]);

@@ -1,14 +1,14 @@
 //! The recoveries with sliders over method, regularisation and noise.
 //!
-//! What stands here is the frame: controls and read-out, which `slides.js` fills. Without script nothing of it is seen, and the pictures of
-//! [`recoveries`](super::recoveries) stay.
+//! What stands here is the frame: controls and read-out, which `slides.js` fills. Without script
+//! nothing of it is seen, and the pictures of [`recoveries`](super::recoveries) stay.
 
 use serde_json::{Value, json};
 
 use super::super::page::{Packed, Page, Precision, explained, meaning, term};
 use super::super::svg::escape;
+use crate::lab::{Gallery, Picture, RunResults, Series};
 use crate::recovery::Parameter;
-use crate::study::{Gallery, Picture, RunResults, Series};
 
 /// The frame of the gallery, its data in `page`; nothing where there is none.
 pub(in super::super) fn slides(page: &mut Page, results: &RunResults) -> String {
@@ -32,10 +32,12 @@ pub(in super::super) fn slides(page: &mut Page, results: &RunResults) -> String 
     frame(gallery) + &left_out
 }
 
-/// Indices of the pictures of a series, noise by noise and step by step; none where there is no picture.
+/// Indices of the pictures of a series, noise by noise and step by step; none where there is no
+/// picture.
 type Places = Vec<Vec<Option<usize>>>;
 
-/// The truth of all surfaces, then the pictures one after the other; and for each series, noise and step the index of its picture, truth being 0.
+/// The truth of all surfaces, then the pictures one after the other; and for each series, noise and
+/// step the index of its picture, truth being 0.
 fn packed(gallery: &Gallery) -> (Vec<f64>, Vec<Places>) {
     let truth = gallery
         .surfaces
@@ -189,11 +191,11 @@ fn frame(gallery: &Gallery) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::sample;
     use super::super::super::svg::well_formed;
     use super::*;
+    use crate::lab::sample;
+    use crate::lab::{Automatic, GallerySurface, Measures};
     use crate::recovery::Method;
-    use crate::study::{Automatic, GallerySurface, Measures};
 
     fn picture(values: &[f64], raw: Option<f64>) -> Option<Picture> {
         let measures = Measures {
@@ -209,7 +211,8 @@ mod tests {
         })
     }
 
-    /// Two surfaces, the second of triangles; two noises; a method with two steps, and one that gives nothing with noise.
+    /// Two surfaces, the second of triangles; two noises; a method with two steps, and one that
+    /// gives nothing with noise.
     fn gallery() -> Gallery {
         let surface = |name: &str, cells, truth: &[f64]| GallerySurface {
             name: name.to_owned(),

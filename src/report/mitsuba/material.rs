@@ -5,8 +5,9 @@ use crate::geometry::DVec3;
 use crate::scene::material::Material;
 use crate::scene::{Surface, Texture};
 
-/// Polar angles of incidence and of reflection and the azimuth between the directions, in degrees, of the values that the program compares: along the
-/// normal, into the mirror and beside it, back, grazing, and out of the plane.
+/// Polar angles of incidence and of reflection and the azimuth between the directions, in degrees,
+/// of the values that the program compares: along the normal, into the mirror and beside it, back,
+/// grazing, and out of the plane.
 const ANGLES: [[f64; 3]; 12] = [
     [0.0, 0.0, 0.0],
     [0.0, 50.0, 0.0],
@@ -53,7 +54,8 @@ pub(super) fn literal(material: &Material, surface: &str) -> Result<String, Mits
     })
 }
 
-/// The surface's BRDF where its albedo is largest; nothing if it is Lambertian, for that is nothing to compare.
+/// The surface's BRDF where its albedo is largest; nothing if it is Lambertian, for that is nothing
+/// to compare.
 pub(super) fn values(surface: &Surface) -> String {
     if surface.is_lambertian() {
         return String::new();

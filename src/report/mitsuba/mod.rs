@@ -1,7 +1,9 @@
 //! A scene as a program for another renderer: Mitsuba 3.
 //!
-//! The file holds the scene as Python literals between the head of a program and its body, which are the same for every scene (`head.py`, which says
-//! how each part is translated, then `surfaces.py`, `materials.py`, `light.py`, `camera.py`). Coordinates stay the scene's own, in f64.
+//! The file holds the scene as Python literals between the head of a program and its body, which
+//! are the same for every scene (`head.py`, which says how each part is translated, then
+//! `surfaces.py`, `materials.py`, `light.py`, `camera.py`). Coordinates stay the scene's own, in
+//! f64.
 
 mod material;
 mod spot;
@@ -34,8 +36,8 @@ pub enum MitsubaError {
     },
 }
 
-/// A Python program that renders Φcam of `scene` with Mitsuba 3, in W, on an absolute scale; its usage stands in its first
-/// lines.
+/// A Python program that renders Φcam of `scene` with Mitsuba 3, in W, on an absolute scale; its
+/// usage stands in its first lines.
 ///
 /// # Errors
 /// [`MitsubaError`] for a material that Mitsuba cannot have.

@@ -5,7 +5,8 @@ use crate::geometry::{Basis, DVec3, Ray, ShapeId};
 use crate::num::warp;
 use crate::scene::{Laser, Profile, Scene, Spot};
 
-/// A spot that does not fall whole on one flat surface of one albedo is SIDE² points of equal power.
+/// A spot that does not fall whole on one flat surface of one albedo is SIDE² points of equal
+/// power.
 pub(super) const SIDE: usize = 32;
 /// A Gaussian ends here, in units of its radius w: exp(−2·3²) = 1.5e-8 of the peak.
 const CUT: f64 = 3.0;

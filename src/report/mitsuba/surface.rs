@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 
-use base64::prelude::{BASE64_STANDARD, Engine};
-
+use super::super::encode::base64;
 use super::{MitsubaError, material, text, triple};
-use crate::geometry::{Basis, Body, Facing, Mesh, Shape, Side};
+use crate::geometry::{Basis, Facing, Instance, Mesh, Shape, Side};
 use crate::scene::{Cells, Scene, Surface, Texture, Wrap};
 
 /// MESHES and SURFACES: surfaces that share a mesh share its data.
@@ -15,7 +14,7 @@ pub(super) fn literals(scene: &Scene) -> Result<(String, String), MitsubaError> 
     for (i, s) in scene.surfaces.iter().enumerate() {
         let mut shape = shape(&s.shape);
         match &s.shape {
-            Shape::Body(body) => {
+            Shape::Instance(body) => {
                 let known = meshes.iter().position(|m| Arc::ptr_eq(m, body.mesh()));
                 let number = known.unwrap_or_else(|| {
                     meshes.push(body.mesh());
@@ -47,7 +46,7 @@ pub(super) fn literals(scene: &Scene) -> Result<(String, String), MitsubaError> 
     let varies = |m: &Arc<Mesh>| {
         scene.surfaces.iter().any(|s| {
             let constant = matches!(s.albedo, Texture::Constant(_));
-            matches!(&s.shape, Shape::Body(b) if Arc::ptr_eq(m, b.mesh())) && !constant
+            matches!(&s.shape, Shape::Instance(b) if Arc::ptr_eq(m, b.mesh())) && !constant
         })
     };
     let mesh = |m: &&Arc<Mesh>| mesh(m, m.uv().filter(|_| varies(m)));
@@ -84,7 +83,7 @@ fn shape(shape: &Shape) -> String {
                 triple(basis.t)
             )
         }
-        Shape::Body(b) => {
+        Shape::Instance(b) => {
             let place = b.placement();
             let axes = [
                 place.matrix3.x_axis,
@@ -106,7 +105,7 @@ fn shape(shape: &Shape) -> String {
 
 /// One entry of MESHES, with texture coordinates if they are given.
 fn mesh(mesh: &Mesh, uv: Option<&[[[f32; 2]; 3]]>) -> String {
-    let encode = |bytes: Vec<u8>| BASE64_STANDARD.encode(bytes);
+    let encode = |bytes: Vec<u8>| base64(&bytes);
     let positions = mesh.positions().iter().flat_map(|p| p.to_array());
     let positions = encode(positions.flat_map(f64::to_le_bytes).collect());
     let triangles = mesh.triangles().iter().flatten();
@@ -120,8 +119,8 @@ fn mesh(mesh: &Mesh, uv: Option<&[[[f32; 2]; 3]]>) -> String {
 }
 
 /// The number of the surface whose front is the back of mesh `i`, and what that is to it.
-fn other_side(scene: &Scene, i: usize, body: &Body) -> Option<(&'static str, usize)> {
-    let turned = Shape::Body(body.turned());
+fn other_side(scene: &Scene, i: usize, body: &Instance) -> Option<(&'static str, usize)> {
+    let turned = Shape::Instance(body.turned());
     let other = scene.surfaces.iter().position(|t| t.shape == turned)?;
     Some((if i < other { "back" } else { "back_of" }, other))
 }

@@ -141,7 +141,8 @@ fn albedos_are_written_as_they_are() {
     assert_eq!(of(BOARD), "(\"checkerboard\", (2, 2, 0.0, 1.0))},");
     assert_eq!(of("0.25"), "(\"constant\", 0.25)},");
     assert_eq!(of("{ ramp = [0.1, 1] }"), "(\"ramp\", (0.1, 1.0))},");
-    // One column alternates along v only: not told apart from cells, but never taken for a board of two columns.
+    // One column alternates along v only: not told apart from cells, but never taken for a board of
+    // two columns.
     assert_eq!(
         of("{ cells = [[0.1], [0.3]] }"),
         "(\"cells\", [[0.1], [0.3]])},"
@@ -181,8 +182,9 @@ fn a_whole_spot_is_one_emitter_and_a_cut_one_is_many() {
         assert!((got[0] - 6.0).abs() < 1e-13 && (got[1] - 9.0).abs() < 1e-13);
         assert_eq!(got[3..], [0.0, 0.0, 1.0, 0.8, 1.0]);
     }
-    // A disc of radius 1 with its centre 0.5 inside the edge: the segment beyond it is π/3 − √3/4 of π. Midpoints of equal
-    // areas miss it by less than the cells that the chord √3 cuts, some 2·√3·SIDE/√π of SIDE².
+    // A disc of radius 1 with its centre 0.5 inside the edge: the segment beyond it is π/3 − √3/4
+    // of π. Midpoints of equal areas miss it by less than the cells that the chord √3 cuts, some
+    // 2·√3·SIDE/√π of SIDE².
     let script = wide_spot(0.5, "disc", "");
     let points = spots(&script)[0].matches("point").count() as f64;
     let pi = std::f64::consts::PI;
@@ -192,7 +194,8 @@ fn a_whole_spot_is_one_emitter_and_a_cut_one_is_many() {
     assert!(points < cells && (points - share * cells).abs() < 0.5 * cut);
 }
 
-/// A plate in the beam takes the light: front up it is lit where the beam meets it, front down it is black.
+/// A plate in the beam takes the light: front up it is lit where the beam meets it, front down it
+/// is black.
 #[test]
 fn the_beam_lands_where_it_lands() {
     let plate = |edges: &str| {
@@ -240,7 +243,8 @@ sides = "two"
 material = { lambertian = { cells = [[0.1, 0.3]] } }
 "#;
 
-/// Two balls, one of them with two sides, are one mesh; its decoded vertices, placed as the line says, are the corners that rays meet.
+/// Two balls, one of them with two sides, are one mesh; its decoded vertices, placed as the line
+/// says, are the corners that rays meet.
 #[test]
 fn meshes_are_written_once_and_whole() {
     let scene = furnished(BALLS);
@@ -270,7 +274,7 @@ fn meshes_are_written_once_and_whole() {
         .collect();
     for name in ["ball", "larger", "larger (back)"] {
         let at = scene.surfaces.iter().position(|s| s.name == name).unwrap();
-        let Shape::Body(body) = &scene.surfaces[at].shape else {
+        let Shape::Instance(body) = &scene.surfaces[at].shape else {
             panic!("{name} is a mesh")
         };
         let line = surface_line(&script, name);
@@ -333,7 +337,8 @@ material = { lambertian = 0.2 }
     assert_eq!(normal("screen (back)"), [0.0, 0.0, -1.0]);
 }
 
-/// f_r along the normal: ρ R D(0)/4 = ρ ((η − 1)² + k²)/((η + 1)² + k²)/(4πα²) of metal; Σ w ρ/π of a mixture of two matt surfaces.
+/// f_r along the normal: ρ R D(0)/4 = ρ ((η − 1)² + k²)/((η + 1)² + k²)/(4πα²) of metal; Σ w ρ/π of
+/// a mixture of two matt surfaces.
 #[test]
 fn materials_are_written_with_values_to_compare() {
     let wall = |material: &str| {
@@ -370,7 +375,8 @@ fn materials_are_written_with_values_to_compare() {
     let (paint, values) = wall("{ coated = 0.8, roughness = 0.01, ior = 1.5 }");
     let figures = numbers(&paint);
     assert_eq!(figures[..2], [0.01, 1.5]);
-    // What a smooth interface of index 1.5 returns of diffuse light from inside is 0.5963 (Duntley's equation).
+    // What a smooth interface of index 1.5 returns of diffuse light from inside is 0.5963
+    // (Duntley's equation).
     assert!((figures[2] - 0.5963).abs() < 5e-3, "{paint}");
     assert_eq!(values.unwrap()[0], 0.8);
 }
@@ -389,7 +395,8 @@ fn what_mitsuba_cannot_have_is_refused_by_name() {
     );
 }
 
-/// On paint a spot is told as a point with its surface and parameters, and a wide one as SIDE² of them.
+/// On paint a spot is told as a point with its surface and parameters, and a wide one as SIDE² of
+/// them.
 #[test]
 fn spots_on_paint_know_their_surface() {
     let paint = BENCH.replace("{ lambertian = 0.8 }", "{ coated = 0.8, roughness = 0.3 }");

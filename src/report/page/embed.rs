@@ -1,6 +1,7 @@
-//! What a page holds of other files: figures that its script makes interactive, and files to be saved, as long as there is room.
+//! What a page holds of other files: figures that its script makes interactive, and files to be
+//! saved, as long as there is room.
 
-use super::super::figure::encoded;
+use super::super::encode::base64;
 use super::super::svg::escape;
 
 /// A page stays below 10 MB; what is not counted (markup, libraries, tables) has the rest.
@@ -54,7 +55,7 @@ impl Room {
             let size = size(bytes.len());
             let link = format!(
                 "<li><a download=\"{name}\" href=\"data:{kind};base64,{}\">{name}</a> ({size})</li>\n",
-                encoded(bytes)
+                base64(bytes)
             );
             html += &match self.takes(&link) {
                 true => link,

@@ -1,11 +1,14 @@
 //! Pages: one HTML file each, which needs no network and no other file.
 //!
-//! A page is readable without its script: figures are SVG, numbers are tables. The script (`script/*.js`, plain JavaScript whose types are checked)
-//! takes what is there and makes it answer: it explores, turns, hides, zooms. What it needs lies in the page as data blocks. Plots and the drawing in three
-//! dimensions are the work of libraries ([`Library`]), bundled from their packages by `tests/browser/vendor.js`, each in the pages that use it.
+//! A page is readable without its script: figures are SVG, numbers are tables. The script
+//! (`script/*.js`, plain JavaScript whose types are checked) takes what is there and makes it
+//! answer: it explores, turns, hides, zooms. What it needs lies in the page as data blocks. Plots
+//! and the drawing in three dimensions are the work of libraries ([`Library`]), bundled from their
+//! packages by `tests/browser/vendor.js`, each in the pages that use it.
 
 mod embed;
 mod packed;
+mod table;
 mod term;
 
 use std::collections::BTreeSet;
@@ -13,12 +16,14 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 
 use super::colour::Map;
-use super::figure::encoded;
+use super::encode::base64;
 use super::look::looks;
 use super::svg::escape;
 
+pub(super) use crate::lab::finding::Tone;
 pub(super) use embed::Room;
 pub(super) use packed::{Packed, Precision};
+pub(super) use table::{bare, framed, table};
 pub(super) use term::{explained, meaning, term};
 
 /// A library that a page may use; each is one script, with its licence beside it.
@@ -70,19 +75,9 @@ const SCRIPT: [&str; 21] = [
 /// The page's own style.
 const STYLE: [&str; 2] = [include_str!("page.css"), include_str!("plots.css")];
 
-/// A picture of 16 × 16 px for the tab: a wall, what leans over it, a spot. A server is asked for none then.
+/// A picture of 16 × 16 px for the tab: a wall, what leans over it, a spot. A server is asked for
+/// none then.
 const ICON: &str = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 16 16\"><path d=\"M1 14h14\" stroke=\"#888\" stroke-width=\"2\"/><path d=\"M8 2l6 6\" stroke=\"#0072b2\" stroke-width=\"2.4\"/><circle cx=\"3.5\" cy=\"12.5\" r=\"2\" fill=\"#d55e00\"/></svg>";
-
-/// How a verdict is marked, beside its words.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Tone {
-    /// What was hoped for.
-    Good,
-    /// What was not.
-    Bad,
-    /// Neither.
-    Plain,
-}
 
 /// A page that grows section by section.
 pub(super) struct Page {
@@ -117,7 +112,8 @@ impl Page {
         self.verdict += &format!("<p class=\"{class}\">{}</p>\n", explained(sentence));
     }
 
-    /// A section: its name in the address, its heading (text) and its HTML. Without HTML there is no section.
+    /// A section: its name in the address, its heading (text) and its HTML. Without HTML there is
+    /// no section.
     pub(super) fn section(&mut self, id: &str, heading: &str, html: &str) {
         if html.is_empty() {
             return;
@@ -129,7 +125,8 @@ impl Page {
 
     /// Values for the script under a name.
     pub(super) fn json(&mut self, id: &str, value: &impl Serialize) {
-        // What serialises to a file serialises here; a block that does not is left out, and the page stays as it is without script.
+        // What serialises to a file serialises here; a block that does not is left out, and the
+        // page stays as it is without script.
         if let Ok(text) = serde_json::to_string(value) {
             // Inside of a script element nothing may look like its end.
             let text = text.replace('<', "\\u003c");
@@ -148,7 +145,8 @@ impl Page {
         self.libraries.insert(library);
     }
 
-    /// Bytes of the page as it is now, without the colour maps and the markup around its parts: a few kB.
+    /// Bytes of the page as it is now, without the colour maps and the markup around its parts: a
+    /// few kB.
     pub(super) fn len(&self) -> usize {
         let parts = [&self.verdict, &self.contents, &self.body, &self.data];
         let own: usize = SCRIPT.iter().chain(&STYLE).map(|text| text.len()).sum();
@@ -177,7 +175,7 @@ impl Page {
              <a class=\"skip\" href=\"#main\">To the content</a>\n<header>\n<h1>{}</h1>\n{}<nav aria-label=\"Contents\"><ul>\n{}</ul></nav>\n</header>\n\
              <main id=\"main\">\n{}</main>\n<footer>\n{licences}</footer>\n{}{libraries}{}</body>\n</html>\n",
             env!("CARGO_PKG_VERSION"),
-            encoded(ICON.as_bytes()),
+            base64(ICON.as_bytes()),
             self.title,
             STYLE.concat(),
             self.title,
@@ -198,7 +196,8 @@ fn script(text: &str) -> String {
     format!("<script>\n{text}</script>\n")
 }
 
-/// The colour maps of the static pictures for those that the script draws: 256 colours each, `#rrggbb` without the sign.
+/// The colour maps of the static pictures for those that the script draws: 256 colours each,
+/// `#rrggbb` without the sign.
 fn colours() -> serde_json::Value {
     let table = |map: Map| -> String {
         (0..256)

@@ -1,22 +1,24 @@
 //! Numbers inside of a page.
 //!
-//! The values, as f64 or as f32 with so many bits of their mantissa, are taken as integers; of these differences along the block are taken none to three times,
-//! whichever packs best (smooth matrices shrink, noise does not); all first bytes come first, then all second ones, and so on; the whole is deflated and written in base64.
-//! `page.js` takes the same steps back.
+//! The values, as f64 or as f32 with so many bits of their mantissa, are taken as integers; of
+//! these differences along the block are taken none to three times, whichever packs best (smooth
+//! matrices shrink, noise does not); all first bytes come first, then all second ones, and so on;
+//! the whole is deflated and written in base64. `page.js` takes the same steps back.
 
 use std::io::Write;
 
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
-use super::super::figure::encoded;
+use super::super::encode::base64;
 
 /// How exactly numbers are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) enum Precision {
     /// All 64 bits.
     Exact,
-    /// As f32 with so many of the 23 bits of its mantissa, rounded to nearest: a relative error of at most 2^−(bits+1).
+    /// As f32 with so many of the 23 bits of its mantissa, rounded to nearest: a relative error of
+    /// at most 2^−(bits+1).
     Single(u32),
 }
 
@@ -56,7 +58,7 @@ impl Packed {
             count: values.len(),
             width,
             order,
-            base64: encoded(&bytes),
+            base64: base64(&bytes),
         }
     }
 
@@ -80,7 +82,8 @@ fn rounded(x: f32, bits: u32) -> u32 {
     if drop == 0 || !x.is_finite() {
         return x.to_bits();
     }
-    // Rounding up may carry into the exponent, which is right: the next binade begins there. To infinity it may not.
+    // Rounding up may carry into the exponent, which is right: the next binade begins there. To
+    // infinity it may not.
     let half = 1u32 << (drop - 1);
     let up = x.to_bits().wrapping_add(half) & !((1u32 << drop) - 1);
     match f32::from_bits(up).is_finite() {
@@ -181,7 +184,8 @@ mod tests {
         assert!(unpacked(&Packed::new(&[f64::NAN], Precision::Exact))[0].is_nan());
     }
 
-    /// Rounding to nearest with n bits behind the leading one: off by at most 2^−(n+1) of the value.
+    /// Rounding to nearest with n bits behind the leading one: off by at most 2^−(n+1) of the
+    /// value.
     #[test]
     fn rounded_numbers_are_as_near_as_their_bits_allow() {
         let values: Vec<f64> = (0..5000)

@@ -91,7 +91,8 @@ const TERMS: [(&str, &str); 22] = [
     ),
 ];
 
-/// Text as HTML, the first use of each word of the field with its explanation: on hover, on focus, and to screen readers.
+/// Text as HTML, the first use of each word of the field with its explanation: on hover, on focus,
+/// and to screen readers.
 pub(in super::super) fn explained(text: &str) -> String {
     let mut out = String::new();
     let mut rest = text;

@@ -1,11 +1,10 @@
-use std::sync::atomic::AtomicBool;
-
 use super::super::encode::decoded;
 use super::super::svg::well_formed;
+use super::super::text::finding_text;
 use super::*;
-use crate::study::reproduce::{
-    Course, FigureAxis, FigureCurve, Item, Plot, ReproducePlan, Source, Verdict, reproduce,
-};
+use crate::lab::finding::Mark;
+use crate::lab::published::{Item, ItemSummary, ReproducePlan, Verdict, reproduce};
+use crate::transport::Control;
 
 fn plan() -> ReproducePlan {
     ReproducePlan {
@@ -15,19 +14,20 @@ fn plan() -> ReproducePlan {
     }
 }
 
-fn computed(item: Item) -> Reproduction {
-    reproduce(item, &plan(), &AtomicBool::new(false)).unwrap()
+fn computed(item: Item) -> Finding {
+    reproduce(item, &plan(), Control::none()).unwrap()
 }
 
 fn file<'a>(files: &'a [(String, Vec<u8>)], name: &str) -> &'a [u8] {
     &files.iter().find(|(n, _)| n == name).unwrap().1
 }
 
-/// Table, figure and page of an item: one line a row, well formed, every printed point on the figure, the verdict of the checks.
+/// Table, figure and page of an item: one line a row, well formed, every printed point on the
+/// figure, the verdict of the checks.
 #[test]
 fn an_item_becomes_files_and_a_page() {
     let r = computed(Item::Table3);
-    let files = reproduction_files(&r).unwrap();
+    let files = reproduction_files(Item::Table3, &r).unwrap();
     let text = |name| std::str::from_utf8(file(&files, name)).unwrap();
     assert_eq!(text("table3.csv").lines().count(), 1 + 26);
     let svg = text("table3.svg");
@@ -49,7 +49,7 @@ fn an_item_becomes_files_and_a_page() {
         );
     }
     let names = files.iter().map(|f| f.0.clone()).collect();
-    let summary = ItemSummary::new(&r, "settings".to_owned(), names);
+    let summary = ItemSummary::new(Item::Table3, &r, "settings".to_owned(), names);
     assert_eq!(summary.verdict, Verdict::Reproduced);
     let settings = ReproductionSettings {
         plan: &plan(),
@@ -68,11 +68,11 @@ fn an_item_becomes_files_and_a_page() {
     let series = json["series"].as_array().unwrap();
     let printed: Vec<_> = series.iter().filter(|s| s["kind"] == "published").collect();
     assert_eq!(printed.len(), 2);
-    let curves = &r.plots[0].curves;
+    let curves = &r.figures[0].plots[0].curves;
     for s in printed {
         let own = curves
             .iter()
-            .find(|c| c.source == Source::Published && c.name == s["name"]);
+            .find(|c| c.mark == Mark::Published && c.name == s["name"]);
         let points: Vec<[f64; 2]> = serde_json::from_value(s["points"].clone()).unwrap();
         assert_eq!(points, own.unwrap().points);
     }
@@ -83,12 +83,13 @@ fn an_item_becomes_files_and_a_page() {
     );
     // First and last line of the printed table, on both pages.
     assert!(markdown.contains("| lower line | 1 | 0.005900 |") && html.contains("<td>1.354</td>"));
-    assert!(reproduction_table(&[summary]).contains("26 of  26"));
+    let text = finding_text(&overview(&[summary]));
+    assert!(text.contains("26 of 26"), "{text}");
 }
 
 #[test]
 fn pictures_are_shown() {
-    let files = reproduction_files(&computed(Item::Fig20)).unwrap();
+    let files = reproduction_files(Item::Fig20, &computed(Item::Fig20)).unwrap();
     for name in ["fig20", "fig20-images", "fig20-images-2"] {
         let svg = std::str::from_utf8(file(&files, &format!("{name}.svg"))).unwrap();
         well_formed(svg).unwrap();
@@ -97,44 +98,5 @@ fn pictures_are_shown() {
         // Two columns of a journal, 180 mm.
         assert!(width == 2126 && height > 500, "{name}: {width} × {height}");
         assert_eq!(png, raster::png(svg).unwrap(), "{name}");
-    }
-}
-
-/// A curve with one step, drawn: there is ink of its colour along the line from point to point and none elsewhere, and what leaves the stated ends of an axis
-/// is on the figure.
-#[test]
-fn a_curve_lies_where_its_points_say() {
-    let curve = FigureCurve {
-        name: "c".to_owned(),
-        source: Source::Computed,
-        points: vec![[0.0, 0.0], [1.0, 2.0]],
-    };
-    let axis = |title: &str| FigureAxis {
-        title: title.to_owned(),
-        course: Course::Linear,
-        ends: [0.0, 1.0],
-    };
-    let plot = Plot {
-        title: "t".to_owned(),
-        axes: [axis("x / m"), axis("y / m")],
-        curves: vec![curve],
-    };
-    let r = Reproduction {
-        plots: vec![plot],
-        galleries: Vec::new(),
-        ..computed(Item::Table3)
-    };
-    let files = reproduction_files(&r).unwrap();
-    let (w, _, pixels) = decoded(file(&files, "table3.png"));
-    // The plotting area in pixels, its axes 3 % longer than the data at each end.
-    let scale = w as f64 / 415.0;
-    let place = |t: f64, side: f64, from: f64| scale * (from + side * (0.03 + t) / 1.06);
-    let blue = |t: f64, u: f64| {
-        let (x, y) = (place(t, 328.0, 74.0), place(1.0 - u, 226.0, 30.0));
-        pixels[3 * (x as usize + y as usize * w)..][..3] == [0x00, 0x72, 0xb2]
-    };
-    for t in [0.0, 0.25, 0.5, 0.75, 1.0] {
-        assert!(blue(t, t), "{t}");
-        assert!(!blue(t, 1.0 - t) || t == 0.5, "{t}");
     }
 }

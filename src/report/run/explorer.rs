@@ -1,16 +1,18 @@
-//! The explorer of Φcam: what of the matrices lies in the page, and what the script must know of them.
+//! The explorer of Φcam: what of the matrices lies in the page, and what the script must know of
+//! them.
 
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::super::page::{Library, Packed, Page, Precision};
+use crate::lab::RunResults;
 use crate::matrix::Matrix;
 use crate::scene::Scene;
-use crate::study::RunResults;
 
 /// What a page may have, bytes: below 10 MB, with room for the words around the last blocks.
 const PAGE: usize = 9_900_000;
-/// What the packed matrices may take in any case; where the rest of a page leaves less, it is too large without them.
+/// What the packed matrices may take in any case; where the rest of a page leaves less, it is too
+/// large without them.
 const LEAST: usize = 500_000;
 /// More positions of spots than this are not in the page.
 const MOST_PLACES: usize = 20_000;
@@ -29,7 +31,8 @@ const PRECISIONS: [[Precision; 4]; 5] = {
     ]
 };
 
-/// The part of Φcam that lies in the page: every pixel and spot, or the middle one of each block of pixels and every so-manieth spot.
+/// The part of Φcam that lies in the page: every pixel and spot, or the middle one of each block of
+/// pixels and every so-manieth spot.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Excerpt {
     /// Every so many columns and rows of the camera.
@@ -98,7 +101,8 @@ pub(super) fn explorer(page: &mut Page, results: &RunResults, fallback: &str) ->
     format!("<div class=\"explorer\">\n{fallback}</div>\n")
 }
 
-/// Puts Φcam, as much of it as the rest of the page leaves room for, and its circumstances into the page: the last of its parts.
+/// Puts Φcam, as much of it as the rest of the page leaves room for, and its circumstances into the
+/// page: the last of its parts.
 pub(super) fn embed(page: &mut Page, results: &RunResults) {
     let phi = &results.phi;
     if phi.is_empty() {
@@ -130,7 +134,7 @@ pub(super) fn embed(page: &mut Page, results: &RunResults) {
         page.numbers(&format!("phi-{name}"), block);
     }
     let about = circumstances(
-        (&results.scene, results.settings.seed),
+        (&results.scene, results.plan.seed),
         &excerpt,
         Ends::of(results),
         precision,
@@ -212,7 +216,8 @@ impl Ends {
     }
 }
 
-/// The element that the script turns into the explorer where a server hands out the matrices; `model` says whether there are modelled ones.
+/// The element that the script turns into the explorer where a server hands out the matrices;
+/// `model` says whether there are modelled ones.
 pub(super) fn served_explorer(page: &mut Page, scene: &Scene, seed: u64, model: bool) -> String {
     let nothing = Excerpt {
         every: 1,
@@ -283,7 +288,8 @@ mod tests {
         assert_eq!(found[..7], [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 10.0]);
     }
 
-    /// Never more entries than asked for, every index within the matrix, each the middle of its block.
+    /// Never more entries than asked for, every index within the matrix, each the middle of its
+    /// block.
     #[test]
     fn a_large_matrix_is_thinned_to_what_fits() {
         for (size, spots, entries) in [

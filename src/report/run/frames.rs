@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use super::super::axis::significant;
 use super::super::colour::Scale;
 use super::super::figure::{Entries, MOST, Reduction, figure, legend, note, reduced};
 use super::super::picture::Panel;
-use crate::study::RunResults;
+use crate::lab::RunResults;
+use crate::num::digits::significant;
 
 /// The photographs of the first, the middle and the last spot.
 pub(super) fn frames(results: &RunResults) -> String {

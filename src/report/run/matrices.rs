@@ -1,12 +1,12 @@
 //! Φcam as a whole: traced, modelled, and z.
 
-use super::super::axis::significant;
 use super::super::colour::Scale;
 use super::super::figure::{Entries, MOST, Reduction, figure, legend, note, reduced};
-use super::super::picture::{Panel, scientific};
-use super::super::svg::escape;
+use super::super::page::bare;
+use super::super::picture::Panel;
+use crate::lab::RunResults;
 use crate::matrix::Matrix;
-use crate::study::RunResults;
+use crate::num::digits::significant;
 
 /// A matrix of pixels × spots: spots to the right, pixels upwards.
 fn map(title: &str, matrix: &Matrix, reduction: Reduction) -> (Panel, Option<String>) {
@@ -67,29 +67,9 @@ pub(super) fn deviations(results: &RunResults) -> String {
             note(said)
         ));
     }
-    let worst = results.agreement.as_ref().map_or(&[][..], |a| &a.worst);
-    if !worst.is_empty() {
-        html.push_str("<p>The entries that differ most:</p>\n<div class=\"wide\" tabindex=\"0\" role=\"group\" aria-label=\"Table\"><table>\n<tr><th class=\"n\">pixel</th><th class=\"n\">spot</th><th class=\"n\">traced / W</th><th class=\"n\">modelled / W</th><th class=\"n\">z</th></tr>\n");
-        for e in worst.iter().take(10) {
-            let row = [
-                e.pixel.to_string(),
-                e.spot.to_string(),
-                scientific(&significant(e.traced, 3)),
-                scientific(&significant(e.modelled, 3)),
-                significant(e.z, 3),
-            ];
-            html.push_str(&cells(&row));
-        }
-        html.push_str("</table></div>\n");
+    if let Some(agreement) = results.agreement.as_ref().filter(|a| !a.worst.is_empty()) {
+        html += "<p>The entries that differ most:</p>\n";
+        html += &bare(&agreement.worst_entries());
     }
     html
-}
-
-/// A row of numbers.
-fn cells(row: &[String]) -> String {
-    let cells: String = row
-        .iter()
-        .map(|c| format!("<td class=\"n\">{}</td>", escape(c)))
-        .collect();
-    format!("<tr>{cells}</tr>\n")
 }

@@ -1,41 +1,35 @@
 //! The page of a run.
 
 mod bench;
-mod difference;
 mod explorer;
 mod frames;
 mod matrices;
 mod settings;
 
-use super::axis::significant;
 use super::figure::capital;
 use super::gallery::{recoveries, slides};
-use super::page::{Page, Tone, explained};
-use super::picard::picard_svg;
-use super::svg::number;
-use super::verdict::verdict;
-use crate::recovery::{Directions, Picard};
+use super::page::{Page, Room, Tone, bare, explained};
+use super::plot::figure_svg;
+use super::svg::escape;
+use crate::lab::RunResults;
+use crate::lab::finding::Describe;
 use crate::scene::Scene;
-use crate::study::{RunResults, Settings};
-use difference::difference;
+use crate::transport::Plan;
 use explorer::{embed, explorer, served_explorer};
 use frames::frames;
 use matrices::{deviations, matrices};
 pub(super) use settings::{is_builtin, scene_text};
 use settings::{scene_file, settings};
 
-/// The whole report as one HTML page that needs no network and no other file: verdict, drawing of the scene, frames,
-/// Φcam traced and modelled, z, recoveries beside the truth, light by bounce count, settings, times and the commands
-/// that repeat the run. What a run does not have is left out. Pictures larger than 256 (Φcam: 512) entries a side are
-/// averaged or thinned for display, and the page says so.
+/// The whole report as one HTML page that needs no network and no other file: verdict, drawing of
+/// the scene, frames, Φcam traced and modelled, z, recoveries beside the truth, light by bounce
+/// count, settings, times and the commands that repeat the run. What a run does not have is left
+/// out. Pictures larger than 256 (Φcam: 512) entries a side are averaged or thinned for display,
+/// and the page says so.
 pub fn run_html(results: &RunResults) -> String {
     let mut page = Page::new(&format!("phicam: {}", results.scene.name));
-    let tone = match &results.agreement {
-        Some(a) if a.agrees => Tone::Good,
-        Some(_) => Tone::Bad,
-        None => Tone::Plain,
-    };
-    page.verdict(tone, &format!("{}.", capital(&verdict(results))));
+    let verdict = capital(&results.verdict());
+    page.verdict(results.tone(), &format!("{verdict}."));
     bench::section(&mut page, &results.scene);
     let fallback = frames(results);
     let explorer = explorer(&mut page, results, &fallback);
@@ -56,21 +50,22 @@ pub fn run_html(results: &RunResults) -> String {
     page.html()
 }
 
-/// The page of a folder that holds photographs and Φcam but no report, for a server that hands out its matrices: the scene, the explorer and what was
-/// rendered. `model` says whether modelled matrices lie there, too.
-pub fn served_html(scene: &Scene, rendered: &Settings, model: bool) -> String {
+/// The page of a folder that holds photographs and Φcam but no report, for a server that hands out
+/// its matrices: the scene, the explorer and what was rendered. `model` says whether modelled
+/// matrices lie there, too.
+pub fn served_html(scene: &Scene, plan: &Plan, model: bool) -> String {
     let mut page = Page::new(&format!("phicam: {}", scene.name));
     let sentence = format!(
         "{} pixels × {} spots, rendered by {} with {} samples, seed {}.",
         scene.camera.pixels(),
         scene.laser.spots.len(),
-        rendered.estimator,
-        rendered.samples,
-        rendered.seed
+        plan.estimator,
+        plan.budget.samples(),
+        plan.seed
     );
     page.verdict(Tone::Plain, &sentence);
     bench::section(&mut page, scene);
-    let explorer = served_explorer(&mut page, scene, rendered.seed, model);
+    let explorer = served_explorer(&mut page, scene, plan.seed, model);
     page.section("explorer", "Φcam, entry by entry", &explorer);
     page.section("settings", "What was rendered", &scene_text(scene));
     page.html()
@@ -78,26 +73,16 @@ pub fn served_html(scene: &Scene, rendered: &Settings, model: bool) -> String {
 
 /// Singular values with signal and noise in their directions.
 fn picards(results: &RunResults) -> String {
-    if results.picards.is_empty() {
-        return String::new();
+    let mut room = Room::new();
+    let figures = results.picards.iter().flat_map(|p| p.describe().figures);
+    let figures: String = figures
+        .map(|f| room.figure(&f.file, &figure_svg(&f)))
+        .collect();
+    if figures.is_empty() {
+        return figures;
     }
-    let figure = |p: &Picard| {
-        let name = match p.directions {
-            Directions::LaserSide => "picard",
-            Directions::Joint | Directions::JointWeighted => "picard-joint",
-        };
-        format!(
-            "<figure class=\"plot\" data-name=\"{name}\">\n{}</figure>\n",
-            picard_svg(p)
-        )
-    };
-    let figures: String = results.picards.iter().map(figure).collect();
-    format!(
-        "<p>{}</p>\n{figures}",
-        explained(
-            "A Picard plot: singular values fall, and where the signal has sunk into the noise an inversion must stop."
-        )
-    )
+    let what = "A Picard plot: singular values fall, and where the signal has sunk into the noise an inversion must stop.";
+    format!("<p>{}</p>\n{figures}", explained(what))
 }
 
 /// Light by the number of surfaces it met.
@@ -105,18 +90,20 @@ fn bounces(results: &RunResults) -> String {
     if results.bounces.is_empty() {
         return String::new();
     }
-    let mut html = "<div class=\"wide\" tabindex=\"0\" role=\"group\" aria-label=\"Table\"><table>\n<tr><th class=\"n\">surfaces met</th>\
-                    <th class=\"n\">share of the flux</th><th></th></tr>\n"
-        .to_owned();
-    for (n, share) in &results.bounces {
-        html.push_str(&format!(
-            "<tr><td class=\"n\">{n}</td><td class=\"n\">{} %</td><td><span class=\"bar\" style=\"width:{}px\"></span></td></tr>\n",
-            significant(100.0 * share, 3),
-            number((200.0 * share).clamp(0.0, 200.0))
-        ));
-    }
-    html.push_str("</table></div>\n");
-    html
+    bare(&results.light_by_surfaces())
+}
+
+/// What the difference between traced and modelled light is made of.
+fn difference(results: &RunResults) -> String {
+    let Some(parts) = results.difference() else {
+        return String::new();
+    };
+    format!(
+        "<p>Shares of ‖modelled Φcam‖ (root of the sum of squares over all entries).</p>\n{}\
+         <p class=\"note\"><code>phicam study budget {}</code> takes it apart cause by cause: elements, pixels, spots, bounces, occlusion.</p>\n",
+        bare(&parts),
+        escape(scene_file(&results.scene))
+    )
 }
 
 #[cfg(test)]

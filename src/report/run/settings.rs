@@ -1,9 +1,9 @@
 //! What was run, and the commands that repeat it.
 
+use super::super::page::bare;
 use super::super::svg::escape;
-use super::super::table::facts;
+use crate::lab::{Agreement, RunResults};
 use crate::scene::{Scene, builtins};
-use crate::study::{Agreement, RunResults};
 
 /// More of the scene's text than this is left out, bytes.
 const MOST_TEXT: usize = 200_000;
@@ -12,26 +12,22 @@ const USUAL_SIGNIFICANCE: f64 = 1e-3;
 
 /// Settings, times, commands, and the scene file.
 pub(super) fn settings(results: &RunResults) -> String {
-    let (s, scene) = (&results.settings, &results.scene);
-    let mut html =
-        "<div class=\"wide\" tabindex=\"0\" role=\"group\" aria-label=\"Table\"><table>\n"
-            .to_owned();
+    let (plan, scene) = (&results.plan, &results.scene);
+    let mut facts = results.facts();
     let version = [
-        ("version", format!("phicam {}", s.version)),
+        ("version", format!("phicam {}", results.version)),
         ("scene hash", scene.hash.clone()),
     ];
-    for (key, text) in facts(results).into_iter().chain(version) {
-        html.push_str(&format!(
-            "<tr><th>{}</th><td>{}</td></tr>\n",
-            escape(key),
-            escape(&text)
-        ));
-    }
-    html.push_str("</table></div>\n<h3>To repeat it</h3>\n");
+    let more = version.map(|(key, text)| vec![key.into(), text.into()]);
+    facts.rows.extend(more);
+    let mut html = bare(&facts) + "<h3>To repeat it</h3>\n";
     let file = scene_file(scene);
     let traced = format!(
         "{file} -o out --estimator {} --sampler {} --samples {} --seed {}",
-        s.estimator, s.sampler, s.samples, s.seed
+        plan.estimator,
+        plan.sampling,
+        plan.budget.samples(),
+        plan.seed
     );
     let test = results
         .agreement

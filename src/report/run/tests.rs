@@ -1,6 +1,6 @@
-use super::super::sample::{bare, of, run, whole};
 use super::super::svg::well_formed;
 use super::*;
+use crate::lab::sample::{bare, of, run, whole};
 
 /// What is shown: without scripts, data, and the licences of libraries.
 fn shown(html: &str) -> String {
@@ -68,7 +68,7 @@ fn odd_names_stay_text() {
         .replace("name = \"object\"", "name = '</text><&\"ü'");
     let mut results = whole(of(Scene::from_toml("odd", &text).unwrap()));
     results.recovered[0].parameter = "</table><b>&".into();
-    results.settings.version = "<i>".into();
+    results.version = "<i>".into();
     let html = run_html(&results);
     well_formed(&html).unwrap();
     needs_no_network(&html);

@@ -8,19 +8,22 @@ use super::lobe::Lobe;
 use crate::geometry::DVec3;
 use crate::num::quadrature::Rule;
 
-/// A Lambertian ground of albedo ρ below a rough dielectric interface of relative index η, its facets distributed by [`Ggx`]:
+/// A Lambertian ground of albedo ρ below a rough dielectric interface of relative index η, its
+/// facets distributed by [`Ggx`]:
 ///
 /// > f = R(ω_i·h) D(h) G₁(ω_i) G₁(ω_o)/(4 cosθ_i cosθ_o) + T(θ_i) T(θ_o)/η² · ρ/π/(1 − ρ R̄)
 ///
-/// T(θ) is what the interface lets through from outside and R̄ what it returns of diffuse light from inside, both of light that meets one facet,
+/// T(θ) is what the interface lets through from outside and R̄ what it returns of diffuse light
+/// from inside, both of light that meets one facet,
 ///
 /// > T(θ) = ∫ D_θ(h) (1 − R(ω·h)) G₁(ω_t) dh,   R̄ = 2 ∫₀¹ μ ∫ D_μ(h) R′(ω·h) G₁(ω_r) dh dμ
 ///
-/// with the density D_θ of the facets visible from θ, ω_t refracted, ω_r reflected, R′ Fresnel's reflectance from inside (1/η). No light is
-/// absorbed by the coat; what meets a second facet is lost. These are the equations of Mitsuba 3's `roughplastic` with `nonlinear = true`.
+/// with the density D_θ of the facets visible from θ, ω_t refracted, ω_r reflected, R′ Fresnel's
+/// reflectance from inside (1/η). No light is absorbed by the coat; what meets a second facet is
+/// lost. These are the equations of Mitsuba 3's `roughplastic` with `nonlinear = true`.
 ///
-/// T is tabulated at 513 values of √cosθ by product quadrature and interpolated by cubics; beside a quadrature of 128 × 128 nodes at any angle it
-/// is good to 1e-5, and R̄ to 1e-4 (tests).
+/// T is tabulated at 513 values of √cosθ by product quadrature and interpolated by cubics; beside a
+/// quadrature of 128 × 128 nodes at any angle it is good to 1e-5, and R̄ to 1e-4 (tests).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coated {
     ggx: Ggx,
@@ -59,7 +62,8 @@ impl Coated {
         for (mu, w) in outer.on(0.0, 1.0) {
             coated.mean_transmittance += 2.0 * w * mu * coated.transmittance(mu);
         }
-        // Total reflection ends at the critical angle, as the root of what is above it: μ = μ_c ± s² meets it with many nodes and no root.
+        // Total reflection ends at the critical angle, as the root of what is above it: μ = μ_c ±
+        // s² meets it with many nodes and no root.
         let critical = (1.0 - 1.0 / (eta * eta)).max(0.0).sqrt();
         for (reach, side) in [(critical, -1.0), (1.0 - critical, 1.0)] {
             for (s, w) in outer.on(0.0, reach.sqrt()) {
@@ -123,8 +127,9 @@ impl Coated {
     }
 }
 
-/// Σ over the normals visible from the cosine `mu` of `f`(direction, normal): Gauss–Legendre in the polar angle of the cap, denser towards its rim, where
-/// steep facets are, and midpoints in its azimuth, one half of which mirrors the other.
+/// Σ over the normals visible from the cosine `mu` of `f`(direction, normal): Gauss–Legendre in the
+/// polar angle of the cap, denser towards its rim, where steep facets are, and midpoints in its
+/// azimuth, one half of which mirrors the other.
 fn over_visible(ggx: &Ggx, mu: f64, rule: &Rule, mut f: impl FnMut(DVec3, DVec3) -> f64) -> f64 {
     let w = DVec3::new((1.0 - mu * mu).max(0.0).sqrt(), 0.0, mu);
     let cap = ggx.cap(w);
@@ -205,7 +210,8 @@ mod tests {
         }
     }
 
-    /// α, η, ρ; θ_i, θ_o, φ; f_r by Mitsuba 3.8.0 (`roughplastic`, `distribution = "ggx"`, `nonlinear = true`, variant `llvm_ad_mono`: single precision).
+    /// α, η, ρ; θ_i, θ_o, φ; f_r by Mitsuba 3.8.0 (`roughplastic`, `distribution = "ggx"`,
+    /// `nonlinear = true`, variant `llvm_ad_mono`: single precision).
     const PAINT: [([f64; 3], [f64; 3], f64); 30] = [
         ([0.1, 1.5, 0.5], [0.0, 0.0, 0.0], 0.408261925),
         ([0.1, 1.5, 0.5], [30.0, 30.0, 180.0], 0.529271792),
@@ -239,8 +245,9 @@ mod tests {
         ([1.0, 2.5, 1.0], [85.0, 60.0, 150.0], 0.0644646361),
     ];
 
-    /// Mitsuba takes R̄ as the mean of 2 μ R(μ) over 64 values of μ from 0 to 1, both ends among them, which is up to 1.5 % below the integral, and T by linear
-    /// interpolation between 64 values. With its R̄ the two programs differ by that interpolation only.
+    /// Mitsuba takes R̄ as the mean of 2 μ R(μ) over 64 values of μ from 0 to 1, both ends among
+    /// them, which is up to 1.5 % below the integral, and T by linear interpolation between 64
+    /// values. With its R̄ the two programs differ by that interpolation only.
     #[test]
     fn paint_is_as_in_another_program() {
         let rule = Rule::gauss_legendre(64);

@@ -10,11 +10,11 @@ use super::{Coated, Conductor, Material, Measured, OrenNayar, Part};
 use crate::scene::error::{Fault, keys};
 use crate::scene::texture::{AlbedoTable, Texture};
 
-/// The keys of every material; which of them a material takes is checked. Keys that are absent are not serialised, so that the hash of a scene does not
-/// depend on materials it does not have.
+/// The keys of every material; which of them a material takes is checked. Keys that are absent are
+/// not serialised, so that the hash of a scene does not depend on materials it does not have.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene) struct MaterialTable {
+pub struct MaterialTable {
     /// Albedo in [0, 1]: a number, or a table that says how it varies over the surface.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lambertian: Option<AlbedoTable>,
@@ -44,35 +44,30 @@ pub(in crate::scene) struct MaterialTable {
     pub reflectance: Option<AlbedoTable>,
     /// Colour of a MERL table (measured).
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub channel: Option<ChannelName>,
+    pub channel: Option<Channel>,
     /// What the table is multiplied by (measured); default 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scale: Option<AlbedoTable>,
 }
 
+/// Complex refractive index η + ik.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene) struct IndexTable {
+pub struct IndexTable {
     /// Real part.
     pub eta: f64,
     /// Imaginary part.
     pub k: f64,
 }
 
+/// A part of a mixture.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene) struct PartTable {
+pub struct PartTable {
     /// What the part is multiplied by.
     pub weight: f64,
+    /// The part.
     pub material: MaterialTable,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
-#[serde(rename_all = "lowercase")]
-pub(in crate::scene) enum ChannelName {
-    Red,
-    Green,
-    Blue,
 }
 
 /// Reads a file that the scene names, by the path written there; an error says why not.
@@ -226,9 +221,7 @@ fn measured(
             let cause = "a table of angle triples has no colours";
             return Err(Fault::new(keys!["channel"], cause, "remove `channel`"));
         }
-        (false, Some(ChannelName::Red)) => Some(Channel::Red),
-        (false, Some(ChannelName::Green)) => Some(Channel::Green),
-        (false, Some(ChannelName::Blue)) => Some(Channel::Blue),
+        (false, Some(channel)) => Some(channel),
         (false, None) => {
             let cause = "a MERL table has three colours, and the scene one wavelength";
             let cure = "add `channel = \"red\"`, \"green\" or \"blue\"";

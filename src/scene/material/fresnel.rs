@@ -1,7 +1,7 @@
 //! Fresnel's equations for unpolarised light.
 
-/// Reflectance of a smooth interface to a dielectric of relative refractive index η (transmitted over incident side), and the cosine of the
-/// refracted direction; (1, 0) in total reflection.
+/// Reflectance of a smooth interface to a dielectric of relative refractive index η (transmitted
+/// over incident side), and the cosine of the refracted direction; (1, 0) in total reflection.
 ///
 /// > R = ½ (r_s² + r_p²),   r_s = (c − η c_t)/(c + η c_t),   r_p = (η c − c_t)/(η c + c_t),   c_t = √(1 − (1 − c²)/η²)
 pub(super) fn dielectric(cosine: f64, eta: f64) -> (f64, f64) {
@@ -15,8 +15,9 @@ pub(super) fn dielectric(cosine: f64, eta: f64) -> (f64, f64) {
     (0.5 * (s * s + p * p), refracted)
 }
 
-/// Reflectance of a smooth conductor of refractive index η + ik in vacuum (Born and Wolf, *Principles of Optics*, § 14.2). With
-/// a² + b² = √((η² − k² − sin²θ)² + 4η²k²) and a = √(½ (a² + b² + η² − k² − sin²θ)):
+/// Reflectance of a smooth conductor of refractive index η + ik in vacuum (Born and Wolf,
+/// *Principles of Optics*, § 14.2). With a² + b² = √((η² − k² − sin²θ)² + 4η²k²) and a = √(½ (a² +
+/// b² + η² − k² − sin²θ)):
 ///
 /// > R_s = (a² + b² − 2ac + c²)/(a² + b² + 2ac + c²),   R_p = R_s (c²(a² + b²) − 2ac sin²θ + sin⁴θ)/(c²(a² + b²) + 2ac sin²θ + sin⁴θ)
 pub(super) fn conductor(cosine: f64, eta: f64, k: f64) -> f64 {
@@ -34,7 +35,8 @@ pub(super) fn conductor(cosine: f64, eta: f64, k: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// ((η − 1)/(η + 1))² and ((η − 1)² + k²)/((η + 1)² + k²) at normal incidence; 1 at grazing incidence.
+    /// ((η − 1)/(η + 1))² and ((η − 1)² + k²)/((η + 1)² + k²) at normal incidence; 1 at grazing
+    /// incidence.
     #[test]
     fn closed_values_at_both_ends() {
         for eta in [1.1, 1.5, 2.4, 1.0 / 1.5f64] {

@@ -8,7 +8,8 @@ use crate::geometry::DVec3;
 ///
 /// > D(h) = 1/(π α² ((h_x² + h_y²)/α² + h_z²)²),   G₁(ω) = 2/(1 + √(1 + α² tan²θ))
 ///
-/// (Walter, Marschner, Li and Torrance, *Microfacet models for refraction through rough surfaces*, 2007.)
+/// (Walter, Marschner, Li and Torrance, *Microfacet models for refraction through rough surfaces*,
+/// 2007.)
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ggx {
     alpha: f64,
@@ -32,15 +33,17 @@ impl Ggx {
         FRAC_1_PI / (a2 * q * q)
     }
 
-    /// G₁(ω): the share of the facets turned towards ω that is not hidden from there. Of |cosθ| alone.
+    /// G₁(ω): the share of the facets turned towards ω that is not hidden from there. Of |cosθ|
+    /// alone.
     pub fn masking(&self, w: DVec3) -> f64 {
         let z = w.z.abs();
         let across = self.alpha * self.alpha * (w.x * w.x + w.y * w.y);
         2.0 * z / (z + (z * z + across).sqrt())
     }
 
-    /// D(h) G₁(ω_i) G₁(ω_o)/(4 cosθ_i cosθ_o), with the two maskings independent of each other (separable), and cos(ω_i, h): the BRDF of facets
-    /// that mirror all light. For directions above the surface.
+    /// D(h) G₁(ω_i) G₁(ω_o)/(4 cosθ_i cosθ_o), with the two maskings independent of each other
+    /// (separable), and cos(ω_i, h): the BRDF of facets that mirror all light. For directions above
+    /// the surface.
     pub fn reflection(&self, incident: DVec3, exitant: DVec3) -> (f64, f64) {
         let h = (incident + exitant).normalize();
         let masking = self.masking(incident) * self.masking(exitant);
@@ -48,14 +51,16 @@ impl Ggx {
         (f, incident.dot(h))
     }
 
-    /// A normal of the facets seen from `exitant` (above the surface), distributed by D(h) G₁(ω) max(0, ω·h)/cosθ: the reflection of parallel light
-    /// off a hemisphere is uniform over a spherical cap (Dupuy and Benyoub, *Sampling visible GGX normals with spherical caps*, 2023).
+    /// A normal of the facets seen from `exitant` (above the surface), distributed by D(h) G₁(ω)
+    /// max(0, ω·h)/cosθ: the reflection of parallel light off a hemisphere is uniform over a
+    /// spherical cap (Dupuy and Benyoub, *Sampling visible GGX normals with spherical caps*, 2023).
     pub fn visible_normal(&self, exitant: DVec3, u: [f64; 2]) -> DVec3 {
         let cap = self.cap(exitant);
         cap.normal((1.0 - u[1]) * (1.0 + cap.axis.z) - cap.axis.z, TAU * u[0])
     }
 
-    /// Density per solid angle of `exitant` mirrored in [`Self::visible_normal`]: D(h) G₁(ω_o)/(4 cosθ_o).
+    /// Density per solid angle of `exitant` mirrored in [`Self::visible_normal`]: D(h) G₁(ω_o)/(4
+    /// cosθ_o).
     pub fn visible_density(&self, exitant: DVec3, incident: DVec3) -> f64 {
         let h = (incident + exitant).normalize();
         self.distribution(h) * self.masking(exitant) / (4.0 * exitant.z)
@@ -104,7 +109,8 @@ mod tests {
         let rule = Rule::gauss_legendre(64);
         for alpha in ALPHAS {
             let ggx = Ggx::new(alpha);
-            // tanθ = α tan t brings all roughnesses to one shape; θ = atan(α tan t), dθ/dt = α/(cos²t + α² sin²t).
+            // tanθ = α tan t brings all roughnesses to one shape; θ = atan(α tan t), dθ/dt =
+            // α/(cos²t + α² sin²t).
             let sum: f64 = rule
                 .on(0.0, 0.5 * std::f64::consts::PI)
                 .map(|(t, w)| {
@@ -119,8 +125,8 @@ mod tests {
         }
     }
 
-    /// Smith's masking by its definition: the projected area of the visible facets is that of the interface,
-    /// ∫ D(h) G₁(ω) max(0, ω·h) dω_h = cosθ.
+    /// Smith's masking by its definition: the projected area of the visible facets is that of the
+    /// interface, ∫ D(h) G₁(ω) max(0, ω·h) dω_h = cosθ.
     #[test]
     fn masking_keeps_the_projected_area() {
         let rule = Rule::gauss_legendre(200);

@@ -5,13 +5,16 @@ use crate::scene::error::{Fault, keys};
 
 /// An isotropic BRDF over the polar angles of both directions and the angle between their azimuths.
 ///
-/// The file is comma-separated text. Its first line is `theta_i,theta_o,phi,value`; every other one states a value in sr⁻¹ (without cosine), 0 or
-/// more, for polar angles from 0 to 90 and an azimuth from 0 to 180, in degrees: at φ = 0 both directions are on the same side of the normal (light
-/// returns), at φ = 180 on opposite ones (a mirror). Empty lines and lines that begin with `#` are skipped. The triples, in any order, are a complete
-/// grid: each θ_i with each θ_o with each φ, once; θ_i and θ_o take the same values.
+/// The file is comma-separated text. Its first line is `theta_i,theta_o,phi,value`; every other one
+/// states a value in sr⁻¹ (without cosine), 0 or more, for polar angles from 0 to 90 and an azimuth
+/// from 0 to 180, in degrees: at φ = 0 both directions are on the same side of the normal (light
+/// returns), at φ = 180 on opposite ones (a mirror). Empty lines and lines that begin with `#` are
+/// skipped. The triples, in any order, are a complete grid: each θ_i with each θ_o with each φ,
+/// once; θ_i and θ_o take the same values.
 ///
-/// f_r is multilinear between the lines and constant beyond the outermost angles; φ is folded to [0, 180]. Values for (θ_i, θ_o) and (θ_o, θ_i) that
-/// differ by no more than a twentieth of the larger are averaged, so the BRDF is exactly reciprocal; others are refused.
+/// f_r is multilinear between the lines and constant beyond the outermost angles; φ is folded to
+/// [0, 180]. Values for (θ_i, θ_o) and (θ_o, θ_i) that differ by no more than a twentieth of the
+/// larger are averaged, so the BRDF is exactly reciprocal; others are refused.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Grid {
     theta: Axis,

@@ -6,7 +6,8 @@ use super::ggx::{Ggx, mirrored};
 use crate::geometry::DVec3;
 use crate::num::quadrature::Rule;
 
-/// A density over incident directions: mirrored in a visible normal with probability `glossy`, by the cosine otherwise.
+/// A density over incident directions: mirrored in a visible normal with probability `glossy`, by
+/// the cosine otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lobe {
     /// Probability of the mirrored directions, in [0, 1].
@@ -24,8 +25,8 @@ impl Lobe {
         }
     }
 
-    /// Per solid angle: q D(h) G₁(ω_o)/(4 cosθ_o) + (1 − q) cosθ_i/π; 0 below the surface. Over the hemisphere it adds up to 1 less the mirrored
-    /// directions that point below.
+    /// Per solid angle: q D(h) G₁(ω_o)/(4 cosθ_o) + (1 − q) cosθ_i/π; 0 below the surface. Over the
+    /// hemisphere it adds up to 1 less the mirrored directions that point below.
     pub fn density(&self, exitant: DVec3, incident: DVec3) -> f64 {
         if incident.z <= 0.0 || exitant.z <= 0.0 {
             return 0.0;
@@ -37,8 +38,10 @@ impl Lobe {
         self.glossy * self.ggx.visible_density(exitant, incident) + cosine
     }
 
-    /// ∫ f(ω, p(ω)) dω over the hemisphere, p the density: each of the two maps carries the rule over (the polar angle by Gauss–Legendre, the azimuth
-    /// by twice as many midpoints), weighted against the other by their mixture, so that a sharp lobe is met by as many nodes as a wide one.
+    /// ∫ f(ω, p(ω)) dω over the hemisphere, p the density: each of the two maps carries the rule
+    /// over (the polar angle by Gauss–Legendre, the azimuth by twice as many midpoints), weighted
+    /// against the other by their mixture, so that a sharp lobe is met by as many nodes as a wide
+    /// one.
     pub(super) fn integral(
         &self,
         exitant: DVec3,

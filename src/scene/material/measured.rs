@@ -11,10 +11,12 @@ use crate::geometry::DVec3;
 use crate::num::quadrature::Rule;
 use crate::scene::error::{Fault, keys};
 
-/// An isotropic BRDF measured on a surface, from a file: one colour of a binary table of the MERL database, or, where the file's name ends in `.csv`,
-/// text with the header `theta_i,theta_o,phi,value`. The texture's value multiplies it.
+/// An isotropic BRDF measured on a surface, from a file: one colour of a binary table of the MERL
+/// database, or, where the file's name ends in `.csv`, text with the header
+/// `theta_i,theta_o,phi,value`. The texture's value multiplies it.
 ///
-/// A table that reflects more than it receives is refused: its directional albedo is taken at 36 angles of incidence, 0° to 87.5°.
+/// A table that reflects more than it receives is refused: its directional albedo is taken at 36
+/// angles of incidence, 0° to 87.5°.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
     table: Table,
@@ -32,7 +34,8 @@ enum Table {
 const ALLOWANCE: f64 = 1e-3;
 const INCIDENCES: u32 = 36;
 const NODES: usize = 32;
-/// Roughnesses and shares from which the lobe is chosen, over the cosines of these exitant directions, with so many nodes.
+/// Roughnesses and shares from which the lobe is chosen, over the cosines of these exitant
+/// directions, with so many nodes.
 const ALPHAS: [f64; 6] = [0.02, 0.05, 0.1, 0.2, 0.4, 0.7];
 const SHARES: [f64; 3] = [0.3, 0.6, 0.9];
 const EXITANCES: [f64; 4] = [0.97, 0.75, 0.45, 0.15];
@@ -78,8 +81,8 @@ impl Measured {
         self.lobe
     }
 
-    /// Of all candidates the lobe p with the least second moment of the estimator f cosθ/p, ∫ (f cosθ)²/p dω, relative to the square of its mean, summed
-    /// over some exitant directions.
+    /// Of all candidates the lobe p with the least second moment of the estimator f cosθ/p, ∫ (f
+    /// cosθ)²/p dω, relative to the square of its mean, summed over some exitant directions.
     fn best_lobe(&self) -> Lobe {
         let rule = Rule::gauss_legendre(LOBE_NODES);
         let spread = |lobe: &Lobe| {

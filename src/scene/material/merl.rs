@@ -2,28 +2,37 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use serde::{Deserialize, Serialize};
+
 use crate::geometry::DVec3;
 use crate::scene::error::{Fault, keys};
 
-/// Which of the table's three colours.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Channel {
+/// Which of the three colours of a MERL table.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum Channel {
+    /// The first.
     Red,
+    /// The second.
     Green,
+    /// The third.
     Blue,
 }
 
-/// An isotropic BRDF over Rusinkiewicz' half and difference angles (W. Matusik, H. Pfister, M. Brand and L. McMillan, *A data-driven reflectance
-/// model*, 2003).
+/// An isotropic BRDF over Rusinkiewicz' half and difference angles (W. Matusik, H. Pfister, M.
+/// Brand and L. McMillan, *A data-driven reflectance model*, 2003).
 ///
-/// The file: three little-endian `i32` n_h, n_d, n_φ (90, 90, 180), then 3 n_h n_d n_φ little-endian `f64`, red, green, blue; entry
-/// φ + n_φ (d + n_d h) of a colour, times 1/1500, 1.15/1500 or 1.66/1500, is f_r in sr⁻¹. Entry (h, d, φ) covers
+/// The file: three little-endian `i32` n_h, n_d, n_φ (90, 90, 180), then 3 n_h n_d n_φ
+/// little-endian `f64`, red, green, blue; entry φ + n_φ (d + n_d h) of a colour, times 1/1500,
+/// 1.15/1500 or 1.66/1500, is f_r in sr⁻¹. Entry (h, d, φ) covers
 ///
 /// > θ_h ∈ (π/2) \[(h/n_h)², ((h + 1)/n_h)²),   θ_d ∈ (π/2) \[d, d + 1)/n_d,   φ_d ∈ π \[φ, φ + 1)/n_φ
 ///
-/// and stands here for the middle of those intervals (of √θ_h); between the middles f_r is trilinear in (√θ_h, θ_d, φ_d), beyond the outermost it is
-/// constant. Exchanging the two directions turns φ_d by π, the table's period, so the interpolated BRDF is reciprocal. Negative entries mark what could
-/// not be measured: such an entry takes the value of the next smaller θ_h at the same (θ_d, φ_d), or 0 where there is none.
+/// and stands here for the middle of those intervals (of √θ_h); between the middles f_r is
+/// trilinear in (√θ_h, θ_d, φ_d), beyond the outermost it is constant. Exchanging the two
+/// directions turns φ_d by π, the table's period, so the interpolated BRDF is reciprocal. Negative
+/// entries mark what could not be measured: such an entry takes the value of the next smaller θ_h
+/// at the same (θ_d, φ_d), or 0 where there is none.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Merl {
     /// n_h, n_d, n_φ.
@@ -104,15 +113,16 @@ impl Merl {
     }
 }
 
-/// The two entries around `x` ∈ [0, 1] of `n`, whose places are the middles (k + ½)/n, and the weight of the second.
+/// The two entries around `x` ∈ [0, 1] of `n`, whose places are the middles (k + ½)/n, and the
+/// weight of the second.
 fn between(x: f64, n: usize) -> (usize, usize, f64) {
     let place = (x * n as f64 - 0.5).clamp(0.0, (n - 1) as f64);
     let low = place as usize;
     (low, (low + 1).min(n - 1), place - low as f64)
 }
 
-/// θ_h, θ_d and φ_d (Rusinkiewicz, *A new change of variables for efficient BRDF representation*, 1998): the half vector, and the incident direction in
-/// the frame where that is the pole.
+/// θ_h, θ_d and φ_d (Rusinkiewicz, *A new change of variables for efficient BRDF representation*,
+/// 1998): the half vector, and the incident direction in the frame where that is the pole.
 fn half_difference(incident: DVec3, exitant: DVec3) -> [f64; 3] {
     let h = (incident + exitant).normalize();
     let across = (h.x * h.x + h.y * h.y).sqrt();
@@ -162,7 +172,8 @@ pub(super) mod tests {
         bytes
     }
 
-    /// A table made of a known function gives it back between its entries: error of linear interpolation, ⅛ Δ² max|f″| an axis.
+    /// A table made of a known function gives it back between its entries: error of linear
+    /// interpolation, ⅛ Δ² max|f″| an axis.
     #[test]
     fn a_synthetic_table_is_the_function_it_was_made_of() {
         let f = |h: f64, d: f64, p: f64| {
@@ -182,7 +193,8 @@ pub(super) mod tests {
         }
     }
 
-    /// The half vector bisects: of a mirror pair θ_h = 0 and θ_d is the angle of incidence; of one direction twice θ_d = 0.
+    /// The half vector bisects: of a mirror pair θ_h = 0 and θ_d is the angle of incidence; of one
+    /// direction twice θ_d = 0.
     #[test]
     fn half_and_difference_angles() {
         for theta in [0.1, 0.7, 1.3f64] {

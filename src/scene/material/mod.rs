@@ -1,7 +1,8 @@
 //! Materials: how a surface scatters light.
 //!
-//! A BRDF f_r(ω_i, ω_o) is in sr⁻¹ and not multiplied by a cosine. Directions are unit vectors that point away from the surface, in a frame whose z axis
-//! is the normal of its front. Every material is isotropic, reciprocal, f_r(ω_i, ω_o) = f_r(ω_o, ω_i), and reflects no more than it receives,
+//! A BRDF f_r(ω_i, ω_o) is in sr⁻¹ and not multiplied by a cosine. Directions are unit vectors that
+//! point away from the surface, in a frame whose z axis is the normal of its front. Every material
+//! is isotropic, reciprocal, f_r(ω_i, ω_o) = f_r(ω_o, ω_i), and reflects no more than it receives,
 //! ∫ f_r cosθ_o dω_o ≤ 1.
 //!
 //! | `surface.material` | what it is |
@@ -32,10 +33,11 @@ use std::sync::Arc;
 
 pub use coated::Coated;
 pub use conductor::Conductor;
-pub(super) use file::MaterialTable;
+pub use file::{IndexTable, MaterialTable, PartTable};
 pub use ggx::{Ggx, mirrored};
 pub use lobe::Lobe;
 pub use measured::Measured;
+pub use merl::Channel;
 pub use oren_nayar::OrenNayar;
 
 use crate::geometry::DVec3;
@@ -76,7 +78,8 @@ const NODES: usize = 48;
 const INCIDENCES: usize = 24;
 
 impl Material {
-    /// f_r(ω_i, ω_o), sr⁻¹, where the texture's value is `albedo` ∈ [0, 1]; 0 unless both directions are above the surface.
+    /// f_r(ω_i, ω_o), sr⁻¹, where the texture's value is `albedo` ∈ [0, 1]; 0 unless both
+    /// directions are above the surface.
     pub fn brdf(&self, albedo: f64, incident: DVec3, exitant: DVec3) -> f64 {
         if !(incident.z > 0.0 && exitant.z > 0.0) {
             return 0.0;
@@ -114,7 +117,8 @@ impl Material {
         }
     }
 
-    /// Where the light that leaves along `exitant` comes from, roughly; of a mixture each part has its own.
+    /// Where the light that leaves along `exitant` comes from, roughly; of a mixture each part has
+    /// its own.
     pub fn lobe(&self, albedo: f64, exitant: DVec3) -> Lobe {
         match self {
             Self::Lambertian | Self::OrenNayar(_) | Self::Mixture(_) => Lobe::cosine(),
@@ -127,13 +131,15 @@ impl Material {
         }
     }
 
-    /// Directional–hemispherical reflectance ∫ f_r cosθ_o dω_o of light from `incident`, by quadrature where it has no closed form.
+    /// Directional–hemispherical reflectance ∫ f_r cosθ_o dω_o of light from `incident`, by
+    /// quadrature where it has no closed form.
     pub fn directional_albedo(&self, albedo: f64, incident: DVec3) -> f64 {
         self.reflected(albedo, incident, &Rule::gauss_legendre(NODES))
     }
 
-    /// The mean of [`Self::directional_albedo`] over incident directions, weighted by the cosine, 2 ∫ E(μ) μ dμ: its reflectance of light that comes
-    /// evenly from everywhere, and the albedo of the Lambertian surface that reflects as much.
+    /// The mean of [`Self::directional_albedo`] over incident directions, weighted by the cosine, 2
+    /// ∫ E(μ) μ dμ: its reflectance of light that comes evenly from everywhere, and the albedo of
+    /// the Lambertian surface that reflects as much.
     pub fn white_sky_albedo(&self, albedo: f64) -> f64 {
         match self {
             Self::Lambertian => albedo,

@@ -4,8 +4,9 @@ use std::f64::consts::{FRAC_1_PI, PI};
 
 use crate::geometry::DVec3;
 
-/// The energy-preserving Oren–Nayar model (EON: Portsmouth, Kutz and Hill, *EON: a practical energy-preserving rough diffuse BRDF*, 2025) on the
-/// single scattering of Fujii (*A tiny improvement of Oren–Nayar reflectance model*, 2012):
+/// The energy-preserving Oren–Nayar model (EON: Portsmouth, Kutz and Hill, *EON: a practical
+/// energy-preserving rough diffuse BRDF*, 2025) on the single scattering of Fujii (*A tiny
+/// improvement of Oren–Nayar reflectance model*, 2012):
 ///
 /// > f = ρ/π · A (1 + r s/t) + ρ_m/π · (1 − E(μ_i))(1 − E(μ_o))/(1 − Ē)
 ///
@@ -13,12 +14,14 @@ use crate::geometry::DVec3;
 ///
 /// > E(μ) = A (1 + r G(μ)/π),   G = s_θ (θ − s_θ μ) + ⅔ (s_θ (1 − s_θ³)/μ − s_θ),   Ē = A (1 + c₂ r),   ρ_m = ρ² Ē/(1 − ρ (1 − Ē))
 ///
-/// The classical qualitative model loses light, and its s/t is discontinuous; this one reflects exactly all light at ρ = 1 and every angle.
-/// The roughness is Oren and Nayar's standard deviation σ of the facets' slope angle, in radians: r is the ratio of their two coefficients,
+/// The classical qualitative model loses light, and its s/t is discontinuous; this one reflects
+/// exactly all light at ρ = 1 and every angle. The roughness is Oren and Nayar's standard deviation
+/// σ of the facets' slope angle, in radians: r is the ratio of their two coefficients,
 ///
 /// > r = B/A = 0.45 σ²/(σ² + 0.09) / (1 − ½ σ²/(σ² + 0.33))
 ///
-/// (M. Oren and S. K. Nayar, *Generalization of Lambert's reflectance model*, 1994); EON itself takes r ∈ \[0, 1\] as its roughness.
+/// (M. Oren and S. K. Nayar, *Generalization of Lambert's reflectance model*, 1994); EON itself
+/// takes r ∈ \[0, 1\] as its roughness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrenNayar {
     sigma: f64,

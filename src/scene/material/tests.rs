@@ -81,7 +81,8 @@ fn every_material_is_reciprocal() {
             for albedo in [0.3, 1.0] {
                 let (f, g) = (m.brdf(albedo, i, o), m.brdf(albedo, o, i));
                 assert!(f >= 0.0 && f.is_finite(), "{name}");
-                // MERL angles go through an arc tangent, whose error the slope of the table magnifies.
+                // MERL angles go through an arc tangent, whose error the slope of the table
+                // magnifies.
                 assert!((f - g).abs() <= 1e-9 * f.max(g), "{name}: {i} {o}: {f} {g}");
             }
             let below = DVec3::new(i.x, i.y, -i.z);
@@ -91,8 +92,9 @@ fn every_material_is_reciprocal() {
     }
 }
 
-/// ∫ f cosθ dω by brute force, knowing nothing of the material: midpoints over hemispheres refined around the mirror direction, as θ, φ about the
-/// half vector: ω = mirror of the incident direction in h, dω = 4 |ω_i·h| dω_h, and θ_h = (π/2) x³ so that sharp lobes are met.
+/// ∫ f cosθ dω by brute force, knowing nothing of the material: midpoints over hemispheres refined
+/// around the mirror direction, as θ, φ about the half vector: ω = mirror of the incident direction
+/// in h, dω = 4 |ω_i·h| dω_h, and θ_h = (π/2) x³ so that sharp lobes are met.
 fn reflected(m: &Material, albedo: f64, incident: DVec3, n: usize) -> f64 {
     let mut sum = 0.0;
     for a in 0..n {
@@ -134,7 +136,8 @@ fn no_material_reflects_more_than_it_receives() {
     }
 }
 
-/// EON returns all light at ρ = 1 (its definition); its closed reflectance at any ρ is the integral.
+/// EON returns all light at ρ = 1 (its definition); its closed reflectance at any ρ is the
+/// integral.
 #[test]
 fn rough_matt_white_is_white() {
     let rule = Rule::gauss_legendre(128);
@@ -164,7 +167,8 @@ fn limits() {
         for albedo in [0.2, 0.9] {
             let matt = Material::Lambertian.brdf(albedo, i, o);
             assert!((smooth.brdf(albedo, i, o) - matt).abs() < 1e-15);
-            // A coat of index 1 bends nothing, but its facets still hide some of the light: T = G₁-weighted, not 1.
+            // A coat of index 1 bends nothing, but its facets still hide some of the light: T =
+            // G₁-weighted, not 1.
             assert!(clear.brdf(albedo, i, o) <= matt * (1.0 + 1e-9));
         }
     }
@@ -194,7 +198,8 @@ fn what_is_black_reflects_nothing() {
     }
 }
 
-/// The table as serialised before there was more than one material: the hash of a scene is taken from it.
+/// The table as serialised before there was more than one material: the hash of a scene is taken
+/// from it.
 #[test]
 fn a_lambertian_table_is_serialised_as_ever() {
     #[derive(serde::Deserialize, serde::Serialize)]
@@ -270,7 +275,8 @@ pub(super) fn pair([i, o, phi]: [f64; 3]) -> (DVec3, DVec3) {
     )
 }
 
-/// α, η, k; θ_i, θ_o, φ; f_r by Mitsuba 3.8.0 (`roughconductor`, `distribution = "ggx"`, variant `llvm_ad_mono`: single precision).
+/// α, η, k; θ_i, θ_o, φ; f_r by Mitsuba 3.8.0 (`roughconductor`, `distribution = "ggx"`, variant
+/// `llvm_ad_mono`: single precision).
 const METAL: [([f64; 3], [f64; 3], f64); 18] = [
     ([0.1, 0.2, 3.9], [0.0, 0.0, 0.0], 7.5753932),
     ([0.1, 0.2, 3.9], [30.0, 30.0, 180.0], 10.0798733),

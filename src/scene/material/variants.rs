@@ -30,8 +30,8 @@ impl Material {
         }
     }
 
-    /// The same material with `factor` times the roughness; of a mixture, every part that has one. `None` where nothing has a roughness, or
-    /// one leaves the range that scene files are held to.
+    /// The same material with `factor` times the roughness; of a mixture, every part that has one.
+    /// `None` where nothing has a roughness, or one leaves the range that scene files are held to.
     pub fn with_roughness_times(&self, factor: f64) -> Option<Self> {
         let alpha = |ggx: &Ggx| {
             let alpha = ggx.alpha() * factor;
@@ -55,8 +55,9 @@ impl Material {
         }
     }
 
-    /// The same material with a coat of refractive index 1 + `factor`·(n − 1) in place of n; of a mixture, every coated part. `None` where
-    /// nothing is coated, or the index leaves the range that scene files are held to.
+    /// The same material with a coat of refractive index 1 + `factor`·(n − 1) in place of n; of a
+    /// mixture, every coated part. `None` where nothing is coated, or the index leaves the range
+    /// that scene files are held to.
     pub fn with_contrast_times(&self, factor: f64) -> Option<Self> {
         match self {
             Self::Coated(m) => {
@@ -89,7 +90,8 @@ impl Material {
     }
 }
 
-/// The mixture with those parts changed that are `concerned`; `None` where none is, or one cannot be changed.
+/// The mixture with those parts changed that are `concerned`; `None` where none is, or one cannot
+/// be changed.
 fn changed(
     parts: &[Part],
     concerned: impl Fn(&Material) -> bool,
@@ -136,7 +138,8 @@ mod tests {
         assert_eq!(roughest.with_roughness_times(2.0), None);
     }
 
-    /// Of a mixture of matt and satin parts the satin ones become rougher; the shares follow what the parts then reflect.
+    /// Of a mixture of matt and satin parts the satin ones become rougher; the shares follow what
+    /// the parts then reflect.
     #[test]
     fn parts_of_a_mixture_change_by_themselves() {
         let of = |satin: Material| {

@@ -35,8 +35,8 @@ const SECTIONS: [Section; 21] = [
 /// Share of the latitudes that the flat base takes.
 const BASE: f64 = 0.1;
 
-/// Bumps and hollows of the face and the ears: where (x, height), how far to either side, below and above, and how deep; x counts to
-/// both sides, and the face is where y < 0.
+/// Bumps and hollows of the face and the ears: where (x, height), how far to either side, below and
+/// above, and how deep; x counts to both sides, and the face is where y < 0.
 const FEATURES: [Feature; 9] = [
     // Nose: its bridge and its tip.
     Feature {
@@ -133,9 +133,10 @@ impl Feature {
     }
 }
 
-/// A person's head and shoulders as a closed body of at least `faces` triangles, wound outwards: 1 high, standing on z = 0 at the origin,
-/// face towards −y, about 0.8 wide. u is the longitude (0 and 1 at the back, 0.5 in the face), v is the height z. The same for the same
-/// `faces` on every machine.
+/// A person's head and shoulders as a closed body of at least `faces` triangles, wound outwards: 1
+/// high, standing on z = 0 at the origin, face towards −y, about 0.8 wide. u is the longitude (0
+/// and 1 at the back, 0.5 in the face), v is the height z. The same for the same `faces` on every
+/// machine.
 pub fn bust(faces: usize) -> Triangles {
     closed(faces, |u, v| {
         // From the back (+y) counterclockwise seen from above.
@@ -161,7 +162,8 @@ fn place([z, half, front, back]: Section, x: f64, y: f64) -> DVec3 {
     round + DVec3::new(ear, -face * facing * facing, 0.0)
 }
 
-/// The cross-section at t in \[0, 1\] from the base to the crown: a Catmull–Rom curve through [`SECTIONS`].
+/// The cross-section at t in \[0, 1\] from the base to the crown: a Catmull–Rom curve through
+/// [`SECTIONS`].
 fn section(t: f64) -> Section {
     let last = SECTIONS.len() - 1;
     let at = (t * last as f64).clamp(0.0, last as f64);

@@ -4,7 +4,8 @@ use super::Triangles;
 use crate::geometry::DVec3;
 use std::fmt;
 
-/// How many of each kind of defect a mesh has. Vertices at one position count as one vertex, so a seam of the texture is no edge.
+/// How many of each kind of defect a mesh has. Vertices at one position count as one vertex, so a
+/// seam of the texture is no edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Defects {
     /// Faces of the mesh.
@@ -13,15 +14,18 @@ pub struct Defects {
     pub not_finite: usize,
     /// Faces without area: |e₁ × e₂| up to 1e-12·|e₁||e₂|.
     pub degenerate: usize,
-    /// Faces between the same three vertices as an earlier one, in any order. They are in none of the numbers below.
+    /// Faces between the same three vertices as an earlier one, in any order. They are in none of
+    /// the numbers below.
     pub duplicate: usize,
     /// Edges of one face only.
     pub open_edges: usize,
-    /// Edges that their two faces run along in the same direction: one of them shows its back where the other shows its front.
+    /// Edges that their two faces run along in the same direction: one of them shows its back where
+    /// the other shows its front.
     pub turned_edges: usize,
     /// Edges of more than two faces.
     pub crowded_edges: usize,
-    /// Σ a·(b × c)/6 with the origin moved to a vertex, length³: the volume of a closed body whose faces show their fronts outwards.
+    /// Σ a·(b × c)/6 with the origin moved to a vertex, length³: the volume of a closed body whose
+    /// faces show their fronts outwards.
     pub signed_volume: f64,
 }
 
@@ -43,7 +47,8 @@ impl Defects {
         Self::judge(mesh).0
     }
 
-    /// Whether the faces enclose a body: every edge has two faces that run along it in opposite directions.
+    /// Whether the faces enclose a body: every edge has two faces that run along it in opposite
+    /// directions.
     pub fn is_closed(&self) -> bool {
         self.faces > self.not_finite
             && self.open_edges + self.turned_edges + self.crowded_edges == 0
@@ -100,7 +105,8 @@ impl Defects {
         (found, fates)
     }
 
-    /// Counts the edges of the faces that remain. A face without area but with three vertices still closes what its neighbours leave open.
+    /// Counts the edges of the faces that remain. A face without area but with three vertices still
+    /// closes what its neighbours leave open.
     fn count_edges(
         &mut self,
         vertices: usize,
@@ -131,8 +137,9 @@ impl Defects {
 }
 
 impl Triangles {
-    /// The mesh without the faces that no geometry can be made of: not finite, without area, or given twice. Vertices stay, but those that
-    /// are not finite move to the origin, where no face is left to use them. The defects are those of the mesh as it was.
+    /// The mesh without the faces that no geometry can be made of: not finite, without area, or
+    /// given twice. Vertices stay, but those that are not finite move to the origin, where no face
+    /// is left to use them. The defects are those of the mesh as it was.
     pub fn mended(mut self) -> (Self, Defects) {
         let (found, fates) = Defects::judge(&self);
         let mut keep = fates.iter().map(|f| *f == Fate::Kept);
@@ -234,7 +241,8 @@ fn has_edges(fate: Fate, [a, b, c]: [u32; 3]) -> bool {
     }
 }
 
-/// Puts items into buckets 0 to `count` − 1 and visits each bucket, sorted: much faster than one sort of all where buckets are small.
+/// Puts items into buckets 0 to `count` − 1 and visits each bucket, sorted: much faster than one
+/// sort of all where buckets are small.
 fn each_bucket<T: Copy + Default + Ord, I: Iterator<Item = (u32, T)>>(
     count: usize,
     items: impl Fn() -> I,

@@ -1,10 +1,12 @@
 //! glTF 2.0: `.gltf` with buffers beside it or in it, and `.glb`.
 //!
-//! The document is read by `gltf-json`, which leaves indices unchecked; the container and the buffers are read here: `gltf` 1.4.1
-//! subtracts a header's length unchecked, allocates what the header says, and takes 82 s of processor time to compile.
+//! The document is read by `gltf-json`, which leaves indices unchecked; the container and the
+//! buffers are read here: `gltf` 1.4.1 subtracts a header's length unchecked, allocates what the
+//! header says, and takes 82 s of processor time to compile.
 //!
-//! All triangles of the default scene (the first if none is marked), in the places where its nodes put them; a node that mirrors keeps
-//! the front of its triangles. Not read: materials, images, skins, morph targets, animations.
+//! All triangles of the default scene (the first if none is marked), in the places where its nodes
+//! put them; a node that mirrors keeps the front of its triangles. Not read: materials, images,
+//! skins, morph targets, animations.
 
 mod accessor;
 mod buffer;
@@ -24,7 +26,8 @@ use std::collections::BTreeMap;
 use walk::Walk;
 
 const CURE: &str = "export the mesh again";
-/// Nodes that share a mesh may multiply vertices and triangles up to this even if the file has fewer bytes.
+/// Nodes that share a mesh may multiply vertices and triangles up to this even if the file has
+/// fewer bytes.
 const MOST_SHARED: u64 = 1 << 22;
 
 /// Reads a file beside the mesh.

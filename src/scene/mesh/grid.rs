@@ -4,8 +4,9 @@ use super::Triangles;
 use crate::geometry::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// The sphere of radius 1 around the origin with at least `faces` triangles, wound outwards; each vertex lies on it to rounding. u is the
-/// longitude from −y (u = 0.5 at +y) counterclockwise seen from above, v = polar angle / π from the lowest point up.
+/// The sphere of radius 1 around the origin with at least `faces` triangles, wound outwards; each
+/// vertex lies on it to rounding. u is the longitude from −y (u = 0.5 at +y) counterclockwise seen
+/// from above, v = polar angle / π from the lowest point up.
 pub fn sphere(faces: usize) -> Triangles {
     closed(faces, |longitude, v| {
         let polar = PI * v;
@@ -16,7 +17,8 @@ pub fn sphere(faces: usize) -> Triangles {
     })
 }
 
-/// The unit square \[0, 1\]² in the plane z = 0, front towards +z, as nu × nv cells of two triangles each; u is x and v is y.
+/// The unit square \[0, 1\]² in the plane z = 0, front towards +z, as nu × nv cells of two
+/// triangles each; u is x and v is y.
 pub fn rectangle(nu: u32, nv: u32) -> Triangles {
     let (nu, nv) = (nu.max(1), nv.max(1));
     let at = |i: u32, j: u32| [f64::from(i) / f64::from(nu), f64::from(j) / f64::from(nv)];
@@ -42,7 +44,8 @@ pub fn rectangle(nu: u32, nv: u32) -> Triangles {
     made
 }
 
-/// The unit cube \[0, 1\]³, two triangles a side, wound outwards; the texture's unit square covers every side.
+/// The unit cube \[0, 1\]³, two triangles a side, wound outwards; the texture's unit square covers
+/// every side.
 pub fn cube() -> Triangles {
     let mut made = Triangles::default();
     let mut uvs = Vec::new();
@@ -70,9 +73,10 @@ pub fn cube() -> Triangles {
     made
 }
 
-/// A closed body of at least `faces` triangles: `surface` gives the point at longitude u and latitude v in \[0, 1\], and its texture's v.
-/// All longitudes meet in one point at v = 0, below, and at v = 1, above; outwards is to the right hand of growing u and v. The texture's
-/// u at these two points is the middle of each triangle's.
+/// A closed body of at least `faces` triangles: `surface` gives the point at longitude u and
+/// latitude v in \[0, 1\], and its texture's v. All longitudes meet in one point at v = 0, below,
+/// and at v = 1, above; outwards is to the right hand of growing u and v. The texture's u at these
+/// two points is the middle of each triangle's.
 pub(super) fn closed(faces: usize, surface: impl Fn(f64, f64) -> (DVec3, f64)) -> Triangles {
     // 2·columns·rings triangles: columns at either end, 2·columns in each belt between two rings.
     let columns = (1_u32..)

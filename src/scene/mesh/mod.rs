@@ -1,8 +1,10 @@
-//! Triangle meshes from files: PLY (ASCII and binary), Wavefront OBJ and glTF 2.0 (`.gltf` and `.glb`).
+//! Triangle meshes from files: PLY (ASCII and binary), Wavefront OBJ and glTF 2.0 (`.gltf` and
+//! `.glb`).
 //!
-//! What a file announces is compared with the bytes that follow before memory is taken for it, every index is checked, and a broken file
-//! ends in a [`MeshFileError`]. What is wrong with the surface itself, as open edges or faces given twice, is counted by [`Defects`]; a
-//! vertex that is not a number is such a defect and no error.
+//! What a file announces is compared with the bytes that follow before memory is taken for it,
+//! every index is checked, and a broken file ends in a [`MeshFileError`]. What is wrong with the
+//! surface itself, as open edges or faces given twice, is counted by [`Defects`]; a vertex that is
+//! not a number is such a defect and no error.
 //!
 //! Coordinates are taken as they stand: neither unit nor axes are changed.
 
@@ -30,7 +32,8 @@ pub struct Triangles {
     pub positions: Vec<DVec3>,
     /// The three vertices of each triangle, counterclockwise seen from the front.
     pub triangles: Vec<[u32; 3]>,
-    /// By triangle and corner, u and v with v growing upwards; only where the file gives them for every corner.
+    /// By triangle and corner, u and v with v growing upwards; only where the file gives them for
+    /// every corner.
     pub uv: Option<Vec<[[f32; 2]; 3]>>,
 }
 
@@ -126,9 +129,11 @@ pub enum MeshFileError {
     },
 }
 
-/// The triangles of a mesh file. The end of `name` decides the format; `beside` reads a file that the mesh names relative to its own
-/// folder (buffers of a `.gltf`) and is never asked for anything that leads out of it by its name. Faces with more than three corners
-/// are divided into the fan of their first corner, which is right for convex ones. Materials, images, normals and colours are not read.
+/// The triangles of a mesh file. The end of `name` decides the format; `beside` reads a file that
+/// the mesh names relative to its own folder (buffers of a `.gltf`) and is never asked for anything
+/// that leads out of it by its name. Faces with more than three corners are divided into the fan of
+/// their first corner, which is right for convex ones. Materials, images, normals and colours are
+/// not read.
 ///
 /// # Errors
 /// [`MeshFileError`] with cause and cure.

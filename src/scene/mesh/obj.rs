@@ -1,7 +1,8 @@
 //! Wavefront OBJ files: `v`, `vt` and `f`; every other statement is read over.
 //!
-//! Read here and not by `tobj` 4.0.5, which multiplies a texture coordinate's index before it checks it (an overflow that panics or wraps
-//! around), gives a corner without texture coordinate the one of the corner before it, and names no lines.
+//! Read here and not by `tobj` 4.0.5, which multiplies a texture coordinate's index before it
+//! checks it (an overflow that panics or wraps around), gives a corner without texture coordinate
+//! the one of the corner before it, and names no lines.
 
 use super::{MeshFileError, Triangles, fan};
 use crate::geometry::DVec3;

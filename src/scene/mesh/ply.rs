@@ -1,8 +1,9 @@
 //! PLY files, read by `ply-rs-bw`.
 //!
-//! The crate reads elements one after the other and bounds what it allocates ahead. It counts to what the header announces even if an
-//! element has no properties, and keeps the last of two properties with one name: both are refused here, and so is a count that the bytes
-//! which follow cannot hold.
+//! The crate reads elements one after the other and bounds what it allocates ahead. It counts to
+//! what the header announces even if an element has no properties, and keeps the last of two
+//! properties with one name: both are refused here, and so is a count that the bytes which follow
+//! cannot hold.
 
 mod element;
 
@@ -16,8 +17,9 @@ use ply_rs_bw::ply::{ElementDef, Encoding, Header, PropertyAccess, PropertyType,
 const CHUNK: usize = 4096;
 const CURE: &str = "export the mesh again";
 
-/// The triangles of a PLY file: elements `vertex` (x, y, z and, if there, s t, u v or texture_u texture_v) and `face` (vertex_indices or
-/// vertex_index and, if there, texcoord: u and v by corner).
+/// The triangles of a PLY file: elements `vertex` (x, y, z and, if there, s t, u v or texture_u
+/// texture_v) and `face` (vertex_indices or vertex_index and, if there, texcoord: u and v by
+/// corner).
 pub(super) fn read(bytes: &[u8]) -> Result<Triangles, MeshFileError> {
     let mut reader = Reader::new(bytes);
     let header = Parser::<Skipped>::new()
@@ -96,7 +98,8 @@ fn least_bytes(element: &ElementDef, encoding: Encoding) -> usize {
         .sum()
 }
 
-/// The crate's header keeps one of several elements or properties of one name; what follows would then be read at the wrong places.
+/// The crate's header keeps one of several elements or properties of one name; what follows would
+/// then be read at the wrong places.
 fn refuse_twins(text: &[u8], header: &Header) -> Result<(), MeshFileError> {
     let lines = |start: &[u8]| {
         let lines = text.split(|b| *b == b'\n');

@@ -72,7 +72,8 @@ fn ply_text() -> String {
     text
 }
 
-/// The cube as binary PLY; `order` turns the bytes of a number from little endian into the file's order.
+/// The cube as binary PLY; `order` turns the bytes of a number from little endian into the file's
+/// order.
 fn ply_bytes(format: &str, order: fn(&mut [u8])) -> Vec<u8> {
     let mut bytes = format!(
         "ply\r\nformat {format} 1.0\r\nelement vertex 8\r\nproperty double x\r\nproperty float y\r\nproperty short z\r\n\
@@ -123,7 +124,8 @@ fn gltf_buffer(mesh: &Triangles) -> Vec<u8> {
     bytes
 }
 
-/// A glTF document about the cube in [`gltf_buffer`], 96 + 72 bytes, with the given buffer, nodes and scenes.
+/// A glTF document about the cube in [`gltf_buffer`], 96 + 72 bytes, with the given buffer, nodes
+/// and scenes.
 fn gltf_text(buffer: &str, nodes: &str) -> String {
     format!(
         r#"{{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0]}}], "nodes": [{nodes}],

@@ -11,8 +11,9 @@ pub struct FaceValues<'a> {
     pub reflectances: Option<&'a [f64]>,
 }
 
-/// A binary little-endian PLY file: positions as `double`, and by face the vertices as `uint`, texture coordinates by corner in the list
-/// `texcoord` as MeshLab reads them, and the values given. [`read`](super::read) gives back the same mesh.
+/// A binary little-endian PLY file: positions as `double`, and by face the vertices as `uint`,
+/// texture coordinates by corner in the list `texcoord` as MeshLab reads them, and the values
+/// given. [`read`](super::read) gives back the same mesh.
 ///
 /// # Panics
 /// If there are values and not one for each triangle.

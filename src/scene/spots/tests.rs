@@ -4,7 +4,8 @@ fn layout(text: &str) -> Result<Vec<[f64; 2]>, Fault> {
     places(&toml::from_str(text).unwrap())
 }
 
-/// The published order and offsets: o(i) = 0, −1, +1 for i mod 3 = 0, 1, 2, i from 1 along each side.
+/// The published order and offsets: o(i) = 0, −1, +1 for i mod 3 = 0, 1, 2, i from 1 along each
+/// side.
 #[test]
 fn the_square_is_the_published_one() {
     let spots = layout(

@@ -1,10 +1,10 @@
 //! Surfaces from their tables.
 
 use super::{Division, Role, Surface};
-use crate::geometry::{DVec3, Disc, Facing, Parallelogram, Shape, Sphere};
+use crate::geometry::{DVec3, Disc, Parallelogram, Shape, Sphere};
 use crate::scene::body::{Meshes, Placed};
 use crate::scene::error::{Fault, keys};
-use crate::scene::file::{ElementsTable, FaceName, RoleName, SidesName, SurfaceTable};
+use crate::scene::file::{ElementsTable, Sides, SurfaceTable};
 use crate::scene::files::Files;
 use crate::scene::material::Material;
 use crate::scene::texture::Texture;
@@ -13,7 +13,8 @@ use crate::scene::{FARTHEST, FINEST};
 
 /// More elements along a side than this are taken for a mistake.
 const MOST_ELEMENTS: u32 = 1024;
-/// More cells in the textures of all surfaces together are taken for a mistake; they take half a gigabyte.
+/// More cells in the textures of all surfaces together are taken for a mistake; they take half a
+/// gigabyte.
 const MOST_CELLS: usize = 1 << 26;
 /// A picture or a measured material larger than this is not read: 256 MiB.
 const LARGEST_PICTURE: u64 = 256 << 20;
@@ -46,7 +47,7 @@ pub(in crate::scene) fn from_tables(
             ));
         }
         // A back has a copy of its front's texture.
-        let copies = 1 + usize::from(table.sides == Some(SidesName::Two));
+        let copies = 1 + usize::from(table.sides == Some(Sides::Two));
         cells += copies * surface.albedo.held();
         if cells > MOST_CELLS {
             let cause = format!("the textures up to `{}` have {cells} cells", surface.name);
@@ -57,7 +58,7 @@ pub(in crate::scene) fn from_tables(
     }
     // The backs come last, so that positions in the list are those in the file.
     for (i, table) in tables.iter().enumerate() {
-        if table.sides == Some(SidesName::Two) {
+        if table.sides == Some(Sides::Two) {
             let back = surfaces[i]
                 .back()
                 .map_err(|f| f.within(keys!["surface", i]))?;
@@ -83,8 +84,8 @@ struct Sources<'a> {
     found: &'a mut Vec<Warning>,
 }
 
-/// Two surfaces in one place that face the same way: it would be up to rounding which of them the light meets. Back to back
-/// they make a panel with two faces, and edge to edge a larger surface.
+/// Two surfaces in one place that face the same way: it would be up to rounding which of them the
+/// light meets. Back to back they make a panel with two faces, and edge to edge a larger surface.
 fn refuse_coincident(surfaces: &[Surface]) -> Result<(), Fault> {
     for (i, a) in surfaces.iter().enumerate() {
         for (j, b) in surfaces.iter().enumerate().skip(i + 1) {
@@ -116,7 +117,7 @@ impl Surface {
         let shape = match &self.shape {
             Shape::Parallelogram(p) => Some(Shape::Parallelogram(p.turned())),
             Shape::Disc(d) => d.turned().map(Shape::Disc),
-            Shape::Body(b) => Some(Shape::Body(b.turned())),
+            Shape::Instance(b) => Some(Shape::Instance(b.turned())),
             Shape::Sphere(_) => None,
         };
         let refused = |cause: &str, cure: &str| Fault::new(keys!["sides"], cause, cure);
@@ -151,11 +152,7 @@ impl Surface {
                 "give it one",
             ));
         }
-        let role = match table.role {
-            RoleName::Relay => Role::Relay,
-            RoleName::Hidden => Role::Hidden,
-            RoleName::Occluder => Role::Occluder,
-        };
+        let role = table.role;
         let shape = shape(table, earlier, sources)?;
         refuse_beyond_numbers(&table.name, &shape)?;
         let wavelength = sources.wavelength;
@@ -165,7 +162,7 @@ impl Surface {
             .map_err(|f| f.within(keys!["material"]))?;
         let elements = match (role, table.elements) {
             (Role::Hidden, Some(ElementsTable::Faces(_))) => {
-                let Shape::Body(body) = &shape else {
+                let Shape::Instance(body) = &shape else {
                     let cause = "only a mesh can be divided into its faces";
                     let cure = "give elements along u and v: `elements = [8, 8]`";
                     return Err(Fault::new(keys!["elements"], cause, cure));
@@ -203,7 +200,7 @@ impl Surface {
             Some(ElementsTable::Faces(_)) => Division::Faces,
             _ => Division::Cells,
         };
-        if let Shape::Body(body) = &shape
+        if let Shape::Instance(body) = &shape
             && body.mesh().uv().is_none()
         {
             let cause = |what: &str| {
@@ -298,14 +295,10 @@ fn shape(
                 let name = table.name.clone();
                 sources.found.push(Warning::Mesh(name, defects));
             }
-            Ok(Shape::Body(body))
+            Ok(Shape::Instance(body))
         }
         (None, Some(s), None, None) => {
-            let facing = match s.face {
-                FaceName::Outside => Facing::Outside,
-                FaceName::Inside => Facing::Inside,
-            };
-            let sphere = Sphere::new(v(s.centre), s.radius, facing).ok_or_else(|| {
+            let sphere = Sphere::new(v(s.centre), s.radius, s.face).ok_or_else(|| {
                 let cause = format!(
                     "sphere `{}` has radius {}: it has no area",
                     table.name, s.radius

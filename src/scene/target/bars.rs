@@ -1,13 +1,15 @@
-//! Three-bar groups in the manner of the resolution chart of 1951 (MIL-STD-150A): six elements to each halving, bars five times as long as wide and as far apart
-//! as they are wide.
+//! Three-bar groups in the manner of the resolution chart of 1951 (MIL-STD-150A): six elements to
+//! each halving, bars five times as long as wide and as far apart as they are wide.
 
 use super::Picture;
 use super::figure::Figure;
 
-/// Width and height of the chart in bars of the first element: 2 beside its figures of 12, 4 between the two columns, 6 for the second.
+/// Width and height of the chart in bars of the first element: 2 beside its figures of 12, 4
+/// between the two columns, 6 for the second.
 const CHART: [f64; 2] = [26.0, 36.0];
 
-/// Elements of a group, and the groups: the first on the left, the others one below the other on the right.
+/// Elements of a group, and the groups: the first on the left, the others one below the other on
+/// the right.
 const ELEMENTS: usize = 6;
 const GROUPS: usize = 4;
 

@@ -10,7 +10,8 @@ const CORNER: f64 = 4.0;
 /// Height of a pip, and of the pip below an index.
 const PIP: f64 = 16.0;
 const SMALL_PIP: f64 = 8.0;
-/// Centres of the pips of the upper half, and of the middle row, which are upright; those of the lower half are the upper's, turned.
+/// Centres of the pips of the upper half, and of the middle row, which are upright; those of the
+/// lower half are the upper's, turned.
 const UPPER: [Point; 5] = [
     [20.5, 16.0],
     [42.5, 16.0],

@@ -7,9 +7,10 @@ pub(super) type Point = [f64; 2];
 
 /// A figure of one ink: the sum of polygons, with holes.
 ///
-/// The part of a pixel that a polygon covers is computed exactly, by Green's theorem: each edge adds to every pixel of the rows that it crosses its
-/// height in that row times the part of the pixel on its right, with its sign. Where polygons of one figure overlap the sum ends at 1, so that it is exact
-/// there too unless two outlines cross in the same pixel.
+/// The part of a pixel that a polygon covers is computed exactly, by Green's theorem: each edge
+/// adds to every pixel of the rows that it crosses its height in that row times the part of the
+/// pixel on its right, with its sign. Where polygons of one figure overlap the sum ends at 1, so
+/// that it is exact there too unless two outlines cross in the same pixel.
 pub struct Figure {
     size: [usize; 2],
     /// Row by row, width + 1 each: differences of the coverage from the pixel on the left.
@@ -25,7 +26,8 @@ impl Figure {
         }
     }
 
-    /// Adds the inside of a simple polygon, given in either sense. What lies outside the picture is cut off.
+    /// Adds the inside of a simple polygon, given in either sense. What lies outside the picture is
+    /// cut off.
     pub fn add(&mut self, outline: &[Point]) {
         self.fill(outline, 1.0);
     }
@@ -58,7 +60,8 @@ impl Figure {
         }
     }
 
-    /// Adds one edge: in each pixel that it crosses, its height there times the part on its right, and its whole height to those further right.
+    /// Adds one edge: in each pixel that it crosses, its height there times the part on its right,
+    /// and its whole height to those further right.
     fn edge(&mut self, p: Point, q: Point, sign: f64) {
         let [width, height] = self.size;
         let at = |t: f64| [p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])];
@@ -100,7 +103,8 @@ pub(super) fn disc(centre: Point, radius: f64, corners: usize) -> Vec<Point> {
     angles.map(|a| on_circle(centre, radius, a)).collect()
 }
 
-/// The arc around `centre` between two angles, from +x towards +y (downwards), by its points each 2° or less.
+/// The arc around `centre` between two angles, from +x towards +y (downwards), by its points each
+/// 2° or less.
 pub(super) fn arc(centre: Point, radius: f64, [from, to]: [f64; 2]) -> Vec<Point> {
     let pieces = ((to - from).abs() / PI * 90.0).ceil().max(1.0) as usize;
     let angle = |k: usize| from + (to - from) * k as f64 / pieces as f64;

@@ -1,4 +1,5 @@
-//! The letter chart: Sloan's ten letters, drawn on his grid of 5 × 5 strokes (L. L. Sloan, Am. J. Ophthalmol. 48, 1959).
+//! The letter chart: Sloan's ten letters, drawn on his grid of 5 × 5 strokes (L. L. Sloan, Am. J.
+//! Ophthalmol. 48, 1959).
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -17,8 +18,8 @@ const ROWS: [[char; 5]; 8] = [
     ['Z', 'D', 'C', 'S', 'K'],
 ];
 
-/// Width and height of the chart in heights of its first row: nine for letters and gaps, and half of one on each side. Below each row there is as
-/// much white as the next row is high.
+/// Width and height of the chart in heights of its first row: nine for letters and gaps, and half
+/// of one on each side. Below each row there is as much white as the next row is high.
 const CHART: [f64; 2] = [10.0, 8.0];
 
 /// 10^−0.1: a row in terms of the one above.

@@ -1,7 +1,9 @@
-//! Target pictures, drawn here: no file is needed, and every grey value follows from the definition below.
+//! Target pictures, drawn here: no file is needed, and every grey value follows from the definition
+//! below.
 //!
-//! A pixel's value is the mean of the ideal picture over the pixel's square, linear reflectance with 0 black and 1 white. Outlines are polygons and their
-//! coverage is exact, see [`Figure`]; arcs are polygons of as many corners as they need, with the area of the true disc.
+//! A pixel's value is the mean of the ideal picture over the pixel's square, linear reflectance
+//! with 0 black and 1 white. Outlines are polygons and their coverage is exact, see [`Figure`];
+//! arcs are polygons of as many corners as they need, with the area of the true disc.
 //!
 //! | name | picture |
 //! | --- | --- |
@@ -139,7 +141,8 @@ impl Picture {
     }
 }
 
-/// ½ + ½·c − s with the coverages c of the disc and s of its black sectors: grey without, white or black within.
+/// ½ + ½·c − s with the coverages c of the disc and s of its black sectors: grey without, white or
+/// black within.
 fn siemens(size: [usize; 2], spokes: usize) -> Picture {
     let [w, h] = size.map(|n| n as f64);
     let (centre, radius) = ([0.5 * w, 0.5 * h], 0.48 * w.min(h));

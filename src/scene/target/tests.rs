@@ -81,8 +81,8 @@ fn triangles_and_holes_are_covered_exactly() {
     assert!((figure.coverage()[8] - 0.75).abs() < 1e-12);
 }
 
-/// The mean over pixel (i, j) of the step at x(y) = w/2 + tan(5°)(h/2 − y) is 1 where the edge passes on its left, and one minus the trapezium's area
-/// x(j + ½) − i where it passes through.
+/// The mean over pixel (i, j) of the step at x(y) = w/2 + tan(5°)(h/2 − y) is 1 where the edge
+/// passes on its left, and one minus the trapezium's area x(j + ½) − i where it passes through.
 #[test]
 fn the_edge_is_covered_by_its_closed_form() {
     let [w, h] = [128, 128];
@@ -126,7 +126,8 @@ fn the_star_is_half_black() {
     assert!(centres.enumerate().all(|(k, black)| black == (k % 2 == 0)));
 }
 
-/// Sums of the areas: 24 elements of six bars of 5·w², w² = 2^(−k/3), in pixels of the usual size where the first bar is 8 pixels wide.
+/// Sums of the areas: 24 elements of six bars of 5·w², w² = 2^(−k/3), in pixels of the usual size
+/// where the first bar is 8 pixels wide.
 #[test]
 fn bars_cover_their_area_and_the_first_group_lies_on_pixels() {
     let picture = drawn(Target::Usaf);
@@ -153,7 +154,8 @@ fn the_ramp_is_linear() {
     );
 }
 
-/// Turned by half a turn the card is itself but for the middle row, whose two pips stand upright; the lying card is the upright one turned by a quarter.
+/// Turned by half a turn the card is itself but for the middle row, whose two pips stand upright;
+/// the lying card is the upright one turned by a quarter.
 #[test]
 fn the_card_is_symmetric() {
     let [w, h] = [63, 95];

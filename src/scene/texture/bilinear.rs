@@ -1,16 +1,21 @@
 //! Albedo between the centres of texels.
 
+use serde::{Deserialize, Serialize};
+
 /// What a texture is outside \[0, 1\].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
 pub enum Wrap {
     /// What it is at the nearest border.
+    #[default]
     Clamp,
     /// The same again.
     Repeat,
 }
 
-/// Albedo interpolated linearly in u and in v between the centres ((i + ½)/nu, (j + ½)/nv) of nu × nv texels. Beyond the outermost centres it is level, or
-/// goes on with the opposite border's texels if it repeats.
+/// Albedo interpolated linearly in u and in v between the centres ((i + ½)/nu, (j + ½)/nv) of nu ×
+/// nv texels. Beyond the outermost centres it is level, or goes on with the opposite border's
+/// texels if it repeats.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bilinear {
     /// Texels along u and v.
@@ -34,7 +39,8 @@ impl Bilinear {
         a + (b - a) * tv
     }
 
-    /// The texels whose centres lie on both sides, and how far it is from the first to the second, in \[0, 1\].
+    /// The texels whose centres lie on both sides, and how far it is from the first to the second,
+    /// in \[0, 1\].
     fn neighbours(&self, x: f64, n: usize) -> ([usize; 2], f64) {
         let last = n - 1;
         match self.wrap {

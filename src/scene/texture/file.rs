@@ -3,17 +3,30 @@
 use serde::de::{self, MapAccess, Visitor, value::MapAccessDeserializer};
 use serde::{Deserialize, Deserializer, Serialize};
 
+use super::bilinear::Wrap;
+use crate::image::Transfer;
+
 /// `0.8`, or a table that says how the albedo varies.
 #[derive(Clone, Debug, Serialize)]
 #[serde(untagged)]
-pub(in crate::scene) enum AlbedoTable {
+pub enum AlbedoTable {
+    /// The same everywhere.
     Constant(f64),
+    /// As a table says.
     Varied(Box<VariedTable>),
 }
 
-#[derive(Clone, Debug, Deserialize, Serialize)]
+impl From<f64> for AlbedoTable {
+    fn from(albedo: f64) -> Self {
+        Self::Constant(albedo)
+    }
+}
+
+/// How an albedo varies over a surface: exactly one of `checkerboard`, `cells`, `ramp`, `image` and
+/// `target`.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(in crate::scene) struct VariedTable {
+pub struct VariedTable {
     /// Checks along u and v; cell (0, 0), at the corner, is dark.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub checkerboard: Option<[u32; 2]>,
@@ -29,7 +42,8 @@ pub(in crate::scene) struct VariedTable {
     /// Albedo that changes linearly along u, from the corner on: [start, end].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ramp: Option<[f64; 2]>,
-    /// A picture below the scene's folder: PNG, JPEG or OpenEXR. Its lower left corner is at the surface's corner.
+    /// A picture below the scene's folder: PNG, JPEG or OpenEXR. Its lower left corner is at the
+    /// surface's corner.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub image: Option<String>,
     /// A picture that is built in: card, letters, siemens, edge, usaf or ramp.
@@ -40,50 +54,45 @@ pub(in crate::scene) struct VariedTable {
     pub size: Option<[u32; 2]>,
     /// What the image's stored values mean: srgb or linear.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub transfer: Option<TransferName>,
+    pub transfer: Option<Transfer>,
     /// Which value of the image's pixels counts.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub channel: Option<ChannelName>,
+    pub channel: Option<PictureChannel>,
     /// Between the centres of pixels: nearest (default) or bilinear.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub filter: Option<FilterName>,
+    pub filter: Option<Filter>,
     /// Outside \[0, 1\]: clamp (default) or repeat.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub wrap: Option<WrapName>,
+    pub wrap: Option<Wrap>,
 }
 
+/// Which value of a picture's pixels counts.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
-pub(in crate::scene) enum TransferName {
-    Srgb,
-    Linear,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
-#[serde(rename_all = "lowercase")]
-pub(in crate::scene) enum ChannelName {
+pub enum PictureChannel {
+    /// The only channel of a grey picture.
     Grey,
+    /// Red.
     Red,
+    /// Green.
     Green,
+    /// Blue.
     Blue,
+    /// 0.2126·R + 0.7152·G + 0.0722·B.
     Luminance,
+    /// Interpolated to the laser's wavelength.
     Wavelength,
 }
 
+/// What a picture is between the centres of its pixels.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
-pub(in crate::scene) enum FilterName {
+pub enum Filter {
+    /// Every pixel is a cell of one albedo.
     #[default]
     Nearest,
+    /// Linear between the centres of pixels.
     Bilinear,
-}
-
-#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
-#[serde(rename_all = "lowercase")]
-pub(in crate::scene) enum WrapName {
-    #[default]
-    Clamp,
-    Repeat,
 }
 
 impl<'de> Deserialize<'de> for AlbedoTable {

@@ -7,13 +7,14 @@ mod picture;
 use super::error::{Fault, keys};
 
 pub use bilinear::{Bilinear, Wrap};
-pub(super) use file::AlbedoTable;
-use file::VariedTable;
+pub use file::{AlbedoTable, Filter, PictureChannel, VariedTable};
 
-/// Reads a file that a scene names, by its path below the scene's folder; the error says why not, without a full stop.
+/// Reads a file that a scene names, by its path below the scene's folder; the error says why not,
+/// without a full stop.
 pub(super) type Files<'a> = dyn FnMut(&str) -> Result<Vec<u8>, String> + 'a;
 
-/// A smaller albedo than this is taken for a mistake: products of them would leave the range of f64.
+/// A smaller albedo than this is taken for a mistake: products of them would leave the range of
+/// f64.
 const LEAST_ALBEDO: f64 = 1e-30;
 /// More cells along a side than this are taken for a mistake.
 const MOST_CELLS: u32 = 4096;
@@ -42,8 +43,8 @@ pub struct Cells {
     pub albedo: Vec<f64>,
 }
 
-/// The cells of n equal ones on \[0, 1\] that an interval covers, each with its share of the interval; of one within rounding (1e-9 of a
-/// cell) nothing is taken.
+/// The cells of n equal ones on \[0, 1\] that an interval covers, each with its share of the
+/// interval; of one within rounding (1e-9 of a cell) nothing is taken.
 fn overlaps([a, b]: [f64; 2], n: usize) -> Vec<(usize, f64)> {
     const ROUNDING: f64 = 1e-9;
     let (a, b) = (a * n as f64, b * n as f64);
@@ -57,7 +58,8 @@ fn overlaps([a, b]: [f64; 2], n: usize) -> Vec<(usize, f64)> {
 }
 
 impl Texture {
-    /// Albedo at (u, v). On an edge between cells the higher cell counts; u, v are held to [0, 1] unless the texture repeats.
+    /// Albedo at (u, v). On an edge between cells the higher cell counts; u, v are held to [0, 1]
+    /// unless the texture repeats.
     pub fn albedo(&self, [u, v]: [f64; 2]) -> f64 {
         match self {
             Self::Constant(rho) => *rho,
@@ -96,8 +98,8 @@ impl Texture {
         }
     }
 
-    /// Mean albedo over a rectangle of parameters within \[0, 1\]: exact, but between the texels of a bilinear picture, where it is that of
-    /// 16 × 16 points.
+    /// Mean albedo over a rectangle of parameters within \[0, 1\]: exact, but between the texels of
+    /// a bilinear picture, where it is that of 16 × 16 points.
     pub fn mean(&self, [u0, u1]: [f64; 2], [v0, v1]: [f64; 2]) -> f64 {
         match self {
             Self::Constant(rho) => *rho,
@@ -123,8 +125,9 @@ impl Texture {
         }
     }
 
-    /// The texture whose numbers are `f` of this one's. Between the numbers of a ramp or of a bilinear picture it is interpolated as before, which is `f` of
-    /// what was there only if `f` is linear.
+    /// The texture whose numbers are `f` of this one's. Between the numbers of a ramp or of a
+    /// bilinear picture it is interpolated as before, which is `f` of what was there only if `f` is
+    /// linear.
     pub(super) fn map(&self, mut f: impl FnMut(f64) -> f64) -> Self {
         let mut each = |albedo: &[f64]| albedo.iter().map(|rho| f(*rho)).collect::<Vec<_>>();
         let mut cells = |c: &Cells| Cells {
@@ -155,7 +158,8 @@ impl Texture {
         }
     }
 
-    /// Checks a table; `wavelength` (m) is the laser's, for pictures whose channels it weights, and `files` reads pictures.
+    /// Checks a table; `wavelength` (m) is the laser's, for pictures whose channels it weights, and
+    /// `files` reads pictures.
     pub(super) fn from_table(
         table: &AlbedoTable,
         wavelength: f64,

@@ -1,6 +1,6 @@
 //! Albedo from pictures.
 
-use super::file::{ChannelName, FilterName, TransferName, VariedTable, WrapName};
+use super::file::{Filter, PictureChannel, VariedTable};
 use super::{Bilinear, Cells, Files, MOST_CELLS, Texture, Wrap, albedo};
 use crate::image::{self, Channel, Encoding, Image, Transfer};
 use crate::scene::error::{Fault, keys};
@@ -9,7 +9,8 @@ use crate::scene::target::Target;
 /// Luminance of linear red, green and blue: ITU-R BT.709.
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
-/// Dominant wavelengths of the sRGB primaries blue, green and red, m: where the line from D65 through the primary meets the spectral locus of CIE 1931.
+/// Dominant wavelengths of the sRGB primaries blue, green and red, m: where the line from D65
+/// through the primary meets the spectral locus of CIE 1931.
 pub(super) const DOMINANT: [f64; 3] = [464.2e-9, 549.1e-9, 611.4e-9];
 
 const COLOURS: [Channel; 3] = [Channel::Red, Channel::Green, Channel::Blue];
@@ -93,15 +94,12 @@ fn texture(count: [usize; 2], values: &[f64], table: &VariedTable) -> Result<Tex
     let albedo: Vec<f64> = rows.flatten().map(albedo).collect();
     let wrap = table.wrap.unwrap_or_default();
     Ok(match (table.filter.unwrap_or_default(), wrap) {
-        (FilterName::Nearest, WrapName::Clamp) => Texture::Cells(Cells { count, albedo }),
-        (FilterName::Nearest, WrapName::Repeat) => Texture::Tiles(Cells { count, albedo }),
-        (FilterName::Bilinear, _) => Texture::Bilinear(Bilinear {
+        (Filter::Nearest, Wrap::Clamp) => Texture::Cells(Cells { count, albedo }),
+        (Filter::Nearest, Wrap::Repeat) => Texture::Tiles(Cells { count, albedo }),
+        (Filter::Bilinear, _) => Texture::Bilinear(Bilinear {
             count,
             albedo,
-            wrap: match wrap {
-                WrapName::Clamp => Wrap::Clamp,
-                WrapName::Repeat => Wrap::Repeat,
-            },
+            wrap,
         }),
     })
 }
@@ -123,20 +121,16 @@ fn refuse_transparency(name: &str, image: &Image) -> Result<(), Fault> {
     }
 }
 
-fn transfer(
-    name: &str,
-    given: Option<TransferName>,
-    encoding: Encoding,
-) -> Result<Transfer, Fault> {
+fn transfer(name: &str, given: Option<Transfer>, encoding: Encoding) -> Result<Transfer, Fault> {
     match (given, encoding) {
-        (Some(TransferName::Srgb), Encoding::Integer) => Ok(Transfer::Srgb),
-        (Some(TransferName::Linear), _) | (None, Encoding::Float) => Ok(Transfer::Linear),
+        (Some(Transfer::Srgb), Encoding::Integer) => Ok(Transfer::Srgb),
+        (Some(Transfer::Linear), _) | (None, Encoding::Float) => Ok(Transfer::Linear),
         (None, Encoding::Integer) => Err(Fault::new(
             keys!["image"],
             format!("`{name}` does not say what its values mean"),
             "add `transfer = \"srgb\"` (cameras, scanners, drawings for the screen) or `transfer = \"linear\"` (stored in proportion to reflectance)",
         )),
-        (Some(TransferName::Srgb), Encoding::Float) => Err(Fault::new(
+        (Some(Transfer::Srgb), Encoding::Float) => Err(Fault::new(
             keys!["transfer"],
             format!("`{name}` is OpenEXR, which is linear by its definition"),
             "remove `transfer`, or save the picture as PNG",
@@ -147,7 +141,7 @@ fn transfer(
 /// What each value of a pixel counts.
 fn weights(
     name: &str,
-    given: Option<ChannelName>,
+    given: Option<PictureChannel>,
     image: &Image,
     wavelength: f64,
 ) -> Result<Vec<f64>, Fault> {
@@ -157,7 +151,7 @@ fn weights(
     };
     let is_grey = image.channels.contains(&Channel::Grey);
     match (given, is_grey) {
-        (None | Some(ChannelName::Grey), true) => {
+        (None | Some(PictureChannel::Grey), true) => {
             let weight = |c: &Channel| f64::from(u8::from(*c == Channel::Grey));
             Ok(image.channels.iter().map(weight).collect())
         }
@@ -171,16 +165,16 @@ fn weights(
             format!("`{name}` has colours, and an albedo is one number"),
             "add `channel = \"luminance\"`, \"wavelength\" (the laser's), \"red\", \"green\" or \"blue\"",
         )),
-        (Some(ChannelName::Grey), false) => Err(Fault::new(
+        (Some(PictureChannel::Grey), false) => Err(Fault::new(
             keys!["channel"],
             format!("`{name}` has colours, no grey"),
             "use \"luminance\", \"wavelength\", \"red\", \"green\" or \"blue\"",
         )),
-        (Some(ChannelName::Red), false) => Ok(of([1.0, 0.0, 0.0])),
-        (Some(ChannelName::Green), false) => Ok(of([0.0, 1.0, 0.0])),
-        (Some(ChannelName::Blue), false) => Ok(of([0.0, 0.0, 1.0])),
-        (Some(ChannelName::Luminance), false) => Ok(of(LUMINANCE)),
-        (Some(ChannelName::Wavelength), false) => {
+        (Some(PictureChannel::Red), false) => Ok(of([1.0, 0.0, 0.0])),
+        (Some(PictureChannel::Green), false) => Ok(of([0.0, 1.0, 0.0])),
+        (Some(PictureChannel::Blue), false) => Ok(of([0.0, 0.0, 1.0])),
+        (Some(PictureChannel::Luminance), false) => Ok(of(LUMINANCE)),
+        (Some(PictureChannel::Wavelength), false) => {
             if !(wavelength.is_finite() && wavelength > 0.0) {
                 let cause =
                     format!("the laser's wavelength is {wavelength} m: it weights no colours");

@@ -80,7 +80,8 @@ fn cells_of(texture: Texture) -> Vec<f64> {
     }
 }
 
-/// The picture stands upright: its lower row is at v = 0. sRGB is that of the standard, worked out here once more.
+/// The picture stands upright: its lower row is at v = 0. sRGB is that of the standard, worked out
+/// here once more.
 #[test]
 fn a_picture_is_its_pixels_as_cells() {
     let plain = with_files("{ image = \"grey.png\", transfer = \"linear\" }", &[GREY]).unwrap();
@@ -147,8 +148,8 @@ fn the_wavelength_interpolates_between_the_primaries() {
     near(1064e-9, [1.0, 0.0, 0.0]);
 }
 
-/// The stated wavelengths, from the published chromaticities of the spectral locus (CIE 1931, every 5 nm): where the line from D65 (0.3127, 0.3290)
-/// through the primary crosses the chord.
+/// The stated wavelengths, from the published chromaticities of the spectral locus (CIE 1931, every
+/// 5 nm): where the line from D65 (0.3127, 0.3290) through the primary crosses the chord.
 #[test]
 fn dominant_wavelengths_follow_from_the_spectral_locus() {
     let white = [0.3127, 0.3290];
@@ -165,7 +166,8 @@ fn dominant_wavelengths_follow_from_the_spectral_locus() {
     }
 }
 
-/// A saddle, given at four texels: exact everywhere between their centres, level outside, and its means are values at centres of half-texels.
+/// A saddle, given at four texels: exact everywhere between their centres, level outside, and its
+/// means are values at centres of half-texels.
 #[test]
 fn bilinear_albedo_is_the_closed_form() {
     let saddle = |u: f64, v: f64| 0.1 + 0.3 * u + 0.2 * v + 0.35 * u * v;

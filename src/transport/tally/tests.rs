@@ -34,7 +34,8 @@ fn tally(blocks: u32, part: Range<u32>) -> Tally {
     tally
 }
 
-/// Against the two-pass formula for each entry, with blocks that differ in the ninth digit, of a number that is no power of two.
+/// Against the two-pass formula for each entry, with blocks that differ in the ninth digit, of a
+/// number that is no power of two.
 #[test]
 fn means_and_standard_errors_are_the_two_pass_ones() {
     let blocks = 11;
@@ -50,7 +51,8 @@ fn means_and_standard_errors_are_the_two_pass_ones() {
     }
 }
 
-/// Against the norms of the two-pass means and standard errors of the blocks that are there, however many parts they make.
+/// Against the norms of the two-pass means and standard errors of the blocks that are there,
+/// however many parts they make.
 #[test]
 fn the_relative_error_is_that_of_the_blocks_that_are_there() {
     for part in [0..11, 0..7, 0..2, 4..9, 1..4] {
@@ -117,7 +119,8 @@ fn what_cannot_be_a_part_is_refused() {
     assert_eq!(tally.add_part(4..8, &bytes), Ok(()));
 }
 
-/// Every estimator, cut anywhere, gives the bits of the whole; and what the control stops can be gone on with.
+/// Every estimator, cut anywhere, gives the bits of the whole; and what the control stops can be
+/// gone on with.
 #[test]
 fn traced_in_pieces_or_at_once_the_bits_are_the_same() {
     let text = Scene::load("bench").unwrap().text;
@@ -155,10 +158,12 @@ fn traced_in_pieces_or_at_once_the_bits_are_the_same() {
                 }
             };
             let piece =
-                crate::transport::trace(&scene, &plan, 0..5, start, part.end, control, once);
+                crate::transport::trace(&scene, &plan, 0..5, start, part.end, control, once)
+                    .unwrap();
             let go_on = &mut |_: &Tally| ControlFlow::Continue(1);
             let piece =
-                crate::transport::trace(&scene, &plan, 0..5, piece, part.end, control, go_on);
+                crate::transport::trace(&scene, &plan, 0..5, piece, part.end, control, go_on)
+                    .unwrap();
             assert_eq!(piece.range(), part);
             for (range, bytes) in piece.parts() {
                 merged.add_part(range, &bytes).unwrap();

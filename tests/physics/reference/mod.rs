@@ -1,9 +1,11 @@
-//! An independent reference for Φcam of the bench: product Gauss–Legendre quadrature over every check of the board and
-//! every pixel's footprint, in the test's own code. Nothing here comes from the crate.
+//! An independent reference for Φcam of the bench: product Gauss–Legendre quadrature over every
+//! check of the board and every pixel's footprint, in the test's own code. Nothing here comes from
+//! the crate.
 
 use std::f64::consts::PI;
 
-/// What the reference needs to know of a bench with a wall at z = 0 and a board hinged at y = 15.5 at 45°.
+/// What the reference needs to know of a bench with a wall at z = 0 and a board hinged at y = 15.5
+/// at 45°.
 #[derive(Clone)]
 pub(crate) struct Bench {
     pub(crate) power: f64,
@@ -139,8 +141,8 @@ pub(crate) fn relative_difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
     (difference / norm).sqrt()
 }
 
-/// Gauss–Legendre nodes and weights on [0, 1], by bisection of P_n between the interlacing roots of P_{n−1}: slow and
-/// unlike the crate's Newton iteration.
+/// Gauss–Legendre nodes and weights on [0, 1], by bisection of P_n between the interlacing roots of
+/// P_{n−1}: slow and unlike the crate's Newton iteration.
 pub(crate) fn gauss(n: usize) -> Vec<(f64, f64)> {
     fn p(n: usize, x: f64) -> f64 {
         let (mut a, mut b) = (1.0, x);

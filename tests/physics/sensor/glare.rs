@@ -3,7 +3,8 @@
 use phicam::scene::{Glare, Scene, Spread};
 use phicam::sensor::{entering_lens, glare};
 
-/// Φlaser·(ρ/π)·cos²θ·A/R² of the bench, where laser and lens stand 15 in. before the wall and look along its normal.
+/// Φlaser·(ρ/π)·cos²θ·A/R² of the bench, where laser and lens stand 15 in. before the wall and look
+/// along its normal.
 #[test]
 fn the_spot_lights_the_lens_as_the_closed_form_says() {
     let scene = Scene::load("bench").unwrap();
@@ -29,7 +30,8 @@ fn scattered_light_is_the_stated_part_and_falls_off_as_stated() {
                 assert!(column.iter().all(|x| *x == column[0]));
                 continue;
             };
-            // The spots lie in the view's plane, so that each is its own image. Pixels of 3.25/16 in.
+            // The spots lie in the view's plane, so that each is its own image. Pixels of 3.25/16
+            // in.
             let spot = scene.laser.spots[l].target.position;
             let law = |column: usize, row: usize| {
                 let centre = |i: usize, low: f64| low + (i as f64 + 0.5) * 3.25 / 16.0;
@@ -55,7 +57,8 @@ fn what_stands_in_the_beam_is_lit_in_place_of_the_wall() {
         );
         Scene::from_toml("board", &text).unwrap_or_else(|e| panic!("{e}"))
     };
-    // Every beam passes (x, y, 12) with x = −20 + 0.2·(20 + x_spot), from −16 to −14: the board covers part of them.
+    // Every beam passes (x, y, 12) with x = −20 + 0.2·(20 + x_spot), from −16 to −14: the board
+    // covers part of them.
     let back = board("u = [0, 20, 0], v = [2, 0, 0]");
     let front = board("u = [2, 0, 0], v = [0, 20, 0]");
     let free = entering_lens(&Scene::load("bench").unwrap());

@@ -1,4 +1,5 @@
-//! The whole chain against its analytic standard deviation; what random numbers depend on; series of exposures.
+//! The whole chain against its analytic standard deviation; what random numbers depend on; series
+//! of exposures.
 
 use phicam::matrix::Matrix;
 use phicam::num::statistics::{chi_square_sf, normal_two_sided};
@@ -8,7 +9,8 @@ use phicam::sensor::{Exposure, Figures, Light, Range, Sensor};
 
 use super::{SIGNIFICANCE, WAVELENGTH, expose};
 
-/// z of every column: pixels are the repetitions, each spot is a level of light (electrons in a second).
+/// z of every column: pixels are the repetitions, each spot is a level of light (electrons in a
+/// second).
 fn law_holds(figures: Figures, levels: &[f64], exposure: &Exposure, ambient: f64) {
     let pixels = 20_000;
     let watts = photon_energy(WAVELENGTH) / figures.quantum_efficiency;
@@ -43,7 +45,8 @@ fn law_holds(figures: Figures, levels: &[f64], exposure: &Exposure, ambient: f64
     }
 }
 
-/// Averaging, dark frames, ambient light, relative noise and a series, in every built-in sensor that has noise.
+/// Averaging, dark frames, ambient light, relative noise and a series, in every built-in sensor
+/// that has noise.
 #[test]
 fn the_analytic_deviation_is_that_of_the_samples() {
     for model in [
@@ -66,7 +69,8 @@ fn the_analytic_deviation_is_that_of_the_samples() {
     }
 }
 
-/// Without noise to dither it, rounding is the same in every frame: averaging 64 of them gains nothing.
+/// Without noise to dither it, rounding is the same in every frame: averaging 64 of them gains
+/// nothing.
 #[test]
 fn rounding_without_noise_does_not_average_out() {
     for read_noise in [0.0, 1.5] {
@@ -138,7 +142,8 @@ fn a_series_takes_the_longest_that_is_not_saturated_and_marks_what_none_can_hold
     assert!((exposed.flux[3] / (1e5 * watts) - 1.0).abs() < 1e-14);
 }
 
-/// Entries have noise of their own; only the dark frames of a pixel are shared, so that two spots correlate by their part of the variance.
+/// Entries have noise of their own; only the dark frames of a pixel are shared, so that two spots
+/// correlate by their part of the variance.
 #[test]
 fn spots_share_their_dark_frames_and_nothing_else() {
     let figures = *Sensor::builtin(SensorModel::Dslr).figures();

@@ -1,4 +1,5 @@
-//! The sensor chain against the distributions that each stage must follow, against its own law, and glare against closed forms.
+//! The sensor chain against the distributions that each stage must follow, against its own law, and
+//! glare against closed forms.
 
 mod glare;
 mod law;

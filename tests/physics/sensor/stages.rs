@@ -132,7 +132,8 @@ fn read_noise_is_normal() {
     assert!(p.min(1.0 - p) > 0.5 * SIGNIFICANCE, "{chi2}");
 }
 
-/// Every count of a converter that rounds normal numbers: from noise below a step to noise of several.
+/// Every count of a converter that rounds normal numbers: from noise below a step to noise of
+/// several.
 #[test]
 fn quantisation_rounds_as_the_normal_distribution_says() {
     for deviation in [0.3, 0.7, 4.0] {

@@ -53,7 +53,8 @@ proptest! {
         let start = envelope::check_list(&bytes).unwrap() + 24;
         let at = start + at.index(bytes.len() - start);
         bytes[at] ^= 1 << bit;
-        // Adler-32 sees every single flipped bit of what it covers; bits of the deflate stream that mean nothing may pass.
+        // Adler-32 sees every single flipped bit of what it covers; bits of the deflate stream that
+        // mean nothing may pass.
         if let Ok(after) = read_bytes(&bytes) {
             for channel in &before.channels {
                 prop_assert_eq!(bits(&after, &channel.name), bits(&before, &channel.name), "byte {}", at);

@@ -52,7 +52,8 @@ fn the_range_is_orthonormal_and_misses_what_it_says() {
     }
 }
 
-/// Rank, singular values, projectors and the inverse of the full decomposition; too small a matrix takes that itself.
+/// Rank, singular values, projectors and the inverse of the full decomposition; too small a matrix
+/// takes that itself.
 #[test]
 fn the_directions_are_those_of_the_full_decomposition() {
     for (side, per_side, half_width, ranged) in [
@@ -76,7 +77,8 @@ fn the_directions_are_those_of_the_full_decomposition() {
             // Beyond them both know only what rounding left.
             let beyond = full.sigma.rows(k_found, full.sigma.len() - k_found).amax();
             assert!(beyond <= found.rest + 16.0 * f64::EPSILON * full.sigma[0]);
-            // To rounding over σ_k: at the very last direction about 1e-3, ten times above it better by as much.
+            // To rounding over σ_k: at the very last direction about 1e-3, ten times above it
+            // better by as much.
             for above in [1.0, 1e3, 1e6] {
                 let k = full
                     .sigma
@@ -153,7 +155,8 @@ fn planted_spectra_are_found_or_left_to_the_full_decomposition() {
     assert!((ones.sigma[0] / 120_000f64.sqrt() - 1.0).abs() < 1e-14);
 }
 
-/// A cut that what is missed could move, and a rank below rounding, are left to the full decomposition; all others are not.
+/// A cut that what is missed could move, and a rank below rounding, are left to the full
+/// decomposition; all others are not.
 #[test]
 fn a_cut_in_doubt_is_left_to_the_full_decomposition() {
     let sigma: Vec<f64> = (0..60).map(|i| libm::pow(0.5, f64::from(i))).collect();

@@ -8,7 +8,8 @@ fn with(budget: usize) -> Options {
     }
 }
 
-/// The objective of the compressed problem and of the full sum differ by a constant: compare differences from ρ = 0.
+/// The objective of the compressed problem and of the full sum differ by a constant: compare
+/// differences from ρ = 0.
 #[test]
 fn the_compressed_objective_is_the_full_one() {
     let bench = Bench::new(3.0, 3, 3);
@@ -41,7 +42,8 @@ fn the_compressed_objective_is_the_full_one() {
     }
 }
 
-/// A budget one entry short leaves pairs of weak directions out: many, and without a trace in the operator.
+/// A budget one entry short leaves pairs of weak directions out: many, and without a trace in the
+/// operator.
 #[test]
 fn pairs_lost_in_rounding_are_not_missed() {
     let bench = Bench::new(3.0, 8, 16);

@@ -61,7 +61,8 @@ fn whole(
     (all, data)
 }
 
-/// Every combination of terms against one dense least squares with all columns: ρ, the light of the terms, the covariance, the bound.
+/// Every combination of terms against one dense least squares with all columns: ρ, the light of the
+/// terms, the covariance, the bound.
 #[test]
 fn elimination_is_the_dense_least_squares_with_all_columns() {
     let mut normal = normal_stream(17);
@@ -92,7 +93,8 @@ fn elimination_is_the_dense_least_squares_with_all_columns() {
         assert!(off < 1e-9 * covariance.amax(), "{nuisance:?}: {off:e}");
         let bound = cramer_rao(&problem).unwrap();
         assert!((bound.covariance - &covariance).amax() < 1e-9 * covariance.amax());
-        // Light beside the model: the sizes themselves are not unique where terms overlap, their sum is.
+        // Light beside the model: the sizes themselves are not unique where terms overlap, their
+        // sum is.
         let light = found
             .nuisance
             .map_or(DMatrix::zeros(9, 6), |n| n.light(&nuisance, 9, 6));
@@ -103,7 +105,8 @@ fn elimination_is_the_dense_least_squares_with_all_columns() {
     }
 }
 
-/// With weights that are not those of the noise the covariance is A⁺ΣA⁺ᵀ, A⁺ the dense pseudo-inverse, Σ the variances over the weights.
+/// With weights that are not those of the noise the covariance is A⁺ΣA⁺ᵀ, A⁺ the dense
+/// pseudo-inverse, Σ the variances over the weights.
 #[test]
 fn the_covariance_is_exact_for_noise_that_is_not_separable() {
     let mut normal = normal_stream(3);
@@ -135,7 +138,8 @@ fn the_covariance_is_exact_for_noise_that_is_not_separable() {
     }
 }
 
-/// Terms a million times the signal change each method's answer by no more than the rounding of such photographs, eps · 1e6 · σ₁/σ_n.
+/// Terms a million times the signal change each method's answer by no more than the rounding of
+/// such photographs, eps · 1e6 · σ₁/σ_n.
 #[test]
 fn huge_terms_change_nothing() {
     let bench = Bench::new(6.0, 2, 6);

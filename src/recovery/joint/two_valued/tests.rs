@@ -9,7 +9,8 @@ fn noisy(bench: &Bench, truth: &DVector<f64>, noise: f64, seed: u64) -> [DMatrix
     [exact.zip_map(&stderr, |x, s| x + s * normal()), stderr]
 }
 
-/// At this noise the bounded fit leaves a tenth of the contrast (see `bounded`); that there are two values only gives all of it back.
+/// At this noise the bounded fit leaves a tenth of the contrast (see `bounded`); that there are two
+/// values only gives all of it back.
 #[test]
 fn a_fine_board_is_recovered_whole() {
     let bench = Bench::new(6.0, 8, 16);
@@ -29,7 +30,8 @@ fn a_fine_board_is_recovered_whole() {
     }
 }
 
-/// With the levels given, branch and bound ends with a proof: gap zero. Grey levels are estimated as well.
+/// With the levels given, branch and bound ends with a proof: gap zero. Grey levels are estimated
+/// as well.
 #[test]
 fn levels_are_kept_or_estimated() {
     let bench = Bench::new(6.0, 4, 8);

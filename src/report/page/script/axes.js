@@ -1,4 +1,4 @@
-// Axes of plots: where they end, where their ticks are and what these say. The same as in the static figures (chart.rs, axis.rs).
+// Axes of plots: where they end, where their ticks are and what these say. The same as in the static figures (axis.rs).
 
 /** @typedef {"linear" | "logarithmic"} AxisRun */
 /** @typedef {{ title: string, run: AxisRun, ends?: [number, number] | undefined }} PlotAxis what it shows with its unit, how it runs, and its ends: by the values where they are missing */

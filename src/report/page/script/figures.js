@@ -16,7 +16,7 @@ upgrade("figure.plot", (figure) => {
     // A sheet that has room for one title of its own lends it to its only panel.
     const title = drawing.getAttribute("aria-label") ?? name;
     const live = make("div", { class: "live" }, make("p", { class: "title" }, title));
-    const note = drawing.querySelector("text.remark")?.textContent;
+    const note = Array.from(drawing.querySelectorAll("text.remark"), (line) => line.textContent).join(" ");
     if (note) {
         live.append(make("p", { class: "note" }, note));
     }

@@ -1,14 +1,16 @@
 //! Meshes with fewer triangles, for display.
 //!
-//! Vertices are clustered (Rossignac and Borrel, 1993): a grid of cubic cells lies over the mesh, all vertices of a cell become one at their mean, and triangles
-//! whose corners no longer lie in three cells are dropped. Among grids the finest is taken that leaves no more triangles than asked for. The outcome depends on
-//! the mesh alone.
+//! Vertices are clustered (Rossignac and Borrel, 1993): a grid of cubic cells lies over the mesh,
+//! all vertices of a cell become one at their mean, and triangles whose corners no longer lie in
+//! three cells are dropped. Among grids the finest is taken that leaves no more triangles than
+//! asked for. The outcome depends on the mesh alone.
 
 use std::collections::BTreeSet;
 
 use crate::geometry::{DVec3, Mesh};
 
-/// The grid is at most so fine along the longest side of the box; numbers of cells fit into 21 bits each.
+/// The grid is at most so fine along the longest side of the box; numbers of cells fit into 21 bits
+/// each.
 const FINEST: u64 = 1 << 20;
 
 /// A mesh for display.
@@ -37,7 +39,8 @@ impl Display {
                 whole,
             };
         }
-        // The number of cells a side that leaves `most` triangles or fewer: bisection, for a finer grid leaves more.
+        // The number of cells a side that leaves `most` triangles or fewer: bisection, for a finer
+        // grid leaves more.
         let (mut coarse, mut fine) = (1, FINEST);
         while fine - coarse > 1 {
             let middle = coarse.midpoint(fine);
@@ -113,7 +116,8 @@ fn distinct(triangles: &[[u32; 3]], cells: &[u64]) -> Vec<usize> {
         .collect()
 }
 
-/// How many triangles each mesh may show so that all together have at most `most`: small ones all of theirs, the large ones even shares of what is left.
+/// How many triangles each mesh may show so that all together have at most `most`: small ones all
+/// of theirs, the large ones even shares of what is left.
 pub(super) fn shares(counts: &[usize], most: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..counts.len()).collect();
     order.sort_by_key(|&i| (counts[i], i));
@@ -158,8 +162,9 @@ mod tests {
         assert_eq!(shown.triangles, mesh.triangles());
     }
 
-    /// Every mean of points of a cell of side h lies within h·√3 of them, so the clustered sphere stays that near to radius 1; its area and the
-    /// volume that its triangles enclose (by the divergence theorem: a check of their orientation) come near 4π and 4π/3.
+    /// Every mean of points of a cell of side h lies within h·√3 of them, so the clustered sphere
+    /// stays that near to radius 1; its area and the volume that its triangles enclose (by the
+    /// divergence theorem: a check of their orientation) come near 4π and 4π/3.
     #[test]
     fn a_clustered_sphere_is_still_that_sphere() {
         let mesh = ball(200);

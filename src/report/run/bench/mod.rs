@@ -18,13 +18,16 @@ use cluster::{Display, shares};
 use surface::SurfaceBlock;
 use ways::Ways;
 
-/// All meshes together are drawn with at most so many triangles: a processor without graphics draws them 30 times a second.
+/// All meshes together are drawn with at most so many triangles: a processor without graphics draws
+/// them 30 times a second.
 const MOST_TRIANGLES: usize = 12_000;
-/// Bits behind the leading one of a vertex's coordinate, relative to the mesh's box: 1.5e-5 of its size.
+/// Bits behind the leading one of a vertex's coordinate, relative to the mesh's box: 1.5e-5 of its
+/// size.
 const VERTEX_BITS: u32 = 15;
 /// Bits of a texture coordinate of a mesh.
 const TEXTURE_BITS: u32 = 11;
-/// Walls and occluders are framed unless they make the frame larger than this many times what matters.
+/// Walls and occluders are framed unless they make the frame larger than this many times what
+/// matters.
 const ROOM: f64 = 3.0;
 
 /// The scene as the script draws it; lengths in the scene's unit.
@@ -44,7 +47,8 @@ struct Bench<'a> {
     ways: Ways,
 }
 
-/// Where a mesh's vertices and triangles are in the blocks `bench-vertices`, `bench-triangles` and `bench-coordinates`.
+/// Where a mesh's vertices and triangles are in the blocks `bench-vertices`, `bench-triangles` and
+/// `bench-coordinates`.
 #[derive(Serialize)]
 struct MeshBlock {
     /// How many vertices, in [−1, 1]³ until they are scaled and moved to `centre`.
@@ -65,7 +69,8 @@ struct Spots {
     step: usize,
 }
 
-/// Pinhole and view: pixel (column, row) shows corner + u · (column + ½)/columns + v · (row + ½)/rows.
+/// Pinhole and view: pixel (column, row) shows corner + u · (column + ½)/columns + v · (row +
+/// ½)/rows.
 #[derive(Serialize)]
 struct Camera {
     position: [f64; 3],
@@ -164,7 +169,7 @@ fn pack(page: &mut Page, scene: &Scene, bench: &Bench, display: &[Display]) {
 fn bench(scene: &Scene) -> (Bench<'_>, Vec<Display>) {
     let mut meshes: Vec<Arc<Mesh>> = Vec::new();
     for surface in &scene.surfaces {
-        if let Shape::Body(body) = &surface.shape
+        if let Shape::Instance(body) = &surface.shape
             && !meshes.iter().any(|m| Arc::ptr_eq(m, body.mesh()))
         {
             meshes.push(body.mesh().clone());
@@ -215,7 +220,8 @@ fn bench(scene: &Scene) -> (Bench<'_>, Vec<Display>) {
     (bench, display)
 }
 
-/// A surface called floor, flat and square to an axis, says by its front what is up; without one it is +z, as in the static drawing.
+/// A surface called floor, flat and square to an axis, says by its front what is up; without one it
+/// is +z, as in the static drawing.
 fn up(scene: &Scene) -> DVec3 {
     let floor = scene
         .surfaces

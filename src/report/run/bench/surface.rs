@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::super::super::figure::encoded;
+use super::super::super::encode::base64;
 use crate::geometry::{DVec3, Facing, Mesh, Shape, Side};
 use crate::scene::{Role, Surface, Texture, Wrap};
 
@@ -47,7 +47,8 @@ enum Geometry {
         radius: f64,
         inside: bool,
     },
-    /// One of the block's meshes after an affine motion (three columns of its matrix, then where the origin goes); its front is where corners run counterclockwise, or the other side.
+    /// One of the block's meshes after an affine motion (three columns of its matrix, then where
+    /// the origin goes); its front is where corners run counterclockwise, or the other side.
     Mesh {
         mesh: usize,
         motion: [f64; 12],
@@ -88,7 +89,7 @@ impl<'a> SurfaceBlock<'a> {
                 radius: sphere.radius,
                 inside: sphere.facing == Facing::Inside,
             },
-            Shape::Body(body) => Geometry::Mesh {
+            Shape::Instance(body) => Geometry::Mesh {
                 mesh: meshes
                     .iter()
                     .position(|m| Arc::ptr_eq(m, body.mesh()))
@@ -97,7 +98,7 @@ impl<'a> SurfaceBlock<'a> {
                 inner: body.side() == Side::Inner,
             },
         };
-        let plain = matches!(&surface.shape, Shape::Body(body) if body.mesh().uv().is_none());
+        let plain = matches!(&surface.shape, Shape::Instance(body) if body.mesh().uv().is_none());
         Self {
             name: &surface.name,
             role: match surface.role {
@@ -148,7 +149,7 @@ impl Grey {
             .collect();
         Self {
             count,
-            grey: encoded(&bytes),
+            grey: base64(&bytes),
             repeat: match texture {
                 Texture::Tiles(_) => true,
                 Texture::Bilinear(texels) => texels.wrap == Wrap::Repeat,

@@ -1,9 +1,10 @@
-use super::super::super::sample::bare;
 use super::super::run_html;
 use super::*;
+use crate::lab::sample::bare;
 use crate::scene::builtins;
 
-/// The corners of the object of the bench: x from 3 to 7, at distances 5.86764 and 9.86764 from the hinge at y = 15.5 (design.md, 1).
+/// The corners of the object of the bench: x from 3 to 7, at distances 5.86764 and 9.86764 from the
+/// hinge at y = 15.5 (design.md, 1).
 #[test]
 fn the_object_of_the_bench_is_where_the_page_of_its_design_says() {
     let scene = Scene::load("bench").unwrap();

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::super::super::figure::encoded;
-use crate::geometry::{DVec3, Ray, ShapeId, SurfacePoint};
+use super::super::super::encode::base64;
+use crate::geometry::{DVec3, Interaction, Ray, ShapeId};
 use crate::scene::{Role, Scene};
 
 /// Points at most; each has a bit of a byte.
@@ -13,7 +13,8 @@ const CANDIDATES: usize = 8;
 /// With more pixels than this no way to them is asked for.
 const MOST_PIXELS: usize = 1 << 16;
 
-/// Points over which ways are drawn. Bit k of a byte: whether nothing stands between the spot, or what the pixel sees, and the front of point k.
+/// Points over which ways are drawn. Bit k of a byte: whether nothing stands between the spot, or
+/// what the pixel sees, and the front of point k.
 #[derive(Serialize)]
 pub(super) struct Ways {
     points: Vec<[f64; 3]>,
@@ -24,7 +25,7 @@ pub(super) struct Ways {
 }
 
 /// A point on a shape.
-type Place = (ShapeId, SurfacePoint);
+type Place = (ShapeId, Interaction);
 
 /// Whether light passes between the fronts of two points.
 fn free(scene: &Scene, (a, p): &Place, (b, q): &Place) -> bool {
@@ -35,7 +36,8 @@ fn free(scene: &Scene, (a, p): &Place, (b, q): &Place) -> bool {
             .is_some_and(|ray| !scene.bvh().blocked(&ray, [Some(*a), Some(*b)]))
 }
 
-/// The point of a relay surface that a line of sight through `point` of the view's plane meets, if it does.
+/// The point of a relay surface that a line of sight through `point` of the view's plane meets, if
+/// it does.
 fn seen(scene: &Scene, point: DVec3) -> Option<Place> {
     let eye = scene.camera.position;
     let ray = Ray::new(eye, (point - eye).try_normalize()?);
@@ -74,8 +76,8 @@ impl Ways {
         let few = count <= MOST_PIXELS;
         Self {
             points: points.iter().map(|(_, p)| p.position.to_array()).collect(),
-            spots: encoded(&spots.iter().map(bits).collect::<Vec<u8>>()),
-            pixels: few.then(|| encoded(&(0..count).map(pixel).collect::<Vec<u8>>())),
+            spots: base64(&spots.iter().map(bits).collect::<Vec<u8>>()),
+            pixels: few.then(|| base64(&(0..count).map(pixel).collect::<Vec<u8>>())),
         }
     }
 }
@@ -132,7 +134,8 @@ mod tests {
         BASE64_STANDARD.decode(text).unwrap()
     }
 
-    /// On the bench nothing stands between wall and object, and every spot is in front of its leaning face.
+    /// On the bench nothing stands between wall and object, and every spot is in front of its
+    /// leaning face.
     #[test]
     fn on_the_bench_all_ways_are_free() {
         let scene = Scene::load("bench").unwrap();
@@ -146,7 +149,8 @@ mod tests {
         assert_eq!(bytes(&ways.pixels.unwrap()), [0b11111; 256]);
     }
 
-    /// The shelf's board is the box [5.2, 7.4] × [6.9, 8] × [2.4, 2.525], its rod is left out: a segment is cut by the slab method, written on its own.
+    /// The shelf's board is the box [5.2, 7.4] × [6.9, 8] × [2.4, 2.525], its rod is left out: a
+    /// segment is cut by the slab method, written on its own.
     #[test]
     fn a_board_blocks_what_it_is_in_the_way_of() {
         let text = include_str!("../../../../scenes/shelf.toml");

@@ -7,8 +7,8 @@ use glam::{DMat4, DQuat};
 use gltf_json::Root;
 use gltf_json::scene::{Node, Scene};
 
-/// The nodes that are still to be visited, each with its number and the transform of the node above it. A node can be met once only, so
-/// the way ends.
+/// The nodes that are still to be visited, each with its number and the transform of the node above
+/// it. A node can be met once only, so the way ends.
 pub(super) struct Walk<'a> {
     root: &'a Root,
     met: Vec<bool>,

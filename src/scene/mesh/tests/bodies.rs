@@ -62,7 +62,8 @@ fn a_sphere_has_its_area_and_volume() {
     assert!(found.is_closed());
     let farthest = mesh.positions.iter().map(|p| (p.length() - 1.0).abs());
     assert!(farthest.fold(0.0, f64::max) < 1e-15 * 2.0);
-    // A polyhedron with its corners on the sphere has less of both, by about its edges' length squared.
+    // A polyhedron with its corners on the sphere has less of both, by about its edges' length
+    // squared.
     let (area, volume) = (
         area(&mesh) / (4.0 * PI),
         found.signed_volume / (4.0 / 3.0 * PI),

@@ -80,7 +80,8 @@ fn three_faces_at_an_edge() {
 
 #[test]
 fn faces_without_area() {
-    // A corner twice; and three corners in a row, which still close the gap between their neighbours.
+    // A corner twice; and three corners in a row, which still close the gap between their
+    // neighbours.
     let found = of(&[[0, 1, 1], [0, 1, 2]]);
     assert_eq!((found.degenerate, found.open_edges), (1, 3));
     let mut mesh = cube();

@@ -13,7 +13,8 @@ fn with_buffer(uri: &str) -> Result<Triangles, MeshFileError> {
 
 #[test]
 fn nodes_place_their_meshes() {
-    // Scale, then rotation by 90° about z, then translation: (x, y, z) → (−2y + 1, 3x, 4z); below it (x, y, z) → (x + 1, y, z).
+    // Scale, then rotation by 90° about z, then translation: (x, y, z) → (−2y + 1, 3x, 4z); below
+    // it (x, y, z) → (x + 1, y, z).
     let nodes = r#"{"translation": [1, 0, 0], "rotation": [0, 0, 0.70710678, 0.70710678], "scale": [3, 2, 4], "children": [1]},
         {"matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 1,0,0,1], "mesh": 0}"#;
     let mesh = with_nodes(nodes).unwrap();

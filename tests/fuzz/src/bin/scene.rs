@@ -1,5 +1,6 @@
 #![no_main]
-//! `scene` of `readers.rs`. Every third change puts another number in the place of one: what a mutation of bytes seldom does to a text.
+//! `scene` of `readers.rs`. Every third change puts another number in the place of one: what a
+//! mutation of bytes seldom does to a text.
 
 use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
 use phicam_fuzz::{readers::SCENE, run};
@@ -13,7 +14,8 @@ fuzz_mutator!(|data: &mut [u8], size: usize, most: usize, seed: u32| {
     }
 });
 
-/// Ends of ranges: of the format's, of integers, of single and of double precision, of what can be squared.
+/// Ends of ranges: of the format's, of integers, of single and of double precision, of what can be
+/// squared.
 const NUMBERS: [&str; 40] = [
     "0",
     "-0.0",

@@ -1,0 +1,93 @@
+//! Files of an earlier run that a new one makes worthless. Only what has a name of ours is removed.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+
+use super::failure::Failure;
+use super::folder::{COUNTS, EXPOSURE, PHI, SATURATED, STDERR};
+use crate::recovery::Method;
+use crate::store::is_abandoned;
+
+/// Removes the spot-NNNN files of `dir` with the given extension, and `dir` if that empties it.
+pub(super) fn remove_numbered(dir: &Path, extension: &str) -> Result<(), Failure> {
+    remove_files(dir, |stem, ext| {
+        let number = stem.strip_prefix("spot-").unwrap_or("");
+        ext == extension && !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit())
+    })?;
+    // Anything else in it is not ours, and keeps it.
+    let _ = fs::remove_dir(dir);
+    Ok(())
+}
+
+/// Removes the photographs of `phicam expose` from `dir`, and `dir` if that empties it.
+pub(super) fn remove_exposed(dir: &Path) -> Result<(), Failure> {
+    let counts = dir.join(COUNTS);
+    remove_numbered(&counts, "exr")?;
+    remove_numbered(&counts, "png")?;
+    remove_named(dir, &[PHI, STDERR, SATURATED, EXPOSURE])?;
+    let _ = fs::remove_dir(dir);
+    Ok(())
+}
+
+/// Removes the files of `dir` with these names, where they are there.
+pub(super) fn remove_named(dir: &Path, names: &[&str]) -> Result<(), Failure> {
+    for name in names {
+        match fs::remove_file(dir.join(name)) {
+            Err(e) if !matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+                return Err(e.into());
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// Removes the matrices, tables and pictures METHOD.npy, METHOD-0.png, METHOD.stderr.npy,
+/// picard.csv, … and those of the truth from `dir`, and `dir` if that empties it.
+pub(super) fn remove_recovered(dir: &Path) -> Result<(), Failure> {
+    remove_files(dir, |stem, ext| {
+        let (name, what) = stem.split_once('.').unwrap_or((stem, ""));
+        let name = name.trim_end_matches(|c: char| c.is_ascii_digit());
+        let name = name.strip_suffix('-').unwrap_or(name);
+        let known = ["truth", "overview", "picard", "picard-joint"].contains(&name)
+            || name.parse::<Method>().is_ok();
+        let ours = known
+            && [
+                "",
+                "stderr",
+                "covariance",
+                "resolution",
+                "bias",
+                "lower",
+                "upper",
+                "texture",
+            ]
+            .contains(&what);
+        ours && matches!(ext, "npy" | "png" | "csv" | "svg" | "ply")
+    })?;
+    let _ = fs::remove_dir(dir);
+    Ok(())
+}
+
+/// Removes the files of `dir` that are `ours` by stem and extension, and what a killed process was
+/// writing there.
+pub(super) fn remove_files(dir: &Path, ours: impl Fn(&str, &str) -> bool) -> Result<(), Failure> {
+    let Ok(entries) = fs::read_dir(dir) else {
+        return Ok(());
+    };
+    for path in entries.filter_map(Result::ok).map(|e| e.path()) {
+        let part = |s: Option<&OsStr>| s.and_then(OsStr::to_str).unwrap_or("").to_owned();
+        let (stem, ext) = (part(path.file_stem()), part(path.extension()));
+        if !is_abandoned(&path) && !ours(&stem, &ext) {
+            continue;
+        }
+        match fs::remove_file(&path) {
+            // Another process was faster.
+            Err(e) if e.kind() == ErrorKind::NotFound => {}
+            other => other?,
+        }
+    }
+    Ok(())
+}

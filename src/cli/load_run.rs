@@ -1,0 +1,96 @@
+//! A finished run, read back.
+
+use std::path::Path;
+
+use super::failure::Failure;
+use super::folder::{PHI, SCENE};
+use super::output::Console;
+use super::record::Record;
+use crate::matrix::{Matrix, npy};
+use crate::scene::Scene;
+
+/// The scene and the record of a finished run.
+pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), Failure> {
+    let record = Record::read(dir)?.ok_or_else(|| {
+        let cause = format!(
+            "{} is not the folder of a run: it has no {}",
+            dir.display(),
+            Record::FILE
+        );
+        Failure::new(
+            cause,
+            "give a folder that `phicam run` or `phicam render` has written",
+        )
+    })?;
+    let path = dir.join(SCENE);
+    let scene = console.load_scene(&path.to_string_lossy())?;
+    if scene.hash != record.scene_hash {
+        let cause = format!(
+            "{} is not the scene that {} was rendered from",
+            path.display(),
+            dir.display()
+        );
+        return Err(Failure::new(
+            cause,
+            "restore it, or render the changed scene into another folder",
+        ));
+    }
+    if record.finished < record.spots && !dir.join(PHI).exists() {
+        let cause = format!(
+            "{} holds {} of {} spots",
+            dir.display(),
+            record.finished,
+            record.spots
+        );
+        return Err(Failure::new(
+            cause,
+            "finish it with `phicam render --resume`",
+        ));
+    }
+    Ok((scene, record))
+}
+
+/// Φcam, or anything of its shape: finite, pixels × spots of `scene`.
+pub(super) fn read_matrix(path: &Path, scene: &Scene) -> Result<Matrix, Failure> {
+    let matrix = npy::read_finite(path)?;
+    refuse_shape(path, matrix.shape(), scene)?;
+    Ok(matrix)
+}
+
+/// Refuses a matrix that is not pixels × spots of `scene`.
+pub(super) fn refuse_shape(
+    path: &Path,
+    (rows, columns): (usize, usize),
+    scene: &Scene,
+) -> Result<(), Failure> {
+    let (pixels, spots) = (scene.camera.pixels(), scene.laser.spots.len());
+    if (rows, columns) == (pixels, spots) {
+        return Ok(());
+    }
+    let cause = format!(
+        "{} is {rows} × {columns}, but scene `{}` has {pixels} pixels and {spots} spots",
+        path.display(),
+        scene.name
+    );
+    let cure = "give the matrix of this scene, pixels × spots";
+    Err(Failure::new(cause, cure))
+}
+
+/// Standard errors of Φcam: as [`read_matrix`], and none negative.
+pub(super) fn read_stderr(path: &Path, scene: &Scene) -> Result<Matrix, Failure> {
+    let matrix = read_matrix(path, scene)?;
+    let negative = matrix.iter().position(|x| *x < 0.0);
+    if let Some(at) = negative {
+        let (pixel, spot) = (at % matrix.nrows(), at / matrix.nrows());
+        let cause = format!(
+            "{} has the negative standard error {} at pixel {pixel}, spot {spot}",
+            path.display(),
+            matrix[at]
+        );
+        return Err(Failure::new(
+            cause,
+            "give standard errors, or render or stack again",
+        ));
+    }
+    Ok(matrix)
+}

@@ -1,0 +1,80 @@
+//! A plan in its folder, and what it is a plan of.
+
+use std::fs::{self, File};
+use std::io::ErrorKind;
+use std::path::Path;
+
+use super::render::Render;
+use super::study::Study;
+use super::work::Work;
+use crate::cli::failure::Failure;
+use crate::cli::folder::SCENE;
+use crate::cli::output::Console;
+use crate::jobs::{PlanFolder, Settings};
+use crate::scene::COPIES;
+use crate::transport::Plan;
+
+/// A plan that was read and found to be what it says.
+pub(super) struct Planned {
+    pub folder: PlanFolder,
+    pub work: Box<dyn Work>,
+}
+
+impl Planned {
+    /// Reads the plan in `path`, and refuses it if the scene beside it, or the program, is not the
+    /// one that was planned.
+    pub(super) fn open(path: &Path, console: Console) -> Result<Self, Failure> {
+        Self::open_as(path, false, console)
+    }
+
+    /// The same; a study is to print JSON if `json`.
+    pub(super) fn open_as(path: &Path, json: bool, console: Console) -> Result<Self, Failure> {
+        let folder = PlanFolder::open(path)?;
+        refuse_unreadable(path)?;
+        let work = read(path, &folder.file.work, json, console)?;
+        folder.check(&work.identity(), work.blocks())?;
+        Ok(Self { folder, work })
+    }
+}
+
+/// What cannot be read for now is told from what is wrong in it: another try may help.
+fn refuse_unreadable(dir: &Path) -> Result<(), Failure> {
+    let mut files = vec![dir.join(SCENE)];
+    if let Ok(copies) = fs::read_dir(dir.join(COPIES)) {
+        files.extend(copies.flatten().map(|entry| entry.path()));
+    }
+    for path in files {
+        match File::open(&path) {
+            Err(e) if e.kind() != ErrorKind::NotFound => {
+                let cause = format!("cannot read {}: {e}", path.display());
+                let cure = "check the folder and its file server";
+                return Err(Failure::system(cause, cure));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// What the plan's folder `dir` says; a study is to print JSON if `json`.
+fn read(
+    dir: &Path,
+    settings: &Settings,
+    json: bool,
+    console: Console,
+) -> Result<Box<dyn Work>, Failure> {
+    let path = dir.join(SCENE);
+    Ok(match settings {
+        Settings::Render {
+            estimator,
+            sampler,
+            seed,
+            samples,
+        } => {
+            let scene = console.load_scene(&path.to_string_lossy())?;
+            let plan = Plan::new(*estimator, *sampler, *seed, *samples)?;
+            Box::new(Render::new(scene, plan)?)
+        }
+        Settings::Command(arguments) => Box::new(Study::read(arguments, &path, json, console)?),
+    })
+}

@@ -1,0 +1,49 @@
+//! `phicam scene view`: the scene in ordinary light.
+
+use super::Outcome;
+use super::args::PreviewArgs;
+use super::failure::Failure;
+use super::interrupt::stop_flag;
+use super::output::{self, Console};
+use super::progress;
+use crate::geometry::DVec3;
+use crate::lab::{PreviewPlan, ViewOptions, auto_viewpoint, preview};
+use crate::report;
+use crate::transport::Control;
+
+pub(super) fn execute(args: &PreviewArgs, console: Console) -> Result<Outcome, Failure> {
+    let scene = console.load_scene(&args.scene)?;
+    let options = ViewOptions {
+        from: args.from.map(DVec3::from_array),
+        to: args.to.map(DVec3::from_array),
+        up: Some(DVec3::from_array(args.up)),
+        field: Some(args.fov),
+    };
+    let plan = PreviewPlan {
+        viewpoint: auto_viewpoint(&scene, args.size, &options)?,
+        size: args.size,
+        samples: args.samples,
+        overlay: args.mark,
+    };
+    let [w, h] = args.size;
+    let total = (w * h) as u64 * u64::from(args.samples);
+    let bar = progress::samples(console, "looking", total);
+    let control = Control {
+        progress: &|n| bar.inc(n),
+        stop: stop_flag(),
+    };
+    let made = preview(&scene, &plan, control);
+    bar.finish_and_clear();
+    let made = made.map_err(|e| Failure::from(e).if_stopped("no picture was written"))?;
+    output::write(&args.output, report::preview_png(&made)?)?;
+    let place = |p: DVec3| format!("{:.4},{:.4},{:.4}", p.x, p.y, p.z);
+    console.say(format!(
+        "{}: {w} × {h} pixels of scene `{}`, seen with --from {} --to {} (in {})",
+        args.output.display(),
+        scene.name,
+        place(plan.viewpoint.from),
+        place(plan.viewpoint.to),
+        scene.unit.symbol()
+    ));
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,299 @@
+//! Meshes in their places.
+
+use std::sync::Arc;
+
+use glam::DAffine3;
+
+use super::{DVec3, Interaction, Mesh, Ray};
+
+/// A mesh, placed by a similarity (rotation, uniform scale, translation): several bodies may share
+/// one mesh. Rays are taken into the mesh's own space, so that a million triangles exist, and their
+/// tree is built, once.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    mesh: Arc<Mesh>,
+    to_world: DAffine3,
+    to_mesh: DAffine3,
+    scale: f64,
+    side: Side,
+    bounds: (DVec3, DVec3),
+}
+
+/// Which side of a mesh's triangles is the front.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The one from which the corners run counterclockwise.
+    Outer,
+    /// The other.
+    Inner,
+}
+
+impl PartialEq for Instance {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.mesh, &other.mesh)
+            && self.to_world == other.to_world
+            && self.side == other.side
+    }
+}
+
+impl Instance {
+    /// The mesh after `placement`; `None` unless that is a finite similarity (to 1e-9) that does
+    /// not mirror.
+    pub fn new(mesh: Arc<Mesh>, placement: DAffine3, side: Side) -> Option<Self> {
+        let axes = placement.matrix3;
+        let scale = axes.determinant().cbrt();
+        let similar = axes * axes.transpose() * (scale * scale).recip();
+        let off = (similar - glam::DMat3::IDENTITY).to_cols_array();
+        let proper = placement.is_finite()
+            && scale.is_finite()
+            && scale > 0.0
+            && off.iter().all(|x| x.abs() < 1e-9);
+        if !proper {
+            return None;
+        }
+        let to_mesh = match placement == DAffine3::IDENTITY {
+            true => DAffine3::IDENTITY,
+            false => placement.inverse(),
+        };
+        let place = |p: &DVec3| placement.transform_point3(*p);
+        let bounds = mesh
+            .positions()
+            .iter()
+            .map(place)
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
+                (low.min(p), high.max(p))
+            });
+        Some(Self {
+            mesh,
+            to_world: placement,
+            to_mesh,
+            scale,
+            side,
+            bounds,
+        })
+    }
+
+    /// The mesh, in its own space.
+    pub fn mesh(&self) -> &Arc<Mesh> {
+        &self.mesh
+    }
+
+    /// From the mesh's space to the scene.
+    pub fn placement(&self) -> &DAffine3 {
+        &self.to_world
+    }
+
+    /// Which side reflects.
+    pub fn side(&self) -> Side {
+        self.side
+    }
+
+    /// The same body with its front turned to the other side.
+    pub fn turned(&self) -> Self {
+        Self {
+            side: match self.side {
+                Side::Outer => Side::Inner,
+                Side::Inner => Side::Outer,
+            },
+            ..self.clone()
+        }
+    }
+
+    /// The body after a rigid motion.
+    pub fn moved(&self, motion: &DAffine3) -> Option<Self> {
+        Self::new(self.mesh.clone(), *motion * self.to_world, self.side)
+    }
+
+    /// Smallest axis-aligned box around the vertices.
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        self.bounds
+    }
+
+    /// Area, length².
+    pub fn area(&self) -> f64 {
+        self.mesh.area() * self.scale * self.scale
+    }
+
+    /// Area of a triangle, length².
+    ///
+    /// # Panics
+    /// If there is no such triangle.
+    pub fn triangle_area(&self, triangle: u32) -> f64 {
+        self.mesh.triangle_area(triangle) * self.scale * self.scale
+    }
+
+    /// Corners of a triangle in the scene.
+    ///
+    /// # Panics
+    /// If there is no such triangle.
+    pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.mesh
+            .corners(triangle)
+            .map(|c| self.to_world.transform_point3(c))
+    }
+
+    /// The ray in the mesh's space; lengths are those of the scene over the scale.
+    fn local(&self, ray: &Ray) -> Ray {
+        Ray {
+            origin: self.to_mesh.transform_point3(ray.origin),
+            direction: self.to_mesh.transform_vector3(ray.direction) * self.scale,
+            length: ray.length / self.scale,
+        }
+    }
+
+    /// What coordinates in the scene measure in the mesh's space, at most: their rounding is that
+    /// of the points that are computed from them.
+    fn reach(&self) -> f64 {
+        let (low, high) = self.bounds;
+        low.abs().max(high.abs()).max_element() / self.scale
+    }
+
+    /// First triangle met, from either side, at 0 < t < length; a ray that starts in a triangle's
+    /// plane does not meet that.
+    pub fn intersect(&self, ray: &Ray) -> Option<(f64, u32)> {
+        let hit = self.mesh.closest_beyond(&self.local(ray), self.reach())?;
+        let t = hit.t * self.scale;
+        (t < ray.length).then_some((t, hit.triangle))
+    }
+
+    /// Whether a triangle stands between the two ends of the segment.
+    pub fn blocks(&self, segment: &Ray) -> bool {
+        self.blocks_many(std::slice::from_ref(segment))[0]
+    }
+
+    /// [`Instance::blocks`] for many segments.
+    pub fn blocks_many(&self, segments: &[Ray]) -> Vec<bool> {
+        let local: Vec<Ray> = segments.iter().map(|s| self.local(s)).collect();
+        self.mesh.blocks_many_beyond(&local, self.reach())
+    }
+
+    fn to_scene(&self, point: Interaction) -> Interaction {
+        let normal = self.to_world.transform_vector3(point.normal) / self.scale;
+        Interaction {
+            position: self.to_world.transform_point3(point.position),
+            normal: match self.side {
+                Side::Outer => normal,
+                Side::Inner => -normal,
+            },
+            uv: point.uv,
+        }
+    }
+
+    /// The point of a triangle nearest to `p`.
+    ///
+    /// # Panics
+    /// If there is no such triangle.
+    pub fn on_triangle(&self, triangle: u32, p: DVec3) -> Interaction {
+        let local = self.to_mesh.transform_point3(p);
+        self.to_scene(self.mesh.on_triangle(triangle, local))
+    }
+
+    /// The point of the body nearest to `p`.
+    pub fn at_position(&self, p: DVec3) -> Interaction {
+        let (_, point) = self.mesh.at_position(self.to_mesh.transform_point3(p));
+        self.to_scene(point)
+    }
+
+    /// The point that the equal-area map of the square to the mesh gives to `u`.
+    pub fn at(&self, u: [f64; 2]) -> Interaction {
+        self.to_scene(self.mesh.at(u))
+    }
+
+    /// The points straight above or below (x, y) along z, by growing z.
+    pub fn at_xy(&self, x: f64, y: f64) -> Vec<Interaction> {
+        let (low, high) = self.bounds;
+        let below = low.z - 0.5 * (high.z - low.z) - 1.0;
+        let mut ray = Ray::new(DVec3::new(x, y, below), DVec3::Z);
+        let mut found = Vec::new();
+        while let Some((t, triangle)) = self.intersect(&ray) {
+            let at = ray.origin + ray.direction * t;
+            found.push(self.on_triangle(triangle, at));
+            ray.origin = at;
+        }
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tetrahedron() -> Arc<Mesh> {
+        let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+        let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        Arc::new(Mesh::new(corners, faces).unwrap())
+    }
+
+    fn placement() -> DAffine3 {
+        let turn = glam::DQuat::from_axis_angle(DVec3::new(1.0, 2.0, -1.0).normalize(), 0.9);
+        let to = DVec3::new(300.0, -20.0, 7.0);
+        DAffine3::from_scale_rotation_translation(DVec3::splat(2.5), turn, to)
+    }
+
+    /// Against a mesh whose vertices are moved one by one.
+    #[test]
+    fn a_placed_mesh_is_the_mesh_of_the_placed_vertices() {
+        let (mesh, place) = (tetrahedron(), placement());
+        let body = Instance::new(mesh.clone(), place, Side::Outer).unwrap();
+        let moved = mesh.positions().iter().map(|p| place.transform_point3(*p));
+        let copy = Arc::new(Mesh::new(moved.collect(), mesh.triangles().to_vec()).unwrap());
+        let copy = Instance::new(copy, DAffine3::IDENTITY, Side::Outer).unwrap();
+        assert!((body.area() / copy.area() - 1.0).abs() < 1e-12);
+        assert!((body.bounds().0 - copy.bounds().0).length() < 1e-12);
+        let mut met = 0;
+        for k in 0..400 {
+            let t = f64::from(k) * 0.37;
+            let (sin, cos) = libm::sincos(t);
+            let from = DVec3::new(
+                300.0 + 5.0 * cos,
+                -20.0 + 5.0 * sin,
+                7.0 + 3.0 * libm::sin(1.7 * t),
+            );
+            let aim = place.transform_point3(DVec3::splat(0.25) + DVec3::new(cos, sin, 0.0) * 0.3);
+            let ray = Ray::new(from, (aim - from).normalize());
+            let (a, b) = (body.intersect(&ray), copy.intersect(&ray));
+            assert_eq!(a.map(|h| h.1), b.map(|h| h.1), "{k}");
+            if let (Some(a), Some(b)) = (a, b) {
+                met += 1;
+                assert!((a.0 - b.0).abs() < 1e-11);
+                let at = from + ray.direction * a.0;
+                let (p, q) = (body.on_triangle(a.1, at), copy.on_triangle(b.1, at));
+                assert!((p.position - q.position).length() < 1e-11);
+                assert!((p.normal - q.normal).length() < 1e-12);
+                assert!((body.turned().on_triangle(a.1, at).normal + p.normal).length() == 0.0);
+                // What starts on a triangle does not meet it, however far the body is from the
+                // origin.
+                let out = Ray::new(p.position, p.normal);
+                assert!(
+                    body.intersect(&out).is_none() && !body.blocks(&Ray { length: 9.0, ..out })
+                );
+            }
+        }
+        assert!(met > 100);
+    }
+
+    #[test]
+    fn what_is_no_similarity_is_refused() {
+        let mesh = tetrahedron();
+        let place =
+            |m: glam::DMat3| Instance::new(mesh.clone(), DAffine3::from_mat3(m), Side::Outer);
+        assert!(place(glam::DMat3::from_diagonal(DVec3::new(1.0, 1.0, 2.0))).is_none());
+        assert!(place(glam::DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0))).is_none());
+        assert!(place(glam::DMat3::from_diagonal(DVec3::splat(f64::NAN))).is_none());
+        assert!(place(glam::DMat3::from_diagonal(DVec3::splat(3.0))).is_some());
+    }
+
+    /// A vertical line passes the tetrahedron where x, y ≥ 0 and x + y < 1, through its floor and
+    /// its slanted face.
+    #[test]
+    fn points_above_a_place_are_those_of_the_faces() {
+        let body = Instance::new(tetrahedron(), DAffine3::IDENTITY, Side::Outer).unwrap();
+        let found = body.at_xy(0.2, 0.3);
+        let z: Vec<f64> = found.iter().map(|p| p.position.z).collect();
+        assert!(
+            z.len() == 2 && z[0].abs() < 1e-15 && (z[1] - 0.5).abs() < 1e-15,
+            "{z:?}"
+        );
+        assert!(body.at_xy(0.7, 0.6).is_empty());
+    }
+}

@@ -1,0 +1,351 @@
+//! What the re-enacted experiment says, from its numbers alone.
+
+use super::results::{Experiment, Reading, Setting, Threshold};
+use crate::lab::ensemble::Spread;
+use crate::lab::finding::{
+    Axis, Cell, Column, Curve, Describe, Figure, Finding, Mark, Place, Plot, Table,
+};
+use crate::num::digits::{figure, significant};
+
+/// What of a setting a sweep varies.
+type Varied = fn(&Setting) -> f64;
+
+impl Describe for Experiment {
+    fn describe(&self) -> Finding {
+        let (first, rest) = self.words.split_at(self.words.len().min(2));
+        let glare: Varied = |s| s.glare;
+        let exposure: Varied = |s| s.exposure;
+        let by_glare = "by glare over signal, at the longest exposure";
+        let by_exposure = "by exposure of a frame, glare as strong as the signal";
+        let mut tables = sweep(&self.by_glare, by_glare, glare, "");
+        tables.extend(sweep(&self.by_exposure, by_exposure, exposure, " s"));
+        tables.extend([self.limits(), self.file()]);
+        let mut panels = plots(&self.by_glare, "glare over signal", glare);
+        panels.extend(plots(&self.by_exposure, "exposure of a frame, s", exposure));
+        let title = format!("The experiment, again: {}", self.scene);
+        Finding {
+            title: title.clone(),
+            sentence: first.join(" "),
+            notes: rest.to_vec(),
+            tables,
+            figures: vec![Figure {
+                file: "experiment.svg".to_owned(),
+                title,
+                note: format!("sensor {}, mean over {} seeds", self.sensor, self.seeds),
+                plots: panels,
+            }],
+            ..Finding::default()
+        }
+    }
+}
+
+/// The findings, a paragraph each; `object` names what is hidden.
+pub(super) fn words(found: &Experiment, object: &str) -> Vec<String> {
+    let spreads = || Setting::by_spread(&found.by_glare);
+    let mut said = vec![format!(
+        "An average pixel gets {} from {object}; {} times as much light enters the lens straight from the laser spot, so a lens that scatters {} % of it over the image makes glare as strong as the signal.",
+        prefixed(found.signal, "W"),
+        two(found.direct_over_signal),
+        two(100.0 * (1.0 / found.direct_over_signal)),
+    )];
+    said.extend(spreads().filter_map(equal));
+    if let Some(bare) = found.by_glare.iter().find(|s| s.glare <= 0.0) {
+        let published = &bare.readings[0];
+        let lost = |m: Spread| m.mean < Experiment::READABLE;
+        let end = if published.mtf_normalized.is_some_and(lost) {
+            ": glare alone is not what makes it fail."
+        } else {
+            "."
+        };
+        said.push(format!(
+            "Without any glare the published analysis finds {}{end}",
+            modulation(published)
+        ));
+    }
+    said.extend(spreads().map(|own| reach(&found.thresholds, own)));
+    said
+}
+
+/// The photographs with glare as strong as the signal: the published analysis and the best one.
+fn equal(own: &[Setting]) -> Option<String> {
+    let off = |s: &Setting| libm::log(s.glare).abs();
+    let setting = own.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
+    let read = |r: &Reading| r.mtf_normalized.map(|m| m.mean);
+    let readings = setting.readings.iter().filter(|r| read(r).is_some());
+    let best = readings.max_by(|a, b| read(a).unwrap_or(0.0).total_cmp(&read(b).unwrap_or(0.0)));
+    let best = best.map_or(String::new(), |r| {
+        format!(", `{}` {}", r.analysis, modulation(r))
+    });
+    Some(format!(
+        "With {} glare of {} times the signal ({} of exposure a frame, {} electrons of signal a pixel) the published analysis finds a normalized modulation of {}{best}.",
+        setting.spread,
+        two(setting.glare),
+        prefixed(setting.exposure, "s"),
+        two(setting.electrons),
+        modulation(&setting.readings[0]),
+    ))
+}
+
+/// What reads the board under one spread of glare, and from which exposure on.
+fn reach(thresholds: &[Threshold], own: &[Setting]) -> String {
+    let spread = own[0].spread.as_str();
+    let most = own.iter().map(|s| s.glare).fold(0.0, f64::max);
+    let limits = || thresholds.iter().filter(|t| t.spread == spread);
+    let names = |keep: &dyn Fn(&Threshold) -> Option<String>| -> String {
+        let names: Vec<String> = limits().filter_map(keep).collect();
+        names.join(", ")
+    };
+    let name = |t: &Threshold| format!("`{}`", t.analysis);
+    let lists = [
+        (
+            format!(
+                "up to the strongest studied, {} times the signal, by",
+                two(most)
+            ),
+            names(&|t| (t.glare? >= most).then(|| name(t))),
+        ),
+        (
+            "up to the glare over signal in brackets by".to_owned(),
+            names(&|t| {
+                let glare = t.glare.filter(|g| *g < most)?;
+                Some(format!("{} ({})", name(t), two(glare)))
+            }),
+        ),
+        (
+            "at no glare by".to_owned(),
+            names(&|t| t.glare.is_none().then(|| name(t))),
+        ),
+    ];
+    let lists = lists.iter().filter(|(_, list)| !list.is_empty());
+    let lists: String = lists
+        .map(|(what, list)| format!(" {what} {list};"))
+        .collect();
+    let exposures = limits().filter_map(|t| Some((t, t.exposure?)));
+    let shortest = exposures.min_by(|a, b| a.1.total_cmp(&b.1));
+    let exposure = match shortest {
+        Some((t, exposure)) => format!(
+            "it needs single frames of at least {}, by {}.",
+            prefixed(exposure, "s"),
+            name(t)
+        ),
+        None => "no exposure of single frames makes it so.".to_owned(),
+    };
+    format!(
+        "Under {spread} glare the board is readable (normalized modulation {} and more){lists} with glare as strong as the signal {exposure}",
+        Experiment::READABLE
+    )
+}
+
+fn modulation(reading: &Reading) -> String {
+    match reading.mtf_normalized {
+        Some(Spread {
+            mean,
+            deviation: Some(deviation),
+            ..
+        }) => format!("{} ± {}", two(mean), two(deviation)),
+        Some(m) => two(m.mean),
+        None => "nothing".to_owned(),
+    }
+}
+
+fn two(x: f64) -> String {
+    significant(x, 2)
+}
+
+/// A number below 1000 of a unit with its prefix.
+fn prefixed(x: f64, unit: &str) -> String {
+    let prefixes = [
+        (1e18, "a"),
+        (1e15, "f"),
+        (1e12, "p"),
+        (1e9, "n"),
+        (1e6, "µ"),
+        (1e3, "m"),
+    ];
+    let fits = |(scale, _): &(f64, &str)| scale * x < 1e3;
+    let (scale, prefix) = prefixes.into_iter().find(fits).unwrap_or((1.0, ""));
+    format!("{} {prefix}{unit}", two(scale * x))
+}
+
+/// A table for each spread of the glare: a line an analysis, a column a setting.
+fn sweep(settings: &[Setting], title: &str, x: Varied, unit: &str) -> Vec<Table> {
+    let of = |own: &[Setting]| {
+        let head = |s: &Setting| Column::number(&format!("{}{unit}", figure(x(s), 2)), "", "", 2);
+        let row = |i: usize| {
+            let mean = |s: &Setting| s.readings[i].mtf_normalized.map(|m| m.mean).into();
+            let name = own[0].readings[i].analysis.as_str().into();
+            std::iter::once(name).chain(own.iter().map(mean)).collect()
+        };
+        let heads = own.iter().map(head);
+        Table {
+            caption: format!("Normalized modulation {title}; {} glare", own[0].spread),
+            columns: std::iter::once(Column::text("analysis", ""))
+                .chain(heads)
+                .collect(),
+            rows: (0..own[0].readings.len()).map(row).collect(),
+            ..Table::default()
+        }
+    };
+    Setting::by_spread(settings).map(of).collect()
+}
+
+/// A plot for each spread of the glare, a line an analysis.
+fn plots(settings: &[Setting], title: &str, x: Varied) -> Vec<Plot> {
+    let of = |own: &[Setting]| {
+        let curve = |i: usize| {
+            let point = |s: &Setting| Some([x(s), s.readings[i].mtf_normalized?.mean]);
+            let points = own.iter().filter_map(point).collect();
+            Curve::new(&own[0].readings[i].analysis, Mark::Line, points)
+        };
+        Plot {
+            title: format!("{} glare", own[0].spread),
+            axes: [
+                Axis::decades(title),
+                Axis::linear("normalized modulation", [-0.4, 1.0]),
+            ],
+            curves: (0..own[0].readings.len()).map(curve).collect(),
+        }
+    };
+    Setting::by_spread(settings).map(of).collect()
+}
+
+impl Experiment {
+    fn limits(&self) -> Table {
+        Table {
+            caption: "Where each analysis reads the board".to_owned(),
+            place: Place::Page,
+            ..Table::by_columns(
+                &self.thresholds,
+                [
+                    (Column::text("analysis", ""), |t| (&t.analysis).into()),
+                    (Column::text("glare", ""), |t| (&t.spread).into()),
+                    (
+                        Column::number("largest glare over signal", "", "", 2),
+                        |t| t.glare.into(),
+                    ),
+                    (Column::number("shortest exposure", "", "s", 2), |t| {
+                        t.exposure.into()
+                    }),
+                ],
+            )
+        }
+    }
+
+    /// Every reading.
+    fn file(&self) -> Table {
+        let sweeps = [("glare", &self.by_glare), ("exposure", &self.by_exposure)];
+        let settings = sweeps
+            .into_iter()
+            .flat_map(|(name, all)| all.iter().map(move |s| (name, s)));
+        let readings = settings.flat_map(|(name, s)| s.readings.iter().map(move |r| (name, s, r)));
+        let column = |key| Column::text("", key);
+        Table {
+            file: Some("experiment.csv".to_owned()),
+            place: Place::File,
+            ..Table::by_columns(
+                readings,
+                [
+                    (column("sweep"), |(sweep, ..)| Cell::name(sweep)),
+                    (column("spread"), |(_, s, _)| Cell::name(&s.spread)),
+                    (column("glare"), |(_, s, _)| s.glare.into()),
+                    (column("fraction"), |(_, s, _)| s.fraction.into()),
+                    (column("exposure_s"), |(_, s, _)| s.exposure.into()),
+                    (column("electrons"), |(_, s, _)| s.electrons.into()),
+                    (column("saturated"), |(_, s, _)| s.saturated.into()),
+                    (column("noise"), |(_, s, _)| s.noise.into()),
+                    (column("analysis"), |(.., r)| (&r.analysis).into()),
+                    (column("mtf"), |(.., r)| mean(r.mtf)),
+                    (column("mtf_sd"), |(.., r)| deviation(r.mtf)),
+                    (column("mtf_normalized"), |(.., r)| mean(r.mtf_normalized)),
+                    (column("mtf_normalized_sd"), |(.., r)| {
+                        deviation(r.mtf_normalized)
+                    }),
+                    (column("correlation"), |(.., r)| mean(r.correlation)),
+                    (column("correlation_sd"), |(.., r)| deviation(r.correlation)),
+                    (column("failed"), |(.., r)| r.failed.into()),
+                ],
+            )
+        }
+    }
+}
+
+fn mean(spread: Option<Spread>) -> Cell {
+    spread.map(|s| s.mean).into()
+}
+
+fn deviation(spread: Option<Spread>) -> Cell {
+    spread.and_then(|s| s.deviation).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_said_with_two_digits_and_a_prefix() {
+        for (x, unit, said) in [
+            (0.02, "s", "20 ms"),
+            (1.26, "s", "1.3 s"),
+            (3.2e-14, "W", "32 fW"),
+            (4.04e-7, "W", "404 nW"),
+        ] {
+            assert_eq!(prefixed(x, unit), said);
+        }
+    }
+
+    fn setting(glare: f64, mean: f64) -> Setting {
+        let reading = |analysis: &str, mean| Reading {
+            analysis: analysis.to_owned(),
+            mtf: None,
+            mtf_normalized: Spread::of(&[mean]),
+            correlation: None,
+            failed: 0,
+            reason: None,
+        };
+        Setting {
+            spread: "even".to_owned(),
+            glare,
+            fraction: 0.1,
+            exposure: 0.02,
+            electrons: 900.0,
+            saturated: 0,
+            noise: 0.1,
+            readings: vec![reading("published", mean), reading("joint", 0.9)],
+        }
+    }
+
+    /// The strength of the glare and what the published analysis finds under it come first; every
+    /// reading has a line in the file.
+    #[test]
+    fn the_findings_are_told_in_words() {
+        let by_glare = vec![setting(0.0, 0.4), setting(1.0, -0.1)];
+        let mut found = Experiment {
+            scene: "bench".to_owned(),
+            scene_hash: String::new(),
+            sensor: "ccd".to_owned(),
+            seeds: 1,
+            signal: 3e-14,
+            direct_over_signal: 50.0,
+            thresholds: super::super::limits::thresholds(&by_glare, &by_glare),
+            by_exposure: by_glare.clone(),
+            by_glare,
+            words: Vec::new(),
+        };
+        found.words = words(&found, "`board`");
+        assert_eq!(found.words.len(), 4);
+        assert!(found.words[0].contains("gets 30 fW from `board`; 50 times"));
+        assert!(found.words[1].ends_with("modulation of −0.10, `joint` 0.90."));
+        assert!(found.words[2].ends_with("0.40: glare alone is not what makes it fail."));
+        assert!(
+            found.words[3]
+                .contains("1.0 times the signal, by `joint`; at no glare by `published`;")
+        );
+        let said = found.describe();
+        assert!(said.sentence.ends_with("0.90.") && said.notes.len() == 2);
+        let file = said.tables.iter().find(|t| t.file.is_some()).unwrap();
+        assert_eq!(
+            (file.rows.len(), file.rows[0].len()),
+            (8, file.columns.len())
+        );
+    }
+}

@@ -1,0 +1,297 @@
+//! Recoveries to leaf through: every usual method, over its regularisation and over noise added to
+//! the photographs.
+//!
+//! The photographs are those of the run, Φ, with more noise on top,
+//!
+//! > Φ' = Φ + ε m N,   m the mean of |Φ|,   σ'² = σ² + (ε m)²,
+//!
+//! N one fixed draw of standard normal numbers for all levels ε, so that from level to level
+//! nothing changes but its size. Every picture is a recovery from Φ' as [`recover`] makes it, and
+//! where the discrepancy principle, told σ', sets the parameter of a method, that recovery is among
+//! the pictures.
+//!
+//! [`recover`]: crate::recovery::recover
+
+mod job;
+mod plan;
+
+use std::sync::atomic::Ordering;
+
+use rayon::prelude::*;
+
+use super::deviate::normal_deviates;
+use super::measures::Measures;
+use super::results::RecoveredObject;
+use crate::matrix::Matrix;
+use crate::model::MatrixModel;
+use crate::recovery::{LaserSide, Method, Parameter, RecoveryError};
+use crate::scene::{Division, Scene};
+use crate::transport::Control;
+
+use job::{Chosen, Job, Outcome, laser_side};
+pub use plan::GalleryPlan;
+use plan::{Fitted, ladder, works_by_directions};
+
+/// Pictures of a run's hidden surfaces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gallery {
+    /// The hidden surfaces, in file order.
+    pub surfaces: Vec<GallerySurface>,
+    /// ε: standard deviation of the noise added to each entry, as a fraction of `mean`. The first
+    /// is 0.
+    pub noises: Vec<f64>,
+    /// Mean of |Φ|, W.
+    pub mean: f64,
+    /// One for each method, in the order of the plan.
+    pub series: Vec<Series>,
+    /// What would have been too much work beside the run, in sentences.
+    pub left_out: Vec<String>,
+}
+
+/// A hidden surface of a gallery.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GallerySurface {
+    /// Its name.
+    pub name: String,
+    /// Elements along u and v.
+    pub elements: [usize; 2],
+    /// Whether its elements stand side by side, and so make a picture: not those that are the
+    /// triangles of a mesh.
+    pub cells: bool,
+    /// True albedo of element iu + iv·nu.
+    pub truth: Vec<f64>,
+}
+
+/// One method over its regularisation and the noise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// The method.
+    pub method: Method,
+    /// Its parameter, from the strongest regularisation to the weakest; [`Parameter::None`] alone
+    /// for a method that has none to choose.
+    pub steps: Vec<Parameter>,
+    /// For each noise which step the method takes of itself, or why none.
+    pub automatic: Vec<Result<Automatic, String>>,
+    /// For each noise one for each step; none where nothing was recovered.
+    pub pictures: Vec<Vec<Option<Picture>>>,
+}
+
+/// What a method takes of itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Automatic {
+    /// Index of the step.
+    pub step: usize,
+    /// The parameter and why, in words.
+    pub words: String,
+}
+
+/// What was recovered.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Reflectance of the elements of all surfaces, one surface after the other.
+    pub reflectance: Vec<f64>,
+    /// How far it is from the truth, surface by surface.
+    pub measures: Vec<Measures>,
+}
+
+/// The recoveries of a gallery, ready to be made.
+pub struct GalleryTasks<'a> {
+    model: &'a MatrixModel,
+    surfaces: Vec<GallerySurface>,
+    phi: &'a Matrix,
+    stderr: &'a Matrix,
+    known: &'a [RecoveredObject],
+    plan: GalleryPlan,
+    fitted: Fitted,
+    mean: f64,
+}
+
+impl<'a> GalleryTasks<'a> {
+    /// The gallery of photographs `phi` with standard errors `stderr` (pixels × spots, W). `known`
+    /// are recoveries from them that are there already, of methods without a parameter. None where
+    /// there is no light, and so nothing to recover.
+    pub fn new(
+        scene: &Scene,
+        model: &'a MatrixModel,
+        (phi, stderr): (&'a Matrix, &'a Matrix),
+        known: &'a [RecoveredObject],
+        plan: GalleryPlan,
+    ) -> Option<Self> {
+        let mean = phi.iter().map(|x| x.abs()).sum::<f64>() / phi.len() as f64;
+        if !(mean > 0.0 && mean.is_finite()) {
+            return None;
+        }
+        let (pixels, spots) = phi.shape();
+        let surfaces = surfaces(scene, model);
+        Some(Self {
+            fitted: plan.fitted([pixels, spots, model.albedo.len()]),
+            model,
+            surfaces,
+            phi,
+            stderr,
+            known,
+            plan,
+            mean,
+        })
+    }
+
+    /// Steps that `control` is told of.
+    pub fn count(&self) -> u64 {
+        self.jobs().len() as u64
+    }
+
+    /// Makes them; none if stopped.
+    pub fn gallery(&self, control: Control<'_>) -> Option<Gallery> {
+        let (pixels, spots) = match self.fitted.noises.is_empty() {
+            true => (0, 0),
+            false => self.phi.shape(),
+        };
+        let deviates = normal_deviates(self.plan.seed, pixels, spots);
+        let side = laser_side(self.model, self.phi, self.stderr);
+        let jobs = self.jobs();
+        let done = jobs.par_iter().map(|job| {
+            if control.stop.load(Ordering::Relaxed) {
+                return None;
+            }
+            let found = self.outcome(*job, &side, &deviates);
+            (control.progress)(1);
+            Some(found)
+        });
+        let outcomes: Vec<Outcome<'_>> = done.collect::<Option<_>>()?;
+        let sigma = side.as_ref().map_or(&[][..], LaserSide::sigma);
+        let series = self.plan.methods.iter().filter_map(|&method| {
+            let all = jobs.iter().zip(&outcomes);
+            let own: Vec<&Outcome<'_>> = all
+                .filter(|(job, _)| job.of(method))
+                .map(|(_, o)| o)
+                .collect();
+            (!own.is_empty()).then(|| self.series(method, sigma, &own))
+        });
+        Some(Gallery {
+            series: series.collect(),
+            surfaces: self.surfaces.clone(),
+            noises: self.fitted.noises.clone(),
+            mean: self.mean,
+            left_out: self.fitted.left_out.clone(),
+        })
+    }
+
+    /// Each noise by the directions of the laser side, and by each of the other methods.
+    fn jobs(&self) -> Vec<Job> {
+        let noises = 0..self.fitted.noises.len();
+        let mut jobs = Vec::new();
+        if self.fitted.by_directions {
+            jobs.extend(noises.clone().map(Job::Directions));
+        }
+        for &method in self
+            .plan
+            .methods
+            .iter()
+            .filter(|m| !works_by_directions(**m))
+        {
+            jobs.extend(noises.clone().map(|noise| Job::Whole(noise, method)));
+        }
+        jobs
+    }
+
+    fn outcome<'s>(
+        &self,
+        job: Job,
+        side: &'s Result<LaserSide, RecoveryError>,
+        deviates: &Matrix,
+    ) -> Outcome<'s> {
+        match job {
+            Job::Directions(noise) => {
+                let photographs = self.photographs(noise, deviates);
+                Outcome::by_directions(side, self.model, &photographs, &self.plan.methods)
+            }
+            Job::Whole(noise, method) => match self.known(method) {
+                Some(known) if noise == 0 => known,
+                _ if noise > 0 && self.fitted.traced_alone.contains(&method) => {
+                    Outcome::Nothing("left out: too much work beside the run".to_owned())
+                }
+                _ => Outcome::whole(method, self.model, &self.photographs(noise, deviates)),
+            },
+        }
+    }
+
+    /// Φ' and σ' of a level.
+    fn photographs(&self, noise: usize, deviates: &Matrix) -> [Matrix; 2] {
+        let sigma = self.fitted.noises[noise] * self.mean;
+        if sigma == 0.0 {
+            return [self.phi.clone(), self.stderr.clone()];
+        }
+        [
+            self.phi.zip_map(deviates, |x, n| x + sigma * n),
+            self.stderr.map(|s| (s * s + sigma * sigma).sqrt()),
+        ]
+    }
+
+    /// What the run has recovered from the photographs as they are.
+    fn known(&self, method: Method) -> Option<Outcome<'static>> {
+        let own: Vec<&RecoveredObject> = self
+            .known
+            .iter()
+            .filter(|o| o.method == method.name())
+            .collect();
+        let reflectance: Vec<f64> = own
+            .iter()
+            .flat_map(|o| o.reflectance.iter().copied())
+            .collect();
+        let words = own.first()?.parameter.clone();
+        (reflectance.len() == self.model.albedo.len()).then_some(Outcome::Whole(reflectance, words))
+    }
+
+    fn series(&self, method: Method, sigma: &[f64], outcomes: &[&Outcome<'_>]) -> Series {
+        let automatic: Vec<Chosen> = outcomes.iter().map(|o| o.automatic(method)).collect();
+        let chosen: Vec<Parameter> = automatic
+            .iter()
+            .flatten()
+            .map(|(parameter, _)| *parameter)
+            .collect();
+        let steps = ladder(method, sigma, self.fitted.steps, &chosen);
+        let at = |(parameter, words): &(Parameter, String)| Automatic {
+            step: steps.iter().position(|s| s == parameter).unwrap_or(0),
+            words: words.clone(),
+        };
+        let automatic = automatic
+            .iter()
+            .map(|a| a.as_ref().map(at).map_err(Clone::clone));
+        let pictures = outcomes.par_iter().map(|outcome| {
+            let picture =
+                |step: &Parameter| outcome.reflectance(*step).map(|found| self.picture(found));
+            steps.iter().map(picture).collect()
+        });
+        Series {
+            method,
+            automatic: automatic.collect(),
+            pictures: pictures.collect(),
+            steps,
+        }
+    }
+
+    fn picture(&self, reflectance: Vec<f64>) -> Picture {
+        let measures = self.model.grids.iter().map(|grid| {
+            let own = grid.first..grid.first + grid.len();
+            Measures::of(&reflectance[own.clone()], &self.model.albedo[own])
+        });
+        Picture {
+            measures: measures.collect(),
+            reflectance,
+        }
+    }
+}
+
+fn surfaces(scene: &Scene, model: &MatrixModel) -> Vec<GallerySurface> {
+    let both = model.grids.iter().zip(scene.hidden());
+    both.map(|(grid, (_, surface))| GallerySurface {
+        name: grid.surface.clone(),
+        elements: grid.count,
+        cells: surface.division == Division::Cells,
+        truth: model.albedo[grid.first..grid.first + grid.len()].to_vec(),
+    })
+    .collect()
+}
+
+#[cfg(test)]
+mod tests;

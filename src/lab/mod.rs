@@ -1,0 +1,212 @@
+//! Floor 6: studies. Experiments that compose the floors below and return plain results.
+//!
+//! * [`agree`]: traced against modelled Φcam, a verdict by test statistics.
+//! * [`validate`]: the same for a scene, the model computed on the way.
+//! * [`BudgetTasks`]: the difference between frames and model taken apart into its causes.
+//! * [`ConvergenceTasks`]: how fast the error of each estimator falls.
+//! * [`PowerTasks`]: what [`validate`] detects, and how often it errs.
+//! * [`ToleranceTasks`]: how wrong the assumed geometry may be.
+//! * [`BrdfTasks`]: the model on a wall that is not Lambertian, its BRDF known, ignored, or wrong.
+//! * [`CoverageTasks`]: how often the bands of recovered reflectances cover the truth.
+//! * [`ExperimentTasks`]: the failed laboratory experiment, re-enacted.
+//! * [`GalleryTasks`]: one run's object by every usual method over regularisation and noise, to
+//!   leaf through.
+//! * [`IndicatorTasks`]: what predicts how well the published inversion works.
+//! * [`NoiseTasks`]: how much noise each recovery bears.
+//! * [`preview`](fn@preview): a picture of the scene in ordinary light, for people.
+//! * [`published`]: the published tables and figures, computed again.
+//! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object;
+//!   [`picards`] show what of it noise leaves.
+//!
+//! Those that take long are a [`Study`]: independent tasks that one process works off by [`run`],
+//! and many machines share.
+//!
+//! A study of one's own, in one file: how much light the darkness of the wall costs. The light of
+//! three bounces meets the wall twice, so Φ ∝ ρ².
+//!
+//! ```
+//! use phicam::lab::finding::{
+//!     Axis, Cell, Column, Curve, Describe, Figure, Finding, Mark, Plot, Table, Tone,
+//! };
+//! use phicam::lab::{Study, run};
+//! use phicam::scene::{Scene, SceneError, file::SceneFile};
+//! use phicam::transport::{
+//!     Budget, Control, Estimator, Plan, RenderError, Sampling, Stopped, render,
+//! };
+//! use serde::{Deserialize, Serialize};
+//!
+//! /// How much light arrives from walls of different albedo.
+//! struct DarkWall {
+//!     albedos: Vec<f64>,
+//!     plan: Plan,
+//! }
+//!
+//! /// Albedo of the wall, and all light that the camera gets, W.
+//! #[derive(Clone, Copy, Serialize, Deserialize)]
+//! struct Point {
+//!     albedo: f64,
+//!     flux: f64,
+//! }
+//!
+//! #[derive(Serialize)]
+//! struct Falloff(Vec<Point>);
+//!
+//! #[derive(Debug, thiserror::Error)]
+//! enum Error {
+//!     #[error(transparent)]
+//!     Scene(#[from] SceneError),
+//!     #[error(transparent)]
+//!     Render(#[from] RenderError),
+//!     #[error(transparent)]
+//!     Stopped(#[from] Stopped),
+//! }
+//!
+//! impl Study for DarkWall {
+//!     type Context = SceneFile; // the same for every task, computed once a process
+//!     type Output = Point; // of one task: what a shard or a later run takes up
+//!     type Result = Falloff;
+//!     type Error = Error;
+//!
+//!     fn name(&self) -> &'static str {
+//!         "dark-wall"
+//!     }
+//!     fn tasks(&self) -> usize {
+//!         self.albedos.len()
+//!     }
+//!     fn context(&self, _: Control<'_>) -> Result<SceneFile, Error> {
+//!         let mut file = SceneFile::default();
+//!         file.laser.spots.per_side = Some(2);
+//!         Ok(file)
+//!     }
+//!     fn task(&self, file: &SceneFile, index: usize, control: Control<'_>) -> Result<Point, Error> {
+//!         let (mut file, albedo) = (file.clone(), self.albedos[index]);
+//!         let wall = file.surface.iter_mut().find(|s| s.name == "wall").expect("the bench has one");
+//!         wall.material.lambertian = Some(albedo.into());
+//!         let scene = Scene::new(&file, None)?;
+//!         let traced = render(&scene, &self.plan, 0..scene.laser.spots.len(), control)?;
+//!         Ok(Point { albedo, flux: traced.flux.sum() })
+//!     }
+//!     fn fits(&self, _: &SceneFile, index: usize, point: &Point) -> bool {
+//!         point.albedo == self.albedos[index]
+//!     }
+//!     fn finish(&self, _: &SceneFile, points: Vec<Point>) -> Result<Falloff, Error> {
+//!         Ok(Falloff(points))
+//!     }
+//! }
+//!
+//! impl Describe for Falloff {
+//!     fn describe(&self) -> Finding {
+//!         let worst = self.0.iter().map(|p| {
+//!             let expected = self.0[0].flux * (p.albedo / self.0[0].albedo).powi(2);
+//!             (p.flux / expected - 1.0).abs()
+//!         });
+//!         let worst = worst.fold(0.0, f64::max);
+//!         let square = worst < 1e-9;
+//!         let points = self.0.iter().map(|p| [p.albedo, p.flux]).collect();
+//!         Finding {
+//!             title: "Light from a dark wall".to_owned(),
+//!             tone: if square { Tone::Good } else { Tone::Bad },
+//!             sentence: format!("Φ falls as ρ², to {worst:.0e} of it"),
+//!             notes: vec!["Every render has the same paths; their noise cancels.".to_owned()],
+//!             tables: vec![Table {
+//!                 file: Some("dark-wall.csv".to_owned()),
+//!                 columns: vec![
+//!                     Column::number("albedo", "albedo", "", 2),
+//!                     Column::number("flux", "flux", "W", 4),
+//!                 ],
+//!                 rows: self.0.iter().map(|p| [p.albedo, p.flux].map(Cell::from).to_vec()).collect(),
+//!                 ..Table::default()
+//!             }],
+//!             figures: vec![Figure {
+//!                 file: "dark-wall.svg".to_owned(),
+//!                 title: "Light from a dark wall".to_owned(),
+//!                 plots: vec![Plot {
+//!                     title: String::new(),
+//!                     axes: [Axis::decades("albedo"), Axis::decades("flux, W")],
+//!                     curves: vec![Curve::new("traced", Mark::Points, points)],
+//!                 }],
+//!                 ..Figure::default()
+//!             }],
+//!             ..Finding::default()
+//!         }
+//!     }
+//! }
+//!
+//! let budget = Budget::new(32, Sampling::Sobol)?;
+//! let plan = Plan { estimator: Estimator::Shared, sampling: Sampling::Sobol, seed: 1, budget };
+//! let study = DarkWall { albedos: vec![1.0, 0.5, 0.25], plan };
+//! let finding = run(&study, Control::none())?.describe();
+//! assert_eq!((finding.tone, finding.tables[0].rows.len()), (Tone::Good, 3));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod agreement;
+mod brdf;
+mod budget;
+mod bytes;
+mod check;
+mod convergence;
+mod coverage;
+mod deviate;
+mod ensemble;
+mod error;
+mod experiment;
+mod exposure;
+pub mod finding;
+mod gallery;
+mod indicator;
+mod inversion;
+mod measures;
+mod noise;
+mod objects;
+pub mod options;
+mod picard;
+mod power;
+mod preview;
+pub mod published;
+mod registered;
+mod registry;
+mod results;
+#[cfg(test)]
+#[path = "sample_tests.rs"]
+pub(crate) mod sample;
+mod spots;
+mod study;
+mod summary;
+mod tolerance;
+mod traced;
+mod validation;
+
+pub use agreement::{Errors, Evidence, Test, agree};
+pub use brdf::{Assumption, BrdfPlan, BrdfStudy, BrdfTasks, Quality, Ratio};
+pub use budget::{BudgetPlan, BudgetTasks, Closure, ErrorBudget, Term};
+pub use bytes::{LAYOUT, TaskError, decode, encode, encoded};
+pub use convergence::{Convergence, ConvergenceError, ConvergenceTasks, Curve, Step};
+pub use coverage::{Coverage, CoveragePlan, CoverageRow, CoverageTasks};
+pub use ensemble::{Estimate, Spread};
+pub use error::LabError;
+pub use experiment::{Experiment, ExperimentPlan, ExperimentTasks, Reading, Setting, Threshold};
+pub use exposure::describe_exposure;
+pub use gallery::{Automatic, Gallery, GalleryPlan, GallerySurface, GalleryTasks, Picture, Series};
+pub use indicator::{
+    Coefficients, Comparison, Configuration, Indicator, IndicatorError, IndicatorPlan,
+    IndicatorTasks, Layout, NoisyOutcome, NoisyPoint, NoisySummary,
+};
+pub use measures::Measures;
+pub use noise::{
+    AxisLabel, Best, Held, LIMITS, LedgerError, Lost, NamedSensor, NoiseAxis, NoiseCurve,
+    NoiseError, NoisePlan, NoiseStudy, NoiseTasks, Point, Reach, RenderNoise, Trial, read_ledger,
+    write_ledger,
+};
+pub use objects::{Attempt, Noise, measured, picards, recover_objects};
+pub use power::{Detection, Power, PowerPlan, PowerRow, PowerTasks};
+pub use preview::{
+    Colour, Preview, PreviewError, PreviewPlan, ViewOptions, Viewpoint, auto_viewpoint, preview,
+};
+pub use registered::{AnyStudy, Found, Prepare, Registered, StudyError, found, prepared};
+pub use registry::STUDIES;
+pub use results::{Agreement, Entry, ObjectBands, RecoveredObject, RunResults};
+pub use study::{Sharing, Study, Work, context, outputs, run};
+pub use summary::{by_surface, describe_recovery, describe_render, recovery};
+pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
+pub use validation::{Integration, Validation, ValidationError, validate};

@@ -1,0 +1,150 @@
+//! The method that goes furthest.
+
+use serde::Serialize;
+
+use super::axis::NoiseAxis;
+use super::curve::{Held, NoiseCurve, Point, Reach};
+
+/// Of one object and its elements the method that holds its mean raw MTF at or above the first of
+/// [`LIMITS`](super::LIMITS) up to the loudest noise; of equals the one with the smaller root mean
+/// square error there.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Best {
+    /// Checks a side of the object.
+    pub board: usize,
+    /// Elements a side of the recovery.
+    pub elements: usize,
+    /// The method; none where no method reaches the limit at the quietest level.
+    pub method: Option<String>,
+    /// The level up to which it holds.
+    pub level: Option<f64>,
+    /// Whether it falls there.
+    pub reach: Option<Reach>,
+    /// Root mean square error at that level, over elements and draws; between two levels its square
+    /// is interpolated.
+    pub rmse: Option<f64>,
+    /// The same over the bound of Cramér and Rao.
+    pub rmse_over_bound: Option<f64>,
+}
+
+/// The best of the `curves` of one object.
+pub(super) fn best(axis: &NoiseAxis, [board, elements]: [usize; 2], curves: &[NoiseCurve]) -> Best {
+    let own = curves
+        .iter()
+        .filter(|c| (c.board, c.elements) == (board, elements));
+    let found = own
+        .filter_map(|c| {
+            let held = c.held?;
+            let at = |of, means| between(axis, &c.points, held, of, means);
+            let rmse = at(|p| p.rmse_over_draws, Means::Squares);
+            let bound = at(|p| p.cramer_rao, Means::Logarithms);
+            Some((c, held, rmse, rmse.and_then(|e| Some(e / bound?))))
+        })
+        // The first of equals stays.
+        .reduce(|best, next| {
+            let further = axis.quiet_first(next.1.level, best.1.level);
+            let error = |e: Option<f64>| e.unwrap_or(f64::INFINITY);
+            let nearer = error(next.2).total_cmp(&error(best.2));
+            if further.then(nearer.reverse()).is_gt() {
+                next
+            } else {
+                best
+            }
+        });
+    Best {
+        board,
+        elements,
+        method: found.map(|(c, ..)| c.method.clone()),
+        level: found.map(|(_, held, ..)| held.level),
+        reach: found.map(|(_, held, ..)| held.reach),
+        rmse: found.and_then(|f| f.2),
+        rmse_over_bound: found.and_then(|f| f.3),
+    }
+}
+
+/// What is interpolated.
+#[derive(Clone, Copy)]
+enum Means {
+    /// Squares: right where between two levels ever more draws fail, as the mean modulation is
+    /// interpolated too.
+    Squares,
+    /// Logarithms: right for powers of the level.
+    Logarithms,
+}
+
+/// A positive quantity at a level between those studied.
+fn between(
+    axis: &NoiseAxis,
+    points: &[Point],
+    held: Held,
+    of: fn(&Point) -> Option<f64>,
+    means: Means,
+) -> Option<f64> {
+    if let Some(p) = points.iter().find(|p| p.level == held.level) {
+        return of(p);
+    }
+    let pair = points.windows(2).find(|w| {
+        let (a, b) = (w[0].level - held.level, w[1].level - held.level);
+        a * b < 0.0
+    })?;
+    let [a, b] = [of(&pair[0])?, of(&pair[1])?];
+    let t = axis.fraction([pair[0].level, pair[1].level], held.level);
+    let value = match means {
+        // Over the larger, whose square may overflow.
+        Means::Squares => {
+            let most = a.max(b);
+            let square = |x: f64| (x / most) * (x / most);
+            most * ((1.0 - t) * square(a) + t * square(b)).sqrt()
+        }
+        Means::Logarithms => libm::exp((1.0 - t) * libm::log(a) + t * libm::log(b)),
+    };
+    value.is_finite().then_some(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::noise::curve::{LIMITS, Lost};
+
+    fn curve(method: &str, held: Option<(f64, Reach)>, errors: [f64; 2]) -> NoiseCurve {
+        let point = |level, error: f64| Point {
+            rmse_over_draws: Some(error),
+            ..Point::of(level, &[], Some(10.0 * level))
+        };
+        NoiseCurve {
+            board: 2,
+            elements: 8,
+            method: method.to_owned(),
+            points: vec![point(1e-4, errors[0]), point(1e-2, errors[1])],
+            lost_raw: [Lost::Unknown; LIMITS.len()],
+            lost_normalized: [Lost::Unknown; LIMITS.len()],
+            held: held.map(|(level, reach)| Held { level, reach }),
+        }
+    }
+
+    /// By hand: 1e-3 is half way from 1e-4 to 1e-2; the error there √((0.01² + 0.07²)/2) = 0.05,
+    /// the bound, ten times the level, 0.01.
+    #[test]
+    fn the_furthest_wins_and_of_equals_the_nearest() {
+        let curves = [
+            curve("never", None, [1.0, 1.0]),
+            curve("early", Some((1e-4, Reach::Falls)), [0.001, 0.001]),
+            curve("coarse", Some((1e-3, Reach::Falls)), [0.04, 0.09]),
+            curve("fine", Some((1e-3, Reach::AtLeast)), [0.01, 0.07]),
+        ];
+        let found = best(&NoiseAxis::Relative, [2, 8], &curves);
+        assert_eq!(found.method.as_deref(), Some("fine"));
+        assert_eq!(
+            (found.level, found.reach),
+            (Some(1e-3), Some(Reach::AtLeast))
+        );
+        assert!((found.rmse.unwrap() / 0.05 - 1.0).abs() < 1e-12);
+        assert!((found.rmse_over_bound.unwrap() / 5.0 - 1.0).abs() < 1e-12);
+        // Where few photons are loud the one that does with least wins.
+        assert_eq!(
+            best(&NoiseAxis::Photons, [2, 8], &curves).method.as_deref(),
+            Some("early")
+        );
+        assert_eq!(best(&NoiseAxis::Relative, [4, 8], &curves).method, None);
+    }
+}

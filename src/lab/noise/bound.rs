@@ -1,0 +1,35 @@
+//! What no unbiased recovery undercuts.
+
+use rayon::prelude::*;
+
+use super::stage::Stage;
+use crate::model::MatrixModel;
+use crate::recovery::{Problem, cramer_rao};
+
+/// √(tr CRB/r) at each level: the least root mean square error, over elements and draws, of
+/// unbiased recoveries from independent errors of the level's standard error. `None` where there is
+/// none: the sensor has no noise, or directions are lost in f64.
+///
+/// Where the levels change the size of the standard errors alone, the bound is proportional to it
+/// and computed once.
+pub(super) fn bounds(stage: &Stage, model: &MatrixModel, levels: &[f64]) -> Vec<Option<f64>> {
+    let bound = |level: f64| {
+        let stderr = stage.stderr(level).ok()?;
+        let (c, d) = (&model.camera_side, &model.laser_side);
+        let problem = Problem::new(&stage.exact, c, d, Some(&stderr)).ok()?;
+        let errors = cramer_rao(&problem).ok()?.standard_error;
+        let mean = errors.norm_squared() / errors.len() as f64;
+        mean.is_finite().then(|| mean.sqrt())
+    };
+    let size = |level: &f64| stage.axis.size(*level);
+    match levels
+        .first()
+        .and_then(|first| Some((*first, size(first)?)))
+    {
+        Some((first, own)) => {
+            let one = bound(first).map(|b| b / own);
+            levels.iter().map(|l| Some(one? * size(l)?)).collect()
+        }
+        None => levels.par_iter().map(|level| bound(*level)).collect(),
+    }
+}

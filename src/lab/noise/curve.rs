@@ -1,0 +1,301 @@
+//! A method along the noise: mean and spread over the draws, and the level at which a modulation is
+//! lost.
+
+use serde::Serialize;
+
+use super::axis::NoiseAxis;
+use super::plan::NoisePlan;
+use super::trial::Trial;
+use crate::lab::ensemble::{Draws, MOST_SPREAD, Spread};
+use crate::recovery::Method;
+
+/// The modulations whose loss is reported.
+pub const LIMITS: [f64; 2] = [0.9, 0.5];
+/// Standard error above which a mean MTF is not held against a limit: a mean that strays has not
+/// fallen.
+const MOST_STDERR: f64 = 0.1;
+
+/// One level of the noise.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Point {
+    /// The level.
+    pub level: f64,
+    /// Draws of the noise.
+    pub draws: usize,
+    /// Draws from which the method gave nothing.
+    pub failed: usize,
+    /// What it said to the first of them.
+    pub failure: Option<String>,
+    /// Raw MTF.
+    pub mtf_raw: Option<Spread>,
+    /// Standard deviation of its denominator W + B over the draws, relative to the mean; absent for
+    /// a single draw.
+    pub denominator_spread: Option<f64>,
+    /// Normalized MTF.
+    pub mtf_normalized: Option<Spread>,
+    /// Correlation with the truth.
+    pub correlation: Option<Spread>,
+    /// Root mean square error of a draw, over elements.
+    pub rmse: Option<Spread>,
+    /// Root mean square error over elements and draws, √(mean of its squares).
+    pub rmse_over_draws: Option<f64>,
+    /// What no unbiased recovery has less of: √(tr CRB/r), CRB the bound of Cramér and Rao for the
+    /// level's standard errors. Absent without noise, or where directions are lost in f64.
+    pub cramer_rao: Option<f64>,
+    /// The one over the other. Below 1 where a method is told more than the photographs (bounds,
+    /// two values) or is biased towards the truth.
+    pub rmse_over_bound: Option<f64>,
+}
+
+impl Point {
+    /// Of the trials at one level, with the bound there.
+    pub(super) fn of(level: f64, trials: &[&Trial], cramer_rao: Option<f64>) -> Self {
+        let draws = Draws::of(trials.iter().map(|t| &t.outcome));
+        let denominator = draws.spread(|m| m.light_plus_dark);
+        let rmse = draws.spread(|m| m.rmse);
+        // Scaled by the mean, as squares of large errors overflow.
+        let rmse_over_draws = rmse.map(|s| {
+            let n = s.draws as f64;
+            let relative = s.deviation.map_or(0.0, |d| d / s.mean);
+            s.mean * (1.0 + relative * relative * (n - 1.0) / n).sqrt()
+        });
+        Self {
+            level,
+            draws: trials.len(),
+            failed: draws.failures.len(),
+            failure: draws.failures.first().map(|why| (*why).to_owned()),
+            mtf_raw: draws.spread(|m| m.mtf_raw),
+            denominator_spread: denominator.and_then(|s| Some(s.deviation? / s.mean.abs())),
+            mtf_normalized: draws.spread(|m| m.mtf_normalized),
+            correlation: draws.spread(|m| m.correlation),
+            rmse,
+            rmse_over_draws,
+            cramer_rao,
+            rmse_over_bound: rmse_over_draws.and_then(|e| Some(e / cramer_rao?)),
+        }
+    }
+}
+
+/// Where a mean modulation falls to a limit, coming from the quiet end.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Lost {
+    /// At this level, by interpolation (in its logarithm, of bits in their number) between the last
+    /// level at or above the limit and the next. Where large levels are the quiet ones it is the
+    /// smallest from which on the mean stays at or above the limit.
+    At(f64),
+    /// It is below the limit at the quietest level already.
+    Before,
+    /// It is not below the limit at any level.
+    Never,
+    /// Before the limit was reached the method failed in some draw, or the mean is not known to a
+    /// tenth, or (raw MTF) the denominator W + B spreads by more than a tenth, so that there is no
+    /// mean to speak of.
+    Unknown,
+}
+
+/// How far a method holds the limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Reach {
+    /// Up to the level, where its mean falls below.
+    Falls,
+    /// Up to the level, and beyond it nothing is known: it is the loudest studied, or there is no
+    /// mean to speak of at the next ([`Lost::Unknown`]).
+    AtLeast,
+}
+
+/// Up to which level a mean modulation stays at or above a limit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Held {
+    /// The level.
+    pub level: f64,
+    /// What is known of the levels beyond.
+    pub reach: Reach,
+}
+
+/// One method on one object.
+#[derive(Clone, Debug, Serialize)]
+pub struct NoiseCurve {
+    /// Checks a side of the object.
+    pub board: usize,
+    /// Elements a side of the recovery.
+    pub elements: usize,
+    /// The method.
+    pub method: String,
+    /// From quiet to loud.
+    pub points: Vec<Point>,
+    /// Where the mean raw MTF falls to each of [`LIMITS`].
+    pub lost_raw: [Lost; 2],
+    /// The same of the normalized MTF.
+    pub lost_normalized: [Lost; 2],
+    /// Up to which level the mean raw MTF stays at or above the first of [`LIMITS`], m, and not
+    /// above 2 − m, where dark would come out below 0; none where it is not there at the quietest.
+    pub held: Option<Held>,
+}
+
+impl NoiseCurve {
+    /// Of those of the trials that the plan asks for; `bounds` are those of Cramér and Rao at its
+    /// levels.
+    pub(super) fn of(
+        plan: &NoisePlan,
+        [board, elements]: [usize; 2],
+        method: Method,
+        (trials, bounds): (&[Trial], &[Option<f64>]),
+    ) -> Self {
+        let asked = |t: &&Trial| {
+            (t.board, t.elements, t.method) == (board, elements, method)
+                && t.seed.wrapping_sub(plan.first_seed) < plan.seeds
+        };
+        let own: Vec<&Trial> = trials.iter().filter(asked).collect();
+        let point = |(level, bound): (&f64, &Option<f64>)| {
+            let here = own.iter().filter(|t| t.level.total_cmp(level).is_eq());
+            Point::of(*level, &here.copied().collect::<Vec<_>>(), *bound)
+        };
+        let points: Vec<Point> = plan.levels.iter().zip(bounds).map(point).collect();
+        // A mean is known where every draw has the measure and its standard error is small.
+        let known = |p: &Point, s: Option<Spread>| {
+            let s = s.filter(|s| s.draws == p.draws && s.stderr.is_none_or(|e| e <= MOST_STDERR));
+            (p.level, s.map(|s| s.mean))
+        };
+        let narrow = |p: &Point| p.denominator_spread.is_none_or(|s| s <= MOST_SPREAD);
+        let raw = points
+            .iter()
+            .map(|p| known(p, p.mtf_raw.filter(|_| narrow(p))));
+        let raw: Vec<_> = raw.collect();
+        let normalized: Vec<_> = points.iter().map(|p| known(p, p.mtf_normalized)).collect();
+        let lost = |means: &[_]| LIMITS.map(|limit| lost(means, limit, &plan.axis));
+        Self {
+            board,
+            elements,
+            method: method.name().to_owned(),
+            lost_raw: lost(&raw),
+            lost_normalized: lost(&normalized),
+            held: held(&raw, LIMITS[0], &plan.axis),
+            points,
+        }
+    }
+}
+
+/// Where the mean first falls below `limit`; `curve` lists levels from quiet to loud with the mean
+/// over all draws there, if there is one.
+fn lost(curve: &[(f64, Option<f64>)], limit: f64, axis: &NoiseAxis) -> Lost {
+    let mut before: Option<(f64, f64)> = None;
+    for &(level, mean) in curve {
+        let Some(mean) = mean else {
+            return Lost::Unknown;
+        };
+        if mean < limit {
+            return before.map_or(Lost::Before, |(quiet, high)| {
+                Lost::At(axis.at([quiet, level], (high - limit) / (high - mean)))
+            });
+        }
+        before = Some((level, mean));
+    }
+    if before.is_some() {
+        Lost::Never
+    } else {
+        Lost::Unknown
+    }
+}
+
+/// Up to which level the mean of such a curve stays at or above `limit`; `None` if it is not there
+/// at the quietest. A mean as far above 1 as `limit` is below is none to speak of: it is that of a
+/// recovery with negative values.
+fn held(curve: &[(f64, Option<f64>)], limit: f64, axis: &NoiseAxis) -> Option<Held> {
+    let trusted = |mean: &f64| *mean <= 2.0 - limit;
+    let curve: Vec<(f64, Option<f64>)> = curve
+        .iter()
+        .map(|(level, mean)| (*level, mean.filter(trusted)))
+        .collect();
+    if let Lost::At(level) = lost(&curve, limit, axis) {
+        let reach = Reach::Falls;
+        return Some(Held { level, reach });
+    }
+    let above = curve
+        .iter()
+        .take_while(|(_, mean)| mean.is_some_and(|m| m >= limit));
+    above.last().map(|&(level, _)| Held {
+        level,
+        reach: Reach::AtLeast,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_spread_is_that_of_a_hand_calculation() {
+        // Mean 2, squares 1 + 0 + 1, variance 1, standard error 1/√3.
+        let found = Spread::of(&[1.0, 2.0, 3.0]).unwrap();
+        assert_eq!(
+            (found.draws, found.mean, found.deviation),
+            (3, 2.0, Some(1.0))
+        );
+        assert!((found.stderr.unwrap() - 1.0 / 3f64.sqrt()).abs() < 1e-15);
+        let one = Spread::of(&[7.0]).unwrap();
+        assert_eq!((one.deviation, one.stderr), (None, None));
+        assert_eq!(Spread::of(&[]), None);
+    }
+
+    #[test]
+    fn the_level_is_interpolated_in_its_logarithm() {
+        let curve = [(1e-4, Some(1.0)), (1e-2, Some(0.8)), (1.0, Some(0.2))];
+        let lost = |curve: &[_], limit| lost(curve, limit, &NoiseAxis::Relative);
+        let at = |limit| match lost(&curve, limit) {
+            Lost::At(level) => level,
+            other => panic!("{other:?}"),
+        };
+        // Half way from 1 to 0.8: the geometric mean of 1e-4 and 1e-2. From 0.8 to 0.2 half way is
+        // 0.5.
+        assert!((at(0.9) / 1e-3 - 1.0).abs() < 1e-12 && (at(0.5) / 0.1 - 1.0).abs() < 1e-12);
+        assert_eq!(lost(&curve, 0.1), Lost::Never);
+        assert_eq!(lost(&curve[1..], 0.9), Lost::Before);
+        assert_eq!(lost(&curve[..1], 0.9), Lost::Never);
+        assert_eq!(lost(&[], 0.9), Lost::Unknown);
+        // An axis on which quiet is a large number.
+        let photons = [(1e6, Some(1.0)), (1e4, Some(0.0))];
+        let Lost::At(level) = lost(&photons, 0.5) else {
+            panic!("{:?}", lost(&photons, 0.5))
+        };
+        assert!((level / 1e5 - 1.0).abs() < 1e-12);
+        let gap = [(1e-4, Some(1.0)), (1e-3, None), (1e-2, Some(0.1))];
+        assert_eq!(lost(&gap, 0.5), Lost::Unknown);
+    }
+
+    /// Bits run from many to few and by differences: half way from 12 to 8 the mean is half way
+    /// from 1 to 0.6.
+    #[test]
+    fn bits_are_interpolated_in_their_number() {
+        let bits = [
+            (16.0, Some(1.0)),
+            (12.0, Some(1.0)),
+            (8.0, Some(0.6)),
+            (4.0, Some(0.95)),
+        ];
+        let (limit, axis) = (0.8, &NoiseAxis::Bits);
+        let Lost::At(level) = lost(&bits, limit, axis) else {
+            panic!("{:?}", lost(&bits, limit, axis))
+        };
+        // That the mean is above the limit again at 4 bits is no matter: from 10 on it stays there.
+        assert!((level - 10.0).abs() < 1e-12, "{level}");
+        assert_eq!(held(&bits, limit, axis).unwrap().reach, Reach::Falls);
+    }
+
+    #[test]
+    fn a_limit_is_held_up_to_what_is_known() {
+        let held = |curve: &[_]| held(curve, 0.9, &NoiseAxis::Relative);
+        let at_least = |level| {
+            let reach = Reach::AtLeast;
+            Some(Held { level, reach })
+        };
+        let high = (1e-4, Some(1.0));
+        assert_eq!(held(&[high, (1e-2, Some(0.9))]), at_least(1e-2));
+        assert_eq!(held(&[high, (1e-2, None)]), at_least(1e-4));
+        let wild = [high, (1e-2, Some(1.2)), (1.0, Some(0.1))];
+        assert_eq!(held(&wild), at_least(1e-4));
+        assert_eq!(held(&[(1e-4, Some(0.8)), (1e-2, Some(1.0))]), None);
+        assert_eq!(held(&[(1e-4, None)]), None);
+    }
+}

@@ -1,0 +1,277 @@
+//! Exact light made into noisy photographs.
+
+use super::axis::{NoiseAxis, RANGE};
+use super::plan::NoiseError;
+use crate::lab::ensemble::Photographs;
+use crate::matrix::Matrix;
+use crate::num::stream::{Key, Sampling, Stream};
+use crate::num::units::photon_energy;
+use crate::scene::{Glare, Scene};
+use crate::sensor::{
+    Exposure, Figures, Light, Range, Sensor, SensorError, ShotNoise, glare, glare_to_signal,
+};
+
+/// An object's light, ready to be photographed.
+#[derive(Debug)]
+pub(super) struct Stage {
+    pub(super) axis: NoiseAxis,
+    /// Φcam, pixels × spots, W.
+    pub(super) exact: Matrix,
+    wavelength: f64,
+    /// Glare of as much light as the signal, W.
+    glare: Option<Matrix>,
+}
+
+/// What takes the photographs of a level.
+struct Shot {
+    sensor: Sensor,
+    exposure: Exposure,
+    glare: Option<Matrix>,
+}
+
+impl Stage {
+    pub(super) fn new(axis: &NoiseAxis, scene: &Scene, exact: Matrix) -> Result<Self, NoiseError> {
+        if exact.max() <= 0.0 {
+            return Err(NoiseError::Dark);
+        }
+        let glare = match axis {
+            NoiseAxis::Glare(_, spread) => {
+                let all = Glare {
+                    fraction: 1.0,
+                    spread: *spread,
+                };
+                let pattern = glare(scene, all);
+                let ratio = glare_to_signal(&pattern, &exact);
+                if ratio <= 0.0 {
+                    return Err(NoiseError::NoGlare);
+                }
+                Some(pattern / ratio)
+            }
+            _ => None,
+        };
+        Ok(Self {
+            axis: axis.clone(),
+            exact,
+            wavelength: scene.laser.wavelength,
+            glare,
+        })
+    }
+
+    /// The photographs of one draw.
+    ///
+    /// # Errors
+    /// In words: what the sensor cannot take, or that entries are saturated, which no recovery is
+    /// told of.
+    pub(super) fn photograph(&self, level: f64, seed: u64) -> Result<Photographs, String> {
+        if self.axis == NoiseAxis::Relative {
+            return Ok(Photographs::relative(&self.exact, level, seed));
+        }
+        let take = || {
+            let shot = self.shot(level, offset(seed))?;
+            shot.sensor
+                .expose(&self.light(&shot)?, &shot.exposure, seed)
+        };
+        let taken = take().map_err(|e| e.to_string())?;
+        match taken.count(Range::Saturated) {
+            0 => Ok(Photographs {
+                phi: taken.flux,
+                stderr: taken.stderr,
+            }),
+            n => Err(format!("{n} entries are saturated; expose for less")),
+        }
+    }
+
+    /// The standard error of every entry at `level`, W.
+    pub(super) fn stderr(&self, level: f64) -> Result<Matrix, SensorError> {
+        if self.axis == NoiseAxis::Relative {
+            return Ok(self.exact.map(|x| level * x.abs()));
+        }
+        let shot = self.shot(level, 0.0)?;
+        let expected = shot.sensor.expected(&self.light(&shot)?, &shot.exposure);
+        Ok(expected.stderr)
+    }
+
+    fn light<'s>(&'s self, shot: &'s Shot) -> Result<Light<'s>, SensorError> {
+        let light = Light::new(&self.exact, self.wavelength)?;
+        match &shot.glare {
+            Some(glare) => light.with_glare(glare),
+            None => Ok(light),
+        }
+    }
+
+    /// Sensor and exposure of `level`; `offset`, in counts, is that of the converter on the axis of
+    /// bits.
+    fn shot(&self, level: f64, offset: f64) -> Result<Shot, SensorError> {
+        let energy = photon_energy(self.wavelength);
+        let (sensor, time, glare) = match &self.axis {
+            NoiseAxis::Relative => (Sensor::new(Figures::IDEAL)?, 1.0, None),
+            NoiseAxis::Photons => {
+                let figures = Figures {
+                    shot_noise: ShotNoise::Poisson,
+                    ..Figures::IDEAL
+                };
+                let time = level * energy / self.exact.mean();
+                (Sensor::new(figures)?, time, None)
+            }
+            NoiseAxis::Bits => {
+                let ideal = Figures {
+                    bits: Some(level as u32),
+                    offset,
+                    ..Figures::IDEAL
+                };
+                // An electron for every photon of a second: their number only sets the unit of the
+                // gain.
+                let gain = self.exact.max() / energy / (RANGE * ideal.top());
+                (Sensor::new(Figures { gain, ..ideal })?, 1.0, None)
+            }
+            NoiseAxis::Exposure(camera) => (camera.sensor, level, None),
+            NoiseAxis::Glare(camera, _) => {
+                let glare = self.glare.as_ref().map(|g| g * level);
+                let all = glare.as_ref().map(|g| &self.exact + g);
+                let brightest = all.as_ref().unwrap_or(&self.exact).max();
+                let time = camera.sensor.longest_exposure(brightest, self.wavelength);
+                (camera.sensor, time, glare)
+            }
+        };
+        // A real sensor takes a dark frame too, which is subtracted.
+        let dark = u32::from(self.axis.label().sensor.is_some());
+        let exposure = Exposure::new(&[time], 1, dark)?;
+        Ok(Shot {
+            sensor,
+            exposure,
+            glare,
+        })
+    }
+}
+
+/// A part of a count, in [0, 1), of a block of random numbers that is of no entry.
+fn offset(seed: u64) -> f64 {
+    let key = Key {
+        seed,
+        spot: Key::ALL_SPOTS,
+        pixel: u32::MAX,
+        block: u32::MAX,
+    };
+    Stream::new(Sampling::Pcg, key).uniform()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::noise::axis::NamedSensor;
+    use crate::scene::{SensorModel, Spread};
+
+    fn exact() -> Matrix {
+        Matrix::from_fn(12, 36, |p, l| 1e-15 * (1.0 + p as f64 + 0.37 * l as f64))
+    }
+
+    fn stage(axis: &NoiseAxis, exact: &Matrix) -> Stage {
+        Stage::new(axis, &Scene::load("bench").unwrap(), exact.clone()).unwrap()
+    }
+
+    /// √(mean of ((Φ − exact)/σ)²) over entries and `seeds`.
+    fn spread(stage: &Stage, level: f64, seeds: u64) -> f64 {
+        let squares: f64 = (0..seeds)
+            .map(|seed| {
+                let taken = stage.photograph(level, seed).unwrap();
+                let error = (taken.phi - &stage.exact).component_div(&taken.stderr);
+                error.norm_squared() / error.len() as f64
+            })
+            .sum();
+        (squares / seeds as f64).sqrt()
+    }
+
+    /// The relative noise of an entry is 1/√(its photons), and the photons are `level` on average.
+    #[test]
+    fn photons_make_shot_noise() {
+        let exact = exact();
+        let stage = stage(&NoiseAxis::Photons, &exact);
+        for level in [30.0, 1e6, 1e18] {
+            let told = stage.photograph(level, 1).unwrap().stderr;
+            for (at, x) in exact.iter().enumerate() {
+                let photons = level * x / exact.mean();
+                assert!((told[at] / x * photons.sqrt() - 1.0).abs() < 1e-12);
+            }
+            assert_eq!(told, stage.stderr(level).unwrap());
+        }
+        // 432·40 squares of nearly normal numbers: five standard errors of the root of their mean.
+        let limit = 5.0 / (2.0 * 432.0 * 40.0f64).sqrt();
+        for level in [30.0, 1e6] {
+            let found = spread(&stage, level, 40);
+            assert!((found - 1.0).abs() < limit, "{level:e}: {found}");
+        }
+    }
+
+    /// A count is the brightest entry over 80 % of the range; the recovery is told count/√12, no
+    /// entry is wrong by more than half a count, and over entries and offsets the errors spread as
+    /// told.
+    #[test]
+    fn bits_make_rounding_alone() {
+        let exact = exact();
+        let stage = stage(&NoiseAxis::Bits, &exact);
+        for (bits, top) in [(4.0, 15.0), (10.0, 1023.0), (24.0, 16_777_215.0)] {
+            let count = exact.max() / (0.8 * top);
+            let taken = stage.photograph(bits, 3).unwrap();
+            let sigma = count / 12f64.sqrt();
+            assert!(taken.stderr.iter().all(|s| (s / sigma - 1.0).abs() < 1e-12));
+            assert!((taken.phi - &exact).amax() <= count * (0.5 + 1e-6));
+            // Squares of even errors have a variance of 0.8 of theirs; offsets are common to the
+            // entries of a draw, so draws alone count.
+            let limit = 5.0 * (0.8f64 / 400.0).sqrt() / 2.0;
+            let found = spread(&stage, bits, 400);
+            assert!((found - 1.0).abs() < limit, "{bits}: {found}");
+        }
+    }
+
+    /// Without any noise of the sensor what is there beyond the signal is the glare, of the size
+    /// asked for, and the recovery is not told.
+    #[test]
+    fn glare_is_a_bias() {
+        let scene = Scene::load("bench").unwrap();
+        let spots = scene.laser.spots.len();
+        let exact = Matrix::from_element(scene.camera.pixels(), spots, 2e-15);
+        let sensor = |model: SensorModel| NamedSensor {
+            name: model.name().to_owned(),
+            sensor: Sensor::builtin(model),
+        };
+        for spread in [Spread::Uniform, Spread::Falloff(1.0)] {
+            let axis = NoiseAxis::Glare(sensor(SensorModel::Ideal), spread);
+            let stage = stage(&axis, &exact);
+            for level in [1e-3, 2.0] {
+                let taken = stage.photograph(level, 1).unwrap();
+                let more = (taken.phi - &exact).sum() / exact.sum();
+                assert!((more / level - 1.0).abs() < 1e-9, "{level}: {more}");
+                assert!(taken.stderr.iter().all(|s| *s == 0.0));
+            }
+        }
+        // With noise: a real sensor is told of that of signal and glare, at half of its well.
+        let axis = NoiseAxis::Glare(sensor(SensorModel::Ccd), Spread::Uniform);
+        let stage = stage(&axis, &exact);
+        let taken = stage.photograph(1.0, 1).unwrap();
+        let light = &exact + stage.shot(1.0, 0.0).unwrap().glare.unwrap();
+        let relative = taken.stderr.max() / light.max();
+        assert!(
+            (relative * 35_000f64.sqrt() - 1.0).abs() < 0.02,
+            "{relative}"
+        );
+    }
+
+    /// What the size of the standard errors is said to be on an axis it is, of every entry.
+    #[test]
+    fn standard_errors_grow_as_the_axis_says() {
+        let exact = exact();
+        for (axis, [a, b]) in [
+            (NoiseAxis::Relative, [1e-9, 0.1]),
+            (NoiseAxis::Photons, [1e12, 3.0]),
+            (NoiseAxis::Bits, [24.0, 5.0]),
+        ] {
+            let stage = stage(&axis, &exact);
+            let [low, high] = [a, b].map(|level| stage.stderr(level).unwrap());
+            let ratio = axis.size(b).unwrap() / axis.size(a).unwrap();
+            assert!(ratio > 1.0);
+            for (l, h) in low.iter().zip(high.iter()) {
+                assert!((h / l / ratio - 1.0).abs() < 1e-12, "{axis:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! The study in tasks: each a few draws of the noise on one object, or one render.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::Ordering;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::best::best;
+use super::bound::bounds;
+use super::curve::NoiseCurve;
+use super::ledger::write_ledger;
+use super::plan::{NoiseError, NoisePlan};
+use super::render::{ESTIMATORS, RenderNoise, render_noise};
+use super::stage::Stage;
+use super::study::NoiseStudy;
+use super::trial::{Trial, measure};
+use crate::lab::measures::Measures;
+use crate::lab::study::Study;
+use crate::model::MatrixModel;
+use crate::scene::Scene;
+use crate::transport::{Control, Estimator, Stopped};
+
+/// Draws of a task.
+const DRAWS: usize = 4;
+/// Tasks worked off between two calls of `keep`.
+const CHUNK: usize = 8;
+
+/// How much noise each recovery bears: every object, recovered from every draw of the noise at
+/// every level.
+#[derive(Debug)]
+pub struct NoiseTasks {
+    scene: Scene,
+    plan: NoisePlan,
+    renders: Vec<(Estimator, u64)>,
+    objects: Vec<[usize; 2]>,
+    draws: Vec<(f64, u64)>,
+}
+
+/// What a task gives.
+#[derive(Debug, Serialize, Deserialize)]
+pub enum Output {
+    /// Draw by draw what every method comes to.
+    Draws(Vec<Vec<Result<Measures, String>>>),
+    /// The noise of a render.
+    Render(RenderNoise),
+}
+
+/// One object, ready to be photographed.
+#[derive(Debug)]
+pub struct Object {
+    model: MatrixModel,
+    stage: Stage,
+}
+
+impl NoiseTasks {
+    /// The study of a scene, with the noise of renders with these numbers of paths.
+    pub fn new(scene: &Scene, plan: NoisePlan, render_samples: Vec<u64>) -> Self {
+        let seeds = (0..plan.seeds).map(|k| plan.first_seed.wrapping_add(k));
+        let draws = |level: &f64| seeds.clone().map(|seed| (*level, seed)).collect::<Vec<_>>();
+        let draws = plan.levels.iter().flat_map(draws).collect();
+        let renders = |e: Estimator| render_samples.iter().map(move |n| (e, *n));
+        Self {
+            scene: scene.clone(),
+            renders: ESTIMATORS.into_iter().flat_map(renders).collect(),
+            objects: plan.objects(),
+            draws,
+            plan,
+        }
+    }
+
+    /// What its trials have to share, in words.
+    pub fn ledger_name(&self) -> String {
+        self.plan.study(&self.scene)
+    }
+
+    /// Recoveries of the whole study.
+    pub fn trials(&self) -> usize {
+        self.plan.trials()
+    }
+
+    /// Tasks of one object.
+    fn groups(&self) -> usize {
+        self.draws.len().div_ceil(DRAWS)
+    }
+
+    /// The object of a task, by number, and its draws; none for a render.
+    fn at(&self, index: usize) -> Option<(usize, &[(f64, u64)])> {
+        let object = index / self.groups().max(1);
+        let from = index % self.groups().max(1) * DRAWS;
+        let draws = &self.draws[from..self.draws.len().min(from + DRAWS)];
+        (object < self.objects.len()).then_some((object, draws))
+    }
+
+    /// The trials of one draw, without outcome.
+    fn open(&self, object: usize, (level, seed): (f64, u64)) -> Vec<Trial> {
+        let [board, elements] = self.objects[object];
+        let trial = |method: &_| Trial {
+            board,
+            elements,
+            method: *method,
+            level,
+            seed,
+            outcome: Err(String::new()),
+        };
+        self.plan.methods.iter().map(trial).collect()
+    }
+
+    /// Those of them that are not known yet, done.
+    fn draw(&self, objects: &[Object], at: usize, draw: (f64, u64), known: &[Trial]) -> Vec<Trial> {
+        let mut open = self.open(at, draw);
+        open.retain(|t| known.binary_search_by(|k| k.order(t)).is_err());
+        if open.is_empty() {
+            return open;
+        }
+        let Object { model, stage } = &objects[at];
+        let photographs = stage.photograph(draw.0, draw.1);
+        for trial in &mut open {
+            trial.outcome = match &photographs {
+                Ok(photographs) => measure(model, photographs, trial.method),
+                Err(why) => Err(why.clone()),
+            };
+        }
+        open
+    }
+
+    fn render(&self, index: usize, control: Control<'_>) -> Result<RenderNoise, NoiseError> {
+        let (estimator, samples) = self.renders[index - self.objects.len() * self.groups()];
+        let how = (estimator, samples, self.plan.first_seed);
+        render_noise(&self.scene, &self.plan.axis, how, control)
+    }
+
+    /// Works off all tasks in their order. Trials among `known` are not repeated; `keep` is handed
+    /// the others as they are finished, and may break the study off, as `control` may.
+    ///
+    /// # Errors
+    /// [`NoiseError`].
+    pub fn go_on(
+        &self,
+        known: &[Trial],
+        control: Control<'_>,
+        keep: &mut dyn FnMut(&[Trial]) -> ControlFlow<()>,
+    ) -> Result<NoiseStudy, NoiseError> {
+        let objects = self.context(control)?;
+        let mut known = known.to_vec();
+        known.sort_by(Trial::order);
+        let draws: Vec<usize> = (0..self.objects.len() * self.groups()).collect();
+        for chunk in draws.chunks(CHUNK) {
+            let draws: Vec<(usize, (f64, u64))> = chunk
+                .iter()
+                .filter_map(|task| self.at(*task))
+                .flat_map(|(object, draws)| draws.iter().map(move |d| (object, *d)))
+                .collect();
+            let stopped = || control.stop.load(Ordering::Relaxed);
+            let found: Vec<Option<Vec<Trial>>> = draws
+                .par_iter()
+                .map(|&(at, draw)| (!stopped()).then(|| self.draw(&objects, at, draw, &known)))
+                .collect();
+            let whole = found.iter().all(Option::is_some);
+            let found: Vec<Trial> = found.into_iter().flatten().flatten().collect();
+            let go_on = keep(&found);
+            known.extend(found);
+            known.sort_by(Trial::order);
+            if !whole || go_on.is_break() {
+                return Err(Stopped.into());
+            }
+        }
+        let renders = (draws.len()..self.tasks()).map(|index| self.render(index, control));
+        let renders: Vec<RenderNoise> = renders.collect::<Result<_, NoiseError>>()?;
+        Ok(self.found(&objects, known, renders))
+    }
+
+    /// The study, from sorted trials.
+    fn found(
+        &self,
+        objects: &[Object],
+        trials: Vec<Trial>,
+        render_noise: Vec<RenderNoise>,
+    ) -> NoiseStudy {
+        let plan = &self.plan;
+        let (mut curves, mut winners) = (Vec::new(), Vec::new());
+        for (&object, Object { model, stage }) in self.objects.iter().zip(objects) {
+            let bounds = bounds(stage, model, &plan.levels);
+            let curve = |m: &_| NoiseCurve::of(plan, object, *m, (&trials, &bounds));
+            curves.extend(plan.methods.iter().map(curve));
+            winners.push(best(&plan.axis, object, &curves));
+        }
+        NoiseStudy {
+            scene: self.scene.name.clone(),
+            scene_hash: self.scene.hash.clone(),
+            kernel: plan.kernel.name().to_owned(),
+            axis: plan.axis.clone(),
+            seeds: plan.seeds,
+            first_seed: plan.first_seed,
+            curves,
+            best: winners,
+            render_noise,
+            ledger: write_ledger(&self.ledger_name(), &trials),
+        }
+    }
+}
+
+impl Study for NoiseTasks {
+    type Context = Vec<Object>;
+    type Output = Output;
+    type Result = NoiseStudy;
+    type Error = NoiseError;
+
+    fn name(&self) -> &'static str {
+        "noise"
+    }
+
+    fn tasks(&self) -> usize {
+        self.objects.len() * self.groups() + self.renders.len()
+    }
+
+    fn context(&self, _: Control<'_>) -> Result<Vec<Object>, NoiseError> {
+        if self.objects.is_empty() {
+            return Err(NoiseError::NoObject);
+        }
+        self.plan.refuse_saturation(&self.scene)?;
+        let object = |object: &[usize; 2]| {
+            let model = self.plan.model(&self.scene, *object)?;
+            let stage = Stage::new(&self.plan.axis, &self.scene, model.phi())?;
+            Ok(Object { model, stage })
+        };
+        let objects = self.objects.iter().map(object);
+        objects.collect()
+    }
+
+    fn task(
+        &self,
+        objects: &Vec<Object>,
+        index: usize,
+        control: Control<'_>,
+    ) -> Result<Output, NoiseError> {
+        let Some((at, draws)) = self.at(index) else {
+            return self.render(index, control).map(Output::Render);
+        };
+        let outcomes = |draw: &(f64, u64)| {
+            let found = self.draw(objects, at, *draw, &[]).into_iter();
+            found.map(|trial| trial.outcome).collect()
+        };
+        Ok(Output::Draws(draws.par_iter().map(outcomes).collect()))
+    }
+
+    fn fits(&self, _: &Vec<Object>, index: usize, part: &Output) -> bool {
+        let methods = self.plan.methods.len();
+        match (self.at(index), part) {
+            (Some((_, draws)), Output::Draws(found)) => {
+                found.len() == draws.len() && found.iter().all(|f| f.len() == methods)
+            }
+            (None, Output::Render(_)) => true,
+            _ => false,
+        }
+    }
+
+    fn finish(&self, objects: &Vec<Object>, parts: Vec<Output>) -> Result<NoiseStudy, NoiseError> {
+        let (mut trials, mut renders) = (Vec::new(), Vec::new());
+        for (index, part) in parts.into_iter().enumerate() {
+            match (self.at(index), part) {
+                (Some((at, draws)), Output::Draws(found)) => {
+                    for (draw, outcomes) in draws.iter().zip(found) {
+                        let done = self.open(at, *draw).into_iter().zip(outcomes);
+                        trials.extend(done.map(|(trial, outcome)| Trial { outcome, ..trial }));
+                    }
+                }
+                (_, Output::Render(found)) => renders.push(found),
+                (None, Output::Draws(_)) => {}
+            }
+        }
+        trials.sort_by(Trial::order);
+        Ok(self.found(objects, trials, renders))
+    }
+}

@@ -1,0 +1,389 @@
+use std::ops::ControlFlow;
+
+use super::*;
+use crate::lab::finding::Describe;
+use crate::lab::measures::Measures;
+use crate::lab::study::{self, tests::divides};
+use crate::model::Kernel;
+use crate::recovery::Method;
+use crate::scene::{Scene, SensorModel, Spread};
+use crate::sensor::Sensor;
+use crate::transport::Control;
+
+fn small() -> (Scene, NoisePlan) {
+    let text = Scene::load("bench").unwrap().text;
+    let text = text.replace("pixels = [16, 16]", "pixels = [4, 4]");
+    let scene = Scene::from_toml("small", &text.replace("per_side = 30", "per_side = 6")).unwrap();
+    let plan = NoisePlan {
+        boards: vec![2, 4],
+        elements: vec![2, 4],
+        methods: vec![Method::Pinv, Method::Tikhonov, Method::Joint],
+        kernel: Kernel::Physical,
+        axis: NoiseAxis::Relative,
+        levels: vec![1e-6, 1e-3, 1.0],
+        seeds: 5,
+        first_seed: 3,
+    };
+    (scene, plan)
+}
+
+fn run(
+    scene: &Scene,
+    plan: &NoisePlan,
+    known: &[Trial],
+    most: usize,
+) -> (Option<NoiseStudy>, Vec<Trial>) {
+    let mut kept = Vec::new();
+    let mut keep = |new: &[Trial]| {
+        kept.extend_from_slice(new);
+        if kept.len() >= most {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    match NoiseTasks::new(scene, plan.clone(), Vec::new()).go_on(known, Control::none(), &mut keep)
+    {
+        Err(NoiseError::Stopped(_)) => (None, kept),
+        study => (Some(study.unwrap()), kept),
+    }
+}
+
+/// Three objects, boards of 4 checks having no place on 2 elements, with three levels, five draws
+/// and three methods.
+fn trials_do_not_depend_on_threads_and_going_on(plan: &NoisePlan) {
+    let (scene, _) = small();
+    assert_eq!(plan.trials(), 3 * 3 * 5 * 3);
+    let pool = |n| {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(n)
+            .build()
+            .unwrap()
+    };
+    let (through, all) = pool(1).install(|| run(&scene, plan, &[], usize::MAX));
+    assert_eq!(all.len(), plan.trials());
+    let (none, part) = pool(3).install(|| run(&scene, plan, &[], 10));
+    assert!(none.is_none() && part.len() >= 10 && part.len() < all.len());
+    let (resumed, rest) = pool(3).install(|| run(&scene, plan, &part, usize::MAX));
+    assert_eq!(rest.len(), all.len() - part.len());
+    let text = |trials: &[Trial]| write_ledger("", trials);
+    assert_eq!(text(&all), text(&[part, rest].concat()));
+    let json = |study: &Option<NoiseStudy>| serde_json::to_string(study.as_ref().unwrap()).unwrap();
+    assert_eq!(json(&through), json(&resumed));
+}
+
+fn ccd() -> NamedSensor {
+    NamedSensor {
+        name: "ccd".to_owned(),
+        sensor: Sensor::builtin(SensorModel::Ccd),
+    }
+}
+
+#[test]
+fn on_every_axis_going_on_gives_what_running_through_gives_on_any_threads() {
+    let (_, relative) = small();
+    trials_do_not_depend_on_threads_and_going_on(&relative);
+    for (axis, levels) in [
+        (NoiseAxis::Photons, vec![1e12, 1e6, 1e3]),
+        (NoiseAxis::Exposure(ccd()), vec![1e-3, 1e-4, 1e-5]),
+        (
+            NoiseAxis::Glare(ccd(), Spread::Falloff(1.0)),
+            vec![1e-3, 0.1, 10.0],
+        ),
+        (NoiseAxis::Bits, vec![24.0, 16.0, 8.0]),
+    ] {
+        let plan = NoisePlan {
+            axis,
+            levels,
+            ..relative.clone()
+        };
+        trials_do_not_depend_on_threads_and_going_on(&plan);
+    }
+}
+
+/// Default levels are ones that the axis allows, from quiet to loud, and none of them saturates a
+/// pixel.
+#[test]
+fn default_levels_can_be_studied() {
+    let (scene, relative) = small();
+    for axis in [
+        NoiseAxis::Relative,
+        NoiseAxis::Photons,
+        NoiseAxis::Exposure(ccd()),
+        NoiseAxis::Glare(ccd(), Spread::Uniform),
+        NoiseAxis::Bits,
+    ] {
+        let mut plan = NoisePlan {
+            axis,
+            ..relative.clone()
+        };
+        plan.levels = plan.default_levels(&scene).unwrap();
+        let axis = &plan.axis;
+        assert!(plan.levels.len() > 5 && plan.levels.iter().all(|l| axis.refuses(*l).is_none()));
+        assert!(
+            plan.levels
+                .windows(2)
+                .all(|w| axis.quiet_first(w[0], w[1]).is_lt())
+        );
+        plan.refuse_saturation(&scene).unwrap();
+        plan.levels[0] *= 100.0;
+        let refused = plan.refuse_saturation(&scene);
+        let exposure = matches!(plan.axis, NoiseAxis::Exposure(_));
+        assert_eq!(
+            matches!(refused, Err(NoiseError::Saturated { .. })),
+            exposure
+        );
+    }
+}
+
+/// No unbiased recovery is nearer to the truth than the bound: over 200 draws, by the spread of
+/// what was found. And the joint one, whose weights are those of the noise here but for what is not
+/// separable, comes within a tenth of it.
+#[test]
+fn unbiased_recoveries_keep_the_bound_of_cramer_and_rao() {
+    let (scene, plan) = small();
+    for (axis, levels) in [
+        (NoiseAxis::Relative, vec![1e-6]),
+        (NoiseAxis::Photons, vec![1e12]),
+    ] {
+        let plan = NoisePlan {
+            boards: vec![2],
+            elements: vec![2],
+            methods: vec![Method::Pinv, Method::JointUnbounded],
+            axis,
+            levels,
+            seeds: 200,
+            ..plan.clone()
+        };
+        let (study, _) = run(&scene, &plan, &[], usize::MAX);
+        let ratios = study.unwrap().curves.into_iter().map(|c| {
+            let p = &c.points[0];
+            // Five standard errors of a root mean square; errors of four elements spread at most as
+            // those of one.
+            (p.rmse_over_bound.unwrap(), 5.0 / (2.0 * 200f64).sqrt())
+        });
+        let ratios: Vec<(f64, f64)> = ratios.collect();
+        assert!(ratios.iter().all(|(r, s)| *r > 1.0 - s), "{ratios:?}");
+        assert!(ratios[1].0 < 1.1 + ratios[1].1, "{ratios:?}");
+    }
+}
+
+/// A level, a seed or a method more: what is there is kept, and only the new is computed.
+#[test]
+fn a_larger_plan_goes_on_from_a_smaller_one() {
+    let (scene, plan) = small();
+    let less = NoisePlan {
+        levels: vec![1e-6, 1.0],
+        seeds: 3,
+        methods: vec![Method::Pinv],
+        ..plan.clone()
+    };
+    let (_, part) = run(&scene, &less, &[], usize::MAX);
+    let (_, rest) = run(&scene, &plan, &part, usize::MAX);
+    assert_eq!(part.len() + rest.len(), plan.trials());
+    // And the smaller plan finds its own curves among the larger one's trials.
+    let (straight, _) = run(&scene, &less, &[], usize::MAX);
+    let (found, none) = run(&scene, &less, &[part, rest].concat(), usize::MAX);
+    assert!(none.is_empty());
+    let json = |study: Option<NoiseStudy>| serde_json::to_string(&study.unwrap()).unwrap();
+    assert_eq!(json(found), json(straight));
+}
+
+/// The unbounded pseudo-inverse is linear and unbiased here (2 × 2 elements have full rank), so its
+/// error grows in proportion to the noise, draw by draw.
+#[test]
+fn the_error_of_a_linear_method_is_proportional_to_the_noise() {
+    let (scene, plan) = small();
+    let plan = NoisePlan {
+        boards: vec![2],
+        elements: vec![2],
+        methods: vec![Method::Pinv],
+        levels: vec![1e-5, 1e-3],
+        ..plan
+    };
+    let (study, _) = run(&scene, &plan, &[], usize::MAX);
+    let points = &study.unwrap().curves[0].points;
+    let [quiet, loud] = [0, 1].map(|i: usize| points[i].rmse.unwrap());
+    assert!(
+        (loud.mean / quiet.mean / 100.0 - 1.0).abs() < 1e-6,
+        "{quiet:?} {loud:?}"
+    );
+    assert!(quiet.mean > 0.0 && quiet.draws == 5);
+}
+
+#[test]
+fn a_plan_without_object_is_refused() {
+    let (scene, plan) = small();
+    let plan = NoisePlan {
+        boards: vec![3],
+        ..plan
+    };
+    let refused = study::run(&NoiseTasks::new(&scene, plan, Vec::new()), Control::none());
+    assert!(matches!(refused, Err(NoiseError::NoObject)));
+}
+
+/// Least squares without bounds is unbiased: its mean raw MTF does not fall, but the denominator's
+/// spread grows until no mean is spoken of.
+#[test]
+fn a_mean_of_wild_ratios_is_not_spoken_of() {
+    let (scene, plan) = small();
+    let plan = NoisePlan {
+        boards: vec![4],
+        elements: vec![4],
+        methods: vec![Method::JointUnbounded],
+        levels: vec![1e-7, 0.1, 1.0],
+        seeds: 20,
+        ..plan
+    };
+    let (study, _) = run(&scene, &plan, &[], usize::MAX);
+    let curve = &study.unwrap().curves[0];
+    let [quiet, loud] = [0, 2].map(|i: usize| curve.points[i].denominator_spread.unwrap());
+    assert!(quiet < 1e-3 && loud > 0.1, "{quiet} {loud}");
+    assert_eq!(curve.lost_raw[1], Lost::Unknown, "{curve:?}");
+    assert!(matches!(curve.lost_normalized[1], Lost::At(_)), "{curve:?}");
+}
+
+/// Draws that stray widely around a true mean of 1, at a well determined denominator: that their
+/// mean happens to lie at 0.2 is no loss.
+#[test]
+fn a_mean_that_strays_has_not_fallen() {
+    let (_, plan) = small();
+    let plan = NoisePlan {
+        boards: vec![2],
+        elements: vec![4],
+        methods: vec![Method::JointUnbounded],
+        levels: vec![1e-3, 1.0],
+        seeds: 4,
+        ..plan
+    };
+    let trial = |level, seed, mtf| Trial {
+        board: 2,
+        elements: 4,
+        method: Method::JointUnbounded,
+        level,
+        seed,
+        outcome: Ok(Measures {
+            mtf_raw: Some(mtf),
+            light_plus_dark: Some(1.0),
+            mtf_normalized: Some(mtf / 10.0),
+            correlation: None,
+            rmse: None,
+        }),
+    };
+    let curve = |loud: [f64; 4]| {
+        let quiet = (0..4).map(|k| trial(1e-3, plan.first_seed + k, 1.0));
+        let loud = (0..4).map(|k| trial(1.0, plan.first_seed + k, loud[k as usize]));
+        NoiseCurve::of(
+            &plan,
+            [2, 4],
+            Method::JointUnbounded,
+            (&quiet.chain(loud).collect::<Vec<_>>(), &[None, None]),
+        )
+    };
+    assert_eq!(curve([9.0, -9.0, 5.0, -4.2]).lost_raw, [Lost::Unknown; 2]);
+    let fallen = curve([0.25, 0.15, 0.2, 0.2]);
+    // From 1 to 0.2 over three decades: 0.9 lies an eighth of the way.
+    let Lost::At(level) = fallen.lost_raw[0] else {
+        panic!("{fallen:?}")
+    };
+    assert!((level / 1e-3 / libm::exp10(3.0 / 8.0) - 1.0).abs() < 1e-12);
+    assert_eq!(fallen.lost_normalized, [Lost::Before; 2]);
+}
+
+/// With photons the modulation rises: from 0.8 at 1e4 to 1 at 1e6, so from 1e5 on it is 0.9 or
+/// more, whatever it is again with very few.
+#[test]
+fn more_photons_are_less_noise() {
+    let (_, plan) = small();
+    let mut plan = NoisePlan {
+        axis: NoiseAxis::Photons,
+        methods: vec![Method::Joint],
+        levels: vec![1e6, 1.0, 1e4, 1e2, 1e8],
+        seeds: 1,
+        ..plan
+    };
+    plan.levels.sort_by(|a, b| plan.axis.quiet_first(*a, *b));
+    let mtf = |level: f64| match level {
+        1e4 => 0.8,
+        1e2 => 0.2,
+        _ => 1.0,
+    };
+    let trials = plan.levels.iter().map(|level| Trial {
+        board: 2,
+        elements: 4,
+        method: Method::Joint,
+        level: *level,
+        seed: plan.first_seed,
+        outcome: Ok(Measures {
+            mtf_raw: Some(mtf(*level)),
+            light_plus_dark: Some(1.0),
+            mtf_normalized: Some(0.0),
+            correlation: None,
+            rmse: Some(1.0),
+        }),
+    });
+    let trials: Vec<Trial> = trials.collect();
+    let found = NoiseCurve::of(&plan, [2, 4], Method::Joint, (&trials, &[None; 5]));
+    let [Lost::At(high), Lost::At(low)] = found.lost_raw else {
+        panic!("{found:?}")
+    };
+    // 0.5 lies half way from 0.8 at 1e4 to 0.2 at 1e2.
+    assert!((high / 1e5 - 1.0).abs() < 1e-12 && (low / 1e3 - 1.0).abs() < 1e-12);
+    assert_eq!(found.held.unwrap().level, high);
+    assert_eq!(found.lost_normalized, [Lost::Before; 2]);
+}
+
+/// Draws at two levels, a rest of a task among them, and a render.
+#[test]
+fn it_divides() {
+    let plan = NoisePlan {
+        boards: vec![2],
+        elements: vec![2, 4],
+        methods: vec![Method::Pinv, Method::Joint],
+        kernel: Kernel::Physical,
+        axis: NoiseAxis::Relative,
+        levels: vec![1e-6, 1e-2],
+        seeds: 3,
+        first_seed: 9,
+    };
+    let found = divides(&NoiseTasks::new(&small().0, plan, vec![16]));
+    assert_eq!([found.curves.len(), found.render_noise.len()], [4, 2]);
+}
+
+/// Every table has a cell for each column and every curve of the study its line in each figure; the
+/// sentence names the best method of each object.
+#[test]
+fn the_finding_holds_the_whole_study() {
+    let (scene, plan) = small();
+    let tasks = NoiseTasks::new(&scene, plan, vec![16]);
+    let found = study::run(&tasks, Control::none()).unwrap();
+    let finding = found.describe();
+    for table in &finding.tables {
+        let whole = |row: &Vec<_>| row.len() == table.columns.len();
+        assert!(table.rows.iter().all(whole), "{}", table.caption);
+    }
+    let rows: Vec<usize> = finding.tables.iter().map(|t| t.rows.len()).collect();
+    // Curves, objects, renders by two estimators, levels of the curves.
+    assert_eq!(rows, [9, 3, 2, 9 * 3]);
+    assert_eq!(finding.figures.len(), 4);
+    for figure in &finding.figures {
+        let lines: usize = figure.plots.iter().map(|p| p.curves.len()).sum();
+        // A bound for each object beside the root mean square error; two renders in each plot.
+        let bounds = if figure.file == "noise-rmse.svg" {
+            3
+        } else {
+            0
+        };
+        assert_eq!(lines, 9 + 3 * 2 + bounds, "{}", figure.file);
+    }
+    for best in &found.best {
+        let object = format!("{0} × {0} checks on {1} × {1}", best.board, best.elements);
+        assert!(finding.sentence.contains(&object), "{}", finding.sentence);
+        let by = best
+            .method
+            .as_ref()
+            .map_or("no method".to_owned(), |m| format!("by {m}"));
+        assert!(finding.sentence.contains(&by), "{}", finding.sentence);
+    }
+    assert_eq!(finding.files, [("noise.csv".to_owned(), found.ledger)]);
+}

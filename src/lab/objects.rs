@@ -1,0 +1,219 @@
+//! The hidden objects of a scene, recovered and measured.
+
+use std::ops::Range;
+
+use crate::matrix::Matrix;
+use crate::metrics::{correlation, mtf_normalized, mtf_raw, rmse};
+use crate::model::MatrixModel;
+use crate::recovery::{
+    self, BandKind, Bands, Choice, Estimated, Method, Nuisance, Options, Parameter, Picard,
+    Problem, Recovered, RecoveryError, recover,
+};
+
+use super::results::{ObjectBands, RecoveredObject};
+
+/// What a recovery is told of the noise in Φcam.
+#[derive(Clone, Copy, Debug)]
+pub enum Noise<'a> {
+    /// The standard error of each entry, W.
+    StandardError(&'a Matrix),
+    /// Nothing: methods that need it must be given their parameter.
+    Unknown,
+}
+
+/// One method's outcome on all hidden surfaces.
+#[derive(Debug)]
+pub struct Attempt {
+    /// The method.
+    pub method: Method,
+    /// One object per hidden surface, or why there is none.
+    pub outcome: Result<Vec<RecoveredObject>, RecoveryError>,
+}
+
+/// Recovers the hidden reflectance from `phi` (pixels × spots, W) by each of `methods`, and
+/// measures it against the true albedo at the element centres. `nuisance` is what else the
+/// photographs hold.
+pub fn recover_objects(
+    model: &MatrixModel,
+    phi: &Matrix,
+    noise: Noise<'_>,
+    nuisance: Nuisance<'_>,
+    methods: &[Method],
+    options: &Options,
+) -> Vec<Attempt> {
+    let grids: Vec<[usize; 2]> = model.grids.iter().map(|grid| grid.count).collect();
+    let attempt = |method: Method| {
+        let problem = problem(model, phi, noise)?
+            .with_grids(&grids)?
+            .with_nuisance(nuisance)?;
+        recover(method, &problem, options).map(|found| measured(model, &found))
+    };
+    methods
+        .iter()
+        .map(|&method| Attempt {
+            method,
+            outcome: attempt(method),
+        })
+        .collect()
+}
+
+/// Φ in the singular directions of the model's laser side, and, where one of `methods` works on all
+/// pixels and spots at once, in those of the joint operator: see [`recovery::picard`] and
+/// [`recovery::picard_joint`].
+///
+/// # Errors
+/// Those of both, but not where there are too many elements for a joint method: then it is left
+/// out.
+pub fn picards(
+    model: &MatrixModel,
+    phi: &Matrix,
+    noise: Noise<'_>,
+    nuisance: Nuisance<'_>,
+    methods: &[Method],
+    options: &Options,
+) -> Result<Vec<Picard>, RecoveryError> {
+    let problem = problem(model, phi, noise)?;
+    let mut found = vec![recovery::picard(&problem)?];
+    if methods.iter().any(|m| m.is_joint()) {
+        match recovery::picard_joint(&problem.with_nuisance(nuisance)?, options) {
+            Err(RecoveryError::TooManyElements { .. }) => {}
+            joint => found.push(joint?),
+        }
+    }
+    Ok(found)
+}
+
+fn problem<'a>(
+    model: &'a MatrixModel,
+    phi: &'a Matrix,
+    noise: Noise<'a>,
+) -> Result<Problem<'a>, RecoveryError> {
+    let stderr = match noise {
+        Noise::StandardError(stderr) => Some(stderr),
+        Noise::Unknown => None,
+    };
+    Problem::new(phi, &model.camera_side, &model.laser_side, stderr)
+}
+
+/// What was recovered, surface by surface, measured against the true albedo at the element centres.
+pub fn measured(model: &MatrixModel, found: &Recovered) -> Vec<RecoveredObject> {
+    let bias = found.bias(&model.albedo);
+    let cut = |grid: &crate::model::ElementGrid| {
+        let range = grid.first..grid.first + grid.len();
+        let reflectance = found.reflectance.as_slice()[range.clone()].to_vec();
+        let truth = model.albedo[range.clone()].to_vec();
+        let own = |m: &Matrix| m.rows(range.start, range.len()).into_owned();
+        RecoveredObject {
+            surface: grid.surface.clone(),
+            method: found.method.name().to_owned(),
+            elements: grid.count,
+            mtf_raw: mtf_raw(&reflectance, &truth),
+            mtf_normalized: mtf_normalized(&reflectance, &truth),
+            correlation: correlation(&reflectance, &truth),
+            rmse: rmse(&reflectance, &truth).unwrap_or(f64::NAN),
+            parameter: words(found),
+            bands: found
+                .bands
+                .as_ref()
+                .map(|bands| object_bands(bands, range.clone())),
+            standard_error: found
+                .standard_error
+                .as_ref()
+                .map(|s| s.as_slice()[range.clone()].to_vec()),
+            bias: bias.as_ref().map(|b| b.as_slice()[range.clone()].to_vec()),
+            effective_rank: found.effective_rank,
+            covariance: found.covariance.as_ref().map(own),
+            resolution: found.resolution.as_ref().map(own),
+            reflectance,
+            truth,
+        }
+    };
+    model.grids.iter().map(cut).collect()
+}
+
+fn object_bands(bands: &Bands, range: Range<usize>) -> ObjectBands {
+    let kind = match bands.kind {
+        BandKind::Gaussian => "gaussian",
+        BandKind::GaussianAroundMean => "gaussian-around-mean",
+        BandKind::Profile => "profile",
+    };
+    let intervals = &bands.intervals[range];
+    ObjectBands {
+        confidence: bands.confidence,
+        kind: kind.to_owned(),
+        lower: intervals.iter().map(|i| i[0]).collect(),
+        upper: intervals.iter().map(|i| i[1]).collect(),
+    }
+}
+
+/// The regularisation used and why, in words.
+pub(super) fn words(found: &Recovered) -> String {
+    let solver = match &found.solver {
+        Some(s) => format!(
+            "; {} after {} iterations, gap {:.1e}",
+            s.status, s.iterations, s.gap
+        ),
+        None => String::new(),
+    };
+    let estimated = found.nuisance.as_ref().map_or(String::new(), estimated);
+    chosen_words(found.parameter, found.rank, found.choice) + &solver + &estimated
+}
+
+/// A parameter and why it is this one, in words; of a method without one the rank.
+pub(super) fn chosen_words(parameter: Parameter, rank: usize, choice: Choice) -> String {
+    let what = match parameter {
+        Parameter::None => format!("rank {rank}"),
+        Parameter::Rank(k) => format!("{k} singular directions"),
+        Parameter::Damping(lambda) => format!("damping {lambda:.2e} of σ1"),
+        Parameter::TotalVariation(lambda) => format!("total variation {lambda:.2e} of σ1²"),
+        Parameter::Levels([dark, light]) => format!("levels {dark:.3} and {light:.3}"),
+    };
+    let why = match choice {
+        Choice::Given => ", as given".to_owned(),
+        Choice::Discrepancy {
+            residual, target, ..
+        } => {
+            format!(
+                ", by the discrepancy principle (residual {residual:.3e} W, noise {target:.3e} W)"
+            )
+        }
+        Choice::JointDiscrepancy {
+            residual, target, ..
+        } => {
+            format!(", by the discrepancy principle (χ² {residual:.1}, noise {target:.1})")
+        }
+        Choice::Estimated => ", estimated".to_owned(),
+        Choice::Gcv {
+            freedom, predicted, ..
+        } => {
+            format!(
+                ", by generalised cross-validation (entries predicted to {predicted:.3e} W, {freedom:.1} degrees of freedom left)"
+            )
+        }
+        Choice::LCurve { residual, turn, .. } => {
+            format!(", at the corner of the L-curve (residual {residual:.3e} W, turn {turn:.2})")
+        }
+        Choice::Tolerance { cutoff } => format!(", cut at {cutoff:.2e}"),
+        Choice::None => String::new(),
+    };
+    what + &why
+}
+
+/// What was estimated beside the reflectances, in words: means over frames or pixels.
+fn estimated(nuisance: &Estimated) -> String {
+    let mut words = String::new();
+    let terms = [
+        ("frame constant", &nuisance.frame_constant, " W"),
+        ("background", &nuisance.background, " W"),
+        ("glare", &nuisance.glare, ""),
+    ];
+    for (name, values, unit) in terms {
+        if let Some(values) = values {
+            words += &format!("; {name} {:.3e}{unit} on average", values.mean());
+        }
+    }
+    if let Some(scale) = nuisance.scale {
+        words += &format!("; scale {scale:.4}");
+    }
+    words
+}

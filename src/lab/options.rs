@@ -1,0 +1,324 @@
+//! Options of a study as data: what a command line, or a program, may set.
+
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
+
+use crate::recovery::Method;
+
+/// What a value is.
+#[derive(Clone, Debug)]
+pub enum Kind {
+    /// A whole number in this range.
+    Whole(RangeInclusive<u64>),
+    /// A number.
+    Number,
+    /// One of these names, each with what it means.
+    Name(&'static [(&'static str, &'static str)]),
+    /// Any text.
+    Text,
+}
+
+/// What a number must be beside its kind.
+#[derive(Clone, Debug)]
+pub struct Rule {
+    /// Whether a number keeps it.
+    pub fine: fn(f64) -> bool,
+    /// What a number is that does not.
+    pub wrong: &'static str,
+    /// What to do then.
+    pub cure: &'static str,
+}
+
+/// An option of a study.
+#[derive(Clone, Debug)]
+pub struct Opt {
+    /// Its name: `--name` on the command line.
+    pub name: &'static str,
+    /// What it sets, in one sentence.
+    pub help: &'static str,
+    /// What its value is.
+    pub kind: Kind,
+    /// What else its value must be.
+    pub rule: Option<Rule>,
+    /// Its value unless given, as it would be given.
+    pub default: Option<&'static str>,
+    /// Whether it takes several values, separated by commas.
+    pub list: bool,
+    /// What its value is called in the help, where that is not the option's name.
+    pub value: Option<&'static str>,
+    /// Another name that it answers to.
+    pub alias: Option<&'static str>,
+}
+
+/// The estimators.
+pub const ESTIMATORS: &[(&str, &str)] = &[
+    ("independent", "Every (pixel, spot) entry has its own paths"),
+    ("shared", "The paths of a pixel serve all spots"),
+    (
+        "factored",
+        "The points on the hidden surface serve all pixels and all spots",
+    ),
+];
+
+/// The sources of random numbers.
+pub const SAMPLERS: &[(&str, &str)] = &[
+    ("pcg", "Independent random numbers"),
+    ("sobol", "Owen-scrambled Sobol' points"),
+];
+
+impl Opt {
+    const fn new(name: &'static str, help: &'static str, kind: Kind) -> Self {
+        Self {
+            name,
+            help,
+            kind,
+            rule: None,
+            default: None,
+            list: false,
+            value: None,
+            alias: None,
+        }
+    }
+
+    /// A whole number.
+    pub const fn whole(name: &'static str, help: &'static str) -> Self {
+        Self::new(name, help, Kind::Whole(0..=u64::MAX))
+    }
+
+    /// A number.
+    pub const fn number(name: &'static str, help: &'static str) -> Self {
+        Self::new(name, help, Kind::Number)
+    }
+
+    /// One of some names.
+    pub const fn choice(
+        name: &'static str,
+        help: &'static str,
+        names: &'static [(&'static str, &'static str)],
+    ) -> Self {
+        Self::new(name, help, Kind::Name(names))
+    }
+
+    /// Any text.
+    pub const fn text(name: &'static str, help: &'static str) -> Self {
+        Self::new(name, help, Kind::Text)
+    }
+
+    /// A number of paths that can be traced ([`crate::transport::Budget::new`]).
+    pub const fn paths(name: &'static str, help: &'static str) -> Self {
+        Self::whole(name, help).rule(
+            |n| (1.0..=4_294_967_296.0).contains(&n),
+            "is not a number of paths that can be traced",
+            "use at least 1 and at most 2³²",
+        )
+    }
+
+    /// The first of the seeds, 1 unless given.
+    pub const fn seed(help: &'static str) -> Self {
+        Self::whole("seed", help).or("1")
+    }
+
+    /// The probability of rejecting a right model.
+    pub const fn significance(default: &'static str) -> Self {
+        Self::number("significance", "Probability of rejecting a right model")
+            .or(default)
+            .rule(
+                |x| x > 0.0 && x < 1.0,
+                "is not a probability",
+                "use a number between 0 and 1, e.g. 0.001",
+            )
+    }
+
+    /// Levels of noise relative to each entry.
+    pub const fn relative_noise(help: &'static str) -> Self {
+        Self::number("noise", help).list().rule(
+            |x| x > 0.0 && x <= 1.0,
+            "has no meaning here",
+            "a relative noise is a number above 0 and not above 1, e.g. 0.01",
+        )
+    }
+
+    /// The distance at which glare has halved.
+    pub const fn falloff(help: &'static str) -> Self {
+        Self::number("falloff", help).rule(
+            |x| x > 0.0 && x.is_finite(),
+            "is no distance",
+            "use a length above 0 in the scene's unit",
+        )
+    }
+
+    /// Recovery methods.
+    pub const fn methods(help: &'static str, default: &'static str) -> Self {
+        Self::text("method", help).or(default).list()
+    }
+
+    /// The same with a value unless given.
+    pub const fn or(self, default: &'static str) -> Self {
+        Self {
+            default: Some(default),
+            ..self
+        }
+    }
+
+    /// The same with several values, separated by commas.
+    pub const fn list(self) -> Self {
+        Self { list: true, ..self }
+    }
+
+    /// The same for whole numbers of this range only.
+    pub const fn within(self, least: u64, most: u64) -> Self {
+        let kind = Kind::Whole(least..=most);
+        Self { kind, ..self }
+    }
+
+    /// The same for numbers that are `fine`; of others it is said what is `wrong` and what the
+    /// `cure` is.
+    pub const fn rule(
+        self,
+        fine: fn(f64) -> bool,
+        wrong: &'static str,
+        cure: &'static str,
+    ) -> Self {
+        let rule = Some(Rule { fine, wrong, cure });
+        Self { rule, ..self }
+    }
+
+    /// Whether `text` is a value of the option's kind.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn parses(&self, text: &str) -> Result<(), String> {
+        match &self.kind {
+            Kind::Whole(_) => text.parse::<u64>().map(drop).map_err(|e| e.to_string()),
+            Kind::Number => text.parse::<f64>().map(drop).map_err(|e| e.to_string()),
+            Kind::Name(names) if !names.iter().any(|(name, _)| *name == text) => {
+                let names: Vec<&str> = names.iter().map(|n| n.0).collect();
+                Err(format!("it is none of {}", names.join(", ")))
+            }
+            Kind::Name(_) | Kind::Text => Ok(()),
+        }
+    }
+
+    /// Whether `text` is a value of the option.
+    fn check(&self, text: &str) -> Result<(), OptionError> {
+        let name = self.name;
+        self.parses(text).map_err(|why| {
+            OptionError::new(format!("--{name} {text} has no meaning: {why}"), self.help)
+        })?;
+        if let (Kind::Whole(range), Ok(n)) = (&self.kind, text.parse())
+            && !range.contains(&n)
+        {
+            let (least, most) = (range.start(), range.end());
+            let cure = if *most == u64::MAX {
+                format!("use whole numbers from {least}")
+            } else {
+                format!("use whole numbers from {least} to {most}")
+            };
+            return Err(OptionError::new(
+                format!("--{name} {n} is out of range"),
+                cure,
+            ));
+        }
+        if let (Some(rule), Ok(x)) = (&self.rule, text.parse::<f64>())
+            && !(rule.fine)(x)
+        {
+            return Err(OptionError::new(
+                format!("--{name} {text} {}", rule.wrong),
+                rule.cure,
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// An option that cannot be accepted: cause and cure.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct OptionError(String);
+
+impl OptionError {
+    /// What is wrong, and what to do.
+    pub fn new(cause: impl Display, cure: impl Display) -> Self {
+        Self(format!("{cause}\n  cure: {cure}"))
+    }
+}
+
+/// The options of a study with their values.
+#[derive(Clone, Debug)]
+pub struct Values(Vec<(&'static Opt, Vec<String>)>);
+
+impl Values {
+    /// The options as they are unless given.
+    pub fn defaults(options: &'static [Opt]) -> Self {
+        let default = |o: &'static Opt| {
+            let values = o.default.iter().flat_map(|d| d.split(','));
+            (o, values.map(str::to_owned).collect())
+        };
+        Self(options.iter().map(default).collect())
+    }
+
+    /// The same with other values of one option.
+    ///
+    /// # Errors
+    /// [`OptionError`], where there is no such option or a value is none of its values.
+    pub fn with(mut self, name: &str, values: Vec<String>) -> Result<Self, OptionError> {
+        let mut options = self.0.iter_mut();
+        let Some((option, own)) = options.find(|(o, _)| o.name == name) else {
+            let cause = format!("there is no option --{name}");
+            return Err(OptionError::new(cause, "leave it out"));
+        };
+        values.iter().try_for_each(|value| option.check(value))?;
+        *own = values;
+        Ok(self)
+    }
+
+    /// The values of an option.
+    ///
+    /// # Errors
+    /// [`OptionError`], where one is none of this type.
+    pub fn list<T: FromStr<Err: Display>>(&self, name: &str) -> Result<Vec<T>, OptionError> {
+        let own = self.0.iter().find(|(o, _)| o.name == name);
+        let values = own.into_iter().flat_map(|(_, values)| values);
+        let read = |text: &String| text.parse().map_err(|e: T::Err| OptionError(e.to_string()));
+        values.map(read).collect()
+    }
+
+    /// The value of an option that may have none.
+    ///
+    /// # Errors
+    /// [`OptionError`], where it is none of this type.
+    pub fn maybe<T: FromStr<Err: Display>>(&self, name: &str) -> Result<Option<T>, OptionError> {
+        Ok(self.list(name)?.pop())
+    }
+
+    /// The value of an option.
+    ///
+    /// # Errors
+    /// [`OptionError`], where it has none, or one of another type.
+    pub fn one<T: FromStr<Err: Display>>(&self, name: &str) -> Result<T, OptionError> {
+        let none = || OptionError::new(format!("--{name} has no value"), "give it one");
+        self.maybe(name)?.ok_or_else(none)
+    }
+
+    /// Numbers of checks or elements a side, sorted, each once.
+    ///
+    /// # Errors
+    /// [`OptionError`].
+    pub fn sides(&self, name: &str) -> Result<Vec<usize>, OptionError> {
+        let mut sides = self.list(name)?;
+        sides.sort_unstable();
+        sides.dedup();
+        Ok(sides)
+    }
+
+    /// The recovery methods of `--method`, each once, in the order of [`Method::ALL`].
+    ///
+    /// # Errors
+    /// [`OptionError`].
+    pub fn methods(&self) -> Result<Vec<Method>, OptionError> {
+        let given: Vec<Method> = self.list("method")?;
+        let known = Method::ALL.into_iter();
+        Ok(known.filter(|m| given.contains(m)).collect())
+    }
+}

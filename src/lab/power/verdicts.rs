@@ -1,0 +1,118 @@
+//! What renders come to against right and wrong models.
+
+use serde::{Deserialize, Serialize};
+
+use super::results::{Detection, PowerPlan, PowerRow};
+use crate::lab::agreement::{Evidence, Test, agree};
+use crate::matrix::Matrix;
+use crate::num::statistics::binomial_interval;
+use crate::transport::{Estimator, Traced};
+
+/// The right model and wrong ones, each with what is wrong and ‖wrong − right‖/‖right‖.
+#[derive(Debug)]
+pub struct Models {
+    pub(super) right: Matrix,
+    pub(super) wrong: Vec<(String, f64, Matrix)>,
+}
+
+/// What one render comes to.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Verdicts {
+    pub(super) chi2_per_dof: f64,
+    /// Whether the right model was accepted.
+    pub(super) agrees: bool,
+    /// Whether each wrong one was rejected.
+    pub(super) rejected: Vec<bool>,
+    pub(super) smallest_scale: f64,
+}
+
+/// Tests a render against every model.
+pub(super) fn verdicts(traced: &Traced, models: &Models, test: Test) -> Verdicts {
+    let verdict = |model: &Matrix| {
+        let evidence = Evidence {
+            traced: &traced.flux,
+            stderr: &traced.stderr,
+            model,
+            bound: None,
+        };
+        agree(evidence, test).0
+    };
+    let own = verdict(&models.right);
+    let wrong = models.wrong.iter();
+    Verdicts {
+        chi2_per_dof: own.chi2_per_dof,
+        agrees: own.agrees,
+        rejected: wrong.map(|(.., model)| !verdict(model).agrees).collect(),
+        smallest_scale: smallest_scale(|scale| !verdict(&(&models.right * scale)).agrees),
+    }
+}
+
+/// Counts over the seeds.
+pub(super) fn row(
+    (estimator, samples): (Estimator, u64),
+    own: &[Verdicts],
+    models: &Models,
+    plan: &PowerPlan,
+) -> PowerRow {
+    let count = |f: &dyn Fn(&Verdicts) -> bool| own.iter().filter(|v| f(v)).count() as u64;
+    let mut smallest: Vec<f64> = own.iter().map(|v| v.smallest_scale).collect();
+    smallest.sort_by(f64::total_cmp);
+    let wrong = models.wrong.iter().enumerate();
+    PowerRow {
+        estimator: estimator.name().to_owned(),
+        samples,
+        seeds: plan.seeds,
+        chi2_per_dof: own.iter().fold(0.0, |sum, v| sum + v.chi2_per_dof) / plan.seeds as f64,
+        false_alarms: count(&|v| !v.agrees),
+        expected: binomial_interval(plan.seeds, plan.significance, 0.99),
+        detections: wrong
+            .map(|(i, (error, size, _))| Detection {
+                error: error.clone(),
+                size: *size,
+                rejected: count(&|v| v.rejected[i]),
+            })
+            .collect(),
+        smallest_scale: smallest
+            .get(smallest.len() / 2)
+            .copied()
+            .unwrap_or(f64::NAN),
+    }
+}
+
+/// Smallest s for which 1 + s is rejected, to a tenth of its size; 0 if the right model is.
+fn smallest_scale(rejects: impl Fn(f64) -> bool) -> f64 {
+    if rejects(1.0) {
+        return 0.0;
+    }
+    let mut high = 1e-6;
+    while high < 1.0 && !rejects(1.0 + high) {
+        high *= 2.0;
+    }
+    let mut low = 0.5 * high;
+    while high > 1.1 * low {
+        let middle = 0.5 * (low + high);
+        if rejects(1.0 + middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    high
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_threshold_is_found() {
+        for limit in [1e-5, 3.3e-3, 0.2] {
+            let found = smallest_scale(|s| s > 1.0 + limit);
+            assert!(
+                found >= limit && found <= 1.11 * limit,
+                "{found} for {limit}"
+            );
+        }
+        assert_eq!(smallest_scale(|_| true), 0.0);
+    }
+}

@@ -1,0 +1,151 @@
+//! A study as whoever runs it sees it: its name, its options, and its tasks as bytes.
+
+use std::any::Any;
+use std::error::Error;
+use std::ops::Range;
+use std::sync::OnceLock;
+
+use super::bytes::{decode, encoded};
+use super::finding::{Describe, Finding};
+use super::options::{Opt, Values};
+use super::study::{Study, Work, context, run};
+use crate::scene::Scene;
+use crate::transport::Control;
+
+/// Why a study was not done; cause and cure in its text.
+pub type StudyError = Box<dyn Error + Send + Sync>;
+
+/// Makes a study ready for a scene, with the values of its options.
+pub type Prepare = fn(&Scene, &Values) -> Result<Box<dyn AnyStudy>, StudyError>;
+
+/// A study that can be asked for by name. With this in its file, and a line in [`super::STUDIES`],
+/// it has a command with help, progress, shards, and files.
+#[derive(Debug)]
+pub struct Registered {
+    /// Its name on the command line and of its files.
+    pub name: &'static str,
+    /// What it asks, in one sentence, and what it leaves.
+    pub about: &'static str,
+    /// The scene that is studied unless one is given; none where one has to be.
+    pub scene: Option<&'static str>,
+    /// The files that it leaves beside `NAME.json` and the page; empty for none.
+    pub files: &'static str,
+    /// What may be set.
+    pub options: &'static [Opt],
+    /// The study of a scene with these values of its options.
+    pub prepare: Prepare,
+}
+
+/// What a study found.
+#[derive(Debug)]
+pub struct Found {
+    /// The result.
+    pub value: Box<dyn Any + Send>,
+    /// The same as JSON.
+    pub json: String,
+    /// What is said, tabulated and drawn of it.
+    pub finding: Finding,
+    /// Whether traced and modelled agree, where that is what was asked.
+    pub agrees: bool,
+}
+
+/// A study of any kind, ready to run.
+pub trait AnyStudy: Sync {
+    /// How many tasks there are.
+    fn tasks(&self) -> usize;
+
+    /// How much there is to do.
+    fn work(&self) -> Work;
+
+    /// All of it, on the threads of the pool.
+    ///
+    /// # Errors
+    /// Those of the study, also that it was stopped.
+    fn run(&self, control: Control<'_>) -> Result<Found, StudyError>;
+
+    /// The outputs of some tasks as bytes, in the order of their numbers, on the threads of the
+    /// pool.
+    ///
+    /// # Errors
+    /// Those of the study, and [`super::TaskError`] where there are no such tasks.
+    fn outputs(
+        &self,
+        tasks: Range<usize>,
+        control: Control<'_>,
+    ) -> Result<Vec<Vec<u8>>, StudyError>;
+
+    /// What the outputs of all tasks, in their order, come to: the same as [`run`](Self::run).
+    ///
+    /// # Errors
+    /// Those of the study, and [`super::TaskError`] where they are not its outputs.
+    fn merge(&self, outputs: &[Vec<u8>], control: Control<'_>) -> Result<Found, StudyError>;
+}
+
+/// A study with the context of its tasks, once that is worked out.
+struct Prepared<S: Study> {
+    study: S,
+    context: OnceLock<S::Context>,
+}
+
+/// `study`, ready to run.
+pub fn prepared<S: Study<Result: Describe> + 'static>(study: S) -> Box<dyn AnyStudy> {
+    Box::new(Prepared {
+        study,
+        context: OnceLock::new(),
+    })
+}
+
+impl<S: Study> Prepared<S> {
+    fn context(&self, control: Control<'_>) -> Result<&S::Context, S::Error> {
+        if let Some(context) = self.context.get() {
+            return Ok(context);
+        }
+        let found = context(&self.study, control)?;
+        // Two threads that come at once find the same.
+        Ok(self.context.get_or_init(|| found))
+    }
+}
+
+/// The result of `study` with what is made of it.
+///
+/// # Errors
+/// Where it cannot be written as JSON.
+pub fn found<S: Study<Result: Describe>>(
+    study: &S,
+    result: S::Result,
+) -> Result<Found, StudyError> {
+    Ok(Found {
+        finding: result.describe(),
+        json: serde_json::to_string_pretty(&result)? + "\n",
+        agrees: study.agrees(&result),
+        value: Box::new(result),
+    })
+}
+
+impl<S: Study<Result: Describe>> AnyStudy for Prepared<S> {
+    fn tasks(&self) -> usize {
+        self.study.tasks()
+    }
+
+    fn work(&self) -> Work {
+        self.study.work()
+    }
+
+    fn run(&self, control: Control<'_>) -> Result<Found, StudyError> {
+        found(&self.study, run(&self.study, control)?)
+    }
+
+    fn outputs(
+        &self,
+        tasks: Range<usize>,
+        control: Control<'_>,
+    ) -> Result<Vec<Vec<u8>>, StudyError> {
+        encoded(&self.study, self.context(control)?, tasks, control)
+    }
+
+    fn merge(&self, outputs: &[Vec<u8>], control: Control<'_>) -> Result<Found, StudyError> {
+        let context = self.context(control)?;
+        let outputs = decode(&self.study, context, outputs)?;
+        found(&self.study, self.study.finish(context, outputs)?)
+    }
+}

@@ -1,0 +1,422 @@
+//! How does the rank of \[Φcam\] grow with the number of laser spots?
+//!
+//! Φcam = C·diag(ρ)·D has p rows (pixels), one column for each of the l spots, and between them r
+//! elements of the hidden surface, of which r₊ reflect. So rank Φcam ≤ min(p, r₊, l): the number of
+//! independent things that the photographs say of the object. What of them is above noise is the
+//! numerical rank: the singular values σ_k(l) of the first l columns above τ·σ₁(L), with L all
+//! spots of the scene and τ the norm of the noise over that of Φcam. The floor is the same for
+//! every l, so that a further spot never lowers the rank: σ_k(l) ≤ σ_k(l + 1) (Cauchy's
+//! interlacing).
+
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+
+use super::finding::{
+    Axis, Cell, Column, Curve, Describe, Figure, Finding, Mark, Plot, Table, listed,
+};
+use super::options::{Opt, OptionError};
+use super::registered::{Registered, prepared};
+use super::study::Study;
+use crate::matrix::Matrix;
+use crate::model::{Kernel, MatrixModel, ModelError};
+use crate::num::digits::figure;
+use crate::num::linalg::{LinalgError, svd};
+use crate::scene::Scene;
+use crate::transport::{Control, Stopped};
+
+/// `phicam study spots`.
+pub(super) const STUDY: Registered = Registered {
+    name: "spots",
+    about: "How the rank of Φcam grows with the number of laser spots: table, JSON, CSV, figure",
+    scene: Some("bench"),
+    files: "spots.csv, spots.svg",
+    options: &[
+        Opt::whole(
+            "spots",
+            "Numbers of spots, separated by commas, each the first so many of the scene; unless given 1, 2, 4, … and all",
+        )
+        .list()
+        .within(1, 1_000_000),
+        Opt::number(
+            "tolerance",
+            "Singular values up to this times the largest one with all spots count as zero, separated by commas",
+        )
+        .list()
+        .or("1e-2,1e-4,1e-6,1e-8")
+        .rule(
+            |x| (1e-12..1.0).contains(&x),
+            "is not a tolerance",
+            "use a number from 1e-12, below which rounding rules, up to 1",
+        ),
+        Opt::whole("elements", "Elements a side, in place of the scene's").within(1, 1024),
+    ],
+    prepare: |scene, values| {
+        let all = scene.laser.spots.len();
+        let mut spots: Vec<usize> = values.list("spots")?;
+        if let Some(n) = spots.iter().find(|n| **n > all) {
+            let cause = format!("--spots {n} is more than {} has", scene.name);
+            return Err(OptionError::new(cause, format!("use at most {all}")).into());
+        }
+        if spots.is_empty() {
+            spots = std::iter::successors(Some(1), |n| Some(2 * n))
+                .take_while(|n| *n < all)
+                .collect();
+            spots.push(all);
+        }
+        spots.sort_unstable();
+        spots.dedup();
+        let elements = values.maybe("elements")?.map(|n| [n; 2]);
+        Ok(prepared(SpotsStudy {
+            model: MatrixModel::new(scene, Kernel::Physical, elements)?,
+            scene: scene.clone(),
+            spots,
+            tolerances: values.list("tolerance")?,
+        }))
+    },
+};
+
+/// The study of a scene. A task is one number of spots.
+#[derive(Debug)]
+pub(super) struct SpotsStudy {
+    scene: Scene,
+    model: MatrixModel,
+    spots: Vec<usize>,
+    tolerances: Vec<f64>,
+}
+
+/// Why there is no study.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum SpotsError {
+    /// The scene has no model.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// Φcam cannot be decomposed.
+    #[error(transparent)]
+    Linalg(#[from] LinalgError),
+    /// No light.
+    #[error("no light reaches the camera by three bounces (see `phicam scene check`)")]
+    Dark,
+    /// It was stopped.
+    #[error("{0}")]
+    Stopped(#[from] Stopped),
+}
+
+/// Φcam of all spots, pixels × spots, W, and its largest singular value.
+#[derive(Debug)]
+pub(super) struct Photographs {
+    phi: Matrix,
+    largest: f64,
+}
+
+/// The rank with some of the spots.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct RankOfSpots {
+    /// How many spots: the first of the scene.
+    pub spots: usize,
+    /// min(p, r₊, l), which the rank cannot exceed.
+    pub bound: usize,
+    /// Rank at each tolerance.
+    pub ranks: Vec<usize>,
+    /// The singular value of that number over the largest one with all spots: the tolerance below
+    /// which the rank is the bound, if rounding allows.
+    pub last: f64,
+}
+
+/// How the rank grows.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct SpotRanks {
+    /// Name of the scene.
+    pub scene: String,
+    /// Its hash.
+    pub scene_hash: String,
+    /// Pixels, p.
+    pub pixels: usize,
+    /// Elements of the hidden surfaces, r.
+    pub elements: usize,
+    /// Those that reflect, r₊.
+    pub reflecting: usize,
+    /// Spots of the scene, L.
+    pub all_spots: usize,
+    /// Singular values up to this times σ₁(L) count as zero.
+    pub tolerances: Vec<f64>,
+    /// By growing number of spots.
+    pub steps: Vec<RankOfSpots>,
+}
+
+impl SpotsStudy {
+    fn reflecting(&self) -> usize {
+        self.model.albedo.iter().filter(|a| **a > 0.0).count()
+    }
+
+    fn bound(&self, spots: usize) -> usize {
+        self.model.g23.nrows().min(self.reflecting()).min(spots)
+    }
+}
+
+/// The rank of the first columns of Φcam; `bound` is what it cannot exceed.
+fn rank(
+    Photographs { phi, largest }: &Photographs,
+    columns: Range<usize>,
+    bound: usize,
+    tolerances: &[f64],
+) -> Result<RankOfSpots, SpotsError> {
+    let sigma = svd(&phi.columns_range(columns.clone()).into_owned())?.sigma;
+    let above = |tolerance: &f64| sigma.iter().filter(|s| **s > tolerance * largest).count();
+    Ok(RankOfSpots {
+        spots: columns.len(),
+        bound,
+        ranks: tolerances.iter().map(above).collect(),
+        last: sigma.get(bound.max(1) - 1).map_or(0.0, |s| s / largest),
+    })
+}
+
+impl Study for SpotsStudy {
+    type Context = Photographs;
+    type Output = RankOfSpots;
+    type Result = SpotRanks;
+    type Error = SpotsError;
+
+    fn name(&self) -> &'static str {
+        "spots"
+    }
+
+    fn tasks(&self) -> usize {
+        self.spots.len()
+    }
+
+    fn context(&self, _: Control<'_>) -> Result<Photographs, SpotsError> {
+        let phi = self.model.phi();
+        let largest = svd(&phi)?.sigma.max();
+        if largest > 0.0 {
+            Ok(Photographs { phi, largest })
+        } else {
+            Err(SpotsError::Dark)
+        }
+    }
+
+    fn task(
+        &self,
+        photographs: &Photographs,
+        index: usize,
+        _: Control<'_>,
+    ) -> Result<RankOfSpots, SpotsError> {
+        let spots = self.spots[index];
+        rank(photographs, 0..spots, self.bound(spots), &self.tolerances)
+    }
+
+    fn fits(&self, _: &Photographs, index: usize, part: &RankOfSpots) -> bool {
+        part.spots == self.spots[index] && part.ranks.len() == self.tolerances.len()
+    }
+
+    fn finish(&self, _: &Photographs, steps: Vec<RankOfSpots>) -> Result<SpotRanks, SpotsError> {
+        Ok(SpotRanks {
+            scene: self.scene.name.clone(),
+            scene_hash: self.scene.hash.clone(),
+            pixels: self.model.g23.nrows(),
+            elements: self.model.albedo.len(),
+            reflecting: self.reflecting(),
+            all_spots: self.scene.laser.spots.len(),
+            tolerances: self.tolerances.clone(),
+            steps,
+        })
+    }
+}
+
+impl SpotRanks {
+    /// The rank with the most spots at each tolerance, and from how many spots on it is that.
+    fn sentence(&self) -> String {
+        let Some(last) = self.steps.last() else {
+            return "No number of spots was studied.".to_owned();
+        };
+        let reached = |(k, tolerance): (usize, &f64)| {
+            let same = |s: &&RankOfSpots| s.ranks[k] == last.ranks[k];
+            let first = self.steps.iter().find(same).map_or(0, |s| s.spots);
+            format!(
+                "{} at a tolerance of {} (from {first} spots on)",
+                last.ranks[k],
+                figure(*tolerance, 1)
+            )
+        };
+        let ranks: Vec<String> = self.tolerances.iter().enumerate().map(reached).collect();
+        format!(
+            "With {} spots the rank of Φcam on {} is {}; it cannot exceed {}.",
+            last.spots,
+            self.scene,
+            listed(&ranks),
+            last.bound
+        )
+    }
+
+    fn table(&self) -> Table {
+        let rank = |tolerance: &f64| {
+            let name = format!("rank at {}", figure(*tolerance, 1));
+            Column::text(&name, &format!("rank_{tolerance:e}"))
+        };
+        let mut columns = vec![
+            Column::text("spots", "spots"),
+            Column::text("min(p, r₊, l)", "bound"),
+        ];
+        columns.extend(self.tolerances.iter().map(rank));
+        columns.push(Column::number("last σ over σ₁(L)", "last_sigma", "", 2));
+        let row = |s: &RankOfSpots| {
+            let mut row: Vec<Cell> = vec![s.spots.into(), s.bound.into()];
+            row.extend(s.ranks.iter().map(|rank| Cell::from(*rank)));
+            row.push(s.last.into());
+            row
+        };
+        Table {
+            caption: format!(
+                "Rank of Φcam: p = {} pixels, r = {} elements, r₊ = {} of which reflect",
+                self.pixels, self.elements, self.reflecting
+            ),
+            file: Some("spots.csv".to_owned()),
+            columns,
+            rows: self.steps.iter().map(row).collect(),
+            ..Table::default()
+        }
+    }
+
+    fn figure(&self, title: &str) -> Figure {
+        let curve = |name: String, rank: &dyn Fn(&RankOfSpots) -> usize| {
+            let points = self.steps.iter().map(|s| [s.spots as f64, rank(s) as f64]);
+            Curve::new(name, Mark::Line, points.collect())
+        };
+        let mut curves = vec![curve("min(p, r₊, l)".to_owned(), &|s| s.bound)];
+        curves.extend(self.tolerances.iter().enumerate().map(|(k, tolerance)| {
+            curve(format!("tolerance {}", figure(*tolerance, 1)), &|s| {
+                s.ranks[k]
+            })
+        }));
+        Figure {
+            file: "spots.svg".to_owned(),
+            title: title.to_owned(),
+            plots: vec![Plot {
+                title: String::new(),
+                axes: [
+                    Axis::decades("spots"),
+                    Axis::linear("rank of Φcam", [0.0, 1.0]),
+                ],
+                curves,
+            }],
+            ..Figure::default()
+        }
+    }
+}
+
+impl Describe for SpotRanks {
+    fn describe(&self) -> Finding {
+        let title = format!("Rank of Φcam and number of spots: {}", self.scene);
+        Finding {
+            sentence: self.sentence(),
+            notes: vec![
+                format!(
+                    "The tolerance is the size of the noise: the norm of what is wrong with Φcam over the largest singular value with all {} spots. \
+                     Directions below it are lost.",
+                    self.all_spots
+                ),
+                "Not seen: Φcam is that of the matrix model, light of three bounces with pixels, elements and spots by their centres and without occlusion. \
+                 Structure finer than the elements, light of more bounces and the extent of the spots may add directions."
+                    .to_owned(),
+                "The spots are the first ones of the scene, in its order: as many others may have another rank, within the same bound."
+                    .to_owned(),
+            ],
+            tables: vec![self.table()],
+            figures: vec![self.figure(&title)],
+            title,
+            ..Finding::default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::study::run;
+    use crate::lab::study::tests::{divides, refuses, small};
+
+    fn study(elements: usize) -> SpotsStudy {
+        let scene = small("bench");
+        let all = scene.laser.spots.len();
+        SpotsStudy {
+            model: MatrixModel::new(&scene, Kernel::Physical, Some([elements; 2])).unwrap(),
+            spots: (1..=all).collect(),
+            tolerances: vec![1e-2, 1e-6, 1e-12],
+            scene,
+        }
+    }
+
+    #[test]
+    fn it_divides() {
+        let study = study(2);
+        let found = divides(&study);
+        assert_eq!(found.steps.len(), study.spots.len());
+        let context = study.context(Control::none()).unwrap();
+        let other = study.task(&context, 1, Control::none()).unwrap();
+        refuses(&study, 0, &other);
+    }
+
+    /// Φ = Σ_k s_k·u_k·v_kᵀ of three orthogonal directions, of which v₁ is in the first column, v₂
+    /// in the second and v₃ in the last two: the rank of the first columns at each tolerance is
+    /// written down from s.
+    #[test]
+    fn a_matrix_of_known_rank_has_it() {
+        let root = 0.5f64.sqrt();
+        let u = Matrix::from_row_slice(
+            4,
+            3,
+            &[
+                0.5, 0.5, 0.5, 0.5, -0.5, 0.5, 0.5, 0.5, -0.5, 0.5, -0.5, -0.5,
+            ],
+        );
+        let sv = [
+            [1.0, 0.0, 0.0, 0.0],
+            [0.0, 1e-3, 0.0, 0.0],
+            [0.0, 0.0, root * 1e-6, root * 1e-6],
+        ];
+        let phi = u * Matrix::from_fn(3, 4, |i, j| sv[i][j]);
+        let photographs = Photographs { phi, largest: 1.0 };
+        let ranks = |l| {
+            let found = rank(&photographs, 0..l, l.min(3), &[1e-2, 1e-4, 8e-7, 1e-8]);
+            found.unwrap().ranks
+        };
+        assert_eq!(ranks(1), [1, 1, 1, 1]);
+        assert_eq!(ranks(2), [1, 2, 2, 2]);
+        // σ₃ is 7.1e-7 with one of the last two columns and 1e-6 with both.
+        assert_eq!(ranks(3), [1, 2, 2, 3]);
+        assert_eq!(ranks(4), [1, 2, 3, 3]);
+        let last = rank(&photographs, 0..4, 3, &[]).unwrap().last;
+        assert!((last / 1e-6 - 1.0).abs() < 1e-9, "{last}");
+    }
+
+    /// C·diag(ρ)·D with r₊ reflecting elements between: no more than r₊ directions, whatever the
+    /// spots; a further spot takes none away, and adds one at most; a smaller tolerance takes none
+    /// away.
+    #[test]
+    fn the_rank_stays_below_its_bound_and_grows_by_one_at_most() {
+        for elements in [1, 2, 3] {
+            let study = study(elements);
+            let found = run(&study, Control::none()).unwrap();
+            assert!(found.reflecting <= elements * elements);
+            for step in &found.steps {
+                let most = found.reflecting.min(found.pixels).min(step.spots);
+                assert_eq!(step.bound, most);
+                assert!(step.ranks.iter().all(|r| *r <= most), "{step:?}");
+                assert!(step.ranks.is_sorted(), "{step:?}");
+            }
+            for pair in found.steps.windows(2) {
+                for (before, after) in pair[0].ranks.iter().zip(&pair[1].ranks) {
+                    assert!((*before..=before + 1).contains(after), "{pair:?}");
+                }
+            }
+            let last = found.steps.last().unwrap();
+            assert_eq!(last.ranks[2], found.reflecting.min(last.spots));
+            let said = found.describe();
+            assert!(
+                said.sentence
+                    .contains(&format!("cannot exceed {}", last.bound))
+            );
+            assert_eq!(said.tables[0].rows.len(), found.steps.len());
+        }
+    }
+}

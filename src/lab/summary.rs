@@ -1,0 +1,437 @@
+//! A render, a verdict, a recovery and a whole run in words and tables.
+
+use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone};
+use super::results::{Agreement, Entry, RecoveredObject, RunResults};
+use crate::matrix::Matrix;
+use crate::num::digits::{figure, significant};
+use crate::scene::Scene;
+use crate::transport::{Plan, Traced};
+
+/// A table without heads: what is told, and what is told of it.
+pub(super) fn facts(rows: impl IntoIterator<Item = (&'static str, String)>) -> Table {
+    Table {
+        columns: vec![Column::text("", ""), Column::text("", "")],
+        rows: rows
+            .into_iter()
+            .map(|(key, text)| vec![key.into(), text.into()])
+            .collect(),
+        ..Table::default()
+    }
+}
+
+fn percent(x: f64) -> String {
+    format!("{}\u{a0}%", figure(100.0 * x, 3))
+}
+
+impl Agreement {
+    /// The verdict with its numbers; `DISAGREE` in capitals where a test fails.
+    pub fn verdict(&self) -> String {
+        format!(
+            "traced and {} model {}: χ²/dof {} over {} entries, largest |z| {} of {} allowed",
+            self.kernel,
+            if self.agrees { "agree" } else { "DISAGREE" },
+            significant(self.chi2_per_dof, 4),
+            self.entries,
+            significant(self.largest_z, 2),
+            significant(self.z_limit, 2),
+        )
+    }
+
+    fn tone(&self) -> Tone {
+        if self.agrees { Tone::Good } else { Tone::Bad }
+    }
+
+    /// How far off, by what causes, and the test.
+    fn facts(&self) -> [(&'static str, String); 2] {
+        let difference = format!(
+            "{} of the model; {} expected from noise, at most {} from its discretisation; best scale {}",
+            percent(self.relative_difference),
+            percent(self.relative_noise),
+            percent(self.relative_discretisation),
+            figure(self.best_scale, 5)
+        );
+        let test = format!(
+            "{} model, {}; significance {}, P(χ²) {}, P(|z|) {}",
+            self.kernel,
+            self.integration,
+            figure(self.significance, 2),
+            figure(self.chi2_p, 2),
+            figure(self.largest_p, 2)
+        );
+        [("difference", difference), ("test", test)]
+    }
+
+    /// The entries with the largest |z|.
+    pub fn worst_entries(&self) -> Table {
+        let row = |e: &Entry| {
+            let numbers = [e.traced, e.modelled, e.z].map(Cell::from);
+            [e.pixel, e.spot]
+                .map(Cell::from)
+                .into_iter()
+                .chain(numbers)
+                .collect()
+        };
+        Table {
+            caption: "The worst entries".to_owned(),
+            columns: vec![
+                Column::text("pixel", ""),
+                Column::text("spot", ""),
+                Column::number("traced", "", "W", 6),
+                Column::number("modelled", "", "W", 6),
+                Column::number("z", "", "", 4),
+            ],
+            rows: self.worst.iter().map(row).collect(),
+            ..Table::default()
+        }
+    }
+}
+
+impl Describe for Agreement {
+    /// The verdict, what it rests on, and where it fails the worst entries by name.
+    fn describe(&self) -> Finding {
+        let worst = (!self.agrees).then(|| self.worst_entries());
+        Finding {
+            title: "Traced against modelled".to_owned(),
+            tone: self.tone(),
+            sentence: self.verdict(),
+            tables: std::iter::once(facts(self.facts())).chain(worst).collect(),
+            ..Finding::default()
+        }
+    }
+}
+
+impl RunResults {
+    /// What the agreement test says, or why there is none.
+    pub fn verdict(&self) -> String {
+        match (&self.agreement, &self.model) {
+            (Some(agreement), _) => agreement.verdict(),
+            (None, Some(_)) => "traced light was not compared with the model".to_owned(),
+            (None, None) => "no model to compare with: the scene hides nothing".to_owned(),
+        }
+    }
+
+    /// Whether that is good news.
+    pub fn tone(&self) -> Tone {
+        self.agreement.as_ref().map_or(Tone::Plain, Agreement::tone)
+    }
+
+    /// ‖standard error‖/‖Φcam‖; `None` where there is no light.
+    pub fn relative_stderr(&self) -> Option<f64> {
+        relative(&self.stderr, &self.phi)
+    }
+
+    /// Scene, settings, flux with its precision, verdict and times.
+    pub fn facts(&self) -> Table {
+        let precision = self.relative_stderr();
+        let rendered = rendered(
+            &self.scene,
+            &self.plan,
+            (&self.phi, precision),
+            &self.bounces,
+        );
+        let agreement = self.agreement.iter().flat_map(Agreement::facts);
+        let total: f64 = self.times.iter().map(|t| t.1).sum();
+        let each = self.times.iter();
+        let each = each.map(|(stage, t)| format!("{stage} {}\u{a0}s", figure(*t, 2)));
+        let each = each.collect::<Vec<_>>().join(", ");
+        let time = ("time", format!("{}\u{a0}s: {each}", figure(total, 2)));
+        let time = (!self.times.is_empty()).then_some(time);
+        facts(rendered.into_iter().chain(agreement).chain(time))
+    }
+
+    /// The flux by the number of surfaces that its light met.
+    pub fn light_by_surfaces(&self) -> Table {
+        let row = |(n, share): &(u32, f64)| vec![u64::from(*n).into(), Cell::Share(Some(*share))];
+        Table {
+            columns: vec![
+                Column::text("surfaces met", ""),
+                Column::number("share of the flux", "", "", 3),
+            ],
+            rows: self.bounces.iter().map(row).collect(),
+            place: Place::Page,
+            ..Table::default()
+        }
+    }
+
+    /// Shares of ‖modelled Φcam‖: the measured difference, its part along the model (a scale) and
+    /// across it (a pattern), and what is known of the causes: noise of the path tracer, the
+    /// model's discretisation, light that met more surfaces than the model counts. None without a
+    /// verdict.
+    ///
+    /// With s the best scale, traced − modelled = (traced − s·modelled) + (s − 1)·modelled, and
+    /// both parts are orthogonal: their squares add up.
+    pub fn difference(&self) -> Option<Table> {
+        let a = self.agreement.as_ref()?;
+        let scale = (a.best_scale - 1.0).abs();
+        let pattern = a.relative_difference.powi(2) - scale.powi(2);
+        let beyond = self.bounces.iter().filter(|(n, _)| *n > 3);
+        let beyond: f64 = beyond.map(|(_, share)| share).sum();
+        let (beyond, how) = if self.scene.max_bounces > 3 {
+            (
+                Some(beyond),
+                "share of the traced flux; the model has three surfaces",
+            )
+        } else {
+            (None, "not traced: the scene's max_bounces is 3")
+        };
+        let rows = [
+            (
+                "measured: ‖traced − modelled‖",
+                Some(a.relative_difference),
+                "",
+            ),
+            (
+                "of it a scale that all entries share",
+                Some(scale),
+                "best single scale less 1",
+            ),
+            (
+                "of it a pattern",
+                Some(pattern.max(0.0).sqrt()),
+                "what the best scale leaves",
+            ),
+            (
+                "expected: noise of the path tracer",
+                Some(a.relative_noise),
+                "‖standard error‖",
+            ),
+            (
+                "at most: elements and pixels taken at their centres",
+                Some(a.relative_discretisation),
+                "stated bound of the model; 0 with --integration quadrature",
+            ),
+            ("light that met more than three surfaces", beyond, how),
+        ];
+        Some(Table {
+            columns: vec![
+                Column::text("what", ""),
+                Column::number("share", "", "", 3),
+                Column::text("how it is known", ""),
+            ],
+            rows: rows
+                .map(|(what, share, how)| vec![what.into(), Cell::Share(share), how.into()])
+                .to_vec(),
+            place: Place::Page,
+            ..Table::default()
+        })
+    }
+}
+
+impl Describe for RunResults {
+    /// The verdict, the facts, and every recovery.
+    fn describe(&self) -> Finding {
+        Finding {
+            sentence: self.verdict(),
+            tone: self.tone(),
+            tables: std::iter::once(self.facts())
+                .chain(recoveries(&self.recovered))
+                .collect(),
+            ..Finding::default()
+        }
+    }
+}
+
+/// What was recovered of each surface, in the order in which they first appear: a run lists it
+/// method by method.
+pub fn by_surface(recovered: &[RecoveredObject]) -> Vec<Vec<&RecoveredObject>> {
+    let mut groups: Vec<Vec<&RecoveredObject>> = Vec::new();
+    for object in recovered {
+        let same = |group: &&mut Vec<&RecoveredObject>| {
+            group[0].surface == object.surface && group[0].elements == object.elements
+        };
+        match groups.iter_mut().find(same) {
+            Some(group) => group.push(object),
+            None => groups.push(vec![object]),
+        }
+    }
+    groups
+}
+
+/// A table for each hidden surface.
+fn recoveries(recovered: &[RecoveredObject]) -> Vec<Table> {
+    by_surface(recovered)
+        .iter()
+        .map(|group| recovery(group))
+        .collect()
+}
+
+/// What was recovered of each hidden surface.
+pub fn describe_recovery(recovered: &[RecoveredObject]) -> Finding {
+    Finding {
+        tables: recoveries(recovered),
+        ..Finding::default()
+    }
+}
+
+/// How good each method is on one surface, and what it chose.
+pub fn recovery(group: &[&RecoveredObject]) -> Table {
+    let caption = group.first().map_or(String::new(), |first| {
+        let [nu, nv] = first.elements;
+        format!("recovered: {}, {nu} × {nv} elements", first.surface)
+    });
+    let row = |r: &&RecoveredObject| {
+        let numbers = [r.mtf_raw, r.mtf_normalized, r.correlation, Some(r.rmse)];
+        let mut row: Vec<Cell> = vec![r.method.as_str().into()];
+        row.extend(numbers.map(Cell::from));
+        row.push(r.parameter.as_str().into());
+        row
+    };
+    let number = |name: &str| Column::number(name, "", "", 3);
+    Table {
+        caption,
+        columns: vec![
+            Column::text("method", ""),
+            number("MTF raw"),
+            number("MTF normalized"),
+            number("correlation"),
+            number("RMSE"),
+            Column::text("parameter", ""),
+        ],
+        rows: group.iter().map(row).collect(),
+        ..Table::default()
+    }
+}
+
+/// What a render left: flux and precision, `seconds` of wall time.
+pub fn describe_render(scene: &Scene, plan: &Plan, traced: &Traced, seconds: f64) -> Finding {
+    let total = traced.flux.sum();
+    let share = |m: &Matrix| if total > 0.0 { m.sum() / total } else { 0.0 };
+    let bounces: Vec<(u32, f64)> = (1..).zip(traced.bounces.iter().map(share)).collect();
+    let precision = relative(&traced.stderr, &traced.flux);
+    let mut told = rendered(scene, plan, (&traced.flux, precision), &bounces);
+    told.push(("time", format!("{}\u{a0}s", figure(seconds, 2))));
+    Finding {
+        tables: vec![facts(told)],
+        ..Finding::default()
+    }
+}
+
+/// ‖a‖/‖b‖; `None` where b is zero.
+fn relative(a: &Matrix, b: &Matrix) -> Option<f64> {
+    let norm = b.norm();
+    (norm > 0.0).then(|| a.norm() / norm)
+}
+
+/// Scene, settings, flux with its relative standard error, and what share of it met how many
+/// surfaces.
+fn rendered(
+    scene: &Scene,
+    plan: &Plan,
+    (phi, precision): (&Matrix, Option<f64>),
+    bounces: &[(u32, f64)],
+) -> Vec<(&'static str, String)> {
+    let hash: String = scene.hash.chars().take(12).collect();
+    let noise = precision.map_or(String::new(), |e| {
+        format!(", standard error {}", percent(e))
+    });
+    let mut told = vec![
+        (
+            "scene",
+            format!(
+                "{} ({hash}), {} pixels × {} spots",
+                scene.name,
+                phi.nrows(),
+                phi.ncols()
+            ),
+        ),
+        (
+            "rendered",
+            format!(
+                "{}, {}, {} samples in {} blocks, seed {}",
+                plan.estimator,
+                plan.sampling,
+                plan.budget.samples(),
+                plan.budget.blocks,
+                plan.seed
+            ),
+        ),
+        (
+            "flux",
+            format!(
+                "{}\u{a0}W over all pixels and spots{noise}",
+                figure(phi.sum(), 3)
+            ),
+        ),
+    ];
+    if !bounces.is_empty() {
+        let share = |(n, share): &(u32, f64)| format!("{n} surfaces {}", percent(*share));
+        let shares: Vec<String> = bounces.iter().map(share).collect();
+        told.push(("light by path", shares.join(", ")));
+    }
+    told
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample::{bare, run};
+    use super::*;
+
+    fn told(finding: &Finding) -> String {
+        format!("{:?}", finding.tables[0].rows)
+    }
+
+    #[test]
+    fn a_render_says_its_flux_and_its_precision() {
+        let results = run("bench");
+        let matrix = |x: f64| Matrix::from_element(2, 3, x);
+        // 6 entries of 2e-12 W, a quarter of it from three surfaces; σ is 1 % of Φ.
+        let traced = Traced {
+            bounces: vec![matrix(1.5e-12), matrix(0.0), matrix(0.5e-12)],
+            flux: matrix(2e-12),
+            stderr: matrix(2e-14),
+        };
+        let finding = describe_render(&results.scene, &results.plan, &traced, 8.04);
+        let texts = finding.tables[0].rows.iter().flatten();
+        let texts = texts.map(|c| match c {
+            Cell::Text(text) => text.as_str(),
+            _ => "",
+        });
+        let texts = texts.collect::<Vec<_>>().join("\n");
+        for words in [
+            "2 pixels × 3 spots",
+            "1.20 × 10⁻¹¹\u{a0}W over all pixels and spots, standard error 1.00\u{a0}%",
+            "1 surfaces 75.0\u{a0}%, 2 surfaces 0\u{a0}%, 3 surfaces 25.0\u{a0}%",
+            "time\n8.0\u{a0}s",
+        ] {
+            assert!(texts.contains(words), "no {words}: {texts}");
+        }
+    }
+
+    #[test]
+    fn disagreement_is_loud() {
+        let mut results = run("bench");
+        let found = results.describe();
+        assert_eq!(found.tone, Tone::Good);
+        let start = "traced and physical model agree: χ²/dof 1.003 over 30720 entries,";
+        assert!(found.sentence.starts_with(start), "{}", found.sentence);
+        assert!(told(&found).contains("P(χ²) 0.36"));
+        let agreement = results.agreement.as_mut().unwrap();
+        assert_eq!(agreement.describe().tables.len(), 1);
+        agreement.agrees = false;
+        assert_eq!(agreement.describe().tables[1].rows.len(), 1);
+        let found = results.describe();
+        assert!(found.sentence.contains("DISAGREE") && found.tone == Tone::Bad);
+    }
+
+    #[test]
+    fn a_run_without_model_says_so() {
+        let found = bare("furnace").describe();
+        assert!(found.sentence.starts_with("no model to compare with"));
+        assert_eq!((found.tone, found.tables.len()), (Tone::Plain, 1));
+    }
+
+    /// The squares of scale and pattern add up to that of the difference.
+    #[test]
+    fn the_difference_is_taken_apart() {
+        let mut results = run("bench");
+        results.agreement.as_mut().unwrap().best_scale = 1.0006;
+        let table = results.difference().unwrap();
+        let share = |row: usize| match table.rows[row][1] {
+            Cell::Share(share) => share.unwrap(),
+            _ => panic!("{row}"),
+        };
+        let sum = share(1).powi(2) + share(2).powi(2);
+        assert!((sum.sqrt() / share(0) - 1.0).abs() < 1e-12);
+        assert!(bare("bench").difference().is_none());
+    }
+}

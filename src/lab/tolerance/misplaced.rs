@@ -1,0 +1,147 @@
+//! Scenes in which one thing is not where it is thought to be.
+
+use glam::{DAffine3, DQuat};
+
+use crate::geometry::{DVec3, Shape};
+use crate::num::stream::{Key, Sampling, Stream};
+use crate::num::warp;
+use crate::scene::{Role, Scene};
+
+/// Something that is assumed wrongly.
+#[derive(Debug)]
+pub(super) struct Misplaced {
+    pub(super) name: &'static str,
+    /// Whether sizes are degrees; else they are lengths in the scene's unit.
+    pub(super) angle: bool,
+    /// The scene with this misplaced by a size; `None` where the scene does not allow it.
+    pub(super) apply: fn(&Scene, f64) -> Option<Scene>,
+}
+
+const fn length(name: &'static str, apply: fn(&Scene, f64) -> Option<Scene>) -> Misplaced {
+    Misplaced {
+        name,
+        angle: false,
+        apply,
+    }
+}
+
+/// Everything that is tried.
+pub(super) const ALL: [Misplaced; 12] = [
+    Misplaced {
+        name: "hinge angle",
+        angle: true,
+        apply: turned,
+    },
+    length("S2 along its normal", |scene, size| {
+        moved(scene, first_hidden(scene)?.at([0.5; 2]).normal * size)
+    }),
+    length("S2 along u", |scene, size| {
+        moved(scene, side(scene, [[0.0, 0.5], [1.0, 0.5]])? * size)
+    }),
+    length("S2 along v", |scene, size| {
+        moved(scene, side(scene, [[0.5, 0.0], [0.5, 1.0]])? * size)
+    }),
+    length("all spots, x", |scene, size| {
+        scene.with_shifted_spots([size, 0.0]).ok()
+    }),
+    length("all spots, y", |scene, size| {
+        scene.with_shifted_spots([0.0, size]).ok()
+    }),
+    length("each spot, random (rms)", scattered),
+    length("view, x", |scene, size| {
+        Some(scene.with_shifted_view([size, 0.0]))
+    }),
+    length("view, y", |scene, size| {
+        Some(scene.with_shifted_view([0.0, size]))
+    }),
+    length("camera, along its sight", |scene, size| {
+        Some(scene.with_moved_camera(sight(scene) * size))
+    }),
+    length("camera, across its sight", |scene, size| {
+        let across = sight(scene).cross(scene.camera.view.normal());
+        Some(scene.with_moved_camera(across.normalize_or_zero() * size))
+    }),
+    length("wall bent (sagitta)", bent),
+];
+
+fn first_hidden(scene: &Scene) -> Option<&Shape> {
+    scene.hidden().next().map(|(_, surface)| &surface.shape)
+}
+
+/// The scene with its hidden surfaces moved.
+fn moved(scene: &Scene, by: DVec3) -> Option<Scene> {
+    let motion = DAffine3::from_translation(by);
+    scene.with_moved_hidden(&motion).ok()
+}
+
+/// The scene with its hidden surfaces turned around the hinge, by degrees.
+fn turned(scene: &Scene, size: f64) -> Option<Scene> {
+    let (point, axis) = hinge(scene)?;
+    let motion = DAffine3::from_translation(point)
+        * DAffine3::from_quat(DQuat::from_axis_angle(axis, size.to_radians()))
+        * DAffine3::from_translation(-point);
+    scene.with_moved_hidden(&motion).ok()
+}
+
+/// The direction from one point of the first hidden surface to another.
+fn side(scene: &Scene, [from, to]: [[f64; 2]; 2]) -> Option<DVec3> {
+    let shape = first_hidden(scene)?;
+    Some((shape.at(to).position - shape.at(from).position).normalize_or_zero())
+}
+
+/// The direction from the camera to the first corner of its view.
+fn sight(scene: &Scene) -> DVec3 {
+    (scene.camera.view.corners()[0] - scene.camera.position).normalize_or_zero()
+}
+
+/// The scene with every spot moved by itself, by `size` in the root mean square.
+fn scattered(scene: &Scene, size: f64) -> Option<Scene> {
+    let mut normal = normal(7);
+    let spots = scene.laser.spots.iter().map(|s| {
+        let [a, b] = normal();
+        let r = size * std::f64::consts::FRAC_1_SQRT_2;
+        [s.target.position.x + r * a, s.target.position.y + r * b]
+    });
+    scene.with_spots_at(&spots.collect::<Vec<_>>()).ok()
+}
+
+/// The scene with its walls bent, which must be flat and look upwards.
+fn bent(scene: &Scene, size: f64) -> Option<Scene> {
+    let upward = |shape: &Shape| matches!(shape, Shape::Parallelogram(p) if p.normal().z > 0.0);
+    let mut walls = scene.surfaces.iter().filter(|s| s.role == Role::Relay);
+    walls
+        .all(|s| upward(&s.shape))
+        .then(|| scene.with_bent_relay(size).ok())?
+}
+
+/// A point and the direction of the line in which the planes of the first hidden surface and of the
+/// wall meet.
+pub(super) fn hinge(scene: &Scene) -> Option<(DVec3, DVec3)> {
+    let (_, hidden) = scene.hidden().next()?;
+    let wall = scene.surfaces.iter().find(|s| s.role == Role::Relay)?;
+    let (a, b) = (hidden.shape.at([0.5, 0.5]), wall.shape.at([0.5, 0.5]));
+    let axis = a.normal.cross(b.normal);
+    let square = axis.length_squared();
+    if square < 1e-12 {
+        return None;
+    }
+    let (da, db) = (a.normal.dot(a.position), b.normal.dot(b.position));
+    let point = (b.normal.cross(axis) * da + axis.cross(a.normal) * db) / square;
+    Some((point, axis.normalize()))
+}
+
+/// Pairs of independent standard normal numbers.
+pub(super) fn normal(seed: u64) -> impl FnMut() -> [f64; 2] {
+    let key = Key {
+        seed,
+        spot: Key::ALL_SPOTS,
+        pixel: u32::MAX,
+        block: 1,
+    };
+    let mut stream = Stream::new(Sampling::Pcg, key);
+    // The Gaussian beam's 1/e² radius is two standard deviations.
+    move || {
+        let [a, b, ..] = stream.next_four();
+        warp::gaussian_spot([a, b]).map(|x| 2.0 * x)
+    }
+}

@@ -1,0 +1,14 @@
+//! How wrong may the assumed geometry be?
+//!
+//! The bench stands as the scene says; the model that inverts its photographs is of a bench that is
+//! slightly off. Photographs are the converged three-bounce integral with relative normal noise;
+//! the method is `joint`.
+
+mod describe;
+mod misplaced;
+mod results;
+mod tasks;
+
+pub use results::{Misplacement, Sensitivity, Tolerance};
+pub(super) use tasks::STUDY;
+pub use tasks::ToleranceTasks;

@@ -1,0 +1,46 @@
+//! What the study of misplaced things found.
+
+use serde::{Deserialize, Serialize};
+
+/// What a misplacement of one size does.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct Misplacement {
+    /// Degrees, or the scene's unit of length.
+    pub size: f64,
+    /// ‖Φ(misplaced) − Φ‖/‖Φ‖.
+    pub change: f64,
+    /// The same after the best single scale.
+    pub after_scale: f64,
+    /// Mean raw MTF of the recovery with the misplaced model; absent where the object has no
+    /// contrast.
+    pub mtf: Option<f64>,
+}
+
+/// One thing that is assumed wrongly.
+#[derive(Clone, Debug, Serialize)]
+pub struct Sensitivity {
+    /// What.
+    pub name: String,
+    /// Unit of the sizes: `deg` or the scene's.
+    pub unit: String,
+    /// By growing size. Sizes that the scene does not allow (a spot off the wall) are left out.
+    pub rows: Vec<Misplacement>,
+    /// The size at which the MTF falls to half of that without error; absent if it does not, or was
+    /// lost before.
+    pub lost_at: Option<f64>,
+}
+
+/// The study of a scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct Tolerance {
+    /// Name of the scene.
+    pub scene: String,
+    /// Its hash.
+    pub scene_hash: String,
+    /// Noise of the photographs, relative to each entry.
+    pub noise: f64,
+    /// Raw MTF with the right geometry.
+    pub mtf: Option<f64>,
+    /// Each thing.
+    pub parameters: Vec<Sensitivity>,
+}

@@ -1,0 +1,257 @@
+//! The study in tasks: each one thing misplaced by one size.
+
+use serde::{Deserialize, Serialize};
+
+use super::misplaced::{ALL, Misplaced, normal};
+use super::results::{Misplacement, Sensitivity, Tolerance};
+use crate::lab::error::LabError;
+use crate::lab::options::Opt;
+use crate::lab::registered::{Registered, prepared};
+use crate::lab::study::Study;
+use crate::matrix::Matrix;
+use crate::metrics::mtf_raw;
+use crate::model::{Extent, Kernel, MatrixModel, ModelError, converged};
+use crate::num::summation::tree_sum;
+use crate::recovery::{Method, Options, Problem, recover};
+use crate::scene::Scene;
+use crate::transport::Control;
+
+/// `phicam study tolerance`.
+pub(in crate::lab) const STUDY: Registered = Registered {
+    name: "tolerance",
+    about: "How wrong the assumed geometry may be: table, JSON, CSV, figure",
+    scene: Some("bench"),
+    files: "tolerance.csv, tolerance.svg",
+    options: &[
+        Opt::number("noise", "Noise of the photographs, relative to each entry")
+            .or("0.01")
+            .rule(
+                |x| x > 0.0 && x < 1.0,
+                "is not a relative noise",
+                "use a number between 0 and 1, e.g. 0.01",
+            ),
+    ],
+    prepare: |scene, values| {
+        let noise = values.one("noise")?;
+        Ok(prepared(ToleranceTasks::new(scene, noise)))
+    },
+};
+
+/// Sizes from 1e-4 to 1 inch (or degree), three to a decade and a half.
+const SIZES: [f64; 9] = [1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0];
+/// Noisy photographs whose recoveries are averaged.
+const DRAWS: u64 = 4;
+
+/// Misplaces one thing after the other. A task is one thing misplaced by one size; the first has
+/// everything in its place.
+#[derive(Debug)]
+pub struct ToleranceTasks {
+    scene: Scene,
+    noise: f64,
+}
+
+/// Φcam and its noisy photographs with their standard errors, pixels × spots, W.
+#[derive(Debug)]
+pub struct Bench {
+    truth: Matrix,
+    photographs: Vec<(Matrix, Matrix)>,
+}
+
+/// What a task gives.
+#[derive(Debug, Serialize, Deserialize)]
+pub enum Placed {
+    /// Mean raw MTF with the right geometry.
+    Right(Option<f64>),
+    /// A misplacement; none where the scene does not allow it.
+    Wrong(Option<Misplacement>),
+}
+
+impl ToleranceTasks {
+    /// The study of a scene, of photographs whose noise relative to each entry is `noise`.
+    pub fn new(scene: &Scene, noise: f64) -> Self {
+        Self {
+            scene: scene.clone(),
+            noise,
+        }
+    }
+
+    /// Mean raw MTF of what is recovered with the model of `assumed`.
+    fn mtf(&self, bench: &Bench, assumed: &Scene) -> Result<Option<f64>, ModelError> {
+        let model = MatrixModel::new(assumed, Kernel::Physical, None)?;
+        let recovered = |(phi, stderr): &(Matrix, Matrix)| {
+            let problem =
+                Problem::new(phi, &model.camera_side, &model.laser_side, Some(stderr)).ok()?;
+            let found = recover(Method::Joint, &problem, &Options::default()).ok()?;
+            mtf_raw(found.reflectance.as_slice(), &model.albedo)
+        };
+        let found: Option<Vec<f64>> = bench.photographs.iter().map(recovered).collect();
+        Ok(found.map(|m| tree_sum(&m) / m.len() as f64))
+    }
+}
+
+impl Study for ToleranceTasks {
+    type Context = Bench;
+    type Output = Placed;
+    type Result = Tolerance;
+    type Error = LabError;
+
+    fn name(&self) -> &'static str {
+        "tolerance"
+    }
+
+    fn tasks(&self) -> usize {
+        1 + ALL.len() * SIZES.len()
+    }
+
+    fn context(&self, _: Control<'_>) -> Result<Bench, LabError> {
+        let truth = converged(&self.scene, Kernel::Physical, Extent::FULL)?.phi;
+        let photograph = |seed| {
+            let mut normal = normal(seed);
+            let stderr = truth.map(|x| x * self.noise);
+            (truth.zip_map(&stderr, |x, s| x + s * normal()[0]), stderr)
+        };
+        let photographs = (0..DRAWS).map(photograph).collect();
+        Ok(Bench { truth, photographs })
+    }
+
+    fn task(&self, bench: &Bench, index: usize, _: Control<'_>) -> Result<Placed, LabError> {
+        let Some(at) = index.checked_sub(1) else {
+            return Ok(Placed::Right(self.mtf(bench, &self.scene)?));
+        };
+        let what = &ALL[at / SIZES.len()];
+        let size = SIZES[at % SIZES.len()] * unit(what, &self.scene).0;
+        let Some(wrong) = (what.apply)(&self.scene, size) else {
+            return Ok(Placed::Wrong(None));
+        };
+        let phi = converged(&wrong, Kernel::Physical, Extent::FULL)?.phi;
+        let truth = &bench.truth;
+        let scale = phi.dot(truth) / phi.norm_squared().max(f64::MIN_POSITIVE);
+        Ok(Placed::Wrong(Some(Misplacement {
+            size,
+            change: (&phi - truth).norm() / truth.norm(),
+            after_scale: (&phi * scale - truth).norm() / truth.norm(),
+            mtf: self.mtf(bench, &wrong)?,
+        })))
+    }
+
+    fn fits(&self, _: &Bench, index: usize, part: &Placed) -> bool {
+        matches!(part, Placed::Right(_)) == (index == 0)
+    }
+
+    fn finish(&self, _: &Bench, parts: Vec<Placed>) -> Result<Tolerance, LabError> {
+        let (mut right, mut placed) = (None, Vec::new());
+        for part in parts {
+            match part {
+                Placed::Right(mtf) => right = mtf,
+                Placed::Wrong(found) => placed.push(found),
+            }
+        }
+        let of = |(what, own): (&Misplaced, &[Option<Misplacement>])| {
+            let rows: Vec<Misplacement> = own.iter().flatten().copied().collect();
+            (!rows.is_empty()).then(|| Sensitivity {
+                name: what.name.to_owned(),
+                unit: unit(what, &self.scene).1.to_owned(),
+                lost_at: lost_at(right, &rows),
+                rows,
+            })
+        };
+        let things = ALL.iter().zip(placed.chunks(SIZES.len()));
+        Ok(Tolerance {
+            scene: self.scene.name.clone(),
+            scene_hash: self.scene.hash.clone(),
+            noise: self.noise,
+            mtf: right,
+            parameters: things.filter_map(of).collect(),
+        })
+    }
+}
+
+/// What one of [`SIZES`] is, and in which unit: a degree, or an inch in the scene's unit.
+fn unit(what: &Misplaced, scene: &Scene) -> (f64, &'static str) {
+    if what.angle {
+        (1.0, "deg")
+    } else {
+        (scene.unit.per_inch(), scene.unit.symbol())
+    }
+}
+
+/// Below this an MTF shows no pattern.
+const PATTERN: f64 = 0.5;
+
+/// Where the MTF first falls through half of its undisturbed value, interpolated in log size.
+fn lost_at(right: Option<f64>, rows: &[Misplacement]) -> Option<f64> {
+    let right = right.filter(|m| *m >= PATTERN)?;
+    let limit = PATTERN * right;
+    let mut before = (rows.first()?.size * 0.1, right);
+    for row in rows {
+        let mtf = row.mtf?;
+        if mtf < limit {
+            let t = (before.1 - limit) / (before.1 - mtf);
+            return Some(libm::exp(
+                libm::log(before.0) + t * libm::log(row.size / before.0),
+            ));
+        }
+        before = (row.size, mtf);
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::misplaced::hinge;
+    use super::*;
+    use crate::lab::study::tests::{divides, small};
+
+    #[test]
+    fn it_divides() {
+        let found = divides(&ToleranceTasks::new(&small("bench"), 0.01));
+        assert_eq!(found.parameters.len(), ALL.len());
+    }
+
+    /// On the bench the planes meet at y = 15.5, z = 0, along x.
+    #[test]
+    fn the_hinge_of_the_bench_is_where_it_is() {
+        let (point, axis) = hinge(&Scene::load("bench").unwrap()).unwrap();
+        assert!((point.y - 15.5).abs() < 1e-12 && point.z.abs() < 1e-12);
+        assert!((axis.x.abs() - 1.0).abs() < 1e-12);
+    }
+
+    /// Every misplacement changes Φcam in proportion to its size where it is small.
+    #[test]
+    fn small_misplacements_act_in_proportion() {
+        let scene = Scene::load("bench").unwrap();
+        let truth = converged(&scene, Kernel::Physical, Extent::FULL)
+            .unwrap()
+            .phi;
+        for what in ALL {
+            let change = |size: f64| {
+                let wrong = (what.apply)(&scene, size).unwrap();
+                let phi = converged(&wrong, Kernel::Physical, Extent::FULL)
+                    .unwrap()
+                    .phi;
+                (phi - &truth).norm() / truth.norm()
+            };
+            let (small, twice) = (change(1e-3), change(2e-3));
+            assert!(small > 1e-7, "{}: {small:e}", what.name);
+            assert!(
+                (twice / small - 2.0).abs() < 0.01,
+                "{}: {small:e}, {twice:e}",
+                what.name
+            );
+        }
+    }
+
+    #[test]
+    fn the_limit_is_interpolated_in_log_size() {
+        let row = |size, mtf| Misplacement {
+            size,
+            change: 0.0,
+            after_scale: 0.0,
+            mtf: Some(mtf),
+        };
+        let rows = [row(0.01, 1.0), row(0.1, 0.75), row(1.0, 0.25)];
+        assert!((lost_at(Some(1.0), &rows).unwrap() / 0.1f64.sqrt() - 1.0).abs() < 1e-12);
+        assert_eq!(lost_at(Some(1.0), &rows[..2]), None);
+        assert_eq!(lost_at(Some(0.3), &rows), None);
+    }
+}

@@ -1,0 +1,130 @@
+use super::*;
+use crate::num::statistics::chi_square_sf;
+use crate::num::stream::{Key, Sampling, Stream};
+
+const BENCH: &str = include_str!("../../../scenes/bench.toml");
+
+fn scene() -> Scene {
+    let board = "{ checkerboard = [2, 2], dark = 0.0, light = 1.0 }";
+    let cells = "{ cells = [[0.0, 0.5, 0.2], [0.0, 0.0, 0.0], [1.0, 0.0, 0.1]] }";
+    let second = "[[surface]]\nname = \"second\"\nrole = \"hidden\"\n\
+        rectangle = { corner = [8, 11, 4], u = [1, 0, 0], v = [0, -1, 1] }\n\
+        material = { lambertian = 0.3 }\nelements = [2, 2]\n";
+    assert!(BENCH.contains(board));
+    Scene::from_toml("two", &(BENCH.replace(board, cells) + second)).unwrap()
+}
+
+fn sampler(scene: &Scene) -> AreaSampler {
+    let hidden: Vec<ShapeId> = scene.hidden().map(|(id, _)| id as ShapeId).collect();
+    AreaSampler::new(scene, &hidden)
+}
+
+/// χ² of the sampled cells against density × cell area; the densities integrate to 1.
+#[test]
+fn points_follow_their_density() {
+    let scene = scene();
+    let hidden = sampler(&scene);
+    const SUB: usize = 6;
+    let n = 200_000;
+    let key = Key {
+        seed: 3,
+        spot: 0,
+        pixel: 0,
+        block: 0,
+    };
+    let mut stream = Stream::new(Sampling::Pcg, key);
+    let mut counts = vec![[0.0; SUB * SUB]; 3];
+    for _ in 0..n {
+        let u = stream.next_four();
+        let (shape, p, _) = hidden.sample(&scene, [u[0], u[1]]);
+        assert!(
+            scene.surfaces[shape as usize].albedo.albedo(p.uv) > 0.0,
+            "a dark cell was sampled"
+        );
+        let cell = |x: f64| ((x * SUB as f64) as usize).min(SUB - 1);
+        counts[shape as usize][cell(p.uv[0]) + cell(p.uv[1]) * SUB] += 1.0;
+    }
+    let (mut chi2, mut bins, mut total) = (0.0, 0.0, 0.0);
+    for shape in [1u32, 2] {
+        let area = scene.surfaces[shape as usize].shape.area() / (SUB * SUB) as f64;
+        for (k, count) in counts[shape as usize].iter().enumerate() {
+            let centre = |i: usize| (i as f64 + 0.5) / SUB as f64;
+            let p = area * hidden.density(shape, [centre(k % SUB), centre(k / SUB)]);
+            total += p;
+            if p > 0.0 {
+                let expected = p * f64::from(n);
+                chi2 += (count - expected) * (count - expected) / expected;
+                bins += 1.0;
+            } else {
+                assert_eq!(*count, 0.0);
+            }
+        }
+    }
+    assert!((total - 1.0).abs() < 1e-12, "{total}");
+    assert!(
+        chi_square_sf(chi2, bins - 1.0) > 1e-4,
+        "chi2 {chi2} of {bins}"
+    );
+}
+
+/// The way back from a point to the unit square, by the definition of the two distribution
+/// functions: the share of the surfaces, rows and cells before the point, and of its own as far as
+/// it lies in.
+#[test]
+fn points_return_to_their_place_in_the_square() {
+    let scene = scene();
+    let hidden = sampler(&scene);
+    let along = |steps: &PiecewiseConstant, n: usize, x: f64| {
+        let i = ((x * n as f64) as usize).min(n - 1);
+        let before: f64 = (0..i).map(|k| steps.share(k)).sum();
+        before + (x * n as f64 - i as f64) * steps.share(i)
+    };
+    let key = Key {
+        seed: 4,
+        spot: 0,
+        pixel: 0,
+        block: 0,
+    };
+    let mut stream = Stream::new(Sampling::Pcg, key);
+    for _ in 0..5000 {
+        let u = stream.next_four();
+        let (shape, p, _) = hidden.sample(&scene, [u[0], u[1]]);
+        let s = &hidden.surfaces[hidden.of_shape[shape as usize].unwrap()];
+        let row = ((p.uv[1] * s.count[1] as f64) as usize).min(s.count[1] - 1);
+        let back = [
+            s.before + s.share * along(&s.columns[row], s.count[0], p.uv[0]),
+            along(&s.rows, s.count[1], p.uv[1]),
+        ];
+        for d in 0..2 {
+            assert!((back[d] - u[d]).abs() < 1e-12, "{u:?} -> {back:?}");
+        }
+    }
+}
+
+/// The map is continuous and onto: equal steps in u give places whose step never falls, and the
+/// ends of the unit interval stay inside.
+#[test]
+fn distribution_functions_invert() {
+    let steps = PiecewiseConstant::new([0.0, 2.0, 0.0, 1.0, 0.0].into_iter());
+    let mut last = 0.0;
+    for k in 0..1000 {
+        let (i, x) = steps.invert(f64::from(k) / 1000.0);
+        assert!(i == 1 || i == 3, "an empty step was chosen");
+        assert!(x >= last && x < 1.0);
+        last = x;
+    }
+    let (i, x) = steps.invert(1.0 - f64::EPSILON);
+    assert!(i == 3 && x < 0.8);
+    // Two thirds of the weight lie in step 1: u = 1/3 is its middle.
+    assert!((steps.invert(1.0 / 3.0).1 - 0.3).abs() < 1e-12);
+    assert!((steps.share(3) - 1.0 / 3.0).abs() < 1e-15);
+}
+
+#[test]
+fn edges_on_dyadic_lines_are_told_from_others() {
+    let digits = |w: &[f64]| PiecewiseConstant::new(w.iter().copied()).digits(16);
+    assert_eq!(digits(&[1.0]), Some(0));
+    assert_eq!(digits(&[0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0]), Some(2));
+    assert_eq!(digits(&[3.0, 5.0]), Some(3));
+    assert_eq!(digits(&[1.0, 1.0, 1.0]), None);
+}

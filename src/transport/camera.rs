@@ -1,0 +1,306 @@
+//! The camera: the first vertex of a path, and what the camera sees of the lit spots themselves.
+
+use crate::geometry::{Blockers, DVec3, Parallelogram, Ray, Region, Shape, ShapeId};
+use crate::num::lanes::widest;
+use crate::scene::{Scene, Texture};
+
+use super::spots::{LitPoints, LitSpots};
+use super::vertex::{Batch, Oriented, Vertex, constant_factor};
+use super::visibility::hide;
+
+/// The line of sight of a pixel through the point (a, b) of its footprint, and the étendue that a
+/// uniform sample of (a, b) stands for.
+///
+/// The flux into the pixel is Φ = ∫ L · A_lens·cosθ_cam dΩ; with the footprint's area as measure dΩ
+/// = cosθ_view dA/d², and the aperture is parallel to the view: both cosines are the same. A
+/// uniform point of the footprint therefore carries A_footprint · A_lens · cos²θ/d², d the distance
+/// to the footprint (not to what stands in front of it).
+fn line_of_sight(scene: &Scene, pixel: usize, ab: [f64; 2]) -> Option<(Ray, f64)> {
+    let camera = &scene.camera;
+    let footprint = camera.footprint(pixel);
+    let line = Ray::between(camera.position, footprint.at(ab))?;
+    let cos = camera.view.normal().dot(line.direction).abs();
+    let etendue = footprint.area * camera.aperture_area * cos * cos / (line.length * line.length);
+    Some((Ray::new(line.origin, line.direction), etendue))
+}
+
+/// What pixel `pixel` sees through the point (a, b) of its footprint; its throughput is the
+/// étendue.
+pub(super) fn first_vertex(scene: &Scene, pixel: usize, ab: [f64; 2]) -> Option<Vertex> {
+    let (ray, etendue) = line_of_sight(scene, pixel, ab)?;
+    let hit = scene.bvh().closest(&ray, None)?;
+    let point = scene.bvh().point(&ray, hit);
+    let x = Vertex::arrive(scene, hit.shape, &point, ray.direction, etendue);
+    x.filter(|x| x.reflects(scene))
+}
+
+/// What one pixel sees first, as far as it is known before a ray is cast.
+#[derive(Clone, Debug)]
+pub(super) struct PixelView {
+    pub pixel: usize,
+    /// The flat shape that fills the pixel, with nothing before it, and its outline there.
+    filled_by: Option<(ShapeId, Parallelogram, Region)>,
+}
+
+impl PixelView {
+    pub(super) fn new(scene: &Scene, pixel: usize) -> Self {
+        let mut shapes = 0..scene.surfaces.len() as ShapeId;
+        let filled_by = shapes.find_map(|id| fills(scene, pixel, id));
+        Self { pixel, filled_by }
+    }
+
+    /// The shape that fills the pixel, if that is known.
+    pub(super) fn shape(&self) -> Option<ShapeId> {
+        self.filled_by.as_ref().map(|(shape, ..)| *shape)
+    }
+
+    /// By shape: what can stand between the pixel's first vertices and each of `targets`.
+    pub(super) fn blockers(&self, scene: &Scene, targets: &[ShapeId]) -> Vec<Blockers> {
+        let mut all = vec![Blockers::Any; scene.surfaces.len()];
+        if let Some((shape, _, region)) = &self.filled_by {
+            for &to in targets {
+                let other = Region::around(&scene.surfaces[to as usize].shape);
+                let ends = [Some(*shape), Some(to)];
+                all[to as usize] = scene.bvh().blockers(region, &other, ends);
+            }
+        }
+        all
+    }
+
+    /// [`first_vertex`] of the pixel, without a ray where one shape fills it.
+    pub(super) fn vertex(&self, scene: &Scene, ab: [f64; 2]) -> Option<Vertex> {
+        let Some((shape, plane, _)) = &self.filled_by else {
+            return first_vertex(scene, self.pixel, ab);
+        };
+        let (ray, etendue) = line_of_sight(scene, self.pixel, ab)?;
+        let height = plane.normal().dot(plane.corner() - ray.origin);
+        let at = ray.origin + ray.direction * (height / plane.normal().dot(ray.direction));
+        let point = plane.at_position(at);
+        let x = Vertex::arrive(scene, *shape, &point, ray.direction, etendue);
+        x.filter(|x| x.reflects(scene))
+    }
+
+    /// First vertices for many points of the footprint, weighted by étendue · c (length² sr), c the
+    /// constant factor of the BRDF; of weight 0 where nothing is seen.
+    pub(super) fn vertices(&self, scene: &Scene, places: &[[f64; 2]], out: &mut Batch) {
+        if let Some((shape, plane, _)) = &self.filled_by {
+            let surface = &scene.surfaces[*shape as usize];
+            if let Texture::Constant(albedo) = surface.albedo {
+                let factor = constant_factor(surface, albedo);
+                return self.on_plane(scene, places, out, (*shape, plane, factor));
+            }
+        }
+        for (i, ab) in places.iter().enumerate() {
+            match self.vertex(scene, *ab) {
+                Some(x) => {
+                    let weight = x.throughput * x.constant_factor(scene);
+                    out.set(i, x.oriented(), weight, x.shape);
+                }
+                None => out.set(i, (DVec3::ZERO, DVec3::ZERO), 0.0, 0),
+            }
+        }
+    }
+
+    /// With o the pinhole, f a point of the footprint, n_v and n the normals of view and surface
+    /// and h = n·(c − o) its distance, the line of sight meets the surface at o + (f − o)·h/(n·(f −
+    /// o)), and the point stands for A_footprint·A_lens·(n_v·(f − o))²/|f − o|⁴.
+    fn on_plane(
+        &self,
+        scene: &Scene,
+        places: &[[f64; 2]],
+        out: &mut Batch,
+        (shape, plane, constant_factor): (ShapeId, &Parallelogram, f64),
+    ) {
+        let camera = &scene.camera;
+        let footprint = camera.footprint(self.pixel);
+        let [corner, u, v] = [footprint.corner - camera.position, footprint.u, footprint.v];
+        let (o, n, view) = (camera.position, plane.normal(), camera.view.normal());
+        let height = n.dot(plane.corner() - o);
+        let factor = footprint.area * camera.aperture_area * constant_factor;
+        let ([x, y, z], weight) = out.put_on_plane(places.len(), shape, n);
+        widest(
+            #[inline(always)]
+            || {
+                for (i, [a, b]) in places.iter().enumerate() {
+                    let f = [
+                        corner.x + u.x * a + v.x * b,
+                        corner.y + u.y * a + v.y * b,
+                        corner.z + u.z * a + v.z * b,
+                    ];
+                    let dot = |m: DVec3| m.x * f[0] + m.y * f[1] + m.z * f[2];
+                    let (t, slope) = (height / dot(n), dot(view));
+                    x[i] = o.x + f[0] * t;
+                    y[i] = o.y + f[1] * t;
+                    z[i] = o.z + f[2] * t;
+                    let square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+                    weight[i] = factor * (slope * slope) / (square * square);
+                }
+            },
+        );
+    }
+}
+
+/// C(x_k, y_k) = weight_k(x) · G·V · d(x_k): the flux into the pixel that sees x_k by the radiance
+/// from y_k; `blockers` by shape of y.
+pub(super) fn camera_terms(
+    (scene, glossy): (&Scene, bool),
+    blockers: &[Blockers],
+    (x, y): (&Batch, &Batch),
+    out: &mut [f64],
+) {
+    x.geometry_terms_to(y, &x.weight, out);
+    if glossy {
+        for (k, entry) in out.iter_mut().enumerate().filter(|(_, e)| **e != 0.0) {
+            *entry *= x.factor_from(scene, k, y.place(k).0);
+        }
+    }
+    let between = |k: usize| Some(&blockers[y.shape[k] as usize]);
+    hide(scene.bvh(), out, between, |k| [x.place(k), y.place(k)]);
+}
+
+/// Shape `id` with its outline in the pixel, if it is flat, shows its front to the pinhole over the
+/// whole footprint, and nothing can stand before it.
+fn fills(scene: &Scene, pixel: usize, id: ShapeId) -> Option<(ShapeId, Parallelogram, Region)> {
+    let Shape::Parallelogram(plane) = scene.surfaces[id as usize].shape else {
+        return None;
+    };
+    let camera = &scene.camera;
+    let footprint = camera.footprint(pixel);
+    let height = plane.normal().dot(plane.corner() - camera.position);
+    let corner = |ab| {
+        let direction = footprint.at(ab) - camera.position;
+        let slope = plane.normal().dot(direction);
+        let at = camera.position + direction * (height / slope);
+        let place = plane.coordinates(at);
+        let inside = place.iter().all(|c| (0.0..=1.0).contains(c));
+        (slope < 0.0 && height < 0.0 && inside).then_some(at)
+    };
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(corner);
+    let outline = Region::flat(corners.into_iter().collect::<Option<_>>()?);
+    let pinhole = Region::point(camera.position);
+    let bvh = scene.bvh();
+    let free = bvh.surely_free(&pinhole, &outline, [None, Some(id)]);
+    free.then_some((id, plane, outline))
+}
+
+/// The light of the spots themselves, one surface met.
+#[derive(Debug)]
+pub(super) struct DirectLight {
+    /// Spots with width that a pixel may see: column and index.
+    wide: Vec<(usize, usize)>,
+    /// Spots without width that a pixel sees: column, pixel, and flux per watt of laser power.
+    ideal: Vec<(usize, usize, f64)>,
+}
+
+impl DirectLight {
+    pub(super) fn new(scene: &Scene, spots: &LitSpots<'_>) -> Self {
+        let (beams, columns) = (&spots.beams, spots.range.clone().enumerate());
+        let ideal = |(column, spot): (usize, usize)| {
+            let lit = beams.ideal.get(spot)?.as_ref()?;
+            let (pixel, flux) = flux_of_lit_point(scene, lit)?;
+            Some((column, pixel, flux))
+        };
+        let wide = |(_, spot): &(usize, usize)| beams.has_width() && beams.may_be_seen(*spot);
+        Self {
+            ideal: columns.clone().filter_map(ideal).collect(),
+            wide: columns.filter(wide).collect(),
+        }
+    }
+
+    /// Adds to a pixel's row, for the columns of `lit`, the light of the spots that it sees through
+    /// `samples` points of its footprint, `power` watts for each; `first` gives what it sees
+    /// through one.
+    pub(super) fn add(
+        &self,
+        spots: &LitSpots<'_>,
+        pixel: usize,
+        (samples, power): (usize, f64),
+        first: impl Fn(usize) -> Option<Vertex>,
+        lit: &LitPoints<'_>,
+        row: &mut [f64],
+    ) {
+        let columns = &lit.columns;
+        for (column, by, flux) in &self.ideal {
+            if *by == pixel && columns.contains(column) {
+                row[column - columns.start] += power * samples as f64 * flux;
+            }
+        }
+        let in_columns = |(column, _): &&(usize, usize)| columns.contains(column);
+        let wide: Vec<_> = self.wide.iter().filter(in_columns).collect();
+        for k in (0..samples).filter(|_| !wide.is_empty()) {
+            let first = first(k);
+            for (column, spot) in &wide {
+                let column = column - columns.start;
+                let ends = (first.as_ref(), lit.at(k)[column].as_ref());
+                row[column] += power * flux_of_wide_spot(spots, (*spot, pixel), ends);
+            }
+        }
+    }
+}
+
+/// Flux of a wide spot into a pixel per watt of laser power, found in two ways that are weighted
+/// against each other by their densities at the point found (the balance heuristic): where the line
+/// of sight meets the spot, which finds the faintest tail, and from the beam, which finds a spot
+/// however small.
+fn flux_of_wide_spot(
+    spots: &LitSpots<'_>,
+    (spot, pixel): (usize, usize),
+    (first, lit): (Option<&Vertex>, Option<&Vertex>),
+) -> f64 {
+    let (scene, beams) = (spots.scene, &spots.beams);
+    let by_sight = first.map_or(0.0, |x| {
+        let irradiance = beams.irradiance(spot, x.oriented(), x.shape);
+        if irradiance <= 0.0 {
+            return 0.0;
+        }
+        let seen = density(scene, x.oriented());
+        let wi = (scene.laser.position - x.position).normalize_or_zero();
+        x.throughput * x.brdf(scene, wi) * irradiance * seen / (seen + irradiance)
+    });
+    let by_beam = lit.and_then(|point| {
+        // Which pixel it would be comes before the ray that says whether.
+        let by = scene.camera.pixel_of(point.position);
+        by.filter(|by| *by == pixel)?;
+        let (_, flux) = flux_of_lit_point(scene, point)?;
+        let irradiance = beams.irradiance(spot, point.oriented(), point.shape);
+        let seen = density(scene, point.oriented());
+        (irradiance > 0.0).then(|| flux * irradiance / (seen + irradiance))
+    });
+    by_sight + by_beam.unwrap_or(0.0)
+}
+
+/// The flux of a lit point itself into whichever pixel sees it, per watt of laser power: (pixel,
+/// flux).
+///
+/// A point that scatters Φ has the radiant intensity Φ·f_r·cosθ; the aperture fills
+/// A_lens·cosθ_cam/d² of solid angle.
+fn flux_of_lit_point(scene: &Scene, lit: &Vertex) -> Option<(usize, f64)> {
+    let camera = &scene.camera;
+    let pixel = camera.pixel_of(lit.position)?;
+    let ray = Ray::between(lit.position, camera.position)?;
+    let cos_lit = lit.normal.dot(ray.direction);
+    let cos_camera = camera.view.normal().dot(ray.direction);
+    if cos_lit <= 0.0 || cos_camera <= 0.0 || scene.bvh().blocked(&ray, [Some(lit.shape), None]) {
+        return None;
+    }
+    let solid_angle = camera.aperture_area * cos_camera / (ray.length * ray.length);
+    let brdf = lit.constant_factor(scene) * lit.factor_to(scene, camera.position);
+    Some((pixel, brdf * cos_lit * solid_angle))
+}
+
+/// Density, per unit area at x, of what a uniform point of a pixel's footprint makes the pinhole
+/// see: 1/A_footprint · (cosθ_x/d_x²)·(d_view²/cosθ_view), x seen from its front.
+fn density(scene: &Scene, x: Oriented) -> f64 {
+    let camera = &scene.camera;
+    let normal = camera.view.normal();
+    let Some(line) = Ray::between(camera.position, x.0) else {
+        return 0.0;
+    };
+    let (cos_x, cos_view) = (-x.1.dot(line.direction), -normal.dot(line.direction));
+    if cos_x <= 0.0 || cos_view <= 0.0 {
+        return 0.0;
+    }
+    let to_view = normal.dot(camera.position - camera.view.corner()) / cos_view;
+    let footprint = camera.view.area() / camera.pixels() as f64;
+    cos_x * to_view * to_view / (line.length * line.length * cos_view * footprint)
+}

@@ -1,0 +1,69 @@
+//! What every estimator knows of a scene before it traces.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::camera::{DirectLight, PixelView};
+use super::path::PathSampler;
+use super::plan::Plan;
+use super::spots::LitSpots;
+use super::strata::Strata;
+use super::visibility::{any_may_be_visible, between, known_or_all};
+use crate::geometry::ShapeId;
+use crate::scene::Scene;
+
+/// The scene as the estimators see it, for some of its spots.
+#[derive(Debug)]
+pub(super) struct Context<'a> {
+    pub scene: &'a Scene,
+    pub plan: Plan,
+    pub path: PathSampler<'a>,
+    pub spots: LitSpots<'a>,
+    pub direct: DirectLight,
+    /// By pixel.
+    pub views: Vec<PixelView>,
+    /// Shapes that light may meet just before it reaches what a pixel sees.
+    pub between: Vec<ShapeId>,
+    /// Points on those.
+    pub strata: Strata<'a>,
+    /// Whether light that met two surfaces can reach any pixel.
+    pub has_two_bounce_light: bool,
+    /// Whether any surface of the scene is not Lambertian.
+    pub is_glossy: bool,
+}
+
+impl<'a> Context<'a> {
+    pub(super) fn new(scene: &'a Scene, plan: &Plan, spots: Range<usize>) -> Self {
+        let spots = LitSpots::new(scene, spots);
+        let views = (0..scene.camera.pixels()).into_par_iter();
+        let views: Vec<PixelView> = views.map(|p| PixelView::new(scene, p)).collect();
+        let seen = known_or_all(scene, views.iter().map(PixelView::shape).collect());
+        let lit = spots.beams.lit_shapes();
+        let between = between(scene, &seen, &lit);
+        let path = PathSampler::new(scene);
+        let close = !seen.iter().all(|s| path.far_from_hidden(*s));
+        let two = |t: &ShapeId| any_may_be_visible(scene, &seen, *t);
+        Self {
+            scene,
+            plan: *plan,
+            direct: DirectLight::new(scene, &spots),
+            strata: Strata::new(scene, &between, close, plan.sampling, plan.budget.size),
+            has_two_bounce_light: scene.max_bounces > 1 && lit.iter().any(two),
+            is_glossy: scene.surfaces.iter().any(|s| !s.is_lambertian()),
+            path,
+            spots,
+            views,
+            between,
+        }
+    }
+
+    /// The first shape of `between` that is not Lambertian, by name.
+    pub(super) fn glossy_between(&self) -> Option<&'a str> {
+        let mut shapes = self.between.iter();
+        shapes.find_map(|s| {
+            let surface = &self.scene.surfaces[*s as usize];
+            (!surface.is_lambertian()).then_some(surface.name.as_str())
+        })
+    }
+}

@@ -1,0 +1,22 @@
+//! Estimator [`Independent`](super::Estimator::Independent): every (pixel, spot) entry has paths of
+//! its own.
+//!
+//! Each entry is the estimate of [`shared`](super::shared) for a single spot, from random numbers
+//! that no other entry uses. The errors of all entries are independent, at the price of one path an
+//! entry.
+
+use super::shared::PixelRow;
+
+/// The estimate of one block for all spots, one after the other: \[order\]\[column\], W.
+pub(super) fn block(row: &mut PixelRow<'_>, block: u32) -> Vec<f64> {
+    let spots = row.context.spots.range.clone();
+    let columns = spots.len();
+    let mut sums = vec![0.0; row.context.scene.max_bounces as usize * columns];
+    for (column, spot) in spots.enumerate() {
+        let entry = row.estimate(spot as u32, block, column..column + 1);
+        for (order, flux) in entry.into_iter().enumerate() {
+            sums[order * columns + column] = flux;
+        }
+    }
+    sums
+}

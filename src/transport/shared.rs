@@ -1,0 +1,98 @@
+//! Estimator [`Shared`](super::Estimator::Shared): the paths of a pixel serve all spots.
+//!
+//! A path x₁, x₂, … from the camera is connected at every vertex with every lit point s_l:
+//!
+//! ```text
+//! Φ̂_n[p, l] = 1/N Σ β(x_{n−1}) · f_r(x_{n−1}) · G(x_{n−1}, s_l) · V · f_r(s_l) · Φlaser        n ≥ 2
+//! ```
+//!
+//! β(x₁) is the étendue of the camera sample, and β grows by f_r · G / p from one vertex to the
+//! next, p the density by which that was sampled. The errors along a row of Φcam are correlated.
+
+use std::ops::Range;
+
+use super::camera::first_vertex;
+use super::context::Context;
+use super::points::PixelPoints;
+use crate::num::stream::{Key, Stream};
+
+/// The estimate of one block for all spots: \[order\]\[column\], W; order n − 1 holds the light
+/// that met n surfaces.
+pub(super) fn block(row: &mut PixelRow<'_>, block: u32) -> Vec<f64> {
+    let all = 0..row.context.spots.range.len();
+    row.estimate(Key::ALL_SPOTS, block, all)
+}
+
+/// Traces one pixel.
+#[derive(Debug)]
+pub(super) struct PixelRow<'a> {
+    pub context: &'a Context<'a>,
+    pixel: usize,
+    /// What takes the place of paths where the pixel is simple enough.
+    points: Option<PixelPoints<'a>>,
+}
+
+impl<'a> PixelRow<'a> {
+    pub(super) fn new(context: &'a Context<'a>, pixel: usize) -> Self {
+        Self {
+            context,
+            pixel,
+            points: PixelPoints::new(context, pixel),
+        }
+    }
+
+    /// The estimate of one block for `columns`, with the random numbers of `spot`.
+    pub(super) fn estimate(&mut self, spot: u32, block: u32, columns: Range<usize>) -> Vec<f64> {
+        let Context { scene, plan, .. } = self.context;
+        let key = Key {
+            seed: plan.seed,
+            spot,
+            pixel: self.pixel as u32,
+            block,
+        };
+        let mut sums = vec![0.0; scene.max_bounces as usize * columns.len()];
+        if let Some(points) = &mut self.points {
+            points.estimate(key, &columns, &mut sums);
+            return sums;
+        }
+        self.trace_paths(key, &columns, &mut sums);
+        let size = f64::from(plan.budget.size);
+        sums.iter_mut().for_each(|sum| *sum /= size);
+        sums
+    }
+
+    /// Adds what the paths of a block find.
+    fn trace_paths(&self, key: Key, columns: &Range<usize>, sums: &mut [f64]) {
+        let Context {
+            scene,
+            plan,
+            spots,
+            path,
+            direct,
+            ..
+        } = self.context;
+        let (n, power) = (columns.len(), scene.laser.power);
+        let two_sets = spots.beams.has_width() || path.chooses();
+        let mut stream = Stream::new(plan.sampling, key);
+        let mut row = vec![0.0; n];
+        for index in 0..plan.budget.size {
+            stream.start(index);
+            let [a, b, u, v] = stream.next_four();
+            let [choice, _, s, t] = if two_sets {
+                stream.next_four()
+            } else {
+                [0.0; 4]
+            };
+            let lit = spots.points(&[[s, t]], columns);
+            let x = first_vertex(scene, self.pixel, [a, b]);
+            let one = &mut sums[..n];
+            direct.add(spots, self.pixel, (1, power), |_| x, &lit, one);
+            let vertices = scene.max_bounces - 1;
+            path.trace(x, vertices, [u, v, choice], &mut stream, |order, x| {
+                spots.light_vertex(x, &lit, &mut row);
+                let sums = &mut sums[order as usize * n..];
+                sums.iter_mut().zip(&row).for_each(|(sum, r)| *sum += r);
+            });
+        }
+    }
+}

@@ -1,0 +1,274 @@
+//! The lit spots: the light that goes from each of them to a vertex (next-event estimation).
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::beam::{Beams, Reach};
+use super::vertex::{Batch, Vertex, geometry_term};
+use super::visibility::{Place, hide};
+use crate::geometry::{Blockers, DVec3, Parallelogram, Region, Shape, ShapeId};
+use crate::scene::Scene;
+
+/// A range of spots, and what can stand between each of them and the shapes around.
+#[derive(Debug)]
+pub(super) struct LitSpots<'a> {
+    pub scene: &'a Scene,
+    /// The beams to all spots of the scene.
+    pub beams: Beams<'a>,
+    pub range: Range<usize>,
+    /// By column: where its light is expected to land.
+    landings: Vec<Option<Landing>>,
+    /// By column and shape, for the expected landing.
+    blockers: Vec<Vec<Blockers>>,
+    /// By shape: whether nothing can stand between it and any spot.
+    clear: Vec<bool>,
+    /// Whether any surface is not Lambertian.
+    glossy: bool,
+}
+
+/// A part of a flat shape.
+#[derive(Clone, Debug)]
+struct Landing {
+    shape: ShapeId,
+    /// The square around a wide spot; a spot without width has none.
+    square: Option<Parallelogram>,
+}
+
+impl Landing {
+    /// The target of a spot, where that is a flat shape on which the beam lands unhindered.
+    fn new(scene: &Scene, beams: &Beams<'_>, spot: usize) -> Option<Self> {
+        let (target, shape) = {
+            let spot = &scene.laser.spots[spot];
+            (&spot.target, spot.surface)
+        };
+        let flat = &scene.surfaces[shape as usize].shape;
+        if !matches!(flat, Shape::Parallelogram(_)) {
+            return None;
+        }
+        let square = if beams.has_width() {
+            Some(beams.square(spot, Reach::Expected)?)
+        } else {
+            let lit = beams.point(spot, [0.0; 2])?;
+            let there = lit.shape == shape && lit.position == target.position;
+            there.then_some(None)?
+        };
+        Some(Self { shape, square })
+    }
+
+    fn holds(&self, lit: &Vertex) -> bool {
+        let inside = |s: &Parallelogram| {
+            let place = s.coordinates(lit.position);
+            place.iter().all(|c| (0.0..=1.0).contains(c))
+        };
+        lit.shape == self.shape && self.square.as_ref().is_none_or(inside)
+    }
+
+    /// By shape: what can stand between the landing and it.
+    fn blockers(&self, scene: &Scene, spot: usize, shapes: &[Region]) -> Vec<Blockers> {
+        let from = match &self.square {
+            Some(square) => Region::patch(square),
+            None => Region::point(scene.laser.spots[spot].target.position),
+        };
+        let to = shapes.iter().zip(0..);
+        to.map(|(region, id)| {
+            let ends = [Some(self.shape), Some(id)];
+            scene.bvh().blockers(&from, region, ends)
+        })
+        .collect()
+    }
+}
+
+/// Lit points of some columns of Φcam for a number of places in the beams: the same for all places
+/// where beams have no width. `None` where the light is lost.
+#[derive(Debug)]
+pub(super) struct LitPoints<'p> {
+    pub columns: Range<usize>,
+    /// By place and column, or by column alone.
+    points: Cow<'p, [Option<Vertex>]>,
+}
+
+impl LitPoints<'_> {
+    /// Whether all places have the same points.
+    pub(super) fn is_fixed(&self) -> bool {
+        self.points.len() == self.columns.len()
+    }
+
+    /// The points of all columns for place `k`.
+    pub(super) fn at(&self, k: usize) -> &[Option<Vertex>] {
+        let n = self.columns.len();
+        if self.is_fixed() {
+            &self.points
+        } else {
+            &self.points[k * n..(k + 1) * n]
+        }
+    }
+}
+
+/// A lit point, its column, and the shape of a vertex that it may light.
+pub(super) type Connection<'p> = (usize, &'p Vertex, ShapeId);
+
+impl<'a> LitSpots<'a> {
+    pub(super) fn new(scene: &'a Scene, range: Range<usize>) -> Self {
+        let beams = Beams::new(scene);
+        let shapes = scene.surfaces.iter().map(|s| Region::around(&s.shape));
+        let shapes: Vec<Region> = shapes.collect();
+        let landings = range.clone().map(|spot| Landing::new(scene, &beams, spot));
+        let landings: Vec<Option<Landing>> = landings.collect();
+        let blockers = landings.iter().zip(range.clone());
+        let blockers: Vec<Vec<Blockers>> = blockers
+            .map(|(landing, spot)| match landing {
+                Some(landing) => landing.blockers(scene, spot, &shapes),
+                None => vec![Blockers::Any; shapes.len()],
+            })
+            .collect();
+        let clear = (0..shapes.len())
+            .map(|t| !beams.has_width() && blockers.iter().all(|b| b[t].none()))
+            .collect();
+        Self {
+            scene,
+            beams,
+            range,
+            landings,
+            blockers,
+            clear,
+            glossy: scene.surfaces.iter().any(|s| !s.is_lambertian()),
+        }
+    }
+
+    /// The points lit by the beams of `columns` for many places in the beams.
+    pub(super) fn points(&self, places: &[[f64; 2]], columns: &Range<usize>) -> LitPoints<'_> {
+        let spots = self.range.start + columns.start..self.range.start + columns.end;
+        let points = if self.beams.has_width() {
+            let at = |place: &[f64; 2]| {
+                let place = *place;
+                spots.clone().map(move |s| self.beams.point(s, place))
+            };
+            Cow::Owned(match places {
+                [place] => at(place).collect(),
+                _ => places
+                    .par_iter()
+                    .with_min_len(64)
+                    .flat_map_iter(at)
+                    .collect(),
+            })
+        } else {
+            Cow::Borrowed(&self.beams.ideal[spots])
+        };
+        LitPoints {
+            columns: columns.clone(),
+            points,
+        }
+    }
+
+    /// Lit points as a batch of `width`, weighted by the factor c of their BRDF.
+    pub(super) fn batch(&self, points: &[Option<Vertex>], width: usize) -> Batch {
+        let mut batch = Batch::zeros(width);
+        for (i, point) in points.iter().enumerate() {
+            if let Some(p) = point {
+                batch.set(i, p.oriented(), p.constant_factor(self.scene), p.shape);
+            }
+        }
+        batch
+    }
+
+    /// Multiplies the entries, each a geometry term and what is known without directions, by the
+    /// visibility and by the factors d of both BRDFs; `factor(i, p)` is that at x for light from p,
+    /// and `position(i)` the position of x.
+    #[inline]
+    pub(super) fn connect<'p>(
+        &self,
+        entries: &mut [f64],
+        connection: impl Fn(usize) -> Option<Connection<'p>>,
+        position: impl Fn(usize) -> DVec3,
+        factor: impl Fn(usize, DVec3) -> f64,
+    ) {
+        let blockers = |i: usize| {
+            let (column, lit, x) = connection(i)?;
+            (!self.clear[x as usize]).then(|| self.blockers(column, lit, x))
+        };
+        hide(self.scene.bvh(), entries, blockers, |i| {
+            let (_, lit, x) = connection(i).expect("what can be blocked is connected");
+            [(position(i), x), (lit.position, lit.shape)]
+        });
+        if !self.glossy {
+            return;
+        }
+        for (i, entry) in entries.iter_mut().enumerate().filter(|(_, e)| **e != 0.0) {
+            if let Some((_, lit, _)) = connection(i) {
+                *entry *= lit.factor_to(self.scene, position(i));
+                *entry *= factor(i, lit.position);
+            }
+        }
+    }
+
+    /// [`LitSpots::connect`] of one vertex with a row of points, its columns from `first` on.
+    pub(super) fn connect_row(
+        &self,
+        (position, shape): Place,
+        points: &[Option<Vertex>],
+        first: usize,
+        row: &mut [f64],
+        factor: impl Fn(DVec3) -> f64,
+    ) {
+        if self.clear[shape as usize] && !self.glossy {
+            return;
+        }
+        let connection = |i: usize| Some((first + i, points.get(i)?.as_ref()?, shape));
+        self.connect(row, connection, |_| position, |_, light| factor(light));
+    }
+
+    /// Sets `row` to the light that goes from each lit point by the vertex x of a path into the
+    /// pixel: β·c·Φlaser · G·c_l · V·d·d_l.
+    pub(super) fn light_vertex(&self, x: &Vertex, lit: &LitPoints<'_>, row: &mut [f64]) {
+        let points = lit.at(0);
+        let radiance = x.throughput * x.constant_factor(self.scene) * self.scene.laser.power;
+        for (entry, point) in row.iter_mut().zip(points) {
+            let term = |lit: &Vertex| {
+                let (term, _) = geometry_term(x.oriented(), lit.oriented())?;
+                Some(radiance * (term * lit.constant_factor(self.scene)))
+            };
+            *entry = point.as_ref().and_then(term).unwrap_or(0.0);
+        }
+        let place = (x.position, x.shape);
+        let factor = |light| x.factor_from(self.scene, light);
+        self.connect_row(place, points, lit.columns.start, row, factor);
+    }
+
+    /// What can stand between shape `x` and the point that the beam of `column` lights.
+    fn blockers(&self, column: usize, lit: &Vertex, x: ShapeId) -> &Blockers {
+        match &self.landings[column] {
+            Some(landing) if landing.holds(lit) => &self.blockers[column][x as usize],
+            _ => &Blockers::Any,
+        }
+    }
+
+    /// Adds to `sums` the light that goes from the lit spots to each vertex x_k, all spots of a
+    /// vertex at once: weight(k) · c_l·G·V·d_l · factor(k, position of l). Vertices of weight 0 are
+    /// left out.
+    pub(super) fn add_light(
+        &self,
+        x: &Batch,
+        weight: impl Fn(usize) -> f64,
+        factor: impl Fn(usize, DVec3) -> f64,
+        lit: &LitPoints<'_>,
+        sums: &mut [f64],
+    ) {
+        let mut row = vec![0.0; sums.len()];
+        let mut batch = self.batch(lit.at(0), sums.len());
+        for (k, weight) in (0..x.len()).map(|k| (k, weight(k))) {
+            if weight == 0.0 {
+                continue;
+            }
+            let points = lit.at(k);
+            if !lit.is_fixed() {
+                batch = self.batch(points, sums.len());
+            }
+            batch.geometry_terms_from(x.oriented(k), weight, &batch.weight, &mut row);
+            let first = lit.columns.start;
+            self.connect_row(x.place(k), points, first, &mut row, |p| factor(k, p));
+            sums.iter_mut().zip(&row).for_each(|(s, r)| *s += r);
+        }
+    }
+}
