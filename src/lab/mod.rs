@@ -181,7 +181,7 @@ pub use agreement::{Agreement, Entry, Errors, Evidence, Test, agree};
 pub use brdf::{Assumption, BrdfPlan, BrdfStudy, BrdfTasks, Quality, Ratio};
 pub use budget::{BudgetPlan, BudgetTasks, Closure, ErrorBudget, Term};
 pub use bytes::{LAYOUT, TaskError, decode, encode, encoded};
-pub use convergence::{Convergence, ConvergenceError, ConvergenceTasks, Curve, Step};
+pub use convergence::{Convergence, ConvergenceTasks, Curve, Step};
 pub use coverage::{Coverage, CoveragePlan, CoverageRow, CoverageTasks};
 pub use ensemble::{Estimate, Spread};
 pub use error::{LabError, StudyError};
@@ -189,14 +189,13 @@ pub use experiment::{Experiment, ExperimentPlan, ExperimentTasks, Reading, Setti
 pub use exposure::describe_exposure;
 pub use gallery::{Automatic, Gallery, GalleryPlan, GallerySurface, GalleryTasks, Picture, Series};
 pub use indicator::{
-    Coefficients, Comparison, Configuration, Indicator, IndicatorError, IndicatorPlan,
-    IndicatorTasks, Layout, NoisyOutcome, NoisyPoint, NoisySummary,
+    Coefficients, Comparison, Configuration, Indicator, IndicatorPlan, IndicatorTasks, Layout,
+    NoisyOutcome, NoisyPoint, NoisySummary,
 };
 pub use measures::Measures;
 pub use noise::{
     AxisLabel, Best, Held, LIMITS, LedgerError, Lost, NamedSensor, NoiseAxis, NoiseCurve,
-    NoiseError, NoisePlan, NoiseStudy, NoiseTasks, Point, Reach, RenderNoise, Trial, read_ledger,
-    write_ledger,
+    NoisePlan, NoiseStudy, NoiseTasks, Point, Reach, RenderNoise, Trial, read_ledger, write_ledger,
 };
 pub use objects::{
     Attempt, Noise, ObjectBands, RecoveredObject, measured, picards, recover_objects,

@@ -93,7 +93,7 @@ impl NoiseTasks {
     /// The study of a scene with these values of the options of the noise study.
     ///
     /// # Errors
-    /// [`OptionError`] and [`super::NoiseError`].
+    /// [`OptionError`] and [`super::LabError`].
     pub fn given(scene: &Scene, values: &Values) -> Result<Self, StudyError> {
         let axis = axis(values, scene)?;
         let levels: Vec<f64> = values.list("noise")?;
