@@ -1,9 +1,14 @@
 //! Why a study has no result.
 
+use std::error::Error;
+
 use crate::model::ModelError;
 use crate::scene::SceneError;
 use crate::sensor::SensorError;
 use crate::transport::{RenderError, SamplesError, Stopped};
+
+/// Why a study was not done; cause and cure in its text.
+pub type StudyError = Box<dyn Error + Send + Sync>;
 
 /// Why a study has no result: what is wrong with its scene or settings, or that it was stopped.
 #[derive(Debug, thiserror::Error)]

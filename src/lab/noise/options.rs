@@ -3,8 +3,9 @@
 use super::axis::{NamedSensor, NoiseAxis};
 use super::plan::NoisePlan;
 use super::tasks::NoiseTasks;
+use crate::lab::error::StudyError;
 use crate::lab::options::{Opt, OptionError, Values};
-use crate::lab::registered::{Registered, StudyError, prepared};
+use crate::lab::registered::{Registered, prepared};
 use crate::model::Kernel;
 use crate::scene::{Scene, Spread};
 
