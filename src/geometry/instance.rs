@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DAffine3;
 
-use super::{DVec3, Interaction, Mesh, Ray};
+use super::{Contact, DVec3, Interaction, Mesh, Ray};
 
 /// A mesh, placed by a similarity (rotation, uniform scale, translation): several bodies may share
 /// one mesh. Rays are taken into the mesh's own space, so that a million triangles exist, and their
@@ -150,10 +150,10 @@ impl Instance {
 
     /// First triangle met, from either side, at 0 < t < length; a ray that starts in a triangle's
     /// plane does not meet that.
-    pub fn intersect(&self, ray: &Ray) -> Option<(f64, u32)> {
-        let hit = self.mesh.closest_beyond(&self.local(ray), self.reach())?;
-        let t = hit.t * self.scale;
-        (t < ray.length).then_some((t, hit.triangle))
+    pub fn intersect(&self, ray: &Ray) -> Option<Contact> {
+        let Contact { t, triangle } = self.mesh.closest_beyond(&self.local(ray), self.reach())?;
+        let t = t * self.scale;
+        (t < ray.length).then_some(Contact { t, triangle })
     }
 
     /// Whether a triangle stands between the two ends of the segment.
@@ -205,7 +205,7 @@ impl Instance {
         let below = low.z - 0.5 * (high.z - low.z) - 1.0;
         let mut ray = Ray::new(DVec3::new(x, y, below), DVec3::Z);
         let mut found = Vec::new();
-        while let Some((t, triangle)) = self.intersect(&ray) {
+        while let Some(Contact { t, triangle }) = self.intersect(&ray) {
             let at = ray.origin + ray.direction * t;
             found.push(self.on_triangle(triangle, at));
             ray.origin = at;
