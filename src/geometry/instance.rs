@@ -252,15 +252,17 @@ mod tests {
             let aim = place.transform_point3(DVec3::splat(0.25) + DVec3::new(cos, sin, 0.0) * 0.3);
             let ray = Ray::new(from, (aim - from).normalize());
             let (a, b) = (body.intersect(&ray), copy.intersect(&ray));
-            assert_eq!(a.map(|h| h.1), b.map(|h| h.1), "{k}");
+            assert_eq!(a.map(|h| h.triangle), b.map(|h| h.triangle), "{k}");
             if let (Some(a), Some(b)) = (a, b) {
                 met += 1;
-                assert!((a.0 - b.0).abs() < 1e-11);
-                let at = from + ray.direction * a.0;
-                let (p, q) = (body.on_triangle(a.1, at), copy.on_triangle(b.1, at));
+                assert!((a.t - b.t).abs() < 1e-11);
+                let at = from + ray.direction * a.t;
+                let p = body.on_triangle(a.triangle, at);
+                let q = copy.on_triangle(b.triangle, at);
                 assert!((p.position - q.position).length() < 1e-11);
                 assert!((p.normal - q.normal).length() < 1e-12);
-                assert!((body.turned().on_triangle(a.1, at).normal + p.normal).length() == 0.0);
+                let turned = body.turned().on_triangle(a.triangle, at);
+                assert!((turned.normal + p.normal).length() == 0.0);
                 // What starts on a triangle does not meet it, however far the body is from the
                 // origin.
                 let out = Ray::new(p.position, p.normal);
