@@ -4,13 +4,14 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::console::Console;
 use super::failure::Failure;
-use super::folder::{Folder, own_identity};
-use super::interrupt::{process, stop_flag, warned};
-use super::output::Console;
+use super::interrupt::{stop_flag, warned};
+use super::partial;
+use super::process::process;
 use super::progress::Tracing;
 use super::record::Record;
-use super::render::refuse_beyond_f32;
+use super::run_folder::RunFolder;
 use crate::jobs::{Checkpoint, Parts, Spots};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
@@ -20,7 +21,7 @@ use crate::transport::{Control, Plan, Tally};
 pub(super) struct Work<'a> {
     pub scene: &'a Scene,
     pub plan: &'a Plan,
-    pub folder: &'a Folder,
+    pub folder: &'a RunFolder,
     pub record: &'a Record,
     pub pool: &'a rayon::ThreadPool,
     /// Whether to go on from the blocks that an earlier process has finished.
@@ -37,6 +38,7 @@ impl Work<'_> {
         console: Console,
     ) -> Result<(), Failure> {
         let Self { scene, plan, .. } = *self;
+        let partial = self.folder.partial();
         let spots = |range| Spots {
             scene,
             plan,
@@ -63,21 +65,18 @@ impl Work<'_> {
                     format!(" and {there} of {blocks} blocks of the next")
                 })
             })?;
-            refuse_beyond_f32(&traced)?;
-            let write = |(column, spot)| {
+            let keep = |(column, spot)| partial.keep(spot, &traced, column);
+            let columns = self.pool.install(|| {
                 self.folder
-                    .write_frame(scene, self.record, spot, &traced, column)?;
-                self.folder.keep(spot, &traced, column)
-            };
-            let range = || spots.range.clone().into_par_iter();
-            let written: Result<Vec<Matrix>, Failure> = self
-                .pool
-                .install(|| range().enumerate().map(write).collect());
-            for (spot, column) in spots.range.clone().zip(written?) {
+                    .write_frames(scene, self.record, &spots.range, &traced)?;
+                let spots = spots.range.clone().into_par_iter().enumerate();
+                spots.map(keep).collect::<Result<Vec<Matrix>, Failure>>()
+            });
+            for (spot, column) in spots.range.clone().zip(columns?) {
                 tracing.finished(&column);
                 kept[spot] = Some(column);
             }
-            self.folder.remove_checkpoint(&spots.range)?;
+            partial.remove_checkpoint(&spots.range)?;
             if warned() && number + 1 < batches.len() {
                 return Err(Failure::Stopped(String::new()));
             }
@@ -95,8 +94,8 @@ impl Work<'_> {
     ) -> Result<Tally, Failure> {
         let Range { start, end } = spots.range;
         let blocks = spots.blocks();
-        let identity = own_identity(self.scene, self.plan, &spots.range);
-        let path = self.folder.checkpoint(&spots.range)?;
+        let identity = partial::identity(self.scene, self.plan, &spots.range);
+        let path = self.folder.partial().checkpoint(&spots.range)?;
         let mut checkpoint = Checkpoint::new(path, identity, process(self.pool));
         let done = if self.resume {
             checkpoint.resume(&blocks, blocks.end)
@@ -137,7 +136,7 @@ impl Work<'_> {
     fn batches(&self, todo: &[usize], kept: &[Option<Matrix>]) -> Vec<Range<usize>> {
         let most = Spots::together(self.scene, self.plan.estimator);
         let begun = if self.resume {
-            self.folder.checkpoints(self.scene, self.plan)
+            self.folder.partial().checkpoints(self.scene, self.plan)
         } else {
             Vec::new()
         };

@@ -6,8 +6,6 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use super::failure::Failure;
-use super::folder::{COUNTS, EXPOSURE, PHI, SATURATED, STDERR};
-use crate::recovery::Method;
 use crate::store::is_abandoned;
 
 /// Removes the spot-NNNN files of `dir` with the given extension, and `dir` if that empties it.
@@ -17,16 +15,6 @@ pub(super) fn remove_numbered(dir: &Path, extension: &str) -> Result<(), Failure
         ext == extension && !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit())
     })?;
     // Anything else in it is not ours, and keeps it.
-    let _ = fs::remove_dir(dir);
-    Ok(())
-}
-
-/// Removes the photographs of `phicam expose` from `dir`, and `dir` if that empties it.
-pub(super) fn remove_exposed(dir: &Path) -> Result<(), Failure> {
-    let counts = dir.join(COUNTS);
-    remove_numbered(&counts, "exr")?;
-    remove_numbered(&counts, "png")?;
-    remove_named(dir, &[PHI, STDERR, SATURATED, EXPOSURE])?;
     let _ = fs::remove_dir(dir);
     Ok(())
 }
@@ -41,33 +29,6 @@ pub(super) fn remove_named(dir: &Path, names: &[&str]) -> Result<(), Failure> {
             _ => {}
         }
     }
-    Ok(())
-}
-
-/// Removes the matrices, tables and pictures METHOD.npy, METHOD-0.png, METHOD.stderr.npy,
-/// picard.csv, … and those of the truth from `dir`, and `dir` if that empties it.
-pub(super) fn remove_recovered(dir: &Path) -> Result<(), Failure> {
-    remove_files(dir, |stem, ext| {
-        let (name, what) = stem.split_once('.').unwrap_or((stem, ""));
-        let name = name.trim_end_matches(|c: char| c.is_ascii_digit());
-        let name = name.strip_suffix('-').unwrap_or(name);
-        let known = ["truth", "overview", "picard", "picard-joint"].contains(&name)
-            || name.parse::<Method>().is_ok();
-        let ours = known
-            && [
-                "",
-                "stderr",
-                "covariance",
-                "resolution",
-                "bias",
-                "lower",
-                "upper",
-                "texture",
-            ]
-            .contains(&what);
-        ours && matches!(ext, "npy" | "png" | "csv" | "svg" | "ply")
-    })?;
-    let _ = fs::remove_dir(dir);
     Ok(())
 }
 

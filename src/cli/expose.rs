@@ -14,12 +14,13 @@ use serde::Serialize;
 
 use super::Outcome;
 use super::args::ExposeArgs;
-use super::cleanup::remove_exposed;
+use super::console::Console;
 use super::failure::Failure;
-use super::folder::{self, COUNTS, EXPOSED, EXPOSURE, PHI, SATURATED, STDERR};
 use super::load_run::{read_matrix, read_run};
-use super::output::{self, Console};
-use super::record::{Record, version};
+use super::output;
+use super::process::version;
+use super::record::Record;
+use super::run_folder::{self, COUNTS, EXPOSED, EXPOSURE, PHI, SATURATED, STDERR, remove_exposed};
 use crate::film::{self, Channel, Frame, frame_name};
 use crate::lab::describe_exposure;
 use crate::matrix::{Matrix, npy};
@@ -171,7 +172,7 @@ fn refuse_obstacles(out: &Path) -> Result<(), Failure> {
         return Err(Failure::new(cause, "choose another folder (-o)"));
     }
     let files = [PHI, STDERR, SATURATED, EXPOSURE];
-    folder::refuse_obstacles(out, &[COUNTS], &files)
+    run_folder::refuse_obstacles(out, &[COUNTS], &files)
 }
 
 /// What is wrong with the photographs.
@@ -261,7 +262,7 @@ fn write_counts(
         columns: scene.camera.columns,
         rows: scene.camera.rows,
         channels: exposed.counts.iter().enumerate().map(channel).collect(),
-        meta: folder::meta(scene, record, spot),
+        meta: run_folder::meta(scene, record, spot),
     };
     let path: PathBuf = folder.join(frame_name(spot as u32));
     film::exr::write(&path, &frame)?;

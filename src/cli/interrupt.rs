@@ -1,17 +1,11 @@
 //! Ctrl-C, and the warning that a scheduler sends before it ends a job.
 
+use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{LazyLock, Once};
-use std::time::Instant;
-
-use rayon::ThreadPool;
-
-use super::record::version;
-use crate::jobs::Process;
 
 static STOP: AtomicBool = AtomicBool::new(false);
 static WARNED: AtomicBool = AtomicBool::new(false);
-static GENTLE: AtomicBool = AtomicBool::new(false);
+static GUARDED: AtomicBool = AtomicBool::new(false);
 
 /// The flag that ends the work at once: Ctrl-C sets it, and SIGTERM where nothing can be finished
 /// first. A second Ctrl-C ends the process. What is finished is on disk by then.
@@ -24,34 +18,23 @@ pub(super) fn stop_flag() -> &'static AtomicBool {
 /// While it lives SIGTERM is a warning: the block at work is finished first. A second SIGTERM does
 /// not wait for it.
 #[derive(Debug)]
-pub(super) struct Gentle;
+pub(super) struct SignalGuard;
 
-impl Gentle {
+impl SignalGuard {
     /// From now on.
     pub(super) fn new() -> Self {
         let _ = stop_flag();
-        GENTLE.store(true, Ordering::Relaxed);
+        GUARDED.store(true, Ordering::Relaxed);
         Self
     }
 }
 
-impl Drop for Gentle {
+impl Drop for SignalGuard {
     fn drop(&mut self) {
-        GENTLE.store(false, Ordering::Relaxed);
+        GUARDED.store(false, Ordering::Relaxed);
         if warned() {
             STOP.store(true, Ordering::Relaxed);
         }
-    }
-}
-
-/// This process, with the threads of `pool`, for work in blocks.
-pub(super) fn process(pool: &ThreadPool) -> Process {
-    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
-    Process {
-        version: version(),
-        threads: pool.current_num_threads(),
-        warned,
-        clock: || START.elapsed(),
     }
 }
 
@@ -73,7 +56,7 @@ fn listen() {
         for signal in signals.forever() {
             if signal == SIGTERM {
                 let again = WARNED.swap(true, Ordering::Relaxed);
-                if again || !GENTLE.load(Ordering::Relaxed) {
+                if again || !GUARDED.load(Ordering::Relaxed) {
                     STOP.store(true, Ordering::Relaxed);
                 }
             } else if STOP.swap(true, Ordering::Relaxed) {

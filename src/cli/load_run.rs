@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use super::console::Console;
 use super::failure::Failure;
-use super::folder::{PHI, SCENE};
-use super::output::Console;
 use super::record::Record;
+use super::run_folder::{PHI, SCENE};
 use crate::matrix::{Matrix, npy};
 use crate::scene::Scene;
 

@@ -32,16 +32,18 @@
 mod args;
 mod batches;
 mod cleanup;
+mod console;
 mod expose;
 mod failure;
-mod folder;
 mod interrupt;
 mod load_run;
 mod many;
 pub mod many_machines;
 mod model;
 mod output;
+mod partial;
 mod preview;
+mod process;
 mod progress;
 mod record;
 mod recover;
@@ -50,6 +52,7 @@ mod recover_options;
 mod render;
 mod reproduce;
 mod run;
+mod run_folder;
 mod scene;
 pub mod serve;
 mod settings;
@@ -65,8 +68,8 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser};
 
 use args::{Args, Command};
+use console::Console;
 use failure::{Codes, Failure, Outcome};
-use output::Console;
 
 /// Parses the arguments, runs the command and returns its exit code.
 pub fn main() -> ExitCode {

@@ -7,9 +7,10 @@ use serde_json::json;
 use super::Outcome;
 use super::args::ModelArgs;
 use super::cleanup::remove_named;
+use super::console::Console;
 use super::failure::Failure;
-use super::folder::{Folder, MODEL, Z};
-use super::output::{self, Console};
+use super::output;
+use super::run_folder::{MODEL, RunFolder, Z};
 use crate::lab::Integration;
 use crate::matrix::{Matrix, npy};
 use crate::model::{Extent, MatrixModel, converged};
@@ -26,7 +27,7 @@ pub(super) fn execute(args: &ModelArgs, console: Console) -> Result<Outcome, Fai
         }
         model = model.with_occlusion(&scene);
     }
-    let folder = Folder::at(&args.output);
+    let folder = RunFolder::at(&args.output);
     folder.refuse_foreign(&scene, console)?;
     ensure_writable(&args.output)?;
     console.warn(&scene);

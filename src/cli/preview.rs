@@ -2,9 +2,10 @@
 
 use super::Outcome;
 use super::args::PreviewArgs;
+use super::console::Console;
 use super::failure::Failure;
 use super::interrupt::stop_flag;
-use super::output::{self, Console};
+use super::output;
 use super::progress;
 use crate::geometry::DVec3;
 use crate::lab::{PreviewPlan, ViewOptions, auto_viewpoint, preview};

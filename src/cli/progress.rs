@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-use super::output::{Console, harmless};
+use super::console::{Console, harmless};
 use crate::lab::Work;
 use crate::matrix::Matrix;
 use crate::num::digits::significant;

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::failure::Failure;
 use super::output;
+use super::process::version;
 use crate::scene::Scene;
 use crate::transport::Plan;
 
@@ -85,9 +86,4 @@ impl Record {
         let key = |r: &'_ Self| (r.scene_hash.clone(), r.version.clone(), r.plan);
         key(self) == key(other)
     }
-}
-
-/// The version of the program.
-pub(super) fn version() -> &'static str {
-    env!("CARGO_PKG_VERSION")
 }

@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 
 use super::args::RecoverArgs;
 use super::cleanup::remove_named;
+use super::console::Console;
 use super::failure::Failure;
-use super::folder::{PHI, RECOVERED, SATURATED, SCENE, STDERR};
 use super::load_run::{read_matrix, read_run, read_stderr};
-use super::output::{self, Console};
+use super::output;
 use super::record::Record;
 use super::recover_memory::{self, Held, StripErrors, Strips};
+use super::run_folder::{PHI, RECOVERED, SATURATED, SCENE, STDERR};
 use super::{Outcome, recover_options};
 use crate::lab::finding::Describe;
 use crate::lab::{Attempt, Noise, RecoveredObject, describe_recovery, picards, recover_objects};

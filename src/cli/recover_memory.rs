@@ -4,9 +4,9 @@ use std::fs;
 use std::path::Path;
 
 use super::args::RecoverArgs;
+use super::console::Console;
 use super::failure::Failure;
 use super::load_run::refuse_shape;
-use super::output::Console;
 use crate::lab::{Attempt, measured};
 use crate::matrix::npy::Rows;
 use crate::model::MatrixModel;

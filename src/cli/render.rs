@@ -6,12 +6,14 @@ use std::time::Instant;
 
 use super::args::{RenderArgs, TraceArgs};
 use super::batches::Work;
+use super::console::Console;
 use super::failure::Failure;
-use super::folder::{Folder, PHI, Resume, STDERR};
-use super::interrupt::Gentle;
+use super::interrupt::SignalGuard;
 use super::load_run::read_matrix;
-use super::output::{self, Console};
+use super::output;
+use super::process::pool;
 use super::record::Record;
+use super::run_folder::{PHI, Resume, RunFolder, STDERR};
 use super::{Outcome, settings};
 use crate::film;
 use crate::lab::describe_render;
@@ -34,20 +36,20 @@ pub(super) fn execute(args: &RenderArgs, console: Console) -> Result<Outcome, Fa
             format!("use a range within 0..{total}"),
         ));
     }
-    let keep = match (args.resume, spots.len() < total) {
+    let resume = match (args.resume, spots.len() < total) {
         (true, _) => Resume::Finished,
         (false, true) => Resume::OtherSpots,
         (false, false) => Resume::Nothing,
     };
     let plan = settings::plan(&args.trace.paths)?;
-    let complete = match keep {
+    let complete = match resume {
         Resume::Nothing => None,
         _ => complete(&scene, &plan, &args.output)?,
     };
     let (record, traced) = match complete {
         Some(record) => {
             // What the earlier process was killed over.
-            Folder::at(&args.output).tidy()?;
+            RunFolder::at(&args.output).tidy()?;
             (record, None)
         }
         None => {
@@ -56,7 +58,7 @@ pub(super) fn execute(args: &RenderArgs, console: Console) -> Result<Outcome, Fa
                 &plan,
                 &args.trace,
                 spots,
-                keep,
+                resume,
                 &args.output,
                 console,
             )?;
@@ -123,25 +125,25 @@ pub(super) fn into_folder(
     plan: &Plan,
     args: &TraceArgs,
     spots: Range<usize>,
-    keep: Resume,
+    resume: Resume,
     path: &Path,
     console: Console,
 ) -> Result<Rendered, Failure> {
     settings::remark_rounding(&args.paths, plan, console);
     settings::suited(scene, plan)?;
-    let pool = settings::pool(args.threads)?;
+    let pool = pool(args.threads)?;
     let threads = pool.current_num_threads();
     let mut record = Record::new(scene, plan, 0, threads, 0.0);
-    if keep == Resume::Finished
+    if resume == Resume::Finished
         && let Some(earlier) = Record::read(path)?
     {
         record.seconds = earlier.seconds;
     }
     refuse_too_large(scene)?;
-    let folder = Folder::open(path, scene, &record, keep, console)?;
+    let folder = RunFolder::open(path, scene, &record, resume, console)?;
     console.warn(scene);
     let total = scene.laser.spots.len();
-    let there = |s: usize| match keep {
+    let there = |s: usize| match resume {
         Resume::Finished => true,
         Resume::OtherSpots => !spots.contains(&s),
         Resume::Nothing => false,
@@ -164,11 +166,11 @@ pub(super) fn into_folder(
         folder: &folder,
         record: &record,
         pool: &pool,
-        resume: keep == Resume::Finished,
+        resume: resume == Resume::Finished,
     };
-    let gentle = Gentle::new();
+    let guard = SignalGuard::new();
     let traced = work.trace(&todo, &mut kept, console);
-    drop(gentle);
+    drop(guard);
     record.seconds += start.elapsed().as_secs_f64();
     record.finished = kept.iter().flatten().count();
     if let Err(failure) = traced {
@@ -186,7 +188,7 @@ pub(super) fn into_folder(
     if let Some(traced) = &phi {
         folder.write_phi(&traced.flux, &traced.stderr)?;
         record.write(path)?;
-        folder.remove_partial()?;
+        folder.partial().remove()?;
     } else {
         note(&record, path)?;
     }
@@ -224,16 +226,6 @@ pub(super) fn refuse_too_large(scene: &Scene) -> Result<(), Failure> {
         cause,
         "use fewer pixels, spots or max_bounces: at most 16 GiB and 1 GiB a frame",
     ))
-}
-
-/// Frames hold f32: a flux beyond its range would be stored as infinity.
-pub(super) fn refuse_beyond_f32(traced: &Traced) -> Result<(), Failure> {
-    let most = traced.flux.amax().max(traced.stderr.amax());
-    if most <= f64::from(f32::MAX) {
-        return Ok(());
-    }
-    let cause = format!("a flux of {most:.1e} W is more than the f32 of a frame can hold");
-    Err(Failure::new(cause, "lower the laser's power in the scene"))
 }
 
 /// All columns from what was kept of each spot, if every spot is there.

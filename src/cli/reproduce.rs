@@ -6,12 +6,13 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::args::ReproduceArgs;
+use super::console::Console;
 use super::failure::Failure;
 use super::interrupt::stop_flag;
-use super::output::{self, Console};
-use super::record::version;
+use super::output;
+use super::process::{pool, version};
 use super::tasks::Tasks;
-use super::{Outcome, progress, settings};
+use super::{Outcome, progress};
 use crate::lab::finding::Finding;
 use crate::lab::published::{
     Item, ItemSummary, ReproducePlan, ReproduceTasks, overview, reproduce,
@@ -23,7 +24,7 @@ use crate::transport::Control;
 
 pub(super) fn execute(args: &ReproduceArgs, console: Console) -> Result<Outcome, Failure> {
     let (items, plan) = asked(args)?;
-    let pool = settings::pool(args.threads)?;
+    let pool = pool(args.threads)?;
     ensure_writable(&args.output)?;
     let bar = progress::steps(console, "published items");
     bar.set_length(items.len() as u64);

@@ -4,13 +4,14 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use super::args::RunArgs;
+use super::console::Console;
 use super::failure::Failure;
-use super::folder::{REPORT, Resume, SUMMARY};
 use super::interrupt::stop_flag;
-use super::output::{self, Console};
+use super::output;
 use super::progress;
 use super::record::Record;
 use super::render::{self, Rendered};
+use super::run_folder::{REPORT, Resume, SUMMARY};
 use super::{Outcome, model, recover, settings, validate};
 use crate::film;
 use crate::lab::finding::Describe;
@@ -29,7 +30,7 @@ pub(super) fn execute(args: &RunArgs, console: Console) -> Result<Outcome, Failu
     let test = settings::test(&args.test, &plan, console)?;
     let spots = 0..scene.laser.spots.len();
     let asked = Record::new(&scene, &plan, 0, 0, 0.0);
-    let keep = match Record::read(&args.output)? {
+    let resume = match Record::read(&args.output)? {
         Some(earlier) if earlier.same_settings(&asked) && earlier.finished < earlier.spots => {
             console.say("going on with the unfinished run");
             Resume::Finished
@@ -41,7 +42,7 @@ pub(super) fn execute(args: &RunArgs, console: Console) -> Result<Outcome, Failu
         &plan,
         &args.trace,
         spots,
-        keep,
+        resume,
         &args.output,
         console,
     )?;

@@ -6,8 +6,9 @@ use serde_json::json;
 
 use super::Outcome;
 use super::args::{SceneArgs, SceneCommand};
+use super::console::Console;
 use super::failure::Failure;
-use super::output::{self, Console};
+use super::output;
 use super::preview;
 use crate::report;
 use crate::scene::{Builtin, Role, Scene, builtins};

@@ -1,10 +1,8 @@
 //! Checked settings from raw arguments.
 
-use rayon::ThreadPool;
-
 use super::args::{PathArgs, TestArgs};
+use super::console::Console;
 use super::failure::Failure;
-use super::output::Console;
 use crate::lab::{Errors, Test};
 use crate::scene::Scene;
 use crate::transport::{Budget, Plan, unsupported_surface};
@@ -43,19 +41,6 @@ pub(super) fn suited(scene: &Scene, plan: &Plan) -> Result<(), Failure> {
         plan.estimator.name()
     );
     Err(Failure::new(cause, "use --estimator shared"))
-}
-
-/// The threads to work with.
-pub(super) fn pool(threads: Option<usize>) -> Result<ThreadPool, Failure> {
-    if threads.is_some_and(|n| !(1..=4096).contains(&n)) {
-        return Err(Failure::usage(
-            "--threads is out of range",
-            "use 1 to 4096, or leave it out",
-        ));
-    }
-    Ok(rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.unwrap_or(0))
-        .build()?)
 }
 
 /// Paths a block from which on its mean is taken as normally distributed.

@@ -6,9 +6,10 @@ use serde_json::json;
 
 use super::Outcome;
 use super::args::StackArgs;
+use super::console::Console;
 use super::failure::Failure;
-use super::folder::{PHI, STDERR};
-use super::output::{self, Console};
+use super::output;
+use super::run_folder::{PHI, STDERR};
 use crate::film;
 use crate::matrix::{Matrix, npy};
 use crate::store::ensure_writable;

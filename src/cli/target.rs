@@ -5,8 +5,9 @@ use std::path::Path;
 
 use super::Outcome;
 use super::args::TargetArgs;
+use super::console::Console;
 use super::failure::Failure;
-use super::output::{self, Console};
+use super::output;
 use crate::image::Transfer;
 use crate::report;
 use crate::scene::mesh::{FaceValues, Generator, Triangles, to_ply};

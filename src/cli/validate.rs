@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use super::args::ValidateArgs;
+use super::console::Console;
 use super::failure::Failure;
-use super::folder::{self, PHI, STDERR};
 use super::load_run::{read_matrix, read_run, read_stderr};
-use super::output::{self, Console};
+use super::output;
 use super::record::Record;
+use super::run_folder::{self, PHI, STDERR};
 use super::{Outcome, settings};
 use crate::film::{self, Channel, Frame};
 use crate::lab::finding::Describe;
@@ -78,7 +79,7 @@ fn write_map(dir: &Path, scene: &Scene, record: &Record, z: &Matrix) -> Result<(
             channel("p", map(&normal_two_sided)),
             channel("z", map(&|z| z)),
         ],
-        meta: folder::meta(scene, record, 0),
+        meta: run_folder::meta(scene, record, 0),
     };
     film::exr::write(&folder.join("p.exr"), &frame)?;
     let smallest = f64::MIN_POSITIVE;

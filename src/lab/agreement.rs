@@ -1,12 +1,12 @@
 //! Do two matrices agree within the error bars of one of them?
 
+use serde::{Deserialize, Serialize};
+
 use crate::matrix::Matrix;
 use crate::num::statistics::{
     chi_square_sf, normal_two_sided, sidak_p, sidak_threshold, student_to_normal,
 };
 use crate::num::summation::mean_and_stderr;
-
-use super::results::{Agreement, Entry};
 use crate::transport::Estimator;
 
 /// How the errors of traced entries hang together.
@@ -53,6 +53,58 @@ pub struct Test {
     pub replicates: u32,
     /// How the errors hang together.
     pub errors: Errors,
+}
+
+/// One entry of Φcam, traced and modelled.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Entry {
+    /// Pixel index.
+    pub pixel: usize,
+    /// Spot index.
+    pub spot: usize,
+    /// Traced flux, W.
+    pub traced: f64,
+    /// Modelled flux, W.
+    pub modelled: f64,
+    /// Standard normal deviate of the difference.
+    pub z: f64,
+}
+
+/// Traced against modelled Φcam.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Agreement {
+    /// Whether both tests pass at the significance level.
+    pub agrees: bool,
+    /// `physical` or `published`.
+    pub kernel: String,
+    /// How the model integrates: `centres` or `quadrature`.
+    pub integration: String,
+    /// Family-wise error rate of the verdict.
+    pub significance: f64,
+    /// Entries compared.
+    pub entries: usize,
+    /// Mean of z² over the entries: 1 on average if the model is right.
+    pub chi2_per_dof: f64,
+    /// Independent degrees of freedom of that mean.
+    pub dof: f64,
+    /// Its upper tail probability.
+    pub chi2_p: f64,
+    /// Largest |z|.
+    pub largest_z: f64,
+    /// Largest |z| that the significance level allows for this many entries (Šidák).
+    pub z_limit: f64,
+    /// Probability of a |z| as large among all entries (Šidák).
+    pub largest_p: f64,
+    /// Relative Frobenius difference ‖traced − modelled‖/‖modelled‖.
+    pub relative_difference: f64,
+    /// What the traced standard error alone makes of that: ‖stderr‖/‖modelled‖.
+    pub relative_noise: f64,
+    /// Discretisation bound of the model, relative Frobenius norm.
+    pub relative_discretisation: f64,
+    /// Best single scale of the model: traced ≈ scale · modelled.
+    pub best_scale: f64,
+    /// The entries with the largest |z|.
+    pub worst: Vec<Entry>,
 }
 
 /// Two sums of positive doubles cannot be told apart more finely than this.

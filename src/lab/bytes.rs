@@ -6,7 +6,7 @@ use std::ops::Range;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::registered::StudyError;
+use super::error::StudyError;
 use super::study::{Study, outputs};
 use crate::transport::Control;
 

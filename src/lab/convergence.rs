@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use serde::Serialize;
 
+use super::error::LabError;
 use super::finding::{
     self, Axis, Cell, Column, Describe, Figure, Finding, Mark, Plot, Table, listed,
 };
@@ -12,11 +13,11 @@ use super::registered::{Registered, prepared};
 use super::study::{Sharing, Study, Work};
 use super::traced::{SHARES, TracedSpots, share};
 use crate::matrix::Matrix;
-use crate::model::{Extent, Kernel, ModelError, converged};
+use crate::model::{Extent, Kernel, converged};
 use crate::num::digits::figure;
 use crate::num::stream::Sampling;
 use crate::scene::{Role, Scene};
-use crate::transport::{Budget, Control, Estimator, Plan, RenderError, Stopped, render};
+use crate::transport::{Budget, Control, Estimator, Plan, render};
 
 /// One number of paths.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -164,32 +165,16 @@ impl Describe for Convergence {
     }
 }
 
-/// Why there is no study.
-#[derive(Debug, thiserror::Error)]
-pub enum ConvergenceError {
-    /// The scene has no model.
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    /// The quadrature knows no occlusion.
-    #[error(
-        "the reference is a quadrature without occlusion, and the scene has surfaces that can block (use a scene of one hidden surface and its wall)"
-    )]
-    Obstructed,
-    /// The hidden surface is not Lambertian.
-    #[error(
-        "the reference is a quadrature of a Lambertian object, and the scene's is none (use `lambertian` for the hidden surface)"
-    )]
-    Glossy,
-    /// Not numbers of paths to draw a line through.
-    #[error("the error needs at least two different numbers of samples, each from 1 to 2³²")]
-    Samples,
-    /// The light was not traced.
-    #[error(transparent)]
-    Render(#[from] RenderError),
-    /// It was stopped.
-    #[error("{0}")]
-    Stopped(#[from] Stopped),
-}
+const OBSTRUCTED: LabError = LabError::Unsuited(
+    "the reference is a quadrature without occlusion, and the scene has surfaces that can block (use a scene of one hidden surface and its wall)",
+);
+const GLOSSY: LabError = LabError::Unsuited(
+    "the reference is a quadrature of a Lambertian object, and the scene's is none (use `lambertian` for the hidden surface)",
+);
+/// Not numbers of paths to draw a line through.
+const TOO_FEW: LabError = LabError::Unsuited(
+    "the error needs at least two different numbers of samples, each from 1 to 2³²",
+);
 
 /// `phicam study convergence`.
 pub(super) const STUDY: Registered = Registered {
@@ -271,14 +256,14 @@ impl ConvergenceTasks {
     }
 
     /// Refuses what the reference does not know.
-    fn check(&self) -> Result<(), ConvergenceError> {
+    fn check(&self) -> Result<(), LabError> {
         let occluders = self.scene.surfaces.iter().any(|s| s.role == Role::Occluder);
         let glossy = self.scene.hidden().any(|(_, s)| !s.is_lambertian());
         if glossy {
-            return Err(ConvergenceError::Glossy);
+            return Err(GLOSSY);
         }
         if occluders || self.scene.hidden().count() > 1 {
-            return Err(ConvergenceError::Obstructed);
+            return Err(OBSTRUCTED);
         }
         Ok(())
     }
@@ -289,7 +274,7 @@ impl Study for ConvergenceTasks {
     type Context = Matrix;
     type Output = TracedSpots;
     type Result = Convergence;
-    type Error = ConvergenceError;
+    type Error = LabError;
 
     fn name(&self) -> &'static str {
         "convergence"
@@ -315,7 +300,7 @@ impl Study for ConvergenceTasks {
         Sharing::InTurn
     }
 
-    fn context(&self, _: Control<'_>) -> Result<Matrix, ConvergenceError> {
+    fn context(&self, _: Control<'_>) -> Result<Matrix, LabError> {
         let truth = converged(&self.scene, Kernel::Physical, Extent::FULL)?.phi;
         self.check()?;
         Ok(truth)
@@ -326,8 +311,8 @@ impl Study for ConvergenceTasks {
         _: &Matrix,
         index: usize,
         control: Control<'_>,
-    ) -> Result<TracedSpots, ConvergenceError> {
-        let (of, spots) = self.at(index).ok_or(ConvergenceError::Samples)?;
+    ) -> Result<TracedSpots, LabError> {
+        let (of, spots) = self.at(index).ok_or(TOO_FEW)?;
         let plan = Plan {
             estimator: of.estimator,
             sampling: of.sampling,
@@ -343,11 +328,7 @@ impl Study for ConvergenceTasks {
         own.is_some_and(|(_, spots)| part.shaped((truth.nrows(), spots.len())))
     }
 
-    fn finish(
-        &self,
-        truth: &Matrix,
-        parts: Vec<TracedSpots>,
-    ) -> Result<Convergence, ConvergenceError> {
+    fn finish(&self, truth: &Matrix, parts: Vec<TracedSpots>) -> Result<Convergence, LabError> {
         let mut parts = parts.iter();
         let mut curves = Vec::new();
         for renders in self.renders.chunks(self.samples.len().max(1)) {
@@ -360,14 +341,11 @@ impl Study for ConvergenceTasks {
                     stated: stderr.norm() / truth.norm(),
                 })
             };
-            let steps: Vec<Step> = renders
-                .iter()
-                .map(step)
-                .collect::<Result<_, ConvergenceError>>()?;
+            let steps: Vec<Step> = renders.iter().map(step).collect::<Result<_, LabError>>()?;
             curves.push(Curve {
                 estimator: renders[0].estimator.name().to_owned(),
                 sampler: renders[0].sampling.name().to_owned(),
-                slope: slope(&steps).ok_or(ConvergenceError::Samples)?,
+                slope: slope(&steps).ok_or(TOO_FEW)?,
                 steps,
             });
         }
@@ -381,8 +359,8 @@ impl Study for ConvergenceTasks {
 }
 
 impl Render {
-    fn budget(self) -> Result<Budget, ConvergenceError> {
-        Budget::new(self.samples, self.sampling).map_err(|_| ConvergenceError::Samples)
+    fn budget(self) -> Result<Budget, LabError> {
+        Budget::new(self.samples, self.sampling).map_err(|_| TOO_FEW)
     }
 }
 

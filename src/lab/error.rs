@@ -1,9 +1,18 @@
 //! Why a study has no result.
 
+use std::error::Error;
+
+use super::validation::ValidationError;
 use crate::model::ModelError;
+use crate::num::linalg::LinalgError;
+use crate::num::multiprecision::TooFewDigits;
+use crate::recovery::RecoveryError;
 use crate::scene::SceneError;
 use crate::sensor::SensorError;
 use crate::transport::{RenderError, SamplesError, Stopped};
+
+/// Why a study was not done; cause and cure in its text.
+pub type StudyError = Box<dyn Error + Send + Sync>;
 
 /// Why a study has no result: what is wrong with its scene or settings, or that it was stopped.
 #[derive(Debug, thiserror::Error)]
@@ -20,12 +29,34 @@ pub enum LabError {
     /// Not a number of paths.
     #[error(transparent)]
     Samples(#[from] SamplesError),
-    /// The light was not traced.
+    /// The light was not traced. A render that was stopped is [`Self::Stopped`].
     #[error(transparent)]
-    Render(#[from] RenderError),
+    Render(RenderError),
+    /// Traced photographs do not fit their model.
+    #[error(transparent)]
+    Validation(#[from] ValidationError),
+    /// A matrix cannot be decomposed.
+    #[error(transparent)]
+    Linalg(#[from] LinalgError),
+    /// Nothing was recovered.
+    #[error(transparent)]
+    Recovery(#[from] RecoveryError),
+    /// The digits of multiple precision do not suffice.
+    #[error(transparent)]
+    Digits(#[from] TooFewDigits),
     /// It was stopped.
     #[error("{0}")]
     Stopped(#[from] Stopped),
+    /// An exposure with nothing but saturated pixels.
+    #[error(
+        "an exposure of {exposure:e} s saturates the brightest pixel; use exposures below {most:.3e} s"
+    )]
+    Saturated {
+        /// The exposure, s.
+        exposure: f64,
+        /// What fills the brightest pixel, s.
+        most: f64,
+    },
     /// There is nothing to study in this scene: cause and cure.
     #[error("{0}")]
     Unsuited(&'static str),
@@ -44,7 +75,27 @@ pub enum LabError {
 }
 
 impl LabError {
-    /// That no light meets the three surfaces of the model.
+    /// No light meets the three surfaces of the model.
     pub(super) const DARK: Self =
         Self::Unsuited("no light reaches the camera by three bounces (see `phicam scene check`)");
+    /// No light of the studied object arrives.
+    pub(super) const DARK_OBJECT: Self =
+        Self::Unsuited("no light from the object reaches the camera (see `phicam scene check`)");
+    /// The camera gets no stray light.
+    pub(super) const NO_GLARE: Self = Self::Unsuited(
+        "no light enters the lens straight from any spot, so there is no glare to study (let the camera face the wall where the spots are)",
+    );
+    /// No board divides any number of elements.
+    pub(super) const NO_OBJECT: Self = Self::Unsuited(
+        "no number of elements is a multiple of a number of checks, so there is no object to study (use e.g. 2 checks and 8 elements)",
+    );
+}
+
+impl From<RenderError> for LabError {
+    fn from(error: RenderError) -> Self {
+        match error {
+            RenderError::Stopped(stopped) => Self::Stopped(stopped),
+            other => Self::Render(other),
+        }
+    }
 }

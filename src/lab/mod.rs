@@ -177,35 +177,36 @@ mod tolerance;
 mod traced;
 mod validation;
 
-pub use agreement::{Errors, Evidence, Test, agree};
+pub use agreement::{Agreement, Entry, Errors, Evidence, Test, agree};
 pub use brdf::{Assumption, BrdfPlan, BrdfStudy, BrdfTasks, Quality, Ratio};
 pub use budget::{BudgetPlan, BudgetTasks, Closure, ErrorBudget, Term};
 pub use bytes::{LAYOUT, TaskError, decode, encode, encoded};
-pub use convergence::{Convergence, ConvergenceError, ConvergenceTasks, Curve, Step};
+pub use convergence::{Convergence, ConvergenceTasks, Curve, Step};
 pub use coverage::{Coverage, CoveragePlan, CoverageRow, CoverageTasks};
 pub use ensemble::{Estimate, Spread};
-pub use error::LabError;
+pub use error::{LabError, StudyError};
 pub use experiment::{Experiment, ExperimentPlan, ExperimentTasks, Reading, Setting, Threshold};
 pub use exposure::describe_exposure;
 pub use gallery::{Automatic, Gallery, GalleryPlan, GallerySurface, GalleryTasks, Picture, Series};
 pub use indicator::{
-    Coefficients, Comparison, Configuration, Indicator, IndicatorError, IndicatorPlan,
-    IndicatorTasks, Layout, NoisyOutcome, NoisyPoint, NoisySummary,
+    Coefficients, Comparison, Configuration, Indicator, IndicatorPlan, IndicatorTasks, Layout,
+    NoisyOutcome, NoisyPoint, NoisySummary,
 };
 pub use measures::Measures;
 pub use noise::{
     AxisLabel, Best, Held, LIMITS, LedgerError, Lost, NamedSensor, NoiseAxis, NoiseCurve,
-    NoiseError, NoisePlan, NoiseStudy, NoiseTasks, Point, Reach, RenderNoise, Trial, read_ledger,
-    write_ledger,
+    NoisePlan, NoiseStudy, NoiseTasks, Point, Reach, RenderNoise, Trial, read_ledger, write_ledger,
 };
-pub use objects::{Attempt, Noise, measured, picards, recover_objects};
+pub use objects::{
+    Attempt, Noise, ObjectBands, RecoveredObject, measured, picards, recover_objects,
+};
 pub use power::{Detection, Power, PowerPlan, PowerRow, PowerTasks};
 pub use preview::{
     Colour, Preview, PreviewError, PreviewPlan, ViewOptions, Viewpoint, auto_viewpoint, preview,
 };
-pub use registered::{AnyStudy, Found, Prepare, Registered, StudyError, found, prepared};
+pub use registered::{AnyStudy, Found, Prepare, Registered, found, prepared};
 pub use registry::STUDIES;
-pub use results::{Agreement, Entry, ObjectBands, RecoveredObject, RunResults};
+pub use results::RunResults;
 pub use study::{Sharing, Study, Work, context, outputs, run};
 pub use summary::{by_surface, describe_recovery, describe_render, recovery};
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};

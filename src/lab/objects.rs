@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use serde::Serialize;
+
 use crate::matrix::Matrix;
 use crate::metrics::{correlation, mtf_normalized, mtf_raw, rmse};
 use crate::model::MatrixModel;
@@ -10,7 +12,62 @@ use crate::recovery::{
     Problem, Recovered, RecoveryError, recover,
 };
 
-use super::results::{ObjectBands, RecoveredObject};
+/// A recovered hidden surface.
+#[derive(Clone, Debug, Serialize)]
+pub struct RecoveredObject {
+    /// Name of the hidden surface.
+    pub surface: String,
+    /// Method.
+    pub method: String,
+    /// Elements along u and v.
+    pub elements: [usize; 2],
+    /// Recovered reflectance of element iu + iv·nu.
+    pub reflectance: Vec<f64>,
+    /// True albedo of the elements.
+    pub truth: Vec<f64>,
+    /// (White − Black)/(White + Black); absent if the truth has no contrast.
+    pub mtf_raw: Option<f64>,
+    /// The same after stretching the recovered values to [0, 1].
+    pub mtf_normalized: Option<f64>,
+    /// Pearson correlation with the truth.
+    pub correlation: Option<f64>,
+    /// Root mean square error against the truth.
+    pub rmse: f64,
+    /// Parameter used and why, in words.
+    pub parameter: String,
+    /// Bands around the reflectances, where they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bands: Option<ObjectBands>,
+    /// Standard error of each reflectance; absent without a noise model and under bounds.
+    pub standard_error: Option<Vec<f64>>,
+    /// What regularisation alone adds to the truth, (R − 1) ρ with ρ the scene's; absent under
+    /// bounds and with a free scale.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bias: Option<Vec<f64>>,
+    /// Directions that the method resolves: trace of its resolution matrix.
+    pub effective_rank: f64,
+    /// Covariance of its elements (rows) with those of all hidden surfaces (columns, in file
+    /// order).
+    #[serde(skip)]
+    pub covariance: Option<Matrix>,
+    /// Its rows of the resolution matrix: what each of its elements shows of the elements of all
+    /// hidden surfaces.
+    #[serde(skip)]
+    pub resolution: Option<Matrix>,
+}
+
+/// Intervals of the elements of a recovered surface.
+#[derive(Clone, Debug, Serialize)]
+pub struct ObjectBands {
+    /// Probability that each alone shall cover.
+    pub confidence: f64,
+    /// What they are: `gaussian`, `gaussian-around-mean` (the bias is left out) or `profile`.
+    pub kind: String,
+    /// Lower limits.
+    pub lower: Vec<f64>,
+    /// Upper limits.
+    pub upper: Vec<f64>,
+}
 
 /// What a recovery is told of the noise in Φcam.
 #[derive(Clone, Copy, Debug)]

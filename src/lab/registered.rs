@@ -1,19 +1,16 @@
 //! A study as whoever runs it sees it: its name, its options, and its tasks as bytes.
 
 use std::any::Any;
-use std::error::Error;
 use std::ops::Range;
 use std::sync::OnceLock;
 
 use super::bytes::{decode, encoded};
+use super::error::StudyError;
 use super::finding::{Describe, Finding};
 use super::options::{Opt, Values};
 use super::study::{Study, Work, context, run};
 use crate::scene::Scene;
 use crate::transport::Control;
-
-/// Why a study was not done; cause and cure in its text.
-pub type StudyError = Box<dyn Error + Send + Sync>;
 
 /// Makes a study ready for a scene, with the values of its options.
 pub type Prepare = fn(&Scene, &Values) -> Result<Box<dyn AnyStudy>, StudyError>;

@@ -12,6 +12,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
+use super::error::LabError;
 use super::finding::{
     Axis, Cell, Column, Curve, Describe, Figure, Finding, Mark, Plot, Table, listed,
 };
@@ -19,11 +20,11 @@ use super::options::{Opt, OptionError};
 use super::registered::{Registered, prepared};
 use super::study::Study;
 use crate::matrix::Matrix;
-use crate::model::{Kernel, MatrixModel, ModelError};
+use crate::model::{Kernel, MatrixModel};
 use crate::num::digits::figure;
-use crate::num::linalg::{LinalgError, svd};
+use crate::num::linalg::svd;
 use crate::scene::Scene;
-use crate::transport::{Control, Stopped};
+use crate::transport::Control;
 
 /// `phicam study spots`.
 pub(super) const STUDY: Registered = Registered {
@@ -85,23 +86,6 @@ pub(super) struct SpotsStudy {
     tolerances: Vec<f64>,
 }
 
-/// Why there is no study.
-#[derive(Debug, thiserror::Error)]
-pub(super) enum SpotsError {
-    /// The scene has no model.
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    /// Φcam cannot be decomposed.
-    #[error(transparent)]
-    Linalg(#[from] LinalgError),
-    /// No light.
-    #[error("no light reaches the camera by three bounces (see `phicam scene check`)")]
-    Dark,
-    /// It was stopped.
-    #[error("{0}")]
-    Stopped(#[from] Stopped),
-}
-
 /// Φcam of all spots, pixels × spots, W, and its largest singular value.
 #[derive(Debug)]
 pub(super) struct Photographs {
@@ -160,7 +144,7 @@ fn rank(
     columns: Range<usize>,
     bound: usize,
     tolerances: &[f64],
-) -> Result<RankOfSpots, SpotsError> {
+) -> Result<RankOfSpots, LabError> {
     let sigma = svd(&phi.columns_range(columns.clone()).into_owned())?.sigma;
     let above = |tolerance: &f64| sigma.iter().filter(|s| **s > tolerance * largest).count();
     Ok(RankOfSpots {
@@ -175,7 +159,7 @@ impl Study for SpotsStudy {
     type Context = Photographs;
     type Output = RankOfSpots;
     type Result = SpotRanks;
-    type Error = SpotsError;
+    type Error = LabError;
 
     fn name(&self) -> &'static str {
         "spots"
@@ -185,13 +169,13 @@ impl Study for SpotsStudy {
         self.spots.len()
     }
 
-    fn context(&self, _: Control<'_>) -> Result<Photographs, SpotsError> {
+    fn context(&self, _: Control<'_>) -> Result<Photographs, LabError> {
         let phi = self.model.phi();
         let largest = svd(&phi)?.sigma.max();
         if largest > 0.0 {
             Ok(Photographs { phi, largest })
         } else {
-            Err(SpotsError::Dark)
+            Err(LabError::DARK)
         }
     }
 
@@ -200,7 +184,7 @@ impl Study for SpotsStudy {
         photographs: &Photographs,
         index: usize,
         _: Control<'_>,
-    ) -> Result<RankOfSpots, SpotsError> {
+    ) -> Result<RankOfSpots, LabError> {
         let spots = self.spots[index];
         rank(photographs, 0..spots, self.bound(spots), &self.tolerances)
     }
@@ -209,7 +193,7 @@ impl Study for SpotsStudy {
         part.spots == self.spots[index] && part.ranks.len() == self.tolerances.len()
     }
 
-    fn finish(&self, _: &Photographs, steps: Vec<RankOfSpots>) -> Result<SpotRanks, SpotsError> {
+    fn finish(&self, _: &Photographs, steps: Vec<RankOfSpots>) -> Result<SpotRanks, LabError> {
         Ok(SpotRanks {
             scene: self.scene.name.clone(),
             scene_hash: self.scene.hash.clone(),

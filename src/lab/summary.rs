@@ -1,7 +1,9 @@
 //! A render, a verdict, a recovery and a whole run in words and tables.
 
+use super::agreement::{Agreement, Entry};
 use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone};
-use super::results::{Agreement, Entry, RecoveredObject, RunResults};
+use super::objects::RecoveredObject;
+use super::results::RunResults;
 use crate::matrix::Matrix;
 use crate::num::digits::{figure, significant};
 use crate::scene::Scene;

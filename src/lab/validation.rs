@@ -4,8 +4,7 @@ use crate::matrix::Matrix;
 use crate::model::{Extent, Kernel, MatrixModel, ModelError, converged};
 use crate::scene::Scene;
 
-use super::agreement::{Evidence, Test, agree};
-use super::results::Agreement;
+use super::agreement::{Agreement, Evidence, Test, agree};
 
 /// How the model integrates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

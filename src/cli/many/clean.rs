@@ -8,8 +8,9 @@ use serde_json::json;
 use super::planned::Planned;
 use crate::cli::Outcome;
 use crate::cli::args::CleanArgs;
+use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::cli::output::{self, Console};
+use crate::cli::output;
 
 pub(in crate::cli) fn execute(args: &CleanArgs, console: Console) -> Result<Outcome, Failure> {
     let (needless, wrong) = Planned::open(&args.dir, console)?

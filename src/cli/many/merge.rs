@@ -3,8 +3,8 @@
 use super::planned::Planned;
 use crate::cli::Outcome;
 use crate::cli::args::MergeArgs;
+use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::cli::output::Console;
 use crate::jobs::{PlanFile, Shards};
 
 pub(in crate::cli) fn execute(args: &MergeArgs, console: Console) -> Result<Outcome, Failure> {

@@ -8,9 +8,10 @@ use super::render::Render;
 use super::study::Study;
 use super::work::Work;
 use crate::cli::args::PlanArgs;
+use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::cli::folder::{Folder, SCENE};
-use crate::cli::output::{self, Console};
+use crate::cli::output;
+use crate::cli::run_folder::{RunFolder, SCENE};
 use crate::cli::{Outcome, settings};
 use crate::jobs::PlanFile;
 use crate::store::ensure_writable;
@@ -48,7 +49,7 @@ pub(in crate::cli) fn execute(args: &PlanArgs, console: Console) -> Result<Outco
     ensure_writable(dir)?;
     if let Some(scene) = work.scene() {
         console.warn(scene);
-        Folder::at(dir).write_scene(scene)?;
+        RunFolder::at(dir).write_scene(scene)?;
     }
     file.write(&dir.join(PlanFile::NAME))?;
     ensure_writable(&dir.join("shards"))?;

@@ -3,16 +3,15 @@
 use std::ops::Range;
 use std::path::Path;
 
-use rayon::prelude::*;
-
 use super::work::Work;
+use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::cli::folder::{Folder, Resume};
 use crate::cli::interrupt::stop_flag;
-use crate::cli::output::{self, Console};
+use crate::cli::output;
 use crate::cli::progress::Tracing;
 use crate::cli::record::Record;
-use crate::cli::render::{complete, refuse_beyond_f32, refuse_too_large};
+use crate::cli::render::{complete, refuse_too_large};
+use crate::cli::run_folder::{Resume, RunFolder};
 use crate::cli::{Outcome, settings};
 use crate::jobs::{Checkpoint, Identity, Parts, Settings, Shards, Spots, end};
 use crate::matrix::Matrix;
@@ -104,7 +103,7 @@ impl Work for Render {
                 return told(&there, output, json);
             }
         }
-        let folder = Folder::open(output, scene, &record, Resume::Finished, console)?;
+        let folder = RunFolder::open(output, scene, &record, Resume::Finished, console)?;
         let (pixels, spots) = (scene.camera.pixels(), scene.laser.spots.len());
         let [mut flux, mut stderr] = [(); 2].map(|()| Matrix::zeros(pixels, spots));
         for group in Spots::all(scene, plan) {
@@ -116,15 +115,7 @@ impl Work for Render {
                 );
                 Failure::new(cause, "merge again, and do not change the folder meanwhile")
             })?;
-            refuse_beyond_f32(&traced)?;
-            group
-                .range
-                .clone()
-                .into_par_iter()
-                .enumerate()
-                .try_for_each(|(column, spot)| {
-                    folder.write_frame(scene, &record, spot, &traced, column)
-                })?;
+            folder.write_frames(scene, &record, &group.range, &traced)?;
             let (first, n) = (group.range.start, group.range.len());
             flux.columns_mut(first, n).copy_from(&traced.flux);
             stderr.columns_mut(first, n).copy_from(&traced.stderr);
@@ -132,7 +123,7 @@ impl Work for Render {
         folder.write_phi(&flux, &stderr)?;
         record.finished = spots;
         record.write(output)?;
-        folder.remove_partial()?;
+        folder.partial().remove()?;
         told(&record, output, json)
     }
 }

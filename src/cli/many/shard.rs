@@ -3,11 +3,13 @@
 use serde_json::json;
 
 use super::planned::Planned;
+use crate::cli::Outcome;
 use crate::cli::args::ShardArgs;
+use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::cli::interrupt::{Gentle, process};
-use crate::cli::output::{self, Console};
-use crate::cli::{Outcome, settings};
+use crate::cli::interrupt::SignalGuard;
+use crate::cli::output;
+use crate::cli::process::{pool, process};
 use crate::jobs::{Checkpoint, JobError, end, gaps, write};
 use crate::store::ensure_writable;
 
@@ -21,7 +23,7 @@ pub(in crate::cli) fn execute(args: &ShardArgs, console: Console) -> Result<Outc
         );
         return Err(Failure::usage(cause, format!("use 0 to {}", shards - 1)));
     }
-    let pool = settings::pool(args.threads)?;
+    let pool = pool(args.threads)?;
     let range = plan.file.range(args.index);
     let (there, wrong) = plan.find(&range)?;
     refuse_strangers(wrong, console)?;
@@ -32,7 +34,7 @@ pub(in crate::cli) fn execute(args: &ShardArgs, console: Console) -> Result<Outc
         ensure_writable(&plan.shards())?;
     }
     let mut computed = Vec::new();
-    let _gentle = Gentle::new();
+    let _guard = SignalGuard::new();
     for range in missing {
         let [path, unfinished] = plan.files_of(&range);
         let identity = plan.file.identity.clone();

@@ -6,8 +6,9 @@ use super::planned::Planned;
 use super::status;
 use crate::cli::Outcome;
 use crate::cli::args::SlurmArgs;
+use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::cli::output::{self, Console};
+use crate::cli::output;
 use crate::jobs::slurm::{Request, Slurm, check};
 
 /// Where the merge writes unless told, below the plan's folder.

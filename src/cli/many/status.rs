@@ -7,8 +7,9 @@ use serde_json::json;
 use super::planned::Planned;
 use crate::cli::Outcome;
 use crate::cli::args::StatusArgs;
+use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::cli::output::{self, Console};
+use crate::cli::output;
 use crate::jobs::{PlanFolder, array_syntax};
 
 pub(in crate::cli) fn execute(args: &StatusArgs, console: Console) -> Result<Outcome, Failure> {

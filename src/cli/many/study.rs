@@ -7,12 +7,12 @@ use clap::Parser;
 
 use super::work::Work;
 use crate::cli::args::{Args, Command};
+use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::interrupt::stop_flag;
-use crate::cli::output::Console;
-use crate::cli::record::version;
-use crate::cli::tasks::{Tasks, tasks};
-use crate::cli::{Outcome, progress, settings};
+use crate::cli::process::{pool, version};
+use crate::cli::tasks::Tasks;
+use crate::cli::{Outcome, progress, reproduce, study};
 use crate::jobs::{Checkpoint, Identity, Parts, Settings, Shards, compute_tasks, end};
 use crate::lab::LAYOUT as TASKS;
 use crate::scene::Scene;
@@ -157,7 +157,7 @@ impl Work for Study {
             progress: &|_| (),
             stop: stop_flag(),
         };
-        let pool = settings::pool(None)?;
+        let pool = pool(None)?;
         pool.install(|| self.tasks.deliver(&results, control, output))
             .map_err(|e| e.if_stopped("nothing was written; merge again"))
     }
@@ -190,3 +190,23 @@ fn command(arguments: &[String]) -> Result<Command, Failure> {
         Err(error) => Err(Failure::Usage(error.to_string())),
     }
 }
+
+/// The tasks of a command; a study's scene is `scene`, or where there is none the one that the
+/// command names.
+fn tasks(
+    command: &Command,
+    scene: Option<Scene>,
+    console: Console,
+) -> Result<Box<dyn Tasks>, Failure> {
+    match command {
+        Command::Study(args) => study::tasks(args, scene, console),
+        Command::Reproduce(args) => reproduce::tasks(args),
+        _ => Err(Failure::new(
+            "this command cannot be cut into tasks",
+            "plan a render (phicam plan SCENE), a study (… -- study NAME …) or the published items (… -- reproduce …)",
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::path::Path;
 
 use crate::cli::Outcome;
+use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::cli::output::Console;
 use crate::jobs::{Checkpoint, Identity, Parts, Settings, Shards};
 use crate::scene::Scene;
 

@@ -61,11 +61,12 @@ use tokio::runtime;
 
 use super::Outcome;
 use super::args::ServeArgs;
+use super::console::Console;
 use super::failure::Failure;
-use super::folder::{PHI, REPORT};
 use super::interrupt::stop_flag;
-use super::output::{self, Console};
+use super::output;
 use super::record::Record;
+use super::run_folder::{PHI, REPORT};
 use folder::Served;
 use made::Kept;
 use routes::{REPRODUCTION, Site};

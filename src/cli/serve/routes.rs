@@ -13,7 +13,7 @@ use super::body::{Content, Place};
 use super::folder::Served;
 use super::made::Kept;
 use super::{files, host, tiles};
-use crate::cli::folder::REPORT;
+use crate::cli::run_folder::REPORT;
 
 /// The page of `phicam reproduce`.
 pub(super) const REPRODUCTION: &str = "reproduction.html";

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use super::findings::deliver;
 use crate::cli::args::StudyArgs;
+use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::interrupt::stop_flag;
-use crate::cli::output::Console;
-use crate::cli::record::version;
+use crate::cli::process::{pool, version};
 use crate::cli::tasks::Tasks;
-use crate::cli::{Outcome, progress, settings};
+use crate::cli::{Outcome, progress};
 use crate::lab::{AnyStudy, Found};
 use crate::report::Invocation;
 use crate::scene::Scene;
@@ -44,7 +44,7 @@ impl Job {
     /// Runs the study with a progress bar until Ctrl-C; leaves its files and prints its table or
     /// JSON.
     pub(super) fn execute(&self, console: Console) -> Result<Outcome, Failure> {
-        let pool = settings::pool(self.threads)?;
+        let pool = pool(self.threads)?;
         ensure_writable(&self.output)?;
         let scene = &self.invocation.scene;
         console.warn(scene);

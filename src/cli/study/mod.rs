@@ -6,8 +6,8 @@ mod noise;
 
 use super::Outcome;
 use super::args::StudyArgs;
+use super::console::Console;
 use super::failure::Failure;
-use super::output::Console;
 use super::tasks::Tasks;
 use crate::scene::Scene;
 use job::Job;

@@ -8,10 +8,12 @@ use std::time::{Duration, Instant};
 
 use super::job::{invocation, leave};
 use crate::cli::args::StudyArgs;
+use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::interrupt::stop_flag;
-use crate::cli::output::{self, Console};
-use crate::cli::{Outcome, progress, settings};
+use crate::cli::output;
+use crate::cli::process::pool;
+use crate::cli::{Outcome, progress};
 use crate::lab::{NoiseTasks, Trial, found, read_ledger, write_ledger};
 use crate::scene::Scene;
 use crate::store::ensure_writable;
@@ -26,7 +28,7 @@ pub(super) fn execute(
     console: Console,
 ) -> Result<Outcome, Failure> {
     let study = NoiseTasks::given(scene, &args.values()?).map_err(Failure::of)?;
-    let pool = settings::pool(args.threads)?;
+    let pool = pool(args.threads)?;
     let path = args.output.join("noise.csv");
     let name = study.ledger_name();
     let known = known(&path, &name)?;

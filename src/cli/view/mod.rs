@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 
 use super::Outcome;
 use super::args::{Terminal, ViewArgs};
+use super::console::Console;
 use super::failure::Failure;
-use super::output::{self, Console};
+use super::output;
 use crate::report::{Law, Map, Scale, Shown, iterm, kitty};
 use source::Source;
 

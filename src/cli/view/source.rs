@@ -5,10 +5,10 @@ use std::io::Read;
 use std::path::Path;
 
 use super::super::args::ViewArgs;
+use super::super::console::{Console, harmless};
 use super::super::failure::Failure;
-use super::super::folder;
-use super::super::output::{Console, harmless};
 use super::super::record::Record;
+use super::super::run_folder;
 use crate::film;
 use crate::film::exr::FrameError;
 use crate::film::frame::{COUNTS, FLUX};
@@ -178,7 +178,7 @@ fn camera(path: &Path, console: Console) -> Result<Option<([usize; 2], usize)>, 
         if let Some(record) = Record::read(dir)? {
             return Ok(Some((record.pixels, record.spots)));
         }
-        let scene = dir.join(folder::SCENE);
+        let scene = dir.join(run_folder::SCENE);
         if scene.is_file() {
             let scene = console.load_scene(&scene.to_string_lossy())?;
             let pixels = [scene.camera.columns, scene.camera.rows];

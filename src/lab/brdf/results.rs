@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::lab::agreement::Agreement;
 use crate::lab::ensemble::Spread;
-use crate::lab::results::Agreement;
 use crate::recovery::Method;
 
 /// How the study is done.

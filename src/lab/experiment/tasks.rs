@@ -72,10 +72,6 @@ pub(in crate::lab) const STUDY: Registered = Registered {
     },
 };
 
-const DARK: &str = "no light from the object reaches the camera (see `phicam scene check`)";
-const NO_GLARE: &str = "no light enters the lens straight from any spot, so there is no glare to study (let the \
-     camera face the wall where the spots are)";
-
 /// Re-enacts the experiment of a scene. A task is one series of photographs under one seed of the
 /// sensor.
 #[derive(Debug)]
@@ -139,11 +135,11 @@ impl Study for ExperimentTasks {
         let spots = 0..scene.laser.spots.len();
         let signal = render(scene, &trace, spots, control)?.flux;
         if signal.sum() <= 0.0 {
-            return Err(LabError::Unsuited(DARK));
+            return Err(LabError::DARK_OBJECT);
         }
         let direct: f64 = entering_lens(scene).iter().sum();
         if direct <= 0.0 {
-            return Err(LabError::Unsuited(NO_GLARE));
+            return Err(LabError::NO_GLARE);
         }
         Ok(Context {
             laboratory,

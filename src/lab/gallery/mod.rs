@@ -21,7 +21,7 @@ use rayon::prelude::*;
 
 use super::deviate::normal_deviates;
 use super::measures::Measures;
-use super::results::RecoveredObject;
+use super::objects::RecoveredObject;
 use crate::matrix::Matrix;
 use crate::model::MatrixModel;
 use crate::recovery::{LaserSide, Method, Parameter, RecoveryError};

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::plan::IndicatorError;
 use super::projection::Projection;
 use super::sweep::{Arrangement, Site};
+use crate::lab::LabError;
 use crate::metrics::mtf_raw;
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Options, Problem, recover};
@@ -45,7 +45,7 @@ pub(super) fn model(
     site: &Site,
     arrangement: &Arrangement,
     board: usize,
-) -> Result<Option<MatrixModel>, IndicatorError> {
+) -> Result<Option<MatrixModel>, LabError> {
     let Some(scene) = site.arranged(arrangement)? else {
         return Ok(None);
     };
@@ -62,7 +62,7 @@ pub(super) fn configurations(
     site: &Site,
     arrangement: &Arrangement,
     boards: &[usize],
-) -> Result<Vec<Configuration>, IndicatorError> {
+) -> Result<Vec<Configuration>, LabError> {
     let mut found = Vec::new();
     let mut shared: Option<Projection> = None;
     for &board in boards

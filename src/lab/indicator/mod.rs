@@ -23,7 +23,7 @@ mod tasks;
 
 pub use configuration::Configuration;
 pub use noisy::{Comparison, NoisyOutcome, NoisyPoint};
-pub use plan::{IndicatorError, IndicatorPlan};
+pub use plan::IndicatorPlan;
 pub use study::Indicator;
 pub use summary::{Coefficients, NoisySummary};
 pub use sweep::Layout;

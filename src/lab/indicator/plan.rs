@@ -1,11 +1,8 @@
-//! What is swept, and why it cannot be.
+//! What is swept.
 
 use super::sweep::{Arrangement, Layout};
-use crate::model::{Kernel, ModelError};
-use crate::num::linalg::LinalgError;
-use crate::recovery::{Method, RecoveryError};
-use crate::scene::SceneError;
-use crate::transport::Stopped;
+use crate::model::Kernel;
+use crate::recovery::Method;
 
 /// The sweep.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,34 +54,4 @@ impl IndicatorPlan {
         }
         all
     }
-}
-
-/// Why there is no study.
-#[derive(Debug, thiserror::Error)]
-pub enum IndicatorError {
-    /// The scene has no model.
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    /// The wall cannot be extended.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// A laser side cannot be decomposed.
-    #[error(transparent)]
-    Linalg(#[from] LinalgError),
-    /// Nothing was recovered.
-    #[error(transparent)]
-    Recovery(#[from] RecoveryError),
-    /// There is no point that layouts could lie around.
-    #[error(
-        "the normal of the hidden surface meets no wall, so there is no centre for the spots to lie around (turn the surface towards the wall)"
-    )]
-    NoCentre,
-    /// No board divides any number of elements.
-    #[error(
-        "no number of elements is a multiple of a number of checks, so there is no object to study (use e.g. 2 checks and 8 elements)"
-    )]
-    NoObject,
-    /// It was stopped.
-    #[error("{0}")]
-    Stopped(#[from] Stopped),
 }

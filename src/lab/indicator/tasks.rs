@@ -5,16 +5,22 @@ use serde::{Deserialize, Serialize};
 
 use super::configuration::{Configuration, configurations, model};
 use super::noisy::{self, NoisyOutcome, NoisyPoint};
-use super::plan::{IndicatorError, IndicatorPlan};
+use super::plan::IndicatorPlan;
 use super::study::Indicator;
 use super::summary::{coefficients, summary};
 use super::sweep::{Arrangement, Layout, Site};
+use crate::lab::LabError;
 use crate::lab::options::Opt;
 use crate::lab::registered::{Registered, prepared};
 use crate::lab::study::Study;
 use crate::model::{Kernel, ModelError};
 use crate::scene::Scene;
 use crate::transport::Control;
+
+/// No point of the wall lies opposite the hidden surface.
+const NO_CENTRE: LabError = LabError::Unsuited(
+    "the normal of the hidden surface meets no wall, so there is no centre for the spots to lie around (turn the surface towards the wall)",
+);
 
 /// What predicts how well the published inversion works: without noise on every bench, under noise
 /// on every so many.
@@ -107,19 +113,19 @@ impl IndicatorTasks {
     /// The study of a scene.
     ///
     /// # Errors
-    /// [`IndicatorError`] if nothing is hidden, there is no object, or no place for the spots.
-    pub fn new(scene: &Scene, plan: IndicatorPlan) -> Result<Self, IndicatorError> {
+    /// [`LabError`] if nothing is hidden, there is no object, or no place for the spots.
+    pub fn new(scene: &Scene, plan: IndicatorPlan) -> Result<Self, LabError> {
         if scene.hidden().next().is_none() {
             return Err(ModelError::NothingHidden.into());
         }
         let divides = |e: &usize| plan.boards.iter().any(|b| e.is_multiple_of(*b));
         if !plan.elements.iter().any(divides) {
-            return Err(IndicatorError::NoObject);
+            return Err(LabError::NO_OBJECT);
         }
         let widest = plan.half_widths.iter().copied().fold(0.0, f64::max);
         // Two inches for the stagger and to spare.
         let reach = (widest + 2.0) * scene.unit.per_inch();
-        let site = Site::new(scene, reach)?.ok_or(IndicatorError::NoCentre)?;
+        let site = Site::new(scene, reach)?.ok_or(NO_CENTRE)?;
         let arrangements = plan.arrangements();
         let mut benches = Vec::new();
         for (k, arrangement) in arrangements.iter().enumerate() {
@@ -138,7 +144,7 @@ impl IndicatorTasks {
     }
 
     /// The bench of an arrangement and a board, under noise.
-    fn noisy(&self, (k, board): (usize, usize)) -> Result<Vec<NoisyOutcome>, IndicatorError> {
+    fn noisy(&self, (k, board): (usize, usize)) -> Result<Vec<NoisyOutcome>, LabError> {
         let found = model(&self.site, &self.arrangements[k], board)?;
         Ok(found.map_or_else(Vec::new, |model| noisy::compared(&model, &self.plan)))
     }
@@ -155,7 +161,7 @@ impl Study for IndicatorTasks {
     type Context = ();
     type Output = Output;
     type Result = Indicator;
-    type Error = IndicatorError;
+    type Error = LabError;
 
     fn name(&self) -> &'static str {
         "indicator"
@@ -165,11 +171,11 @@ impl Study for IndicatorTasks {
         self.arrangements.len() + self.chosen.len()
     }
 
-    fn context(&self, _: Control<'_>) -> Result<(), IndicatorError> {
+    fn context(&self, _: Control<'_>) -> Result<(), LabError> {
         Ok(())
     }
 
-    fn task(&self, (): &(), index: usize, _: Control<'_>) -> Result<Output, IndicatorError> {
+    fn task(&self, (): &(), index: usize, _: Control<'_>) -> Result<Output, LabError> {
         Ok(match self.arrangements.get(index) {
             Some(own) => Output::Swept(configurations(&self.site, own, &self.plan.boards)?),
             None => Output::Noisy(self.noisy(self.chosen[index - self.arrangements.len()])?),
@@ -194,7 +200,7 @@ impl Study for IndicatorTasks {
         }
     }
 
-    fn finish(&self, (): &(), parts: Vec<Output>) -> Result<Indicator, IndicatorError> {
+    fn finish(&self, (): &(), parts: Vec<Output>) -> Result<Indicator, LabError> {
         let (mut configured, mut noisy) = (Vec::new(), Vec::new());
         for (k, part) in parts.into_iter().enumerate() {
             match part {

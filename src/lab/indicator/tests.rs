@@ -1,6 +1,7 @@
 use std::sync::atomic::AtomicBool;
 
 use super::*;
+use crate::lab::LabError;
 use crate::lab::finding::Describe;
 use crate::lab::study::{self, tests::divides};
 use crate::model::{Kernel, ModelError};
@@ -35,7 +36,7 @@ fn small_scene() -> Scene {
     .unwrap()
 }
 
-fn run(plan: &IndicatorPlan) -> Result<Indicator, IndicatorError> {
+fn run(plan: &IndicatorPlan) -> Result<Indicator, LabError> {
     study::run(
         &IndicatorTasks::new(&small_scene(), plan.clone())?,
         Control::none(),
@@ -80,12 +81,13 @@ fn what_cannot_be_swept_is_refused() {
         boards: vec![3],
         ..small_plan()
     };
-    assert!(matches!(run(&none), Err(IndicatorError::NoObject)));
+    let refused = run(&none).unwrap_err().to_string();
+    assert_eq!(refused, LabError::NO_OBJECT.to_string());
     let furnace = Scene::load("furnace").unwrap();
     let refused = IndicatorTasks::new(&furnace, small_plan());
     assert!(matches!(
         refused,
-        Err(IndicatorError::Model(ModelError::NothingHidden))
+        Err(LabError::Model(ModelError::NothingHidden))
     ));
     let stopping = Control {
         stop: &AtomicBool::new(true),
@@ -93,7 +95,7 @@ fn what_cannot_be_swept_is_refused() {
     };
     let tasks = IndicatorTasks::new(&small_scene(), small_plan()).unwrap();
     let stopped = study::run(&tasks, stopping);
-    assert!(matches!(stopped, Err(IndicatorError::Stopped(_))));
+    assert!(matches!(stopped, Err(LabError::Stopped(_))));
 }
 
 #[test]

@@ -33,7 +33,7 @@ pub use best::Best;
 pub use curve::{Held, LIMITS, Lost, NoiseCurve, Point, Reach};
 pub use ledger::{LedgerError, read_ledger, write_ledger};
 pub(super) use options::STUDY;
-pub use plan::{NoiseError, NoisePlan};
+pub use plan::NoisePlan;
 pub use render::RenderNoise;
 pub use study::NoiseStudy;
 pub use tasks::NoiseTasks;

@@ -3,8 +3,9 @@
 use super::axis::{NamedSensor, NoiseAxis};
 use super::plan::NoisePlan;
 use super::tasks::NoiseTasks;
+use crate::lab::error::StudyError;
 use crate::lab::options::{Opt, OptionError, Values};
-use crate::lab::registered::{Registered, StudyError, prepared};
+use crate::lab::registered::{Registered, prepared};
 use crate::model::Kernel;
 use crate::scene::{Scene, Spread};
 
@@ -92,7 +93,7 @@ impl NoiseTasks {
     /// The study of a scene with these values of the options of the noise study.
     ///
     /// # Errors
-    /// [`OptionError`] and [`super::NoiseError`].
+    /// [`OptionError`] and [`super::LabError`].
     pub fn given(scene: &Scene, values: &Values) -> Result<Self, StudyError> {
         let axis = axis(values, scene)?;
         let levels: Vec<f64> = values.list("noise")?;

@@ -1,10 +1,10 @@
-//! What is studied, and why it cannot be.
+//! What is studied.
 
 use super::axis::NoiseAxis;
+use crate::lab::error::LabError;
 use crate::model::{Kernel, MatrixModel, ModelError};
 use crate::recovery::Method;
 use crate::scene::Scene;
-use crate::transport::{RenderError, Stopped};
 
 /// What is studied.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,46 +27,6 @@ pub struct NoisePlan {
     pub first_seed: u64,
 }
 
-/// Why there is no study.
-#[derive(Debug, thiserror::Error)]
-pub enum NoiseError {
-    /// The scene has no model.
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    /// No board divides any number of elements.
-    #[error(
-        "no number of elements is a multiple of a number of checks, so there is no object to study (use e.g. 2 checks and 8 elements)"
-    )]
-    NoObject,
-    /// No light.
-    #[error("no light from the object reaches the camera (see `phicam scene check`)")]
-    Dark,
-    /// No glare to be had.
-    #[error(
-        "no light enters the lens straight from any spot, so there is no glare to study (let the camera face the wall where the spots are)"
-    )]
-    NoGlare,
-    /// Not a number of paths.
-    #[error("{0} samples cannot be traced (use 1 to 2³²)")]
-    Samples(u64),
-    /// The light was not traced.
-    #[error(transparent)]
-    Render(#[from] RenderError),
-    /// It was stopped.
-    #[error("{0}")]
-    Stopped(#[from] Stopped),
-    /// Nothing but saturated pixels.
-    #[error(
-        "an exposure of {exposure:e} s saturates the brightest pixel; use exposures below {most:.3e} s"
-    )]
-    Saturated {
-        /// The exposure, s.
-        exposure: f64,
-        /// What fills the brightest pixel, s.
-        most: f64,
-    },
-}
-
 impl NoisePlan {
     /// What trials have to share to belong to one study, in words: program, scene, kernel, axis and
     /// sensor.
@@ -84,8 +44,8 @@ impl NoisePlan {
     /// The levels of a plan that names none, from quiet to loud.
     ///
     /// # Errors
-    /// [`NoiseError`], where they depend on the brightest object.
-    pub fn default_levels(&self, scene: &Scene) -> Result<Vec<f64>, NoiseError> {
+    /// [`LabError`], where they depend on the brightest object.
+    pub fn default_levels(&self, scene: &Scene) -> Result<Vec<f64>, LabError> {
         let longest = match &self.axis {
             NoiseAxis::Exposure(camera) => {
                 let brightest = self.brightest(scene)?;
@@ -99,7 +59,7 @@ impl NoisePlan {
     }
 
     /// The brightest entry of all objects, W.
-    fn brightest(&self, scene: &Scene) -> Result<f64, NoiseError> {
+    fn brightest(&self, scene: &Scene) -> Result<f64, LabError> {
         let mut brightest = 0.0f64;
         for object in self.objects() {
             brightest = brightest.max(self.model(scene, object)?.phi().max());
@@ -107,7 +67,7 @@ impl NoisePlan {
         if brightest > 0.0 {
             Ok(brightest)
         } else {
-            Err(NoiseError::Dark)
+            Err(LabError::DARK_OBJECT)
         }
     }
 
@@ -122,7 +82,7 @@ impl NoisePlan {
     }
 
     /// Refuses exposures that saturate whatever the noise.
-    pub(super) fn refuse_saturation(&self, scene: &Scene) -> Result<(), NoiseError> {
+    pub(super) fn refuse_saturation(&self, scene: &Scene) -> Result<(), LabError> {
         let NoiseAxis::Exposure(camera) = &self.axis else {
             return Ok(());
         };
@@ -131,7 +91,7 @@ impl NoisePlan {
             .sensor
             .saturating_exposure(brightest, scene.laser.wavelength);
         match self.levels.iter().find(|level| **level > most) {
-            Some(&exposure) => Err(NoiseError::Saturated { exposure, most }),
+            Some(&exposure) => Err(LabError::Saturated { exposure, most }),
             None => Ok(()),
         }
     }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::axis::NoiseAxis;
-use super::plan::NoiseError;
+use crate::lab::LabError;
 use crate::num::stream::Sampling;
 use crate::scene::Scene;
 use crate::transport::{Budget, Control, Estimator, Plan, render};
@@ -36,10 +36,10 @@ pub(super) fn render_noise(
     axis: &NoiseAxis,
     (estimator, samples, seed): (Estimator, u64, u64),
     control: Control<'_>,
-) -> Result<RenderNoise, NoiseError> {
+) -> Result<RenderNoise, LabError> {
     let spots = scene.laser.spots.len();
     let count = SPOTS.min(spots);
-    let budget = Budget::new(samples, Sampling::Sobol).map_err(|_| NoiseError::Samples(samples))?;
+    let budget = Budget::new(samples, Sampling::Sobol)?;
     let plan = Plan {
         estimator,
         sampling: Sampling::Sobol,

@@ -1,7 +1,7 @@
 //! Exact light made into noisy photographs.
 
 use super::axis::{NoiseAxis, RANGE};
-use super::plan::NoiseError;
+use crate::lab::LabError;
 use crate::lab::ensemble::Photographs;
 use crate::matrix::Matrix;
 use crate::num::stream::{Key, Sampling, Stream};
@@ -30,9 +30,9 @@ struct Shot {
 }
 
 impl Stage {
-    pub(super) fn new(axis: &NoiseAxis, scene: &Scene, exact: Matrix) -> Result<Self, NoiseError> {
+    pub(super) fn new(axis: &NoiseAxis, scene: &Scene, exact: Matrix) -> Result<Self, LabError> {
         if exact.max() <= 0.0 {
-            return Err(NoiseError::Dark);
+            return Err(LabError::DARK_OBJECT);
         }
         let glare = match axis {
             NoiseAxis::Glare(_, spread) => {
@@ -43,7 +43,7 @@ impl Stage {
                 let pattern = glare(scene, all);
                 let ratio = glare_to_signal(&pattern, &exact);
                 if ratio <= 0.0 {
-                    return Err(NoiseError::NoGlare);
+                    return Err(LabError::NO_GLARE);
                 }
                 Some(pattern / ratio)
             }

@@ -10,11 +10,12 @@ use super::best::best;
 use super::bound::bounds;
 use super::curve::NoiseCurve;
 use super::ledger::write_ledger;
-use super::plan::{NoiseError, NoisePlan};
+use super::plan::NoisePlan;
 use super::render::{ESTIMATORS, RenderNoise, render_noise};
 use super::stage::Stage;
 use super::study::NoiseStudy;
 use super::trial::{Trial, measure};
+use crate::lab::LabError;
 use crate::lab::measures::Measures;
 use crate::lab::study::Study;
 use crate::model::MatrixModel;
@@ -124,7 +125,7 @@ impl NoiseTasks {
         open
     }
 
-    fn render(&self, index: usize, control: Control<'_>) -> Result<RenderNoise, NoiseError> {
+    fn render(&self, index: usize, control: Control<'_>) -> Result<RenderNoise, LabError> {
         let (estimator, samples) = self.renders[index - self.objects.len() * self.groups()];
         let how = (estimator, samples, self.plan.first_seed);
         render_noise(&self.scene, &self.plan.axis, how, control)
@@ -134,13 +135,13 @@ impl NoiseTasks {
     /// the others as they are finished, and may break the study off, as `control` may.
     ///
     /// # Errors
-    /// [`NoiseError`].
+    /// [`LabError`].
     pub fn go_on(
         &self,
         known: &[Trial],
         control: Control<'_>,
         keep: &mut dyn FnMut(&[Trial]) -> ControlFlow<()>,
-    ) -> Result<NoiseStudy, NoiseError> {
+    ) -> Result<NoiseStudy, LabError> {
         let objects = self.context(control)?;
         let mut known = known.to_vec();
         known.sort_by(Trial::order);
@@ -166,7 +167,7 @@ impl NoiseTasks {
             }
         }
         let renders = (draws.len()..self.tasks()).map(|index| self.render(index, control));
-        let renders: Vec<RenderNoise> = renders.collect::<Result<_, NoiseError>>()?;
+        let renders: Vec<RenderNoise> = renders.collect::<Result<_, LabError>>()?;
         Ok(self.found(&objects, known, renders))
     }
 
@@ -204,7 +205,7 @@ impl Study for NoiseTasks {
     type Context = Vec<Object>;
     type Output = Output;
     type Result = NoiseStudy;
-    type Error = NoiseError;
+    type Error = LabError;
 
     fn name(&self) -> &'static str {
         "noise"
@@ -214,9 +215,9 @@ impl Study for NoiseTasks {
         self.objects.len() * self.groups() + self.renders.len()
     }
 
-    fn context(&self, _: Control<'_>) -> Result<Vec<Object>, NoiseError> {
+    fn context(&self, _: Control<'_>) -> Result<Vec<Object>, LabError> {
         if self.objects.is_empty() {
-            return Err(NoiseError::NoObject);
+            return Err(LabError::NO_OBJECT);
         }
         self.plan.refuse_saturation(&self.scene)?;
         let object = |object: &[usize; 2]| {
@@ -233,7 +234,7 @@ impl Study for NoiseTasks {
         objects: &Vec<Object>,
         index: usize,
         control: Control<'_>,
-    ) -> Result<Output, NoiseError> {
+    ) -> Result<Output, LabError> {
         let Some((at, draws)) = self.at(index) else {
             return self.render(index, control).map(Output::Render);
         };
@@ -255,7 +256,7 @@ impl Study for NoiseTasks {
         }
     }
 
-    fn finish(&self, objects: &Vec<Object>, parts: Vec<Output>) -> Result<NoiseStudy, NoiseError> {
+    fn finish(&self, objects: &Vec<Object>, parts: Vec<Output>) -> Result<NoiseStudy, LabError> {
         let (mut trials, mut renders) = (Vec::new(), Vec::new());
         for (index, part) in parts.into_iter().enumerate() {
             match (self.at(index), part) {

@@ -1,6 +1,7 @@
 use std::ops::ControlFlow;
 
 use super::*;
+use crate::lab::LabError;
 use crate::lab::finding::Describe;
 use crate::lab::measures::Measures;
 use crate::lab::study::{self, tests::divides};
@@ -44,7 +45,7 @@ fn run(
     };
     match NoiseTasks::new(scene, plan.clone(), Vec::new()).go_on(known, Control::none(), &mut keep)
     {
-        Err(NoiseError::Stopped(_)) => (None, kept),
+        Err(LabError::Stopped(_)) => (None, kept),
         study => (Some(study.unwrap()), kept),
     }
 }
@@ -129,10 +130,7 @@ fn default_levels_can_be_studied() {
         plan.levels[0] *= 100.0;
         let refused = plan.refuse_saturation(&scene);
         let exposure = matches!(plan.axis, NoiseAxis::Exposure(_));
-        assert_eq!(
-            matches!(refused, Err(NoiseError::Saturated { .. })),
-            exposure
-        );
+        assert_eq!(matches!(refused, Err(LabError::Saturated { .. })), exposure);
     }
 }
 
@@ -219,7 +217,8 @@ fn a_plan_without_object_is_refused() {
         ..plan
     };
     let refused = study::run(&NoiseTasks::new(&scene, plan, Vec::new()), Control::none());
-    assert!(matches!(refused, Err(NoiseError::NoObject)));
+    let refused = refused.unwrap_err().to_string();
+    assert_eq!(refused, LabError::NO_OBJECT.to_string());
 }
 
 /// Least squares without bounds is unbiased: its mean raw MTF does not fall, but the denominator's

@@ -2,8 +2,8 @@
 
 use super::inversion::recovered;
 use super::outcome::{Outcome, Trial};
-use super::plan::ReproduceError;
 use super::traced::{AS_RENDERED, Lights, NAMES};
+use crate::lab::LabError;
 use crate::lab::finding::{Curve, Mark};
 use crate::model::{Kernel, PixelGrid, Published, Stagger};
 use crate::num::linalg::Tolerance;
@@ -67,7 +67,7 @@ impl Case {
 
     /// Recovers its boards by the published inversion: noiseless, or from each of the lights of
     /// [`NAMES`].
-    pub(super) fn trials(&self, control: Control<'_>) -> Result<Vec<Trial>, ReproduceError> {
+    pub(super) fn trials(&self, control: Control<'_>) -> Result<Vec<Trial>, LabError> {
         if self.is_traced {
             let board = self.boards[0];
             let lights = Lights::traced(&self.published, board, AS_RENDERED, control)?;

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::exact_geometry::Geometry;
 use super::outcome::{Outcome, Trial};
-use super::plan::ReproduceError;
+use crate::lab::LabError;
 use crate::model::Published;
 use crate::num::multiprecision::{Digits, Inverse, Real, TooFewDigits, dot, inverse};
 use crate::transport::{Control, Stopped};
@@ -25,7 +25,7 @@ pub(super) fn recover(
     case: &Published,
     checks: &[usize],
     control: Control<'_>,
-) -> Result<Trial, ReproduceError> {
+) -> Result<Trial, LabError> {
     let mut short = TooFewDigits {
         digits: 0,
         ratio: 0.0,
@@ -34,7 +34,7 @@ pub(super) fn recover(
     for &digits in &DIGITS[2 * usize::from(many)..] {
         let setup = match Setup::new(case, Digits(digits), control) {
             Ok(setup) => setup,
-            Err(ReproduceError::Digits(e)) => {
+            Err(LabError::Digits(e)) => {
                 short = e;
                 continue;
             }
@@ -54,7 +54,7 @@ pub(super) fn recover(
         short.digits = digits;
         short.ratio = setup.inverse.ratio;
     }
-    Err(ReproduceError::Digits(short))
+    Err(LabError::Digits(short))
 }
 
 struct Setup {
@@ -65,7 +65,7 @@ struct Setup {
 }
 
 impl Setup {
-    fn new(case: &Published, digits: Digits, control: Control<'_>) -> Result<Self, ReproduceError> {
+    fn new(case: &Published, digits: Digits, control: Control<'_>) -> Result<Self, LabError> {
         let geometry = Geometry::new(case, digits);
         let spots = geometry.spots(case);
         let element = |j: usize| {
@@ -74,9 +74,7 @@ impl Setup {
             Ok(spots.iter().map(g).collect())
         };
         let elements = (0..geometry.elements.len()).into_par_iter();
-        let g12: Vec<Vec<Real>> = elements
-            .map(element)
-            .collect::<Result<_, ReproduceError>>()?;
+        let g12: Vec<Vec<Real>> = elements.map(element).collect::<Result<_, LabError>>()?;
         let view = geometry.pixels(case);
         let pixel = |p: &[Real; 2]| {
             control.check()?;
@@ -89,7 +87,7 @@ impl Setup {
             g23: view
                 .par_iter()
                 .map(pixel)
-                .collect::<Result<_, ReproduceError>>()?,
+                .collect::<Result<_, LabError>>()?,
             g12,
         })
     }
@@ -99,7 +97,7 @@ impl Setup {
     }
 
     /// Rows of G12·G12⁺.
-    fn projector(&self, control: Control<'_>) -> Result<Vec<Vec<Real>>, ReproduceError> {
+    fn projector(&self, control: Control<'_>) -> Result<Vec<Vec<Real>>, LabError> {
         let row = |d: &Vec<Real>| {
             control.check()?;
             Ok(self.inverse.left(d))
@@ -124,7 +122,7 @@ impl Setup {
 
     /// Mean over the pixels p of G23\[p,i\]/G23\[p,j\], element i after i: what a value at element
     /// i counts for at element j.
-    fn ratios(&self, control: Control<'_>) -> Result<Vec<Vec<Real>>, ReproduceError> {
+    fn ratios(&self, control: Control<'_>) -> Result<Vec<Vec<Real>>, LabError> {
         let (elements, pixels) = (self.g12.len(), self.g23.len());
         let (zero, one) = (self.digits.whole(0), self.digits.whole(1));
         let share = &one / &self.digits.whole(pixels as i64);

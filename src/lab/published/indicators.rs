@@ -5,9 +5,9 @@ use rayon::prelude::*;
 use super::case::{HALF_WIDTH, KERNELS, published};
 use super::inversion::recovered;
 use super::item::Item;
-use super::plan::ReproduceError;
 use super::sheet::finding;
 use super::spots::{LAYOUT, PER_SIDE, across};
+use crate::lab::LabError;
 use crate::lab::check::Check;
 use crate::lab::finding::{Axis, Curve, Finding, Get, Mark, Plot, Table};
 use crate::lab::inversion::smallest_eigenvalue;
@@ -37,7 +37,7 @@ struct Figures {
 }
 
 impl Figures {
-    fn compute(kernel: Kernel, elements: usize, per_side: usize) -> Result<Self, ReproduceError> {
+    fn compute(kernel: Kernel, elements: usize, per_side: usize) -> Result<Self, LabError> {
         let case = published(kernel, elements, per_side, HALF_WIDTH, Stagger::None);
         let trial = &recovered(&case, &[Tolerance::Spacing], &[elements])?[0];
         Ok(Self {
@@ -53,7 +53,7 @@ impl Figures {
 }
 
 /// Figs 15 and 16.
-pub(super) fn figure(control: Control<'_>) -> Result<Finding, ReproduceError> {
+pub(super) fn figure(control: Control<'_>) -> Result<Finding, LabError> {
     let sides = KERNELS.into_iter().flat_map(|k| SIDES.map(|e| (k, e)));
     let cases: Vec<(Kernel, usize, usize)> = sides
         .flat_map(|(k, e)| PER_SIDE.map(|n| (k, e, n)))
@@ -62,7 +62,7 @@ pub(super) fn figure(control: Control<'_>) -> Result<Finding, ReproduceError> {
         control.check()?;
         Figures::compute(kernel, elements, per_side)
     };
-    let found: Result<Vec<Figures>, ReproduceError> = cases.into_par_iter().map(one).collect();
+    let found: Result<Vec<Figures>, LabError> = cases.into_par_iter().map(one).collect();
     let found = found?;
     let own = |kernel: Kernel, side: usize| {
         let own = found.iter();

@@ -33,6 +33,6 @@ mod traced;
 
 pub use super::check::{Check, Verdict, Weight};
 pub use item::{Item, UnknownItem};
-pub use plan::{ReproduceError, ReproducePlan};
+pub use plan::ReproducePlan;
 pub use summary::{ItemSummary, overview};
 pub use tasks::{ReproduceTasks, reproduce};

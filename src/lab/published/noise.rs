@@ -5,9 +5,10 @@ use rayon::prelude::*;
 use super::case::{HALF_WIDTH, KERNELS, published};
 use super::item::Item;
 use super::outcome::{Outcome, stretched};
-use super::plan::{ReproduceError, ReproducePlan};
+use super::plan::ReproducePlan;
 use super::sheet::{elements, finding};
 use super::traced::{self, AS_RENDERED, Lights, NAMES, replicates};
+use crate::lab::LabError;
 use crate::lab::check::Check;
 use crate::lab::deviate::normal_deviates;
 use crate::lab::finding::{Axis, Cell, Curve, Finding, Gallery, Mark, Plot, Table};
@@ -66,7 +67,7 @@ fn points(
     side: usize,
     plan: &ReproducePlan,
     control: Control<'_>,
-) -> Result<Vec<Point>, ReproduceError> {
+) -> Result<Vec<Point>, LabError> {
     let case = bench(kernel, side);
     let board = case.board(side);
     let (phi, g23) = (case.phi(&board), case.g23());
@@ -79,8 +80,7 @@ fn points(
         let deviates = normal_deviates(seed, phi.nrows(), phi.ncols());
         Ok(deviates.component_mul(&phi) * &inverse)
     };
-    let draws: Result<Vec<Matrix>, ReproduceError> =
-        (0..plan.seeds).into_par_iter().map(draw).collect();
+    let draws: Result<Vec<Matrix>, LabError> = (0..plan.seeds).into_par_iter().map(draw).collect();
     let draws = draws?;
     let point = |power: i32| {
         let sigma = libm::exp10(f64::from(power)) / 100.0;
@@ -102,10 +102,7 @@ fn points(
 }
 
 /// The figure.
-pub(super) fn figure(
-    plan: &ReproducePlan,
-    control: Control<'_>,
-) -> Result<Finding, ReproduceError> {
+pub(super) fn figure(plan: &ReproducePlan, control: Control<'_>) -> Result<Finding, LabError> {
     let (mut rows, mut plots) = (Vec::new(), Vec::new());
     let (mut pictures, mut checks) = (Vec::new(), Vec::new());
     for kernel in KERNELS {
@@ -183,10 +180,7 @@ pub(super) fn figure(
 }
 
 /// Adds the rows of traced Φ; the plot of them over their own noise, and what it shows.
-fn trace(
-    rows: &mut Vec<Vec<Cell>>,
-    control: Control<'_>,
-) -> Result<(Plot, String), ReproduceError> {
+fn trace(rows: &mut Vec<Vec<Cell>>, control: Control<'_>) -> Result<(Plot, String), LabError> {
     let (mut curves, mut said) = (Vec::new(), Vec::new());
     for side in SIDES {
         let case = bench(Kernel::Physical, side);

@@ -1,13 +1,6 @@
-//! What is free in the items, and why an item is not computed.
+//! What is free in the items.
 
 use super::item::Item;
-use crate::lab::ValidationError;
-use crate::model::ModelError;
-use crate::num::linalg::LinalgError;
-use crate::num::multiprecision::TooFewDigits;
-use crate::recovery::RecoveryError;
-use crate::scene::SceneError;
-use crate::transport::{RenderError, Stopped};
 
 /// What is free in the items.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,33 +24,4 @@ impl ReproducePlan {
             self.first_seed
         )
     }
-}
-
-/// Why an item was not computed.
-#[derive(Debug, thiserror::Error)]
-pub enum ReproduceError {
-    /// A decomposition failed.
-    #[error(transparent)]
-    Linalg(#[from] LinalgError),
-    /// A recovery failed.
-    #[error(transparent)]
-    Recovery(#[from] RecoveryError),
-    /// The digits of multiple precision do not suffice.
-    #[error(transparent)]
-    Digits(#[from] TooFewDigits),
-    /// A scene does not allow what the item needs.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// A scene has no model.
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    /// Traced photographs do not fit their model.
-    #[error(transparent)]
-    Validation(#[from] ValidationError),
-    /// The light was not traced.
-    #[error(transparent)]
-    Render(#[from] RenderError),
-    /// It was stopped.
-    #[error("{0}")]
-    Stopped(#[from] Stopped),
 }

@@ -5,8 +5,9 @@ use super::exact;
 use super::inversion::recovered;
 use super::item::Item;
 use super::outcome::Trial;
-use super::plan::{ReproduceError, ReproducePlan};
+use super::plan::ReproducePlan;
 use super::sheet::finding;
+use crate::lab::LabError;
 use crate::lab::check::Check;
 use crate::lab::finding::{Axis, Finding, Plot, Table};
 use crate::model::{Kernel, Stagger};
@@ -110,7 +111,7 @@ pub(super) fn trials(
         published, boards, ..
     }: &Case,
     control: Control<'_>,
-) -> Result<Vec<Trial>, ReproduceError> {
+) -> Result<Vec<Trial>, LabError> {
     let rules = rules(
         published.elements * published.elements,
         4 * published.per_side,
@@ -265,7 +266,7 @@ mod tests {
         even.pixels = 2;
         assert!(matches!(
             exact::recover(&even, &[2], Control::none()),
-            Err(ReproduceError::Digits(_))
+            Err(LabError::Digits(_))
         ));
     }
 }

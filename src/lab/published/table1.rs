@@ -3,9 +3,9 @@
 use super::case::{Case, HALF_WIDTH, KERNELS, PIXELS, Row, published, rows};
 use super::item::Item;
 use super::outcome::{Outcome, Trial, stretched};
-use super::plan::ReproduceError;
 use super::sheet::{elements, finding};
 use super::traced::{self, AS_RENDERED, Light, Lights, NAMES};
+use crate::lab::LabError;
 use crate::lab::check::Check;
 use crate::lab::finding::{Finding, Gallery, Table};
 use crate::model::{Kernel, Published, Stagger};
@@ -45,7 +45,7 @@ pub(super) fn cases() -> Vec<Case> {
 }
 
 /// What each method makes of Φ formed in doubles, or of the lights.
-pub(super) fn trials(case: &Case, control: Control<'_>) -> Result<Vec<Trial>, ReproduceError> {
+pub(super) fn trials(case: &Case, control: Control<'_>) -> Result<Vec<Trial>, LabError> {
     let board = case.published.board(BOARD);
     let lights = if case.is_traced {
         Lights::traced(&case.published, BOARD, AS_RENDERED, control)?

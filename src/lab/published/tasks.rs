@@ -6,10 +6,11 @@ use super::case::Case;
 use super::item::Item;
 use super::moving_view::{self, Modelled, Seen};
 use super::outcome::Trial;
-use super::plan::{ReproduceError, ReproducePlan};
+use super::plan::ReproducePlan;
 use super::sheet::is_whole;
 use super::summary::judged;
 use super::{distance, dual, indicators, noise, precision, spots, table1, tables};
+use crate::lab::LabError;
 use crate::lab::finding::Finding;
 use crate::lab::study::{Study, run};
 use crate::transport::{Control, Stopped};
@@ -17,12 +18,12 @@ use crate::transport::{Control, Stopped};
 /// Computes one item.
 ///
 /// # Errors
-/// [`ReproduceError`].
+/// [`LabError`].
 pub fn reproduce(
     item: Item,
     plan: &ReproducePlan,
     control: Control<'_>,
-) -> Result<Finding, ReproduceError> {
+) -> Result<Finding, LabError> {
     let found = run(&ReproduceTasks::new(*plan, vec![item]), control)?;
     let (_, finding) = found.into_iter().next().ok_or(Stopped)?;
     Ok(finding)
@@ -86,7 +87,7 @@ impl ReproduceTasks {
         }
     }
 
-    fn piece(&self, item: Item, k: usize, control: Control<'_>) -> Result<Piece, ReproduceError> {
+    fn piece(&self, item: Item, k: usize, control: Control<'_>) -> Result<Piece, LabError> {
         let plan = &self.plan;
         let whole = |finding| Ok(Piece::Whole(Box::new(finding)));
         match item {
@@ -109,7 +110,7 @@ impl ReproduceTasks {
         }
     }
 
-    fn finding(&self, item: Item, pieces: Vec<Piece>) -> Result<Finding, ReproduceError> {
+    fn finding(&self, item: Item, pieces: Vec<Piece>) -> Result<Finding, LabError> {
         let (mut trials, mut modelled, mut seen) = (Vec::new(), Vec::new(), Vec::new());
         for piece in pieces {
             match piece {
@@ -135,7 +136,7 @@ impl Study for ReproduceTasks {
     type Context = ();
     type Output = Piece;
     type Result = Vec<(Item, Finding)>;
-    type Error = ReproduceError;
+    type Error = LabError;
 
     fn name(&self) -> &'static str {
         "reproduce"
@@ -145,11 +146,11 @@ impl Study for ReproduceTasks {
         self.tasks.len()
     }
 
-    fn context(&self, _: Control<'_>) -> Result<(), ReproduceError> {
+    fn context(&self, _: Control<'_>) -> Result<(), LabError> {
         Ok(())
     }
 
-    fn task(&self, (): &(), index: usize, control: Control<'_>) -> Result<Piece, ReproduceError> {
+    fn task(&self, (): &(), index: usize, control: Control<'_>) -> Result<Piece, LabError> {
         let (item, k) = self.tasks[index];
         self.piece(item, k, control)
     }
@@ -178,7 +179,7 @@ impl Study for ReproduceTasks {
         }
     }
 
-    fn finish(&self, (): &(), pieces: Vec<Piece>) -> Result<Self::Result, ReproduceError> {
+    fn finish(&self, (): &(), pieces: Vec<Piece>) -> Result<Self::Result, LabError> {
         let mut pieces = pieces.into_iter();
         let item = |item: &Item| {
             let own = pieces.by_ref().take(self.pieces(*item)).collect();

@@ -9,8 +9,8 @@
 use std::ops::Range;
 
 use super::outcome::{Outcome, Trial};
-use super::plan::ReproduceError;
 use crate::geometry::DVec3;
+use crate::lab::LabError;
 use crate::lab::deviate::normal_deviates;
 use crate::matrix::Matrix;
 use crate::model::{Kernel, MatrixModel, PixelGrid, Published};
@@ -114,7 +114,7 @@ impl Lights {
         checks: usize,
         budget: Budget,
         control: Control<'_>,
-    ) -> Result<Self, ReproduceError> {
+    ) -> Result<Self, LabError> {
         let case = Published {
             kernel: Kernel::Physical,
             grid: PixelGrid::Centres,
@@ -133,7 +133,7 @@ impl Lights {
         let model = MatrixModel::new(&scene, Kernel::Physical, Some([case.elements; 2]))?;
         let lit = model.laser_side[(0, 0)] / model.g12[(0, 0)];
         let scale = |p: usize| lit * model.camera_side[(p, 0)] / model.g23[(p, 0)];
-        let light = |estimator, budget| -> Result<Light, ReproduceError> {
+        let light = |estimator, budget| -> Result<Light, LabError> {
             let mut found = trace(&scene, estimator, budget, SEED, 0..faced.len(), control)?;
             let (mut phi, mut stderr) = (found.bounces.swap_remove(THIRD), found.stderr);
             for p in 0..phi.nrows() {
@@ -169,7 +169,7 @@ impl Lights {
     }
 
     /// The published inversion of each light.
-    pub(super) fn recovered(&self, board: &[f64]) -> Result<Trial, ReproduceError> {
+    pub(super) fn recovered(&self, board: &[f64]) -> Result<Trial, LabError> {
         let inverse = pinv(&self.g12, Tolerance::Spacing)?;
         let outcome = |light: &Light| {
             let x = (&light.phi * &inverse.matrix).component_div(&self.g23);

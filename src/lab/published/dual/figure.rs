@@ -2,7 +2,7 @@
 
 use super::super::item::Item;
 use super::super::outcome::stretched;
-use super::super::plan::{ReproduceError, ReproducePlan};
+use super::super::plan::ReproducePlan;
 use super::super::sheet::{board, elements, finding, square};
 use super::super::traced::REPLICATES;
 use super::checks::checks;
@@ -10,6 +10,7 @@ use super::judged::{CHECKS, ELEMENTS, Judged, Origin, Way, seen};
 use super::pair::{self, Direction, SIZE};
 use super::reciprocity::Reciprocity;
 use super::spectrum::{plot, spectrum};
+use crate::lab::LabError;
 use crate::lab::finding::{Cell, Finding, Gallery, Shades, Table};
 use crate::matrix::Matrix;
 use crate::model::{Kernel, MatrixModel};
@@ -48,7 +49,7 @@ fn table(pictures: &[&Judged], spectra: [(&'static str, &[f64]); 2]) -> Table {
 pub(in super::super) fn figure(
     plan: &ReproducePlan,
     control: Control<'_>,
-) -> Result<Finding, ReproduceError> {
+) -> Result<Finding, LabError> {
     let scene = Scene::load("dual")?;
     let back = pair::exchanged(&scene)?;
     let there = Direction::trace(scene, SIZE, plan.first_seed, control)?;

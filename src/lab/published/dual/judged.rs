@@ -1,8 +1,8 @@
 //! Pictures, and how much of the hidden board they show.
 
-use super::super::plan::ReproduceError;
 use super::super::sheet::board;
 use super::adjoint;
+use crate::lab::LabError;
 use crate::lab::finding::Cell;
 use crate::matrix::Matrix;
 use crate::metrics::{correlation, mtf_normalized, mtf_raw};
@@ -107,7 +107,7 @@ pub(super) fn seen(
     phi: &Matrix,
     stderr: Option<&Matrix>,
     model: &MatrixModel,
-) -> Result<Vec<Judged>, ReproduceError> {
+) -> Result<Vec<Judged>, LabError> {
     let (c, d) = (&model.camera_side, &model.laser_side);
     let board = board(ELEMENTS, CHECKS);
     let options = Options {
@@ -116,7 +116,7 @@ pub(super) fn seen(
     };
     let problem = Problem::new(phi, c, d, stderr)?;
     let by = |what, way, values| Judged::new(what, origin, way, values, &board);
-    let inverse = |what, method| -> Result<Judged, ReproduceError> {
+    let inverse = |what, method| -> Result<Judged, LabError> {
         let found = recover(method, &problem, &options)?;
         let values = found.reflectance.as_slice().to_vec();
         Ok(by(what, Way::Inverse(method), values))

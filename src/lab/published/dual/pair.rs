@@ -15,9 +15,9 @@
 //! keeps two traced matrices from this law is noise, and that a footprint has an area where a spot
 //! has none: T averages k over the camera's footprints, T′ over the projector's cells.
 
-use super::super::plan::ReproduceError;
 use super::super::traced::{replicates, trace};
 use crate::geometry::DVec3;
+use crate::lab::LabError;
 use crate::matrix::Matrix;
 use crate::model::{Extent, Kernel, Take, converged};
 use crate::num::quadrature::Rule;
@@ -56,7 +56,7 @@ pub(super) fn etendues(scene: &Scene, nodes: usize) -> Vec<f64> {
 /// The pair with projector and camera exchanged: laser and pinhole change places, the spots are the
 /// centres of the camera's pixels, and the view is moved from those to the grid of spots, whose
 /// cells are as many and as large as the pixels in the scene `dual`.
-pub(super) fn exchanged(scene: &Scene) -> Result<Scene, ReproduceError> {
+pub(super) fn exchanged(scene: &Scene) -> Result<Scene, LabError> {
     let camera = &scene.camera;
     let centre = |p: usize| camera.footprint(p).at([0.5, 0.5]);
     let centres: Vec<[f64; 2]> = (0..camera.pixels())
@@ -85,7 +85,7 @@ impl Direction {
         size: u32,
         seed: u64,
         control: Control<'_>,
-    ) -> Result<Self, ReproduceError> {
+    ) -> Result<Self, LabError> {
         let spots = 0..scene.laser.spots.len();
         Ok(Self {
             traced: trace(
@@ -111,7 +111,7 @@ impl Direction {
 
     /// k averaged over the footprints, each by its étendues, over k at their centres, less 1; and
     /// what quadrature may be off by. From the model alone, and unmoved by a scale of the étendues.
-    fn spread(&self) -> Result<[Matrix; 2], ReproduceError> {
+    fn spread(&self) -> Result<[Matrix; 2], LabError> {
         let centres = Extent {
             footprints: Take::Centre,
             ..Extent::FULL
@@ -137,10 +137,7 @@ pub(super) struct Footprints {
     pub(super) bound: Matrix,
 }
 
-pub(super) fn footprints(
-    there: &Direction,
-    back: &Direction,
-) -> Result<Footprints, ReproduceError> {
+pub(super) fn footprints(there: &Direction, back: &Direction) -> Result<Footprints, LabError> {
     let ([a, a_bound], [b, b_bound]) = (there.spread()?, back.spread()?);
     Ok(Footprints {
         signed: a - b.transpose(),

@@ -1,8 +1,8 @@
 //! Helmholtz reciprocity between two renders, within their error bars.
 
-use super::super::plan::ReproduceError;
 use super::super::traced::REPLICATES;
 use super::pair::{Direction, Footprints, footprints};
+use crate::lab::LabError;
 use crate::lab::{Agreement, Errors, Evidence, Test, agree};
 use crate::matrix::Matrix;
 
@@ -22,7 +22,7 @@ pub(super) struct Reciprocity {
 }
 
 impl Reciprocity {
-    pub(super) fn new(there: &Direction, back: &Direction) -> Result<Self, ReproduceError> {
+    pub(super) fn new(there: &Direction, back: &Direction) -> Result<Self, LabError> {
         // Two sets of 32 replicates: at least 31 degrees of freedom (Welch).
         let test = Test {
             significance: SIGNIFICANCE,

@@ -1,12 +1,12 @@
 //! Singular values of T.
 
-use super::super::plan::ReproduceError;
+use crate::lab::LabError;
 use crate::lab::finding::{Axis, Curve, Mark, Plot};
 use crate::matrix::Matrix;
 use crate::num::linalg::svd;
 
 /// Singular values of T over the first.
-pub(super) fn spectrum(t: &Matrix) -> Result<Vec<f64>, ReproduceError> {
+pub(super) fn spectrum(t: &Matrix) -> Result<Vec<f64>, LabError> {
     let sigma = svd(t)?.sigma;
     Ok(sigma.iter().map(|s| s / sigma[0]).collect())
 }

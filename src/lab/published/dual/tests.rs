@@ -6,10 +6,11 @@ use super::pair::{self, Direction};
 use super::reciprocity::Reciprocity;
 use super::spectrum::{participation, spectrum};
 use crate::geometry::DVec3;
-use crate::lab::published::{ReproduceError, ReproducePlan};
+use crate::lab::LabError;
+use crate::lab::published::ReproducePlan;
 use crate::matrix::Matrix;
 use crate::scene::Scene;
-use crate::transport::{Control, RenderError};
+use crate::transport::Control;
 
 /// The scene with 4 × 4 pixels and the centres of 4 × 4 cells as spots.
 fn small() -> Scene {
@@ -110,8 +111,5 @@ fn a_stop_is_heeded() {
         ..Control::none()
     };
     let stopped = figure(&plan, control);
-    assert!(matches!(
-        stopped,
-        Err(ReproduceError::Render(RenderError::Stopped(_)))
-    ));
+    assert!(matches!(stopped, Err(LabError::Stopped(_))));
 }

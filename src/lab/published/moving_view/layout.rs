@@ -1,8 +1,8 @@
 //! Where the camera looks while the spot moves.
 
-use super::super::plan::ReproduceError;
 use super::super::sheet;
 use crate::geometry::{DVec3, Parallelogram};
+use crate::lab::LabError;
 use crate::scene::Scene;
 
 /// Pixels of the camera and elements of the board, a side.
@@ -96,7 +96,7 @@ impl View {
     }
 
     /// The same with that spot alone: one photograph.
-    pub(super) fn photograph(self, scene: &Scene, spot: usize) -> Result<Scene, ReproduceError> {
+    pub(super) fn photograph(self, scene: &Scene, spot: usize) -> Result<Scene, LabError> {
         let lit = scene.laser.spots[spot].target.position;
         Ok(self.at(scene, spot).with_spots_at(&[[lit.x, lit.y]])?)
     }
@@ -123,7 +123,7 @@ fn wide(scene: &Scene) -> Scene {
 const MARGIN: f64 = 4.0;
 
 /// The scene `name` with `pixels` × `pixels` pixels and a wall large enough for every view.
-pub(super) fn scene(name: &str, pixels: usize) -> Result<Scene, ReproduceError> {
+pub(super) fn scene(name: &str, pixels: usize) -> Result<Scene, LabError> {
     let mut scene = Scene::load(name)?.with_extended_relay(MARGIN)?;
     [scene.camera.columns, scene.camera.rows] = [pixels; 2];
     Ok(scene)

@@ -3,9 +3,10 @@
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
-use super::super::plan::{ReproduceError, ReproducePlan};
+use super::super::plan::ReproducePlan;
 use super::layout::{BOARDS, HALF_WIDTHS, KEPT, PIXELS, VIEWS, View, board, scene};
 use super::system::{System, Weighted};
+use crate::lab::LabError;
 use crate::lab::deviate::normal_deviates;
 use crate::metrics::mtf_raw;
 use crate::model::Kernel;
@@ -122,7 +123,7 @@ impl Modelled {
         index: usize,
         plan: &ReproducePlan,
         control: Control<'_>,
-    ) -> Result<Self, ReproduceError> {
+    ) -> Result<Self, LabError> {
         let Configuration {
             scene: name,
             kernel,
@@ -135,7 +136,7 @@ impl Modelled {
             let points = points(&system, &scene, kernel, checks, plan, control)?;
             Ok(Course { checks, points })
         };
-        let courses: Result<_, ReproduceError> = BOARDS.into_iter().map(course).collect();
+        let courses: Result<_, LabError> = BOARDS.into_iter().map(course).collect();
         Ok(Self {
             courses: courses?,
             sigma: system.sigma()?,
@@ -164,7 +165,7 @@ fn points(
     checks: usize,
     plan: &ReproducePlan,
     control: Control<'_>,
-) -> Result<Vec<Point>, ReproduceError> {
+) -> Result<Vec<Point>, LabError> {
     let truth = board(checks);
     // Relative noise: every entry's error is `noise` times its value.
     let exact = system.light(&truth);
@@ -206,7 +207,7 @@ pub(super) fn contrast_error(
     weighted: &Weighted,
     along: &DVector<f64>,
     truth: &[f64],
-) -> Result<f64, ReproduceError> {
+) -> Result<f64, LabError> {
     let found = weighted.recover(Method::JointUnbounded, along, 1.0)?;
     let light = truth.iter().sum::<f64>();
     let dark = truth.len() as f64 - light;

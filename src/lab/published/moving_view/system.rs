@@ -16,8 +16,8 @@
 
 use nalgebra::DVector;
 
-use super::super::plan::ReproduceError;
 use super::layout::{ELEMENTS, View};
+use crate::lab::LabError;
 use crate::matrix::Matrix;
 use crate::model::{Kernel, MatrixModel};
 use crate::num::linalg::{Svd, svd};
@@ -34,7 +34,7 @@ impl System {
         view: View,
         kernel: Kernel,
         points: usize,
-    ) -> Result<Self, ReproduceError> {
+    ) -> Result<Self, LabError> {
         let fine = ELEMENTS * points;
         let block = |spot: usize| {
             let photograph = view.photograph(scene, spot)?;
@@ -49,7 +49,7 @@ impl System {
         };
         let blocks: Vec<Matrix> = (0..scene.laser.spots.len())
             .map(block)
-            .collect::<Result<_, ReproduceError>>()?;
+            .collect::<Result<_, LabError>>()?;
         let (pixels, elements) = blocks[0].shape();
         Ok(Self(Matrix::from_fn(
             pixels * blocks.len(),
@@ -64,12 +64,12 @@ impl System {
     }
 
     /// Singular values of K, W.
-    pub(super) fn sigma(&self) -> Result<Vec<f64>, ReproduceError> {
+    pub(super) fn sigma(&self) -> Result<Vec<f64>, LabError> {
         Ok(svd(&self.0)?.sigma.as_slice().to_vec())
     }
 
     /// Rows divided by `errors`, W.
-    pub(super) fn weighted(&self, errors: &DVector<f64>) -> Result<Weighted, ReproduceError> {
+    pub(super) fn weighted(&self, errors: &DVector<f64>) -> Result<Weighted, LabError> {
         let mut rows = self.0.clone();
         for (mut row, error) in rows.row_iter_mut().zip(errors.iter()) {
             row /= *error;
@@ -117,7 +117,7 @@ impl Weighted {
         method: Method,
         along: &DVector<f64>,
         noise: f64,
-    ) -> Result<Recovered, ReproduceError> {
+    ) -> Result<Recovered, LabError> {
         let phi = Matrix::from_column_slice(along.len(), 1, along.as_slice());
         let stderr = Matrix::from_element(along.len(), 1, noise);
         let problem = Problem::new(&phi, &self.rows, &self.all, Some(&stderr))?;

@@ -6,10 +6,11 @@ use nalgebra::DVector;
 use super::layout::{HALF_WIDTHS, PIXELS, TRACED, VIEWS, View, board, scene};
 use super::system::System;
 use super::{Modelled, Seen, modelled};
-use crate::lab::published::{ReproduceError, ReproducePlan};
+use crate::lab::LabError;
+use crate::lab::published::ReproducePlan;
 use crate::model::{Kernel, MatrixModel};
 use crate::recovery::{Method, Options, Problem, recover};
-use crate::transport::{Control, RenderError};
+use crate::transport::Control;
 
 /// Every view is where it is said to be, and on the wall; the fixed one does not move.
 #[test]
@@ -228,10 +229,7 @@ fn a_stop_is_heeded() {
         ..Control::none()
     };
     let modelled = Modelled::compute(0, &plan, control);
-    assert!(matches!(modelled, Err(ReproduceError::Stopped(_))));
+    assert!(matches!(modelled, Err(LabError::Stopped(_))));
     let traced = Seen::compute(0, &plan, control);
-    assert!(matches!(
-        traced,
-        Err(ReproduceError::Render(RenderError::Stopped(_)))
-    ));
+    assert!(matches!(traced, Err(LabError::Stopped(_))));
 }

@@ -3,11 +3,12 @@
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
-use super::super::plan::{ReproduceError, ReproducePlan};
+use super::super::plan::ReproducePlan;
 use super::super::traced::{REPLICATES, replicates, trace};
 use super::layout::{self, BOARDS, ELEMENTS, HALF_WIDTHS, PIXELS, View, board, scene};
 use super::modelled::contrast_error;
 use super::system::System;
+use crate::lab::LabError;
 use crate::lab::{Errors, Integration, Test, validate};
 use crate::matrix::Matrix;
 use crate::metrics::{mtf_raw, rmse};
@@ -57,7 +58,7 @@ impl Seen {
         index: usize,
         plan: &ReproducePlan,
         control: Control<'_>,
-    ) -> Result<Self, ReproduceError> {
+    ) -> Result<Self, LabError> {
         let (checks, view) = CASES[index];
         let scene = scene(HALF_WIDTHS[0].0, PIXELS)?.with_checkerboard(checks);
         one(&scene, view, checks, plan, control)
@@ -75,7 +76,7 @@ fn one(
     checks: usize,
     plan: &ReproducePlan,
     control: Control<'_>,
-) -> Result<Seen, ReproduceError> {
+) -> Result<Seen, LabError> {
     let (pixels, spots) = (scene.camera.pixels(), scene.laser.spots.len());
     let [mut flux, mut error] = [(); 2].map(|()| Matrix::zeros(pixels, spots));
     let mut agreeing = [0, 0];

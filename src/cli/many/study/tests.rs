@@ -6,7 +6,7 @@ use clap::Parser;
 
 use super::*;
 use crate::cli::args::Args;
-use crate::cli::output::Console;
+use crate::cli::console::Console;
 
 const CONSOLE: Console<'static> = Console {
     quiet: true,

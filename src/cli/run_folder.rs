@@ -6,25 +6,26 @@
 //! | files/ | copies of the meshes, pictures and materials that the scene names |
 //! | frames/spot-NNNN.exr | one frame a spot |
 //! | phi.npy, phi.stderr.npy | Φcam and its standard error, pixels × spots, W |
-//! | partial/spot-NNNN.npy | finished spots of an unfinished run in f64: one column per bounce count, last the standard error |
-//! | partial/spots-NNNN-MMMM.phs | finished blocks of the spots NNNN to MMMM − 1, which are traced together |
+//! | partial/ | what is finished of an unfinished run: see [`super::partial`] |
 
 use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::cleanup::{
-    remove_exposed, remove_files, remove_named, remove_numbered, remove_recovered,
-};
+use rayon::prelude::*;
+
+use super::cleanup::{remove_files, remove_named, remove_numbered};
+use super::console::Console;
 use super::failure::Failure;
-use super::output::{self, Console};
+use super::output;
+use super::partial::{PARTIAL, Partial};
 use super::record::Record;
 use crate::film::{self, Channel, Frame, FrameMeta, RunMeta, frame_name};
-use crate::jobs::{self, BlockFile, Identity, Spots};
 use crate::matrix::{Matrix, npy};
+use crate::recovery::Method;
 use crate::scene::{COPIES, Scene};
 use crate::store::{StoreError, ensure_writable};
-use crate::transport::{Plan, Traced};
+use crate::transport::Traced;
 
 pub(super) const PHI: &str = "phi.npy";
 pub(super) const STDERR: &str = "phi.stderr.npy";
@@ -56,11 +57,11 @@ pub(super) enum Resume {
 
 /// An open run folder.
 #[derive(Debug)]
-pub(super) struct Folder {
+pub(super) struct RunFolder {
     pub path: PathBuf,
 }
 
-impl Folder {
+impl RunFolder {
     /// The folder of a run that is there.
     pub(super) fn at(path: &Path) -> Self {
         Self {
@@ -74,7 +75,7 @@ impl Folder {
         path: &Path,
         scene: &Scene,
         record: &Record,
-        keep: Resume,
+        resume: Resume,
         console: Console,
     ) -> Result<Self, Failure> {
         let folder = Self {
@@ -84,7 +85,7 @@ impl Folder {
         let earlier = Record::read(path)?;
         let same = earlier.as_ref().is_some_and(|e| e.same_settings(record));
         if let Some(e) = earlier.filter(|_| !same) {
-            if keep != Resume::Nothing {
+            if resume != Resume::Nothing {
                 let cause = format!(
                     "{} holds a run with other settings ({})",
                     path.display(),
@@ -105,8 +106,8 @@ impl Folder {
         } else {
             ensure_writable(path)?;
         }
-        if keep == Resume::Nothing {
-            folder.remove_partial()?;
+        if resume == Resume::Nothing {
+            folder.partial().remove()?;
         }
         record.write(path)?;
         ensure_writable(&folder.frames())?;
@@ -120,7 +121,7 @@ impl Folder {
     pub(super) fn refuse_foreign(&self, scene: &Scene, console: Console) -> Result<(), Failure> {
         refuse_obstacles(
             &self.path,
-            &["frames", "partial", MODEL, RECOVERED, COPIES],
+            &["frames", PARTIAL, MODEL, RECOVERED, COPIES],
             &[SCENE, PHI, STDERR, Record::FILE, SUMMARY, REPORT],
         )?;
         let path = self.path.display();
@@ -147,7 +148,7 @@ impl Folder {
         }
         let holds =
             |dir: &str| fs::read_dir(self.path.join(dir)).is_ok_and(|mut d| d.next().is_some());
-        if holds("frames") || holds("partial") || self.path.join(PHI).exists() {
+        if holds("frames") || holds(PARTIAL) || self.path.join(PHI).exists() {
             let cause = format!(
                 "{path} holds frames or a {PHI}, but no {} that says of which scene",
                 Record::FILE
@@ -186,96 +187,22 @@ impl Folder {
         self.path.join("frames")
     }
 
-    fn partial(&self, spot: usize) -> PathBuf {
-        self.path
-            .join("partial")
-            .join(format!("spot-{spot:04}.npy"))
-    }
-
-    /// Keeps a finished spot (column `column` of `traced`) until the run is complete, and returns
-    /// what it keeps.
-    pub(super) fn keep(
-        &self,
-        spot: usize,
-        traced: &Traced,
-        column: usize,
-    ) -> Result<Matrix, Failure> {
-        ensure_writable(&self.path.join("partial"))?;
-        let columns = traced.bounces.iter().chain([&traced.stderr]);
-        let columns: Vec<_> = columns.map(|m| m.column(column).into_owned()).collect();
-        let kept = Matrix::from_columns(&columns);
-        npy::write(&self.partial(spot), &kept)?;
-        Ok(kept)
-    }
-
-    /// The file for the finished blocks of `spots`.
-    pub(super) fn checkpoint(&self, spots: &Range<usize>) -> Result<PathBuf, Failure> {
-        ensure_writable(&self.path.join("partial"))?;
-        Ok(self.checkpoint_path(spots))
-    }
-
-    fn checkpoint_path(&self, spots: &Range<usize>) -> PathBuf {
-        let name = format!(
-            "spots-{:04}-{:04}.{}",
-            spots.start,
-            spots.end,
-            jobs::EXTENSION
-        );
-        self.path.join("partial").join(name)
-    }
-
-    /// Spots of which `plan` has finished blocks there.
-    pub(super) fn checkpoints(&self, scene: &Scene, plan: &Plan) -> Vec<Range<usize>> {
-        let entries = fs::read_dir(self.path.join("partial"));
-        let names = entries
-            .into_iter()
-            .flatten()
-            .filter_map(|e| e.ok()?.file_name().into_string().ok());
-        let spots = |name: String| {
-            let own = name.strip_suffix(jobs::EXTENSION)?.strip_suffix('.')?;
-            let (from, to) = own.strip_prefix("spots-")?.split_once('-')?;
-            Some(from.parse().ok()?..to.parse().ok()?)
-        };
-        let blocks = u64::from(plan.budget.blocks);
-        let mut found: Vec<Range<usize>> = names
-            .filter_map(spots)
-            .filter(|r| r.start < r.end && r.end <= scene.laser.spots.len())
-            .filter(|r| {
-                BlockFile::open(
-                    &self.checkpoint_path(r),
-                    &own_identity(scene, plan, r),
-                    blocks,
-                )
-                .is_ok()
-            })
-            .collect();
-        found.sort_by_key(|r| r.start);
-        found
-    }
-
-    /// Forgets the finished blocks of `spots`, once these are whole.
-    pub(super) fn remove_checkpoint(&self, spots: &Range<usize>) -> Result<(), Failure> {
-        let path = self.checkpoint_path(spots);
-        let name = path
-            .file_name()
-            .and_then(|n| n.to_str())
-            .unwrap_or_default();
-        remove_named(&self.path.join("partial"), &[name])
+    /// Its unfinished part.
+    pub(super) fn partial(&self) -> Partial {
+        Partial::of(&self.path)
     }
 
     /// A finished spot of the run `record`: one column per bounce count, then the standard error;
     /// `None` unless both this and its frame are there and whole.
     pub(super) fn kept(&self, spot: usize, scene: &Scene, record: &Record) -> Option<Matrix> {
-        let matrix = npy::read_finite(&self.partial(spot)).ok()?;
-        let shape = (scene.camera.pixels(), scene.max_bounces as usize + 1);
         let frame = film::exr::read(&self.frames().join(frame_name(spot as u32))).ok()?;
         let own = frame.meta == meta(scene, record, spot);
-        (own && matrix.shape() == shape).then_some(matrix)
+        self.partial().read(spot, scene).filter(|_| own)
     }
 
     /// Removes from a run that is complete what an ended process has left beside it.
     pub(super) fn tidy(&self) -> Result<(), Failure> {
-        self.remove_partial()?;
+        self.partial().remove()?;
         self.remove_abandoned()
     }
 
@@ -285,17 +212,9 @@ impl Folder {
         remove_files(&self.frames(), nothing)
     }
 
-    pub(super) fn remove_partial(&self) -> Result<(), Failure> {
-        let partial = self.path.join("partial");
-        remove_files(&partial, |stem, ext| {
-            stem.starts_with("spots-") && ext == jobs::EXTENSION
-        })?;
-        remove_numbered(&partial, "npy")
-    }
-
     /// Removes what was rendered, and what was found from it.
     fn remove_frames(&self) -> Result<(), Failure> {
-        self.remove_partial()?;
+        self.partial().remove()?;
         remove_numbered(&self.frames(), "exr")?;
         remove_recovered(&self.path.join(RECOVERED))?;
         remove_exposed(&self.path.join(EXPOSED))?;
@@ -303,8 +222,21 @@ impl Folder {
         remove_named(&self.path, &[PHI, STDERR, Record::FILE, SUMMARY, REPORT])
     }
 
+    /// Writes the frames of `spots` from the columns of `traced`, on the threads of the pool.
+    pub(super) fn write_frames(
+        &self,
+        scene: &Scene,
+        record: &Record,
+        spots: &Range<usize>,
+        traced: &Traced,
+    ) -> Result<(), Failure> {
+        refuse_beyond_f32(traced)?;
+        let frames = spots.clone().into_par_iter().enumerate();
+        frames.try_for_each(|(column, spot)| self.write_frame(scene, record, spot, traced, column))
+    }
+
     /// Writes the frame of a spot from column `column` of `traced`.
-    pub(super) fn write_frame(
+    fn write_frame(
         &self,
         scene: &Scene,
         record: &Record,
@@ -342,6 +274,16 @@ impl Folder {
     }
 }
 
+/// Frames hold f32: a flux beyond its range would be stored as infinity.
+fn refuse_beyond_f32(traced: &Traced) -> Result<(), Failure> {
+    let most = traced.flux.amax().max(traced.stderr.amax());
+    if most <= f64::from(f32::MAX) {
+        return Ok(());
+    }
+    let cause = format!("a flux of {most:.1e} W is more than the f32 of a frame can hold");
+    Err(Failure::new(cause, "lower the laser's power in the scene"))
+}
+
 /// Refuses what stands in `dir` where `folders` and `files` have to stand: before the long work,
 /// not after it.
 pub(super) fn refuse_obstacles(
@@ -365,11 +307,6 @@ pub(super) fn refuse_obstacles(
     Ok(())
 }
 
-/// What the finished blocks of `spots` depend on.
-pub(super) fn own_identity(scene: &Scene, plan: &Plan, spots: &Range<usize>) -> Identity {
-    Spots::identity(scene, plan).with("spots", format!("{}..{}", spots.start, spots.end))
-}
-
 /// What the frame of `spot` says of its origin.
 pub(super) fn meta(scene: &Scene, record: &Record, spot: usize) -> FrameMeta {
     FrameMeta {
@@ -387,4 +324,41 @@ pub(super) fn meta(scene: &Scene, record: &Record, spot: usize) -> FrameMeta {
         spot_index: spot as u32,
         spot_position: scene.laser.spots[spot].target.position.to_array(),
     }
+}
+
+/// Removes the photographs of `phicam expose` from `dir`, and `dir` if that empties it.
+pub(super) fn remove_exposed(dir: &Path) -> Result<(), Failure> {
+    let counts = dir.join(COUNTS);
+    remove_numbered(&counts, "exr")?;
+    remove_numbered(&counts, "png")?;
+    remove_named(dir, &[PHI, STDERR, SATURATED, EXPOSURE])?;
+    let _ = fs::remove_dir(dir);
+    Ok(())
+}
+
+/// Removes the matrices, tables and pictures METHOD.npy, METHOD-0.png, METHOD.stderr.npy,
+/// picard.csv, … and those of the truth from `dir`, and `dir` if that empties it.
+pub(super) fn remove_recovered(dir: &Path) -> Result<(), Failure> {
+    remove_files(dir, |stem, ext| {
+        let (name, what) = stem.split_once('.').unwrap_or((stem, ""));
+        let name = name.trim_end_matches(|c: char| c.is_ascii_digit());
+        let name = name.strip_suffix('-').unwrap_or(name);
+        let known = ["truth", "overview", "picard", "picard-joint"].contains(&name)
+            || name.parse::<Method>().is_ok();
+        let ours = known
+            && [
+                "",
+                "stderr",
+                "covariance",
+                "resolution",
+                "bias",
+                "lower",
+                "upper",
+                "texture",
+            ]
+            .contains(&what);
+        ours && matches!(ext, "npy" | "png" | "csv" | "svg" | "ply")
+    })?;
+    let _ = fs::remove_dir(dir);
+    Ok(())
 }
