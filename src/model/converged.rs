@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_1_PI;
 
 use super::ModelError;
 use super::kernel::{HiddenPoint, Kernel};
-use super::sight::{self, WallPoint};
+use super::wall_point::{self, WallPoint};
 use crate::geometry::{Basis, DVec3, Instance, Shape};
 use crate::matrix::Matrix;
 use crate::num::quadrature::Rule;
@@ -129,7 +129,7 @@ fn integrate(scene: &Scene, kernel: Kernel, nodes: Nodes) -> Matrix {
     let seen = |p| {
         let nodes = plane_nodes(footprint);
         nodes
-            .map(|(ab, w)| sight::seen(scene, p, ab, w))
+            .map(|(ab, w)| wall_point::seen(scene, p, ab, w))
             .collect::<Vec<_>>()
     };
     let seen: Vec<Vec<WallPoint>> = (0..pixels).map(seen).collect();
@@ -140,8 +140,9 @@ fn integrate(scene: &Scene, kernel: Kernel, nodes: Nodes) -> Matrix {
     let offsets = profile_nodes(profile, nodes.spread);
     let lit = |l: usize| {
         let basis = Basis::around(scene.laser.spots[l].target.normal);
-        let lit =
-            |([x, y], w): &([f64; 2], f64)| sight::lit(scene, l, basis.to_world([*x, *y, 0.0]), *w);
+        let lit = |([x, y], w): &([f64; 2], f64)| {
+            wall_point::lit(scene, l, basis.to_world([*x, *y, 0.0]), *w)
+        };
         offsets.iter().map(lit).collect::<Vec<_>>()
     };
     let lit: Vec<Vec<WallPoint>> = (0..spots).map(lit).collect();

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_1_PI;
 
 use super::kernel::{HiddenPoint, Kernel};
-use super::sight::{self, WallPoint};
+use super::wall_point::{self, WallPoint};
 use crate::geometry::{DVec3, Ray, ShapeId};
 use crate::matrix::Matrix;
 use crate::scene::{Division, Scene};
@@ -144,10 +144,10 @@ impl MatrixModel {
             }
         }
         let seen: Vec<WallPoint> = (0..pixels)
-            .map(|p| sight::seen(scene, p, [0.5, 0.5], 1.0))
+            .map(|p| wall_point::seen(scene, p, [0.5, 0.5], 1.0))
             .collect();
         let lit: Vec<WallPoint> = (0..spots)
-            .map(|l| sight::lit(scene, l, DVec3::ZERO, 1.0))
+            .map(|l| wall_point::lit(scene, l, DVec3::ZERO, 1.0))
             .collect();
         let g = |wall: &WallPoint, j: usize| kernel.between(wall.position, wall.normal, &points[j]);
         let g23 = Matrix::from_fn(pixels, count, |p, j| g(&seen[p], j));
@@ -192,7 +192,7 @@ impl MatrixModel {
                 .is_none_or(|ray| scene.bvh().blocked(&ray, [None, wall.surface]))
         };
         for p in 0..self.g23.nrows() {
-            let wall = sight::seen(scene, p, [0.5, 0.5], 1.0);
+            let wall = wall_point::seen(scene, p, [0.5, 0.5], 1.0);
             if hidden_from(scene.camera.position, &wall) {
                 self.g23.row_mut(p).fill(0.0);
                 self.camera_side.row_mut(p).fill(0.0);
@@ -206,7 +206,7 @@ impl MatrixModel {
             }
         }
         for l in 0..self.g12.ncols() {
-            let wall = sight::lit(scene, l, DVec3::ZERO, 1.0);
+            let wall = wall_point::lit(scene, l, DVec3::ZERO, 1.0);
             if hidden_from(scene.laser.position, &wall) {
                 self.g12.column_mut(l).fill(0.0);
                 self.laser_side.column_mut(l).fill(0.0);

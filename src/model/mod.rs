@@ -13,7 +13,7 @@ mod converged;
 mod kernel;
 mod matrix_model;
 mod published;
-mod sight;
+mod wall_point;
 
 pub use converged::{Converged, Extent, Take, converged};
 pub use kernel::Kernel;
