@@ -4,10 +4,11 @@
     tests/breaks.py --check           faults, tests and the table of README.md fit the sources
     tests/breaks.py --table           prints that table
     tests/breaks.py --run [WORD ...]  plants the faults whose claim, file or test contains a WORD,
-                                      one after the other, and runs their tests; each must fail
+                                      batch by batch, and runs their tests; each must fail
 
-A fault is planted in a copy of the checkout's last commit (`target/breaks`), never in the checkout.
-A test that cannot be compiled has not failed. Python's standard library is enough.
+Faults are planted in a copy of the last commit (`target/breaks`), never in the checkout. Those of a
+batch leave each other's tests alone. A test that cannot be compiled has not failed. Python's
+standard library is enough.
 """
 
 import argparse
@@ -15,7 +16,6 @@ import pathlib
 import re
 import subprocess
 import sys
-import time
 from typing import NamedTuple
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -30,6 +30,7 @@ class Break(NamedTuple):
     new: str
     target: str  # "lib" or the name of an integration test
     test: str  # its path within the target
+    batch: int  # faults of one batch leave each other's tests alone, and are planted together
 
 
 BREAKS = [
@@ -40,6 +41,7 @@ BREAKS = [
         "return 1.01 * FRAC_1_PI * term;",
         "physics",
         "closed_forms::the_furnace_glows_as_an_integrating_sphere",
+        1,
     ),
     Break(
         "Traced light is the transport integral (quadrature of its own)",
@@ -48,6 +50,7 @@ BREAKS = [
         "        1.001 * there * back / (square * square)\n",
         "physics",
         "accuracy::shared_sobol_is_within_3e_4_of_the_thesis_integral",
+        2,
     ),
     Break(
         "Two-bounce light falls as the closed form says",
@@ -56,6 +59,7 @@ BREAKS = [
         "(cos_a > 0.0 && cos_b > 0.0).then(|| (cos_a * cos_b / ray.length, ray))",
         "physics",
         "closed_forms::two_bounces_follow_the_inverse_square_law",
+        3,
     ),
     Break(
         "What stands in the way stops the light",
@@ -64,6 +68,7 @@ BREAKS = [
         "self.shapes[id].blocks(ray, ends[0] == shape, ends[1] == shape) && id < 2",
         "physics",
         "obstacles::what_stands_in_the_way_stops_the_light",
+        2,
     ),
     Break(
         "Paint reflects as it does in another program",
@@ -72,6 +77,7 @@ BREAKS = [
         "fresnel::dielectric(cosine, self.eta).0.sqrt() * mirror + FRAC_1_PI",
         "lib",
         "scene::material::coated::tests::paint_is_as_in_another_program",
+        1,
     ),
     Break(
         "Every material is reciprocal",
@@ -80,6 +86,7 @@ BREAKS = [
         "let through = self.transmittance(incident.z) * self.transmittance(incident.z);",
         "lib",
         "scene::material::tests::every_material_is_reciprocal",
+        2,
     ),
     Break(
         "The model's integral is the reference",
@@ -88,6 +95,7 @@ BREAKS = [
         "Self::Physical => 1.0001 * (-r.dot(hidden.normal)).max(0.0),",
         "physics",
         "model::the_converged_integral_is_the_reference",
+        2,
     ),
     Break(
         "Standard errors are honest",
@@ -96,6 +104,7 @@ BREAKS = [
         "*m += more + 0.5 * apart * apart * weight;",
         "physics",
         "accuracy::independent_pcg_has_honest_error_bars",
+        4,
     ),
     Break(
         "A verdict rejects a right model as often as it states",
@@ -104,6 +113,7 @@ BREAKS = [
         "Errors::WithinRows => entries as f64,",
         "lib",
         "lab::agreement::tests::false_alarms_come_at_the_stated_rate",
+        2,
     ),
     Break(
         "A verdict rejects a wrong model",
@@ -112,6 +122,7 @@ BREAKS = [
         "agrees: chi2_p >= 0.0,",
         "cli",
         "verdict::it_disagrees_with_the_published_kernel",
+        3,
     ),
     Break(
         "Random numbers are a function of seed, spot, pixel and block",
@@ -120,6 +131,7 @@ BREAKS = [
         "split_mix(state ^ u64::from(self.block & 0xffff))",
         "lib",
         "num::stream::tests::a_stream_depends_on_every_part_of_its_key",
+        1,
     ),
     Break(
         "Any division of the blocks gives the same bits",
@@ -128,6 +140,7 @@ BREAKS = [
         "half.is_power_of_two() && right.end == end",
         "lib",
         "num::tree::tests::any_cutting_gives_the_same_bits",
+        3,
     ),
     Break(
         "Shot noise is Poisson at every mean",
@@ -136,6 +149,7 @@ BREAKS = [
         "ShotNoise::Poisson => mean + mean.sqrt() * stream.normal(),",
         "physics",
         "sensor::stages::shot_noise_is_poisson_at_every_mean",
+        2,
     ),
     Break(
         "Read noise is normal, with the stated deviation",
@@ -144,6 +158,7 @@ BREAKS = [
         "sigma => 1.03 * sigma * stream.normal(),",
         "physics",
         "sensor::stages::read_noise_is_normal",
+        1,
     ),
     Break(
         "A converter rounds as the normal distribution says",
@@ -152,6 +167,7 @@ BREAKS = [
         "let rounded = analog.floor();",
         "physics",
         "sensor::stages::quantisation_rounds_as_the_normal_distribution_says",
+        3,
     ),
     Break(
         "The deviation stated for photographs is that of the samples",
@@ -160,6 +176,7 @@ BREAKS = [
         "self.averaged(self.electrons(flux), self.frames);",
         "physics",
         "sensor::law::the_analytic_deviation_is_that_of_the_samples",
+        4,
     ),
     Break(
         "Bands of an unbiased method cover as often as they say",
@@ -168,6 +185,7 @@ BREAKS = [
         "map(|(x, s)| [x - 0.9 * z * s, x + 0.9 * z * s])",
         "lib",
         "recovery::bands::tests::bands_of_an_unbiased_method_cover_as_often_as_they_say",
+        1,
     ),
     Break(
         "The standard error of pinv is its spread over noise",
@@ -176,6 +194,7 @@ BREAKS = [
         "let terms = seen.column(j).zip_map(&sharp.column(j), |v, s| 1.2 * v * s * s);",
         "lib",
         "recovery::pixelwise::pinv::tests::its_standard_error_is_the_spread_over_noise",
+        2,
     ),
     Break(
         "Bounds recover a board of two checks from a tenth of noise",
@@ -184,6 +203,7 @@ BREAKS = [
         "_ => Bounds::all(problem.c.ncols(), f64::NEG_INFINITY, f64::INFINITY),",
         "lib",
         "recovery::joint::bounded::tests::a_board_of_two_checks_survives_a_tenth_of_noise",
+        1,
     ),
     Break(
         "Recovery is blind: it does not know the scene",
@@ -192,6 +212,7 @@ BREAKS = [
         "use super::{Inverse, decompose};\nuse crate::scene::Scene as _;",
         "architecture",
         "blind_recovery",
+        1,
     ),
     Break(
         "The model samples nothing and the tracer knows no model",
@@ -200,6 +221,7 @@ BREAKS = [
         "use crate::model::Kernel as _;\nuse crate::scene::Scene;",
         "architecture",
         "two_witnesses",
+        1,
     ),
     Break(
         "Imports point down only",
@@ -208,6 +230,7 @@ BREAKS = [
         "use super::{poisson, warp};\nuse crate::lab::Finding as _;",
         "architecture",
         "arrows_point_down",
+        1,
     ),
     Break(
         "No circle of files inside a folder",
@@ -216,6 +239,7 @@ BREAKS = [
         "use super::stream::Stream as _;\nuse std::f64::consts::{FRAC_1_PI, FRAC_PI_4, TAU};",
         "architecture",
         "no_circle_of_files_in_any_folder",
+        2,
     ),
     Break(
         "A frame that claims more than its file holds takes no memory",
@@ -224,6 +248,7 @@ BREAKS = [
         "Some(n) if n > 0 => Ok(()),",
         "forged",
         "headers::a_frame_of_terabytes_takes_no_memory",
+        1,
     ),
     Break(
         "A damaged shard is refused, each fault by its own message",
@@ -232,6 +257,7 @@ BREAKS = [
         "if !file.closes().map_err(unreadable)? && header.parts.is_empty() {",
         "cli",
         "many::spoilt_and_foreign_shards_are_refused_each_by_its_own_words",
+        1,
     ),
     Break(
         "No changed bit of a shard goes unseen",
@@ -240,6 +266,7 @@ BREAKS = [
         "if !file.closes().map_err(unreadable)? && header.parts.is_empty() {",
         "lib",
         "jobs::tests::no_change_goes_unseen",
+        1,
     ),
     Break(
         "`serve` shows no hidden file",
@@ -248,6 +275,7 @@ BREAKS = [
         "",
         "cli",
         "serving::nothing_outside_the_folder_is_shown",
+        1,
     ),
     Break(
         "Bad settings end with exit code 2",
@@ -256,6 +284,7 @@ BREAKS = [
         "(_, Codes::Plain) => 1,",
         "cli",
         "bad_settings::of_tracing",
+        1,
     ),
     Break(
         "The published layout of spots",
@@ -264,6 +293,7 @@ BREAKS = [
         "side(&|k| [cx - half - offset(k), cy - step(k)]),",
         "lib",
         "scene::spots::tests::the_square_is_the_published_one",
+        1,
     ),
 ]
 
@@ -305,45 +335,51 @@ def check() -> list[str]:
     return wrong
 
 
-def fails(copy: pathlib.Path, b: Break) -> str | None:
-    """Plants the fault and runs its test; None if that fails, else what happened."""
-    path = copy / b.file
-    text = path.read_text()
-    path.write_text(text.replace(b.old, b.new, 1))
-    where = ["--lib"] if b.target == "lib" else ["--test", b.target]
-    command = ["cargo", "test", "--locked", *where, "--", "--exact", "--include-ignored", b.test]
-    try:
-        done = subprocess.run(command, cwd=copy, capture_output=True, text=True, check=False)
-    finally:
-        path.write_text(text)
-    if f"test {b.test} ... FAILED" in done.stdout:
-        return None
-    if f"test {b.test} ... ok" in done.stdout:
-        return "passed in spite of the fault"
-    return "did not run:\n" + done.stderr[-2000:]
+def planted(copy: pathlib.Path, batch: list[Break]) -> None:
+    """Plants the faults of a batch in the copy."""
+    for file, old, new in sorted({(b.file, b.old, b.new) for b in batch}):
+        path = copy / file
+        path.write_text(path.read_text().replace(old, new, 1))
+
+
+def seen(copy: pathlib.Path, batch: list[Break]) -> int:
+    """Runs the tests of a batch; the number of those that failed, as they must."""
+    failed = 0
+    for target in sorted({b.target for b in batch}):
+        tests = [b.test for b in batch if b.target == target]
+        where = ["--lib"] if target == "lib" else ["--test", target]
+        command = ["cargo", "test", "--locked", *where, "--", "--exact", "--include-ignored"]
+        done = subprocess.run(
+            command + tests, cwd=copy, capture_output=True, text=True, check=False
+        )
+        for test in tests:
+            found = re.search(rf"^test {test} \.\.\. (\w+)$", done.stdout, re.MULTILINE)
+            outcome = found[1] if found else "did not run"
+            failed += outcome == "FAILED"
+            print(f"{'fails' if outcome == 'FAILED' else 'WRONG: ' + outcome}  {test}", flush=True)
+        if "test result" not in done.stdout:
+            print(done.stderr[-2000:], flush=True)
+    return failed
 
 
 def run(words: list[str]) -> int:
-    chosen = [b for b in BREAKS if not words or any(w in x for w in words for x in b)]
+    chosen = [b for b in BREAKS if not words or any(w in x for w in words for x in b[:-1])]
     copy = ROOT / "target/breaks"
-    if copy.exists():
-        head = ["git", "rev-parse", "HEAD"]
-        commit = subprocess.run(head, cwd=ROOT, capture_output=True, text=True, check=True).stdout
-        subprocess.run(["git", "reset", "-q", "--hard", commit.strip()], cwd=copy, check=True)
-    else:
-        add = ["git", "worktree", "add", "-q", "--detach", str(copy)]
-        subprocess.run(add, cwd=ROOT, check=True)
-    unseen = 0
-    for b in chosen:
-        start = time.monotonic()
-        fault = fails(copy, b)
-        unseen += fault is not None
-        took = time.monotonic() - start
-        print(f"{'fails' if fault is None else 'WRONG'}  {took:4.0f} s  {b.test}", flush=True)
-        if fault:
-            print(f"       {fault}", flush=True)
-    print(f"{len(chosen) - unseen} of {len(chosen)} faults are seen")
-    return 1 if unseen or not chosen else 0
+    git = lambda *what, cwd=copy: subprocess.run(
+        ["git", *what], cwd=cwd, capture_output=True, text=True, check=True
+    ).stdout.strip()
+    head = git("rev-parse", "HEAD", cwd=ROOT)
+    if not copy.exists():
+        git("worktree", "add", "--detach", str(copy), cwd=ROOT)
+    failed = 0
+    for number in sorted({b.batch for b in chosen}):
+        git("reset", "--hard", head)
+        batch = [b for b in chosen if b.batch == number]
+        planted(copy, batch)
+        failed += seen(copy, batch)
+    git("reset", "--hard", head)
+    print(f"{failed} of {len(chosen)} tests fail, as they must")
+    return 0 if chosen and failed == len(chosen) else 1
 
 
 def main() -> int:
