@@ -70,7 +70,7 @@ impl BrdfStudy {
                 "What is assumed of the wall against the light traced by {} with {} samples",
                 self.estimator, self.samples
             ),
-            ..Table::by_columns(
+            ..Table::of(
                 self.rows(),
                 [
                     (Column::text("assumed of the wall", ""), |a| {
@@ -107,7 +107,7 @@ impl BrdfStudy {
                 self.draws
             ),
             note: rows().filter_map(reason).collect::<Vec<_>>().join(" "),
-            ..Table::by_columns(
+            ..Table::of(
                 rows(),
                 [
                     (Column::text("assumed of the wall", ""), |(name, _)| {
@@ -131,7 +131,7 @@ impl BrdfStudy {
         Table {
             caption: "Recovery with the known BRDF over that of a Lambertian wall of equal albedo"
                 .to_owned(),
-            ..Table::by_columns(
+            ..Table::of(
                 &self.ratios,
                 [
                     (Column::text("method", ""), |r| Cell::name(&r.method)),
@@ -164,7 +164,7 @@ impl BrdfStudy {
         Table {
             file: Some("brdf.csv".to_owned()),
             place: Place::File,
-            ..Table::by_columns(
+            ..Table::of(
                 all.flat_map(|a| a.qualities.iter().map(move |q| (a, &a.agreement, q))),
                 [
                     (number("assumed"), |(a, ..)| (&a.name).into()),

@@ -65,7 +65,7 @@ impl ErrorBudget {
                 "What is not in the sum, a model without étendue per pixel would add. The object's signal, the part of Φcam that its pattern causes, is {} of the flux.",
                 figure(self.signal, 3)
             ),
-            ..Table::by_columns(
+            ..Table::of(
                 &self.terms,
                 [
                     (Column::text("cause", "cause"), |t| (&t.name).into()),

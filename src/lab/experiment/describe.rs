@@ -214,7 +214,7 @@ impl Experiment {
         Table {
             caption: "Where each analysis reads the board".to_owned(),
             place: Place::Page,
-            ..Table::by_columns(
+            ..Table::of(
                 &self.thresholds,
                 [
                     (Column::text("analysis", ""), |t| (&t.analysis).into()),
@@ -242,7 +242,7 @@ impl Experiment {
         Table {
             file: Some("experiment.csv".to_owned()),
             place: Place::File,
-            ..Table::by_columns(
+            ..Table::of(
                 readings,
                 [
                     (column("sweep"), |(sweep, ..)| Cell::name(sweep)),

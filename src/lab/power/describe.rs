@@ -50,7 +50,7 @@ impl Power {
                 figure(self.significance, 2),
                 self.sampler
             ),
-            ..Table::by_columns(
+            ..Table::of(
                 &self.rows,
                 [
                     (Column::text("estimator", ""), |r| Cell::name(&r.estimator)),
@@ -77,7 +77,7 @@ impl Power {
         let all = self.rows.iter();
         Table {
             caption: "Wrong models, rejected".to_owned(),
-            ..Table::by_columns(
+            ..Table::of(
                 all.flat_map(|r| r.detections.iter().map(move |d| (r, d))),
                 [
                     (Column::text("estimator", ""), |(r, _)| {

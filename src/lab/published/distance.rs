@@ -122,7 +122,7 @@ pub(super) fn figure(item: Item, cases: &[Case], found: &[Vec<Trial>]) -> Findin
     );
     let table = Table::of(
         &rows,
-        &[
+        [
             ("kernel", |r| r.kernel().into()),
             ("layout", |r| r.case.label.into()),
             ("half_width_in", |r| r.half_width().into()),

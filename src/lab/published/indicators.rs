@@ -9,7 +9,7 @@ use super::sheet::finding;
 use super::spots::{LAYOUT, PER_SIDE, across};
 use crate::lab::LabError;
 use crate::lab::check::Check;
-use crate::lab::finding::{Axis, Curve, Finding, Get, Mark, Plot, Table};
+use crate::lab::finding::{Axis, Curve, Finding, Mark, Plot, Table};
 use crate::lab::inversion::smallest_eigenvalue;
 use crate::metrics::rank_correlation;
 use crate::model::{Kernel, Stagger};
@@ -68,7 +68,7 @@ pub(super) fn figure(control: Control<'_>) -> Result<Finding, LabError> {
         let own = found.iter();
         own.filter(move |f| (f.kernel, f.elements) == (kernel, side))
     };
-    let measures: [(&str, Get<Figures, f64>); 2] = [
+    let measures: [(&str, fn(&Figures) -> f64); 2] = [
         ("condition number ‖G12‖·‖G12⁺‖", |f| f.condition),
         ("|λmin| / λmax of G12·G12ᵀ", |f| f.smallest.abs()),
     ];
@@ -122,7 +122,7 @@ pub(super) fn figure(control: Control<'_>) -> Result<Finding, LabError> {
     );
     let table = Table::of(
         found,
-        &[
+        [
             ("kernel", |f| f.kernel.name().into()),
             ("elements", |f| f.elements.into()),
             ("spots", |f| f.spots.into()),

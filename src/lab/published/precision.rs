@@ -195,7 +195,7 @@ pub(super) fn figure(cases: &[Case], found: &[Vec<Trial>]) -> Finding {
                    Moore–Penrose recovery.";
     let table = Table::of(
         rows,
-        &[
+        [
             ("item", |r| r.case.label.into()),
             ("board", |r| r.board.into()),
             ("elements", |r| r.case.published.elements.into()),

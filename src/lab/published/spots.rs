@@ -8,7 +8,7 @@ use super::sheet::finding;
 use super::substitution;
 use super::traced;
 use crate::lab::check::Check;
-use crate::lab::finding::{Axis, Curve, Finding, Get, Plot, Table};
+use crate::lab::finding::{Axis, Curve, Finding, Plot, Table};
 use crate::model::{Kernel, Stagger};
 
 /// Spots a side: 8 to 400 in all.
@@ -92,7 +92,7 @@ pub(super) fn figure(item: Item, cases: &[Case], found: &[Vec<Trial>]) -> Findin
     });
     let boards = boards(item);
     let modelled: Vec<Row<'_>> = rows.iter().filter(|r| !r.case.is_traced).copied().collect();
-    let measures: [(&str, Get<Outcome, Option<f64>>); 2] =
+    let measures: [(&str, fn(&Outcome) -> Option<f64>); 2] =
         [("normalized MTF", |o| o.normalized), ("raw MTF", |o| o.raw)];
     let mut plots = Vec::new();
     for &board in boards {
@@ -116,7 +116,7 @@ pub(super) fn figure(item: Item, cases: &[Case], found: &[Vec<Trial>]) -> Findin
     let names: Vec<String> = boards.iter().map(|b| format!("{b} × {b} board")).collect();
     let table = Table::of(
         rows,
-        &[
+        [
             ("kernel", |r| r.kernel().into()),
             ("board", |r| r.board.into()),
             ("elements", |r| r.case.published.elements.into()),

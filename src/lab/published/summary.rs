@@ -132,7 +132,7 @@ pub fn overview(items: &[ItemSummary]) -> Finding {
     });
     let table = Table::of(
         items,
-        &[
+        [
             ("item", |i| i.item.as_str().into()),
             ("verdict", |i| i.verdict.reason(&i.checks).into()),
         ],

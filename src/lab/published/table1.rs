@@ -107,7 +107,7 @@ fn ordered<'a>(cases: &'a [Case], found: &'a [Vec<Trial>]) -> Vec<Row<'a>> {
 pub(super) fn table(cases: &[Case], found: &[Vec<Trial>]) -> Table {
     Table::of(
         ordered(cases, found),
-        &[
+        [
             ("kernel", |r| r.kernel().into()),
             ("spots", |r| r.spots().into()),
             ("method", |r| r.method().into()),

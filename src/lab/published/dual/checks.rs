@@ -38,8 +38,12 @@ pub(super) fn checks(
         _ => false,
     };
     let inverses: Vec<&Judged> = found.iter().filter(inverse).collect();
-    let recovered =
-        |j: &&Judged| j.shows() && j.mtf.is_some_and(|m| (RECOVERED..=1.0).contains(&m));
+    let recovered = |j: &&Judged| {
+        j.shows()
+            && j.measures
+                .mtf_raw
+                .is_some_and(|m| (RECOVERED..=1.0).contains(&m))
+    };
     let limit = format!("at a significance of {SIGNIFICANCE}, by the joint standard errors");
     let told = [&law.untransposed, &law.scaleless];
     vec![
