@@ -64,7 +64,7 @@ pub(super) fn entries(scene: &Scene) -> Vec<(String, String)> {
         "line of sight".to_owned(),
     ));
     if has(Role::Hidden) {
-        let text = "one way of the light: spot, object, wall in view";
+        let text = "one light path: spot, object, wall in view";
         entries.push((line(&stroke(ink::BLUE, 1.6)), text.to_owned()));
     }
     entries

@@ -26,6 +26,8 @@ const TYPE: usize = 29;
 const LINE: usize = 36;
 const CHARACTER: usize = 17;
 pub(super) const BAR: [usize; 2] = [640, 30];
+/// From the left of a colour's sample to what it means.
+const BESIDE: usize = 52;
 /// Ink of frames and arrows, 0.5 pt wide.
 const THIN: &str = "fill=\"none\" stroke=\"#222222\" stroke-width=\"2\"";
 
@@ -185,7 +187,12 @@ impl Sheet<'_> {
         let heading = wrapped(self.title, (width - 2 * MARGIN) / CHARACTER);
         let top = MARGIN + LINE * heading.len() + 12;
         let legend = top + height + 16;
-        let full = legend + BAR[1] + 56 + LINE * self.outside.len() + MARGIN;
+        let room = (width - 2 * MARGIN - BESIDE) / CHARACTER;
+        let outside = self.outside.iter();
+        let outside: Vec<(Rgb, Vec<String>)> =
+            outside.map(|(c, text)| (*c, wrapped(text, room))).collect();
+        let lines: usize = outside.iter().map(|(_, lines)| lines.len()).sum();
+        let full = legend + BAR[1] + 56 + LINE * lines + MARGIN;
         let mut svg = Svg::default();
         svg.raw(&opening(self.title, [width, full]));
         write(&mut svg, [MARGIN, MARGIN], &heading);
@@ -197,7 +204,7 @@ impl Sheet<'_> {
         }
         let corner = at([MARGIN + 100, legend]);
         colour_bar(&mut svg, corner, at(BAR), TYPE as f64, scale, unit)?;
-        key(&mut svg, [MARGIN, legend + BAR[1] + 56], &self.outside);
+        key(&mut svg, [MARGIN, legend + BAR[1] + 56], &outside);
         svg.raw("</svg>");
         Ok(svg.text)
     }
@@ -216,15 +223,13 @@ fn opening(title: &str, [width, height]: [usize; 2]) -> String {
 }
 
 /// Colours with what they mean, below each other.
-fn key(svg: &mut Svg, [x, y]: [usize; 2], lettering: &[(Rgb, String)]) {
-    for (i, ([r, g, b], text)) in lettering.iter().enumerate() {
-        let y = y + LINE * i;
-        svg.rect(
-            at([x, y + 5]),
-            [36.0, 24.0],
-            &format!("fill=\"#{r:02x}{g:02x}{b:02x}\" stroke=\"#222222\" stroke-width=\"2\""),
-        );
-        write(svg, [x + 52, y], std::slice::from_ref(text));
+fn key(svg: &mut Svg, [x, mut y]: [usize; 2], outside: &[(Rgb, Vec<String>)]) {
+    for ([r, g, b], lines) in outside {
+        let style =
+            format!("fill=\"#{r:02x}{g:02x}{b:02x}\" stroke=\"#222222\" stroke-width=\"2\"");
+        svg.rect(at([x, y + 5]), [36.0, 24.0], &style);
+        write(svg, [x + BESIDE, y], lines);
+        y += LINE * lines.len();
     }
 }
 

@@ -136,7 +136,7 @@ fn remark(figure: &Figure, rulers: &[[Ruler<'_>; 2]]) -> String {
     }
     if hidden > 0 {
         words.push(format!(
-            "{hidden} points lie beyond the axes; the files have all"
+            "{hidden} points lie beyond the axes; the files have all of them"
         ));
     }
     words.retain(|w| !w.is_empty());

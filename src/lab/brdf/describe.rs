@@ -51,7 +51,9 @@ impl BrdfStudy {
         };
         let judged: Vec<bool> = self.ratios.iter().filter_map(|r| r.reaches).collect();
         format!(
-            "On {}, at a significance of {}, the traced light {} the model that knows the wall's BRDF (difference {}, of which noise {}) and rejects {}{also}. With the known BRDF, {} of {} recoveries that work on a Lambertian wall reach it within 10 %.",
+            "On {}, at a significance of {}, the traced light {} the model with the wall's true \
+             BRDF (difference {}, of which noise {}); the test rejects {}{also}. With the known \
+             BRDF, {} of {} recoveries that succeed on a Lambertian wall do as well within 10 %.",
             self.scene,
             figure(g.significance, 2),
             if g.agrees { "agrees with" } else { "REJECTS" },
@@ -67,7 +69,7 @@ impl BrdfStudy {
     fn agreements(&self) -> Table {
         Table {
             caption: format!(
-                "What is assumed of the wall against the light traced by {} with {} samples",
+                "Assumed BRDFs of the wall against the light traced by {} with {} samples",
                 self.estimator, self.samples
             ),
             ..Table::of(

@@ -35,7 +35,9 @@ impl Power {
         let alarms: u64 = rows().map(|r| r.false_alarms).sum();
         let renders: u64 = rows().map(|r| r.seeds).sum();
         format!(
-            "{sharpest}A right model was rejected {alarms} times in {renders}, a rate of {} at a stated significance of {}: {} of {} settings lie where 99 % of such counts do.",
+            "{sharpest}A right model was rejected {alarms} times in {renders}, a rate of {} at a \
+             stated significance of {}: in {} of {} settings the count lies within the central 99 \
+             % of its distribution.",
             figure(alarms as f64 / renders.max(1) as f64, 2),
             figure(self.significance, 2),
             rows().filter(|r| r.as_stated()).count(),
