@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::case::{HALF_WIDTH, KERNELS, published};
 use super::inversion::recovered;
 use super::item::Item;
-use super::sheet::finding;
+use super::sheet::{Measure, finding};
 use super::spots::{PER_SIDE, across, layout};
 use crate::lab::LabError;
 use crate::lab::check::Check;
@@ -68,7 +68,7 @@ pub(super) fn figure(control: Control<'_>) -> Result<Finding, LabError> {
         let own = found.iter();
         own.filter(move |f| (f.kernel, f.elements) == (kernel, side))
     };
-    let measures: [(&str, fn(&Figures) -> f64); 2] = [
+    let measures: [Measure<Figures, f64>; 2] = [
         ("condition number ‖G12‖·‖G12⁺‖", |f| f.condition),
         ("|λmin| / λmax of G12·G12ᵀ", |f| f.smallest.abs()),
     ];

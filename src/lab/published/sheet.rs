@@ -10,6 +10,9 @@ pub(super) const CUT: &str = "Moore–Penrose inverse cut at max(r, l)·eps(σ1)
                               doubles at σ1 (MATLAB)";
 pub(super) const STRETCHED: &str = "normalized MTF of the values stretched to [0, 1]";
 
+/// What is plotted of a result: the title of its axis, and its value.
+pub(super) type Measure<R, T> = (&'static str, fn(&R) -> T);
+
 /// Side of the published object, in.
 const OBJECT: f64 = 4.0;
 /// A table of more rows than this is left to its CSV file.

@@ -4,7 +4,7 @@ use super::case::{Case, HALF_WIDTH, KERNELS, Row, curve, published, rows};
 use super::item::Item;
 use super::outcome::{Outcome, Trial};
 use super::plan::ReproducePlan;
-use super::sheet::{BOTH_KERNELS, CUT, STRETCHED, VIEW, finding};
+use super::sheet::{BOTH_KERNELS, CUT, Measure, STRETCHED, VIEW, finding};
 use super::substitution;
 use super::traced;
 use crate::lab::check::Check;
@@ -95,7 +95,7 @@ pub(super) fn figure(item: Item, cases: &[Case], found: &[Vec<Trial>]) -> Findin
     });
     let boards = boards(item);
     let modelled: Vec<Row<'_>> = rows.iter().filter(|r| !r.case.is_traced).copied().collect();
-    let measures: [(&str, fn(&Outcome) -> Option<f64>); 2] =
+    let measures: [Measure<Outcome, Option<f64>>; 2] =
         [("normalized MTF", |o| o.normalized), ("raw MTF", |o| o.raw)];
     let mut plots = Vec::new();
     for &board in boards {
