@@ -23,6 +23,7 @@ pub use bvh::{Bvh, GeometryError, Hit};
 pub use disc::Disc;
 pub use glam::{DAffine3, DQuat, DVec3};
 pub use instance::{Instance, Side};
+pub(crate) use mesh::is_proper;
 pub use mesh::{Mesh, MeshError};
 pub use parallelogram::Parallelogram;
 pub use ray::{Contact, Interaction, Ray};

@@ -1,5 +1,6 @@
 //! The camera: an off-axis pinhole whose pixel grid covers a rectangle of the wall exactly.
 
+use super::device;
 use super::error::{Fault, keys};
 use super::file::CameraTable;
 use super::surface::{Role, Surface};
@@ -89,23 +90,12 @@ impl Camera {
                 "give a positive area in unit², from 1e-30 to 1e30",
             );
         }
-        if table
-            .position
-            .iter()
-            .any(|x| !(-FARTHEST..=FARTHEST).contains(x))
-        {
-            return refuse(
-                "position",
-                format!("the camera's position is not finite, or farther than {FARTHEST:e}"),
-                "use finite numbers, or another unit of length",
-            );
-        }
+        let position = device::position("camera", table.position)?;
         let ([x0, x1], [y0, y1]) = (table.view.x, table.view.y);
         if !(x0 < x1 && y0 < y1 && [x0, x1, y0, y1].iter().all(|c| c.is_finite())) {
             let cause = format!("the view [{x0}, {x1}] × [{y0}, {y1}] has no area");
             return refuse("view", cause, "give x and y as [lower, upper]");
         }
-        let position = DVec3::from_array(table.position);
         let view = view([x0, x1], [y0, y1], position, surfaces).map_err(|e| {
             let at = format!("the view [{x0}, {x1}] × [{y0}, {y1}]");
             let fault = match e {

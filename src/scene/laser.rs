@@ -1,5 +1,6 @@
 //! The laser and its spots.
 
+use super::device;
 use super::error::{Fault, keys};
 use super::file::{LaserTable, ProfileShape};
 use super::spots;
@@ -75,23 +76,12 @@ impl Laser {
                 "use 0 for an ideal spot, or a length from 1e-15 to 1e15",
             );
         }
-        if table
-            .position
-            .iter()
-            .any(|x| !(-FARTHEST..=FARTHEST).contains(x))
-        {
-            return refuse(
-                "position",
-                format!("the laser's position is not finite, or farther than {FARTHEST:e}"),
-                "use finite numbers, or another unit of length",
-            );
-        }
+        let position = device::position("laser", table.position)?;
         let profile = match table.profile {
             _ if d == 0.0 => Profile::Ideal,
             ProfileShape::Disc => Profile::Disc { radius: 0.5 * d },
             ProfileShape::Gaussian => Profile::Gaussian { radius: 0.5 * d },
         };
-        let position = DVec3::from_array(table.position);
         let places = spots::places(&table.spots).map_err(|f| f.within(keys!["laser", "spots"]))?;
         let spots = place(&places, position, surfaces)?;
         Ok(Self {

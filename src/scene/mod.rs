@@ -137,6 +137,7 @@ mod body;
 mod builtin;
 mod camera;
 mod check;
+mod device;
 mod element;
 mod error;
 pub mod file;
