@@ -12,6 +12,7 @@ mod flat;
 mod instance;
 mod mesh;
 mod parallelogram;
+mod plane;
 mod ray;
 mod shaft;
 mod shape;

@@ -3,9 +3,9 @@
 use super::device;
 use super::error::{Fault, keys};
 use super::file::CameraTable;
-use super::surface::{Role, Surface};
+use super::surface::{Surface, facing_at_xy, is_off_the_wall};
 use super::{FARTHEST, FINEST};
-use crate::geometry::{DVec3, Interaction, Parallelogram};
+use crate::geometry::{DVec3, Parallelogram};
 
 /// More pixels than this are taken for a mistake.
 const MOST_PIXELS: u64 = 1 << 26;
@@ -158,20 +158,15 @@ fn view(
     camera: DVec3,
     surfaces: &[Surface],
 ) -> Result<Parallelogram, NoView> {
-    let relays = || surfaces.iter().filter(|s| s.role == Role::Relay);
     const STEPS: usize = 64;
     let at = |c: [f64; 2], k: usize| c[0] + (c[1] - c[0]) * k as f64 / STEPS as f64;
     for (i, j) in (0..=STEPS).flat_map(|i| (0..=STEPS).map(move |j| (i, j))) {
-        if relays().all(|s| s.shape.at_xy(at(x, i), at(y, j)).is_empty()) {
+        if is_off_the_wall(surfaces, [at(x, i), at(y, j)]) {
             return Err(NoView::OffTheWall);
         }
     }
     let (cx, cy) = (0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1]));
-    let distance = |p: &Interaction| (p.position - camera).length_squared();
-    let centre = relays()
-        .filter_map(|s| s.facing_at_xy(cx, cy, camera))
-        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
-        .ok_or(NoView::Behind)?;
+    let (_, centre) = facing_at_xy(surfaces, [cx, cy], camera).ok_or(NoView::Behind)?;
     let n = centre.normal;
     if n.z.abs() < 1e-9 {
         return Err(NoView::OffTheWall);

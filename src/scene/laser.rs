@@ -4,7 +4,7 @@ use super::device;
 use super::error::{Fault, keys};
 use super::file::{LaserTable, ProfileShape};
 use super::spots;
-use super::surface::{Role, Surface};
+use super::surface::{Surface, facing_at_xy, is_off_the_wall};
 use super::{FARTHEST, FINEST};
 use crate::geometry::{DVec3, Interaction, ShapeId};
 
@@ -103,30 +103,12 @@ pub(super) fn place(
 ) -> Result<Vec<Spot>, Fault> {
     let mut spots = Vec::with_capacity(places.len());
     for (i, &[x, y]) in places.iter().enumerate() {
-        let relays = || {
-            surfaces
-                .iter()
-                .enumerate()
-                .filter(|(_, s)| s.role == Role::Relay)
-        };
-        let nearest = relays()
-            .filter_map(|(id, s)| {
-                let target = s.facing_at_xy(x, y, laser)?;
-                Some(Spot {
-                    target,
-                    surface: id as ShapeId,
-                })
-            })
-            .min_by(|a, b| {
-                let distance = |s: &Spot| (s.target.position - laser).length_squared();
-                distance(a).total_cmp(&distance(b))
-            });
-        let (cause, cure) = match nearest {
-            Some(spot) => {
-                spots.push(spot);
+        let (cause, cure) = match facing_at_xy(surfaces, [x, y], laser) {
+            Some((surface, target)) => {
+                spots.push(Spot { target, surface });
                 continue;
             }
-            None if relays().all(|(_, s)| s.shape.at_xy(x, y).is_empty()) => (
+            None if is_off_the_wall(surfaces, [x, y]) => (
                 format!("spot {i} at ({x}, {y}) falls off every relay surface"),
                 "move or shrink the layout, or extend the wall",
             ),
