@@ -96,6 +96,14 @@ pub enum QuadraticError {
     },
 }
 
+fn not_solved(status: String, gap: f64) -> QuadraticError {
+    QuadraticError::NotSolved {
+        status,
+        gap,
+        allowed: GAP_ALLOWED,
+    }
+}
+
 /// Where a variable stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Place {
@@ -239,11 +247,7 @@ impl Scaled {
         )?;
         let unit = 0.5 * (r.norm_squared() + d.norm_squared());
         if gap.is_nan() || gap > GAP_ALLOWED * unit {
-            return Err(QuadraticError::NotSolved {
-                status: start.status,
-                gap: gap / unit,
-                allowed: GAP_ALLOWED,
-            });
+            return Err(not_solved(start.status, gap / unit));
         }
         let up = |x: f64| libm::scalbn(x, 2 * self.exponent);
         let solution = DVector::from_fn(n, |j, _| {
