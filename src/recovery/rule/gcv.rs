@@ -96,6 +96,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "slow"]
     fn the_least_prediction_error_is_chosen_without_a_noise_model() {
         let bench = Bench::new(3.0, 8, 8);
         let (phi, _) = relative_noise(&bench.phi(&bench.board(2)), 1e-3, 3);
