@@ -2,7 +2,7 @@
 
 use super::colour::Scale;
 use super::legend::{colour_bar, outside};
-use super::picture::Panel;
+use super::panel::Panel;
 use super::svg::{END, MIDDLE, Svg, escape, number};
 
 /// Length of a picture's longer side on the page, px.

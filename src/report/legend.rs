@@ -4,7 +4,7 @@ use super::axis::{tick, ticks};
 use super::colour::{Law, NOT_A_NUMBER, Rgb, Scale};
 use super::encode::PictureError;
 use super::label::{CHARACTER, SIZE};
-use super::picture::Panel;
+use super::panel::Panel;
 use super::svg::{MIDDLE, Svg, ink, lettering, number, stroke};
 use crate::num::digits::{scientific, significant};
 

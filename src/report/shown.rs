@@ -4,7 +4,8 @@ use super::colour::{Rgb, Scale};
 use super::encode::PictureError;
 use super::figure::{Reduction, reduced};
 use super::legend::{bar_ticks, outside};
-use super::picture::{BAR, MARGIN, Panel, Sheet};
+use super::panel::Panel;
+use super::picture::{BAR, MARGIN, Sheet};
 use super::raster;
 use super::terminal::half_blocks;
 
