@@ -10,14 +10,13 @@ use crate::cli::args::{Args, Command};
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::interrupt::stop_flag;
-use crate::cli::process::{pool, version};
-use crate::cli::tasks::Tasks;
-use crate::cli::{Outcome, progress, reproduce, study};
-use crate::jobs::{Checkpoint, Identity, Parts, Settings, Shards, compute_tasks, end};
-use crate::lab::LAYOUT as TASKS;
+use crate::cli::process::pool;
+use crate::cli::tasks::{Tasks, compute, identity};
+use crate::cli::{Outcome, reproduce, study};
+use crate::jobs::{Checkpoint, Identity, Parts, Settings, Shards};
 use crate::scene::Scene;
 use crate::store::ensure_writable;
-use crate::transport::{Control, NUMERICS};
+use crate::transport::Control;
 
 /// A command whose blocks are its tasks.
 pub(super) struct Study {
@@ -85,24 +84,8 @@ impl Work for Study {
     }
 
     fn identity(&self) -> Identity {
-        let none = "none".to_owned();
-        let scene = self.scene.as_ref().map(|s| {
-            // Of the sensor and the known answers the scene's digest says nothing; a study may use
-            // them.
-            let text = Identity::default().with("text", &s.text).id();
-            [s.name.clone(), s.hash.clone(), text.to_string()]
-        });
-        let [name, hash, text] = scene.unwrap_or([(); 3].map(|()| none.clone()));
-        Identity::default()
-            .with("work", "command")
-            .with("scene", name)
-            .with("scene's digest", hash)
-            .with("scene's text", text)
-            .with("command", format!("{:?}", self.arguments))
-            .with("tasks", self.tasks.count())
-            .with("program", version())
-            .with("layout of tasks", TASKS)
-            .with(Identity::NUMERICS, NUMERICS)
+        let words = [("command".to_owned(), format!("{:?}", self.arguments))];
+        identity(self.scene.as_ref(), words, self.tasks.count())
     }
 
     fn blocks(&self) -> u64 {
@@ -116,19 +99,8 @@ impl Work for Study {
         checkpoint: &mut Checkpoint,
         console: Console,
     ) -> Result<Parts, Failure> {
-        let bar = progress::steps(console, &self.arguments.join(" "));
-        // Tasks of an earlier process say nothing of how fast this one is.
-        let resumed = end(&done, range);
-        bar.set_length(range.end - resumed);
-        let control = Control {
-            progress: &|_| bar.tick(),
-            stop: stop_flag(),
-        };
-        let shown = |first| bar.set_position(first - resumed);
-        let run = |tasks| self.tasks.run(tasks, control);
-        let parts = compute_tasks(range, done, checkpoint, control, &shown, &run)?;
-        bar.finish_and_clear();
-        Ok(parts)
+        let what = self.arguments.join(" ");
+        compute(&*self.tasks, &what, range, done, checkpoint, console)
     }
 
     fn merge(

@@ -2,7 +2,6 @@
 
 mod findings;
 mod job;
-mod noise;
 
 use super::Outcome;
 use super::args::StudyArgs;
@@ -14,9 +13,6 @@ use job::Job;
 
 pub(in crate::cli) fn execute(args: &StudyArgs, console: Console) -> Result<Outcome, Failure> {
     let scene = console.load_scene(&args.scene)?;
-    if args.study.name == "noise" {
-        return noise::execute(args, &scene, console);
-    }
     Job::new(args, &scene)?.execute(console)
 }
 

@@ -18,13 +18,15 @@ fn command(line: &str) -> Command {
     Args::try_parse_from(words).unwrap().command
 }
 
+/// All files but the tasks that a rerun goes on from.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let entry = |e: std::io::Result<fs::DirEntry>| {
         let e = e.unwrap();
         let name = e.file_name().into_string().unwrap();
         (name, fs::read(e.path()).unwrap())
     };
-    fs::read_dir(folder).unwrap().map(entry).collect()
+    let all = fs::read_dir(folder).unwrap().map(entry);
+    all.filter(|(name, _)| !name.ends_with(".phs")).collect()
 }
 
 /// A built-in scene of four by four pixels as a file.
