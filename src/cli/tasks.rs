@@ -5,7 +5,6 @@ use std::path::Path;
 
 use super::console::Console;
 use super::failure::{Failure, Outcome};
-use super::interrupt::stop_flag;
 use super::process::version;
 use super::progress;
 use crate::jobs::{Checkpoint, Identity, Parts, compute_tasks, end};
@@ -35,12 +34,7 @@ pub(super) trait Tasks: Sync {
 
     /// Makes of the outputs of all tasks, in their order, the files that the command itself would
     /// leave in `folder`, and prints what it would print.
-    fn deliver(
-        &self,
-        outputs: &[Vec<u8>],
-        control: Control<'_>,
-        folder: &Path,
-    ) -> Result<Outcome, Failure>;
+    fn deliver(&self, outputs: &[Vec<u8>], folder: &Path) -> Result<Outcome, Failure>;
 }
 
 /// All that so many tasks of a command depend on; `words` are what the command says.
@@ -83,21 +77,13 @@ pub(super) fn compute(
 ) -> Result<Parts, Failure> {
     // Tasks of an earlier process say nothing of how fast this one is.
     let left = range.end - end(&done, range);
-    let bar = progress::work(
-        console,
-        what,
-        tasks.work().share(left, tasks.count() as u64),
-    );
-    let control = Control {
-        progress: &|n| bar.inc(n),
-        stop: stop_flag(),
-    };
+    let work = tasks.work().share(left, tasks.count() as u64);
     let least = match tasks.sharing() {
         Sharing::SideBySide => checkpoint.process.threads as u64,
         Sharing::InTurn => 1,
     };
-    let run = |range| tasks.run(range, control);
-    let parts = compute_tasks(range, done, checkpoint, control, least, &run);
-    bar.finish_and_clear();
-    parts
+    progress::run(console, what, work, |control| {
+        let run = |range| tasks.run(range, control);
+        compute_tasks(range, done, checkpoint, control, least, &run)
+    })
 }

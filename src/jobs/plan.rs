@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::{Identity, JobError};
 use crate::num::stream::Sampling;
 use crate::store::{StoreError, write_whole};
-use crate::transport::Estimator;
+use crate::transport::{Estimator, Plan};
 
 /// plan.json.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,6 +46,18 @@ pub enum Settings {
     },
     /// Another command, by its arguments.
     Command(Vec<String>),
+}
+
+impl Settings {
+    /// A render.
+    pub fn render(plan: &Plan) -> Self {
+        Self::Render {
+            estimator: plan.estimator,
+            sampler: plan.sampling,
+            seed: plan.seed,
+            samples: plan.budget.samples(),
+        }
+    }
 }
 
 impl PlanFile {

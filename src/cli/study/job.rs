@@ -9,7 +9,7 @@ use crate::cli::args::StudyArgs;
 use crate::cli::cleanup::remove_named;
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::cli::interrupt::{SignalGuard, stop_flag};
+use crate::cli::interrupt::{SignalGuard, control};
 use crate::cli::process::{pool, process, version};
 use crate::cli::tasks::{Tasks, compute, identity};
 use crate::jobs::{BlockFile, Checkpoint, EXTENSION, Identity, JobError, end};
@@ -85,12 +85,8 @@ impl Job {
             checkpoint.keep(&parts)?;
         }
         let outputs: Vec<Vec<u8>> = parts.into_iter().map(|(_, bytes)| bytes).collect();
-        let control = Control {
-            stop: stop_flag(),
-            ..Control::none()
-        };
         let outcome = pool
-            .install(|| self.deliver(&outputs, control, &self.output))
+            .install(|| self.deliver(&outputs, &self.output))
             .map_err(|e| e.if_stopped(kept))?;
         if !self.study.keeps() {
             remove_named(&self.output, &[&file])?;
@@ -156,13 +152,9 @@ impl Tasks for Job {
         self.study.outputs(tasks, control).map_err(Failure::of)
     }
 
-    fn deliver(
-        &self,
-        outputs: &[Vec<u8>],
-        control: Control<'_>,
-        folder: &Path,
-    ) -> Result<Outcome, Failure> {
-        let found = self.study.merge(outputs, control).map_err(Failure::of)?;
+    fn deliver(&self, outputs: &[Vec<u8>], folder: &Path) -> Result<Outcome, Failure> {
+        let found = self.study.merge(outputs, control());
+        let found = found.map_err(Failure::of)?;
         ensure_writable(folder)?;
         deliver(self.name, &found, folder, &self.invocation, self.json)?;
         Ok(match found.agrees {

@@ -16,15 +16,7 @@ pub(in crate::cli) fn execute(args: &StudyArgs, console: Console) -> Result<Outc
     Job::new(args, &scene)?.execute(console)
 }
 
-/// The tasks of a study of `scene`, or where there is none of the scene that the arguments name.
-pub(in crate::cli) fn tasks(
-    args: &StudyArgs,
-    scene: Option<Scene>,
-    console: Console,
-) -> Result<Box<dyn Tasks>, Failure> {
-    let scene = match scene {
-        Some(scene) => scene,
-        None => console.load_scene(&args.scene)?,
-    };
-    Ok(Box::new(Job::new(args, &scene)?))
+/// The tasks of a study of `scene`.
+pub(in crate::cli) fn tasks(args: &StudyArgs, scene: &Scene) -> Result<Box<dyn Tasks>, Failure> {
+    Ok(Box::new(Job::new(args, scene)?))
 }
