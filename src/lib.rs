@@ -64,7 +64,7 @@
 //!    agreement would prove nothing.
 //! 2. **Blind recovery.** [`recovery`] imports [`num`] and [`matrix`] only; it never learns what
 //!    scene it inverts.
-//! 3. **One door per foreign crate**: obvhs only in `geometry/bvh`, exr only in `film/exr` and
+//! 3. **One door per foreign crate**: obvhs only in `geometry/tree`, exr only in `film/exr` and
 //!    `image/exr` (frames and pictures), png only in `image/png`, matrix decompositions only in
 //!    `num::linalg`, random generators only in [`num::stream`], the argument parser only in
 //!    [`cli`].

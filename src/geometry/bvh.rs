@@ -1,24 +1,9 @@
-//! Which shape does a ray meet, and is a segment free? The one door to obvhs.
+//! Which shape does a ray meet, and is a segment free?
 //!
-//! Up to [`FLAT`] shapes are tested one by one; more stand behind obvhs' 8-wide compressed BVH. The
-//! tree works in f32 on boxes only and decides nothing by itself: every intersection is computed in
-//! f64 on the shape. For that the boxes must hold whatever f32 does to the ray, and obvhs drops
-//! boxes that end nearer than 1e-4 along a unit direction. So the tree lives in a space in which
-//! the scene measures 1000, and every box is wider than its shape by 4e-3 there: 64 times the f32
-//! spacing at 1000, and forty times obvhs' limit.
+//! Up to [`FLAT`] shapes are tested one by one; more stand behind a tree.
 
-mod collapse;
-mod space;
-mod wide;
-
-use obvhs::BvhBuildParams;
-use obvhs::aabb::Aabb;
-use obvhs::cwbvh::{CwBvh, builder::build_cwbvh};
-use obvhs::ray::{Ray as TreeRay, RayHit};
-
+use super::tree::CompressedTree;
 use super::{Contact, Interaction, Ray, Shape, ShapeId};
-use space::{PADDING, Space};
-pub(super) use wide::{Query, WideTree};
 
 /// Largest number of shapes tested one by one: from there on the tree is faster
 /// (`benches/rays.rs`).
@@ -59,19 +44,13 @@ pub struct Hit {
 #[derive(Clone)]
 pub struct Bvh {
     shapes: Vec<Shape>,
-    tree: Option<Tree>,
+    tree: Option<CompressedTree>,
 }
 
 impl std::fmt::Debug for Bvh {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "Bvh({} shapes)", self.shapes.len())
     }
-}
-
-#[derive(Clone)]
-struct Tree {
-    cwbvh: CwBvh,
-    space: Space,
 }
 
 impl Bvh {
@@ -88,7 +67,8 @@ impl Bvh {
                 return Err(GeometryError::Unbounded { index, reach });
             }
         }
-        let tree = (shapes.len() > FLAT).then(|| Tree::new(&shapes));
+        let boxes: Vec<_> = shapes.iter().map(Shape::bounds).collect();
+        let tree = (shapes.len() > FLAT).then(|| CompressedTree::new(&boxes));
         Ok(Self { shapes, tree })
     }
 
@@ -159,46 +139,6 @@ impl Bvh {
             None => (0..self.shapes.len()).any(blocks),
             Some(tree) => tree.any(ray, blocks),
         }
-    }
-}
-
-impl Tree {
-    fn new(shapes: &[Shape]) -> Self {
-        let space = Space::around(shapes.iter().map(Shape::bounds));
-        let boxes: Vec<Aabb> = shapes.iter().map(|s| space.padded(s.bounds())).collect();
-        let mut time = std::time::Duration::ZERO;
-        let cwbvh = build_cwbvh(&boxes, BvhBuildParams::medium_build(), &mut time);
-        Self { cwbvh, space }
-    }
-
-    /// The ray in the tree's space, and how far its start was moved.
-    fn ray(&self, ray: &Ray) -> (TreeRay, f64) {
-        let (start, advance) = self.space.start(ray);
-        let length = (self.space.length(ray.length) - advance).max(0.0) + f64::from(PADDING);
-        let direction = ray.direction.as_vec3a();
-        let ray = TreeRay::new(start, direction, 0.0, length.min(1e30) as f32);
-        (ray, advance)
-    }
-
-    /// Visits the shapes whose box the ray meets; `test` keeps the nearest hit in f64 and returns
-    /// its distance.
-    fn closest(&self, ray: &Ray, mut test: impl FnMut(usize) -> f64) {
-        let (tree_ray, advance) = self.ray(ray);
-        let mut hit = RayHit::none();
-        self.cwbvh.ray_traverse(tree_ray, &mut hit, |_, primitive| {
-            let t = test(self.cwbvh.primitive_indices[primitive] as usize);
-            // Prune only what lies behind the padded box of the nearest hit so far.
-            self.space.limit(t, advance)
-        });
-    }
-
-    fn any(&self, ray: &Ray, blocks: impl Fn(usize) -> bool) -> bool {
-        !self
-            .cwbvh
-            .ray_traverse_miss(self.ray(ray).0, |_, primitive| {
-                let id = self.cwbvh.primitive_indices[primitive] as usize;
-                if blocks(id) { 0.0 } else { f32::INFINITY }
-            })
     }
 }
 

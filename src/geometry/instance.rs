@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DAffine3;
 
-use super::{DVec3, Interaction, Mesh, Ray};
+use super::{Contact, DVec3, Interaction, Mesh, Ray};
 
 /// A mesh, placed by a similarity (rotation, uniform scale, translation): several bodies may share
 /// one mesh. Rays are taken into the mesh's own space, so that a million triangles exist, and their
@@ -150,10 +150,10 @@ impl Instance {
 
     /// First triangle met, from either side, at 0 < t < length; a ray that starts in a triangle's
     /// plane does not meet that.
-    pub fn intersect(&self, ray: &Ray) -> Option<(f64, u32)> {
-        let hit = self.mesh.closest_beyond(&self.local(ray), self.reach())?;
-        let t = hit.t * self.scale;
-        (t < ray.length).then_some((t, hit.triangle))
+    pub fn intersect(&self, ray: &Ray) -> Option<Contact> {
+        let Contact { t, triangle } = self.mesh.closest_beyond(&self.local(ray), self.reach())?;
+        let t = t * self.scale;
+        (t < ray.length).then_some(Contact { t, triangle })
     }
 
     /// Whether a triangle stands between the two ends of the segment.
@@ -205,7 +205,7 @@ impl Instance {
         let below = low.z - 0.5 * (high.z - low.z) - 1.0;
         let mut ray = Ray::new(DVec3::new(x, y, below), DVec3::Z);
         let mut found = Vec::new();
-        while let Some((t, triangle)) = self.intersect(&ray) {
+        while let Some(Contact { t, triangle }) = self.intersect(&ray) {
             let at = ray.origin + ray.direction * t;
             found.push(self.on_triangle(triangle, at));
             ray.origin = at;
@@ -252,15 +252,17 @@ mod tests {
             let aim = place.transform_point3(DVec3::splat(0.25) + DVec3::new(cos, sin, 0.0) * 0.3);
             let ray = Ray::new(from, (aim - from).normalize());
             let (a, b) = (body.intersect(&ray), copy.intersect(&ray));
-            assert_eq!(a.map(|h| h.1), b.map(|h| h.1), "{k}");
+            assert_eq!(a.map(|h| h.triangle), b.map(|h| h.triangle), "{k}");
             if let (Some(a), Some(b)) = (a, b) {
                 met += 1;
-                assert!((a.0 - b.0).abs() < 1e-11);
-                let at = from + ray.direction * a.0;
-                let (p, q) = (body.on_triangle(a.1, at), copy.on_triangle(b.1, at));
+                assert!((a.t - b.t).abs() < 1e-11);
+                let at = from + ray.direction * a.t;
+                let p = body.on_triangle(a.triangle, at);
+                let q = copy.on_triangle(b.triangle, at);
                 assert!((p.position - q.position).length() < 1e-11);
                 assert!((p.normal - q.normal).length() < 1e-12);
-                assert!((body.turned().on_triangle(a.1, at).normal + p.normal).length() == 0.0);
+                let turned = body.turned().on_triangle(a.triangle, at);
+                assert!((turned.normal + p.normal).length() == 0.0);
                 // What starts on a triangle does not meet it, however far the body is from the
                 // origin.
                 let out = Ray::new(p.position, p.normal);

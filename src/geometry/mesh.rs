@@ -4,8 +4,8 @@ mod group;
 mod nearest;
 mod query;
 
-use super::bvh::WideTree;
-use super::{DVec3, Interaction, Ray};
+use super::tree::WideTree;
+use super::{Contact, DVec3, Interaction, Ray};
 use crate::num::lanes::widest;
 use crate::num::warp;
 use group::{GROUP, Group};
@@ -59,15 +59,6 @@ pub enum MeshError {
         /// Number of triangles.
         count: usize,
     },
-}
-
-/// A ray's first intersection with a mesh.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MeshHit {
-    /// Which triangle.
-    pub triangle: u32,
-    /// Distance along the ray.
-    pub t: f64,
 }
 
 /// A surface of triangles, opaque from both sides, its front where the corners of a triangle run
@@ -295,22 +286,22 @@ impl Mesh {
     /// First triangle met by the ray at 0 < t < length, from either side. A ray that starts in the
     /// plane of a triangle (to rounding) does not meet it. Where two are met at one distance, the
     /// first of the list counts.
-    pub fn closest(&self, ray: &Ray) -> Option<MeshHit> {
+    pub fn closest(&self, ray: &Ray) -> Option<Contact> {
         self.closest_many(std::slice::from_ref(ray))[0]
     }
 
     /// [`Mesh::closest`] for many rays: much faster than one by one where the mesh is large.
-    pub fn closest_many(&self, rays: &[Ray]) -> Vec<Option<MeshHit>> {
+    pub fn closest_many(&self, rays: &[Ray]) -> Vec<Option<Contact>> {
         self.closest_of(rays, 0.0)
     }
 
     /// [`Mesh::closest`] for a ray whose start was computed from numbers as large as `reach`, and
     /// has their rounding.
-    pub(super) fn closest_beyond(&self, ray: &Ray, reach: f64) -> Option<MeshHit> {
+    pub(super) fn closest_beyond(&self, ray: &Ray, reach: f64) -> Option<Contact> {
         self.closest_of(std::slice::from_ref(ray), reach)[0]
     }
 
-    fn closest_of(&self, rays: &[Ray], reach: f64) -> Vec<Option<MeshHit>> {
+    fn closest_of(&self, rays: &[Ray], reach: f64) -> Vec<Option<Contact>> {
         let mut found = vec![None; rays.len()];
         widest(
             #[inline(always)]

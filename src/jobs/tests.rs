@@ -159,6 +159,7 @@ fn two_identities_never_share_an_id() {
 proptest! {
     /// Any byte changed, or the end cut anywhere: refused, never taken for the shard.
     #[test]
+    #[ignore = "slow"]
     fn no_change_goes_unseen(at in 0usize..100_400, bit in 0u8..8, cut in proptest::bool::ANY) {
         let dir = tempfile::tempdir().unwrap();
         let path = written(dir.path(), "a.phs", &parts());
@@ -181,6 +182,7 @@ proptest! {
     /// Where cuts are the same on both sides there is nothing to refuse; the chosen ones follow one
     /// another.
     #[test]
+    #[ignore = "slow"]
     fn tilings_are_chosen_in_order(cuts in proptest::collection::btree_set(1u64..TOTAL, 0..6)) {
         let dir = tempfile::tempdir().unwrap();
         let cuts: Vec<u64> = std::iter::once(0).chain(cuts).chain([TOTAL]).collect();

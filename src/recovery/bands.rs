@@ -19,7 +19,7 @@
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use super::{Method, Options, Problem, Recovered, RecoveryError, WeightRule};
+use super::{Method, Options, Problem, RecoveryError, WeightRule};
 use crate::num::quadratic::{Bounds, extent};
 use crate::num::statistics::sidak_threshold;
 
@@ -95,33 +95,29 @@ pub(super) fn allowed(method: Method, confidence: f64) -> Result<(), RecoveryErr
     }
 }
 
-/// ρ̂ ± z σ.
-pub(super) fn gaussian(found: &Recovered, confidence: f64) -> Result<Bands, RecoveryError> {
-    let Some(error) = &found.standard_error else {
-        return Err(RecoveryError::NotForMethod {
-            method: found.method,
-            what: "needs to know the noise for its bands",
-            cure: "give the standard error of phi (phi.stderr.npy)",
-        });
-    };
-    let scaled = found.nuisance.as_ref().is_some_and(|n| n.scale.is_some());
-    let elements = found.reflectance.len() as f64;
-    let unbiased = found.effective_rank > elements * (1.0 - 1e-12) && !scaled;
+/// The refusal of bands without a noise model.
+pub(super) fn without_noise(method: Method) -> RecoveryError {
+    RecoveryError::NotForMethod {
+        method,
+        what: "needs to know the noise for its bands",
+        cure: "give the standard error of phi (phi.stderr.npy)",
+    }
+}
+
+/// `estimate` ± z σ.
+pub(super) fn gaussian(
+    estimate: &DVector<f64>,
+    sigma: &DVector<f64>,
+    kind: BandKind,
+    confidence: f64,
+) -> Bands {
     let z = deviate(confidence);
-    Ok(Bands {
+    let pairs = estimate.iter().zip(sigma.iter());
+    Bands {
         confidence,
-        intervals: found
-            .reflectance
-            .iter()
-            .zip(error.iter())
-            .map(|(x, s)| [x - z * s, x + z * s])
-            .collect(),
-        kind: if unbiased {
-            BandKind::Gaussian
-        } else {
-            BandKind::GaussianAroundMean
-        },
-    })
+        intervals: pairs.map(|(x, s)| [x - z * s, x + z * s]).collect(),
+        kind,
+    }
 }
 
 /// What [`profile`] needs: residuals in standard deviations, and a scale.
@@ -131,11 +127,7 @@ pub(super) fn profile_allowed(
     options: &Options,
 ) -> Result<(), RecoveryError> {
     if problem.noise().is_none() {
-        return Err(RecoveryError::NotForMethod {
-            method,
-            what: "needs to know the noise for its bands",
-            cure: "give the standard error of phi (phi.stderr.npy)",
-        });
+        return Err(without_noise(method));
     }
     let refuse = |what, cure| Err(RecoveryError::NotForMethod { method, what, cure });
     if options.weighting == WeightRule::Unweighted {

@@ -94,24 +94,27 @@ mod bands;
 mod error;
 mod joint;
 mod method;
+mod nuisance;
 mod options;
 mod outcome;
 mod picard;
 mod pixelwise;
 mod problem;
 mod rule;
+mod spectrum;
 
 pub use bands::{BandKind, Bands};
 pub use error::RecoveryError;
-pub use joint::{CramerRao, Estimated, Nuisance, Weighting, cramer_rao, picard_joint};
+pub use joint::{CramerRao, cramer_rao, picard_joint};
 pub use method::{Method, UnknownMethod};
-pub use options::{Options, Uncertainty, WeightRule};
-pub use outcome::{Choice, Parameter, Recovered, Solver};
+pub use nuisance::{Estimated, Nuisance};
+pub use options::{Options, Rule, Uncertainty, WeightRule};
+pub use outcome::{Choice, Parameter, Recovered, Solver, Weighting};
 pub use picard::{Directions, Picard, picard};
 pub use pixelwise::laser_side::{LaserSide, Parts};
 pub use pixelwise::strips::{Strip, recover_strips};
 pub use problem::Problem;
-pub use rule::Rule;
+use spectrum::Spectrum;
 
 /// Recovers the reflectances of the r elements by the method asked for.
 ///
@@ -148,7 +151,7 @@ pub fn recover(
         Method::JointTwoValued => joint::two_valued::recover(problem, options),
     }?;
     if let (Some(confidence), None) = (options.bands, &found.bands) {
-        found.bands = Some(bands::gaussian(&found, confidence)?);
+        found.add_gaussian_bands(confidence)?;
     }
     Ok(found)
 }

@@ -1,7 +1,42 @@
 //! How it is to be inverted.
 
-use super::Rule;
+use std::fmt;
+
 use crate::num::linalg::Tolerance;
+
+/// How the parameter of `tsvd`, `tikhonov` and `tikhonov-gradient` is chosen where it is not given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Rule {
+    /// Morozov's discrepancy principle: the strongest regularisation whose residual the noise
+    /// explains. Needs the standard errors of Φ.
+    #[default]
+    Discrepancy,
+    /// Generalised cross-validation: the regularisation that best predicts entries left out. Needs
+    /// no noise model; takes the errors as equal and independent.
+    Gcv,
+    /// The corner of the L-curve, log ‖solution‖ over log ‖residual‖. Needs no noise model.
+    LCurve,
+}
+
+impl Rule {
+    /// Every rule.
+    pub const ALL: [Rule; 3] = [Rule::Discrepancy, Rule::Gcv, Rule::LCurve];
+
+    /// The name by which it is asked for.
+    pub fn name(self) -> &'static str {
+        match self {
+            Rule::Discrepancy => "discrepancy",
+            Rule::Gcv => "gcv",
+            Rule::LCurve => "l-curve",
+        }
+    }
+}
+
+impl fmt::Display for Rule {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
 
 /// By what the joint methods weigh the entries of Φ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

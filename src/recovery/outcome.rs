@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::problem::Lit;
-use super::{Bands, Estimated, Method, RecoveryError, Weighting};
+use super::{BandKind, Bands, Estimated, Method, Problem, RecoveryError, bands};
 
 /// A regularisation parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,6 +77,21 @@ pub enum Choice {
     None,
 }
 
+/// How the entries of Φ were weighted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Weighting {
+    /// All alike.
+    Unweighted,
+    /// By w_p v_l, fitted to 1/σ².
+    Separable {
+        /// Root mean square of ln σ\[p,l\] about the fit: 0 where σ² is separable, and then no
+        /// weights are more efficient.
+        misfit: f64,
+    },
+    /// By 1/σ²\[p,l\] itself; where σ is zero, by the separable fit.
+    EntryByEntry,
+}
+
 /// How an iterative solver ended.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solver {
@@ -145,18 +160,35 @@ impl Recovered {
     /// dropped directions ρ̂ itself knows nothing: put it in place of the truth, and the bias of
     /// `tsvd` comes out near zero.
     pub fn bias(&self, truth: &[f64]) -> Option<DVector<f64>> {
-        let scaled = self.nuisance.as_ref().is_some_and(|n| n.scale.is_some());
         let resolution = self.resolution.as_ref()?;
-        (!scaled && truth.len() == resolution.ncols()).then(|| {
+        (!self.has_free_scale() && truth.len() == resolution.ncols()).then(|| {
             let truth = DVector::from_column_slice(truth);
             resolution * &truth - truth
         })
     }
 
+    fn has_free_scale(&self) -> bool {
+        self.nuisance.as_ref().is_some_and(|n| n.scale.is_some())
+    }
+
+    /// Adds ρ̂ ± z σ.
+    pub(super) fn add_gaussian_bands(&mut self, confidence: f64) -> Result<(), RecoveryError> {
+        let error = self.standard_error.as_ref();
+        let error = error.ok_or(bands::without_noise(self.method))?;
+        let elements = self.reflectance.len() as f64;
+        let whole = self.effective_rank > elements * (1.0 - 1e-12);
+        let kind = match whole && !self.has_free_scale() {
+            true => BandKind::Gaussian,
+            false => BandKind::GaussianAroundMean,
+        };
+        self.bands = Some(bands::gaussian(&self.reflectance, error, kind, confidence));
+        Ok(())
+    }
+
     /// A recovery without parameter, weights or noise model, its residual measured.
     pub(super) fn plain(
         method: Method,
-        problem: &super::Problem<'_>,
+        problem: &Problem<'_>,
         reflectance: DVector<f64>,
         sigma: DVector<f64>,
         rank: usize,

@@ -29,6 +29,7 @@ fn bench_with(changes: &[(&str, &str)]) -> Scene {
 }
 
 #[test]
+#[ignore = "slow"]
 fn every_built_in_scene_is_drawn() {
     for scene in crate::scene::builtins() {
         let scene = Scene::load(scene.name).unwrap();

@@ -150,6 +150,7 @@ mod quantity;
 mod sensor;
 pub mod spots;
 mod surface;
+mod surface_tables;
 pub mod target;
 mod texture;
 mod unit;
@@ -303,7 +304,8 @@ impl Scene {
         }
         let mut found = Vec::new();
         let wavelength = file.laser.wavelength;
-        let surfaces = surface::from_tables(&file.surface, &mut files, wavelength, &mut found)?;
+        let surfaces =
+            surface_tables::from_tables(&file.surface, &mut files, wavelength, &mut found)?;
         let shapes: Vec<Shape> = surfaces.iter().map(|s| s.shape.clone()).collect();
         let bvh = Bvh::new(shapes)
             .map_err(|e| Fault::new(keys!["surface"], e.to_string(), "check the coordinates"))?;

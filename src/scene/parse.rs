@@ -1,14 +1,15 @@
-//! TOML text → [`SceneFile`], with line, column and the nearest known key in every error.
+//! TOML text ↔ tables, with line, column and the nearest known key in every error.
 
 use std::ops::Range;
 
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{Fault, Place, SceneError, Step};
-use super::file::SceneFile;
 
 /// Parses the text of a scene file; `source` names it in errors.
-pub(super) fn parse(source: &str, text: &str) -> Result<SceneFile, SceneError> {
+pub(super) fn parse<T: DeserializeOwned>(source: &str, text: &str) -> Result<T, SceneError> {
     toml::from_str(text).map_err(|e| {
         let message = e.message().trim().replace('\n', "; ");
         SceneError {
@@ -21,7 +22,7 @@ pub(super) fn parse(source: &str, text: &str) -> Result<SceneFile, SceneError> {
 }
 
 /// The text of a scene file; `source` names it in errors.
-pub(super) fn write(source: &str, file: &SceneFile) -> Result<String, SceneError> {
+pub(super) fn write(source: &str, file: &impl Serialize) -> Result<String, SceneError> {
     toml::to_string(file).map_err(|e| SceneError {
         source: source.to_owned(),
         place: None,
@@ -85,14 +86,19 @@ fn cure(message: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::file::SceneFile;
 
     const BENCH: &str = include_str!("../../scenes/bench.toml");
+
+    fn error(text: &str) -> SceneError {
+        parse::<SceneFile>("my.toml", text).unwrap_err()
+    }
 
     #[test]
     fn an_unknown_key_is_named_with_its_line_and_nearest_key() {
         let text = BENCH.replacen("aperture_area", "apperture_area", 1);
         let line = text.lines().position(|l| l.contains("apperture")).unwrap() + 1;
-        let error = parse("my.toml", &text).unwrap_err();
+        let error = error(&text);
         assert_eq!(error.place.as_ref().unwrap().line, line);
         assert!(error.cure.contains("`aperture_area`"), "{error}");
         assert!(
@@ -113,7 +119,7 @@ mod tests {
         ] {
             let text = BENCH.replacen(old, new, 1);
             assert_ne!(text, BENCH, "{old}");
-            let error = parse("my.toml", &text).unwrap_err();
+            let error = error(&text);
             assert!(error.place.is_some(), "{new}: {error}");
             assert!(error.cure.contains(nearest), "{new}: {error}");
         }
@@ -127,13 +133,13 @@ mod tests {
         ] {
             let text = BENCH.replacen(old, new, 1);
             assert_ne!(text, BENCH, "{old}");
-            let error = parse("my.toml", &text).unwrap_err();
+            let error = error(&text);
             assert_eq!(
                 error.place.unwrap().text.trim(),
                 text.lines().find(|l| l.contains(new)).unwrap().trim()
             );
         }
-        let error = parse("my.toml", "name = \"x\"\nunit = \"in\"\n").unwrap_err();
+        let error = error("name = \"x\"\nunit = \"in\"\n");
         assert!(error.cause.contains("missing field"), "{error}");
     }
 

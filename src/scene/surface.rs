@@ -1,7 +1,5 @@
 //! Surfaces.
 
-mod table;
-
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
@@ -10,7 +8,6 @@ use serde::{Deserialize, Serialize};
 use super::material::Material;
 use super::texture::Texture;
 use crate::geometry::{Basis, DVec3, Interaction, Shape};
-pub(super) use table::from_tables;
 
 /// What a surface is there for.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]

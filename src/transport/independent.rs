@@ -11,11 +11,12 @@ use super::shared::PixelRow;
 pub(super) fn block(row: &mut PixelRow<'_>, block: u32) -> Vec<f64> {
     let spots = row.context.spots.range.clone();
     let columns = spots.len();
-    let mut sums = vec![0.0; row.context.scene.max_bounces as usize * columns];
+    let orders = row.context.scene.max_bounces as usize;
+    let (mut sums, mut entry) = (vec![0.0; orders * columns], vec![0.0; orders]);
     for (column, spot) in spots.enumerate() {
-        let entry = row.estimate(spot as u32, block, column..column + 1);
-        for (order, flux) in entry.into_iter().enumerate() {
-            sums[order * columns + column] = flux;
+        row.estimate(spot as u32, block, column..column + 1, &mut entry);
+        for (order, flux) in entry.iter().enumerate() {
+            sums[order * columns + column] = *flux;
         }
     }
     sums

@@ -19,8 +19,10 @@ use crate::num::stream::{Key, Stream};
 /// The estimate of one block for all spots: \[order\]\[column\], W; order n − 1 holds the light
 /// that met n surfaces.
 pub(super) fn block(row: &mut PixelRow<'_>, block: u32) -> Vec<f64> {
-    let all = 0..row.context.spots.range.len();
-    row.estimate(Key::ALL_SPOTS, block, all)
+    let columns = row.context.spots.range.len();
+    let mut sums = vec![0.0; row.context.scene.max_bounces as usize * columns];
+    row.estimate(Key::ALL_SPOTS, block, 0..columns, &mut sums);
+    sums
 }
 
 /// Traces one pixel.
@@ -30,6 +32,8 @@ pub(super) struct PixelRow<'a> {
     pixel: usize,
     /// What takes the place of paths where the pixel is simple enough.
     points: Option<PixelPoints<'a>>,
+    /// The light of one vertex, a number a column.
+    vertex: Vec<f64>,
 }
 
 impl<'a> PixelRow<'a> {
@@ -38,31 +42,38 @@ impl<'a> PixelRow<'a> {
             context,
             pixel,
             points: PixelPoints::new(context, pixel),
+            vertex: Vec::new(),
         }
     }
 
-    /// The estimate of one block for `columns`, with the random numbers of `spot`.
-    pub(super) fn estimate(&mut self, spot: u32, block: u32, columns: Range<usize>) -> Vec<f64> {
-        let Context { scene, plan, .. } = self.context;
+    /// Writes the estimate of one block for `columns` into `sums`, \[order\]\[column\], with the
+    /// random numbers of `spot`.
+    pub(super) fn estimate(
+        &mut self,
+        spot: u32,
+        block: u32,
+        columns: Range<usize>,
+        sums: &mut [f64],
+    ) {
+        let Context { plan, .. } = self.context;
         let key = Key {
             seed: plan.seed,
             spot,
             pixel: self.pixel as u32,
             block,
         };
-        let mut sums = vec![0.0; scene.max_bounces as usize * columns.len()];
+        sums.fill(0.0);
         if let Some(points) = &mut self.points {
-            points.estimate(key, &columns, &mut sums);
-            return sums;
+            points.estimate(key, &columns, sums);
+            return;
         }
-        self.trace_paths(key, &columns, &mut sums);
+        self.trace_paths(key, &columns, sums);
         let size = f64::from(plan.budget.size);
         sums.iter_mut().for_each(|sum| *sum /= size);
-        sums
     }
 
     /// Adds what the paths of a block find.
-    fn trace_paths(&self, key: Key, columns: &Range<usize>, sums: &mut [f64]) {
+    fn trace_paths(&mut self, key: Key, columns: &Range<usize>, sums: &mut [f64]) {
         let Context {
             scene,
             plan,
@@ -74,7 +85,7 @@ impl<'a> PixelRow<'a> {
         let (n, power) = (columns.len(), scene.laser.power);
         let two_sets = spots.beams.has_width() || path.chooses();
         let mut stream = Stream::new(plan.sampling, key);
-        let mut row = vec![0.0; n];
+        self.vertex.resize(n, 0.0);
         for index in 0..plan.budget.size {
             stream.start(index);
             let [a, b, u, v] = stream.next_four();
@@ -89,9 +100,10 @@ impl<'a> PixelRow<'a> {
             direct.add(spots, self.pixel, (1, power), |_| x, &lit, one);
             let vertices = scene.max_bounces - 1;
             path.trace(x, vertices, [u, v, choice], &mut stream, |order, x| {
-                spots.light_vertex(x, &lit, &mut row);
+                spots.light_vertex(x, &lit, &mut self.vertex);
                 let sums = &mut sums[order as usize * n..];
-                sums.iter_mut().zip(&row).for_each(|(sum, r)| *sum += r);
+                let light = sums.iter_mut().zip(&self.vertex);
+                light.for_each(|(sum, one)| *sum += one);
             });
         }
     }

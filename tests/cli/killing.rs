@@ -73,6 +73,7 @@ fn blocks_of(bytes: &[u8], name: &str) -> u64 {
 }
 
 #[test]
+#[ignore = "slow"]
 fn killed_at_fifty_moments_it_ends_with_the_same_bytes() {
     let mut random = 0x9e37_79b9_7f4a_7c15u64;
     let mut killed: BTreeMap<&str, usize> = BTreeMap::new();
@@ -175,6 +176,7 @@ fn short_spots_are_kept_one_by_one() {
 /// SIGTERM is the scheduler's warning: the block at work is finished and kept, and the exit code
 /// says that going on is worth it.
 #[test]
+#[ignore = "slow"]
 fn a_warned_shard_keeps_its_blocks_and_goes_on() {
     let workspace = Workspace::new();
     workspace.write("tiny.toml", altered(&TINY));

@@ -17,6 +17,7 @@ fn with_run() -> Workspace {
 }
 
 #[test]
+#[ignore = "slow"]
 fn by_rows_it_is_what_it_is_at_once() {
     let workspace = with_run();
     for (method, more) in [
@@ -68,6 +69,7 @@ fn what_cannot_be_had_by_rows_is_refused() {
 /// the address space is bounded by the system.
 #[cfg(target_os = "linux")]
 #[test]
+#[ignore = "slow"]
 fn the_memory_stated_is_held() {
     let workspace = Workspace::new();
     let scene = altered(&[

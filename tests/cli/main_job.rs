@@ -72,6 +72,7 @@ fn assert_self_contained(page: &str) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn it_leaves_every_file_and_agrees_and_recovers() {
     let workspace = Workspace::with_scenes();
     let ended = workspace.phicam("run small.toml").exits(0);
@@ -140,6 +141,7 @@ fn it_leaves_every_file_and_agrees_and_recovers() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn json_on_standard_output_is_the_summary() {
     let workspace = Workspace::with_scenes();
     let ended = workspace.phicam("run small.toml -o there --json").exits(0);
@@ -155,6 +157,7 @@ fn json_on_standard_output_is_the_summary() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn quiet_says_nothing_on_standard_error() {
     let workspace = Workspace::with_scenes();
     for line in [
@@ -207,6 +210,7 @@ fn a_scene_that_hides_nothing_has_frames_but_no_model() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_wrong_model_ends_with_exit_code_one_and_all_files() {
     let workspace = Workspace::with_scenes();
     let ended = workspace
@@ -228,6 +232,7 @@ fn a_wrong_model_ends_with_exit_code_one_and_all_files() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_render_with_another_seed_leaves_no_result_of_the_earlier_run() {
     let workspace = Workspace::with_scenes();
     let _ = workspace.phicam("run small.toml --samples 64").exits(0);
@@ -296,6 +301,7 @@ fn light_too_faint_for_a_frame_is_not_blamed_on_the_disk() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn another_seed_replaces_the_run_wholly() {
     let workspace = Workspace::with_scenes();
     let _ = workspace

@@ -75,6 +75,7 @@ fn refused(workspace: &Workspace, line: &str, code: i32, words: &[&str]) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn any_splitting_gives_the_bytes_of_one_process() {
     for estimator in ["independent", "shared", "factored"] {
         let straight = planned("");
@@ -131,6 +132,7 @@ fn what_is_there_is_not_computed_again_and_what_is_missing_is_named() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn spoilt_and_foreign_shards_are_refused_each_by_its_own_words() {
     let workspace = planned("--shards 4");
     compute(&workspace, 0..4);
@@ -394,6 +396,7 @@ fn a_plan_carries_the_files_of_its_scene() {
 
 /// A study in shards leaves the files of the study in one process; so do the published items.
 #[test]
+#[ignore = "slow"]
 fn studies_are_divided_too() {
     let workspace = Workspace::new();
     workspace.write("tiny.toml", altered(&SMALL));

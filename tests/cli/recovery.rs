@@ -95,6 +95,7 @@ fn the_model_s_own_matrix_gives_the_truth_back() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_parameter_can_be_given() {
     let workspace = with_run();
     let line = "recover done --method tsvd --rank 5 --phi done/model/phi.npy --json";
@@ -126,6 +127,7 @@ fn a_parameter_can_be_given() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn without_a_noise_model_a_method_says_what_it_needs() {
     let workspace = with_run();
     for method in ["tsvd", "tikhonov"] {
@@ -152,6 +154,7 @@ fn if_no_method_can_work_each_says_why() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_usual_methods_unless_some_are_named() {
     let workspace = with_run();
     let names = |found: &[serde_json::Value]| -> Vec<String> {
@@ -254,6 +257,7 @@ fn every_method_can_be_asked_for() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn every_method_can_be_named() {
     let workspace = with_run();
     for method in phicam::recovery::Method::ALL {
@@ -271,6 +275,7 @@ fn every_method_can_be_named() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_linear_method_writes_its_uncertainty() {
     let workspace = with_run();
     let line = "recover done --method pinv,tikhonov-gradient,joint-unbounded,joint --elements 4x2 --damping 0.01";
@@ -327,6 +332,7 @@ fn picard_data_are_written() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn rules_without_a_noise_model() {
     let workspace = with_run();
     for (rule, words) in [
@@ -363,6 +369,7 @@ fn a_foreign_matrix_of_another_shape_is_refused() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn what_the_run_has_left_is_not_touched() {
     let workspace = with_run();
     let mut before = workspace.contents("done");
@@ -376,6 +383,7 @@ fn what_the_run_has_left_is_not_touched() {
 /// What an earlier recovery left and this one does not know is gone; Picard data and biases are
 /// there.
 #[test]
+#[ignore = "slow"]
 fn files_of_an_earlier_recovery_do_not_stay_beside_those_of_a_later() {
     let workspace = Workspace::with_scenes();
     let _ = workspace

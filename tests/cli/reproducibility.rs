@@ -38,6 +38,7 @@ fn assert_complete(files: &Contents) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn threads_change_no_byte() {
     let workspace = workspace();
     for (n, plan) in PLANS.iter().enumerate() {
@@ -58,6 +59,7 @@ fn threads_change_no_byte() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn another_seed_changes_every_result() {
     let workspace = workspace();
     for (n, plan) in PLANS.iter().enumerate() {
@@ -82,6 +84,7 @@ fn another_seed_changes_every_result() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn parts_of_a_run_in_any_order_give_its_bytes() {
     let workspace = workspace();
     for (n, plan) in PLANS.iter().enumerate() {
@@ -139,6 +142,7 @@ fn a_damaged_part_is_rendered_again() {
 /// last bits differ; those of the tracer come from elsewhere. Seen from outside: with the features
 /// taken away, the bytes stay. (Where the C library is not glibc, nothing is taken away.)
 #[test]
+#[ignore = "slow"]
 fn processor_features_change_no_byte() {
     let workspace = workspace();
     // Wide spots: each path draws a point of a Gaussian beam.

@@ -3,6 +3,7 @@
 use crate::workspace::{Workspace, assert_same};
 
 #[test]
+#[ignore = "slow"]
 fn items_by_name_become_files_and_pages() {
     let workspace = Workspace::new();
     let ended = workspace.phicam("reproduce table2 fig18 -o r").exits(0);
@@ -65,6 +66,7 @@ fn items_by_name_become_files_and_pages() {
 /// The items that trace their photographs: verdicts with their reasons, figures and pictures, kept
 /// when asked for again.
 #[test]
+#[ignore = "slow"]
 fn traced_items_become_files_and_are_kept() {
     let workspace = Workspace::new();
     let ended = workspace
@@ -108,6 +110,7 @@ fn traced_items_become_files_and_are_kept() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn threads_do_not_change_a_byte() {
     let workspace = Workspace::new();
     let _ = workspace

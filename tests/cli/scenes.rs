@@ -28,6 +28,7 @@ fn list_names_the_built_in_scenes() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn every_built_in_scene_is_sound() {
     let workspace = Workspace::new();
     for (name, size) in BUILT_IN.iter().zip([
@@ -149,6 +150,7 @@ fn a_render_says_what_is_suspicious() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn an_exported_scene_is_the_built_in_one() {
     let workspace = Workspace::new();
     for name in BUILT_IN {
@@ -168,6 +170,7 @@ fn an_exported_scene_is_the_built_in_one() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn show_draws_an_svg() {
     let workspace = Workspace::new();
     for name in BUILT_IN {

@@ -18,6 +18,7 @@ const MEMORY: u64 = 96 * 1024;
 const LENGTHS: [usize; 6] = [32, 64, 128, 164, 256, 1049];
 
 #[test]
+#[ignore = "slow"]
 fn whoever_does_not_read_is_left_however_short_the_answer() {
     let workspace = Workspace::with_scenes();
     let _ = workspace

@@ -148,6 +148,7 @@ fn whoever_has_had_an_answer_makes_room_for_the_next() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn clients_that_hang_are_left_and_hold_up_nobody() {
     let workspace = Workspace::new();
     record(&workspace.path("out"), 40, 25, 120);

@@ -61,6 +61,7 @@ fn a_budget_is_a_table_a_figure_and_json() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn tolerance_is_a_table_a_figure_and_json() {
     let workspace = Workspace::with_scenes();
     let ended = workspace.phicam("study tolerance small.toml -o t").exits(0);
@@ -173,6 +174,7 @@ fn a_disagreement_is_mapped() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_experiment_is_told_in_words_tables_and_a_figure() {
     let workspace = Workspace::with_scenes();
     let line = "study experiment small.toml -o e --glares 1 --exposures 1 --seeds 2 --samples 64 --frames 2";
@@ -245,6 +247,7 @@ fn coverage_is_a_table_and_json() {
 /// On satin the wall's own BRDF agrees and the others are rejected; a bench without gloss has
 /// nothing to tell.
 #[test]
+#[ignore = "slow"]
 fn brdf_is_a_table_json_csv_and_a_figure() {
     let workspace = Workspace::with_scenes();
     let satin = ("{ lambertian = 0.8 }", "{ coated = 0.8, roughness = 0.3 }");

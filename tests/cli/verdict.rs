@@ -121,6 +121,7 @@ fn the_level_decides() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn every_plan_is_judged_by_its_own_errors() {
     let workspace = Workspace::with_scenes();
     for estimator in ["independent", "shared"] {

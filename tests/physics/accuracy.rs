@@ -27,6 +27,7 @@ fn shared_sobol_is_within_3e_4_of_the_thesis_integral() {
 /// wall: the board turned by 20° in its plane about its centre. The replicates know the error to a
 /// factor of three: all entries move together.
 #[test]
+#[ignore = "slow"]
 fn factored_sobol_is_within_1e_5_whatever_the_edges() {
     let checks = |board: &'static str| [("checkerboard = [8, 8]", board)];
     let (sin, cos) = (20f64.to_radians().sin(), 20f64.to_radians().cos());
@@ -63,6 +64,7 @@ fn factored_sobol_is_within_1e_5_whatever_the_edges() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn independent_pcg_has_honest_error_bars() {
     let truth = matrix(&Bench::new(6.0, 8).converged());
     let way = Way(Independent, Sampling::Pcg, 2, 512);
@@ -92,6 +94,7 @@ fn slope(points: &[(f64, f64)]) -> f64 {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_error_falls_as_it_should() {
     let truth = matrix(&Bench::new(6.0, 8).converged());
     let scene = builtin("thesis", &[]);
@@ -108,6 +111,7 @@ fn the_error_falls_as_it_should() {
 /// A spot of 0.5 in. against the mean over its disc, by a polar rule of the test's own: r² by
 /// Gauss–Legendre, 16 angles.
 #[test]
+#[ignore = "slow"]
 fn a_wide_spot_is_the_mean_over_its_disc() {
     let mut bench = Bench::new(3.0, 2);
     let ideal = bench.phi(10, 3);

@@ -235,6 +235,7 @@ const GLOSSY: &str = "{ coated = 0.5, roughness = 0.3 }";
 /// which takes it for Lambertian of equal white-sky albedo, is the quadrature of that and is
 /// rejected; `factored` is refused by name.
 #[test]
+#[ignore = "slow"]
 fn a_glossy_hidden_surface_is_traced_as_it_is() {
     let scene = bench("{ lambertian = 0.8 }", GLOSSY);
     let truth = brute_force(&scene);
@@ -265,6 +266,7 @@ fn a_glossy_hidden_surface_is_traced_as_it_is() {
 /// and the parts add up with it. Standard errors are those of 8 renders: Student's t of 7 degrees
 /// of freedom exceeds 7 once in 5000 times.
 #[test]
+#[ignore = "slow"]
 fn the_budget_knows_a_glossy_hidden_surface() {
     let scene = bench("{ lambertian = 0.8 }", GLOSSY);
     let matt = scene.with_lambertian_hidden();

@@ -58,6 +58,7 @@ fn the_kept_share_predicts_where_condition_and_eigenvalue_do_not() {
 /// Under noise: predicted against measured mean over 50 draws. Each |z| is Student's t, above 3
 /// once in 240; of n points at most as many as the binomial allows.
 #[test]
+#[ignore = "slow"]
 fn the_mean_under_noise_is_predicted_for_linear_methods() {
     let found = sweep(IndicatorPlan {
         methods: vec![

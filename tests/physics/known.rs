@@ -178,16 +178,19 @@ fn all_agree(way: (Estimator, Sampling)) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn known_scenes_have_their_answers_under_independent_pcg() {
     all_agree((Independent, Sampling::Pcg));
 }
 
 #[test]
+#[ignore = "slow"]
 fn known_scenes_have_their_answers_under_shared_sobol() {
     all_agree((Shared, Sampling::Sobol));
 }
 
 #[test]
+#[ignore = "slow"]
 fn known_scenes_have_their_answers_under_factored_sobol() {
     all_agree((Factored, Sampling::Sobol));
 }

@@ -34,6 +34,7 @@ fn shelf(changes: &[(&str, &str)]) -> Scene {
 /// All estimators, samplers and strategies see the same light: reflecting occluders, five bounces,
 /// a wide spot.
 #[test]
+#[ignore = "slow"]
 fn estimators_agree_with_each_other() {
     for diameter in ["spot_diameter = 0.0", "spot_diameter = 0.8"] {
         let scene = shelf(&[("spot_diameter = 0.0", diameter)]);
@@ -137,6 +138,7 @@ fn spot_and_pixel_can_be_exchanged() {
 
 /// The same bits for 1, 2 and 3 threads and for any part of the spots; other bits for another seed.
 #[test]
+#[ignore = "slow"]
 fn bits_do_not_depend_on_threads_or_spot_ranges() {
     let bench = |diameter| {
         let small = [
@@ -203,6 +205,7 @@ fn cluttered(role: &str, elements: &str) -> Scene {
 /// Roles choose the sampling, not the light: the same surfaces as hidden (sampled by area) and as
 /// occluders (found by the cosine lobe) give the same flux. One of them touches the wall.
 #[test]
+#[ignore = "slow"]
 fn roles_do_not_change_the_light() {
     let hidden = cluttered("hidden", "elements = [4, 4]\n");
     let occluder = cluttered("occluder", "");

@@ -23,6 +23,7 @@ const FEW_SPOTS: (&str, &str) = ("per_side = 30", "per_side = 3");
 /// The board of the bench as 450 triangles: every estimator agrees with the quadrature over the
 /// rectangle, and with its own render of it.
 #[test]
+#[ignore = "slow"]
 fn a_meshed_rectangle_is_the_rectangle() {
     let flat = builtin("bench", &[FEW_SPOTS]);
     let mesh = builtin("bench", &[FEW_SPOTS, (RECTANGLE, MESHED)]);
@@ -51,6 +52,7 @@ fn a_meshed_rectangle_is_the_rectangle() {
 
 /// The same at five bounces, and a board whose mesh lies the wrong way round is dark.
 #[test]
+#[ignore = "slow"]
 fn a_meshed_rectangle_has_more_bounces_and_one_front() {
     let deep = ("max_bounces = 3", "max_bounces = 5");
     let flat = builtin("bench", &[FEW_SPOTS, deep]);
@@ -79,6 +81,7 @@ const BALL: &str =
 
 /// A bright ball between wall and object: it reflects, and it casts shadows.
 #[test]
+#[ignore = "slow"]
 fn a_finely_meshed_sphere_is_the_sphere() {
     let scene = |shape: &str| {
         let text = builtin("bench", &[FEW_SPOTS]).text + BALL + shape;
@@ -114,6 +117,7 @@ fn placed(triangles: &Triangles, place: DAffine3) -> Triangles {
 /// Two busts that share one mesh, against two meshes whose vertices were moved before they were
 /// written: the same paths meet the same triangles, up to rounding.
 #[test]
+#[ignore = "slow"]
 fn instances_are_copies() {
     let dir = tempfile::tempdir().unwrap();
     let body = |name: &str, mesh: &str| {
@@ -239,6 +243,7 @@ fn two_sides_are_two_surfaces() {
 /// that the rod takes for itself included; the plain one stays away from it, and by what stands
 /// between wall and object alone too.
 #[test]
+#[ignore = "slow"]
 fn occlusion_brings_the_model_nearer() {
     let shelf = builtin("shelf", &[FEW_SPOTS]).with_black_occluders();
     let traced = trace(

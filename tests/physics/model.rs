@@ -55,6 +55,7 @@ fn elements_by_their_centres_cost_what_was_measured() {
 /// Spots: 4.6e-5 at 0.1 in. and 1.2e-3 at 0.5 in. Footprints: a quarter with each doubling of the
 /// pixels.
 #[test]
+#[ignore = "slow"]
 fn footprints_and_spots_cost_what_was_measured() {
     for (diameter, cost) in [("0.1", 4.6e-5), ("0.5", 1.2e-3)] {
         let width = format!("spot_diameter = {diameter}");

@@ -12,6 +12,7 @@ use crate::{Way, assert_same, assert_same_under, builtin, trace, trace_spots};
 /// and what is seen partly must add up: Φ(both) = Φ(front, black back) + Φ(back behind a black
 /// front) for three bounces.
 #[test]
+#[ignore = "slow"]
 fn hidden_faces_that_overlap_are_not_counted_twice() {
     let with_back = |front: &str, back: &str, shrink: f64| {
         let h = 0.5f64.sqrt();

@@ -341,6 +341,7 @@ fn below_a_lid_there_is_no_light() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn light_is_finite_and_never_negative() {
     let [accepted, lit] = [Cell::new(0), Cell::new(0)];
     let config = Config {

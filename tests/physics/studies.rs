@@ -20,6 +20,7 @@ pub(crate) fn budget(scene: &Scene, ensemble_samples: u64) -> ErrorBudget {
 /// The thesis bench: element area 1.6e-3 ± 0.2e-3, five bounces 1.2 to 1.4 % with 7e-4 left after
 /// the best scale, a signal of 0.32 %; and the parts add up.
 #[test]
+#[ignore = "slow"]
 fn the_budget_of_the_thesis_is_the_measured_one() {
     let scene = builtin("thesis", &[("pixels = [16, 16]", "pixels = [8, 8]")]);
     let found = budget(&scene, 4096);
@@ -68,6 +69,7 @@ fn the_budget_knows_occlusion() {
 /// 200 seeds at a level of 5 %: false alarms within the 99 % interval of the binomial for both
 /// estimators, the published kernel always found.
 #[test]
+#[ignore = "slow"]
 fn verdicts_err_at_their_stated_rate() {
     let scene = builtin(
         "bench",

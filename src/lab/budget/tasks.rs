@@ -287,6 +287,7 @@ mod tests {
     use crate::lab::study::tests::{divides, refuses, small};
 
     #[test]
+    #[ignore = "slow"]
     fn it_divides() {
         for name in ["bench", "corner"] {
             let plan = BudgetPlan {

@@ -238,6 +238,7 @@ mod tests {
     use crate::sensor::Sensor;
 
     #[test]
+    #[ignore = "slow"]
     fn it_divides() {
         let plan = ExperimentPlan {
             sensor: Sensor::builtin(SensorModel::Ccd),

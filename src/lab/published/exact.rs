@@ -202,6 +202,7 @@ mod tests {
 
     /// At half-width 1 in. 60 digits leave an error of 3e-4, which is noticed and mended.
     #[test]
+    #[ignore = "slow"]
     fn digits_are_added_until_they_suffice() {
         let mut case = published(Kernel::Published, 8, 25, 1.0, Stagger::None);
         case.pixels = 2;

@@ -210,6 +210,7 @@ mod tests {
     /// Of every item that is cut the first and the last piece, in the place of the other and of a
     /// whole item.
     #[test]
+    #[ignore = "slow"]
     fn pieces_are_of_their_item() {
         let plan = ReproducePlan {
             most_elements: 8,

@@ -217,6 +217,7 @@ mod tests {
     /// 3e-5 of it: scale, order of pixels and spots, board, stagger and the spots that are left out
     /// behind S2 (half-width 12 in.) are all in it.
     #[test]
+    #[ignore = "slow"]
     fn traced_light_is_the_published_integral_with_the_physical_kernel() {
         for (half_width, stagger) in [(6.0, Stagger::OneInch), (12.0, Stagger::None)] {
             let case = published(Kernel::Published, 8, 4, half_width, stagger);

@@ -203,6 +203,7 @@ mod tests {
     use crate::lab::study::tests::{divides, small};
 
     #[test]
+    #[ignore = "slow"]
     fn it_divides() {
         let found = divides(&ToleranceTasks::new(&small("bench"), 0.01));
         assert_eq!(found.parameters.len(), ALL.len());

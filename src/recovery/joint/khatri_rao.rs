@@ -11,20 +11,19 @@
 //! so only rank(C̃)·rank(D̃) rows remain. Directions below the rounding of C̃ and D̃ are dropped;
 //! of large products also the pairs (a, b) of two weak directions, whose rows together are less
 //! than one rounding of the whole. Frame constants and a background are projected out of both sides
-//! first ([`super::nuisance`]); with glare patterns there is no such product, and the rows are
+//! first ([`super::elimination`]); with glare patterns there is no such product, and the rows are
 //! stacked instead ([`super::stacked`]), each with its own weight.
 
 use nalgebra::{DMatrix, DVector};
 
-use super::Weighting;
-use super::nuisance::{Estimated, estimate, unit, without_left, without_right};
+use super::elimination::{estimate, unit, without_left, without_right};
 use super::stacked::{Coupled, stack};
 use super::weights::{self, Weights};
 use crate::num::linalg::{
     LeastSquares, Route, Svd, Tolerance, Triangle, cut, least_squares, normal_triangle, product,
     svd_of_range, svd_to, tr_product, triangle,
 };
-use crate::recovery::{Options, Problem, RecoveryError, WeightRule};
+use crate::recovery::{Estimated, Options, Problem, RecoveryError, WeightRule, Weighting};
 
 /// Elements whose Gram matrix (and its few copies) is still formed: 512 MiB each.
 const MOST_ELEMENTS: usize = 8192;

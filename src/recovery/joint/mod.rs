@@ -3,8 +3,8 @@
 pub(super) mod bounded;
 mod branch;
 mod cramer_rao;
+mod elimination;
 mod khatri_rao;
-mod nuisance;
 mod picard;
 mod reduced;
 mod stacked;
@@ -14,6 +14,4 @@ pub(super) mod unbounded;
 mod weights;
 
 pub use cramer_rao::{CramerRao, cramer_rao};
-pub use nuisance::{Estimated, Nuisance};
 pub use picard::picard_joint;
-pub use weights::Weighting;

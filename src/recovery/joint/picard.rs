@@ -2,9 +2,8 @@
 
 use nalgebra::DVector;
 
-use super::Weighting;
 use super::khatri_rao::Operator;
-use crate::recovery::{Directions, Options, Picard, Problem, RecoveryError};
+use crate::recovery::{Directions, Options, Picard, Problem, RecoveryError, Weighting};
 
 /// The Picard data of all pixels and spots at once: of √W K = U S Vᵀ, K the Khatri–Rao product of C
 /// and D without what the nuisance terms take, the singular values s_i, the data |⟨u_i, √W Φ⟩|

@@ -2,20 +2,7 @@
 
 use nalgebra::DMatrix;
 
-/// How the entries of Φ were weighted.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Weighting {
-    /// All alike.
-    Unweighted,
-    /// By w_p v_l, fitted to 1/σ².
-    Separable {
-        /// Root mean square of ln σ\[p,l\] about the fit: 0 where σ² is separable, and then no
-        /// weights are more efficient.
-        misfit: f64,
-    },
-    /// By 1/σ²\[p,l\] itself; where σ is zero, by the separable fit.
-    EntryByEntry,
-}
+use crate::recovery::Weighting;
 
 /// √w_p and √v_l with w_p v_l ≈ 1/σ²\[p,l\].
 #[derive(Debug, Clone)]

@@ -1,9 +1,7 @@
 //! The choice of a damping λ.
 
-use super::Spectrum;
-use crate::recovery::rule::discrepancy::Discrepancy;
-use crate::recovery::rule::{Data, Rule};
-use crate::recovery::{Choice, Method, Options, Problem, RecoveryError};
+use crate::recovery::rule::{Data, discrepancy::Discrepancy};
+use crate::recovery::{Choice, Method, Options, Problem, RecoveryError, Rule, Spectrum};
 
 /// Trial values of λ/σ₁ fall from 1e3 by this factor until one is accepted; bisection finds the
 /// rest.

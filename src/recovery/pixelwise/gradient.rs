@@ -20,9 +20,9 @@
 use nalgebra::DMatrix;
 
 use super::laplacian::modes;
-use super::{Inverse, Spectrum, damping, decompose};
+use super::{Inverse, damping, decompose};
 use crate::num::linalg::{Tolerance, complement, cut, product, svd, svd_to, tr_product};
-use crate::recovery::{Method, Options, Parameter, Problem, RecoveryError};
+use crate::recovery::{Method, Options, Parameter, Problem, RecoveryError, Spectrum};
 
 /// Elements whose modes, a matrix of elements × elements, are still formed: 512 MiB.
 const MOST_ELEMENTS: usize = 8192;

@@ -10,10 +10,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Spectrum, damping, decompose, refuse_unseen, tsvd};
+use super::{damping, decompose, refuse_unseen, tsvd};
 use crate::num::linalg::{Tolerance, cut, product, tr_product};
-use crate::recovery::rule::Rule;
-use crate::recovery::{Choice, Method, Options, Parameter, Problem, RecoveryError};
+use crate::recovery::{Choice, Method, Options, Parameter, Problem, RecoveryError, Rule, Spectrum};
 
 /// The laser side decomposed as far as rounding allows.
 pub struct LaserSide {

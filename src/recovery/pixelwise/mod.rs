@@ -10,13 +10,10 @@ pub(super) mod laser_side;
 mod one_sided;
 mod pinv;
 mod rdivide;
-mod spectrum;
 pub(super) mod strips;
 mod tikhonov;
 mod tsvd;
 mod uncertainty;
-
-pub(super) use spectrum::Spectrum;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -25,7 +22,7 @@ use rdivide::Solution;
 
 use crate::num::linalg::{LinalgError, PivotedQr, Svd, Tolerance, product, svd_to, tr_product};
 use crate::recovery::{
-    Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, Uncertainty,
+    Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, Spectrum, Uncertainty,
 };
 
 /// The laser side decomposed as far as a cut at `tolerance` needs it, and the check that C can be

@@ -1,8 +1,8 @@
 //! The published method: Φ D⁺ ÷ C, mean over pixels.
 
-use super::{Inverse, Spectrum, decompose};
+use super::{Inverse, decompose};
 use crate::num::linalg::{Tolerance, cut};
-use crate::recovery::{Choice, Method, Options, Parameter, Problem, RecoveryError};
+use crate::recovery::{Choice, Method, Options, Parameter, Problem, RecoveryError, Spectrum};
 
 pub(super) fn inverse(problem: &Problem<'_>, options: &Options) -> Result<Inverse, RecoveryError> {
     let laser = decompose(Method::Pinv, problem, options.tolerance)?;

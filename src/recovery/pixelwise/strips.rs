@@ -91,7 +91,7 @@ pub fn recover_strips<E: From<RecoveryError>>(
         })
     });
     if let Some(confidence) = options.bands {
-        found.bands = Some(bands::gaussian(&found, confidence)?);
+        found.add_gaussian_bands(confidence)?;
     }
     Ok(found)
 }

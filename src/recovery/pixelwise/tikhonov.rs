@@ -1,8 +1,8 @@
 //! The published reduction with D's small singular values damped: D^# = V diag(σ/(σ² + λ²)) Uᵀ.
 
-use super::{Inverse, Spectrum, damping, decompose};
+use super::{Inverse, damping, decompose};
 use crate::num::linalg::{Tolerance, cut};
-use crate::recovery::{Method, Options, Parameter, Problem, RecoveryError};
+use crate::recovery::{Method, Options, Parameter, Problem, RecoveryError, Spectrum};
 
 pub(super) fn inverse(problem: &Problem<'_>, options: &Options) -> Result<Inverse, RecoveryError> {
     let method = Method::Tikhonov;

@@ -1,10 +1,9 @@
 //! The published reduction with D's small singular values left out.
 
-use super::{Inverse, Spectrum, decompose};
+use super::{Inverse, decompose};
 use crate::num::linalg::{Tolerance, cut};
-use crate::recovery::rule::discrepancy::Discrepancy;
-use crate::recovery::rule::{Data, Rule};
-use crate::recovery::{Choice, Method, Options, Parameter, Problem, RecoveryError};
+use crate::recovery::rule::{Data, discrepancy::Discrepancy};
+use crate::recovery::{Choice, Method, Options, Parameter, Problem, RecoveryError, Rule, Spectrum};
 
 const METHOD: Method = Method::Tsvd;
 

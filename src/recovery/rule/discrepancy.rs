@@ -15,8 +15,7 @@
 //! and the strongest regularisation that satisfies it is taken.
 
 use super::Data;
-use crate::recovery::pixelwise::Spectrum;
-use crate::recovery::{Choice, Method, Problem, RecoveryError};
+use crate::recovery::{Choice, Method, Problem, RecoveryError, Spectrum};
 
 /// Everything of Φ and its noise that the residual depends on.
 pub(in crate::recovery) struct Discrepancy<'s> {

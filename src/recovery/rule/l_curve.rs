@@ -108,9 +108,9 @@ mod tests {
     use super::*;
     use crate::num::linalg::svd;
     use crate::recovery::bench::{Bench, relative_noise};
-    use crate::recovery::pixelwise::Spectrum;
-    use crate::recovery::rule::Rule;
-    use crate::recovery::{Method, Options, Parameter, Problem, RecoveryError, recover};
+    use crate::recovery::{
+        Method, Options, Parameter, Problem, RecoveryError, Rule, Spectrum, recover,
+    };
 
     #[test]
     fn the_curvature_is_that_of_the_drawn_curve() {

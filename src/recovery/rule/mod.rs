@@ -5,45 +5,8 @@ pub(super) mod gcv;
 pub(super) mod l_curve;
 mod search;
 
-use std::fmt;
-
-use super::Problem;
-use super::pixelwise::Spectrum;
+use super::{Problem, Spectrum};
 use crate::num::linalg::{product, subtract_product};
-
-/// How the parameter of `tsvd`, `tikhonov` and `tikhonov-gradient` is chosen where it is not given.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Rule {
-    /// Morozov's discrepancy principle: the strongest regularisation whose residual the noise
-    /// explains. Needs the standard errors of Φ.
-    #[default]
-    Discrepancy,
-    /// Generalised cross-validation: the regularisation that best predicts entries left out. Needs
-    /// no noise model; takes the errors as equal and independent.
-    Gcv,
-    /// The corner of the L-curve, log ‖solution‖ over log ‖residual‖. Needs no noise model.
-    LCurve,
-}
-
-impl Rule {
-    /// Every rule.
-    pub const ALL: [Rule; 3] = [Rule::Discrepancy, Rule::Gcv, Rule::LCurve];
-
-    /// The name by which it is asked for.
-    pub fn name(self) -> &'static str {
-        match self {
-            Rule::Discrepancy => "discrepancy",
-            Rule::Gcv => "gcv",
-            Rule::LCurve => "l-curve",
-        }
-    }
-}
-
-impl fmt::Display for Rule {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
 
 /// Φ in the directions of a spectrum: all that residual and solution depend on.
 pub(in crate::recovery) struct Data<'s> {

@@ -88,6 +88,7 @@ fn an_item_becomes_files_and_a_page() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn pictures_are_shown() {
     let files = reproduction_files(Item::Fig20, &computed(Item::Fig20)).unwrap();
     for name in ["fig20", "fig20-images", "fig20-images-2"] {

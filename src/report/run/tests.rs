@@ -85,6 +85,7 @@ fn a_built_in_name_with_other_content_is_repeated_from_its_file() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn large_and_broken_matrices_keep_the_page_small_and_whole() {
     let mut results = run("experiment");
     // Noise cannot be compressed: the worst case for the page's size.

@@ -180,6 +180,7 @@ mod tests {
 
     /// The table beside a quadrature of 16 times as many nodes, between its entries too.
     #[test]
+    #[ignore = "slow"]
     fn tables_are_as_good_as_stated() {
         let fine = Rule::gauss_legendre(128);
         for (alpha, eta) in [

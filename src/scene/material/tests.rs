@@ -117,6 +117,7 @@ fn reflected(m: &Material, albedo: f64, incident: DVec3, n: usize) -> f64 {
 }
 
 #[test]
+#[ignore = "slow"]
 fn no_material_reflects_more_than_it_receives() {
     for (name, m) in zoo() {
         let mut most: f64 = 0.0;

@@ -79,6 +79,7 @@ fn same(line: &str) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn studies_of_recoveries_leave_the_same_files() {
     same("study coverage {bench} --elements 2 --seeds 11 --method pinv,joint");
     same(
@@ -93,6 +94,7 @@ fn studies_of_recoveries_leave_the_same_files() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn studies_of_traced_light_leave_the_same_files() {
     same("study power {bench} --samples 32 --seeds 3 --estimator shared,factored");
     same("study convergence {bench} --samples 32,64");

@@ -163,6 +163,7 @@ fn finer_elements_converge() {
 /// The contrast's standard error is the spread of the contrast over draws: 400 of them tell it to
 /// 3.5 %, here to five times that.
 #[test]
+#[ignore = "slow"]
 fn the_contrast_error_is_what_noise_makes() {
     let scene = scene("thesis", 4).unwrap();
     let truth = board(2);

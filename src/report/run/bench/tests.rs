@@ -45,6 +45,7 @@ fn block<'a>(html: &'a str, id: &str) -> &'a str {
 }
 
 #[test]
+#[ignore = "slow"]
 fn every_built_in_scene_has_a_block_of_its_size() {
     for builtin in builtins() {
         let scene = Scene::load(builtin.name).unwrap();
@@ -88,6 +89,7 @@ fn every_built_in_scene_has_a_block_of_its_size() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_floor_says_what_is_up() {
     let up = |name: &str| up(&Scene::load(name).unwrap());
     assert_eq!(up("corner"), DVec3::Y);
@@ -96,6 +98,7 @@ fn a_floor_says_what_is_up() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn what_is_coarser_than_the_scene_is_said() {
     let html = run_html(&bare("card"));
     assert!(html.contains("The albedo of card is averaged"));

@@ -10,23 +10,23 @@ use nalgebra::DMatrix;
 use crate::num::linalg::{Svd, tr_product};
 
 /// The directions, in the order in which they are kept.
-pub(in crate::recovery) struct Spectrum {
+pub(super) struct Spectrum {
     /// v_i as rows, k × l, orthonormal.
-    pub(in crate::recovery) data: DMatrix<f64>,
+    pub(super) data: DMatrix<f64>,
     /// D v_i as rows, k × r.
-    pub(in crate::recovery) image: DMatrix<f64>,
+    pub(super) image: DMatrix<f64>,
     /// s_i as rows, k × r.
-    pub(in crate::recovery) solution: DMatrix<f64>,
+    pub(super) solution: DMatrix<f64>,
     /// Singular values of the directions after the free ones, descending; those beyond k were
     /// dropped.
-    pub(in crate::recovery) sigma: Vec<f64>,
+    pub(super) sigma: Vec<f64>,
     /// How many directions come first that no penalty reaches.
-    pub(in crate::recovery) free: usize,
+    pub(super) free: usize,
 }
 
 impl Spectrum {
     /// Of D itself, its first `rank` directions.
-    pub(in crate::recovery) fn of(laser: &Svd, rank: usize) -> Self {
+    pub(super) fn of(laser: &Svd, rank: usize) -> Self {
         let left = |factor: &dyn Fn(f64) -> f64| {
             DMatrix::from_fn(rank, laser.u.nrows(), |i, j| {
                 laser.u[(j, i)] * factor(laser.sigma[i])
@@ -42,37 +42,37 @@ impl Spectrum {
     }
 
     /// Directions in all.
-    pub(in crate::recovery) fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.data.nrows()
     }
 
     /// Singular values that are filtered.
-    pub(in crate::recovery) fn filtered(&self) -> &[f64] {
+    pub(super) fn filtered(&self) -> &[f64] {
         &self.sigma[..self.len() - self.free]
     }
 
     /// Filter factors σ²/(σ² + λ²); 1 for the free directions.
-    pub(in crate::recovery) fn damped(&self, lambda: f64) -> Vec<f64> {
+    pub(super) fn damped(&self, lambda: f64) -> Vec<f64> {
         let damped = |s: &f64| 1.0 / (1.0 + (lambda / s) * (lambda / s));
         let free = std::iter::repeat_n(1.0, self.free);
         free.chain(self.filtered().iter().map(damped)).collect()
     }
 
     /// Filter factors of a truncation after `kept` directions.
-    pub(in crate::recovery) fn truncated(&self, kept: usize) -> Vec<f64> {
+    pub(super) fn truncated(&self, kept: usize) -> Vec<f64> {
         (0..self.len())
             .map(|i| f64::from(u8::from(i < kept)))
             .collect()
     }
 
     /// V and S of D^# = Vᵀ S, from the filter factors of the first directions.
-    pub(in crate::recovery) fn factors(&self, filter: &[f64]) -> (DMatrix<f64>, DMatrix<f64>) {
+    pub(super) fn factors(&self, filter: &[f64]) -> (DMatrix<f64>, DMatrix<f64>) {
         let data = self.data.rows(0, filter.len()).into_owned();
         (data, self.weighted(filter))
     }
 
     /// D D^#, r × r.
-    pub(in crate::recovery) fn product(&self, filter: &[f64]) -> DMatrix<f64> {
+    pub(super) fn product(&self, filter: &[f64]) -> DMatrix<f64> {
         let image = self.image.rows(0, filter.len()).into_owned();
         tr_product(&image, &self.weighted(filter))
     }

@@ -1,15 +1,15 @@
 //! Surfaces from their tables.
 
-use super::{Division, Role, Surface};
+use super::body::{Meshes, Placed};
+use super::error::{Fault, keys};
+use super::file::{ElementsTable, Sides, SurfaceTable};
+use super::files::Files;
+use super::material::Material;
+use super::surface::{Division, Role, Surface};
+use super::texture::Texture;
+use super::warning::Warning;
+use super::{FARTHEST, FINEST};
 use crate::geometry::{DVec3, Disc, Parallelogram, Shape, Sphere};
-use crate::scene::body::{Meshes, Placed};
-use crate::scene::error::{Fault, keys};
-use crate::scene::file::{ElementsTable, Sides, SurfaceTable};
-use crate::scene::files::Files;
-use crate::scene::material::Material;
-use crate::scene::texture::Texture;
-use crate::scene::warning::Warning;
-use crate::scene::{FARTHEST, FINEST};
 
 /// More elements along a side than this are taken for a mistake.
 const MOST_ELEMENTS: u32 = 1024;
@@ -20,7 +20,7 @@ const MOST_CELLS: usize = 1 << 26;
 const LARGEST_PICTURE: u64 = 256 << 20;
 
 /// Checks all surfaces.
-pub(in crate::scene) fn from_tables(
+pub(super) fn from_tables(
     tables: &[SurfaceTable],
     files: &mut Files,
     wavelength: f64,

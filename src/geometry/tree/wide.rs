@@ -10,8 +10,8 @@ use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
 
-use super::Space;
 use super::collapse::{Collapse, WIDTH};
+use super::space::Space;
 use crate::geometry::{DVec3, Ray};
 
 /// Marks a child that is a leaf.

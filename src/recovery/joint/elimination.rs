@@ -1,6 +1,4 @@
-//! What photographs hold beside the light of the hidden surface, of known form and unknown size.
-//!
-//! > Φ\[p,l\] = s Σ_j C\[p,j\] ρ_j D\[j,l\] + b_l + a_p + g_l P\[p,l\] + noise
+//! How light beside that of the hidden surface is eliminated.
 //!
 //! Everything but ρ enters linearly once s ρ is one unknown, so it is eliminated exactly (variable
 //! projection), never guessed first. With weights w_p v_l the constants b_l are all matrices u b'ᵀ
@@ -17,63 +15,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::stacked::Coupled;
 use crate::num::linalg::{Tolerance, least_squares};
-use crate::recovery::RecoveryError;
-
-/// What is estimated with the reflectances, by every joint method. Nothing unless asked for.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Nuisance<'a> {
-    /// A constant of each frame, b_l: an offset of the sensor, light that fills the view evenly.
-    pub frame_constant: bool,
-    /// An image that is the same in all frames, a_p: ambient light.
-    pub background: bool,
-    /// A pattern P\[p,l\] (pixels × spots, any unit) whose strength g_l in each frame is unknown:
-    /// glare of the spot.
-    pub glare: Option<&'a DMatrix<f64>>,
-    /// One unknown factor s of the whole model. Only s ρ is seen, so by convention **the brightest
-    /// element has ρ = 1**; a surface without a white element is recovered relative to its
-    /// brightest. Bounds from above mean nothing then: `joint` keeps ρ ≥ 0 alone.
-    pub free_scale: bool,
-}
-
-impl Nuisance<'_> {
-    /// Whether anything is asked for.
-    pub(in crate::recovery) fn is_some(&self) -> bool {
-        *self != Nuisance::default()
-    }
-}
-
-/// The estimated sizes; each is there if it was asked for.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Estimated {
-    /// b_l, W. Where a background is estimated too, the common level of all entries is counted
-    /// here: Σ_p w_p a_p = 0.
-    pub frame_constant: Option<DVector<f64>>,
-    /// a_p, W.
-    pub background: Option<DVector<f64>>,
-    /// g_l, W per unit of the pattern; zero for a frame whose pattern the other terms contain.
-    pub glare: Option<DVector<f64>>,
-    /// s.
-    pub scale: Option<f64>,
-}
-
-impl Estimated {
-    /// Their light without the factor s, pixels × spots, W.
-    pub(in crate::recovery) fn light(
-        &self,
-        nuisance: &Nuisance<'_>,
-        pixels: usize,
-        spots: usize,
-    ) -> DMatrix<f64> {
-        let entry =
-            |values: &Option<DVector<f64>>, at: usize| values.as_ref().map_or(0.0, |v| v[at]);
-        DMatrix::from_fn(pixels, spots, |p, l| {
-            let pattern = nuisance.glare.map_or(0.0, |pattern| pattern[(p, l)]);
-            entry(&self.frame_constant, l)
-                + entry(&self.background, p)
-                + entry(&self.glare, l) * pattern
-        })
-    }
-}
+use crate::recovery::{Estimated, Nuisance, RecoveryError};
 
 /// û, the unit vector along the roots of the weights of one side.
 pub(super) fn unit(roots: &[f64]) -> DVector<f64> {

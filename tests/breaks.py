@@ -1,0 +1,367 @@
+#!/usr/bin/env python3
+"""What phicam claims, the test that holds it, and a fault in the source that makes that test fail.
+
+    tests/breaks.py --check           faults, tests and the table of README.md fit the sources
+    tests/breaks.py --table           prints that table
+    tests/breaks.py --run [WORD ...]  plants the faults whose claim, file or test contains a WORD,
+                                      one after the other, and runs their tests; each must fail
+
+A fault is planted in a copy of the checkout's last commit (`target/breaks`), never in the checkout.
+A test that cannot be compiled has not failed. Python's standard library is enough.
+"""
+
+import argparse
+import pathlib
+import re
+import subprocess
+import sys
+import time
+from typing import NamedTuple
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+FRONT = ROOT / "tests/README.md"
+BEGIN, END = "<!-- breaks: begin -->\n", "<!-- breaks: end -->\n"
+
+
+class Break(NamedTuple):
+    claim: str
+    file: str  # below the root
+    old: str  # is there once
+    new: str
+    target: str  # "lib" or the name of an integration test
+    test: str  # its path within the target
+
+
+BREAKS = [
+    Break(
+        "The estimate of a path is unbiased (closed form of an integrating sphere)",
+        "src/transport/path.rs",
+        "return FRAC_1_PI * term;",
+        "return 1.01 * FRAC_1_PI * term;",
+        "physics",
+        "closed_forms::the_furnace_glows_as_an_integrating_sphere",
+    ),
+    Break(
+        "Traced light is the transport integral (quadrature of its own)",
+        "src/transport/vertex.rs",
+        "        there * back / (square * square)\n",
+        "        1.001 * there * back / (square * square)\n",
+        "physics",
+        "accuracy::shared_sobol_is_within_3e_4_of_the_thesis_integral",
+    ),
+    Break(
+        "Two-bounce light falls as the closed form says",
+        "src/transport/vertex.rs",
+        "(cos_a > 0.0 && cos_b > 0.0).then(|| (cos_a * cos_b / (ray.length * ray.length), ray))",
+        "(cos_a > 0.0 && cos_b > 0.0).then(|| (cos_a * cos_b / ray.length, ray))",
+        "physics",
+        "closed_forms::two_bounces_follow_the_inverse_square_law",
+    ),
+    Break(
+        "What stands in the way stops the light",
+        "src/geometry/bvh.rs",
+        "self.shapes[id].blocks(ray, ends[0] == shape, ends[1] == shape)",
+        "self.shapes[id].blocks(ray, ends[0] == shape, ends[1] == shape) && id < 2",
+        "physics",
+        "obstacles::what_stands_in_the_way_stops_the_light",
+    ),
+    Break(
+        "Paint reflects as it does in another program",
+        "src/scene/material/coated.rs",
+        "fresnel::dielectric(cosine, self.eta).0 * mirror + FRAC_1_PI",
+        "fresnel::dielectric(cosine, self.eta).0.sqrt() * mirror + FRAC_1_PI",
+        "lib",
+        "scene::material::coated::tests::paint_is_as_in_another_program",
+    ),
+    Break(
+        "Every material is reciprocal",
+        "src/scene/material/coated.rs",
+        "let through = self.transmittance(incident.z) * self.transmittance(exitant.z);",
+        "let through = self.transmittance(incident.z) * self.transmittance(incident.z);",
+        "lib",
+        "scene::material::tests::every_material_is_reciprocal",
+    ),
+    Break(
+        "The model's integral is the reference",
+        "src/model/kernel.rs",
+        "Self::Physical => (-r.dot(hidden.normal)).max(0.0),",
+        "Self::Physical => 1.0001 * (-r.dot(hidden.normal)).max(0.0),",
+        "physics",
+        "model::the_converged_integral_is_the_reference",
+    ),
+    Break(
+        "Standard errors are honest",
+        "src/transport/tally.rs",
+        "*m += more + apart * apart * weight;",
+        "*m += more + 0.5 * apart * apart * weight;",
+        "physics",
+        "accuracy::independent_pcg_has_honest_error_bars",
+    ),
+    Break(
+        "A verdict rejects a right model as often as it states",
+        "src/lab/agreement.rs",
+        "Errors::WithinRows => effective_freedom(&z),",
+        "Errors::WithinRows => entries as f64,",
+        "lib",
+        "lab::agreement::tests::false_alarms_come_at_the_stated_rate",
+    ),
+    Break(
+        "A verdict rejects a wrong model",
+        "src/lab/agreement.rs",
+        "agrees: chi2_p >= half && largest_p >= half,",
+        "agrees: chi2_p >= 0.0,",
+        "cli",
+        "verdict::it_disagrees_with_the_published_kernel",
+    ),
+    Break(
+        "Random numbers are a function of seed, spot, pixel and block",
+        "src/num/stream.rs",
+        "split_mix(state ^ u64::from(self.block))",
+        "split_mix(state ^ u64::from(self.block & 0xffff))",
+        "lib",
+        "num::stream::tests::a_stream_depends_on_every_part_of_its_key",
+    ),
+    Break(
+        "Any division of the blocks gives the same bits",
+        "src/num/tree.rs",
+        "half.is_power_of_two() && left.start.is_multiple_of(width) && right.end == end",
+        "half.is_power_of_two() && right.end == end",
+        "lib",
+        "num::tree::tests::any_cutting_gives_the_same_bits",
+    ),
+    Break(
+        "Shot noise is Poisson at every mean",
+        "src/sensor/expose.rs",
+        "ShotNoise::Poisson => stream.poisson(mean),",
+        "ShotNoise::Poisson => mean + mean.sqrt() * stream.normal(),",
+        "physics",
+        "sensor::stages::shot_noise_is_poisson_at_every_mean",
+    ),
+    Break(
+        "Read noise is normal, with the stated deviation",
+        "src/sensor/expose.rs",
+        "sigma => sigma * stream.normal(),",
+        "sigma => 1.03 * sigma * stream.normal(),",
+        "physics",
+        "sensor::stages::read_noise_is_normal",
+    ),
+    Break(
+        "A converter rounds as the normal distribution says",
+        "src/sensor/expose.rs",
+        "let rounded = analog.round();",
+        "let rounded = analog.floor();",
+        "physics",
+        "sensor::stages::quantisation_rounds_as_the_normal_distribution_says",
+    ),
+    Break(
+        "The deviation stated for photographs is that of the samples",
+        "src/sensor/law.rs",
+        "self.averaged(self.electrons(flux), self.frames) + self.averaged_dark();",
+        "self.averaged(self.electrons(flux), self.frames);",
+        "physics",
+        "sensor::law::the_analytic_deviation_is_that_of_the_samples",
+    ),
+    Break(
+        "Bands of an unbiased method cover as often as they say",
+        "src/recovery/bands.rs",
+        "map(|(x, s)| [x - z * s, x + z * s])",
+        "map(|(x, s)| [x - 0.9 * z * s, x + 0.9 * z * s])",
+        "lib",
+        "recovery::bands::tests::bands_of_an_unbiased_method_cover_as_often_as_they_say",
+    ),
+    Break(
+        "The standard error of pinv is its spread over noise",
+        "src/recovery/pixelwise/uncertainty.rs",
+        "let terms = seen.column(j).zip_map(&sharp.column(j), |v, s| v * s * s);",
+        "let terms = seen.column(j).zip_map(&sharp.column(j), |v, s| 1.2 * v * s * s);",
+        "lib",
+        "recovery::pixelwise::pinv::tests::its_standard_error_is_the_spread_over_noise",
+    ),
+    Break(
+        "Bounds recover a board of two checks from a tenth of noise",
+        "src/recovery/joint/bounded.rs",
+        "_ => reduced.bounds(problem),",
+        "_ => Bounds::all(problem.c.ncols(), f64::NEG_INFINITY, f64::INFINITY),",
+        "lib",
+        "recovery::joint::bounded::tests::a_board_of_two_checks_survives_a_tenth_of_noise",
+    ),
+    Break(
+        "Recovery is blind: it does not know the scene",
+        "src/recovery/pixelwise/pinv.rs",
+        "use super::{Inverse, decompose};",
+        "use super::{Inverse, decompose};\nuse crate::scene::Scene as _;",
+        "architecture",
+        "blind_recovery",
+    ),
+    Break(
+        "The model samples nothing and the tracer knows no model",
+        "src/transport/context.rs",
+        "use crate::scene::Scene;",
+        "use crate::model::Kernel as _;\nuse crate::scene::Scene;",
+        "architecture",
+        "two_witnesses",
+    ),
+    Break(
+        "Imports point down only",
+        "src/num/stream.rs",
+        "use super::{poisson, warp};",
+        "use super::{poisson, warp};\nuse crate::lab::Finding as _;",
+        "architecture",
+        "arrows_point_down",
+    ),
+    Break(
+        "No circle of files inside a folder",
+        "src/num/warp.rs",
+        "use std::f64::consts::{FRAC_1_PI, FRAC_PI_4, TAU};",
+        "use super::stream::Stream as _;\nuse std::f64::consts::{FRAC_1_PI, FRAC_PI_4, TAU};",
+        "architecture",
+        "no_circle_of_files_in_any_folder",
+    ),
+    Break(
+        "A frame that claims more than its file holds takes no memory",
+        "src/film/exr/mod.rs",
+        "Some(n) if n > 0 && n <= limit => Ok(()),",
+        "Some(n) if n > 0 => Ok(()),",
+        "forged",
+        "headers::a_frame_of_terabytes_takes_no_memory",
+    ),
+    Break(
+        "A damaged shard is refused, each fault by its own message",
+        "src/jobs/blocks.rs",
+        "if !file.closes().map_err(unreadable)? {",
+        "if !file.closes().map_err(unreadable)? && header.parts.is_empty() {",
+        "cli",
+        "many::spoilt_and_foreign_shards_are_refused_each_by_its_own_words",
+    ),
+    Break(
+        "No changed bit of a shard goes unseen",
+        "src/jobs/blocks.rs",
+        "if !file.closes().map_err(unreadable)? {",
+        "if !file.closes().map_err(unreadable)? && header.parts.is_empty() {",
+        "lib",
+        "jobs::tests::no_change_goes_unseen",
+    ),
+    Break(
+        "`serve` shows no hidden file",
+        "src/cli/serve/folder.rs",
+        "        && !segment.starts_with('.')\n",
+        "",
+        "cli",
+        "serving::nothing_outside_the_folder_is_shown",
+    ),
+    Break(
+        "Bad settings end with exit code 2",
+        "src/cli/failure.rs",
+        "(_, Codes::Plain) => 2,",
+        "(_, Codes::Plain) => 1,",
+        "cli",
+        "bad_settings::of_tracing",
+    ),
+    Break(
+        "The published layout of spots",
+        "src/scene/spots.rs",
+        "side(&|k| [cx - half + offset(k), cy - step(k)]),",
+        "side(&|k| [cx - half - offset(k), cy - step(k)]),",
+        "lib",
+        "scene::spots::tests::the_square_is_the_published_one",
+    ),
+]
+
+
+def table() -> str:
+    """Markdown, a line a claim."""
+    lines = ["| claim | test | fails when |", "| --- | --- | --- |"]
+    for b in BREAKS:
+        lines.append(f"| {b.claim} | `{b.target}` `{b.test}` | `{b.file}`: {changed(b)} |")
+    return "\n".join(lines) + "\n"
+
+
+def changed(b: Break) -> str:
+    """The fault in one line."""
+    show = lambda text: "`" + " ".join(text.split()).replace("|", "\\|") + "`"
+    return f"{show(b.old)} becomes {show(b.new)}" if b.new else f"{show(b.old)} is left out"
+
+
+def source_of(target: str) -> list[pathlib.Path]:
+    if target == "lib":
+        return sorted((ROOT / "src").rglob("*.rs"))
+    folder = ROOT / "tests" / target
+    return sorted(folder.rglob("*.rs")) if folder.is_dir() else [folder.with_suffix(".rs")]
+
+
+def check() -> list[str]:
+    """What does not fit."""
+    wrong = []
+    for b in BREAKS:
+        count = (ROOT / b.file).read_text().count(b.old) if (ROOT / b.file).exists() else 0
+        if count != 1:
+            wrong.append(f"{b.file} has {b.old!r} {count} times, not once")
+        name = re.compile(rf"\bfn {b.test.split('::')[-1]}\(")
+        if not any(name.search(path.read_text()) for path in source_of(b.target)):
+            wrong.append(f"{b.target} has no test {b.test}")
+    front = FRONT.read_text()
+    if front.count(BEGIN) != 1 or front.split(BEGIN)[1].split(END)[0] != table():
+        wrong.append("the table of tests/README.md is not that of --table")
+    return wrong
+
+
+def fails(copy: pathlib.Path, b: Break) -> str | None:
+    """Plants the fault and runs its test; None if that fails, else what happened."""
+    path = copy / b.file
+    text = path.read_text()
+    path.write_text(text.replace(b.old, b.new, 1))
+    where = ["--lib"] if b.target == "lib" else ["--test", b.target]
+    command = ["cargo", "test", "--locked", *where, "--", "--exact", "--include-ignored", b.test]
+    try:
+        done = subprocess.run(command, cwd=copy, capture_output=True, text=True, check=False)
+    finally:
+        path.write_text(text)
+    if f"test {b.test} ... FAILED" in done.stdout:
+        return None
+    if f"test {b.test} ... ok" in done.stdout:
+        return "passed in spite of the fault"
+    return "did not run:\n" + done.stderr[-2000:]
+
+
+def run(words: list[str]) -> int:
+    chosen = [b for b in BREAKS if not words or any(w in x for w in words for x in b)]
+    copy = ROOT / "target/breaks"
+    if copy.exists():
+        head = ["git", "rev-parse", "HEAD"]
+        commit = subprocess.run(head, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+        subprocess.run(["git", "reset", "-q", "--hard", commit.strip()], cwd=copy, check=True)
+    else:
+        add = ["git", "worktree", "add", "-q", "--detach", str(copy)]
+        subprocess.run(add, cwd=ROOT, check=True)
+    unseen = 0
+    for b in chosen:
+        start = time.monotonic()
+        fault = fails(copy, b)
+        unseen += fault is not None
+        took = time.monotonic() - start
+        print(f"{'fails' if fault is None else 'WRONG'}  {took:4.0f} s  {b.test}", flush=True)
+        if fault:
+            print(f"       {fault}", flush=True)
+    print(f"{len(chosen) - unseen} of {len(chosen)} faults are seen")
+    return 1 if unseen or not chosen else 0
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument("--check", action="store_true")
+    what.add_argument("--table", action="store_true")
+    what.add_argument("--run", nargs="*", metavar="WORD")
+    asked = parser.parse_args()
+    if asked.table:
+        print(table(), end="")
+        return 0
+    wrong = check()
+    print("\n".join(wrong), file=sys.stderr, end="\n" if wrong else "")
+    if asked.check or wrong:
+        return 1 if wrong else 0
+    return run(asked.run)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
