@@ -17,8 +17,8 @@ use crate::matrix::Matrix;
 use crate::scene::Scene;
 use crate::transport::{Plan, Tally};
 
-/// A render at work.
-pub(super) struct Work<'a> {
+/// The spots of a render that are to be traced, batch by batch.
+pub(super) struct Batches<'a> {
     pub scene: &'a Scene,
     pub plan: &'a Plan,
     pub folder: &'a RunFolder,
@@ -28,7 +28,7 @@ pub(super) struct Work<'a> {
     pub resume: bool,
 }
 
-impl Work<'_> {
+impl Batches<'_> {
     /// Traces the spots of `todo`; blocks, frames and kept spots are written as soon as they are
     /// finished. If it was stopped, so many blocks of the next spots are finished as well.
     pub(super) fn trace(
@@ -45,7 +45,7 @@ impl Work<'_> {
             range,
             first: 0,
         };
-        let batches: Vec<Spots<'_>> = self.batches(todo, kept).into_iter().map(spots).collect();
+        let batches: Vec<Spots<'_>> = self.ranges(todo, kept).into_iter().map(spots).collect();
         let blocks = u64::from(plan.budget.blocks);
         let paths = batches.iter().map(|spots| spots.paths(blocks)).sum();
         let mut tracing = Tracing::start(console, &scene.name, paths);
@@ -123,7 +123,7 @@ impl Work<'_> {
     /// many as memory bears where paths serve all spots. Where an earlier process has left blocks
     /// of some of them, these stay together, with those of them that are finished: to write these
     /// again costs less than to trace the others anew.
-    fn batches(&self, todo: &[usize], kept: &[Option<Matrix>]) -> Vec<Range<usize>> {
+    fn ranges(&self, todo: &[usize], kept: &[Option<Matrix>]) -> Vec<Range<usize>> {
         let most = Spots::together(self.scene, self.plan.estimator);
         let begun = if self.resume {
             self.folder.partial().checkpoints(self.scene, self.plan)

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::args::{RenderArgs, TraceArgs};
-use super::batches::Work;
+use super::batches::Batches;
 use super::console::Console;
 use super::failure::Failure;
 use super::interrupt::SignalGuard;
@@ -156,7 +156,7 @@ pub(super) fn into_folder(
         ));
     }
     let start = Instant::now();
-    let work = Work {
+    let batches = Batches {
         scene,
         plan,
         folder: &folder,
@@ -165,7 +165,7 @@ pub(super) fn into_folder(
         resume: resume == Resume::Finished,
     };
     let guard = SignalGuard::new();
-    let stopped = work.trace(&todo, &mut kept, console);
+    let stopped = batches.trace(&todo, &mut kept, console);
     drop(guard);
     record.seconds += start.elapsed().as_secs_f64();
     record.finished = kept.iter().flatten().count();

@@ -16,7 +16,7 @@ use crate::jobs::{BlockFile, Checkpoint, EXTENSION, Identity, JobError, end};
 use crate::lab::{AnyStudy, Sharing, Work};
 use crate::report::Invocation;
 use crate::scene::Scene;
-use crate::store::ensure_writable;
+use crate::store::{ensure_writable, is_missing};
 use crate::transport::Control;
 
 /// A study, checked and ready.
@@ -52,7 +52,7 @@ impl Job {
         let file = format!("{}.{EXTENSION}", self.name);
         let path = self.output.join(&file);
         if self.study.keeps() {
-            refuse_other(&path, &identity, all.end)?;
+            refuse_other(&path, &identity, all.end, console)?;
         }
         ensure_writable(&self.output)?;
         let scene = &self.invocation.scene;
@@ -102,8 +102,13 @@ impl Job {
     }
 }
 
-/// Refuses to replace outputs that were computed with other settings.
-fn refuse_other(path: &Path, identity: &Identity, tasks: u64) -> Result<(), Failure> {
+/// Refuses to replace outputs that were computed with other settings, or cannot be read for now.
+fn refuse_other(
+    path: &Path,
+    identity: &Identity,
+    tasks: u64,
+    console: Console,
+) -> Result<(), Failure> {
     match BlockFile::open(path, identity, tasks) {
         Err(JobError::Foreign {
             name,
@@ -117,9 +122,16 @@ fn refuse_other(path: &Path, identity: &Identity, tasks: u64) -> Result<(), Fail
             ),
             "give the same settings, or choose another folder (-o)",
         )),
-        Err(e @ JobError::Refused(_)) => Err(e.into()),
-        // What is not whole is computed again.
-        _ => Ok(()),
+        Err(JobError::Spoilt { path, what }) => {
+            let path = path.display();
+            console.say(format!(
+                "warning: {path} {what}; its tasks are computed again"
+            ));
+            Ok(())
+        }
+        Err(JobError::Unreadable { source, .. }) if is_missing(&source) => Ok(()),
+        Err(e) => Err(e.into()),
+        Ok(_) => Ok(()),
     }
 }
 
