@@ -110,7 +110,7 @@ fn published_items_leave_the_same_files() {
 
 #[test]
 fn other_commands_are_refused() {
-    let Err(Failure::Error(said)) = Study::new(&words("scene list"), None, false, CONSOLE) else {
+    let Err(Failure::Error(said)) = Study::new(&words("model bench"), None, false, CONSOLE) else {
         panic!("divided")
     };
     assert!(said.contains("cannot be cut into tasks"), "{said}");
