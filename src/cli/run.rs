@@ -15,7 +15,7 @@ use super::run_folder::{REPORT, Resume, SUMMARY};
 use super::{Outcome, model, recover, settings, validate};
 use crate::film;
 use crate::lab::finding::Describe;
-use crate::lab::{self, Gallery, GalleryPlan, GalleryTasks, Noise, RunResults, Work};
+use crate::lab::{self, GalleryPlan, GalleryTasks, Noise, RunGallery, RunResults, Work};
 use crate::matrix::Matrix;
 use crate::metrics::relative_frobenius;
 use crate::model::MatrixModel;
@@ -172,7 +172,7 @@ fn compare_and_recover(
 
 /// The object over regularisation and noise; none where there is nothing to show, and where it was
 /// stopped.
-fn gallery(results: &RunResults, matrices: &MatrixModel, console: Console) -> Option<Gallery> {
+fn gallery(results: &RunResults, matrices: &MatrixModel, console: Console) -> Option<RunGallery> {
     let tasks = GalleryTasks::new(
         &results.scene,
         matrices,

@@ -187,7 +187,9 @@ pub use ensemble::{Estimate, Spread};
 pub use error::{LabError, StudyError};
 pub use experiment::{Experiment, ExperimentPlan, ExperimentTasks, Reading, Setting, Threshold};
 pub use exposure::describe_exposure;
-pub use gallery::{Automatic, Gallery, GalleryPlan, GallerySurface, GalleryTasks, Picture, Series};
+pub use gallery::{
+    Automatic, GalleryPicture, GalleryPlan, GallerySurface, GalleryTasks, RunGallery, Series,
+};
 pub use indicator::{
     Coefficients, Comparison, Configuration, Indicator, IndicatorPlan, IndicatorTasks, Layout,
     NoisyOutcome, NoisyPoint, NoisySummary,

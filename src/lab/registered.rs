@@ -1,6 +1,5 @@
 //! A study as whoever runs it sees it: its name, its options, and its tasks as bytes.
 
-use std::any::Any;
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -36,9 +35,7 @@ pub struct Registered {
 /// What a study found.
 #[derive(Debug)]
 pub struct Found {
-    /// The result.
-    pub value: Box<dyn Any + Send>,
-    /// The same as JSON.
+    /// The result as JSON.
     pub json: String,
     /// What is said, tabulated and drawn of it.
     pub finding: Finding,
@@ -136,7 +133,6 @@ impl<S: Study<Result: Describe>> AnyStudy for Prepared<S> {
             finding: result.describe(),
             json: serde_json::to_string_pretty(&result)? + "\n",
             agrees: self.study.agrees(&result),
-            value: Box::new(result),
         })
     }
 }

@@ -25,6 +25,7 @@ mod hull;
 mod invocation;
 mod key;
 mod label;
+mod legend;
 mod look;
 mod mark;
 mod mitsuba;
