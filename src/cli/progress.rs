@@ -168,7 +168,7 @@ impl Tracing {
     ) -> T {
         let bar = self.bar.clone();
         act(counting(&|paths| bar.inc(paths)), &mut |tally| {
-            self.look(tally)
+            self.look(tally);
         })
     }
 
