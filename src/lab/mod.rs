@@ -196,8 +196,8 @@ pub use indicator::{
 };
 pub use measures::Measures;
 pub use noise::{
-    AxisLabel, Best, Held, LIMITS, LedgerError, Lost, NamedSensor, NoiseAxis, NoiseCurve,
-    NoisePlan, NoiseStudy, NoiseTasks, Point, Reach, RenderNoise, Trial, read_ledger, write_ledger,
+    AxisLabel, Best, Held, LIMITS, Lost, NamedSensor, NoiseAxis, NoiseCurve, NoisePlan, NoiseStudy,
+    NoiseTasks, Point, Reach, RenderNoise,
 };
 pub use objects::{
     Attempt, Noise, ObjectBands, RecoveredObject, measured, picards, recover_objects,
@@ -206,7 +206,7 @@ pub use power::{Detection, Power, PowerPlan, PowerRow, PowerTasks};
 pub use preview::{
     Colour, Preview, PreviewError, PreviewPlan, ViewOptions, Viewpoint, auto_viewpoint, preview,
 };
-pub use registered::{AnyStudy, Found, Prepare, Registered, found, prepared};
+pub use registered::{AnyStudy, Found, Prepare, Registered, prepared};
 pub use registry::STUDIES;
 pub use results::RunResults;
 pub use study::{Sharing, Study, Work, context, outputs, run};

@@ -15,7 +15,7 @@ pub(in crate::lab) const STUDY: Registered = Registered {
     about: "How much noise each recovery bears: table, JSON, CSV, figures; a rerun continues \
          where the last one stopped",
     scene: Some("bench"),
-    files: "noise.csv (every trial; a rerun continues from it), noise-curves.csv, the figures",
+    files: "noise.csv (every trial), noise-curves.csv, the figures, noise.phs (a rerun continues from it)",
     options: &[
         Opt::whole("boards", "Checks a side of the objects, separated by commas")
             .or("2,4,8")
