@@ -130,6 +130,11 @@ fn found_machine() -> String {
     format!("{name}_{start}_{space}")
 }
 
+/// Whether nothing is where it was looked for: neither the file nor, maybe, its folder.
+pub fn is_missing(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory)
+}
+
 /// Whether the file is one that [`write_whole`] was writing when its process ended: by the
 /// process's number if it ran on this machine, else by its age.
 pub fn is_abandoned(path: &Path) -> bool {

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::console::Console;
 use super::failure::Failure;
-use super::interrupt::{stop_flag, warned};
+use super::interrupt::warned;
 use super::partial;
 use super::process::process;
 use super::progress::Tracing;
@@ -15,10 +15,10 @@ use super::run_folder::RunFolder;
 use crate::jobs::{Checkpoint, Parts, Spots};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
-use crate::transport::{Control, Plan, Tally};
+use crate::transport::{Plan, Tally};
 
-/// A render at work.
-pub(super) struct Work<'a> {
+/// The spots of a render that are to be traced, batch by batch.
+pub(super) struct Batches<'a> {
     pub scene: &'a Scene,
     pub plan: &'a Plan,
     pub folder: &'a RunFolder,
@@ -28,15 +28,15 @@ pub(super) struct Work<'a> {
     pub resume: bool,
 }
 
-impl Work<'_> {
+impl Batches<'_> {
     /// Traces the spots of `todo`; blocks, frames and kept spots are written as soon as they are
-    /// finished.
+    /// finished. If it was stopped, so many blocks of the next spots are finished as well.
     pub(super) fn trace(
         &self,
         todo: &[usize],
         kept: &mut [Option<Matrix>],
         console: Console,
-    ) -> Result<(), Failure> {
+    ) -> Result<Option<u32>, Failure> {
         let Self { scene, plan, .. } = *self;
         let partial = self.folder.partial();
         let spots = |range| Spots {
@@ -45,7 +45,7 @@ impl Work<'_> {
             range,
             first: 0,
         };
-        let batches: Vec<Spots<'_>> = self.batches(todo, kept).into_iter().map(spots).collect();
+        let batches: Vec<Spots<'_>> = self.ranges(todo, kept).into_iter().map(spots).collect();
         let blocks = u64::from(plan.budget.blocks);
         let paths = batches.iter().map(|spots| spots.paths(blocks)).sum();
         let mut tracing = Tracing::start(console, &scene.name, paths);
@@ -57,14 +57,9 @@ impl Work<'_> {
             .for_each(|column| tracing.finished(column));
         for (number, spots) in batches.iter().enumerate() {
             let tally = self.trace_batch(spots, &mut tracing, console)?;
-            let there = tally.range().end;
-            let traced = tally.traced().ok_or_else(|| {
-                Failure::Stopped(if there == 0 {
-                    String::new()
-                } else {
-                    format!(" and {there} of {blocks} blocks of the next")
-                })
-            })?;
+            let Some(traced) = tally.traced() else {
+                return Ok(Some(tally.range().end));
+            };
             let keep = |(column, spot)| partial.keep(spot, &traced, column);
             let columns = self.pool.install(|| {
                 self.folder
@@ -78,11 +73,11 @@ impl Work<'_> {
             }
             partial.remove_checkpoint(&spots.range)?;
             if warned() && number + 1 < batches.len() {
-                return Err(Failure::Stopped(String::new()));
+                return Ok(Some(0));
             }
         }
         tracing.end();
-        Ok(())
+        Ok(None)
     }
 
     /// The blocks of one batch; fewer if it was stopped, and those are then in its checkpoint.
@@ -113,15 +108,10 @@ impl Work<'_> {
             );
         }
         tracing.skip(spots.paths(there));
-        let bar = tracing.bar();
-        let control = Control {
-            progress: &|paths| bar.inc(paths),
-            stop: stop_flag(),
-        };
-        let look = &mut |tally: &Tally| tracing.look(tally);
-        let tally = self.pool.install(|| {
+        let tally = tracing.run(|control, look| {
             let kept = (&mut checkpoint, &Parts::new());
-            spots.trace(tally, blocks.end, control, look, kept)
+            let trace = || spots.trace(tally, blocks.end, control, look, kept);
+            self.pool.install(trace)
         })?;
         if u64::from(tally.range().end) < blocks.end {
             checkpoint.keep(&spots.parts(&tally))?;
@@ -133,7 +123,7 @@ impl Work<'_> {
     /// many as memory bears where paths serve all spots. Where an earlier process has left blocks
     /// of some of them, these stay together, with those of them that are finished: to write these
     /// again costs less than to trace the others anew.
-    fn batches(&self, todo: &[usize], kept: &[Option<Matrix>]) -> Vec<Range<usize>> {
+    fn ranges(&self, todo: &[usize], kept: &[Option<Matrix>]) -> Vec<Range<usize>> {
         let most = Spots::together(self.scene, self.plan.estimator);
         let begun = if self.resume {
             self.folder.partial().checkpoints(self.scene, self.plan)

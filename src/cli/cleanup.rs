@@ -6,7 +6,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use super::failure::Failure;
-use crate::store::is_abandoned;
+use crate::store::{is_abandoned, is_missing};
 
 /// Removes the spot-NNNN files of `dir` with the given extension, and `dir` if that empties it.
 pub(super) fn remove_numbered(dir: &Path, extension: &str) -> Result<(), Failure> {
@@ -23,7 +23,7 @@ pub(super) fn remove_numbered(dir: &Path, extension: &str) -> Result<(), Failure
 pub(super) fn remove_named(dir: &Path, names: &[&str]) -> Result<(), Failure> {
     for name in names {
         match fs::remove_file(dir.join(name)) {
-            Err(e) if !matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            Err(e) if !is_missing(&e) => {
                 return Err(e.into());
             }
             _ => {}

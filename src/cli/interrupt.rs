@@ -1,6 +1,8 @@
 //! Ctrl-C, and the warning that a scheduler sends before it ends a job.
 
 use std::sync::Once;
+
+use crate::transport::Control;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static STOP: AtomicBool = AtomicBool::new(false);
@@ -13,6 +15,14 @@ pub(super) fn stop_flag() -> &'static AtomicBool {
     static ONCE: Once = Once::new();
     ONCE.call_once(listen);
     &STOP
+}
+
+/// Reports to nobody, and ends at Ctrl-C.
+pub(super) fn control() -> Control<'static> {
+    Control {
+        stop: stop_flag(),
+        ..Control::none()
+    }
 }
 
 /// While it lives SIGTERM is a warning: the block at work is finished first. A second SIGTERM does

@@ -24,6 +24,9 @@
 //! | `partial/` | finished spots and blocks of an unfinished run; gone when it is complete |
 //! | `merged.json` | of which plan it is, where it was put together from shards |
 //!
+//! A study keeps its finished tasks in `NAME.phs` beside its files until it is complete, and `study
+//! noise` for good: the same command goes on from them.
+//!
 //! Exit codes: 0 done (and agreed), 1 traced and modelled disagree, 2 error, 75 stopped by SIGTERM
 //! and 130 by Ctrl-C with what is finished kept. The commands for many machines (`plan`, `shard`,
 //! `status`, `merge`, `slurm`, `clean`) tell schedulers more: 3 not complete (`status`), 64 wrong

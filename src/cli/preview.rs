@@ -4,13 +4,11 @@ use super::Outcome;
 use super::args::PreviewArgs;
 use super::console::Console;
 use super::failure::Failure;
-use super::interrupt::stop_flag;
 use super::output;
 use super::progress;
 use crate::geometry::DVec3;
-use crate::lab::{PreviewPlan, ViewOptions, auto_viewpoint, preview};
+use crate::lab::{PreviewPlan, ViewOptions, Work, auto_viewpoint, preview};
 use crate::report;
-use crate::transport::Control;
 
 pub(super) fn execute(args: &PreviewArgs, console: Console) -> Result<Outcome, Failure> {
     let scene = console.load_scene(&args.scene)?;
@@ -28,13 +26,10 @@ pub(super) fn execute(args: &PreviewArgs, console: Console) -> Result<Outcome, F
     };
     let [w, h] = args.size;
     let total = (w * h) as u64 * u64::from(args.samples);
-    let bar = progress::samples(console, "looking", total);
-    let control = Control {
-        progress: &|n| bar.inc(n),
-        stop: stop_flag(),
-    };
-    let made = preview(&scene, &plan, control);
-    bar.finish_and_clear();
+    let work = Work::Samples(total);
+    let made = progress::run(console, "looking", work, |control| {
+        preview(&scene, &plan, control)
+    });
     let made = made.map_err(|e| Failure::from(e).if_stopped("no picture was written"))?;
     output::write(&args.output, report::preview_png(&made)?)?;
     let place = |p: DVec3| format!("{:.4},{:.4},{:.4}", p.x, p.y, p.z);

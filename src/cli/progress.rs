@@ -8,10 +8,11 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use super::console::{Console, harmless};
+use super::interrupt::stop_flag;
 use crate::lab::Work;
 use crate::matrix::Matrix;
 use crate::num::digits::significant;
-use crate::transport::Tally;
+use crate::transport::{Control, Tally};
 
 /// Characters of what is done that are shown.
 const WORDS: usize = 20;
@@ -22,37 +23,40 @@ const TEMPLATE: &str = "{msg} {wide_bar} {percent:>3} % {left}\n{rate}";
 const LOOK: Duration = Duration::from_millis(200);
 const SHARE: u32 = 200;
 
-/// A bar that counts `total` samples; silent with `--quiet` or where standard error is no terminal.
-pub(super) fn samples(console: Console, what: &str, total: u64) -> ProgressBar {
-    let rate = |state: &ProgressState, w: &mut dyn Write| {
-        let _ = w.write_str(&per_second(state.per_sec()));
-    };
-    bar(console, what, total, rate)
+/// Does `work` by `act` until Ctrl-C, under a bar that counts in the unit of the work.
+pub(super) fn run<T>(
+    console: Console,
+    what: &str,
+    work: Work,
+    act: impl FnOnce(Control<'_>) -> T,
+) -> T {
+    let bar = start(console, what, work);
+    let done = act(counting(&|n| bar.inc(n)));
+    bar.finish_and_clear();
+    done
 }
 
-/// A bar for the work of a study.
-pub(super) fn work(console: Console, what: &str, work: Work) -> ProgressBar {
+/// Ends at Ctrl-C, and reports to `progress`.
+fn counting<'a>(progress: &'a (dyn Fn(u64) + Sync)) -> Control<'a> {
+    let stop = stop_flag();
+    Control { progress, stop }
+}
+
+/// A bar for so much work; silent with `--quiet` or where standard error is no terminal.
+pub(super) fn start(console: Console, what: &str, work: Work) -> ProgressBar {
     match work {
-        Work::Samples(total) => samples(console, what, total),
-        Work::Tasks(total) => {
-            let bar = steps(console, what);
-            bar.set_length(total);
-            bar
-        }
+        Work::Samples(total) => bar(console, what, total, |state, w| {
+            let _ = w.write_str(&per_second(state.per_sec()));
+        }),
+        Work::Tasks(total) => bar(console, what, total, |state, w| {
+            let _ = write!(w, "{} of {}", state.pos(), state.len().unwrap_or(0));
+            let _ = match state.per_sec() {
+                x if x >= 1.0 => write!(w, ", {x:.0} per second"),
+                x if x > 0.0 => write!(w, ", {} each", duration(1.0 / x)),
+                _ => Ok(()),
+            };
+        }),
     }
-}
-
-/// A bar that counts a few long steps.
-pub(super) fn steps(console: Console, what: &str) -> ProgressBar {
-    let rate = |state: &ProgressState, w: &mut dyn Write| {
-        let _ = write!(w, "{} of {}", state.pos(), state.len().unwrap_or(0));
-        let _ = match state.per_sec() {
-            x if x >= 1.0 => write!(w, ", {x:.0} per second"),
-            x if x > 0.0 => write!(w, ", {} each", duration(1.0 / x)),
-            _ => Ok(()),
-        };
-    };
-    bar(console, what, 1, rate)
 }
 
 fn bar(
@@ -157,9 +161,15 @@ impl Tracing {
         }
     }
 
-    /// The bar itself, to count on.
-    pub(super) fn bar(&self) -> ProgressBar {
-        self.bar.clone()
+    /// Traces by `act` until Ctrl-C: it counts on the bar, and shows now and then what is there.
+    pub(super) fn run<T>(
+        &mut self,
+        act: impl FnOnce(Control<'_>, &mut (dyn FnMut(&Tally) + Send)) -> T,
+    ) -> T {
+        let bar = self.bar.clone();
+        act(counting(&|paths| bar.inc(paths)), &mut |tally| {
+            self.look(tally);
+        })
     }
 
     /// Leaves out samples of an earlier process: they say nothing of how fast this one is.
@@ -192,7 +202,7 @@ impl Tracing {
 
     /// Looks at the blocks of the columns that are at work, if there are no finished columns and it
     /// is time.
-    pub(super) fn look(&mut self, tally: &Tally) {
+    fn look(&mut self, tally: &Tally) {
         let start = Instant::now();
         if self.bar.is_hidden() || self.finished[1] > 0.0 || start < self.next {
             return;

@@ -1,6 +1,5 @@
 //! run.json: what was rendered, and how.
 
-use std::io::ErrorKind;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -9,6 +8,7 @@ use super::failure::Failure;
 use super::output;
 use super::process::version;
 use crate::scene::Scene;
+use crate::store::is_missing;
 use crate::transport::Plan;
 
 /// The record of a run.
@@ -59,7 +59,7 @@ impl Record {
         let bytes = match std::fs::read(&path) {
             Ok(bytes) => bytes,
             // Neither a folder that is not there nor a file in its place holds a run.
-            Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            Err(e) if is_missing(&e) => {
                 return Ok(None);
             }
             Err(e) => {

@@ -9,7 +9,7 @@ use super::failure::Failure;
 use super::load_run::{read_matrix, read_run, read_stderr};
 use super::output;
 use super::record::Record;
-use super::recover_memory::{self, Held, StripErrors, Strips};
+use super::recover_memory::{self, Errors, Held, Strips};
 use super::run_folder::{PHI, RECOVERED, SATURATED, SCENE, STDERR};
 use super::{Outcome, recover_options};
 use crate::lab::finding::Describe;
@@ -113,9 +113,9 @@ impl Job<'_> {
         let phi = recover_memory::open(&self.phi, scene)?;
         self.refuse_clipped()?;
         let errors = match self.errors() {
-            Errors::Relative(noise) => StripErrors::Relative(noise),
-            Errors::File(file) => StripErrors::Rows(Box::new(recover_memory::open(&file, scene)?)),
-            Errors::Unknown => StripErrors::Unknown,
+            Errors::Relative(noise) => Errors::Relative(noise),
+            Errors::File(file) => Errors::File(Box::new(recover_memory::open(&file, scene)?)),
+            Errors::Unknown => Errors::Unknown,
         };
         let model = MatrixModel::without_photographs(scene, args.kernel, args.elements)?;
         let model = self.occluded(model);
@@ -139,7 +139,7 @@ impl Job<'_> {
     }
 
     /// Of a foreign Φcam nothing is known but what is given.
-    fn errors(&self) -> Errors {
+    fn errors(&self) -> Errors<PathBuf> {
         match (&self.args.stderr, self.args.noise) {
             (_, Some(noise)) => Errors::Relative(noise),
             (Some(file), None) => Errors::File(file.clone()),
@@ -175,14 +175,6 @@ impl Job<'_> {
             "expose for a shorter time or in --brackets; --keep-clipped takes them as they are",
         ))
     }
-}
-
-/// Where the standard errors of Φcam come from.
-enum Errors {
-    Unknown,
-    /// Relative to each entry.
-    Relative(f64),
-    File(PathBuf),
 }
 
 fn refuse_repetition(methods: &[Method]) -> Result<(), Failure> {

@@ -133,19 +133,19 @@ pub(super) fn open(path: &Path, scene: &Scene) -> Result<Rows, Failure> {
     Ok(rows)
 }
 
-/// Where the standard errors of a strip come from.
-pub(super) enum StripErrors {
+/// Where the standard errors of Φcam come from.
+pub(super) enum Errors<F> {
     Unknown,
     /// Relative to each entry.
     Relative(f64),
-    Rows(Box<Rows>),
+    File(F),
 }
 
 /// Φcam, read by rows.
 pub(super) struct Strips<'a> {
     pub model: &'a MatrixModel,
     pub phi: Rows,
-    pub errors: StripErrors,
+    pub errors: Errors<Box<Rows>>,
     /// Of one strip.
     pub pixels: usize,
 }
@@ -189,9 +189,9 @@ impl Strips<'_> {
             return Ok(None);
         }
         let stderr = match &mut self.errors {
-            StripErrors::Unknown => None,
-            StripErrors::Relative(noise) => Some(phi.map(|x| x.abs() * *noise)),
-            StripErrors::Rows(rows) => Some(rows.read(first, count)?),
+            Errors::Unknown => None,
+            Errors::Relative(noise) => Some(phi.map(|x| x.abs() * *noise)),
+            Errors::File(rows) => Some(rows.read(first, count)?),
         };
         Ok(Some(Strip {
             c: self.model.camera_side.rows(first, count).into_owned(),

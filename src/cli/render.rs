@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::args::{RenderArgs, TraceArgs};
-use super::batches::Work;
+use super::batches::Batches;
 use super::console::Console;
 use super::failure::Failure;
 use super::interrupt::SignalGuard;
@@ -65,35 +65,31 @@ pub(super) fn execute(args: &RenderArgs, console: Console) -> Result<Outcome, Fa
             (rendered.record, rendered.phi)
         }
     };
-    if args.json {
-        output::print(&output::json(&record)?)?;
-    } else if let Some(traced) = traced {
-        let found = describe_render(&scene, &record.plan, &traced, record.seconds);
-        let table = report::finding_text(&found);
-        let Record {
-            finished, spots, ..
-        } = record;
-        let place = args.output.display();
-        output::print(&format!(
-            "{table}\n  {place}: {finished} of {spots} spots, frames, phi.npy and phi.stderr.npy\n"
-        ))?;
-    } else {
-        let Record {
-            finished,
-            spots,
-            seconds,
-            ..
-        } = &record;
-        let what = match finished == spots {
-            true => "frames, phi.npy and phi.stderr.npy",
-            false => "frames; phi.npy follows when every spot is there",
-        };
-        let place = args.output.display();
-        output::print(&format!(
-            "{place}: {finished} of {spots} spots in {seconds:.1} s ({}): {what}\n",
-            record.plan
-        ))?;
-    }
+    let place = args.output.display();
+    let Record {
+        finished,
+        spots,
+        seconds,
+        plan,
+        ..
+    } = &record;
+    output::print(&match traced {
+        _ if args.json => output::json(&record)?,
+        Some(traced) => {
+            let found = describe_render(&scene, plan, &traced, *seconds);
+            let table = report::finding_text(&found);
+            format!(
+                "{table}\n  {place}: {finished} of {spots} spots, frames, phi.npy and phi.stderr.npy\n"
+            )
+        }
+        None => {
+            let what = match finished == spots {
+                true => "frames, phi.npy and phi.stderr.npy",
+                false => "frames; phi.npy follows when every spot is there",
+            };
+            format!("{place}: {finished} of {spots} spots in {seconds:.1} s ({plan}): {what}\n")
+        }
+    })?;
     Ok(Outcome::Done)
 }
 
@@ -160,7 +156,7 @@ pub(super) fn into_folder(
         ));
     }
     let start = Instant::now();
-    let work = Work {
+    let batches = Batches {
         scene,
         plan,
         folder: &folder,
@@ -169,30 +165,31 @@ pub(super) fn into_folder(
         resume: resume == Resume::Finished,
     };
     let guard = SignalGuard::new();
-    let traced = work.trace(&todo, &mut kept, console);
+    let stopped = batches.trace(&todo, &mut kept, console);
     drop(guard);
     record.seconds += start.elapsed().as_secs_f64();
     record.finished = kept.iter().flatten().count();
-    if let Err(failure) = traced {
-        note(&record, path)?;
-        return Err(match failure {
-            Failure::Stopped(blocks) => Failure::Stopped(format!(
-                "{} of {total} spots{blocks} are finished and kept in {}; go on with `phicam render --resume` and the same settings",
-                record.finished,
-                path.display()
-            )),
-            other => other,
-        });
-    }
-    let phi = gather(scene, kept);
+    let phi = match stopped {
+        Ok(None) => gather(scene, kept),
+        _ => None,
+    };
     if let Some(traced) = &phi {
-        folder.write_phi(&traced.flux, &traced.stderr)?;
-        record.write(path)?;
-        folder.partial().remove()?;
+        folder.finish(&record, &traced.flux, &traced.stderr)?;
     } else {
         note(&record, path)?;
     }
-    Ok(Rendered { record, phi })
+    let Some(blocks) = stopped? else {
+        return Ok(Rendered { record, phi });
+    };
+    let blocks = match blocks {
+        0 => String::new(),
+        n => format!(" and {n} of {} blocks of the next", plan.budget.blocks),
+    };
+    Err(Failure::Stopped(format!(
+        "{} of {total} spots{blocks} are finished and kept in {}; go on with `phicam render --resume` and the same settings",
+        record.finished,
+        path.display()
+    )))
 }
 
 /// Writes how far a run has come, unless another process has finished it meanwhile.

@@ -8,7 +8,7 @@ use std::path::Path;
 use super::args::ReproduceArgs;
 use super::console::Console;
 use super::failure::Failure;
-use super::interrupt::stop_flag;
+use super::interrupt::control;
 use super::output;
 use super::process::{pool, version};
 use super::tasks::Tasks;
@@ -17,7 +17,7 @@ use crate::lab::finding::Finding;
 use crate::lab::published::{
     Item, ItemSummary, ReproducePlan, ReproduceTasks, overview, reproduce,
 };
-use crate::lab::{Study, decode, encoded};
+use crate::lab::{Study, Work, decode, encoded};
 use crate::report::{self, ReproductionSettings};
 use crate::store::{ensure_writable, write_whole};
 use crate::transport::Control;
@@ -26,8 +26,7 @@ pub(super) fn execute(args: &ReproduceArgs, console: Console) -> Result<Outcome,
     let (items, plan) = asked(args)?;
     let pool = pool(args.threads)?;
     ensure_writable(&args.output)?;
-    let bar = progress::steps(console, "published items");
-    bar.set_length(items.len() as u64);
+    let bar = progress::start(console, "published items", Work::Tasks(items.len() as u64));
     let mut kept = 0;
     for &item in &items {
         bar.set_message(item.name());
@@ -35,11 +34,7 @@ pub(super) fn execute(args: &ReproduceArgs, console: Console) -> Result<Outcome,
         if finished(&args.output, item, &wanted).is_some() {
             kept += 1;
         } else {
-            let control = Control {
-                stop: stop_flag(),
-                ..Control::none()
-            };
-            match pool.install(|| reproduce(item, &plan, control)) {
+            match pool.install(|| reproduce(item, &plan, control())) {
                 Ok(found) => leave(&args.output, item, &found, &plan)?,
                 Err(e) => {
                     return Err(Failure::from(e).if_stopped(format!(
@@ -167,12 +162,7 @@ impl Tasks for Published {
         encoded(&self.study, &(), tasks, control).map_err(Failure::of)
     }
 
-    fn deliver(
-        &self,
-        outputs: &[Vec<u8>],
-        _: Control<'_>,
-        output: &Path,
-    ) -> Result<Outcome, Failure> {
+    fn deliver(&self, outputs: &[Vec<u8>], output: &Path) -> Result<Outcome, Failure> {
         let outputs = decode(&self.study, &(), outputs)?;
         ensure_writable(output)?;
         for (item, found) in self.study.finish(&(), outputs)? {

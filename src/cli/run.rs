@@ -15,13 +15,12 @@ use super::run_folder::{REPORT, Resume, SUMMARY};
 use super::{Outcome, model, recover, settings, validate};
 use crate::film;
 use crate::lab::finding::Describe;
-use crate::lab::{self, Gallery, GalleryPlan, GalleryTasks, Noise, RunResults};
+use crate::lab::{self, GalleryPlan, GalleryTasks, Noise, RunGallery, RunResults, Work};
 use crate::matrix::Matrix;
 use crate::metrics::relative_frobenius;
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Nuisance, Options};
 use crate::report;
-use crate::transport::Control;
 
 pub(super) fn execute(args: &RunArgs, console: Console) -> Result<Outcome, Failure> {
     let scene = console.load_scene(&args.scene)?;
@@ -173,7 +172,7 @@ fn compare_and_recover(
 
 /// The object over regularisation and noise; none where there is nothing to show, and where it was
 /// stopped.
-fn gallery(results: &RunResults, matrices: &MatrixModel, console: Console) -> Option<Gallery> {
+fn gallery(results: &RunResults, matrices: &MatrixModel, console: Console) -> Option<RunGallery> {
     let tasks = GalleryTasks::new(
         &results.scene,
         matrices,
@@ -181,14 +180,9 @@ fn gallery(results: &RunResults, matrices: &MatrixModel, console: Console) -> Op
         &results.recovered,
         GalleryPlan::of_run(results.plan.seed),
     )?;
-    let bar = progress::steps(console, "recovering over regularisation and noise");
-    bar.set_length(tasks.count());
-    let found = tasks.gallery(Control {
-        progress: &|steps| bar.inc(steps),
-        stop: stop_flag(),
-    });
-    bar.finish_and_clear();
-    found
+    let what = "recovering over regularisation and noise";
+    let work = Work::Tasks(tasks.count());
+    progress::run(console, what, work, |control| tasks.gallery(control))
 }
 
 /// Below 1.2e-38 numbers of f32 lose their digits; a frame whose brightest pixel is fainter than

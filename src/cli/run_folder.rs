@@ -267,10 +267,17 @@ impl RunFolder {
         )?)
     }
 
-    /// Writes Φcam and its standard error.
-    pub(super) fn write_phi(&self, phi: &Matrix, stderr: &Matrix) -> Result<(), Failure> {
+    /// Writes Φcam and its standard error, and that the run is complete.
+    pub(super) fn finish(
+        &self,
+        record: &Record,
+        phi: &Matrix,
+        stderr: &Matrix,
+    ) -> Result<(), Failure> {
         npy::write(&self.path.join(STDERR), stderr)?;
-        Ok(npy::write(&self.path.join(PHI), phi)?)
+        npy::write(&self.path.join(PHI), phi)?;
+        record.write(&self.path)?;
+        self.partial().remove()
     }
 }
 

@@ -2,6 +2,7 @@
 
 use glam::DAffine3;
 
+use super::plane::Plane;
 use super::{Basis, DVec3, Interaction, Parallelogram, Ray};
 use crate::num::warp;
 
@@ -100,12 +101,7 @@ impl Disc {
 
     /// The point above (x, y) along z, if the disc has one.
     pub fn at_xy(&self, x: f64, y: f64) -> Option<Interaction> {
-        let n = self.basis.n;
-        if n.z.abs() < 1e-9 {
-            return None;
-        }
-        let foot = DVec3::new(x, y, 0.0);
-        let p = DVec3::new(x, y, n.dot(self.centre - foot) / n.z);
+        let p = self.plane().at_xy(x, y)?;
         self.contains(p).then(|| self.at_position(p))
     }
 
@@ -116,12 +112,11 @@ impl Disc {
         x * x + y * y <= 1.0 + EDGE
     }
 
-    /// Signed distance from the plane, and whether that is more than rounding.
-    fn height(&self, p: DVec3) -> (f64, bool) {
-        const ROUNDING: f64 = 1e-12;
-        let height = self.basis.n.dot(p - self.centre);
-        let reach = p.abs().max_element() + self.centre.abs().max_element();
-        (height, height.abs() > ROUNDING * reach)
+    fn plane(&self) -> Plane {
+        Plane {
+            point: self.centre,
+            normal: self.basis.n,
+        }
     }
 
     /// Whether two discs lie in one plane (to a billionth of their size), face the same way and
@@ -148,7 +143,7 @@ impl Disc {
     /// Intersection with the plane inside the disc. A ray that starts in the plane (to rounding)
     /// does not meet it.
     pub fn intersect(&self, ray: &Ray) -> Option<f64> {
-        let (height, off) = self.height(ray.origin);
+        let (height, off) = self.plane().height(ray.origin);
         let t = -height / self.basis.n.dot(ray.direction);
         let within = off && t > 0.0 && t < ray.length;
         (within && self.contains(ray.origin + ray.direction * t)).then_some(t)
@@ -157,7 +152,9 @@ impl Disc {
     /// Whether the disc stands between the two ends of the segment; one that starts or ends in its
     /// plane is not cut by it.
     pub fn blocks(&self, segment: &Ray) -> bool {
-        let (_, off) = self.height(segment.origin + segment.direction * segment.length);
+        let (_, off) = self
+            .plane()
+            .height(segment.origin + segment.direction * segment.length);
         off && self.intersect(segment).is_some()
     }
 }

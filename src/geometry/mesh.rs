@@ -351,7 +351,8 @@ fn cross([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-fn is_proper([a, b, c]: [DVec3; 3]) -> bool {
+/// Whether a triangle has an area beyond rounding.
+pub(crate) fn is_proper([a, b, c]: [DVec3; 3]) -> bool {
     let area = cross([a, b, c]).length();
     area > 0.0 && area > 1e-12 * (b - a).length() * (c - a).length()
 }

@@ -2,6 +2,7 @@
 
 use glam::DAffine3;
 
+use super::plane::Plane;
 use super::{DVec3, Interaction, Ray};
 
 /// The patch corner + a·u + b·v, a, b ∈ [0, 1]; its front normal is along u × v.
@@ -123,7 +124,7 @@ impl Parallelogram {
     /// [`Parallelogram::intersect`] without branches: t, and whether the ray meets the patch there.
     #[inline(always)]
     pub(super) fn crossing(&self, ray: &Ray) -> (f64, bool) {
-        let (height, off) = self.height(ray.origin);
+        let (height, off) = self.plane().height(ray.origin);
         // A slope of 0 gives an infinite t, which no length exceeds.
         let t = -height / self.normal.dot(ray.direction);
         let inside = contains(self.coordinates(ray.origin + ray.direction * t));
@@ -135,17 +136,18 @@ impl Parallelogram {
     /// neighbour, nor by what stands edge-on at its foot.
     #[inline(always)]
     pub fn blocks(&self, segment: &Ray) -> bool {
-        let (_, off) = self.height(segment.origin + segment.direction * segment.length);
+        let (_, off) = self
+            .plane()
+            .height(segment.origin + segment.direction * segment.length);
         off & self.crossing(segment).1
     }
 
-    /// Signed distance n·(p − corner) from the plane, and whether that is more than rounding.
     #[inline(always)]
-    fn height(&self, p: DVec3) -> (f64, bool) {
-        const ROUNDING: f64 = 1e-12;
-        let height = self.normal.dot(p - self.corner);
-        let reach = p.abs().max_element() + self.corner.abs().max_element();
-        (height, height.abs() > ROUNDING * reach)
+    fn plane(&self) -> Plane {
+        Plane {
+            point: self.corner,
+            normal: self.normal,
+        }
     }
 
     /// Whether the two patches lie in one plane (to a billionth of their size) and have more than
@@ -178,19 +180,9 @@ impl Parallelogram {
 
     /// The point above (x, y) along z, if the patch has one.
     pub fn at_xy(&self, x: f64, y: f64) -> Option<Interaction> {
-        let p = self.plane_at_xy(x, y)?;
+        let p = self.plane().at_xy(x, y)?;
         let uv = self.coordinates(p);
         contains(uv).then(|| self.at(uv.map(|c| c.clamp(0.0, 1.0))))
-    }
-
-    /// The point of the patch's plane above (x, y) along z; `None` if the plane is parallel to z.
-    pub fn plane_at_xy(&self, x: f64, y: f64) -> Option<DVec3> {
-        if self.normal.z.abs() < 1e-9 {
-            return None;
-        }
-        let foot = DVec3::new(x, y, 0.0);
-        let z = self.normal.dot(self.corner - foot) / self.normal.z;
-        Some(DVec3::new(x, y, z))
     }
 
     /// Axis-aligned bounds.

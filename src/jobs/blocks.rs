@@ -324,19 +324,18 @@ impl Digesting {
 
 /// Refuses what is not part of the plan, and says in what it differs.
 fn refuse_foreign(path: &Path, header: &Header, plan: &Identity) -> Result<(), JobError> {
-    let (file, found) = (path.display(), &header.identity);
-    let cause = match found.difference(plan) {
-        None if found.id() == plan.id() && header.plan_id == plan.id().to_string() => return Ok(()),
+    let found = &header.identity;
+    match found.difference(plan) {
+        None if found.id() == plan.id() && header.plan_id == plan.id().to_string() => Ok(()),
         None => {
             let what = "is damaged: what it says of its plan is out of order";
-            return Err(spoilt(path, what.to_owned()));
+            Err(spoilt(path, what.to_owned()))
         }
-        Some((name, found, expected)) if name == Identity::NUMERICS => format!(
-            "{file} was computed with version {found} of the numerics, this plan has {expected}: their bits do not mix; compute this shard again with one version of phicam"
-        ),
-        Some((name, found, expected)) => format!(
-            "{file} belongs to another plan: its {name} is {found}, that of this plan is {expected}; move it out of the folder"
-        ),
-    };
-    Err(JobError::Refused(cause))
+        Some((name, found, expected)) => Err(JobError::Foreign {
+            path: path.to_owned(),
+            name,
+            found,
+            expected,
+        }),
+    }
 }

@@ -4,6 +4,7 @@ use std::error::Error;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::Identity;
 use crate::store::StoreError;
 
 /// Why a job cannot go on. Each message names the cause and the cure.
@@ -15,6 +16,18 @@ pub enum JobError {
     /// What was given, or what is on disk, cannot be accepted.
     #[error("{0}")]
     Refused(String),
+    /// A file of blocks of other work.
+    #[error("{}", foreign(path, name, found, expected))]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+        /// The first thing in which the works differ.
+        name: String,
+        /// What the file says of it.
+        found: String,
+        /// What was looked for.
+        expected: String,
+    },
     /// Blocks of a plan are missing.
     #[error("{0}")]
     Missing(String),
@@ -73,5 +86,18 @@ impl JobError {
         } else {
             None
         }
+    }
+}
+
+fn foreign(path: &Path, name: &str, found: &str, expected: &str) -> String {
+    let file = path.display();
+    if name == Identity::NUMERICS {
+        format!(
+            "{file} was computed with version {found} of the numerics, this plan has {expected}: their bits do not mix; compute this shard again with one version of phicam"
+        )
+    } else {
+        format!(
+            "{file} belongs to another plan: its {name} is {found}, that of this plan is {expected}; move it out of the folder"
+        )
     }
 }

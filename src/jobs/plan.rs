@@ -1,7 +1,7 @@
 //! plan.json: what is divided into shards, and into how many.
 
 use std::fs::File;
-use std::io::{ErrorKind, Read};
+use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
 
@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{Identity, JobError};
 use crate::num::stream::Sampling;
-use crate::store::{StoreError, write_whole};
-use crate::transport::Estimator;
+use crate::store::{StoreError, is_missing, write_whole};
+use crate::transport::{Estimator, Plan};
 
 /// plan.json.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -48,6 +48,18 @@ pub enum Settings {
     Command(Vec<String>),
 }
 
+impl Settings {
+    /// A render.
+    pub fn render(plan: &Plan) -> Self {
+        Self::Render {
+            estimator: plan.estimator,
+            sampler: plan.sampling,
+            seed: plan.seed,
+            samples: plan.budget.samples(),
+        }
+    }
+}
+
 impl PlanFile {
     /// Its name.
     pub const NAME: &'static str = "plan.json";
@@ -79,9 +91,7 @@ impl PlanFile {
         let mut text = Vec::new();
         let read = File::open(path).and_then(|f| f.take(Self::LARGEST + 1).read_to_end(&mut text));
         match read {
-            Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
-                Ok(None)
-            }
+            Err(e) if is_missing(&e) => Ok(None),
             Err(e) => Err(JobError::System(format!(
                 "cannot read {}: {e}; make it readable, or plan into another folder",
                 path.display()

@@ -10,9 +10,9 @@ use crate::transport::Control;
 /// Time between two looks at what is finished where tasks are shorter, s.
 const LOOK: f64 = 2.0;
 
-/// Computes the tasks `range`, of which `done` has the first, as many at once as take two seconds
-/// by `run`; `shown` hears of the first that is not finished. What comes back is shorter if it was
-/// stopped, and is then in `checkpoint`.
+/// Computes the tasks `range`, of which `done` has the first, by `run`: as many at once as take two
+/// seconds, and `least` of them at the least. What comes back is shorter if it was stopped, and is
+/// then in `checkpoint`.
 ///
 /// # Errors
 /// Those of `run`, and [`JobError`] if it cannot be kept.
@@ -21,15 +21,15 @@ pub fn compute_tasks<E: From<JobError>>(
     done: Parts,
     checkpoint: &mut Checkpoint,
     control: Control<'_>,
-    shown: &dyn Fn(u64),
+    least: u64,
     run: &dyn Fn(Range<usize>) -> Result<Vec<Vec<u8>>, E>,
 ) -> Result<Parts, E> {
     let process = checkpoint.process;
     let mut parts = done;
-    let mut together = 1;
+    let least = least.max(1);
+    let mut together = least;
     loop {
         let first = end(&parts, range);
-        shown(first);
         let tasks = first..range.end.min(first + together);
         if tasks.is_empty() {
             return Ok(parts);
@@ -44,7 +44,7 @@ pub fn compute_tasks<E: From<JobError>>(
         }
         let taken = (process.clock)().saturating_sub(start).as_secs_f64();
         let each = taken / (tasks.end - tasks.start) as f64;
-        together = ((LOOK / each) as u64).clamp(1, 2 * together);
+        together = ((LOOK / each) as u64).clamp(least, 2 * together);
     }
     checkpoint.keep(&parts)?;
     Ok(parts)

@@ -80,7 +80,7 @@ impl Convergence {
         let least = last.min_by(|a, b| a.1.error.total_cmp(&b.1.error));
         let least = least.map_or(String::new(), |(c, s)| {
             format!(
-                " The least, {}, is left by {}, {} with {} samples.",
+                " The smallest error, {}, is that of {}, {} with {} samples.",
                 figure(s.error, 2),
                 c.estimator,
                 c.sampler,
@@ -88,7 +88,8 @@ impl Convergence {
             )
         });
         format!(
-            "The relative error of Φcam on {} falls with the number of samples, that {} (−½ is what independent random numbers have).{least}",
+            "The relative error of Φcam on {} falls with the number of samples: that {} \
+             (independent random numbers have a slope of −½).{least}",
             self.scene,
             listed(&ranges)
         )

@@ -119,7 +119,7 @@ impl Describe for Coverage {
         let failing = match short.as_slice() {
             [] => String::new(),
             some => format!(
-                "; short of it, by more than three standard errors, fall {}",
+                "; these fall short by more than three standard errors: {}",
                 listed(some)
             ),
         };
@@ -176,7 +176,8 @@ impl Describe for Coverage {
                 Tone::Bad
             },
             sentence: format!(
-                "Bands of {stated} on {} at a noise of {noise} cover the true reflectance no less than stated: {}{failing}.{silent}",
+                "Bands of {stated} on {} at a noise of {noise} cover the true reflectance at \
+                 least as often as stated: {}{failing}.{silent}",
                 self.scene,
                 listed(&fine)
             ),

@@ -237,103 +237,31 @@ pub struct Gallery {
 
 pub use super::check::Check;
 
-/// What a column takes of a row.
-pub type Get<R, T> = fn(&R) -> T;
-
 impl Table {
-    /// A table of `rows`, which each column takes its cell from: key and cell. People read the key
-    /// with spaces, and four significant digits.
-    pub fn of<R>(rows: impl IntoIterator<Item = R>, columns: &[(&str, Get<R, Cell>)]) -> Self {
-        let row = |row: R| columns.iter().map(|(_, cell)| cell(&row)).collect();
-        let rows = rows.into_iter().map(row).collect();
-        Self::keyed(columns.iter().map(|(key, _)| *key), rows)
-    }
-
-    /// A table of `rows` under the keys of a header line, `first,second,…`.
-    pub fn headed(header: &str, rows: Vec<Vec<Cell>>) -> Self {
-        Self::keyed(header.split(','), rows)
-    }
-
-    fn keyed<'a>(keys: impl Iterator<Item = &'a str>, rows: Vec<Vec<Cell>>) -> Self {
-        let column = |(i, key): (usize, &str)| {
-            let words = |row: &Vec<Cell>| matches!(row.get(i), Some(Cell::Text(_)));
-            let digits = if rows.iter().all(words) { 0 } else { 4 };
-            Column::number(&key.replace('_', " "), key, "", digits)
-        };
-        Self {
-            columns: keys.enumerate().map(column).collect(),
-            rows,
-            ..Self::default()
-        }
-    }
-}
-
-impl Plot {
-    /// Curves on a pair of axes, across and upwards.
-    pub fn new(title: impl Into<String>, axes: [Axis; 2], curves: Vec<Curve>) -> Self {
-        Self {
-            title: title.into(),
-            axes,
-            curves,
-        }
-    }
-}
-
-impl Gallery {
-    /// Pictures of reflectances.
-    pub fn reflectances(title: impl Into<String>, pictures: Vec<Picture>) -> Self {
-        Self {
-            title: title.into(),
-            shades: Shades::Reflectance,
-            unit: String::new(),
-            pictures,
-        }
-    }
-}
-
-impl Table {
-    /// A table with a row for each item, from its columns and what each says of an item.
-    pub fn by_columns<T, const N: usize>(
+    /// A table with a row for each item, from its columns and what each says of an item. A column
+    /// given by its key alone is [`Column::keyed`].
+    pub fn of<T, C: Into<Column>, const N: usize>(
         items: impl IntoIterator<Item = T>,
-        columns: [(Column, CellOf<T>); N],
+        columns: [(C, CellOf<T>); N],
     ) -> Self {
-        let (columns, cells): (Vec<Column>, Vec<_>) = columns.into_iter().unzip();
+        let (columns, cells): (Vec<C>, Vec<_>) = columns.into_iter().unzip();
         let row = |item: T| cells.iter().map(|cell| cell(&item)).collect();
         Self {
-            columns,
+            columns: columns.into_iter().map(Into::into).collect(),
             rows: items.into_iter().map(row).collect(),
             ..Self::default()
         }
     }
-}
 
-impl Column {
-    /// A column of words or whole numbers.
-    pub fn text(name: &str, key: &str) -> Self {
-        Self::number(name, key, "", 0)
-    }
-
-    /// A column of numbers with their unit and the significant digits shown to people.
-    pub fn number(name: &str, key: &str, unit: &str, digits: usize) -> Self {
+    /// A table of `rows` under the keys of a header line, `first,second,…`.
+    pub fn headed(header: &str, rows: Vec<Vec<Cell>>) -> Self {
         Self {
-            name: name.to_owned(),
-            key: key.to_owned(),
-            estimated: false,
-            unit: unit.to_owned(),
-            digits,
+            columns: header.split(',').map(Column::keyed).collect(),
+            rows,
+            ..Self::default()
         }
     }
 
-    /// A column of numbers with their standard errors.
-    pub fn estimate(name: &str, key: &str, unit: &str, digits: usize) -> Self {
-        Self {
-            estimated: true,
-            ..Self::number(name, key, unit, digits)
-        }
-    }
-}
-
-impl Table {
     /// A table for people.
     pub fn new(
         caption: impl Into<String>,
@@ -367,6 +295,61 @@ impl Table {
             file: Some(file.to_owned()),
             place: Place::File,
             ..Self::new("", keys.into_iter().map(column).collect(), rows)
+        }
+    }
+}
+
+impl Plot {
+    /// Curves on a pair of axes, across and upwards.
+    pub fn new(title: impl Into<String>, axes: [Axis; 2], curves: Vec<Curve>) -> Self {
+        Self {
+            title: title.into(),
+            axes,
+            curves,
+        }
+    }
+}
+
+impl Gallery {
+    /// Pictures of reflectances.
+    pub fn reflectances(title: impl Into<String>, pictures: Vec<Picture>) -> Self {
+        Self {
+            title: title.into(),
+            shades: Shades::Reflectance,
+            unit: String::new(),
+            pictures,
+        }
+    }
+}
+
+impl Column {
+    /// A column of words or whole numbers.
+    pub fn text(name: &str, key: &str) -> Self {
+        Self::number(name, key, "", 0)
+    }
+
+    /// A column of numbers with their unit and the significant digits shown to people.
+    pub fn number(name: &str, key: &str, unit: &str, digits: usize) -> Self {
+        Self {
+            name: name.to_owned(),
+            key: key.to_owned(),
+            estimated: false,
+            unit: unit.to_owned(),
+            digits,
+        }
+    }
+
+    /// A column of words or numbers under the key of its file. People read the key with spaces, and
+    /// four significant digits.
+    pub fn keyed(key: &str) -> Self {
+        Self::number(&key.replace('_', " "), key, "", 4)
+    }
+
+    /// A column of numbers with their standard errors.
+    pub fn estimate(name: &str, key: &str, unit: &str, digits: usize) -> Self {
+        Self {
+            estimated: true,
+            ..Self::number(name, key, unit, digits)
         }
     }
 }
@@ -418,6 +401,12 @@ impl Curve {
             points,
             stderr: Vec::new(),
         }
+    }
+}
+
+impl From<&str> for Column {
+    fn from(key: &str) -> Self {
+        Self::keyed(key)
     }
 }
 

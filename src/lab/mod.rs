@@ -187,15 +187,17 @@ pub use ensemble::{Estimate, Spread};
 pub use error::{LabError, StudyError};
 pub use experiment::{Experiment, ExperimentPlan, ExperimentTasks, Reading, Setting, Threshold};
 pub use exposure::describe_exposure;
-pub use gallery::{Automatic, Gallery, GalleryPlan, GallerySurface, GalleryTasks, Picture, Series};
+pub use gallery::{
+    Automatic, GalleryPicture, GalleryPlan, GallerySurface, GalleryTasks, RunGallery, Series,
+};
 pub use indicator::{
     Coefficients, Comparison, Configuration, Indicator, IndicatorPlan, IndicatorTasks, Layout,
     NoisyOutcome, NoisyPoint, NoisySummary,
 };
 pub use measures::Measures;
 pub use noise::{
-    AxisLabel, Best, Held, LIMITS, LedgerError, Lost, NamedSensor, NoiseAxis, NoiseCurve,
-    NoisePlan, NoiseStudy, NoiseTasks, Point, Reach, RenderNoise, Trial, read_ledger, write_ledger,
+    AxisLabel, Best, Held, LIMITS, Lost, NamedSensor, NoiseAxis, NoiseCurve, NoisePlan, NoiseStudy,
+    NoiseTasks, Point, Reach, RenderNoise,
 };
 pub use objects::{
     Attempt, Noise, ObjectBands, RecoveredObject, measured, picards, recover_objects,
@@ -204,7 +206,7 @@ pub use power::{Detection, Power, PowerPlan, PowerRow, PowerTasks};
 pub use preview::{
     Colour, Preview, PreviewError, PreviewPlan, ViewOptions, Viewpoint, auto_viewpoint, preview,
 };
-pub use registered::{AnyStudy, Found, Prepare, Registered, found, prepared};
+pub use registered::{AnyStudy, Found, Prepare, Registered, prepared};
 pub use registry::STUDIES;
 pub use results::RunResults;
 pub use study::{Sharing, Study, Work, context, outputs, run};

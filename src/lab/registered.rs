@@ -1,6 +1,5 @@
 //! A study as whoever runs it sees it: its name, its options, and its tasks as bytes.
 
-use std::any::Any;
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -8,7 +7,7 @@ use super::bytes::{decode, encoded};
 use super::error::StudyError;
 use super::finding::{Describe, Finding};
 use super::options::{Opt, Values};
-use super::study::{Study, Work, context, run};
+use super::study::{Sharing, Study, Work, context};
 use crate::scene::Scene;
 use crate::transport::Control;
 
@@ -36,9 +35,7 @@ pub struct Registered {
 /// What a study found.
 #[derive(Debug)]
 pub struct Found {
-    /// The result.
-    pub value: Box<dyn Any + Send>,
-    /// The same as JSON.
+    /// The result as JSON.
     pub json: String,
     /// What is said, tabulated and drawn of it.
     pub finding: Finding,
@@ -54,11 +51,11 @@ pub trait AnyStudy: Sync {
     /// How much there is to do.
     fn work(&self) -> Work;
 
-    /// All of it, on the threads of the pool.
-    ///
-    /// # Errors
-    /// Those of the study, also that it was stopped.
-    fn run(&self, control: Control<'_>) -> Result<Found, StudyError>;
+    /// How the tasks share the threads of a process.
+    fn sharing(&self) -> Sharing;
+
+    /// Whether the outputs stay when it is finished: [`Study::keeps`].
+    fn keeps(&self) -> bool;
 
     /// The outputs of some tasks as bytes, in the order of their numbers, on the threads of the
     /// pool.
@@ -71,7 +68,7 @@ pub trait AnyStudy: Sync {
         control: Control<'_>,
     ) -> Result<Vec<Vec<u8>>, StudyError>;
 
-    /// What the outputs of all tasks, in their order, come to: the same as [`run`](Self::run).
+    /// What the outputs of all tasks, in their order, come to: the same as [`super::run`].
     ///
     /// # Errors
     /// Those of the study, and [`super::TaskError`] where they are not its outputs.
@@ -103,22 +100,6 @@ impl<S: Study> Prepared<S> {
     }
 }
 
-/// The result of `study` with what is made of it.
-///
-/// # Errors
-/// Where it cannot be written as JSON.
-pub fn found<S: Study<Result: Describe>>(
-    study: &S,
-    result: S::Result,
-) -> Result<Found, StudyError> {
-    Ok(Found {
-        finding: result.describe(),
-        json: serde_json::to_string_pretty(&result)? + "\n",
-        agrees: study.agrees(&result),
-        value: Box::new(result),
-    })
-}
-
 impl<S: Study<Result: Describe>> AnyStudy for Prepared<S> {
     fn tasks(&self) -> usize {
         self.study.tasks()
@@ -128,8 +109,12 @@ impl<S: Study<Result: Describe>> AnyStudy for Prepared<S> {
         self.study.work()
     }
 
-    fn run(&self, control: Control<'_>) -> Result<Found, StudyError> {
-        found(&self.study, run(&self.study, control)?)
+    fn sharing(&self) -> Sharing {
+        self.study.sharing()
+    }
+
+    fn keeps(&self) -> bool {
+        self.study.keeps()
     }
 
     fn outputs(
@@ -143,6 +128,11 @@ impl<S: Study<Result: Describe>> AnyStudy for Prepared<S> {
     fn merge(&self, outputs: &[Vec<u8>], control: Control<'_>) -> Result<Found, StudyError> {
         let context = self.context(control)?;
         let outputs = decode(&self.study, context, outputs)?;
-        found(&self.study, self.study.finish(context, outputs)?)
+        let result = self.study.finish(context, outputs)?;
+        Ok(Found {
+            finding: result.describe(),
+            json: serde_json::to_string_pretty(&result)? + "\n",
+            agrees: self.study.agrees(&result),
+        })
     }
 }

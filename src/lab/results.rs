@@ -1,7 +1,7 @@
 //! Plain results: what a run found, ready to be written in any form.
 
 use super::agreement::Agreement;
-use super::gallery::Gallery;
+use super::gallery::RunGallery;
 use super::objects::RecoveredObject;
 use crate::matrix::Matrix;
 use crate::recovery::Picard;
@@ -34,7 +34,7 @@ pub struct RunResults {
     /// Signal and noise in the singular directions of what was inverted.
     pub picards: Vec<Picard>,
     /// Recoveries over regularisation and noise; absent where nothing can be recovered.
-    pub gallery: Option<Gallery>,
+    pub gallery: Option<RunGallery>,
     /// Wall time of each stage, s.
     pub times: Vec<(String, f64)>,
 }

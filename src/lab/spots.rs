@@ -48,7 +48,7 @@ pub(super) const STUDY: Registered = Registered {
         .rule(
             |x| (1e-12..1.0).contains(&x),
             "is not a tolerance",
-            "use a number from 1e-12, below which rounding rules, up to 1",
+            "use a number from 1e-12 to 1; below 1e-12 rounding dominates",
         ),
         Opt::whole("elements", "Elements a side, in place of the scene's").within(1, 1024),
     ],
@@ -295,14 +295,16 @@ impl Describe for SpotRanks {
             sentence: self.sentence(),
             notes: vec![
                 format!(
-                    "The tolerance is the size of the noise: the norm of what is wrong with Φcam over the largest singular value with all {} spots. \
-                     Directions below it are lost.",
+                    "The tolerance is the size of the noise: the norm of the error of Φcam over \
+                     the largest singular value with all {} spots. Directions below it are lost.",
                     self.all_spots
                 ),
-                "Not seen: Φcam is that of the matrix model, light of three bounces with pixels, elements and spots by their centres and without occlusion. \
-                 Structure finer than the elements, light of more bounces and the extent of the spots may add directions."
+                "Φcam is that of the matrix model: light of three bounces, without occlusion, \
+                 with pixels, elements and spots taken at their centres. Structure finer than the \
+                 elements, light of more bounces and the extent of the spots may add directions."
                     .to_owned(),
-                "The spots are the first ones of the scene, in its order: as many others may have another rank, within the same bound."
+                "The spots are the first of the scene, in its order; other choices of as many \
+                 spots may have another rank, within the same bound."
                     .to_owned(),
             ],
             tables: vec![self.table()],

@@ -41,6 +41,17 @@ impl Work {
         let each = independent.saturating_mul(spots).saturating_add(shared);
         Self::Samples(each.saturating_mul(scene.camera.pixels() as u64))
     }
+
+    /// The share that so many of `all` tasks have in it: of samples an estimate, which takes tasks
+    /// as equally long.
+    #[must_use]
+    pub fn share(self, tasks: u64, all: u64) -> Self {
+        let of = |n: u64| (u128::from(n) * u128::from(tasks) / u128::from(all.max(1))) as u64;
+        match self {
+            Self::Tasks(n) => Self::Tasks(of(n)),
+            Self::Samples(n) => Self::Samples(of(n)),
+        }
+    }
 }
 
 /// A study, divided into tasks.
@@ -102,6 +113,12 @@ pub trait Study: Sync {
         context: &Self::Context,
         outputs: Vec<Self::Output>,
     ) -> Result<Self::Result, Self::Error>;
+
+    /// Whether the outputs stay when it is finished, so that the same study once more computes
+    /// nothing, and another one does not replace them: for what takes hours.
+    fn keeps(&self) -> bool {
+        false
+    }
 
     /// Whether traced and modelled agree, where that is what the study asks.
     fn agrees(&self, _result: &Self::Result) -> bool {

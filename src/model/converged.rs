@@ -184,8 +184,7 @@ fn hidden_nodes(scene: &Scene, nodes: Nodes) -> Vec<(HiddenPoint, f64)> {
                 triangle_nodes(surface, body, nodes.hidden, |e| add(&e));
             }
             (Take::Integral, _) if texels(surface) > MOST_NODES => {
-                let coarse = surface.albedo.smooth_cells().map(|n| n.min(COARSE));
-                surface.divided(coarse).iter().for_each(&mut add);
+                surface.divided(coarse(surface)).iter().for_each(&mut add);
             }
             (Take::Integral, _) => {
                 let [nu, nv] = surface.albedo.smooth_cells();
@@ -213,12 +212,14 @@ fn hidden_nodes(scene: &Scene, nodes: Nodes) -> Vec<(HiddenPoint, f64)> {
 fn pieces(surface: &Surface) -> usize {
     match &surface.shape {
         Shape::Instance(body) => body.mesh().triangles().len(),
-        _ if texels(surface) > MOST_NODES => {
-            let coarse = surface.albedo.smooth_cells().map(|n| n.min(COARSE));
-            coarse.iter().product()
-        }
+        _ if texels(surface) > MOST_NODES => coarse(surface).iter().product(),
         _ => texels(surface),
     }
+}
+
+/// Cells along u and v of a texture with too many of them.
+fn coarse(surface: &Surface) -> [usize; 2] {
+    surface.albedo.smooth_cells().map(|n| n.min(COARSE))
 }
 
 /// Cells of a hidden surface's texture within which it is smooth.

@@ -187,36 +187,26 @@ impl MatrixModel {
             Ray::between(wall.position, element)
                 .is_none_or(|ray| scene.bvh().blocked(&ray, [wall.surface, Some(id)]))
         };
-        let hidden_from = |device: DVec3, wall: &WallPoint| {
-            Ray::between(device, wall.position)
-                .is_none_or(|ray| scene.bvh().blocked(&ray, [None, wall.surface]))
+        // The elements to which a wall point that `device` looks at or lights has no free way.
+        let hidden = |device: DVec3, wall: &WallPoint, g: &[f64]| -> Vec<usize> {
+            let dark = Ray::between(device, wall.position)
+                .is_none_or(|ray| scene.bvh().blocked(&ray, [None, wall.surface]));
+            let is_hidden = |j: &usize| dark || g[*j] != 0.0 && blocked(wall, elements[*j]);
+            (0..elements.len()).filter(is_hidden).collect()
         };
         for p in 0..self.g23.nrows() {
             let wall = wall_point::seen(scene, p, [0.5, 0.5], 1.0);
-            if hidden_from(scene.camera.position, &wall) {
-                self.g23.row_mut(p).fill(0.0);
-                self.camera_side.row_mut(p).fill(0.0);
-                continue;
-            }
-            for (j, element) in elements.iter().enumerate() {
-                if self.g23[(p, j)] != 0.0 && blocked(&wall, *element) {
-                    self.g23[(p, j)] = 0.0;
-                    self.camera_side[(p, j)] = 0.0;
-                }
+            let g: Vec<f64> = self.g23.row(p).iter().copied().collect();
+            for j in hidden(scene.camera.position, &wall, &g) {
+                self.g23[(p, j)] = 0.0;
+                self.camera_side[(p, j)] = 0.0;
             }
         }
         for l in 0..self.g12.ncols() {
             let wall = wall_point::lit(scene, l, DVec3::ZERO, 1.0);
-            if hidden_from(scene.laser.position, &wall) {
-                self.g12.column_mut(l).fill(0.0);
-                self.laser_side.column_mut(l).fill(0.0);
-                continue;
-            }
-            for (j, element) in elements.iter().enumerate() {
-                if self.g12[(j, l)] != 0.0 && blocked(&wall, *element) {
-                    self.g12[(j, l)] = 0.0;
-                    self.laser_side[(j, l)] = 0.0;
-                }
+            for j in hidden(scene.laser.position, &wall, self.g12.column(l).as_slice()) {
+                self.g12[(j, l)] = 0.0;
+                self.laser_side[(j, l)] = 0.0;
             }
         }
         self

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_1_PI;
 
 use super::kernel::{HiddenPoint, Kernel};
 use crate::geometry::{Contact, DVec3, Interaction, Ray, ShapeId};
-use crate::scene::{Role, Scene};
+use crate::scene::Scene;
 
 /// A point of the wall that a line of sight ends on, or that the laser lights.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,13 +84,9 @@ pub(super) fn seen(scene: &Scene, pixel: usize, ab: [f64; 2], share: f64) -> Wal
     let direction = line / d2.sqrt();
     let cos = camera.view.normal().dot(direction);
     let etendue = camera.aperture_area * cos * cos / d2 * share * footprint.area;
-    let relays = scene
-        .surfaces
-        .iter()
-        .enumerate()
-        .filter(|(_, s)| s.role == Role::Relay);
     let ray = Ray::new(camera.position, direction);
-    let nearest = relays
+    let nearest = scene
+        .relays()
         .filter_map(|(id, s)| s.shape.intersect(&ray, false).map(|met| (met, id)))
         .min_by(|a, b| {
             // Of the two sides of one wall the one that shows its front.

@@ -252,3 +252,10 @@ pub enum RecoveryError {
     #[error(transparent)]
     Quadratic(#[from] QuadraticError),
 }
+
+impl RecoveryError {
+    /// No direction of the joint operator is above rounding.
+    pub(super) const NO_DIRECTION: Self = Self::RankZero {
+        side: "model C, D as a whole",
+    };
+}

@@ -4,7 +4,7 @@
 use nalgebra::DVector;
 
 use super::{Problem, RecoveryError};
-use crate::num::linalg::{Tolerance, product, svd_to};
+use crate::num::linalg::{Tolerance, product};
 
 /// Whose singular directions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,12 +40,7 @@ pub struct Picard {
 /// [`RecoveryError::Dark`], [`RecoveryError::RankZero`], a decomposition that failed.
 pub fn picard(problem: &Problem<'_>) -> Result<Picard, RecoveryError> {
     problem.refuse_darkness()?;
-    let laser = svd_to(problem.d, Tolerance::Auto)?;
-    if laser.sigma[0] == 0.0 {
-        return Err(RecoveryError::RankZero {
-            side: "laser side D",
-        });
-    }
+    let laser = problem.laser(Tolerance::Auto)?;
     let pixels = problem.phi.nrows() as f64;
     let along = product(problem.phi, &laser.vt.transpose());
     let root_mean_square = |sum: f64| (sum / pixels).sqrt();

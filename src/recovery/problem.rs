@@ -3,7 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{Nuisance, RecoveryError};
-use crate::num::linalg::{Range, product, range, subtract_product};
+use crate::num::linalg::{
+    Range, Svd, Tolerance, columns_times, product, range, rows_times, subtract_product, svd_to,
+};
 
 /// Φ\[p,l\] = Σ_j C\[p,j\] ρ_j D\[j,l\] + noise, checked: shapes that fit, finite entries.
 #[derive(Debug, Clone, Copy)]
@@ -152,13 +154,20 @@ impl<'a> Problem<'a> {
         self.stderr.filter(|s| s.iter().any(|&x| x > 0.0))
     }
 
+    /// The laser side decomposed as far as a cut at `tolerance` needs it.
+    pub(super) fn laser(&self, tolerance: Tolerance) -> Result<Svd, RecoveryError> {
+        let decomposed = svd_to(self.d, tolerance)?;
+        if decomposed.sigma[0] == 0.0 {
+            return Err(RecoveryError::RankZero {
+                side: "laser side D",
+            });
+        }
+        Ok(decomposed)
+    }
+
     /// C diag(ρ) D, W.
     pub(super) fn light(&self, reflectance: &DVector<f64>) -> DMatrix<f64> {
-        let mut left = self.c.clone();
-        for (mut column, &rho) in left.column_iter_mut().zip(reflectance.iter()) {
-            column *= rho;
-        }
-        left * self.d
+        columns_times(self.c.clone(), reflectance) * self.d
     }
 
     /// ‖Φ − C diag(ρ) D‖, Frobenius, W.
@@ -183,14 +192,14 @@ pub(super) struct Lit {
 
 impl Lit {
     pub(super) fn new(d: &DMatrix<f64>, reflectance: &DVector<f64>) -> Result<Self, RecoveryError> {
-        let (mut elements, along) = match range(d)? {
+        let (elements, along) = match range(d)? {
             Some(Range { q, b, .. }) => (q, Some(b)),
             None => (d.clone(), None),
         };
-        for (mut row, &rho) in elements.row_iter_mut().zip(reflectance.iter()) {
-            row *= rho;
-        }
-        Ok(Lit { elements, along })
+        Ok(Lit {
+            elements: rows_times(elements, reflectance),
+            along,
+        })
     }
 }
 

@@ -7,7 +7,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::num::linalg::{Svd, tr_product};
+use crate::num::linalg::{Svd, rows_times, tr_product};
 
 /// The directions, in the order in which they are kept.
 pub(super) struct Spectrum {
@@ -78,10 +78,6 @@ impl Spectrum {
     }
 
     fn weighted(&self, filter: &[f64]) -> DMatrix<f64> {
-        let mut weighted = self.solution.rows(0, filter.len()).into_owned();
-        for (mut row, &f) in weighted.row_iter_mut().zip(filter) {
-            row *= f;
-        }
-        weighted
+        rows_times(self.solution.rows(0, filter.len()).into_owned(), filter)
     }
 }

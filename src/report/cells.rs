@@ -45,8 +45,7 @@ impl Cells {
                 None | Some(Cell::Text(_) | Cell::Name(_) | Cell::Flag(_))
             )
         };
-        let words =
-            |i: &usize| table.columns[*i].digits == 0 && table.rows.iter().all(|row| word(row, *i));
+        let words = |i: &usize| table.rows.iter().all(|row| word(row, *i));
         Self {
             heads: heads.iter().any(|h| !h.is_empty()).then_some(heads),
             words: shown.iter().map(words).collect(),

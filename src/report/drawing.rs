@@ -2,11 +2,12 @@
 
 use super::axis::{step, tick, ticks};
 use super::key::entries;
-use super::label::{Labels, legend};
+use super::label::Labels;
+use super::legend::samples;
 use super::mark::{lines, names, spots, surface, view};
 use super::projection::{Frame, Projection, View};
 use super::raster::FAMILIES;
-use super::svg::{Close, Svg, escape, ink, number, shortened};
+use super::svg::{Close, END, MIDDLE, Svg, escape, ink, lettering, number, shortened, stroke};
 use crate::scene::{Role, Scene};
 
 /// Width of the paper, px.
@@ -44,7 +45,7 @@ pub fn bench_svg(scene: &Scene) -> String {
     let mut bottom = TOP + height + 58.0;
     scale_bar(&mut svg, scene, scale, bottom);
     bottom += 26.0;
-    bottom += legend(
+    bottom += samples(
         &mut svg,
         [LEFT, bottom],
         WIDTH - LEFT - 20.0,
@@ -59,11 +60,8 @@ pub fn bench_svg(scene: &Scene) -> String {
         escape(&format!("Scene {name}, drawn to scale"))
     ));
     out.rect([0.0, 0.0], [WIDTH, bottom], "fill=\"#ffffff\"");
-    let style = format!(
-        "fill=\"{}\" font-size=\"17\" font-weight=\"600\"",
-        ink::BLACK
-    );
-    out.text([LEFT - 40.0, 28.0], &style, &name);
+    let bold = lettering(ink::BLACK, 17.0) + " font-weight=\"600\"";
+    out.text([LEFT - 40.0, 28.0], &bold, &name);
     out.text.push_str(&svg.text);
     out.raw("</svg>");
     out.text
@@ -88,11 +86,7 @@ fn panel(svg: &mut Svg, scene: &Scene, p: &Projection, k: usize) {
     }
     spots(svg, scene, p, &mut labels);
     svg.raw("</g>");
-    svg.rect(
-        p.corner,
-        size,
-        &format!("fill=\"none\" stroke=\"{}\"", ink::GREY),
-    );
+    svg.rect(p.corner, size, &stroke(ink::GREY, 1.0));
     names(svg, scene, p, &mut labels);
 }
 
@@ -100,56 +94,35 @@ fn axes(svg: &mut Svg, scene: &Scene, p: &Projection) {
     let ([left, top], [w, h]) = (p.corner, p.size());
     let bottom = top + h;
     let Frame { low, high } = p.frame;
-    let grid = format!("stroke=\"{}\" stroke-width=\"0.6\"", ink::PALE);
-    let text = format!("fill=\"{}\" font-size=\"11\"", ink::GREY);
+    let grid = stroke(ink::PALE, 0.6);
+    let small = lettering(ink::GREY, 11.0);
+    let [middle, end] = [MIDDLE, END].map(|anchor| format!("{small} {anchor}"));
     let most = |length: f64| ((length / 45.0) as usize).clamp(2, 12);
     for t in ticks(low[0], high[0], most(w)) {
         let [x, _] = p.at_plane([t, low[1]]);
         svg.line([x, top], [x, bottom + 5.0], &grid);
-        svg.text(
-            [x, bottom + 17.0],
-            &format!("{text} text-anchor=\"middle\""),
-            &tick(t),
-        );
+        svg.text([x, bottom + 17.0], &middle, &tick(t));
     }
     for t in ticks(low[1], high[1], most(h)) {
         let [_, y] = p.at_plane([low[0], t]);
         svg.line([left - 5.0, y], [left + w, y], &grid);
-        svg.text(
-            [left - 8.0, y + 4.0],
-            &format!("{text} text-anchor=\"end\""),
-            &tick(t),
-        );
+        svg.text([left - 8.0, y + 4.0], &end, &tick(t));
     }
-    let [across, up] = p
-        .view
-        .axes()
-        .map(|a| format!("{a} / {}", scene.unit.symbol()));
-    let style = format!("fill=\"{}\" font-size=\"12\"", ink::BLACK);
-    svg.text(
-        [left + 0.5 * w, bottom + 34.0],
-        &format!("{style} text-anchor=\"middle\""),
-        &across,
-    );
-    let (x, y) = (left - 40.0, top + 0.5 * h);
-    let turn = format!(
-        "{style} text-anchor=\"middle\" transform=\"rotate(-90 {} {})\"",
-        number(x),
-        number(y)
-    );
-    svg.text([x, y], &turn, &up);
-    svg.text(
-        [left, top - 10.0],
-        &format!("{style} font-weight=\"600\""),
-        p.view.caption(),
-    );
+    let unit = scene.unit.symbol();
+    let [across, up] = p.view.axes().map(|a| format!("{a} / {unit}"));
+    let style = lettering(ink::BLACK, 12.0);
+    let middle = format!("{style} {MIDDLE}");
+    svg.text([left + 0.5 * w, bottom + 34.0], &middle, &across);
+    svg.upright([left - 40.0, top + 0.5 * h], &middle, &up);
+    let bold = format!("{style} font-weight=\"600\"");
+    svg.text([left, top - 10.0], &bold, p.view.caption());
 }
 
 fn scale_bar(svg: &mut Svg, scene: &Scene, scale: f64, y: f64) {
     let Some(length) = step(200.0 / scale, 2) else {
         return;
     };
-    let style = format!("fill=\"none\" stroke=\"{}\" stroke-width=\"2\"", ink::BLACK);
+    let style = stroke(ink::BLACK, 2.0);
     let right = LEFT + length * scale;
     svg.path(
         &[[LEFT, y - 5.0], [LEFT, y], [right, y], [right, y - 5.0]],
@@ -161,11 +134,7 @@ fn scale_bar(svg: &mut Svg, scene: &Scene, scale: f64, y: f64) {
         tick(length),
         scene.unit.symbol()
     );
-    svg.text(
-        [right + 10.0, y + 1.0],
-        &format!("fill=\"{}\" font-size=\"12\"", ink::BLACK),
-        &text,
-    );
+    svg.text([right + 10.0, y + 1.0], &lettering(ink::BLACK, 12.0), &text);
 }
 
 #[cfg(test)]

@@ -1,11 +1,16 @@
 //! Figures of a page: a matrix as an inline SVG with axes, and the legend of a scale.
 
 use super::colour::Scale;
-use super::picture::{Panel, bar_ticks, legend_lines};
-use super::svg::{Svg, escape, number};
+use super::legend::{colour_bar, outside};
+use super::panel::Panel;
+use super::svg::{END, MIDDLE, Svg, escape, number};
 
 /// Length of a picture's longer side on the page, px.
 const SIDE: f64 = 240.0;
+
+/// Size of type, px.
+const TYPE: f64 = 11.0;
+const FRAME: &str = "fill=\"none\" stroke=\"currentColor\" stroke-opacity=\"0.5\"";
 
 /// Frames and recoveries are shown with at most this many pixels a side, Φcam with twice as many. A
 /// picture of that size that cannot be compressed takes 0.26 MB (Φcam 1.05 MB): 3 frames, 3 maps
@@ -120,52 +125,23 @@ pub(super) fn figure(
     };
     let (left, top) = (42.0, 6.0);
     let mut svg = Svg::default();
-    let (full, tall) = (number(left + SIDE + 6.0), number(top + h + 24.0));
-    svg.raw(&format!(
-        "<svg viewBox=\"0 0 {full} {tall}\" width=\"{full}\" height=\"{tall}\" role=\"img\" aria-label=\"{}\">",
-        escape(&panel.title)
+    svg.raw(&opening(
+        "",
+        &panel.title,
+        [left + SIDE + 6.0, top + h + 24.0],
     ));
-    svg.raw(&format!(
-        "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" \
-         style=\"image-rendering:pixelated\" href=\"{uri}\"/>",
-        number(left),
-        number(top),
-        number(w),
-        number(h)
-    ));
-    svg.rect(
-        [left, top],
-        [w, h],
-        "fill=\"none\" stroke=\"currentColor\" stroke-opacity=\"0.5\"",
-    );
-    let small = "font-size=\"11\" fill=\"currentColor\"";
+    svg.image([left, top], [w, h], &uri);
+    svg.rect([left, top], [w, h], FRAME);
     let [across, up] = &panel.axes;
     let y = top + h + 15.0;
-    svg.text([left, y], small, "0");
-    svg.text(
-        [left + 0.5 * w, y],
-        "font-size=\"11\" fill=\"currentColor\" text-anchor=\"middle\"",
-        &format!("{across} →"),
-    );
+    svg.text([left, y], "", "0");
+    svg.text([left + 0.5 * w, y], MIDDLE, &format!("{across} →"));
+    svg.upright([26.0, top + 0.5 * h], MIDDLE, &format!("{up} →"));
     if w > 80.0 {
-        svg.text(
-            [left + w, y],
-            "font-size=\"11\" fill=\"currentColor\" text-anchor=\"end\"",
-            &ends[0].to_string(),
-        );
+        svg.text([left + w, y], END, &ends[0].to_string());
     }
-    let middle = top + 0.5 * h;
-    let turn = format!(
-        "font-size=\"11\" fill=\"currentColor\" text-anchor=\"middle\" transform=\"rotate(-90 26 {})\"",
-        number(middle)
-    );
-    svg.text([26.0, middle], &turn, &format!("{up} →"));
     if h > 80.0 {
-        svg.text(
-            [left - 4.0, top + 9.0],
-            "font-size=\"11\" fill=\"currentColor\" text-anchor=\"end\"",
-            &ends[1].to_string(),
-        );
+        svg.text([left - 4.0, top + 9.0], END, &ends[1].to_string());
     }
     svg.raw("</svg>");
     format!(
@@ -175,48 +151,25 @@ pub(super) fn figure(
     )
 }
 
+/// The tag that opens a drawing of the page, in the page's ink.
+fn opening(class: &str, name: &str, size: [f64; 2]) -> String {
+    let [w, h] = size.map(number);
+    format!(
+        "<svg {class}viewBox=\"0 0 {w} {h}\" width=\"{w}\" height=\"{h}\" font-size=\"{TYPE}\" fill=\"currentColor\" role=\"img\" aria-label=\"{}\">",
+        escape(name)
+    )
+}
+
 /// The colours of `scale` with ticks in `unit`, and what the colours outside it mean in `panels`.
 pub(super) fn legend(scale: &Scale, unit: &str, panels: &[Panel]) -> String {
-    let [low, high] = scale.range();
-    let steps = 128;
-    let along = |i: usize| i as f64 / (steps - 1) as f64;
-    let bar = Panel::elements(
-        "",
-        [steps, 1],
-        (0..steps)
-            .map(|i| low * (1.0 - along(i)) + high * along(i))
-            .collect(),
-    );
-    let Ok(uri) = bar.data_uri(scale) else {
-        return String::new();
-    };
     let mut svg = Svg::default();
-    svg.raw("<svg class=\"legend\" viewBox=\"0 0 480 40\" width=\"480\" height=\"40\" role=\"img\" aria-label=\"colour scale\">");
-    svg.raw(&format!(
-        "<image x=\"42\" y=\"2\" width=\"300\" height=\"14\" preserveAspectRatio=\"none\" href=\"{uri}\"/>"
-    ));
-    svg.rect(
-        [42.0, 2.0],
-        [300.0, 14.0],
-        "fill=\"none\" stroke=\"currentColor\" stroke-opacity=\"0.5\"",
-    );
-    for (t, text) in bar_ticks(scale) {
-        let x = 42.0 + 300.0 * t;
-        svg.line([x, 16.0], [x, 21.0], "stroke=\"currentColor\"");
-        svg.text(
-            [x, 34.0],
-            "font-size=\"11\" fill=\"currentColor\" text-anchor=\"middle\"",
-            &text,
-        );
+    svg.raw(&opening("class=\"legend\" ", "colour scale", [480.0, 40.0]));
+    if colour_bar(&mut svg, [42.0, 2.0], [300.0, 14.0], TYPE, scale, unit).is_err() {
+        return String::new();
     }
-    svg.text(
-        [352.0, 14.0],
-        "font-size=\"11\" fill=\"currentColor\"",
-        unit,
-    );
     svg.raw("</svg>");
     let mut html = format!("<div class=\"scale\">{}", svg.text);
-    for ([r, g, b], text) in legend_lines(scale, panels) {
+    for ([r, g, b], text) in outside(scale, panels, "", 0) {
         html.push_str(&format!(
             "<div class=\"mark\"><svg width=\"16\" height=\"12\" aria-hidden=\"true\"><rect width=\"16\" height=\"12\" \
              fill=\"#{r:02x}{g:02x}{b:02x}\" stroke=\"currentColor\"/></svg> {}</div>",

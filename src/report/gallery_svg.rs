@@ -3,7 +3,8 @@
 use super::axis::step;
 use super::colour::Scale;
 use super::encode::PictureError;
-use super::picture::{Panel, ScaleBar, pictures_svg};
+use super::panel::{Panel, ScaleBar};
+use super::picture::pictures_svg;
 use crate::lab::finding::{Gallery, Picture, Shades};
 
 /// A gallery as SVG, its pictures on one scale of shades.

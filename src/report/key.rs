@@ -1,18 +1,25 @@
 //! The key of the drawing: what its marks mean.
 
 use super::mark::{MOST_SPOTS, colour};
-use super::svg::ink;
+use super::svg::{Svg, fill, ink, stroke};
 use crate::scene::{Role, Scene};
 
 /// Samples and texts of the legend.
 pub(super) fn entries(scene: &Scene) -> Vec<(String, String)> {
-    let line = |ink: &str, more: &str| {
-        format!("<path d=\"M0 0L24 0\" fill=\"none\" stroke=\"{ink}\" {more}/>")
+    let drawn = |draw: &dyn Fn(&mut Svg)| {
+        let mut svg = Svg::default();
+        draw(&mut svg);
+        svg.text
     };
+    let line = |style: &str| drawn(&|svg| svg.line([0.0, 0.0], [24.0, 0.0], style));
     let ticked = |ink: &str| {
-        format!(
-            "<path d=\"M0 3L24 3M4 3L4 -5M12 3L12 -5M20 3L20 -5\" fill=\"none\" stroke=\"{ink}\" stroke-width=\"1.8\"/>"
-        )
+        let style = stroke(ink, 1.8);
+        drawn(&|svg| {
+            svg.line([0.0, 3.0], [24.0, 3.0], &style);
+            for x in [4.0, 12.0, 20.0] {
+                svg.line([x, 3.0], [x, -5.0], &style);
+            }
+        })
     };
     let has = |role: Role| scene.surfaces.iter().any(|s| s.role == role);
     let mut entries = Vec::new();
@@ -35,10 +42,7 @@ pub(super) fn entries(scene: &Scene) -> Vec<(String, String)> {
     } else {
         String::new()
     };
-    let dot = format!(
-        "<circle cx=\"12\" cy=\"0\" r=\"3\" fill=\"{}\"/>",
-        ink::VERMILLION
-    );
+    let dot = drawn(&|svg| svg.circle([12.0, 0.0], 3.0, &fill(ink::VERMILLION)));
     let noun = if spots == 1 {
         "laser spot"
     } else {
@@ -46,25 +50,22 @@ pub(super) fn entries(scene: &Scene) -> Vec<(String, String)> {
     };
     entries.push((dot, format!("{spots} {noun}{thinned}")));
     entries.push((
-        line(ink::VERMILLION, "stroke-width=\"1.2\""),
+        line(&stroke(ink::VERMILLION, 1.2)),
         "some laser beams".to_owned(),
     ));
     let c = &scene.camera;
-    let square = format!(
-        "<rect x=\"4\" y=\"-6\" width=\"16\" height=\"12\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\"/>",
-        ink::GREEN
-    );
+    let square = drawn(&|svg| svg.rect([4.0, -6.0], [16.0, 12.0], &stroke(ink::GREEN, 1.8)));
     entries.push((
         square,
         format!("view of the camera, {} × {} pixels", c.columns, c.rows),
     ));
     entries.push((
-        line(ink::GREEN, "stroke-width=\"1.2\" stroke-dasharray=\"5 3\""),
+        line(&(stroke(ink::GREEN, 1.2) + " stroke-dasharray=\"5 3\"")),
         "line of sight".to_owned(),
     ));
     if has(Role::Hidden) {
-        let text = "one way of the light: spot, object, wall in view";
-        entries.push((line(ink::BLUE, "stroke-width=\"1.6\""), text.to_owned()));
+        let text = "one light path: spot, object, wall in view";
+        entries.push((line(&stroke(ink::BLUE, 1.6)), text.to_owned()));
     }
     entries
 }

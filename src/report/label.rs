@@ -1,11 +1,11 @@
 //! Labels that keep out of each other's way.
 
-use super::svg::{Close, Svg, ink, shortened};
+use super::svg::{Close, Svg, fill, shortened, stroke};
 
 /// Size of the type, px.
-const SIZE: f64 = 12.0;
+pub(super) const SIZE: f64 = 12.0;
 /// Width of a character of the type, rounded up, px.
-const CHARACTER: f64 = 7.2;
+pub(super) const CHARACTER: f64 = 7.2;
 /// More characters than this are cut.
 const LONGEST: usize = 34;
 
@@ -70,15 +70,10 @@ impl Labels {
                 anchor[0].clamp(area[0], area[2]),
                 anchor[1].clamp(area[1], area[3]),
             ];
-            let style = format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"0.7\"");
+            let style = stroke(colour, 0.7);
             svg.path(&[anchor, near], Close::No, &style);
         }
-        halo(
-            svg,
-            [area[0], area[3] - 2.0],
-            &format!("fill=\"{colour}\""),
-            &text,
-        );
+        halo(svg, [area[0], area[3] - 2.0], &fill(colour), &text);
         self.taken.push(area);
     }
 
@@ -105,32 +100,6 @@ pub(super) fn halo(svg: &mut Svg, at: [f64; 2], style: &str, text: &str) {
     );
     svg.text(at, &under, text);
     svg.text(at, &format!("{style} font-size=\"{SIZE}\""), text);
-}
-
-/// Entries of a legend in rows of `width`, each a sample of up to 30 px and its text; returns the
-/// height.
-pub(super) fn legend(
-    svg: &mut Svg,
-    [x, y]: [f64; 2],
-    width: f64,
-    entries: &[(String, String)],
-) -> f64 {
-    let (mut left, mut top) = (0.0, 0.0);
-    for (sample, text) in entries {
-        let needed = 38.0 + CHARACTER * text.chars().count() as f64 + 14.0;
-        if left > 0.0 && left + needed > width {
-            left = 0.0;
-            top += 22.0;
-        }
-        let (sx, sy) = (super::svg::number(x + left), super::svg::number(y + top));
-        svg.raw(&format!(
-            "<g transform=\"translate({sx} {sy})\">{sample}</g>"
-        ));
-        let style = format!("fill=\"{}\" font-size=\"{SIZE}\"", ink::BLACK);
-        svg.text([x + left + 37.0, y + top + 4.0], &style, text);
-        left += needed;
-    }
-    top + 22.0
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 
 use serde_json::{Value, json};
 
-use super::svg::{Close, Svg, ink};
+use super::svg::{Close, Svg, fill, ink};
 use crate::lab::finding::Mark;
 
 const INKS: [&str; 6] = [
@@ -115,7 +115,7 @@ impl Look {
         let (i, ink) = (self.number, self.ink());
         match self.mark {
             Mark::Line if (i / INKS.len()).is_multiple_of(2) => {
-                MARKS[i % MARKS.len()].draw(svg, at, &format!("fill=\"{ink}\""));
+                MARKS[i % MARKS.len()].draw(svg, at, &fill(ink));
             }
             Mark::Line => {
                 let hollow = format!("fill=\"white\" stroke=\"{ink}\" stroke-width=\"1.2\"");
@@ -133,7 +133,7 @@ impl Look {
     /// A sample for a legend, 30 px long.
     pub(super) fn sample(self) -> String {
         let mut svg = Svg::default();
-        let fill = format!("fill=\"{}\"", self.ink());
+        let fill = fill(self.ink());
         match self.mark {
             Mark::Line | Mark::Level => svg.line([0.0, 0.0], [30.0, 0.0], &self.line()),
             Mark::Points => svg.circle([15.0, 0.0], 3.2, &fill),

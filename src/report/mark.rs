@@ -7,7 +7,7 @@ use super::axis::tick;
 use super::hull::hull;
 use super::label::Labels;
 use super::projection::{Projection, View};
-use super::svg::{Close, Svg, ink, number};
+use super::svg::{Close, Svg, fill, ink, number, stroke};
 use crate::geometry::{DVec3, Shape};
 use crate::scene::{Role, Scene, Surface, Texture};
 
@@ -82,7 +82,7 @@ pub(super) fn surface(svg: &mut Svg, surface: &Surface, p: &Projection) {
             Vec::new()
         }
     };
-    let style = format!("fill=\"none\" stroke=\"{ink}\" stroke-width=\"1.2\"");
+    let style = stroke(ink, 1.2);
     for (position, normal) in fronts {
         let [x, y] = p.at(position);
         let [dx, dy] = p.direction(normal);
@@ -138,10 +138,7 @@ pub(super) fn view(svg: &mut Svg, scene: &Scene, p: &Projection) {
     let camera = &scene.camera;
     let at = |a: f64, b: f64| p.at(camera.view.at([a, b]).position);
     let outline = [at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)];
-    let grid = format!(
-        "fill=\"none\" stroke=\"{}\" stroke-width=\"0.4\"",
-        ink::GREEN
-    );
+    let grid = stroke(ink::GREEN, 0.4);
     if p.view == View::Above {
         let fine = |e: DVec3, n: usize| e.length() * p.scale / (n as f64) < 3.0;
         let [u, v] = [camera.view.u(), camera.view.v()];
@@ -159,20 +156,14 @@ pub(super) fn view(svg: &mut Svg, scene: &Scene, p: &Projection) {
         }
     }
     let width = if p.view == View::Above { 1.8 } else { 10.0 };
-    let style = format!(
-        "fill=\"none\" stroke=\"{}\" stroke-width=\"{width}\"",
-        ink::GREEN
-    );
+    let style = stroke(ink::GREEN, width);
     svg.path(&outline, Close::Yes, &style);
 }
 
 /// A few beams, the edges of the camera's sight, and one way of the light around the corner.
 pub(super) fn lines(svg: &mut Svg, scene: &Scene, p: &Projection) {
     let spots = &scene.laser.spots;
-    let beam = format!(
-        "fill=\"none\" stroke=\"{}\" stroke-width=\"0.9\" stroke-opacity=\"0.6\"",
-        ink::VERMILLION
-    );
+    let beam = stroke(ink::VERMILLION, 0.9) + " stroke-opacity=\"0.6\"";
     for spot in spots.iter().step_by(spots.len().div_ceil(6).max(1)) {
         svg.line(
             p.at(scene.laser.position),
@@ -180,10 +171,7 @@ pub(super) fn lines(svg: &mut Svg, scene: &Scene, p: &Projection) {
             &beam,
         );
     }
-    let sight = format!(
-        "fill=\"none\" stroke=\"{}\" stroke-width=\"0.9\" stroke-dasharray=\"5 3\"",
-        ink::GREEN
-    );
+    let sight = stroke(ink::GREEN, 0.9) + " stroke-dasharray=\"5 3\"";
     for corner in scene.camera.view.corners() {
         svg.line(p.at(scene.camera.position), p.at(corner), &sight);
     }
@@ -195,14 +183,7 @@ pub(super) fn lines(svg: &mut Svg, scene: &Scene, p: &Projection) {
             centre,
         ]
         .map(|q| p.at(q));
-        svg.path(
-            &way,
-            Close::No,
-            &format!(
-                "fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"",
-                ink::BLUE
-            ),
-        );
+        svg.path(&way, Close::No, &stroke(ink::BLUE, 1.6));
     }
 }
 
@@ -325,15 +306,11 @@ fn area(points: &[[f64; 2]]) -> [f64; 4] {
 /// An arrow that ends at the frame; returns where it starts.
 fn arrow(svg: &mut Svg, [x, y]: [f64; 2], [dx, dy]: [f64; 2], ink: &str) -> [f64; 2] {
     let back = |t: f64, side: f64| [x - t * dx - side * dy, y - t * dy + side * dx];
-    svg.line(
-        back(26.0, 0.0),
-        back(6.0, 0.0),
-        &format!("stroke=\"{ink}\" stroke-width=\"2.4\""),
-    );
+    svg.line(back(26.0, 0.0), back(6.0, 0.0), &stroke(ink, 2.4));
     svg.path(
         &[back(0.0, 0.0), back(10.0, 5.0), back(10.0, -5.0)],
         Close::Yes,
-        &format!("fill=\"{ink}\""),
+        &fill(ink),
     );
     back(14.0, 0.0)
 }

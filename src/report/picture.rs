@@ -1,14 +1,13 @@
 //! Matrices as pictures with a title, axes and a legend.
 
-use super::axis::{tick, ticks};
-use super::colour::{Law, NOT_A_NUMBER, Rgb, Scale};
-use super::encode::{PictureError, base64, rgb};
+use super::colour::{Rgb, Scale};
+use super::encode::PictureError;
+use super::legend::{colour_bar, outside};
+use super::panel::{Panel, ScaleBar};
 use super::raster::{self, DPI, FAMILIES};
-use super::svg::{Close, Svg, escape};
-use crate::num::digits::{scientific, significant};
+use super::svg::{Close, END, MIDDLE, Svg, escape};
+use crate::num::digits::scientific;
 
-/// A bare matrix is enlarged to at least this on its longer side, px.
-const SIDE: usize = 256;
 /// Width of a sheet where no matrix needs more: 180 mm, two columns of a journal, px at 300 an inch
 /// as all lengths here.
 const WIDTH: usize = 2126;
@@ -19,93 +18,17 @@ const MOST_COLUMNS: usize = 5;
 pub(super) const MARGIN: usize = 24;
 const GAP: usize = 44;
 /// Room left of a panel for the axis upwards, and below for the axis across.
-pub(super) const AXIS: usize = 52;
-pub(super) const BELOW: usize = 54;
+const AXIS: usize = 52;
+const BELOW: usize = 54;
 /// Size of type (7 pt), of a line of it, and of a character, rounded up.
 const TYPE: usize = 29;
-pub(super) const LINE: usize = 36;
-pub(super) const CHARACTER: usize = 17;
+const LINE: usize = 36;
+const CHARACTER: usize = 17;
 pub(super) const BAR: [usize; 2] = [640, 30];
+/// From the left of a colour's sample to what it means.
+const BESIDE: usize = 52;
 /// Ink of frames and arrows, 0.5 pt wide.
 const THIN: &str = "fill=\"none\" stroke=\"#222222\" stroke-width=\"2\"";
-
-/// A length that is drawn below a picture.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ScaleBar {
-    /// Its share of the picture's width.
-    pub share: f64,
-    /// What it is, with its unit.
-    pub text: String,
-}
-
-/// A matrix to be shown: the first index runs to the right, the second upwards.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Panel {
-    /// What it is.
-    pub title: String,
-    /// Columns and rows (nu, nv).
-    pub size: [usize; 2],
-    /// Value of column iu, row iv at iu + iv·nu; a value that is missing is shown as not a number.
-    pub values: Vec<f64>,
-    /// What runs to the right and what upwards.
-    pub axes: [String; 2],
-    /// A length, where it has one.
-    pub scale_bar: Option<ScaleBar>,
-}
-
-impl Panel {
-    /// A panel of elements: iu to the right, iv upwards.
-    pub fn elements(title: impl Into<String>, size: [usize; 2], values: Vec<f64>) -> Self {
-        Self {
-            title: title.into(),
-            size,
-            values,
-            axes: ["iu", "iv"].map(str::to_owned),
-            scale_bar: None,
-        }
-    }
-
-    /// The value of column `iu`, row `iv`.
-    pub(super) fn at(&self, iu: usize, iv: usize) -> f64 {
-        self.values
-            .get(iu + iv * self.size[0])
-            .copied()
-            .unwrap_or(f64::NAN)
-    }
-
-    /// The entries alone, enlarged by a whole factor, the last row on top, as PNG bytes.
-    pub(super) fn plain_png(&self, scale: &Scale) -> Result<Vec<u8>, PictureError> {
-        let [nu, nv] = self.entries();
-        let factor = SIDE.div_ceil(nu.max(nv));
-        let mut pixels = Vec::with_capacity(3 * nu * nv * factor * factor);
-        for iv in (0..nv).rev() {
-            let entry = |iu| std::iter::repeat_n(scale.colour(self.at(iu, iv)), factor);
-            let row: Vec<u8> = (0..nu).flat_map(entry).flatten().collect();
-            for _ in 0..factor {
-                pixels.extend_from_slice(&row);
-            }
-        }
-        rgb([nu * factor, nv * factor], &pixels, None)
-    }
-
-    /// The entries as a picture inside of markup.
-    pub(super) fn data_uri(&self, scale: &Scale) -> Result<String, PictureError> {
-        let png = self.plain_png(scale)?;
-        Ok(format!("data:image/png;base64,{}", base64(&png)))
-    }
-
-    fn entries(&self) -> [usize; 2] {
-        self.size.map(|n| n.max(1))
-    }
-
-    /// Width and height on a sheet: the longer side as near below `most` as whole pixels an entry
-    /// allow, but one at least.
-    pub(super) fn pixels(&self, most: usize) -> [usize; 2] {
-        let [nu, nv] = self.entries();
-        let factor = (most / nu.max(nv)).max(1);
-        [nu * factor, nv * factor]
-    }
-}
 
 /// Reflectances (or any values that belong in 0…1) side by side on the one fixed grey scale: black
 /// 0, white 1, whatever the data, values below 0 blue and above 1 orange. Entries are whole pixels,
@@ -142,51 +65,78 @@ pub(super) fn pictures_svg(
     scale: &Scale,
     unit: &str,
 ) -> Result<String, PictureError> {
-    let titles: Vec<String> = panels
-        .iter()
-        .enumerate()
-        .map(|(i, p)| lettered(i, panels.len(), &p.title))
-        .collect();
-    let most = longest_side(panels.len());
-    let sizes: Vec<[usize; 2]> = panels.iter().map(|p| p.pixels(most)).collect();
-    let lines: Vec<Vec<String>> = titles
-        .iter()
-        .zip(&sizes)
-        .map(|(t, [w, _])| wrapped(t, w.max(&most) / CHARACTER))
-        .collect();
-    let above = LINE * lines.iter().map(Vec::len).max().unwrap_or(0) + 8;
-    let (places, [width, height]) = arrange(&sizes, most, above);
-    let heading = wrapped(title, (width - 2 * MARGIN) / CHARACTER);
-    let top = MARGIN + LINE * heading.len() + 12;
-    let lettering = legend_lines(scale, panels);
-    let legend = top + height + 16;
-    let full = legend + BAR[1] + 56 + LINE * lettering.len() + MARGIN;
-    let mut svg = Svg::default();
-    svg.raw(&opening(title, [width, full]));
-    write(&mut svg, [MARGIN, MARGIN], &heading);
-    for (i, panel) in panels.iter().enumerate() {
-        let [x, y] = places[i];
-        let corner = [x + AXIS, top + y + above];
-        // The last line of the title stands on the picture.
-        write(
-            &mut svg,
-            [corner[0], corner[1] - 8 - LINE * lines[i].len()],
-            &lines[i],
-        );
-        draw(&mut svg, panel, corner, sizes[i], scale)?;
+    let letter = |(i, p): (usize, &Panel)| Panel {
+        title: lettered(i, panels.len(), &p.title),
+        ..p.clone()
+    };
+    let sheet = Sheet {
+        title,
+        width: WIDTH,
+        most: longest_side(panels.len()),
+        outside: outside(scale, panels, "", 0),
+    };
+    let panels: Vec<Panel> = panels.iter().enumerate().map(letter).collect();
+    sheet.svg(&panels, scale, unit)
+}
+
+/// A sheet of pictures on one scale.
+pub(super) struct Sheet<'a> {
+    pub(super) title: &'a str,
+    /// Width where no matrix needs more, px.
+    pub(super) width: usize,
+    /// Longer side of a panel at most, where it has no more entries than that, px.
+    pub(super) most: usize,
+    /// Colours outside the scale and what they mean.
+    pub(super) outside: Vec<(Rgb, String)>,
+}
+
+impl Sheet<'_> {
+    /// The sheet: its title, `panels`, the colour bar, and what lies outside of it.
+    pub(super) fn svg(
+        &self,
+        panels: &[Panel],
+        scale: &Scale,
+        unit: &str,
+    ) -> Result<String, PictureError> {
+        let sizes: Vec<[usize; 2]> = panels.iter().map(|p| p.pixels(self.most)).collect();
+        let titles = panels.iter().zip(&sizes);
+        let titles: Vec<Vec<String>> = titles
+            .map(|(p, [w, _])| wrapped(&p.title, w.max(&self.most) / CHARACTER))
+            .collect();
+        let above = LINE * titles.iter().map(Vec::len).max().unwrap_or(0) + 8;
+        let (places, [width, height]) = arrange(&sizes, self.most, above, self.width);
+        let heading = wrapped(self.title, (width - 2 * MARGIN) / CHARACTER);
+        let top = MARGIN + LINE * heading.len() + 12;
+        let legend = top + height + 16;
+        let room = (width - 2 * MARGIN - BESIDE) / CHARACTER;
+        let outside = self.outside.iter();
+        let outside: Vec<(Rgb, Vec<String>)> =
+            outside.map(|(c, text)| (*c, wrapped(text, room))).collect();
+        let lines: usize = outside.iter().map(|(_, lines)| lines.len()).sum();
+        let full = legend + BAR[1] + 56 + LINE * lines + MARGIN;
+        let mut svg = Svg::default();
+        svg.raw(&opening(self.title, [width, full]));
+        write(&mut svg, [MARGIN, MARGIN], &heading);
+        for (i, panel) in panels.iter().enumerate() {
+            let [x, y] = [places[i][0] + AXIS, top + places[i][1] + above];
+            // The last line of the title stands on the picture.
+            write(&mut svg, [x, y - 8 - LINE * titles[i].len()], &titles[i]);
+            draw(&mut svg, panel, [x, y], sizes[i], scale)?;
+        }
+        let corner = at([MARGIN + 100, legend]);
+        colour_bar(&mut svg, corner, at(BAR), TYPE as f64, scale, unit)?;
+        key(&mut svg, [MARGIN, legend + BAR[1] + 56], &outside);
+        svg.raw("</svg>");
+        Ok(svg.text)
     }
-    bar(&mut svg, [MARGIN + 100, legend], scale, unit)?;
-    key(&mut svg, [MARGIN, legend + BAR[1] + 56], &lettering);
-    svg.raw("</svg>");
-    Ok(svg.text)
 }
 
 /// The tag that opens a sheet of so many pixels, and its white ground.
-pub(super) fn opening(title: &str, [width, height]: [usize; 2]) -> String {
+fn opening(title: &str, [width, height]: [usize; 2]) -> String {
     let millimetres = |px: usize| 25.4 / DPI * px as f64;
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.4}mm\" height=\"{:.4}mm\" viewBox=\"0 0 {width} {height}\" font-family=\"{FAMILIES}\" \
-         font-size=\"{TYPE}\" fill=\"#222222\" role=\"img\" aria-label=\"{}\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>",
+         font-size=\"{TYPE}\" fill=\"#222222\" color=\"#222222\" role=\"img\" aria-label=\"{}\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>",
         millimetres(width),
         millimetres(height),
         escape(title)
@@ -194,15 +144,13 @@ pub(super) fn opening(title: &str, [width, height]: [usize; 2]) -> String {
 }
 
 /// Colours with what they mean, below each other.
-pub(super) fn key(svg: &mut Svg, [x, y]: [usize; 2], lettering: &[(Rgb, String)]) {
-    for (i, ([r, g, b], text)) in lettering.iter().enumerate() {
-        let y = y + LINE * i;
-        svg.rect(
-            at([x, y + 5]),
-            [36.0, 24.0],
-            &format!("fill=\"#{r:02x}{g:02x}{b:02x}\" stroke=\"#222222\" stroke-width=\"2\""),
-        );
-        write(svg, [x + 52, y], std::slice::from_ref(text));
+fn key(svg: &mut Svg, [x, mut y]: [usize; 2], outside: &[(Rgb, Vec<String>)]) {
+    for ([r, g, b], lines) in outside {
+        let style =
+            format!("fill=\"#{r:02x}{g:02x}{b:02x}\" stroke=\"#222222\" stroke-width=\"2\"");
+        svg.rect(at([x, y + 5]), [36.0, 24.0], &style);
+        write(svg, [x + BESIDE, y], lines);
+        y += LINE * lines.len();
     }
 }
 
@@ -235,14 +183,19 @@ fn longest_side(panels: usize) -> usize {
     each.min(LARGEST)
 }
 
-/// Upper left corner of each panel, its axis and its title, in rows of [`WIDTH`], and the size of
-/// it all.
-fn arrange(sizes: &[[usize; 2]], most: usize, above: usize) -> (Vec<[usize; 2]>, [usize; 2]) {
-    let (mut x, mut y, mut row, mut right) = (MARGIN, 0, 0, WIDTH - MARGIN);
+/// Upper left corner of each panel, its axis and its title, in rows of `width`, and the size of it
+/// all.
+fn arrange(
+    sizes: &[[usize; 2]],
+    most: usize,
+    above: usize,
+    width: usize,
+) -> (Vec<[usize; 2]>, [usize; 2]) {
+    let (mut x, mut y, mut row, mut right) = (MARGIN, 0, 0, width - MARGIN);
     let mut places = Vec::with_capacity(sizes.len());
     for &[w, h] in sizes {
         let w = AXIS + w.max(most);
-        if x > MARGIN && x + w + MARGIN > WIDTH {
+        if x > MARGIN && x + w + MARGIN > width {
             (x, y, row) = (MARGIN, y + row, 0);
         }
         places.push([x, y]);
@@ -258,31 +211,22 @@ fn at(p: [usize; 2]) -> [f64; 2] {
 }
 
 /// Lines of text below each other, the corner of the first.
-pub(super) fn write(svg: &mut Svg, [x, y]: [usize; 2], lines: &[String]) {
+fn write(svg: &mut Svg, [x, y]: [usize; 2], lines: &[String]) {
     for (i, line) in lines.iter().enumerate() {
         svg.text(at([x, y + LINE * i + TYPE - 3]), "", line);
     }
 }
 
-fn image(svg: &mut Svg, [x, y]: [usize; 2], [w, h]: [usize; 2], uri: &str) {
-    svg.raw(&format!(
-        "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"{uri}\"/>"
-    ));
-    svg.rect(
-        [x as f64 - 1.0, y as f64 - 1.0],
-        [w as f64 + 2.0, h as f64 + 2.0],
-        THIN,
-    );
-}
-
-pub(super) fn draw(
+fn draw(
     svg: &mut Svg,
     panel: &Panel,
     [left, top]: [usize; 2],
     [w, h]: [usize; 2],
     scale: &Scale,
 ) -> Result<(), PictureError> {
-    image(svg, [left, top], [w, h], &panel.data_uri(scale)?);
+    svg.image(at([left, top]), at([w, h]), &panel.data_uri(scale)?);
+    let frame = [left as f64 - 1.0, top as f64 - 1.0];
+    svg.rect(frame, [w as f64 + 2.0, h as f64 + 2.0], THIN);
     let [across, up] = &panel.axes;
     let bottom = top + h;
     arrow(svg, at([left, bottom + 30]), [1.0, 0.0]);
@@ -291,10 +235,9 @@ pub(super) fn draw(
     // A letter stands upright, a word is turned along its arrow.
     let [x, y] = at([left, bottom]);
     if up.chars().count() <= 2 {
-        svg.text([x - 20.0, y - 68.0], "text-anchor=\"middle\"", up);
+        svg.text([x - 20.0, y - 68.0], MIDDLE, up);
     } else {
-        let turn = format!("transform=\"rotate(-90 {} {})\"", x - 12.0, y - 68.0);
-        svg.text([x - 12.0, y - 68.0], &turn, up);
+        svg.upright([x - 12.0, y - 68.0], "", up);
     }
     if let Some(ScaleBar { share, text }) = &panel.scale_bar {
         let [right, y] = at([left + w, bottom + 30]);
@@ -304,7 +247,7 @@ pub(super) fn draw(
             [right, y],
             "stroke=\"#222222\" stroke-width=\"7\"",
         );
-        svg.text([right - long - 10.0, y + 10.0], "text-anchor=\"end\"", text);
+        svg.text([right - long - 10.0, y + 10.0], END, text);
     }
     Ok(())
 }
@@ -318,96 +261,6 @@ fn arrow(svg: &mut Svg, [x, y]: [f64; 2], [dx, dy]: [f64; 2]) {
         Close::Yes,
         "fill=\"#222222\"",
     );
-}
-
-/// The colours of the scale with its ticks and its name.
-pub(super) fn bar(
-    svg: &mut Svg,
-    [x, y]: [usize; 2],
-    scale: &Scale,
-    unit: &str,
-) -> Result<(), PictureError> {
-    let steps = 256;
-    let values = (0..steps).map(|i| scale.value(i as f64 / (steps - 1) as f64));
-    let colours = Panel::elements("", [steps, 1], values.collect());
-    image(svg, [x, y], BAR, &colours.data_uri(scale)?);
-    for (t, text) in bar_ticks(scale) {
-        let across = x as f64 + t * BAR[0] as f64;
-        let below = (y + BAR[1]) as f64;
-        svg.line([across, below], [across, below + 9.0], THIN);
-        svg.text([across, below + 40.0], "text-anchor=\"middle\"", &text);
-    }
-    svg.text(at([x + BAR[0] + 40, y + 25]), "", unit);
-    Ok(())
-}
-
-/// Where along the bar there is a tick, and its text: 0, 0.5, 1 on the grey scale, both ends and
-/// round values between on the others.
-pub(super) fn bar_ticks(scale: &Scale) -> Vec<(f64, String)> {
-    let [low, high] = scale.range();
-    let along = |x: f64| scale.share(x);
-    if *scale == Scale::reflectance() {
-        return [0.0, 0.5, 1.0].map(|x| (along(x), tick(x))).to_vec();
-    }
-    let round = match scale.law() {
-        Law::Linear => ticks(low, high, 3),
-        Law::Logarithmic => ticks(libm::log10(low), libm::log10(high), 3)
-            .into_iter()
-            .filter(|x| x.fract() == 0.0)
-            .map(libm::exp10)
-            .collect(),
-    };
-    let inner = round
-        .into_iter()
-        .filter(|x| (0.3..0.7).contains(&along(*x)));
-    let inner: Vec<f64> = inner.take(1).collect();
-    let ends = [(0.0, low), (1.0, high)].map(|(t, x)| (t, scientific(&significant(x, 3))));
-    let mut all = inner
-        .into_iter()
-        .map(|x| (along(x), scientific(&tick(x))))
-        .collect::<Vec<_>>();
-    all.extend(ends);
-    all
-}
-
-/// What the colours outside the scale mean, where they occur.
-pub(super) fn legend_lines(scale: &Scale, panels: &[Panel]) -> Vec<(Rgb, String)> {
-    let [low, high] = scale.range();
-    let values = || panels.iter().flat_map(|p| p.values.iter());
-    let fixed = *scale == Scale::reflectance();
-    let count = |n: usize| match n {
-        1 => "1 value here".to_owned(),
-        n => format!("{n} values here"),
-    };
-    let outside = |(colour, name), side: &str, limit: f64, n: usize| {
-        let text = format!(
-            "{name}: {side} {}, clipped in the picture only ({})",
-            if fixed {
-                tick(limit)
-            } else {
-                significant(limit, 3)
-            },
-            count(n)
-        );
-        (n > 0).then_some((colour, text))
-    };
-    let below = values().filter(|v| **v < low).count();
-    let above = values().filter(|v| **v > high).count();
-    let missing = panels.iter().map(|p| p.size[0] * p.size[1]).sum::<usize>();
-    let numbers = values().filter(|v| !v.is_nan()).count();
-    let missing = missing.saturating_sub(numbers);
-    let nan = (missing > 0).then(|| {
-        let (colour, name) = NOT_A_NUMBER;
-        (colour, format!("{name}: not a number ({})", count(missing)))
-    });
-    [
-        outside(scale.below(), "below", low, below),
-        outside(scale.above(), "above", high, above),
-        nan,
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
 }
 
 /// `text` in lines of at most `width` characters, broken at spaces (but not at no-break

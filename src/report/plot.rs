@@ -4,12 +4,12 @@
 //! line of 1.6 units 1 pt. A single plot takes one column, 90 mm.
 
 use super::axis::Ruler;
-use super::label::legend;
+use super::legend::samples;
 use super::look::Look;
 use super::picture::{lettered, wrapped};
 use super::plotted::{Direction, Kind, Plotted, Series};
 use super::raster::FAMILIES;
-use super::svg::{Close, Svg, escape, ink, number, raised};
+use super::svg::{Close, END, MIDDLE, Svg, escape, fill, ink, stroke};
 use crate::lab::finding::{Curve, Figure, Mark, Plot};
 
 /// Plots a row, and the width that each has.
@@ -87,7 +87,7 @@ pub fn figure_svg(figure: &Figure) -> String {
     let key = looks.legend();
     let below = match key.is_empty() {
         true => 0.0,
-        false => legend(&mut svg, [MARGIN, top], width - 2.0 * MARGIN, &key),
+        false => samples(&mut svg, [MARGIN, top], width - 2.0 * MARGIN, &key),
     };
     let height = (top + below).ceil();
     format!(
@@ -136,7 +136,7 @@ fn remark(figure: &Figure, rulers: &[[Ruler<'_>; 2]]) -> String {
     }
     if hidden > 0 {
         words.push(format!(
-            "{hidden} points lie beyond the axes; the files have all"
+            "{hidden} points lie beyond the axes; the files have all of them"
         ));
     }
     words.retain(|w| !w.is_empty());
@@ -314,7 +314,7 @@ impl Area<'_> {
                 corner[d] = a.min(b);
                 size[d] = (a - b).abs().max(1.0);
             }
-            svg.rect(corner, size, &format!("fill=\"{}\"", look.ink()));
+            svg.rect(corner, size, &fill(look.ink()));
             if let Some(stderr) = curve.stderr.get(i) {
                 let middle = 0.5 * (sides[0] + sides[1]);
                 self.whisker(svg, along, middle, point[along], *stderr);
@@ -340,9 +340,9 @@ impl Area<'_> {
     /// Grid, ticks, titles and border.
     fn frame(&self, svg: &mut Svg) {
         let ([left, top], [width, height]) = (self.corner, self.size);
-        let pale = format!("stroke=\"{}\" stroke-width=\"0.6\"", ink::PALE);
-        let middle = format!("text-anchor=\"middle\" {DARK}");
-        let end = format!("text-anchor=\"end\" {DARK}");
+        let pale = stroke(ink::PALE, 0.6);
+        let middle = format!("{MIDDLE} {DARK}");
+        let end = format!("{END} {DARK}");
         for (d, ruler) in self.rulers.iter().enumerate() {
             let shown = |(x, text)| Some((self.at(d, ruler.fraction(x)?), text));
             for (at, text) in ruler.ticks().into_iter().filter_map(shown) {
@@ -368,13 +368,7 @@ impl Area<'_> {
         svg.rect(self.corner, self.size, border);
         let [x, y] = self.rulers.each_ref().map(|r| &r.axis.title);
         svg.text([left + 0.5 * width, top + height + 40.0], &middle, x);
-        let (tx, ty) = (left - 52.0, top + 0.5 * height);
-        svg.raw(&format!(
-            "<text transform=\"translate({} {}) rotate(-90)\" {middle}>{}</text>",
-            number(tx),
-            number(ty),
-            raised(y)
-        ));
+        svg.upright([left - 52.0, top + 0.5 * height], &middle, y);
     }
 
     /// The data of the plot.

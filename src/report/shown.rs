@@ -1,16 +1,13 @@
 //! One matrix by itself, for a look at it: as PNG, or in a terminal.
 
-use super::colour::{NOT_A_NUMBER, Rgb, Scale};
+use super::colour::{Rgb, Scale};
 use super::encode::PictureError;
 use super::figure::{Reduction, reduced};
-use super::picture::{
-    AXIS, BAR, BELOW, CHARACTER, LINE, MARGIN, Panel, bar, bar_ticks, draw, key, opening, wrapped,
-    write,
-};
+use super::legend::{bar_ticks, outside};
+use super::panel::Panel;
+use super::picture::{BAR, MARGIN, Sheet};
 use super::raster;
-use super::svg::Svg;
 use super::terminal::half_blocks;
-use crate::num::digits::significant;
 
 /// Longer side of the matrix on its sheet, px, where it has no more entries than that.
 const LARGEST: usize = 900;
@@ -43,37 +40,10 @@ impl Shown {
         }
     }
 
-    /// What the colours outside the scale mean and how many values have them: "3 of 256 above
-    /// 1.2e-9 W".
+    /// What the colours outside the scale mean and how many values have them.
     pub fn outside(&self) -> Vec<(Rgb, String)> {
-        let [low, high] = self.scale.range();
-        let values = &self.panel.values;
-        let all = values.len();
-        let count = |f: &dyn Fn(f64) -> bool| values.iter().filter(|v| f(**v)).count();
-        let unit = match self.unit.as_str() {
-            "" => String::new(),
-            unit => format!(" {unit}"),
-        };
-        let said = |(colour, name): (Rgb, &str), n: usize, what: String| {
-            (n > 0).then(|| (colour, format!("{name}: {n} of {all} {what}")))
-        };
-        let beyond = |side: &str, limit: f64| format!("{side} {}{unit}", significant(limit, 3));
-        let strange = count(&f64::is_nan);
-        let strangers = match self.infinite {
-            0 => "not a number".to_owned(),
-            n if n == strange => "infinite".to_owned(),
-            n => format!("not finite ({n} infinite, {} not a number)", strange - n),
-        };
-        let below = count(&|v| v < low);
-        let above = count(&|v| v > high);
-        [
-            said(self.scale.below(), below, beyond("below", low)),
-            said(self.scale.above(), above, beyond("above", high)),
-            said(NOT_A_NUMBER, strange, strangers),
-        ]
-        .into_iter()
-        .flatten()
-        .collect()
+        let panels = std::slice::from_ref(&self.panel);
+        outside(&self.scale, panels, &self.unit, self.infinite)
     }
 
     /// With title, axes, colour bar and what lies outside it, as PNG bytes; the last row is on top.
@@ -81,7 +51,17 @@ impl Shown {
     /// # Errors
     /// [`PictureError`].
     pub fn sheet_png(&self) -> Result<Vec<u8>, PictureError> {
-        raster::png(&self.svg()?)
+        let sheet = Sheet {
+            title: &self.panel.title,
+            width: MARGIN + 100 + BAR[0] + UNIT,
+            most: LARGEST,
+            outside: self.outside(),
+        };
+        let panel = Panel {
+            title: String::new(),
+            ..self.panel.clone()
+        };
+        raster::png(&sheet.svg(&[panel], &self.scale, &self.unit)?)
     }
 
     /// The entries alone, each a square of whole pixels, the last row on top, as PNG bytes.
@@ -90,30 +70,6 @@ impl Shown {
     /// [`PictureError`].
     pub fn bare_png(&self) -> Result<Vec<u8>, PictureError> {
         self.panel.plain_png(&self.scale)
-    }
-
-    fn svg(&self) -> Result<String, PictureError> {
-        let size = self.panel.pixels(LARGEST);
-        let width = (MARGIN + AXIS + size[0] + MARGIN).max(MARGIN + 100 + BAR[0] + UNIT);
-        let heading = wrapped(&self.panel.title, (width - 2 * MARGIN) / CHARACTER);
-        let lettering = self.outside();
-        let top = MARGIN + LINE * heading.len() + 12;
-        let legend = top + size[1] + BELOW + 26;
-        let height = legend + BAR[1] + 56 + LINE * lettering.len() + MARGIN;
-        let mut svg = Svg::default();
-        svg.raw(&opening(&self.panel.title, [width, height]));
-        write(&mut svg, [MARGIN, MARGIN], &heading);
-        draw(
-            &mut svg,
-            &self.panel,
-            [MARGIN + AXIS, top],
-            size,
-            &self.scale,
-        )?;
-        bar(&mut svg, [MARGIN + 100, legend], &self.scale, &self.unit)?;
-        key(&mut svg, [MARGIN, legend + BAR[1] + 56], &lettering);
-        svg.raw("</svg>");
-        Ok(svg.text)
     }
 
     /// Title, picture and legend for a terminal of 24-bit colours that is `columns` wide: each
@@ -193,9 +149,9 @@ mod tests {
         assert_eq!(
             words(&shown([16, 16], values, [0.0, 1.0])),
             [
-                "black: 1 of 256 below 0 W",
-                "orange: 3 of 256 above 1.00 W",
-                "purple: 3 of 256 not finite (2 infinite, 1 not a number)"
+                "black: 1 of 256 values below 0 W, clipped in the picture only",
+                "orange: 3 of 256 values above 1.00 W, clipped in the picture only",
+                "purple: 3 of 256 values not finite (2 infinite, 1 not a number)"
             ]
         );
         // The ends belong to the scale.

@@ -14,6 +14,25 @@ pub(super) mod ink {
     pub(in super::super) const ORANGE: &str = "#e69f00";
 }
 
+/// The style of a line.
+pub(super) fn stroke(ink: &str, width: f64) -> String {
+    format!("fill=\"none\" stroke=\"{ink}\" stroke-width=\"{width}\"")
+}
+
+/// The style of an area, or of text.
+pub(super) fn fill(ink: &str) -> String {
+    format!("fill=\"{ink}\"")
+}
+
+/// The style of type of a size.
+pub(super) fn lettering(ink: &str, size: f64) -> String {
+    format!("fill=\"{ink}\" font-size=\"{size}\"")
+}
+
+/// Where text stands on its place, if not to the right of it.
+pub(super) const MIDDLE: &str = "text-anchor=\"middle\"";
+pub(super) const END: &str = "text-anchor=\"end\"";
+
 /// `text` for XML and HTML, as content or as a quoted attribute. Characters that XML 1.0 cannot
 /// hold become U+FFFD.
 pub(super) fn escape(text: &str) -> String {
@@ -108,6 +127,16 @@ impl Svg {
         );
     }
 
+    /// A picture whose pixels stay squares, from its upper left corner.
+    pub(super) fn image(&mut self, [x, y]: [f64; 2], [w, h]: [f64; 2], uri: &str) {
+        let [x, y, w, h] = [x, y, w, h].map(number);
+        let _ = writeln!(
+            self.text,
+            "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" preserveAspectRatio=\"none\" \
+             style=\"image-rendering:pixelated\" href=\"{uri}\"/>"
+        );
+    }
+
     /// Text, escaped and its raised signs set here.
     pub(super) fn text(&mut self, [x, y]: [f64; 2], style: &str, text: &str) {
         let (x, y) = (number(x), number(y));
@@ -116,6 +145,13 @@ impl Svg {
             "<text x=\"{x}\" y=\"{y}\" {style}>{}</text>",
             raised(text)
         );
+    }
+
+    /// Text that runs upwards.
+    pub(super) fn upright(&mut self, at: [f64; 2], style: &str, text: &str) {
+        let [x, y] = at.map(number);
+        let turned = format!("{style} transform=\"rotate(-90 {x} {y})\"");
+        self.text(at, &turned, text);
     }
 }
 

@@ -18,60 +18,30 @@ pub struct Builtin {
     pub text: &'static str,
 }
 
+macro_rules! scenes {
+    ($($name:literal: $summary:literal,)*) => {
+        &[$(Builtin {
+            name: $name,
+            summary: $summary,
+            text: include_str!(concat!("../../scenes/", $name, ".toml")),
+        }),*]
+    };
+}
+
 /// All built-in scenes.
 pub fn builtins() -> &'static [Builtin] {
-    &[
-        Builtin {
-            name: "bench",
-            summary: "the bench: 2 × 2 board, 120 staggered spots, half-width 3 in.",
-            text: include_str!("../../scenes/bench.toml"),
-        },
-        Builtin {
-            name: "thesis",
-            summary: "as published: 8 × 8 board, 120 staggered spots, half-width 6 in., wall extended",
-            text: include_str!("../../scenes/thesis.toml"),
-        },
-        Builtin {
-            name: "experiment",
-            summary: "the laboratory experiment: 252 spots 1 in. around the view, 64 × 64 pixels",
-            text: include_str!("../../scenes/experiment.toml"),
-        },
-        Builtin {
-            name: "dual",
-            summary: "a projector–camera pair for dual photography: 16 × 16 spots beside 16 × 16 pixels",
-            text: include_str!("../../scenes/dual.toml"),
-        },
-        Builtin {
-            name: "card",
-            summary: "a playing card face down over a table, 47 × 31 elements; laser and camera peek under it",
-            text: include_str!("../../scenes/card.toml"),
-        },
-        Builtin {
-            name: "satin",
-            summary: "the bench with a wall in satin paint: its BRDF enters the model",
-            text: include_str!("../../scenes/satin.toml"),
-        },
-        Builtin {
-            name: "shelf",
-            summary: "the bench with a shelf between wall and object",
-            text: include_str!("../../scenes/shelf.toml"),
-        },
-        Builtin {
-            name: "corner",
-            summary: "a letter chart around a corner: the relay wall is seen past another wall",
-            text: include_str!("../../scenes/corner.toml"),
-        },
-        Builtin {
-            name: "room",
-            summary: "a furnished room with a bust of a million triangles in it",
-            text: include_str!("../../scenes/room.toml"),
-        },
-        Builtin {
-            name: "furnace",
-            summary: "an integrating sphere, whose flux at every bounce count is known in closed form",
-            text: include_str!("../../scenes/furnace.toml"),
-        },
-    ]
+    scenes! {
+        "bench": "the bench: 2 × 2 board, 120 staggered spots, half-width 3 in.",
+        "thesis": "as published: 8 × 8 board, 120 staggered spots, half-width 6 in., wall extended",
+        "experiment": "the laboratory experiment: 252 spots 1 in. around the view, 64 × 64 pixels",
+        "dual": "a projector–camera pair for dual photography: 16 × 16 spots beside 16 × 16 pixels",
+        "card": "a playing card face down over a table, 47 × 31 elements; laser and camera peek under it",
+        "satin": "the bench with a wall in satin paint: its BRDF enters the model",
+        "shelf": "the bench with a shelf between wall and object",
+        "corner": "a letter chart around a corner: the relay wall is seen past another wall",
+        "room": "a furnished room with a bust of a million triangles in it",
+        "furnace": "an integrating sphere, whose flux at every bounce count is known in closed form",
+    }
 }
 
 /// Reads a scene file.

@@ -1,10 +1,11 @@
 //! The camera: an off-axis pinhole whose pixel grid covers a rectangle of the wall exactly.
 
+use super::device;
 use super::error::{Fault, keys};
 use super::file::CameraTable;
-use super::surface::{Role, Surface};
+use super::surface::{Surface, facing_at_xy, is_off_the_wall};
 use super::{FARTHEST, FINEST};
-use crate::geometry::{DVec3, Interaction, Parallelogram};
+use crate::geometry::{DVec3, Parallelogram};
 
 /// More pixels than this are taken for a mistake.
 const MOST_PIXELS: u64 = 1 << 26;
@@ -89,23 +90,12 @@ impl Camera {
                 "give a positive area in unit², from 1e-30 to 1e30",
             );
         }
-        if table
-            .position
-            .iter()
-            .any(|x| !(-FARTHEST..=FARTHEST).contains(x))
-        {
-            return refuse(
-                "position",
-                format!("the camera's position is not finite, or farther than {FARTHEST:e}"),
-                "use finite numbers, or another unit of length",
-            );
-        }
+        let position = device::position("camera", table.position)?;
         let ([x0, x1], [y0, y1]) = (table.view.x, table.view.y);
         if !(x0 < x1 && y0 < y1 && [x0, x1, y0, y1].iter().all(|c| c.is_finite())) {
             let cause = format!("the view [{x0}, {x1}] × [{y0}, {y1}] has no area");
             return refuse("view", cause, "give x and y as [lower, upper]");
         }
-        let position = DVec3::from_array(table.position);
         let view = view([x0, x1], [y0, y1], position, surfaces).map_err(|e| {
             let at = format!("the view [{x0}, {x1}] × [{y0}, {y1}]");
             let fault = match e {
@@ -168,20 +158,15 @@ fn view(
     camera: DVec3,
     surfaces: &[Surface],
 ) -> Result<Parallelogram, NoView> {
-    let relays = || surfaces.iter().filter(|s| s.role == Role::Relay);
     const STEPS: usize = 64;
     let at = |c: [f64; 2], k: usize| c[0] + (c[1] - c[0]) * k as f64 / STEPS as f64;
     for (i, j) in (0..=STEPS).flat_map(|i| (0..=STEPS).map(move |j| (i, j))) {
-        if relays().all(|s| s.shape.at_xy(at(x, i), at(y, j)).is_empty()) {
+        if is_off_the_wall(surfaces, [at(x, i), at(y, j)]) {
             return Err(NoView::OffTheWall);
         }
     }
     let (cx, cy) = (0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1]));
-    let distance = |p: &Interaction| (p.position - camera).length_squared();
-    let centre = relays()
-        .filter_map(|s| s.facing_at_xy(cx, cy, camera))
-        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
-        .ok_or(NoView::Behind)?;
+    let (_, centre) = facing_at_xy(surfaces, [cx, cy], camera).ok_or(NoView::Behind)?;
     let n = centre.normal;
     if n.z.abs() < 1e-9 {
         return Err(NoView::OffTheWall);

@@ -2,7 +2,7 @@
 
 use super::error::{Fault, keys};
 use super::laser::{Profile, Spot};
-use super::surface::{Role, Surface};
+use super::surface::{Role, Surface, is_off_the_wall};
 use super::warning::Warning;
 use super::{Scene, Texture};
 use crate::geometry::{Basis, DVec3, Interaction, Ray, Shape, ShapeId};
@@ -178,10 +178,7 @@ fn rim_leaves(scene: &Scene, target: &Interaction, radius: f64) -> bool {
     (0..16).any(|k| {
         let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(k) / 16.0);
         let p = target.position + basis.to_world([radius * cos, radius * sin, 0.0]);
-        let relays = scene.surfaces.iter().filter(|s| s.role == Role::Relay);
-        relays
-            .into_iter()
-            .all(|s| s.shape.at_xy(p.x, p.y).is_empty())
+        is_off_the_wall(&scene.surfaces, [p.x, p.y])
     })
 }
 

@@ -1,9 +1,10 @@
 //! The laser and its spots.
 
+use super::device;
 use super::error::{Fault, keys};
 use super::file::{LaserTable, ProfileShape};
 use super::spots;
-use super::surface::{Role, Surface};
+use super::surface::{Surface, facing_at_xy, is_off_the_wall};
 use super::{FARTHEST, FINEST};
 use crate::geometry::{DVec3, Interaction, ShapeId};
 
@@ -75,23 +76,12 @@ impl Laser {
                 "use 0 for an ideal spot, or a length from 1e-15 to 1e15",
             );
         }
-        if table
-            .position
-            .iter()
-            .any(|x| !(-FARTHEST..=FARTHEST).contains(x))
-        {
-            return refuse(
-                "position",
-                format!("the laser's position is not finite, or farther than {FARTHEST:e}"),
-                "use finite numbers, or another unit of length",
-            );
-        }
+        let position = device::position("laser", table.position)?;
         let profile = match table.profile {
             _ if d == 0.0 => Profile::Ideal,
             ProfileShape::Disc => Profile::Disc { radius: 0.5 * d },
             ProfileShape::Gaussian => Profile::Gaussian { radius: 0.5 * d },
         };
-        let position = DVec3::from_array(table.position);
         let places = spots::places(&table.spots).map_err(|f| f.within(keys!["laser", "spots"]))?;
         let spots = place(&places, position, surfaces)?;
         Ok(Self {
@@ -113,30 +103,12 @@ pub(super) fn place(
 ) -> Result<Vec<Spot>, Fault> {
     let mut spots = Vec::with_capacity(places.len());
     for (i, &[x, y]) in places.iter().enumerate() {
-        let relays = || {
-            surfaces
-                .iter()
-                .enumerate()
-                .filter(|(_, s)| s.role == Role::Relay)
-        };
-        let nearest = relays()
-            .filter_map(|(id, s)| {
-                let target = s.facing_at_xy(x, y, laser)?;
-                Some(Spot {
-                    target,
-                    surface: id as ShapeId,
-                })
-            })
-            .min_by(|a, b| {
-                let distance = |s: &Spot| (s.target.position - laser).length_squared();
-                distance(a).total_cmp(&distance(b))
-            });
-        let (cause, cure) = match nearest {
-            Some(spot) => {
-                spots.push(spot);
+        let (cause, cure) = match facing_at_xy(surfaces, [x, y], laser) {
+            Some((surface, target)) => {
+                spots.push(Spot { target, surface });
                 continue;
             }
-            None if relays().all(|(_, s)| s.shape.at_xy(x, y).is_empty()) => (
+            None if is_off_the_wall(surfaces, [x, y]) => (
                 format!("spot {i} at ({x}, {y}) falls off every relay surface"),
                 "move or shrink the layout, or extend the wall",
             ),

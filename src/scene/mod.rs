@@ -137,6 +137,7 @@ mod body;
 mod builtin;
 mod camera;
 mod check;
+mod device;
 mod element;
 mod error;
 pub mod file;
@@ -179,7 +180,7 @@ pub use texture::{
 pub use unit::Unit;
 pub use warning::Warning;
 
-use crate::geometry::{Bvh, Shape};
+use crate::geometry::Bvh;
 use error::{Fault, keys};
 use file::SceneFile;
 use files::Files;
@@ -306,9 +307,7 @@ impl Scene {
         let wavelength = file.laser.wavelength;
         let surfaces =
             surface_tables::from_tables(&file.surface, &mut files, wavelength, &mut found)?;
-        let shapes: Vec<Shape> = surfaces.iter().map(|s| s.shape.clone()).collect();
-        let bvh = Bvh::new(shapes)
-            .map_err(|e| Fault::new(keys!["surface"], e.to_string(), "check the coordinates"))?;
+        let bvh = surface::bvh(&surfaces)?;
         let laser = Laser::from_table(&file.laser, &surfaces)?;
         let camera = Camera::from_table(&file.camera, &surfaces)?;
         let known = Known::from_tables(
@@ -356,10 +355,12 @@ impl Scene {
 
     /// The hidden surfaces with their shape ids, in file order.
     pub fn hidden(&self) -> impl Iterator<Item = (usize, &Surface)> {
-        self.surfaces
-            .iter()
-            .enumerate()
-            .filter(|(_, s)| s.role == Role::Hidden)
+        surface::of_role(Role::Hidden, &self.surfaces)
+    }
+
+    /// The relay surfaces with their shape ids, in file order.
+    pub fn relays(&self) -> impl Iterator<Item = (usize, &Surface)> {
+        surface::of_role(Role::Relay, &self.surfaces)
     }
 
     /// What is suspicious though not wrong.

@@ -130,12 +130,16 @@ pub struct SensorSettings {
 pub const MOST_BRACKETS: usize = 16;
 
 impl SensorSettings {
-    /// Checks every value; `None` if all make sense, else the keys to blame below the table, cause
-    /// and cure.
-    fn fault(&self) -> Option<Fault> {
+    /// The settings of a scene, checked.
+    pub(super) fn checked(self) -> Result<Self, Fault> {
+        self.check().map_err(|f| f.within(keys!["sensor"]))?;
+        Ok(self)
+    }
+
+    fn check(&self) -> Result<(), Fault> {
         let number = |quantity: Quantity, value: Option<f64>| Some((quantity, value?));
         let whole = |quantity, value: Option<u32>| number(quantity, value.map(f64::from));
-        let refused = [
+        let given = [
             number(Quantity::QuantumEfficiency, self.quantum_efficiency),
             number(Quantity::DarkCurrent, self.dark_current),
             number(Quantity::FullWell, self.full_well),
@@ -148,74 +152,48 @@ impl SensorSettings {
             whole(Quantity::Frames, self.frames),
             whole(Quantity::DarkFrames, self.dark_frames),
             number(Quantity::Ambient, self.ambient),
-        ]
-        .into_iter()
-        .flatten()
-        .find_map(|(quantity, value)| blame(quantity, value, []));
-        refused
-            .or_else(|| self.glare.as_ref().and_then(glare_fault))
-            .or_else(|| {
-                self.brackets
-                    .as_ref()
-                    .and_then(|times| brackets_fault(times))
-            })
-            .or_else(|| {
-                let twice = self.exposure.is_some() && self.brackets.is_some();
-                twice.then(|| {
-                    Fault::new(
-                        keys!["brackets"],
-                        "both `exposure` and `brackets` are given",
-                        "keep one: brackets are the exposure times of a series",
-                    )
-                })
-            })
-    }
-
-    /// The settings of a scene, checked.
-    pub(super) fn checked(self) -> Result<Self, Fault> {
-        match self.fault() {
-            None => Ok(self),
-            Some(fault) => Err(fault.within(keys!["sensor"])),
+        ];
+        for (quantity, value) in given.into_iter().flatten() {
+            check(quantity, value)?;
         }
+        if let Some(Glare { fraction, spread }) = self.glare {
+            check(Quantity::GlareFraction, fraction).map_err(|f| f.within(keys!["glare"]))?;
+            if let Spread::Falloff(d0) = spread {
+                check(Quantity::GlareFalloff, d0)
+                    .map_err(|f| f.within(keys!["glare", "spread"]))?;
+            }
+        }
+        let Some(times) = &self.brackets else {
+            return Ok(());
+        };
+        let refuse = |cause, cure: &str| Err(Fault::new(keys!["brackets"], cause, cure));
+        if !(1..=MOST_BRACKETS).contains(&times.len()) {
+            let cause = format!("brackets has {} exposure times", times.len());
+            return refuse(cause, &format!("give 1 to {MOST_BRACKETS}"));
+        }
+        let is_wrong = |t: &&f64| Quantity::Exposure.refuses(**t).is_some();
+        if let Some(t) = times.iter().find(is_wrong) {
+            let cause = format!("brackets has the exposure time {t} s");
+            return refuse(cause, "give positive times in s");
+        }
+        if self.exposure.is_some() {
+            let cause = "both `exposure` and `brackets` are given".to_owned();
+            return refuse(
+                cause,
+                "keep one: brackets are the exposure times of a series",
+            );
+        }
+        Ok(())
     }
 }
 
-fn blame(
-    quantity: Quantity,
-    value: f64,
-    outer: impl IntoIterator<Item = super::error::Step>,
-) -> Option<Fault> {
+fn check(quantity: Quantity, value: f64) -> Result<(), Fault> {
+    let Some(range) = quantity.refuses(value) else {
+        return Ok(());
+    };
     let key = quantity.key();
-    let range = quantity.refuses(value)?;
-    Some(
-        Fault::new(
-            keys![key],
-            format!("{key} = {value}"),
-            format!("use {range}"),
-        )
-        .within(outer),
-    )
-}
-
-fn glare_fault(glare: &Glare) -> Option<Fault> {
-    let fraction = blame(Quantity::GlareFraction, glare.fraction, keys!["glare"]);
-    fraction.or_else(|| match glare.spread {
-        Spread::Uniform => None,
-        Spread::Falloff(d0) => blame(Quantity::GlareFalloff, d0, keys!["glare", "spread"]),
-    })
-}
-
-fn brackets_fault(times: &[f64]) -> Option<Fault> {
-    if !(1..=MOST_BRACKETS).contains(&times.len()) {
-        let cause = format!("brackets has {} exposure times", times.len());
-        let cure = format!("give 1 to {MOST_BRACKETS}");
-        return Some(Fault::new(keys!["brackets"], cause, cure));
-    }
-    let wrong = |t: &&f64| Quantity::Exposure.refuses(**t).is_some();
-    times.iter().find(wrong).map(|t| {
-        let cause = format!("brackets has the exposure time {t} s");
-        Fault::new(keys!["brackets"], cause, "give positive times in s")
-    })
+    let cause = format!("{key} = {value}");
+    Err(Fault::new(keys![key], cause, format!("use {range}")))
 }
 
 #[cfg(test)]

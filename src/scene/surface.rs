@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::error::{Fault, keys};
 use super::material::Material;
 use super::texture::Texture;
-use crate::geometry::{Basis, DVec3, Interaction, Shape};
+use crate::geometry::{Basis, Bvh, DVec3, Interaction, Shape, ShapeId};
 
 /// What a surface is there for.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
@@ -117,11 +118,38 @@ impl Surface {
             false => mean.max(LEAST),
         }
     }
+}
 
-    /// The point above or below (x, y) that shows its front to `device`; of a sphere's two the
-    /// lower one.
-    pub(super) fn facing_at_xy(&self, x: f64, y: f64, device: DVec3) -> Option<Interaction> {
-        let mut points = self.shape.at_xy(x, y).into_iter();
-        points.find(|p| (device - p.position).dot(p.normal) > 0.0)
-    }
+/// The surfaces of a role with their shape ids.
+pub(super) fn of_role(role: Role, surfaces: &[Surface]) -> impl Iterator<Item = (usize, &Surface)> {
+    let all = surfaces.iter().enumerate();
+    all.filter(move |(_, s)| s.role == role)
+}
+
+/// Whether no relay surface lies straight above or below (x, y).
+pub(super) fn is_off_the_wall(surfaces: &[Surface], [x, y]: [f64; 2]) -> bool {
+    of_role(Role::Relay, surfaces).all(|(_, s)| s.shape.at_xy(x, y).is_empty())
+}
+
+/// The point of a relay surface above or below (x, y) that shows its front to `device`, and the
+/// surface's shape id: of several surfaces the nearest, of a sphere's two points the lower one.
+pub(super) fn facing_at_xy(
+    surfaces: &[Surface],
+    [x, y]: [f64; 2],
+    device: DVec3,
+) -> Option<(ShapeId, Interaction)> {
+    let faces = |p: &Interaction| (device - p.position).dot(p.normal) > 0.0;
+    let facing = of_role(Role::Relay, surfaces).filter_map(|(id, s)| {
+        let point = s.shape.at_xy(x, y).into_iter().find(faces)?;
+        Some((id as ShapeId, point))
+    });
+    let distance = |p: &Interaction| (p.position - device).length_squared();
+    facing.min_by(|a, b| distance(&a.1).total_cmp(&distance(&b.1)))
+}
+
+/// The shapes of all surfaces, ready for ray queries.
+pub(super) fn bvh(surfaces: &[Surface]) -> Result<Bvh, Fault> {
+    let shapes = surfaces.iter().map(|s| s.shape.clone()).collect();
+    Bvh::new(shapes)
+        .map_err(|e| Fault::new(keys!["surface"], e.to_string(), "check the coordinates"))
 }

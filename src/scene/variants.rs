@@ -6,8 +6,9 @@ use glam::DAffine3;
 use super::error::{Fault, keys};
 use super::laser;
 use super::parse;
+use super::surface::{self, Surface};
 use super::{Cells, Material, Role, Scene, SceneError, Texture};
-use crate::geometry::{Bvh, DVec3, Facing, Parallelogram, Shape, Sphere};
+use crate::geometry::{DVec3, Facing, Parallelogram, Shape, Sphere};
 
 impl Scene {
     /// The same scene with every spot moved by (dx, dy) on the wall.
@@ -40,41 +41,27 @@ impl Scene {
 
     /// The same scene with occluders that only block: their albedo is 0.
     pub fn with_black_occluders(&self) -> Self {
-        let mut scene = self.clone();
-        for surface in &mut scene.surfaces {
-            if surface.role == Role::Occluder {
-                surface.material = Material::Lambertian;
-                surface.albedo = Texture::Constant(0.0);
-            }
-        }
-        scene
+        self.with_each(Role::Occluder, |surface| {
+            surface.material = Material::Lambertian;
+            surface.albedo = Texture::Constant(0.0);
+        })
     }
 
     /// The same scene with each hidden surface's albedo replaced by its mean over the area.
     pub fn with_mean_albedo(&self) -> Self {
-        let mut scene = self.clone();
-        for surface in &mut scene.surfaces {
-            if surface.role == Role::Hidden {
-                surface.albedo = mean_albedo(&surface.albedo);
-            }
-        }
-        scene
+        self.with_each(Role::Hidden, |s| s.albedo = mean_albedo(&s.albedo))
     }
 
     /// The same scene with each hidden surface a checkerboard of `checks` × `checks` checks of
     /// albedo 0 and 1, the one at its corner dark.
     pub fn with_checkerboard(&self, checks: usize) -> Self {
-        let mut scene = self.clone();
         let check = |i: usize| f64::from(u8::from((i % checks + i / checks) % 2 == 1));
-        for surface in &mut scene.surfaces {
-            if surface.role == Role::Hidden {
-                surface.albedo = Texture::Cells(Cells {
-                    count: [checks; 2],
-                    albedo: (0..checks * checks).map(check).collect(),
-                });
-            }
-        }
-        scene
+        self.with_each(Role::Hidden, |surface| {
+            surface.albedo = Texture::Cells(Cells {
+                count: [checks; 2],
+                albedo: (0..checks * checks).map(check).collect(),
+            });
+        })
     }
 
     /// The same scene with each flat relay surface reaching further by `margin` on all four sides.
@@ -83,21 +70,13 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] if that leaves no proper shape.
     pub fn with_extended_relay(&self, margin: f64) -> Result<Self, SceneError> {
-        let mut scene = self.clone();
-        for surface in &mut scene.surfaces {
-            if let (Role::Relay, Shape::Parallelogram(p)) = (surface.role, &surface.shape) {
-                let [du, dv] = [p.u(), p.v()].map(|edge| edge.normalize_or_zero() * margin);
-                let wide =
-                    Parallelogram::new(p.corner() - du - dv, p.u() + du * 2.0, p.v() + dv * 2.0);
-                let turned = p.u().cross(p.v()).dot(p.normal()) < 0.0;
-                surface.shape = wide
-                    .map(|wide| if turned { wide.turned() } else { wide })
-                    .map(Shape::Parallelogram)
-                    .ok_or_else(|| self.locate(no_shape()))?;
-                surface.albedo = mean_albedo(&surface.albedo);
-            }
-        }
-        scene.rebuilt()
+        self.with_flat_relays(|p| {
+            let [du, dv] = [p.u(), p.v()].map(|edge| edge.normalize_or_zero() * margin);
+            let wide = Parallelogram::new(p.corner() - du - dv, p.u() + du * 2.0, p.v() + dv * 2.0);
+            let turned = p.u().cross(p.v()).dot(p.normal()) < 0.0;
+            wide.map(|wide| if turned { wide.turned() } else { wide })
+                .map(Shape::Parallelogram)
+        })
     }
 
     /// The same scene with the hidden surfaces moved by a rigid motion.
@@ -106,13 +85,9 @@ impl Scene {
     /// [`SceneError`] if that leaves no proper shape.
     pub fn with_moved_hidden(&self, motion: &DAffine3) -> Result<Self, SceneError> {
         let mut scene = self.clone();
-        for surface in &mut scene.surfaces {
-            if surface.role == Role::Hidden {
-                surface.shape = surface
-                    .shape
-                    .moved(motion)
-                    .ok_or_else(|| self.locate(no_shape()))?;
-            }
+        for surface in scene.surfaces.iter_mut().filter(|s| s.role == Role::Hidden) {
+            let moved = surface.shape.moved(motion);
+            surface.shape = moved.ok_or_else(|| self.locate(no_shape()))?;
         }
         scene.rebuilt()
     }
@@ -143,29 +118,41 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] if a spot is not on the bent wall.
     pub fn with_bent_relay(&self, sagitta: f64) -> Result<Self, SceneError> {
+        let bent = self.with_flat_relays(|p| {
+            let edge = p.u().length().max(p.v().length());
+            let radius = edge * edge / (8.0 * sagitta);
+            let centre = p.at([0.5, 0.5]).position + p.normal() * radius;
+            Sphere::new(centre, radius, Facing::Inside).map(Shape::Sphere)
+        })?;
+        bent.with_shifted_spots([0.0, 0.0])
+    }
+
+    /// The same scene with each surface of a role changed in what is not its shape.
+    pub(super) fn with_each(&self, role: Role, change: impl FnMut(&mut Surface)) -> Self {
+        let mut scene = self.clone();
+        let all = scene.surfaces.iter_mut();
+        all.filter(|s| s.role == role).for_each(change);
+        scene
+    }
+
+    /// The same scene with each flat relay surface in another shape. The parameters of that are
+    /// others, so that an albedo that varies becomes its mean.
+    fn with_flat_relays(
+        &self,
+        reshaped: impl Fn(&Parallelogram) -> Option<Shape>,
+    ) -> Result<Self, SceneError> {
         let mut scene = self.clone();
         for surface in &mut scene.surfaces {
             if let (Role::Relay, Shape::Parallelogram(p)) = (surface.role, &surface.shape) {
-                let edge = p.u().length().max(p.v().length());
-                let radius = edge * edge / (8.0 * sagitta);
-                let centre = p.at([0.5, 0.5]).position + p.normal() * radius;
-                let bent = Sphere::new(centre, radius, Facing::Inside);
-                surface.shape = bent
-                    .map(Shape::Sphere)
-                    .ok_or_else(|| self.locate(no_shape()))?;
-                // A sphere has other parameters: what varies over the wall would end up elsewhere.
+                surface.shape = reshaped(p).ok_or_else(|| self.locate(no_shape()))?;
                 surface.albedo = mean_albedo(&surface.albedo);
             }
         }
-        scene.rebuilt()?.with_shifted_spots([0.0, 0.0])
+        scene.rebuilt()
     }
 
     fn rebuilt(mut self) -> Result<Self, SceneError> {
-        let shapes = self.surfaces.iter().map(|s| s.shape.clone()).collect();
-        self.bvh = Bvh::new(shapes).map_err(|e| {
-            let fault = Fault::new(keys!["surface"], e.to_string(), "check the coordinates");
-            self.locate(fault)
-        })?;
+        self.bvh = surface::bvh(&self.surfaces).map_err(|fault| self.locate(fault))?;
         Ok(self)
     }
 

@@ -6,8 +6,7 @@ use super::{Material, Role, Scene, Surface};
 impl Scene {
     /// Whether every relay surface is Lambertian.
     pub fn relay_is_lambertian(&self) -> bool {
-        let mut relays = self.surfaces.iter().filter(|s| s.role == Role::Relay);
-        relays.all(Surface::is_lambertian)
+        self.relays().all(|(_, s)| s.is_lambertian())
     }
 
     /// The same scene with each relay surface Lambertian and of the same white-sky albedo
@@ -36,12 +35,7 @@ impl Scene {
     }
 
     fn with_matt(&self, role: Role) -> Self {
-        let mut scene = self.clone();
-        for surface in scene.surfaces.iter_mut().filter(|s| s.role == role) {
-            let matt = surface.lambertian_equivalent().into_owned();
-            *surface = matt;
-        }
-        scene
+        self.with_each(role, |s| *s = s.lambertian_equivalent().into_owned())
     }
 
     /// The same scene with the materials of those relay surfaces changed that `concerned` picks;

@@ -34,68 +34,60 @@ pub enum Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NothingHidden => {
-                write!(
-                    f,
-                    "no surface is hidden: frames can be rendered, but there is nothing to model or recover"
-                )
-            }
+            Self::NothingHidden => write!(
+                f,
+                "no surface is hidden: frames can be rendered, but there is nothing to model or recover"
+            ),
             Self::Mesh(surface, defects) => write!(f, "the mesh of `{surface}`: {defects}"),
             Self::SpotsInView(spots) => {
+                let spots = Spots(spots);
                 write!(
                     f,
-                    "{} in the camera's view: the camera sees the direct light",
-                    Spots(spots)
+                    "{spots} in the camera's view: the camera sees the direct light"
                 )
             }
             Self::BeamBlocked(spots, by) => {
+                let spots = Spots(spots);
                 write!(
                     f,
-                    "the beam to {} is stopped by `{by}`: the light lands there instead",
-                    Spots(spots)
+                    "the beam to {spots} is stopped by `{by}`: the light lands there instead"
                 )
             }
-            Self::PixelsBlocked(count, by) => {
-                write!(
-                    f,
-                    "the line of sight of {count} pixels is blocked by `{by}`: they see it instead of the wall"
-                )
-            }
+            Self::PixelsBlocked(count, by) => write!(
+                f,
+                "the line of sight of {count} pixels is blocked by `{by}`: they see it instead of the wall"
+            ),
             Self::SpotsBehind(spots, hidden) => {
+                let spots = Spots(spots);
                 write!(
                     f,
-                    "{} behind the plane of `{hidden}` and cannot light it",
-                    Spots(spots)
+                    "{spots} behind the plane of `{hidden}` and cannot light it"
                 )
             }
-            Self::ViewBehind(hidden) => {
-                write!(
-                    f,
-                    "part of the view lies behind the plane of `{hidden}` and receives nothing from it"
-                )
-            }
-            Self::Skewed(name, angle) => {
-                write!(
-                    f,
-                    "the edges of `{name}` meet at {angle:.3}°: it is taken as the parallelogram it is"
-                )
-            }
+            Self::ViewBehind(hidden) => write!(
+                f,
+                "part of the view lies behind the plane of `{hidden}` and receives nothing from it"
+            ),
+            Self::Skewed(name, angle) => write!(
+                f,
+                "the edges of `{name}` meet at {angle:.3}°: it is taken as the parallelogram it is"
+            ),
             Self::ElementsAcrossCells(name) => write!(
                 f,
                 "elements of `{name}` straddle the edges of its texture: the model takes their mean albedo"
             ),
             Self::SpotsOverhang(spots) => {
+                let spots = Spots(spots);
                 write!(
                     f,
-                    "{} hanging over the wall's edge: what falls beside it is lost",
-                    Spots(spots)
+                    "{spots} hanging over the wall's edge: what falls beside it is lost"
                 )
             }
             Self::SpotsShadowed(spots) => {
+                let spots = Spots(spots);
                 write!(
                     f,
-                    "{} lit, but every line from there to the hidden elements is blocked",
-                    Spots(spots)
+                    "{spots} lit, but every line from there to the hidden elements is blocked"
                 )
             }
         }

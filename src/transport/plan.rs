@@ -197,7 +197,8 @@ impl TryFrom<Stored> for Plan {
 /// How a long computation reports progress and is stopped.
 #[derive(Clone, Copy)]
 pub struct Control<'a> {
-    /// Called from any thread with the number of paths just finished.
+    /// Called from any thread with how much was just finished, in the unit of the work: paths, or
+    /// tasks.
     pub progress: &'a (dyn Fn(u64) + Sync),
     /// Set from outside to stop the render.
     pub stop: &'a AtomicBool,

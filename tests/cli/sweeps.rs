@@ -40,42 +40,35 @@ fn noise_is_a_table_figures_and_json() {
     }
 }
 
-/// What an earlier run has finished is kept: a study that is cut, thinned out or extended ends with
-/// the bytes of one that ran through.
+/// A finished study is not computed again, and what is not whole of it is: the bytes stay those of
+/// one that ran through on other threads.
 #[test]
-fn noise_goes_on_where_it_was_left() {
+fn finished_noise_is_kept() {
     let workspace = Workspace::with_scenes();
     let _ = workspace
-        .phicam(&format!("{NOISE} -o whole --seeds 4 --threads 1"))
+        .phicam(&format!("{NOISE} -o one --seeds 4 --threads 1"))
         .exits(0);
-    let _ = workspace
-        .phicam(&format!("{NOISE} -o part --seeds 2"))
-        .exits(0);
-    // As a kill leaves it: some lines only. One trial is altered, to see that it is kept and not
-    // computed again.
-    let text = workspace.text("part/noise.csv");
-    let cut: Vec<&str> = text.lines().take(9).collect();
-    workspace.write("part/noise.csv", cut.join("\n") + "\n");
-    let ended = workspace
-        .phicam(&format!("{NOISE} -o part --seeds 4"))
-        .exits(0);
+    let line = format!("{NOISE} -o two --seeds 4");
+    let first = workspace.phicam(&line).exits(0);
+    let whole = |folder| {
+        let mut contents = workspace.contents(folder);
+        let kept = contents.remove("noise.phs").expect("the finished tasks");
+        (contents, kept)
+    };
+    let [(one, _), (two, kept)] = ["one", "two"].map(whole);
+    assert_same(&one, &two, "one thread and all");
+    let again = workspace.phicam(&line).exits(0);
     assert!(
-        ended.stderr.contains("going on from 7 trials"),
+        again.stderr.contains("going on from 6 of 6 tasks"),
         "{}",
-        ended.account()
+        again.account()
     );
-    let [part, whole] = ["part", "whole"].map(|dir| workspace.contents(dir));
-    assert_same(&part, &whole, "gone on and straight");
-
-    let before = workspace.text("whole/noise.csv");
-    let last = before.lines().last().unwrap();
-    let fields: Vec<&str> = last.split(',').collect();
-    let altered = last.replace(fields[5], "4.2e-1");
-    workspace.write("whole/noise.csv", before.replace(last, &altered));
-    let _ = workspace
-        .phicam(&format!("{NOISE} -o whole --seeds 4"))
-        .exits(0);
-    assert!(workspace.text("whole/noise.csv").contains("4.2e-1"));
+    assert_eq!(again.stdout, first.stdout);
+    assert!(whole("two") == (two, kept.clone()), "written again");
+    workspace.write("two/noise.phs", &kept[..kept.len() - 1]);
+    let anew = workspace.phicam(&line).exits(0);
+    assert!(!anew.stderr.contains("going on"), "{}", anew.account());
+    assert_same(&one, &whole("two").0, "straight and anew");
 }
 
 /// Every axis says in table, JSON, CSV and figure what its levels are.
@@ -120,28 +113,22 @@ fn noise_of_another_study_is_not_mixed_in() {
         .phicam(&format!("{NOISE} -o n --seeds 1"))
         .exits(0);
     let other = format!("{NOISE} -o n --seeds 1 --kernel published");
-    workspace.refuses(&other, &["another study", "published kernel", "(-o)"]);
-    workspace.refuses("study noise tiny.toml -o n", &["another study"]);
+    let words = ["another study", "--kernel", "published", "(-o)"];
+    workspace.refuses(&other, &words);
+    workspace.refuses("study noise tiny.toml -o n", &["another study", "scene"]);
     let photons = format!("{NOISE} -o n --seeds 1 --axis photons").replace("1e-6,0.01", "1e6");
-    workspace.refuses(&photons, &["another study", "photons axis"]);
+    workspace.refuses(&photons, &["another study", "(-o)"]);
     let glare = |rest: &str| {
         let line = format!("{NOISE} --seeds 1 -o g --axis glare {rest}");
         line.replace("1e-6,0.01", "0.01")
     };
     let _ = workspace.phicam(&glare("--sensor ccd")).exits(0);
     let _ = workspace.phicam(&glare("--sensor ccd")).exits(0);
-    for (rest, word) in [
-        ("--sensor dslr", "sensor dslr"),
-        ("--falloff 2", "falling off over 2e0"),
-    ] {
+    for (rest, word) in [("--sensor dslr", "dslr"), ("--falloff 2", "ccd")] {
         workspace.refuses(&glare(rest), &["another study", word, "(-o)"]);
     }
-    let text = workspace.text("n/noise.csv");
-    workspace.write("n/noise.csv", text.replace("pinv", "pinw"));
-    workspace.refuses(
-        &format!("{NOISE} -o n --seeds 1"),
-        &["line 3", "not a trial"],
-    );
+    workspace.write("n/noise.phs", "a letter");
+    workspace.refuses(&format!("{NOISE} -o n --seeds 1"), &["is no shard"]);
 }
 
 #[test]
@@ -286,25 +273,25 @@ fn indicator_is_a_table_a_figure_and_json() {
     assert!(figure.contains("condition number") && !figure.contains("NaN"));
 }
 
-/// Ctrl-C as soon as the first trials are on disk: exit code 130, they are kept, and the same
-/// command goes on from them.
+/// Ctrl-C as soon as the first tasks are on disk: exit code 130, they are kept, and the same
+/// command goes on from them to the bytes of one that ran through.
 #[cfg(unix)]
 #[test]
-fn ctrl_c_keeps_the_finished_trials() {
+fn ctrl_c_keeps_the_finished_tasks() {
     use std::process::{Command, Stdio};
     use std::time::{Duration, Instant};
 
     let workspace = Workspace::with_scenes();
     let child = Command::new(env!("CARGO_BIN_EXE_phicam"))
         .args(NOISE.split_whitespace())
-        .args(["-o", "cut", "--seeds", "50000"])
+        .args(["-o", "cut", "--seeds", "400"])
         .current_dir(workspace.path(""))
         .stdout(Stdio::null())
         .stderr(Stdio::piped())
         .spawn()
         .expect("the program starts");
     let start = Instant::now();
-    while !workspace.path("cut/noise.csv").exists() && start.elapsed() < Duration::from_secs(60) {
+    while !workspace.path("cut/noise.phs").exists() && start.elapsed() < Duration::from_secs(60) {
         std::thread::sleep(Duration::from_millis(1));
     }
     // A process that has ended is not reaped before `wait_with_output`, so its id is nobody else's.
@@ -318,11 +305,20 @@ fn ctrl_c_keeps_the_finished_trials() {
         assert!(words.contains(word), "no `{word}` in {words}");
     }
     assert!(!workspace.path("cut/noise.json").exists());
-    let kept = workspace.text("cut/noise.csv").lines().count() - 2;
-    assert!(kept > 0);
-    let ended = workspace
-        .phicam(&format!("{NOISE} -o cut --seeds 2"))
-        .exits(0);
-    let going_on = format!("going on from {kept} trials");
+    assert!(!workspace.path("cut/noise.csv").exists());
+    let at = words.find("stopped: ").expect("how far it came") + 9;
+    let kept: String = words[at..]
+        .chars()
+        .take_while(char::is_ascii_digit)
+        .collect();
+    assert!(kept.parse::<u64>().expect("a number") > 0, "{words}");
+    workspace.refuses(&format!("{NOISE} -o cut --seeds 2"), &["another study"]);
+    let line = |folder| format!("{NOISE} --seeds 400 -o {folder}");
+    let ended = workspace.phicam(&line("cut")).exits(0);
+    let going_on = format!("going on from {kept} of 600 tasks");
     assert!(ended.stderr.contains(&going_on), "{}", ended.account());
+    let _ = workspace.phicam(&line("whole")).exits(0);
+    let [mut cut, mut whole] = ["cut", "whole"].map(|folder| workspace.contents(folder));
+    assert!(cut.remove("noise.phs").is_some() && whole.remove("noise.phs").is_some());
+    assert_same(&cut, &whole, "gone on and straight");
 }

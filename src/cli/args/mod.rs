@@ -99,14 +99,6 @@ impl Command {
     pub(in crate::cli) const SCHEDULED: [&str; 6] =
         ["plan", "shard", "status", "merge", "slurm", "clean"];
 
-    /// The scene of a study.
-    pub(in crate::cli) fn planned_scene(&self) -> Option<&str> {
-        match self {
-            Self::Study(args) => Some(&args.scene),
-            _ => None,
-        }
-    }
-
     /// Which exit codes its failures have.
     pub(in crate::cli) fn codes(&self) -> Codes {
         match self {

@@ -3,9 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::planned::Planned;
-use super::render::Render;
-use super::study::Study;
+use super::planned::{Planned, work};
 use super::work::Work;
 use crate::cli::args::PlanArgs;
 use crate::cli::console::Console;
@@ -13,14 +11,15 @@ use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::cli::run_folder::{RunFolder, SCENE};
 use crate::cli::{Outcome, settings};
-use crate::jobs::PlanFile;
+use crate::jobs::{PlanFile, Settings};
 use crate::store::ensure_writable;
 
 /// Shards of a plan unless told otherwise.
 const USUAL_SHARDS: u64 = 32;
 
 pub(in crate::cli) fn execute(args: &PlanArgs, console: Console) -> Result<Outcome, Failure> {
-    let work = &*work(args, console)?;
+    let settings = asked(args, console)?;
+    let work = &*work(&settings, args.scene.as_deref(), false, console)?;
     let most = work.blocks().min(PlanFile::MOST_SHARDS);
     let shards = args.shards.unwrap_or(most.min(USUAL_SHARDS));
     if !(1..=most).contains(&shards) {
@@ -30,7 +29,7 @@ pub(in crate::cli) fn execute(args: &PlanArgs, console: Console) -> Result<Outco
         );
         return Err(Failure::usage(cause, format!("use 1 to {most}")));
     }
-    let file = PlanFile::new(work.identity(), work.settings(), work.blocks(), shards);
+    let file = PlanFile::new(work.identity(), settings, work.blocks(), shards);
     let dir = &args.output;
     let earlier = PlanFile::read(&dir.join(PlanFile::NAME))?;
     if let Some(earlier) = &earlier
@@ -80,15 +79,14 @@ fn is_free(dir: &Path, work: &dyn Work) -> bool {
 }
 
 /// A render of the scene, or the command after `--`.
-fn work(args: &PlanArgs, console: Console) -> Result<Box<dyn Work>, Failure> {
+fn asked(args: &PlanArgs, console: Console) -> Result<Settings, Failure> {
     match (&args.scene, args.command.is_empty()) {
-        (Some(scene), true) => {
-            let scene = console.load_scene(scene)?;
+        (Some(_), true) => {
             let plan = settings::plan(&args.paths)?;
             settings::remark_rounding(&args.paths, &plan, console);
-            Ok(Box::new(Render::new(scene, plan)?))
+            Ok(Settings::render(&plan))
         }
-        (None, false) => Ok(Box::new(Study::plan(&args.command, console)?)),
+        (None, false) => Ok(Settings::Command(args.command.clone())),
         _ => Err(Failure::usage(
             "a plan is of a scene that is rendered, or of a command after `--`",
             "phicam plan SCENE -o DIR, or phicam plan -o DIR -- study noise SCENE …",

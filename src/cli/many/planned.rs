@@ -31,7 +31,9 @@ impl Planned {
     pub(super) fn open_as(path: &Path, json: bool, console: Console) -> Result<Self, Failure> {
         let folder = PlanFolder::open(path)?;
         refuse_unreadable(path)?;
-        let work = read(path, &folder.file.work, json, console)?;
+        let scene = path.join(SCENE);
+        let scene = Some(&*scene.to_string_lossy());
+        let work = work(&folder.file.work, scene, json, console)?;
         folder.check(&work.identity(), work.blocks())?;
         Ok(Self { folder, work })
     }
@@ -56,14 +58,14 @@ fn refuse_unreadable(dir: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What the plan's folder `dir` says; a study is to print JSON if `json`.
-fn read(
-    dir: &Path,
+/// The work of these settings, with the scene `scene`: a name or a path; a command may name its own.
+/// It is to print JSON if `json`.
+pub(super) fn work(
     settings: &Settings,
+    scene: Option<&str>,
     json: bool,
     console: Console,
 ) -> Result<Box<dyn Work>, Failure> {
-    let path = dir.join(SCENE);
     Ok(match settings {
         Settings::Render {
             estimator,
@@ -71,10 +73,10 @@ fn read(
             seed,
             samples,
         } => {
-            let scene = console.load_scene(&path.to_string_lossy())?;
+            let scene = console.load_scene(scene.unwrap_or_default())?;
             let plan = Plan::new(*estimator, *sampler, *seed, *samples)?;
             Box::new(Render::new(scene, plan)?)
         }
-        Settings::Command(arguments) => Box::new(Study::read(arguments, &path, json, console)?),
+        Settings::Command(arguments) => Box::new(Study::new(arguments, scene, json, console)?),
     })
 }

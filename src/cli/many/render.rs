@@ -6,17 +6,16 @@ use std::path::Path;
 use super::work::Work;
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::cli::interrupt::stop_flag;
 use crate::cli::output;
 use crate::cli::progress::Tracing;
 use crate::cli::record::Record;
 use crate::cli::render::{complete, refuse_too_large};
 use crate::cli::run_folder::{Resume, RunFolder};
 use crate::cli::{Outcome, settings};
-use crate::jobs::{Checkpoint, Identity, Parts, Settings, Shards, Spots, end};
+use crate::jobs::{Checkpoint, Identity, Parts, Shards, Spots, end};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
-use crate::transport::{Control, Plan, Tally};
+use crate::transport::Plan;
 
 /// A render. Its blocks are the sample blocks of the first columns of Φcam that are traced
 /// together, then those of the next.
@@ -40,15 +39,6 @@ impl Work for Render {
         Some(&self.scene)
     }
 
-    fn settings(&self) -> Settings {
-        Settings::Render {
-            estimator: self.plan.estimator,
-            sampler: self.plan.sampling,
-            seed: self.plan.seed,
-            samples: self.plan.budget.samples(),
-        }
-    }
-
     fn identity(&self) -> Identity {
         Spots::identity(&self.scene, &self.plan)
     }
@@ -70,13 +60,9 @@ impl Work for Render {
         let paths = |spots: Spots<'_>| spots.paths(spots.within(&todo).count() as u64);
         let paths = Spots::all(scene, plan).map(paths).sum();
         let mut tracing = Tracing::start(console, &scene.name, paths);
-        let bar = tracing.bar();
-        let control = Control {
-            progress: &|paths| bar.inc(paths),
-            stop: stop_flag(),
-        };
-        let look = &mut |tally: &Tally| tracing.look(tally);
-        let parts = Spots::compute(scene, plan, range, done, checkpoint, control, look)?;
+        let parts = tracing.run(|control, look| {
+            Spots::compute(scene, plan, range, done, checkpoint, control, look)
+        })?;
         tracing.end();
         Ok(parts)
     }
@@ -120,10 +106,8 @@ impl Work for Render {
             flux.columns_mut(first, n).copy_from(&traced.flux);
             stderr.columns_mut(first, n).copy_from(&traced.stderr);
         }
-        folder.write_phi(&flux, &stderr)?;
         record.finished = spots;
-        record.write(output)?;
-        folder.partial().remove()?;
+        folder.finish(&record, &flux, &stderr)?;
         told(&record, output, json)
     }
 }

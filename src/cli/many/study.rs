@@ -9,15 +9,12 @@ use super::work::Work;
 use crate::cli::args::{Args, Command};
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::cli::interrupt::stop_flag;
-use crate::cli::process::{pool, version};
-use crate::cli::tasks::Tasks;
-use crate::cli::{Outcome, progress, reproduce, study};
-use crate::jobs::{Checkpoint, Identity, Parts, Settings, Shards, compute_tasks, end};
-use crate::lab::LAYOUT as TASKS;
+use crate::cli::process::pool;
+use crate::cli::tasks::{Tasks, compute, identity};
+use crate::cli::{Outcome, reproduce, study};
+use crate::jobs::{Checkpoint, Identity, Parts, Shards};
 use crate::scene::Scene;
 use crate::store::ensure_writable;
-use crate::transport::{Control, NUMERICS};
 
 /// A command whose blocks are its tasks.
 pub(super) struct Study {
@@ -30,47 +27,34 @@ pub(super) struct Study {
 const NOT_PLANNED: [&str; 5] = ["--output", "--threads", "--json", "--quiet", "--also-read"];
 
 impl Study {
-    /// The command `arguments` of the phicam command line, whose scene is read from where it names
-    /// it.
-    pub(super) fn plan(arguments: &[String], console: Console) -> Result<Self, Failure> {
-        let command = parse(arguments)?;
-        let scene = command
-            .planned_scene()
-            .map(|scene| console.load_scene(scene))
-            .transpose()?;
-        Self::new(&command, scene, arguments, console)
-    }
-
-    /// The same from a plan's folder, where the scene is `scene`.
-    pub(super) fn read(
+    /// The command `arguments` of the phicam command line, which is to print JSON if `json`. Its
+    /// scene is read from `scene`, or without one from where the command names it.
+    pub(super) fn new(
         arguments: &[String],
-        scene: &Path,
+        scene: Option<&str>,
         json: bool,
         console: Console,
     ) -> Result<Self, Failure> {
-        let mut all = arguments.to_vec();
-        let _ = parse(arguments)?;
-        if json {
-            all.push("--json".to_owned());
-        }
-        let command = command(&all)?;
-        let scene = match command.planned_scene() {
-            Some(_) => Some(console.load_scene(&scene.to_string_lossy())?),
-            None => None,
+        refuse_unplanned(arguments)?;
+        let json = json.then(|| "--json".to_owned());
+        let (scene, tasks) = match command(arguments.iter().cloned().chain(json))? {
+            Command::Study(args) => {
+                let scene = console.load_scene(scene.unwrap_or(&args.scene))?;
+                let tasks = study::tasks(&args, &scene)?;
+                (Some(scene), tasks)
+            }
+            Command::Reproduce(args) => (None, reproduce::tasks(&args)?),
+            _ => {
+                return Err(Failure::new(
+                    "this command cannot be cut into tasks",
+                    "plan a render (phicam plan SCENE), a study (… -- study NAME …) or the published items (… -- reproduce …)",
+                ));
+            }
         };
-        Self::new(&command, scene, arguments, console)
-    }
-
-    fn new(
-        command: &Command,
-        scene: Option<Scene>,
-        arguments: &[String],
-        console: Console,
-    ) -> Result<Self, Failure> {
         Ok(Self {
-            tasks: tasks(command, scene.clone(), console)?,
             scene,
             arguments: arguments.to_vec(),
+            tasks,
         })
     }
 }
@@ -80,29 +64,9 @@ impl Work for Study {
         self.scene.as_ref()
     }
 
-    fn settings(&self) -> Settings {
-        Settings::Command(self.arguments.clone())
-    }
-
     fn identity(&self) -> Identity {
-        let none = "none".to_owned();
-        let scene = self.scene.as_ref().map(|s| {
-            // Of the sensor and the known answers the scene's digest says nothing; a study may use
-            // them.
-            let text = Identity::default().with("text", &s.text).id();
-            [s.name.clone(), s.hash.clone(), text.to_string()]
-        });
-        let [name, hash, text] = scene.unwrap_or([(); 3].map(|()| none.clone()));
-        Identity::default()
-            .with("work", "command")
-            .with("scene", name)
-            .with("scene's digest", hash)
-            .with("scene's text", text)
-            .with("command", format!("{:?}", self.arguments))
-            .with("tasks", self.tasks.count())
-            .with("program", version())
-            .with("layout of tasks", TASKS)
-            .with(Identity::NUMERICS, NUMERICS)
+        let words = [("command".to_owned(), format!("{:?}", self.arguments))];
+        identity(self.scene.as_ref(), words, self.tasks.count())
     }
 
     fn blocks(&self) -> u64 {
@@ -116,19 +80,8 @@ impl Work for Study {
         checkpoint: &mut Checkpoint,
         console: Console,
     ) -> Result<Parts, Failure> {
-        let bar = progress::steps(console, &self.arguments.join(" "));
-        // Tasks of an earlier process say nothing of how fast this one is.
-        let resumed = end(&done, range);
-        bar.set_length(range.end - resumed);
-        let control = Control {
-            progress: &|_| bar.tick(),
-            stop: stop_flag(),
-        };
-        let shown = |first| bar.set_position(first - resumed);
-        let run = |tasks| self.tasks.run(tasks, control);
-        let parts = compute_tasks(range, done, checkpoint, control, &shown, &run)?;
-        bar.finish_and_clear();
-        Ok(parts)
+        let what = self.arguments.join(" ");
+        compute(&*self.tasks, &what, range, done, checkpoint, console)
     }
 
     fn merge(
@@ -153,58 +106,37 @@ impl Work for Study {
             results.push(bytes);
         }
         ensure_writable(output)?;
-        let control = Control {
-            progress: &|_| (),
-            stop: stop_flag(),
-        };
         let pool = pool(None)?;
-        pool.install(|| self.tasks.deliver(&results, control, output))
+        pool.install(|| self.tasks.deliver(&results, output))
             .map_err(|e| e.if_stopped("nothing was written; merge again"))
     }
 }
 
-/// The command that the arguments spell.
-fn parse(arguments: &[String]) -> Result<Command, Failure> {
-    let named = |a: &String, option: &str| {
-        a.strip_prefix(option)
-            .is_some_and(|r| r.is_empty() || r.starts_with('='))
+/// Refuses what is no part of a plan.
+fn refuse_unplanned(arguments: &[String]) -> Result<(), Failure> {
+    let named = |a: &str, option: &str| {
+        let rest = a.strip_prefix(option);
+        rest.is_some_and(|r| r.is_empty() || r.starts_with('='))
     };
     let foreign =
         |a: &&String| NOT_PLANNED.iter().any(|o| named(a, o)) || a.starts_with("-o") || *a == "-q";
-    if let Some(option) = arguments.iter().find(foreign) {
-        return Err(Failure::usage(
-            format!("{option} is no part of what is planned"),
-            "leave it out: the number of threads is for `phicam shard`, --output and --json for `phicam merge`",
-        ));
-    }
-    command(arguments)
+    let Some(option) = arguments.iter().find(foreign) else {
+        return Ok(());
+    };
+    Err(Failure::usage(
+        format!("{option} is no part of what is planned"),
+        "leave it out: the number of threads is for `phicam shard`, --output and --json for `phicam merge`",
+    ))
 }
 
-fn command(arguments: &[String]) -> Result<Command, Failure> {
+/// The command that the arguments spell.
+fn command(arguments: impl Iterator<Item = String>) -> Result<Command, Failure> {
     let program = std::iter::once("phicam".to_owned());
     // Where the files go is said by who merges.
     let output = ["-o".to_owned(), ".".to_owned()];
-    let all = program.chain(arguments.iter().cloned()).chain(output);
-    match Args::try_parse_from(all) {
+    match Args::try_parse_from(program.chain(arguments).chain(output)) {
         Ok(args) => Ok(args.command),
         Err(error) => Err(Failure::Usage(error.to_string())),
-    }
-}
-
-/// The tasks of a command; a study's scene is `scene`, or where there is none the one that the
-/// command names.
-fn tasks(
-    command: &Command,
-    scene: Option<Scene>,
-    console: Console,
-) -> Result<Box<dyn Tasks>, Failure> {
-    match command {
-        Command::Study(args) => study::tasks(args, scene, console),
-        Command::Reproduce(args) => reproduce::tasks(args),
-        _ => Err(Failure::new(
-            "this command cannot be cut into tasks",
-            "plan a render (phicam plan SCENE), a study (… -- study NAME …) or the published items (… -- reproduce …)",
-        )),
     }
 }
 

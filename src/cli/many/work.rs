@@ -6,16 +6,13 @@ use std::path::Path;
 use crate::cli::Outcome;
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::jobs::{Checkpoint, Identity, Parts, Settings, Shards};
+use crate::jobs::{Checkpoint, Identity, Parts, Shards};
 use crate::scene::Scene;
 
 /// A computation in blocks, each a function of scene, settings and its number alone.
 pub(super) trait Work: Sync {
     /// The scene, if there is one.
     fn scene(&self) -> Option<&Scene>;
-
-    /// What plan.json says of it.
-    fn settings(&self) -> Settings;
 
     /// All that the result depends on.
     fn identity(&self) -> Identity;

@@ -1,20 +1,22 @@
-//! A study with what it leaves behind: run as a whole, or task by task.
+//! A study with what it leaves behind: worked off here, or task by task elsewhere.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::findings::deliver;
+use crate::cli::Outcome;
 use crate::cli::args::StudyArgs;
+use crate::cli::cleanup::remove_named;
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::cli::interrupt::stop_flag;
-use crate::cli::process::{pool, version};
-use crate::cli::tasks::Tasks;
-use crate::cli::{Outcome, progress};
-use crate::lab::{AnyStudy, Found};
+use crate::cli::interrupt::{SignalGuard, control};
+use crate::cli::process::{pool, process, version};
+use crate::cli::tasks::{Tasks, compute, identity};
+use crate::jobs::{BlockFile, Checkpoint, EXTENSION, Identity, JobError, end};
+use crate::lab::{AnyStudy, Sharing, Work};
 use crate::report::Invocation;
 use crate::scene::Scene;
-use crate::store::ensure_writable;
+use crate::store::{ensure_writable, is_missing};
 use crate::transport::Control;
 
 /// A study, checked and ready.
@@ -41,50 +43,100 @@ impl Job {
         })
     }
 
-    /// Runs the study with a progress bar until Ctrl-C; leaves its files and prints its table or
-    /// JSON.
+    /// Works off the tasks that no earlier process has finished, until Ctrl-C; leaves the files of
+    /// the study and prints its table or JSON. What is finished stays in NAME.phs until it is
+    /// complete, or for good if the study [keeps](AnyStudy::keeps) it.
     pub(super) fn execute(&self, console: Console) -> Result<Outcome, Failure> {
         let pool = pool(self.threads)?;
+        let (all, identity) = (0..self.study.tasks() as u64, self.identity());
+        let file = format!("{}.{EXTENSION}", self.name);
+        let path = self.output.join(&file);
+        if self.study.keeps() {
+            refuse_other(&path, &identity, all.end, console)?;
+        }
         ensure_writable(&self.output)?;
         let scene = &self.invocation.scene;
         console.warn(scene);
+        let mut checkpoint = Checkpoint::new(path.clone(), identity, process(&pool));
+        let done = checkpoint.resume(&all, all.end);
+        let (known, place) = (end(&done, &all), path.display());
+        if known > 0 {
+            console.say(format!(
+                "going on from {known} of {} tasks in {place}",
+                all.end
+            ));
+        }
         let what = format!("{} of {}", self.name, scene.name);
-        let bar = progress::work(console, &what, self.study.work());
-        let control = Control {
-            progress: &|n| bar.inc(n),
-            stop: stop_flag(),
+        let guard = SignalGuard::new();
+        let parts = pool.install(|| compute(self, &what, &all, done, &mut checkpoint, console))?;
+        drop(guard);
+        let finished = end(&parts, &all);
+        let kept = match finished {
+            0 => "nothing was written; run it again".to_owned(),
+            _ => format!(
+                "{finished} of {} tasks are finished and kept in {place}; go on with the same command",
+                all.end
+            ),
         };
-        let found = pool.install(|| self.study.run(control));
-        bar.finish_and_clear();
-        let nothing = |e| Failure::of(e).if_stopped("nothing was written; run it again");
-        self.leave(&found.map_err(nothing)?, &self.output)
+        if finished < all.end {
+            return Err(Failure::Stopped(kept));
+        }
+        if known < finished {
+            checkpoint.keep(&parts)?;
+        }
+        let outputs: Vec<Vec<u8>> = parts.into_iter().map(|(_, bytes)| bytes).collect();
+        let outcome = pool
+            .install(|| self.deliver(&outputs, &self.output))
+            .map_err(|e| e.if_stopped(kept))?;
+        if !self.study.keeps() {
+            remove_named(&self.output, &[&file])?;
+        }
+        Ok(outcome)
     }
 
-    /// Leaves the files of a result in `folder` and prints its table or JSON.
-    fn leave(&self, found: &Found, folder: &Path) -> Result<Outcome, Failure> {
-        leave(self.name, found, folder, &self.invocation, self.json)
+    /// All that the outputs depend on.
+    fn identity(&self) -> Identity {
+        let study = ("study".to_owned(), self.name.to_owned());
+        let words = [study].into_iter().chain(self.invocation.options.clone());
+        identity(Some(&self.invocation.scene), words, self.study.tasks())
     }
 }
 
-/// Leaves the files of a result of the study `name` in `folder` and prints its table, or with
-/// `json` its JSON.
-pub(super) fn leave(
-    name: &str,
-    found: &Found,
-    folder: &Path,
-    invocation: &Invocation,
-    json: bool,
-) -> Result<Outcome, Failure> {
-    deliver(name, found, folder, invocation, json)?;
-    Ok(if found.agrees {
-        Outcome::Done
-    } else {
-        Outcome::Disagreed
-    })
+/// Refuses to replace outputs that were computed with other settings, or cannot be read for now.
+fn refuse_other(
+    path: &Path,
+    identity: &Identity,
+    tasks: u64,
+    console: Console,
+) -> Result<(), Failure> {
+    match BlockFile::open(path, identity, tasks) {
+        Err(JobError::Foreign {
+            name,
+            found,
+            expected,
+            ..
+        }) => Err(Failure::new(
+            format!(
+                "{} holds results of another study (its {name} is {found}; now asked for: {expected})",
+                path.display()
+            ),
+            "give the same settings, or choose another folder (-o)",
+        )),
+        Err(JobError::Spoilt { path, what }) => {
+            let path = path.display();
+            console.say(format!(
+                "warning: {path} {what}; its tasks are computed again"
+            ));
+            Ok(())
+        }
+        Err(JobError::Unreadable { source, .. }) if is_missing(&source) => Ok(()),
+        Err(e) => Err(e.into()),
+        Ok(_) => Ok(()),
+    }
 }
 
 /// What the page of a study says of how it was called.
-pub(super) fn invocation(args: &StudyArgs, scene: &Scene) -> Invocation {
+fn invocation(args: &StudyArgs, scene: &Scene) -> Invocation {
     let file = Path::new(&args.scene).file_name();
     Invocation {
         study: args.study.name.to_owned(),
@@ -100,18 +152,26 @@ impl Tasks for Job {
         self.study.tasks()
     }
 
+    fn work(&self) -> Work {
+        self.study.work()
+    }
+
+    fn sharing(&self) -> Sharing {
+        self.study.sharing()
+    }
+
     fn run(&self, tasks: Range<usize>, control: Control<'_>) -> Result<Vec<Vec<u8>>, Failure> {
         self.study.outputs(tasks, control).map_err(Failure::of)
     }
 
-    fn deliver(
-        &self,
-        outputs: &[Vec<u8>],
-        control: Control<'_>,
-        folder: &Path,
-    ) -> Result<Outcome, Failure> {
-        let found = self.study.merge(outputs, control).map_err(Failure::of)?;
+    fn deliver(&self, outputs: &[Vec<u8>], folder: &Path) -> Result<Outcome, Failure> {
+        let found = self.study.merge(outputs, control());
+        let found = found.map_err(Failure::of)?;
         ensure_writable(folder)?;
-        self.leave(&found, folder)
+        deliver(self.name, &found, folder, &self.invocation, self.json)?;
+        Ok(match found.agrees {
+            true => Outcome::Done,
+            false => Outcome::Disagreed,
+        })
     }
 }

@@ -2,7 +2,6 @@
 
 mod findings;
 mod job;
-mod noise;
 
 use super::Outcome;
 use super::args::StudyArgs;
@@ -14,21 +13,10 @@ use job::Job;
 
 pub(in crate::cli) fn execute(args: &StudyArgs, console: Console) -> Result<Outcome, Failure> {
     let scene = console.load_scene(&args.scene)?;
-    if args.study.name == "noise" {
-        return noise::execute(args, &scene, console);
-    }
     Job::new(args, &scene)?.execute(console)
 }
 
-/// The tasks of a study of `scene`, or where there is none of the scene that the arguments name.
-pub(in crate::cli) fn tasks(
-    args: &StudyArgs,
-    scene: Option<Scene>,
-    console: Console,
-) -> Result<Box<dyn Tasks>, Failure> {
-    let scene = match scene {
-        Some(scene) => scene,
-        None => console.load_scene(&args.scene)?,
-    };
-    Ok(Box::new(Job::new(args, &scene)?))
+/// The tasks of a study of `scene`.
+pub(in crate::cli) fn tasks(args: &StudyArgs, scene: &Scene) -> Result<Box<dyn Tasks>, Failure> {
+    Ok(Box::new(Job::new(args, scene)?))
 }

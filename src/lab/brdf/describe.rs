@@ -51,7 +51,9 @@ impl BrdfStudy {
         };
         let judged: Vec<bool> = self.ratios.iter().filter_map(|r| r.reaches).collect();
         format!(
-            "On {}, at a significance of {}, the traced light {} the model that knows the wall's BRDF (difference {}, of which noise {}) and rejects {}{also}. With the known BRDF, {} of {} recoveries that work on a Lambertian wall reach it within 10 %.",
+            "On {}, at a significance of {}, the traced light {} the model with the wall's true \
+             BRDF (difference {}, of which noise {}); the test rejects {}{also}. With the known \
+             BRDF, {} of {} recoveries that succeed on a Lambertian wall do as well within 10 %.",
             self.scene,
             figure(g.significance, 2),
             if g.agrees { "agrees with" } else { "REJECTS" },
@@ -67,10 +69,10 @@ impl BrdfStudy {
     fn agreements(&self) -> Table {
         Table {
             caption: format!(
-                "What is assumed of the wall against the light traced by {} with {} samples",
+                "Assumed BRDFs of the wall against the light traced by {} with {} samples",
                 self.estimator, self.samples
             ),
-            ..Table::by_columns(
+            ..Table::of(
                 self.rows(),
                 [
                     (Column::text("assumed of the wall", ""), |a| {
@@ -107,7 +109,7 @@ impl BrdfStudy {
                 self.draws
             ),
             note: rows().filter_map(reason).collect::<Vec<_>>().join(" "),
-            ..Table::by_columns(
+            ..Table::of(
                 rows(),
                 [
                     (Column::text("assumed of the wall", ""), |(name, _)| {
@@ -131,7 +133,7 @@ impl BrdfStudy {
         Table {
             caption: "Recovery with the known BRDF over that of a Lambertian wall of equal albedo"
                 .to_owned(),
-            ..Table::by_columns(
+            ..Table::of(
                 &self.ratios,
                 [
                     (Column::text("method", ""), |r| Cell::name(&r.method)),
@@ -164,7 +166,7 @@ impl BrdfStudy {
         Table {
             file: Some("brdf.csv".to_owned()),
             place: Place::File,
-            ..Table::by_columns(
+            ..Table::of(
                 all.flat_map(|a| a.qualities.iter().map(move |q| (a, &a.agreement, q))),
                 [
                     (number("assumed"), |(a, ..)| (&a.name).into()),

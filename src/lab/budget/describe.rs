@@ -41,7 +41,9 @@ impl ErrorBudget {
             0.0
         };
         format!(
-            "Relative to the flux, frames and matrix model of {} differ by {}, and the parts {} to {}{largest}. What is left, {}, is {} of the {} expected from noise (z = {}, within ±3 if the budget closes).",
+            "Relative to the flux, frames and matrix model of {} differ by {}, and the parts {} \
+             to {}{largest}. The remainder, {}, is {} of the {} expected from noise (z = {}, \
+             within ±3 if the budget closes).",
             self.scene,
             both(c.total),
             if c.closes {
@@ -62,10 +64,12 @@ impl ErrorBudget {
             caption: "What the matrix model leaves out, relative to the flux (norm over all entries of Φcam)".to_owned(),
             file: Some("budget.csv".to_owned()),
             note: format!(
-                "What is not in the sum, a model without étendue per pixel would add. The object's signal, the part of Φcam that its pattern causes, is {} of the flux.",
+                "Terms outside the sum would be added by a model that takes the étendue as \
+                 constant. The object's signal, the part of Φcam that its pattern causes, is {} \
+                 of the flux.",
                 figure(self.signal, 3)
             ),
-            ..Table::by_columns(
+            ..Table::of(
                 &self.terms,
                 [
                     (Column::text("cause", "cause"), |t| (&t.name).into()),

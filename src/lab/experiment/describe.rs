@@ -22,7 +22,7 @@ impl Describe for Experiment {
         tables.extend([self.limits(), self.file()]);
         let mut panels = plots(&self.by_glare, "glare over signal", glare);
         panels.extend(plots(&self.by_exposure, "exposure of a frame, s", exposure));
-        let title = format!("The experiment, again: {}", self.scene);
+        let title = format!("The experiment, re-enacted: {}", self.scene);
         Finding {
             title: title.clone(),
             sentence: first.join(" "),
@@ -53,7 +53,7 @@ pub(super) fn words(found: &Experiment, object: &str) -> Vec<String> {
         let published = &bare.readings[0];
         let lost = |m: Spread| m.mean < Experiment::READABLE;
         let end = if published.mtf_normalized.is_some_and(lost) {
-            ": glare alone is not what makes it fail."
+            ": glare is not the only cause of its failure."
         } else {
             "."
         };
@@ -124,14 +124,15 @@ fn reach(thresholds: &[Threshold], own: &[Setting]) -> String {
     let shortest = exposures.min_by(|a, b| a.1.total_cmp(&b.1));
     let exposure = match shortest {
         Some((t, exposure)) => format!(
-            "it needs single frames of at least {}, by {}.",
+            "the board is readable in single frames of at least {}, by {}.",
             prefixed(exposure, "s"),
             name(t)
         ),
-        None => "no exposure of single frames makes it so.".to_owned(),
+        None => "no exposure of single frames is long enough.".to_owned(),
     };
     format!(
-        "Under {spread} glare the board is readable (normalized modulation {} and more){lists} with glare as strong as the signal {exposure}",
+        "Under {spread} glare the board is readable (normalized modulation {} and more){lists} \
+         with glare as strong as the signal, {exposure}",
         Experiment::READABLE
     )
 }
@@ -214,7 +215,7 @@ impl Experiment {
         Table {
             caption: "Where each analysis reads the board".to_owned(),
             place: Place::Page,
-            ..Table::by_columns(
+            ..Table::of(
                 &self.thresholds,
                 [
                     (Column::text("analysis", ""), |t| (&t.analysis).into()),
@@ -242,7 +243,7 @@ impl Experiment {
         Table {
             file: Some("experiment.csv".to_owned()),
             place: Place::File,
-            ..Table::by_columns(
+            ..Table::of(
                 readings,
                 [
                     (column("sweep"), |(sweep, ..)| Cell::name(sweep)),
@@ -335,7 +336,7 @@ mod tests {
         assert_eq!(found.words.len(), 4);
         assert!(found.words[0].contains("gets 30 fW from `board`; 50 times"));
         assert!(found.words[1].ends_with("modulation of −0.10, `joint` 0.90."));
-        assert!(found.words[2].ends_with("0.40: glare alone is not what makes it fail."));
+        assert!(found.words[2].ends_with("0.40: glare is not the only cause of its failure."));
         assert!(
             found.words[3]
                 .contains("1.0 times the signal, by `joint`; at no glare by `published`;")

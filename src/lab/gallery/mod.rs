@@ -34,7 +34,7 @@ use plan::{Fitted, ladder, works_by_directions};
 
 /// Pictures of a run's hidden surfaces.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Gallery {
+pub struct RunGallery {
     /// The hidden surfaces, in file order.
     pub surfaces: Vec<GallerySurface>,
     /// ε: standard deviation of the noise added to each entry, as a fraction of `mean`. The first
@@ -73,7 +73,7 @@ pub struct Series {
     /// For each noise which step the method takes of itself, or why none.
     pub automatic: Vec<Result<Automatic, String>>,
     /// For each noise one for each step; none where nothing was recovered.
-    pub pictures: Vec<Vec<Option<Picture>>>,
+    pub pictures: Vec<Vec<Option<GalleryPicture>>>,
 }
 
 /// What a method takes of itself.
@@ -87,7 +87,7 @@ pub struct Automatic {
 
 /// What was recovered.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Picture {
+pub struct GalleryPicture {
     /// Reflectance of the elements of all surfaces, one surface after the other.
     pub reflectance: Vec<f64>,
     /// How far it is from the truth, surface by surface.
@@ -141,7 +141,7 @@ impl<'a> GalleryTasks<'a> {
     }
 
     /// Makes them; none if stopped.
-    pub fn gallery(&self, control: Control<'_>) -> Option<Gallery> {
+    pub fn gallery(&self, control: Control<'_>) -> Option<RunGallery> {
         let (pixels, spots) = match self.fitted.noises.is_empty() {
             true => (0, 0),
             false => self.phi.shape(),
@@ -167,7 +167,7 @@ impl<'a> GalleryTasks<'a> {
                 .collect();
             (!own.is_empty()).then(|| self.series(method, sigma, &own))
         });
-        Some(Gallery {
+        Some(RunGallery {
             series: series.collect(),
             surfaces: self.surfaces.clone(),
             noises: self.fitted.noises.clone(),
@@ -270,12 +270,12 @@ impl<'a> GalleryTasks<'a> {
         }
     }
 
-    fn picture(&self, reflectance: Vec<f64>) -> Picture {
+    fn picture(&self, reflectance: Vec<f64>) -> GalleryPicture {
         let measures = self.model.grids.iter().map(|grid| {
             let own = grid.first..grid.first + grid.len();
             Measures::of(&reflectance[own.clone()], &self.model.albedo[own])
         });
-        Picture {
+        GalleryPicture {
             measures: measures.collect(),
             reflectance,
         }

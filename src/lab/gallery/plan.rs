@@ -59,7 +59,8 @@ impl GalleryPlan {
         }
         if noises.len() < self.noises.len() {
             left_out.push(format!(
-                "{} of {} noises are shown: more would be too much beside the run, for {size}.",
+                "{} of {} noise levels are shown: more would take too long beside the run, for \
+                 {size}.",
                 noises.len(),
                 self.noises.len()
             ));
@@ -76,7 +77,8 @@ impl GalleryPlan {
         let traced_alone: Vec<Method> = self.methods.iter().filter(dear).copied().collect();
         for method in &traced_alone {
             left_out.push(format!(
-                "{method} is shown for the photographs as traced alone: with noise on top it would be too much work beside the run, for {size}."
+                "{method} is shown for the photographs as traced alone: with added noise it would \
+                 take too long beside the run, for {size}."
             ));
         }
         Fitted {
@@ -126,7 +128,8 @@ impl Fitted {
             by_directions: false,
             traced_alone: Vec::new(),
             left_out: vec![format!(
-                "There is no gallery over regularisation and noise: it would be too much beside the run, for {size}."
+                "There is no gallery over regularisation and noise: it would take too long beside \
+                 the run, for {size}."
             )],
         }
     }

@@ -40,7 +40,7 @@ impl Bench {
         GalleryTasks::new(&self.scene, &self.model, photographs, known, plan).unwrap()
     }
 
-    fn gallery(&self, plan: GalleryPlan) -> Gallery {
+    fn gallery(&self, plan: GalleryPlan) -> RunGallery {
         self.tasks(&[], plan)
             .gallery(quietly(&AtomicBool::new(false)))
             .unwrap()
@@ -74,7 +74,7 @@ fn quietly(stop: &AtomicBool) -> Control<'_> {
 }
 
 /// Equal but for the order of sums: within 1e-9 of the largest value.
-fn same(found: &Picture, known: &RecoveredObject, what: &str) {
+fn same(found: &GalleryPicture, known: &RecoveredObject, what: &str) {
     let scale = known
         .reflectance
         .iter()
@@ -315,8 +315,8 @@ fn limits_leave_out_what_is_too_much() {
             ..GalleryPlan::of_run(5)
         })
     };
-    let steps = |g: &Gallery| g.series.iter().map(|s| s.steps.len()).max().unwrap_or(0);
-    let pictures = |g: &Gallery| {
+    let steps = |g: &RunGallery| g.series.iter().map(|s| s.steps.len()).max().unwrap_or(0);
+    let pictures = |g: &RunGallery| {
         g.series
             .iter()
             .map(|s| s.pictures.iter().flatten().flatten().count())

@@ -23,7 +23,7 @@ const NO_CENTRE: LabError = LabError::Unsuited(
 );
 
 /// What predicts how well the published inversion works: without noise on every bench, under noise
-/// on every so many.
+/// on every N-th.
 pub struct IndicatorTasks {
     name: String,
     hash: String,

@@ -158,9 +158,10 @@ impl NoiseStudy {
             LIMITS[0]
         );
         Table::new(caption, columns, self.best.iter().map(row)).noted(
-            "`to`: it has not fallen there, but beyond no level was studied or no mean is known (or it is above 1.1). \
-             RMSE over elements and draws; the bound is √(trace/elements) of that of Cramér and Rao for unbiased \
-             recoveries, which methods that use bounds or two values can undercut.",
+            "`to`: the mean has not fallen at this level, but no higher level was studied or its \
+             mean is not known (or above 1.1). RMSE over elements and draws; the bound is \
+             √(trace/elements) of that of Cramér and Rao for unbiased recoveries, which methods \
+             that use bounds or two values can undercut.",
         )
     }
 

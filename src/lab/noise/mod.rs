@@ -31,13 +31,11 @@ mod trial;
 pub use axis::{AxisLabel, NamedSensor, NoiseAxis};
 pub use best::Best;
 pub use curve::{Held, LIMITS, Lost, NoiseCurve, Point, Reach};
-pub use ledger::{LedgerError, read_ledger, write_ledger};
 pub(super) use options::STUDY;
 pub use plan::NoisePlan;
 pub use render::RenderNoise;
 pub use study::NoiseStudy;
 pub use tasks::NoiseTasks;
-pub use trial::Trial;
 
 #[cfg(test)]
 mod tests;

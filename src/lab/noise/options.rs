@@ -12,9 +12,10 @@ use crate::scene::{Scene, Spread};
 /// `phicam study noise`.
 pub(in crate::lab) const STUDY: Registered = Registered {
     name: "noise",
-    about: "How much noise each recovery bears: table, JSON, CSV, figures; a rerun goes on where the last one stopped",
+    about: "How much noise each recovery bears: table, JSON, CSV, figures; a rerun continues \
+         where the last one stopped",
     scene: Some("bench"),
-    files: "noise.csv (every trial: what a rerun goes on from), noise-curves.csv, the figures",
+    files: "noise.csv (every trial), noise-curves.csv, the figures, noise.phs (a rerun continues from it)",
     options: &[
         Opt::whole("boards", "Checks a side of the objects, separated by commas")
             .or("2,4,8")

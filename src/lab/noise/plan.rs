@@ -104,9 +104,4 @@ impl NoisePlan {
             .flat_map(|b| self.elements.iter().map(|e| [*b, *e]));
         pairs.filter(|[b, e]| e % b == 0).collect()
     }
-
-    /// Recoveries of the whole study.
-    pub fn trials(&self) -> usize {
-        self.objects().len() * self.levels.len() * self.seeds as usize * self.methods.len()
-    }
 }

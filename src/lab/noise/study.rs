@@ -29,7 +29,7 @@ pub struct NoiseStudy {
     pub best: Vec<Best>,
     /// Where the noise of renders lies on the axis, if it was measured.
     pub render_noise: Vec<RenderNoise>,
-    /// Every trial by [`write_ledger`](super::write_ledger).
+    /// Every trial as text.
     #[serde(skip)]
     pub ledger: String,
 }

@@ -1,8 +1,5 @@
 //! The study in tasks: each a few draws of the noise on one object, or one render.
 
-use std::ops::ControlFlow;
-use std::sync::atomic::Ordering;
-
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -20,12 +17,10 @@ use crate::lab::measures::Measures;
 use crate::lab::study::Study;
 use crate::model::MatrixModel;
 use crate::scene::Scene;
-use crate::transport::{Control, Estimator, Stopped};
+use crate::transport::{Control, Estimator};
 
 /// Draws of a task.
 const DRAWS: usize = 4;
-/// Tasks worked off between two calls of `keep`.
-const CHUNK: usize = 8;
 
 /// How much noise each recovery bears: every object, recovered from every draw of the noise at
 /// every level.
@@ -70,16 +65,6 @@ impl NoiseTasks {
         }
     }
 
-    /// What its trials have to share, in words.
-    pub fn ledger_name(&self) -> String {
-        self.plan.study(&self.scene)
-    }
-
-    /// Recoveries of the whole study.
-    pub fn trials(&self) -> usize {
-        self.plan.trials()
-    }
-
     /// Tasks of one object.
     fn groups(&self) -> usize {
         self.draws.len().div_ceil(DRAWS)
@@ -93,82 +78,39 @@ impl NoiseTasks {
         (object < self.objects.len()).then_some((object, draws))
     }
 
-    /// The trials of one draw, without outcome.
-    fn open(&self, object: usize, (level, seed): (f64, u64)) -> Vec<Trial> {
+    /// The trials of one draw, from their outcomes method by method.
+    fn trials<'a>(
+        &'a self,
+        object: usize,
+        (level, seed): (f64, u64),
+        outcomes: Vec<Result<Measures, String>>,
+    ) -> impl Iterator<Item = Trial> + 'a {
         let [board, elements] = self.objects[object];
-        let trial = |method: &_| Trial {
+        let trial = move |(method, outcome): (&_, _)| Trial {
             board,
             elements,
             method: *method,
             level,
             seed,
-            outcome: Err(String::new()),
+            outcome,
         };
-        self.plan.methods.iter().map(trial).collect()
+        self.plan.methods.iter().zip(outcomes).map(trial)
     }
 
-    /// Those of them that are not known yet, done.
-    fn draw(&self, objects: &[Object], at: usize, draw: (f64, u64), known: &[Trial]) -> Vec<Trial> {
-        let mut open = self.open(at, draw);
-        open.retain(|t| known.binary_search_by(|k| k.order(t)).is_err());
-        if open.is_empty() {
-            return open;
-        }
-        let Object { model, stage } = &objects[at];
-        let photographs = stage.photograph(draw.0, draw.1);
-        for trial in &mut open {
-            trial.outcome = match &photographs {
-                Ok(photographs) => measure(model, photographs, trial.method),
-                Err(why) => Err(why.clone()),
-            };
-        }
-        open
+    /// What every method makes of one draw.
+    fn draw(&self, object: &Object, (level, seed): (f64, u64)) -> Vec<Result<Measures, String>> {
+        let photographs = object.stage.photograph(level, seed);
+        let outcome = |method: &_| match &photographs {
+            Ok(photographs) => measure(&object.model, photographs, *method),
+            Err(why) => Err(why.clone()),
+        };
+        self.plan.methods.iter().map(outcome).collect()
     }
 
     fn render(&self, index: usize, control: Control<'_>) -> Result<RenderNoise, LabError> {
         let (estimator, samples) = self.renders[index - self.objects.len() * self.groups()];
         let how = (estimator, samples, self.plan.first_seed);
         render_noise(&self.scene, &self.plan.axis, how, control)
-    }
-
-    /// Works off all tasks in their order. Trials among `known` are not repeated; `keep` is handed
-    /// the others as they are finished, and may break the study off, as `control` may.
-    ///
-    /// # Errors
-    /// [`LabError`].
-    pub fn go_on(
-        &self,
-        known: &[Trial],
-        control: Control<'_>,
-        keep: &mut dyn FnMut(&[Trial]) -> ControlFlow<()>,
-    ) -> Result<NoiseStudy, LabError> {
-        let objects = self.context(control)?;
-        let mut known = known.to_vec();
-        known.sort_by(Trial::order);
-        let draws: Vec<usize> = (0..self.objects.len() * self.groups()).collect();
-        for chunk in draws.chunks(CHUNK) {
-            let draws: Vec<(usize, (f64, u64))> = chunk
-                .iter()
-                .filter_map(|task| self.at(*task))
-                .flat_map(|(object, draws)| draws.iter().map(move |d| (object, *d)))
-                .collect();
-            let stopped = || control.stop.load(Ordering::Relaxed);
-            let found: Vec<Option<Vec<Trial>>> = draws
-                .par_iter()
-                .map(|&(at, draw)| (!stopped()).then(|| self.draw(&objects, at, draw, &known)))
-                .collect();
-            let whole = found.iter().all(Option::is_some);
-            let found: Vec<Trial> = found.into_iter().flatten().flatten().collect();
-            let go_on = keep(&found);
-            known.extend(found);
-            known.sort_by(Trial::order);
-            if !whole || go_on.is_break() {
-                return Err(Stopped.into());
-            }
-        }
-        let renders = (draws.len()..self.tasks()).map(|index| self.render(index, control));
-        let renders: Vec<RenderNoise> = renders.collect::<Result<_, LabError>>()?;
-        Ok(self.found(&objects, known, renders))
     }
 
     /// The study, from sorted trials.
@@ -196,7 +138,7 @@ impl NoiseTasks {
             curves,
             best: winners,
             render_noise,
-            ledger: write_ledger(&self.ledger_name(), &trials),
+            ledger: write_ledger(&self.plan.study(&self.scene), &trials),
         }
     }
 }
@@ -213,6 +155,10 @@ impl Study for NoiseTasks {
 
     fn tasks(&self) -> usize {
         self.objects.len() * self.groups() + self.renders.len()
+    }
+
+    fn keeps(&self) -> bool {
+        true
     }
 
     fn context(&self, _: Control<'_>) -> Result<Vec<Object>, LabError> {
@@ -238,11 +184,9 @@ impl Study for NoiseTasks {
         let Some((at, draws)) = self.at(index) else {
             return self.render(index, control).map(Output::Render);
         };
-        let outcomes = |draw: &(f64, u64)| {
-            let found = self.draw(objects, at, *draw, &[]).into_iter();
-            found.map(|trial| trial.outcome).collect()
-        };
-        Ok(Output::Draws(draws.par_iter().map(outcomes).collect()))
+        let draws = draws.par_iter();
+        let outcomes = draws.map(|draw| self.draw(&objects[at], *draw));
+        Ok(Output::Draws(outcomes.collect()))
     }
 
     fn fits(&self, _: &Vec<Object>, index: usize, part: &Output) -> bool {
@@ -262,8 +206,7 @@ impl Study for NoiseTasks {
             match (self.at(index), part) {
                 (Some((at, draws)), Output::Draws(found)) => {
                     for (draw, outcomes) in draws.iter().zip(found) {
-                        let done = self.open(at, *draw).into_iter().zip(outcomes);
-                        trials.extend(done.map(|(trial, outcome)| Trial { outcome, ..trial }));
+                        trials.extend(self.trials(at, *draw, outcomes));
                     }
                 }
                 (_, Output::Render(found)) => renders.push(found),

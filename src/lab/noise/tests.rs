@@ -1,5 +1,4 @@
-use std::ops::ControlFlow;
-
+use super::trial::Trial;
 use super::*;
 use crate::lab::LabError;
 use crate::lab::finding::Describe;
@@ -28,49 +27,24 @@ fn small() -> (Scene, NoisePlan) {
     (scene, plan)
 }
 
-fn run(
-    scene: &Scene,
-    plan: &NoisePlan,
-    known: &[Trial],
-    most: usize,
-) -> (Option<NoiseStudy>, Vec<Trial>) {
-    let mut kept = Vec::new();
-    let mut keep = |new: &[Trial]| {
-        kept.extend_from_slice(new);
-        if kept.len() >= most {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    };
-    match NoiseTasks::new(scene, plan.clone(), Vec::new()).go_on(known, Control::none(), &mut keep)
-    {
-        Err(LabError::Stopped(_)) => (None, kept),
-        study => (Some(study.unwrap()), kept),
-    }
+fn run(scene: &Scene, plan: &NoisePlan) -> NoiseStudy {
+    let tasks = NoiseTasks::new(scene, plan.clone(), Vec::new());
+    study::run(&tasks, Control::none()).unwrap()
 }
 
 /// Three objects, boards of 4 checks having no place on 2 elements, with three levels, five draws
 /// and three methods.
-fn trials_do_not_depend_on_threads_and_going_on(plan: &NoisePlan) {
+fn trials_do_not_depend_on_threads(plan: &NoisePlan) {
     let (scene, _) = small();
-    assert_eq!(plan.trials(), 3 * 3 * 5 * 3);
-    let pool = |n| {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(n)
-            .build()
-            .unwrap()
+    let found = |n: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
+        pool.unwrap().install(|| run(&scene, plan))
     };
-    let (through, all) = pool(1).install(|| run(&scene, plan, &[], usize::MAX));
-    assert_eq!(all.len(), plan.trials());
-    let (none, part) = pool(3).install(|| run(&scene, plan, &[], 10));
-    assert!(none.is_none() && part.len() >= 10 && part.len() < all.len());
-    let (resumed, rest) = pool(3).install(|| run(&scene, plan, &part, usize::MAX));
-    assert_eq!(rest.len(), all.len() - part.len());
-    let text = |trials: &[Trial]| write_ledger("", trials);
-    assert_eq!(text(&all), text(&[part, rest].concat()));
-    let json = |study: &Option<NoiseStudy>| serde_json::to_string(study.as_ref().unwrap()).unwrap();
-    assert_eq!(json(&through), json(&resumed));
+    let [one, three] = [1, 3].map(found);
+    assert_eq!(one.ledger.lines().count(), 2 + 3 * 3 * 5 * 3);
+    assert_eq!(one.ledger, three.ledger);
+    let json = |study: &NoiseStudy| serde_json::to_string(study).unwrap();
+    assert_eq!(json(&one), json(&three));
 }
 
 fn ccd() -> NamedSensor {
@@ -83,7 +57,7 @@ fn ccd() -> NamedSensor {
 #[test]
 fn on_every_axis_going_on_gives_what_running_through_gives_on_any_threads() {
     let (_, relative) = small();
-    trials_do_not_depend_on_threads_and_going_on(&relative);
+    trials_do_not_depend_on_threads(&relative);
     for (axis, levels) in [
         (NoiseAxis::Photons, vec![1e12, 1e6, 1e3]),
         (NoiseAxis::Exposure(ccd()), vec![1e-3, 1e-4, 1e-5]),
@@ -98,7 +72,7 @@ fn on_every_axis_going_on_gives_what_running_through_gives_on_any_threads() {
             levels,
             ..relative.clone()
         };
-        trials_do_not_depend_on_threads_and_going_on(&plan);
+        trials_do_not_depend_on_threads(&plan);
     }
 }
 
@@ -153,8 +127,8 @@ fn unbiased_recoveries_keep_the_bound_of_cramer_and_rao() {
             seeds: 200,
             ..plan.clone()
         };
-        let (study, _) = run(&scene, &plan, &[], usize::MAX);
-        let ratios = study.unwrap().curves.into_iter().map(|c| {
+        let study = run(&scene, &plan);
+        let ratios = study.curves.into_iter().map(|c| {
             let p = &c.points[0];
             // Five standard errors of a root mean square; errors of four elements spread at most as
             // those of one.
@@ -164,27 +138,6 @@ fn unbiased_recoveries_keep_the_bound_of_cramer_and_rao() {
         assert!(ratios.iter().all(|(r, s)| *r > 1.0 - s), "{ratios:?}");
         assert!(ratios[1].0 < 1.1 + ratios[1].1, "{ratios:?}");
     }
-}
-
-/// A level, a seed or a method more: what is there is kept, and only the new is computed.
-#[test]
-fn a_larger_plan_goes_on_from_a_smaller_one() {
-    let (scene, plan) = small();
-    let less = NoisePlan {
-        levels: vec![1e-6, 1.0],
-        seeds: 3,
-        methods: vec![Method::Pinv],
-        ..plan.clone()
-    };
-    let (_, part) = run(&scene, &less, &[], usize::MAX);
-    let (_, rest) = run(&scene, &plan, &part, usize::MAX);
-    assert_eq!(part.len() + rest.len(), plan.trials());
-    // And the smaller plan finds its own curves among the larger one's trials.
-    let (straight, _) = run(&scene, &less, &[], usize::MAX);
-    let (found, none) = run(&scene, &less, &[part, rest].concat(), usize::MAX);
-    assert!(none.is_empty());
-    let json = |study: Option<NoiseStudy>| serde_json::to_string(&study.unwrap()).unwrap();
-    assert_eq!(json(found), json(straight));
 }
 
 /// The unbounded pseudo-inverse is linear and unbiased here (2 × 2 elements have full rank), so its
@@ -199,8 +152,8 @@ fn the_error_of_a_linear_method_is_proportional_to_the_noise() {
         levels: vec![1e-5, 1e-3],
         ..plan
     };
-    let (study, _) = run(&scene, &plan, &[], usize::MAX);
-    let points = &study.unwrap().curves[0].points;
+    let study = run(&scene, &plan);
+    let points = &study.curves[0].points;
     let [quiet, loud] = [0, 1].map(|i: usize| points[i].rmse.unwrap());
     assert!(
         (loud.mean / quiet.mean / 100.0 - 1.0).abs() < 1e-6,
@@ -234,8 +187,8 @@ fn a_mean_of_wild_ratios_is_not_spoken_of() {
         seeds: 20,
         ..plan
     };
-    let (study, _) = run(&scene, &plan, &[], usize::MAX);
-    let curve = &study.unwrap().curves[0];
+    let study = run(&scene, &plan);
+    let curve = &study.curves[0];
     let [quiet, loud] = [0, 2].map(|i: usize| curve.points[i].denominator_spread.unwrap());
     assert!(quiet < 1e-3 && loud > 0.1, "{quiet} {loud}");
     assert_eq!(curve.lost_raw[1], Lost::Unknown, "{curve:?}");

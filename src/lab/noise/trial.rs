@@ -9,7 +9,7 @@ use crate::recovery::{Method, Options, Uncertainty};
 
 /// What one method made of one draw of the noise.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Trial {
+pub(super) struct Trial {
     /// Checks a side of the object.
     pub board: usize,
     /// Elements a side of the recovery.
@@ -43,7 +43,7 @@ pub(super) fn measure(
 
 impl Trial {
     /// By object, elements, method, level and seed.
-    pub fn order(&self, other: &Self) -> Ordering {
+    pub(super) fn order(&self, other: &Self) -> Ordering {
         let place = |t: &Self| {
             (
                 t.board,

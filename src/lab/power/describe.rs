@@ -35,7 +35,9 @@ impl Power {
         let alarms: u64 = rows().map(|r| r.false_alarms).sum();
         let renders: u64 = rows().map(|r| r.seeds).sum();
         format!(
-            "{sharpest}A right model was rejected {alarms} times in {renders}, a rate of {} at a stated significance of {}: {} of {} settings lie where 99 % of such counts do.",
+            "{sharpest}A right model was rejected {alarms} times in {renders}, a rate of {} at a \
+             stated significance of {}: in {} of {} settings the count lies within the central 99 \
+             % of its distribution.",
             figure(alarms as f64 / renders.max(1) as f64, 2),
             figure(self.significance, 2),
             rows().filter(|r| r.as_stated()).count(),
@@ -50,7 +52,7 @@ impl Power {
                 figure(self.significance, 2),
                 self.sampler
             ),
-            ..Table::by_columns(
+            ..Table::of(
                 &self.rows,
                 [
                     (Column::text("estimator", ""), |r| Cell::name(&r.estimator)),
@@ -77,7 +79,7 @@ impl Power {
         let all = self.rows.iter();
         Table {
             caption: "Wrong models, rejected".to_owned(),
-            ..Table::by_columns(
+            ..Table::of(
                 all.flat_map(|r| r.detections.iter().map(move |d| (r, d))),
                 [
                     (Column::text("estimator", ""), |(r, _)| {

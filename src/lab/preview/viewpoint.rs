@@ -23,13 +23,12 @@ pub struct Viewpoint {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PreviewError {
     /// A coordinate is not finite, or the two points coincide.
-    #[error(
-        "the viewer at ({0}) looks at ({1}): there is no direction in that; give two different, finite points"
-    )]
+    #[error("the viewer at ({0}) cannot look at ({1}): give two different, finite points")]
     NoDirection(DVec3, DVec3),
     /// Up is along the line of sight, zero, or not finite.
     #[error(
-        "({0}) does not say what is up for a viewer who looks along ({1}); give a direction across the line of sight"
+        "({0}) cannot point up for a viewer who looks along ({1}): give a direction across the \
+         line of sight"
     )]
     NoUp(DVec3, DVec3),
     /// Not an angle of view.

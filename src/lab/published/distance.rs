@@ -3,7 +3,7 @@
 use super::case::{Case, KERNELS, Row, curve, published, rows};
 use super::item::Item;
 use super::outcome::{Trial, stretched};
-use super::sheet::{elements, finding, square};
+use super::sheet::{BOTH_KERNELS, CUT, STRETCHED, VIEW, elements, finding, square};
 use super::substitution;
 use super::traced;
 use crate::lab::check::Check;
@@ -115,14 +115,14 @@ pub(super) fn figure(item: Item, cases: &[Case], found: &[Vec<Trial>]) -> Findin
     ];
     let notes = vec![finer(&plain), substitution::words(&rows)];
     let caption = format!(
-        "Published and physical kernel (G12 and G23 alike); 8 × 8 board at 8 × 8 elements; 100 spots on the four sides of a square around C, {spots}; \
-         16 × 16 pixels laid to the edges of the view; Moore–Penrose inverse cut at max(r, l)·eps(σ1), eps the spacing of doubles at σ1 (MATLAB); \
-         normalized MTF of the values stretched to [0, 1], raw MTF beside it; noiseless, by the projector. {}",
+        "{BOTH_KERNELS}; 8 × 8 board at 8 × 8 elements; 100 spots on the four sides of a square \
+         around C, {spots}; {VIEW}; {CUT}; {STRETCHED}, raw MTF beside it; noiseless, by the \
+         projector. {}",
         traced::caption()
     );
     let table = Table::of(
         &rows,
-        &[
+        [
             ("kernel", |r| r.kernel().into()),
             ("layout", |r| r.case.label.into()),
             ("half_width_in", |r| r.half_width().into()),

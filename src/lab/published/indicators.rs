@@ -5,11 +5,11 @@ use rayon::prelude::*;
 use super::case::{HALF_WIDTH, KERNELS, published};
 use super::inversion::recovered;
 use super::item::Item;
-use super::sheet::finding;
-use super::spots::{LAYOUT, PER_SIDE, across};
+use super::sheet::{Measure, finding};
+use super::spots::{PER_SIDE, across, layout};
 use crate::lab::LabError;
 use crate::lab::check::Check;
-use crate::lab::finding::{Axis, Curve, Finding, Get, Mark, Plot, Table};
+use crate::lab::finding::{Axis, Curve, Finding, Mark, Plot, Table};
 use crate::lab::inversion::smallest_eigenvalue;
 use crate::metrics::rank_correlation;
 use crate::model::{Kernel, Stagger};
@@ -68,7 +68,7 @@ pub(super) fn figure(control: Control<'_>) -> Result<Finding, LabError> {
         let own = found.iter();
         own.filter(move |f| (f.kernel, f.elements) == (kernel, side))
     };
-    let measures: [(&str, Get<Figures, f64>); 2] = [
+    let measures: [Measure<Figures, f64>; 2] = [
         ("condition number ‖G12‖·‖G12⁺‖", |f| f.condition),
         ("|λmin| / λmax of G12·G12ᵀ", |f| f.smallest.abs()),
     ];
@@ -99,30 +99,34 @@ pub(super) fn figure(control: Control<'_>) -> Result<Finding, LabError> {
     let negative = found.iter().filter(|f| f.smallest < 0.0).count();
     let notes = vec![
         format!(
-            "{negative} of the {} smallest eigenvalues are negative, which those of G12·G12ᵀ cannot be: they are rounding, and no pattern is to be looked for in \
-             them.",
+            "{negative} of the {} smallest eigenvalues are negative, which those of G12·G12ᵀ \
+             cannot be: they are rounding errors, and no pattern can be read from them.",
             found.len()
         ),
-        "The condition number of a truncated inverse is bounded by the cut, 1/(max(r, l)·eps), whatever G12 is. At 8 × 8 and 16 × 16 elements it rises with the spots \
-         as long as they add directions that are kept, and is level near the cut from then on; the MTF rises with the same directions. That is the pattern \
-         that is found."
+        "The condition number of a truncated inverse is bounded by the cut, 1/(max(r, l)·eps), \
+         whatever G12 is. At 8 × 8 and 16 × 16 elements it rises with the number of spots while \
+         these add directions above the cut, and then stays level near the cut; the MTF rises \
+         with the same directions. This is the pattern that the test finds."
             .to_owned(),
         format!(
-            "\"No pattern\" is published without a criterion; the test is ours: Spearman's rank correlation over the {} numbers of spots, its probability for orders drawn at \
-             random, two-sided, taken for the {TESTS} tests together (Šidák), against {LEVEL}. It sees what rises or falls throughout, and with so few numbers of \
-             spots no correlation nearer to 0 than ±{:.2}; that none is seen does not prove that there is none. Boards share their spots, so a correlation with the \
-             MTF need not mean that the one makes the other.",
+            "\"No pattern\" is published without a criterion, so the test is ours: Spearman's \
+             rank correlation over the {} numbers of spots; its two-sided probability for random \
+             orders, corrected for {TESTS} tests (Šidák), is compared with {LEVEL}. It detects \
+             only what rises or falls throughout, and with so few numbers of spots no correlation \
+             closer to 0 than ±{:.2}. If it detects nothing, there may still be a pattern. All \
+             boards share their spots, so a correlation with the MTF does not prove a cause.",
             PER_SIDE.len(),
             least_seen(PER_SIDE.len())
         ),
     ];
+    let layout = layout();
     let caption = format!(
-        "Published and physical kernel; {LAYOUT}; condition number σ1 over the last kept singular value; smallest eigenvalue of G12·G12ᵀ formed in doubles, relative to \
+        "Published and physical kernel; {layout}; condition number σ1 over the last kept singular value; smallest eigenvalue of G12·G12ᵀ formed in doubles, relative to \
          the largest and drawn by its size, its sign in the CSV; MTF of the board of one check an element, raw."
     );
     let table = Table::of(
         found,
-        &[
+        [
             ("kernel", |f| f.kernel.name().into()),
             ("elements", |f| f.elements.into()),
             ("spots", |f| f.spots.into()),

@@ -6,7 +6,7 @@ use super::case::{HALF_WIDTH, KERNELS, published};
 use super::item::Item;
 use super::outcome::{Outcome, stretched};
 use super::plan::ReproducePlan;
-use super::sheet::{elements, finding};
+use super::sheet::{BOTH_KERNELS, CUT, STRETCHED, VIEW, elements, finding};
 use super::traced::{self, AS_RENDERED, Lights, NAMES, replicates};
 use crate::lab::LabError;
 use crate::lab::check::Check;
@@ -153,9 +153,11 @@ pub(super) fn figure(plan: &ReproducePlan, control: Control<'_>) -> Result<Findi
     let (plot, note) = trace(&mut rows, control)?;
     plots.push(plot);
     let caption = format!(
-        "Published and physical kernel (G12 and G23 alike); board of one check an element; 120 spots on the four sides of a square of half-width 6 in., staggered by 1 in.; \
-         16 × 16 pixels laid to the edges of the view; each entry of Φ times 1 + σ·N(0, 1), {} draws from seed {}; Moore–Penrose inverse in doubles cut at \
-         max(r, l)·eps(σ1), eps the spacing of doubles at σ1 (MATLAB); normalized MTF of the values stretched to [0, 1], raw MTF in the CSV; pictures are the first draw. {} In the last plot the render's own noise is the noise, {} paths an entry; the leftmost point is the mean.",
+        "{BOTH_KERNELS}; board of one check an element; 120 spots on the four sides of a square \
+         of half-width 6 in., staggered by 1 in.; {VIEW}; each entry of Φ times 1 + σ·N(0, 1), {} \
+         draws from seed {}; {CUT}; {STRETCHED}, raw MTF in the CSV; pictures are the first draw. \
+         {} In the last plot the noise is that of renders with {} paths an entry; the leftmost \
+         point is the mean.",
         plan.seeds,
         plan.first_seed,
         traced::caption(),
@@ -243,8 +245,10 @@ fn trace(rows: &mut Vec<Vec<Cell>>, control: Control<'_>) -> Result<(Plot, Strin
         curves,
     );
     let words = format!(
-        "Traced in place of modelled Φ: normalized MTF with Φ modelled for the footprints' centres, without noise, and with the mean of the trace: {}. What parts them is \
-         what the model leaves out of light, elements that are no points, and what noise the mean is left with.",
+        "Traced in place of modelled Φ: normalized MTF with Φ modelled for the footprints' \
+         centres, without noise, and with the mean of the trace: {}. They differ by the light \
+         that the model leaves out, by the extent of the elements, and by the noise that the mean \
+         still has.",
         said.join("; ")
     );
     Ok((plot, words))

@@ -169,7 +169,8 @@ pub(super) fn figure(cases: &[Case], found: &[Vec<Trial>]) -> Finding {
         ),
         "below 1: what the figures show is a property of the method",
         format!("at least 1 − {worst:.1e} in multiple precision"),
-        "refuted where all are above 1 − 1e-9: what is lost is lost to the rounding of doubles and the cut",
+        "refuted where all are above 1 − 1e-9: the loss then comes from the rounding of doubles \
+         and from the cut",
         worst > 1e-9,
     )];
     let notes = GROUPS.iter().filter_map(|g| {
@@ -195,7 +196,7 @@ pub(super) fn figure(cases: &[Case], found: &[Vec<Trial>]) -> Finding {
                    Moore–Penrose recovery.";
     let table = Table::of(
         rows,
-        &[
+        [
             ("item", |r| r.case.label.into()),
             ("board", |r| r.board.into()),
             ("elements", |r| r.case.published.elements.into()),

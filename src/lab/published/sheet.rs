@@ -3,6 +3,16 @@
 use super::item::Item;
 use crate::lab::finding::{Figure, Finding, Picture, Place, Plot, Table};
 
+/// What the captions of several items say of kernel, pixels, tolerance and normalisation.
+pub(super) const BOTH_KERNELS: &str = "Published and physical kernel (G12 and G23 alike)";
+pub(super) const VIEW: &str = "16 × 16 pixels laid to the edges of the view";
+pub(super) const CUT: &str = "Moore–Penrose inverse cut at max(r, l)·eps(σ1), eps the spacing of \
+                              doubles at σ1 (MATLAB)";
+pub(super) const STRETCHED: &str = "normalized MTF of the values stretched to [0, 1]";
+
+/// What is plotted of a result: the title of its axis, and its value.
+pub(super) type Measure<R, T> = (&'static str, fn(&R) -> T);
+
 /// Side of the published object, in.
 const OBJECT: f64 = 4.0;
 /// A table of more rows than this is left to its CSV file.

@@ -4,11 +4,11 @@ use super::case::{Case, HALF_WIDTH, KERNELS, Row, curve, published, rows};
 use super::item::Item;
 use super::outcome::{Outcome, Trial};
 use super::plan::ReproducePlan;
-use super::sheet::finding;
+use super::sheet::{BOTH_KERNELS, CUT, Measure, STRETCHED, VIEW, finding};
 use super::substitution;
 use super::traced;
 use crate::lab::check::Check;
-use crate::lab::finding::{Axis, Curve, Finding, Get, Plot, Table};
+use crate::lab::finding::{Axis, Curve, Finding, Plot, Table};
 use crate::model::{Kernel, Stagger};
 
 /// Spots a side: 8 to 400 in all.
@@ -33,8 +33,11 @@ const FLAT: f64 = 0.1;
 const RESOLVED: f64 = 0.5;
 
 /// The layout and cut that all these figures share, in words.
-pub(super) const LAYOUT: &str = "spots on the four sides of a square of half-width 6 in. around C, no stagger; 16 × 16 pixels laid to the edges of the view; Moore–Penrose inverse cut at \
-     max(r, l)·eps(σ1), eps the spacing of doubles at σ1 (MATLAB)";
+pub(super) fn layout() -> String {
+    format!(
+        "spots on the four sides of a square of half-width 6 in. around C, no stagger; {VIEW}; {CUT}"
+    )
+}
 
 /// The axis of the number of spots.
 pub(super) fn across() -> Axis {
@@ -92,7 +95,7 @@ pub(super) fn figure(item: Item, cases: &[Case], found: &[Vec<Trial>]) -> Findin
     });
     let boards = boards(item);
     let modelled: Vec<Row<'_>> = rows.iter().filter(|r| !r.case.is_traced).copied().collect();
-    let measures: [(&str, Get<Outcome, Option<f64>>); 2] =
+    let measures: [Measure<Outcome, Option<f64>>; 2] =
         [("normalized MTF", |o| o.normalized), ("raw MTF", |o| o.raw)];
     let mut plots = Vec::new();
     for &board in boards {
@@ -116,7 +119,7 @@ pub(super) fn figure(item: Item, cases: &[Case], found: &[Vec<Trial>]) -> Findin
     let names: Vec<String> = boards.iter().map(|b| format!("{b} × {b} board")).collect();
     let table = Table::of(
         rows,
-        &[
+        [
             ("kernel", |r| r.kernel().into()),
             ("board", |r| r.board.into()),
             ("elements", |r| r.case.published.elements.into()),
@@ -129,8 +132,9 @@ pub(super) fn figure(item: Item, cases: &[Case], found: &[Vec<Trial>]) -> Findin
         ],
     );
     let title = format!("MTF against the number of spots, {}", names.join(" and "));
+    let layout = layout();
     let caption = format!(
-        "Published and physical kernel (G12 and G23 alike); {LAYOUT}; normalized MTF of the values stretched to [0, 1], raw MTF beside it; noiseless, by the projector; \
+        "{BOTH_KERNELS}; {layout}; {STRETCHED}, raw MTF beside it; noiseless, by the projector; \
          elements a side as the legend says, those that the board divides.{more}"
     );
     Finding {

@@ -121,8 +121,10 @@ impl Describe for ItemSummary {
     }
 }
 
-const HOW: &str = "Each verdict follows from the checks below it: refuted, where a published statement is computed to be wrong; not reproducible, where a published trend \
-                   does not show, or numbers are missed and no trend is published; reproduced in trend, where numbers are missed but every trend shows; reproduced else.";
+const HOW: &str = "Each verdict follows from the checks below it: refuted if the computation \
+     contradicts a published statement; not reproducible if a published trend does not show, or \
+     if numbers are missed and no trend is published; reproduced in trend if numbers are missed \
+     but every trend shows; otherwise reproduced.";
 
 /// What the verdicts on `items` come to.
 pub fn overview(items: &[ItemSummary]) -> Finding {
@@ -132,7 +134,7 @@ pub fn overview(items: &[ItemSummary]) -> Finding {
     });
     let table = Table::of(
         items,
-        &[
+        [
             ("item", |i| i.item.as_str().into()),
             ("verdict", |i| i.verdict.reason(&i.checks).into()),
         ],

@@ -107,7 +107,7 @@ fn ordered<'a>(cases: &'a [Case], found: &'a [Vec<Trial>]) -> Vec<Row<'a>> {
 pub(super) fn table(cases: &[Case], found: &[Vec<Trial>]) -> Table {
     Table::of(
         ordered(cases, found),
-        &[
+        [
             ("kernel", |r| r.kernel().into()),
             ("spots", |r| r.spots().into()),
             ("method", |r| r.method().into()),
@@ -191,7 +191,8 @@ pub(super) fn figure(cases: &[Case], found: &[Vec<Trial>]) -> Finding {
     );
     let notes = vec![
         format!(
-            "The printed numbers are compared with the {convention} MTF, which they are nearer to: root mean square difference {:.4} of the raw, {:.4} of the normalized MTF. \
+            "The printed numbers are compared with the {convention} MTF, because they are closer \
+             to it: root mean square difference {:.4} of the raw, {:.4} of the normalized MTF. \
              Table 1 and Fig 11 print different numbers for the same three cases.",
             distances[0], distances[1]
         ),
@@ -223,8 +224,9 @@ fn lost(rows: &[Row<'_>]) -> String {
         format!("{name} {:.3}, {:.3} and {:.3}", most[0], most[1], most[2])
     });
     format!(
-        "Physical kernel, Φ of equal footprints: highest normalized MTF over the numbers of spots by the three methods: {}. What the model leaves out of traced light and \
-         the noise of the render are multiplied by σ1 over the last kept singular value.",
+        "Physical kernel, Φ of equal footprints: highest normalized MTF over the numbers of spots \
+         by the three methods: {}. The inversion multiplies both the noise of the render and the \
+         light that the model leaves out by σ1 over the last kept singular value.",
         said.join("; ")
     )
 }

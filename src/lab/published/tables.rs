@@ -168,7 +168,7 @@ pub(super) fn figure(item: Item) -> Finding {
     let checks = entries.iter().map(Entry::check).collect();
     let table = Table::of(
         entries,
-        &[
+        [
             ("line", |e| e.line.as_str().into()),
             ("row", |e| e.row.map_or(Cell::Number(None), Cell::from)),
             ("printed", |e| e.printed.into()),

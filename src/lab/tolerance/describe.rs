@@ -68,7 +68,7 @@ impl Tolerance {
         Table {
             caption: "Change of Φcam where the error is small, and where the pattern is lost"
                 .to_owned(),
-            ..Table::by_columns(
+            ..Table::of(
                 things,
                 [
                     (Column::text("what is off", ""), |(p, ..)| (&p.name).into()),
@@ -94,7 +94,7 @@ impl Tolerance {
             caption: "Every size".to_owned(),
             file: Some("tolerance.csv".to_owned()),
             place: Place::Page,
-            ..Table::by_columns(
+            ..Table::of(
                 all.flat_map(|p| p.rows.iter().map(move |r| (p, r))),
                 [
                     (Column::text("what is off", "what"), |(p, _)| {

@@ -4,8 +4,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::solution::{LeastSquares, Route, by_directions, solve_by_svd};
-use super::triangle::{same_length, scaled_vector};
-use super::{LinalgError, Tolerance, svd_of_range, triangle};
+use super::triangle::scaled_vector;
+use super::{LinalgError, Tolerance, same_length, svd_of_range, triangle};
 
 /// Singular values below this fraction of σ₁ are not trusted after an unpivoted QR, whose error on
 /// numerically rank-deficient input is about 4e-14 σ₁ (measured): three digits are kept above that.

@@ -19,6 +19,7 @@
 //! [`svd`]: svd()
 //! [`svd_to`]: svd_to()
 
+mod diagonal;
 mod householder;
 mod least_squares;
 mod pinv;
@@ -29,6 +30,7 @@ mod solution;
 mod svd;
 mod triangle;
 
+pub use diagonal::{columns_over, columns_times, rows_over, rows_times};
 pub use householder::{Complement, complement};
 pub use least_squares::least_squares;
 pub use pinv::{Pinv, pinv};
@@ -130,6 +132,35 @@ pub enum LinalgError {
 }
 
 /// The matrix times 2^−e, its largest entry then in [1, 2), and e. A zero matrix has e = 0.
+/// Refuses two lengths that should be one.
+pub(super) fn same_length(
+    what: &'static str,
+    expected: usize,
+    found: usize,
+) -> Result<(), LinalgError> {
+    if expected == found {
+        return Ok(());
+    }
+    Err(LinalgError::Shape {
+        what,
+        expected,
+        found,
+    })
+}
+
+/// Refuses what a decomposition of `a` reproduces to worse than 10 max(m, n) roundings.
+fn same_to_rounding(a: &DMatrix<f64>, check: &'static str, error: f64) -> Result<(), LinalgError> {
+    let allowed = 10.0 * a.nrows().max(a.ncols()) as f64 * f64::EPSILON;
+    if error <= allowed {
+        return Ok(());
+    }
+    Err(LinalgError::Inaccurate {
+        check,
+        error,
+        allowed,
+    })
+}
+
 fn scaled(a: &DMatrix<f64>) -> Result<(DMatrix<f64>, i32), LinalgError> {
     if a.is_empty() {
         return Err(LinalgError::Empty {

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{LinalgError, Tolerance, cut, product, svd_to};
+use super::{LinalgError, Tolerance, columns_over, product, svd_to};
 
 /// A⁺ and how it was cut.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,13 +26,10 @@ pub struct Pinv {
 /// [`LinalgError::Overflow`] where 1/σ exceeds f64.
 pub fn pinv(a: &DMatrix<f64>, tolerance: Tolerance) -> Result<Pinv, LinalgError> {
     let decomposed = svd_to(a, tolerance)?;
-    let (rank, cutoff) = cut(decomposed.sigma.as_slice(), a.nrows(), a.ncols(), tolerance)?;
-    let mut v = decomposed.vt.rows(0, rank).transpose();
-    for (mut column, &s) in v.column_iter_mut().zip(decomposed.sigma.iter()) {
-        // Division, not multiplication by 1/σ: 1/σ of a subnormal σ would overflow before the entry
-        // is small enough.
-        column /= s;
-    }
+    let (rank, cutoff) = decomposed.cut(tolerance)?;
+    // Division, not multiplication by 1/σ: 1/σ of a subnormal σ would overflow before the entry is
+    // small enough.
+    let v = columns_over(decomposed.vt.rows(0, rank).transpose(), &decomposed.sigma);
     let matrix = product(&v, &decomposed.u.columns(0, rank).transpose());
     if matrix.iter().any(|x| !x.is_finite()) {
         return Err(LinalgError::Overflow("the pseudo-inverse"));
@@ -48,6 +45,7 @@ pub fn pinv(a: &DMatrix<f64>, tolerance: Tolerance) -> Result<Pinv, LinalgError>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::num::linalg::cut;
     use crate::num::linalg::kernel::{bench_g12, hilbert};
 
     /// Largest violation of the four Penrose conditions, each relative to the size that rounding

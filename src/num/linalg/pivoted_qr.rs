@@ -9,7 +9,7 @@ use nalgebra::DMatrix;
 
 use super::householder::{Pivoting, reduce};
 use super::svd::certain;
-use super::{LinalgError, Tolerance, cut, product, range, scaled};
+use super::{LinalgError, Tolerance, cut, product, range, same_length, same_to_rounding, scaled};
 
 /// A P = Q R with |R₁₁| ≥ |R₂₂| ≥ …, thin: k = min(m, n).
 #[derive(Debug, Clone, PartialEq)]
@@ -64,24 +64,15 @@ pub fn pivoted_qr_to(a: &DMatrix<f64>, tolerance: Tolerance) -> Result<PivotedQr
 
 /// The two a-posteriori checks of [`pivoted_qr`] on the scaled matrix.
 fn check(a: &DMatrix<f64>, qr: &PivotedQr) -> Result<(), LinalgError> {
-    let allowed = 10.0 * a.nrows().max(a.ncols()) as f64 * f64::EPSILON;
-    let pass = |check, error: f64| match error <= allowed {
-        true => Ok(()),
-        false => Err(LinalgError::Inaccurate {
-            check,
-            error,
-            allowed,
-        }),
-    };
     let k = qr.q.ncols();
     let off = (qr.q.transpose() * &qr.q - DMatrix::identity(k, k)).norm();
-    pass("the orthogonality of Q", off / (k as f64).sqrt())?;
+    same_to_rounding(a, "the orthogonality of Q", off / (k as f64).sqrt())?;
     let norm = a.norm();
     if norm == 0.0 {
         return Ok(());
     }
     let off = (a.select_columns(&qr.order) - &qr.q * &qr.r).norm();
-    pass("the product of the factors", off / norm)
+    same_to_rounding(a, "the product of the factors", off / norm)
 }
 
 impl PivotedQr {
@@ -137,7 +128,7 @@ impl PivotedQr {
 
     /// The first `rank` rows of QᵀB, scaled, and the exponent taken out.
     fn along(&self, rank: usize, b: &DMatrix<f64>) -> Result<(DMatrix<f64>, i32), LinalgError> {
-        super::triangle::same_length("rows of B against rows of A", self.q.nrows(), b.nrows())?;
+        same_length("rows of B against rows of A", self.q.nrows(), b.nrows())?;
         if rank == 0 || rank > self.q.ncols() {
             return Err(self.deficient(rank));
         }

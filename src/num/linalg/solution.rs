@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{LinalgError, Svd, Tolerance, cut, svd};
+use super::{LinalgError, Svd, Tolerance, cut, rows_over, svd};
 
 /// Which decomposition a solution rests on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,10 +39,7 @@ impl LeastSquares {
     /// (AᵀA)⁺ = V_k Σ_k⁻² V_kᵀ, n × n: the covariance of the solution where the entries of b carry
     /// independent noise of unit variance.
     pub fn covariance(&self) -> DMatrix<f64> {
-        let mut scaled = self.vt.clone();
-        for (mut row, &s) in scaled.row_iter_mut().zip(self.sigma.iter()) {
-            row /= s;
-        }
+        let scaled = rows_over(self.vt.clone(), &self.sigma);
         scaled.transpose() * scaled
     }
 }

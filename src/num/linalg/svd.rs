@@ -7,7 +7,7 @@ use faer::linalg::svd::{ComputeSvdVectors, SvdParams, svd as faer_svd, svd_scrat
 use faer::{Auto, Mat, MatRef, Par, Spec};
 use nalgebra::{DMatrix, DVector};
 
-use super::{LinalgError, Tolerance, cut, product, range, scaled};
+use super::{LinalgError, Tolerance, columns_times, cut, product, range, same_to_rounding, scaled};
 
 /// A = U Σ Vᵀ, thin: k = min(m, n), or fewer where those beyond are rounding.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,6 +20,18 @@ pub struct Svd {
     pub vt: DMatrix<f64>,
     /// What no singular value beyond these k exceeds: 0 where all min(m, n) are there.
     pub rest: f64,
+}
+
+impl Svd {
+    /// The numerical rank of A at a tolerance, and the singular value at or below which counts as
+    /// zero.
+    ///
+    /// # Errors
+    /// Those of [`cut`].
+    pub fn cut(&self, tolerance: Tolerance) -> Result<(usize, f64), LinalgError> {
+        let (rows, columns) = (self.u.nrows(), self.vt.ncols());
+        cut(self.sigma.as_slice(), rows, columns, tolerance)
+    }
 }
 
 /// The thin singular value decomposition of an m × n matrix.
@@ -146,27 +158,10 @@ fn check(a: &DMatrix<f64>, svd: &Svd) -> Result<(), LinalgError> {
     if norm == 0.0 {
         return Ok(());
     }
-    let allowed = 10.0 * a.nrows().max(a.ncols()) as f64 * f64::EPSILON;
-    let pass = |check, error: f64| match error <= allowed {
-        true => Ok(()),
-        false => Err(LinalgError::Inaccurate {
-            check,
-            error,
-            allowed,
-        }),
-    };
-    pass(
-        "the sum of squared singular values",
-        (svd.sigma.norm_squared() / (norm * norm) - 1.0).abs(),
-    )?;
-    let mut scaled_u = svd.u.clone();
-    for (mut column, &s) in scaled_u.column_iter_mut().zip(svd.sigma.iter()) {
-        column *= s;
-    }
-    pass(
-        "the product of the factors",
-        (a - scaled_u * &svd.vt).norm() / norm,
-    )
+    let off = (svd.sigma.norm_squared() / (norm * norm) - 1.0).abs();
+    same_to_rounding(a, "the sum of squared singular values", off)?;
+    let off = (a - columns_times(svd.u.clone(), &svd.sigma) * &svd.vt).norm();
+    same_to_rounding(a, "the product of the factors", off / norm)
 }
 
 #[cfg(test)]

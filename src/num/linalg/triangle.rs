@@ -6,7 +6,7 @@ use faer::{MatRef, Side};
 use nalgebra::{DMatrix, DVector};
 
 use super::solution::{LeastSquares, Route, solve_by_svd};
-use super::{LinalgError, Tolerance, cut, scaled, svd};
+use super::{LinalgError, Tolerance, same_length, scaled, svd};
 
 /// The reduction of min ‖A x − b‖ for an m × n matrix to k = min(m, n) rows:
 /// ‖A x − b‖² = ‖R x − d‖² + rest² for every x.
@@ -18,22 +18,6 @@ pub struct Triangle {
     pub d: DVector<f64>,
     /// The part of ‖b‖ that no x can reach, ≥ 0.
     pub rest: f64,
-}
-
-pub(super) fn same_length(
-    what: &'static str,
-    expected: usize,
-    found: usize,
-) -> Result<(), LinalgError> {
-    if expected == found {
-        Ok(())
-    } else {
-        Err(LinalgError::Shape {
-            what,
-            expected,
-            found,
-        })
-    }
 }
 
 /// The column b scaled, as a vector, and its exponent.
@@ -126,7 +110,7 @@ pub fn normal_triangle(
         }
         Err(_) => {
             let decomposed = svd(&g)?;
-            let (rank, _) = cut(decomposed.sigma.as_slice(), n, n, Tolerance::Auto)?;
+            let (rank, _) = decomposed.cut(Tolerance::Auto)?;
             let mut r = decomposed.vt.rows(0, rank).into_owned();
             let mut d = &r * moment;
             for k in 0..rank {

@@ -4,7 +4,7 @@ use clarabel::solver::{DefaultSettingsBuilder, NonnegativeConeT, ZeroConeT};
 use nalgebra::{DMatrix, DVector};
 
 use super::program::{Program, half_square};
-use super::{Bounds, BoxSolution, GAP_ALLOWED, QuadraticError, certificate};
+use super::{Bounds, BoxSolution, GAP_ALLOWED, QuadraticError, certificate, not_solved};
 use crate::num::linalg::{Tolerance, least_squares};
 
 /// Values nearer than this fraction of the solution's size count as one, and as their bound, before
@@ -81,11 +81,7 @@ pub fn fused_least_squares(
     let gap = proved + (penalty - interior.w.dot(&differences)).max(0.0);
     let unit = 0.5 * (r.norm_squared() + (d - r * &bounds.lower).norm_squared());
     if gap.is_nan() || gap > GAP_ALLOWED * unit {
-        return Err(QuadraticError::NotSolved {
-            status: interior.status,
-            gap: gap / unit,
-            allowed: GAP_ALLOWED,
-        });
+        return Err(not_solved(interior.status, gap / unit));
     }
     Ok(Fused {
         found: BoxSolution {
@@ -176,11 +172,7 @@ impl Problem<'_> {
         let status = found.status.to_string();
         let mut x = DVector::from_fn(n, |j, _| start[j] + found.x[j] * unit / lengths[j]);
         if x.iter().any(|x| !x.is_finite()) {
-            return Err(QuadraticError::NotSolved {
-                status,
-                gap: f64::INFINITY,
-                allowed: GAP_ALLOWED,
-            });
+            return Err(not_solved(status, f64::INFINITY));
         }
         for (j, x) in x.iter_mut().enumerate() {
             *x = x.clamp(self.bounds.lower[j], self.bounds.upper[j]);

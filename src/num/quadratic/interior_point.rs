@@ -4,7 +4,7 @@ use clarabel::solver::{DefaultSettingsBuilder, NonnegativeConeT, ZeroConeT};
 use nalgebra::{DMatrix, DVector};
 
 use super::program::{Program, half_square};
-use super::{GAP_ALLOWED, Place, QuadraticError};
+use super::{Place, QuadraticError, not_solved};
 
 /// Where the interior-point solver ended.
 pub(super) struct Interior {
@@ -48,11 +48,7 @@ pub(super) fn solve(
     let status = found.status.to_string();
     let mut x = DVector::from_fn(n, |j, _| found.x[j] * size / lengths[j]);
     if x.iter().any(|x| !x.is_finite()) {
-        return Err(QuadraticError::NotSolved {
-            status,
-            gap: f64::INFINITY,
-            allowed: GAP_ALLOWED,
-        });
+        return Err(not_solved(status, f64::INFINITY));
     }
     // A bound holds where its multiplier outweighs the distance to it.
     let holds = |row: usize| found.s[row] < found.z[row];

@@ -12,7 +12,7 @@ pub use extent::extent;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::linalg::LinalgError;
+use super::linalg::{LinalgError, same_length};
 use interior_point::Interior;
 
 /// Largest duality gap accepted, as a fraction of ½(‖d‖² + ‖R‖²).
@@ -96,6 +96,14 @@ pub enum QuadraticError {
     },
 }
 
+fn not_solved(status: String, gap: f64) -> QuadraticError {
+    QuadraticError::NotSolved {
+        status,
+        gap,
+        allowed: GAP_ALLOWED,
+    }
+}
+
 /// Where a variable stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Place {
@@ -143,7 +151,7 @@ pub fn box_least_squares_from(
     start: &DVector<f64>,
 ) -> Result<BoxSolution, QuadraticError> {
     let scaled = Scaled::new(r, d, bounds)?;
-    same(
+    same_length(
         "entries of the start against columns of R",
         r.ncols(),
         start.len(),
@@ -169,18 +177,6 @@ pub fn box_least_squares_from(
     }
 }
 
-fn same(what: &'static str, expected: usize, found: usize) -> Result<(), QuadraticError> {
-    match expected == found {
-        true => Ok(()),
-        false => Err(LinalgError::Shape {
-            what,
-            expected,
-            found,
-        }
-        .into()),
-    }
-}
-
 /// The problem for x − l, its largest entry in [1, 2).
 struct Scaled {
     r: DMatrix<f64>,
@@ -200,9 +196,9 @@ impl Scaled {
             }
             .into());
         }
-        same("entries of d against rows of R", k, d.len())?;
-        same("lower bounds against columns of R", n, bounds.lower.len())?;
-        same("upper bounds against columns of R", n, bounds.upper.len())?;
+        same_length("entries of d against rows of R", k, d.len())?;
+        same_length("lower bounds against columns of R", n, bounds.lower.len())?;
+        same_length("upper bounds against columns of R", n, bounds.upper.len())?;
         if let Some(at) = r.iter().chain(d.iter()).position(|x| !x.is_finite()) {
             let value = if at < k * n { r[at] } else { d[at - k * n] };
             return Err(LinalgError::NotFinite {
@@ -251,11 +247,7 @@ impl Scaled {
         )?;
         let unit = 0.5 * (r.norm_squared() + d.norm_squared());
         if gap.is_nan() || gap > GAP_ALLOWED * unit {
-            return Err(QuadraticError::NotSolved {
-                status: start.status,
-                gap: gap / unit,
-                allowed: GAP_ALLOWED,
-            });
+            return Err(not_solved(start.status, gap / unit));
         }
         let up = |x: f64| libm::scalbn(x, 2 * self.exponent);
         let solution = DVector::from_fn(n, |j, _| {

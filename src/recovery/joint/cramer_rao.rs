@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{stacked, weights};
-use crate::num::linalg::{Tolerance, cut, svd};
+use crate::num::linalg::{Tolerance, rows_over, svd};
 use crate::recovery::{Method, Problem, RecoveryError};
 
 /// Directions below this fraction of the strongest are lost: QR without pivoting has an error of
@@ -48,22 +48,12 @@ pub fn cramer_rao(problem: &Problem<'_>) -> Result<CramerRao, RecoveryError> {
     let reduced = stacked::stack(problem, |p, l| fitted.root(Some(stderr), p, l))?.triangle;
     let decomposed = svd(&reduced.r)?;
     let elements = problem.c.ncols();
-    let (rank, _) = cut(
-        decomposed.sigma.as_slice(),
-        elements,
-        elements,
-        Tolerance::Relative(LOST),
-    )?;
+    let (rank, _) = decomposed.cut(Tolerance::Relative(LOST))?;
     if rank == 0 {
-        return Err(RecoveryError::RankZero {
-            side: "model C, D as a whole",
-        });
+        return Err(RecoveryError::NO_DIRECTION);
     }
     let kept = decomposed.vt.rows(0, rank);
-    let mut scaled = kept.into_owned();
-    for (mut row, &s) in scaled.row_iter_mut().zip(decomposed.sigma.iter()) {
-        row /= s;
-    }
+    let scaled = rows_over(kept.into_owned(), &decomposed.sigma);
     let covariance = scaled.transpose() * scaled;
     let standard_error = DVector::from_fn(elements, |j, _| {
         // 1 − what of element j the kept directions hold.

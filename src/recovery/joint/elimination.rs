@@ -14,7 +14,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::stacked::Coupled;
-use crate::num::linalg::{Tolerance, least_squares};
+use crate::num::linalg::{Tolerance, columns_over, least_squares};
 use crate::recovery::{Estimated, Nuisance, RecoveryError};
 
 /// û, the unit vector along the roots of the weights of one side.
@@ -62,13 +62,11 @@ pub(super) fn estimate(
     } else if let Some(pattern) = nuisance.glare {
         for l in 0..spots {
             let ones = usize::from(nuisance.frame_constant);
-            let mut columns = DMatrix::from_fn(pixels, ones + 1, |p, k| {
+            let columns = DMatrix::from_fn(pixels, ones + 1, |p, k| {
                 root(p, l) * if k < ones { 1.0 } else { pattern[(p, l)] }
             });
             let lengths: Vec<f64> = columns.column_iter().map(|c| nonzero(c.norm())).collect();
-            for (mut column, length) in columns.column_iter_mut().zip(&lengths) {
-                column /= *length;
-            }
+            let columns = columns_over(columns, &lengths);
             let data = DVector::from_fn(pixels, |p, _| root(p, l) * left[(p, l)]);
             if columns.amax() == 0.0 {
                 continue;

@@ -20,8 +20,8 @@ use super::elimination::{estimate, unit, without_left, without_right};
 use super::stacked::{Coupled, stack};
 use super::weights::{self, Weights};
 use crate::num::linalg::{
-    LeastSquares, Route, Svd, Tolerance, Triangle, cut, least_squares, normal_triangle, product,
-    svd_of_range, svd_to, tr_product, triangle,
+    LeastSquares, Route, Svd, Tolerance, Triangle, columns_over, least_squares, normal_triangle,
+    product, rows_times, svd_of_range, svd_to, tr_product, triangle,
 };
 use crate::recovery::{Estimated, Options, Problem, RecoveryError, WeightRule, Weighting};
 
@@ -45,13 +45,15 @@ struct Sides {
     v: DMatrix<f64>,
 }
 
+/// The noise by which entries are weighted.
+fn known<'a>(problem: &Problem<'a>, options: &Options) -> Option<&'a DMatrix<f64>> {
+    let weighted = options.weighting == WeightRule::Noise;
+    problem.noise().filter(|_| weighted)
+}
+
 /// v_k/s_k as columns, r × rank.
 fn towards(solved: &LeastSquares) -> DMatrix<f64> {
-    let mut towards = solved.vt.transpose();
-    for (mut column, &s) in towards.column_iter_mut().zip(solved.sigma.iter()) {
-        column /= s;
-    }
-    towards
+    columns_over(solved.vt.transpose(), &solved.sigma)
 }
 
 enum Form {
@@ -79,12 +81,7 @@ fn compress(
     name: &'static str,
 ) -> Result<(Svd, usize), RecoveryError> {
     let decomposed = svd_to(side, Tolerance::Auto)?;
-    let (rank, _) = cut(
-        decomposed.sigma.as_slice(),
-        side.nrows(),
-        side.ncols(),
-        Tolerance::Auto,
-    )?;
+    let (rank, _) = decomposed.cut(Tolerance::Auto)?;
     let rounding = side.nrows().max(side.ncols()) as f64 * f64::EPSILON * before;
     let rank = match side.norm() < 0.999 * before {
         true => decomposed
@@ -133,10 +130,7 @@ impl Operator {
             });
         }
         let (pixels, spots) = problem.phi.shape();
-        let known = match options.weighting {
-            WeightRule::Noise => problem.noise(),
-            WeightRule::Unweighted => None,
-        };
+        let known = known(problem, options);
         let weights = weights::fit(known, pixels, spots);
         if problem.nuisance.glare.is_some() {
             let stacked = stack(problem, |p, l| weights.root(known, p, l))?;
@@ -221,10 +215,7 @@ impl Operator {
         seen: &DVector<f64>,
     ) -> Result<Estimated, RecoveryError> {
         let left = problem.phi - problem.light(seen);
-        let known = match options.weighting {
-            WeightRule::Noise => problem.noise(),
-            WeightRule::Unweighted => None,
-        };
+        let known = known(problem, options);
         match &self.form {
             Form::Stacked { coupled, .. } => estimate(
                 &problem.nuisance,
@@ -279,10 +270,7 @@ impl Operator {
         let (c, k) = (t.nrows(), solved.rank);
         let mut lit = DMatrix::zeros(c * k, s.ncols());
         for (b, mut target) in lit.column_iter_mut().enumerate() {
-            let mut by_element = towards.clone();
-            for (mut row, &x) in by_element.row_iter_mut().zip(s.column(b).iter()) {
-                row *= x;
-            }
+            let by_element = rows_times(towards.clone(), s.column(b).iter());
             target.copy_from_slice(product(t, &by_element).as_slice());
         }
         let mut sum = DMatrix::zeros(k, k);
@@ -291,12 +279,7 @@ impl Operator {
             let errors: Vec<f64> = (0..u.nrows())
                 .map(|p| self.weights.pixels[p] * self.weights.spots[l] * stderr[(p, l)])
                 .collect();
-            let mut noise = u.clone();
-            for mut column in noise.column_iter_mut() {
-                for (x, error) in column.iter_mut().zip(&errors) {
-                    *x *= error;
-                }
-            }
+            let noise = rows_times(u.clone(), &errors);
             let weighted = product(&tr_product(&noise, &noise), &along);
             sum += tr_product(&along, &weighted);
         }
@@ -331,9 +314,7 @@ impl Operator {
             Form::Stacked { triangle, rows, .. } => triangle.solve(*rows, tolerance, Route::Qr)?,
         };
         if solved.rank == 0 {
-            return Err(RecoveryError::RankZero {
-                side: "model C, D as a whole",
-            });
+            return Err(RecoveryError::NO_DIRECTION);
         }
         Ok(solved)
     }

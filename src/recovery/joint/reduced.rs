@@ -4,7 +4,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::khatri_rao::Operator;
-use crate::num::linalg::{Svd, Tolerance, cut};
+use crate::num::linalg::{Svd, Tolerance, cut, rows_times};
 use crate::num::quadratic::{Bounds, BoxSolution};
 use crate::recovery::{
     Choice, Estimated, Method, Options, Parameter, Problem, Recovered, RecoveryError, Solver,
@@ -32,22 +32,15 @@ impl Reduced {
             tolerance,
         )?;
         if rank == 0 {
-            return Err(RecoveryError::RankZero {
-                side: "model C, D as a whole",
-            });
+            return Err(RecoveryError::NO_DIRECTION);
         }
         // Directions below one rounding of the strongest carry nothing: k rows Σ_k V_kᵀ stand for
         // R.
         let (rows, _) = cut(sigma.as_slice(), 1, 1, Tolerance::Relative(f64::EPSILON))?;
-        let mut strong = vt.rows(0, rows).into_owned();
-        for (mut row, &s) in strong.row_iter_mut().zip(sigma.iter()) {
-            row *= s;
-        }
-        let d = data.rows(0, rows).into_owned();
         Ok(Reduced {
             operator,
-            r: strong,
-            d,
+            r: rows_times(vt.rows(0, rows).into_owned(), &sigma),
+            d: data.rows(0, rows).into_owned(),
             sigma,
             rank,
             cutoff,

@@ -16,7 +16,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::num::linalg::{Triangle, svd, triangle};
+use crate::num::linalg::{Triangle, columns_over, svd, triangle};
 use crate::recovery::{Problem, RecoveryError};
 
 /// Singular values of unit nuisance columns at or below this count as zero: some thousand
@@ -89,7 +89,7 @@ pub(super) fn stack(
             })
         };
         for block in (0..spots).map(frame) {
-            rows.push(eliminate(&reduce(&block)?, kinds)?.remaining)?;
+            rows.push(eliminate(&reduce(&block)?.joined(), kinds)?.remaining)?;
         }
         return Ok(Stacked {
             triangle: rows.finish()?,
@@ -108,7 +108,7 @@ pub(super) fn stack(
             },
             k => data(p, l, k - 1 - terms),
         });
-        rows.push(eliminate(&reduce(&block)?, 1)?.remaining)?;
+        rows.push(eliminate(&reduce(&block)?.joined(), 1)?.remaining)?;
     }
     let Eliminated {
         remaining,
@@ -150,7 +150,7 @@ impl Rows {
         self.count += block.nrows();
         self.held.push(block);
         if self.count > 4 * self.columns {
-            let reduced = reduce(&self.stacked())?;
+            let reduced = reduce(&self.stacked())?.joined();
             self.count = reduced.nrows();
             self.held = vec![reduced];
         }
@@ -173,23 +173,15 @@ impl Rows {
                 side: "model beside its nuisance terms",
             });
         }
-        let all = self.stacked();
-        let (a, b) = (
-            all.columns(0, self.columns - 1).into_owned(),
-            all.column(self.columns - 1).into_owned(),
-        );
-        Ok(triangle(&a, &b)?)
+        reduce(&self.stacked())
     }
 }
 
-/// The triangle of a block, as rows.
-fn reduce(block: &DMatrix<f64>) -> Result<DMatrix<f64>, RecoveryError> {
+/// The triangle of a block, whose last column is the data.
+fn reduce(block: &DMatrix<f64>) -> Result<Triangle, RecoveryError> {
     let last = block.ncols() - 1;
-    let (a, b) = (
-        block.columns(0, last).into_owned(),
-        block.column(last).into_owned(),
-    );
-    Ok(triangle(&a, &b)?.joined())
+    let a = block.columns(0, last).into_owned();
+    Ok(triangle(&a, &block.column(last).into_owned())?)
 }
 
 /// Rows of a triangle after its first columns were taken out.
@@ -223,13 +215,9 @@ fn eliminate(rows: &DMatrix<f64>, lead: usize) -> Result<Eliminated, RecoveryErr
     remaining
         .rows_mut(top - rank, rows.nrows() - top)
         .copy_from(&rows.view((top, lead), (rows.nrows() - top, others)));
-    let mut inverse = corner.vt.rows(0, rank).transpose();
-    for (mut column, &s) in inverse.column_iter_mut().zip(corner.sigma.iter()) {
-        column /= s;
-    }
     Ok(Eliminated {
         remaining,
-        inverse,
+        inverse: columns_over(corner.vt.rows(0, rank).transpose(), &corner.sigma),
         top: turned.rows(0, rank).into_owned(),
     })
 }

@@ -83,9 +83,7 @@ pub(in crate::recovery) fn recover(
         }
     }
     let Some(mut best) = best else {
-        return Err(RecoveryError::RankZero {
-            side: "model C, D as a whole",
-        });
+        return Err(RecoveryError::NO_DIRECTION);
     };
     let mut bound = relaxed.objective - relaxed.gap;
     // Levels yet to be searched with, last first.

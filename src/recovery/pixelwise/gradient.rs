@@ -21,7 +21,9 @@ use nalgebra::DMatrix;
 
 use super::laplacian::modes;
 use super::{Inverse, damping, decompose};
-use crate::num::linalg::{Tolerance, complement, cut, product, svd, svd_to, tr_product};
+use crate::num::linalg::{
+    Tolerance, columns_over, columns_times, complement, product, rows_over, svd, svd_to, tr_product,
+};
 use crate::recovery::{Method, Options, Parameter, Problem, RecoveryError, Spectrum};
 
 /// Elements whose modes, a matrix of elements × elements, are still formed: 512 MiB.
@@ -59,18 +61,11 @@ fn spectrum(problem: &Problem<'_>, grids: &[[usize; 2]]) -> Result<Spectrum, Rec
 
     let level = &a * &constants;
     let flat = svd(&level)?;
-    let (free, _) = cut(
-        flat.sigma.as_slice(),
-        spots,
-        constants.ncols(),
-        Tolerance::Auto,
-    )?;
+    let (free, _) = flat.cut(Tolerance::Auto)?;
     let seen = flat.u.columns(0, free).into_owned();
     // (A N)⁺ row by row: N v_i/σ_i, the even board that direction i of A N stands for.
-    let mut even = &constants * flat.vt.rows(0, free).transpose();
-    for (mut column, &s) in even.column_iter_mut().zip(flat.sigma.iter()) {
-        column /= s;
-    }
+    let even = &constants * flat.vt.rows(0, free).transpose();
+    let even = columns_over(even, &flat.sigma);
 
     let steep = product(&a, &smooth);
     let oblique = smooth - &even * tr_product(&seen, &steep);
@@ -97,15 +92,11 @@ fn spectrum(problem: &Problem<'_>, grids: &[[usize; 2]]) -> Result<Spectrum, Rec
         let directions = uneven.u.columns(0, kept).into_owned();
         data.rows_mut(free, kept)
             .tr_copy_from(&outside.vectors(&directions));
-        let mut damped = product(&uneven.vt.rows(0, kept).into_owned(), &oblique.transpose());
-        for (mut row, &s) in damped.row_iter_mut().zip(&sigma) {
-            row /= s;
-        }
+        let damped = product(&uneven.vt.rows(0, kept).into_owned(), &oblique.transpose());
+        let damped = rows_over(damped, &sigma);
         solution.rows_mut(free, kept).copy_from(&damped);
     }
-    for (mut column, &weight) in solution.column_iter_mut().zip(&profile) {
-        column *= weight;
-    }
+    let solution = columns_times(solution, &profile);
     Ok(Spectrum {
         image: &data * problem.d.transpose(),
         data,

@@ -11,7 +11,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{damping, decompose, refuse_unseen, tsvd};
-use crate::num::linalg::{Tolerance, cut, product, tr_product};
+use crate::num::linalg::{Tolerance, product, tr_product};
 use crate::recovery::{Choice, Method, Options, Parameter, Problem, RecoveryError, Rule, Spectrum};
 
 /// The laser side decomposed as far as rounding allows.
@@ -34,8 +34,7 @@ impl LaserSide {
     /// is zero.
     pub fn new(problem: &Problem<'_>) -> Result<Self, RecoveryError> {
         let laser = decompose(Method::Pinv, problem, Tolerance::Auto)?;
-        let (rows, columns) = problem.d.shape();
-        let (rank, _) = cut(laser.sigma.as_slice(), rows, columns, Tolerance::Auto)?;
+        let (rank, _) = laser.cut(Tolerance::Auto)?;
         Ok(LaserSide {
             spectrum: Spectrum::of(&laser, rank),
         })

@@ -20,7 +20,7 @@ use nalgebra::{DMatrix, DVector};
 use one_sided::Side;
 use rdivide::Solution;
 
-use crate::num::linalg::{LinalgError, PivotedQr, Svd, Tolerance, product, svd_to, tr_product};
+use crate::num::linalg::{LinalgError, PivotedQr, Svd, Tolerance, product, tr_product};
 use crate::recovery::{
     Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, Spectrum, Uncertainty,
 };
@@ -33,13 +33,7 @@ fn decompose(
     tolerance: Tolerance,
 ) -> Result<Svd, RecoveryError> {
     refuse_unseen(method, problem)?;
-    let decomposed = svd_to(problem.d, tolerance)?;
-    if decomposed.sigma[0] == 0.0 {
-        return Err(RecoveryError::RankZero {
-            side: "laser side D",
-        });
-    }
-    Ok(decomposed)
+    problem.laser(tolerance)
 }
 
 /// Refuses an element that a pixel does not see: its C cannot be divided by.

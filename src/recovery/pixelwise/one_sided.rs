@@ -11,7 +11,7 @@
 //! do not exist.
 
 use super::{Inverse, Quotient, decompose};
-use crate::num::linalg::{PivotedQr, cut, pivoted_qr_to};
+use crate::num::linalg::{PivotedQr, pivoted_qr_to};
 use crate::recovery::{Choice, Method, Options, Problem, RecoveryError};
 
 /// From which side D is inverted.
@@ -32,7 +32,7 @@ pub(super) fn inverse(
         Side::Right => (Method::RightInverse, elements),
     };
     let laser = decompose(method, problem, options.tolerance)?;
-    let (rank, cutoff) = cut(laser.sigma.as_slice(), elements, spots, options.tolerance)?;
+    let (rank, cutoff) = laser.cut(options.tolerance)?;
     if rank < needed {
         return Err(RecoveryError::NotFullRank {
             method,

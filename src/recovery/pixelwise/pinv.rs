@@ -1,13 +1,12 @@
 //! The published method: Φ D⁺ ÷ C, mean over pixels.
 
 use super::{Inverse, decompose};
-use crate::num::linalg::{Tolerance, cut};
+use crate::num::linalg::Tolerance;
 use crate::recovery::{Choice, Method, Options, Parameter, Problem, RecoveryError, Spectrum};
 
 pub(super) fn inverse(problem: &Problem<'_>, options: &Options) -> Result<Inverse, RecoveryError> {
     let laser = decompose(Method::Pinv, problem, options.tolerance)?;
-    let (rows, columns) = problem.d.shape();
-    let (rank, cutoff) = cut(laser.sigma.as_slice(), rows, columns, options.tolerance)?;
+    let (rank, cutoff) = laser.cut(options.tolerance)?;
     let choice = match options.tolerance {
         Tolerance::Rank(_) => Choice::Given,
         _ => Choice::Tolerance { cutoff },

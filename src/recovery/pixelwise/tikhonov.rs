@@ -1,14 +1,13 @@
 //! The published reduction with D's small singular values damped: D^# = V diag(σ/(σ² + λ²)) Uᵀ.
 
 use super::{Inverse, damping, decompose};
-use crate::num::linalg::{Tolerance, cut};
+use crate::num::linalg::Tolerance;
 use crate::recovery::{Method, Options, Parameter, Problem, RecoveryError, Spectrum};
 
 pub(super) fn inverse(problem: &Problem<'_>, options: &Options) -> Result<Inverse, RecoveryError> {
     let method = Method::Tikhonov;
     let laser = decompose(method, problem, Tolerance::Auto)?;
-    let (rows, columns) = problem.d.shape();
-    let (rank, _) = cut(laser.sigma.as_slice(), rows, columns, Tolerance::Auto)?;
+    let (rank, _) = laser.cut(Tolerance::Auto)?;
     let spectrum = Spectrum::of(&laser, rank);
     let (damping, choice) = damping::choose(method, problem, options, &spectrum)?;
     let filter = spectrum.damped(damping * spectrum.sigma[0]);

@@ -1,7 +1,7 @@
 //! The published reduction with D's small singular values left out.
 
 use super::{Inverse, decompose};
-use crate::num::linalg::{Tolerance, cut};
+use crate::num::linalg::Tolerance;
 use crate::recovery::rule::{Data, discrepancy::Discrepancy};
 use crate::recovery::{Choice, Method, Options, Parameter, Problem, RecoveryError, Rule, Spectrum};
 
@@ -10,15 +10,13 @@ const METHOD: Method = Method::Tsvd;
 pub(super) fn inverse(problem: &Problem<'_>, options: &Options) -> Result<Inverse, RecoveryError> {
     let needed = options.rank.map_or(Tolerance::Auto, Tolerance::Rank);
     let laser = decompose(METHOD, problem, needed)?;
-    let (rows, columns) = problem.d.shape();
-    let most = |tolerance| cut(laser.sigma.as_slice(), rows, columns, tolerance);
     let (spectrum, rank, choice) = match options.rank {
         Some(rank) => {
-            let (rank, _) = most(Tolerance::Rank(rank))?;
+            let (rank, _) = laser.cut(Tolerance::Rank(rank))?;
             (Spectrum::of(&laser, rank), rank, Choice::Given)
         }
         None => {
-            let spectrum = Spectrum::of(&laser, most(Tolerance::Auto)?.0);
+            let spectrum = Spectrum::of(&laser, laser.cut(Tolerance::Auto)?.0);
             let (rank, choice) = choose(problem, options.rule, &spectrum)?;
             (spectrum, rank, choice)
         }

@@ -3,7 +3,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::num::linalg::{LinalgError, Tolerance, cut, product, svd_to, tr_product};
+use crate::num::linalg::{
+    LinalgError, Tolerance, columns_over, columns_times, product, rows_times, svd_to, tr_product,
+};
 
 /// Elements whose sums are held at once.
 const ELEMENTS: usize = 256;
@@ -46,27 +48,16 @@ pub(super) fn covariance(
     c: &DMatrix<f64>,
 ) -> Result<DMatrix<f64>, LinalgError> {
     let (pixels, elements) = c.shape();
-    let mut over_c = c.map(|x| 1.0 / x);
+    let over_c = c.map(|x| 1.0 / x);
     let norms: Vec<f64> = over_c.column_iter().map(|column| column.norm()).collect();
-    for (mut column, &norm) in over_c.column_iter_mut().zip(&norms) {
-        column /= norm;
-    }
-    let smooth = svd_to(&over_c, Tolerance::Auto)?;
-    let (rank, _) = cut(smooth.sigma.as_slice(), pixels, elements, Tolerance::Auto)?;
-    let mut t = smooth.vt.rows(0, rank).into_owned();
-    for (mut row, &s) in t.row_iter_mut().zip(smooth.sigma.iter()) {
-        row *= s;
-    }
+    let smooth = svd_to(&columns_over(over_c, &norms), Tolerance::Auto)?;
+    let (rank, _) = smooth.cut(Tolerance::Auto)?;
+    let u = smooth.u.columns(0, rank).into_owned();
+    let t = rows_times(smooth.vt.rows(0, rank).into_owned(), &smooth.sigma);
     let mut sum = DMatrix::zeros(elements, elements);
     for (errors, inverse) in stderr.column_iter().zip(sharp.row_iter()) {
-        let mut noise = smooth.u.columns(0, rank).into_owned();
-        for (mut row, &s) in noise.row_iter_mut().zip(errors.iter()) {
-            row *= s;
-        }
-        let mut along = t.clone();
-        for (mut column, &x) in along.column_iter_mut().zip(inverse.iter()) {
-            column *= x;
-        }
+        let noise = rows_times(u.clone(), errors.iter());
+        let along = columns_times(t.clone(), inverse.iter());
         // Products of transposed copies: nalgebra blocks those, and not tr_mul.
         let weighted = noise.transpose() * &noise * &along;
         sum.gemm(1.0, &along.transpose(), &weighted, 1.0);
@@ -169,8 +160,7 @@ mod tests {
                 });
                 let z = error.zip_map(&errors, |e, s| if s > 0.0 { e / s } else { 0.0 });
                 let eigen = svd(&correlation).unwrap();
-                let (rank, _) =
-                    cut(eigen.sigma.as_slice(), 4, 4, Tolerance::Relative(1e-9)).unwrap();
+                let (rank, _) = eigen.cut(Tolerance::Relative(1e-9)).unwrap();
                 degrees = rank;
                 for i in 0..rank {
                     sum += (eigen.vt.row(i) * &z)[0].powi(2) / eigen.sigma[i];

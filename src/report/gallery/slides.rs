@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::super::page::{Packed, Page, Precision, explained, meaning, term};
 use super::super::svg::escape;
-use crate::lab::{Gallery, Picture, RunResults, Series};
+use crate::lab::{GalleryPicture, RunGallery, RunResults, Series};
 use crate::recovery::Parameter;
 
 /// The frame of the gallery, its data in `page`; nothing where there is none.
@@ -38,14 +38,14 @@ type Places = Vec<Vec<Option<usize>>>;
 
 /// The truth of all surfaces, then the pictures one after the other; and for each series, noise and
 /// step the index of its picture, truth being 0.
-fn packed(gallery: &Gallery) -> (Vec<f64>, Vec<Places>) {
+fn packed(gallery: &RunGallery) -> (Vec<f64>, Vec<Places>) {
     let truth = gallery
         .surfaces
         .iter()
         .flat_map(|s| s.truth.iter().copied());
     let mut values: Vec<f64> = truth.collect();
     let mut count = 1;
-    let mut place = |picture: &Option<Picture>| {
+    let mut place = |picture: &Option<GalleryPicture>| {
         let picture = picture.as_ref()?;
         values.extend(&picture.reflectance);
         count += 1;
@@ -61,7 +61,7 @@ fn packed(gallery: &Gallery) -> (Vec<f64>, Vec<Places>) {
     (values, places)
 }
 
-fn described(gallery: &Gallery, places: &[Vec<Vec<Option<usize>>>]) -> Value {
+fn described(gallery: &RunGallery, places: &[Vec<Vec<Option<usize>>>]) -> Value {
     let mut first = 0;
     let surfaces = gallery.surfaces.iter().map(|surface| {
         let at = first;
@@ -84,7 +84,7 @@ fn one((series, places): (&Series, &Places)) -> Value {
         Ok(chosen) => json!({ "step": chosen.step, "words": chosen.words }),
         Err(why) => json!({ "why": why }),
     });
-    let measures = |picture: &Option<Picture>| {
+    let measures = |picture: &Option<GalleryPicture>| {
         let of = picture.as_ref().map_or(&[][..], |p| &p.measures);
         let of = of.iter();
         of.map(|m| json!([m.mtf_raw, m.mtf_normalized, m.correlation, m.rmse]))
@@ -115,11 +115,12 @@ fn words(parameter: &Parameter) -> String {
     }
 }
 
-fn frame(gallery: &Gallery) -> String {
+fn frame(gallery: &RunGallery) -> String {
     let regularisation = term(
         "regularisation",
-        "how much of what drowns in noise is left out: tsvd inverts the strongest singular directions alone, tikhonov turns the weak ones down. \
-         Too little, and noise is all that is seen; too much, and the picture blurs",
+        "how strongly noisy directions are suppressed: tsvd inverts only the strongest singular \
+         directions, tikhonov damps the weak ones. With too little, noise covers the picture; \
+         with too much, the picture blurs",
     );
     let noise = term(
         "noise added",
@@ -128,8 +129,8 @@ fn frame(gallery: &Gallery) -> String {
     );
     let automatic = term(
         "automatic",
-        "the parameter that the method takes of itself when it is told the noise: the strongest regularisation whose misfit the noise explains \
-         (discrepancy principle)",
+        "the parameter that the method chooses when it knows the noise: the strongest \
+         regularisation whose misfit the noise explains (discrepancy principle)",
     );
     let stretched = term(
         "own range",
@@ -158,8 +159,8 @@ fn frame(gallery: &Gallery) -> String {
     .concat();
     format!(
         "<div class=\"slides\" id=\"slides\" hidden>\n\
-         <p>Every picture here was recovered by the run itself, none is interpolated: move the sliders and see what the method, its {regularisation} and \
-         noise make of the object.</p>\n\
+         <p>Every picture here was recovered by the run itself, none is interpolated. Move the sliders to see \
+         how the method, its {regularisation} and noise change it.</p>\n\
          <div class=\"controls\">\n\
          <label{several}>surface <select name=\"surface\"></select></label>\n\
          <label>method <select name=\"method\"></select></label>\n\
@@ -183,8 +184,9 @@ fn frame(gallery: &Gallery) -> String {
          <div class=\"row\" data-show=\"curves\"></div>\n\
          <p class=\"note\">{}</p>\n</div>\n",
         escape(
-            "Values below 0 are blue and values above 1 orange; what is no number is purple. The curves follow the automatic choice, or the parameter that is set; \
-             the line marks what is shown, and an arrow stands for a value beyond the plot."
+            "Values below 0 are blue and values above 1 orange; what is not a number is purple. \
+             The curves follow the automatic choice, or the parameter that is set; the line marks \
+             what is shown, and an arrow stands for a value beyond the plot."
         )
     )
 }
@@ -197,7 +199,7 @@ mod tests {
     use crate::lab::{Automatic, GallerySurface, Measures};
     use crate::recovery::Method;
 
-    fn picture(values: &[f64], raw: Option<f64>) -> Option<Picture> {
+    fn picture(values: &[f64], raw: Option<f64>) -> Option<GalleryPicture> {
         let measures = Measures {
             mtf_raw: raw,
             light_plus_dark: None,
@@ -205,7 +207,7 @@ mod tests {
             correlation: None,
             rmse: Some(0.25),
         };
-        Some(Picture {
+        Some(GalleryPicture {
             reflectance: values.to_vec(),
             measures: vec![measures; 2],
         })
@@ -213,7 +215,7 @@ mod tests {
 
     /// Two surfaces, the second of triangles; two noises; a method with two steps, and one that
     /// gives nothing with noise.
-    fn gallery() -> Gallery {
+    fn gallery() -> RunGallery {
         let surface = |name: &str, cells, truth: &[f64]| GallerySurface {
             name: name.to_owned(),
             elements: [truth.len(), 1],
@@ -244,7 +246,7 @@ mod tests {
             automatic: vec![automatic(0, "rank 3"), Err("left out".to_owned())],
             pictures: vec![vec![picture(&[3.1, 3.2, 3.3], None)], vec![None]],
         };
-        Gallery {
+        RunGallery {
             surfaces: vec![
                 surface("a <b>", true, &[0.0, 1.0]),
                 surface("mesh", false, &[0.5]),
@@ -256,7 +258,7 @@ mod tests {
         }
     }
 
-    fn page(gallery: Gallery) -> String {
+    fn page(gallery: RunGallery) -> String {
         let mut results = sample::run("bench");
         results.gallery = Some(gallery);
         let mut page = Page::new("slides");
@@ -322,7 +324,7 @@ mod tests {
 
     #[test]
     fn where_there_is_no_gallery_there_is_no_frame() {
-        let empty = Gallery {
+        let empty = RunGallery {
             series: Vec::new(),
             noises: Vec::new(),
             ..gallery()

@@ -15,11 +15,13 @@ const TERMS: [(&str, &str); 22] = [
     ),
     (
         "Picard",
-        "a plot of signal and noise in each singular direction: directions where the signal has sunk into the noise cannot be recovered",
+        "a plot of signal and noise in each singular direction: directions where the signal has \
+         fallen below the noise cannot be recovered",
     ),
     (
         "singular values",
-        "how strongly each direction of the unknown picture reaches the photographs; small ones drown in noise",
+        "how strongly each direction of the unknown picture reaches the photographs; small ones \
+         are lost in noise",
     ),
     (
         "MTF raw",
@@ -43,7 +45,7 @@ const TERMS: [(&str, &str); 22] = [
     ),
     (
         "joint-tv",
-        "all pixels and spots at once, reflectances between 0 and 1, edges few (total variation)",
+        "all pixels and spots at once, reflectances between 0 and 1, few edges (total variation)",
     ),
     (
         "joint",
@@ -57,10 +59,7 @@ const TERMS: [(&str, &str); 22] = [
         "tsvd",
         "truncated singular value decomposition: only the strongest directions are inverted",
     ),
-    (
-        "tikhonov",
-        "damped inversion: weak directions are turned down",
-    ),
+    ("tikhonov", "damped inversion: weak directions count less"),
     (
         "G12",
         "geometry between laser spot and hidden element: cosines over squared distance",
@@ -71,7 +70,7 @@ const TERMS: [(&str, &str); 22] = [
     ),
     (
         "standard error",
-        "what chance alone makes a number deviate by, as a standard deviation",
+        "the standard deviation of a number that is due to chance alone",
     ),
     (
         "Šidák",

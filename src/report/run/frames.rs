@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::super::colour::Scale;
 use super::super::figure::{Entries, MOST, Reduction, figure, legend, note, reduced};
-use super::super::picture::Panel;
+use super::super::panel::Panel;
 use crate::lab::RunResults;
 use crate::num::digits::significant;
 

@@ -3,7 +3,7 @@
 use super::super::colour::Scale;
 use super::super::figure::{Entries, MOST, Reduction, figure, legend, note, reduced};
 use super::super::page::bare;
-use super::super::picture::Panel;
+use super::super::panel::Panel;
 use crate::lab::RunResults;
 use crate::matrix::Matrix;
 use crate::num::digits::significant;

@@ -81,7 +81,8 @@ fn picards(results: &RunResults) -> String {
     if figures.is_empty() {
         return figures;
     }
-    let what = "A Picard plot: singular values fall, and where the signal has sunk into the noise an inversion must stop.";
+    let what = "A Picard plot: singular values fall, and an inversion must stop where the signal \
+         falls below the noise.";
     format!("<p>{}</p>\n{figures}", explained(what))
 }
 

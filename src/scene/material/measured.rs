@@ -10,6 +10,7 @@ use super::slanted;
 use crate::geometry::DVec3;
 use crate::num::quadrature::Rule;
 use crate::scene::error::{Fault, keys};
+use crate::scene::files::hex;
 
 /// An isotropic BRDF measured on a surface, from a file: one colour of a binary table of the MERL
 /// database, or, where the file's name ends in `.csv`, text with the header
@@ -53,11 +54,10 @@ impl Measured {
     }
 
     fn new(table: Table, bytes: &[u8], largest: f64) -> Result<Self, Fault> {
-        let digest = Sha256::digest(bytes);
         let mut measured = Self {
             table,
             lobe: Lobe::cosine(),
-            digest: digest.iter().map(|b| format!("{b:02x}")).collect(),
+            digest: hex(&Sha256::digest(bytes)),
         };
         measured.lobe = measured.best_lobe();
         measured.refuse_gain(largest)?;

@@ -35,102 +35,31 @@ const SECTIONS: [Section; 21] = [
 /// Share of the latitudes that the flat base takes.
 const BASE: f64 = 0.1;
 
-/// Bumps and hollows of the face and the ears: where (x, height), how far to either side, below and
-/// above, and how deep; x counts to both sides, and the face is where y < 0.
+/// A bump or hollow of the face or the ears: where (x, z), how far to either side, below and above,
+/// and how high; x counts to both sides, and the face is where y < 0.
+type Feature = [f64; 6];
+
 const FEATURES: [Feature; 9] = [
     // Nose: its bridge and its tip.
-    Feature {
-        x: 0.0,
-        z: 0.725,
-        half: 0.013,
-        below: 0.030,
-        above: 0.040,
-        height: 0.018,
-    },
-    Feature {
-        x: 0.0,
-        z: 0.688,
-        half: 0.017,
-        below: 0.011,
-        above: 0.026,
-        height: 0.030,
-    },
+    [0.000, 0.725, 0.013, 0.030, 0.040, 0.018],
+    [0.000, 0.688, 0.017, 0.011, 0.026, 0.030],
     // Eyes, and the brows above them.
-    Feature {
-        x: 0.046,
-        z: 0.752,
-        half: 0.019,
-        below: 0.013,
-        above: 0.013,
-        height: -0.015,
-    },
-    Feature {
-        x: 0.044,
-        z: 0.787,
-        half: 0.026,
-        below: 0.010,
-        above: 0.016,
-        height: 0.006,
-    },
+    [0.046, 0.752, 0.019, 0.013, 0.013, -0.015],
+    [0.044, 0.787, 0.026, 0.010, 0.016, 0.006],
     // Lips, and the hollow below them.
-    Feature {
-        x: 0.0,
-        z: 0.645,
-        half: 0.026,
-        below: 0.006,
-        above: 0.006,
-        height: 0.007,
-    },
-    Feature {
-        x: 0.0,
-        z: 0.629,
-        half: 0.022,
-        below: 0.006,
-        above: 0.006,
-        height: 0.007,
-    },
-    Feature {
-        x: 0.0,
-        z: 0.610,
-        half: 0.028,
-        below: 0.007,
-        above: 0.007,
-        height: -0.007,
-    },
+    [0.000, 0.645, 0.026, 0.006, 0.006, 0.007],
+    [0.000, 0.629, 0.022, 0.006, 0.006, 0.007],
+    [0.000, 0.610, 0.028, 0.007, 0.007, -0.007],
     // Chin and cheeks.
-    Feature {
-        x: 0.0,
-        z: 0.585,
-        half: 0.024,
-        below: 0.014,
-        above: 0.014,
-        height: 0.009,
-    },
-    Feature {
-        x: 0.062,
-        z: 0.705,
-        half: 0.020,
-        below: 0.020,
-        above: 0.020,
-        height: 0.006,
-    },
+    [0.000, 0.585, 0.024, 0.014, 0.014, 0.009],
+    [0.062, 0.705, 0.020, 0.020, 0.020, 0.006],
 ];
 
-struct Feature {
-    x: f64,
-    z: f64,
-    half: f64,
-    below: f64,
-    above: f64,
-    height: f64,
-}
-
-impl Feature {
-    fn at(&self, x: f64, z: f64) -> f64 {
-        let upright = if z < self.z { self.below } else { self.above };
-        let (a, b) = ((x.abs() - self.x) / self.half, (z - self.z) / upright);
-        self.height * libm::exp(-0.5 * (a * a + b * b))
-    }
+/// How far a feature stands out at a point of the face.
+fn out([at_x, at_z, half, below, above, height]: Feature, x: f64, z: f64) -> f64 {
+    let upright = if z < at_z { below } else { above };
+    let (a, b) = ((x.abs() - at_x) / half, (z - at_z) / upright);
+    height * libm::exp(-0.5 * (a * a + b * b))
 }
 
 /// A person's head and shoulders as a closed body of at least `faces` triangles, wound outwards: 1
@@ -156,7 +85,7 @@ fn place([z, half, front, back]: Section, x: f64, y: f64) -> DVec3 {
     let round = DVec3::new(half * x, depth * y, z);
     // The features fade out towards the temples; the ears stand on the sides.
     let facing = (-y).max(0.0);
-    let face: f64 = FEATURES.iter().map(|f| f.at(round.x, z)).sum();
+    let face: f64 = FEATURES.map(|f| out(f, round.x, z)).iter().sum();
     let (along, up) = ((y - 0.05) / 0.16, (z - 0.725) / 0.026);
     let ear = 0.024 * libm::exp(-(along * along) - up * up) * x;
     round + DVec3::new(ear, -face * facing * facing, 0.0)

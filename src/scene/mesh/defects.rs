@@ -1,7 +1,7 @@
 //! What is wrong with a surface of triangles.
 
 use super::Triangles;
-use crate::geometry::DVec3;
+use crate::geometry::{DVec3, is_proper};
 use std::fmt;
 
 /// How many of each kind of defect a mesh has. Vertices at one position count as one vertex, so a
@@ -287,10 +287,4 @@ fn volume(mesh: &Triangles, fates: &[Fate]) -> f64 {
         })
         .sum();
     six / 6.0
-}
-
-/// Whether a triangle has an area beyond rounding; the geometry's own criterion.
-fn is_proper([a, b, c]: [DVec3; 3]) -> bool {
-    let area = (b - a).cross(c - a).length();
-    area > 0.0 && area > 1e-12 * (b - a).length() * (c - a).length()
 }

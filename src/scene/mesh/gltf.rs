@@ -13,7 +13,7 @@ mod buffer;
 mod glb;
 mod walk;
 
-use super::{MeshFileError, Triangles};
+use super::{MeshFileError, Triangles, malformed, unsupported};
 use crate::geometry::DVec3;
 use accessor::Elements;
 use buffer::Buffers;
@@ -25,7 +25,6 @@ use gltf_json::validation::Checked;
 use std::collections::BTreeMap;
 use walk::Walk;
 
-const CURE: &str = "export the mesh again";
 /// Nodes that share a mesh may multiply vertices and triangles up to this even if the file has
 /// fewer bytes.
 const MOST_SHARED: u64 = 1 << 22;
@@ -51,7 +50,7 @@ fn assemble(
 ) -> Result<Triangles, MeshFileError> {
     let root = Root::from_slice(json).map_err(|e| {
         let place = format!("line {} column {} of the JSON", e.line(), e.column());
-        malformed(place, e.to_string().chars().take(200).collect())
+        malformed(place, e.to_string().chars().take(200).collect::<String>())
     })?;
     refuse_unsupported(&root)?;
     let bytes = json.len() + chunk.map_or(0, <[u8]>::len);
@@ -73,9 +72,7 @@ fn refuse_unsupported(root: &Root) -> Result<(), MeshFileError> {
     let version = &root.asset.version;
     if !version.starts_with("2.") {
         let version: String = version.chars().take(20).collect();
-        return Err(MeshFileError::Unsupported {
-            what: format!("glTF version `{version}`"),
-        });
+        return Err(unsupported(format!("glTF version `{version}`")));
     }
     // Extensions that leave the shape alone.
     let harmless = [
@@ -84,18 +81,13 @@ fn refuse_unsupported(root: &Root) -> Result<(), MeshFileError> {
         "KHR_lights_",
         "KHR_mesh_quantization",
     ];
-    let required = root.extensions_required.iter();
-    match required
-        .into_iter()
-        .find(|e| !harmless.iter().any(|h| e.starts_with(h)))
-    {
+    let harmful = |e: &&String| !harmless.iter().any(|h| e.starts_with(h));
+    match root.extensions_required.iter().find(harmful) {
         None => Ok(()),
-        Some(extension) => Err(MeshFileError::Unsupported {
-            what: format!(
-                "extension `{}`",
-                extension.chars().take(60).collect::<String>()
-            ),
-        }),
+        Some(extension) => {
+            let extension: String = extension.chars().take(60).collect();
+            Err(unsupported(format!("extension `{extension}`")))
+        }
     }
 }
 
@@ -139,29 +131,18 @@ impl<'a> Body<'a> {
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             self.visited += 1;
             if self.visited > MOST_VISITED {
-                return Err(MeshFileError::Unsupported {
-                    what: format!(
-                        "more than {MOST_VISITED} parts, meshes counted wherever they stand"
-                    ),
-                });
+                let what = "parts, meshes counted wherever they stand";
+                return Err(unsupported(format!("more than {MOST_VISITED} {what}")));
             }
+            let place = format!("mesh {at}, primitive {i}");
             let mode = match primitive.mode {
                 Checked::Valid(
                     mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan),
                 ) => mode,
                 Checked::Valid(_) => continue,
-                Checked::Invalid => {
-                    let cause = String::from("its mode is none of 0 to 6");
-                    return Err(malformed(format!("mesh {at}, primitive {i}"), cause));
-                }
+                Checked::Invalid => return Err(malformed(place, "its mode is none of 0 to 6")),
             };
-            self.primitive(
-                &format!("mesh {at}, primitive {i}"),
-                primitive,
-                mode,
-                placed,
-                &mut shared,
-            )?;
+            self.primitive(&place, primitive, mode, placed, &mut shared)?;
         }
         Ok(())
     }
@@ -190,7 +171,7 @@ impl<'a> Body<'a> {
                 "{} texture coordinates for {} vertices",
                 uv.count, position.count
             );
-            return Err(malformed(place.to_owned(), cause));
+            return Err(malformed(place, cause));
         }
         let first = match shared.get(&positions.value()) {
             Some(first) => *first,
@@ -276,16 +257,8 @@ fn corners(place: &str, indices: &[u32], mode: Mode) -> Result<Vec<[u32; 3]>, Me
                 return Ok(triangles.to_vec());
             }
             let cause = format!("{} corners do not make whole triangles", indices.len());
-            Err(malformed(place.to_owned(), cause))
+            Err(malformed(place, cause))
         }
-    }
-}
-
-fn malformed(place: String, cause: String) -> MeshFileError {
-    MeshFileError::Malformed {
-        place,
-        cause,
-        cure: CURE,
     }
 }
 

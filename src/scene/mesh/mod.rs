@@ -180,6 +180,19 @@ pub fn read(
     Ok(triangles)
 }
 
+/// A place that another export of the mesh may mend.
+fn malformed(place: impl Into<String>, cause: impl Into<String>) -> MeshFileError {
+    MeshFileError::Malformed {
+        place: place.into(),
+        cause: cause.into(),
+        cure: "export the mesh again",
+    }
+}
+
+fn unsupported(what: String) -> MeshFileError {
+    MeshFileError::Unsupported { what }
+}
+
 /// The fan of a polygon with `corners` corners: three of its corners for each triangle.
 fn fan(corners: usize) -> impl Iterator<Item = [usize; 3]> {
     (2..corners).map(|k| [0, k - 1, k])

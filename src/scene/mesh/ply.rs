@@ -7,7 +7,7 @@
 
 mod element;
 
-use super::{MeshFileError, Triangles, fan};
+use super::{MeshFileError, Triangles, fan, malformed};
 use crate::geometry::DVec3;
 use element::{Face, Skipped, Vertex};
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
@@ -15,7 +15,6 @@ use ply_rs_bw::ply::{ElementDef, Encoding, Header, PropertyAccess, PropertyType,
 
 /// Elements read at once: what bounds the memory that they take before they are triangles.
 const CHUNK: usize = 4096;
-const CURE: &str = "export the mesh again";
 
 /// The triangles of a PLY file: elements `vertex` (x, y, z and, if there, s t, u v or texture_u
 /// texture_v) and `face` (vertex_indices or vertex_index and, if there, texcoord: u and v by
@@ -24,7 +23,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, MeshFileError> {
     let mut reader = Reader::new(bytes);
     let header = Parser::<Skipped>::new()
         .read_header(&mut reader)
-        .map_err(|e| malformed(String::from("header"), &e))?;
+        .map_err(|e| unreadable(String::from("header"), &e))?;
     let length = bytes.len() - reader.get_ref().len();
     refuse_twins(&bytes[..length], &header)?;
     let mut body = Body::default();
@@ -73,7 +72,7 @@ fn each<E: PropertyAccess>(
         let last = first + chunk.count - 1;
         let place = || format!("`{}` {first} to {last} (counted from 0)", element.name);
         let read = parser.read_payload_for_element(reader, &chunk, header);
-        let instances = read.map_err(|e| malformed(place(), &e))?;
+        let instances = read.map_err(|e| unreadable(place(), &e))?;
         for (i, instance) in instances.into_iter().enumerate() {
             found(first + i, instance)?;
         }
@@ -109,37 +108,29 @@ fn refuse_twins(text: &[u8], header: &Header) -> Result<(), MeshFileError> {
     if lines(b"element") == header.elements.len() && lines(b"property") == properties {
         return Ok(());
     }
-    Err(MeshFileError::Malformed {
-        place: String::from("header"),
-        cause: String::from("an element or a property is named twice"),
-        cure: CURE,
-    })
+    let cause = "an element or a property is named twice";
+    Err(malformed("header", cause))
 }
 
 fn require(element: &ElementDef, names: &[&str]) -> Result<(), MeshFileError> {
     match names.iter().find(|n| !element.properties.contains_key(**n)) {
         None => Ok(()),
-        Some(missing) => Err(MeshFileError::Malformed {
-            place: format!("header, element `{}`", element.name),
-            cause: format!("there is no property `{missing}`"),
-            cure: CURE,
-        }),
+        Some(missing) => Err(malformed(
+            format!("header, element `{}`", element.name),
+            format!("there is no property `{missing}`"),
+        )),
     }
 }
 
 /// The crate's error on one line, cut where it quotes a long one.
-fn malformed(place: String, error: &ParseError) -> MeshFileError {
+fn unreadable(place: String, error: &ParseError) -> MeshFileError {
     let words: Vec<String> = error
         .to_string()
         .split_whitespace()
         .take(40)
         .map(|w| w.chars().take(40).collect())
         .collect();
-    MeshFileError::Malformed {
-        place,
-        cause: words.join(" "),
-        cure: CURE,
-    }
+    malformed(place, words.join(" "))
 }
 
 /// What has been read.
@@ -163,13 +154,7 @@ impl Body {
     }
 
     fn face(&mut self, at: usize, face: Face) -> Result<(), MeshFileError> {
-        let refuse = |cause: String| {
-            Err(MeshFileError::Malformed {
-                place: format!("face {at} (counted from 0)"),
-                cause,
-                cure: CURE,
-            })
-        };
+        let refuse = |cause: String| Err(malformed(format!("face {at} (counted from 0)"), cause));
         let Some(corners) = face.corners else {
             return refuse(String::from(
                 "there is no list `vertex_indices` of integers",

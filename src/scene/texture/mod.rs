@@ -187,50 +187,18 @@ impl Texture {
                 "keep one of them, or write a plain number",
             ));
         }
+        const LEVELS: &str = "`checkerboard`, `image` or `target`";
+        const PICTURE: &str = "`image` or `target`";
         let levels = table.checkerboard.is_some() || is_picture;
+        let (is_image, is_target) = (table.image.is_some(), table.target.is_some());
         refuse_foreign_keys(&[
-            (
-                "dark",
-                table.dark.is_some(),
-                levels,
-                "`checkerboard`, `image` or `target`",
-            ),
-            (
-                "light",
-                table.light.is_some(),
-                levels,
-                "`checkerboard`, `image` or `target`",
-            ),
-            (
-                "size",
-                table.size.is_some(),
-                table.target.is_some(),
-                "`target`",
-            ),
-            (
-                "transfer",
-                table.transfer.is_some(),
-                table.image.is_some(),
-                "`image`",
-            ),
-            (
-                "channel",
-                table.channel.is_some(),
-                table.image.is_some(),
-                "`image`",
-            ),
-            (
-                "filter",
-                table.filter.is_some(),
-                is_picture,
-                "`image` or `target`",
-            ),
-            (
-                "wrap",
-                table.wrap.is_some(),
-                is_picture,
-                "`image` or `target`",
-            ),
+            ("dark", table.dark.is_some(), levels, LEVELS),
+            ("light", table.light.is_some(), levels, LEVELS),
+            ("size", table.size.is_some(), is_target, "`target`"),
+            ("transfer", table.transfer.is_some(), is_image, "`image`"),
+            ("channel", table.channel.is_some(), is_image, "`image`"),
+            ("filter", table.filter.is_some(), is_picture, PICTURE),
+            ("wrap", table.wrap.is_some(), is_picture, PICTURE),
         ])?;
         if let Some(name) = &table.image {
             return picture::from_image(name, table, wavelength, files);

@@ -2,29 +2,27 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::sync::atomic::AtomicBool;
 
-use clap::Parser;
-
 use super::*;
-use crate::cli::args::Args;
-use crate::cli::console::Console;
+use crate::transport::Control;
 
 const CONSOLE: Console<'static> = Console {
     quiet: true,
     also_read: &[],
 };
 
-fn command(line: &str) -> Command {
-    let words = std::iter::once("phicam").chain(line.split_whitespace());
-    Args::try_parse_from(words).unwrap().command
+fn words(line: &str) -> Vec<String> {
+    line.split_whitespace().map(str::to_owned).collect()
 }
 
+/// All files but the tasks that a rerun goes on from.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let entry = |e: std::io::Result<fs::DirEntry>| {
         let e = e.unwrap();
         let name = e.file_name().into_string().unwrap();
         (name, fs::read(e.path()).unwrap())
     };
-    fs::read_dir(folder).unwrap().map(entry).collect()
+    let all = fs::read_dir(folder).unwrap().map(entry);
+    all.filter(|(name, _)| !name.ends_with(".phs")).collect()
 }
 
 /// A built-in scene of four by four pixels as a file.
@@ -48,34 +46,29 @@ fn same(line: &str) {
         .fold(line.to_owned(), |line, name| {
             line.replace(&format!("{{{name}}}"), &small(folder.path(), name))
         });
-    let own = command(&format!("{line} -o {}", direct.display()));
-    match &own {
-        Command::Study(args) => study::execute(args, CONSOLE).map(|_| ()).unwrap(),
-        Command::Reproduce(args) => reproduce::execute(args, CONSOLE).map(|_| ()).unwrap(),
+    let own = format!("phicam {line} -o {}", direct.display());
+    match Args::try_parse_from(words(&own)).unwrap().command {
+        Command::Study(args) => study::execute(&args, CONSOLE).map(|_| ()).unwrap(),
+        Command::Reproduce(args) => reproduce::execute(&args, CONSOLE).map(|_| ()).unwrap(),
         _ => panic!("{line}"),
     }
+    let planned = || Study::new(&words(&line), None, false, CONSOLE).unwrap();
     let stop = AtomicBool::new(false);
     let control = Control {
         progress: &|_| (),
         stop: &stop,
     };
-    let process = |range| {
-        let range: Range<usize> = range;
-        tasks(&own, None, CONSOLE)
-            .unwrap()
-            .run(range, control)
-            .unwrap()
-    };
-    let all = tasks(&own, None, CONSOLE).unwrap();
+    let process = |range: Range<usize>| planned().tasks.run(range, control).unwrap();
+    let all = planned().tasks;
     let half = all.count() / 2;
     let second = process(half..all.count());
     let parts = [process(0..half), second].concat();
-    all.deliver(&parts, control, &merged).unwrap();
+    all.deliver(&parts, &merged).unwrap();
     assert!(files(&direct) == files(&merged), "{line}");
 
     let mut forged = parts.clone();
     forged[0].push(0);
-    assert!(all.deliver(&forged, control, &merged).is_err(), "{line}");
+    assert!(all.deliver(&forged, &merged).is_err(), "{line}");
     let beyond = half..all.count() + 1;
     assert!(all.run(beyond, control).is_err(), "{line}");
     stop.store(true, std::sync::atomic::Ordering::Relaxed);
@@ -117,7 +110,7 @@ fn published_items_leave_the_same_files() {
 
 #[test]
 fn other_commands_are_refused() {
-    let Err(Failure::Error(said)) = tasks(&command("scene list"), None, CONSOLE) else {
+    let Err(Failure::Error(said)) = Study::new(&words("model bench"), None, false, CONSOLE) else {
         panic!("divided")
     };
     assert!(said.contains("cannot be cut into tasks"), "{said}");

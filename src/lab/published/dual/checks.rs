@@ -38,8 +38,12 @@ pub(super) fn checks(
         _ => false,
     };
     let inverses: Vec<&Judged> = found.iter().filter(inverse).collect();
-    let recovered =
-        |j: &&Judged| j.shows() && j.mtf.is_some_and(|m| (RECOVERED..=1.0).contains(&m));
+    let recovered = |j: &&Judged| {
+        j.shows()
+            && j.measures
+                .mtf_raw
+                .is_some_and(|m| (RECOVERED..=1.0).contains(&m))
+    };
     let limit = format!("at a significance of {SIGNIFICANCE}, by the joint standard errors");
     let told = [&law.untransposed, &law.scaleless];
     vec![
@@ -64,7 +68,7 @@ pub(super) fn checks(
                 "χ²/dof {:.1} and {:.1}",
                 law.untransposed.chi2_per_dof, law.scaleless.chi2_per_dof
             ),
-            "both rejected: the test can tell",
+            "both are rejected, so the test is able to fail",
             told.iter().all(|a| !a.agrees),
         ),
         unseen("the hidden board in primal and dual image", &photographs),
@@ -88,7 +92,7 @@ pub(super) fn checks(
                 participation(traced)
             ),
             format!(
-                "(Σσ²)²/Σσ⁴ below 2; it is {} where the transpose inverts",
+                "(Σσ²)²/Σσ⁴ below 2; it would be {} if the transpose were the inverse",
                 traced.len()
             ),
             participation(traced) < 2.0,

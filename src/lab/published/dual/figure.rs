@@ -107,13 +107,16 @@ pub(in super::super) fn figure(
     );
     let notes = vec![
         format!(
-            "The board is in both pictures of the wall, but not to be seen: against a grey object of its mean albedo it changes the primal image by {:.2} % and the dual image by \
-             {:.2} % (model, after the best scale), as smooth gradients.",
+            "Both pictures of the wall contain the board, but the eye cannot see it: compared \
+             with a grey object of its mean albedo, it changes the primal image by {:.2} % and \
+             the dual image by {:.2} % (model, after the best scale), as smooth gradients.",
             100.0 * change(&flood(&exact), &flood(&grey)),
             100.0 * change(&dual(&exact), &dual(&grey))
         ),
-        "A transposed matrix exchanges the parts of light and eye and nothing else. What the projector's place would photograph is the wall, for the wall is what the projector lights; the hidden \
-         board is seen neither from there nor from the camera. To see it, G12 and G23 of T = C diag(ρ) D have to be inverted."
+        "Transposing the matrix exchanges light source and camera and nothing else. A camera in \
+         the projector's place would photograph the wall, because the projector lights the wall; \
+         the hidden board is seen neither from there nor from the camera. To recover it, G12 and \
+         G23 of T = C diag(ρ) D have to be inverted."
             .to_owned(),
     ];
     let title = "The dual image: a traced matrix transposed, and why transposing is not inverting";

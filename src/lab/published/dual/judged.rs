@@ -4,8 +4,8 @@ use super::super::sheet::board;
 use super::adjoint;
 use crate::lab::LabError;
 use crate::lab::finding::Cell;
+use crate::lab::measures::Measures;
 use crate::matrix::Matrix;
-use crate::metrics::{correlation, mtf_normalized, mtf_raw};
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Options, Problem, Uncertainty, recover};
 
@@ -53,9 +53,7 @@ pub(super) struct Judged {
     pub(super) origin: Origin,
     pub(super) way: Way,
     pub(super) values: Vec<f64>,
-    pub(super) mtf: Option<f64>,
-    mtf_normalized: Option<f64>,
-    correlation: Option<f64>,
+    pub(super) measures: Measures,
 }
 
 impl Judged {
@@ -70,9 +68,7 @@ impl Judged {
             what,
             origin,
             way,
-            mtf: mtf_raw(&values, board),
-            mtf_normalized: mtf_normalized(&values, board),
-            correlation: correlation(&values, board),
+            measures: Measures::of(&values, board),
             values,
         }
     }
@@ -84,20 +80,21 @@ impl Judged {
             "{} ({}): correlation {}, raw MTF {}",
             self.what,
             self.origin.name(),
-            number(self.correlation),
-            number(self.mtf)
+            number(self.measures.correlation),
+            number(self.measures.mtf_raw)
         )
     }
 
     /// What, whose light, no number and value of a singular value, and the three measures.
     pub(super) fn row(&self) -> Vec<Cell> {
         let words = [self.what, self.origin.name()].map(Cell::from);
-        let measures = [None, None, self.mtf, self.mtf_normalized, self.correlation];
+        let m = &self.measures;
+        let measures = [None, None, m.mtf_raw, m.mtf_normalized, m.correlation];
         words.into_iter().chain(measures.map(Cell::from)).collect()
     }
 
     pub(super) fn shows(&self) -> bool {
-        self.correlation.is_some_and(|c| c.abs() >= SHOWN)
+        self.measures.correlation.is_some_and(|c| c.abs() >= SHOWN)
     }
 }
 

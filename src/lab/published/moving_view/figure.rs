@@ -48,7 +48,7 @@ pub(in super::super) fn figure(
         "Traced and recovered by joint, half-width 3 in.",
         pictures.collect(),
     )];
-    let title = "The camera's view moving with the laser spot, against the view that stays";
+    let title = "A camera view that moves with the laser spot, against a fixed view";
     let table = table(&models, &traces);
     Finding {
         galleries,
@@ -155,13 +155,23 @@ fn notes(models: &Models, traces: &Traces) -> Vec<String> {
                 "{}: condition {:.1e}, noise borne {}",
                 c.view.name(),
                 found.condition(),
-                found.courses.iter().map(borne).collect::<Vec<_>>().join(" and ")
+                found
+                    .courses
+                    .iter()
+                    .map(borne)
+                    .collect::<Vec<_>>()
+                    .join(" and ")
             )
         };
         format!(
-            "Half-width {half_width} in., physical kernel, modelled; the noise at which the raw MTF of the 2 × 2 and of the 4 × 4 board falls below {KEPT}, at most the loudest tried, {:.1e}: {}.",
+            "Half-width {half_width} in., physical kernel, modelled; the noise at which the raw \
+             MTF of the 2 × 2 and of the 4 × 4 board falls below {KEPT}, at most the highest \
+             level tried, {:.1e}: {}.",
             modelled::loudest(),
-            physical(models, half_width).map(line).collect::<Vec<_>>().join("; ")
+            physical(models, half_width)
+                .map(line)
+                .collect::<Vec<_>>()
+                .join("; ")
         )
     });
     let line = |((checks, view), seen): &((usize, View), Seen)| {
@@ -175,19 +185,23 @@ fn notes(models: &Models, traces: &Traces) -> Vec<String> {
     };
     let mut notes = modelled.to_vec();
     notes.push(
-        "The fixed view over all that the moving one covers (as many pixels, each as much larger; modelled only, for the spots are in it) parts the gain: what it bears more than the \
-         fixed view is the gain of coverage, what it still lacks of the moving one that of the motion."
+        "The wide fixed view covers all that the moving one covers, with as many pixels, each \
+         larger; it is modelled only, because the spots lie in it. It separates two gains: the \
+         noise that it bears beyond the fixed view is the gain of coverage, and what the moving \
+         view bears beyond that is the gain of motion."
             .to_owned(),
     );
     notes.push(format!(
-        "Traced, at equal paths; this noise is louder than what any view bears on the 4 × 4 board: {}.",
+        "Traced, at equal paths; this noise is higher than any view bears on the 4 × 4 board: {}.",
         traces.iter().map(line).collect::<Vec<_>>().join("; ")
     ));
     notes.push(
-        "What the fixed view has before the moving one is not precision but that Φ is a product: one G12 belongs to all pixels, so that one pseudo-inverse of it, without \
-         knowing G23, turns all photographs into images of the object (the published method), and that the camera need not be pointed anew. A photograph of the moving view has one column of G12 to itself, \
-         whose pseudo-inverse has rank 1."
-            .to_owned(),
+        "The advantage of the fixed view is not precision but that Φ is a product: all pixels \
+         share one G12, so one pseudo-inverse of it turns all photographs into images of the \
+         object without G23 (the published method). The camera also need not be pointed anew. A \
+         photograph of the moving view has only one column of G12, whose pseudo-inverse has rank \
+         1."
+        .to_owned(),
     );
     notes
 }

@@ -91,7 +91,8 @@ pub(super) fn section(page: &mut Page, scene: &Scene) {
     ];
     if shown < whole {
         notes.push(format!(
-            "The drawing that turns shows {shown} triangles of {whole}: vertices near each other are one, at their mean."
+            "The rotatable drawing shows {shown} triangles of {whole}: vertices near each other \
+             are merged at their mean."
         ));
     }
     let coarse = scene.surfaces.iter().zip(&bench.surfaces);

@@ -1,8 +1,8 @@
 //! The numbers that a glTF accessor stands for.
 
-use super::super::MeshFileError;
+use super::super::{MeshFileError, malformed, unsupported};
 use super::buffer::{Buffers, Bytes};
-use super::{malformed, missing};
+use super::missing;
 use gltf_json::Root;
 use gltf_json::accessor::{ComponentType, Type};
 use gltf_json::validation::Checked;
@@ -31,21 +31,19 @@ impl<'a> Elements<'a> {
             return Err(missing(place(), root.accessors.len()));
         };
         if accessor.sparse.is_some() {
-            let what = format!("the sparse accessor {at}");
-            return Err(MeshFileError::Unsupported { what });
+            return Err(unsupported(format!("the sparse accessor {at}")));
         }
         let (Checked::Valid(found), Checked::Valid(component)) =
             (accessor.type_, accessor.component_type)
         else {
-            let cause = String::from("its type is none of glTF 2.0");
-            return Err(malformed(place(), cause));
+            return Err(malformed(place(), "its type is none of glTF 2.0"));
         };
         if found != kind {
             let cause = format!("its elements are {found:?} where {kind:?} are needed");
             return Err(malformed(place(), cause));
         }
         let Some(view_at) = accessor.buffer_view else {
-            return Err(malformed(place(), String::from("it has no data")));
+            return Err(malformed(place(), "it has no data"));
         };
         let Some(view) = root.buffer_views.get(view_at.value()) else {
             let what = format!("buffer view {}", view_at.value());

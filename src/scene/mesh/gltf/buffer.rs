@@ -1,7 +1,7 @@
 //! The buffers of a glTF file: in its binary chunk, in the JSON itself, or in a file beside it.
 
-use super::super::MeshFileError;
-use super::{Beside, malformed, missing};
+use super::super::{MeshFileError, malformed};
+use super::{Beside, missing};
 use base64::Engine;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use gltf_json::Root;

@@ -1,7 +1,6 @@
 //! The container of a `.glb` file.
 
-use super::super::MeshFileError;
-use super::malformed;
+use super::super::{MeshFileError, malformed, unsupported};
 
 const HEADER: usize = 12;
 const CHUNK_HEADER: usize = 8;
@@ -18,9 +17,7 @@ pub(super) fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), MeshFileErr
     }
     let version = word(bytes, 4);
     if version != 2 {
-        return Err(MeshFileError::Unsupported {
-            what: format!("binary glTF version {version}"),
-        });
+        return Err(unsupported(format!("binary glTF version {version}")));
     }
     let length = word(bytes, 8) as usize;
     if length > bytes.len() {
@@ -45,10 +42,7 @@ pub(super) fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), MeshFileErr
         [(b"JSON", json), (b"BIN\0", chunk)] => Ok((json, Some(chunk))),
         // Chunks of other kinds are to be read over.
         [(b"JSON", json), _] => Ok((json, None)),
-        _ => {
-            let cause = String::from("it is not JSON");
-            Err(malformed(String::from("first chunk"), cause))
-        }
+        _ => Err(malformed("first chunk", "it is not JSON")),
     }
 }
 

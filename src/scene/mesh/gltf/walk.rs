@@ -1,7 +1,7 @@
 //! The way through the nodes of a scene.
 
-use super::super::MeshFileError;
-use super::{malformed, missing};
+use super::super::{MeshFileError, malformed};
+use super::missing;
 use crate::geometry::DVec3;
 use glam::{DMat4, DQuat};
 use gltf_json::Root;
@@ -45,8 +45,10 @@ impl<'a> Walk<'a> {
             return Err(missing(format!("node {at}"), self.root.nodes.len()));
         };
         if std::mem::replace(&mut self.met[at], true) {
-            let cause = String::from("it hangs below itself or below two nodes");
-            return Err(malformed(format!("node {at}"), cause));
+            return Err(malformed(
+                format!("node {at}"),
+                "it hangs below itself or below two nodes",
+            ));
         }
         self.ahead.push((at, node, outer));
         Ok(())
