@@ -82,7 +82,11 @@ fn without_a_terminal_the_picture_goes_beside_the_file() {
     let ended = workspace
         .phicam(&format!("view {FRAME} --exposure 1 --channel flux.stderr"))
         .exits(0);
-    assert!(ended.stderr.contains("of 6 values above"), "{}", ended.account());
+    assert!(
+        ended.stderr.contains("of 6 values above"),
+        "{}",
+        ended.account()
+    );
     let ended = workspace.phicam("view done/phi.npy --scale log").exits(0);
     assert!(ended.stderr.contains("phi.npy.png"), "{}", ended.account());
 }
