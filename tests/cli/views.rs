@@ -82,7 +82,11 @@ fn without_a_terminal_the_picture_goes_beside_the_file() {
     let ended = workspace
         .phicam(&format!("view {FRAME} --exposure 1 --channel flux.stderr"))
         .exits(0);
-    assert!(ended.stderr.contains("of 6 above"), "{}", ended.account());
+    assert!(
+        ended.stderr.contains("of 6 values above"),
+        "{}",
+        ended.account()
+    );
     let ended = workspace.phicam("view done/phi.npy --scale log").exits(0);
     assert!(ended.stderr.contains("phi.npy.png"), "{}", ended.account());
 }
@@ -100,7 +104,7 @@ fn in_a_terminal_the_legend_is_text() {
         ended.account()
     );
     assert!(
-        ended.stdout.contains("orange: 6 of 6 above") && ended.stdout.contains(" W\n"),
+        ended.stdout.contains("orange: 6 of 6 values above") && ended.stdout.contains(" W\n"),
         "{}",
         ended.account()
     );
@@ -166,9 +170,9 @@ fn a_place_without_a_view_is_refused() {
     let view = |more: &str| format!("scene view bench -o view.png {more}");
     workspace.refuses(
         &view("--from 1,2,3 --to 1,2,3"),
-        &["no direction", "two different"],
+        &["cannot look at", "two different"],
     );
-    workspace.refuses(&view("--from 0,9,0 --to 0,0,0"), &["what is up"]);
+    workspace.refuses(&view("--from 0,9,0 --to 0,0,0"), &["cannot point up"]);
     workspace.refuses(&view("--fov 180"), &["180 degrees"]);
     workspace.refuses(&view("--size 0,9"), &["W,H"]);
     workspace.refuses(&view("--from 1,2"), &["X,Y,Z"]);
