@@ -227,7 +227,7 @@ BREAKS = [
         "Imports point down only",
         "src/num/stream.rs",
         "use super::{poisson, warp};",
-        "use super::{poisson, warp};\nuse crate::lab::Finding as _;",
+        "use super::{poisson, warp};\nuse crate::lab::finding::Finding as _;",
         "architecture",
         "arrows_point_down",
         1,
