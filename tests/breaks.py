@@ -82,8 +82,8 @@ BREAKS = [
     Break(
         "Every material is reciprocal",
         "src/scene/material/coated.rs",
-        "let through = self.transmittance(incident.z) * self.transmittance(exitant.z);",
-        "let through = self.transmittance(incident.z) * self.transmittance(incident.z);",
+        "let through = self.transmittance(wi.z) * self.transmittance(wo.z);",
+        "let through = self.transmittance(wi.z) * self.transmittance(wi.z);",
         "lib",
         "scene::material::tests::every_material_is_reciprocal",
         2,

@@ -55,10 +55,10 @@ impl Surface {
     /// f_r, sr⁻¹, at a point of the surface where its texture has the value `albedo` and its front
     /// the normal `normal`, between two unit vectors that point away from it; 0 unless both are on
     /// the front.
-    pub fn brdf(&self, albedo: f64, normal: DVec3, incident: DVec3, exitant: DVec3) -> f64 {
+    pub fn brdf(&self, albedo: f64, normal: DVec3, wi: DVec3, wo: DVec3) -> f64 {
         let basis = Basis::around(normal);
         self.material
-            .brdf(albedo, basis.to_local(incident), basis.to_local(exitant))
+            .brdf(albedo, basis.to_local(wi), basis.to_local(wo))
     }
 
     /// Whether every point of it reflects by ρ/π, whatever the directions.

@@ -104,9 +104,9 @@ impl Coated {
     }
 
     /// f_r of directions above the surface, sr⁻¹.
-    pub(super) fn brdf(&self, albedo: f64, incident: DVec3, exitant: DVec3) -> f64 {
-        let (mirror, cosine) = self.ggx.reflection(incident, exitant);
-        let through = self.transmittance(incident.z) * self.transmittance(exitant.z);
+    pub(super) fn brdf(&self, albedo: f64, wi: DVec3, wo: DVec3) -> f64 {
+        let (mirror, cosine) = self.ggx.reflection(wi, wo);
+        let through = self.transmittance(wi.z) * self.transmittance(wo.z);
         fresnel::dielectric(cosine, self.eta).0 * mirror + FRAC_1_PI * through * self.ground(albedo)
     }
 
@@ -116,8 +116,8 @@ impl Coated {
     }
 
     /// The coat's reflection in proportion to what it does not let through, against the ground's.
-    pub(super) fn lobe(&self, albedo: f64, exitant: DVec3) -> Lobe {
-        let through = self.transmittance(exitant.z);
+    pub(super) fn lobe(&self, albedo: f64, wo: DVec3) -> Lobe {
+        let through = self.transmittance(wo.z);
         let coat = (1.0 - through).max(f64::MIN_POSITIVE);
         let ground = through * self.mean_transmittance * self.ground(albedo);
         Lobe {

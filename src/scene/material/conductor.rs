@@ -41,8 +41,8 @@ impl Conductor {
     }
 
     /// f_r of directions above the surface, sr⁻¹.
-    pub(super) fn brdf(&self, albedo: f64, incident: DVec3, exitant: DVec3) -> f64 {
-        let (mirror, cosine) = self.ggx.reflection(incident, exitant);
+    pub(super) fn brdf(&self, albedo: f64, wi: DVec3, wo: DVec3) -> f64 {
+        let (mirror, cosine) = self.ggx.reflection(wi, wo);
         albedo * fresnel::conductor(cosine, self.eta, self.k) * mirror
     }
 }

@@ -44,31 +44,31 @@ impl Ggx {
     /// D(h) G₁(ω_i) G₁(ω_o)/(4 cosθ_i cosθ_o), with the two maskings independent of each other
     /// (separable), and cos(ω_i, h): the BRDF of facets that mirror all light. For directions above
     /// the surface.
-    pub fn reflection(&self, incident: DVec3, exitant: DVec3) -> (f64, f64) {
-        let h = (incident + exitant).normalize();
-        let masking = self.masking(incident) * self.masking(exitant);
-        let f = self.distribution(h) * masking / (4.0 * incident.z * exitant.z);
-        (f, incident.dot(h))
+    pub fn reflection(&self, wi: DVec3, wo: DVec3) -> (f64, f64) {
+        let h = (wi + wo).normalize();
+        let masking = self.masking(wi) * self.masking(wo);
+        let f = self.distribution(h) * masking / (4.0 * wi.z * wo.z);
+        (f, wi.dot(h))
     }
 
-    /// A normal of the facets seen from `exitant` (above the surface), distributed by D(h) G₁(ω)
+    /// A normal of the facets seen from `wo` (above the surface), distributed by D(h) G₁(ω)
     /// max(0, ω·h)/cosθ: the reflection of parallel light off a hemisphere is uniform over a
     /// spherical cap (Dupuy and Benyoub, *Sampling visible GGX normals with spherical caps*, 2023).
-    pub fn visible_normal(&self, exitant: DVec3, u: [f64; 2]) -> DVec3 {
-        let cap = self.cap(exitant);
+    pub fn visible_normal(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
+        let cap = self.cap(wo);
         cap.normal((1.0 - u[1]) * (1.0 + cap.axis.z) - cap.axis.z, TAU * u[0])
     }
 
-    /// Density per solid angle of `exitant` mirrored in [`Self::visible_normal`]: D(h) G₁(ω_o)/(4
+    /// Density per solid angle of `wo` mirrored in [`Self::visible_normal`]: D(h) G₁(ω_o)/(4
     /// cosθ_o).
-    pub fn visible_density(&self, exitant: DVec3, incident: DVec3) -> f64 {
-        let h = (incident + exitant).normalize();
-        self.distribution(h) * self.masking(exitant) / (4.0 * exitant.z)
+    pub fn visible_density(&self, wo: DVec3, wi: DVec3) -> f64 {
+        let h = (wi + wo).normalize();
+        self.distribution(h) * self.masking(wo) / (4.0 * wo.z)
     }
 
-    pub(super) fn cap(&self, exitant: DVec3) -> Cap {
+    pub(super) fn cap(&self, wo: DVec3) -> Cap {
         let a = self.alpha;
-        let axis = DVec3::new(a * exitant.x, a * exitant.y, exitant.z).normalize();
+        let axis = DVec3::new(a * wo.x, a * wo.y, wo.z).normalize();
         Cap { alpha: a, axis }
     }
 }

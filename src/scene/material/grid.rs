@@ -162,12 +162,12 @@ impl Grid {
     }
 
     /// f_r of directions above the surface, sr⁻¹.
-    pub(super) fn brdf(&self, incident: DVec3, exitant: DVec3) -> f64 {
+    pub(super) fn brdf(&self, wi: DVec3, wo: DVec3) -> f64 {
         let polar = |w: DVec3| libm::atan2((w.x * w.x + w.y * w.y).sqrt(), w.z);
-        let along = incident.x * exitant.x + incident.y * exitant.y;
-        let aside = incident.x * exitant.y - incident.y * exitant.x;
-        let i = self.theta.between(polar(incident));
-        let o = self.theta.between(polar(exitant));
+        let along = wi.x * wo.x + wi.y * wo.y;
+        let aside = wi.x * wo.y - wi.y * wo.x;
+        let i = self.theta.between(polar(wi));
+        let o = self.theta.between(polar(wo));
         let (p0, p1, p) = self.phi.between(libm::atan2(aside.abs(), along));
         let (nt, np) = (self.theta.nodes.len(), self.phi.nodes.len());
         let at = |i: usize, o: usize| {

@@ -27,15 +27,15 @@ impl Lobe {
 
     /// Per solid angle: q D(h) G₁(ω_o)/(4 cosθ_o) + (1 − q) cosθ_i/π; 0 below the surface. Over the
     /// hemisphere it adds up to 1 less the mirrored directions that point below.
-    pub fn density(&self, exitant: DVec3, incident: DVec3) -> f64 {
-        if incident.z <= 0.0 || exitant.z <= 0.0 {
+    pub fn density(&self, wo: DVec3, wi: DVec3) -> f64 {
+        if wi.z <= 0.0 || wo.z <= 0.0 {
             return 0.0;
         }
-        let cosine = (1.0 - self.glossy) * incident.z * FRAC_1_PI;
+        let cosine = (1.0 - self.glossy) * wi.z * FRAC_1_PI;
         if self.glossy == 0.0 {
             return cosine;
         }
-        self.glossy * self.ggx.visible_density(exitant, incident) + cosine
+        self.glossy * self.ggx.visible_density(wo, wi) + cosine
     }
 
     /// ∫ f(ω, p(ω)) dω over the hemisphere, p the density: each of the two maps carries the rule
@@ -44,7 +44,7 @@ impl Lobe {
     /// one.
     pub(super) fn integral(
         &self,
-        exitant: DVec3,
+        wo: DVec3,
         rule: &Rule,
         mut f: impl FnMut(DVec3, f64) -> f64,
     ) -> f64 {
@@ -54,17 +54,17 @@ impl Lobe {
             if w.z <= 0.0 {
                 return 0.0;
             }
-            let p = self.density(exitant, w);
+            let p = self.density(wo, w);
             f(w, p) / p
         };
         let mut glossy = 0.0;
         if self.glossy > 0.0 {
-            let cap = self.ggx.cap(exitant);
+            let cap = self.ggx.cap(wo);
             for (tau, weight) in rule.on(0.0, libm::acos(-cap.axis.z)) {
                 let (sin, cos) = libm::sincos(tau);
                 let scale = weight * sin / (1.0 + cap.axis.z);
                 for k in 0..azimuths {
-                    glossy += scale * term(mirrored(exitant, cap.normal(cos, turn(k))));
+                    glossy += scale * term(mirrored(wo, cap.normal(cos, turn(k))));
                 }
             }
         }

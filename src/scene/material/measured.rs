@@ -70,10 +70,10 @@ impl Measured {
     }
 
     /// f_r of directions above the surface, sr⁻¹.
-    pub(super) fn brdf(&self, incident: DVec3, exitant: DVec3) -> f64 {
+    pub(super) fn brdf(&self, wi: DVec3, wo: DVec3) -> f64 {
         match &self.table {
-            Table::Merl(table) => table.brdf(incident, exitant),
-            Table::Grid(table) => table.brdf(incident, exitant),
+            Table::Merl(table) => table.brdf(wi, wo),
+            Table::Grid(table) => table.brdf(wi, wo),
         }
     }
 
@@ -87,11 +87,11 @@ impl Measured {
         let rule = Rule::gauss_legendre(LOBE_NODES);
         let spread = |lobe: &Lobe| {
             let relative = |mu: &f64| {
-                let exitant = slanted(*mu);
+                let wo = slanted(*mu);
                 let (mut first, mut second) = (0.0, 0.0);
-                let squared = |w: DVec3, p: f64| (self.brdf(w, exitant) * w.z).powi(2) / p;
-                second += lobe.integral(exitant, &rule, squared);
-                first += lobe.integral(exitant, &rule, |w, _| self.brdf(w, exitant) * w.z);
+                let squared = |w: DVec3, p: f64| (self.brdf(w, wo) * w.z).powi(2) / p;
+                second += lobe.integral(wo, &rule, squared);
+                first += lobe.integral(wo, &rule, |w, _| self.brdf(w, wo) * w.z);
                 if first > 0.0 {
                     second / (first * first)
                 } else {
@@ -121,10 +121,8 @@ impl Measured {
         for k in 0..INCIDENCES {
             let degrees = 2.5 * f64::from(k);
             let (sin, cos) = libm::sincos(degrees.to_radians());
-            let incident = DVec3::new(sin, 0.0, cos);
-            let reflected = self
-                .lobe
-                .integral(incident, &rule, |w, _| self.brdf(incident, w) * w.z);
+            let wi = DVec3::new(sin, 0.0, cos);
+            let reflected = self.lobe.integral(wi, &rule, |w, _| self.brdf(wi, w) * w.z);
             if reflected > worst.0 {
                 worst = (reflected, degrees);
             }

@@ -94,8 +94,8 @@ impl Merl {
     }
 
     /// f_r of directions above the surface, sr⁻¹.
-    pub(super) fn brdf(&self, incident: DVec3, exitant: DVec3) -> f64 {
-        let [theta_h, theta_d, phi_d] = half_difference(incident, exitant);
+    pub(super) fn brdf(&self, wi: DVec3, wo: DVec3) -> f64 {
+        let [theta_h, theta_d, phi_d] = half_difference(wi, wo);
         let [nh, nd, np] = self.count;
         let (h0, h1, h) = between((theta_h / FRAC_PI_2).sqrt(), nh);
         let (d0, d1, d) = between(theta_d / FRAC_PI_2, nd);
@@ -123,19 +123,19 @@ fn between(x: f64, n: usize) -> (usize, usize, f64) {
 
 /// θ_h, θ_d and φ_d (Rusinkiewicz, *A new change of variables for efficient BRDF representation*,
 /// 1998): the half vector, and the incident direction in the frame where that is the pole.
-fn half_difference(incident: DVec3, exitant: DVec3) -> [f64; 3] {
-    let h = (incident + exitant).normalize();
+fn half_difference(wi: DVec3, wo: DVec3) -> [f64; 3] {
+    let h = (wi + wo).normalize();
     let across = (h.x * h.x + h.y * h.y).sqrt();
     let (cos, sin) = if across > 0.0 {
         (h.x / across, h.y / across)
     } else {
         (1.0, 0.0)
     };
-    let x = incident.dot(DVec3::new(h.z * cos, h.z * sin, -across));
-    let y = incident.y * cos - incident.x * sin;
+    let x = wi.dot(DVec3::new(h.z * cos, h.z * sin, -across));
+    let y = wi.y * cos - wi.x * sin;
     [
         libm::atan2(across, h.z),
-        libm::atan2((x * x + y * y).sqrt(), incident.dot(h)),
+        libm::atan2((x * x + y * y).sqrt(), wi.dot(h)),
         libm::atan2(y, x),
     ]
 }

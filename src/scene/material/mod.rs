@@ -79,19 +79,20 @@ const INCIDENCES: usize = 24;
 
 impl Material {
     /// f_r(ω_i, ω_o), sr⁻¹, where the texture's value is `albedo` ∈ [0, 1]; 0 unless both
-    /// directions are above the surface.
-    pub fn brdf(&self, albedo: f64, incident: DVec3, exitant: DVec3) -> f64 {
-        if !(incident.z > 0.0 && exitant.z > 0.0) {
+    /// directions are above the surface. In all materials `wi` points to where the light comes from and
+    /// `wo` to where it goes, both away from the surface, in the basis with the normal along z.
+    pub fn brdf(&self, albedo: f64, wi: DVec3, wo: DVec3) -> f64 {
+        if !(wi.z > 0.0 && wo.z > 0.0) {
             return 0.0;
         }
         match self {
             Self::Lambertian => albedo * FRAC_1_PI,
-            Self::OrenNayar(m) => m.brdf(albedo, incident, exitant),
-            Self::Coated(m) => m.brdf(albedo, incident, exitant),
-            Self::Conductor(m) => m.brdf(albedo, incident, exitant),
-            Self::Measured(m) => albedo * m.brdf(incident, exitant),
+            Self::OrenNayar(m) => m.brdf(albedo, wi, wo),
+            Self::Coated(m) => m.brdf(albedo, wi, wo),
+            Self::Conductor(m) => m.brdf(albedo, wi, wo),
+            Self::Measured(m) => albedo * m.brdf(wi, wo),
             Self::Mixture(parts) => {
-                let part = |p: &Part| p.weight * p.material.brdf(p.albedo, incident, exitant);
+                let part = |p: &Part| p.weight * p.material.brdf(p.albedo, wi, wo);
                 albedo * parts.iter().map(part).sum::<f64>()
             }
         }
@@ -117,12 +118,12 @@ impl Material {
         }
     }
 
-    /// Where the light that leaves along `exitant` comes from, roughly; of a mixture each part has
+    /// Where the light that leaves along `wo` comes from, roughly; of a mixture each part has
     /// its own.
-    pub fn lobe(&self, albedo: f64, exitant: DVec3) -> Lobe {
+    pub fn lobe(&self, albedo: f64, wo: DVec3) -> Lobe {
         match self {
             Self::Lambertian | Self::OrenNayar(_) | Self::Mixture(_) => Lobe::cosine(),
-            Self::Coated(m) => m.lobe(albedo, exitant),
+            Self::Coated(m) => m.lobe(albedo, wo),
             Self::Conductor(m) => Lobe {
                 glossy: 1.0,
                 ggx: m.ggx,
@@ -131,10 +132,10 @@ impl Material {
         }
     }
 
-    /// Directional–hemispherical reflectance ∫ f_r cosθ_o dω_o of light from `incident`, by
+    /// Directional–hemispherical reflectance ∫ f_r cosθ_o dω_o of light from `wi`, by
     /// quadrature where it has no closed form.
-    pub fn directional_albedo(&self, albedo: f64, incident: DVec3) -> f64 {
-        self.reflected(albedo, incident, &Rule::gauss_legendre(NODES))
+    pub fn directional_albedo(&self, albedo: f64, wi: DVec3) -> f64 {
+        self.reflected(albedo, wi, &Rule::gauss_legendre(NODES))
     }
 
     /// The mean of [`Self::directional_albedo`] over incident directions, weighted by the cosine, 2
@@ -161,20 +162,20 @@ impl Material {
         }
     }
 
-    fn reflected(&self, albedo: f64, incident: DVec3, rule: &Rule) -> f64 {
-        if incident.z <= 0.0 {
+    fn reflected(&self, albedo: f64, wi: DVec3, rule: &Rule) -> f64 {
+        if wi.z <= 0.0 {
             return 0.0;
         }
         match self {
             Self::Lambertian => albedo,
-            Self::OrenNayar(m) => m.directional_albedo(albedo, incident.z),
+            Self::OrenNayar(m) => m.directional_albedo(albedo, wi.z),
             Self::Mixture(parts) => {
-                let part = |p: &Part| p.weight * p.material.reflected(p.albedo, incident, rule);
+                let part = |p: &Part| p.weight * p.material.reflected(p.albedo, wi, rule);
                 albedo * parts.iter().map(part).sum::<f64>()
             }
             _ => self
-                .lobe(albedo, incident)
-                .integral(incident, rule, |w, _| self.brdf(albedo, incident, w) * w.z),
+                .lobe(albedo, wi)
+                .integral(wi, rule, |w, _| self.brdf(albedo, wi, w) * w.z),
         }
     }
 }

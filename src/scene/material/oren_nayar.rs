@@ -55,17 +55,13 @@ impl OrenNayar {
     }
 
     /// f_r of directions above the surface, sr⁻¹.
-    pub(super) fn brdf(&self, albedo: f64, incident: DVec3, exitant: DVec3) -> f64 {
+    pub(super) fn brdf(&self, albedo: f64, wi: DVec3, wo: DVec3) -> f64 {
         let Self { r, a, .. } = *self;
-        let s = incident.x * exitant.x + incident.y * exitant.y;
-        let ratio = if s > 0.0 {
-            s / incident.z.max(exitant.z)
-        } else {
-            s
-        };
+        let s = wi.x * wo.x + wi.y * wo.y;
+        let ratio = if s > 0.0 { s / wi.z.max(wo.z) } else { s };
         let single = albedo * a * (1.0 + r * ratio);
         // 1 − E = A r (c₁ − G/π) and 1 − Ē = A r (c₁ − c₂), without cancellation.
-        let lost = a * r * missing(incident.z) * missing(exitant.z) / (C1 - C2);
+        let lost = a * r * missing(wi.z) * missing(wo.z) / (C1 - C2);
         FRAC_1_PI * (single + self.multiple(albedo) * lost)
     }
 

@@ -95,7 +95,7 @@ fn every_material_is_reciprocal() {
 /// ∫ f cosθ dω by brute force, knowing nothing of the material: midpoints over hemispheres refined
 /// around the mirror direction, as θ, φ about the half vector: ω = mirror of the incident direction
 /// in h, dω = 4 |ω_i·h| dω_h, and θ_h = (π/2) x³ so that sharp lobes are met.
-fn reflected(m: &Material, albedo: f64, incident: DVec3, n: usize) -> f64 {
+fn reflected(m: &Material, albedo: f64, wi: DVec3, n: usize) -> f64 {
     let mut sum = 0.0;
     for a in 0..n {
         let x = (a as f64 + 0.5) / n as f64;
@@ -105,11 +105,11 @@ fn reflected(m: &Material, albedo: f64, incident: DVec3, n: usize) -> f64 {
             let phi = TAU * (b as f64 + 0.5) / n as f64;
             let (s, c) = theta.sin_cos();
             let h = DVec3::new(s * phi.cos(), s * phi.sin(), c);
-            let cosine = incident.dot(h);
-            let w = h * (2.0 * cosine) - incident;
+            let cosine = wi.dot(h);
+            let w = h * (2.0 * cosine) - wi;
             if cosine > 0.0 && w.z > 0.0 {
                 let solid = 4.0 * cosine * s * slope * TAU / n as f64;
-                sum += m.brdf(albedo, incident, w) * w.z * solid;
+                sum += m.brdf(albedo, wi, w) * w.z * solid;
             }
         }
     }

@@ -28,7 +28,7 @@ fn cell(pole: (DVec3, DVec3, DVec3), w: DVec3) -> (usize, usize) {
 fn probabilities(
     m: &Material,
     albedo: f64,
-    exitant: DVec3,
+    wo: DVec3,
     pole: (DVec3, DVec3, DVec3),
 ) -> (Vec<f64>, f64) {
     let (x, y, z) = pole;
@@ -41,7 +41,7 @@ fn probabilities(
             let phi = TAU * ((b as f64 + 0.5) / (AROUND * SUB) as f64 - 0.5);
             let w = x * (theta.sin() * phi.cos()) + y * (theta.sin() * phi.sin()) + z * theta.cos();
             let solid = theta.sin() * slope * TAU / (AROUND * SUB) as f64;
-            cells[a / SUB * AROUND + b / SUB] += wi_density(m, albedo, exitant, w) * solid;
+            cells[a / SUB * AROUND + b / SUB] += wi_density(m, albedo, wo, w) * solid;
         }
     }
     let total = cells.iter().sum();
@@ -56,15 +56,15 @@ fn samples_follow_their_density() {
     for (name, m) in zoo() {
         for (k, theta) in [0.05, 0.9, 1.5f64].into_iter().enumerate() {
             let azimuth = 0.7 + k as f64;
-            let exitant = DVec3::new(
+            let wo = DVec3::new(
                 theta.sin() * azimuth.cos(),
                 theta.sin() * azimuth.sin(),
                 theta.cos(),
             );
-            let z = DVec3::new(-exitant.x, -exitant.y, exitant.z);
+            let z = DVec3::new(-wo.x, -wo.y, wo.z);
             let x = z.any_orthonormal_vector();
             let pole = (x, z.cross(x), z);
-            let (expected, total) = probabilities(&m, 0.6, exitant, pole);
+            let (expected, total) = probabilities(&m, 0.6, wo, pole);
             assert!(total <= 1.0 + 1e-3, "{name}: {total}");
             let key = Key {
                 seed: 3,
@@ -77,7 +77,7 @@ fn samples_follow_their_density() {
             let mut accepted = 0.0;
             for _ in 0..n {
                 let [a, b, choice, _] = stream.next_four();
-                if let Some(w) = sample_wi(&m, 0.6, exitant, [a, b], choice) {
+                if let Some(w) = sample_wi(&m, 0.6, wo, [a, b], choice) {
                     assert!(w.z >= 0.0 && (w.length() - 1.0).abs() < 1e-9, "{name}: {w}");
                     let (i, j) = cell(pole, w);
                     counts[i * AROUND + j] += 1.0;
@@ -121,7 +121,7 @@ fn the_estimator_has_its_mean() {
     let n = 40_000u32;
     for (name, m) in zoo() {
         for theta in [0.3, 1.2f64] {
-            let exitant = DVec3::new(theta.sin(), 0.0, theta.cos());
+            let wo = DVec3::new(theta.sin(), 0.0, theta.cos());
             let key = Key {
                 seed: 8,
                 spot: 0,
@@ -132,10 +132,10 @@ fn the_estimator_has_its_mean() {
             let (mut sum, mut squares) = (0.0, 0.0);
             for _ in 0..n {
                 let [a, b, choice, _] = stream.next_four();
-                let value = sample_wi(&m, 0.6, exitant, [a, b], choice).map_or(0.0, |w| {
-                    let p = wi_density(&m, 0.6, exitant, w);
+                let value = sample_wi(&m, 0.6, wo, [a, b], choice).map_or(0.0, |w| {
+                    let p = wi_density(&m, 0.6, wo, w);
                     if p > 0.0 {
-                        m.brdf(0.6, w, exitant) * w.z / p
+                        m.brdf(0.6, w, wo) * w.z / p
                     } else {
                         0.0
                     }
@@ -145,7 +145,7 @@ fn the_estimator_has_its_mean() {
             }
             let mean = sum / f64::from(n);
             let error = ((squares / f64::from(n) - mean * mean).max(0.0) / f64::from(n)).sqrt();
-            let exact = m.directional_albedo(0.6, exitant);
+            let exact = m.directional_albedo(0.6, wo);
             assert!(
                 (mean - exact).abs() < 5.0 * error + 1e-4,
                 "{name}: {mean} ± {error}, {exact}"
