@@ -79,8 +79,8 @@ const INCIDENCES: usize = 24;
 
 impl Material {
     /// f_r(ω_i, ω_o), sr⁻¹, where the texture's value is `albedo` ∈ [0, 1]; 0 unless both
-    /// directions are above the surface. In all materials `wi` points to where the light comes from and
-    /// `wo` to where it goes, both away from the surface, in the basis with the normal along z.
+    /// directions are above the surface. `wi` points to where the light comes from, `wo` to where
+    /// it goes.
     pub fn brdf(&self, albedo: f64, wi: DVec3, wo: DVec3) -> f64 {
         if !(wi.z > 0.0 && wo.z > 0.0) {
             return 0.0;
