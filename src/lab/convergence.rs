@@ -420,7 +420,7 @@ mod tests {
         let found = found.describe();
         for words in [
             "that of pcg by a slope of −0.510 to −0.490 and of sobol",
-            "0.010, is left by shared, sobol with 64 samples",
+            "0.010, is that of shared, sobol with 64 samples",
         ] {
             assert!(found.sentence.contains(words), "{}", found.sentence);
         }

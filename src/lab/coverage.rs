@@ -455,8 +455,8 @@ mod tests {
         let found = found.describe();
         assert_eq!(found.tone, Tone::Bad);
         for words in [
-            "no less than stated: joint 93.0 % ± 1.0;",
-            "fall tsvd 60.0 % ± 1.0. 1 of the methods gave no bands.",
+            "at least as often as stated: joint 93.0 % ± 1.0;",
+            "standard errors: tsvd 60.0 % ± 1.0. 1 of the methods gave no bands.",
         ] {
             assert!(found.sentence.contains(words), "{}", found.sentence);
         }
