@@ -257,11 +257,11 @@ fn brdf_is_a_table_json_csv_and_a_figure() {
     says(
         &ended,
         &[
-            "the traced light agrees with the model that knows the wall's BRDF",
-            "and rejects Lambertian (off by",
+            "the traced light agrees with the model that has the wall's true BRDF",
+            "the test rejects Lambertian (off by",
             "Lambertian, best scale (off by",
             "roughness × 2 (off by",
-            "1 of 1 recoveries that work on a Lambertian wall reach it within 10 %",
+            "1 of 1 recoveries that succeed on a Lambertian wall do as well within 10 %",
         ],
     );
     let json = workspace.json("b/brdf.json");
@@ -273,7 +273,7 @@ fn brdf_is_a_table_json_csv_and_a_figure() {
     told(
         &workspace,
         "b",
-        &["agrees with the model that knows", "<metadata>"],
+        &["agrees with the model that has", "<metadata>"],
     );
     let figure = workspace.text("b/brdf.svg");
     assert!(figure.contains("own BRDF (agrees)") && !figure.contains("NaN"));

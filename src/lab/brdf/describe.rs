@@ -51,9 +51,10 @@ impl BrdfStudy {
         };
         let judged: Vec<bool> = self.ratios.iter().filter_map(|r| r.reaches).collect();
         format!(
-            "On {}, at a significance of {}, the traced light {} the model with the wall's true \
-             BRDF (difference {}, of which noise {}); the test rejects {}{also}. With the known \
-             BRDF, {} of {} recoveries that succeed on a Lambertian wall do as well within 10 %.",
+            "On {}, at a significance of {}, the traced light {} the model that has the \
+             wall's true BRDF (difference {}, of which noise {}); the test rejects {}{also}. With \
+             the known BRDF, {} of {} recoveries that succeed on a Lambertian wall do as well \
+             within 10 %.",
             self.scene,
             figure(g.significance, 2),
             if g.agrees { "agrees with" } else { "REJECTS" },
