@@ -94,7 +94,7 @@ impl NoiseTasks {
     /// The study of a scene with these values of the options of the noise study.
     ///
     /// # Errors
-    /// [`OptionError`] and [`super::LabError`].
+    /// [`OptionError`] and [`LabError`](crate::lab::LabError).
     pub fn given(scene: &Scene, values: &Values) -> Result<Self, StudyError> {
         let axis = axis(values, scene)?;
         let levels: Vec<f64> = values.list("noise")?;
