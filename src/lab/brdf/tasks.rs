@@ -11,7 +11,7 @@ use crate::lab::study::{Sharing, Study};
 use crate::lab::validation::Integration;
 use crate::model::{Extent, Kernel, MatrixModel, converged};
 use crate::num::stream::Sampling;
-use crate::scene::{Role, Scene};
+use crate::scene::Scene;
 use crate::transport::{
     Budget, Control, Estimator, Plan, SamplesError, Traced, render, unsupported_surface,
 };
@@ -190,8 +190,7 @@ impl Study for BrdfTasks {
     ) -> Result<BrdfStudy, LabError> {
         let lambertian_case = assumptions.remove(self.assumed.len());
         let how = self.tracing()?;
-        let surfaces = self.twin.scene.surfaces.iter();
-        let relays = surfaces.filter(|s| s.role == Role::Relay);
+        let relays = self.twin.scene.relays();
         Ok(BrdfStudy {
             scene: self.scene.name.clone(),
             scene_hash: self.scene.hash.clone(),
@@ -200,7 +199,7 @@ impl Study for BrdfTasks {
             seed: self.plan.seed,
             draws: self.plan.draws,
             relay_albedo: relays
-                .map(|s| s.albedo.mean([0.0, 1.0], [0.0, 1.0]))
+                .map(|(_, wall)| wall.albedo.mean([0.0, 1.0], [0.0, 1.0]))
                 .collect(),
             ratios: ratios(&assumptions[0].qualities, &lambertian_case.qualities),
             assumptions,

@@ -2,7 +2,7 @@
 
 use crate::geometry::Ray;
 use crate::model::Kernel;
-use crate::scene::{Role, Scene, SceneError, spots};
+use crate::scene::{Scene, SceneError, spots};
 
 /// How the spots lie.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,9 +93,9 @@ impl Site {
         };
         let middle = hidden.shape.at([0.5, 0.5]);
         let normal = Ray::new(middle.position, middle.normal);
-        let walls = scene.surfaces.iter().filter(|s| s.role == Role::Relay);
-        let nearest = walls
-            .filter_map(|s| s.shape.intersect(&normal, false))
+        let nearest = scene
+            .relays()
+            .filter_map(|(_, wall)| wall.shape.intersect(&normal, false))
             .min_by(|a, b| a.t.total_cmp(&b.t));
         Ok(nearest.map(|met| {
             let foot = middle.position + middle.normal * met.t;

@@ -226,20 +226,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_spread_is_that_of_a_hand_calculation() {
-        // Mean 2, squares 1 + 0 + 1, variance 1, standard error 1/√3.
-        let found = Spread::of(&[1.0, 2.0, 3.0]).unwrap();
-        assert_eq!(
-            (found.draws, found.mean, found.deviation),
-            (3, 2.0, Some(1.0))
-        );
-        assert!((found.stderr.unwrap() - 1.0 / 3f64.sqrt()).abs() < 1e-15);
-        let one = Spread::of(&[7.0]).unwrap();
-        assert_eq!((one.deviation, one.stderr), (None, None));
-        assert_eq!(Spread::of(&[]), None);
-    }
-
-    #[test]
     fn the_level_is_interpolated_in_its_logarithm() {
         let curve = [(1e-4, Some(1.0)), (1e-2, Some(0.8)), (1.0, Some(0.2))];
         let lost = |curve: &[_], limit| lost(curve, limit, &NoiseAxis::Relative);

@@ -5,7 +5,7 @@ use glam::{DAffine3, DQuat};
 use crate::geometry::{DVec3, Shape};
 use crate::num::stream::{Key, Sampling, Stream};
 use crate::num::warp;
-use crate::scene::{Role, Scene};
+use crate::scene::Scene;
 
 /// Something that is assumed wrongly.
 #[derive(Debug)]
@@ -108,9 +108,9 @@ fn scattered(scene: &Scene, size: f64) -> Option<Scene> {
 /// The scene with its walls bent, which must be flat and look upwards.
 fn bent(scene: &Scene, size: f64) -> Option<Scene> {
     let upward = |shape: &Shape| matches!(shape, Shape::Parallelogram(p) if p.normal().z > 0.0);
-    let mut walls = scene.surfaces.iter().filter(|s| s.role == Role::Relay);
-    walls
-        .all(|s| upward(&s.shape))
+    scene
+        .relays()
+        .all(|(_, wall)| upward(&wall.shape))
         .then(|| scene.with_bent_relay(size).ok())?
 }
 
@@ -118,7 +118,7 @@ fn bent(scene: &Scene, size: f64) -> Option<Scene> {
 /// wall meet.
 pub(super) fn hinge(scene: &Scene) -> Option<(DVec3, DVec3)> {
     let (_, hidden) = scene.hidden().next()?;
-    let wall = scene.surfaces.iter().find(|s| s.role == Role::Relay)?;
+    let (_, wall) = scene.relays().next()?;
     let (a, b) = (hidden.shape.at([0.5, 0.5]), wall.shape.at([0.5, 0.5]));
     let axis = a.normal.cross(b.normal);
     let square = axis.length_squared();
