@@ -99,9 +99,9 @@ BREAKS = [
     ),
     Break(
         "Standard errors are honest",
-        "src/transport/tally.rs",
-        "*m += more + apart * apart * weight;",
-        "*m += more + 0.5 * apart * apart * weight;",
+        "src/transport/spread.rs",
+        "scatter: self.scatter + (other.scatter + apart * apart * weight),",
+        "scatter: self.scatter + (other.scatter + 0.5 * apart * apart * weight),",
         "physics",
         "accuracy::independent_pcg_has_honest_error_bars",
         4,

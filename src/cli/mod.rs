@@ -12,6 +12,7 @@
 //! | `scene.toml`, `run.json` | the scene, whole; version, scene hash, seed, samples, estimator, threads, time |
 //! | `frames/spot-0000.exr` | one frame a spot, f32: `flux`, `flux.stderr`, and `flux.bN` for light that met N surfaces, W |
 //! | `phi.npy`, `phi.stderr.npy` | Φcam and its standard error, f64, (pixels, spots), C order, W |
+//! | `phi.tails.npy` | how far each standard error is to be trusted: 0, or the sum of 1 (one block has most of the scatter), 2 (blocks too skewed), 4 (light in few blocks), 8 (no light met yet: the standard error is an upper bound), 16 (like its neighbours); f64, (pixels, spots) |
 //! | `model/g12.npy`, `g23.npy`, `phi.npy` | the analytic side |
 //! | `model/laser_side.npy`, `camera_side.npy` | D and C: G12 and G23 with the walls' BRDFs and in W, Φcam = C·diag(ρ)·D |
 //! | `model/z.npy` | z of every entry, what `run` compared by: deviation of the traced from the modelled flux in standard errors, (pixels, spots) |

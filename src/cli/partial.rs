@@ -2,7 +2,7 @@
 //!
 //! | file | content |
 //! | --- | --- |
-//! | spot-NNNN.npy | a finished spot in f64: one column per bounce count, last the standard error |
+//! | spot-NNNN.npy | a finished spot in f64: one column per bounce count, then the standard error and its code |
 //! | spots-NNNN-MMMM.phs | finished blocks of the spots NNNN to MMMM − 1, which are traced together |
 
 use std::fs;
@@ -42,7 +42,8 @@ impl Partial {
         column: usize,
     ) -> Result<Matrix, Failure> {
         ensure_writable(&self.0)?;
-        let columns = traced.bounces.iter().chain([&traced.stderr]);
+        let columns = traced.bounces.iter();
+        let columns = columns.chain([&traced.stderr, &traced.tails]);
         let columns: Vec<_> = columns.map(|m| m.column(column).into_owned()).collect();
         let kept = Matrix::from_columns(&columns);
         npy::write(&self.spot(spot), &kept)?;
@@ -50,10 +51,10 @@ impl Partial {
     }
 
     /// A finished spot, if it is there and whole: one column per bounce count, then the standard
-    /// error.
+    /// error and its code.
     pub(super) fn read(&self, spot: usize, scene: &Scene) -> Option<Matrix> {
         let matrix = npy::read_finite(&self.spot(spot)).ok()?;
-        let shape = (scene.camera.pixels(), scene.max_bounces as usize + 1);
+        let shape = (scene.camera.pixels(), scene.max_bounces as usize + 2);
         (matrix.shape() == shape).then_some(matrix)
     }
 

@@ -183,12 +183,12 @@ impl Tracing {
     }
 
     /// Takes in a column as it is kept: flux by the number of surfaces met, then the standard error
-    /// of their sum.
+    /// of their sum and its code.
     pub(super) fn finished(&mut self, kept: &Matrix) {
         if self.bar.is_hidden() {
             return;
         }
-        let orders = kept.ncols() - 1;
+        let orders = kept.ncols() - 2;
         for row in kept.row_iter() {
             let flux = row.columns(0, orders).sum();
             self.finished[0] += row[orders] * row[orders];

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::failure::Failure;
 use super::output;
 use super::process::version;
+use crate::lab::Tails;
 use crate::scene::Scene;
 use crate::store::is_missing;
 use crate::transport::Plan;
@@ -27,6 +28,9 @@ pub(super) struct Record {
     pub threads: usize,
     /// Wall time of rendering, s.
     pub seconds: f64,
+    /// Of a complete run: how many standard errors cannot be trusted, and where.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tails: Option<Tails>,
 }
 
 impl Record {
@@ -50,7 +54,14 @@ impl Record {
             finished,
             threads,
             seconds,
+            tails: None,
         }
+    }
+
+    /// A line on its standard errors; none of an unfinished run.
+    pub(super) fn error_bars(&self) -> String {
+        let line = |tails: &Tails| format!("error bars: {}\n", tails.sentence());
+        self.tails.as_ref().map_or_else(String::new, line)
     }
 
     /// The record in `dir`, if there is one.

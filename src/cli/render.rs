@@ -13,7 +13,7 @@ use super::load_run::read_matrix;
 use super::output;
 use super::process::pool;
 use super::record::Record;
-use super::run_folder::{PHI, Resume, RunFolder, STDERR};
+use super::run_folder::{PHI, Resume, RunFolder, STDERR, TAILS};
 use super::{Outcome, settings};
 use crate::film;
 use crate::lab::describe_render;
@@ -79,16 +79,19 @@ pub(super) fn execute(args: &RenderArgs, console: Console) -> Result<Outcome, Fa
             let found = describe_render(&scene, plan, &traced, *seconds);
             let table = report::finding_text(&found);
             format!(
-                "{table}\n  {place}: {finished} of {spots} spots, frames, phi.npy and phi.stderr.npy\n"
+                "{table}\n  {place}: {finished} of {spots} spots, frames, phi.npy, phi.stderr.npy and phi.tails.npy\n"
             )
         }
         None => {
             let what = if finished == spots {
-                "frames, phi.npy and phi.stderr.npy"
+                "frames, phi.npy, phi.stderr.npy and phi.tails.npy"
             } else {
                 "frames; phi.npy follows when every spot is there"
             };
-            format!("{place}: {finished} of {spots} spots in {seconds:.1} s ({plan}): {what}\n")
+            let bars = record.error_bars();
+            format!(
+                "{place}: {finished} of {spots} spots in {seconds:.1} s ({plan}): {what}\n{bars}"
+            )
         }
     })?;
     Ok(Outcome::Done)
@@ -100,7 +103,7 @@ pub(super) fn complete(scene: &Scene, plan: &Plan, path: &Path) -> Result<Option
     let record = Record::read(path)?
         .filter(|earlier| earlier.same_settings(&asked) && earlier.finished == earlier.spots);
     let whole = || {
-        [PHI, STDERR]
+        [PHI, STDERR, TAILS]
             .iter()
             .all(|name| read_matrix(&path.join(name), scene).is_ok())
             && film::stack(path).is_ok()
@@ -175,7 +178,8 @@ pub(super) fn into_folder(
         _ => None,
     };
     if let Some(traced) = &phi {
-        folder.finish(&record, &traced.flux, &traced.stderr)?;
+        let matrices = [&traced.flux, &traced.stderr, &traced.tails];
+        folder.finish(&mut record, matrices)?;
     } else {
         note(&record, path)?;
     }
@@ -238,9 +242,12 @@ fn gather(scene: &Scene, kept: Vec<Option<Matrix>>) -> Option<Traced> {
     let flux = Matrix::from_fn(kept[0].nrows(), kept.len(), |p, l| {
         bounces.iter().map(|b| b[(p, l)]).sum()
     });
-    Some(Traced {
+    let mut traced = Traced {
         flux,
         stderr: pick(orders),
+        tails: pick(orders + 1),
         bounces,
-    })
+    };
+    traced.flag_neighbours();
+    Some(traced)
 }

@@ -65,6 +65,7 @@ pub(super) fn execute(args: &RunArgs, console: Console) -> Result<Outcome, Failu
         plan,
         phi: traced.flux,
         stderr: traced.stderr,
+        tails: traced.tails,
         bounces,
         model: None,
         z: None,

@@ -6,6 +6,7 @@
 //! | files/ | copies of the meshes, pictures and materials that the scene names |
 //! | frames/spot-NNNN.exr | one frame a spot |
 //! | phi.npy, phi.stderr.npy | Φcam and its standard error, pixels × spots, W |
+//! | phi.tails.npy | how far that is to be trusted: [`tails`](crate::transport::tails), pixels × spots |
 //! | partial/ | what is finished of an unfinished run: see [`super::partial`] |
 
 use std::fs;
@@ -21,6 +22,7 @@ use super::output;
 use super::partial::{PARTIAL, Partial};
 use super::record::Record;
 use crate::film::{self, Channel, Frame, FrameMeta, RunMeta, frame_name};
+use crate::lab::Tails;
 use crate::matrix::{Matrix, npy};
 use crate::recovery::Method;
 use crate::scene::{COPIES, Scene};
@@ -29,6 +31,7 @@ use crate::transport::Traced;
 
 pub(super) const PHI: &str = "phi.npy";
 pub(super) const STDERR: &str = "phi.stderr.npy";
+pub(super) const TAILS: &str = "phi.tails.npy";
 pub(super) const SUMMARY: &str = "summary.json";
 pub(super) const REPORT: &str = "report.html";
 pub(super) const SCENE: &str = "scene.toml";
@@ -122,7 +125,7 @@ impl RunFolder {
         refuse_obstacles(
             &self.path,
             &["frames", PARTIAL, MODEL, RECOVERED, COPIES],
-            &[SCENE, PHI, STDERR, Record::FILE, SUMMARY, REPORT],
+            &[SCENE, PHI, STDERR, TAILS, Record::FILE, SUMMARY, REPORT],
         )?;
         let path = self.path.display();
         let cure = "choose another folder (-o), or remove this one";
@@ -192,8 +195,8 @@ impl RunFolder {
         Partial::of(&self.path)
     }
 
-    /// A finished spot of the run `record`: one column per bounce count, then the standard error;
-    /// `None` unless both this and its frame are there and whole.
+    /// A finished spot of the run `record`: one column per bounce count, then the standard error
+    /// and its code; `None` unless both this and its frame are there and whole.
     pub(super) fn kept(&self, spot: usize, scene: &Scene, record: &Record) -> Option<Matrix> {
         let frame = film::exr::read(&self.frames().join(frame_name(spot as u32))).ok()?;
         let own = frame.meta == meta(scene, record, spot);
@@ -219,7 +222,10 @@ impl RunFolder {
         remove_recovered(&self.path.join(RECOVERED))?;
         remove_exposed(&self.path.join(EXPOSED))?;
         remove_named(&self.path.join(MODEL), &[Z])?;
-        remove_named(&self.path, &[PHI, STDERR, Record::FILE, SUMMARY, REPORT])
+        remove_named(
+            &self.path,
+            &[PHI, STDERR, TAILS, Record::FILE, SUMMARY, REPORT],
+        )
     }
 
     /// Writes the frames of `spots` from the columns of `traced`, on the threads of the pool.
@@ -267,13 +273,15 @@ impl RunFolder {
         )?)
     }
 
-    /// Writes Φcam and its standard error, and that the run is complete.
+    /// Writes Φcam, its standard error and how far that is to be trusted, and that the run is
+    /// complete.
     pub(super) fn finish(
         &self,
-        record: &Record,
-        phi: &Matrix,
-        stderr: &Matrix,
+        record: &mut Record,
+        [phi, stderr, tails]: [&Matrix; 3],
     ) -> Result<(), Failure> {
+        record.tails = Some(Tails::of(tails));
+        npy::write(&self.path.join(TAILS), tails)?;
         npy::write(&self.path.join(STDERR), stderr)?;
         npy::write(&self.path.join(PHI), phi)?;
         record.write(&self.path)?;

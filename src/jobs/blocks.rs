@@ -23,7 +23,7 @@ pub fn end(parts: &Parts, range: &Range<u64>) -> u64 {
 pub const EXTENSION: &str = "phs";
 
 const MAGIC: [u8; 8] = *b"phicam\0\0";
-const LAYOUT: u32 = 1;
+const LAYOUT: u32 = 2;
 /// Magic, layout and the length of the header.
 const HEAD: u64 = 16;
 /// A SHA-256 digest.

@@ -35,7 +35,7 @@ impl<'a> Spots<'a> {
         if !estimator.serves_all_spots() {
             return 1;
         }
-        let column = scene.camera.pixels() * (scene.max_bounces as usize + 1);
+        let column = scene.camera.pixels() * (scene.max_bounces as usize + 4);
         (MOST_NUMBERS / column).max(1)
     }
 

@@ -21,6 +21,8 @@ pub struct RunResults {
     pub phi: Matrix,
     /// Its standard error.
     pub stderr: Matrix,
+    /// How far that is to be trusted: codes of [`tails`](crate::transport::tails).
+    pub tails: Matrix,
     /// Light that met exactly n surfaces: (n, share of the total flux).
     pub bounces: Vec<(u32, f64)>,
     /// Modelled Φcam; absent where nothing is hidden.

@@ -34,6 +34,7 @@ pub(crate) fn of(scene: Scene) -> RunResults {
             },
         },
         stderr: &phi * 1e-3,
+        tails: Matrix::zeros(p, l),
         phi,
         bounces: vec![(3, 0.976), (4, 0.0), (5, 0.024)],
         model: None,

@@ -4,6 +4,7 @@ use super::agreement::{Agreement, Entry};
 use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone};
 use super::objects::RecoveredObject;
 use super::results::RunResults;
+use super::tails::Tails;
 use crate::matrix::Matrix;
 use crate::num::digits::{figure, significant};
 use crate::scene::Scene;
@@ -128,7 +129,7 @@ impl RunResults {
         let rendered = rendered(
             &self.scene,
             &self.plan,
-            (&self.phi, precision),
+            (&self.phi, precision, &self.tails),
             &self.bounces,
         );
         let agreement = self.agreement.iter().flat_map(Agreement::facts);
@@ -300,7 +301,12 @@ pub fn describe_render(scene: &Scene, plan: &Plan, traced: &Traced, seconds: f64
     let share = |m: &Matrix| if total > 0.0 { m.sum() / total } else { 0.0 };
     let bounces: Vec<(u32, f64)> = (1..).zip(traced.bounces.iter().map(share)).collect();
     let precision = relative(&traced.stderr, &traced.flux);
-    let mut told = rendered(scene, plan, (&traced.flux, precision), &bounces);
+    let mut told = rendered(
+        scene,
+        plan,
+        (&traced.flux, precision, &traced.tails),
+        &bounces,
+    );
     told.push(("time", format!("{}\u{a0}s", figure(seconds, 2))));
     Finding {
         tables: vec![facts(told)],
@@ -319,7 +325,7 @@ fn relative(a: &Matrix, b: &Matrix) -> Option<f64> {
 fn rendered(
     scene: &Scene,
     plan: &Plan,
-    (phi, precision): (&Matrix, Option<f64>),
+    (phi, precision, tails): (&Matrix, Option<f64>, &Matrix),
     bounces: &[(u32, f64)],
 ) -> Vec<(&'static str, String)> {
     let hash: String = scene.hash.chars().take(12).collect();
@@ -354,6 +360,7 @@ fn rendered(
                 figure(phi.sum(), 3)
             ),
         ),
+        ("error bars", Tails::of(tails).sentence()),
     ];
     if !bounces.is_empty() {
         let share = |(n, share): &(u32, f64)| format!("{n} surfaces {}", percent(*share));
@@ -381,6 +388,7 @@ mod tests {
             bounces: vec![matrix(1.5e-12), matrix(0.0), matrix(0.5e-12)],
             flux: matrix(2e-12),
             stderr: matrix(2e-14),
+            tails: matrix(0.0),
         };
         let finding = describe_render(&results.scene, &results.plan, &traced, 8.04);
         let texts = finding.tables[0].rows.iter().flatten();
@@ -393,6 +401,7 @@ mod tests {
             "2 pixels × 3 spots",
             "1.20 × 10⁻¹¹\u{a0}W over all pixels and spots, standard error 1.00\u{a0}%",
             "1 surfaces 75.0\u{a0}%, 2 surfaces 0\u{a0}%, 3 surfaces 25.0\u{a0}%",
+            "error bars\ncan be trusted at all 6 entries",
             "time\n8.0\u{a0}s",
         ] {
             assert!(texts.contains(words), "no {words}: {texts}");

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::lab::{RecoveredObject, RunResults};
+use crate::lab::{RecoveredObject, RunResults, Tails};
 
 /// What a run found, without any matrix, as indented JSON. What is absent or not a finite number is
 /// `null`. Fluxes in W, times in s.
@@ -50,6 +50,7 @@ pub fn summary_json(results: &RunResults) -> String {
             "spots": results.phi.ncols(),
             "total": results.phi.sum(),
             "relative_stderr": results.relative_stderr(),
+            "tails": Tails::of(&results.tails),
         },
         "agreement": results.agreement,
         "bounces": bounces.collect::<Vec<Value>>(),

@@ -183,6 +183,22 @@ fn fills(scene: &Scene, pixel: usize, id: ShapeId) -> Option<(ShapeId, Parallelo
     free.then_some((id, plane, outline))
 }
 
+/// Whether no shape can be in the pixel: between the pinhole and the footprint, enlarged from there
+/// until it lies behind every shape, nothing can stand.
+pub(super) fn sees_nothing(scene: &Scene, pixel: usize) -> bool {
+    let camera = &scene.camera;
+    let (o, normal) = (camera.position, camera.view.normal());
+    let shapes = scene.surfaces.iter().map(|s| &s.shape);
+    let depths = shapes.flat_map(|s| s.box_corners().map(|c| normal.dot(c - o).abs()));
+    let height = normal.dot(camera.view.corner() - o).abs();
+    let beyond = (2.0 * depths.fold(height, f64::max)) / height;
+    let footprint = camera.footprint(pixel);
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let far = corners.map(|ab| o + (footprint.at(ab) - o) * beyond);
+    let (pinhole, far) = (Region::point(o), Region::flat(far.to_vec()));
+    scene.bvh().surely_free(&pinhole, &far, [None, None])
+}
+
 /// The light of the spots themselves, one surface met.
 #[derive(Debug)]
 pub(super) struct DirectLight {
@@ -205,6 +221,12 @@ impl DirectLight {
             ideal: columns.clone().filter_map(ideal).collect(),
             wide: columns.filter(wide).collect(),
         }
+    }
+
+    /// Whether a pixel may see the spot of a column.
+    pub(super) fn may_reach(&self, pixel: usize, column: usize) -> bool {
+        let sees = |(lit, by, _): &(usize, usize, f64)| (*lit, *by) == (column, pixel);
+        self.ideal.iter().any(sees) || self.wide.iter().any(|(lit, _)| *lit == column)
     }
 
     /// Adds to a pixel's row, for the columns of `lit`, the light of the spots that it sees through

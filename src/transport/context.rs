@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::camera::{DirectLight, PixelView};
+use super::camera::{DirectLight, PixelView, sees_nothing};
 use super::path::PathSampler;
 use super::plan::Plan;
 use super::spots::LitSpots;
@@ -56,6 +56,29 @@ impl<'a> Context<'a> {
             views,
             between,
         }
+    }
+
+    /// Whether light of a column may reach a pixel: no where the beam lands on nothing that reflects,
+    /// where the pixel sees nothing, or where between any two surfaces of a path one lies behind the other or is black. Shapes in
+    /// between are not considered, so a yes may be wrong.
+    pub(super) fn may_be_lit(&self, pixel: usize, column: usize) -> bool {
+        let (scene, all) = (self.scene, || known_or_all(self.scene, None));
+        let spot = self.spots.range.start + column;
+        let lit = match self.spots.beams.ideal.get(spot) {
+            Some(Some(point)) => vec![point.shape],
+            Some(None) => return false,
+            None => all(),
+        };
+        let is_black = |s: &ShapeId| scene.surfaces[*s as usize].is_black();
+        let known = self.views[pixel].shape().map(|s| vec![s]);
+        let nothing = || sees_nothing(scene, pixel).then(Vec::new);
+        let mut seen = known.or_else(nothing).unwrap_or_else(all);
+        seen.retain(|s| !is_black(s));
+        let two = || lit.iter().any(|t| any_may_be_visible(scene, &seen, *t));
+        !seen.is_empty()
+            && (self.direct.may_reach(pixel, column)
+                || scene.max_bounces > 1 && two()
+                || scene.max_bounces > 2 && !between(scene, &seen, &lit).is_empty())
     }
 
     /// The first shape of `between` that is not Lambertian, by name.

@@ -20,7 +20,8 @@
 //! place of paths in the first two where a pixel is simple enough. They share `camera` (first
 //! vertex), `path` (next vertex), `beam` and `spots` (connection with every lit point), `vertex`
 //! (geometry term, BRDF), `visibility`, `area` and `strata` (points by area), and what is computed
-//! of them once, in `context`. `tally` adds up blocks, `render` traces them.
+//! of them once, in `context`. `tally` adds up blocks, `spread` and `tails` judge
+//! their standard error, `render` traces them.
 //!
 //! No ray is cast where nothing can stand in the way; what can is computed once per pair of
 //! regions, conservatively ([`Region`](crate::geometry::Region)).
@@ -39,7 +40,9 @@ mod points;
 mod render;
 mod shared;
 mod spots;
+mod spread;
 mod strata;
+pub mod tails;
 mod tally;
 mod vertex;
 mod visibility;

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
 
+use super::tails::flag_neighbours;
 use crate::matrix::Matrix;
 use crate::num::stream::{LARGEST_NET, Sampling};
 
@@ -281,4 +282,13 @@ pub struct Traced {
     pub flux: Matrix,
     /// Standard error of `flux` from the spread of the blocks, W.
     pub stderr: Matrix,
+    /// How far `stderr` is to be trusted: 0, or bits of [`tails`](super::tails).
+    pub tails: Matrix,
+}
+
+impl Traced {
+    /// [`tails::flag_neighbours`](flag_neighbours) among these columns.
+    pub fn flag_neighbours(&mut self) {
+        flag_neighbours(&mut self.tails, &self.flux, &self.stderr);
+    }
 }

@@ -61,13 +61,13 @@ pub fn render(
     trace(
         scene,
         plan,
-        spots,
+        spots.clone(),
         tally,
         plan.budget.blocks,
         control,
         go_on,
     )?
-    .traced()
+    .traced(scene, plan, spots)
     .ok_or(RenderError::Stopped(Stopped))
 }
 
@@ -156,7 +156,7 @@ fn trace_rows(
     tally
 }
 
-/// One pixel: sums and scatter of the estimates of some blocks.
+/// One pixel: sums and spread of the estimates of some blocks.
 fn trace_row(context: &Context<'_>, pixel: usize, blocks: Range<u32>) -> Tree<Moments> {
     let block_of = match context.plan.estimator {
         Estimator::Independent => independent::block,

@@ -4,7 +4,10 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::context::Context;
 use super::plan::{Plan, Traced};
+use super::spread::Spread;
+use super::tails::UNLIT;
 use crate::matrix::Matrix;
 use crate::num::tree::Tree;
 use crate::scene::Scene;
@@ -12,48 +15,39 @@ use crate::scene::Scene;
 /// Numbers that one thread handles at a time.
 const STRETCH: usize = 1 << 14;
 
-/// Sums and scatter of the estimates of n blocks, entry by entry.
+/// Sums and spread of the estimates of n blocks, entry by entry.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moments {
     /// Σx of the light that met each number of surfaces: \[order\]\[pixel\]\[column\], W.
     pub(super) sums: Vec<f64>,
-    /// Σ(t − t̄)², t the total over orders: \[pixel\]\[column\], W².
-    pub(super) scatter: Vec<f64>,
+    /// Of the totals over orders: \[pixel\]\[column\].
+    pub(super) spreads: Vec<Spread>,
 }
 
 impl Moments {
-    /// One block, whose estimates are `sums`, has no scatter yet.
+    /// One block, whose estimates are `sums`.
     pub(super) fn of_block(sums: Vec<f64>, orders: usize) -> Self {
-        let scatter = vec![0.0; sums.len() / orders];
-        Self { sums, scatter }
+        let entries = sums.len() / orders;
+        let spreads = (0..entries)
+            .map(|at| Spread::of_block(total(&sums, entries, at)))
+            .collect();
+        Self { sums, spreads }
     }
 
-    /// Both numbers of blocks together. With n₁ and n₂ blocks of totals T₁ and T₂ (Chan, Golub,
-    /// LeVeque, *Updating formulae and a pairwise algorithm for computing sample variances*,
-    /// COMPSTAT 1982):
-    ///
-    /// ```text
-    /// S = S₁ + S₂      M = M₁ + M₂ + (T₂/n₂ − T₁/n₁)² · n₁·n₂/(n₁ + n₂)
-    /// ```
+    /// Both numbers of blocks together: S = S₁ + S₂, and [`Spread::join`] with δ = T₂/n₂ − T₁/n₁, T
+    /// the totals over orders.
     pub(super) fn join((left, mut a): (Range<u32>, Self), (right, b): (Range<u32>, Self)) -> Self {
-        let (n1, n2) = (
-            f64::from(left.end - left.start),
-            f64::from(right.end - right.start),
-        );
-        let weight = n1 * n2 / (n1 + n2);
-        let entries = a.scatter.len().max(1);
-        let orders = a.sums.len() / entries;
-        a.scatter
+        let counts = [left, right].map(|r| f64::from(r.end - r.start));
+        let entries = a.spreads.len();
+        a.spreads
             .par_chunks_mut(STRETCH)
-            .zip(b.scatter.par_chunks(STRETCH))
+            .zip(b.spreads.par_chunks(STRETCH))
             .enumerate()
-            .for_each(|(stretch, (scatter, more))| {
-                for (i, (m, more)) in scatter.iter_mut().zip(more).enumerate() {
+            .for_each(|(stretch, (spreads, more))| {
+                for (i, (own, more)) in spreads.iter_mut().zip(more).enumerate() {
                     let at = stretch * STRETCH + i;
-                    let total =
-                        |sums: &[f64]| -> f64 { (0..orders).map(|n| sums[n * entries + at]).sum() };
-                    let apart = total(&b.sums) / n2 - total(&a.sums) / n1;
-                    *m += more + apart * apart * weight;
+                    let mean = |sums: &[f64], n: usize| total(sums, entries, at) / counts[n];
+                    *own = own.join(*more, counts, mean(&b.sums, 1) - mean(&a.sums, 0));
                 }
             });
         a.sums
@@ -62,6 +56,11 @@ impl Moments {
             .for_each(|(sums, more)| sums.iter_mut().zip(more).for_each(|(s, x)| *s += x));
         a
     }
+}
+
+/// Σ over orders of entry `at`.
+fn total(sums: &[f64], entries: usize, at: usize) -> f64 {
+    sums.iter().skip(at).step_by(entries).sum()
 }
 
 /// The blocks of some columns of Φcam that are finished, as the largest nodes of the fixed binary
@@ -133,6 +132,7 @@ impl Tally {
             bounces: (0..self.orders).map(|_| nothing()).collect(),
             flux: nothing(),
             stderr: nothing(),
+            tails: nothing(),
         }
     }
 
@@ -143,15 +143,17 @@ impl Tally {
 
     /// Bytes of one part.
     pub fn part_bytes(&self) -> usize {
-        8 * self.columns * self.pixels * (self.orders + 1)
+        8 * self.columns * self.pixels * (self.orders + Spread::NUMBERS)
     }
 
     /// The parts: ranges of blocks, with their sums as little-endian f64, first
-    /// \[order\]\[pixel\]\[column\], then the scatter \[pixel\]\[column\].
+    /// \[order\]\[pixel\]\[column\], then scatter, third sum, largest and dark blocks of every
+    /// \[pixel\]\[column\].
     pub fn parts(&self) -> impl Iterator<Item = (Range<u32>, Vec<u8>)> {
         self.tree.nodes().iter().map(|(range, moments)| {
-            let numbers = moments.sums.iter().chain(&moments.scatter);
-            let bytes = numbers.flat_map(|x| x.to_le_bytes()).collect();
+            let spreads = moments.spreads.iter().flat_map(|s| s.numbers());
+            let numbers = moments.sums.iter().copied().chain(spreads);
+            let bytes = numbers.flat_map(f64::to_le_bytes).collect();
             (range.clone(), bytes)
         })
     }
@@ -171,12 +173,15 @@ impl Tally {
             });
         }
         let (numbers, _) = bytes.as_chunks::<8>();
-        let mut sums: Vec<f64> = numbers.iter().map(|b| f64::from_le_bytes(*b)).collect();
-        if !sums.iter().all(|x| x.is_finite() && *x >= 0.0) {
-            return Err(TallyError::NoFlux { range });
+        let (sums, spreads) = numbers.split_at(self.orders * self.pixels * self.columns);
+        let sums: Vec<f64> = sums.iter().map(|b| f64::from_le_bytes(*b)).collect();
+        let (spreads, _) = spreads.as_chunks::<{ Spread::NUMBERS }>();
+        let spread = |four: &[[u8; 8]; 4]| Spread::from_numbers(four.map(f64::from_le_bytes));
+        let spreads: Option<Vec<Spread>> = spreads.iter().map(spread).collect();
+        match spreads.filter(|_| sums.iter().all(|x| x.is_finite() && *x >= 0.0)) {
+            Some(spreads) => self.add(range, Moments { sums, spreads }),
+            None => Err(TallyError::NoFlux { range }),
         }
-        let scatter = sums.split_off(self.orders * self.pixels * self.columns);
-        self.add(range, Moments { sums, scatter })
     }
 
     /// Adds the node that follows.
@@ -196,16 +201,16 @@ impl Tally {
         let entries = self.pixels * self.columns;
         for (i, (range, _)) in first.nodes().iter().enumerate() {
             let mut sums = vec![0.0; self.orders * entries];
-            let mut scatter = Vec::with_capacity(entries);
+            let mut spreads = Vec::with_capacity(entries);
             for (p, row) in rows.iter().enumerate() {
                 let (_, own) = &row.nodes()[i];
                 for (n, own) in own.sums.chunks(self.columns).enumerate() {
                     let at = n * entries + p * self.columns;
                     sums[at..at + self.columns].copy_from_slice(own);
                 }
-                scatter.extend_from_slice(&own.scatter);
+                spreads.extend_from_slice(&own.spreads);
             }
-            self.add(range.clone(), Moments { sums, scatter })?;
+            self.add(range.clone(), Moments { sums, spreads })?;
         }
         Ok(())
     }
@@ -230,10 +235,8 @@ impl Tally {
         let mut totals = vec![0.0; nodes.len()];
         for at in 0..entries {
             for (total, (_, moments)) in totals.iter_mut().zip(nodes) {
-                *total = (0..self.orders)
-                    .map(|k| moments.sums[k * entries + at])
-                    .sum();
-                scatter += moments.scatter[at];
+                *total = self::total(&moments.sums, entries, at);
+                scatter += moments.spreads[at].scatter;
             }
             let whole: f64 = totals.iter().sum();
             square += whole * whole;
@@ -245,32 +248,68 @@ impl Tally {
         (square > 0.0).then(|| (n / (n - 1.0) * scatter / square).sqrt())
     }
 
-    /// Means and standard errors over K blocks, Σx/K and √(M/(K(K − 1))), once all are there. The
-    /// error of a single block is not known: it is infinite.
-    pub fn traced(&self) -> Option<Traced> {
-        let Moments { sums, scatter } = self.tree.root()?;
+    /// Means and standard errors over K blocks, Σx/K and √(M/(K(K − 1))), once all are there, and
+    /// how far these are to be trusted; `spots` are those of its columns. The error of a single
+    /// block is not known: it is infinite.
+    ///
+    /// An entry without light that a path may reach is in truth below −ln 0.05 · m/K ≈ 3m/K with 95
+    /// % confidence, m what a lit block would bring (the rule of three; Hanley, Lippman-Hand, JAMA
+    /// 249, 1983). That is its standard error, with m the largest block of its column, or the
+    /// laser's power where all of the column is dark.
+    pub fn traced(&self, scene: &Scene, plan: &Plan, spots: Range<usize>) -> Option<Traced> {
+        let mut known = None;
+        self.means(scene.laser.power, &mut |pixel, column| {
+            let context = known.get_or_insert_with(|| Context::new(scene, plan, spots.clone()));
+            context.may_be_lit(pixel, column)
+        })
+    }
+
+    fn means(
+        &self,
+        power: f64,
+        may_be_lit: &mut dyn FnMut(usize, usize) -> bool,
+    ) -> Option<Traced> {
+        let Moments { sums, spreads } = self.tree.root()?;
         let k = f64::from(self.blocks);
         let (pixels, columns) = (self.pixels, self.columns);
         let entries = pixels * columns;
-        let matrix =
-            |values: &[f64]| Matrix::from_fn(pixels, columns, |p, l| values[p * columns + l]);
+        let at = |p: usize, l: usize| p * columns + l;
         let bounces: Vec<Matrix> = (0..self.orders)
-            .map(|n| matrix(&sums[n * entries..(n + 1) * entries]) / k)
+            .map(|n| Matrix::from_fn(pixels, columns, |p, l| sums[n * entries + at(p, l)]) / k)
             .collect();
         // The same order of additions as where the frames are read back, so that the bits are the
         // same.
         let flux = Matrix::from_fn(pixels, columns, |p, l| {
             bounces.iter().map(|b| b[(p, l)]).sum()
         });
-        let stderr = match self.blocks {
-            0 | 1 => Matrix::from_element(pixels, columns, f64::INFINITY),
-            _ => matrix(scatter).map(|m| (m / (k * (k - 1.0))).sqrt()),
-        };
-        Some(Traced {
+        let mut stderr = Matrix::from_fn(pixels, columns, |p, l| match self.blocks {
+            0 | 1 => f64::INFINITY,
+            _ => (spreads[at(p, l)].scatter / (k * (k - 1.0))).sqrt(),
+        });
+        let mut tails = Matrix::zeros(pixels, columns);
+        for l in 0..columns {
+            let most = (0..pixels)
+                .map(|p| spreads[at(p, l)].largest)
+                .fold(0.0, f64::max);
+            let lit = if most > 0.0 { most } else { power };
+            for p in 0..pixels {
+                let spread = spreads[at(p, l)];
+                if spread.largest > 0.0 {
+                    tails[(p, l)] = f64::from(spread.code(k, flux[(p, l)]));
+                } else if may_be_lit(p, l) {
+                    stderr[(p, l)] = 3.0 * lit / k;
+                    tails[(p, l)] = f64::from(UNLIT);
+                }
+            }
+        }
+        let mut traced = Traced {
             bounces,
             flux,
             stderr,
-        })
+            tails,
+        };
+        traced.flag_neighbours();
+        Some(traced)
     }
 }
 

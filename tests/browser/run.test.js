@@ -61,6 +61,7 @@ describe("the report of a run", () => {
         const matrices = {
             traced: npy(join(run, "phi.npy")),
             "standard error": npy(join(run, "phi.stderr.npy")),
+            doubt: npy(join(run, "phi.tails.npy")),
             modelled: npy(join(run, "model/phi.npy")),
             z: npy(join(run, "model/z.npy")),
         };

@@ -46,7 +46,7 @@ async function entry(page, spot, column, row, columns) {
 }
 
 for (const [what, files, names] of [
-    ["a run", undefined, ["traced", "standard error", "modelled", "z"]],
+    ["a run", undefined, ["traced", "standard error", "modelled", "z", "doubt"]],
     ["a folder without a report", ["scene.toml", "run.json", "phi.npy", "phi.stderr.npy"], ["traced", "standard error"]],
 ]) {
     describe(`${what}, served`, () => {
@@ -68,7 +68,7 @@ for (const [what, files, names] of [
         });
 
         test("20 random entries are those of the matrices on disk", async () => {
-            const paths = { traced: "phi.npy", "standard error": "phi.stderr.npy", modelled: "model/phi.npy", z: "model/z.npy" };
+            const paths = { traced: "phi.npy", "standard error": "phi.stderr.npy", modelled: "model/phi.npy", z: "model/z.npy", doubt: "phi.tails.npy" };
             const matrices = Object.fromEntries(names.map((name) => [name, npy(join(run, paths[name]))]));
             const next = random(5);
             for (let i = 0; i < 20; i++) {

@@ -8,6 +8,7 @@ const FILES: [&str; 24] = [
     "run.json",
     "phi.npy",
     "phi.stderr.npy",
+    "phi.tails.npy",
     "model/g12.npy",
     "model/g23.npy",
     "model/phi.npy",
@@ -116,6 +117,7 @@ fn it_leaves_every_file_and_agrees_and_recovers() {
     for (name, shape) in [
         ("phi", (64, 24)),
         ("phi.stderr", (64, 24)),
+        ("phi.tails", (64, 24)),
         ("model/g12", (64, 24)),
         ("model/g23", (64, 64)),
         ("model/phi", (64, 24)),
@@ -248,6 +250,7 @@ fn a_render_with_another_seed_leaves_no_result_of_the_earlier_run() {
         "notes.txt",
         "phi.npy",
         "phi.stderr.npy",
+        "phi.tails.npy",
         "recovered/",
         "recovered/notes.txt",
         "run.json",

@@ -16,6 +16,7 @@ mod random_scenes;
 mod reference;
 mod sensor;
 mod studies;
+mod tails;
 
 use std::ops::Range;
 

@@ -16,6 +16,7 @@ use crate::jobs::{Checkpoint, Identity, Parts, Shards, Spots, end};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
 use crate::transport::Plan;
+use crate::transport::tails::flag_neighbours;
 
 /// A render. Its blocks are the sample blocks of the first columns of Φcam that are traced
 /// together, then those of the next.
@@ -91,23 +92,27 @@ impl Work for Render {
         }
         let folder = RunFolder::open(output, scene, &record, Resume::Finished, console)?;
         let (pixels, spots) = (scene.camera.pixels(), scene.laser.spots.len());
-        let [mut flux, mut stderr] = [(); 2].map(|()| Matrix::zeros(pixels, spots));
+        let [mut flux, mut stderr, mut tails] = [(); 3].map(|()| Matrix::zeros(pixels, spots));
         for group in Spots::all(scene, plan) {
             let tally = group.tally(group.first, shards.parts(group.blocks()))?;
-            let traced = tally.traced().ok_or_else(|| {
-                let cause = format!(
-                    "the shards in {} do not make up every block",
-                    shards.place.display()
-                );
-                Failure::new(cause, "merge again, and do not change the folder meanwhile")
-            })?;
+            let traced = tally
+                .traced(scene, plan, group.range.clone())
+                .ok_or_else(|| {
+                    let cause = format!(
+                        "the shards in {} do not make up every block",
+                        shards.place.display()
+                    );
+                    Failure::new(cause, "merge again, and do not change the folder meanwhile")
+                })?;
             folder.write_frames(scene, &record, &group.range, &traced)?;
             let (first, n) = (group.range.start, group.range.len());
             flux.columns_mut(first, n).copy_from(&traced.flux);
             stderr.columns_mut(first, n).copy_from(&traced.stderr);
+            tails.columns_mut(first, n).copy_from(&traced.tails);
         }
+        flag_neighbours(&mut tails, &flux, &stderr);
         record.finished = spots;
-        folder.finish(&record, &flux, &stderr)?;
+        folder.finish(&mut record, [&flux, &stderr, &tails])?;
         told(&record, output, json)
     }
 }
@@ -117,10 +122,11 @@ fn told(record: &Record, dir: &Path, json: bool) -> Result<Outcome, Failure> {
         output::json(record)?
     } else {
         format!(
-            "{}: {} spots merged ({}): frames, phi.npy and phi.stderr.npy\n",
+            "{}: {} spots merged ({}): frames, phi.npy, phi.stderr.npy and phi.tails.npy\n{}",
             dir.display(),
             record.spots,
-            record.plan
+            record.plan,
+            record.error_bars()
         )
     })?;
     Ok(Outcome::Done)

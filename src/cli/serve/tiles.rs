@@ -12,7 +12,7 @@ use super::folder::Served;
 use super::query::Query;
 use super::run::record;
 use crate::cli::record::Record;
-use crate::cli::run_folder::{PHI, STDERR};
+use crate::cli::run_folder::{PHI, STDERR, TAILS};
 use crate::matrix::npy::{Entries, NpyError};
 
 /// Φcam of the model.
@@ -20,9 +20,10 @@ pub(super) const MODELLED: &str = "model/phi.npy";
 /// Deviates of the traced entries from the model.
 const Z: &str = "model/z.npy";
 /// The matrices that can be asked for, all pixels × spots, and their files.
-const MATRICES: [(&str, &str); 4] = [
+const MATRICES: [(&str, &str); 5] = [
     ("traced", PHI),
     ("stderr", STDERR),
+    ("tails", TAILS),
     ("modelled", MODELLED),
     ("z", Z),
 ];

@@ -8,6 +8,7 @@ use super::super::page::{Library, Packed, Page, Precision};
 use crate::lab::RunResults;
 use crate::matrix::Matrix;
 use crate::scene::Scene;
+use crate::transport::tails::WORDS;
 
 /// What a page may have, bytes: below 10 MB, with room for the words around the last blocks.
 const PAGE: usize = 9_900_000;
@@ -19,17 +20,22 @@ const MOST_PLACES: usize = 20_000;
 /// Bytes that an entry takes at the very least, as the start of a search.
 const LEAST_EACH: f64 = 5.0;
 
-/// How exactly traced and modelled flux, standard error and z are kept; the first set that fits.
-const PRECISIONS: [[Precision; 4]; 5] = {
+/// How exactly traced and modelled flux, standard error, z and the codes of the error bars are kept;
+/// the first set that fits. Codes are below 2⁵: with four bits after the first they are exact.
+const PRECISIONS: [[Precision; MATRICES]; 5] = {
     use Precision::{Exact, Single};
+    const CODES: Precision = Single(4);
     [
-        [Exact; 4],
-        [Single(23), Single(23), Single(12), Single(10)],
-        [Single(23), Single(23), Single(8), Single(7)],
-        [Single(21), Single(21), Single(7), Single(6)],
-        [Single(18), Single(18), Single(7), Single(6)],
+        [Exact, Exact, Exact, Exact, CODES],
+        [Single(23), Single(23), Single(12), Single(10), CODES],
+        [Single(23), Single(23), Single(8), Single(7), CODES],
+        [Single(21), Single(21), Single(7), Single(6), CODES],
+        [Single(18), Single(18), Single(7), Single(6), CODES],
     ]
 };
+
+/// Matrices of a page.
+const MATRICES: usize = 5;
 
 /// The part of Φcam that lies in the page: every pixel and spot, or the middle one of each block of
 /// pixels and every so-manieth spot.
@@ -115,6 +121,7 @@ pub(super) fn embed(page: &mut Page, results: &RunResults) {
         ("modelled", results.model.as_ref()),
         ("stderr", Some(&results.stderr)),
         ("z", results.z.as_ref()),
+        ("tails", Some(&results.tails)),
     ];
     page.json("explorer-places", &places(&results.scene));
     let room = PAGE.saturating_sub(page.len()).max(LEAST);
@@ -159,8 +166,8 @@ fn places(scene: &Scene) -> Vec<[f64; 3]> {
 /// The matrices at a precision, if they fit.
 fn packed(
     excerpt: &Excerpt,
-    named: &[(&'static str, Option<&Matrix>); 4],
-    precisions: [Precision; 4],
+    named: &[(&'static str, Option<&Matrix>); MATRICES],
+    precisions: [Precision; MATRICES],
     room: usize,
 ) -> Option<Vec<(&'static str, Packed)>> {
     let there = || {
@@ -225,7 +232,7 @@ pub(super) fn served_explorer(page: &mut Page, scene: &Scene, seed: u64, model: 
         spots: Vec::new(),
         pixels: Vec::new(),
     };
-    let exact = [Precision::Exact; 4];
+    let exact = [Precision::Exact; MATRICES];
     let about = circumstances((scene, seed), &nothing, Ends::default(), exact, model);
     page.json("explorer-data", &about);
     page.json("explorer-places", &places(scene));
@@ -238,7 +245,7 @@ fn circumstances(
     (scene, seed): (&Scene, u64),
     excerpt: &Excerpt,
     ends: Ends,
-    precision: [Precision; 4],
+    precision: [Precision; MATRICES],
     model: bool,
 ) -> Value {
     let camera = &scene.camera;
@@ -247,7 +254,7 @@ fn circumstances(
         Precision::Exact => None,
         Precision::Single(bits) => Some(bits + 1),
     };
-    let [flux, _, stderr, z] = precision.map(bits);
+    let [flux, _, stderr, z, _] = precision.map(bits);
     json!({
         "unit": scene.unit.symbol(),
         "columns": camera.columns,
@@ -270,6 +277,7 @@ fn circumstances(
         "stderr": ends.stderr,
         "limit": ends.limit,
         "model": model,
+        "tails": WORDS,
     })
 }
 

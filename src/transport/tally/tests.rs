@@ -39,7 +39,9 @@ fn tally(blocks: u32, part: Range<u32>) -> Tally {
 #[test]
 fn means_and_standard_errors_are_the_two_pass_ones() {
     let blocks = 11;
-    let traced = tally(blocks, 0..blocks).traced().unwrap();
+    let traced = tally(blocks, 0..blocks)
+        .means(1.0, &mut |_, _| true)
+        .unwrap();
     for (p, l) in (0..PIXELS).flat_map(|p| (0..COLUMNS).map(move |l| (p, l))) {
         let totals: Vec<f64> = (0..blocks)
             .map(|b| value(b, 0, p, l) + value(b, 1, p, l))
@@ -49,6 +51,30 @@ fn means_and_standard_errors_are_the_two_pass_ones() {
         let found = traced.stderr[(p, l)];
         assert!((found - stderr).abs() <= 1e-6 * stderr, "{found} {stderr}");
     }
+}
+
+/// An entry without light is an upper bound from the brightest block of its column, or from the
+/// laser where there is none; one that cannot be lit is 0 ± 0. No column stands in for another.
+#[test]
+fn an_entry_without_light_has_a_bound() {
+    let mut tally = tally(32, 0..0);
+    for b in 0..32 {
+        let mut sums = vec![0.0; ORDERS * PIXELS * COLUMNS];
+        let lit = [(3, 0), (4, 0), (3, 1)];
+        lit.iter()
+            .for_each(|(p, l)| sums[p * COLUMNS + l] = 1.0 + f64::from(b));
+        tally
+            .add(b..b + 1, Moments::of_block(sums, ORDERS))
+            .unwrap();
+    }
+    let traced = tally.means(500.0, &mut |p, _| p != 9).unwrap();
+    assert_eq!(traced.stderr[(8, 0)], 3.0 * 32.0 / 32.0);
+    assert_eq!(traced.stderr[(8, 2)], 3.0 * 500.0 / 32.0);
+    assert_eq!(traced.tails[(8, 0)], f64::from(UNLIT));
+    for l in 0..COLUMNS {
+        assert_eq!((traced.stderr[(9, l)], traced.tails[(9, l)]), (0.0, 0.0));
+    }
+    assert!(traced.stderr[(3, 0)] < 2.0);
 }
 
 /// Against the norms of the two-pass means and standard errors of the blocks that are there,
@@ -70,7 +96,7 @@ fn the_relative_error_is_that_of_the_blocks_that_are_there() {
         let found = tally(11, part).relative_error().unwrap();
         assert!((found / want - 1.0).abs() < 1e-6, "{found:e} {want:e}");
     }
-    let traced = tally(11, 0..11).traced().unwrap();
+    let traced = tally(11, 0..11).means(1.0, &mut |_, _| true).unwrap();
     let found = tally(11, 0..11).relative_error().unwrap();
     let want = traced.stderr.norm() / traced.flux.norm();
     assert!((found / want - 1.0).abs() < 1e-9, "{found:e} {want:e}");
@@ -91,7 +117,7 @@ fn parts_go_through_bytes_and_come_out_as_the_whole() {
         }
     }
     assert_eq!(merged, whole);
-    assert_eq!(tally(11, 0..10).traced(), None);
+    assert_eq!(tally(11, 0..10).means(1.0, &mut |_, _| true), None);
 }
 
 #[test]
@@ -170,7 +196,7 @@ fn traced_in_pieces_or_at_once_the_bits_are_the_same() {
             }
         }
         assert_eq!(
-            merged.traced().unwrap(),
+            merged.traced(&scene, &plan, 0..5).unwrap(),
             whole,
             "{estimator:?} {sampling:?}"
         );

@@ -1,4 +1,4 @@
-// The explorer of Φcam: a spot's frame and a pixel's row, traced, modelled, residual and z.
+// The explorer of Φcam: a spot's frame and a pixel's row, traced, modelled, residual, z, and which error bars are not to be trusted.
 
 /** More pixels a side than this are not drawn at once. */
 const MOST_SHOWN = 512;
@@ -45,6 +45,10 @@ upgrade(".explorer", async (root) => {
               { title: "traced", unit: "W", map: /** @type {MapName} */ ("viridis"), explanation: "flux into each pixel as the path tracer found it" },
               { title: "standard error", unit: "W", map: /** @type {MapName} */ ("viridis"), explanation: "what chance alone makes the traced flux deviate by" },
           ];
+    if (source.has("tails")) {
+        const words = about.tails.map(([bit, what]) => `${bit}: ${what}`).join("; ");
+        layers.push({ title: "doubt", unit: "code", map: /** @type {MapName} */ ("viridis"), explanation: `where the standard error is not to be trusted; 0: it is; ${words}; codes add up` });
+    }
     const panels = layers.map((layer) => framePanel(layer, pickShare));
 
     const last = source.spots.length - 1;
@@ -109,23 +113,26 @@ upgrade(".explorer", async (root) => {
     /** Values of every layer of a spot. */
     async function values(/** @type {number} */ spot, /** @type {Box} */ part) {
         const get = (/** @type {MatrixName} */ name) => (source.has(name) ? source.frame(name, spot, part) : new Float64Array(extent(part)[0] * extent(part)[1]).fill(NaN));
+        const tails = source.has("tails") ? [await get("tails")] : [];
         if (!about.model) {
-            return Promise.all([get("traced"), get("stderr")]);
+            return [...(await Promise.all([get("traced"), get("stderr")])), ...tails];
         }
         const [traced, modelled, z] = await Promise.all([get("traced"), get("modelled"), get("z")]);
-        return [traced, modelled, Float64Array.from(traced, (x, i) => x - modelled[i]), z];
+        return [traced, modelled, Float64Array.from(traced, (x, i) => x - modelled[i]), z, ...tails];
     }
 
     /** @returns {[number, number][]} */
     function ranges(/** @type {ArrayLike<number>[]} */ found) {
         const all = span.value === "all";
+        /** @type {[number, number]} */
+        const codes = [0, about.tails.reduce((sum, [bit]) => sum + bit, 0)];
         if (!about.model) {
-            return [all ? (about.range ?? rangeOf([found[0]])) : rangeOf([found[0]]), all && about.stderr !== null ? [0, about.stderr || 1] : rangeOf([found[1]])];
+            return [all ? (about.range ?? rangeOf([found[0]])) : rangeOf([found[0]]), all && about.stderr !== null ? [0, about.stderr || 1] : rangeOf([found[1]]), codes];
         }
         const flux = (all && about.range) || rangeOf(found.slice(0, 2));
         const largest = Math.max(...rangeOf([found[2]]).map(Math.abs));
         const residual = shared.checked ? around(Math.max(...flux.map(Math.abs))) : around(all ? (about.residual ?? largest) : largest);
-        return [flux, flux, residual, around(about.limit ?? 4)];
+        return [flux, flux, residual, around(about.limit ?? 4), codes];
     }
 
     let turn = 0;
@@ -163,15 +170,17 @@ upgrade(".explorer", async (root) => {
     async function tell(/** @type {number} */ spot, /** @type {number} */ pixel) {
         const one = { x: pixel % about.columns, y: Math.floor(pixel / about.columns), w: 1, h: 1, step: 1 };
         const entry = async (/** @type {MatrixName} */ name) => (source.has(name) ? (await source.frame(name, spot, one))[0] : NaN);
-        const [traced, stderr, modelled, z] = await Promise.all([entry("traced"), entry("stderr"), entry("modelled"), entry("z")]);
+        const [traced, stderr, modelled, z, code] = await Promise.all([entry("traced"), entry("stderr"), entry("modelled"), entry("z"), entry("tails")]);
         if (spot !== chosen.spot || pixel !== chosen.pixel) {
             return;
         }
         const line = (/** @type {string} */ name, /** @type {number} */ value, /** @type {string} */ unit) =>
             make("tr", {}, make("th", { scope: "row" }, name), make("td", { class: "n" }, make("data", { value, "data-of": name }, significant(value)), ` ${unit}`));
+        const doubts = about.tails.filter(([bit]) => (code & bit) !== 0).map(([, what]) => what);
         readout.replaceChildren(
             line("traced", traced, "W"),
             line("standard error", stderr, "W"),
+            ...(source.has("tails") ? [line("doubt", code, doubts.join(", ") || "none: the standard error can be trusted")] : []),
             ...(about.model ? [line("modelled", modelled, "W"), line("residual", traced - modelled, "W"), line("z", z, "standard errors")] : []),
         );
         readout.dataset.spot = String(spot);

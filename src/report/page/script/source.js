@@ -6,11 +6,11 @@
  *   unit: string, columns: number, rows: number, spots: number, every: number, embedded: number[], step: number, bits: [number, number, number] | null,
  *   places: [number, number, number][],
  *   view: { corner: number[], u: number[], v: number[] }, axes: { right: number[], up: number[] },
- *   range: [number, number] | null, residual: number | null, stderr: number | null, limit: number | null, model: boolean, hash: string, seed: string,
+ *   range: [number, number] | null, residual: number | null, stderr: number | null, limit: number | null, model: boolean, tails: [number, string][], hash: string, seed: string,
  * }} Circumstances
  */
 
-/** @typedef {"traced" | "modelled" | "stderr" | "z"} MatrixName */
+/** @typedef {"traced" | "modelled" | "stderr" | "z" | "tails"} MatrixName */
 
 /**
  * A part of a frame: the middle one of each block of `step` × `step` pixels from (x, y) on.
@@ -54,7 +54,7 @@ function extent({ w, h, step }) {
  * @returns {Promise<Source>}
  */
 async function embedded(about) {
-    const names = /** @type {MatrixName[]} */ (["traced", "modelled", "stderr", "z"]);
+    const names = /** @type {MatrixName[]} */ (["traced", "modelled", "stderr", "z", "tails"]);
     const blocks = await Promise.all(names.map((name) => numbers(`phi-${name}`)));
     /** @type {Map<MatrixName, Float32Array | Float64Array>} */
     const all = new Map();

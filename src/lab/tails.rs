@@ -1,0 +1,105 @@
+//! How many standard errors of Φcam cannot be trusted, and where.
+
+use serde::{Deserialize, Serialize};
+
+use crate::matrix::Matrix;
+use crate::num::digits::figure;
+use crate::transport::tails::{FEW_LIT, LARGEST, NEIGHBOURS, SKEWED, UNLIT, WORDS};
+
+/// Counts of flagged entries; an entry may be flagged for more than one reason.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Tails {
+    /// Entries in all.
+    pub entries: usize,
+    /// Entries that are flagged.
+    pub flagged: usize,
+    /// One block has most of the scatter.
+    pub largest: usize,
+    /// Blocks are too skewed.
+    pub skewed: usize,
+    /// Few blocks have light.
+    pub few_lit: usize,
+    /// No light was met.
+    pub unlit: usize,
+    /// Only the neighbours are flagged.
+    pub neighbours: usize,
+    /// The spot with most flagged entries, the first of several; absent where none is flagged.
+    pub worst_spot: Option<usize>,
+    /// Flagged entries there.
+    pub worst_spot_flagged: usize,
+}
+
+impl Tails {
+    /// Counts the codes of pixels × spots.
+    pub fn of(tails: &Matrix) -> Self {
+        let has = |bit: u32| tails.iter().filter(|code| **code as u32 & bit != 0).count();
+        let flagged = |column: usize| tails.column(column).iter().filter(|c| **c != 0.0).count();
+        let by_spot: Vec<usize> = (0..tails.ncols()).map(flagged).collect();
+        let most = by_spot.iter().copied().max().unwrap_or(0);
+        Self {
+            entries: tails.len(),
+            flagged: by_spot.iter().sum(),
+            largest: has(LARGEST),
+            skewed: has(SKEWED),
+            few_lit: has(FEW_LIT),
+            unlit: has(UNLIT),
+            neighbours: has(NEIGHBOURS),
+            worst_spot: by_spot.iter().position(|n| *n == most && most > 0),
+            worst_spot_flagged: most,
+        }
+    }
+
+    /// How many, why, where most, and what helps.
+    pub fn sentence(&self) -> String {
+        let Self {
+            entries, flagged, ..
+        } = self;
+        let Some(spot) = self.worst_spot else {
+            return format!("can be trusted at all {entries} entries");
+        };
+        let share = figure(100.0 * *flagged as f64 / *entries as f64, 2);
+        let counts = WORDS.map(|(bit, words)| (self.of_bit(bit), words));
+        let reasons = counts.into_iter().filter(|(count, _)| *count > 0);
+        let reasons: Vec<String> = reasons.map(|(n, words)| format!("{n} {words}")).collect();
+        format!(
+            "not to be trusted at {flagged} of {entries} entries ({share}\u{a0}%): {}; most at spot {spot} ({}); more samples help",
+            reasons.join(", "),
+            self.worst_spot_flagged
+        )
+    }
+
+    fn of_bit(&self, bit: u32) -> usize {
+        match bit {
+            LARGEST => self.largest,
+            SKEWED => self.skewed,
+            FEW_LIT => self.few_lit,
+            UNLIT => self.unlit,
+            _ => self.neighbours,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_reason_is_counted_and_said() {
+        let codes = [0, 0, 3, 4, 16, 0, 8, 16, 2];
+        let tails = Tails::of(&Matrix::from_iterator(3, 3, codes.map(f64::from)));
+        assert_eq!((tails.flagged, tails.largest, tails.skewed), (6, 1, 2));
+        assert_eq!((tails.few_lit, tails.unlit, tails.neighbours), (1, 1, 2));
+        assert_eq!((tails.worst_spot, tails.worst_spot_flagged), (Some(2), 3));
+        let said = tails.sentence();
+        for words in [
+            "6 of 9 entries (67",
+            "1 no light met yet",
+            "most at spot 2 (3)",
+        ] {
+            assert!(said.contains(words), "{said}");
+        }
+        let all = Tails::of(&Matrix::zeros(2, 3));
+        assert_eq!(all.worst_spot, None);
+        assert_eq!(all.sentence(), "can be trusted at all 6 entries");
+    }
+}
