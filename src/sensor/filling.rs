@@ -52,9 +52,10 @@ mod tests {
             let most = figures
                 .full_well
                 .min((figures.top() - figures.offset) * figures.gain);
-            match most.is_finite() {
-                true => assert!((electrons.max() / most - 0.5).abs() < 1e-12, "{model:?}"),
-                false => assert_eq!(time, 1.0, "{model:?}"),
+            if most.is_finite() {
+                assert!((electrons.max() / most - 0.5).abs() < 1e-12, "{model:?}");
+            } else {
+                assert_eq!(time, 1.0, "{model:?}");
             }
         }
     }
