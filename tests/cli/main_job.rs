@@ -3,7 +3,7 @@
 use crate::workspace::{Workspace, assert_same};
 
 /// Names that the design promises for a run with a hidden object, frames aside.
-const FILES: [&str; 24] = [
+const FILES: [&str; 25] = [
     "scene.toml",
     "run.json",
     "phi.npy",
