@@ -13,7 +13,9 @@ use super::recover_memory::{self, Errors, Held, Strips};
 use super::run_folder::{PHI, RECOVERED, SATURATED, SCENE, STDERR};
 use super::{Outcome, recover_options};
 use crate::lab::finding::Describe;
-use crate::lab::{Attempt, Noise, RecoveredObject, describe_recovery, picards, recover_objects};
+use crate::lab::{
+    Attempt, Certainty, Noise, RecoveredObject, describe_recovery, picards, recover_objects,
+};
 use crate::matrix::{Matrix, npy};
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Nuisance, Options, Picard, Uncertainty};
@@ -35,10 +37,12 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     refuse_repetition(&methods)?;
     // Measured photographs come without a run: a scene.toml is enough for them.
     let measured = args.phi.is_some() && !args.dir.join(Record::FILE).exists();
-    let scene = if measured {
-        console.load_scene(&args.dir.join(SCENE).to_string_lossy())?
+    let (scene, record) = if measured {
+        let path = args.dir.join(SCENE);
+        (console.load_scene(&path.to_string_lossy())?, None)
     } else {
-        read_run(&args.dir, console)?.0
+        let (scene, record) = read_run(&args.dir, console)?;
+        (scene, Some(record))
     };
     let held = recover_memory::plan(args, &scene, &methods, &options, console)?;
     let job = Job {
@@ -46,6 +50,13 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
         scene: &scene,
         methods: &methods,
         options,
+        // Of the run's own errors more is known than of those that are given.
+        certainty: match &record {
+            Some(record) if args.phi.is_none() && args.stderr.is_none() && args.noise.is_none() => {
+                Certainty::of(&record.plan)
+            }
+            _ => Certainty::STATED,
+        },
         phi: args.phi.clone().unwrap_or_else(|| args.dir.join(PHI)),
         console,
     };
@@ -58,6 +69,9 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     output::result(args.json, &objects, || {
         report::finding_text(&describe_recovery(&objects))
     })?;
+    if objects.iter().any(RecoveredObject::contradicted) {
+        return Ok(Outcome::Disagreed);
+    }
     Ok(Outcome::Done)
 }
 
@@ -67,6 +81,7 @@ struct Job<'a> {
     scene: &'a Scene,
     methods: &'a [Method],
     options: Options,
+    certainty: Certainty,
     /// File of Φcam.
     phi: PathBuf,
     console: Console<'a>,
@@ -89,7 +104,9 @@ impl Job<'_> {
             }
         };
         let model = self.occluded(MatrixModel::new(scene, args.kernel, args.elements)?);
-        let noise = stderr.as_ref().map_or(Noise::Unknown, Noise::StandardError);
+        let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
+            Noise::StandardError(stderr, self.certainty)
+        });
         let glare = args.joint.glare_pattern.as_ref();
         let glare = glare.map(|file| read_matrix(file, scene)).transpose()?;
         let nuisance = Nuisance {
@@ -125,6 +142,7 @@ impl Job<'_> {
             model: &model,
             phi,
             errors,
+            certainty: self.certainty,
             pixels,
         };
         strips.recover(self.methods, &self.options)

@@ -225,6 +225,7 @@ impl Describe for RunResults {
         Finding {
             sentence: self.verdict(),
             tone: self.tone(),
+            notes: warnings(&self.recovered),
             tables: std::iter::once(self.facts())
                 .chain(recoveries(&self.recovered))
                 .collect(),
@@ -253,13 +254,37 @@ pub fn by_surface(recovered: &[RecoveredObject]) -> Vec<Vec<&RecoveredObject>> {
 fn recoveries(recovered: &[RecoveredObject]) -> Vec<Table> {
     by_surface(recovered)
         .iter()
-        .map(|group| recovery(group))
+        .flat_map(|group| [recovery(group), fits(group)])
         .collect()
+}
+
+/// What speaks against believing what was recovered; each warning once, after the methods that it
+/// concerns.
+pub fn warnings(recovered: &[RecoveredObject]) -> Vec<String> {
+    let mut told: Vec<(&str, Vec<&str>)> = Vec::new();
+    for object in recovered {
+        for warning in &object.warnings {
+            let at = match told.iter().position(|(text, _)| text == warning) {
+                Some(at) => at,
+                None => {
+                    told.push((warning, Vec::new()));
+                    told.len() - 1
+                }
+            };
+            // The surfaces of a method share its warnings.
+            if !told[at].1.contains(&object.method.as_str()) {
+                told[at].1.push(&object.method);
+            }
+        }
+    }
+    let line = |(text, methods): (&str, Vec<&str>)| format!("{}: {text}.", methods.join(", "));
+    told.into_iter().map(line).collect()
 }
 
 /// What was recovered of each hidden surface.
 pub fn describe_recovery(recovered: &[RecoveredObject]) -> Finding {
     Finding {
+        notes: warnings(recovered),
         tables: recoveries(recovered),
         ..Finding::default()
     }
@@ -288,6 +313,37 @@ pub fn recovery(group: &[&RecoveredObject]) -> Table {
             number("correlation"),
             number("RMSE"),
             Column::text("parameter", ""),
+        ],
+        rows: group.iter().map(row).collect(),
+        ..Table::default()
+    }
+}
+
+/// Whether each method's picture explains the photographs.
+pub fn fits(group: &[&RecoveredObject]) -> Table {
+    let verdict = |r: &RecoveredObject| match &r.fit {
+        Some(fit) if fit.fits => "yes",
+        Some(_) => "NO",
+        None => "not known",
+    };
+    let row = |r: &&RecoveredObject| {
+        let fit = r.fit.as_ref();
+        vec![
+            r.method.as_str().into(),
+            verdict(r).into(),
+            fit.map(|f| f.chi2_per_dof).into(),
+            fit.map(|f| f.dof).into(),
+            fit.map(|f| f.p).into(),
+        ]
+    };
+    Table {
+        caption: "does what each would photograph fit the photographs?".to_owned(),
+        columns: vec![
+            Column::text("method", ""),
+            Column::text("fits", ""),
+            Column::number("χ²/dof", "", "", 4),
+            Column::number("dof", "", "", 5),
+            Column::number("P", "", "", 2),
         ],
         rows: group.iter().map(row).collect(),
         ..Table::default()
