@@ -16,6 +16,7 @@
 //! | `model/laser_side.npy`, `camera_side.npy` | D and C: G12 and G23 with the walls' BRDFs and in W, Φcam = C·diag(ρ)·D |
 //! | `model/z.npy` | z of every entry, what `run` compared by: deviation of the traced from the modelled flux in standard errors, (pixels, spots) |
 //! | `recovered/METHOD.npy`, `.png` | recovered reflectance, (nv, nu); `truth` beside it |
+//! | `recovered/determined.npy`, `.png` | share of each element that the photographs determine at their noise, (nv, nu), 0 to 1 |
 //! | `recovered/METHOD.stderr.npy` | its standard error, (nv, nu), where the noise is known |
 //! | `recovered/METHOD.covariance.npy`, `METHOD.resolution.npy` | covariance and resolution matrix of a linear method, elements × elements of all surfaces |
 //! | `recovered/picard.csv`, `.svg` | signal and noise in each singular direction of the laser side |

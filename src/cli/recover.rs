@@ -249,8 +249,8 @@ pub(super) fn collect(
     Ok(objects)
 }
 
-/// Writes DIR/recovered/METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png, and
-/// overview.png with all of them side by side (no pictures of elements that are the triangles of a
+/// Writes DIR/recovered/METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png, what the
+/// photographs determine of each element in determined.npy and determined.png, and overview.png with all of them side by side (no pictures of elements that are the triangles of a
 /// mesh); METHOD.texture.png, the reflectance as a texture for a scene, and METHOD.ply, the surface
 /// with it as colours; what is known of the uncertainty in METHOD.stderr.npy (nv × nu),
 /// METHOD.covariance.npy and METHOD.resolution.npy (own elements × elements of all surfaces),
@@ -287,11 +287,18 @@ pub(super) fn write(
         let shape = scene.surfaces.iter().find(|s| s.name == **surface);
         let drawn = shape.is_none_or(|s| s.division == Division::Cells);
         let mut panels = Vec::new();
+        let known = objects.iter().find(|o| o.surface == *surface);
+        let shares = known.and_then(|o| o.determined_share.as_ref());
+        remove_if_there(shares.is_none(), &file("determined", "npy"))?;
+        remove_if_there(shares.is_none(), &file("determined", "png"))?;
         for object in objects.iter().filter(|o| o.surface == *surface) {
             let [nu, nv] = object.elements;
             let method = object.method.as_str();
-            let truth = panels.is_empty().then_some(("truth", &object.truth));
-            for (name, values) in truth.into_iter().chain([(method, &object.reflectance)]) {
+            let first = known.is_some_and(|known| std::ptr::eq(known, object));
+            let truth = first.then_some(("truth", &object.truth));
+            let shares = shares.filter(|_| first).map(|s| ("determined", s));
+            let own = [(method, &object.reflectance)];
+            for (name, values) in truth.into_iter().chain(shares).chain(own) {
                 npy::write(&file(name, "npy"), &Matrix::from_row_slice(nv, nu, values))?;
                 if drawn {
                     let panel = Panel::elements(name, object.elements, values.clone());
@@ -313,9 +320,7 @@ pub(super) fn write(
                 let path = file(method, &format!("{what}.npy"));
                 match matrix {
                     Some(matrix) => npy::write(&path, &matrix)?,
-                    // Of an earlier recovery.
-                    None if path.exists() => std::fs::remove_file(&path)?,
-                    None => {}
+                    None => remove_if_there(true, &path)?,
                 }
             }
         }
@@ -323,6 +328,14 @@ pub(super) fn write(
             let png = report::grey_png(surface, &panels)?;
             output::write(&file("overview", "png"), png)?;
         }
+    }
+    Ok(())
+}
+
+/// Removes what an earlier recovery left, where `stale` says so.
+fn remove_if_there(stale: bool, path: &Path) -> Result<(), Failure> {
+    if stale && path.exists() {
+        std::fs::remove_file(path)?;
     }
     Ok(())
 }

@@ -200,6 +200,7 @@ impl Strips<'_> {
         Ok(Judged {
             fit: residuals.fit(found.freedom_used(), self.certainty.errors),
             best: None,
+            determined: None,
         })
     }
 

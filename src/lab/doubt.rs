@@ -24,6 +24,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         noise(found),
         on_bounds(found),
         unfinished(found, judged),
+        without_bands(found),
     ];
     every.into_iter().flatten().collect()
 }
@@ -155,6 +156,14 @@ fn on_bounds(found: &Recovered) -> Option<String> {
              values. Compare with nnls and joint-unbounded, or ask for --bands"
         )
     })
+}
+
+/// Bands that were asked for and are not there.
+fn without_bands(found: &Recovered) -> Option<String> {
+    let why = found.no_bands?;
+    Some(format!(
+        "no bands: {why}. Ask for those of joint, or of joint-unbounded where it drops no direction"
+    ))
 }
 
 /// An iteration that ended away from its minimum by what can be seen in the picture.

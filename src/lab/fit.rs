@@ -20,7 +20,9 @@ use serde::Serialize;
 use super::agreement::{Errors, freedom_of_rows};
 use crate::matrix::Matrix;
 use crate::num::statistics::{chi_square_sf, student_to_normal};
-use crate::recovery::{Method, Options, Problem, Recovered, WeightRule, recover};
+use crate::recovery::{
+    Determined, Method, Options, Problem, Recovered, WeightRule, determined, recover,
+};
 use crate::transport::Plan;
 
 /// A picture that explains the photographs is rejected with this probability.
@@ -29,6 +31,9 @@ pub const FIT_LEVEL: f64 = 1e-3;
 /// Elements up to which the best picture of all is looked for where no method that was asked for
 /// gives it.
 const MOST_ELEMENTS: usize = 1024;
+
+/// Elements up to which what the photographs determine is computed.
+const MOST_DECOMPOSED: usize = 2048;
 
 /// What is known of standard errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -197,19 +202,39 @@ pub struct Judged {
     pub fit: Option<Fit>,
     /// That of the best picture of all, where it is known.
     pub best: Option<Attainable>,
+    /// What the photographs determine of each element, where it is known.
+    pub determined: Option<Determined>,
 }
 
 impl Judged {
-    /// Judges `found`, beside the best of all.
+    /// What holds for every method: the best of all that was `found` and can be found, and what the
+    /// photographs determine.
+    pub(super) fn any(
+        problem: &Problem<'_>,
+        noise: Option<(&Matrix, Certainty)>,
+        found: &[&Recovered],
+        options: &Options,
+    ) -> Self {
+        let few = problem.elements() <= MOST_DECOMPOSED && !found.is_empty();
+        Self {
+            fit: None,
+            best: noise
+                .filter(|_| !found.is_empty())
+                .and_then(|noise| Attainable::of(problem, noise, found, options)),
+            determined: few.then(|| determined(problem).ok()).flatten(),
+        }
+    }
+
+    /// The same with the fit of `found`.
     pub(super) fn of(
+        &self,
         problem: &Problem<'_>,
         noise: Option<(&Matrix, Certainty)>,
         found: &Recovered,
-        best: Option<&Attainable>,
     ) -> Self {
         Self {
             fit: noise.and_then(|noise| fit(problem, noise, found)),
-            best: best.cloned(),
+            ..self.clone()
         }
     }
 }

@@ -213,6 +213,8 @@ pub use registered::{AnyStudy, Found, Prepare, Registered, prepared};
 pub use registry::STUDIES;
 pub use results::RunResults;
 pub use study::{Sharing, Study, Work, context, outputs, run};
-pub use summary::{by_surface, describe_recovery, describe_render, fits, recovery, warnings};
+pub use summary::{
+    by_surface, describe_recovery, describe_render, determined, fits, recovery, warnings,
+};
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
 pub use validation::{Integration, Validation, ValidationError, validate};

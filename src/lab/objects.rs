@@ -5,7 +5,7 @@ use std::ops::Range;
 use serde::Serialize;
 
 use super::doubt::doubts;
-use super::fit::{Attainable, Certainty, Fit, Judged};
+use super::fit::{Certainty, Fit, Judged};
 use crate::matrix::Matrix;
 use crate::metrics::{correlation, mtf_normalized, mtf_raw, rmse};
 use crate::model::MatrixModel;
@@ -48,6 +48,13 @@ pub struct RecoveredObject {
     pub bias: Option<Vec<f64>>,
     /// Directions that the method resolves: trace of its resolution matrix.
     pub effective_rank: f64,
+    /// How many of the elements of all surfaces the photographs determine at their noise, whatever
+    /// the method; absent where the noise is not known.
+    pub determined: Option<f64>,
+    /// Share of each element that they determine, 0 to 1 ([`recovery::determined`]); absent likewise.
+    pub determined_share: Option<Vec<f64>>,
+    /// Elements of all surfaces.
+    pub unknowns: usize,
     /// Whether all surfaces together explain the photographs; absent where that cannot be judged.
     pub fit: Option<Fit>,
     /// The same of the best reflectances between 0 and 1 that there are: whether photographs and
@@ -70,7 +77,7 @@ pub struct RecoveredObject {
 pub struct ObjectBands {
     /// Probability that each alone shall cover.
     pub confidence: f64,
-    /// What they are: `gaussian`, `gaussian-around-mean` (the bias is left out) or `profile`.
+    /// What they are: `gaussian`, each element alone, or `simultaneous`, all elements together.
     pub kind: String,
     /// Lower limits.
     pub lower: Vec<f64>,
@@ -143,13 +150,8 @@ pub fn recover_objects(
         .collect();
     let known = noise.known();
     let all: Vec<&Recovered> = found.iter().flatten().collect();
-    let best = known
-        .filter(|_| !all.is_empty())
-        .and_then(|known| Attainable::of(&problem, known, &all, options));
-    let judged = |found: Recovered| {
-        let judged = Judged::of(&problem, known, &found, best.as_ref());
-        measured(model, &found, &judged)
-    };
+    let any = Judged::any(&problem, known, &all, options);
+    let judged = |found: Recovered| measured(model, &found, &any.of(&problem, known, &found));
     methods
         .iter()
         .zip(found)
@@ -224,6 +226,12 @@ pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<
                 .map(|s| s.as_slice()[range.clone()].to_vec()),
             bias: bias.as_ref().map(|b| b.as_slice()[range.clone()].to_vec()),
             effective_rank: found.effective_rank,
+            determined: judged.determined.as_ref().map(|d| d.rank),
+            determined_share: judged
+                .determined
+                .as_ref()
+                .map(|d| d.shares.as_slice()[range.clone()].to_vec()),
+            unknowns: found.reflectance.len(),
             fit: judged.fit.clone(),
             best_fit: judged.best.as_ref().map(|best| best.possible.clone()),
             warnings: warnings.clone(),
@@ -239,8 +247,7 @@ pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<
 fn object_bands(bands: &Bands, range: Range<usize>) -> ObjectBands {
     let kind = match bands.kind {
         BandKind::Gaussian => "gaussian",
-        BandKind::GaussianAroundMean => "gaussian-around-mean",
-        BandKind::Profile => "profile",
+        BandKind::Simultaneous => "simultaneous",
     };
     let intervals = &bands.intervals[range];
     ObjectBands {

@@ -346,7 +346,28 @@ pub fn fits(group: &[&RecoveredObject]) -> Table {
             Column::number("P", "", "", 2),
         ],
         rows: group.iter().map(row).collect(),
+        note: determined(group),
         ..Table::default()
+    }
+}
+
+/// How much of the pictures of one surface the photographs determine, in words.
+pub fn determined(group: &[&RecoveredObject]) -> String {
+    let Some(first) = group.first() else {
+        return String::new();
+    };
+    let all = first.unknowns;
+    match (first.determined, &first.determined_share) {
+        (Some(rank), Some(shares)) => {
+            let well = shares.iter().filter(|s| **s > 0.5).count();
+            format!(
+                "At their noise the photographs determine {} of {all} elements, by any method; here \
+                 {well} of {} by more than half. The rest of a picture is what its method assumes.",
+                significant(rank, 3),
+                shares.len()
+            )
+        }
+        _ => format!("It is not known how many of {all} elements the photographs determine."),
     }
 }
 
@@ -469,6 +490,40 @@ mod tests {
         assert_eq!(agreement.describe().tables[1].rows.len(), 1);
         let found = results.describe();
         assert!(found.sentence.contains("DISAGREE") && found.tone == Tone::Bad);
+    }
+
+    /// A warning is told once, after all methods that it concerns, and the table beside it says how
+    /// much of the pictures the photographs determine.
+    #[test]
+    fn doubts_are_told_once_and_for_all_their_methods() {
+        let mut results = run("bench");
+        let found = results.describe();
+        let all = "pinv, tsvd, tikhonov, joint, joint-bounded: DOES NOT FIT";
+        assert!(
+            found.notes.len() == 1 && found.notes[0].starts_with(all),
+            "{:?}",
+            found.notes
+        );
+        results.recovered[1].warnings.push("another".to_owned());
+        let told = warnings(&results.recovered);
+        assert_eq!(told[1], "tsvd: another.");
+        let table = &results.describe().tables[2];
+        assert_eq!(table.rows[0][1], "yes".into());
+        let words = "determine 4.50 of 64 elements, by any method; here 0 of 64";
+        assert!(table.note.contains(words), "{}", table.note);
+        let judged = results.recovered[0].fit.as_mut().unwrap();
+        judged.fits = false;
+        results.recovered[1].fit = None;
+        results.recovered[0].determined = None;
+        let group: Vec<&RecoveredObject> = results.recovered.iter().collect();
+        let table = fits(&group);
+        assert_eq!(table.rows[0][1], "NO".into());
+        assert_eq!(table.rows[1][1], "not known".into());
+        assert!(
+            table.note.contains("not known how many of 64"),
+            "{}",
+            table.note
+        );
     }
 
     #[test]

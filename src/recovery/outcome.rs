@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::problem::Lit;
-use super::{BandKind, Bands, Estimated, Method, Problem, RecoveryError, bands};
+use super::{Bands, Estimated, Method, Problem, RecoveryError, bands};
 
 /// A regularisation parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -153,8 +153,10 @@ pub struct Recovered {
     pub solver: Option<Solver>,
     /// What was estimated beside the reflectances, where it was asked for.
     pub nuisance: Option<Estimated>,
-    /// Bands around the reflectances, where they were asked for.
+    /// Bands around the reflectances, where they were asked for and the method can promise any.
     pub bands: Option<Bands>,
+    /// Why there are none, where they were asked for.
+    pub no_bands: Option<&'static str>,
 }
 
 impl Recovered {
@@ -238,17 +240,17 @@ impl Recovered {
         self.nuisance.as_ref().is_some_and(|n| n.scale.is_some())
     }
 
-    /// Adds ρ̂ ± z σ.
+    /// Adds ρ̂ ± z σ, or says why there is none.
     pub(super) fn add_gaussian_bands(&mut self, confidence: f64) -> Result<(), RecoveryError> {
         let error = self.standard_error.as_ref();
         let error = error.ok_or(bands::without_noise(self.method))?;
         let elements = self.reflectance.len() as f64;
         let whole = self.effective_rank > elements * (1.0 - 1e-12);
-        let kind = match whole && !self.has_free_scale() {
-            true => BandKind::Gaussian,
-            false => BandKind::GaussianAroundMean,
-        };
-        self.bands = Some(bands::gaussian(&self.reflectance, error, kind, confidence));
+        if whole && !self.has_free_scale() {
+            self.bands = Some(bands::gaussian(&self.reflectance, error, confidence));
+        } else {
+            self.no_bands = Some(bands::BIASED);
+        }
         Ok(())
     }
 
@@ -290,6 +292,7 @@ impl Recovered {
             solver: None,
             nuisance: None,
             bands: None,
+            no_bands: None,
         }
     }
 }

@@ -17,6 +17,7 @@ pub fn summary_json(results: &RunResults) -> String {
             "correlation": r.correlation,
             "rmse": r.rmse,
             "parameter": r.parameter,
+            "determined": r.determined,
             "fit": r.fit,
             "best_fit": r.best_fit,
             "warnings": r.warnings,

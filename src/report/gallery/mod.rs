@@ -6,7 +6,7 @@ use super::colour::Scale;
 use super::figure::{Entries, MOST, Reduction, figure, legend, note, reduced};
 use super::page::{bare, explained};
 use super::svg::escape;
-use crate::lab::{FIT_LEVEL, RunResults, by_surface, fits, recovery, warnings};
+use crate::lab::{FIT_LEVEL, RunResults, by_surface, determined, fits, recovery, warnings};
 use crate::num::digits::perhaps;
 
 pub(super) use slides::slides;
@@ -40,6 +40,14 @@ pub(super) fn recoveries(results: &RunResults) -> String {
         let (truth, said) = picture("truth", &first.truth);
         let last = [nu, nv].map(|n| n.saturating_sub(1));
         let mut figures = figure(&truth, last, Entries::Square, &scale, "");
+        if let Some(shares) = &first.determined_share {
+            let (panel, _) = picture("determined by the photographs", shares);
+            let more = format!(
+                "<br>1 white: wholly, 0 black: not at all. {}",
+                determined(&group)
+            );
+            figures.push_str(&figure(&panel, last, Entries::Square, &scale, &more));
+        }
         let mut panels = vec![truth];
         for r in group.iter().take(left) {
             let (panel, _) = picture(&r.method, &r.reflectance);
