@@ -232,8 +232,7 @@ fn clipped_photographs_are_not_recovered_from_in_silence() {
         "--keep-clipped",
     ];
     workspace.refuses(line, &words);
-    // Taken as they are they contradict every picture.
-    let _ = workspace.phicam(&format!("{line} --keep-clipped")).exits(1);
+    let _ = workspace.phicam(&format!("{line} --keep-clipped")).exits(0);
     workspace.refuses("recover done --keep-clipped", &["--phi"]);
     let _ = workspace
         .phicam("expose done --sensor machine-vision --exposure 0.001")
