@@ -162,7 +162,7 @@ fn on_bounds(found: &Recovered) -> Option<String> {
 fn without_bands(found: &Recovered) -> Option<String> {
     let why = found.no_bands?;
     Some(format!(
-        "no bands: {why}. Ask for those of joint, or of joint-unbounded where it drops no direction"
+        "it {why}. Ask for those of joint, or of joint-unbounded where it drops no direction"
     ))
 }
 

@@ -136,9 +136,9 @@ pub(super) fn simultaneous_allowed<'a>(
 
 /// Why photographs that nothing explains have no bands.
 const REFUTED: &str =
-    "no reflectances within the bounds explain the photographs at this confidence";
+    "has no bands: no reflectances within its bounds explain the photographs at this confidence";
 /// Why a biased estimate has none.
-pub(super) const BIASED: &str = "regularisation, dropped directions or a free scale bias the picture \
+pub(super) const BIASED: &str = "has no bands: regularisation, dropped directions or a free scale bias the picture \
                                  by an amount that the photographs do not tell";
 
 /// The shadows of { l ≤ x ≤ u, ‖R x − d‖² ≤ q } on each axis, the covariance of d being the unit

@@ -276,8 +276,9 @@ fn every_method_can_be_named() {
             phicam::recovery::Method::LeftInverse => "6 --tolerance 1e-17",
             _ => "2",
         };
-        let line =
-            format!("recover done --method {method} --elements {elements} --rule gcv --json");
+        let line = format!(
+            "recover done --method {method} --elements {elements} --rule gcv --noise 0.2 --json"
+        );
         let found = objects(workspace.phicam(&line));
         assert_eq!(found[0]["method"], method.name());
         assert!(found[0]["effective_rank"].as_f64().unwrap() > 0.5);
@@ -288,7 +289,7 @@ fn every_method_can_be_named() {
 #[ignore = "slow"]
 fn a_linear_method_writes_its_uncertainty() {
     let workspace = with_run();
-    let line = "recover done --method pinv,tikhonov-gradient,joint-unbounded,joint --elements 4x2 --damping 0.01";
+    let line = "recover done --method pinv,tikhonov-gradient,joint-unbounded,joint --elements 4x2 --damping 0.01 --noise 0.2";
     let found = objects(workspace.phicam(&format!("{line} --json")));
     for (object, method) in found
         .iter()
