@@ -101,7 +101,7 @@ impl Spread {
             return 0;
         }
         let apart = self.largest - mean;
-        let skewness = self.third * n.sqrt() / self.scatter.powf(1.5);
+        let skewness = self.third * n.sqrt() / (self.scatter * self.scatter.sqrt());
         let limit = SKEWNESS * (n / FEWEST).max(1.0).sqrt();
         [
             (LARGEST, apart * apart > LARGEST_SHARE * self.scatter),

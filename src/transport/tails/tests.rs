@@ -146,7 +146,6 @@ fn trusted_entries_keep_their_promise() {
         (Law::Pareto(1.5), 0.02, false),
     ] {
         let found = simulate(law, share);
-        println!("{law:?} {share}: {found:?}");
         let Found { left, outside, .. } = found;
         assert!(!heavy || left == 0, "{law:?}: {found:?}");
         // 0.3 % of fewer than 1000 entries is no count; there is 1 % of them at most.
