@@ -314,6 +314,22 @@ fn relative(a: &Matrix, b: &Matrix) -> Option<f64> {
     (norm > 0.0).then(|| a.norm() / norm)
 }
 
+/// The relative standard error that a run should reach.
+const AIM: f64 = 0.01;
+
+/// What would bring a relative standard error down to [`AIM`]: it falls like 1/√samples, or faster.
+fn cure(stderr: f64, plan: &Plan) -> String {
+    if stderr <= AIM {
+        return String::new();
+    }
+    let samples = plan.budget.samples() as f64 * (stderr / AIM).powi(2);
+    let samples = (samples as u64).next_power_of_two();
+    format!(
+        "; `--samples {samples}` makes that {} or less",
+        percent(AIM)
+    )
+}
+
 /// Scene, settings, flux with its relative standard error, and what share of it met how many
 /// surfaces.
 fn rendered(
@@ -324,7 +340,7 @@ fn rendered(
 ) -> Vec<(&'static str, String)> {
     let hash: String = scene.hash.chars().take(12).collect();
     let noise = precision.map_or(String::new(), |e| {
-        format!(", standard error {}", percent(e))
+        format!(", standard error {}{}", percent(e), cure(e, plan))
     });
     let mut told = vec![
         (

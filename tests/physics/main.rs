@@ -4,6 +4,7 @@
 mod accuracy;
 mod brdf;
 mod closed_forms;
+mod edges;
 mod indicator;
 mod known;
 mod laboratory;
