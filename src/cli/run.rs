@@ -15,7 +15,7 @@ use super::run_folder::{REPORT, Resume, SUMMARY};
 use super::{Outcome, model, recover, settings, validate};
 use crate::film;
 use crate::lab::finding::Describe;
-use crate::lab::{self, GalleryPlan, GalleryTasks, Noise, RunGallery, RunResults, Work};
+use crate::lab::{self, Certainty, GalleryPlan, GalleryTasks, Noise, RunGallery, RunResults, Work};
 use crate::matrix::Matrix;
 use crate::metrics::relative_frobenius;
 use crate::model::MatrixModel;
@@ -134,7 +134,7 @@ fn compare_and_recover(
         return Ok(());
     }
     console.say("recovering the object");
-    let noise = Noise::StandardError(&results.stderr);
+    let noise = Noise::StandardError(&results.stderr, Certainty::of(&results.plan));
     let options = Options {
         uncertainty: recover::uncertainty(&matrices, console),
         ..Options::default()

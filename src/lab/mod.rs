@@ -148,11 +148,13 @@ mod check;
 mod convergence;
 mod coverage;
 mod deviate;
+mod doubt;
 mod ensemble;
 mod error;
 mod experiment;
 mod exposure;
 pub mod finding;
+mod fit;
 mod gallery;
 mod indicator;
 mod inversion;
@@ -187,6 +189,7 @@ pub use ensemble::{Estimate, Spread};
 pub use error::{LabError, StudyError};
 pub use experiment::{Experiment, ExperimentPlan, ExperimentTasks, Reading, Setting, Threshold};
 pub use exposure::describe_exposure;
+pub use fit::{Attainable, Certainty, FIT_LEVEL, Fit, Judged, Residuals};
 pub use gallery::{
     Automatic, GalleryPicture, GalleryPlan, GallerySurface, GalleryTasks, RunGallery, Series,
 };
@@ -210,6 +213,8 @@ pub use registered::{AnyStudy, Found, Prepare, Registered, prepared};
 pub use registry::STUDIES;
 pub use results::RunResults;
 pub use study::{Sharing, Study, Work, context, outputs, run};
-pub use summary::{by_surface, describe_recovery, describe_render, recovery};
+pub use summary::{
+    by_surface, describe_recovery, describe_render, determined, fits, recovery, warnings,
+};
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
 pub use validation::{Integration, Validation, ValidationError, validate};
