@@ -27,7 +27,7 @@
 //! A study keeps its finished tasks in `NAME.phs` beside its files until it is complete, and `study
 //! noise` for good: the same command goes on from them.
 //!
-//! Exit codes: 0 done (and agreed), 1 traced and modelled disagree, 2 error, 75 stopped by SIGTERM
+//! Exit codes: 0 done (and agreed), 1 traced and modelled disagree, 2 error, 4 no evidence, 75 stopped by SIGTERM
 //! and 130 by Ctrl-C with what is finished kept. The commands for many machines (`plan`, `shard`,
 //! `status`, `merge`, `slurm`, `clean`) tell schedulers more: 3 not complete (`status`), 64 wrong
 //! usage, 65 refused data, 66 missing blocks, 74 the system cannot read or write.
