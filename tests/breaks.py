@@ -171,7 +171,7 @@ BREAKS = [
     ),
     Break(
         "Shot noise is Poisson at every mean",
-        "src/sensor/expose.rs",
+        "src/sensor/frame.rs",
         "ShotNoise::Poisson => stream.poisson(mean),",
         "ShotNoise::Poisson => mean + mean.sqrt() * stream.normal(),",
         "physics",
@@ -180,7 +180,7 @@ BREAKS = [
     ),
     Break(
         "Read noise is normal, with the stated deviation",
-        "src/sensor/expose.rs",
+        "src/sensor/frame.rs",
         "sigma => sigma * stream.normal(),",
         "sigma => 1.03 * sigma * stream.normal(),",
         "physics",
@@ -189,7 +189,7 @@ BREAKS = [
     ),
     Break(
         "A converter rounds as the normal distribution says",
-        "src/sensor/expose.rs",
+        "src/sensor/frame.rs",
         "let rounded = analog.round();",
         "let rounded = analog.floor();",
         "physics",
@@ -204,6 +204,24 @@ BREAKS = [
         "physics",
         "sensor::law::the_analytic_deviation_is_that_of_the_samples",
         4,
+    ),
+    Break(
+        "A deviation from counts alone is that of the samples",
+        "src/sensor/deviation.rs",
+        "(self.value + self.uncertain).sqrt()",
+        "self.value.sqrt()",
+        "physics",
+        "sensor::counts::deviations_from_counts_are_those_of_the_samples",
+        1,
+    ),
+    Break(
+        "A series of exposures is unbiased around the full well",
+        "src/sensor/frame.rs",
+        "const MARGIN: f64 = 8.0;",
+        "const MARGIN: f64 = -2.0;",
+        "physics",
+        "sensor::counts::a_series_is_unbiased_in_every_band_around_the_full_well",
+        2,
     ),
     Break(
         "Bands of an unbiased method cover as often as they say",

@@ -3,7 +3,7 @@
 //! | file | content |
 //! | --- | --- |
 //! | phi.npy, phi.stderr.npy | linearised flux and its standard deviation, pixels × spots, W |
-//! | saturated.npy | 1 where an entry is saturated in every exposure, −1 where the converter cut it off below, else 0 |
+//! | saturated.npy | 1 where an entry is saturated in every exposure, 0.5 where it is only near that, −1 where the converter cut it off below, else 0 |
 //! | counts/spot-NNNN.exr, .png | mean counts, a channel for each exposure time; the longest as 16-bit grey |
 //! | exposure.json | sensor, exposure, what came of it |
 
@@ -13,22 +13,22 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::Outcome;
-use super::args::ExposeArgs;
+use super::args::{ExposeArgs, StatedBy};
 use super::console::Console;
 use super::failure::Failure;
-use super::load_run::{read_matrix, read_run};
+use super::load_run::{read_matrix, read_run, read_stderr};
 use super::output;
 use super::process::version;
 use super::record::Record;
 use super::run_folder::{self, COUNTS, EXPOSED, EXPOSURE, PHI, SATURATED, STDERR, remove_exposed};
 use crate::film::{self, Channel, Frame, frame_name};
-use crate::lab::describe_exposure;
+use crate::lab::{Errors, describe_exposure};
 use crate::matrix::{Matrix, npy};
 use crate::report;
 use crate::scene::{Glare, Quantity, Scene, SensorModel, SensorSettings, Spread};
 use crate::sensor::{
-    Exposed, Exposure, Figures, Light, Range, Sensor, Summary, builtin_summary, glare,
-    glare_to_signal,
+    Exposed, Exposure, Figures, Light, PhotonTransfer, Range, Sensor, Stated, Summary,
+    builtin_summary, glare, glare_to_signal,
 };
 use crate::store::ensure_writable;
 
@@ -50,6 +50,10 @@ struct Account {
     glare_fraction: f64,
     /// Sum of the glare over that of the signal.
     glare_to_signal: f64,
+    /// Where the standard deviation comes from.
+    stderr: StatedBy,
+    /// What the sensor's calibration found, where it was used.
+    photon_transfer: Option<PhotonTransfer>,
     result: Summary,
 }
 
@@ -67,9 +71,11 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
         Some(g) => glare(&scene, checked(g)?),
         None => Matrix::zeros(phi.nrows(), phi.ncols()),
     };
+    let render_error = read_stderr(&dir.join(STDERR), &scene)?;
     let ambient = settings.ambient.unwrap_or(0.0);
     let light = Light::new(&phi, scene.laser.wavelength)?
         .with_glare(&scattered)?
+        .with_render_error(&render_error, record.plan.budget.blocks)?
         .with_ambient(ambient)?;
     if phi.max() <= 0.0 {
         let cause = format!("{} is dark in every pixel", dir.join(PHI).display());
@@ -80,10 +86,16 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
     }
     let out = args.output.clone().unwrap_or_else(|| dir.join(EXPOSED));
     refuse_obstacles(&out)?;
-    let exposed = sensor.expose(&light, &exposure, args.seed)?;
+    let photon_transfer = match args.stderr {
+        StatedBy::Counts => Some(sensor.photon_transfer(args.seed)),
+        StatedBy::Oracle => None,
+    };
+    let stated = photon_transfer.map_or(Stated::Oracle, Stated::Counts);
+    let exposed = sensor.expose(&light, &exposure, stated, args.seed)?;
     let result = Summary::new(&sensor, &light, &exposure, &exposed);
     remark(&result, args.strict, console)?;
     remark_dark(&result, &exposed, console);
+    remark_render(&result, &record, console);
     let account = Account {
         version: version().to_owned(),
         scene: scene.name.clone(),
@@ -97,6 +109,8 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
         ambient,
         glare_fraction: settings.glare.map_or(0.0, |g| g.fraction),
         glare_to_signal: glare_to_signal(&scattered, &phi),
+        stderr: args.stderr,
+        photon_transfer,
         result,
     };
     let json = output::json(&account)?;
@@ -178,9 +192,12 @@ fn refuse_obstacles(out: &Path) -> Result<(), Failure> {
 /// What is wrong with the photographs.
 fn remark(result: &Summary, strict: bool, console: Console) -> Result<(), Failure> {
     let (entries, saturated, floored) = (result.entries, result.saturated, result.floored);
-    let cause = format!("{saturated} of {entries} entries are saturated, {floored} cut off below");
+    let near = result.near;
+    let cause = format!(
+        "{saturated} of {entries} entries are saturated, {near} so near to it that they are low on average, {floored} cut off below"
+    );
     let cure = "expose for a shorter time or in --brackets; a larger `offset` keeps counts above 0";
-    if saturated + floored > 0 {
+    if saturated + near + floored > 0 {
         if strict {
             return Err(Failure::new(cause, cure));
         }
@@ -211,6 +228,22 @@ fn remark_dark(result: &Summary, exposed: &Exposed, console: Console) {
     }
 }
 
+/// What of the render's own error a recovery has to know.
+fn remark_render(result: &Summary, record: &Record, console: Console) {
+    if result.render <= 0.1 {
+        return;
+    }
+    let shared = match Errors::of(record.plan.estimator) {
+        Errors::Independent => "",
+        Errors::WithinRows => ", which spots of a pixel share",
+        Errors::Everywhere => ", which all entries share",
+    };
+    console.say(format!(
+        "warning: {:.2} % of the variance is that of the render itself{shared}; render with more --samples",
+        100.0 * result.render
+    ));
+}
+
 fn write(
     out: &Path,
     exposed: &Exposed,
@@ -232,6 +265,7 @@ fn write(
         exposed.range.iter().map(|range| match range {
             Range::Within => 0.0,
             Range::Saturated => 1.0,
+            Range::Near => 0.5,
             Range::Floored => -1.0,
         }),
     );

@@ -160,7 +160,7 @@ impl Job<'_> {
         let mut marked = 0;
         for first in (0..pixels).step_by(MASK_ROWS) {
             let part = rows.read(first, MASK_ROWS)?;
-            marked += part.iter().filter(|x| **x != 0.0).count();
+            marked += part.iter().filter(|x| x.abs() >= 1.0).count();
         }
         if marked == 0 {
             return Ok(());

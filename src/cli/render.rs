@@ -83,9 +83,10 @@ pub(super) fn execute(args: &RenderArgs, console: Console) -> Result<Outcome, Fa
             )
         }
         None => {
-            let what = match finished == spots {
-                true => "frames, phi.npy and phi.stderr.npy",
-                false => "frames; phi.npy follows when every spot is there",
+            let what = if finished == spots {
+                "frames, phi.npy and phi.stderr.npy"
+            } else {
+                "frames; phi.npy follows when every spot is there"
             };
             format!("{place}: {finished} of {spots} spots in {seconds:.1} s ({plan}): {what}\n")
         }
@@ -195,9 +196,10 @@ pub(super) fn into_folder(
 /// Writes how far a run has come, unless another process has finished it meanwhile.
 fn note(record: &Record, path: &Path) -> Result<(), Failure> {
     let whole = |there: &Record| there.same_settings(record) && there.finished == there.spots;
-    match Record::read(path)?.is_some_and(|there| whole(&there)) {
-        true => Ok(()),
-        false => record.write(path),
+    if Record::read(path)?.is_some_and(|there| whole(&there)) {
+        Ok(())
+    } else {
+        record.write(path)
     }
 }
 

@@ -87,9 +87,10 @@ fn print(folder: &Path, items: &[Item], plan: &ReproducePlan, json: bool) -> Res
     let of = |i: &Item| finished(folder, *i, &plan.settings(*i));
     let found: Vec<ItemSummary> = items.iter().filter_map(of).collect();
     pages(folder, plan)?;
-    output::print(&match json {
-        true => output::json(&found)?,
-        false => report::finding_text(&overview(&found)),
+    output::print(&if json {
+        output::json(&found)?
+    } else {
+        report::finding_text(&overview(&found))
     })
 }
 

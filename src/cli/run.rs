@@ -90,15 +90,14 @@ pub(super) fn execute(args: &RunArgs, console: Console) -> Result<Outcome, Failu
     output::write(&path(SUMMARY), &summary)?;
     let page = report::run_html(&results);
     output::write(&path(REPORT), page)?;
-    let text = match args.json {
-        true => summary,
-        false => {
-            report::finding_text(&results.describe())
-                + &format!(
-                    "\n  everything is in {}, the report in report.html\n",
-                    args.output.display()
-                )
-        }
+    let text = if args.json {
+        summary
+    } else {
+        report::finding_text(&results.describe())
+            + &format!(
+                "\n  everything is in {}, the report in report.html\n",
+                args.output.display()
+            )
     };
     output::print(&text)?;
     Ok(results

@@ -51,9 +51,10 @@ impl Instance {
         if !proper {
             return None;
         }
-        let to_mesh = match placement == DAffine3::IDENTITY {
-            true => DAffine3::IDENTITY,
-            false => placement.inverse(),
+        let to_mesh = if placement == DAffine3::IDENTITY {
+            DAffine3::IDENTITY
+        } else {
+            placement.inverse()
         };
         let place = |p: &DVec3| placement.transform_point3(*p);
         let bounds = mesh

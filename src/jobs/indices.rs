@@ -13,9 +13,10 @@ pub fn array_syntax(indices: &BTreeSet<usize>) -> String {
             last = next;
         }
         let comma = if text.is_empty() { "" } else { "," };
-        let _ = match first == last {
-            true => write!(text, "{comma}{first}"),
-            false => write!(text, "{comma}{first}-{last}"),
+        let _ = if first == last {
+            write!(text, "{comma}{first}")
+        } else {
+            write!(text, "{comma}{first}-{last}")
         };
     }
     text

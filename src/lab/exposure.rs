@@ -26,6 +26,7 @@ pub fn describe_exposure(summary: &Summary, times: &[f64]) -> Finding {
         ("electrons", electrons),
         ("signal/noise", noise),
         ("saturated", share(summary.saturated)),
+        ("near the end", share(summary.near)),
         ("cut off below", share(summary.floored)),
     ];
     if times.len() > 1 {
@@ -52,10 +53,12 @@ mod tests {
             electrons_mean: 1.234_567e-12,
             electrons_max: 1.234_567e12,
             saturated: 3_072_000,
+            near: 0,
             floored: 12,
             taken: vec![27_648_000, 3_072_000],
             pedestal: 0.0,
             common: 0.0,
+            render: 0.0,
             snr_mean: Some(12.345),
             snr_max: None,
         };

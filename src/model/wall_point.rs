@@ -145,13 +145,14 @@ fn reflecting(
         position: point.position,
         normal: point.normal,
         weight: received,
-        reflection: match surface.is_lambertian() {
-            true => Reflection::Constant(albedo * FRAC_1_PI),
-            false => Reflection::Directed {
+        reflection: if surface.is_lambertian() {
+            Reflection::Constant(albedo * FRAC_1_PI)
+        } else {
+            Reflection::Directed {
                 surface: id,
                 albedo,
                 device: -direction,
-            },
+            }
         },
         surface: Some(id as ShapeId),
     }

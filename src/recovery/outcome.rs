@@ -177,9 +177,10 @@ impl Recovered {
         let error = error.ok_or(bands::without_noise(self.method))?;
         let elements = self.reflectance.len() as f64;
         let whole = self.effective_rank > elements * (1.0 - 1e-12);
-        let kind = match whole && !self.has_free_scale() {
-            true => BandKind::Gaussian,
-            false => BandKind::GaussianAroundMean,
+        let kind = if whole && !self.has_free_scale() {
+            BandKind::Gaussian
+        } else {
+            BandKind::GaussianAroundMean
         };
         self.bands = Some(bands::gaussian(&self.reflectance, error, kind, confidence));
         Ok(())

@@ -35,18 +35,18 @@ impl<'a> Problem<'a> {
     ) -> Result<Self, RecoveryError> {
         let (pixels, spots) = phi.shape();
         let elements = c.ncols();
-        let expect = |name, matrix: &DMatrix<f64>, rows, columns| match matrix.shape()
-            == (rows, columns)
-            && !matrix.is_empty()
-        {
-            true => Ok(()),
-            false => Err(RecoveryError::Shape {
-                name,
-                rows,
-                columns,
-                found_rows: matrix.nrows(),
-                found_columns: matrix.ncols(),
-            }),
+        let expect = |name, matrix: &DMatrix<f64>, rows, columns| {
+            if matrix.shape() == (rows, columns) && !matrix.is_empty() {
+                Ok(())
+            } else {
+                Err(RecoveryError::Shape {
+                    name,
+                    rows,
+                    columns,
+                    found_rows: matrix.nrows(),
+                    found_columns: matrix.ncols(),
+                })
+            }
         };
         expect("phi", phi, pixels.max(1), spots.max(1))?;
         expect("c (pixels × elements)", c, pixels, elements.max(1))?;
@@ -143,9 +143,10 @@ impl<'a> Problem<'a> {
 
     /// Refuses photographs that are black throughout.
     pub(super) fn refuse_darkness(&self) -> Result<(), RecoveryError> {
-        match self.phi.iter().any(|&x| x != 0.0) {
-            true => Ok(()),
-            false => Err(RecoveryError::Dark),
+        if self.phi.iter().any(|&x| x != 0.0) {
+            Ok(())
+        } else {
+            Err(RecoveryError::Dark)
         }
     }
 
@@ -208,9 +209,10 @@ const SCALE: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 
 /// Refuses a matrix by the size of an entry that decides its scale; zero has none.
 fn refuse_scale(name: &'static str, value: f64) -> Result<(), RecoveryError> {
-    match value == 0.0 || SCALE.contains(&value) {
-        true => Ok(()),
-        false => Err(RecoveryError::OutOfScale { name, value }),
+    if value == 0.0 || SCALE.contains(&value) {
+        Ok(())
+    } else {
+        Err(RecoveryError::OutOfScale { name, value })
     }
 }
 

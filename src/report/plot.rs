@@ -85,9 +85,10 @@ pub fn figure_svg(figure: &Figure) -> String {
     }
     top += BELOW - BETWEEN;
     let key = looks.legend();
-    let below = match key.is_empty() {
-        true => 0.0,
-        false => samples(&mut svg, [MARGIN, top], width - 2.0 * MARGIN, &key),
+    let below = if key.is_empty() {
+        0.0
+    } else {
+        samples(&mut svg, [MARGIN, top], width - 2.0 * MARGIN, &key)
     };
     let height = (top + below).ceil();
     format!(
@@ -295,9 +296,10 @@ impl Area<'_> {
         };
         let upright =
             curve.points.iter().all(|p| p[0] == x) && (curve.points.len() > 1 || y.is_nan());
-        match upright {
-            true => up.ends.map(|end| [x, end]).to_vec(),
-            false => across.ends.map(|end| [end, y]).to_vec(),
+        if upright {
+            up.ends.map(|end| [x, end]).to_vec()
+        } else {
+            across.ends.map(|end| [end, y]).to_vec()
         }
     }
 

@@ -85,9 +85,12 @@ fn put(out: &mut String, table: &Table) {
         row(out, &heads, &widths, &cells.words);
     }
     for cells_of_row in &cells.rows {
-        let lines = |(i, text): (usize, &String)| match i + 1 == widths.len() {
-            true => lines(text, widths[i]),
-            false => vec![clean(text)],
+        let lines = |(i, text): (usize, &String)| {
+            if i + 1 == widths.len() {
+                lines(text, widths[i])
+            } else {
+                vec![clean(text)]
+            }
         };
         let lines: Vec<Vec<String>> = cells_of_row.iter().enumerate().map(lines).collect();
         row(out, &lines, &widths, &cells.words);
@@ -124,9 +127,10 @@ fn row(out: &mut String, cells: &[Vec<String>], widths: &[usize], words: &[bool]
         let cell = |i: usize| {
             let text = cells[i].get(k).map_or("", String::as_str);
             let width = widths[i];
-            match words[i] {
-                true => format!("{text:<width$}"),
-                false => format!("{text:>width$}"),
+            if words[i] {
+                format!("{text:<width$}")
+            } else {
+                format!("{text:>width$}")
             }
         };
         let line: Vec<String> = (0..cells.len()).map(cell).collect();

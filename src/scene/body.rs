@@ -49,9 +49,10 @@ impl Meshes {
         }
         // A similarity is left to the body; a stretch changes the mesh.
         let [sx, sy, sz] = scale;
-        let (uniform, stretch) = match sx == sy && sy == sz {
-            true => (sx, None),
-            false => (1.0, Some(DVec3::from_array(scale))),
+        let (uniform, stretch) = if sx == sy && sy == sz {
+            (sx, None)
+        } else {
+            (1.0, Some(DVec3::from_array(scale)))
         };
         let (mesh, defects) = self.mesh(table, stretch, files)?;
         let mut turned = DAffine3::from_scale(DVec3::splat(uniform));

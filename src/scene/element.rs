@@ -92,15 +92,16 @@ fn faces(body: &Instance, albedo: &Texture) -> Vec<Element> {
             let [a, b, c] = body.corners(t);
             let area = body.triangle_area(t);
             let point = body.on_triangle(t, (a + b + c) / 3.0);
-            match area > 0.0 {
-                true => Element {
+            if area > 0.0 {
+                Element {
                     position: point.position,
                     normal: point.normal,
                     area,
                     u_axis: (b - a).normalize_or(DVec3::X),
                     albedo: albedo.albedo(point.uv),
-                },
-                false => NOTHING,
+                }
+            } else {
+                NOTHING
             }
         })
         .collect()
@@ -250,9 +251,10 @@ fn area_and_middle(polygon: &[Corner]) -> (f64, DVec3) {
         area += part;
         moment += (polygon[0].1 + pair[0].1 + pair[1].1) * (part / 3.0);
     }
-    match area > 0.0 {
-        true => (area, moment / area),
-        false => (0.0, DVec3::ZERO),
+    if area > 0.0 {
+        (area, moment / area)
+    } else {
+        (0.0, DVec3::ZERO)
     }
 }
 

@@ -44,9 +44,12 @@ fn copy_name(name: &str) -> String {
         .next()
         .unwrap_or_default()
         .chars()
-        .map(|c| match c.is_ascii_alphanumeric() || ".-_".contains(c) {
-            true => c,
-            false => '_',
+        .map(|c| {
+            if c.is_ascii_alphanumeric() || ".-_".contains(c) {
+                c
+            } else {
+                '_'
+            }
         })
         .collect();
     format!("{}-{last}", &hex(&Sha256::digest(name))[..12])

@@ -87,7 +87,7 @@
 //! | `exposure` | time of a frame, s; default 1 |
 //! | `frames` | frames averaged; default 1 |
 //! | `dark_frames` | frames of the same time without laser, averaged and subtracted; default 0: only the offset is |
-//! | `brackets` | exposure times of a series in place of `exposure`, up to 16, s: of each entry the longest unsaturated one counts |
+//! | `brackets` | exposure times of a series in place of `exposure`, up to 16, s: of each entry the longest counts that a metering frame shows to be safe from saturation |
 //! | `ambient` | ambient light, W into each pixel |
 //! | `glare` | `{ fraction, spread }`: the part of the spot's light entering the lens that is scattered over the image, `"uniform"` or `{ falloff = d0 }` ∝ 1/(1 + (d/d0)²) at the distance d from the spot on the view's plane |
 //!

@@ -113,9 +113,10 @@ impl Surface {
         if self.material.is_lambertian() {
             return mean;
         }
-        match self.material.is_black(mean) {
-            true => 0.0,
-            false => mean.max(LEAST),
+        if self.material.is_black(mean) {
+            0.0
+        } else {
+            mean.max(LEAST)
         }
     }
 }

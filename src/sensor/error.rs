@@ -72,14 +72,14 @@ pub enum SensorError {
         /// The flux, W.
         value: f64,
     },
-    /// Glare of other size than the signal.
+    /// Glare or a standard error of other size than the signal.
     #[error(
-        "the glare has {found:?} (pixels, spots), the flux {expected:?}; take both from one scene"
+        "the glare or standard error has {found:?} (pixels, spots), the flux {expected:?}; take both from one scene"
     )]
     Shape {
         /// Rows and columns of the flux.
         expected: (usize, usize),
-        /// Rows and columns of the glare.
+        /// Rows and columns of the other.
         found: (usize, usize),
     },
 }

@@ -2,9 +2,11 @@
 
 use rayon::prelude::*;
 
+use super::deviation::{Counted, Stated};
 use super::error::SensorError;
 use super::exposure::{Exposure, Light};
-use super::figures::{Figures, Sensor, ShotNoise};
+use super::figures::{Figures, Sensor};
+use super::frame::Range;
 use super::law::Law;
 use crate::matrix::Matrix;
 use crate::num::stream::{Key, Sampling, Stream};
@@ -13,26 +15,15 @@ use crate::num::stream::{Key, Sampling, Stream};
 const OWN: u64 = 0x7365_6e73_6f72;
 /// The block of the numbers that are not of one frame.
 const FINISHED: u32 = u32::MAX;
-
-/// Where the counts of an entry lie.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Range {
-    /// Between the ends: the value means what it says.
-    Within,
-    /// The full well or the highest count was reached in a frame: the value is too low.
-    Saturated,
-    /// The converter cut off counts below 0 in a frame: the value is too high. A larger offset
-    /// prevents it.
-    Floored,
-}
+/// The first block of the metering frames, one for each exposure time.
+const METERING: u32 = 1 << 31;
 
 /// Photographs as a sensor takes them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exposed {
     /// Linearised flux, pixels × spots, W.
     pub flux: Matrix,
-    /// Its standard deviation by the law of the exposure that was used, W; that of a saturated
-    /// entry means nothing.
+    /// Its standard deviation as it was asked for, W; that of a saturated entry means nothing.
     pub stderr: Matrix,
     /// Mean counts over the frames, pixels × spots, for each exposure time, the longest first.
     pub counts: Vec<Matrix>,
@@ -56,6 +47,24 @@ struct Reading {
     range: Range,
 }
 
+/// What the metering frames of an entry say.
+#[derive(Clone, Copy, Debug)]
+struct Metered {
+    /// The longest exposure that they leave room in, or else the shortest.
+    bracket: usize,
+    /// Counts of the metering frame of that exposure.
+    counts: f64,
+    is_near: bool,
+}
+
+/// Frames without laser.
+struct Dark {
+    /// Of each pixel, for each exposure time.
+    readings: Vec<Vec<Reading>>,
+    /// Mean counts over the pixels, for each exposure time.
+    levels: Vec<f64>,
+}
+
 /// A column of [`Exposed`].
 struct Column {
     /// Flux, its standard deviation, exposure and range of each pixel.
@@ -67,6 +76,10 @@ struct Column {
 impl Sensor {
     /// Photographs `light`. The same seed gives the same bits, whatever the threads.
     ///
+    /// A metering frame of each exposure time goes before the frames of each entry. It chooses the
+    /// exposure time and, with [`Stated::Counts`], the standard deviation; being no part of the mean,
+    /// it leaves that without bias.
+    ///
     /// Each frame of each entry has random numbers of its own; the frames without laser are taken
     /// once for each pixel and serve all spots, so that their error is common to a row.
     ///
@@ -77,6 +90,7 @@ impl Sensor {
         &self,
         light: &Light<'_>,
         exposure: &Exposure,
+        stated: Stated,
         seed: u64,
     ) -> Result<Exposed, SensorError> {
         let (pixels, spots) = light.shape();
@@ -87,17 +101,22 @@ impl Sensor {
         }
         let chain = Chain {
             figures: self.figures(),
+            light,
             exposure,
             laws: &laws,
+            stated,
             seed: seed ^ OWN,
         };
-        let dark: Vec<Vec<Reading>> = (0..pixels)
+        let readings: Vec<Vec<Reading>> = (0..pixels)
             .into_par_iter()
             .map(|pixel| chain.dark(pixel))
             .collect();
+        let level = |k: usize| readings.iter().map(|r| r[k].counts).sum::<f64>() / pixels as f64;
+        let levels = (0..laws.len()).map(level).collect();
+        let dark = Dark { readings, levels };
         let columns: Vec<Column> = (0..spots)
             .into_par_iter()
-            .map(|spot| chain.column(light, spot, &dark))
+            .map(|spot| chain.column(spot, &dark))
             .collect();
         let entries = || columns.iter().flat_map(|c| &c.entries);
         let matrix =
@@ -131,21 +150,23 @@ fn refuse_infinities(exposed: Exposed) -> Result<Exposed, SensorError> {
 /// A sensor at work.
 struct Chain<'a> {
     figures: &'a Figures,
+    light: &'a Light<'a>,
     exposure: &'a Exposure,
     laws: &'a [Law],
+    stated: Stated,
     seed: u64,
 }
 
 impl Chain<'_> {
     /// All entries of one photograph.
-    fn column(&self, light: &Light<'_>, spot: usize, dark: &[Vec<Reading>]) -> Column {
-        let pixels = light.shape().0;
+    fn column(&self, spot: usize, dark: &Dark) -> Column {
+        let pixels = self.light.shape().0;
         let mut column = Column {
             entries: Vec::with_capacity(pixels),
             counts: vec![Vec::with_capacity(pixels); self.laws.len()],
         };
-        for (pixel, dark) in dark.iter().enumerate() {
-            let flux = light.of_laser(pixel, spot);
+        for pixel in 0..pixels {
+            let flux = self.light.of_laser(pixel, spot);
             let readings: Vec<Reading> = (self.laws.iter().zip(0..))
                 .map(|(law, k)| {
                     let frames = self.exposure.frames();
@@ -157,36 +178,66 @@ impl Chain<'_> {
             }
             column
                 .entries
-                .push(self.entry(flux, &readings, dark, spot as u32, pixel));
+                .push(self.entry(&readings, dark, spot, pixel));
         }
         column
     }
 
-    /// Linearises the longest exposure that is not saturated: value, standard deviation, exposure,
-    /// range.
+    /// The longest exposure whose metering frame leaves room for the noise of those that follow.
+    fn meter(&self, flux: f64, spot: u32, pixel: usize) -> Metered {
+        let mut found = Metered {
+            bracket: 0,
+            counts: self.figures.offset,
+            is_near: true,
+        };
+        for (law, k) in self.laws.iter().zip(0..) {
+            let mut stream = self.stream(spot, pixel, METERING + k);
+            let (counts, range) = self.figures.frame(law.electrons(flux), &mut stream);
+            let electrons = (counts - self.figures.offset) * self.figures.gain;
+            found = Metered {
+                bracket: k as usize,
+                counts,
+                is_near: range == Range::Saturated || !self.figures.fits(electrons),
+            };
+            if !found.is_near {
+                break;
+            }
+        }
+        found
+    }
+
+    /// Linearises the metered exposure: value, standard deviation, exposure, range.
     fn entry(
         &self,
-        flux: f64,
         readings: &[Reading],
-        dark: &[Reading],
-        spot: u32,
+        dark: &Dark,
+        spot: usize,
         pixel: usize,
     ) -> (f64, f64, usize, Range) {
-        let range = |k: usize| match (readings[k].range, dark[k].range) {
+        let flux = self.light.of_laser(pixel, spot);
+        let metered = self.meter(flux, spot as u32, pixel);
+        let k = metered.bracket;
+        let (reading, own) = (readings[k], dark.readings[pixel][k]);
+        let range = match (reading.range, own.range) {
             (Range::Saturated, _) | (_, Range::Saturated) => Range::Saturated,
+            _ if metered.is_near => Range::Near,
             (Range::Floored, _) | (_, Range::Floored) => Range::Floored,
             _ => Range::Within,
         };
-        let fits = (0..readings.len()).find(|k| range(*k) != Range::Saturated);
-        let k = fits.unwrap_or(readings.len() - 1);
         let law = &self.laws[k];
-        let electrons = (readings[k].counts - dark[k].counts) * self.figures.gain;
+        let electrons = (reading.counts - own.counts) * self.figures.gain;
         let factor = match self.figures.relative_noise {
             0.0 => 1.0,
-            rho => 1.0 + rho * self.stream(spot, pixel, FINISHED).normal(),
+            rho => 1.0 + rho * self.stream(spot as u32, pixel, FINISHED).normal(),
         };
-        let value = electrons / law.response * factor;
-        (value, law.deviation(flux), k, range(k))
+        let counted = Counted {
+            metered: metered.counts,
+            dark: own.counts,
+            dark_level: dark.levels[k],
+        };
+        let variance = self.stated.variance(law, counted, flux);
+        let deviation = variance.with_render(self.light, pixel, spot).deviation();
+        (electrons / law.response * factor, deviation, k, range)
     }
 
     /// The frames of a pixel without laser, for each exposure time; the offset where there are
@@ -211,7 +262,7 @@ impl Chain<'_> {
         let mut range = Range::Within;
         for frame in 0..frames {
             let mut stream = self.stream(spot, pixel, k * frames + frame);
-            let (counts, found) = self.frame(mean, &mut stream);
+            let (counts, found) = self.figures.frame(mean, &mut stream);
             sum += counts;
             if found != Range::Within && range != Range::Saturated {
                 range = found;
@@ -221,42 +272,6 @@ impl Chain<'_> {
             counts: sum / f64::from(frames),
             range,
         }
-    }
-
-    /// One frame: electrons, well, read noise, gain, converter.
-    fn frame(&self, mean: f64, stream: &mut Stream) -> (f64, Range) {
-        let figures = self.figures;
-        let electrons = match figures.shot_noise {
-            ShotNoise::Poisson => stream.poisson(mean),
-            ShotNoise::None => mean,
-        };
-        let kept = electrons.min(figures.full_well);
-        let noise = match figures.read_noise {
-            0.0 => 0.0,
-            sigma => sigma * stream.normal(),
-        };
-        let analog = (kept + noise) / figures.gain + figures.offset;
-        if figures.bits.is_none() {
-            let full = electrons > kept;
-            return (
-                analog,
-                if full {
-                    Range::Saturated
-                } else {
-                    Range::Within
-                },
-            );
-        }
-        let rounded = analog.round();
-        let top = figures.top();
-        let range = if electrons > kept || rounded >= top {
-            Range::Saturated
-        } else if rounded < 0.0 {
-            Range::Floored
-        } else {
-            Range::Within
-        };
-        (rounded.clamp(0.0, top), range)
     }
 
     fn stream(&self, spot: u32, pixel: usize, block: u32) -> Stream {

@@ -10,6 +10,7 @@ use crate::scene::{MOST_BRACKETS, Quantity};
 pub struct Light<'a> {
     signal: &'a Matrix,
     glare: Option<&'a Matrix>,
+    render: Option<(&'a Matrix, f64)>,
     ambient: f64,
     wavelength: f64,
 }
@@ -27,6 +28,7 @@ impl<'a> Light<'a> {
         Ok(Self {
             signal,
             glare: None,
+            render: None,
             ambient: 0.0,
             wavelength,
         })
@@ -37,15 +39,28 @@ impl<'a> Light<'a> {
     /// # Errors
     /// [`SensorError::Shape`], [`SensorError::Flux`].
     pub fn with_glare(self, glare: &'a Matrix) -> Result<Self, SensorError> {
-        if glare.shape() != self.signal.shape() {
-            return Err(SensorError::Shape {
-                expected: self.signal.shape(),
-                found: glare.shape(),
-            });
-        }
-        Self::refuse(glare)?;
+        self.fits(glare)?;
         Ok(Self {
             glare: Some(glare),
+            ..self
+        })
+    }
+
+    /// With the standard error of the signal (pixels × spots, W, 0 or more) as the render has it from
+    /// `replicates`: the stated standard deviations then hold against the light itself, not against
+    /// this render of it.
+    ///
+    /// # Errors
+    /// [`SensorError::Shape`], [`SensorError::Flux`].
+    pub fn with_render_error(
+        self,
+        stderr: &'a Matrix,
+        replicates: u32,
+    ) -> Result<Self, SensorError> {
+        self.fits(stderr)?;
+        let freedom = f64::from(replicates.max(2) - 1);
+        Ok(Self {
+            render: Some((stderr, freedom)),
             ..self
         })
     }
@@ -58,6 +73,17 @@ impl<'a> Light<'a> {
     pub fn with_ambient(self, ambient: f64) -> Result<Self, SensorError> {
         check([(Quantity::Ambient, ambient)])?;
         Ok(Self { ambient, ..self })
+    }
+
+    /// Refuses what is not of the signal's shape, or negative.
+    fn fits(&self, other: &Matrix) -> Result<(), SensorError> {
+        if other.shape() != self.signal.shape() {
+            return Err(SensorError::Shape {
+                expected: self.signal.shape(),
+                found: other.shape(),
+            });
+        }
+        Self::refuse(other)
     }
 
     fn refuse(flux: &Matrix) -> Result<(), SensorError> {
@@ -79,6 +105,12 @@ impl<'a> Light<'a> {
     /// The signal alone, W.
     pub(super) fn signal(&self, pixel: usize, spot: usize) -> f64 {
         self.signal[(pixel, spot)]
+    }
+
+    /// Standard error of the signal in the render, W, and the degrees of freedom it has.
+    pub(super) fn render(&self, pixel: usize, spot: usize) -> Option<(f64, f64)> {
+        let (stderr, freedom) = self.render?;
+        Some((stderr[(pixel, spot)], freedom))
     }
 
     /// Signal and glare: what is there with the laser only, W.

@@ -57,6 +57,11 @@ impl Figures {
         self.bits
             .map_or(f64::INFINITY, |bits| f64::from((1u32 << bits) - 1))
     }
+
+    /// Electrons that well or converter hold: min(full well, (top − offset)·K).
+    pub(super) fn most_electrons(&self) -> f64 {
+        self.full_well.min((self.top() - self.offset) * self.gain)
+    }
 }
 
 /// A sensor whose figures make sense.

@@ -15,11 +15,8 @@ impl Sensor {
     /// offset)·K)/(ηΦλ/hc + D). Infinite without limits, or without light and dark current.
     pub fn saturating_exposure(&self, brightest: f64, wavelength: f64) -> f64 {
         let figures = self.figures();
-        let most = figures
-            .full_well
-            .min((figures.top() - figures.offset) * figures.gain);
         let photons = brightest / photon_energy(wavelength);
-        most / (figures.quantum_efficiency * photons + figures.dark_current)
+        figures.most_electrons() / (figures.quantum_efficiency * photons + figures.dark_current)
     }
 
     /// Half of [`Sensor::saturating_exposure`], so that noise saturates no pixel; 1 s where that is
@@ -55,9 +52,10 @@ mod tests {
             let most = figures
                 .full_well
                 .min((figures.top() - figures.offset) * figures.gain);
-            match most.is_finite() {
-                true => assert!((electrons.max() / most - 0.5).abs() < 1e-12, "{model:?}"),
-                false => assert_eq!(time, 1.0, "{model:?}"),
+            if most.is_finite() {
+                assert!((electrons.max() / most - 0.5).abs() < 1e-12, "{model:?}");
+            } else {
+                assert_eq!(time, 1.0, "{model:?}");
             }
         }
     }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::exposure::{Exposure, Light};
-use super::figures::{Figures, Sensor, ShotNoise};
+use super::figures::{Figures, Sensor};
 use crate::matrix::Matrix;
 
 /// What a sensor makes of light on average.
@@ -15,21 +15,23 @@ pub struct Expected {
     pub stderr: Matrix,
     /// Electrons of one frame of the longest exposure, on average.
     pub electrons: Matrix,
-    /// Which exposure time counts, 0 the longest; `None` where even the shortest saturates.
+    /// Which exposure time counts, 0 the longest; `None` where even the shortest comes too near the
+    /// end.
     pub bracket: Vec<Option<usize>>,
 }
 
 impl Sensor {
     /// Mean and standard deviation of every entry (pixels × spots) if each is taken from the
-    /// longest exposure that does not saturate on average; where all do, the shortest as if it did
-    /// not. Entry (pixel, spot) of `bracket` stands at pixel + spot·pixels.
+    /// longest exposure whose mean stays below the end with the margin of metering; where none does,
+    /// the shortest as if it did. Of the sensor alone, without the render's own error. Entry (pixel,
+    /// spot) of `bracket` stands at pixel + spot·pixels.
     pub fn expected(&self, light: &Light<'_>, exposure: &Exposure) -> Expected {
         let laws = Law::of(self.figures(), light, exposure);
         let (pixels, spots) = light.shape();
         let chosen = |pixel, spot| {
             let fits = laws
                 .iter()
-                .position(|law| law.fits(light.of_laser(pixel, spot)));
+                .position(|law| law.figures.fits(law.electrons(light.of_laser(pixel, spot))));
             (fits, &laws[fits.unwrap_or(laws.len() - 1)])
         };
         let mut bracket = Vec::with_capacity(pixels * spots);
@@ -43,7 +45,7 @@ impl Sensor {
         };
         Expected {
             flux: matrix(&Law::mean),
-            stderr: matrix(&Law::deviation),
+            stderr: matrix(&|law, flux| law.variance(flux).sqrt()),
             electrons: matrix(&|_, flux| laws[0].electrons(flux)),
             bracket,
         }
@@ -53,9 +55,9 @@ impl Sensor {
 /// One exposure time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Law {
-    figures: Figures,
-    frames: u32,
-    dark_frames: u32,
+    pub figures: Figures,
+    pub frames: u32,
+    pub dark_frames: u32,
     /// ηtλ/hc: electrons per W.
     pub response: f64,
     /// Electrons of a frame without laser.
@@ -85,13 +87,6 @@ impl Law {
         self.response * flux + self.dark
     }
 
-    /// Whether a frame does not saturate on average.
-    fn fits(&self, flux: f64) -> bool {
-        let mean = self.electrons(flux);
-        let counts = mean / self.figures.gain + self.figures.offset;
-        mean <= self.figures.full_well && counts < self.figures.top() - 0.5
-    }
-
     /// Mean of the linearised flux, W.
     fn mean(&self, flux: f64) -> f64 {
         if self.dark_frames > 0 {
@@ -111,13 +106,13 @@ impl Law {
         self.averaged_dark() / (self.response * self.response)
     }
 
-    /// Standard deviation of the linearised flux, W.
-    pub(super) fn deviation(&self, flux: f64) -> f64 {
+    /// Variance of the linearised flux, W².
+    pub(super) fn variance(&self, flux: f64) -> f64 {
         let electrons = self.averaged(self.electrons(flux), self.frames) + self.averaged_dark();
         let variance = electrons / (self.response * self.response);
         let relative = self.figures.relative_noise * self.figures.relative_noise;
         let mean = self.mean(flux);
-        (variance * (1.0 + relative) + relative * mean * mean).sqrt()
+        variance * (1.0 + relative) + relative * mean * mean
     }
 
     /// Variance of the mean of the dark frames, electrons²; 0 without any.
@@ -130,14 +125,20 @@ impl Law {
 
     /// Variance of the mean over `frames` frames of `mean` electrons, electrons².
     fn averaged(&self, mean: f64, frames: u32) -> f64 {
-        let Figures {
-            read_noise, gain, ..
-        } = self.figures;
-        let shot = match self.figures.shot_noise {
-            ShotNoise::Poisson => mean,
-            ShotNoise::None => 0.0,
-        };
-        let noise = shot + read_noise * read_noise;
+        self.averaged_noise(self.figures.variance(mean), frames)
+    }
+
+    /// The same, in counts², of frames with the variance `frame`, counts², rounding included.
+    pub(super) fn averaged_counts(&self, frame: f64, frames: u32) -> f64 {
+        let Figures { gain, bits, .. } = self.figures;
+        let rounding = bits.map_or(0.0, |_| 1.0 / 12.0);
+        let noise = (frame - rounding).max(0.0) * gain * gain;
+        self.averaged_noise(noise, frames) / (gain * gain)
+    }
+
+    /// Variance of the mean over `frames` frames with `noise` (electrons²) before the converter.
+    fn averaged_noise(&self, noise: f64, frames: u32) -> f64 {
+        let gain = self.figures.gain;
         let frames = f64::from(frames);
         if self.figures.bits.is_none() {
             return noise / frames;

@@ -2,9 +2,10 @@
 
 use serde::Serialize;
 
-use super::expose::{Exposed, Range};
+use super::expose::Exposed;
 use super::exposure::{Exposure, Light};
 use super::figures::Sensor;
+use super::frame::Range;
 use super::law::Law;
 
 /// What photographs came to.
@@ -18,6 +19,8 @@ pub struct Summary {
     pub electrons_max: f64,
     /// Entries whose full well or converter was at its end in every exposure.
     pub saturated: usize,
+    /// Entries that no frame saturates, but that every exposure brings within their noise of the end.
+    pub near: usize,
     /// Entries whose counts the converter cut off below 0.
     pub floored: usize,
     /// Entries taken from each exposure time, the longest first.
@@ -28,6 +31,8 @@ pub struct Summary {
     /// Part of the variance that comes from the dark frames, mean over the entries: an error that
     /// all spots of a pixel have in common.
     pub common: f64,
+    /// Part of the variance that is the render's own error, mean over the entries.
+    pub render: f64,
     /// Signal (the clean flux) over standard deviation, mean over the entries within range; `None`
     /// without such entries or without noise.
     pub snr_mean: Option<f64>,
@@ -53,18 +58,25 @@ impl Summary {
                 0.0
             }
         });
+        let entries = (0..pixels * spots).zip(&exposed.stderr);
+        let renders = entries.map(|(at, s)| match light.render(at % pixels, at / pixels) {
+            Some((own, _)) if *s > 0.0 => (own / s) * (own / s),
+            _ => 0.0,
+        });
         let noisy = exposed.stderr.iter().all(|s| *s > 0.0) && !snr.is_empty();
         Self {
             entries: pixels * spots,
             electrons_mean: electrons.mean(),
             electrons_max: electrons.max(),
             saturated: exposed.count(Range::Saturated),
+            near: exposed.count(Range::Near),
             floored: exposed.count(Range::Floored),
             taken: (0..exposure.times().len())
                 .map(|k| exposed.bracket.iter().filter(|b| **b == k).count())
                 .collect(),
             pedestal: laws[0].pedestal(),
             common: shares.sum::<f64>() / (pixels * spots) as f64,
+            render: renders.sum::<f64>() / (pixels * spots) as f64,
             snr_mean: noisy.then(|| snr.iter().sum::<f64>() / snr.len() as f64),
             snr_max: noisy.then(|| snr.iter().copied().fold(0.0, f64::max)),
         }

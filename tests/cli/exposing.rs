@@ -101,18 +101,54 @@ fn the_ideal_sensor_gives_the_clean_flux_back() {
     for (x, y) in exposed.iter().zip(&clean) {
         assert!((x - y).abs() <= 1e-14 * y.abs(), "{x} {y}");
     }
-    let account = workspace.json("done/exposed/exposure.json");
-    assert!(account["result"]["snr_mean"].is_null());
-    // The published percent error alone.
-    let _ = workspace
-        .phicam("expose done --sensor ideal --noise 0.01")
-        .exits(0);
-    let [noisy, stderr] =
-        ["phi", "phi.stderr"].map(|n| workspace.matrix(&format!("done/exposed/{n}.npy")));
-    for i in 0..clean.len() {
-        assert!((stderr[i] / clean[i] - 0.01).abs() < 1e-12);
-        assert!((noisy[i] - clean[i]).abs() < 0.06 * clean[i] && noisy[i] != clean[i]);
+    // The render's own error is all there is, or beside the published percent error: its variance is
+    // known to 2/(blocks − 1), and σ² = V + Var V/V.
+    let render = workspace.matrix("done/phi.stderr.npy");
+    let blocks = workspace.json("done/run.json")["blocks"].as_f64().unwrap();
+    for (noise, rest) in [(0.0, ""), (0.01, " --noise 0.01")] {
+        let _ = workspace
+            .phicam(&format!("expose done --sensor ideal{rest}"))
+            .exits(0);
+        let [noisy, stderr] =
+            ["phi", "phi.stderr"].map(|n| workspace.matrix(&format!("done/exposed/{n}.npy")));
+        for i in 0..clean.len() {
+            let own = render[i] * render[i];
+            let variance = (noise * clean[i]).powi(2) + own;
+            let stated = (variance + 2.0 * own * own / ((blocks - 1.0) * variance)).sqrt();
+            assert!((stderr[i] / stated - 1.0).abs() < 1e-12);
+            assert!((noisy[i] - clean[i]).abs() <= (6.0 * noise + 1e-14) * clean[i]);
+            assert!(noise == 0.0 || noisy[i] != clean[i]);
+        }
     }
+}
+
+/// From counts unless the oracle is asked for; both state nearly the same, and the files say which.
+#[test]
+fn the_deviation_comes_from_counts_or_from_the_oracle() {
+    let workspace = with_run();
+    let stated = |by: &str| {
+        let line = format!("expose done --sensor ccd --exposure 0.004{by}");
+        let _ = workspace.phicam(&line).exits(0);
+        let account = workspace.json("done/exposed/exposure.json");
+        let [phi, stderr] =
+            ["phi", "phi.stderr"].map(|n| workspace.matrix(&format!("done/exposed/{n}.npy")));
+        (account, phi, stderr)
+    };
+    let (counts, phi, stderr) = stated("");
+    assert_eq!(counts["stderr"], "counts");
+    let slope = counts["photon_transfer"]["slope"].as_f64().unwrap();
+    assert!((slope * 1.413 - 1.0).abs() < 0.01, "{slope}");
+    let (oracle, same, law) = stated(" --stderr oracle");
+    assert_eq!(oracle["stderr"], "oracle");
+    assert!(oracle["photon_transfer"].is_null());
+    assert_eq!(phi, same);
+    for (s, l) in stderr.iter().zip(&law) {
+        assert!(s != l && (s / l - 1.0).abs() < 0.2, "{s} {l}");
+    }
+    workspace.refuses(
+        "expose done --sensor ccd --stderr truth",
+        &["truth", "oracle"],
+    );
 }
 
 #[test]
@@ -207,7 +243,11 @@ fn clipped_photographs_are_not_recovered_from_in_silence() {
 /// What dark frames leave or bring in is said where it matters.
 #[test]
 fn light_that_stays_and_noise_that_is_shared_are_said() {
-    let workspace = with_run();
+    let workspace = Workspace::with_scenes();
+    // So many that the sensor's noise is more than that of the render.
+    let _ = workspace
+        .phicam("render tiny.toml -o done --samples 16384")
+        .exits(0);
     for (rest, words) in [
         ("--ambient 1e-12", "stay in every entry"),
         ("--dark-frames 1", "all spots of a pixel share"),

@@ -146,9 +146,12 @@ fn a_damaged_part_is_rendered_again() {
 fn processor_features_change_no_byte() {
     let workspace = workspace();
     // Wide spots: each path draws a point of a Gaussian beam.
-    let wide = |text: String| match text.contains("spot_diameter = 0.0") {
-        true => text.replace("spot_diameter = 0.0", "spot_diameter = 0.5"),
-        false => text.replace("[laser]", "[laser]\nspot_diameter = 0.5"),
+    let wide = |text: String| {
+        if text.contains("spot_diameter = 0.0") {
+            text.replace("spot_diameter = 0.0", "spot_diameter = 0.5")
+        } else {
+            text.replace("[laser]", "[laser]\nspot_diameter = 0.5")
+        }
     };
     workspace.write("tiny.toml", wide(workspace.text("tiny.toml")));
     let _ = workspace

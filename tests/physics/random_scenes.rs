@@ -204,17 +204,20 @@ impl Tape<'_> {
         };
         let cavity = relay.starts_with("sphere");
         let spots = self.spots(low, size);
-        let device = |tape: &mut Self| match cavity {
-            true => [
-                w * tape.between(0.4, 0.6),
-                h * tape.between(0.4, 0.6),
-                h * tape.between(0.6, 1.4),
-            ],
-            false => [
-                -w * tape.between(0.5, 2.0),
-                h * tape.unit(),
-                w * tape.between(0.8, 2.0),
-            ],
+        let device = |tape: &mut Self| {
+            if cavity {
+                [
+                    w * tape.between(0.4, 0.6),
+                    h * tape.between(0.4, 0.6),
+                    h * tape.between(0.6, 1.4),
+                ]
+            } else {
+                [
+                    -w * tape.between(0.5, 2.0),
+                    h * tape.unit(),
+                    w * tape.between(0.8, 2.0),
+                ]
+            }
         };
         let (laser, camera) = (device(self), device(self));
         let [left, below] = [self.between(0.02, 0.4), self.between(0.02, 0.4)];

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::Args as Arguments;
+use clap::{Args as Arguments, ValueEnum};
+use serde::Serialize;
 
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct ExposeArgs {
@@ -46,7 +47,10 @@ pub(in crate::cli) struct ExposeArgs {
     /// Seed: the same seed gives the same bytes
     #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     pub seed: u64,
-    /// Refuse photographs with saturated or cut-off entries
+    /// Where phi.stderr.npy comes from; the render's own standard error is added to both
+    #[arg(long, value_enum, default_value_t = StatedBy::Counts)]
+    pub stderr: StatedBy,
+    /// Refuse photographs with saturated or cut-off entries, or such that are near to it
     #[arg(long)]
     pub strict: bool,
     /// Print exposure.json instead of the table
@@ -55,4 +59,15 @@ pub(in crate::cli) struct ExposeArgs {
     /// List the built-in sensors, and do nothing else
     #[arg(long)]
     pub list: bool,
+}
+
+/// Where the standard deviation of a photograph comes from.
+#[derive(Clone, Copy, Debug, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub(in crate::cli) enum StatedBy {
+    /// The counts of a metering frame and of dark frames, and pairs of frames that calibrate the
+    /// sensor: what a laboratory has
+    Counts,
+    /// The sensor's law at the true flux, which no laboratory knows
+    Oracle,
 }

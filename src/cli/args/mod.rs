@@ -23,7 +23,7 @@ use crate::num::stream::Sampling;
 use crate::transport::Estimator;
 use value::{elements, shift, spot_range};
 
-pub(in crate::cli) use expose::ExposeArgs;
+pub(in crate::cli) use expose::{ExposeArgs, StatedBy};
 pub(in crate::cli) use many::{CleanArgs, MergeArgs, PlanArgs, ShardArgs, SlurmArgs, StatusArgs};
 pub(in crate::cli) use recover::RecoverArgs;
 pub(in crate::cli) use reproduce::ReproduceArgs;

@@ -113,14 +113,15 @@ impl Work for Render {
 }
 
 fn told(record: &Record, dir: &Path, json: bool) -> Result<Outcome, Failure> {
-    output::print(&match json {
-        true => output::json(record)?,
-        false => format!(
+    output::print(&if json {
+        output::json(record)?
+    } else {
+        format!(
             "{}: {} spots merged ({}): frames, phi.npy and phi.stderr.npy\n",
             dir.display(),
             record.spots,
             record.plan
-        ),
+        )
     })?;
     Ok(Outcome::Done)
 }

@@ -169,9 +169,10 @@ impl Tasks for Job {
         let found = found.map_err(Failure::of)?;
         ensure_writable(folder)?;
         deliver(self.name, &found, folder, &self.invocation, self.json)?;
-        Ok(match found.agrees {
-            true => Outcome::Done,
-            false => Outcome::Disagreed,
+        Ok(if found.agrees {
+            Outcome::Done
+        } else {
+            Outcome::Disagreed
         })
     }
 }

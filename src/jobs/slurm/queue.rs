@@ -58,9 +58,10 @@ impl Slurm {
             .rfind(|line| !line.trim().is_empty())
             .unwrap_or("");
         let id = last.trim().split(';').next().unwrap_or("");
-        match is_id(id) {
-            true => Ok(id.to_owned()),
-            false => Err(nonsense(&self.sbatch, &answer)),
+        if is_id(id) {
+            Ok(id.to_owned())
+        } else {
+            Err(nonsense(&self.sbatch, &answer))
         }
     }
 

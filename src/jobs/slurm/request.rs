@@ -64,9 +64,10 @@ impl Request {
             Merge::Submit(before) => {
                 submitted.extend(before);
                 let id = slurm.submit(&jobs.merge(&submitted))?;
-                let when = match submitted.is_empty() {
-                    true => String::new(),
-                    false => format!(", when {} ended", have(&submitted)),
+                let when = if submitted.is_empty() {
+                    String::new()
+                } else {
+                    format!(", when {} ended", have(&submitted))
                 };
                 say(&format!("merge into {output}: job {id}{when}\n"))
             }

@@ -8,7 +8,7 @@ use crate::lab::error::LabError;
 use crate::lab::measures::Measures;
 use crate::matrix::Matrix;
 use crate::scene::{Glare, Scene, Spread as GlareSpread};
-use crate::sensor::{Exposure, Light, Range, glare, glare_to_signal};
+use crate::sensor::{Exposure, Light, Range, Stated, glare, glare_to_signal};
 
 /// The settings of one series, and the light that is scattered in it.
 pub(super) struct Series<'a> {
@@ -94,7 +94,7 @@ pub(super) fn read(
     let glare = series.pattern * series.fraction;
     let expose = |light: &Matrix, seed: u64| {
         let light = Light::new(light, scene.laser.wavelength)?.with_glare(&glare)?;
-        plan.sensor.expose(&light, &exposure, seed)
+        plan.sensor.expose(&light, &exposure, Stated::Oracle, seed)
     };
     let dark = Matrix::zeros(signal.nrows(), signal.ncols());
     let taken = expose(signal, seed.wrapping_mul(2))?;

@@ -142,9 +142,10 @@ impl<'a> GalleryTasks<'a> {
 
     /// Makes them; none if stopped.
     pub fn gallery(&self, control: Control<'_>) -> Option<RunGallery> {
-        let (pixels, spots) = match self.fitted.noises.is_empty() {
-            true => (0, 0),
-            false => self.phi.shape(),
+        let (pixels, spots) = if self.fitted.noises.is_empty() {
+            (0, 0)
+        } else {
+            self.phi.shape()
         };
         let deviates = normal_deviates(self.plan.seed, pixels, spots);
         let side = laser_side(self.model, self.phi, self.stderr);

@@ -8,7 +8,7 @@ use crate::num::stream::{Key, Sampling, Stream};
 use crate::num::units::photon_energy;
 use crate::scene::{Glare, Scene};
 use crate::sensor::{
-    Exposure, Figures, Light, Range, Sensor, SensorError, ShotNoise, glare, glare_to_signal,
+    Exposure, Figures, Light, Range, Sensor, SensorError, ShotNoise, Stated, glare, glare_to_signal,
 };
 
 /// An object's light, ready to be photographed.
@@ -69,7 +69,7 @@ impl Stage {
         let take = || {
             let shot = self.shot(level, offset(seed))?;
             shot.sensor
-                .expose(&self.light(&shot)?, &shot.exposure, seed)
+                .expose(&self.light(&shot)?, &shot.exposure, Stated::Oracle, seed)
         };
         let taken = take().map_err(|e| e.to_string())?;
         match taken.count(Range::Saturated) {

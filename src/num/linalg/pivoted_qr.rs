@@ -150,9 +150,10 @@ impl PivotedQr {
                 .map(|x| libm::scalbn(x, exponent - self.exponent));
             result.row_mut(place).copy_from(&scaled);
         }
-        match result.iter().all(|x| x.is_finite()) {
-            true => Ok(result),
-            false => Err(LinalgError::Overflow("the solution of the linear system")),
+        if result.iter().all(|x| x.is_finite()) {
+            Ok(result)
+        } else {
+            Err(LinalgError::Overflow("the solution of the linear system"))
         }
     }
 }

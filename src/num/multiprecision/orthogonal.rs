@@ -50,12 +50,11 @@ pub fn inverse(
     stop: &AtomicBool,
 ) -> Result<Option<Inverse>, TooFewDigits> {
     let (m, n) = (rows.len(), rows.first().map_or(0, Vec::len));
-    let (shape, mut q): (Shape, Vec<Vec<Real>>) = match m >= n {
-        true => {
-            let column = |k: usize| rows.iter().map(|r| r[k].clone()).collect();
-            (Shape::Tall, (0..n).map(column).collect())
-        }
-        false => (Shape::Wide, rows.to_vec()),
+    let (shape, mut q): (Shape, Vec<Vec<Real>>) = if m >= n {
+        let column = |k: usize| rows.iter().map(|r| r[k].clone()).collect();
+        (Shape::Tall, (0..n).map(column).collect())
+    } else {
+        (Shape::Wide, rows.to_vec())
     };
     let zero = digits.whole(0);
     let mut r: Vec<Vec<Real>> = vec![Vec::new(); q.len()];
@@ -148,9 +147,10 @@ mod tests {
                 (0..n as usize).map(entry).collect()
             };
             let b: Vec<Real> = (0..m.min(n)).map(|i| d.whole(i * i - 7)).collect();
-            let back = match m <= n {
-                true => found.left(&times(&b)),
-                false => times(&found.left(&b)),
+            let back = if m <= n {
+                found.left(&times(&b))
+            } else {
+                times(&found.left(&b))
             };
             for (a, b) in back.iter().zip(&b) {
                 assert!((a - b).to_f64().abs() < 1e-20, "{m} × {n}");

@@ -33,9 +33,10 @@ pub fn extent(
     let residual = r * best - d;
     let radius = (residual.norm_squared() + slack).sqrt();
     let mut ends = [bounds.lower[j], bounds.upper[j]];
-    let lifts = match bounds.upper.iter().all(|u| u.is_finite()) {
-        true => Vec::new(),
-        false => Lift::all(r, &bounds.upper)?,
+    let lifts = if bounds.upper.iter().all(|u| u.is_finite()) {
+        Vec::new()
+    } else {
+        Lift::all(r, &bounds.upper)?
     };
     for (end, sign) in ends.iter_mut().zip([1.0, -1.0]) {
         let mut towards = DVector::zeros(best.len());
@@ -55,9 +56,10 @@ pub fn extent(
             .iter()
             .map(|lift| proves(&lift.apply(r, &towards, &z)));
         let proved = best[j] + sign * moved.fold(proves(&z), f64::max);
-        *end = match sign > 0.0 {
-            true => end.max(proved),
-            false => end.min(proved),
+        *end = if sign > 0.0 {
+            end.max(proved)
+        } else {
+            end.min(proved)
         };
     }
     Ok(ends)
@@ -101,9 +103,10 @@ fn multipliers(
     // Of x_j itself: v_j carries length_j/radius, the residuals 1/radius. A z that is not finite
     // proves nothing and is none.
     let z = DVector::from_fn(k, |a, _| -solver.solution.z[cone + 1 + a] / lengths[j]);
-    Ok(match z.iter().all(|x| x.is_finite()) {
-        true => z,
-        false => DVector::zeros(k),
+    Ok(if z.iter().all(|x| x.is_finite()) {
+        z
+    } else {
+        DVector::zeros(k)
     })
 }
 

@@ -58,9 +58,10 @@ pub fn cramer_rao(problem: &Problem<'_>) -> Result<CramerRao, RecoveryError> {
     let standard_error = DVector::from_fn(elements, |j, _| {
         // 1 − what of element j the kept directions hold.
         let lost = 1.0 - kept.column(j).norm_squared();
-        match rank < elements && lost > elements as f64 * f64::EPSILON {
-            true => f64::INFINITY,
-            false => covariance[(j, j)].sqrt(),
+        if rank < elements && lost > elements as f64 * f64::EPSILON {
+            f64::INFINITY
+        } else {
+            covariance[(j, j)].sqrt()
         }
     });
     Ok(CramerRao {

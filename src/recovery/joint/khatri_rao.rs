@@ -83,14 +83,15 @@ fn compress(
     let decomposed = svd_to(side, Tolerance::Auto)?;
     let (rank, _) = decomposed.cut(Tolerance::Auto)?;
     let rounding = side.nrows().max(side.ncols()) as f64 * f64::EPSILON * before;
-    let rank = match side.norm() < 0.999 * before {
-        true => decomposed
+    let rank = if side.norm() < 0.999 * before {
+        decomposed
             .sigma
             .iter()
             .take(rank)
             .filter(|&&s| s > rounding)
-            .count(),
-        false => rank,
+            .count()
+    } else {
+        rank
     };
     if rank == 0 {
         Err(RecoveryError::RankZero { side: name })

@@ -30,11 +30,12 @@ impl Room {
     pub(in super::super) fn figure(&mut self, file: &str, svg: &str) -> String {
         let name = escape(file.trim_end_matches(".svg"));
         let html = format!("<figure class=\"plot\" data-name=\"{name}\">\n{svg}</figure>\n");
-        match self.takes(&html) {
-            true => html,
-            false => format!(
+        if self.takes(&html) {
+            html
+        } else {
+            format!(
                 "<p class=\"note\">{name}.svg is too large for this page; it lies beside it.</p>\n"
-            ),
+            )
         }
     }
 
@@ -57,16 +58,16 @@ impl Room {
                 "<li><a download=\"{name}\" href=\"data:{kind};base64,{}\">{name}</a> ({size})</li>\n",
                 base64(bytes)
             );
-            html += &match self.takes(&link) {
-                true => link,
-                false => format!(
-                    "<li>{name} ({size}): too large for this page, it lies beside it</li>\n"
-                ),
+            html += &if self.takes(&link) {
+                link
+            } else {
+                format!("<li>{name} ({size}): too large for this page, it lies beside it</li>\n")
             };
         }
-        match html.is_empty() {
-            true => html,
-            false => format!("<ul class=\"files\">\n{html}</ul>\n"),
+        if html.is_empty() {
+            html
+        } else {
+            format!("<ul class=\"files\">\n{html}</ul>\n")
         }
     }
 }

@@ -161,12 +161,13 @@ impl Page {
         self.json("colours", &colours());
         self.json("looks", &looks());
         let libraries: String = self.libraries.iter().map(|l| script(l.text())).collect();
-        let licences = match self.libraries.is_empty() {
-            true => String::new(),
-            false => format!(
+        let licences = if self.libraries.is_empty() {
+            String::new()
+        } else {
+            format!(
                 "<details class=\"licences\"><summary>Libraries in this page</summary>\n<pre>{}</pre>\n</details>\n",
                 escape(LICENCES)
-            ),
+            )
         };
         format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\

@@ -86,9 +86,10 @@ fn rounded(x: f32, bits: u32) -> u32 {
     // infinity it may not.
     let half = 1u32 << (drop - 1);
     let up = x.to_bits().wrapping_add(half) & !((1u32 << drop) - 1);
-    match f32::from_bits(up).is_finite() {
-        true => up,
-        false => x.to_bits() & !((1u32 << drop) - 1),
+    if f32::from_bits(up).is_finite() {
+        up
+    } else {
+        x.to_bits() & !((1u32 << drop) - 1)
     }
 }
 

@@ -85,9 +85,10 @@ pub(in super::super) fn scene_text(scene: &Scene) -> String {
 
 /// What commands call the scene: its name, or the file in the folder of the run.
 pub(in super::super) fn scene_file(scene: &Scene) -> &str {
-    match is_builtin(scene) {
-        true => &scene.name,
-        false => "scene.toml",
+    if is_builtin(scene) {
+        &scene.name
+    } else {
+        "scene.toml"
     }
 }
 

@@ -71,9 +71,10 @@ pub fn bust(faces: usize) -> Triangles {
         // From the back (+y) counterclockwise seen from above.
         let angle = TAU * u;
         let (x, y) = (-libm::sin(angle), libm::cos(angle));
-        let point = match v < BASE {
-            true => place(SECTIONS[0], x, y) * DVec3::new(v / BASE, v / BASE, 0.0),
-            false => place(section((v - BASE) / (1.0 - BASE)), x, y),
+        let point = if v < BASE {
+            place(SECTIONS[0], x, y) * DVec3::new(v / BASE, v / BASE, 0.0)
+        } else {
+            place(section((v - BASE) / (1.0 - BASE)), x, y)
         };
         (point, point.z)
     })
@@ -103,12 +104,11 @@ fn section(t: f64) -> Section {
         0 => std::array::from_fn(|i| 2.0 * SECTIONS[0][i] - SECTIONS[1][i]),
         _ => SECTIONS[k - 1],
     };
-    let after = match k + 2 > last {
-        true => {
-            let [z, half, front, back] = SECTIONS[last - 1];
-            [z, -half, -front, -back]
-        }
-        false => SECTIONS[k + 2],
+    let after = if k + 2 > last {
+        let [z, half, front, back] = SECTIONS[last - 1];
+        [z, -half, -front, -back]
+    } else {
+        SECTIONS[k + 2]
     };
     let (from, to) = (SECTIONS[k], SECTIONS[k + 1]);
     std::array::from_fn(|i| {

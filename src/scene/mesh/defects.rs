@@ -117,9 +117,12 @@ impl Defects {
             let kept = (0..fates.len()).filter(|i| has_edges(fates[*i], corners(*i)));
             kept.flat_map(|i| {
                 let [a, b, c] = corners(i);
-                [(a, b), (b, c), (c, a)].map(|(from, to)| match from < to {
-                    true => (from, u64::from(to) << 1),
-                    false => (to, u64::from(from) << 1 | 1),
+                [(a, b), (b, c), (c, a)].map(|(from, to)| {
+                    if from < to {
+                        (from, u64::from(to) << 1)
+                    } else {
+                        (to, u64::from(from) << 1 | 1)
+                    }
                 })
             })
         };

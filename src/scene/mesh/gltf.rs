@@ -231,9 +231,10 @@ impl<'a> Body<'a> {
             .max(self.bytes + self.buffers.read_beside())
             .min(u64::from(u32::MAX));
         let count = made as u64 + more as u64;
-        match count <= most {
-            true => Ok(()),
-            false => Err(MeshFileError::TooMany { what, count, most }),
+        if count <= most {
+            Ok(())
+        } else {
+            Err(MeshFileError::TooMany { what, count, most })
         }
     }
 }

@@ -52,9 +52,10 @@ pub fn cube() -> Triangles {
     for axis in 0..3 {
         for far in [0.0, 1.0] {
             // u × v points along the axis where it is far, against it where it is near.
-            let (s, t) = match far > 0.0 {
-                true => ((axis + 1) % 3, (axis + 2) % 3),
-                false => ((axis + 2) % 3, (axis + 1) % 3),
+            let (s, t) = if far > 0.0 {
+                ((axis + 1) % 3, (axis + 2) % 3)
+            } else {
+                ((axis + 2) % 3, (axis + 1) % 3)
             };
             let first = made.positions.len() as u32;
             let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];

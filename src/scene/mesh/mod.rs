@@ -143,12 +143,15 @@ pub fn read(
     beside: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
 ) -> Result<Triangles, MeshFileError> {
     let extension = name.rsplit_once('.').map(|(_, e)| e.to_ascii_lowercase());
-    let expect = |starts: bool, format| match starts {
-        true => Ok(()),
-        false => Err(MeshFileError::NotTheFormat {
-            name: name.to_owned(),
-            format,
-        }),
+    let expect = |starts: bool, format| {
+        if starts {
+            Ok(())
+        } else {
+            Err(MeshFileError::NotTheFormat {
+                name: name.to_owned(),
+                format,
+            })
+        }
     };
     let triangles = match extension.as_deref() {
         Some("ply") => {

@@ -5,7 +5,7 @@ use phicam::matrix::Matrix;
 use phicam::num::statistics::{chi_square_sf, normal_two_sided};
 use phicam::num::units::photon_energy;
 use phicam::scene::SensorModel;
-use phicam::sensor::{Exposure, Figures, Light, Range, Sensor};
+use phicam::sensor::{Exposure, Figures, Light, Range, Sensor, Stated};
 
 use super::{SIGNIFICANCE, WAVELENGTH, expose};
 
@@ -20,7 +20,7 @@ fn law_holds(figures: Figures, levels: &[f64], exposure: &Exposure, ambient: f64
         .with_ambient(ambient * watts)
         .unwrap();
     let sensor = Sensor::new(figures).unwrap();
-    let exposed = sensor.expose(&light, exposure, 3).unwrap();
+    let exposed = sensor.expose(&light, exposure, Stated::Oracle, 3).unwrap();
     let expected = sensor.expected(&light, exposure);
     for (l, level) in levels.iter().enumerate() {
         assert!(expected.bracket[l * pixels].is_some(), "{level} saturates");

@@ -4,7 +4,7 @@ use phicam::matrix::Matrix;
 use phicam::num::statistics::{chi_square_sf, normal_two_sided};
 use phicam::num::units::photon_energy;
 use phicam::scene::SensorModel;
-use phicam::sensor::{Exposed, Exposure, Figures, Light, Range, Sensor, ShotNoise};
+use phicam::sensor::{Exposed, Exposure, Figures, Light, Range, Sensor, ShotNoise, Stated};
 
 use super::{SIGNIFICANCE, WAVELENGTH, expose};
 
@@ -216,7 +216,7 @@ fn energy_is_conserved_through_the_ideal_sensor() {
     ] {
         let light = Light::new(&flux, wavelength).unwrap();
         let exposure = Exposure::new(&[time], frames, dark).unwrap();
-        let exposed = ideal.expose(&light, &exposure, 1).unwrap();
+        let exposed = ideal.expose(&light, &exposure, Stated::Oracle, 1).unwrap();
         for (out, clean) in exposed.flux.iter().zip(&flux) {
             assert!((out / clean - 1.0).abs() < 1e-14, "{out} of {clean}");
         }

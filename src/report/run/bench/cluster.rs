@@ -44,9 +44,10 @@ impl Display {
         let (mut coarse, mut fine) = (1, FINEST);
         while fine - coarse > 1 {
             let middle = coarse.midpoint(fine);
-            match survivors(triangles, &cells(mesh, middle)).count() <= most {
-                true => coarse = middle,
-                false => fine = middle,
+            if survivors(triangles, &cells(mesh, middle)).count() <= most {
+                coarse = middle;
+            } else {
+                fine = middle;
             }
         }
         let cells = cells(mesh, coarse);

@@ -251,9 +251,10 @@ fn near(scene: &Scene) -> [DVec3; 2] {
     let others = scene.surfaces.iter().filter(|s| s.role != Role::Hidden);
     others.fold(core, |frame, s| {
         let larger = grown(frame, s.shape.bounds());
-        match size(larger) <= ROOM * size(core) {
-            true => larger,
-            false => frame,
+        if size(larger) <= ROOM * size(core) {
+            larger
+        } else {
+            frame
         }
     })
 }

@@ -107,10 +107,11 @@ impl<'a> SurfaceBlock<'a> {
                 Role::Occluder => "occluder",
             },
             geometry,
-            texture: match plain {
-                // Where a mesh has no coordinates, its texture is asked at (0, 0) everywhere.
-                true => Grey::of(&Texture::Constant(surface.albedo.albedo([0.0, 0.0]))),
-                false => Grey::of(&surface.albedo),
+            // Where a mesh has no coordinates, its texture is asked at (0, 0) everywhere.
+            texture: if plain {
+                Grey::of(&Texture::Constant(surface.albedo.albedo([0.0, 0.0])))
+            } else {
+                Grey::of(&surface.albedo)
             },
         }
     }

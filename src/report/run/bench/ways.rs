@@ -110,14 +110,14 @@ fn chosen(scene: &Scene, ends: &[Place]) -> Vec<Place> {
                 .iter()
                 .map(|(_, q)| to(q.position))
                 .fold(f64::INFINITY, f64::min);
-            match taken.is_empty() {
-                true => -to(mean),
-                false => nearest,
-            }
+            if taken.is_empty() { -to(mean) } else { nearest }
         };
-        let best = (0..left.len()).reduce(|a, b| match merit(&left[b]) > merit(&left[a]) {
-            true => b,
-            false => a,
+        let best = (0..left.len()).reduce(|a, b| {
+            if merit(&left[b]) > merit(&left[a]) {
+                b
+            } else {
+                a
+            }
         });
         taken.extend(best.map(|i| left.swap_remove(i)));
     }

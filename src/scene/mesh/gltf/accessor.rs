@@ -129,9 +129,10 @@ impl<'a> Elements<'a> {
             ComponentType::U32 => (f64::from(u32::from_le_bytes(self.raw(at))), 4294967295.0),
             ComponentType::F32 => return f64::from(f32::from_le_bytes(self.raw(at))),
         };
-        match self.normalized {
-            true => (value / largest).max(-1.0),
-            false => value,
+        if self.normalized {
+            (value / largest).max(-1.0)
+        } else {
+            value
         }
     }
 }
