@@ -24,7 +24,8 @@ pub struct Converged {
     pub bound: Matrix,
     /// Relative Frobenius norm of the last change.
     pub change: f64,
-    /// Nodes with which Φcam is right to about 1e-4, for what needs no more.
+    /// Nodes with which Φcam is right to about 1e-4, for what needs no more; the fewest there are
+    /// where that takes too many.
     pub rough: Nodes,
 }
 
@@ -120,7 +121,8 @@ pub fn converged(scene: &Scene, kernel: Kernel, extent: Extent) -> Result<Conver
                 None => changed,
                 Some(before) => changed.zip_map(&before, remainder),
             };
-            let level = rough.unwrap_or(level);
+            let cheap = |l: &usize| cut.connections(*l) <= 0.1 * MOST_CONNECTIONS;
+            let level = rough.filter(cheap).unwrap_or(0);
             let rough = Nodes { extent, level };
             return Ok(Converged {
                 phi: next,
