@@ -59,6 +59,7 @@ fn scenes() -> Vec<Vec<u8>> {
     for material in [
         "{ oren_nayar = { ramp = [0.1, 0.9] }, roughness = 0.3 }",
         "{ coated = { cells = [[0.1, 0.2], [0.3, 0.4]] }, roughness = 0.2, ior = 1.4 }",
+        "{ paint = { ramp = [0.1, 0.9] }, roughness = 0.3, ior = 1.4 }",
         "{ conductor = { eta = 0.2, k = 3.9 }, roughness = 0.3, reflectance = 0.9 }",
         "{ mixture = [{ weight = 0.5, material = { lambertian = 0.8 } }, { weight = 0.4, material = { conductor = { eta = 1, k = 2 }, roughness = 0.1 } }] }",
         "{ lambertian = { target = \"siemens\", size = [9, 9], filter = \"bilinear\", wrap = \"repeat\", dark = 0.1, light = 0.9 } }",

@@ -18,7 +18,8 @@ How the scene is translated
              4096 rows of equal polar angle: edges along the polar angle lie within 4e-4 rad. On a disc it is tabulated in
              2048 rings by 2048 sectors.
   Materials  lambertian: `diffuse`. conductor: `roughconductor` (GGX). mixture: `blendbsdf`, nested. oren_nayar: the BSDF in
-             Python below (EON), for Mitsuba has none.
+             Python below (EON), for Mitsuba has none. paint: a BSDF in Python below, a `roughplastic` over black and the
+             light of the ground below it, which loses nothing; its tables are measured from that `roughplastic`.
              coated: `roughplastic` (GGX, nonlinear), with another diffuse reflectance. Both programs divide the light of the
              ground by 1 - rho * F, F the coat's reflectance of diffuse light from inside. phicam integrates F; Mitsuba takes
              the mean over 64 nodes, F', which is up to 1.5 % less. So the program measures F' by evaluating the BSDF with two

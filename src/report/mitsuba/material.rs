@@ -2,7 +2,7 @@
 
 use super::MitsubaError;
 use crate::geometry::DVec3;
-use crate::scene::material::Material;
+use crate::scene::material::{Material, SecondFacet};
 use crate::scene::{Surface, Texture};
 
 /// Polar angles of incidence and of reflection and the azimuth between the directions, in degrees,
@@ -28,6 +28,9 @@ pub(super) fn literal(material: &Material, surface: &str) -> Result<String, Mits
     Ok(match material {
         Material::Lambertian => String::from("(\"lambertian\",)"),
         Material::OrenNayar(m) => format!("(\"oren_nayar\", {:?})", m.ratio()),
+        Material::Coated(m) if m.second_facet() == SecondFacet::Passes => {
+            format!("(\"paint\", {:?}, {:?})", m.ggx().alpha(), m.index())
+        }
         Material::Coated(m) => format!(
             "(\"coated\", {:?}, {:?}, {:?})",
             m.ggx().alpha(),

@@ -24,6 +24,10 @@ def of_material(material, albedo):
             "k": uniform(k),
             "specular_reflectance": albedo(),
         }
+    if kind == "paint":
+        in_python()
+        alpha, eta = given
+        return {"type": "phicam_paint", "eta": eta, "coat": plastic(alpha, eta, uniform(0)), "reflectance": albedo()}
     if kind == "coated":
         alpha, eta, internal = given
         theirs = internal_reflectance(alpha, eta)
@@ -89,7 +93,7 @@ def differences():
 
 @functools.cache
 def in_python():
-    """The BSDF, registered, and the emitter that Mitsuba lacks, which is returned; the scalar variants cannot run such."""
+    """The BSDFs, registered, and the emitter that Mitsuba lacks, which is returned; the scalar variants cannot run such."""
     if mi.variant().startswith("scalar"):
         cure = "use --variant llvm_ad_rgb, for which LLVM must be installed"
         raise SystemExit(f"{mi.variant()} cannot run this scene, part of which is in Python: {cure}")
@@ -138,6 +142,67 @@ def in_python():
         def to_string(self):
             return f"OrenNayar[r = {self.r}]"
 
+    class Paint(mi.BSDF):
+        """A `roughplastic` over black, above a ground that gets all light that this coat does not reflect. Its reflectance
+        E is measured here, by its own sampling; sampled by the coat and by the cosine, as often."""
+
+        NODES, SIDE = 256, 200
+
+        def __init__(self, props):
+            mi.BSDF.__init__(self, props)
+            self.reflectance, self.coat, self.eta = props["reflectance"], props["coat"], props["eta"]
+            glossy, diffuse = mi.BSDFFlags.GlossyReflection, mi.BSDFFlags.DiffuseReflection
+            self.m_components = [glossy | mi.BSDFFlags.FrontSide, diffuse | mi.BSDFFlags.FrontSide]
+            self.m_flags = self.m_components[0] | self.m_components[1]
+            x = np.arange(self.NODES + 1) / self.NODES
+            through = 1 - self.reflected(np.maximum(x * x, 1e-4))
+            # 2 int mu T dmu over x = sqrt(mu), by trapezoids.
+            integrand = 4 * x**3 * through
+            self.internal = 1 - float(np.mean(integrand[1:] + integrand[:-1]) / 2) / self.eta**2
+            self.through = mi.Float(through.astype(np.float32))
+
+        def reflected(self, mu):
+            """E(mu): the means of what the coat's samples weigh."""
+            middles = (np.arange(self.SIDE) + 0.5) / self.SIDE
+            mu, u, v = (mi.Float(g.ravel().astype(np.float32)) for g in np.meshgrid(mu, middles, middles, indexing="ij"))
+            si = dr.zeros(mi.SurfaceInteraction3f, len(mu))
+            si.wi = mi.Vector3f(dr.safe_sqrt(1 - mu * mu), 0, mu)
+            weights = np.array(self.coat.sample(mi.BSDFContext(), si, 0.0, mi.Point2f(u, v))[1][0], dtype=np.float64)
+            return weights.reshape(-1, self.SIDE**2).mean(axis=1)
+
+        def transmittance(self, mu):
+            x = dr.safe_sqrt(mu) * self.NODES
+            k = dr.minimum(mi.UInt32(x), self.NODES - 1)
+            low, high = dr.gather(mi.Float, self.through, k), dr.gather(mi.Float, self.through, k + 1)
+            return low + (x - mi.Float(k)) * (high - low)
+
+        def eval(self, ctx, si, wo, active=True):
+            active = active & (si.wi.z > 0) & (wo.z > 0)
+            rho = self.reflectance.eval(si, active)
+            ground = rho / (1 - rho * self.internal) / (np.pi * self.eta**2)
+            through = self.transmittance(si.wi.z) * self.transmittance(wo.z)
+            return zero(self.coat.eval(ctx, si, wo, active) + ground * through * wo.z, active)
+
+        def pdf(self, ctx, si, wo, active=True):
+            active = active & (si.wi.z > 0) & (wo.z > 0)
+            both = self.coat.pdf(ctx, si, wo, active) + mi.warp.square_to_cosine_hemisphere_pdf(wo)
+            return zero(0.5 * both, active)
+
+        def eval_pdf(self, ctx, si, wo, active=True):
+            return self.eval(ctx, si, wo, active), self.pdf(ctx, si, wo, active)
+
+        def sample(self, ctx, si, sample1, sample2, active=True):
+            is_coat = sample1 < 0.5
+            glossy = self.coat.sample(ctx, si, 0.0, sample2, active & is_coat)[0].wo
+            bs = dr.zeros(mi.BSDFSample3f)
+            bs.wo = dr.select(is_coat, glossy, mi.warp.square_to_cosine_hemisphere(sample2))
+            bs.pdf, bs.eta = self.pdf(ctx, si, bs.wo, active), 1
+            bs.sampled_type, bs.sampled_component = mi.UInt32(+mi.BSDFFlags.GlossyReflection), mi.UInt32(0)
+            return bs, zero(self.eval(ctx, si, bs.wo, active) / bs.pdf, active & (bs.pdf > 0))
+
+        def to_string(self):
+            return f"Paint[eta = {self.eta}]"
+
     class Points(mi.Emitter):
         """Points of one surface that the beam lights: intensity power * f_r(to the laser, w) * cos(w) over their number. They
         have equal shares of the power: each is chosen as often."""
@@ -182,6 +247,7 @@ def in_python():
             return f"Points[{self.count}]"
 
     mi.register_bsdf("phicam_oren_nayar", OrenNayar)
+    mi.register_bsdf("phicam_paint", Paint)
     return Points
 
 

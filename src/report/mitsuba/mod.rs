@@ -28,7 +28,7 @@ pub enum MitsubaError {
     /// It has no BRDF that reads the table as phicam does.
     #[error(
         "surface `{surface}` is of a measured material, and Mitsuba 3 reads no such table: in a copy of the scene, give it \
-         `coated`, `oren_nayar`, `conductor`, `lambertian` or a mixture of these"
+         `paint`, `coated`, `oren_nayar`, `conductor`, `lambertian` or a mixture of these"
     )]
     Measured {
         /// Its name.

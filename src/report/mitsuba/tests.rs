@@ -372,6 +372,8 @@ fn materials_are_written_with_values_to_compare() {
     );
     let values = values.unwrap();
     assert!((values[4] * pi - 0.52).abs() < 1e-12);
+    let (paint, _) = wall("{ paint = 0.8, roughness = 0.3 }");
+    assert_eq!(paint, "(\"paint\", 0.3, 1.5)");
     let (paint, values) = wall("{ coated = 0.8, roughness = 0.01, ior = 1.5 }");
     let figures = numbers(&paint);
     assert_eq!(figures[..2], [0.01, 1.5]);

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::merl::Channel;
 use super::variants::{LEAST_ALPHA, MOST_ALPHA, MOST_INDEX, MOST_SIGMA};
-use super::{Coated, Conductor, Material, Measured, OrenNayar, Part};
+use super::{Coated, Conductor, Material, Measured, OrenNayar, Part, SecondFacet};
 use crate::scene::error::{Fault, keys};
 use crate::scene::texture::{AlbedoTable, Texture};
 
@@ -21,7 +21,10 @@ pub struct MaterialTable {
     /// Albedo of a rough matt surface.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub oren_nayar: Option<AlbedoTable>,
-    /// Albedo of the ground below a clear coat.
+    /// Albedo of the ground below a clear coat that loses no light.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub paint: Option<AlbedoTable>,
+    /// Albedo of the ground below a clear coat in which what meets a second facet is lost.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coated: Option<AlbedoTable>,
     /// Refractive index of a metal.
@@ -33,10 +36,11 @@ pub struct MaterialTable {
     /// Materials to be added.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mixture: Option<Vec<PartTable>>,
-    /// Standard deviation of the slope angle, radians (oren_nayar), or α (coated, conductor).
+    /// Standard deviation of the slope angle, radians (oren_nayar), or α (paint, coated,
+    /// conductor).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub roughness: Option<f64>,
-    /// Refractive index of the coat (coated); default 1.5.
+    /// Refractive index of the coat (paint, coated); default 1.5.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ior: Option<f64>,
     /// What the metal's reflection is multiplied by (conductor); default 1.
@@ -73,7 +77,8 @@ pub struct PartTable {
 /// Reads a file that the scene names, by the path written there; an error says why not.
 pub(in crate::scene) type Files<'a> = &'a mut dyn FnMut(&str) -> Result<Vec<u8>, String>;
 
-const KINDS: &str = "`lambertian`, `oren_nayar`, `coated`, `conductor`, `measured` and `mixture`";
+const KINDS: &str =
+    "`lambertian`, `oren_nayar`, `paint`, `coated`, `conductor`, `measured` and `mixture`";
 /// Index of refraction where the coat's is not stated: acrylic and polyurethane paint.
 const COAT: f64 = 1.5;
 /// Parts of a mixture.
@@ -106,7 +111,12 @@ impl Material {
             let material = Self::OrenNayar(OrenNayar::new(sigma));
             return Ok((material, albedo("oren_nayar", given)?));
         }
-        if let Some(given) = &table.coated {
+        let coats = [
+            ("paint", &table.paint, SecondFacet::Passes),
+            ("coated", &table.coated, SecondFacet::Absorbs),
+        ];
+        for (key, given, second) in coats {
+            let Some(given) = given else { continue };
             let alpha = roughness(table, LEAST_ALPHA, MOST_ALPHA, "α")?;
             let ior = table.ior.unwrap_or(COAT);
             if !(ior > 1.0 && ior <= MOST_INDEX) {
@@ -114,8 +124,8 @@ impl Material {
                 let cure = "use a number above 1, up to 4; paint and varnish have 1.4 to 1.6";
                 return Err(Fault::new(keys!["ior"], cause, cure));
             }
-            let texture = albedo("coated", given)?;
-            return Ok((Self::Coated(Arc::new(Coated::new(alpha, ior))), texture));
+            let coated = Coated::new(alpha, ior, second);
+            return Ok((Self::Coated(Arc::new(coated)), albedo(key, given)?));
         }
         if let Some(index) = &table.conductor {
             let alpha = roughness(table, LEAST_ALPHA, MOST_ALPHA, "α")?;
@@ -144,6 +154,7 @@ fn kind(table: &MaterialTable) -> Result<&'static str, Fault> {
     let kinds = [
         ("lambertian", table.lambertian.is_some()),
         ("oren_nayar", table.oren_nayar.is_some()),
+        ("paint", table.paint.is_some()),
         ("coated", table.coated.is_some()),
         ("conductor", table.conductor.is_some()),
         ("measured", table.measured.is_some()),
@@ -171,9 +182,9 @@ fn refuse_foreign_keys(table: &MaterialTable, kind: &'static str) -> Result<(), 
         (
             "roughness",
             table.roughness.is_some(),
-            &["oren_nayar", "coated", "conductor"],
+            &["oren_nayar", "paint", "coated", "conductor"],
         ),
-        ("ior", table.ior.is_some(), &["coated"]),
+        ("ior", table.ior.is_some(), &["paint", "coated"]),
         ("reflectance", table.reflectance.is_some(), &["conductor"]),
         ("channel", table.channel.is_some(), &["measured"]),
         ("scale", table.scale.is_some(), &["measured"]),

@@ -9,7 +9,8 @@
 //! | --- | --- |
 //! | `{ lambertian = ρ }` | ρ/π |
 //! | `{ oren_nayar = ρ, roughness = σ }` | rough and matt, [`OrenNayar`]; σ in radians, 0 to π/2 |
-//! | `{ coated = ρ, roughness = α, ior = 1.5 }` | satin paint, [`Coated`]; α from 0.01 to 1, ior above 1, up to 4 |
+//! | `{ paint = ρ, roughness = α, ior = 1.5 }` | satin paint, [`Coated`]: white (ρ = 1) reflects all light; α from 0.01 to 1, ior above 1, up to 4 |
+//! | `{ coated = ρ, roughness = α, ior = 1.5 }` | the same as in Mitsuba's `roughplastic`, where light that meets a second facet is lost: white reflects 0.6 to 0.7 of it at α = 0.3 |
 //! | `{ conductor = { eta = 0.2, k = 3.9 }, roughness = α, reflectance = ρ }` | rough metal, [`Conductor`]; ρ is 1 if absent |
 //! | `{ measured = "paint.binary", channel = "red", scale = ρ }` | a table in a file, [`Measured`]; ρ is 1 if absent |
 //! | `{ mixture = [{ weight = 0.7, material = { … } }, …] }` | a sum of materials; weights ≥ 0 that add up to 1 at most |
@@ -31,7 +32,7 @@ mod variants;
 use std::f64::consts::FRAC_1_PI;
 use std::sync::Arc;
 
-pub use coated::Coated;
+pub use coated::{Coated, SecondFacet};
 pub use conductor::Conductor;
 pub use file::{IndexTable, MaterialTable, PartTable};
 pub use ggx::{Ggx, mirrored};
@@ -50,7 +51,7 @@ pub enum Material {
     Lambertian,
     /// Rough and matt.
     OrenNayar(OrenNayar),
-    /// Satin paint.
+    /// Satin paint, and its form that loses light.
     Coated(Arc<Coated>),
     /// Rough metal.
     Conductor(Conductor),
@@ -149,7 +150,12 @@ impl Material {
                 let part = |p: &Part| p.weight * p.material.white_sky_albedo(p.albedo);
                 albedo * parts.iter().map(part).sum::<f64>()
             }
-            _ => {
+            material => {
+                if let Self::Coated(m) = material
+                    && let Some(reflected) = m.white_sky_albedo(albedo)
+                {
+                    return reflected;
+                }
                 let rule = Rule::gauss_legendre(NODES);
                 let term = |(mu, weight): (f64, f64)| {
                     2.0 * weight * mu * self.reflected(albedo, slanted(mu), &rule)
@@ -173,9 +179,15 @@ impl Material {
                 let part = |p: &Part| p.weight * p.material.reflected(p.albedo, wi, rule);
                 albedo * parts.iter().map(part).sum::<f64>()
             }
-            _ => self
-                .lobe(albedo, wi)
-                .integral(wi, rule, |w, _| self.brdf(albedo, wi, w) * w.z),
+            material => {
+                if let Self::Coated(m) = material
+                    && let Some(reflected) = m.directional_albedo(albedo, wi.z)
+                {
+                    return reflected;
+                }
+                self.lobe(albedo, wi)
+                    .integral(wi, rule, |w, _| self.brdf(albedo, wi, w) * w.z)
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Coated, Ggx, Material, OrenNayar, Part};
+use super::{Ggx, Material, OrenNayar, Part};
 
 /// Largest slope deviation of a rough matt surface, radians.
 pub(super) const MOST_SIGMA: f64 = std::f64::consts::FRAC_PI_2;
@@ -45,7 +45,7 @@ impl Material {
                 within.then(|| Self::OrenNayar(OrenNayar::new(sigma)))
             }
             Self::Coated(m) => {
-                let coated = Coated::new(alpha(&m.ggx())?, m.index());
+                let coated = m.with(alpha(&m.ggx())?, m.index());
                 Some(Self::Coated(Arc::new(coated)))
             }
             Self::Conductor(m) => Some(Self::Conductor(m.with(Ggx::new(alpha(&m.ggx)?)))),
@@ -63,7 +63,7 @@ impl Material {
             Self::Coated(m) => {
                 let index = 1.0 + factor * (m.index() - 1.0);
                 let within = index > 1.0 && index <= MOST_INDEX;
-                within.then(|| Self::Coated(Arc::new(Coated::new(m.ggx().alpha(), index))))
+                within.then(|| Self::Coated(Arc::new(m.with(m.ggx().alpha(), index))))
             }
             Self::Mixture(parts) => {
                 changed(parts, Self::has_coat, |m| m.with_contrast_times(factor))
@@ -109,10 +109,10 @@ fn changed(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::material::Conductor;
+    use crate::scene::material::{Coated, Conductor, SecondFacet};
 
     fn coated(alpha: f64, eta: f64) -> Material {
-        Material::Coated(Arc::new(Coated::new(alpha, eta)))
+        Material::Coated(Arc::new(Coated::new(alpha, eta, SecondFacet::Absorbs)))
     }
 
     #[test]
@@ -120,6 +120,9 @@ mod tests {
         let paint = coated(0.3, 1.5);
         assert_eq!(paint.with_roughness_times(2.0), Some(coated(0.6, 1.5)));
         assert_eq!(paint.with_contrast_times(0.8), Some(coated(0.3, 1.4)));
+        let passes =
+            |alpha| Material::Coated(Arc::new(Coated::new(alpha, 1.5, SecondFacet::Passes)));
+        assert_eq!(passes(0.3).with_roughness_times(2.0), Some(passes(0.6)));
         let matt = Material::OrenNayar(OrenNayar::new(0.4));
         let rougher = Material::OrenNayar(OrenNayar::new(0.8));
         assert_eq!(matt.with_roughness_times(2.0), Some(rougher));
