@@ -62,12 +62,16 @@ pub(super) fn test(args: &TestArgs, plan: &Plan, console: Console) -> Result<Tes
     })
 }
 
-/// The test for a matrix of unknown origin: its standard errors are taken as known, of normal
-/// errors.
-pub(super) fn test_of_normal(args: &TestArgs, errors: Errors) -> Result<Test, Failure> {
+/// The test for a matrix of unknown origin. Unless it is said from how many replicates its standard
+/// errors come they are taken as known, of normal errors.
+pub(super) fn test_of_matrix(
+    args: &TestArgs,
+    errors: Errors,
+    replicates: Option<u32>,
+) -> Result<Test, Failure> {
     Ok(Test {
         significance: significance(args)?,
-        replicates: u32::MAX,
+        replicates: replicates.unwrap_or(u32::MAX),
         errors,
     })
 }

@@ -87,7 +87,7 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
             phi: npy::read_finite(phi)?,
             stderr: read_errors(stderr)?,
             left_out: None,
-            test: settings::test_of_normal(&args.test, args.errors)?,
+            test: settings::test_of_matrix(&args.test, args.errors, args.replicates)?,
             run: None,
         }),
         (_, _, Some((dir, (scene, record)))) => Ok(Given {

@@ -163,7 +163,7 @@ fn frames_alone_are_enough() {
 /// Any matrix against any scene; one of another shape is refused.
 #[test]
 fn a_matrix_of_ones_own_is_judged() {
-    let done = "--phi done/phi.npy --stderr done/phi.stderr.npy";
+    let done = "--phi done/phi.npy --stderr done/phi.stderr.npy --replicates 32";
     for line in [
         format!("validate done {done}"),
         format!("validate --against small.toml {done}"),

@@ -242,9 +242,12 @@ pub(in crate::cli) struct ValidateArgs {
     /// Test this matrix (.npy, pixels × spots, W) instead of the run's
     #[arg(long, value_name = "FILE", requires = "stderr")]
     pub phi: Option<PathBuf>,
-    /// Standard errors of --phi, of the same shape, taken as normal
+    /// Standard errors of --phi, of the same shape
     #[arg(long, value_name = "FILE", requires = "phi")]
     pub stderr: Option<PathBuf>,
+    /// Replicates from which --stderr was estimated, at least 2; known errors unless given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..), requires = "phi")]
+    pub replicates: Option<u32>,
     /// Which entries of --phi share their errors
     #[arg(long, value_parser = choice::errors(), default_value = "independent", requires = "phi")]
     pub errors: Errors,
