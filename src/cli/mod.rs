@@ -16,6 +16,7 @@
 //! | `model/laser_side.npy`, `camera_side.npy` | D and C: G12 and G23 with the walls' BRDFs and in W, Φcam = C·diag(ρ)·D |
 //! | `model/z.npy` | z of every entry, what `run` compared by: deviation of the traced from the modelled flux in standard errors, (pixels, spots) |
 //! | `recovered/METHOD.npy`, `.png` | recovered reflectance, (nv, nu); `truth` beside it |
+//! | `recovered/determined.npy`, `.png` | share of each element that the photographs determine at their noise, (nv, nu), 0 to 1 |
 //! | `recovered/METHOD.stderr.npy` | its standard error, (nv, nu), where the noise is known |
 //! | `recovered/METHOD.covariance.npy`, `METHOD.resolution.npy` | covariance and resolution matrix of a linear method, elements × elements of all surfaces |
 //! | `recovered/picard.csv`, `.svg` | signal and noise in each singular direction of the laser side |
@@ -27,7 +28,10 @@
 //! A study keeps its finished tasks in `NAME.phs` beside its files until it is complete, and `study
 //! noise` for good: the same command goes on from them.
 //!
-//! Exit codes: 0 done (and agreed), 1 traced and modelled disagree, 2 error, 4 no evidence, 75 stopped by SIGTERM
+//! Exit codes: 0 done (and agreed), 1 traced and modelled disagree (`validate`, `run`) or photographs
+//! and model contradict each other (`recover`: no reflectances between 0 and 1 explain the photographs
+//! within their errors; what was recovered is written nevertheless), 2 error, 4 nothing to
+//! compare (`validate`, `run`: no evidence), 75 stopped by SIGTERM
 //! and 130 by Ctrl-C with what is finished kept. The commands for many machines (`plan`, `shard`,
 //! `status`, `merge`, `slurm`, `clean`) tell schedulers more: 3 not complete (`status`), 64 wrong
 //! usage, 65 refused data, 66 missing blocks, 74 the system cannot read or write.

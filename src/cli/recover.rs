@@ -13,7 +13,9 @@ use super::recover_memory::{self, Errors, Held, Strips};
 use super::run_folder::{PHI, RECOVERED, SATURATED, SCENE, STDERR};
 use super::{Outcome, recover_options};
 use crate::lab::finding::Describe;
-use crate::lab::{Attempt, Noise, RecoveredObject, describe_recovery, picards, recover_objects};
+use crate::lab::{
+    Attempt, Certainty, Noise, RecoveredObject, describe_recovery, picards, recover_objects,
+};
 use crate::matrix::{Matrix, npy};
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Nuisance, Options, Picard, Uncertainty};
@@ -35,10 +37,12 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     refuse_repetition(&methods)?;
     // Measured photographs come without a run: a scene.toml is enough for them.
     let measured = args.phi.is_some() && !args.dir.join(Record::FILE).exists();
-    let scene = if measured {
-        console.load_scene(&args.dir.join(SCENE).to_string_lossy())?
+    let (scene, record) = if measured {
+        let path = args.dir.join(SCENE);
+        (console.load_scene(&path.to_string_lossy())?, None)
     } else {
-        read_run(&args.dir, console)?.0
+        let (scene, record) = read_run(&args.dir, console)?;
+        (scene, Some(record))
     };
     let held = recover_memory::plan(args, &scene, &methods, &options, console)?;
     let job = Job {
@@ -46,6 +50,13 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
         scene: &scene,
         methods: &methods,
         options,
+        // Of the run's own errors more is known than of those that are given.
+        certainty: match &record {
+            Some(record) if args.phi.is_none() && args.stderr.is_none() && args.noise.is_none() => {
+                Certainty::of(&record.plan)
+            }
+            _ => Certainty::STATED,
+        },
         phi: args.phi.clone().unwrap_or_else(|| args.dir.join(PHI)),
         console,
     };
@@ -58,6 +69,9 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     output::result(args.json, &objects, || {
         report::finding_text(&describe_recovery(&objects))
     })?;
+    if objects.iter().any(RecoveredObject::contradicted) {
+        return Ok(Outcome::Disagreed);
+    }
     Ok(Outcome::Done)
 }
 
@@ -67,6 +81,7 @@ struct Job<'a> {
     scene: &'a Scene,
     methods: &'a [Method],
     options: Options,
+    certainty: Certainty,
     /// File of Φcam.
     phi: PathBuf,
     console: Console<'a>,
@@ -89,7 +104,9 @@ impl Job<'_> {
             }
         };
         let model = self.occluded(MatrixModel::new(scene, args.kernel, args.elements)?);
-        let noise = stderr.as_ref().map_or(Noise::Unknown, Noise::StandardError);
+        let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
+            Noise::StandardError(stderr, self.certainty)
+        });
         let glare = args.joint.glare_pattern.as_ref();
         let glare = glare.map(|file| read_matrix(file, scene)).transpose()?;
         let nuisance = Nuisance {
@@ -125,6 +142,7 @@ impl Job<'_> {
             model: &model,
             phi,
             errors,
+            certainty: self.certainty,
             pixels,
         };
         strips.recover(self.methods, &self.options)
@@ -231,8 +249,8 @@ pub(super) fn collect(
     Ok(objects)
 }
 
-/// Writes DIR/recovered/METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png, and
-/// overview.png with all of them side by side (no pictures of elements that are the triangles of a
+/// Writes DIR/recovered/METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png, what the
+/// photographs determine of each element in determined.npy and determined.png, and overview.png with all of them side by side (no pictures of elements that are the triangles of a
 /// mesh); METHOD.texture.png, the reflectance as a texture for a scene, and METHOD.ply, the surface
 /// with it as colours; what is known of the uncertainty in METHOD.stderr.npy (nv × nu),
 /// METHOD.covariance.npy and METHOD.resolution.npy (own elements × elements of all surfaces),
@@ -269,11 +287,18 @@ pub(super) fn write(
         let shape = scene.surfaces.iter().find(|s| s.name == **surface);
         let drawn = shape.is_none_or(|s| s.division == Division::Cells);
         let mut panels = Vec::new();
+        let known = objects.iter().find(|o| o.surface == *surface);
+        let shares = known.and_then(|o| o.determined_share.as_ref());
+        remove_if_there(shares.is_none(), &file("determined", "npy"))?;
+        remove_if_there(shares.is_none(), &file("determined", "png"))?;
         for object in objects.iter().filter(|o| o.surface == *surface) {
             let [nu, nv] = object.elements;
             let method = object.method.as_str();
-            let truth = panels.is_empty().then_some(("truth", &object.truth));
-            for (name, values) in truth.into_iter().chain([(method, &object.reflectance)]) {
+            let first = known.is_some_and(|known| std::ptr::eq(known, object));
+            let truth = first.then_some(("truth", &object.truth));
+            let shares = shares.filter(|_| first).map(|s| ("determined", s));
+            let own = [(method, &object.reflectance)];
+            for (name, values) in truth.into_iter().chain(shares).chain(own) {
                 npy::write(&file(name, "npy"), &Matrix::from_row_slice(nv, nu, values))?;
                 if drawn {
                     let panel = Panel::elements(name, object.elements, values.clone());
@@ -295,9 +320,7 @@ pub(super) fn write(
                 let path = file(method, &format!("{what}.npy"));
                 match matrix {
                     Some(matrix) => npy::write(&path, &matrix)?,
-                    // Of an earlier recovery.
-                    None if path.exists() => std::fs::remove_file(&path)?,
-                    None => {}
+                    None => remove_if_there(true, &path)?,
                 }
             }
         }
@@ -305,6 +328,14 @@ pub(super) fn write(
             let png = report::grey_png(surface, &panels)?;
             output::write(&file("overview", "png"), png)?;
         }
+    }
+    Ok(())
+}
+
+/// Removes what an earlier recovery left, where `stale` says so.
+fn remove_if_there(stale: bool, path: &Path) -> Result<(), Failure> {
+    if stale && path.exists() {
+        std::fs::remove_file(path)?;
     }
     Ok(())
 }

@@ -7,10 +7,10 @@ use super::args::RecoverArgs;
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::refuse_shape;
-use crate::lab::{Attempt, measured};
+use crate::lab::{Attempt, Certainty, Judged, Residuals, measured};
 use crate::matrix::npy::Rows;
 use crate::model::MatrixModel;
-use crate::recovery::{Method, Options, Strip, recover_strips};
+use crate::recovery::{Method, Options, Problem, Recovered, Strip, recover_strips};
 use crate::scene::Scene;
 
 const GIB: f64 = (1u64 << 30) as f64;
@@ -146,6 +146,7 @@ pub(super) struct Strips<'a> {
     pub model: &'a MatrixModel,
     pub phi: Rows,
     pub errors: Errors<Box<Rows>>,
+    pub certainty: Certainty,
     /// Of one strip.
     pub pixels: usize,
 }
@@ -173,12 +174,34 @@ impl Strips<'_> {
             if let Some(failure) = broken {
                 return Err(failure);
             }
-            attempts.push(Attempt {
-                method,
-                outcome: found.map(|found| measured(model, &found)),
-            });
+            let outcome = match found {
+                Ok(found) => {
+                    let judged = self.judged(&found)?;
+                    Ok(measured(model, &found, &judged))
+                }
+                Err(e) => Err(e),
+            };
+            attempts.push(Attempt { method, outcome });
         }
         Ok(attempts)
+    }
+
+    /// The fit, from all photographs once more; what the best picture could do is not known.
+    fn judged(&mut self, found: &Recovered) -> Result<Judged, Failure> {
+        let mut residuals = Residuals::default();
+        let mut first = 0;
+        while let Some(Strip { phi, c, stderr }) = self.read(first)? {
+            first += phi.nrows();
+            if let Some(stderr) = &stderr {
+                let problem = Problem::new(&phi, &c, &self.model.laser_side, None)?;
+                residuals.add(&phi, &found.photographs(&problem), stderr, self.certainty);
+            }
+        }
+        Ok(Judged {
+            fit: residuals.fit(found.freedom_used(), self.certainty.errors),
+            best: None,
+            determined: None,
+        })
     }
 
     /// The strip that begins at pixel `first`; `None` beyond the last.

@@ -17,8 +17,8 @@ use super::{Outcome, model, recover, settings, validate};
 use crate::film;
 use crate::lab::finding::Describe;
 use crate::lab::{
-    self, Against, GalleryPlan, GalleryTasks, Measured, Noise, Occlusion, RunGallery, RunResults,
-    Work,
+    self, Against, Certainty, GalleryPlan, GalleryTasks, Measured, Noise, Occlusion, RunGallery,
+    RunResults, Work,
 };
 use crate::matrix::Matrix;
 use crate::metrics::relative_frobenius;
@@ -141,7 +141,7 @@ fn compare_and_recover(
         return Ok(());
     }
     console.say("recovering the object");
-    let noise = Noise::StandardError(&results.stderr);
+    let noise = Noise::StandardError(&results.stderr, Certainty::of(&results.plan));
     let options = Options {
         uncertainty: recover::uncertainty(&matrices, console),
         ..Options::default()

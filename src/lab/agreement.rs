@@ -236,16 +236,20 @@ fn worst_bound(evidence: &Evidence<'_>, counted: &[usize]) -> Option<EntryBound>
 /// Fewer rows than this do not tell their own scatter.
 const ENOUGH_ROWS: usize = 16;
 
-/// ν such that Σz² has the mean and the variance of (entries/ν)·χ²_ν if the model is right: ν =
-/// 2·entries²/Var Σz², the variance estimated from the scatter of the row sums. With too few rows,
-/// their number, which is the least it can be.
 fn effective_freedom(z: &Matrix, entries: usize) -> f64 {
-    let (rows, entries) = (z.nrows() as f64, entries.max(1) as f64);
-    if z.nrows() < ENOUGH_ROWS {
+    let sums: Vec<f64> = z.row_iter().map(|r| r.norm_squared()).collect();
+    freedom_of_rows(&sums, entries)
+}
+
+/// ν such that Σz² has the mean and the variance of (entries/ν)·χ²_ν if the model is right: ν =
+/// 2·entries²/Var Σz², the variance estimated from the scatter of the `sums` over each row. With
+/// too few rows, their number, which is the least it can be.
+pub(super) fn freedom_of_rows(sums: &[f64], entries: usize) -> f64 {
+    let (rows, entries) = (sums.len() as f64, entries.max(1) as f64);
+    if sums.len() < ENOUGH_ROWS {
         return rows;
     }
-    let sums: Vec<f64> = z.row_iter().map(|r| r.norm_squared()).collect();
-    let (_, stderr) = mean_and_stderr(&sums);
+    let (_, stderr) = mean_and_stderr(sums);
     let variance = stderr * stderr * rows * rows;
     if variance > 0.0 {
         (2.0 * entries * entries / variance).clamp(rows.min(entries), entries)

@@ -46,6 +46,8 @@ pub struct CoverageRow {
     pub stderr: Option<f64>,
     /// The element that is covered least often.
     pub least: Option<f64>,
+    /// Share of seeds in which every element is covered.
+    pub together: Option<f64>,
     /// Root mean square, over elements, of the mean error over seeds: the bias, up to its own
     /// standard error.
     pub bias: Option<f64>,
@@ -135,6 +137,7 @@ impl Describe for Coverage {
                 r.bands.as_deref().unwrap_or("–").into(),
                 r.percent().unwrap_or(Cell::Number(None)),
                 r.least.map(|x| 100.0 * x).into(),
+                r.together.map(|x| 100.0 * x).into(),
                 r.bias.into(),
                 r.width.into(),
             ]
@@ -153,9 +156,10 @@ impl Describe for Coverage {
             ),
             columns: vec![
                 Column::text("method", ""),
-                Column::text("bands", ""),
+                Column::text("promise", ""),
                 Column::number("covered", "", "%", 3),
                 Column::number("the least covered element", "", "%", 3),
+                Column::number("all at once", "", "%", 3),
                 Column::number("rms bias", "", "", 2),
                 Column::number("mean width", "", "", 2),
             ],
@@ -354,7 +358,7 @@ fn trial(
     let found = Photographs::relative(exact, plan.noise, seed).recover(model, method, &options)?;
     let bands = found.bands.ok_or(RecoveryError::NotForMethod {
         method,
-        what: "gave no bands",
+        what: found.no_bands.unwrap_or("gave no bands"),
         cure: "ask for bands of another method",
     })?;
     Ok(Trial {
@@ -406,6 +410,7 @@ fn row(method: Method, truth: &[f64], trials: &[Result<Trial, String>]) -> Cover
         covered: Some(mean),
         stderr: (trials.len() > 1).then(|| (square / (n * (n - 1.0))).sqrt()),
         least: (0..truth.len()).map(of_element).reduce(f64::min),
+        together: Some(shares.iter().filter(|s| **s == 1.0).count() as f64 / n),
         bias: Some((squares.sum::<f64>() / r).sqrt()),
         width: Some(widths.sum::<f64>() / (n * r)),
         ..nothing
@@ -414,9 +419,8 @@ fn row(method: Method, truth: &[f64], trials: &[Result<Trial, String>]) -> Cover
 
 fn words(kind: BandKind) -> &'static str {
     match kind {
-        BandKind::Gaussian => "unbiased",
-        BandKind::GaussianAroundMean => "bias left out",
-        BandKind::Profile => "profile",
+        BandKind::Gaussian => "each alone",
+        BandKind::Simultaneous => "all together",
     }
 }
 
@@ -435,6 +439,7 @@ mod tests {
             covered,
             stderr: Some(0.01),
             least: None,
+            together: None,
             bias: None,
             width: None,
             reason: None,

@@ -150,12 +150,14 @@ mod convergence;
 mod coverage;
 mod derivatives;
 mod deviate;
+mod doubt;
 mod ensemble;
 mod error;
 mod evidence;
 mod experiment;
 mod exposure;
 pub mod finding;
+mod fit;
 mod gallery;
 mod indicator;
 mod inversion;
@@ -194,6 +196,7 @@ pub use error::{LabError, StudyError};
 pub use evidence::{Errors, Evidence, Test};
 pub use experiment::{Experiment, ExperimentPlan, ExperimentTasks, Reading, Setting, Threshold};
 pub use exposure::describe_exposure;
+pub use fit::{Attainable, Certainty, FIT_LEVEL, Fit, Judged, Residuals};
 pub use gallery::{
     Automatic, GalleryPicture, GalleryPlan, GallerySurface, GalleryTasks, RunGallery, Series,
 };
@@ -218,7 +221,9 @@ pub use registry::STUDIES;
 pub use results::RunResults;
 pub use score::{Derivatives, Deviation, Parameter, Score};
 pub use study::{Sharing, Study, Work, context, outputs, run};
-pub use summary::{by_surface, describe_recovery, describe_render, recovery};
+pub use summary::{
+    by_surface, describe_recovery, describe_render, determined, fits, recovery, warnings,
+};
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
 pub use validation::{
     Against, Integration, Measured, Occlusion, Validation, ValidationError, validate,

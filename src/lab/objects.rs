@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use serde::Serialize;
 
+use super::doubt::doubts;
+use super::fit::{Certainty, Fit, Judged};
 use crate::matrix::Matrix;
 use crate::metrics::{correlation, mtf_normalized, mtf_raw, rmse};
 use crate::model::MatrixModel;
@@ -46,6 +48,20 @@ pub struct RecoveredObject {
     pub bias: Option<Vec<f64>>,
     /// Directions that the method resolves: trace of its resolution matrix.
     pub effective_rank: f64,
+    /// How many of the elements of all surfaces the photographs determine at their noise, whatever
+    /// the method; absent where the noise is not known.
+    pub determined: Option<f64>,
+    /// Share of each element that they determine, 0 to 1 ([`recovery::determined`]); absent likewise.
+    pub determined_share: Option<Vec<f64>>,
+    /// Elements of all surfaces.
+    pub unknowns: usize,
+    /// Whether all surfaces together explain the photographs; absent where that cannot be judged.
+    pub fit: Option<Fit>,
+    /// The same of the best reflectances between 0 and 1 that there are: whether photographs and
+    /// model belong together, whatever the method. Absent where it is not known.
+    pub best_fit: Option<Fit>,
+    /// What speaks against believing it, each with its cure.
+    pub warnings: Vec<String>,
     /// Covariance of its elements (rows) with those of all hidden surfaces (columns, in file
     /// order).
     #[serde(skip)]
@@ -61,7 +77,7 @@ pub struct RecoveredObject {
 pub struct ObjectBands {
     /// Probability that each alone shall cover.
     pub confidence: f64,
-    /// What they are: `gaussian`, `gaussian-around-mean` (the bias is left out) or `profile`.
+    /// What they are: `gaussian`, each element alone, or `simultaneous`, all elements together.
     pub kind: String,
     /// Lower limits.
     pub lower: Vec<f64>,
@@ -69,13 +85,29 @@ pub struct ObjectBands {
     pub upper: Vec<f64>,
 }
 
+impl RecoveredObject {
+    /// Whether the photographs refute the model: no reflectances between 0 and 1 explain them.
+    pub fn contradicted(&self) -> bool {
+        self.best_fit.as_ref().is_some_and(|best| !best.fits)
+    }
+}
+
 /// What a recovery is told of the noise in Φcam.
 #[derive(Clone, Copy, Debug)]
 pub enum Noise<'a> {
-    /// The standard error of each entry, W.
-    StandardError(&'a Matrix),
+    /// The standard error of each entry, W, and what is known of it.
+    StandardError(&'a Matrix, Certainty),
     /// Nothing: methods that need it must be given their parameter.
     Unknown,
+}
+
+impl<'a> Noise<'a> {
+    fn known(self) -> Option<(&'a Matrix, Certainty)> {
+        match self {
+            Self::StandardError(stderr, certainty) => Some((stderr, certainty)),
+            Self::Unknown => None,
+        }
+    }
 }
 
 /// One method's outcome on all hidden surfaces.
@@ -99,17 +131,33 @@ pub fn recover_objects(
     options: &Options,
 ) -> Vec<Attempt> {
     let grids: Vec<[usize; 2]> = model.grids.iter().map(|grid| grid.count).collect();
-    let attempt = |method: Method| {
-        let problem = problem(model, phi, noise)?
-            .with_grids(&grids)?
-            .with_nuisance(nuisance)?;
-        recover(method, &problem, options).map(|found| measured(model, &found))
+    let problem = problem(model, phi, noise)
+        .and_then(|p| p.with_grids(&grids))
+        .and_then(|p| p.with_nuisance(nuisance));
+    let problem = match problem {
+        Ok(problem) => problem,
+        Err(e) => {
+            let refused = |&method: &Method| Attempt {
+                method,
+                outcome: Err(e.clone()),
+            };
+            return methods.iter().map(refused).collect();
+        }
     };
+    let found: Vec<Result<Recovered, RecoveryError>> = methods
+        .iter()
+        .map(|method| recover(*method, &problem, options))
+        .collect();
+    let known = noise.known();
+    let all: Vec<&Recovered> = found.iter().flatten().collect();
+    let any = Judged::any(&problem, known, &all, options);
+    let judged = |found: Recovered| measured(model, &found, &any.of(&problem, known, &found));
     methods
         .iter()
-        .map(|&method| Attempt {
+        .zip(found)
+        .map(|(&method, found)| Attempt {
             method,
-            outcome: attempt(method),
+            outcome: found.map(judged),
         })
         .collect()
 }
@@ -145,16 +193,15 @@ fn problem<'a>(
     phi: &'a Matrix,
     noise: Noise<'a>,
 ) -> Result<Problem<'a>, RecoveryError> {
-    let stderr = match noise {
-        Noise::StandardError(stderr) => Some(stderr),
-        Noise::Unknown => None,
-    };
+    let stderr = noise.known().map(|known| known.0);
     Problem::new(phi, &model.camera_side, &model.laser_side, stderr)
 }
 
-/// What was recovered, surface by surface, measured against the true albedo at the element centres.
-pub fn measured(model: &MatrixModel, found: &Recovered) -> Vec<RecoveredObject> {
+/// What was recovered, surface by surface, measured against the true albedo at the element centres,
+/// and what the photographs say of it.
+pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<RecoveredObject> {
     let bias = found.bias(&model.albedo);
+    let warnings = doubts(found, judged);
     let cut = |grid: &crate::model::ElementGrid| {
         let range = grid.first..grid.first + grid.len();
         let reflectance = found.reflectance.as_slice()[range.clone()].to_vec();
@@ -179,6 +226,15 @@ pub fn measured(model: &MatrixModel, found: &Recovered) -> Vec<RecoveredObject> 
                 .map(|s| s.as_slice()[range.clone()].to_vec()),
             bias: bias.as_ref().map(|b| b.as_slice()[range.clone()].to_vec()),
             effective_rank: found.effective_rank,
+            determined: judged.determined.as_ref().map(|d| d.rank),
+            determined_share: judged
+                .determined
+                .as_ref()
+                .map(|d| d.shares.as_slice()[range.clone()].to_vec()),
+            unknowns: found.reflectance.len(),
+            fit: judged.fit.clone(),
+            best_fit: judged.best.as_ref().map(|best| best.possible.clone()),
+            warnings: warnings.clone(),
             covariance: found.covariance.as_ref().map(own),
             resolution: found.resolution.as_ref().map(own),
             reflectance,
@@ -191,8 +247,7 @@ pub fn measured(model: &MatrixModel, found: &Recovered) -> Vec<RecoveredObject> 
 fn object_bands(bands: &Bands, range: Range<usize>) -> ObjectBands {
     let kind = match bands.kind {
         BandKind::Gaussian => "gaussian",
-        BandKind::GaussianAroundMean => "gaussian-around-mean",
-        BandKind::Profile => "profile",
+        BandKind::Simultaneous => "simultaneous",
     };
     let intervals = &bands.intervals[range];
     ObjectBands {
@@ -206,6 +261,13 @@ fn object_bands(bands: &Bands, range: Range<usize>) -> ObjectBands {
 /// The regularisation used and why, in words.
 pub(super) fn words(found: &Recovered) -> String {
     let solver = match &found.solver {
+        // That an iteration has converged says nothing of the fit.
+        Some(s) if s.status == "Solved" => {
+            format!(
+                "; minimum after {} iterations, gap {:.1e}",
+                s.iterations, s.gap
+            )
+        }
         Some(s) => format!(
             "; {} after {} iterations, gap {:.1e}",
             s.status, s.iterations, s.gap

@@ -1,6 +1,6 @@
 //! Made-up runs for tests: no physics, only shapes and plausible sizes.
 
-use crate::lab::{Agreement, Entry, RecoveredObject, RunResults};
+use crate::lab::{Agreement, Entry, Fit, RecoveredObject, RunResults};
 use crate::matrix::Matrix;
 use crate::num::stream::Sampling;
 use crate::scene::Scene;
@@ -54,6 +54,19 @@ pub(crate) fn of(scene: Scene) -> RunResults {
 /// A whole run of a built-in scene.
 pub(crate) fn run(scene: &str) -> RunResults {
     whole(bare(scene))
+}
+
+/// A fit to 24 entries.
+fn fit(chi2_per_dof: f64) -> Fit {
+    Fit {
+        chi2_per_dof,
+        dof: 24.0,
+        p: 0.2,
+        entries: 30,
+        left_out: 0,
+        level: 1e-3,
+        fits: true,
+    }
 }
 
 /// Adds model, verdict and recoveries.
@@ -138,6 +151,12 @@ pub(crate) fn whole(mut run: RunResults) -> RunResults {
                 standard_error: None,
                 bias: None,
                 effective_rank: 4.0,
+                determined: Some(4.5),
+                determined_share: Some(vec![0.25; n]),
+                unknowns: n,
+                fit: Some(fit(1.25)),
+                best_fit: Some(fit(1.0)),
+                warnings: vec!["DOES NOT FIT <in this sample>".into()],
                 covariance: None,
                 resolution: None,
             });

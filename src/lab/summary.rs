@@ -148,6 +148,7 @@ impl Describe for RunResults {
         Finding {
             sentence: self.verdict(),
             tone: self.tone(),
+            notes: warnings(&self.recovered),
             tables: std::iter::once(self.facts())
                 .chain(recoveries(&self.recovered))
                 .collect(),
@@ -176,13 +177,37 @@ pub fn by_surface(recovered: &[RecoveredObject]) -> Vec<Vec<&RecoveredObject>> {
 fn recoveries(recovered: &[RecoveredObject]) -> Vec<Table> {
     by_surface(recovered)
         .iter()
-        .map(|group| recovery(group))
+        .flat_map(|group| [recovery(group), fits(group)])
         .collect()
+}
+
+/// What speaks against believing what was recovered; each warning once, after the methods that it
+/// concerns.
+pub fn warnings(recovered: &[RecoveredObject]) -> Vec<String> {
+    let mut told: Vec<(&str, Vec<&str>)> = Vec::new();
+    for object in recovered {
+        for warning in &object.warnings {
+            let at = match told.iter().position(|(text, _)| text == warning) {
+                Some(at) => at,
+                None => {
+                    told.push((warning, Vec::new()));
+                    told.len() - 1
+                }
+            };
+            // The surfaces of a method share its warnings.
+            if !told[at].1.contains(&object.method.as_str()) {
+                told[at].1.push(&object.method);
+            }
+        }
+    }
+    let line = |(text, methods): (&str, Vec<&str>)| format!("{}: {text}.", methods.join(", "));
+    told.into_iter().map(line).collect()
 }
 
 /// What was recovered of each hidden surface.
 pub fn describe_recovery(recovered: &[RecoveredObject]) -> Finding {
     Finding {
+        notes: warnings(recovered),
         tables: recoveries(recovered),
         ..Finding::default()
     }
@@ -214,6 +239,58 @@ pub fn recovery(group: &[&RecoveredObject]) -> Table {
         ],
         rows: group.iter().map(row).collect(),
         ..Table::default()
+    }
+}
+
+/// Whether each method's picture explains the photographs.
+pub fn fits(group: &[&RecoveredObject]) -> Table {
+    let verdict = |r: &RecoveredObject| match &r.fit {
+        Some(fit) if fit.fits => "yes",
+        Some(_) => "NO",
+        None => "not known",
+    };
+    let row = |r: &&RecoveredObject| {
+        let fit = r.fit.as_ref();
+        vec![
+            r.method.as_str().into(),
+            verdict(r).into(),
+            fit.map(|f| f.chi2_per_dof).into(),
+            fit.map(|f| f.dof).into(),
+            fit.map(|f| f.p).into(),
+        ]
+    };
+    Table {
+        caption: "does what each would photograph fit the photographs?".to_owned(),
+        columns: vec![
+            Column::text("method", ""),
+            Column::text("fits", ""),
+            Column::number("χ²/dof", "", "", 4),
+            Column::number("dof", "", "", 5),
+            Column::number("P", "", "", 2),
+        ],
+        rows: group.iter().map(row).collect(),
+        note: determined(group),
+        ..Table::default()
+    }
+}
+
+/// How much of the pictures of one surface the photographs determine, in words.
+pub fn determined(group: &[&RecoveredObject]) -> String {
+    let Some(first) = group.first() else {
+        return String::new();
+    };
+    let all = first.unknowns;
+    match (first.determined, &first.determined_share) {
+        (Some(rank), Some(shares)) => {
+            let well = shares.iter().filter(|s| **s > 0.5).count();
+            format!(
+                "At their noise the photographs determine {} of {all} elements, by any method; here \
+                 {well} of {} by more than half. The rest of a picture is what its method assumes.",
+                significant(rank, 3),
+                shares.len()
+            )
+        }
+        _ => format!("It is not known how many of {all} elements the photographs determine."),
     }
 }
 
@@ -339,6 +416,40 @@ mod tests {
         agreement.evidence = true;
         let found = results.describe();
         assert!(found.sentence.contains("DISAGREE") && found.tone == Tone::Bad);
+    }
+
+    /// A warning is told once, after all methods that it concerns, and the table beside it says how
+    /// much of the pictures the photographs determine.
+    #[test]
+    fn doubts_are_told_once_and_for_all_their_methods() {
+        let mut results = run("bench");
+        let found = results.describe();
+        let all = "pinv, tsvd, tikhonov, joint, joint-bounded: DOES NOT FIT";
+        assert!(
+            found.notes.len() == 1 && found.notes[0].starts_with(all),
+            "{:?}",
+            found.notes
+        );
+        results.recovered[1].warnings.push("another".to_owned());
+        let told = warnings(&results.recovered);
+        assert_eq!(told[1], "tsvd: another.");
+        let table = &results.describe().tables[2];
+        assert_eq!(table.rows[0][1], "yes".into());
+        let words = "determine 4.50 of 64 elements, by any method; here 0 of 64";
+        assert!(table.note.contains(words), "{}", table.note);
+        let judged = results.recovered[0].fit.as_mut().unwrap();
+        judged.fits = false;
+        results.recovered[1].fit = None;
+        results.recovered[0].determined = None;
+        let group: Vec<&RecoveredObject> = results.recovered.iter().collect();
+        let table = fits(&group);
+        assert_eq!(table.rows[0][1], "NO".into());
+        assert_eq!(table.rows[1][1], "not known".into());
+        assert!(
+            table.note.contains("not known how many of 64"),
+            "{}",
+            table.note
+        );
     }
 
     #[test]

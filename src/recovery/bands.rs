@@ -1,27 +1,27 @@
 //! Bands around recovered reflectances, and how often they cover.
 //!
-//! Measured: share of 4 × 4 elements of a board of levels 0.1 and 0.9 within their 95 % bands, 200
-//! seeds, 120 spots at half-width 6, 8 × 8 pixels, normal noise relative to each entry. (Errors of
-//! the elements of a seed go together, so the shares scatter by about 1.5 %.)
+//! Linear estimates have ρ̂ ± z σ, each element alone. Estimates between bounds have no such law: the
+//! χ² that an element costs where it is held at its true value follows χ² of one degree of freedom
+//! only where no bound is near. A light element among
+//! eight dark ones, at the levels 1 and 0 on the bench, is then covered by 95 % bands in 59 seeds of
+//! 100 (400 seeds; χ² of two degrees: 79; quantiles by a bootstrap from ρ̂ do little better), because
+//! the columns of its neighbours surround its own.
 //!
-//! | method | kind | noise 1e-2 | noise 1e-3 | mean width at 1e-3 |
-//! | --- | --- | --- | --- | --- |
-//! | `joint-unbounded` | Gaussian | 0.939 | 0.939 | 0.62 |
-//! | `pinv` | Gaussian | 0.947 | 0.947 | 1.2 |
-//! | `joint` | profile | 0.998 | 0.988 | 0.19 |
-//! | `nnls` | profile | 0.996 | 0.984 | 0.22 |
-//! | `tsvd` | Gaussian around its mean | 0.008 | 0.108 | 0.016 |
-//! | `tikhonov` | Gaussian around its mean | 0.038 | 0.003 | 0.015 |
+//! So the bands of `joint` and `nnls` are the shadows of one region that holds all elements at once:
+//! [`BandKind::Simultaneous`].
 //!
-//! Regularised methods are biased by far more than their noise: their bands say how well the
-//! estimate repeats, not where the reflectance is.
+//! The region promises no more than it must: in that case it covers in 95 seeds of 100.
+//!
+//! Regularised methods are biased by far more than their noise, and their bias is not known without
+//! the truth: ρ̂ ± z σ of `tsvd` covered 0.8 % where it said 95 %. They have no bands.
 
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use super::{Method, Options, Problem, RecoveryError, WeightRule};
-use crate::num::quadratic::{Bounds, extent};
-use crate::num::statistics::sidak_threshold;
+use crate::num::linalg::{rows_times, svd};
+use crate::num::quadratic::{Bounds, box_least_squares, extent};
+use crate::num::statistics::{chi_square_quantile, sidak_threshold};
 
 /// What a band is, and so what it promises of each element taken alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -29,27 +29,23 @@ pub enum BandKind {
     /// ρ̂ ± z σ of an unbiased linear estimate: covers with exactly its confidence under normal
     /// noise of the stated standard errors.
     Gaussian,
-    /// ρ̂ ± z σ of a linear estimate with a bias (directions dropped or damped), or of an
-    /// approximation of first order (free scale). The bias is left out, so it covers the estimate's
-    /// mean, **not** the reflectance, with its confidence.
-    GaussianAroundMean,
-    /// All values of ρ_j with which some reflectances within the bounds fit nearly as well as the
-    /// best,
+    /// The values of ρ_j among all reflectances within the bounds that are as near to the data as the
+    /// truth is with the stated probability,
     ///
-    /// > { ρ_j : min χ² with ρ_j held ≤ min χ² + z² }.
+    /// > { ρ_j : l ≤ ρ ≤ u, ‖R ρ − d‖² ≤ q },   P(χ²_k ≤ q) = confidence,
     ///
-    /// Exact where no bound holds (it is ρ̂ ± z σ then). With bounds it is the interval of Rust and
-    /// Burrus (1972), whose coverage of at least the confidence was long conjectured; there are
-    /// problems of several unknowns where it falls somewhat short (Batlle, Stanley, Patil, Kuusela
-    /// and Owhadi 2023), so no guarantee is given: count it ([`Bands::covered`]). Limits are
-    /// certified from outside: an inexact solver makes a band wider.
-    Profile,
+    /// d the k directions of the data, in standard deviations, that reflectances between 0 and 1 can
+    /// move by more than one (Stark 1992). For any ρ within the bounds and normal noise of the stated
+    /// errors **all elements together** are covered with at least that probability, so each alone is
+    /// covered more often: how much more depends on the object. Limits are certified from outside: an
+    /// inexact solver makes a band wider.
+    Simultaneous,
 }
 
 /// An interval for each element.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Bands {
-    /// Probability that each alone shall cover.
+    /// Probability that each alone covers, or all together, by `kind`.
     pub confidence: f64,
     /// \[lower, upper\] of each element.
     pub intervals: Vec<[f64; 2]>,
@@ -105,30 +101,23 @@ pub(super) fn without_noise(method: Method) -> RecoveryError {
 }
 
 /// `estimate` ± z σ.
-pub(super) fn gaussian(
-    estimate: &DVector<f64>,
-    sigma: &DVector<f64>,
-    kind: BandKind,
-    confidence: f64,
-) -> Bands {
+pub(super) fn gaussian(estimate: &DVector<f64>, sigma: &DVector<f64>, confidence: f64) -> Bands {
     let z = deviate(confidence);
     let pairs = estimate.iter().zip(sigma.iter());
     Bands {
         confidence,
         intervals: pairs.map(|(x, s)| [x - z * s, x + z * s]).collect(),
-        kind,
+        kind: BandKind::Gaussian,
     }
 }
 
-/// What [`profile`] needs: residuals in standard deviations, and a scale.
-pub(super) fn profile_allowed(
+/// What [`simultaneous`] needs: residuals in standard deviations, and a scale.
+pub(super) fn simultaneous_allowed<'a>(
     method: Method,
-    problem: &Problem<'_>,
+    problem: &Problem<'a>,
     options: &Options,
-) -> Result<(), RecoveryError> {
-    if problem.noise().is_none() {
-        return Err(without_noise(method));
-    }
+) -> Result<&'a DMatrix<f64>, RecoveryError> {
+    let stderr = problem.noise().ok_or(without_noise(method))?;
     let refuse = |what, cure| Err(RecoveryError::NotForMethod { method, what, cure });
     if options.weighting == WeightRule::Unweighted {
         return refuse(
@@ -142,26 +131,49 @@ pub(super) fn profile_allowed(
             "give the scale, or ask for the bands of joint-unbounded",
         );
     }
-    Ok(())
+    Ok(stderr)
 }
 
-/// The profile of χ² = ‖R x − d‖² around its minimum `best` between bounds.
-pub(super) fn profile(
+/// Why photographs that nothing explains have no bands.
+const REFUTED: &str =
+    "has no bands: no reflectances within its bounds explain the photographs at this confidence";
+/// Why a biased estimate has none.
+pub(super) const BIASED: &str = "has no bands: regularisation, dropped directions or a free scale bias the picture \
+                                 by an amount that the photographs do not tell";
+
+/// The shadows of { l ≤ x ≤ u, ‖R x − d‖² ≤ q } on each axis, the covariance of d being the unit
+/// matrix; where there is nothing in it, why.
+pub(super) fn simultaneous(
     r: &DMatrix<f64>,
     d: &DVector<f64>,
     bounds: &Bounds,
-    best: &DVector<f64>,
     confidence: f64,
-) -> Result<Bands, RecoveryError> {
-    let z = deviate(confidence);
-    let intervals = (0..best.len())
-        .map(|j| extent(r, d, bounds, best, z * z, j))
-        .collect::<Result<_, _>>()?;
-    Ok(Bands {
+) -> Result<Result<Bands, &'static str>, RecoveryError> {
+    let decomposed = svd(r)?;
+    let rows = rows_times(decomposed.vt, &decomposed.sigma);
+    let data = decomposed.u.tr_mul(d);
+    // Which directions count is a matter of R alone: any choice of them keeps the promise.
+    let seen: Vec<usize> = (0..rows.nrows())
+        .filter(|&i| rows.row(i).iter().map(|x| x.abs()).sum::<f64>() > 1.0)
+        .collect();
+    let (rows, data) = (rows.select_rows(&seen), data.select_rows(&seen));
+    let whole = |j: usize| [bounds.lower[j], bounds.upper[j]];
+    let intervals = if seen.is_empty() {
+        (0..r.ncols()).map(whole).collect()
+    } else {
+        let best = box_least_squares(&rows, &data, bounds)?;
+        let room = chi_square_quantile(confidence, seen.len() as f64) - 2.0 * best.objective;
+        if room < 0.0 {
+            return Ok(Err(REFUTED));
+        }
+        let of = |j| extent(&rows, &data, bounds, &best.solution, room, j);
+        (0..r.ncols()).map(of).collect::<Result<_, _>>()?
+    };
+    Ok(Ok(Bands {
         confidence,
         intervals,
-        kind: BandKind::Profile,
-    })
+        kind: BandKind::Simultaneous,
+    }))
 }
 
 #[cfg(test)]
@@ -201,18 +213,26 @@ mod tests {
         assert!((share - 0.95).abs() < 0.02, "{share}");
     }
 
+    /// Directions that are dropped leave no bands, and it is said why.
     #[test]
-    fn dropped_directions_are_confessed() {
+    fn a_biased_picture_has_no_bands() {
         assert_eq!(bands(Method::Pinv, 2, 1e-3, 1).0.kind, BandKind::Gaussian);
-        assert_eq!(
-            bands(Method::Tsvd, 4, 1e-2, 1).0.kind,
-            BandKind::GaussianAroundMean
-        );
+        let bench = Bench::new(6.0, 4, 8);
+        let exact = bench.phi(&bench.board(2));
+        let stderr = &exact * 1e-2;
+        let problem = Problem::new(&exact, &bench.c, &bench.d, Some(&stderr)).unwrap();
+        let options = Options {
+            bands: Some(0.95),
+            ..Options::default()
+        };
+        let found = recover(Method::Tsvd, &problem, &options).unwrap();
+        assert_eq!((found.bands, found.no_bands), (None, Some(BIASED)));
     }
 
-    /// Inside the bounds the profile is ρ̂ ± z σ; at the edges of the board it is cut by them.
+    /// Where no bound holds, the shadows of the ellipsoid ‖R x − d‖² ≤ q: ρ̂ ± √q σ, as the rows are
+    /// as many as the elements. At the edges of the board they are cut by the bounds.
     #[test]
-    fn the_profile_is_the_gaussian_band_where_no_bound_holds() {
+    fn the_region_is_the_ellipsoid_where_no_bound_holds() {
         let bench = Bench::new(6.0, 2, 8);
         let exact = bench.phi(&DVector::from_row_slice(&[0.4, 0.5, 0.6, 0.5]));
         let stderr = &exact * 1e-3;
@@ -225,18 +245,24 @@ mod tests {
         };
         let of = |method| recover(method, &problem, &options).unwrap();
         let free = of(Method::JointUnbounded);
+        // The 95 % point of χ² of 4 degrees, from tables.
+        let half = 9.4877_f64.sqrt();
         for method in [Method::Joint, Method::Nnls] {
-            let bounded = of(method).bands.unwrap();
-            assert_eq!(bounded.kind, BandKind::Profile);
-            for (a, b) in bounded
-                .intervals
-                .iter()
-                .zip(&free.bands.as_ref().unwrap().intervals)
-            {
-                // Covariance by the noise itself against separable weights: the noise of this bench
-                // is not quite separable.
-                assert!((a[0] - b[0]).abs() < 0.05 * (b[1] - b[0]), "{a:?} {b:?}");
-                assert!((a[1] - b[1]).abs() < 0.05 * (b[1] - b[0]), "{a:?} {b:?}");
+            let bands = of(method).bands.unwrap();
+            assert_eq!(bands.kind, BandKind::Simultaneous);
+            let sigma = free.standard_error.as_ref().unwrap();
+            for (j, [lower, upper]) in bands.intervals.into_iter().enumerate() {
+                // `joint-unbounded` weighs by a separable fit, and this noise is not quite that.
+                let near = 0.05 * half * sigma[j];
+                let centre = free.reflectance[j];
+                assert!(
+                    (lower - (centre - half * sigma[j])).abs() < near,
+                    "{j} {lower}"
+                );
+                assert!(
+                    (upper - (centre + half * sigma[j])).abs() < near,
+                    "{j} {upper}"
+                );
             }
         }
         let ends: Vec<[f64; 2]> = (0..8)
@@ -244,6 +270,49 @@ mod tests {
             .collect();
         assert!(ends.iter().all(|[a, b]| *a >= 0.0 && *b <= 1.0 && a < b));
         assert!(ends.iter().any(|i| i[0] == 0.0) && ends.iter().any(|i| i[1] == 1.0));
+    }
+
+    /// One light element among dark ones, the case in which a profile of χ² covers that element in
+    /// 59 seeds of 100: the neighbours' columns surround its own. Here it is covered as often as
+    /// promised, and hardly more often: 400 seeds at 95 % give 380 ± 4.4, 99.9 % of the binomial 364
+    /// … 393; the limits from outside and rows left out may add to it.
+    #[test]
+    #[ignore = "slow"]
+    fn a_lone_light_element_is_covered_as_promised() {
+        let bench = Bench::new(3.0, 3, 8);
+        let truth = DVector::from_fn(9, |j, _| if j == 4 { 1.0 } else { 0.0 });
+        let exact = bench.phi(&truth);
+        let stderr = &exact * 1e-2;
+        let options = Options {
+            bands: Some(0.95),
+            ..Options::default()
+        };
+        let covered = (0..400).filter(|seed| {
+            let mut normal = normal_stream(1000 + seed);
+            let phi = exact.zip_map(&stderr, |x, s| x + s * normal());
+            let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+            let found = recover(Method::Nnls, &problem, &options).unwrap();
+            found
+                .bands
+                .is_some_and(|b| b.covered(truth.as_slice()) == 9)
+        });
+        let covered = covered.count();
+        assert!((364..=397).contains(&covered), "{covered}");
+    }
+
+    /// Photographs that no reflectances explain have no bands, and it is said.
+    #[test]
+    fn a_refuted_model_has_no_bands() {
+        let bench = Bench::new(6.0, 2, 4);
+        let phi = bench.phi(&bench.board(2)) * 3.0;
+        let stderr = &phi * 1e-3;
+        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+        let options = Options {
+            bands: Some(0.95),
+            ..Options::default()
+        };
+        let found = recover(Method::Joint, &problem, &options).unwrap();
+        assert_eq!((found.bands, found.no_bands), (None, Some(REFUTED)));
     }
 
     #[test]

@@ -40,7 +40,8 @@
 //! | 3, 4 × 4, 1e-4 | 0.559 | 0.752 | 0.606 | 0.846 |
 //!
 //! The joint methods can estimate other light of known form with the reflectances ([`Nuisance`]).
-//! [`cramer_rao`] says what no unbiased estimate can undercut; [`Bands`] what a recovery knows of
+//! [`cramer_rao`] says what no unbiased estimate can undercut; [`determined`](determined()) how much of
+//! each element the photographs determine by any method; [`Bands`] what a recovery knows of
 //! itself.
 //!
 //! Those up to [`Method::JointUnbounded`] are linear in Φ: with a noise model they carry the
@@ -105,7 +106,7 @@ mod spectrum;
 
 pub use bands::{BandKind, Bands};
 pub use error::RecoveryError;
-pub use joint::{CramerRao, cramer_rao, picard_joint};
+pub use joint::{CramerRao, Determined, cramer_rao, determined, picard_joint};
 pub use method::{Method, UnknownMethod};
 pub use nuisance::{Estimated, Nuisance};
 pub use options::{Options, Rule, Uncertainty, WeightRule};
@@ -150,7 +151,7 @@ pub fn recover(
         Method::JointTv => joint::total_variation::recover(problem, options),
         Method::JointTwoValued => joint::two_valued::recover(problem, options),
     }?;
-    if let (Some(confidence), None) = (options.bands, &found.bands) {
+    if let (Some(confidence), None, None) = (options.bands, &found.bands, found.no_bands) {
         found.add_gaussian_bands(confidence)?;
     }
     Ok(found)

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::problem::Lit;
-use super::{BandKind, Bands, Estimated, Method, Problem, RecoveryError, bands};
+use super::{Bands, Estimated, Method, Problem, RecoveryError, bands};
 
 /// A regularisation parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,6 +92,9 @@ pub enum Weighting {
     EntryByEntry,
 }
 
+/// Reflectances of `joint-tv` that differ by less are one patch's.
+const ONE_VALUE: f64 = 1e-9;
+
 /// How an iterative solver ended.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solver {
@@ -150,8 +153,10 @@ pub struct Recovered {
     pub solver: Option<Solver>,
     /// What was estimated beside the reflectances, where it was asked for.
     pub nuisance: Option<Estimated>,
-    /// Bands around the reflectances, where they were asked for.
+    /// Bands around the reflectances, where they were asked for and the method can promise any.
     pub bands: Option<Bands>,
+    /// Why there are none, where they were asked for.
+    pub no_bands: Option<&'static str>,
 }
 
 impl Recovered {
@@ -167,22 +172,85 @@ impl Recovered {
         })
     }
 
+    /// What ρ̂ would photograph, s C diag(ρ̂) D and the nuisance terms found with it, pixels × spots,
+    /// W. `problem` is the one that it was recovered from, or some rows (pixels) of it.
+    pub fn photographs(&self, problem: &Problem<'_>) -> DMatrix<f64> {
+        let Some(found) = &self.nuisance else {
+            return problem.light(&self.reflectance);
+        };
+        let seen = &self.reflectance * found.scale.unwrap_or(1.0);
+        let (pixels, spots) = problem.phi.shape();
+        problem.light(&seen) + found.light(&problem.nuisance, pixels, spots)
+    }
+
+    /// Degrees of freedom ν that the recovery uses up, nuisance terms included: the trace of the
+    /// resolution of a method without bounds; of one with bounds the elements between them (of
+    /// `joint-tv` patches of one value count once, Tibshirani and Taylor 2012); the levels that
+    /// `joint-two-valued` estimates.
+    pub fn freedom_used(&self) -> f64 {
+        let between = || {
+            self.reflectance
+                .iter()
+                .copied()
+                .filter(|x| !self.on_bound(*x))
+        };
+        let own = match self.method {
+            Method::Joint | Method::Nnls => (between().count() as f64).min(self.rank as f64),
+            Method::JointTv => {
+                let mut values: Vec<f64> = between().collect();
+                values.sort_by(f64::total_cmp);
+                values.dedup_by(|a, b| (*a - *b).abs() < ONE_VALUE);
+                values.len() as f64
+            }
+            Method::JointTwoValued if self.choice == Choice::Given => 0.0,
+            Method::JointTwoValued => 2.0,
+            _ => self.effective_rank,
+        };
+        let terms = self.nuisance.as_ref().map_or(0, |n| {
+            let vectors = [&n.frame_constant, &n.background, &n.glare];
+            let count: usize = vectors
+                .iter()
+                .filter_map(|v| v.as_ref())
+                .map(|v| v.len())
+                .sum();
+            count + usize::from(n.scale.is_some())
+        });
+        own + terms as f64
+    }
+
+    /// Elements that a bound of the method holds; none of a method without bounds.
+    pub fn bounded(&self) -> usize {
+        self.reflectance
+            .iter()
+            .filter(|x| self.on_bound(**x))
+            .count()
+    }
+
+    /// Whether a bound of the method holds an element of this reflectance. With a free scale the
+    /// brightest element is 1 by convention: that is the scale's degree of freedom.
+    fn on_bound(&self, x: f64) -> bool {
+        match self.method {
+            Method::Nnls => x <= 0.0,
+            Method::Joint | Method::JointTv => x <= 0.0 || x >= 1.0,
+            _ => false,
+        }
+    }
+
     fn has_free_scale(&self) -> bool {
         self.nuisance.as_ref().is_some_and(|n| n.scale.is_some())
     }
 
-    /// Adds ρ̂ ± z σ.
+    /// Adds ρ̂ ± z σ, or says why there is none.
     pub(super) fn add_gaussian_bands(&mut self, confidence: f64) -> Result<(), RecoveryError> {
         let error = self.standard_error.as_ref();
         let error = error.ok_or(bands::without_noise(self.method))?;
         let elements = self.reflectance.len() as f64;
         let whole = self.effective_rank > elements * (1.0 - 1e-12);
-        let kind = if whole && !self.has_free_scale() {
-            BandKind::Gaussian
+        if whole && !self.has_free_scale() {
+            self.bands = Some(bands::gaussian(&self.reflectance, error, confidence));
         } else {
-            BandKind::GaussianAroundMean
-        };
-        self.bands = Some(bands::gaussian(&self.reflectance, error, kind, confidence));
+            self.no_bands = Some(bands::BIASED);
+        }
         Ok(())
     }
 
@@ -224,6 +292,7 @@ impl Recovered {
             solver: None,
             nuisance: None,
             bands: None,
+            no_bands: None,
         }
     }
 }

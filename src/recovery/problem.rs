@@ -141,6 +141,23 @@ impl<'a> Problem<'a> {
         Ok(Problem { nuisance, ..self })
     }
 
+    /// Φ, pixels × spots, W.
+    pub fn photographed(&self) -> &'a DMatrix<f64> {
+        self.phi
+    }
+
+    /// Elements, r.
+    pub fn elements(&self) -> usize {
+        self.c.ncols()
+    }
+
+    /// The best single factor ⟨Φ, C D⟩/‖C D‖² of what a surface of reflectance 1 throughout
+    /// photographs. Where C and D are not negative, as light is, no surface makes it more than 1.
+    pub fn brightness(&self) -> f64 {
+        let white = self.c * self.d;
+        self.phi.dot(&white) / white.norm_squared()
+    }
+
     /// Refuses photographs that are black throughout.
     pub(super) fn refuse_darkness(&self) -> Result<(), RecoveryError> {
         if self.phi.iter().any(|&x| x != 0.0) {

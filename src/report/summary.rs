@@ -17,6 +17,10 @@ pub fn summary_json(results: &RunResults) -> String {
             "correlation": r.correlation,
             "rmse": r.rmse,
             "parameter": r.parameter,
+            "determined": r.determined,
+            "fit": r.fit,
+            "best_fit": r.best_fit,
+            "warnings": r.warnings,
             "effective_rank": r.effective_rank,
             "rms_standard_error": r.standard_error.as_ref().map(|s| root_mean_square(s)),
         })

@@ -223,12 +223,15 @@ fn coverage_is_a_table_and_json() {
     let workspace = Workspace::with_scenes();
     let line = "study coverage small.toml -o c --elements 4 --seeds 20 --method pinv,tsvd,joint-tv";
     let ended = workspace.phicam(line).exits(0);
-    for word in ["unbiased", "bias left out", "joint-tv has no bands"] {
+    for word in ["each alone", "joint-tv has no bands"] {
         assert!(ended.stdout.contains(word), "{word}: {}", ended.account());
     }
     let json = workspace.json("c/coverage.json");
     assert_eq!(json["rows"].as_array().unwrap().len(), 3);
     assert!(json["rows"][0]["covered"].as_f64().unwrap() > 0.8);
+    assert!(json["rows"][1]["covered"].is_null());
+    let why = json["rows"][1]["reason"].as_str().unwrap();
+    assert!(why.contains("tsvd has no bands: regularisation"), "{why}");
     told(
         &workspace,
         "c",

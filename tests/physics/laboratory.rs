@@ -35,7 +35,7 @@ fn bands_of_unbiased_methods_cover_as_often_as_they_say() {
     let unbiased = [Method::Pinv, Method::RightInverse, Method::JointUnbounded];
     for (confidence, seeds) in [(0.95, 1000), (0.5, 400)] {
         for row in covered(confidence, seeds, &unbiased) {
-            assert_eq!(row.bands.as_deref(), Some("unbiased"), "{row:?}");
+            assert_eq!(row.bands.as_deref(), Some("each alone"), "{row:?}");
             let (share, error) = (row.covered.unwrap(), row.stderr.unwrap());
             assert!((share - confidence).abs() < 4.0 * error, "{row:?}");
             assert!(
@@ -46,20 +46,20 @@ fn bands_of_unbiased_methods_cover_as_often_as_they_say() {
     }
 }
 
-/// Biased methods say so, and their bands do not cover the truth; those between bounds never
-/// promise less than they hold here.
+/// Biased methods have no bands, and say why; those between bounds keep their promise to all
+/// elements at once: 60 seeds at 95 % give 57 ± 1.7, 99.9 % of the binomial 51 or more.
 #[test]
-fn bands_of_biased_methods_are_told_apart() {
-    let rows = covered(0.95, 60, &[Method::Tsvd, Method::Joint, Method::JointTv]);
-    assert_eq!(rows[0].bands.as_deref(), Some("bias left out"));
-    assert!(rows[0].covered.unwrap() < 0.5, "{:?}", rows[0]);
-    assert_eq!(rows[1].bands.as_deref(), Some("profile"));
-    assert!(rows[1].covered.unwrap() > 0.93, "{:?}", rows[1]);
-    assert!(
-        rows[2].bands.is_none() && rows[2].reason.is_some(),
-        "{:?}",
-        rows[2]
-    );
+fn bands_of_biased_methods_are_withheld() {
+    let methods = [Method::Tsvd, Method::JointTv, Method::Joint, Method::Nnls];
+    let rows = covered(0.95, 60, &methods);
+    for row in &rows[..2] {
+        assert!(row.bands.is_none() && row.reason.is_some(), "{row:?}");
+    }
+    for row in &rows[2..] {
+        assert_eq!(row.bands.as_deref(), Some("all together"));
+        assert!(row.failed == 0 && row.together.unwrap() >= 0.85, "{row:?}");
+        assert!(row.least.unwrap() >= row.together.unwrap(), "{row:?}");
+    }
 }
 
 fn small_experiment() -> Scene {

@@ -36,7 +36,7 @@ pub(in crate::cli) use view::{PreviewArgs, Terminal, ViewArgs};
 #[derive(Debug, Parser)]
 #[command(version, about, max_term_width = 100, propagate_version = true)]
 #[command(
-    after_help = "Exit codes: 0 done, 1 traced and modelled disagree, 2 error, 4 no evidence, 75 stopped by SIGTERM, 130 by Ctrl-C. \
+    after_help = "Exit codes: 0 done, 1 traced and modelled disagree (recover: photographs and model), 2 error, 4 no evidence, 75 stopped by SIGTERM, 130 by Ctrl-C. \
                   Those for schedulers: `phicam help shard`."
 )]
 pub(in crate::cli) struct Args {
@@ -63,7 +63,7 @@ pub(in crate::cli) enum Command {
     Model(ModelArgs),
     /// Test traced or measured against modelled Φcam: exit 0 agree, 1 disagree, 2 error, 4 no evidence
     Validate(ValidateArgs),
-    /// Recover the hidden reflectance from Φcam
+    /// Recover the hidden reflectance from Φcam: exit 0 done, 1 no reflectances explain it, 2 error
     Recover(RecoverArgs),
     /// Photograph the clean flux with a sensor: shot noise, read noise, glare, converter
     Expose(ExposeArgs),

@@ -57,7 +57,8 @@ pub(in crate::cli) struct RecoverArgs {
     pub tolerance: Option<f64>,
     #[command(flatten)]
     pub joint: JointArgs,
-    /// Bands that cover each element with this probability: METHOD.lower.npy and METHOD.upper.npy
+    /// Bands that cover with this probability, each element alone (linear methods without bias) or all
+    /// together (joint, nnls): METHOD.lower.npy and METHOD.upper.npy
     #[arg(long, value_name = "LEVEL", allow_negative_numbers = true)]
     pub bands: Option<f64>,
     /// Memory that may be taken, GiB: where Φcam is larger it is read by rows, by the methods that

@@ -2,7 +2,7 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use super::*;
-use crate::lab::{Noise, recover_objects};
+use crate::lab::{Certainty, Noise, recover_objects};
 use crate::model::Kernel;
 use crate::recovery::{Nuisance, Options};
 use crate::scene::Scene;
@@ -53,7 +53,7 @@ impl Bench {
         [phi, stderr]: &[Matrix; 2],
         options: &Options,
     ) -> Vec<RecoveredObject> {
-        let noise = Noise::StandardError(stderr);
+        let noise = Noise::StandardError(stderr, Certainty::STATED);
         let attempts = recover_objects(
             &self.model,
             phi,

@@ -32,6 +32,30 @@ pub fn chi_square_sf(x: f64, dof: f64) -> f64 {
     tail.clamp(0.0, 1.0)
 }
 
+/// The x that χ² with `dof` > 0 degrees of freedom does not exceed with probability `p`, by bisection
+/// to the last bit of [`chi_square_sf`]. NaN where p is not in (0, 1) or dof not positive and finite.
+pub fn chi_square_quantile(p: f64, dof: f64) -> f64 {
+    if !(p > 0.0 && p < 1.0 && dof > 0.0 && dof.is_finite()) {
+        return f64::NAN;
+    }
+    let beyond = |x: f64| chi_square_sf(x, dof) > 1.0 - p;
+    let (mut low, mut high) = (0.0, dof.max(1.0));
+    while beyond(high) {
+        (low, high) = (high, 2.0 * high);
+    }
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return high;
+        }
+        if beyond(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+}
+
 /// Temme (1979): with λ = x/a, μ = λ − 1, η²/2 = μ − ln(1 + μ), sign η = sign μ,
 ///
 /// > Q(a, x) = ½ erfc(η √(a/2)) + e^(−aη²/2)/√(2πa) (c₀ + c₁/a + …),
@@ -139,6 +163,27 @@ mod tests {
         for mu in [-0.1, 0.1f64] {
             assert!((excess(mu) / (mu - libm::log1p(mu)) - 1.0).abs() < 1e-14);
         }
+    }
+
+    /// Points of the printed tables (5 %, 1 %, 95 %), and of 2 degrees −2 ln(1 − p).
+    #[test]
+    fn quantiles_are_those_of_the_tables() {
+        for (p, dof, x) in [
+            (0.95, 1.0, 3.841_459),
+            (0.95, 4.0, 9.487_729),
+            (0.95, 20.0, 31.410_433),
+            (0.99, 10.0, 23.209_251),
+            (0.05, 10.0, 3.940_299),
+            (0.95, 100.0, 124.342_113),
+        ] {
+            let found = chi_square_quantile(p, dof);
+            assert!((found / x - 1.0).abs() < 1e-6, "{p} {dof}: {found}");
+        }
+        for p in [1e-6, 0.3, 0.999] {
+            let exact = -2.0 * libm::log1p(-p);
+            assert!((chi_square_quantile(p, 2.0) / exact - 1.0).abs() < 1e-9);
+        }
+        assert!(chi_square_quantile(1.0, 2.0).is_nan() && chi_square_quantile(0.5, 0.0).is_nan());
     }
 
     #[test]

@@ -9,8 +9,8 @@ mod normal;
 mod student;
 
 pub use binomial::binomial_interval;
-pub use chi_square::chi_square_sf;
 pub(super) use chi_square::excess;
+pub use chi_square::{chi_square_quantile, chi_square_sf};
 pub use correlation::correlation_two_sided;
 pub use family::{sidak_p, sidak_threshold};
 pub use normal::normal_two_sided;

@@ -2,6 +2,8 @@
 //! (`joint`), or ρ ≥ 0 alone (`nnls`).
 
 use super::reduced::{Reduced, report};
+use super::stacked::stack;
+use super::weights;
 use crate::num::quadratic::{Bounds, box_least_squares};
 use crate::recovery::{Method, Options, Problem, Recovered, RecoveryError, bands};
 
@@ -19,20 +21,23 @@ pub(in crate::recovery) fn recover(
     let solved = box_least_squares(&reduced.r, &reduced.d, &bounds)?;
     let asked = match options.bands {
         Some(confidence) => {
-            bands::profile_allowed(method, problem, options)?;
-            Some(bands::profile(
-                &reduced.r,
-                &reduced.d,
-                &bounds,
-                &solved.solution,
-                confidence,
-            )?)
+            let stderr = bands::simultaneous_allowed(method, problem, options)?;
+            // Each entry by its own error: separable weights would not make them all units.
+            let (pixels, spots) = problem.phi.shape();
+            let fitted = weights::fit(Some(stderr), pixels, spots);
+            let exact = stack(problem, |p, l| fitted.root(Some(stderr), p, l))?.triangle;
+            let found = bands::simultaneous(&exact.r, &exact.d, &bounds, confidence)?;
+            Some(found)
         }
         None => None,
     };
     let mut found = reduced.finish(method, problem, options, solved.solution.clone())?;
     found.solver = Some(report(&solved));
-    found.bands = asked;
+    (found.bands, found.no_bands) = match asked {
+        Some(Ok(bands)) => (Some(bands), None),
+        Some(Err(why)) => (None, Some(why)),
+        None => (None, None),
+    };
     Ok(found)
 }
 

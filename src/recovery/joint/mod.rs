@@ -3,6 +3,7 @@
 pub(super) mod bounded;
 mod branch;
 mod cramer_rao;
+mod determined;
 mod elimination;
 mod khatri_rao;
 mod picard;
@@ -14,4 +15,5 @@ pub(super) mod unbounded;
 mod weights;
 
 pub use cramer_rao::{CramerRao, cramer_rao};
+pub use determined::{Determined, determined};
 pub use picard::picard_joint;

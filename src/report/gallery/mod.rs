@@ -4,9 +4,9 @@ mod slides;
 
 use super::colour::Scale;
 use super::figure::{Entries, MOST, Reduction, figure, legend, note, reduced};
-use super::page::bare;
+use super::page::{bare, explained};
 use super::svg::escape;
-use crate::lab::{RunResults, by_surface, recovery};
+use crate::lab::{FIT_LEVEL, RunResults, by_surface, determined, fits, recovery, warnings};
 use crate::num::digits::perhaps;
 
 pub(super) use slides::slides;
@@ -16,7 +16,11 @@ const MOST_PICTURES: usize = 16;
 
 /// Recovered objects, surface by surface, beside the truth.
 pub(super) fn recoveries(results: &RunResults) -> String {
-    let mut html = String::new();
+    let told = warnings(&results.recovered);
+    let told = told
+        .iter()
+        .map(|w| format!("<p class=\"warning\">{}</p>\n", explained(w)));
+    let mut html: String = told.collect();
     let mut left = MOST_PICTURES;
     for group in by_surface(&results.recovered) {
         let first = group[0];
@@ -36,6 +40,14 @@ pub(super) fn recoveries(results: &RunResults) -> String {
         let (truth, said) = picture("truth", &first.truth);
         let last = [nu, nv].map(|n| n.saturating_sub(1));
         let mut figures = figure(&truth, last, Entries::Square, &scale, "");
+        if let Some(shares) = &first.determined_share {
+            let (panel, _) = picture("determined by the photographs", shares);
+            let more = format!(
+                "<br>1 white: wholly, 0 black: not at all. {}",
+                determined(&group)
+            );
+            figures.push_str(&figure(&panel, last, Entries::Square, &scale, &more));
+        }
         let mut panels = vec![truth];
         for r in group.iter().take(left) {
             let (panel, _) = picture(&r.method, &r.reflectance);
@@ -55,12 +67,17 @@ pub(super) fn recoveries(results: &RunResults) -> String {
             "<h3>{}</h3>\n<p>Reflectance of {nu} × {nv} elements, black 0, white 1, the same grey scale for \
              all.</p>\n<div class=\"row\">\n{figures}</div>\n{}{}{}{}\
              <p class=\"note\">MTF: (white − black)/(white + black) over the elements that are white and black in truth; \
-             raw as recovered, normalized after stretching the recovered values to 0…1.</p>\n",
+             raw as recovered, normalized after stretching the recovered values to 0…1.</p>\n\
+             <p>Does what each would photograph fit the photographs? χ² of Φ − C diag(ρ̂) D in standard errors; \
+             a picture that explains them has χ²/dof near 1, and a smaller P than {FIT_LEVEL} by chance in one \
+             of {} only.</p>\n{}",
             escape(&first.surface),
             legend(&scale, "reflectance", &panels),
             note(said),
             note(more),
-            bare(&recovery(&group))
+            bare(&recovery(&group)),
+            1.0 / FIT_LEVEL,
+            bare(&fits(&group))
         ));
     }
     html

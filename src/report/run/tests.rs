@@ -41,13 +41,16 @@ fn a_whole_run_makes_a_whole_page() {
         "Φcam, modelled",
         "<h3>object</h3>",
         "joint-bounded",
+        "DOES NOT FIT &lt;in this sample&gt;",
+        "determined by the photographs",
         "phicam run bench -o out --estimator independent --sampler pcg --samples 4096 --seed 18446744073709551615",
         "phicam validate out --significance 0.01\nphicam recover out",
     ] {
         assert!(html.contains(text), "{text}");
     }
-    // Three frames, two matrices with one legend each set, z, truth and five recoveries.
-    assert_eq!(html.matches("<figure>").count(), 3 + 2 + 1 + 1 + 5);
+    // Three frames, two matrices with one legend each set, z, truth, what the photographs determine
+    // and five recoveries.
+    assert_eq!(html.matches("<figure>").count(), 3 + 2 + 1 + 1 + 1 + 5);
     assert!(shown(&html).len() < 1_000_000 && html.len() < 10_000_000);
 }
 

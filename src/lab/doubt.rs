@@ -1,0 +1,308 @@
+//! What speaks against believing a recovered picture, in words, each with its cure.
+
+use super::fit::{Attainable, Fit, Judged};
+use crate::num::digits::{figure, significant};
+use crate::recovery::{Method, Recovered, Weighting};
+
+/// More than this share of the elements is most of them.
+const MOST: f64 = 0.5;
+/// Standard errors by which a reflectance must lie beyond 0 or 1 to be impossible; without a
+/// standard error it must by the whole range.
+const BEYOND: f64 = 3.0;
+/// A standard error above which an element is not known: half of the range from 0 to 1.
+const HALF: f64 = 0.5;
+/// The misfit χ² that an iteration may have left above its minimum: a third of a standard deviation
+/// of one direction.
+const GAP: f64 = 0.1;
+
+/// All that speaks against `found`, gravest first; nothing where nothing does.
+pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
+    let every = [
+        misfit(found, judged),
+        unjudged(judged),
+        impossible(found),
+        noise(found),
+        on_bounds(found),
+        unfinished(found, judged),
+        without_bands(found),
+    ];
+    every.into_iter().flatten().collect()
+}
+
+fn told(fit: &Fit) -> String {
+    format!(
+        "χ²/dof {}, P {}",
+        significant(fit.chi2_per_dof, 3),
+        figure(fit.p, 2)
+    )
+}
+
+/// Photographs and model that contradict each other, or a picture that does not explain them though
+/// another does.
+fn misfit(found: &Recovered, judged: &Judged) -> Option<String> {
+    if let Some(best) = judged.best.as_ref().filter(|best| !best.possible.fits) {
+        return Some(contradiction(best));
+    }
+    let fit = judged.fit.as_ref().filter(|fit| !fit.fits)?;
+    let own = format!(
+        "DOES NOT FIT: what this picture would photograph differs from the photographs by more than \
+         their noise ({})",
+        told(fit)
+    );
+    let Some(best) = &judged.best else {
+        return Some(format!(
+            "{own}. Geometry, order of frames, unit or standard errors may be wrong, or the method; \
+             recover with joint to tell"
+        ));
+    };
+    Some(format!(
+        "{own}, and others explain them ({}): the method is at fault, not the photographs. {}",
+        told(&best.possible),
+        cure(found.method)
+    ))
+}
+
+/// What helps where another picture fits.
+fn cure(method: Method) -> &'static str {
+    match method {
+        Method::Tsvd | Method::Tikhonov | Method::TikhonovGradient => {
+            "Regularise less (--rank, --damping), or use joint"
+        }
+        Method::JointTv => "Lower --tv, or use joint",
+        Method::JointTwoValued => {
+            "Give other --levels, or use joint: more than two values are there"
+        }
+        Method::Joint | Method::Nnls | Method::JointUnbounded => {
+            "Leave --weighting and --tolerance to the noise"
+        }
+        _ => "It amplifies noise: use joint, or tsvd or tikhonov",
+    }
+}
+
+/// No reflectances between 0 and 1 explain the photographs.
+fn contradiction(best: &Attainable) -> String {
+    let told = told(&best.possible);
+    if best.brightness > 1.0 && best.any.as_ref().is_none_or(|any| any.fits) {
+        return format!(
+            "DOES NOT FIT, by any method: the photographs are {} times as bright as a surface of \
+             reflectance 1 would make them ({told}). Is Φcam in W, and are power, aperture and \
+             albedos of the scene right? Give it in W, or estimate one factor (--free-scale)",
+            significant(best.brightness, 3)
+        );
+    }
+    let any = match &best.any {
+        Some(any) if any.fits => {
+            "reflectances below 0 or above 1 could, which no surface has".to_owned()
+        }
+        Some(any) => format!("no numbers at all do ({})", self::told(any)),
+        None => "it is not known whether other numbers do".to_owned(),
+    };
+    format!(
+        "DOES NOT FIT, by any method: no reflectances between 0 and 1 explain the photographs \
+         ({told}); {any}. The scene is not what was photographed, or the standard errors are too \
+         small. Check geometry, order and orientation of the frames, unit and --stderr; more \
+         --elements where they are coarse; --occlusion where something stands in the way; \
+         --frame-constant or --background for other light"
+    )
+}
+
+fn unjudged(judged: &Judged) -> Option<String> {
+    judged.fit.is_none().then(|| {
+        "the fit CANNOT BE JUDGED: the noise of the photographs is not known, or there are not more \
+         of them than unknowns. Give standard errors (--stderr FILE, --noise RELATIVE)"
+            .to_owned()
+    })
+}
+
+/// Most elements of a method without bounds where no surface is.
+fn impossible(found: &Recovered) -> Option<String> {
+    let bounded = [Method::Joint, Method::JointTv, Method::JointTwoValued];
+    let free = found.nuisance.as_ref().is_some_and(|n| n.scale.is_some());
+    if free || bounded.contains(&found.method) {
+        return None;
+    }
+    let values = found.reflectance.iter().enumerate();
+    let beyond = values.filter(|(j, x)| {
+        let known = found.standard_error.as_ref().map(|s| BEYOND * s[*j]);
+        (**x - 0.5).abs() > 0.5 + known.unwrap_or(1.0)
+    });
+    let (count, all) = (beyond.count(), found.reflectance.len());
+    (count as f64 > MOST * all as f64).then(|| {
+        format!(
+            "{count} of {all} elements lie beyond 0 to 1 by more than their error: no surface \
+             reflects so. Check that Φcam is in W; use joint, which keeps to 0 to 1"
+        )
+    })
+}
+
+/// Most elements known no better than that a surface reflects between 0 and 1.
+fn noise(found: &Recovered) -> Option<String> {
+    let errors = found.standard_error.as_ref()?;
+    let (count, all) = (errors.iter().filter(|s| **s > HALF).count(), errors.len());
+    (count as f64 > MOST * all as f64).then(|| {
+        format!(
+            "{count} of {all} elements have a standard error above {HALF}, half of all that a surface \
+             can reflect: the picture is noise there. Use joint, fewer --elements, or more light"
+        )
+    })
+}
+
+/// Most elements where a bound holds them.
+fn on_bounds(found: &Recovered) -> Option<String> {
+    let (count, all) = (found.bounded(), found.reflectance.len());
+    (count as f64 > MOST * all as f64).then(|| {
+        format!(
+            "{count} of {all} elements sit on a bound: it, not the photographs, decides their \
+             values. Compare with nnls and joint-unbounded, or ask for --bands"
+        )
+    })
+}
+
+/// Bands that were asked for and are not there.
+fn without_bands(found: &Recovered) -> Option<String> {
+    let why = found.no_bands?;
+    Some(format!(
+        "it {why}. Ask for those of joint, or of joint-unbounded where it drops no direction"
+    ))
+}
+
+/// An iteration that ended away from its minimum by what can be seen in the picture.
+fn unfinished(found: &Recovered, judged: &Judged) -> Option<String> {
+    let solver = found.solver.as_ref()?;
+    // In units of the noise: known, or what the fit leaves over.
+    let unit = match found.weighting {
+        Weighting::Separable { .. } | Weighting::EntryByEntry => 1.0,
+        Weighting::Unweighted => {
+            let left = judged.fit.as_ref().map_or(1.0, |fit| fit.dof.max(1.0));
+            (2.0 * solver.objective / left).max(f64::MIN_POSITIVE)
+        }
+    };
+    let above = 2.0 * solver.gap / unit;
+    (above > GAP).then(|| {
+        let cure = match found.method {
+            Method::JointTwoValued => "Compare with joint, or give the --levels",
+            _ => "Scale the photographs, or use joint-unbounded",
+        };
+        format!(
+            "the search ended before it was proved to be at the minimum: χ² may be {} lower. {cure}",
+            figure(above, 2)
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::ensemble::Photographs;
+    use crate::lab::study::tests::small;
+    use crate::lab::{Certainty, Noise, RecoveredObject, recover_objects};
+    use crate::matrix::Matrix;
+    use crate::model::{Kernel, MatrixModel};
+    use crate::recovery::{Nuisance, Options};
+
+    /// Every method that 16 elements and 14 spots allow, with what it makes of the photographs: a
+    /// refusal, or its first surface.
+    fn by_every_method(
+        model: &MatrixModel,
+        phi: &Matrix,
+        stderr: Option<&Matrix>,
+    ) -> Vec<(Method, Result<RecoveredObject, String>)> {
+        let noise = stderr.map_or(Noise::Unknown, |s| {
+            Noise::StandardError(s, Certainty::STATED)
+        });
+        let options = Options::default();
+        let nuisance = Nuisance::default();
+        recover_objects(model, phi, noise, nuisance, &Method::ALL, &options)
+            .into_iter()
+            .map(|a| {
+                let outcome = a.outcome.map(|mut all| all.remove(0));
+                (a.method, outcome.map_err(|e| e.to_string()))
+            })
+            .collect()
+    }
+
+    fn loud(object: &RecoveredObject) -> bool {
+        let told = object.warnings.iter().any(|w| w.contains("DOES NOT FIT"));
+        assert!(!object.parameter.contains("Solved"), "{}", object.parameter);
+        told
+    }
+
+    /// Frames upside down, spots in another order, counts given as W, spots elsewhere by half an
+    /// inch, the published kernel: each is warned of by every method, or refused by it.
+    #[test]
+    fn every_method_warns_of_photographs_that_are_not_of_this_scene() {
+        let scene = small("bench");
+        let model = MatrixModel::new(&scene, Kernel::Physical, Some([4, 4])).unwrap();
+        let right = Photographs::relative(&model.phi(), 1e-3, 1);
+        let both = |f: &dyn Fn(&Matrix) -> Matrix| (f(&right.phi), f(&right.stderr));
+        let (columns, rows) = (scene.camera.columns, scene.camera.rows);
+        let upside_down = both(&|m| {
+            Matrix::from_fn(m.nrows(), m.ncols(), |p, l| {
+                m[((rows - 1 - p / columns) * columns + p % columns, l)]
+            })
+        });
+        let permuted = both(&|m| {
+            let n = m.ncols();
+            Matrix::from_fn(m.nrows(), n, |p, l| m[(p, (l + 1) % n)])
+        });
+        let counts = both(&|m| m * 1e15);
+        let shifted = scene.with_shifted_spots([0.5, 0.0]).unwrap();
+        let elsewhere = MatrixModel::new(&shifted, Kernel::Physical, Some([4, 4])).unwrap();
+        let published = MatrixModel::new(&scene, Kernel::Published, Some([4, 4])).unwrap();
+        let own = (right.phi.clone(), right.stderr.clone());
+        for (fault, model, (phi, stderr)) in [
+            ("upside down", &model, &upside_down),
+            ("permuted", &model, &permuted),
+            ("counts", &model, &counts),
+            ("elsewhere", &elsewhere, &own),
+            ("published", &published, &own),
+        ] {
+            let mut told = 0;
+            for (method, outcome) in by_every_method(model, phi, Some(stderr)) {
+                let Ok(object) = outcome else { continue };
+                assert!(
+                    loud(&object) && object.contradicted(),
+                    "{fault} {method}: {object:?}"
+                );
+                told += 1;
+            }
+            assert!(told >= 8, "{fault}: {told} recovered");
+        }
+        // Of counts no noise is needed to see it, unless bounds or levels hide it.
+        for (method, outcome) in by_every_method(&model, &counts.0, None) {
+            let Ok(object) = outcome else { continue };
+            let first = &object.warnings[0];
+            assert!(
+                first.contains("CANNOT BE JUDGED") && object.fit.is_none(),
+                "{method}"
+            );
+            let second = object.warnings.iter().skip(1);
+            let second: Vec<&String> = second
+                .filter(|w| w.contains("on a bound") || w.contains("beyond 0 to 1"))
+                .collect();
+            assert!(
+                !second.is_empty() || method == Method::JointTwoValued,
+                "{method}"
+            );
+        }
+    }
+
+    /// Right photographs: nothing contradicts, and `joint` fits.
+    #[test]
+    fn right_photographs_are_not_warned_of() {
+        let model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([4, 4])).unwrap();
+        for seed in 1..6 {
+            let right = Photographs::relative(&model.phi(), 1e-3, seed);
+            for (method, outcome) in by_every_method(&model, &right.phi, Some(&right.stderr)) {
+                let Ok(object) = outcome else { continue };
+                assert!(!object.contradicted(), "{method}: {object:?}");
+                assert!(object.fit.is_some());
+                let joint = [Method::Joint, Method::JointUnbounded, Method::Nnls];
+                assert!(
+                    !joint.contains(&method) || !loud(&object),
+                    "{method}: {object:?}"
+                );
+            }
+        }
+    }
+}

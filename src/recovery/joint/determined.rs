@@ -1,0 +1,124 @@
+//! What the data determine of each element, whatever the method.
+
+use nalgebra::DVector;
+
+use super::khatri_rao::Operator;
+use crate::recovery::{Options, Problem, RecoveryError, WeightRule};
+
+/// Standard deviation of what is known of a reflectance beforehand: half of the range from 0 to 1.
+const BEFORE: f64 = 0.5;
+
+/// How much of each element the photographs determine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Determined {
+    /// Share of each element, 0 to 1: by what part the photographs lower the variance of its
+    /// reflectance.
+    pub shares: DVector<f64>,
+    /// Their sum: so many of the elements are determined.
+    pub rank: f64,
+}
+
+/// The diagonal of the resolution matrix of the photographs at their noise (Rodgers 2000, averaging
+/// kernel): with the singular values s_i of the operator in standard deviations of the noise, what
+/// nuisance terms take left out, and nothing known of the reflectances but that they lie about ½
+/// with a standard deviation of ½,
+///
+/// > R_jj = Σ_i V_ij² s_i² τ²/(1 + s_i² τ²) = 1 − var(ρ_j | Φ)/τ²,   τ = ½.
+///
+/// Where τ s_i is the signal of a direction, this counts the directions that rise above the noise in
+/// a Picard plot. It depends on geometry and noise, not on Φ.
+///
+/// # Errors
+/// [`RecoveryError::NotForMethod`] without a noise model, [`RecoveryError::TooManyElements`], a
+/// failed decomposition.
+pub fn determined(problem: &Problem<'_>) -> Result<Determined, RecoveryError> {
+    if problem.noise().is_none() {
+        return Err(RecoveryError::NotForMethod {
+            method: crate::recovery::Method::Joint,
+            what: "has no resolution at unknown noise",
+            cure: "give the standard error of phi (phi.stderr.npy)",
+        });
+    }
+    let options = Options {
+        weighting: WeightRule::Noise,
+        ..Options::default()
+    };
+    let (directions, _) = Operator::new(problem, &options)?.directions()?;
+    let mut shares = DVector::zeros(problem.c.ncols());
+    for (s, v) in directions.sigma.iter().zip(directions.vt.row_iter()) {
+        let signal = (s * BEFORE) * (s * BEFORE);
+        let share = signal / (1.0 + signal);
+        for (sum, v) in shares.iter_mut().zip(v.iter()) {
+            *sum += v * v * share;
+        }
+    }
+    Ok(Determined {
+        rank: shares.sum(),
+        shares,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::recovery::Nuisance;
+    use crate::recovery::bench::Bench;
+
+    /// One element seen in n entries of signal a and noise σ: F = n a²/σ², R = F/(F + 4). Two
+    /// elements that no entry tells apart share what one would have of twice the F: R = F/(2 F + 4)
+    /// each.
+    #[test]
+    fn shares_by_hand() {
+        let m = |rows, columns, x| DMatrix::from_element(rows, columns, x);
+        let (phi, stderr) = (m(2, 3, 1.0), m(2, 3, 0.5));
+        let information = 6.0 * 0.3 * 0.3 / 0.25;
+        let one = m(2, 1, 0.3);
+        let problem = Problem::new(&phi, &one, &DMatrix::from_element(1, 3, 1.0), Some(&stderr))
+            .map(|p| determined(&p).unwrap())
+            .unwrap();
+        assert!((problem.rank - information / (information + 4.0)).abs() < 1e-12);
+        let (two, d) = (m(2, 2, 0.3), m(2, 3, 1.0));
+        let problem = Problem::new(&phi, &two, &d, Some(&stderr)).unwrap();
+        for share in determined(&problem).unwrap().shares.iter() {
+            assert!((share - information / (2.0 * information + 4.0)).abs() < 1e-12);
+        }
+        assert!(determined(&Problem::new(&phi, &two, &d, None).unwrap()).is_err());
+    }
+
+    /// 1 − var(ρ_j | Φ)/τ² by the inverse of the normal matrix; less noise determines more, and what
+    /// is estimated besides takes of it.
+    #[test]
+    fn shares_are_what_the_variance_loses() {
+        let bench = Bench::new(6.0, 2, 4);
+        let phi = bench.phi(&bench.board(2).map(|x| 0.2 + 0.5 * x));
+        let stderr = DMatrix::from_element(16, 120, 0.1 * phi.mean());
+        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+        let found = determined(&problem).unwrap();
+        let of = |j: usize, k: usize| -> f64 {
+            let sides = |p: usize, l: usize| {
+                bench.c[(p, j)] * bench.d[(j, l)] * bench.c[(p, k)] * bench.d[(k, l)]
+            };
+            let sum: f64 = (0..16 * 120).map(|i| sides(i % 16, i / 16)).sum();
+            sum / (stderr[0] * stderr[0]) + if j == k { 4.0 } else { 0.0 }
+        };
+        let after = DMatrix::from_fn(4, 4, of).try_inverse().unwrap();
+        for j in 0..4 {
+            assert!((found.shares[j] - (1.0 - 4.0 * after[(j, j)])).abs() < 1e-9);
+        }
+        let loud = stderr.map(|s| 10.0 * s);
+        let loud = Problem::new(&phi, &bench.c, &bench.d, Some(&loud)).unwrap();
+        assert!(determined(&loud).unwrap().rank < found.rank);
+        let more = Nuisance {
+            frame_constant: true,
+            ..Nuisance::default()
+        };
+        assert!(
+            determined(&problem.with_nuisance(more).unwrap())
+                .unwrap()
+                .rank
+                < found.rank
+        );
+    }
+}
