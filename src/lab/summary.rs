@@ -5,7 +5,7 @@ use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone};
 use super::objects::RecoveredObject;
 use super::results::RunResults;
 use crate::matrix::Matrix;
-use crate::num::digits::figure;
+use crate::num::digits::{figure, significant};
 use crate::scene::Scene;
 use crate::transport::{Plan, Traced};
 
