@@ -29,6 +29,8 @@ use crate::transport::Traced;
 
 pub(super) const PHI: &str = "phi.npy";
 pub(super) const STDERR: &str = "phi.stderr.npy";
+/// Entries whose standard error is not to be trusted: 0 where it is, f64, pixels × spots.
+pub(super) const TAILS: &str = "phi.tails.npy";
 pub(super) const SUMMARY: &str = "summary.json";
 pub(super) const REPORT: &str = "report.html";
 pub(super) const SCENE: &str = "scene.toml";
@@ -219,7 +221,10 @@ impl RunFolder {
         remove_recovered(&self.path.join(RECOVERED))?;
         remove_exposed(&self.path.join(EXPOSED))?;
         remove_named(&self.path.join(MODEL), &[Z])?;
-        remove_named(&self.path, &[PHI, STDERR, Record::FILE, SUMMARY, REPORT])
+        remove_named(
+            &self.path,
+            &[PHI, STDERR, TAILS, Record::FILE, SUMMARY, REPORT],
+        )
     }
 
     /// Writes the frames of `spots` from the columns of `traced`, on the threads of the pool.

@@ -16,7 +16,7 @@ use crate::reference::gauss;
 use crate::studies::budget;
 use crate::{Way, assert_same, builtin, compare, relative, trace};
 
-const COATED: &str = "{ coated = 0.8, roughness = 0.3, ior = 1.5 }";
+const PAINT: &str = "{ paint = 0.8, roughness = 0.3, ior = 1.5 }";
 const MATT: &str = "{ lambertian = { checkerboard = [2, 2], dark = 0.0, light = 1.0 } }";
 
 /// The satin bench with few pixels and spots, a wall of `wall`, and S2 of `object`.
@@ -24,7 +24,7 @@ fn bench(wall: &str, object: &str) -> Scene {
     let changes = [
         ("per_side = 30", "per_side = 2"),
         ("pixels = [16, 16]", "pixels = [4, 4]"),
-        (COATED, wall),
+        (PAINT, wall),
         (MATT, object),
     ];
     builtin("satin", &changes)
@@ -133,7 +133,7 @@ fn known_is_accepted_and_lambertian_rejected(wall: &str, rounding: f64) {
 
 #[test]
 fn a_satin_wall_is_known_and_not_lambertian() {
-    known_is_accepted_and_lambertian_rejected(COATED, SMOOTH);
+    known_is_accepted_and_lambertian_rejected(PAINT, SMOOTH);
 }
 
 #[test]
@@ -203,7 +203,7 @@ fn laser_and_camera_can_be_exchanged() {
         let [x, y] = points[to];
         let s = 5e-4;
         let [x0, x1, y0, y1] = [x - s, x + s, y - s, y + s];
-        let mut text = bench(COATED, MATT).text;
+        let mut text = bench(PAINT, MATT).text;
         let start = text.find("[laser]").unwrap();
         let end = text.find("[[surface]]").unwrap();
         let place = |p: DVec3| format!("position = [{}, {}, {}]", p.x, p.y, p.z);

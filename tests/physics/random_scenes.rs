@@ -312,7 +312,7 @@ fn check(scene: &Scene, traced: &Traced) -> Result<(), TestCaseError> {
 #[test]
 fn below_a_lid_there_is_no_light() {
     let wall = (
-        "{ coated = 0.8, roughness = 0.3, ior = 1.5 }",
+        "{ paint = 0.8, roughness = 0.3, ior = 1.5 }",
         "{ oren_nayar = 0.8, roughness = 0.3 }",
     );
     let smaller = [
