@@ -133,8 +133,9 @@ fn try_seeds(estimator: Estimator, seeds: u64) -> Tried {
             stderr: &traced.stderr,
             model: &truth,
             bound: None,
+            left_out: None,
         };
-        let (verdict, z) = agree(evidence, test);
+        let (verdict, z) = agree(evidence, test, None);
         false_alarms += u32::from(!verdict.agrees);
         for (k, limit) in [1.959_964, 3.290_527].into_iter().enumerate() {
             beyond[k] += z.iter().filter(|z| z.abs() > limit).count() as f64;

@@ -140,8 +140,7 @@ fn edges_on_dyadic_lines_are_told_from_others() {
 }
 
 /// A point that a ray finds has the density with which the sampler drew it, on meshes too, and
-/// Σ 1/density over the points of a shape estimates its area: 200 000 points, a spread of the
-/// density by a factor of up to 100 or so between a guess and its floor, four standard errors.
+/// Σ 1/density over the points of a shape estimates its area, within four standard errors.
 #[test]
 fn a_guided_sampler_knows_its_density() {
     let scene = Scene::load("shelf").unwrap();
