@@ -81,7 +81,7 @@
 //! Trace a scene made in code and compare it with the model:
 //!
 //! ```
-//! use phicam::lab::{Errors, Integration, Test, validate};
+//! use phicam::lab::{Against, Errors, Integration, Measured, Occlusion, Test, validate};
 //! use phicam::model::Kernel;
 //! use phicam::scene::{Scene, file::SceneFile};
 //! use phicam::transport::{Budget, Control, Estimator, Plan, Sampling, render};
@@ -103,8 +103,10 @@
 //!
 //! // Within the error bars at a significance of 0.1 %?
 //! let test = Test { significance: 1e-3, replicates: plan.budget.blocks, errors: Errors::Independent };
+//! let measured = Measured { phi: &traced.flux, stderr: &traced.stderr, left_out: None };
 //! let against = |kernel| {
-//!     validate(&scene, &traced.flux, &traced.stderr, kernel, Integration::Centres, test)
+//!     let (integration, occlusion) = (Integration::Quadrature, Occlusion::Ignored);
+//!     validate(&scene, measured, Against { kernel, integration, occlusion }, test)
 //! };
 //! assert!(against(Kernel::Physical)?.agreement.agrees);
 //! // The kernel of the published simulation is not what light does.

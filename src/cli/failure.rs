@@ -20,6 +20,8 @@ pub(super) enum Outcome {
     Disagreed = 1,
     /// Shards are missing.
     Incomplete = 3,
+    /// Nothing that counts was lit: traced and modelled could not be compared.
+    NoEvidence = 4,
 }
 
 /// Why a command ended without its result.

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::console::Console;
 use super::failure::Failure;
 use super::record::Record;
-use super::run_folder::{PHI, SCENE};
+use super::run_folder::{PHI, SCENE, TAILS};
 use crate::matrix::{Matrix, npy};
 use crate::scene::Scene;
 
@@ -78,7 +78,14 @@ pub(super) fn refuse_shape(
 
 /// Standard errors of Φcam: as [`read_matrix`], and none negative.
 pub(super) fn read_stderr(path: &Path, scene: &Scene) -> Result<Matrix, Failure> {
-    let matrix = read_matrix(path, scene)?;
+    let matrix = read_errors(path)?;
+    refuse_shape(path, matrix.shape(), scene)?;
+    Ok(matrix)
+}
+
+/// Standard errors of any shape: finite, none negative.
+pub(super) fn read_errors(path: &Path) -> Result<Matrix, Failure> {
+    let matrix = npy::read_finite(path)?;
     let negative = matrix.iter().position(|x| *x < 0.0);
     if let Some(at) = negative {
         let (pixel, spot) = (at % matrix.nrows(), at / matrix.nrows());
@@ -93,4 +100,14 @@ pub(super) fn read_stderr(path: &Path, scene: &Scene) -> Result<Matrix, Failure>
         ));
     }
     Ok(matrix)
+}
+
+/// Which entries of a run have a standard error that is not to be trusted; `None` if nothing says
+/// so.
+pub(super) fn read_tails(dir: &Path, scene: &Scene) -> Result<Option<Matrix>, Failure> {
+    let path = dir.join(TAILS);
+    if !path.exists() {
+        return Ok(None);
+    }
+    read_matrix(&path, scene).map(Some)
 }

@@ -31,7 +31,8 @@
 //!
 //! Exit codes: 0 done (and agreed), 1 traced and modelled disagree (`validate`, `run`) or photographs
 //! and model contradict each other (`recover`: no reflectances between 0 and 1 explain the photographs
-//! within their errors; what was recovered is written nevertheless), 2 error, 75 stopped by SIGTERM
+//! within their errors; what was recovered is written nevertheless), 2 error, 4 nothing to
+//! compare (`validate`, `run`: no evidence), 75 stopped by SIGTERM
 //! and 130 by Ctrl-C with what is finished kept. The commands for many machines (`plan`, `shard`,
 //! `status`, `merge`, `slurm`, `clean`) tell schedulers more: 3 not complete (`status`), 64 wrong
 //! usage, 65 refused data, 66 missing blocks, 74 the system cannot read or write.

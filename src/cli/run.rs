@@ -7,6 +7,7 @@ use super::args::RunArgs;
 use super::console::Console;
 use super::failure::Failure;
 use super::interrupt::stop_flag;
+use super::load_run::read_tails;
 use super::output;
 use super::progress;
 use super::record::Record;
@@ -15,7 +16,10 @@ use super::run_folder::{REPORT, Resume, SUMMARY};
 use super::{Outcome, model, recover, settings, validate};
 use crate::film;
 use crate::lab::finding::Describe;
-use crate::lab::{self, Certainty, GalleryPlan, GalleryTasks, Noise, RunGallery, RunResults, Work};
+use crate::lab::{
+    self, Against, Certainty, GalleryPlan, GalleryTasks, Measured, Noise, Occlusion, RunGallery,
+    RunResults, Work,
+};
 use crate::matrix::Matrix;
 use crate::metrics::relative_frobenius;
 use crate::model::MatrixModel;
@@ -112,17 +116,20 @@ fn compare_and_recover(
     console: Console,
 ) -> Result<(), Failure> {
     let kernel = args.test.kernel;
-    let integration = args.test.integration;
     console.say("computing the model and comparing");
     let matrices = MatrixModel::new(&results.scene, kernel, None)?;
-    let found = lab::validate(
-        &results.scene,
-        &results.phi,
-        &results.stderr,
+    let tails = read_tails(&args.output, &results.scene)?;
+    let measured = Measured {
+        phi: &results.phi,
+        stderr: &results.stderr,
+        left_out: tails.as_ref(),
+    };
+    let against = Against {
         kernel,
-        integration,
-        test,
-    )?;
+        integration: args.test.integration,
+        occlusion: Occlusion::Ignored,
+    };
+    let found = lab::validate(&results.scene, measured, against, test)?;
     model::write(&args.output, &matrices, &found.model)?;
     model::write_z(&args.output, &found.z)?;
     results.model = Some(found.model);

@@ -31,6 +31,7 @@ use crate::transport::Traced;
 
 pub(super) const PHI: &str = "phi.npy";
 pub(super) const STDERR: &str = "phi.stderr.npy";
+/// Entries whose standard error is not to be trusted: 0 where it is, f64, pixels × spots.
 pub(super) const TAILS: &str = "phi.tails.npy";
 pub(super) const SUMMARY: &str = "summary.json";
 pub(super) const REPORT: &str = "report.html";

@@ -48,12 +48,7 @@ const ENOUGH_PATHS: u32 = 4;
 
 /// The test for a run traced by `plan`.
 pub(super) fn test(args: &TestArgs, plan: &Plan, console: Console) -> Result<Test, Failure> {
-    let significance = args.significance;
-    if !(significance > 0.0 && significance < 1.0) {
-        let cause = format!("--significance {significance} is not a probability");
-        let cure = "use a number between 0 and 1, e.g. 0.001";
-        return Err(Failure::new(cause, cure));
-    }
+    let significance = significance(args)?;
     if plan.budget.size < ENOUGH_PATHS {
         console.say(format!(
             "warning: {} paths a block are few for normal block means: the verdict's significance is only approximate",
@@ -65,4 +60,28 @@ pub(super) fn test(args: &TestArgs, plan: &Plan, console: Console) -> Result<Tes
         replicates: plan.budget.blocks,
         errors: Errors::of(plan.estimator),
     })
+}
+
+/// The test for a matrix of unknown origin. Unless it is said from how many replicates its standard
+/// errors come they are taken as known, of normal errors.
+pub(super) fn test_of_matrix(
+    args: &TestArgs,
+    errors: Errors,
+    replicates: Option<u32>,
+) -> Result<Test, Failure> {
+    Ok(Test {
+        significance: significance(args)?,
+        replicates: replicates.unwrap_or(u32::MAX),
+        errors,
+    })
+}
+
+fn significance(args: &TestArgs) -> Result<f64, Failure> {
+    let significance = args.significance;
+    if significance > 0.0 && significance < 1.0 {
+        return Ok(significance);
+    }
+    let cause = format!("--significance {significance} is not a probability");
+    let cure = "use a number between 0 and 1, e.g. 0.001";
+    Err(Failure::new(cause, cure))
 }

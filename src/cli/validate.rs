@@ -1,44 +1,60 @@
 //! `phicam validate`: traced against modelled.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::args::ValidateArgs;
 use super::console::Console;
 use super::failure::Failure;
-use super::load_run::{read_matrix, read_run, read_stderr};
+use super::load_run::{read_errors, read_matrix, read_run, read_stderr, read_tails};
 use super::output;
 use super::record::Record;
 use super::run_folder::{self, PHI, STDERR};
 use super::{Outcome, settings};
 use crate::film::{self, Channel, Frame};
 use crate::lab::finding::Describe;
-use crate::lab::{Agreement, validate};
-use crate::matrix::Matrix;
+use crate::lab::{Against, Agreement, Measured, Occlusion, Test, validate};
+use crate::matrix::{Matrix, npy};
 use crate::num::statistics::normal_two_sided;
 use crate::report::{self, Panel, Scale};
 use crate::scene::Scene;
 use crate::store::ensure_writable;
 
 pub(super) fn execute(args: &ValidateArgs, console: Console) -> Result<Outcome, Failure> {
-    let (own, record) = read_run(&args.dir, console)?;
-    let phi = read_matrix(&args.dir.join(PHI), &own)?;
-    let stderr = read_stderr(&args.dir.join(STDERR), &own)?;
-    let mut scene = match &args.against {
-        Some(other) => console.load_scene(other)?,
-        None => own,
+    let given = given(args, console)?;
+    let mut scene = match (&args.against, given.scene) {
+        (Some(other), _) => console.load_scene(other)?,
+        (None, Some(own)) => own,
+        (None, None) => {
+            let cause = "nothing says of which scene the matrix is";
+            return Err(Failure::usage(
+                cause,
+                "give the folder of a run, or --against SCENE",
+            ));
+        }
     };
     if let Some(by) = args.shift_spots {
         scene = scene.with_shifted_spots(by)?;
     }
-    let test = settings::test(&args.test, &record.plan, console)?;
-    let kernel = args.test.kernel;
-    let integration = args.test.integration;
-    let found = validate(&scene, &phi, &stderr, kernel, integration, test)?;
-    if !found.agreement.agrees {
-        write_map(&args.dir, &scene, &record, &found.z)?;
+    let measured = Measured {
+        phi: &given.phi,
+        stderr: &given.stderr,
+        left_out: given.left_out.as_ref(),
+    };
+    let against = Against {
+        kernel: args.test.kernel,
+        integration: args.test.integration,
+        occlusion: if args.occlusion {
+            Occlusion::Considered
+        } else {
+            Occlusion::Ignored
+        },
+    };
+    let found = validate(&scene, measured, against, given.test)?;
+    if let (Some((dir, record)), Outcome::Disagreed) = (&given.run, outcome(&found.agreement)) {
+        write_map(dir, &scene, record, &found.z)?;
         console.say(format!(
             "the probability of each entry is mapped in {}, pixels upwards and spots to the right",
-            args.dir.join(MAP).join("p.exr").display()
+            dir.join(MAP).join("p.exr").display()
         ));
     }
     output::result(args.json, &found.agreement, || {
@@ -47,9 +63,53 @@ pub(super) fn execute(args: &ValidateArgs, console: Console) -> Result<Outcome, 
     Ok(outcome(&found.agreement))
 }
 
+/// What is to be tested.
+struct Given {
+    /// The scene it is of, as far as the folder of a run says so.
+    scene: Option<Scene>,
+    phi: Matrix,
+    stderr: Matrix,
+    left_out: Option<Matrix>,
+    test: Test,
+    /// The run whose matrix it is.
+    run: Option<(PathBuf, Record)>,
+}
+
+/// Reads the matrix of a run, or that of --phi.
+fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
+    let run = match &args.dir {
+        None => None,
+        Some(dir) => Some((dir, read_run(dir, console)?)),
+    };
+    match (&args.phi, &args.stderr, run) {
+        (Some(phi), Some(stderr), run) => Ok(Given {
+            scene: run.map(|(_, (scene, _))| scene),
+            phi: npy::read_finite(phi)?,
+            stderr: read_errors(stderr)?,
+            left_out: None,
+            test: settings::test_of_matrix(&args.test, args.errors, args.replicates)?,
+            run: None,
+        }),
+        (_, _, Some((dir, (scene, record)))) => Ok(Given {
+            phi: read_matrix(&dir.join(PHI), &scene)?,
+            stderr: read_stderr(&dir.join(STDERR), &scene)?,
+            left_out: read_tails(dir, &scene)?,
+            test: settings::test(&args.test, &record.plan, console)?,
+            scene: Some(scene),
+            run: Some((dir.clone(), record)),
+        }),
+        (_, _, None) => {
+            let cure = "give the folder of a run, or --phi FILE --stderr FILE --against SCENE";
+            Err(Failure::usage("there is nothing to validate", cure))
+        }
+    }
+}
+
 /// Exit code of a verdict.
 pub(super) fn outcome(agreement: &Agreement) -> Outcome {
-    if agreement.agrees {
+    if !agreement.evidence {
+        Outcome::NoEvidence
+    } else if agreement.agrees {
         Outcome::Done
     } else {
         Outcome::Disagreed

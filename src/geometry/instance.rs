@@ -200,6 +200,16 @@ impl Instance {
         self.to_scene(self.mesh.at(u))
     }
 
+    /// The parameters for which [`Instance::at`] gives the point of a triangle that is nearest to
+    /// `p`.
+    ///
+    /// # Panics
+    /// If there is no such triangle.
+    pub fn parameters(&self, triangle: u32, p: DVec3) -> [f64; 2] {
+        self.mesh
+            .parameters(triangle, self.to_mesh.transform_point3(p))
+    }
+
     /// The points straight above or below (x, y) along z, by growing z.
     pub fn at_xy(&self, x: f64, y: f64) -> Vec<Interaction> {
         let (low, high) = self.bounds;

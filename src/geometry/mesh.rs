@@ -265,6 +265,19 @@ impl Mesh {
         self.point(triangle as u32, warp::triangle([rest, v]))
     }
 
+    /// The parameters for which [`Mesh::at`] gives the point of a triangle that is nearest to `p`.
+    ///
+    /// # Panics
+    /// If there is no such triangle.
+    pub fn parameters(&self, triangle: u32, p: DVec3) -> [f64; 2] {
+        let k = triangle as usize;
+        let (_, [v, w]) = nearest::on_triangle(self.corners(triangle), p);
+        let before = k.checked_sub(1).map_or(0.0, |k| self.areas[k]);
+        let own = self.areas[k] - before;
+        let [rest, along] = warp::triangle_inverse([v, w]);
+        [(before + rest * own) / self.area(), along]
+    }
+
     /// The point of the mesh nearest to `p`, and its triangle; of triangles equally near the first.
     pub fn at_position(&self, p: DVec3) -> (u32, Interaction) {
         let mut best = (f64::INFINITY, u32::MAX, [0.0; 2]);

@@ -54,7 +54,7 @@ fn what_is_written_is_read() {
     assert_eq!(inside, parts()[1..]);
     // The layout is pinned: magic, layout number, length of the header.
     let bytes = fs::read(&path).unwrap();
-    assert_eq!(bytes[..12], *b"phicam\0\0\x01\0\0\0");
+    assert_eq!(bytes[..12], *b"phicam\0\0\x02\0\0\0");
     let header = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
     assert_eq!(bytes.len(), 16 + header + 100_003 + 32);
 }
@@ -98,7 +98,7 @@ fn each_fault_has_its_own_message() {
     };
     told(with(&[]), true, "is empty");
     told(with(b"PK\x03\x04 some archive"), false, "is no shard");
-    told(with(&flipped(8)), false, "has layout 5");
+    told(with(&flipped(8)), false, "has layout 6");
     for cut in [1, 10, 17, 60, whole.len() - 1] {
         told(with(&whole[..cut]), true, "is cut off");
     }

@@ -2,58 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::evidence::{Errors, Evidence, Test};
+use super::score::{Derivatives, Residual, Score, Weights, score};
 use crate::matrix::Matrix;
 use crate::num::statistics::{
     chi_square_sf, normal_two_sided, sidak_p, sidak_threshold, student_to_normal,
 };
 use crate::num::summation::mean_and_stderr;
-use crate::transport::Estimator;
-
-/// How the errors of traced entries hang together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Errors {
-    /// Every entry has its own random numbers.
-    Independent,
-    /// Entries of one pixel share theirs: only different rows are independent.
-    WithinRows,
-    /// All entries share theirs.
-    Everywhere,
-}
-
-impl Errors {
-    /// Those of an estimator.
-    pub fn of(estimator: Estimator) -> Self {
-        match estimator {
-            Estimator::Independent => Self::Independent,
-            Estimator::Shared => Self::WithinRows,
-            Estimator::Factored => Self::Everywhere,
-        }
-    }
-}
-
-/// What is compared.
-#[derive(Clone, Copy, Debug)]
-pub struct Evidence<'a> {
-    /// Traced Φcam, pixels × spots, W.
-    pub traced: &'a Matrix,
-    /// Standard error of each traced entry, W.
-    pub stderr: &'a Matrix,
-    /// Modelled Φcam, W.
-    pub model: &'a Matrix,
-    /// What the model may be off by in each entry, W ≥ 0; absent for a converged model.
-    pub bound: Option<&'a Matrix>,
-}
-
-/// How it is tested.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Test {
-    /// Probability of rejecting a right model.
-    pub significance: f64,
-    /// Replicates from which each standard error was estimated.
-    pub replicates: u32,
-    /// How the errors hang together.
-    pub errors: Errors,
-}
 
 /// One entry of Φcam, traced and modelled.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -70,19 +25,37 @@ pub struct Entry {
     pub z: f64,
 }
 
+/// What the model may be off by in an entry.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct EntryBound {
+    /// Pixel index.
+    pub pixel: usize,
+    /// Spot index.
+    pub spot: usize,
+    /// Bound over |modelled|; at most 1.
+    pub relative: f64,
+}
+
 /// Traced against modelled Φcam.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Agreement {
-    /// Whether both tests pass at the significance level.
+    /// Whether there is evidence, and every test passes at the significance level.
     pub agrees: bool,
+    /// Whether anything was compared: an entry that is not left out, and that is lit.
+    pub evidence: bool,
     /// `physical` or `published`.
     pub kernel: String,
     /// How the model integrates: `centres` or `quadrature`.
     pub integration: String,
+    /// Points of the hidden surfaces at which the model asks what stands in the way; `None` if it
+    /// does not ask.
+    pub occlusion: Option<usize>,
     /// Family-wise error rate of the verdict.
     pub significance: f64,
     /// Entries compared.
     pub entries: usize,
+    /// Entries left out, their error being untrusted.
+    pub left_out: usize,
     /// Mean of z² over the entries: 1 on average if the model is right.
     pub chi2_per_dof: f64,
     /// Independent degrees of freedom of that mean.
@@ -101,126 +74,199 @@ pub struct Agreement {
     pub relative_noise: f64,
     /// Discretisation bound of the model, relative Frobenius norm.
     pub relative_discretisation: f64,
-    /// Best single scale of the model: traced ≈ scale · modelled.
+    /// The entry with the largest bound of the model relative to it; `None` where none is stated.
+    pub worst_bound: Option<EntryBound>,
+    /// Best single scale of the model: traced ≈ scale · modelled (least squares, unweighted).
     pub best_scale: f64,
+    /// Its standard error, by what the errors share.
+    pub best_scale_stderr: f64,
+    /// χ²/dof of each pixel; `None` where all its entries are left out.
+    pub pixels: Vec<Option<f64>>,
+    /// χ²/dof of each spot.
+    pub spots: Vec<Option<f64>>,
+    /// The parameters of the scene, each fitted alone; `None` where none were given.
+    pub score: Option<Score>,
     /// The entries with the largest |z|.
     pub worst: Vec<Entry>,
 }
 
-/// Two sums of positive doubles cannot be told apart more finely than this.
-const ROUNDING: f64 = 1e-14;
 /// Entries listed by name.
 const WORST: usize = 10;
 
 /// Compares entry by entry. Returns the verdict (with empty `kernel` and `integration`) and the z
-/// of every entry.
+/// of every entry, 0 for one that is left out.
 ///
 /// The deviate of an entry is t = (traced − model)/stderr, Student-distributed with `replicates` −
 /// 1 degrees of freedom, and z the standard normal deviate of the same tail probability. A stated
 /// `bound` of the model is taken off |traced − model| first. Two tests share the significance level
-/// equally:
+/// equally, three where there are `derivatives`:
 ///
 /// * the largest |z| against the Šidák limit for all entries;
 /// * χ² = Σz². Under [`Errors::WithinRows`] the z of a row move together, but rows are independent:
 ///   the scatter of the row sums tells how many independent entries Σz² amounts to (Satterthwaite),
 ///   between the number of rows and that of entries. Under [`Errors::Everywhere`] it counts as one
 ///   entry's: whatever the correlations, the mean of z² exceeds a limit this far out less often
-///   than a single z² does.
+///   than a single z² does;
+/// * the score tests of the parameters of the scene ([`Score`]): half of their share is for all of
+///   these, half for those of single spots, each against its Šidák limit.
 ///
 /// Entries whose standard error is 0 (light that never varies, or never arrives) are compared to
-/// rounding.
-pub fn agree(evidence: Evidence<'_>, test: Test) -> (Agreement, Matrix) {
-    let Evidence {
-        traced,
-        stderr,
-        model,
-        bound,
-    } = evidence;
-    let freedom = f64::from(test.replicates.max(2) - 1);
-    let z = Matrix::from_fn(traced.nrows(), traced.ncols(), |p, l| {
-        let at = (p, l);
-        let difference = traced[at] - model[at];
-        let beyond = (difference.abs() - bound.map_or(0.0, |b| b[at])).max(0.0);
-        let scale = stderr[at].max(ROUNDING * (traced[at].abs() + model[at].abs()));
-        if beyond == 0.0 {
-            0.0
+/// rounding. Where every entry is left out, or dark in both, there is no evidence and no agreement.
+pub fn agree(
+    evidence: Evidence<'_>,
+    test: Test,
+    derivatives: Option<&Derivatives<'_>>,
+) -> (Agreement, Matrix) {
+    let (rows, columns) = evidence.model.shape();
+    let deviate = |at: usize, model: f64| deviate(&evidence, test, at, model);
+    let z = Matrix::from_fn(rows, columns, |p, l| {
+        let at = p + l * rows;
+        if evidence.counts(at) {
+            deviate(at, evidence.model[at])
         } else {
-            student_to_normal(beyond / scale, freedom).copysign(difference)
+            0.0
         }
     });
-    let entries = z.len();
+    let counted: Vec<usize> = (0..z.len()).filter(|i| evidence.counts(*i)).collect();
+    let entries = counted.len();
+    let lit = |i: &usize| evidence.traced[*i] != 0.0 || evidence.model[*i] != 0.0;
+    let evident = counted.iter().any(lit);
     let largest = z.amax();
-    let chi2_per_dof = z.norm_squared() / entries as f64;
+    let squares = z.norm_squared();
+    let chi2_per_dof = squares / entries.max(1) as f64;
     let dof = match test.errors {
-        Errors::Independent => entries as f64,
-        Errors::WithinRows => effective_freedom(&z),
+        Errors::Independent => entries.max(1) as f64,
+        Errors::WithinRows => effective_freedom(&z, entries),
         Errors::Everywhere => 1.0,
     };
     let chi2_p = chi_square_sf(chi2_per_dof * dof, dof);
-    let half = 0.5 * test.significance;
+    let share = test.significance / if derivatives.is_some() { 3.0 } else { 2.0 };
     let largest_p = sidak_p(normal_two_sided(largest), entries as u64);
-    // Relative to a dark model everything is unbounded, but nothing remains nothing.
-    let norm = model.norm();
-    let relative = |x: f64| if x > 0.0 { x / norm } else { 0.0 };
+    let remaining = |theta: f64, d: &Matrix, columns: &std::ops::Range<usize>| {
+        let own = columns.start * rows..columns.end * rows;
+        let own = own.filter(|i| evidence.counts(*i));
+        let change = own.map(|i| {
+            let after = deviate(i, evidence.model[i] + theta * d[i]);
+            after * after - z[i] * z[i]
+        });
+        (squares + change.sum::<f64>()) / entries.max(1) as f64
+    };
+    let score = derivatives
+        .filter(|_| evident)
+        .map(|d| score(evidence, test, share, d, &remaining));
+    let scored = score.as_ref().is_none_or(|s| !s.rejects());
+    // Of what counts, relative to the model's norm. To a dark model everything is unbounded, but
+    // nothing remains nothing.
+    let norm = |f: &dyn Fn(usize) -> f64| counted.iter().map(|i| f(*i).powi(2)).sum::<f64>().sqrt();
+    let modelled = norm(&|i| evidence.model[i]);
+    let relative = |x: f64| if x > 0.0 { x / modelled } else { 0.0 };
+    let scale = Residual::new(evidence, test, Weights::Alike).fit(evidence.model, &(0..columns));
     let agreement = Agreement {
-        agrees: chi2_p >= half && largest_p >= half,
+        agrees: evident && chi2_p >= share && largest_p >= share && scored,
+        evidence: evident,
         kernel: String::new(),
         integration: String::new(),
+        occlusion: None,
         significance: test.significance,
         entries,
+        left_out: z.len() - entries,
         chi2_per_dof,
         dof,
         chi2_p,
         largest_z: largest,
-        z_limit: sidak_threshold(half, entries as u64),
+        z_limit: sidak_threshold(share, entries as u64),
         largest_p,
-        relative_difference: relative((traced - model).norm()),
-        relative_noise: relative(stderr.norm()),
-        relative_discretisation: bound.map_or(0.0, |b| relative(b.norm())),
-        best_scale: if norm > 0.0 {
-            traced.dot(model) / (norm * norm)
-        } else {
-            1.0
-        },
-        worst: worst(&z, traced, model),
+        relative_difference: relative(norm(&|i| evidence.traced[i] - evidence.model[i])),
+        relative_noise: relative(norm(&|i| evidence.stderr[i])),
+        relative_discretisation: relative(norm(&|i| evidence.bound(i))),
+        worst_bound: worst_bound(&evidence, &counted),
+        best_scale: 1.0 + scale.map_or(0.0, |s| s.value),
+        best_scale_stderr: scale.map_or(0.0, |s| s.stderr),
+        pixels: (0..rows)
+            .map(|p| mean_square(&evidence, &z, (0..columns).map(|l| p + l * rows)))
+            .collect(),
+        spots: (0..columns)
+            .map(|l| mean_square(&evidence, &z, l * rows..(l + 1) * rows))
+            .collect(),
+        score,
+        worst: worst(&z, &evidence),
     };
     (agreement, z)
+}
+
+/// Standard normal deviate of an entry from `model`, W.
+fn deviate(evidence: &Evidence<'_>, test: Test, at: usize, model: f64) -> f64 {
+    let difference = evidence.traced[at] - model;
+    let beyond = (difference.abs() - evidence.bound(at)).max(0.0);
+    if beyond == 0.0 {
+        return 0.0;
+    }
+    let scale = evidence.stderr[at].max(evidence.rounding(at));
+    student_to_normal(beyond / scale, test.freedom()).copysign(difference)
+}
+
+/// Mean z² of those of some entries that count.
+fn mean_square(
+    evidence: &Evidence<'_>,
+    z: &Matrix,
+    entries: impl Iterator<Item = usize>,
+) -> Option<f64> {
+    let counted = entries.filter(|i| evidence.counts(*i)).map(|i| z[i] * z[i]);
+    let (sum, n) = counted.fold((0.0, 0.0), |(sum, n), x| (sum + x, n + 1.0));
+    (n > 0.0).then(|| sum / n)
+}
+
+/// The entry with the largest bound relative to itself.
+fn worst_bound(evidence: &Evidence<'_>, counted: &[usize]) -> Option<EntryBound> {
+    evidence.bound?;
+    let relative = |i: &usize| match evidence.bound(*i) {
+        0.0 => 0.0,
+        b => (b / evidence.model[*i].abs()).min(1.0),
+    };
+    let all = counted.iter().map(|i| (*i, relative(i)));
+    let (at, relative) = all.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
+    let rows = evidence.model.nrows();
+    Some(EntryBound {
+        pixel: at % rows,
+        spot: at / rows,
+        relative,
+    })
 }
 
 /// Fewer rows than this do not tell their own scatter.
 const ENOUGH_ROWS: usize = 16;
 
-fn effective_freedom(z: &Matrix) -> f64 {
+fn effective_freedom(z: &Matrix, entries: usize) -> f64 {
     let sums: Vec<f64> = z.row_iter().map(|r| r.norm_squared()).collect();
-    freedom_of_rows(&sums, z.len())
+    freedom_of_rows(&sums, entries)
 }
 
 /// ν such that Σz² has the mean and the variance of (entries/ν)·χ²_ν if the model is right: ν =
 /// 2·entries²/Var Σz², the variance estimated from the scatter of the `sums` over each row. With
 /// too few rows, their number, which is the least it can be.
 pub(super) fn freedom_of_rows(sums: &[f64], entries: usize) -> f64 {
-    let (rows, entries) = (sums.len() as f64, entries as f64);
+    let (rows, entries) = (sums.len() as f64, entries.max(1) as f64);
     if sums.len() < ENOUGH_ROWS {
         return rows;
     }
     let (_, stderr) = mean_and_stderr(sums);
     let variance = stderr * stderr * rows * rows;
     if variance > 0.0 {
-        (2.0 * entries * entries / variance).clamp(rows, entries)
+        (2.0 * entries * entries / variance).clamp(rows.min(entries), entries)
     } else {
         rows
     }
 }
 
 /// The entries with the largest |z|, largest first.
-fn worst(z: &Matrix, traced: &Matrix, model: &Matrix) -> Vec<Entry> {
-    let mut order: Vec<usize> = (0..z.len()).collect();
+fn worst(z: &Matrix, evidence: &Evidence<'_>) -> Vec<Entry> {
+    let mut order: Vec<usize> = (0..z.len()).filter(|i| evidence.counts(*i)).collect();
     order.sort_by(|a, b| z[*b].abs().total_cmp(&z[*a].abs()).then(a.cmp(b)));
     let entry = |i: usize| Entry {
         pixel: i % z.nrows(),
         spot: i / z.nrows(),
-        traced: traced[i],
-        modelled: model[i],
+        traced: evidence.traced[i],
+        modelled: evidence.model[i],
         z: z[i],
     };
     order.into_iter().take(WORST).map(entry).collect()
@@ -284,6 +330,7 @@ mod tests {
             stderr: &stderr,
             model: &model,
             bound: bound.as_ref(),
+            left_out: None,
         };
         agree(
             evidence,
@@ -292,6 +339,7 @@ mod tests {
                 replicates: REPLICATES,
                 errors,
             },
+            None,
         )
         .0
     }
@@ -357,8 +405,9 @@ mod tests {
                 stderr: &zero,
                 model: &model,
                 bound: None,
+                left_out: None,
             };
-            let (verdict, z) = agree(evidence, test);
+            let (verdict, z) = agree(evidence, test, None);
             assert_eq!(verdict.agrees, agrees, "{value}");
             assert!(z.iter().all(|z| z.is_finite()));
         }
@@ -368,9 +417,11 @@ mod tests {
                 stderr: &zero,
                 model: &zero,
                 bound: None,
+                left_out: None,
             },
             test,
+            None,
         );
-        assert!(nothing.agrees);
+        assert!(!nothing.agrees && !nothing.evidence);
     }
 }

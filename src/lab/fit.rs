@@ -17,7 +17,8 @@
 
 use serde::Serialize;
 
-use super::agreement::{Errors, freedom_of_rows};
+use super::agreement::freedom_of_rows;
+use super::evidence::Errors;
 use crate::matrix::Matrix;
 use crate::num::statistics::{chi_square_sf, student_to_normal};
 use crate::recovery::{

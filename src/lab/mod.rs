@@ -1,7 +1,8 @@
 //! Floor 6: studies. Experiments that compose the floors below and return plain results.
 //!
 //! * [`agree`]: traced against modelled Φcam, a verdict by test statistics.
-//! * [`validate`]: the same for a scene, the model computed on the way.
+//! * [`validate`]: the same for a scene, the model computed on the way; which parameter of it is off
+//!   ([`Score`]).
 //! * [`BudgetTasks`]: the difference between frames and model taken apart into its causes.
 //! * [`ConvergenceTasks`]: how fast the error of each estimator falls.
 //! * [`PowerTasks`]: what [`validate`] detects, and how often it errs.
@@ -147,10 +148,12 @@ mod bytes;
 mod check;
 mod convergence;
 mod coverage;
+mod derivatives;
 mod deviate;
 mod doubt;
 mod ensemble;
 mod error;
+mod evidence;
 mod experiment;
 mod exposure;
 pub mod finding;
@@ -159,6 +162,7 @@ mod gallery;
 mod indicator;
 mod inversion;
 mod measures;
+mod misplaced;
 mod noise;
 mod objects;
 pub mod options;
@@ -172,6 +176,7 @@ mod results;
 #[cfg(test)]
 #[path = "sample_tests.rs"]
 pub(crate) mod sample;
+mod score;
 mod spots;
 mod study;
 mod summary;
@@ -179,8 +184,9 @@ mod tails;
 mod tolerance;
 mod traced;
 mod validation;
+mod verdict;
 
-pub use agreement::{Agreement, Entry, Errors, Evidence, Test, agree};
+pub use agreement::{Agreement, Entry, EntryBound, agree};
 pub use brdf::{Assumption, BrdfPlan, BrdfStudy, BrdfTasks, Quality, Ratio};
 pub use budget::{BudgetPlan, BudgetTasks, Closure, ErrorBudget, Term};
 pub use bytes::{LAYOUT, TaskError, decode, encode, encoded};
@@ -188,6 +194,7 @@ pub use convergence::{Convergence, ConvergenceTasks, Curve, Step};
 pub use coverage::{Coverage, CoveragePlan, CoverageRow, CoverageTasks};
 pub use ensemble::{Estimate, Spread};
 pub use error::{LabError, StudyError};
+pub use evidence::{Errors, Evidence, Test};
 pub use experiment::{Experiment, ExperimentPlan, ExperimentTasks, Reading, Setting, Threshold};
 pub use exposure::describe_exposure;
 pub use fit::{Attainable, Certainty, FIT_LEVEL, Fit, Judged, Residuals};
@@ -213,10 +220,13 @@ pub use preview::{
 pub use registered::{AnyStudy, Found, Prepare, Registered, prepared};
 pub use registry::STUDIES;
 pub use results::RunResults;
+pub use score::{Derivatives, Deviation, Parameter, Score};
 pub use study::{Sharing, Study, Work, context, outputs, run};
 pub use summary::{
     by_surface, describe_recovery, describe_render, determined, fits, recovery, warnings,
 };
 pub use tails::Tails;
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
-pub use validation::{Integration, Validation, ValidationError, validate};
+pub use validation::{
+    Against, Integration, Measured, Occlusion, Validation, ValidationError, validate,
+};

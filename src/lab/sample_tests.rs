@@ -78,10 +78,13 @@ pub(crate) fn whole(mut run: RunResults) -> RunResults {
     run.z = Some(z);
     run.agreement = Some(Agreement {
         agrees: true,
+        evidence: true,
         kernel: "physical".into(),
         integration: "centres".into(),
+        occlusion: None,
         significance: 0.01,
         entries: 30720,
+        left_out: 0,
         chi2_per_dof: 1.003,
         dof: 30720.0,
         chi2_p: 0.36,
@@ -91,7 +94,12 @@ pub(crate) fn whole(mut run: RunResults) -> RunResults {
         relative_difference: 1.1e-3,
         relative_noise: 1e-3,
         relative_discretisation: 4e-4,
+        worst_bound: None,
         best_scale: 1.00001,
+        best_scale_stderr: 2e-5,
+        pixels: Vec::new(),
+        spots: Vec::new(),
+        score: None,
         worst: vec![Entry {
             pixel: 17,
             spot: 3,

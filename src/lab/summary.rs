@@ -1,6 +1,6 @@
-//! A render, a verdict, a recovery and a whole run in words and tables.
+//! A render, a recovery and a whole run in words and tables.
 
-use super::agreement::{Agreement, Entry};
+use super::agreement::Agreement;
 use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone};
 use super::objects::RecoveredObject;
 use super::results::RunResults;
@@ -24,83 +24,6 @@ pub(super) fn facts(rows: impl IntoIterator<Item = (&'static str, String)>) -> T
 
 fn percent(x: f64) -> String {
     format!("{}\u{a0}%", figure(100.0 * x, 3))
-}
-
-impl Agreement {
-    /// The verdict with its numbers; `DISAGREE` in capitals where a test fails.
-    pub fn verdict(&self) -> String {
-        format!(
-            "traced and {} model {}: χ²/dof {} over {} entries, largest |z| {} of {} allowed",
-            self.kernel,
-            if self.agrees { "agree" } else { "DISAGREE" },
-            significant(self.chi2_per_dof, 4),
-            self.entries,
-            significant(self.largest_z, 2),
-            significant(self.z_limit, 2),
-        )
-    }
-
-    fn tone(&self) -> Tone {
-        if self.agrees { Tone::Good } else { Tone::Bad }
-    }
-
-    /// How far off, by what causes, and the test.
-    fn facts(&self) -> [(&'static str, String); 2] {
-        let difference = format!(
-            "{} of the model; {} expected from noise, at most {} from its discretisation; best scale {}",
-            percent(self.relative_difference),
-            percent(self.relative_noise),
-            percent(self.relative_discretisation),
-            figure(self.best_scale, 5)
-        );
-        let test = format!(
-            "{} model, {}; significance {}, P(χ²) {}, P(|z|) {}",
-            self.kernel,
-            self.integration,
-            figure(self.significance, 2),
-            figure(self.chi2_p, 2),
-            figure(self.largest_p, 2)
-        );
-        [("difference", difference), ("test", test)]
-    }
-
-    /// The entries with the largest |z|.
-    pub fn worst_entries(&self) -> Table {
-        let row = |e: &Entry| {
-            let numbers = [e.traced, e.modelled, e.z].map(Cell::from);
-            [e.pixel, e.spot]
-                .map(Cell::from)
-                .into_iter()
-                .chain(numbers)
-                .collect()
-        };
-        Table {
-            caption: "The worst entries".to_owned(),
-            columns: vec![
-                Column::text("pixel", ""),
-                Column::text("spot", ""),
-                Column::number("traced", "", "W", 6),
-                Column::number("modelled", "", "W", 6),
-                Column::number("z", "", "", 4),
-            ],
-            rows: self.worst.iter().map(row).collect(),
-            ..Table::default()
-        }
-    }
-}
-
-impl Describe for Agreement {
-    /// The verdict, what it rests on, and where it fails the worst entries by name.
-    fn describe(&self) -> Finding {
-        let worst = (!self.agrees).then(|| self.worst_entries());
-        Finding {
-            title: "Traced against modelled".to_owned(),
-            tone: self.tone(),
-            sentence: self.verdict(),
-            tables: std::iter::once(facts(self.facts())).chain(worst).collect(),
-            ..Finding::default()
-        }
-    }
 }
 
 impl RunResults {
@@ -199,9 +122,9 @@ impl RunResults {
                 "‖standard error‖",
             ),
             (
-                "at most: elements and pixels taken at their centres",
+                "at most: what the model's integration leaves out",
                 Some(a.relative_discretisation),
-                "stated bound of the model; 0 with --integration quadrature",
+                "stated bound of the model; next to nothing by quadrature",
             ),
             ("light that met more than three surfaces", beyond, how),
         ];
@@ -397,6 +320,22 @@ fn relative(a: &Matrix, b: &Matrix) -> Option<f64> {
     (norm > 0.0).then(|| a.norm() / norm)
 }
 
+/// The relative standard error that a run should reach.
+const AIM: f64 = 0.01;
+
+/// What would bring a relative standard error down to [`AIM`]: it falls like 1/√samples, or faster.
+fn cure(stderr: f64, plan: &Plan) -> String {
+    if stderr <= AIM {
+        return String::new();
+    }
+    let samples = plan.budget.samples() as f64 * (stderr / AIM).powi(2);
+    let samples = (samples as u64).next_power_of_two();
+    format!(
+        "; `--samples {samples}` makes that {} or less",
+        percent(AIM)
+    )
+}
+
 /// Scene, settings, flux with its relative standard error, and what share of it met how many
 /// surfaces.
 fn rendered(
@@ -407,7 +346,7 @@ fn rendered(
 ) -> Vec<(&'static str, String)> {
     let hash: String = scene.hash.chars().take(12).collect();
     let noise = precision.map_or(String::new(), |e| {
-        format!(", standard error {}", percent(e))
+        format!(", standard error {}{}", percent(e), cure(e, plan))
     });
     let mut told = vec![
         (
@@ -497,6 +436,9 @@ mod tests {
         assert_eq!(agreement.describe().tables.len(), 1);
         agreement.agrees = false;
         assert_eq!(agreement.describe().tables[1].rows.len(), 1);
+        agreement.evidence = false;
+        assert!(agreement.verdict().starts_with("no evidence"));
+        agreement.evidence = true;
         let found = results.describe();
         assert!(found.sentence.contains("DISAGREE") && found.tone == Tone::Bad);
     }

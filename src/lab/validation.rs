@@ -1,10 +1,13 @@
 //! Traced Φcam against the matrix model of its scene.
 
 use crate::matrix::Matrix;
-use crate::model::{Extent, Kernel, MatrixModel, ModelError, converged};
+use crate::model::{Extent, Kernel, MatrixModel, ModelError, converged, visible};
 use crate::scene::Scene;
 
-use super::agreement::{Agreement, Evidence, Test, agree};
+use super::agreement::{Agreement, agree};
+use super::derivatives::SceneDerivatives;
+use super::evidence::{Evidence, Test};
+use super::score::Derivatives;
 
 /// How the model integrates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +28,37 @@ impl Integration {
             Self::Quadrature => "quadrature",
         }
     }
+}
+
+/// What is tested: Φcam as it was traced or measured, pixels × spots.
+#[derive(Clone, Copy, Debug)]
+pub struct Measured<'a> {
+    /// Φcam, W.
+    pub phi: &'a Matrix,
+    /// Its standard error, W.
+    pub stderr: &'a Matrix,
+    /// Not 0 where that error is not to be trusted.
+    pub left_out: Option<&'a Matrix>,
+}
+
+/// What it is tested against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Against {
+    /// Kernel of the model.
+    pub kernel: Kernel,
+    /// How it integrates.
+    pub integration: Integration,
+    /// Whether it asks what stands in the way.
+    pub occlusion: Occlusion,
+}
+
+/// Whether the model knows what stands in the way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Occlusion {
+    /// It does not, as published.
+    Ignored,
+    /// It asks, point by point ([`visible`](fn@visible)).
+    Considered,
 }
 
 /// Why nothing can be validated.
@@ -61,20 +95,19 @@ pub struct Validation {
     pub model: Matrix,
 }
 
-/// Tests `traced` (pixels × spots, W) with its standard error against the model of `scene`.
+/// Tests Φcam with its standard error against the model of `scene`, its derivatives included.
 ///
 /// # Errors
 /// [`ValidationError`] if nothing is hidden, or the shapes do not fit.
 pub fn validate(
     scene: &Scene,
-    traced: &Matrix,
-    stderr: &Matrix,
-    kernel: Kernel,
-    integration: Integration,
+    measured: Measured<'_>,
+    against: Against,
     test: Test,
 ) -> Result<Validation, ValidationError> {
     let (rows, columns) = (scene.camera.pixels(), scene.laser.spots.len());
-    for (found_rows, found_columns) in [traced.shape(), stderr.shape()] {
+    let given = [Some(measured.phi), Some(measured.stderr), measured.left_out];
+    for (found_rows, found_columns) in given.into_iter().flatten().map(Matrix::shape) {
         if (found_rows, found_columns) != (rows, columns) {
             return Err(ValidationError::Shape {
                 rows,
@@ -84,27 +117,53 @@ pub fn validate(
             });
         }
     }
+    let Against {
+        kernel,
+        integration,
+        occlusion,
+    } = against;
     let integral = converged(scene, kernel, Extent::FULL)?;
-    let (model, bound) = match integration {
-        Integration::Quadrature => (integral.phi, integral.bound),
-        Integration::Centres => {
-            let centres = MatrixModel::new(scene, kernel, None)?.phi();
-            let bound = (&centres - integral.phi).abs() + integral.bound;
-            (centres, bound)
+    let nodes = integral.rough;
+    let (mut phi, mut bound) = (integral.phi, integral.bound);
+    let sight = match occlusion {
+        Occlusion::Ignored => None,
+        Occlusion::Considered => Some(visible(scene, kernel)?),
+    };
+    if let Some(sight) = &sight {
+        // |Φ s − Φ′ s′| ≤ b_Φ s + Φ b_s.
+        bound = bound.component_mul(&sight.share) + phi.component_mul(&sight.bound);
+        phi.component_mul_assign(&sight.share);
+    }
+    let base = phi.clone();
+    if integration == Integration::Centres {
+        let mut matrices = MatrixModel::new(scene, kernel, None)?;
+        if sight.is_some() {
+            matrices = matrices.with_occlusion(scene);
         }
-    };
+        let centres = matrices.phi();
+        bound += (&centres - phi).abs();
+        phi = centres;
+    }
     let evidence = Evidence {
-        traced,
-        stderr,
-        model: &model,
+        traced: measured.phi,
+        stderr: measured.stderr,
+        model: &phi,
         bound: Some(&bound),
+        left_out: measured.left_out,
     };
-    let (mut agreement, z) = agree(evidence, test);
+    let share = sight.as_ref().map(|s| &s.share);
+    let off = SceneDerivatives::new(scene, kernel, nodes, &base, share);
+    let derivatives = Derivatives {
+        parameters: &off.parameters,
+        of: &|index| off.of(index),
+    };
+    let (mut agreement, z) = agree(evidence, test, Some(&derivatives));
     kernel.name().clone_into(&mut agreement.kernel);
     integration.name().clone_into(&mut agreement.integration);
+    agreement.occlusion = sight.map(|s| s.points);
     Ok(Validation {
         agreement,
         z,
-        model,
+        model: phi,
     })
 }

@@ -4,22 +4,45 @@ use std::f64::consts::FRAC_1_PI;
 
 use super::ModelError;
 use super::kernel::{HiddenPoint, Kernel};
+use super::parts::{
+    Ball, FootprintPart, HiddenParts, LAST_LEVEL, MOST_CONNECTIONS, footprint_parts,
+};
 use super::wall_point::{self, WallPoint};
-use crate::geometry::{Basis, DVec3, Instance, Shape};
+use crate::geometry::Basis;
 use crate::matrix::Matrix;
 use crate::num::quadrature::Rule;
-use crate::scene::{Element, Profile, Scene, Surface};
+use crate::scene::{Profile, Scene};
 
 /// Φcam by quadrature, and how far it can be trusted.
 #[derive(Clone, Debug)]
 pub struct Converged {
     /// Pixels × spots, W.
     pub phi: Matrix,
-    /// What the last refinement changed in each entry, W: an estimate of the error of the step
-    /// before, and far more than that of `phi` itself where the rule converges at all.
+    /// How far each entry may be off, W: what the last refinement changed in it, e, times
+    /// r/(1 − r) where that is more, r ≤ 0.9 the last change over the one before. It covers what is
+    /// left of a geometric sequence, and ten times the last change at most.
     pub bound: Matrix,
-    /// Relative Frobenius norm of that change.
+    /// Relative Frobenius norm of the last change.
     pub change: f64,
+    /// Nodes with which Φcam is right to about 1e-4, for what needs no more; the fewest there are
+    /// where that takes too many.
+    pub rough: Nodes,
+}
+
+impl Converged {
+    /// The entry (pixel, spot) with the largest bound relative to itself, and that; `None` where
+    /// nothing is lit. An entry of 0 that may be lit counts as 1.
+    pub fn worst(&self) -> Option<([usize; 2], f64)> {
+        let relative = |i: usize| match (self.bound[i], self.phi[i].abs()) {
+            (0.0, _) => 0.0,
+            (b, phi) => (b / phi).min(1.0),
+        };
+        let lit = (0..self.phi.len()).filter(|i| self.phi[*i] != 0.0 || self.bound[*i] != 0.0);
+        let worst = lit
+            .map(|i| (i, relative(i)))
+            .reduce(|a, b| if b.1 > a.1 { b } else { a });
+        worst.map(|(i, share)| ([i % self.phi.nrows(), i / self.phi.nrows()], share))
+    }
 }
 
 /// Whether a quantity is taken at its centre or integrated over.
@@ -52,220 +75,204 @@ impl Extent {
     };
 }
 
-/// Refinement stops below this relative change.
+/// Refinement stops below this relative change of the whole, and of each entry.
 const TARGET: f64 = 1e-10;
-/// Nodes on all hidden surfaces together beyond which no finer rule is tried.
-const MOST_NODES: usize = 400_000;
-/// A picture of more texels than that is taken at the middles of at most so many parts a side, each
-/// with its mean albedo.
-const COARSE: usize = 512;
-/// Nodes a side of a footprint beyond which no finer rule is tried.
-const MOST_FOOTPRINT_NODES: usize = 8;
+const ENTRY_TARGET: f64 = 1e-7;
+/// Relative change below which the rule before is good enough for derivatives.
+const ROUGH: f64 = 1e-4;
 /// Nodes handled at once.
-const CHUNK: usize = 4096;
+pub(super) const CHUNK: usize = 4096;
 /// The Gaussian profile is cut at this many of its 1/e² radii, beyond which lies e^−32 of the
 /// power.
 const GAUSSIAN_REACH: f64 = 4.0;
 
 /// The matrix model's integral: Gauss–Legendre over each smooth texture cell of each hidden
 /// surface, over each footprint and over each spot's profile, as far as `extent` asks for it,
-/// refined together until Φcam changes by less than 1e-10 or the rules are as large as they may be.
-/// As in the matrix model there is no occlusion, light meets three surfaces, and the hidden ones
-/// are Lambertian: one that is not is taken for [`Surface::lambertian_equivalent`].
+/// refined together until Φcam changes by less than 1e-10, and every entry by less than 1e-7, or
+/// the rules are as large as they may be. Cells and footprints that come close to each other or to
+/// a spot are cut into smaller ones there. As in the matrix model there is no occlusion, light
+/// meets three surfaces, and the hidden ones are Lambertian: one that is not is taken for
+/// [`Surface::lambertian_equivalent`](crate::scene::Surface::lambertian_equivalent).
 ///
 /// # Errors
 /// [`ModelError::NothingHidden`].
 pub fn converged(scene: &Scene, kernel: Kernel, extent: Extent) -> Result<Converged, ModelError> {
-    let cells: usize = scene.hidden().map(|(_, s)| pieces(s)).sum();
-    if cells == 0 {
+    if scene.hidden().next().is_none() {
         return Err(ModelError::NothingHidden);
     }
-    let finest = (((MOST_NODES / cells) as f64).sqrt() as usize).max(1);
-    let mut nodes = Nodes {
-        extent,
-        hidden: 2.min(finest),
-        footprint: 1,
-        spread: 2,
-    };
-    let mut phi = integrate(scene, kernel, nodes);
+    let cut = Cut::new(scene, extent);
+    let mut phi = cut.integrate(scene, kernel, 0);
+    let mut before: Option<Matrix> = None;
+    let mut rough = None;
+    let mut level = 0;
     loop {
-        let finer = Nodes {
-            extent,
-            hidden: (nodes.hidden + 2 + nodes.hidden / 4).min(finest),
-            footprint: nodes.footprint + 1,
-            spread: nodes.spread + 2,
-        };
-        let next = integrate(scene, kernel, finer);
-        let bound = (&next - &phi).abs();
-        let change = bound.norm() / next.norm().max(f64::MIN_POSITIVE);
-        let exhausted = finer.hidden == nodes.hidden || finer.footprint >= MOST_FOOTPRINT_NODES;
-        if change < TARGET || exhausted {
+        level += 1;
+        let next = cut.integrate(scene, kernel, level);
+        let changed = (&next - &phi).abs();
+        let change = changed.norm() / next.norm().max(f64::MIN_POSITIVE);
+        let settled = |(e, x): (&f64, &f64)| *e <= ENTRY_TARGET * x.abs();
+        if change < ROUGH {
+            rough = rough.or(Some(level - 1));
+        }
+        let done = change < TARGET && changed.iter().zip(&next).all(settled);
+        let exhausted = level == LAST_LEVEL || cut.connections(level + 1) > MOST_CONNECTIONS;
+        if done || exhausted {
+            let bound = match before {
+                None => changed,
+                Some(before) => changed.zip_map(&before, remainder),
+            };
+            let cheap = |l: &usize| cut.connections(*l) <= 0.1 * MOST_CONNECTIONS;
+            let level = rough.filter(cheap).unwrap_or(0);
+            let rough = Nodes { extent, level };
             return Ok(Converged {
                 phi: next,
                 bound,
                 change,
+                rough,
             });
         }
-        (phi, nodes) = (next, finer);
+        (phi, before) = (next, Some(changed));
     }
 }
 
-/// Nodes a side of each rule.
-#[derive(Clone, Copy)]
-struct Nodes {
+/// Φcam, pixels × spots, W, by the rules `nodes` as they stand, without a bound.
+///
+/// # Errors
+/// [`ModelError::NothingHidden`].
+pub fn integrated(scene: &Scene, kernel: Kernel, nodes: Nodes) -> Result<Matrix, ModelError> {
+    if scene.hidden().next().is_none() {
+        return Err(ModelError::NothingHidden);
+    }
+    Ok(Cut::new(scene, nodes.extent).integrate(scene, kernel, nodes.level))
+}
+
+/// What the changes of an entry, the last and the one before, leave to come.
+fn remainder(last: f64, before: f64) -> f64 {
+    let ratio = if before > 0.0 {
+        (last / before).min(0.9)
+    } else {
+        0.9
+    };
+    last * (ratio / (1.0 - ratio)).max(1.0)
+}
+
+/// What is integrated over, and the level of refinement.
+#[derive(Clone, Copy, Debug)]
+pub struct Nodes {
     extent: Extent,
-    hidden: usize,
-    footprint: usize,
-    spread: usize,
+    level: usize,
 }
 
-/// One quadrature: Φ = Σ_q C\[p,q\]·D\[q,l\] over the nodes q of the hidden surfaces, in chunks.
-fn integrate(scene: &Scene, kernel: Kernel, nodes: Nodes) -> Matrix {
-    let (pixels, spots) = (scene.camera.pixels(), scene.laser.spots.len());
-    let footprint = match nodes.extent.footprints {
-        Take::Centre => 1,
-        Take::Integral => nodes.footprint,
-    };
-    let seen = |p| {
-        let nodes = plane_nodes(footprint);
-        nodes
-            .map(|(ab, w)| wall_point::seen(scene, p, ab, w))
-            .collect::<Vec<_>>()
-    };
-    let seen: Vec<Vec<WallPoint>> = (0..pixels).map(seen).collect();
-    let profile = match nodes.extent.spots {
-        Take::Centre => Profile::Ideal,
-        Take::Integral => scene.laser.profile,
-    };
-    let offsets = profile_nodes(profile, nodes.spread);
-    let lit = |l: usize| {
-        let basis = Basis::around(scene.laser.spots[l].target.normal);
-        let lit = |([x, y], w): &([f64; 2], f64)| {
-            wall_point::lit(scene, l, basis.to_world([*x, *y, 0.0]), *w)
+/// A scene cut into parts on which the rules converge.
+pub(super) struct Cut<'a> {
+    elements: Take,
+    pub(super) hidden: HiddenParts<'a>,
+    /// Of each pixel.
+    footprints: Vec<Vec<FootprintPart>>,
+    spots: usize,
+    profile: Profile,
+}
+
+impl<'a> Cut<'a> {
+    pub(super) fn new(scene: &'a Scene, extent: Extent) -> Self {
+        let (profile, reach) = match (extent.spots, scene.laser.profile) {
+            (Take::Centre, _) | (_, Profile::Ideal) => (Profile::Ideal, 0.0),
+            (_, profile @ Profile::Disc { radius }) => (profile, radius),
+            (_, profile @ Profile::Gaussian { radius }) => (profile, GAUSSIAN_REACH * radius),
         };
-        offsets.iter().map(lit).collect::<Vec<_>>()
-    };
-    let lit: Vec<Vec<WallPoint>> = (0..spots).map(lit).collect();
-    let side = |walls: &[WallPoint], point| {
-        walls
-            .iter()
-            .map(|w| w.towards(scene, kernel, point))
-            .sum::<f64>()
-    };
-    let mut phi = Matrix::zeros(pixels, spots);
-    for chunk in hidden_nodes(scene, nodes).chunks(CHUNK) {
-        let camera = Matrix::from_fn(pixels, chunk.len(), |p, q| side(&seen[p], &chunk[q].0));
-        let laser = Matrix::from_fn(chunk.len(), spots, |q, l| {
-            chunk[q].1 * side(&lit[l], &chunk[q].0)
+        let footprint = |p| match extent.footprints {
+            Take::Centre => vec![FootprintPart::centre(scene, p)],
+            Take::Integral => footprint_parts(scene, p),
+        };
+        let footprints: Vec<_> = (0..scene.camera.pixels()).map(footprint).collect();
+        let spots = scene.laser.spots.iter().map(|s| Ball {
+            middle: s.target.position,
+            radius: reach,
         });
-        phi.gemm(1.0, &camera, &laser, 1.0);
-    }
-    phi
-}
-
-/// Points of the hidden surfaces with area · albedo/π.
-fn hidden_nodes(scene: &Scene, nodes: Nodes) -> Vec<(HiddenPoint, f64)> {
-    let mut found = Vec::new();
-    let mut add = |element: &Element| {
-        if element.albedo > 0.0 && element.area > 0.0 {
-            let weight = element.area * element.albedo * FRAC_1_PI;
-            found.push((HiddenPoint::from(element), weight));
-        }
-    };
-    for (_, surface) in scene.hidden() {
-        let surface = &*surface.lambertian_equivalent();
-        let whole = surface.shape.area();
-        match (nodes.extent.elements, &surface.shape) {
-            (Take::Centre, _) => {
-                let elements = surface.divided(surface.elements);
-                elements.iter().for_each(&mut add);
-            }
-            (Take::Integral, Shape::Instance(body)) => {
-                triangle_nodes(surface, body, nodes.hidden, |e| add(&e));
-            }
-            (Take::Integral, _) if texels(surface) > MOST_NODES => {
-                surface.divided(coarse(surface)).iter().for_each(&mut add);
-            }
-            (Take::Integral, _) => {
-                let [nu, nv] = surface.albedo.smooth_cells();
-                let area = whole / (nu * nv) as f64;
-                for cell in 0..nu * nv {
-                    for ([a, b], w) in plane_nodes(nodes.hidden) {
-                        let uv = [
-                            ((cell % nu) as f64 + a) / nu as f64,
-                            ((cell / nu) as f64 + b) / nv as f64,
-                        ];
-                        let area = w * area;
-                        add(&Element {
-                            area,
-                            ..surface.element_at(uv)
-                        });
-                    }
-                }
-            }
+        let near: Vec<Ball> = footprints
+            .iter()
+            .flatten()
+            .map(|p| p.ball)
+            .chain(spots)
+            .collect();
+        Self {
+            elements: extent.elements,
+            hidden: HiddenParts::new(scene, &near),
+            footprints,
+            spots: scene.laser.spots.len(),
+            profile,
         }
     }
-    found
-}
 
-/// Parts of a hidden surface within which the integrand is smooth.
-fn pieces(surface: &Surface) -> usize {
-    match &surface.shape {
-        Shape::Instance(body) => body.mesh().triangles().len(),
-        _ if texels(surface) > MOST_NODES => coarse(surface).iter().product(),
-        _ => texels(surface),
+    /// Connections between wall points and hidden points at `level`.
+    fn connections(&self, level: usize) -> f64 {
+        let seen = self.footprints.iter().flatten();
+        let seen: usize = seen.map(|part| part.nodes(level).count()).sum();
+        let lit = self.spots * profile_nodes(self.profile, 2 + 2 * level).len();
+        self.hidden.count(level) as f64 * (seen + lit) as f64
     }
-}
 
-/// Cells along u and v of a texture with too many of them.
-fn coarse(surface: &Surface) -> [usize; 2] {
-    surface.albedo.smooth_cells().map(|n| n.min(COARSE))
-}
-
-/// Cells of a hidden surface's texture within which it is smooth.
-fn texels(surface: &Surface) -> usize {
-    surface.albedo.smooth_cells().iter().product()
-}
-
-/// Every triangle by the product rule of n × n nodes on the square that is folded onto it: (u, v) →
-/// (1 − u, u·(1 − v), u·v), whose area element is twice the triangle's area times u. With one node
-/// its centroid.
-fn triangle_nodes(surface: &Surface, body: &Instance, n: usize, mut visit: impl FnMut(Element)) {
-    for t in 0..body.mesh().triangles().len() as u32 {
-        let [a, b, c] = body.corners(t);
-        let area = body.triangle_area(t);
-        let mut node = |weights: [f64; 3], share: f64| {
-            let [x, y, z] = weights;
-            let point = body.on_triangle(t, a * x + b * y + c * z);
-            visit(Element {
-                position: point.position,
-                normal: point.normal,
-                area: area * share,
-                u_axis: DVec3::X,
-                albedo: surface.albedo.albedo(point.uv),
-            });
+    /// The wall as each pixel sees it, at `level`.
+    pub(super) fn seen(&self, scene: &Scene, level: usize) -> Vec<Vec<WallPoint>> {
+        let seen = |p: usize| {
+            let nodes = self.footprints[p].iter().flat_map(|part| part.nodes(level));
+            nodes
+                .map(|(ab, w)| wall_point::seen(scene, p, ab, w))
+                .collect()
         };
-        if area <= 0.0 {
-            continue;
+        (0..self.footprints.len()).map(seen).collect()
+    }
+
+    /// The wall as each spot lights it, at `level`.
+    pub(super) fn lit(&self, scene: &Scene, level: usize) -> Vec<Vec<WallPoint>> {
+        let offsets = profile_nodes(self.profile, 2 + 2 * level);
+        let lit = |l: usize| {
+            let basis = Basis::around(scene.laser.spots[l].target.normal);
+            let lit = |([x, y], w): &([f64; 2], f64)| {
+                wall_point::lit(scene, l, basis.to_world([*x, *y, 0.0]), *w)
+            };
+            offsets.iter().map(lit).collect()
+        };
+        (0..self.spots).map(lit).collect()
+    }
+
+    /// One quadrature: Φ = Σ_q C\[p,q\]·D\[q,l\] over the nodes q of the hidden surfaces, in
+    /// chunks.
+    fn integrate(&self, scene: &Scene, kernel: Kernel, level: usize) -> Matrix {
+        let (seen, lit) = (self.seen(scene, level), self.lit(scene, level));
+        let side = |walls: &[WallPoint], point| {
+            walls
+                .iter()
+                .map(|w| w.towards(scene, kernel, point))
+                .sum::<f64>()
+        };
+        let hidden = match self.elements {
+            Take::Centre => elements(scene),
+            Take::Integral => {
+                let nodes = self.hidden.nodes(level).into_iter();
+                nodes.map(|node| (node.point, node.weight)).collect()
+            }
+        };
+        let mut phi = Matrix::zeros(seen.len(), lit.len());
+        for chunk in hidden.chunks(CHUNK) {
+            let camera =
+                Matrix::from_fn(seen.len(), chunk.len(), |p, q| side(&seen[p], &chunk[q].0));
+            let laser = Matrix::from_fn(chunk.len(), lit.len(), |q, l| {
+                chunk[q].1 * side(&lit[l], &chunk[q].0)
+            });
+            phi.gemm(1.0, &camera, &laser, 1.0);
         }
-        if n == 1 {
-            node([1.0 / 3.0; 3], 1.0);
-            continue;
-        }
-        for ([u, v], w) in plane_nodes(n) {
-            node([1.0 - u, u * (1.0 - v), u * v], 2.0 * u * w);
-        }
+        phi
     }
 }
 
-/// Product rule on the unit square; the weights add up to 1.
-fn plane_nodes(n: usize) -> impl Iterator<Item = ([f64; 2], f64)> {
-    let rule = Rule::gauss_legendre(n);
-    let pairs: Vec<(f64, f64)> = rule.on(0.0, 1.0).collect();
-    (0..n * n).map(move |i| {
-        let ((a, wa), (b, wb)) = (pairs[i % n], pairs[i / n]);
-        ([a, b], wa * wb)
-    })
+/// The middles of the scene's elements with area · albedo/π.
+fn elements(scene: &Scene) -> Vec<(HiddenPoint, f64)> {
+    let all = scene.hidden().flat_map(|(_, s)| s.divided(s.elements));
+    let light = all.filter(|e| e.albedo > 0.0 && e.area > 0.0);
+    light
+        .map(|e| (HiddenPoint::from(&e), e.area * e.albedo * FRAC_1_PI))
+        .collect()
 }
 
 /// Offsets in the wall's plane and shares of the power; the shares add up to 1 (a Gaussian's to 1 −

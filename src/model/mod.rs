@@ -12,10 +12,13 @@
 mod converged;
 mod kernel;
 mod matrix_model;
+mod parts;
 mod published;
+mod visible;
 mod wall_point;
 
-pub use converged::{Converged, Extent, Take, converged};
+pub use converged::{Converged, Extent, Nodes, Take, converged, integrated};
 pub use kernel::Kernel;
 pub use matrix_model::{ElementGrid, MatrixModel, ModelError};
 pub use published::{PixelGrid, Published, Stagger, flattened_k, table_distances};
+pub use visible::{Visible, visible};

@@ -113,5 +113,11 @@ pub fn triangle(u: Point2) -> Point2 {
     [r * (1.0 - u[1]), r * u[1]]
 }
 
+/// The u that [`triangle`] maps to the weights b: u₀ = (b₁ + b₂)², u₁ = b₂/(b₁ + b₂).
+pub fn triangle_inverse(b: [f64; 2]) -> Point2 {
+    let r = b[0] + b[1];
+    [r * r, if r > 0.0 { b[1] / r } else { 0.0 }]
+}
+
 #[cfg(test)]
 mod tests;

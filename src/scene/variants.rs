@@ -104,6 +104,29 @@ impl Scene {
         scene
     }
 
+    /// The same scene with the camera's view scaled about its middle.
+    pub fn with_scaled_view(&self, factor: f64) -> Self {
+        let mut scene = self.clone();
+        let middle = self.camera.view.at([0.5; 2]).position;
+        let scaled = DAffine3::from_translation(middle)
+            * DAffine3::from_scale(DVec3::splat(factor))
+            * DAffine3::from_translation(-middle);
+        if let Some(view) = self.camera.view.moved(&scaled) {
+            scene.camera.view = view;
+        }
+        scene
+    }
+
+    /// The same scene with the albedo of surface `index` (in file order) multiplied by `factor`,
+    /// beyond 1 where it comes to that.
+    pub fn with_scaled_albedo(&self, index: usize, factor: f64) -> Self {
+        let mut scene = self.clone();
+        if let Some(surface) = scene.surfaces.get_mut(index) {
+            surface.albedo = surface.albedo.map(|rho| rho * factor);
+        }
+        scene
+    }
+
     /// The same scene with the pinhole moved by `by`; the view stays.
     pub fn with_moved_camera(&self, by: DVec3) -> Self {
         let mut scene = self.clone();

@@ -1,11 +1,16 @@
 //! Sampling of points on surfaces by area.
 
-use crate::geometry::{Interaction, ShapeId};
+use rayon::prelude::*;
+
+use super::importance::Importance;
+use super::vertex::Oriented;
+use crate::geometry::{Hit, Interaction, Ray, Shape, ShapeId};
 use crate::scene::Scene;
 
 /// Density proportional to the mean albedo of each smooth texture cell (a mesh is one cell),
 /// uniform in area within it. Dark cells are never sampled, which is exact; light ones are
-/// stratified by their edges.
+/// stratified by their edges. Guided by an [`Importance`], cells are divided, and each part has a
+/// density in proportion to its albedo times importance, besides a tenth of that by albedo alone.
 #[derive(Debug)]
 pub(super) struct AreaSampler {
     surfaces: Vec<Sampled>,
@@ -30,15 +35,164 @@ struct Sampled {
     density: Vec<f64>,
 }
 
+/// A point of a surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SurfacePoint {
+    pub shape: ShapeId,
+    pub point: Interaction,
+    /// The parameters for which the shape's equal-area map gives it.
+    parameters: [f64; 2],
+}
+
+impl SurfacePoint {
+    /// The point of `shape` with these parameters.
+    pub(super) fn at(scene: &Scene, shape: ShapeId, parameters: [f64; 2]) -> Self {
+        Self {
+            shape,
+            point: scene.surfaces[shape as usize].shape.at(parameters),
+            parameters,
+        }
+    }
+
+    /// Where the ray hits a shape.
+    pub(super) fn hit(scene: &Scene, ray: &Ray, hit: Hit) -> Self {
+        let point = scene.bvh().point(ray, hit);
+        let parameters = match &scene.surfaces[hit.shape as usize].shape {
+            Shape::Instance(body) => body.parameters(hit.triangle, point.position),
+            _ => point.uv,
+        };
+        Self {
+            shape: hit.shape,
+            point,
+            parameters,
+        }
+    }
+
+    /// Which of count\[0\] × count\[1\] cells of its shape it lies in.
+    pub(super) fn cell(&self, count: [usize; 2]) -> usize {
+        cell_at(count, self.parameters)
+    }
+
+    pub(super) fn oriented(&self) -> Oriented {
+        (self.point.position, self.point.normal)
+    }
+}
+
+/// Weights of the cells of one shape, in rows: count\[0\] × count\[1\].
+struct Weights {
+    shape: ShapeId,
+    count: [usize; 2],
+    of_cell: Vec<f64>,
+}
+
+impl Weights {
+    /// The albedo of each smooth cell.
+    fn by_albedo(scene: &Scene, shape: ShapeId) -> Self {
+        let surface = &scene.surfaces[shape as usize];
+        let count = surface.smooth_cells();
+        let cells = 0..count[0] * count[1];
+        Self {
+            shape,
+            count,
+            of_cell: cells.map(|cell| surface.cell_weight(cell)).collect(),
+        }
+    }
+
+    /// The same for parts of the cells, at least [`PARTS`] along each side; as many of a mesh, in
+    /// the order of its triangles.
+    fn divided(self, scene: &Scene) -> Self {
+        let [nu, _] = self.count;
+        let by = match scene.surfaces[self.shape as usize].shape {
+            Shape::Instance(_) => [PARTS * PARTS, 1],
+            _ => self.count.map(|n| PARTS.div_ceil(n)),
+        };
+        let count = [self.count[0] * by[0], self.count[1] * by[1]];
+        let parent = |part: usize| part % count[0] / by[0] + part / count[0] / by[1] * nu;
+        Self {
+            of_cell: (0..count[0] * count[1])
+                .map(|part| self.of_cell[parent(part)])
+                .collect(),
+            count,
+            ..self
+        }
+    }
+
+    /// Each weight times the importance of the place.
+    fn guided(&self, importance: &Importance<'_>) -> Vec<f64> {
+        let grid = if self.count[1] == 1 {
+            self.count
+        } else {
+            self.count.map(|n| n.min(PARTS))
+        };
+        let width = grid.map(|n| 1.0 / n as f64);
+        let place = |k: usize| {
+            [
+                (k % grid[0]) as f64 * width[0],
+                (k / grid[0]) as f64 * width[1],
+            ]
+        };
+        let of_place = (0..grid[0] * grid[1]).into_par_iter();
+        let of_place: Vec<f64> = of_place
+            .map(|k| importance.mean(self.shape, place(k), width))
+            .collect();
+        let cell = |(i, weight): (usize, &f64)| {
+            let centre = |i: usize, d: usize| (i as f64 + 0.5) / self.count[d] as f64;
+            let uv = [centre(i % self.count[0], 0), centre(i / self.count[0], 1)];
+            weight * of_place[cell_at(grid, uv)]
+        };
+        self.of_cell.iter().enumerate().map(cell).collect()
+    }
+
+    /// Area of a cell.
+    fn area(&self, scene: &Scene) -> f64 {
+        scene.surfaces[self.shape as usize].shape.area() / self.of_cell.len() as f64
+    }
+}
+
+/// Parts of a side of a guided surface, at least.
+const PARTS: usize = 16;
+/// The share of the density that no guess takes away.
+const UNGUIDED: f64 = 0.1;
+
 impl AreaSampler {
     pub(super) fn new(scene: &Scene, shapes: &[ShapeId]) -> Self {
+        let weights = shapes.iter().map(|s| Weights::by_albedo(scene, *s));
+        Self::of_weights(scene, weights.collect())
+    }
+
+    /// A sampler of `shapes` that follows the importance.
+    pub(super) fn guided(scene: &Scene, shapes: &[ShapeId], importance: &Importance<'_>) -> Self {
+        let weights = shapes.iter().map(|s| Weights::by_albedo(scene, *s));
+        let mut weights: Vec<Weights> = weights.map(|w| w.divided(scene)).collect();
+        let guided: Vec<Vec<f64>> = weights.iter().map(|w| w.guided(importance)).collect();
+        let all = |cells: &dyn Fn(usize) -> f64| {
+            let shape = |(k, w): (usize, &Weights)| cells(k) * w.area(scene);
+            weights.iter().enumerate().map(shape).sum::<f64>()
+        };
+        let plain = all(&|k| weights[k].of_cell.iter().sum());
+        let total = all(&|k| guided[k].iter().sum());
+        if total > 0.0 {
+            for (own, guided) in weights.iter_mut().zip(guided) {
+                for (w, g) in own.of_cell.iter_mut().zip(guided) {
+                    *w = UNGUIDED * *w / plain + (1.0 - UNGUIDED) * g / total;
+                }
+            }
+        }
+        Self::of_weights(scene, weights)
+    }
+
+    fn of_weights(scene: &Scene, weights: Vec<Weights>) -> Self {
         let mut surfaces = Vec::new();
         let mut of_shape = vec![None; scene.surfaces.len()];
         let mut total = 0.0;
-        for &shape in shapes {
+        for Weights {
+            shape,
+            count: [nu, nv],
+            of_cell,
+        } in weights
+        {
             let surface = &scene.surfaces[shape as usize];
-            let [nu, nv] = surface.smooth_cells();
-            let row = |j: usize| (0..nu).map(move |i| surface.cell_weight(i + j * nu));
+            let row = |j: usize| of_cell[j * nu..][..nu].iter().copied();
             let row_sum = |j: usize| row(j).sum::<f64>();
             let weight: f64 = (0..nv).map(row_sum).sum();
             if weight <= 0.0 {
@@ -81,27 +235,22 @@ impl AreaSampler {
         self.of_shape[shape as usize].is_some()
     }
 
-    /// A point for u ∈ [0, 1)², with its shape and its density per unit area.
-    pub(super) fn sample(
-        &self,
-        scene: &Scene,
-        [mut a, b]: [f64; 2],
-    ) -> (ShapeId, Interaction, f64) {
+    /// A point for u ∈ [0, 1)², with its density per unit area.
+    pub(super) fn sample(&self, scene: &Scene, [mut a, b]: [f64; 2]) -> (SurfacePoint, f64) {
         let last = self.surfaces.len() - 1;
         let after = self.surfaces[1..].iter().take_while(|s| a >= s.before);
         let s = &self.surfaces[after.count().min(last)];
         a = ((a - s.before) / s.share).clamp(0.0, 1.0 - f64::EPSILON);
         let (row, v) = s.rows.invert(b);
         let (column, u) = s.columns[row].invert(a);
-        let point = scene.surfaces[s.shape as usize].shape.at([u, v]);
-        (s.shape, point, s.density[column + row * s.count[0]])
+        let point = SurfacePoint::at(scene, s.shape, [u, v]);
+        (point, s.density[column + row * s.count[0]])
     }
 
-    /// Density of [`AreaSampler::sample`] at a point of `shape` with parameters `uv`, per unit
-    /// area.
-    pub(super) fn density(&self, shape: ShapeId, uv: [f64; 2]) -> f64 {
-        let surface = self.of_shape[shape as usize].map(|i| &self.surfaces[i]);
-        surface.map_or(0.0, |s| s.density[cell_at(s.count, uv)])
+    /// Density of [`AreaSampler::sample`] at a point, per unit area.
+    pub(super) fn density(&self, at: &SurfacePoint) -> f64 {
+        let surface = self.of_shape[at.shape as usize].map(|i| &self.surfaces[i]);
+        surface.map_or(0.0, |s| s.density[at.cell(s.count)])
     }
 
     /// Whether all cells of one surface are unions of the boxes into which a net of `points` is
@@ -121,7 +270,7 @@ impl AreaSampler {
 }
 
 /// Which of count\[0\] × count\[1\] cells the parameters `uv` lie in.
-pub(super) fn cell_at(count: [usize; 2], uv: [f64; 2]) -> usize {
+fn cell_at(count: [usize; 2], uv: [f64; 2]) -> usize {
     let cell = |d: usize| ((uv[d] * count[d] as f64) as usize).min(count[d] - 1);
     cell(0) + cell(1) * count[0]
 }

@@ -57,6 +57,11 @@ impl<'a> Beams<'a> {
         }
     }
 
+    /// Radius of the beams around their targets, nearly all of their power.
+    pub(super) fn reach(&self) -> f64 {
+        self.radius(Reach::Expected)
+    }
+
     /// The square around the target that holds that part of the beam.
     pub(super) fn square(&self, spot: usize, reach: Reach) -> Option<Parallelogram> {
         let radius = self.radius(reach);

@@ -5,6 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::camera::{DirectLight, PixelView, sees_nothing};
+use super::importance::Importance;
 use super::path::PathSampler;
 use super::plan::Plan;
 use super::spots::LitSpots;
@@ -35,20 +36,27 @@ pub(super) struct Context<'a> {
 
 impl<'a> Context<'a> {
     pub(super) fn new(scene: &'a Scene, plan: &Plan, spots: Range<usize>) -> Self {
-        let spots = LitSpots::new(scene, spots);
+        let blocks = (plan.sampling, plan.budget.size);
+        let spots = LitSpots::new(scene, spots, blocks);
         let views = (0..scene.camera.pixels()).into_par_iter();
         let views: Vec<PixelView> = views.map(|p| PixelView::new(scene, p)).collect();
         let seen = known_or_all(scene, views.iter().map(PixelView::shape).collect());
         let lit = spots.beams.lit_shapes();
         let between = between(scene, &seen, &lit);
-        let path = PathSampler::new(scene);
+        let importance = importance(&views, &spots);
+        let path = PathSampler::new(scene, (&seen, &between), &importance);
         let close = !seen.iter().all(|s| path.far_from_hidden(*s));
         let two = |t: &ShapeId| any_may_be_visible(scene, &seen, *t);
         Self {
             scene,
             plan: *plan,
             direct: DirectLight::new(scene, &spots),
-            strata: Strata::new(scene, &between, close, plan.sampling, plan.budget.size),
+            strata: Strata::new(
+                scene,
+                &between,
+                close.then_some(&importance),
+                (plan.sampling, plan.budget.size),
+            ),
             has_two_bounce_light: scene.max_bounces > 1 && lit.iter().any(two),
             is_glossy: scene.surfaces.iter().any(|s| !s.is_lambertian()),
             path,
@@ -89,4 +97,14 @@ impl<'a> Context<'a> {
             (!surface.is_lambertian()).then_some(surface.name.as_str())
         })
     }
+}
+
+/// That of the middles of all pixels and beams.
+fn importance<'a>(views: &[PixelView], spots: &LitSpots<'a>) -> Importance<'a> {
+    let scene = spots.scene;
+    let seen = views.iter().filter_map(|v| v.vertex(scene, [0.5; 2]));
+    // All spots, whichever of them are traced: their bits do not depend on that.
+    let lit = 0..scene.laser.spots.len();
+    let lit = lit.filter_map(|spot| spots.beams.point(spot, [0.5; 2]));
+    Importance::new(scene, &seen.collect::<Vec<_>>(), &lit.collect::<Vec<_>>())
 }

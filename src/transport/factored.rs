@@ -10,6 +10,8 @@
 //! and L_n,l for n > 3 the same with a path from y to s_l. N points y_k of density N·p(y_k), drawn
 //! by strata, give Φ̂_n = Σ_k C[p,k]·L_n[k,l]: unbiased for each block, because C and L are
 //! evaluated at points of their own in footprint and beam, the same for all pixels and all spots.
+//! Where surfaces come close to a spot, its column gets points of its own besides
+//! ([`light_path`](super::light_path)).
 //!
 //! Points that serve all pixels cannot crowd where each of them sees another surface up close.
 //! Where the view reaches into the edge between two surfaces, C grows like 1/d² towards it and the
@@ -21,6 +23,8 @@ use rayon::prelude::*;
 
 use super::camera::camera_terms;
 use super::context::Context;
+use super::light_path::light_end;
+use super::light_points::LightPoints;
 use super::plan::Control;
 use super::spots::LitPoints;
 use super::tally::{Moments, Tally};
@@ -61,6 +65,8 @@ struct Points {
     /// By point and order: the end of the path that goes on from the point, itself first, with
     /// throughput 1/density.
     vertices: Vec<Option<Vertex>>,
+    key: Key,
+    light_paths: Vec<LightPoints>,
 }
 
 /// Points that are multiplied together.
@@ -149,6 +155,19 @@ impl<'a> Factored<'a> {
                     }
                 });
         }
+        let order = TILE * self.width;
+        let add = |(tile, sums): (usize, &mut [f64])| {
+            for (i, pixel) in (tile * TILE..pixels).take(TILE).enumerate() {
+                let (view, blockers) = (&self.context.views[pixel], &self.blockers[pixel]);
+                for own in &points.light_paths {
+                    sums[2 * order + i * self.width + own.column] +=
+                        own.flux(self.context, view, blockers);
+                }
+            }
+        };
+        if !points.light_paths.is_empty() {
+            sums.par_chunks_mut(tile_length).enumerate().for_each(add);
+        }
         let mut flat = vec![0.0; self.orders * pixels * self.columns];
         flat.par_chunks_mut(self.columns.max(1))
             .enumerate()
@@ -165,17 +184,19 @@ impl<'a> Factored<'a> {
     fn points(&self, block: u32) -> Points {
         let Context { scene, strata, .. } = self.context;
         let count = strata.block_size();
-        let mut points = Points {
-            at: Batch::zeros(count),
-            footprint: Vec::with_capacity(count),
-            beam: Vec::new(),
-            vertices: vec![None; count * self.deeper],
-        };
         let key = Key {
             seed: self.context.plan.seed,
             spot: Key::ALL_SPOTS,
             pixel: Key::ALL_PIXELS,
             block,
+        };
+        let mut points = Points {
+            at: Batch::zeros(count),
+            footprint: Vec::with_capacity(count),
+            beam: Vec::new(),
+            vertices: vec![None; count * self.deeper],
+            key,
+            light_paths: Vec::new(),
         };
         strata.visit(key, |drawn, place, stream| {
             let k = points.footprint.len();
@@ -193,7 +214,10 @@ impl<'a> Factored<'a> {
             // A point elsewhere sends no light to any pixel, and a glossy one would have to know
             // which.
             let throughput = 1.0 / drawn.density;
-            let y = Vertex::new(scene, drawn.shape, &drawn.point, DVec3::ZERO, throughput);
+            let y = Vertex {
+                density: drawn.density,
+                ..Vertex::new(scene, drawn.shape, &drawn.point, DVec3::ZERO, throughput)
+            };
             let counts = self.context.between.contains(&y.shape) && y.reflects(scene);
             let first = counts.then_some(y);
             let ends = &mut points.vertices[k * self.deeper..];
@@ -203,6 +227,11 @@ impl<'a> Factored<'a> {
                 ends[n as usize - 1] = Some(*vertex);
             });
         });
+        let near = self.context.spots.light_paths.columns(&(0..self.columns));
+        points.light_paths = near
+            .iter()
+            .map(|c| LightPoints::draw(self.context, key, *c))
+            .collect();
         points
     }
 
@@ -220,6 +249,7 @@ impl<'a> Factored<'a> {
     /// L for the points `range`, by order from three surfaces on: points × spots.
     fn light(&self, points: &Points, range: Range<usize>, lit: &LitPoints<'_>) -> Vec<Vec<f64>> {
         let Context { scene, spots, .. } = self.context;
+        let paths = &spots.light_paths;
         let places = if lit.is_fixed() { 1 } else { range.len() };
         let batches: Vec<Batch> = (0..places)
             .map(|k| spots.batch(lit.at(k), self.width))
@@ -234,11 +264,54 @@ impl<'a> Factored<'a> {
                 let factor = scene.laser.power * y.throughput * y.constant_factor(scene);
                 batch.geometry_terms_from(y.oriented(), factor, &batch.weight, row);
                 let place = (y.position, y.shape);
+                let m = if n == 0 { paths.count } else { 1 };
+                let drawn = (y.oriented(), y.density, f64::from(m));
+                paths.weigh(drawn, lit.at(i), 0, row);
                 spots.connect_row(place, lit.at(i), 0, row, |p| y.factor_from(scene, p));
+            }
+            if n > 0 {
+                self.add_deeper(points, range.clone(), n, lit, &mut light);
             }
             light
         };
         (0..self.deeper).map(order).collect()
+    }
+
+    /// Adds to L the light paths that end on paths from the points `range`: one for each and every
+    /// column that has any.
+    fn add_deeper(
+        &self,
+        points: &Points,
+        range: Range<usize>,
+        n: usize,
+        lit: &LitPoints<'_>,
+        light: &mut [f64],
+    ) {
+        let Context {
+            scene, spots, path, ..
+        } = self.context;
+        for (i, row) in light.chunks_mut(self.width).enumerate() {
+            let k = range.start + i;
+            let Some(x) = &points.vertices[k * self.deeper + n - 1] else {
+                continue;
+            };
+            // No spot and no pixel has random numbers of its own here: these are the points'.
+            let key = Key {
+                spot: k as u32,
+                pixel: 0,
+                ..points.key
+            };
+            for &column in spots.light_paths.columns(&(0..self.columns)) {
+                let mut stream = spots.light_paths.stream(key, column);
+                let [u, v, ..] = stream.next_four();
+                let Some(point) = &lit.at(i)[column] else {
+                    continue;
+                };
+                let y = light_end(scene, point, [u, v])
+                    .and_then(|end| path.connect(x, &end, end.density));
+                row[column] += y.map_or(0.0, |y| spots.light_from(point, &y));
+            }
+        }
     }
 
     /// Adds the points of a chunk to the sums of a tile of pixels.
@@ -265,7 +338,8 @@ impl<'a> Factored<'a> {
             if self.context.has_two_bounce_light {
                 let two = &mut sums[(rows + i) * width..(rows + i + 1) * width];
                 let factor = |k, light| x.factor_from(scene, k, light);
-                spots.add_light(&x, |k| power * x.weight[k], factor, lit, two);
+                let alone = |_| f64::INFINITY;
+                spots.add_light(&x, |k| power * x.weight[k], factor, alone, lit, two);
             }
             let one = &mut sums[i * width..(i + 1) * width];
             let first = |k: usize| view.vertex(scene, places[k]);

@@ -18,10 +18,11 @@
 //! own), `shared` (the paths of a pixel serve all spots), `factored` (points between the walls
 //! serve all pixels and all spots, which makes Φcam a product of two matrices). `points` takes the
 //! place of paths in the first two where a pixel is simple enough. They share `camera` (first
-//! vertex), `path` (next vertex), `beam` and `spots` (connection with every lit point), `vertex`
-//! (geometry term, BRDF), `visibility`, `area` and `strata` (points by area), and what is computed
-//! of them once, in `context`. `tally` adds up blocks, `spread` and `tails` judge
-//! their standard error, `render` traces them.
+//! vertex), `path` (next vertex), `beam` and `spots` (connection with every lit point),
+//! `light_path` and `light_points` (points drawn from a lit point where surfaces come close to
+//! it), `vertex` (geometry term, BRDF), `visibility`, `area` and `strata` (points by area),
+//! `importance` (which parts of it matter), and what is computed of them once, in `context`.
+//! `tally` adds up blocks, `spread` and `tails` judge their standard error, `render` traces them.
 //!
 //! No ray is cast where nothing can stand in the way; what can is computed once per pair of
 //! regions, conservatively ([`Region`](crate::geometry::Region)).
@@ -33,7 +34,10 @@ mod beam;
 mod camera;
 mod context;
 mod factored;
+mod importance;
 mod independent;
+mod light_path;
+mod light_points;
 mod path;
 mod plan;
 mod points;

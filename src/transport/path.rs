@@ -8,7 +8,9 @@ use crate::num::warp;
 use crate::scene::Scene;
 use crate::scene::material::{Material, Part, mirrored};
 
-use super::area::AreaSampler;
+use super::area::{AreaSampler, SurfacePoint};
+use super::importance::Importance;
+use super::light_path::LightEnd;
 use super::vertex::{Vertex, geometry_term};
 use super::visibility::may_be_visible;
 
@@ -17,7 +19,7 @@ use super::visibility::may_be_visible;
 enum Strategy {
     /// Not at all: nothing that reflects is visible from here.
     End,
-    /// By the area of the hidden surfaces: nothing else is visible, and they are at some distance.
+    /// By the area of the surfaces: only hidden ones are visible, and they are at some distance.
     Area,
     /// By the lobe of the material: no hidden surface is visible.
     Lobe,
@@ -25,11 +27,24 @@ enum Strategy {
     Both,
 }
 
+impl Strategy {
+    /// The probability q of the area strategy; `None` where no path goes on.
+    fn share_of_area(self) -> Option<f64> {
+        match self {
+            Self::End => None,
+            Self::Area => Some(1.0),
+            Self::Lobe => Some(0.0),
+            Self::Both => Some(0.5),
+        }
+    }
+}
+
 /// The rule by which paths go on, computed once per scene.
 #[derive(Debug)]
 pub(super) struct PathSampler<'a> {
     scene: &'a Scene,
-    hidden: AreaSampler,
+    /// Points of the hidden surfaces; where paths choose, of all that light may meet between.
+    points: AreaSampler,
     /// By shape.
     strategies: Vec<Strategy>,
     /// By shape: whether only hidden surfaces at some distance are visible from it.
@@ -41,15 +56,26 @@ pub(super) struct PathSampler<'a> {
 const FAR: f64 = 1.25;
 
 impl<'a> PathSampler<'a> {
-    pub(super) fn new(scene: &'a Scene) -> Self {
+    /// `seen` are the shapes that pixels may see, `between` those that light may meet before.
+    pub(super) fn new(
+        scene: &'a Scene,
+        (seen, between): (&[ShapeId], &[ShapeId]),
+        importance: &Importance<'_>,
+    ) -> Self {
         let hidden: Vec<ShapeId> = scene.hidden().map(|(id, _)| id as ShapeId).collect();
         let hidden = AreaSampler::new(scene, &hidden);
-        let (strategies, far) = (0..scene.surfaces.len() as ShapeId)
+        let (strategies, far): (Vec<_>, _) = (0..scene.surfaces.len() as ShapeId)
             .map(|s| strategy(scene, &hidden, s))
             .unzip();
+        let both = |s: &ShapeId| strategies[*s as usize] == Strategy::Both;
+        let points = if seen.iter().any(both) {
+            AreaSampler::guided(scene, between, importance)
+        } else {
+            hidden
+        };
         Self {
             scene,
-            hidden,
+            points,
             strategies,
             far,
         }
@@ -107,43 +133,64 @@ impl<'a> PathSampler<'a> {
     /// it is visible itself: to take the first hit in its direction instead would count a surface
     /// in front of it twice.
     fn next(&self, x: &Vertex, [u, v, choice]: [f64; 3]) -> Option<Vertex> {
-        let q = match self.strategies[x.shape as usize] {
-            Strategy::End => return None,
-            Strategy::Area => 1.0,
-            Strategy::Lobe => 0.0,
-            Strategy::Both => 0.5,
-        };
-        let (shape, point) = if choice < q {
+        let q = self.strategies[x.shape as usize].share_of_area()?;
+        let point = if choice < q {
             self.by_area(x, [u, v])?
         } else {
             self.by_lobe(x, [u, v], (choice - q) / (1.0 - q))?
         };
-        let (term, ray) = geometry_term(x.oriented(), (point.position, point.normal))?;
+        let segment = geometry_term(x.oriented(), point.oriented())?;
+        self.arrive(x, &point, &segment, q, 0.0)
+    }
+
+    /// The vertex at the end of a light path that was drawn with `density` light paths per path and
+    /// area, seen from x; `None` if it is not.
+    pub(super) fn connect(&self, x: &Vertex, end: &LightEnd, density: f64) -> Option<Vertex> {
+        let q = self.strategies[x.shape as usize].share_of_area()?;
+        let segment = geometry_term(x.oriented(), end.at.oriented())?;
+        let ends = [Some(x.shape), Some(end.at.shape)];
+        if self.scene.bvh().blocked(&segment.1, ends) {
+            return None;
+        }
+        self.arrive(x, &end.at, &segment, q, density)
+    }
+
+    /// The vertex at a visible point y, `density` that of the light paths there: the throughput is
+    /// over the density of all.
+    fn arrive(
+        &self,
+        x: &Vertex,
+        at: &SurfacePoint,
+        (term, ray): &(f64, Ray),
+        q: f64,
+        density: f64,
+    ) -> Option<Vertex> {
         let by_lobe = if q < 1.0 {
-            self.lobe_density(x, &point, &ray, term)
+            self.lobe_density(x, &at.point, ray, *term)
         } else {
             0.0
         };
-        let density = q * self.hidden.density(shape, point.uv) + (1.0 - q) * by_lobe;
-        let throughput = x.throughput * x.brdf(self.scene, ray.direction) * term / density;
-        let y = Vertex::arrive(self.scene, shape, &point, ray.direction, throughput);
-        y.filter(|y| y.reflects(self.scene))
+        let own = q * self.points.density(at) + (1.0 - q) * by_lobe;
+        let throughput = x.throughput * x.brdf(self.scene, ray.direction) * term / (own + density);
+        let y = Vertex::arrive(self.scene, at.shape, &at.point, ray.direction, throughput)?;
+        y.reflects(self.scene)
+            .then_some(Vertex { density: own, ..y })
     }
 
-    fn by_area(&self, x: &Vertex, u: [f64; 2]) -> Option<(ShapeId, Interaction)> {
-        let (shape, point, _) = self.hidden.sample(self.scene, u);
-        let (_, ray) = geometry_term(x.oriented(), (point.position, point.normal))?;
-        let blocked = self.scene.bvh().blocked(&ray, [Some(x.shape), Some(shape)]);
-        (!blocked).then_some((shape, point))
+    fn by_area(&self, x: &Vertex, u: [f64; 2]) -> Option<SurfacePoint> {
+        let (point, _) = self.points.sample(self.scene, u);
+        let (_, ray) = geometry_term(x.oriented(), point.oriented())?;
+        let ends = [Some(x.shape), Some(point.shape)];
+        (!self.scene.bvh().blocked(&ray, ends)).then_some(point)
     }
 
-    fn by_lobe(&self, x: &Vertex, u: [f64; 2], choice: f64) -> Option<(ShapeId, Interaction)> {
+    fn by_lobe(&self, x: &Vertex, u: [f64; 2], choice: f64) -> Option<SurfacePoint> {
         let basis = Basis::around(x.normal);
         let material = &self.scene.surfaces[x.shape as usize].material;
         let wi = sample_wi(material, x.albedo, basis.to_local(x.back), u, choice)?;
         let ray = Ray::new(x.position, basis.to_world(wi.to_array()).normalize());
         let hit = self.scene.bvh().closest(&ray, Some(x.shape))?;
-        Some((hit.shape, self.scene.bvh().point(&ray, hit)))
+        Some(SurfacePoint::hit(self.scene, &ray, hit))
     }
 
     /// Density of [`PathSampler::by_lobe`] per unit area at y, which `ray` reaches from x; `term`

@@ -5,14 +5,17 @@
 //! Φ̂₃[p, l] = Σ_k C(x_k, y_k) · (ρ/π)(y_k)/density_k · G(y_k, s_l) · V · f_r(s_l) · Φlaser
 //! ```
 //!
-//! x_k is what the camera sees, y_k a point of [`Strata`](super::strata::Strata). The points of a
-//! block are evaluated together, and no ray is cast where nothing can stand in the way.
+//! x_k is what the camera sees, y_k a point of [`Strata`](super::strata::Strata), or of a light path
+//! where surfaces come close to a spot ([`light_path`](super::light_path)). The points of a block
+//! are evaluated together, and no ray is cast where nothing can stand in the way.
 
 use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
 
 use super::camera::{PixelView, camera_terms};
 use super::context::Context;
+use super::light_path::weight;
+use super::light_points::LightPoint;
 use super::spots::LitPoints;
 use super::vertex::Batch;
 use crate::geometry::Blockers;
@@ -38,12 +41,22 @@ struct Buffers {
     x: Batch,
     /// The points between, weighted by (ρ/π)/density.
     y: Batch,
+    /// Points per area at y beside the light paths.
+    density: Vec<f64>,
     /// Places in the footprint and, where they have width, in the beams.
     places: Vec<[f64; 2]>,
     beams: Vec<[f64; 2]>,
     /// Φlaser·C·w by point, then the light at each point from one spot.
     camera: Vec<f64>,
     light: Vec<f64>,
+}
+
+impl Buffers {
+    fn clear(&mut self) {
+        self.places.clear();
+        self.beams.clear();
+        self.density.clear();
+    }
 }
 
 impl<'a> PixelPoints<'a> {
@@ -83,6 +96,7 @@ impl<'a> PixelPoints<'a> {
             let albedo = &scene.surfaces[drawn.shape as usize].albedo;
             let weight = albedo.albedo(drawn.point.uv) * FRAC_1_PI / drawn.density;
             b.y.set(k, drawn.oriented(), weight, drawn.shape);
+            b.density.push(drawn.density);
             b.places.push(place);
             if wide {
                 let [_, _, s, t] = stream.next_four();
@@ -95,16 +109,87 @@ impl<'a> PixelPoints<'a> {
         if !b.places.is_empty() {
             self.add_chunk(&mut b, columns, sums);
         }
+        if let Some(three) = sums.get_mut(2 * columns.len()..) {
+            for &column in spots.light_paths.columns(columns) {
+                let sum = &mut three[column - columns.start];
+                self.add_light_paths(&mut b, key, column, sum);
+            }
+        }
         self.buffers = b;
+    }
+
+    /// Adds the light from one spot that its light paths find.
+    fn add_light_paths(&self, b: &mut Buffers, key: Key, column: usize, sum: &mut f64) {
+        let Context {
+            scene,
+            spots,
+            strata,
+            between,
+            ..
+        } = self.context;
+        let (paths, own) = (&spots.light_paths, column..column + 1);
+        let mut stream = paths.stream(key, column);
+        for index in 0..paths.count {
+            stream.start(index);
+            let point = LightPoint::draw(spots, column, &mut stream);
+            let Some((_, end)) = point
+                .ends
+                .filter(|(_, end)| between.contains(&end.at.shape))
+            else {
+                continue;
+            };
+            let all = strata.density(&end.at) + f64::from(paths.count) * end.density;
+            let albedo = &scene.surfaces[end.at.shape as usize].albedo;
+            let weight = albedo.albedo(end.at.point.uv) * FRAC_1_PI / all;
+            b.y.set(b.places.len(), end.at.oriented(), weight, end.at.shape);
+            b.density.push(f64::INFINITY);
+            b.places.push(point.footprint);
+            if spots.beams.has_width() {
+                b.beams.push(point.beam);
+            }
+            if b.places.len() == b.y.len() {
+                self.add_ends(b, &own, sum);
+            }
+        }
+        if !b.places.is_empty() {
+            self.add_ends(b, &own, sum);
+        }
+    }
+
+    /// Adds the ends of light paths that are in the buffers, and empties them.
+    fn add_ends(&self, b: &mut Buffers, own: &Range<usize>, sum: &mut f64) {
+        self.see(b);
+        self.add_camera_terms(b);
+        let lit = self.context.spots.points(&b.beams, own);
+        self.add_one_spot(b, &lit, sum);
+        b.clear();
+    }
+
+    /// What the pixel sees at the places in the buffers.
+    fn see(&self, b: &mut Buffers) {
+        let count = b.places.len();
+        b.x.weight[count..].fill(0.0);
+        b.y.weight[count..].fill(0.0);
+        self.view.vertices(self.context.scene, &b.places, &mut b.x);
+    }
+
+    /// Sets `camera` to Φlaser·C·w.
+    fn add_camera_terms(&self, b: &mut Buffers) {
+        let Context {
+            scene, is_glossy, ..
+        } = self.context;
+        let ends = (&b.x, &b.y);
+        camera_terms((scene, *is_glossy), &self.blockers, ends, &mut b.camera);
+        for (c, w) in b.camera.iter_mut().zip(&b.y.weight) {
+            *c *= w * scene.laser.power;
+        }
     }
 
     /// Adds the points that are in the buffers, and empties them.
     fn add_chunk(&self, b: &mut Buffers, columns: &Range<usize>, sums: &mut [f64]) {
         let Context { scene, spots, .. } = self.context;
         let (count, n) = (b.places.len(), columns.len());
-        b.x.weight[count..].fill(0.0);
-        b.y.weight[count..].fill(0.0);
-        self.view.vertices(scene, &b.places, &mut b.x);
+        self.see(b);
         let lit = spots.points(&b.beams, columns);
         let power = scene.laser.power * (1.0 / self.context.strata.block_size() as f64);
         let (one, rest) = sums.split_at_mut(n);
@@ -118,23 +203,22 @@ impl<'a> PixelPoints<'a> {
                 &b.x,
                 |k| power * b.x.weight[k],
                 factor,
+                |_| f64::INFINITY,
                 &lit,
                 &mut rest[..n],
             );
         }
         if let Some(three) = rest.get_mut(n..2 * n) {
-            let glossy = self.context.is_glossy;
-            camera_terms((scene, glossy), &self.blockers, (&b.x, &b.y), &mut b.camera);
-            for (c, w) in b.camera.iter_mut().zip(&b.y.weight) {
-                *c *= w * scene.laser.power;
-            }
+            self.add_camera_terms(b);
             match three {
                 [sum] => self.add_one_spot(b, &lit, sum),
-                _ => spots.add_light(&b.y, |k| b.camera[k], |_, _| 1.0, &lit, three),
+                _ => {
+                    let density = |k: usize| b.density[k];
+                    spots.add_light(&b.y, |k| b.camera[k], |_, _| 1.0, density, &lit, three);
+                }
             }
         }
-        b.places.clear();
-        b.beams.clear();
+        b.clear();
     }
 
     /// Adds the light from one spot, all points at once: the bits of
@@ -157,6 +241,15 @@ impl<'a> PixelPoints<'a> {
         }
         let light = &mut b.light[..count];
         let column = lit.columns.start;
+        let paths = &spots.light_paths;
+        if !paths.columns(&lit.columns).is_empty() {
+            for (k, light) in light.iter_mut().enumerate() {
+                if let Some(point) = &lit.at(k)[0] {
+                    let m = f64::from(paths.count);
+                    *light *= weight(b.y.oriented(k), b.density[k], m, point);
+                }
+            }
+        }
         let connection = |k: usize| Some((column, lit.at(k)[0].as_ref()?, b.y.shape[k]));
         spots.connect(light, connection, |k| b.y.place(k).0, |_, _| 1.0);
         light.iter().for_each(|part| *sum += part);

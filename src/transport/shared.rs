@@ -8,12 +8,17 @@
 //!
 //! β(x₁) is the étendue of the camera sample, and β grows by f_r · G / p from one vertex to the
 //! next, p the density by which that was sampled. The errors along a row of Φcam are correlated.
+//! Where surfaces come close to a spot, x_{n−1} is drawn from it too
+//! ([`light_path`](super::light_path)).
 
 use std::ops::Range;
 
 use super::camera::first_vertex;
 use super::context::Context;
+use super::light_path::{LightEnd, light_end};
 use super::points::PixelPoints;
+use super::spots::LitPoints;
+use super::vertex::Vertex;
 use crate::num::stream::{Key, Stream};
 
 /// The estimate of one block for all spots: \[order\]\[column\], W; order n − 1 holds the light
@@ -85,6 +90,10 @@ impl<'a> PixelRow<'a> {
         let (n, power) = (columns.len(), scene.laser.power);
         let two_sets = spots.beams.has_width() || path.chooses();
         let mut stream = Stream::new(plan.sampling, key);
+        let near = spots.light_paths.columns(columns).iter();
+        let mut streams: Vec<_> = near
+            .map(|c| (*c, spots.light_paths.stream(key, *c)))
+            .collect();
         self.vertex.resize(n, 0.0);
         for index in 0..plan.budget.size {
             stream.start(index);
@@ -99,12 +108,39 @@ impl<'a> PixelRow<'a> {
             let one = &mut sums[..n];
             direct.add(spots, self.pixel, (1, power), |_| x, &lit, one);
             let vertices = scene.max_bounces - 1;
+            let ends = self.light_ends(&mut streams, index, &lit);
             path.trace(x, vertices, [u, v, choice], &mut stream, |order, x| {
                 spots.light_vertex(x, &lit, &mut self.vertex);
-                let sums = &mut sums[order as usize * n..];
-                let light = sums.iter_mut().zip(&self.vertex);
+                let y = (x.oriented(), x.density, 1.0);
+                spots
+                    .light_paths
+                    .weigh(y, lit.at(0), columns.start, &mut self.vertex);
+                let (these, longer) = sums[order as usize * n..].split_at_mut(n);
+                let light = these.iter_mut().zip(&self.vertex);
                 light.for_each(|(sum, one)| *sum += one);
+                for (column, lit, end) in ends.iter().filter(|_| order < vertices) {
+                    let y = path.connect(x, end, end.density);
+                    let light = y.map_or(0.0, |y| spots.light_from(lit, &y));
+                    longer[column - columns.start] += light;
+                }
             });
         }
+    }
+
+    /// The ends of the light paths that belong to path `index`, each with its column and lit point.
+    fn light_ends<'l>(
+        &self,
+        streams: &mut [(usize, Stream)],
+        index: u32,
+        lit: &'l LitPoints<'_>,
+    ) -> Vec<(usize, &'l Vertex, LightEnd)> {
+        let scene = self.context.scene;
+        let end = |(column, stream): &mut (usize, Stream)| {
+            stream.start(index);
+            let [u, v, ..] = stream.next_four();
+            let point = lit.at(0)[*column - lit.columns.start].as_ref()?;
+            Some((*column, point, light_end(scene, point, [u, v])?))
+        };
+        streams.iter_mut().filter_map(end).collect()
     }
 }

@@ -6,9 +6,11 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::beam::{Beams, Reach};
+use super::light_path::LightPaths;
 use super::vertex::{Batch, Vertex, geometry_term};
 use super::visibility::{Place, hide};
 use crate::geometry::{Blockers, DVec3, Parallelogram, Region, Shape, ShapeId};
+use crate::num::stream::Sampling;
 use crate::scene::Scene;
 
 /// A range of spots, and what can stand between each of them and the shapes around.
@@ -18,6 +20,8 @@ pub(super) struct LitSpots<'a> {
     /// The beams to all spots of the scene.
     pub beams: Beams<'a>,
     pub range: Range<usize>,
+    /// Points drawn from the spots that surfaces come close to.
+    pub light_paths: LightPaths,
     /// By column: where its light is expected to land.
     landings: Vec<Option<Landing>>,
     /// By column and shape, for the expected landing.
@@ -110,7 +114,12 @@ impl LitPoints<'_> {
 pub(super) type Connection<'p> = (usize, &'p Vertex, ShapeId);
 
 impl<'a> LitSpots<'a> {
-    pub(super) fn new(scene: &'a Scene, range: Range<usize>) -> Self {
+    /// For the spots of `range`, in blocks of `size` samples.
+    pub(super) fn new(
+        scene: &'a Scene,
+        range: Range<usize>,
+        (sampling, size): (Sampling, u32),
+    ) -> Self {
         let beams = Beams::new(scene);
         let shapes = scene.surfaces.iter().map(|s| Region::around(&s.shape));
         let shapes: Vec<Region> = shapes.collect();
@@ -128,6 +137,7 @@ impl<'a> LitSpots<'a> {
             .collect();
         Self {
             scene,
+            light_paths: LightPaths::new(scene, &beams, &range, (sampling, size)),
             beams,
             range,
             landings,
@@ -236,6 +246,17 @@ impl<'a> LitSpots<'a> {
         self.connect_row(place, points, lit.columns.start, row, factor);
     }
 
+    /// [`LitSpots::light_vertex`] from one lit point, with nothing between.
+    pub(super) fn light_from(&self, lit: &Vertex, x: &Vertex) -> f64 {
+        let Some((term, _)) = geometry_term(x.oriented(), lit.oriented()) else {
+            return 0.0;
+        };
+        let factors =
+            x.factor_from(self.scene, lit.position) * lit.factor_to(self.scene, x.position);
+        let radiance = x.throughput * x.constant_factor(self.scene) * self.scene.laser.power;
+        radiance * term * lit.constant_factor(self.scene) * factors
+    }
+
     /// What can stand between shape `x` and the point that the beam of `column` lights.
     fn blockers(&self, column: usize, lit: &Vertex, x: ShapeId) -> &Blockers {
         match &self.landings[column] {
@@ -246,15 +267,17 @@ impl<'a> LitSpots<'a> {
 
     /// Adds to `sums` the light that goes from the lit spots to each vertex x_k, all spots of a
     /// vertex at once: weight(k) · c_l·G·V·d_l · factor(k, position of l). Vertices of weight 0 are
-    /// left out.
+    /// left out. `density(k)` is that of x_k beside the light paths of a block.
     pub(super) fn add_light(
         &self,
         x: &Batch,
         weight: impl Fn(usize) -> f64,
         factor: impl Fn(usize, DVec3) -> f64,
+        density: impl Fn(usize) -> f64,
         lit: &LitPoints<'_>,
         sums: &mut [f64],
     ) {
+        let paths = &self.light_paths;
         let mut row = vec![0.0; sums.len()];
         let mut batch = self.batch(lit.at(0), sums.len());
         for (k, weight) in (0..x.len()).map(|k| (k, weight(k))) {
@@ -267,6 +290,8 @@ impl<'a> LitSpots<'a> {
             }
             batch.geometry_terms_from(x.oriented(k), weight, &batch.weight, &mut row);
             let first = lit.columns.start;
+            let y = (x.oriented(k), density(k), f64::from(paths.count));
+            paths.weigh(y, points, first, &mut row);
             self.connect_row(x.place(k), points, first, &mut row, |p| factor(k, p));
             sums.iter_mut().zip(&row).for_each(|(s, r)| *s += r);
         }

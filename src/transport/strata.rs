@@ -2,7 +2,8 @@
 
 use std::f64::consts::FRAC_1_PI;
 
-use super::area::{AreaSampler, cell_at};
+use super::area::{AreaSampler, SurfacePoint};
+use super::importance::Importance;
 use super::vertex::{Oriented, geometry_term};
 use crate::geometry::{Basis, Interaction, Ray, ShapeId};
 use crate::num::stream::{Key, Sampling, Stream};
@@ -33,7 +34,8 @@ impl Drawn {
 /// points, or where a net over all of them is stratified by each of them already.
 ///
 /// Where a surface comes close to what the camera sees, area alone would seldom hit what matters:
-/// as many points again are then sent out from an anchor in the middle of the view, by the cosine.
+/// half of the points then follow the importance, and as many are sent out from an anchor in the
+/// middle of the view, by the cosine.
 #[derive(Debug)]
 pub(super) struct Strata<'a> {
     scene: &'a Scene,
@@ -112,12 +114,12 @@ impl Anchor {
     }
 
     /// What is seen along the direction of u; `None` where there is nothing.
-    fn sample(&self, scene: &Scene, u: [f64; 2]) -> Option<(ShapeId, Interaction)> {
+    fn sample(&self, scene: &Scene, u: [f64; 2]) -> Option<SurfacePoint> {
         let (position, normal) = self.oriented;
         let local = warp::cosine_hemisphere(u);
         let ray = Ray::new(position, Basis::around(normal).to_world(local).normalize());
         let hit = scene.bvh().closest(&ray, Some(self.shape))?;
-        Some((hit.shape, scene.bvh().point(&ray, hit)))
+        Some(SurfacePoint::hit(scene, &ray, hit))
     }
 }
 
@@ -156,28 +158,29 @@ fn cells(scene: &Scene, shapes: &[ShapeId]) -> Option<Vec<(Cell, f64)>> {
 }
 
 impl<'a> Strata<'a> {
-    /// Divides `shapes` for blocks of about `size` points; `close` tells whether any of them may be
-    /// close to what the camera sees.
+    /// Divides `shapes` for blocks of about `size` points; `close` is their importance where any of
+    /// them may be close to what the camera sees.
     pub(super) fn new(
         scene: &'a Scene,
         shapes: &[ShapeId],
-        close: bool,
-        sampling: Sampling,
-        size: u32,
+        close: Option<&Importance<'_>>,
+        (sampling, size): (Sampling, u32),
     ) -> Self {
         let round = |points: f64| match sampling {
             Sampling::Pcg => (points.ceil() as u32).max(1),
             Sampling::Sobol => (points.ceil() as u32).max(1).next_power_of_two(),
         };
-        let anchor = close.then(|| Anchor::new(scene, round(f64::from(size) / 2.0)));
-        let anchor = anchor.flatten();
+        let anchor = close.and_then(|_| Anchor::new(scene, round(f64::from(size) / 2.0)));
         let size = if anchor.is_some() {
             size.div_ceil(2)
         } else {
             size
         };
-        let area = AreaSampler::new(scene, shapes);
-        let mut cells = cells(scene, shapes);
+        let area = match close {
+            Some(importance) => AreaSampler::guided(scene, shapes, importance),
+            None => AreaSampler::new(scene, shapes),
+        };
+        let mut cells = cells(scene, shapes).filter(|_| close.is_none());
         if area.is_empty() {
             // No light is met between the walls, but footprints and beams have to be sampled all
             // the same.
@@ -223,20 +226,26 @@ impl<'a> Strata<'a> {
         }
     }
 
-    /// Points per area that the cells, or their distribution, put at a place of `shape`.
-    fn area_density(&self, shape: ShapeId, uv: [f64; 2]) -> f64 {
+    /// Points per area that the cells, or their distribution, put at a point.
+    fn area_density(&self, at: &SurfacePoint) -> f64 {
         match &self.division {
-            Division::Distribution { area, points } => f64::from(*points) * area.density(shape, uv),
-            Division::Cells { density, .. } => match &density[shape as usize] {
+            Division::Distribution { area, points } => f64::from(*points) * area.density(at),
+            Division::Cells { density, .. } => match &density[at.shape as usize] {
                 (_, grid) if grid.is_empty() => 0.0,
-                (count, grid) => grid[cell_at(*count, uv)],
+                (count, grid) => grid[at.cell(*count)],
             },
         }
     }
 
+    /// Points per area at a point that others drew, all strata together.
+    pub(super) fn density(&self, at: &SurfacePoint) -> f64 {
+        self.by_area(at, self.area_density(at)).density
+    }
+
     /// The point drawn by area with `density`, and with what the anchor adds to it where it sees
     /// the point.
-    fn by_area(&self, shape: ShapeId, point: Interaction, density: f64) -> Drawn {
+    fn by_area(&self, at: &SurfacePoint, density: f64) -> Drawn {
+        let SurfacePoint { shape, point, .. } = *at;
         let from_anchor = self.anchor.as_ref().and_then(|anchor| {
             let (density, ray) = anchor.density(&point)?;
             let ends = [Some(anchor.shape), Some(shape)];
@@ -251,12 +260,12 @@ impl<'a> Strata<'a> {
 
     /// The point in a direction from the anchor; one that counts nothing where there is none.
     fn by_anchor(&self, anchor: &Anchor, u: [f64; 2]) -> Drawn {
-        let seen = anchor.sample(self.scene, u).and_then(|(shape, point)| {
-            let (density, _) = anchor.density(&point).filter(|(d, _)| *d > 0.0)?;
+        let seen = anchor.sample(self.scene, u).and_then(|at| {
+            let (density, _) = anchor.density(&at.point).filter(|(d, _)| *d > 0.0)?;
             Some(Drawn {
-                shape,
-                point,
-                density: self.area_density(shape, point.uv) + density,
+                shape: at.shape,
+                point: at.point,
+                density: self.area_density(&at) + density,
             })
         });
         seen.unwrap_or_else(|| Drawn {
@@ -291,17 +300,19 @@ impl<'a> Strata<'a> {
         match &self.division {
             Division::Cells { cells, .. } => {
                 for (stratum, cell) in (0..).zip(cells) {
-                    let shape = &self.scene.surfaces[cell.shape as usize].shape;
                     let [corner, width] = cell.corner_and_width();
                     draw(stratum, cell.points, &|u| {
                         let uv = std::array::from_fn(|d| corner[d] + width[d] * u[d]);
-                        self.by_area(cell.shape, shape.at(uv), cell.density())
+                        self.by_area(
+                            &SurfacePoint::at(self.scene, cell.shape, uv),
+                            cell.density(),
+                        )
                     });
                 }
             }
             Division::Distribution { area, points } => draw(0, *points, &|u| {
-                let (shape, point, density) = area.sample(self.scene, u);
-                self.by_area(shape, point, f64::from(*points) * density)
+                let (point, density) = area.sample(self.scene, u);
+                self.by_area(&point, f64::from(*points) * density)
             }),
         }
         if let Some(anchor) = &self.anchor {

@@ -38,6 +38,9 @@ pub(super) struct Vertex {
     /// Flux into the pixel per unit of radiance leaving this vertex along the path, over the
     /// density of the path so far (length² sr).
     pub throughput: f64,
+    /// Points per area, of all kinds but light paths, that were drawn where this one is; infinite
+    /// for a vertex that no light path competes with.
+    pub density: f64,
 }
 
 impl Vertex {
@@ -56,6 +59,7 @@ impl Vertex {
             albedo: scene.surfaces[shape as usize].albedo.albedo(point.uv),
             back,
             throughput,
+            density: f64::INFINITY,
         }
     }
 

@@ -87,7 +87,13 @@ fn it_disagrees_with_the_published_kernel() {
         assert!(number(&value, "largest_z") > number(&value, "z_limit"));
     }
     let ended = run().phicam("validate done --kernel published").exits(1);
-    for word in ["DISAGREE", "published", "worst entries"] {
+    for word in [
+        "DISAGREE",
+        "published",
+        "worst entries",
+        "most likely",
+        "95 times in 100",
+    ] {
         assert!(
             ended.stdout.contains(word),
             "no `{word}` in {}",
@@ -151,5 +157,78 @@ fn frames_alone_are_enough() {
     let _ = workspace.phicam("validate done").exits(0);
     let _ = workspace
         .phicam("validate done --kernel published")
+        .exits(1);
+}
+
+/// Any matrix against any scene; one of another shape is refused.
+#[test]
+fn a_matrix_of_ones_own_is_judged() {
+    let done = "--phi done/phi.npy --stderr done/phi.stderr.npy --replicates 32";
+    for line in [
+        format!("validate done {done}"),
+        format!("validate --against small.toml {done}"),
+        format!("validate --against small.toml {done} --errors all"),
+    ] {
+        let _ = run().phicam(&line).exits(0);
+    }
+    let _ = run()
+        .phicam(&format!("validate --against grey.toml {done}"))
+        .exits(1);
+    run().refuses(
+        &format!("validate --against tiny.toml {done}"),
+        &["64 × 24", "6 pixels", "8 spots"],
+    );
+    for line in [
+        format!("validate {done}"),
+        "validate done --phi done/phi.npy".to_owned(),
+        "validate".to_owned(),
+        "validate done --errors all".to_owned(),
+    ] {
+        let _ = run().phicam(&line).exits(2);
+    }
+}
+
+/// Zero light from both, and entries that are all flagged, are no evidence.
+#[test]
+fn nothing_is_no_evidence() {
+    let workspace = Workspace::with_scenes();
+    let _ = workspace.phicam("render tiny.toml -o done").exits(0);
+    let flags = npy(6, 8, 1.0);
+    std::fs::write(workspace.path("done/phi.tails.npy"), flags).unwrap();
+    let ended = workspace.phicam("validate done").exits(4);
+    assert!(ended.stdout.contains("no evidence"), "{}", ended.account());
+    assert!(!ended.stdout.contains("agree"), "{}", ended.account());
+    std::fs::write(workspace.path("done/phi.tails.npy"), npy(6, 7, 0.0)).unwrap();
+    workspace.refuses("validate done", &["phi.tails.npy", "6 × 7"]);
+}
+
+/// A matrix of f64 in one value, as NumPy writes it (format 1.0, C order).
+fn npy(rows: usize, columns: usize, value: f64) -> Vec<u8> {
+    let dictionary =
+        format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({rows}, {columns}), }}");
+    let header = format!("{dictionary:<117}\n");
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    bytes.extend((0..rows * columns).flat_map(|_| value.to_le_bytes()));
+    bytes
+}
+
+/// A plank takes light away that the plain model has, and its scene says so.
+#[test]
+#[ignore = "slow"]
+fn occlusion_is_known_to_the_model_that_asks() {
+    let workspace = Workspace::with_scenes();
+    let plank = "\n[[surface]]\nname = \"plank\"\nrole = \"occluder\"\nmaterial = { lambertian = 0.0 }\n\
+                 rectangle = { corner = [3.2, 7.0, 3.0], u = [1.8, 0, 0], v = [0, 1.6, 0] }\n";
+    workspace.write("plank.toml", workspace.text("small.toml") + plank);
+    let _ = workspace
+        .phicam("render plank.toml -o done --samples 4096")
+        .exits(0);
+    let _ = workspace.phicam("validate done").exits(1);
+    let ended = workspace.phicam("validate done --occlusion").exits(0);
+    assert!(ended.stdout.contains("occlusion by"), "{}", ended.account());
+    let _ = workspace
+        .phicam("validate done --occlusion --kernel published")
         .exits(1);
 }

@@ -4,6 +4,7 @@
 mod accuracy;
 mod brdf;
 mod closed_forms;
+mod edges;
 mod indicator;
 mod known;
 mod laboratory;
@@ -17,6 +18,7 @@ mod reference;
 mod sensor;
 mod studies;
 mod tails;
+mod verdict;
 
 use std::ops::Range;
 
@@ -72,8 +74,9 @@ fn compare(traced: &Traced, truth: &Matrix, way: Way) -> Agreement {
         stderr: &traced.stderr,
         model: truth,
         bound: None,
+        left_out: None,
     };
-    agree(evidence, test).0
+    agree(evidence, test, None).0
 }
 
 /// Two independent renders of the same truth: the differences against their joint standard error.
@@ -89,6 +92,7 @@ fn assert_same_under(errors: Errors, a: &Traced, b: &Traced, what: &str) {
         stderr: &stderr,
         model: &b.flux,
         bound: None,
+        left_out: None,
     };
     // Two sets of 32 replicates: at least 31 degrees of freedom (Welch); rows may be correlated.
     let test = Test {
@@ -96,7 +100,7 @@ fn assert_same_under(errors: Errors, a: &Traced, b: &Traced, what: &str) {
         replicates: 32,
         errors,
     };
-    let verdict = agree(evidence, test).0;
+    let verdict = agree(evidence, test, None).0;
     assert!(verdict.agrees, "{what}: {verdict:?}");
     assert!(a.flux.sum() > 0.0, "{what}: no light at all");
 }

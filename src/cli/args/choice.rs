@@ -2,8 +2,8 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
-use crate::lab::Integration;
 use crate::lab::options::{ESTIMATORS, SAMPLERS};
+use crate::lab::{Errors, Integration};
 use crate::model::Kernel;
 use crate::num::stream::Sampling;
 use crate::recovery::{Rule, WeightRule};
@@ -58,6 +58,18 @@ pub(super) fn integration() -> impl TypedValueParser<Value = Integration> {
         ),
     ];
     one_of(integrations.map(|(integration, help)| (integration.name(), integration, help)))
+}
+
+pub(super) fn errors() -> impl TypedValueParser<Value = Errors> {
+    one_of([
+        ("independent", Errors::Independent, "None"),
+        (
+            "pixel",
+            Errors::WithinRows,
+            "Those of one pixel, as of estimator shared",
+        ),
+        ("all", Errors::Everywhere, "All, as of estimator factored"),
+    ])
 }
 
 pub(super) fn rule() -> impl TypedValueParser<Value = Rule> {

@@ -17,7 +17,7 @@ use std::path::PathBuf;
 use clap::{Args as Arguments, Parser, Subcommand};
 
 use super::failure::Codes;
-use crate::lab::Integration;
+use crate::lab::{Errors, Integration};
 use crate::model::Kernel;
 use crate::num::stream::Sampling;
 use crate::transport::Estimator;
@@ -36,7 +36,7 @@ pub(in crate::cli) use view::{PreviewArgs, Terminal, ViewArgs};
 #[derive(Debug, Parser)]
 #[command(version, about, max_term_width = 100, propagate_version = true)]
 #[command(
-    after_help = "Exit codes: 0 done, 1 traced and modelled disagree (recover: photographs and model), 2 error, 75 stopped by SIGTERM, 130 by Ctrl-C. \
+    after_help = "Exit codes: 0 done, 1 traced and modelled disagree (recover: photographs and model), 2 error, 4 no evidence, 75 stopped by SIGTERM, 130 by Ctrl-C. \
                   Those for schedulers: `phicam help shard`."
 )]
 pub(in crate::cli) struct Args {
@@ -61,7 +61,7 @@ pub(in crate::cli) enum Command {
     Stack(StackArgs),
     /// Write the matrices of the model: G12, G23 and Φcam
     Model(ModelArgs),
-    /// Test traced against modelled Φcam: exit 0 agree, 1 disagree, 2 error
+    /// Test traced or measured against modelled Φcam: exit 0 agree, 1 disagree, 2 error, 4 no evidence
     Validate(ValidateArgs),
     /// Recover the hidden reflectance from Φcam: exit 0 done, 1 no reflectances explain it, 2 error
     Recover(RecoverArgs),
@@ -222,7 +222,7 @@ pub(in crate::cli) struct TestArgs {
     #[arg(long, value_parser = choice::kernel(), default_value = "physical")]
     pub kernel: Kernel,
     /// How the model integrates
-    #[arg(long, value_parser = choice::integration(), default_value = "centres")]
+    #[arg(long, value_parser = choice::integration(), default_value = "quadrature")]
     pub integration: Integration,
     /// Probability of rejecting a right model
     #[arg(long, default_value_t = 1e-3, allow_negative_numbers = true)]
@@ -231,10 +231,26 @@ pub(in crate::cli) struct TestArgs {
 
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct ValidateArgs {
-    /// Folder of a run
-    pub dir: PathBuf,
+    /// Folder of a run; with --phi it may be left out, if --against says of which scene
+    #[arg(required_unless_present_all = ["phi", "against"])]
+    pub dir: Option<PathBuf>,
     #[command(flatten)]
     pub test: TestArgs,
+    /// Let the model ask what stands in the way of its light
+    #[arg(long)]
+    pub occlusion: bool,
+    /// Test this matrix (.npy, pixels × spots, W) instead of the run's
+    #[arg(long, value_name = "FILE", requires = "stderr")]
+    pub phi: Option<PathBuf>,
+    /// Standard errors of --phi, of the same shape
+    #[arg(long, value_name = "FILE", requires = "phi")]
+    pub stderr: Option<PathBuf>,
+    /// Replicates from which --stderr was estimated, at least 2; known errors unless given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..), requires = "phi")]
+    pub replicates: Option<u32>,
+    /// Which entries of --phi share their errors
+    #[arg(long, value_parser = choice::errors(), default_value = "independent", requires = "phi")]
+    pub errors: Errors,
     /// Move the spots by DX,DY (scene's unit) in the model only
     #[arg(long, value_name = "DX,DY", value_parser = shift, allow_hyphen_values = true)]
     pub shift_spots: Option<[f64; 2]>,

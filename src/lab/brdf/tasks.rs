@@ -3,8 +3,9 @@
 use super::assumption::{Assumed, assumed};
 use super::quality::{qualities, ratios};
 use super::results::{Assumption, BrdfPlan, BrdfStudy};
-use crate::lab::agreement::{Errors, Evidence, Test, agree};
+use crate::lab::agreement::agree;
 use crate::lab::error::LabError;
+use crate::lab::evidence::{Errors, Evidence, Test};
 use crate::lab::options::Opt;
 use crate::lab::registered::{Registered, prepared};
 use crate::lab::study::{Sharing, Study};
@@ -112,6 +113,7 @@ impl BrdfTasks {
             stderr: &light.stderr,
             model: &(integral.phi * scale),
             bound: Some(&(integral.bound * scale)),
+            left_out: None,
         };
         let how = self.tracing()?;
         let test = Test {
@@ -119,7 +121,7 @@ impl BrdfTasks {
             replicates: how.budget.blocks,
             errors: Errors::of(how.estimator),
         };
-        let (mut agreement, _) = agree(evidence, test);
+        let (mut agreement, _) = agree(evidence, test, None);
         agreement.kernel = Kernel::Physical.name().to_owned();
         agreement.integration = Integration::Quadrature.name().to_owned();
         let mut matrices = MatrixModel::new(&assumed.scene, Kernel::Physical, None)?;

@@ -2,8 +2,8 @@
 
 use super::results::{Power, PowerPlan};
 use super::verdicts::{Models, Verdicts, row, verdicts};
-use crate::lab::agreement::{Errors, Test};
 use crate::lab::error::LabError;
+use crate::lab::evidence::{Errors, Test};
 use crate::lab::options::{ESTIMATORS, Opt, SAMPLERS};
 use crate::lab::registered::{Registered, prepared};
 use crate::lab::study::{Sharing, Study, Work};

@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::results::{Detection, PowerPlan, PowerRow};
-use crate::lab::agreement::{Evidence, Test, agree};
+use crate::lab::agreement::agree;
+use crate::lab::evidence::{Evidence, Test};
 use crate::matrix::Matrix;
 use crate::num::statistics::binomial_interval;
 use crate::transport::{Estimator, Traced};
@@ -34,8 +35,9 @@ pub(super) fn verdicts(traced: &Traced, models: &Models, test: Test) -> Verdicts
             stderr: &traced.stderr,
             model,
             bound: None,
+            left_out: None,
         };
-        agree(evidence, test).0
+        agree(evidence, test, None).0
     };
     let own = verdict(&models.right);
     let wrong = models.wrong.iter();

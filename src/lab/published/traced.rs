@@ -249,13 +249,14 @@ mod tests {
                 stderr: &rendered.stderr,
                 model: &want,
                 bound: None,
+                left_out: None,
             };
             let test = Test {
                 significance: 1e-3,
                 replicates: 64,
                 errors: Errors::Independent,
             };
-            let (found, _) = agree(evidence, test);
+            let (found, _) = agree(evidence, test, None);
             assert!(found.agrees && found.chi2_per_dof > 0.8, "{found:?}");
             // Footprints have 4e-5.
             assert!((&mean.phi - &want).norm() / want.norm() < 3.0 * mean.noise() + 1e-4);

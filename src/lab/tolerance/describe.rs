@@ -123,8 +123,8 @@ impl Tolerance {
     /// Change of Φcam, and MTF of the recovery, against the size of each misplacement.
     fn figure(&self) -> Figure {
         let mut units = self.parameters.iter().map(|p| p.unit.as_str());
-        let unit = units.find(|u| *u != "deg").unwrap_or("");
-        let size = format!("size of the error ({unit}; hinge angle: degrees)");
+        let unit = units.find(|u| !["deg", "%"].contains(u)).unwrap_or("");
+        let size = format!("size of the error ({unit}; angles: degrees; scale: %)");
         let plot = |upwards: Axis, f: fn(&Misplacement) -> Option<f64>| {
             let curve = |p: &Sensitivity| {
                 let points = p.rows.iter().filter_map(|r| Some([r.size, f(r)?]));

@@ -5,7 +5,6 @@
 //! the method is `joint`.
 
 mod describe;
-mod misplaced;
 mod results;
 mod tasks;
 

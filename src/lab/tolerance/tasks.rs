@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::misplaced::{ALL, Misplaced, normal};
 use super::results::{Misplacement, Sensitivity, Tolerance};
 use crate::lab::error::LabError;
+use crate::lab::misplaced::{ALL, Misplaced, Size, normal};
 use crate::lab::options::Opt;
 use crate::lab::registered::{Registered, prepared};
 use crate::lab::study::Study;
@@ -168,10 +168,10 @@ impl Study for ToleranceTasks {
 
 /// What one of [`SIZES`] is, and in which unit: a degree, or an inch in the scene's unit.
 fn unit(what: &Misplaced, scene: &Scene) -> (f64, &'static str) {
-    if what.angle {
-        (1.0, "deg")
-    } else {
-        (scene.unit.per_inch(), scene.unit.symbol())
+    let unit = what.size.unit(scene);
+    match what.size {
+        Size::Angle | Size::Percent => (1.0, unit),
+        Size::Length | Size::Random | Size::Positive => (scene.unit.per_inch(), unit),
     }
 }
 
@@ -198,8 +198,8 @@ fn lost_at(right: Option<f64>, rows: &[Misplacement]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::misplaced::hinge;
     use super::*;
+    use crate::lab::misplaced::hinge;
     use crate::lab::study::tests::{divides, small};
 
     #[test]

@@ -14,4 +14,4 @@ pub use chi_square::{chi_square_quantile, chi_square_sf};
 pub use correlation::correlation_two_sided;
 pub use family::{sidak_p, sidak_threshold};
 pub use normal::normal_two_sided;
-pub use student::student_to_normal;
+pub use student::{student_threshold, student_to_normal};

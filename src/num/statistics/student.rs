@@ -30,6 +30,28 @@ pub fn student_to_normal(t: f64, dof: f64) -> f64 {
     z.copysign(t)
 }
 
+/// The t that Student's t with `dof` > 0 degrees of freedom exceeds as often as a standard normal
+/// number exceeds `z` ≥ 0: the inverse of [`student_to_normal`], by bisection to rounding.
+pub fn student_threshold(z: f64, dof: f64) -> f64 {
+    if z == 0.0 || z.is_infinite() || dof == f64::INFINITY {
+        return z;
+    }
+    let mut high = z;
+    while student_to_normal(high, dof) < z {
+        high *= 2.0;
+    }
+    let mut low = 0.0;
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if student_to_normal(middle, dof) < z {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
 /// Hill (1970), Algorithm 395: with a = ν − ½, b = 48 a², y = a ln(1 + t²/ν),
 ///
 /// > z = √y (1 + (y + 3 + (−0.4 y³ − 3.3 y² − 24 y − 85.5)/(0.8 y² + 100 + b))/b)
@@ -139,6 +161,19 @@ mod tests {
             assert!((z / exact - 1.0).abs() < 2e-12, "{t} {dof}: {z} {exact}");
             assert_eq!(student_to_normal(-t, dof), -z);
         }
+    }
+
+    #[test]
+    fn the_threshold_is_the_tabulated_one() {
+        for (t, dof, z) in TABLE {
+            assert!(
+                (student_threshold(z, dof) / t - 1.0).abs() < 1e-11,
+                "{t} {dof}"
+            );
+        }
+        assert_eq!(student_threshold(0.0, 5.0), 0.0);
+        assert_eq!(student_threshold(f64::INFINITY, 5.0), f64::INFINITY);
+        assert_eq!(student_threshold(2.0, f64::INFINITY), 2.0);
     }
 
     #[test]

@@ -70,6 +70,7 @@ pub(super) fn deviations(results: &RunResults) -> String {
     if let Some(agreement) = results.agreement.as_ref().filter(|a| !a.worst.is_empty()) {
         html += "<p>The entries that differ most:</p>\n";
         html += &bare(&agreement.worst_entries());
+        html.extend(agreement.parameters().iter().map(bare));
     }
     html
 }

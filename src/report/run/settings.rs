@@ -46,7 +46,7 @@ fn test_options(a: &Agreement) -> String {
     let mut options = String::new();
     let given = [
         ("kernel", a.kernel.as_str(), "physical"),
-        ("integration", a.integration.as_str(), "centres"),
+        ("integration", a.integration.as_str(), "quadrature"),
     ];
     for (name, value, usual) in given {
         if value != usual {

@@ -1,6 +1,9 @@
 use super::*;
 use crate::num::statistics::chi_square_sf;
 use crate::num::stream::{Key, Sampling, Stream};
+use crate::scene::Role;
+use crate::transport::beam::Beams;
+use crate::transport::camera::first_vertex;
 
 const BENCH: &str = include_str!("../../../scenes/bench.toml");
 
@@ -36,7 +39,8 @@ fn points_follow_their_density() {
     let mut counts = vec![[0.0; SUB * SUB]; 3];
     for _ in 0..n {
         let u = stream.next_four();
-        let (shape, p, _) = hidden.sample(&scene, [u[0], u[1]]);
+        let (at, _) = hidden.sample(&scene, [u[0], u[1]]);
+        let (shape, p) = (at.shape, at.point);
         assert!(
             scene.surfaces[shape as usize].albedo.albedo(p.uv) > 0.0,
             "a dark cell was sampled"
@@ -49,7 +53,12 @@ fn points_follow_their_density() {
         let area = scene.surfaces[shape as usize].shape.area() / (SUB * SUB) as f64;
         for (k, count) in counts[shape as usize].iter().enumerate() {
             let centre = |i: usize| (i as f64 + 0.5) / SUB as f64;
-            let p = area * hidden.density(shape, [centre(k % SUB), centre(k / SUB)]);
+            let p = area
+                * hidden.density(&SurfacePoint::at(
+                    &scene,
+                    shape,
+                    [centre(k % SUB), centre(k / SUB)],
+                ));
             total += p;
             if p > 0.0 {
                 let expected = p * f64::from(n);
@@ -88,7 +97,8 @@ fn points_return_to_their_place_in_the_square() {
     let mut stream = Stream::new(Sampling::Pcg, key);
     for _ in 0..5000 {
         let u = stream.next_four();
-        let (shape, p, _) = hidden.sample(&scene, [u[0], u[1]]);
+        let (at, _) = hidden.sample(&scene, [u[0], u[1]]);
+        let (shape, p) = (at.shape, at.point);
         let s = &hidden.surfaces[hidden.of_shape[shape as usize].unwrap()];
         let row = ((p.uv[1] * s.count[1] as f64) as usize).min(s.count[1] - 1);
         let back = [
@@ -127,4 +137,66 @@ fn edges_on_dyadic_lines_are_told_from_others() {
     assert_eq!(digits(&[0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0]), Some(2));
     assert_eq!(digits(&[3.0, 5.0]), Some(3));
     assert_eq!(digits(&[1.0, 1.0, 1.0]), None);
+}
+
+/// A point that a ray finds has the density with which the sampler drew it, on meshes too, and
+/// Σ 1/density over the points of a shape estimates its area, within four standard errors.
+#[test]
+fn a_guided_sampler_knows_its_density() {
+    let scene = Scene::load("shelf").unwrap();
+    let seen: Vec<_> = (0..scene.camera.pixels())
+        .filter_map(|p| first_vertex(&scene, p, [0.5; 2]))
+        .collect();
+    let beams = Beams::new(&scene);
+    let lit: Vec<_> = (0..scene.laser.spots.len())
+        .filter_map(|l| beams.point(l, [0.5; 2]))
+        .collect();
+    let importance = Importance::new(&scene, &seen, &lit);
+    let shapes: Vec<ShapeId> = (1..scene.surfaces.len() as ShapeId).collect();
+    let sampler = AreaSampler::guided(&scene, &shapes, &importance);
+    let key = Key {
+        seed: 5,
+        spot: 0,
+        pixel: 0,
+        block: 0,
+    };
+    let mut stream = Stream::new(Sampling::Pcg, key);
+    let n = 200_000;
+    let mut sums = vec![[0.0; 2]; scene.surfaces.len()];
+    let mut apart = 0;
+    for _ in 0..n {
+        let [u, v, ..] = stream.next_four();
+        let (drawn, density) = sampler.sample(&scene, [u, v]);
+        assert_eq!(sampler.density(&drawn), density);
+        let (p, normal) = drawn.oriented();
+        let ray = Ray::new(p + normal * 1e-3, -normal);
+        if let Some(hit) = scene.bvh().closest(&ray, None) {
+            let found = SurfacePoint::hit(&scene, &ray, hit);
+            let same = found.shape == drawn.shape && sampler.density(&found) == density;
+            apart += u32::from(!same);
+        }
+        let [sum, square] = &mut sums[drawn.shape as usize];
+        *sum += 1.0 / density;
+        *square += 1.0 / (density * density);
+    }
+    // Rounding moves points at the edge of a cell over it.
+    assert!(apart < n / 10_000, "{apart} of {n} points");
+    for shape in shapes {
+        let surface = &scene.surfaces[shape as usize];
+        // Half of the board is dark.
+        let light = if surface.role == Role::Hidden {
+            0.5
+        } else {
+            1.0
+        };
+        let [sum, square] = sums[shape as usize];
+        let (mean, samples) = (sum / f64::from(n), f64::from(n));
+        let stderr = ((square / samples - mean * mean) / samples).sqrt();
+        let area = light * surface.shape.area();
+        assert!(
+            (mean - area).abs() < 4.0 * stderr,
+            "{}: {mean} ± {stderr}, area {area}",
+            surface.name
+        );
+    }
 }

@@ -36,8 +36,9 @@ impl Reciprocity {
                 stderr: &stderr,
                 model: b,
                 bound: Some(bound),
+                left_out: None,
             };
-            agree(evidence, test).0
+            agree(evidence, test, None).0
         };
         let k = |d: &Direction| [&d.traced.flux, &d.traced.stderr].map(|m| d.transport(m));
         let [a, a_error] = k(there);

@@ -9,7 +9,7 @@ use super::layout::{self, BOARDS, ELEMENTS, HALF_WIDTHS, PIXELS, View, board, sc
 use super::modelled::contrast_error;
 use super::system::System;
 use crate::lab::LabError;
-use crate::lab::{Errors, Integration, Test, validate};
+use crate::lab::{Against, Errors, Integration, Measured, Occlusion, Test, validate};
 use crate::matrix::Matrix;
 use crate::metrics::{mtf_raw, rmse};
 use crate::model::Kernel;
@@ -101,10 +101,16 @@ fn one(
             };
             let verdict = validate(
                 &view.photograph(scene, spot)?,
-                &column.flux,
-                &column.stderr,
-                Kernel::Physical,
-                Integration::Quadrature,
+                Measured {
+                    phi: &column.flux,
+                    stderr: &column.stderr,
+                    left_out: None,
+                },
+                Against {
+                    kernel: Kernel::Physical,
+                    integration: Integration::Quadrature,
+                    occlusion: Occlusion::Ignored,
+                },
                 test,
             )?;
             agreeing[0] += usize::from(verdict.agreement.agrees);

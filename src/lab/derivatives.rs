@@ -1,0 +1,178 @@
+//! What may be off in a scene, and what each deviation does to the model: derivatives by central
+//! differences of the quadrature.
+
+use super::misplaced::{ALL, Misplaced, Size, hinge};
+use super::score::Parameter;
+use crate::geometry::DVec3;
+use crate::matrix::Matrix;
+use crate::model::{Kernel, Nodes, integrated};
+use crate::scene::Scene;
+
+/// The scale of all light, the albedos, and everything that the tolerance study misplaces.
+pub(super) struct SceneDerivatives<'a> {
+    scene: &'a Scene,
+    kernel: Kernel,
+    nodes: Nodes,
+    /// Modelled Φcam, W, and what of it is visible: 1 where nothing is known to stand in the way.
+    phi: &'a Matrix,
+    visible: Option<&'a Matrix>,
+    step: f64,
+    kinds: Vec<Kind>,
+    /// By index as for [`Self::of`].
+    pub(super) parameters: Vec<Parameter>,
+}
+
+/// How a derivative is taken.
+#[derive(Clone, Copy)]
+enum Kind {
+    /// Φ itself.
+    Scale,
+    /// The albedo of a surface.
+    Albedo(usize),
+    Misplaced(&'static Misplaced),
+}
+
+/// Relative change of an albedo, or of the view's size, percent.
+const PERCENT: f64 = 0.1;
+/// Step of a length over the shortest distance between wall and hidden surfaces, and at most over
+/// that between their middles: the rest of a central difference is of its square, 1e-4.
+const OF_NEAREST: f64 = 0.01;
+const OF_MIDDLE: f64 = 1e-3;
+/// 1 − cos² of the angle between two derivatives below which no light tells them apart.
+const PARALLEL: f64 = 1e-6;
+
+impl<'a> SceneDerivatives<'a> {
+    /// Those of the model of `scene`, which is `phi`; albedos that act on every entry alike are
+    /// counted to the scale. `visible` is the share of each entry that is not hidden; derivatives
+    /// then are those of the model without occlusion times this share.
+    pub(super) fn new(
+        scene: &'a Scene,
+        kernel: Kernel,
+        nodes: Nodes,
+        phi: &'a Matrix,
+        visible: Option<&'a Matrix>,
+    ) -> Self {
+        let scale = Parameter {
+            name: "overall scale".to_owned(),
+            unit: "%".to_owned(),
+            same: vec![
+                ("laser power".to_owned(), 1.0),
+                ("aperture".to_owned(), 1.0),
+            ],
+            each_spot: None,
+        };
+        let mut found = Self {
+            scene,
+            kernel,
+            nodes,
+            phi,
+            visible,
+            step: step(scene),
+            kinds: vec![Kind::Scale],
+            parameters: vec![scale],
+        };
+        let reflecting = scene.relays().chain(scene.hidden());
+        for (index, surface) in reflecting.filter(|(_, s)| s.is_lambertian()) {
+            let name = format!("albedo of `{}`", surface.name);
+            let kind = Kind::Albedo(index);
+            match found.derivative(kind).and_then(|d| factor(&d, phi)) {
+                Some(factor) => found.parameters[0].same.push((name, 1.0 / factor)),
+                None => found.add(kind, name, "%", None),
+            }
+        }
+        for what in ALL.iter().filter(|what| what.size != Size::Random) {
+            let each = what.each_spot.filter(|_| scene.laser.spots.len() > 1);
+            let unit = what.size.unit(scene);
+            found.add(Kind::Misplaced(what), what.name.to_owned(), unit, each);
+        }
+        found
+    }
+
+    fn add(&mut self, kind: Kind, name: String, unit: &str, each_spot: Option<&str>) {
+        self.kinds.push(kind);
+        self.parameters.push(Parameter {
+            name,
+            unit: unit.to_owned(),
+            same: Vec::new(),
+            each_spot: each_spot.map(str::to_owned),
+        });
+    }
+
+    /// ∂Φ/∂θ, W per unit.
+    pub(super) fn of(&self, index: usize) -> Option<Matrix> {
+        self.derivative(self.kinds[index])
+    }
+
+    fn derivative(&self, kind: Kind) -> Option<Matrix> {
+        let model = |scene: Scene| integrated(&scene, self.kernel, self.nodes).ok();
+        let free = match kind {
+            Kind::Scale => return Some(self.phi * 0.01),
+            Kind::Albedo(index) => {
+                let at = |sign: f64| {
+                    model(
+                        self.scene
+                            .with_scaled_albedo(index, 1.0 + sign * 0.01 * PERCENT),
+                    )
+                };
+                (at(1.0)? - at(-1.0)?) / (2.0 * PERCENT)
+            }
+            Kind::Misplaced(what) => {
+                let step = match what.size {
+                    Size::Percent => PERCENT,
+                    Size::Angle => (self.step / lever(self.scene)).to_degrees(),
+                    Size::Length | Size::Random | Size::Positive => self.step,
+                };
+                let at = |size: f64| model((what.apply)(self.scene, size)?);
+                let here = || integrated(self.scene, self.kernel, self.nodes).ok();
+                match (what.size, at(step), at(-step)) {
+                    (Size::Positive, Some(one), _) => (at(2.0 * step)? - one) / step,
+                    (_, Some(more), Some(less)) => (more - less) / (2.0 * step),
+                    // At the edge of what the scene allows, from one side.
+                    (_, Some(more), None) => (more - here()?) / step,
+                    (_, None, Some(less)) => (here()? - less) / step,
+                    (_, None, None) => return None,
+                }
+            }
+        };
+        Some(match self.visible {
+            None => free,
+            Some(share) => free.component_mul(share),
+        })
+    }
+}
+
+/// How many times `phi`/100 a derivative is, if it is that.
+fn factor(d: &Matrix, phi: &Matrix) -> Option<f64> {
+    let (dot, own, square) = (d.dot(phi), d.norm_squared(), phi.norm_squared());
+    let parallel = own > 0.0 && square > 0.0 && 1.0 - dot * dot / (own * square) < PARALLEL;
+    parallel.then(|| 100.0 * dot / square)
+}
+
+/// Step of a length.
+fn step(scene: &Scene) -> f64 {
+    let spots = scene.laser.spots.iter().map(|s| s.target.position);
+    let view = scene.camera.view.corners();
+    let mut nearest = f64::INFINITY;
+    let mut middle = f64::INFINITY;
+    for wall in spots.chain(view) {
+        for (_, surface) in scene.hidden() {
+            let apart = |at: DVec3| (wall - at).length();
+            nearest = nearest.min(apart(surface.shape.at_position(wall).position));
+            middle = middle.min(apart(surface.shape.at([0.5; 2]).position));
+        }
+    }
+    let fine = 1e-6 * middle;
+    (OF_NEAREST * nearest).clamp(fine, OF_MIDDLE * middle)
+}
+
+/// Distance of the hidden surface's middle from the hinge; from its rim where there is none.
+fn lever(scene: &Scene) -> f64 {
+    let Some((_, surface)) = scene.hidden().next() else {
+        return 1.0;
+    };
+    let middle = surface.shape.at([0.5; 2]).position;
+    match hinge(scene) {
+        Some((point, axis)) => (middle - point).cross(axis).length(),
+        None => 0.5 * surface.shape.area().sqrt(),
+    }
+}

@@ -1,0 +1,79 @@
+//! What a model is tested with, and how.
+
+use crate::matrix::Matrix;
+use crate::transport::Estimator;
+
+/// How the errors of traced entries hang together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Errors {
+    /// Every entry has its own random numbers.
+    Independent,
+    /// Entries of one pixel share theirs: only different rows are independent.
+    WithinRows,
+    /// All entries share theirs.
+    Everywhere,
+}
+
+impl Errors {
+    /// Those of an estimator.
+    pub fn of(estimator: Estimator) -> Self {
+        match estimator {
+            Estimator::Independent => Self::Independent,
+            Estimator::Shared => Self::WithinRows,
+            Estimator::Factored => Self::Everywhere,
+        }
+    }
+}
+
+/// What is compared.
+#[derive(Clone, Copy, Debug)]
+pub struct Evidence<'a> {
+    /// Traced Φcam, pixels × spots, W.
+    pub traced: &'a Matrix,
+    /// Standard error of each traced entry, W.
+    pub stderr: &'a Matrix,
+    /// Modelled Φcam, W.
+    pub model: &'a Matrix,
+    /// What the model may be off by in each entry, W ≥ 0; absent for a converged model.
+    pub bound: Option<&'a Matrix>,
+    /// Not 0 where an entry's error is not to be trusted: it is left out; absent if all are.
+    pub left_out: Option<&'a Matrix>,
+}
+
+impl Evidence<'_> {
+    /// Whether an entry counts.
+    pub(super) fn counts(&self, at: usize) -> bool {
+        self.left_out.is_none_or(|flags| flags[at] == 0.0)
+    }
+
+    /// What the model may be off by, W.
+    pub(super) fn bound(&self, at: usize) -> f64 {
+        self.bound.map_or(0.0, |b| b[at])
+    }
+
+    /// Rounding of the difference, W.
+    pub(super) fn rounding(&self, at: usize) -> f64 {
+        ROUNDING * (self.traced[at].abs() + self.model[at].abs())
+    }
+}
+
+/// Two sums of positive doubles cannot be told apart more finely than this.
+const ROUNDING: f64 = 1e-14;
+
+/// How it is tested.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Test {
+    /// Probability of rejecting a right model.
+    pub significance: f64,
+    /// Replicates from which each standard error was estimated.
+    pub replicates: u32,
+    /// How the errors hang together.
+    pub errors: Errors,
+}
+
+impl Test {
+    /// Degrees of freedom of each standard error.
+    pub(super) fn freedom(&self) -> f64 {
+        f64::from(self.replicates.max(2) - 1)
+    }
+}

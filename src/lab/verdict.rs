@@ -1,0 +1,277 @@
+//! A verdict in words and tables.
+
+use super::agreement::{Agreement, Entry, EntryBound};
+use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone, listed};
+use super::score::{Deviation, Score};
+use super::summary::facts;
+use crate::num::digits::{figure, significant};
+
+fn percent(x: f64) -> String {
+    format!("{}\u{a0}%", figure(100.0 * x, 3))
+}
+
+/// Causes that are named beside the most likely one.
+const NAMED: usize = 3;
+
+impl Agreement {
+    /// The verdict with its numbers; `DISAGREE` in capitals where a test fails.
+    pub fn verdict(&self) -> String {
+        let left_out = if self.left_out > 0 {
+            let all = self.entries + self.left_out;
+            format!(
+                "; {} of {all} entries left out, their error not being trusted",
+                self.left_out
+            )
+        } else {
+            String::new()
+        };
+        if !self.evidence {
+            return format!(
+                "no evidence on the {} model: no entry that counts is lit, traced or modelled{left_out} \
+                 (check laser, spots and view with `phicam scene show`, or render with more samples)",
+                self.kernel
+            );
+        }
+        format!(
+            "traced and {} model {}: χ²/dof {} over {} entries, largest |z| {} of {} allowed{left_out}",
+            self.kernel,
+            if self.agrees { "agree" } else { "DISAGREE" },
+            significant(self.chi2_per_dof, 4),
+            self.entries,
+            significant(self.largest_z, 2),
+            significant(self.z_limit, 2),
+        )
+    }
+
+    pub(super) fn tone(&self) -> Tone {
+        match (self.evidence, self.agrees) {
+            (false, _) => Tone::Plain,
+            (_, true) => Tone::Good,
+            (_, false) => Tone::Bad,
+        }
+    }
+
+    /// How far off, by what causes, the test, and what it could not have seen.
+    pub(super) fn facts(&self) -> Vec<(&'static str, String)> {
+        let bound = |b: EntryBound| {
+            format!(
+                ", {} in pixel {}, spot {}",
+                percent(b.relative),
+                b.pixel,
+                b.spot
+            )
+        };
+        let difference = format!(
+            "{} of the model; {} expected from noise, at most {} from its discretisation{}; best scale {} ± {}",
+            percent(self.relative_difference),
+            percent(self.relative_noise),
+            percent(self.relative_discretisation),
+            self.worst_bound.map_or(String::new(), bound),
+            figure(self.best_scale, 6),
+            figure(self.best_scale_stderr, 2),
+        );
+        let occlusion = self.occlusion.map_or(String::new(), |points| {
+            format!(", occlusion by {points} points (what is smaller is not seen)")
+        });
+        let test = format!(
+            "{} model, {}{occlusion}; significance {}, P(χ²) {}, P(|z|) {}",
+            self.kernel,
+            self.integration,
+            figure(self.significance, 2),
+            figure(self.chi2_p, 2),
+            figure(self.largest_p, 2)
+        );
+        let mut told = vec![("difference", difference), ("test", test)];
+        if !self.agrees {
+            let largest = |all: &[Option<f64>]| {
+                let known = all.iter().enumerate().filter_map(|(i, x)| Some((i, (*x)?)));
+                known.reduce(|a, b| if b.1 > a.1 { b } else { a })
+            };
+            if let (Some((p, by_pixel)), Some((l, by_spot))) =
+                (largest(&self.pixels), largest(&self.spots))
+            {
+                let [a, b] = [by_pixel, by_spot].map(|x| significant(x, 3));
+                told.push((
+                    "worst",
+                    format!("pixel {p}, χ²/dof {a}; spot {l}, χ²/dof {b}"),
+                ));
+            }
+        }
+        if let Some(score) = &self.score {
+            if !self.agrees {
+                told.push(("most likely", score.cause()));
+            }
+            told.push(("detects", score.reach()));
+        }
+        told
+    }
+
+    /// The entries with the largest |z|.
+    pub fn worst_entries(&self) -> Table {
+        let row = |e: &Entry| {
+            let numbers = [e.traced, e.modelled, e.z].map(Cell::from);
+            [e.pixel, e.spot]
+                .map(Cell::from)
+                .into_iter()
+                .chain(numbers)
+                .collect()
+        };
+        Table {
+            caption: "The worst entries".to_owned(),
+            columns: vec![
+                Column::text("pixel", ""),
+                Column::text("spot", ""),
+                Column::number("traced", "", "W", 6),
+                Column::number("modelled", "", "W", 6),
+                Column::number("z", "", "", 4),
+            ],
+            rows: self.worst.iter().map(row).collect(),
+            ..Table::default()
+        }
+    }
+
+    /// Every parameter of the scene fitted alone, for the page; none where none was.
+    pub fn parameters(&self) -> Option<Table> {
+        let score = self.score.as_ref()?;
+        let loudest = score
+            .spots
+            .iter()
+            .reduce(|a, b| if b.z.abs() > a.z.abs() { b } else { a });
+        let fitted = |d: &Deviation| Cell::Estimate {
+            value: d.value,
+            stderr: Some(d.stderr),
+        };
+        let row = |d: &Deviation| {
+            vec![
+                d.label().into(),
+                fitted(d),
+                d.unit.as_str().into(),
+                d.z.into(),
+                d.chi2_per_dof.into(),
+                d.detectable.into(),
+            ]
+        };
+        let table = Table {
+            caption: "Each parameter of the scene fitted alone".to_owned(),
+            place: Place::Page,
+            columns: vec![
+                Column::text("parameter", ""),
+                Column::estimate("light less model", "", "", 3),
+                Column::text("unit", ""),
+                Column::number("z", "", "", 3),
+                Column::number("χ²/dof with it fitted", "", "", 4),
+                Column::number("rejected 95 times in 100 from", "", "", 2),
+            ],
+            rows: score.deviations.iter().chain(loudest).map(row).collect(),
+            ..Table::default()
+        };
+        let [limit, of_spots] = score.limits.map(|z| significant(z, 3));
+        Some(table.noted(format!(
+            "|z| up to {limit} is chance for the scene's parameters, {of_spots} for those of single spots, of which the loudest is listed."
+        )))
+    }
+}
+
+impl Describe for Agreement {
+    /// The verdict, what it rests on, and where it fails the worst entries by name.
+    fn describe(&self) -> Finding {
+        let worst = (self.evidence && !self.agrees).then(|| self.worst_entries());
+        Finding {
+            title: "Traced against modelled".to_owned(),
+            tone: self.tone(),
+            sentence: self.verdict(),
+            tables: std::iter::once(facts(self.facts()))
+                .chain(worst)
+                .chain(self.parameters())
+                .collect(),
+            ..Finding::default()
+        }
+    }
+}
+
+impl Score {
+    /// The most likely cause, and what explains the difference as well.
+    fn cause(&self) -> String {
+        let Some((first, rest)) = self.likely.split_first() else {
+            return "no single parameter of the scene explains it".to_owned();
+        };
+        let same: Vec<String> = first
+            .same
+            .iter()
+            .map(|(name, factor)| {
+                format!("{name} {}", signed(first.value * factor, 3, &first.unit))
+            })
+            .collect();
+        let same = if same.is_empty() {
+            String::new()
+        } else {
+            format!(" (or {})", same.join(", "))
+        };
+        let as_good = if rest.is_empty() {
+            String::new()
+        } else {
+            let named: Vec<String> = rest.iter().take(NAMED).map(Deviation::fitted).collect();
+            let more = match rest.len().saturating_sub(NAMED) {
+                0 => String::new(),
+                n => format!(" and {n} more"),
+            };
+            format!("; not told from {}{more}", named.join(", "))
+        };
+        format!(
+            "{}{same}{as_good}; χ²/dof {} with it fitted",
+            first.fitted(),
+            significant(first.chi2_per_dof, 4)
+        )
+    }
+
+    /// From which size deviations are seen.
+    fn reach(&self) -> String {
+        let told =
+            |d: &Deviation| format!("{} {}\u{a0}{}", d.name, figure(d.detectable, 2), d.unit);
+        let wanted = [
+            "overall scale",
+            "hinge angle",
+            "S2 along its normal",
+            "all spots, x",
+            "view, x",
+        ];
+        let of_scene = self
+            .deviations
+            .iter()
+            .filter(|d| wanted.contains(&d.name.as_str()));
+        let least_seen = self
+            .spots
+            .iter()
+            .reduce(|a, b| if b.detectable > a.detectable { b } else { a });
+        let all: Vec<String> = of_scene.chain(least_seen).map(told).collect();
+        format!("95 times in 100 from: {}", listed(&all))
+    }
+}
+
+impl Deviation {
+    /// Its name, with its spot.
+    fn label(&self) -> String {
+        match self.spot {
+            None => self.name.clone(),
+            Some(l) => format!("{} (spot {l})", self.name),
+        }
+    }
+
+    /// Name, value and error.
+    fn fitted(&self) -> String {
+        format!(
+            "{} {} ± {}\u{a0}{}",
+            self.label(),
+            signed(self.value, 3, ""),
+            figure(self.stderr, 2),
+            self.unit
+        )
+    }
+}
+
+/// A number with its sign and unit.
+fn signed(x: f64, digits: usize, unit: &str) -> String {
+    let sign = if x < 0.0 { "−" } else { "+" };
+    let space = if unit.is_empty() { "" } else { "\u{a0}" };
+    format!("{sign}{}{space}{unit}", figure(x.abs(), digits))
+}

@@ -1,0 +1,418 @@
+//! Hidden surfaces and footprints cut into parts that are far apart for their size.
+//!
+//! The integrand goes like 1/R⁴ of the distance R between a wall point and a hidden point. A
+//! product rule of n nodes a side on a part of radius r converges like ρ^(−2n), ρ = y + √(1 + y²),
+//! y the distance in units of r: parts that light or sight come closer to than their own diameter
+//! are cut in four until none is left, ever smaller towards the near end; and the farther a part
+//! is for its size, the fewer nodes it gets.
+
+use std::borrow::Cow;
+
+use super::kernel::HiddenPoint;
+use crate::geometry::{DVec3, Instance, Shape, ShapeId};
+use crate::num::quadrature::Rule;
+use crate::scene::{Division, Element, Scene, Surface};
+
+/// Distance from the middle of a part to what it is far from, in radii of the part.
+const FAR: f64 = 2.0;
+/// Cuts of one cell of a texture, and of one footprint.
+const MOST_CUTS: u32 = 40;
+const MOST_FOOTPRINT_CUTS: u32 = 5;
+/// Parts that cutting may add to all hidden surfaces together, and to one footprint.
+const MOST_ADDED: usize = 6_000;
+const MOST_FOOTPRINT_PARTS: usize = 64;
+/// Connections between wall points and hidden points beyond which no finer rule is tried.
+pub(super) const MOST_CONNECTIONS: f64 = 2e8;
+
+/// Nodes a side of a part that is [`FAR`] by level of refinement, and the last level.
+const NODES: [f64; 8] = [2.0, 4.0, 7.0, 10.0, 14.0, 19.0, 26.0, 34.0];
+pub(super) const LAST_LEVEL: usize = NODES.len() - 1;
+
+/// Nodes a side at `level` of a part whose middle is `distance` of its radii away, so that parts
+/// far and near converge alike: n ∝ 1/ln ρ. Each level has more than the one before.
+fn nodes_a_side(distance: f64, level: usize) -> usize {
+    let rate = |y: f64| libm::log(y + libm::hypot(1.0, y));
+    let share = rate(FAR) / rate(distance.clamp(0.6 * FAR, 1e9));
+    let needed = |level: usize| ((NODES[level] * share).ceil() as usize).max(1);
+    (0..=level)
+        .map(|l| needed(l) + level - l)
+        .max()
+        .unwrap_or(1)
+}
+
+/// A ball of the wall that is lit or seen as one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ball {
+    pub middle: DVec3,
+    pub radius: f64,
+}
+
+/// Balls, and the box around them.
+struct Balls<'a> {
+    all: &'a [Ball],
+    low: DVec3,
+    high: DVec3,
+}
+
+impl<'a> Balls<'a> {
+    fn new(all: &'a [Ball]) -> Self {
+        let corner = |sign: f64| {
+            all.iter()
+                .map(move |b| b.middle + DVec3::splat(sign * b.radius))
+        };
+        Self {
+            all,
+            low: corner(-1.0).fold(DVec3::INFINITY, DVec3::min),
+            high: corner(1.0).fold(DVec3::NEG_INFINITY, DVec3::max),
+        }
+    }
+
+    /// Distance from a part of this middle and radius to the nearest of them that is not larger
+    /// than twice the part (that one is cut itself), in radii of the part; at least so much where
+    /// that is far enough.
+    fn distance(&self, middle: DVec3, radius: f64) -> f64 {
+        let rough = (middle - middle.clamp(self.low, self.high)).length() / radius;
+        if rough >= 2.0 * FAR {
+            return rough;
+        }
+        let small = self.all.iter().filter(|b| 0.5 * b.radius < radius);
+        let apart = small.map(|b| ((middle - b.middle).length() - b.radius) / radius);
+        apart.fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// The hidden surfaces of a scene, Lambertian, in parts.
+pub(super) struct HiddenParts<'a> {
+    surfaces: Vec<Cow<'a, Surface>>,
+    /// Which surfaces of the scene they are.
+    ids: Vec<ShapeId>,
+    /// Surface and place of each part, and its distance in radii.
+    parts: Vec<(usize, Place, f64)>,
+    /// Surfaces with too many cells, and into how many elements a side they are divided instead at
+    /// level 0: each with its mean albedo, and a node in its middle.
+    coarse: Vec<usize>,
+    coarse_side: usize,
+}
+
+/// A node on a hidden surface.
+pub(super) struct HiddenNode {
+    pub point: HiddenPoint,
+    /// Its share of the area · albedo/π, length².
+    pub weight: f64,
+    pub surface: ShapeId,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    /// \[u, u + width\] × \[v, v + height\] of the surface's equal-area parameters.
+    Cell { from: [f64; 2], size: [f64; 2] },
+    /// A triangle within triangle `id` of a mesh.
+    Triangle { id: u32, corners: [DVec3; 3] },
+}
+
+impl<'a> HiddenParts<'a> {
+    /// The cells of the textures and the triangles of the meshes, cut where `near` is near.
+    pub(super) fn new(scene: &'a Scene, near: &[Ball]) -> Self {
+        let hidden = scene.hidden();
+        let walls = 4.0 * near.len() as f64;
+        let mut found = Self {
+            ids: scene.hidden().map(|(id, _)| id as ShapeId).collect(),
+            surfaces: hidden.map(|(_, s)| s.lambertian_equivalent()).collect(),
+            parts: Vec::new(),
+            coarse: Vec::new(),
+            coarse_side: ((0.25 * MOST_CONNECTIONS / walls).sqrt() as usize).clamp(8, 256),
+        };
+        // Four nodes a part and as many a footprint, at level 1, must be few enough.
+        let most = (0.25 * MOST_CONNECTIONS / walls) as usize;
+        let mut whole = Vec::new();
+        for (index, surface) in found.surfaces.iter().enumerate() {
+            match &surface.shape {
+                _ if surface.division == Division::Cells && cells(surface) > most => {
+                    found.coarse.push(index);
+                }
+                Shape::Instance(body) => {
+                    let ids = 0..body.mesh().triangles().len() as u32;
+                    whole.extend(ids.filter(|t| body.triangle_area(*t) > 0.0).map(|id| {
+                        let corners = body.corners(id);
+                        (index, Place::Triangle { id, corners })
+                    }));
+                }
+                _ => {
+                    let [nu, nv] = surface.albedo.smooth_cells();
+                    let size = [1.0 / nu as f64, 1.0 / nv as f64];
+                    whole.extend((0..nu * nv).map(|cell| {
+                        let from = [(cell % nu) as f64 * size[0], (cell / nu) as f64 * size[1]];
+                        (index, Place::Cell { from, size })
+                    }));
+                }
+            }
+        }
+        // Generation by generation, so that what is too much is left out at the finest.
+        let near = Balls::new(near);
+        let mut room = MOST_ADDED;
+        for generation in 0..=MOST_CUTS {
+            let mut next = Vec::new();
+            for (index, place) in whole {
+                let (middle, radius) = place.ball(&found.surfaces[index]);
+                let distance = near.distance(middle, radius);
+                if distance < FAR && room >= 3 && generation < MOST_CUTS {
+                    room -= 3;
+                    next.extend(place.quarters().map(|quarter| (index, quarter)));
+                } else {
+                    found.parts.push((index, place, distance));
+                }
+            }
+            whole = next;
+        }
+        found
+    }
+
+    /// The same, each part in four.
+    pub(super) fn quartered(self) -> Self {
+        let parts = self.parts.iter();
+        let quarters = parts.flat_map(|(index, place, distance)| {
+            place
+                .quarters()
+                .map(|quarter| (*index, quarter, 2.0 * distance))
+        });
+        Self {
+            parts: quarters.collect(),
+            coarse_side: 2 * self.coarse_side,
+            ..self
+        }
+    }
+
+    /// Number of nodes at `level`.
+    pub(super) fn count(&self, level: usize) -> usize {
+        let parts = self.parts.iter();
+        parts
+            .map(|(.., y)| nodes_a_side(*y, level).pow(2))
+            .sum::<usize>()
+            + self.coarse.len() * (self.coarse_side << level).pow(2)
+    }
+
+    /// Nodes of a rule over all of it: n × n a part, a triangle's folded onto it from the square
+    /// by (u, v) → (1 − u, u·(1 − v), u·v), whose area element is twice the triangle's area times u;
+    /// with one node its centroid.
+    pub(super) fn nodes(&self, level: usize) -> Vec<HiddenNode> {
+        let mut found = Vec::with_capacity(self.count(level));
+        let mut rules: Vec<Option<Vec<_>>> = Vec::new();
+        let mut add = |index: usize, element: &Element| {
+            if element.albedo > 0.0 && element.area > 0.0 {
+                found.push(HiddenNode {
+                    point: HiddenPoint::from(element),
+                    weight: element.area * element.albedo * std::f64::consts::FRAC_1_PI,
+                    surface: self.ids[index],
+                });
+            }
+        };
+        for (index, place, distance) in &self.parts {
+            let surface = &*self.surfaces[*index];
+            let n = nodes_a_side(*distance, level);
+            if rules.len() <= n {
+                rules.resize(n + 1, None);
+            }
+            let square = &*rules[n].get_or_insert_with(|| plane_nodes(n).collect());
+            match (place, &surface.shape) {
+                (Place::Triangle { id, corners }, Shape::Instance(body)) => {
+                    for (weights, share) in folded(n, square) {
+                        add(
+                            *index,
+                            &on_triangle(surface, body, *id, corners, weights, share),
+                        );
+                    }
+                }
+                (Place::Triangle { .. }, _) => {}
+                (Place::Cell { from, size }, shape) => {
+                    let area = shape.area() * size[0] * size[1];
+                    for ([a, b], w) in square {
+                        let uv = [from[0] + a * size[0], from[1] + b * size[1]];
+                        let point = surface.element_at(uv);
+                        add(
+                            *index,
+                            &Element {
+                                area: w * area,
+                                ..point
+                            },
+                        );
+                    }
+                }
+            }
+        }
+        for index in &self.coarse {
+            let surface = &self.surfaces[*index];
+            let elements = surface.divided([self.coarse_side << level; 2]);
+            elements.iter().for_each(|e| add(*index, e));
+        }
+        found
+    }
+}
+
+impl Place {
+    /// Its middle and the largest distance from there to its rim.
+    fn ball(&self, surface: &Surface) -> (DVec3, f64) {
+        let furthest = |middle: DVec3, rim: &[DVec3]| {
+            let far = rim.iter().map(|p| (*p - middle).length());
+            (middle, far.fold(0.0, f64::max))
+        };
+        match self {
+            Self::Triangle {
+                corners: [a, b, c], ..
+            } => furthest((*a + *b + *c) / 3.0, &[*a, *b, *c]),
+            Self::Cell { from, size } => {
+                let at = |[a, b]: [f64; 2]| {
+                    let uv = [from[0] + a * size[0], from[1] + b * size[1]];
+                    surface.shape.at(uv).position
+                };
+                let rim = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(at);
+                let sides = [[0.5, 0.0], [1.0, 0.5], [0.5, 1.0], [0.0, 0.5]].map(at);
+                furthest(at([0.5; 2]), &[rim, sides].concat())
+            }
+        }
+    }
+
+    fn quarters(&self) -> [Self; 4] {
+        match *self {
+            Self::Cell {
+                from: [u, v],
+                size: [w, h],
+            } => {
+                let size = [0.5 * w, 0.5 * h];
+                [
+                    [u, v],
+                    [u + size[0], v],
+                    [u, v + size[1]],
+                    [u + size[0], v + size[1]],
+                ]
+                .map(|from| Self::Cell { from, size })
+            }
+            Self::Triangle {
+                id,
+                corners: [a, b, c],
+            } => {
+                let [p, q, r] = [(a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5];
+                [[a, p, r], [p, b, q], [r, q, c], [p, q, r]]
+                    .map(|corners| Self::Triangle { id, corners })
+            }
+        }
+    }
+}
+
+/// A part of a footprint: corner and side in its coordinates, the ball around what is seen there,
+/// and its distance from the hidden surfaces in radii.
+pub(super) struct FootprintPart {
+    pub from: [f64; 2],
+    pub side: f64,
+    pub ball: Ball,
+    distance: f64,
+}
+
+impl FootprintPart {
+    /// All of a footprint by its middle.
+    pub(super) fn centre(scene: &Scene, pixel: usize) -> Self {
+        let middle = scene.camera.footprint(pixel).at([0.5; 2]);
+        Self {
+            from: [0.0; 2],
+            side: 1.0,
+            ball: Ball {
+                middle,
+                radius: 0.0,
+            },
+            distance: f64::INFINITY,
+        }
+    }
+
+    /// Coordinates in the footprint with shares of it.
+    pub(super) fn nodes(&self, level: usize) -> impl Iterator<Item = ([f64; 2], f64)> {
+        // The étendue varies over it too, and so may the wall's BRDF.
+        let n = match self.ball.radius {
+            0.0 => 1,
+            _ => nodes_a_side(self.distance, level).max(level + 1),
+        };
+        let ([u, v], side) = (self.from, self.side);
+        plane_nodes(n).map(move |([a, b], w)| ([u + side * a, v + side * b], w * side * side))
+    }
+}
+
+/// Parts of a footprint, far for their size from every hidden surface.
+pub(super) fn footprint_parts(scene: &Scene, pixel: usize) -> Vec<FootprintPart> {
+    let footprint = scene.camera.footprint(pixel);
+    let part = |from @ [a, b]: [f64; 2], side: f64| {
+        let middle = footprint.at([a + 0.5 * side, b + 0.5 * side]);
+        let radius = 0.5 * side * (footprint.u.length() + footprint.v.length());
+        let from_surface = |(_, surface): (usize, &Surface)| {
+            (surface.shape.at_position(middle).position - middle).length() / radius
+        };
+        FootprintPart {
+            from,
+            side,
+            ball: Ball { middle, radius },
+            distance: scene
+                .hidden()
+                .map(from_surface)
+                .fold(f64::INFINITY, f64::min),
+        }
+    };
+    let (mut done, mut open) = (Vec::new(), vec![part([0.0; 2], 1.0)]);
+    for cuts in 0..=MOST_FOOTPRINT_CUTS {
+        let mut next = Vec::new();
+        for own in open {
+            let full = done.len() + next.len() + 4 > MOST_FOOTPRINT_PARTS;
+            if cuts == MOST_FOOTPRINT_CUTS || full || own.distance >= FAR {
+                done.push(own);
+            } else {
+                let ([a, b], half) = (own.from, 0.5 * own.side);
+                let corners = [[a, b], [a + half, b], [a, b + half], [a + half, b + half]];
+                next.extend(corners.map(|from| part(from, half)));
+            }
+        }
+        open = next;
+    }
+    done
+}
+
+fn on_triangle(
+    surface: &Surface,
+    body: &Instance,
+    id: u32,
+    [a, b, c]: &[DVec3; 3],
+    [x, y, z]: [f64; 3],
+    share: f64,
+) -> Element {
+    let point = body.on_triangle(id, *a * x + *b * y + *c * z);
+    let area = 0.5 * (*b - *a).cross(*c - *a).length();
+    Element {
+        position: point.position,
+        normal: point.normal,
+        area: area * share,
+        u_axis: DVec3::X,
+        albedo: surface.albedo.albedo(point.uv),
+    }
+}
+
+/// Barycentric nodes of a triangle with their shares of its area.
+fn folded(n: usize, square: &[([f64; 2], f64)]) -> Vec<([f64; 3], f64)> {
+    if n == 1 {
+        return vec![([1.0 / 3.0; 3], 1.0)];
+    }
+    let fold = |([u, v], w): &([f64; 2], f64)| ([1.0 - u, u * (1.0 - v), u * v], 2.0 * u * w);
+    square.iter().map(fold).collect()
+}
+
+/// Cells of a hidden surface within which it is smooth: of its texture, or the triangles.
+fn cells(surface: &Surface) -> usize {
+    match &surface.shape {
+        Shape::Instance(body) => body.mesh().triangles().len(),
+        _ => surface.albedo.smooth_cells().iter().product(),
+    }
+}
+
+/// Product rule on the unit square; the weights add up to 1.
+fn plane_nodes(n: usize) -> impl Iterator<Item = ([f64; 2], f64)> {
+    let rule = Rule::gauss_legendre(n);
+    let pairs: Vec<(f64, f64)> = rule.on(0.0, 1.0).collect();
+    (0..n * n).map(move |i| {
+        let ((a, wa), (b, wb)) = (pairs[i % n], pairs[i / n]);
+        ([a, b], wa * wb)
+    })
+}

@@ -1,0 +1,329 @@
+//! What `validate` names, measures and could not have seen.
+
+use std::sync::OnceLock;
+
+use phicam::lab::{
+    Against, Deviation, Errors, Integration, Measured, Occlusion, Score, Test, Validation, validate,
+};
+use phicam::matrix::Matrix;
+use phicam::model::{Extent, Kernel, converged};
+use phicam::num::statistics::binomial_interval;
+use phicam::num::stream::{Key, Sampling, Stream};
+use phicam::scene::Scene;
+use phicam::transport::Traced;
+
+use crate::builtin;
+
+/// 5 × 4 pixels and 8 spots of the bench.
+fn small() -> Scene {
+    let pixels = ("pixels = [16, 16]", "pixels = [5, 4]");
+    builtin("bench", &[pixels, ("per_side = 30", "per_side = 2")])
+}
+
+const REPLICATES: u32 = 32;
+/// Error of an entry relative to it.
+const NOISE: f64 = 0.002;
+
+/// Normal replicates of Φcam, their mean and its standard error. Errors that hang together are
+/// those of factors that move a row, or everything, in a smooth pattern, beside a tenth of their
+/// own.
+fn traced(phi: &Matrix, errors: Errors, seed: u64) -> Traced {
+    let (rows, columns) = phi.shape();
+    let mut sums = [0; 2].map(|_| Matrix::zeros(rows, columns));
+    for block in 0..REPLICATES {
+        let normal = |pixel: usize, spot: usize| {
+            let key = Key {
+                seed,
+                spot: spot as u32,
+                pixel: pixel as u32,
+                block,
+            };
+            let mut stream = Stream::new(Sampling::Pcg, key);
+            std::array::from_fn::<f64, 2, _>(|_| stream.normal())
+        };
+        let all = normal(rows, columns);
+        for p in 0..rows {
+            let row = normal(p, columns);
+            for l in 0..columns {
+                let own = normal(p, l)[0];
+                let wave = (l as f64 / columns as f64 + 0.1 * p as f64).sin();
+                let error = match errors {
+                    Errors::Independent => own,
+                    Errors::WithinRows => row[0] + wave * row[1] + 0.1 * own,
+                    Errors::Everywhere => all[0] + wave * all[1] + 0.1 * own,
+                };
+                let x = phi[(p, l)] * (1.0 + NOISE * f64::from(REPLICATES).sqrt() * error);
+                sums[0][(p, l)] += x;
+                sums[1][(p, l)] += x * x;
+            }
+        }
+    }
+    let n = f64::from(REPLICATES);
+    let flux = &sums[0] / n;
+    let stderr = sums[1].zip_map(&flux, |square, mean| {
+        ((square / n - mean * mean) / (n - 1.0)).max(0.0).sqrt()
+    });
+    Traced {
+        flux,
+        stderr,
+        bounces: Vec::new(),
+    }
+}
+
+fn tested(scene: &Scene, traced: &Traced, errors: Errors, significance: f64) -> Validation {
+    let measured = Measured {
+        phi: &traced.flux,
+        stderr: &traced.stderr,
+        left_out: None,
+    };
+    let against = Against {
+        kernel: Kernel::Physical,
+        integration: Integration::Quadrature,
+        occlusion: Occlusion::Ignored,
+    };
+    let test = Test {
+        significance,
+        replicates: REPLICATES,
+        errors,
+    };
+    validate(scene, measured, against, test).unwrap()
+}
+
+fn truth(scene: &Scene) -> Matrix {
+    converged(scene, Kernel::Physical, Extent::FULL)
+        .unwrap()
+        .phi
+}
+
+fn right() -> &'static Matrix {
+    static RIGHT: OnceLock<Matrix> = OnceLock::new();
+    RIGHT.get_or_init(|| truth(&small()))
+}
+
+fn score(found: &Validation) -> &Score {
+    found.agreement.score.as_ref().unwrap()
+}
+
+/// The scene with one parameter off, by what the light shows in turn: the name of the parameter, a
+/// scene, and the change.
+fn deviant(name: &str, size: f64) -> Option<Scene> {
+    use glam::{DAffine3, DQuat, DVec3};
+    let scene = small();
+    let h = 0.5f64.sqrt();
+    let [normal, u, v] = [DVec3::new(0.0, -h, -h), DVec3::X, DVec3::new(0.0, -h, h)];
+    let about = |point: DVec3, axis: DVec3| {
+        DAffine3::from_translation(point)
+            * DAffine3::from_quat(DQuat::from_axis_angle(axis, size.to_radians()))
+            * DAffine3::from_translation(-point)
+    };
+    let moved = |motion: DAffine3| scene.with_moved_hidden(&motion).ok();
+    let middle = DVec3::new(5.0, 15.5 - 7.86764 * h, 7.86764 * h);
+    let spot = |by: [f64; 2]| {
+        let places: Vec<[f64; 2]> = scene
+            .laser
+            .spots
+            .iter()
+            .enumerate()
+            .map(|(l, s)| {
+                let at = s.target.position;
+                if l == 3 {
+                    [at.x + by[0], at.y + by[1]]
+                } else {
+                    [at.x, at.y]
+                }
+            })
+            .collect();
+        scene.with_spots_at(&places).ok()
+    };
+    match name {
+        "overall scale" => {
+            let mut brighter = scene;
+            brighter.laser.power *= 1.0 + 0.01 * size;
+            Some(brighter)
+        }
+        // Towards the wall's y axis from its x axis, so around the hinge from the board's normal to
+        // the wall's.
+        "hinge angle" => moved(about(
+            DVec3::new(0.0, 15.5, 0.0),
+            normal.cross(DVec3::Z).normalize(),
+        )),
+        "yaw of S2" => moved(about(
+            middle,
+            normal.cross(normal.cross(DVec3::Z).normalize()),
+        )),
+        "S2 along its normal" => moved(DAffine3::from_translation(normal * size)),
+        "S2 along u" => moved(DAffine3::from_translation(u * size)),
+        "S2 along v" => moved(DAffine3::from_translation(v * size)),
+        "all spots, x" => scene.with_shifted_spots([size, 0.0]).ok(),
+        "all spots, y" => scene.with_shifted_spots([0.0, size]).ok(),
+        "view, x" => Some(scene.with_shifted_view([size, 0.0])),
+        "view, y" => Some(scene.with_shifted_view([0.0, size])),
+        "scale of the view" => Some(scene.with_scaled_view(1.0 + 0.01 * size)),
+        "camera and laser, off the wall" => Some(scene.with_moved_camera(DVec3::Z * size)),
+        "camera, along its sight" => {
+            let sight = (DVec3::new(3.25, 2.75, 0.0) - scene.camera.position).normalize();
+            Some(scene.with_moved_camera(sight * size))
+        }
+        "camera, across its sight" => {
+            let sight = (DVec3::new(3.25, 2.75, 0.0) - scene.camera.position).normalize();
+            Some(scene.with_moved_camera(sight.cross(DVec3::Z).normalize() * size))
+        }
+        "wall bent (sagitta)" => scene.with_bent_relay(size).ok(),
+        "one spot alone, x" => spot([size, 0.0]),
+        "one spot alone, y" => spot([0.0, size]),
+        _ => panic!("{name} is not injected"),
+    }
+}
+
+const ALL: [Errors; 3] = [Errors::Independent, Errors::WithinRows, Errors::Everywhere];
+const SEEDS: u64 = 20;
+
+/// Every deviation, injected alone at twice the size that the verdict says it detects, is rejected,
+/// and named first or among those that are not told from it, in 19 of 20 seeds; the fitted value is
+/// within 3 standard errors of the injected one. A score test is one of small deviations: asked where
+/// the light is linear in it to a tenth. Twice what `factored` detects of the camera across its
+/// sight is 2.8 in., bent by 16 %, and named in 13 of 20 only.
+#[test]
+#[ignore = "slow"]
+fn every_deviation_is_found_by_name() {
+    let scene = small();
+    let (mut failed, mut bent) = (Vec::new(), Vec::new());
+    for errors in ALL {
+        let first = tested(&scene, &traced(right(), errors, 0), errors, 1e-3);
+        let score_of = score(&first);
+        assert!(score_of.untested.is_empty(), "{:?}", score_of.untested);
+        let third = score_of.spots.iter().filter(|d| d.spot == Some(3));
+        for stated in score_of.deviations.iter().chain(third) {
+            let injected = 2.0 * stated.detectable;
+            let Some(light) = deviant(&stated.name, injected) else {
+                failed.push(format!(
+                    "{errors:?} {}: {injected} cannot be injected",
+                    stated.name
+                ));
+                continue;
+            };
+            let light = truth(&light);
+            // What is not linear in the deviation by a tenth cannot be fitted by its slope.
+            let half = truth(&deviant(&stated.name, 0.5 * injected).unwrap());
+            let bend = (&light - (half * 2.0 - right())).norm() / (&light - right()).norm();
+            let linear = bend < 0.1;
+            bent.extend((!linear).then(|| stated.name.clone()));
+            let same = |d: &Deviation| d.name == stated.name && d.spot == stated.spot;
+            let (mut named, mut within, mut firsts) = (0, 0, 0);
+            for seed in 1..=SEEDS {
+                let found = tested(&scene, &traced(&light, errors, seed), errors, 1e-3);
+                let own = score(&found);
+                firsts += u64::from(own.likely.first().is_some_and(same));
+                named += u64::from(!found.agreement.agrees && own.likely.iter().any(same));
+                let fit = own
+                    .deviations
+                    .iter()
+                    .chain(&own.spots)
+                    .find(|d| same(d))
+                    .unwrap();
+                within += u64::from((fit.value - injected).abs() <= 3.0 * fit.stderr);
+            }
+            println!(
+                "{errors:?} {}: {injected:.3e} {}, bend {bend:.3}, first {firsts}, named {named}, within {within}",
+                stated.name, stated.unit
+            );
+            // 3 σ leave out 0.3 % of a normal distribution, 1 of 20 in one of 19.
+            if linear && (named < 19 || within < 19) {
+                failed.push(format!(
+                    "{errors:?} {}: named {named}, within {within}",
+                    stated.name
+                ));
+            }
+        }
+    }
+    assert_eq!(bent, ["camera, across its sight"], "bent");
+    assert!(failed.is_empty(), "{failed:#?}");
+}
+
+/// The right model: at 5 % no more verdicts reject it, and no more name a parameter, than 99 % of
+/// the binomial distribution allow.
+#[test]
+#[ignore = "slow"]
+fn a_right_model_is_rejected_as_often_as_stated() {
+    let scene = small();
+    for errors in ALL {
+        let (mut rejected, mut named) = (0, 0);
+        for seed in 0..100 {
+            let found = tested(&scene, &traced(right(), errors, 1000 + seed), errors, 0.05);
+            rejected += u64::from(!found.agreement.agrees);
+            named += u64::from(score(&found).rejects());
+        }
+        println!("{errors:?}: {rejected} rejected, {named} named");
+        let [least, most] = binomial_interval(100, 0.05, 0.99);
+        assert!(
+            (least..=most).contains(&rejected),
+            "{errors:?}: {rejected} of 100"
+        );
+        let [_, most] = binomial_interval(100, 0.05 / 3.0, 0.99);
+        assert!(named <= most, "{errors:?}: {named} named of 100");
+    }
+}
+
+/// The rest of what a verdict says: χ² by pixel and spot, entries left out, no evidence.
+#[test]
+fn flagged_entries_do_not_count() {
+    let scene = small();
+    let mut light = traced(right(), Errors::Independent, 7);
+    // A single entry that is wrong by half, flagged.
+    light.flux[(3, 5)] *= 1.5;
+    let mut flags = Matrix::zeros(20, 8);
+    let verdict = |left_out: Option<&Matrix>, light: &Traced| {
+        let measured = Measured {
+            phi: &light.flux,
+            stderr: &light.stderr,
+            left_out,
+        };
+        let against = Against {
+            kernel: Kernel::Physical,
+            integration: Integration::Quadrature,
+            occlusion: Occlusion::Ignored,
+        };
+        let test = Test {
+            significance: 1e-3,
+            replicates: REPLICATES,
+            errors: Errors::Independent,
+        };
+        validate(&scene, measured, against, test).unwrap().agreement
+    };
+    let all = verdict(Some(&flags), &light);
+    assert!(!all.agrees && all.left_out == 0);
+    assert_eq!((all.worst[0].pixel, all.worst[0].spot), (3, 5));
+    let most =
+        |x: &[Option<f64>]| (0..x.len()).max_by(|a, b| x[*a].unwrap().total_cmp(&x[*b].unwrap()));
+    assert_eq!((most(&all.pixels), most(&all.spots)), (Some(3), Some(5)));
+    flags[(3, 5)] = 1.0;
+    let rest = verdict(Some(&flags), &light);
+    assert!(rest.agrees, "{}", rest.verdict());
+    assert_eq!((rest.left_out, rest.entries), (1, 159));
+    assert!(rest.verdict().contains("1 of 160 entries left out"));
+    flags.fill(1.0);
+    let none = verdict(Some(&flags), &light);
+    assert!(!none.agrees && !none.evidence && none.verdict().starts_with("no evidence"));
+}
+
+/// The figures measured outside: a board 0.2 % brighter is a scale of that, with an error that
+/// covers it, and the wall's albedo counts twice.
+#[test]
+fn a_scale_is_measured_with_its_error() {
+    let scene = small();
+    let light = traced(&(right() * 1.002), Errors::Independent, 3);
+    let found = tested(&scene, &light, Errors::Independent, 1e-3).agreement;
+    // Σ φ r/Σ φ² with errors of 0.2 % of each φ; 160 standard errors of 31 degrees each: 1 %.
+    let expected = NOISE * right().map(|x| x.powi(4)).sum().sqrt() / right().norm_squared();
+    assert!(
+        (found.best_scale_stderr / expected - 1.0).abs() < 0.05,
+        "{}",
+        found.best_scale_stderr
+    );
+    assert!((found.best_scale - 1.002).abs() < 4.0 * found.best_scale_stderr);
+    let likely = &found.score.as_ref().unwrap().likely;
+    let scale = likely.iter().find(|d| d.name == "overall scale").unwrap();
+    assert!((scale.value - 0.2).abs() < 4.0 * scale.stderr);
+    let same = |name: &str| scale.same.iter().find(|(n, _)| n.contains(name)).unwrap().1;
+    assert!((same("wall") - 0.5).abs() < 1e-3 && (same("object") - 1.0).abs() < 1e-3);
+}
