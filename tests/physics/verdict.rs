@@ -64,6 +64,7 @@ fn traced(phi: &Matrix, errors: Errors, seed: u64) -> Traced {
         ((square / n - mean * mean) / (n - 1.0)).max(0.0).sqrt()
     });
     Traced {
+        tails: Matrix::zeros(flux.nrows(), flux.ncols()),
         flux,
         stderr,
         bounces: Vec::new(),
