@@ -127,19 +127,19 @@ fn the_error_of_finished_columns_is_that_of_all_of_them_together() {
     };
     let target = ProgressDrawTarget::term_like(Box::new(paper));
     tracing.bar.set_draw_target(target);
-    // Two pixels, light of two orders, then the standard error: Φ = 3, 4 and 12, 0; σ = 0.3, 0.4
+    // Two pixels, light of two orders, then the standard error and its code: Φ = 3, 4 and 12, 0; σ = 0.3, 0.4
     // and 0, 1.2.
     tracing.finished(&Matrix::from_row_slice(
         2,
-        3,
-        &[1.0, 2.0, 0.3, 4.0, 0.0, 0.4],
+        4,
+        &[1.0, 2.0, 0.3, 0.0, 4.0, 0.0, 0.4, 0.0],
     ));
     let shown = |t: &Tracing| f64::from_bits(t.shown.load(Ordering::Relaxed));
     assert!((shown(&tracing) - 0.1).abs() < 1e-15);
     tracing.finished(&Matrix::from_row_slice(
         2,
-        3,
-        &[7.0, 5.0, 0.0, 0.0, 0.0, 1.2],
+        4,
+        &[7.0, 5.0, 0.0, 0.0, 0.0, 0.0, 1.2, 0.0],
     ));
     assert!((shown(&tracing) - 0.1).abs() < 1e-15);
     tracing.end();

@@ -44,7 +44,7 @@ fn a_whole_run_makes_a_whole_page() {
         "DOES NOT FIT &lt;in this sample&gt;",
         "determined by the photographs",
         "phicam run bench -o out --estimator independent --sampler pcg --samples 4096 --seed 18446744073709551615",
-        "phicam validate out --significance 0.01\nphicam recover out",
+        "phicam validate out --integration centres --significance 0.01\nphicam recover out",
     ] {
         assert!(html.contains(text), "{text}");
     }

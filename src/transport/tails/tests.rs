@@ -91,7 +91,14 @@ fn simulate(law: Law, share: f64) -> Found {
         let law = if is_of_law { law } else { Law::Normal };
         let totals: Vec<f64> = (0..BLOCKS).map(|_| law.draw(&mut stream)).collect();
         let (mean, error) = mean_and_stderr(&totals);
-        tails[i] = f64::from(spread(&totals).code(BLOCKS as f64, mean));
+        let code = spread(&totals).code(BLOCKS as f64, mean);
+        // The tracer flags what is dark and can be lit, and bounds it by the rule of three.
+        let [code, error] = if mean == 0.0 {
+            [f64::from(UNLIT), 3.0 / BLOCKS as f64]
+        } else {
+            [f64::from(code), error]
+        };
+        tails[i] = code;
         (flux[i], stderr[i], truth[i]) = (mean, error, law.mean());
     }
     let flagged = |tails: &Matrix| tails.iter().filter(|c| **c != 0.0).count() as f64;
