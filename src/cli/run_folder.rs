@@ -359,8 +359,8 @@ pub(super) fn remove_recovered(dir: &Path) -> Result<(), Failure> {
         let (name, what) = stem.split_once('.').unwrap_or((stem, ""));
         let name = name.trim_end_matches(|c: char| c.is_ascii_digit());
         let name = name.strip_suffix('-').unwrap_or(name);
-        let known = ["truth", "overview", "picard", "picard-joint"].contains(&name)
-            || name.parse::<Method>().is_ok();
+        let pictures = ["truth", "overview", "picard", "picard-joint", "determined"];
+        let known = pictures.contains(&name) || name.parse::<Method>().is_ok();
         let ours = known
             && [
                 "",

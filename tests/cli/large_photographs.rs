@@ -27,7 +27,8 @@ fn by_rows_it_is_what_it_is_at_once() {
         ("tsvd", "--rank 6 --noise 0.01 --bands 0.9"),
     ] {
         let line = format!("recover done --method {method} {more}");
-        let _ = workspace.phicam(&format!("{line} --elements 4")).exits(0);
+        // Sixteen elements are too coarse to explain the photographs; by rows that is not judged.
+        let _ = workspace.phicam(&format!("{line} --elements 4")).exits(1);
         let names = [
             format!("done/recovered/{method}.npy"),
             format!("done/recovered/{method}.stderr.npy"),

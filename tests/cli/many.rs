@@ -4,6 +4,8 @@
 use std::fs;
 use std::path::PathBuf;
 
+use phicam::transport::NUMERICS;
+
 use crate::small_scene::{SMALL, TINY, altered};
 use crate::workspace::{Contents, Ended, Workspace, assert_same};
 
@@ -254,7 +256,8 @@ fn a_plan_or_scene_that_was_edited_is_refused() {
         .replace("\"seed\",\n      \"5\"", "\"seed\",\n      \"6\"");
     workspace.write("job/plan.json", both);
     merge_refused(&workspace, 65, &["was edited", "plan_id"]);
-    let numerics = plan.replace("\"numerics\",\n      \"1\"", "\"numerics\",\n      \"9\"");
+    let of = |version: u32| format!("\"numerics\",\n      \"{version}\"");
+    let numerics = plan.replace(&of(NUMERICS), &of(NUMERICS + 7));
     assert_ne!(plan, numerics);
     workspace.write("job/plan.json", numerics);
     merge_refused(&workspace, 65, &["was edited", "plan_id"]);
