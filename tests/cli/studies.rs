@@ -67,7 +67,7 @@ fn tolerance_is_a_table_a_figure_and_json() {
     let ended = workspace.phicam("study tolerance small.toml -o t").exits(0);
     says(&ended, &["hinge angle", "wall bent", "the pattern is lost"]);
     let json = workspace.json("t/tolerance.json");
-    assert_eq!(json["parameters"].as_array().unwrap().len(), 12);
+    assert_eq!(json["parameters"].as_array().unwrap().len(), 15);
     assert!(workspace.text("t/tolerance.svg").contains("hinge angle"));
     told(
         &workspace,
