@@ -18,9 +18,9 @@ function report(scene) {
     }
     const out = join(folder, scene);
     if (!existsSync(out)) {
-        // That model and light disagree, as behind a plank, is no failure here.
+        // That model and light disagree, as behind a plank, is no failure here, nor that so few samples are no evidence.
         const { status } = spawnSync(program, ["run", scene, "-o", out, "--samples", "16", "--quiet"], { stdio: ["ignore", "ignore", "inherit"] });
-        assert.ok(status === 0 || status === 1, `phicam run ${scene} ended with ${status}`);
+        assert.ok([0, 1, 4].includes(status), `phicam run ${scene} ended with ${status}`);
     }
     return join(out, "report.html");
 }
