@@ -4,7 +4,8 @@
 //! product rule of n nodes a side on a part of radius r converges like ρ^(−2n), ρ = y + √(1 + y²),
 //! y the distance in units of r: parts that light or sight come closer to than their own diameter
 //! are cut in four until none is left, ever smaller towards the near end; and the farther a part
-//! is for its size, the fewer nodes it gets.
+//! is for its size, the fewer nodes it gets. Triangles that an edge of their texture runs through are
+//! cut towards it.
 
 use std::borrow::Cow;
 
@@ -18,6 +19,9 @@ const FAR: f64 = 2.0;
 /// Cuts of one cell of a texture, and of one footprint.
 const MOST_CUTS: u32 = 40;
 const MOST_FOOTPRINT_CUTS: u32 = 5;
+/// Cuts of a triangle over which its texture varies, and the parts that stay free for near ends.
+const MOST_TEXTURE_CUTS: u32 = 5;
+const ROOM_FOR_NEAR: usize = 2_000;
 /// Parts that cutting may add to all hidden surfaces together, and to one footprint.
 const MOST_ADDED: usize = 6_000;
 const MOST_FOOTPRINT_PARTS: usize = 64;
@@ -155,7 +159,12 @@ impl<'a> HiddenParts<'a> {
             for (index, place) in whole {
                 let (middle, radius) = place.ball(&found.surfaces[index]);
                 let distance = near.distance(middle, radius);
-                if distance < FAR && room >= 3 && generation < MOST_CUTS {
+                let close = distance < FAR && room >= 3 && generation < MOST_CUTS;
+                let varied = !close
+                    && room >= ROOM_FOR_NEAR
+                    && generation < MOST_TEXTURE_CUTS
+                    && place.has_edge(&found.surfaces[index]);
+                if close || varied {
                     room -= 3;
                     next.extend(place.quarters().map(|quarter| (index, quarter)));
                 } else {
@@ -269,6 +278,24 @@ impl Place {
                 furthest(at([0.5; 2]), &[rim, sides].concat())
             }
         }
+    }
+
+    /// Whether the texture of a mesh differs between corners, middles of sides and middle of a
+    /// triangle: an edge of it may run through, and no rule converges fast over that.
+    fn has_edge(&self, surface: &Surface) -> bool {
+        let (Self::Triangle { id, corners }, Shape::Instance(body)) = (self, &surface.shape) else {
+            return false;
+        };
+        let [a, b, c] = *corners;
+        let inside = |p: DVec3| {
+            let middle = (a + b + c) / 3.0;
+            let uv = body.on_triangle(*id, middle + (p - middle) * 0.999).uv;
+            surface.albedo.albedo(uv)
+        };
+        let sides = [(a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5];
+        let first = inside(a);
+        let mut others = [b, c].into_iter().chain(sides);
+        others.any(|p| inside(p) != first)
     }
 
     fn quarters(&self) -> [Self; 4] {
