@@ -154,8 +154,8 @@ BREAKS = [
     Break(
         "Spots beside an edge have the integral, within its bound",
         "src/model/parts.rs",
-        "if distance < FAR && room >= 3 && generation < MOST_CUTS {",
-        "if distance < 0.0 && room >= 3 && generation < MOST_CUTS {",
+        "let close = distance < FAR && room >= 3 && generation < MOST_CUTS;",
+        "let close = distance < 0.0 && room >= 3 && generation < MOST_CUTS;",
         "physics",
         "model::spots_beside_the_hinge_have_the_integral",
         3,

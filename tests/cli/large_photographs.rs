@@ -20,15 +20,18 @@ fn with_run() -> Workspace {
 #[ignore = "slow"]
 fn by_rows_it_is_what_it_is_at_once() {
     let workspace = with_run();
-    for (method, more) in [
-        ("pinv", ""),
-        ("rdivide", "--tolerance 1e-6"),
-        ("tikhonov", "--damping 1e-3"),
-        ("tsvd", "--rank 6 --noise 0.01 --bands 0.9"),
+    for (method, more, code) in [
+        ("pinv", "", 1),
+        ("rdivide", "--tolerance 1e-6", 1),
+        ("tikhonov", "--damping 1e-3", 1),
+        ("tsvd", "--rank 6 --noise 0.01 --bands 0.9", 0),
     ] {
         let line = format!("recover done --method {method} {more}");
-        // Sixteen elements are too coarse to explain the photographs; by rows that is not judged.
-        let _ = workspace.phicam(&format!("{line} --elements 4")).exits(1);
+        // Sixteen elements are too coarse to explain the photographs, but under noise of 1 %; by rows
+        // that is not judged.
+        let _ = workspace
+            .phicam(&format!("{line} --elements 4"))
+            .exits(code);
         let names = [
             format!("done/recovered/{method}.npy"),
             format!("done/recovered/{method}.stderr.npy"),
