@@ -114,7 +114,7 @@ for _ in 1 2 3; do
     codes+=" $code"
     ! grep -q panicked said said-first || fail "a panic"
     [[ "$codes" == *" 0"* ]] || fail "neither of two renders ended well:$codes"
-    for s in said said-first; do ! grep -q "^error" $s || grep -q "cannot write" $s || fail "an error without a cause"; done
+    for s in said said-first; do ! grep -q "^error:" $s || grep -q "cannot write" $s || fail "an error without a cause"; done
     "$phicam" -q render bench.toml -o together $more --resume >/dev/null
     same together alone
 done
