@@ -283,14 +283,17 @@ pub(super) fn write(
         } else {
             String::new()
         };
-        let file = |name: &str, what: &str| folder.join(format!("{name}{suffix}.{what}"));
+        let named = |name: &str, what: &str| format!("{name}{suffix}.{what}");
+        let file = |name: &str, what: &str| folder.join(named(name, what));
         let shape = scene.surfaces.iter().find(|s| s.name == **surface);
         let drawn = shape.is_none_or(|s| s.division == Division::Cells);
         let mut panels = Vec::new();
         let known = objects.iter().find(|o| o.surface == *surface);
         let shares = known.and_then(|o| o.determined_share.as_ref());
-        remove_if_there(shares.is_none(), &file("determined", "npy"))?;
-        remove_if_there(shares.is_none(), &file("determined", "png"))?;
+        if shares.is_none() {
+            let stale = ["npy", "png"].map(|what| named("determined", what));
+            remove_named(&folder, &stale.each_ref().map(String::as_str))?;
+        }
         for object in objects.iter().filter(|o| o.surface == *surface) {
             let [nu, nv] = object.elements;
             let method = object.method.as_str();
@@ -317,10 +320,10 @@ pub(super) fn write(
                 output::write(&file(method, "ply"), ply)?;
             }
             for (what, matrix) in uncertainties(object) {
-                let path = file(method, &format!("{what}.npy"));
+                let name = named(method, &format!("{what}.npy"));
                 match matrix {
-                    Some(matrix) => npy::write(&path, &matrix)?,
-                    None => remove_if_there(true, &path)?,
+                    Some(matrix) => npy::write(&folder.join(name), &matrix)?,
+                    None => remove_named(&folder, &[&name])?,
                 }
             }
         }
@@ -328,14 +331,6 @@ pub(super) fn write(
             let png = report::grey_png(surface, &panels)?;
             output::write(&file("overview", "png"), png)?;
         }
-    }
-    Ok(())
-}
-
-/// Removes what an earlier recovery left, where `stale` says so.
-fn remove_if_there(stale: bool, path: &Path) -> Result<(), Failure> {
-    if stale && path.exists() {
-        std::fs::remove_file(path)?;
     }
     Ok(())
 }

@@ -7,7 +7,6 @@ use super::args::RunArgs;
 use super::console::Console;
 use super::failure::Failure;
 use super::interrupt::stop_flag;
-use super::load_run::read_tails;
 use super::output;
 use super::progress;
 use super::record::Record;
@@ -118,11 +117,10 @@ fn compare_and_recover(
     let kernel = args.test.kernel;
     console.say("computing the model and comparing");
     let matrices = MatrixModel::new(&results.scene, kernel, None)?;
-    let tails = read_tails(&args.output, &results.scene)?;
     let measured = Measured {
         phi: &results.phi,
         stderr: &results.stderr,
-        left_out: tails.as_ref(),
+        left_out: Some(&results.tails),
     };
     let against = Against {
         kernel,

@@ -71,9 +71,14 @@ pub struct Test {
     pub errors: Errors,
 }
 
+/// Degrees of freedom of a standard error from so many replicates.
+pub(super) fn freedom(replicates: u32) -> f64 {
+    f64::from(replicates.max(2) - 1)
+}
+
 impl Test {
     /// Degrees of freedom of each standard error.
     pub(super) fn freedom(&self) -> f64 {
-        f64::from(self.replicates.max(2) - 1)
+        freedom(self.replicates)
     }
 }

@@ -18,7 +18,7 @@
 use serde::Serialize;
 
 use super::agreement::freedom_of_rows;
-use super::evidence::Errors;
+use super::evidence::{Errors, freedom};
 use crate::matrix::Matrix;
 use crate::num::statistics::{chi_square_sf, student_to_normal};
 use crate::recovery::{
@@ -92,7 +92,7 @@ impl Residuals {
     /// Adds rows (pixels): the photographs, what the picture would photograph, and the standard
     /// errors, W.
     pub fn add(&mut self, phi: &Matrix, seen: &Matrix, stderr: &Matrix, certainty: Certainty) {
-        let freedom = certainty.replicates.map(|k| f64::from(k.max(2) - 1));
+        let freedom = certainty.replicates.map(freedom);
         for p in 0..phi.nrows() {
             let mut sum = 0.0;
             for l in 0..phi.ncols() {

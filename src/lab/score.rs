@@ -137,8 +137,8 @@ pub(super) fn score(
         ],
         ..Score::default()
     };
-    for (index, parameter) in parameters.iter().enumerate() {
-        let d = (derivatives.of)(index);
+    let of: Vec<Option<Matrix>> = (0..parameters.len()).map(|k| (derivatives.of)(k)).collect();
+    for (parameter, d) in parameters.iter().zip(&of) {
         let fit = |columns: Range<usize>, limit: f64, family: usize, name: &str| {
             let d = d.as_ref()?;
             let fit = residual.fit(d, &columns)?;
@@ -166,43 +166,41 @@ pub(super) fn score(
             found.spots.extend(own.map(|own| Deviation { spot, ..own }));
         }
     }
-    found.likely = likely(&found, &residual, derivatives);
+    found.likely = likely(&found, &residual, parameters, &of);
     found
 }
 
 /// The most likely cause, of those beyond their limit the one that leaves the least χ², and those
 /// that explain the difference as well.
-fn likely(found: &Score, residual: &Residual<'_>, derivatives: &Derivatives<'_>) -> Vec<Deviation> {
+fn likely(
+    found: &Score,
+    residual: &Residual<'_>,
+    parameters: &[Parameter],
+    derivatives: &[Option<Matrix>],
+) -> Vec<Deviation> {
     let all = || found.deviations.iter().chain(&found.spots);
     let beyond = |d: &&Deviation| d.z.abs() > found.limits[usize::from(d.spot.is_some())];
     let least = |a: &&Deviation, b: &&Deviation| a.chi2_per_dof.total_cmp(&b.chi2_per_dof);
     let Some(best) = all().filter(beyond).min_by(least) else {
         return Vec::new();
     };
-    let of = |d: &Deviation, p: &Parameter| match d.spot {
-        None => p.name == d.name,
-        Some(_) => p.each_spot.as_ref() == Some(&d.name),
-    };
     let derivative = |d: &Deviation| {
-        let index = derivatives.parameters.iter().position(|p| of(d, p))?;
-        Some(of_spot(&(derivatives.of)(index)?, d.spot))
+        let index = parameters.iter().position(|p| match d.spot {
+            None => p.name == d.name,
+            Some(_) => p.each_spot.as_ref() == Some(&d.name),
+        })?;
+        Some(of_spot(derivatives[index].as_ref()?, d.spot))
     };
     let Some(first) = derivative(best) else {
         return vec![best.clone()];
     };
     let limit = sidak_threshold(TOLD_APART, all().count() as u64);
-    let mut rest: Vec<&Deviation> = Vec::new();
-    for (index, parameter) in derivatives.parameters.iter().enumerate() {
-        let Some(d) = (derivatives.of)(index) else {
-            continue;
-        };
-        let as_good = |other: &&Deviation| {
-            let same = other.name == best.name && other.spot == best.spot;
-            let missed = || residual.missed(&first, &of_spot(&d, other.spot));
-            !same && of(other, parameter) && missed().abs() <= limit
-        };
-        rest.extend(all().filter(as_good));
-    }
+    let as_good = |other: &&Deviation| {
+        let same = other.name == best.name && other.spot == best.spot;
+        let missed = |own: Matrix| residual.missed(&first, &own);
+        !same && derivative(other).is_some_and(|own| missed(own).abs() <= limit)
+    };
+    let mut rest: Vec<&Deviation> = all().filter(as_good).collect();
     rest.sort_by(least);
     std::iter::once(best).chain(rest).cloned().collect()
 }

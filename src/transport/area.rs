@@ -11,14 +11,14 @@ use crate::scene::Scene;
 /// uniform in area within it. Dark cells are never sampled, which is exact; light ones are
 /// stratified by their edges. Guided by an [`Importance`], cells are divided, and each part has a
 /// density in proportion to its albedo times importance, besides a tenth of that by albedo alone.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct AreaSampler {
     surfaces: Vec<Sampled>,
     /// Position in `surfaces` of each shape that is sampled.
     of_shape: Vec<Option<usize>>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Sampled {
     shape: ShapeId,
     /// Cells along u and v.

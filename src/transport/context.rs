@@ -1,9 +1,11 @@
 //! What every estimator knows of a scene before it traces.
 
+use std::cell::OnceCell;
 use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::area::AreaSampler;
 use super::camera::{DirectLight, PixelView, sees_nothing};
 use super::importance::Importance;
 use super::path::PathSampler;
@@ -43,8 +45,12 @@ impl<'a> Context<'a> {
         let seen = known_or_all(scene, views.iter().map(PixelView::shape).collect());
         let lit = spots.beams.lit_shapes();
         let between = between(scene, &seen, &lit);
-        let importance = importance(&views, &spots);
-        let path = PathSampler::new(scene, (&seen, &between), &importance);
+        let guided = OnceCell::new();
+        let guide = || {
+            let sampler = || AreaSampler::guided(scene, &between, &importance(&views, &spots));
+            guided.get_or_init(sampler).clone()
+        };
+        let path = PathSampler::new(scene, &seen, guide);
         let close = !seen.iter().all(|s| path.far_from_hidden(*s));
         let two = |t: &ShapeId| any_may_be_visible(scene, &seen, *t);
         Self {
@@ -54,7 +60,7 @@ impl<'a> Context<'a> {
             strata: Strata::new(
                 scene,
                 &between,
-                close.then_some(&importance),
+                close.then(guide),
                 (plan.sampling, plan.budget.size),
             ),
             has_two_bounce_light: scene.max_bounces > 1 && lit.iter().any(two),
@@ -66,9 +72,9 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Whether light of a column may reach a pixel: no where the beam lands on nothing that reflects,
-    /// where the pixel sees nothing, or where between any two surfaces of a path one lies behind the other or is black. Shapes in
-    /// between are not considered, so a yes may be wrong.
+    /// Whether light of a column may reach a pixel: no where the beam lands on nothing that
+    /// reflects, where the pixel sees nothing, or where between any two surfaces of a path one lies
+    /// behind the other or is black. Shapes in between are not considered, so a yes may be wrong.
     pub(super) fn may_be_lit(&self, pixel: usize, column: usize) -> bool {
         let (scene, all) = (self.scene, || known_or_all(self.scene, None));
         let spot = self.spots.range.start + column;

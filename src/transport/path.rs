@@ -9,7 +9,6 @@ use crate::scene::Scene;
 use crate::scene::material::{Material, Part, mirrored};
 
 use super::area::{AreaSampler, SurfacePoint};
-use super::importance::Importance;
 use super::light_path::LightEnd;
 use super::vertex::{Vertex, geometry_term};
 use super::visibility::may_be_visible;
@@ -56,22 +55,28 @@ pub(super) struct PathSampler<'a> {
 const FAR: f64 = 1.25;
 
 impl<'a> PathSampler<'a> {
-    /// `seen` are the shapes that pixels may see, `between` those that light may meet before.
+    /// `seen` are the shapes that pixels may see; `guide` samples those that light may meet before.
     pub(super) fn new(
         scene: &'a Scene,
-        (seen, between): (&[ShapeId], &[ShapeId]),
-        importance: &Importance<'_>,
+        seen: &[ShapeId],
+        guide: impl FnOnce() -> AreaSampler,
     ) -> Self {
         let hidden: Vec<ShapeId> = scene.hidden().map(|(id, _)| id as ShapeId).collect();
         let hidden = AreaSampler::new(scene, &hidden);
-        let (strategies, far): (Vec<_>, _) = (0..scene.surfaces.len() as ShapeId)
+        let (mut strategies, far): (Vec<_>, _) = (0..scene.surfaces.len() as ShapeId)
             .map(|s| strategy(scene, &hidden, s))
             .unzip();
         let both = |s: &ShapeId| strategies[*s as usize] == Strategy::Both;
-        let points = if seen.iter().any(both) {
-            AreaSampler::guided(scene, between, importance)
-        } else {
-            hidden
+        let guided = seen.iter().any(both).then(guide);
+        let points = match guided.filter(|points| !points.is_empty()) {
+            None => hidden,
+            Some(points) => {
+                let all = (0..scene.surfaces.len() as ShapeId)
+                    .all(|s| points.contains(s) || !hidden.contains(s));
+                let area = strategies.iter_mut().filter(|s| **s == Strategy::Area);
+                area.filter(|_| !all).for_each(|s| *s = Strategy::Both);
+                points
+            }
         };
         Self {
             scene,

@@ -233,13 +233,10 @@ impl<'a> LitSpots<'a> {
     /// pixel: β·c·Φlaser · G·c_l · V·d·d_l.
     pub(super) fn light_vertex(&self, x: &Vertex, lit: &LitPoints<'_>, row: &mut [f64]) {
         let points = lit.at(0);
-        let radiance = x.throughput * x.constant_factor(self.scene) * self.scene.laser.power;
         for (entry, point) in row.iter_mut().zip(points) {
-            let term = |lit: &Vertex| {
-                let (term, _) = geometry_term(x.oriented(), lit.oriented())?;
-                Some(radiance * (term * lit.constant_factor(self.scene)))
-            };
-            *entry = point.as_ref().and_then(term).unwrap_or(0.0);
+            *entry = point
+                .as_ref()
+                .map_or(0.0, |lit| self.constant_light(lit, x));
         }
         let place = (x.position, x.shape);
         let factor = |light| x.factor_from(self.scene, light);
@@ -248,13 +245,18 @@ impl<'a> LitSpots<'a> {
 
     /// [`LitSpots::light_vertex`] from one lit point, with nothing between.
     pub(super) fn light_from(&self, lit: &Vertex, x: &Vertex) -> f64 {
+        let factors =
+            x.factor_from(self.scene, lit.position) * lit.factor_to(self.scene, x.position);
+        self.constant_light(lit, x) * factors
+    }
+
+    /// β·c·Φlaser · G·c_l.
+    fn constant_light(&self, lit: &Vertex, x: &Vertex) -> f64 {
         let Some((term, _)) = geometry_term(x.oriented(), lit.oriented()) else {
             return 0.0;
         };
-        let factors =
-            x.factor_from(self.scene, lit.position) * lit.factor_to(self.scene, x.position);
         let radiance = x.throughput * x.constant_factor(self.scene) * self.scene.laser.power;
-        radiance * term * lit.constant_factor(self.scene) * factors
+        radiance * (term * lit.constant_factor(self.scene))
     }
 
     /// What can stand between shape `x` and the point that the beam of `column` lights.

@@ -3,7 +3,6 @@
 use std::f64::consts::FRAC_1_PI;
 
 use super::area::{AreaSampler, SurfacePoint};
-use super::importance::Importance;
 use super::vertex::{Oriented, geometry_term};
 use crate::geometry::{Basis, Interaction, Ray, ShapeId};
 use crate::num::stream::{Key, Sampling, Stream};
@@ -158,29 +157,28 @@ fn cells(scene: &Scene, shapes: &[ShapeId]) -> Option<Vec<(Cell, f64)>> {
 }
 
 impl<'a> Strata<'a> {
-    /// Divides `shapes` for blocks of about `size` points; `close` is their importance where any of
-    /// them may be close to what the camera sees.
+    /// Divides `shapes` for blocks of about `size` points; `close` samples them where any of them
+    /// may be close to what the camera sees.
     pub(super) fn new(
         scene: &'a Scene,
         shapes: &[ShapeId],
-        close: Option<&Importance<'_>>,
+        close: Option<AreaSampler>,
         (sampling, size): (Sampling, u32),
     ) -> Self {
         let round = |points: f64| match sampling {
             Sampling::Pcg => (points.ceil() as u32).max(1),
             Sampling::Sobol => (points.ceil() as u32).max(1).next_power_of_two(),
         };
-        let anchor = close.and_then(|_| Anchor::new(scene, round(f64::from(size) / 2.0)));
+        let anchor = close
+            .as_ref()
+            .and_then(|_| Anchor::new(scene, round(f64::from(size) / 2.0)));
         let size = if anchor.is_some() {
             size.div_ceil(2)
         } else {
             size
         };
-        let area = match close {
-            Some(importance) => AreaSampler::guided(scene, shapes, importance),
-            None => AreaSampler::new(scene, shapes),
-        };
         let mut cells = cells(scene, shapes).filter(|_| close.is_none());
+        let area = close.unwrap_or_else(|| AreaSampler::new(scene, shapes));
         if area.is_empty() {
             // No light is met between the walls, but footprints and beams have to be sampled all
             // the same.

@@ -10,7 +10,7 @@ use phicam::num::stream::Sampling;
 use phicam::scene::Scene;
 use phicam::transport::{Budget, Control, Estimator, Plan, Traced, render, unsupported_surface};
 use proptest::prelude::*;
-use proptest::test_runner::{Config, TestRunner};
+use proptest::test_runner::{Config, RngSeed, TestRunner};
 
 const SCENES: u32 = 600;
 /// Numbers that a scene may ask for; those beyond are 0.
@@ -343,14 +343,48 @@ fn below_a_lid_there_is_no_light() {
     }
 }
 
+/// The laser lights the top of a lid, and the camera below it sees a wall that the hidden surface
+/// could light: no surface lies between the two, and none can be sampled there. Found by the random
+/// scenes.
+#[test]
+fn a_lid_keeps_the_light_from_the_camera() {
+    let below = (
+        "[camera]\nposition = [-20.0, 10.0, 15.0]",
+        "[camera]\nposition = [-20.0, 10.0, 10.0]",
+    );
+    let smaller = [
+        below,
+        ("per_side = 30", "per_side = 2"),
+        ("pixels = [16, 16]", "pixels = [2, 2]"),
+    ];
+    let text = crate::builtin("bench", &smaller).text
+        + "[[surface]]\nname = \"lid\"\nrole = \"occluder\"\nsides = \"two\"\nmaterial = { lambertian = 0.5 }\n\
+           rectangle = { corner = [-30, -30, 12], u = [60, 0, 0], v = [0, 60, 0] }\n";
+    let scene = Scene::from_toml("lid", &text).unwrap();
+    for estimator in [
+        Estimator::Independent,
+        Estimator::Shared,
+        Estimator::Factored,
+    ] {
+        let traced = crate::trace(&scene, crate::Way(estimator, Sampling::Sobol, 1, 64));
+        assert!(traced.flux.iter().all(|x| *x == 0.0), "{estimator:?}");
+    }
+}
+
 #[test]
 #[ignore = "slow"]
 fn light_is_finite_and_never_negative() {
     let [accepted, lit] = [Cell::new(0), Cell::new(0)];
+    // The same scenes in every run; PROPTEST_RNG_SEED gives others.
+    let default = Config::default();
     let config = Config {
         cases: SCENES,
         failure_persistence: None,
-        ..Config::default()
+        rng_seed: match default.rng_seed {
+            RngSeed::Random => RngSeed::Fixed(1),
+            given => given,
+        },
+        ..default
     };
     let tape = prop::collection::vec(0.0..1.0f64, TAPE);
     let outcome = TestRunner::new(config).run(&tape, |tape| {

@@ -168,3 +168,30 @@ fn lambertian_is_the_cosine() {
     let p = wi_density(&Material::Lambertian, 0.5, DVec3::Z, w);
     assert_eq!(p, w.z * FRAC_1_PI);
 }
+
+/// A floor below the wall sees the hidden surface alone, from afar: area points serve it, but only
+/// where they lie on all that it sees.
+#[test]
+fn area_points_that_miss_a_hidden_surface_do_not_serve_alone() {
+    let more = r#"
+        [[surface]]
+        name = "floor"
+        role = "occluder"
+        rectangle = { corner = [0, -40, -5], u = [10, 0, 0], v = [0, 10, 0] }
+        material = { lambertian = 0.5 }
+        [[surface]]
+        name = "side"
+        role = "occluder"
+        rectangle = { corner = [0, -20, 1], u = [0, 0, 5], v = [10, 0, 0] }
+        material = { lambertian = 0.5 }
+    "#;
+    let text = include_str!("../../../scenes/bench.toml").to_owned() + more;
+    let scene = Scene::from_toml("floor", &text).unwrap();
+    let of_floor = |sampled: &[ShapeId]| {
+        let path = PathSampler::new(&scene, &[0], || AreaSampler::new(&scene, sampled));
+        path.strategies[2]
+    };
+    assert_eq!(of_floor(&[1, 3]), Strategy::Area);
+    assert_eq!(of_floor(&[3]), Strategy::Both);
+    assert_eq!(of_floor(&[]), Strategy::Area);
+}

@@ -21,6 +21,10 @@ enum Law {
     Lognormal(f64),
     /// Lit with a probability, then 1 + 0.15·normal.
     Lit(f64),
+    /// [`Law::Normal`] and, with a probability, a spike.
+    Spiked(f64, f64),
+    /// x > 1 with density ∝ x^−(a+1).
+    Pareto(f64),
 }
 
 impl Law {
@@ -31,6 +35,9 @@ impl Law {
             Self::Lognormal(sigma) => libm::exp(sigma * stream.normal()),
             Self::Lit(p) if stream.uniform() < p => 1.0 + 0.15 * stream.normal(),
             Self::Lit(_) => 0.0,
+            Self::Spiked(p, height) if stream.uniform() < p => height + 10.0 + stream.normal(),
+            Self::Spiked(..) => 10.0 + stream.normal(),
+            Self::Pareto(a) => libm::pow(1.0 - stream.uniform(), -1.0 / a),
         }
     }
 
@@ -40,6 +47,8 @@ impl Law {
             Self::Exponential => 1.0,
             Self::Lognormal(sigma) => libm::exp(0.5 * sigma * sigma),
             Self::Lit(p) => p,
+            Self::Spiked(p, height) => 10.0 + p * height,
+            Self::Pareto(a) => a / (a - 1.0),
         }
     }
 }
@@ -121,6 +130,7 @@ fn normal_blocks_are_trusted() {
 /// flagged to the last entry.
 #[test]
 fn trusted_entries_keep_their_promise() {
+    let rare = |expected: f64| expected / BLOCKS as f64;
     for (law, share, heavy) in [
         (Law::Normal, 1.0, false),
         (Law::Exponential, 1.0, true),
@@ -133,6 +143,14 @@ fn trusted_entries_keep_their_promise() {
         (Law::Lit(0.5), 1.0, false),
         (Law::Lit(0.1), 1.0, true),
         (Law::Lit(0.01), 1.0, true),
+        (Law::Spiked(rare(0.03), 1000.0), 1.0, true),
+        (Law::Spiked(rare(0.03), 10.0), 1.0, false),
+        (Law::Spiked(rare(0.1), 30.0), 1.0, true),
+        (Law::Spiked(rare(1.0), 5.0), 1.0, true),
+        (Law::Pareto(1.5), 1.0, true),
+        (Law::Exponential, 0.1, false),
+        (Law::Lognormal(1.0), 0.1, false),
+        (Law::Pareto(1.5), 0.02, false),
     ] {
         let found = simulate(law, share);
         let Found { left, outside, .. } = found;
