@@ -159,7 +159,7 @@ impl Instance {
 
     /// Whether a triangle stands between the two ends of the segment.
     pub fn blocks(&self, segment: &Ray) -> bool {
-        self.blocks_many(std::slice::from_ref(segment))[0]
+        self.mesh.blocks_beyond(&self.local(segment), self.reach())
     }
 
     /// [`Instance::blocks`] for many segments.
@@ -198,6 +198,15 @@ impl Instance {
     /// The point that the equal-area map of the square to the mesh gives to `u`.
     pub fn at(&self, u: [f64; 2]) -> Interaction {
         self.to_scene(self.mesh.at(u))
+    }
+
+    /// The box around what [`Instance::at`] gives between `low` and `high`: its lower and its upper
+    /// corner.
+    pub fn bounds_between(&self, low: [f64; 2], high: [f64; 2]) -> (DVec3, DVec3) {
+        let points = self.mesh.hull(low, high);
+        let placed = points.map(|p| self.to_world.transform_point3(p));
+        let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        placed.fold(empty, |(low, high), p| (low.min(p), high.max(p)))
     }
 
     /// The parameters for which [`Instance::at`] gives the point of a triangle that is nearest to

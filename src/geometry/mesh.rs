@@ -1,5 +1,6 @@
 //! Triangle meshes.
 
+mod area_map;
 mod group;
 mod nearest;
 mod query;
@@ -7,7 +8,7 @@ mod query;
 use super::tree::WideTree;
 use super::{Contact, DVec3, Interaction, Ray};
 use crate::num::lanes::widest;
-use crate::num::warp;
+use area_map::AreaMap;
 use group::{GROUP, Group};
 use query::{Any, Closest};
 
@@ -74,8 +75,7 @@ pub struct Mesh {
     /// By triangle and corner.
     uv: Option<Vec<[[f32; 2]; 3]>>,
     bounds: (DVec3, DVec3),
-    /// By triangle: the area of all up to it, itself included.
-    areas: Vec<f64>,
+    area_map: AreaMap,
     tree: WideTree,
     groups: Vec<Group>,
 }
@@ -153,17 +153,18 @@ impl Mesh {
         for &i in &proper {
             areas[i as usize] = 0.5 * cross(corners(i)).length();
         }
-        let mut sum = 0.0;
-        for area in &mut areas {
-            sum += *area;
-            *area = sum;
-        }
+        let (low, high) = bounds;
+        let side = (high - low).max_element();
+        let area_map = AreaMap::new(&areas, |i| {
+            let [a, b, c] = corners(i);
+            (a - low + (b - low) + (c - low)) / side
+        });
         Ok(Self {
             positions,
             triangles,
             uv: None,
             bounds,
-            areas,
+            area_map,
             tree,
             groups,
         })
@@ -209,7 +210,7 @@ impl Mesh {
 
     /// Σ ½|(b − a) × (c − a)|, length².
     pub fn area(&self) -> f64 {
-        self.areas[self.areas.len() - 1]
+        self.area_map.area()
     }
 
     /// The area of one triangle.
@@ -252,17 +253,31 @@ impl Mesh {
         self.point(triangle, weights)
     }
 
-    /// An equal-area map of the unit square to the mesh: u chooses the triangle, in the order of
-    /// the list and in proportion to its area, and what is left of it places the point there
-    /// together with v.
-    pub fn at(&self, [u, v]: [f64; 2]) -> Interaction {
-        let target = u.clamp(0.0, 1.0 - f64::EPSILON) * self.area();
-        let triangle = self.areas.partition_point(|a| *a <= target);
-        let triangle = triangle.min(self.areas.len() - 1);
-        let before = triangle.checked_sub(1).map_or(0.0, |k| self.areas[k]);
-        let own = self.areas[triangle] - before;
-        let rest = ((target - before) / own).clamp(0.0, 1.0);
-        self.point(triangle as u32, warp::triangle([rest, v]))
+    /// An equal-area map of the unit square to the mesh: u chooses the triangle, in proportion to
+    /// its area and those near each other one after the other, and what is left of it places the
+    /// point there together with v.
+    pub fn at(&self, uv: [f64; 2]) -> Interaction {
+        let (triangle, weights) = self.area_map.point(uv);
+        self.point(triangle, weights)
+    }
+
+    /// Edges along u that divide the mesh into about `parts` parts: the larger triangles of a mesh
+    /// of few, many together of one of many.
+    pub fn edges(&self, parts: usize) -> Vec<f64> {
+        let count = self.triangles.len();
+        if count > parts {
+            return (0..=parts).map(|k| k as f64 / parts as f64).collect();
+        }
+        self.area_map.edges(parts, parts.div_ceil(count))
+    }
+
+    /// Points whose convex hull holds what [`Mesh::at`] gives between `low` and `high`.
+    pub fn hull(&self, low: [f64; 2], high: [f64; 2]) -> impl Iterator<Item = DVec3> {
+        let points = self.area_map.hull(low, high);
+        points.map(|(triangle, [v, w])| {
+            let [a, b, c] = self.corners(triangle);
+            a + (b - a) * v + (c - a) * w
+        })
     }
 
     /// The parameters for which [`Mesh::at`] gives the point of a triangle that is nearest to `p`.
@@ -270,12 +285,8 @@ impl Mesh {
     /// # Panics
     /// If there is no such triangle.
     pub fn parameters(&self, triangle: u32, p: DVec3) -> [f64; 2] {
-        let k = triangle as usize;
-        let (_, [v, w]) = nearest::on_triangle(self.corners(triangle), p);
-        let before = k.checked_sub(1).map_or(0.0, |k| self.areas[k]);
-        let own = self.areas[k] - before;
-        let [rest, along] = warp::triangle_inverse([v, w]);
-        [(before + rest * own) / self.area(), along]
+        let (_, weights) = nearest::on_triangle(self.corners(triangle), p);
+        self.area_map.inverse(triangle, weights)
     }
 
     /// The point of the mesh nearest to `p`, and its triangle; of triangles equally near the first.
@@ -329,7 +340,7 @@ impl Mesh {
     /// Whether a triangle stands between the two ends of the segment. A segment that starts or ends
     /// in the plane of a triangle (to rounding) is not cut by it.
     pub fn blocks(&self, segment: &Ray) -> bool {
-        self.blocks_many(std::slice::from_ref(segment))[0]
+        self.blocks_beyond(segment, 0.0)
     }
 
     /// [`Mesh::blocks`] for many segments: much faster than one by one where the mesh is large.
@@ -346,6 +357,20 @@ impl Mesh {
             || {
                 self.tree
                     .traverse(segments, &Any(self, reach), |i, (_, hit)| found[i] = hit);
+            },
+        );
+        found
+    }
+
+    /// The same for one segment.
+    pub(super) fn blocks_beyond(&self, segment: &Ray, reach: f64) -> bool {
+        let mut found = false;
+        let one = std::slice::from_ref(segment);
+        widest(
+            #[inline(always)]
+            || {
+                self.tree
+                    .traverse(one, &Any(self, reach), |_, (_, hit)| found = hit);
             },
         );
         found

@@ -5,9 +5,8 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::area::AreaSampler;
-use super::camera::{DirectLight, PixelView, sees_nothing};
-use super::importance::Importance;
+use super::camera::{DirectLight, PixelView};
+use super::guide::Guide;
 use super::path::PathSampler;
 use super::plan::Plan;
 use super::spots::LitSpots;
@@ -22,6 +21,8 @@ pub(super) struct Context<'a> {
     pub scene: &'a Scene,
     pub plan: Plan,
     pub path: PathSampler<'a>,
+    /// Where points between the walls are drawn, where anything may be near.
+    pub guide: Option<Guide>,
     pub spots: LitSpots<'a>,
     pub direct: DirectLight,
     /// By pixel.
@@ -39,60 +40,51 @@ pub(super) struct Context<'a> {
 impl<'a> Context<'a> {
     pub(super) fn new(scene: &'a Scene, plan: &Plan, spots: Range<usize>) -> Self {
         let blocks = (plan.sampling, plan.budget.size);
-        let spots = LitSpots::new(scene, spots, blocks);
+        let mut spots = LitSpots::new(scene, spots, blocks);
         let views = (0..scene.camera.pixels()).into_par_iter();
         let views: Vec<PixelView> = views.map(|p| PixelView::new(scene, p)).collect();
         let seen = known_or_all(scene, views.iter().map(PixelView::shape).collect());
         let lit = spots.beams.lit_shapes();
         let between = between(scene, &seen, &lit);
-        let guided = OnceCell::new();
-        let guide = || {
-            let sampler = || AreaSampler::guided(scene, &between, &importance(&views, &spots));
-            guided.get_or_init(sampler).clone()
+        let guide = OnceCell::new();
+        let guided = || {
+            guide
+                .get_or_init(|| Guide::new(&between, &views, &spots, plan))
+                .for_all()
         };
-        let path = PathSampler::new(scene, &seen, guide);
+        let path = PathSampler::new(scene, &seen, guided);
         let close = !seen.iter().all(|s| path.far_from_hidden(*s));
         let two = |t: &ShapeId| any_may_be_visible(scene, &seen, *t);
+        let strata = Strata::new(
+            scene,
+            &between,
+            close.then(guided),
+            (plan.sampling, plan.budget.size),
+        );
+        let guide = guide.into_inner().filter(|guide| !guide.is_empty());
+        if let Some(guide) = &guide
+            && guide.is_by_column()
+            && scene.max_bounces <= 3
+            && seen.iter().all(|s| path.chooses_at(*s))
+        {
+            let near: Vec<bool> = (0..scene.laser.spots.len())
+                .map(|spot| guide.is_too_coarse_for(&spots, spot))
+                .collect();
+            spots.light_paths.keep(|spot| near[spot]);
+        }
         Self {
             scene,
             plan: *plan,
             direct: DirectLight::new(scene, &spots),
-            strata: Strata::new(
-                scene,
-                &between,
-                close.then(guide),
-                (plan.sampling, plan.budget.size),
-            ),
+            strata,
             has_two_bounce_light: scene.max_bounces > 1 && lit.iter().any(two),
             is_glossy: scene.surfaces.iter().any(|s| !s.is_lambertian()),
             path,
+            guide,
             spots,
             views,
             between,
         }
-    }
-
-    /// Whether light of a column may reach a pixel: no where the beam lands on nothing that
-    /// reflects, where the pixel sees nothing, or where between any two surfaces of a path one lies
-    /// behind the other or is black. Shapes in between are not considered, so a yes may be wrong.
-    pub(super) fn may_be_lit(&self, pixel: usize, column: usize) -> bool {
-        let (scene, all) = (self.scene, || known_or_all(self.scene, None));
-        let spot = self.spots.range.start + column;
-        let lit = match self.spots.beams.ideal.get(spot) {
-            Some(Some(point)) => vec![point.shape],
-            Some(None) => return false,
-            None => all(),
-        };
-        let is_black = |s: &ShapeId| scene.surfaces[*s as usize].is_black();
-        let known = self.views[pixel].shape().map(|s| vec![s]);
-        let nothing = || sees_nothing(scene, pixel).then(Vec::new);
-        let mut seen = known.or_else(nothing).unwrap_or_else(all);
-        seen.retain(|s| !is_black(s));
-        let two = || lit.iter().any(|t| any_may_be_visible(scene, &seen, *t));
-        !seen.is_empty()
-            && (self.direct.may_reach(pixel, column)
-                || scene.max_bounces > 1 && two()
-                || scene.max_bounces > 2 && !between(scene, &seen, &lit).is_empty())
     }
 
     /// The first shape of `between` that is not Lambertian, by name.
@@ -103,14 +95,4 @@ impl<'a> Context<'a> {
             (!surface.is_lambertian()).then_some(surface.name.as_str())
         })
     }
-}
-
-/// That of the middles of all pixels and beams.
-fn importance<'a>(views: &[PixelView], spots: &LitSpots<'a>) -> Importance<'a> {
-    let scene = spots.scene;
-    let seen = views.iter().filter_map(|v| v.vertex(scene, [0.5; 2]));
-    // All spots, whichever of them are traced: their bits do not depend on that.
-    let lit = 0..scene.laser.spots.len();
-    let lit = lit.filter_map(|spot| spots.beams.point(spot, [0.5; 2]));
-    Importance::new(scene, &seen.collect::<Vec<_>>(), &lit.collect::<Vec<_>>())
 }

@@ -223,7 +223,7 @@ impl<'a> Factored<'a> {
             let ends = &mut points.vertices[k * self.deeper..];
             let (vertices, first_step) = (self.deeper as u32, [u, v, choice]);
             let path = &self.context.path;
-            path.trace(first, vertices, first_step, stream, |n, vertex| {
+            path.trace(first, vertices, (first_step, None), stream, |n, vertex| {
                 ends[n as usize - 1] = Some(*vertex);
             });
         });
@@ -307,8 +307,7 @@ impl<'a> Factored<'a> {
                 let Some(point) = &lit.at(i)[column] else {
                     continue;
                 };
-                let y = light_end(scene, point, [u, v])
-                    .and_then(|end| path.connect(x, &end, end.density));
+                let y = light_end(scene, point, [u, v]).and_then(|end| path.connect(x, &end, None));
                 row[column] += y.map_or(0.0, |y| spots.light_from(point, &y));
             }
         }

@@ -70,6 +70,12 @@ impl LightPaths {
         }
     }
 
+    /// Leaves them to the spots for which `needed` holds: others have points enough where every
+    /// entry has points of its own ([`guide`](super::guide)).
+    pub(super) fn keep(&mut self, needed: impl Fn(usize) -> bool) {
+        self.columns.retain(|column| needed(self.first + column));
+    }
+
     /// The columns among `range` that have light paths.
     pub(super) fn columns(&self, range: &Range<usize>) -> &[usize] {
         let place = |c: usize| self.columns.partition_point(|own| *own < c);

@@ -21,8 +21,10 @@
 //! vertex), `path` (next vertex), `beam` and `spots` (connection with every lit point),
 //! `light_path` and `light_points` (points drawn from a lit point where surfaces come close to
 //! it), `vertex` (geometry term, BRDF), `visibility`, `area` and `strata` (points by area),
-//! `importance` (which parts of it matter), and what is computed of them once, in `context`.
-//! `tally` adds up blocks, `spread` and `tails` judge their standard error, `render` traces them.
+//! `parts` (what that is divided into), `steps` (distributions over them), `guide` (which parts
+//! matter to a pixel and a spot), and what is computed of them once, in `context`.
+//! `tally` adds up blocks, `spread` and `tails` judge their standard error, `reach` says which
+//! entries may be lit, `render` traces them.
 //!
 //! No ray is cast where nothing can stand in the way; what can is computed once per pair of
 //! regions, conservatively ([`Region`](crate::geometry::Region)).
@@ -34,17 +36,20 @@ mod beam;
 mod camera;
 mod context;
 mod factored;
-mod importance;
+mod guide;
 mod independent;
 mod light_path;
 mod light_points;
+mod parts;
 mod path;
 mod plan;
 mod points;
+mod reach;
 mod render;
 mod shared;
 mod spots;
 mod spread;
+mod steps;
 mod strata;
 pub mod tails;
 mod tally;

@@ -50,6 +50,16 @@ pub(super) struct PathSampler<'a> {
     far: Vec<bool>,
 }
 
+/// Points for the first step of the paths of one pixel that choose.
+#[derive(Debug)]
+pub(super) struct OwnPoints {
+    pub points: AreaSampler,
+    /// Whether nothing is near: the lobe is not needed.
+    pub alone: bool,
+}
+
+/// Probability of the area strategy where a pixel has points of its own and some of them are near.
+const OWN: f64 = 0.75;
 /// A hidden surface this many of its circumradii away is sampled by area alone: the kernel varies
 /// little over it.
 const FAR: f64 = 1.25;
@@ -109,7 +119,7 @@ impl<'a> PathSampler<'a> {
         &self,
         first: Option<Vertex>,
         vertices: u32,
-        first_step: [f64; 3],
+        (first_step, own): ([f64; 3], Option<&OwnPoints>),
         stream: &mut Stream,
         mut visit: impl FnMut(u32, &Vertex),
     ) {
@@ -119,10 +129,10 @@ impl<'a> PathSampler<'a> {
             visit(n, &x);
             next = match n {
                 _ if n == vertices => return,
-                1 => self.next(&x, first_step),
+                1 => self.next(&x, first_step, own),
                 _ => {
                     let [u, v, choice, _] = stream.next_four();
-                    self.next(&x, [u, v, choice])
+                    self.next(&x, [u, v, choice], None)
                 }
             };
         }
@@ -137,27 +147,57 @@ impl<'a> PathSampler<'a> {
     /// the mixture is positive wherever f is. A point that the area strategy chose counts only if
     /// it is visible itself: to take the first hit in its direction instead would count a surface
     /// in front of it twice.
-    fn next(&self, x: &Vertex, [u, v, choice]: [f64; 3]) -> Option<Vertex> {
-        let q = self.strategies[x.shape as usize].share_of_area()?;
+    fn next(
+        &self,
+        x: &Vertex,
+        [u, v, choice]: [f64; 3],
+        own: Option<&OwnPoints>,
+    ) -> Option<Vertex> {
+        let (points, q) = self.points(x, own)?;
         let point = if choice < q {
-            self.by_area(x, [u, v])?
+            self.by_area(x, points, [u, v])?
         } else {
             self.by_lobe(x, [u, v], (choice - q) / (1.0 - q))?
         };
         let segment = geometry_term(x.oriented(), point.oriented())?;
-        self.arrive(x, &point, &segment, q, 0.0)
+        self.arrive(x, &point, &segment, (points, q), 0.0)
     }
 
-    /// The vertex at the end of a light path that was drawn with `density` light paths per path and
-    /// area, seen from x; `None` if it is not.
-    pub(super) fn connect(&self, x: &Vertex, end: &LightEnd, density: f64) -> Option<Vertex> {
-        let q = self.strategies[x.shape as usize].share_of_area()?;
+    /// The points of the area strategy at x, and its probability; `None` where no path goes on.
+    fn points<'p>(
+        &'p self,
+        x: &Vertex,
+        own: Option<&'p OwnPoints>,
+    ) -> Option<(&'p AreaSampler, f64)> {
+        let strategy = self.strategies[x.shape as usize];
+        match own {
+            Some(own) if strategy == Strategy::Both => {
+                Some((&own.points, if own.alone { 1.0 } else { OWN }))
+            }
+            _ => Some((&self.points, strategy.share_of_area()?)),
+        }
+    }
+
+    /// Whether paths that go on from `shape` choose.
+    pub(super) fn chooses_at(&self, shape: ShapeId) -> bool {
+        self.strategies[shape as usize] == Strategy::Both
+    }
+
+    /// The vertex at the end of a light path, as many of which are drawn as paths, seen from x;
+    /// `None` if it is not.
+    pub(super) fn connect(
+        &self,
+        x: &Vertex,
+        end: &LightEnd,
+        own: Option<&OwnPoints>,
+    ) -> Option<Vertex> {
+        let points = self.points(x, own)?;
         let segment = geometry_term(x.oriented(), end.at.oriented())?;
         let ends = [Some(x.shape), Some(end.at.shape)];
         if self.scene.bvh().blocked(&segment.1, ends) {
             return None;
         }
-        self.arrive(x, &end.at, &segment, q, density)
+        self.arrive(x, &end.at, &segment, points, end.density)
     }
 
     /// The vertex at a visible point y, `density` that of the light paths there: the throughput is
@@ -167,7 +207,7 @@ impl<'a> PathSampler<'a> {
         x: &Vertex,
         at: &SurfacePoint,
         (term, ray): &(f64, Ray),
-        q: f64,
+        (points, q): (&AreaSampler, f64),
         density: f64,
     ) -> Option<Vertex> {
         let by_lobe = if q < 1.0 {
@@ -175,15 +215,15 @@ impl<'a> PathSampler<'a> {
         } else {
             0.0
         };
-        let own = q * self.points.density(at) + (1.0 - q) * by_lobe;
+        let own = q * points.density(at) + (1.0 - q) * by_lobe;
         let throughput = x.throughput * x.brdf(self.scene, ray.direction) * term / (own + density);
         let y = Vertex::arrive(self.scene, at.shape, &at.point, ray.direction, throughput)?;
         y.reflects(self.scene)
             .then_some(Vertex { density: own, ..y })
     }
 
-    fn by_area(&self, x: &Vertex, u: [f64; 2]) -> Option<SurfacePoint> {
-        let (point, _) = self.points.sample(self.scene, u);
+    fn by_area(&self, x: &Vertex, points: &AreaSampler, u: [f64; 2]) -> Option<SurfacePoint> {
+        let (point, _) = points.sample(self.scene, u);
         let (_, ray) = geometry_term(x.oriented(), point.oriented())?;
         let ends = [Some(x.shape), Some(point.shape)];
         (!self.scene.bvh().blocked(&ray, ends)).then_some(point)

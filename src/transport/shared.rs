@@ -15,6 +15,7 @@ use std::ops::Range;
 
 use super::camera::first_vertex;
 use super::context::Context;
+use super::guide::PixelGuide;
 use super::light_path::{LightEnd, light_end};
 use super::points::PixelPoints;
 use super::spots::LitPoints;
@@ -37,16 +38,25 @@ pub(super) struct PixelRow<'a> {
     pixel: usize,
     /// What takes the place of paths where the pixel is simple enough.
     points: Option<PixelPoints<'a>>,
+    /// Where its paths go first.
+    guide: Option<PixelGuide<'a>>,
     /// The light of one vertex, a number a column.
     vertex: Vec<f64>,
 }
 
 impl<'a> PixelRow<'a> {
     pub(super) fn new(context: &'a Context<'a>, pixel: usize) -> Self {
+        let (scene, points) = (context.scene, PixelPoints::new(context, pixel));
+        let guide = context
+            .guide
+            .as_ref()
+            .filter(|_| points.is_none() && scene.max_bounces > 2);
+        let ways = (&context.path, &context.views[pixel]);
         Self {
             context,
             pixel,
-            points: PixelPoints::new(context, pixel),
+            guide: guide.and_then(|guide| PixelGuide::new(guide, ways, scene)),
+            points,
             vertex: Vec::new(),
         }
     }
@@ -95,6 +105,8 @@ impl<'a> PixelRow<'a> {
             .map(|c| (*c, spots.light_paths.stream(key, *c)))
             .collect();
         self.vertex.resize(n, 0.0);
+        let mut guide = self.guide.take();
+        let own = guide.as_mut().map(|guide| guide.points(columns.start));
         for index in 0..plan.budget.size {
             stream.start(index);
             let [a, b, u, v] = stream.next_four();
@@ -109,7 +121,8 @@ impl<'a> PixelRow<'a> {
             direct.add(spots, self.pixel, (1, power), |_| x, &lit, one);
             let vertices = scene.max_bounces - 1;
             let ends = self.light_ends(&mut streams, index, &lit);
-            path.trace(x, vertices, [u, v, choice], &mut stream, |order, x| {
+            let first_step = ([u, v, choice], own);
+            path.trace(x, vertices, first_step, &mut stream, |order, x| {
                 spots.light_vertex(x, &lit, &mut self.vertex);
                 let y = (x.oriented(), x.density, 1.0);
                 spots
@@ -119,12 +132,13 @@ impl<'a> PixelRow<'a> {
                 let light = these.iter_mut().zip(&self.vertex);
                 light.for_each(|(sum, one)| *sum += one);
                 for (column, lit, end) in ends.iter().filter(|_| order < vertices) {
-                    let y = path.connect(x, end, end.density);
+                    let y = path.connect(x, end, own.filter(|_| order == 1));
                     let light = y.map_or(0.0, |y| spots.light_from(lit, &y));
                     longer[column - columns.start] += light;
                 }
             });
         }
+        self.guide = guide;
     }
 
     /// The ends of the light paths that belong to path `index`, each with its column and lit point.

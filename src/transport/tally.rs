@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::context::Context;
 use super::plan::{Plan, Traced};
+use super::reach::MayBeLit;
 use super::spread::Spread;
 use super::tails::UNLIT;
 use crate::matrix::Matrix;
@@ -259,8 +259,8 @@ impl Tally {
     pub fn traced(&self, scene: &Scene, plan: &Plan, spots: Range<usize>) -> Option<Traced> {
         let mut known = None;
         self.means(scene.laser.power, &mut |pixel, column| {
-            let context = known.get_or_insert_with(|| Context::new(scene, plan, spots.clone()));
-            context.may_be_lit(pixel, column)
+            let may_be_lit = known.get_or_insert_with(|| MayBeLit::new(scene, plan, spots.clone()));
+            may_be_lit.entry(pixel, column)
         })
     }
 

@@ -148,3 +148,28 @@ fn a_wide_spot_is_the_mean_over_its_disc() {
     let way = Way(Shared, Sampling::Sobol, 4, 4096);
     assert!(!compare(&trace(&scene, way), &matrix(&ideal), way).agrees);
 }
+
+/// A few pixels from the middle of the scenes in which light is hidden from most of what it could
+/// reach, all spots, the default settings: σ of all entries together is below 1 % of their light.
+#[test]
+#[ignore = "slow"]
+fn a_default_render_knows_scenes_with_obstacles_to_a_percent() {
+    let crops = [
+        (
+            "card",
+            "x = [0, 95], y = [0, 63] }\npixels = [72, 48]",
+            "x = [44, 48], y = [30, 34] }\npixels = [3, 3]",
+        ),
+        (
+            "corner",
+            "x = [0.1, 0.7], y = [0.7, 1.3] }\npixels = [32, 32]",
+            "x = [0.38, 0.44], y = [0.98, 1.04] }\npixels = [3, 3]",
+        ),
+    ];
+    for (name, view, few) in crops {
+        let scene = builtin(name, &[(view, few)]);
+        let traced = trace(&scene, Way(Independent, Sampling::Sobol, 1, 512));
+        let error = traced.stderr.norm() / traced.flux.norm();
+        assert!(error <= 0.01, "{name}: {error}");
+    }
+}

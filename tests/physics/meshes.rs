@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use phicam::geometry::{DAffine3, DQuat, DVec3};
+use phicam::geometry::{DAffine3, DQuat, DVec3, Ray};
 use phicam::model::{Extent, Kernel, MatrixModel, converged};
 use phicam::num::stream::Sampling;
 use phicam::scene::mesh::{FaceValues, Triangles, bust, to_ply};
@@ -114,8 +114,19 @@ fn placed(triangles: &Triangles, place: DAffine3) -> Triangles {
     moved
 }
 
+/// Steps of a sequence that fills [0, 1]⁶: powers of 1/φ₆, φ₆⁷ = φ₆ + 1.
+const GOLDEN: [f64; 6] = [
+    0.898_653_712_628_699_2,
+    0.807_578_495_221_344_7,
+    0.725_733_412_969_759_8,
+    0.652_183_025_943_971_6,
+    0.586_086_697_577_969_3,
+    0.526_688_986_700_735_8,
+];
+
 /// Two busts that share one mesh, against two meshes whose vertices were moved before they were
-/// written: the same paths meet the same triangles, up to rounding.
+/// written: the same rays meet the same triangles at the same places, up to rounding, and the light
+/// is the same.
 #[test]
 #[ignore = "slow"]
 fn instances_are_copies() {
@@ -170,16 +181,29 @@ fn instances_are_copies() {
         .filter(|s| s.role == Role::Occluder)
         .count();
     assert_eq!(busts, 2);
-    for estimator in [Estimator::Shared, Estimator::Factored] {
-        let way = Way(estimator, Sampling::Sobol, 3, 1024);
-        let (a, b) = (trace(&shared, way), trace(&copied, way));
-        assert!(
-            relative(&a.flux, &b.flux) < 1e-9,
-            "{}",
-            relative(&a.flux, &b.flux)
+    let unit = |k: usize, d: usize| (0.5 + k as f64 * GOLDEN[d]).fract();
+    let mut met = 0;
+    for k in 0..20_000 {
+        let from = DVec3::from_array([0, 1, 2].map(|d| 12.0 * unit(k, d)));
+        let to = DVec3::from_array([3, 4, 5].map(|d| 12.0 * unit(k, d)));
+        let ray = Ray::new(from, (to - from).normalize());
+        let [a, b] = [&shared, &copied].map(|scene| scene.bvh().closest(&ray, None));
+        assert_eq!(
+            a.map(|h| (h.shape, h.triangle)),
+            b.map(|h| (h.shape, h.triangle))
         );
-        let other = trace(&copied, Way(estimator, Sampling::Sobol, 4, 1024));
-        assert_same_under(Errors::of(estimator), &a, &other, "copies");
+        if let (Some(a), Some(b)) = (a, b) {
+            let [p, q] = [(&shared, a), (&copied, b)].map(|(s, h)| s.bvh().point(&ray, h));
+            assert!((p.position - q.position).length() < 1e-9);
+            assert!((p.normal - q.normal).length() < 1e-9);
+            met += usize::from(shared.surfaces[a.shape as usize].role == Role::Occluder);
+        }
+    }
+    assert!(met > 100, "{met} rays met a bust");
+    for estimator in [Estimator::Shared, Estimator::Factored] {
+        let a = trace(&shared, Way(estimator, Sampling::Sobol, 3, 1024));
+        let b = trace(&copied, Way(estimator, Sampling::Sobol, 4, 1024));
+        assert_same_under(Errors::of(estimator), &a, &b, "copies");
     }
 }
 

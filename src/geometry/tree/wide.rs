@@ -99,7 +99,7 @@ impl WideTree {
         mut done: impl FnMut(usize, Q::State),
     ) {
         let mut waiting = rays.iter().enumerate();
-        let mut walks: Vec<Walk<Q::State>> = Vec::with_capacity(UNDER_WAY);
+        let mut walks: Vec<Walk<Q::State>> = Vec::with_capacity(UNDER_WAY.min(rays.len()));
         walks.extend(waiting.by_ref().take(UNDER_WAY).map(|(i, ray)| {
             let stack = Vec::with_capacity(64);
             Walk::new(&self.space, (i, ray), query.begin(ray), stack)

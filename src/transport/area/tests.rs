@@ -78,16 +78,21 @@ fn points_follow_their_density() {
 
 /// The way back from a point to the unit square, by the definition of the two distribution
 /// functions: the share of the surfaces, rows and cells before the point, and of its own as far as
-/// it lies in.
+/// it lies in. The shares are the density times the area of the cells of the two textures.
 #[test]
 fn points_return_to_their_place_in_the_square() {
     let scene = scene();
     let hidden = sampler(&scene);
-    let along = |steps: &PiecewiseConstant, n: usize, x: f64| {
-        let i = ((x * n as f64) as usize).min(n - 1);
-        let before: f64 = (0..i).map(|k| steps.share(k)).sum();
-        before + (x * n as f64 - i as f64) * steps.share(i)
+    let share = |shape: ShapeId, i: usize, j: usize| {
+        let n = if shape == 1 { 3 } else { 1 };
+        let centre = [i, j].map(|i| (i as f64 + 0.5) / f64::from(n));
+        let at = SurfacePoint::at(&scene, shape, centre);
+        hidden.density(&at) * scene.surfaces[shape as usize].shape.area() / f64::from(n * n)
     };
+    let of_shape =
+        |shape: ShapeId, n: usize| -> f64 { (0..n * n).map(|k| share(shape, k % n, k / n)).sum() };
+    let [first, second] = [of_shape(1, 3), of_shape(2, 1)];
+    assert!((first + second - 1.0).abs() < 1e-12);
     let key = Key {
         seed: 4,
         spot: 0,
@@ -98,12 +103,23 @@ fn points_return_to_their_place_in_the_square() {
     for _ in 0..5000 {
         let u = stream.next_four();
         let (at, _) = hidden.sample(&scene, [u[0], u[1]]);
-        let (shape, p) = (at.shape, at.point);
-        let s = &hidden.surfaces[hidden.of_shape[shape as usize].unwrap()];
-        let row = ((p.uv[1] * s.count[1] as f64) as usize).min(s.count[1] - 1);
+        let (n, before, own) = if at.shape == 1 {
+            (3, 0.0, first)
+        } else {
+            (1, first, second)
+        };
+        let along = |shares: Vec<f64>, x: f64| {
+            let i = ((x * n as f64) as usize).min(n - 1);
+            let sum: f64 = shares[..i].iter().sum();
+            let all: f64 = shares.iter().sum();
+            (sum + (x * n as f64 - i as f64) * shares[i]) / all
+        };
+        let row = ((at.point.uv[1] * n as f64) as usize).min(n - 1);
+        let in_row = (0..n).map(|i| share(at.shape, i, row)).collect();
+        let row_sum = |j: usize| (0..n).map(|i| share(at.shape, i, j)).sum();
         let back = [
-            s.before + s.share * along(&s.columns[row], s.count[0], p.uv[0]),
-            along(&s.rows, s.count[1], p.uv[1]),
+            before + own * along(in_row, at.point.uv[0]),
+            along((0..n).map(row_sum).collect(), at.point.uv[1]),
         ];
         for d in 0..2 {
             assert!((back[d] - u[d]).abs() < 1e-12, "{u:?} -> {back:?}");
@@ -111,49 +127,17 @@ fn points_return_to_their_place_in_the_square() {
     }
 }
 
-/// The map is continuous and onto: equal steps in u give places whose step never falls, and the
-/// ends of the unit interval stay inside.
-#[test]
-fn distribution_functions_invert() {
-    let steps = PiecewiseConstant::new([0.0, 2.0, 0.0, 1.0, 0.0].into_iter());
-    let mut last = 0.0;
-    for k in 0..1000 {
-        let (i, x) = steps.invert(f64::from(k) / 1000.0);
-        assert!(i == 1 || i == 3, "an empty step was chosen");
-        assert!(x >= last && x < 1.0);
-        last = x;
-    }
-    let (i, x) = steps.invert(1.0 - f64::EPSILON);
-    assert!(i == 3 && x < 0.8);
-    // Two thirds of the weight lie in step 1: u = 1/3 is its middle.
-    assert!((steps.invert(1.0 / 3.0).1 - 0.3).abs() < 1e-12);
-    assert!((steps.share(3) - 1.0 / 3.0).abs() < 1e-15);
-}
-
-#[test]
-fn edges_on_dyadic_lines_are_told_from_others() {
-    let digits = |w: &[f64]| PiecewiseConstant::new(w.iter().copied()).digits(16);
-    assert_eq!(digits(&[1.0]), Some(0));
-    assert_eq!(digits(&[0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0]), Some(2));
-    assert_eq!(digits(&[3.0, 5.0]), Some(3));
-    assert_eq!(digits(&[1.0, 1.0, 1.0]), None);
-}
-
 /// A point that a ray finds has the density with which the sampler drew it, on meshes too, and
 /// Σ 1/density over the points of a shape estimates its area, within four standard errors.
 #[test]
 fn a_guided_sampler_knows_its_density() {
     let scene = Scene::load("shelf").unwrap();
-    let seen: Vec<_> = (0..scene.camera.pixels())
-        .filter_map(|p| first_vertex(&scene, p, [0.5; 2]))
-        .collect();
-    let beams = Beams::new(&scene);
-    let lit: Vec<_> = (0..scene.laser.spots.len())
-        .filter_map(|l| beams.point(l, [0.5; 2]))
-        .collect();
-    let importance = Importance::new(&scene, &seen, &lit);
     let shapes: Vec<ShapeId> = (1..scene.surfaces.len() as ShapeId).collect();
-    let sampler = AreaSampler::guided(&scene, &shapes, &importance);
+    let parts = Arc::new(Parts::divided(&scene, &shapes, 16));
+    let lit = Beams::new(&scene).point(0, [0.5; 2]).unwrap();
+    let ends = [first_vertex(&scene, 0, [0.5; 2]).unwrap(), lit];
+    let [seen, lit] = ends.map(|end| parts.seen_from(&scene, &end));
+    let sampler = AreaSampler::guided(&parts, |k| seen[k] * lit[k]);
     let key = Key {
         seed: 5,
         spot: 0,
