@@ -57,7 +57,7 @@ impl Batches<'_> {
             .for_each(|column| tracing.finished(column));
         for (number, spots) in batches.iter().enumerate() {
             let tally = self.trace_batch(spots, &mut tracing, console)?;
-            let Some(traced) = tally.traced(scene, plan, spots.range.clone()) else {
+            let Some(traced) = tally.traced(scene, spots.range.clone()) else {
                 return Ok(Some(tally.range().end));
             };
             let keep = |(column, spot)| partial.keep(spot, &traced, column);

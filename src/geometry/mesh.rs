@@ -352,28 +352,26 @@ impl Mesh {
     /// `reach`, and have their rounding.
     pub(super) fn blocks_many_beyond(&self, segments: &[Ray], reach: f64) -> Vec<bool> {
         let mut found = vec![false; segments.len()];
-        widest(
-            #[inline(always)]
-            || {
-                self.tree
-                    .traverse(segments, &Any(self, reach), |i, (_, hit)| found[i] = hit);
-            },
-        );
+        self.ask(segments, reach, |i, hit| found[i] = hit);
         found
     }
 
-    /// The same for one segment.
+    /// The same for one segment, without a list.
     pub(super) fn blocks_beyond(&self, segment: &Ray, reach: f64) -> bool {
         let mut found = false;
-        let one = std::slice::from_ref(segment);
+        self.ask(std::slice::from_ref(segment), reach, |_, hit| found = hit);
+        found
+    }
+
+    /// Tells of each segment whether a triangle stands in it.
+    fn ask(&self, segments: &[Ray], reach: f64, mut tell: impl FnMut(usize, bool)) {
         widest(
             #[inline(always)]
             || {
                 self.tree
-                    .traverse(one, &Any(self, reach), |_, (_, hit)| found = hit);
+                    .traverse(segments, &Any(self, reach), |i, (_, hit)| tell(i, hit));
             },
         );
-        found
     }
 
     /// The groups of a leaf.

@@ -10,7 +10,7 @@ use super::visibility::known_or_all;
 /// The beams to all spots of the scene.
 #[derive(Debug)]
 pub(super) struct Beams<'a> {
-    scene: &'a Scene,
+    pub scene: &'a Scene,
     /// By spot, if beams have no width: where its light lands.
     pub ideal: Vec<Option<Vertex>>,
 }

@@ -1,9 +1,12 @@
 //! The camera: the first vertex of a path, and what the camera sees of the lit spots themselves.
 
+use std::ops::Range;
+
 use crate::geometry::{Blockers, DVec3, Parallelogram, Ray, Region, Shape, ShapeId};
 use crate::num::lanes::widest;
 use crate::scene::{Scene, Texture};
 
+use super::beam::Beams;
 use super::spots::{LitPoints, LitSpots};
 use super::vertex::{Batch, Oriented, Vertex, constant_factor};
 use super::visibility::hide;
@@ -209,8 +212,9 @@ pub(super) struct DirectLight {
 }
 
 impl DirectLight {
-    pub(super) fn new(scene: &Scene, spots: &LitSpots<'_>) -> Self {
-        let (beams, columns) = (&spots.beams, spots.range.clone().enumerate());
+    /// Of the spots of `range`, a column each.
+    pub(super) fn new(beams: &Beams<'_>, range: &Range<usize>) -> Self {
+        let (scene, columns) = (beams.scene, range.clone().enumerate());
         let ideal = |(column, spot): (usize, usize)| {
             let lit = beams.ideal.get(spot)?.as_ref()?;
             let (pixel, flux) = flux_of_lit_point(scene, lit)?;

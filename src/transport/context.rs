@@ -67,15 +67,14 @@ impl<'a> Context<'a> {
             && scene.max_bounces <= 3
             && seen.iter().all(|s| path.chooses_at(*s))
         {
-            let near: Vec<bool> = (0..scene.laser.spots.len())
-                .map(|spot| guide.is_too_coarse_for(&spots, spot))
-                .collect();
-            spots.light_paths.keep(|spot| near[spot]);
+            let reach = spots.beams.reach();
+            let near = |spot: usize| guide.is_too_coarse_for(scene, spot, reach);
+            spots.light_paths.keep(near);
         }
         Self {
             scene,
             plan: *plan,
-            direct: DirectLight::new(scene, &spots),
+            direct: DirectLight::new(&spots.beams, &spots.range),
             strata,
             has_two_bounce_light: scene.max_bounces > 1 && lit.iter().any(two),
             is_glossy: scene.surfaces.iter().any(|s| !s.is_lambertian()),

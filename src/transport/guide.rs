@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use super::area::AreaSampler;
 use super::camera::PixelView;
 use super::parts::Parts;
-use super::path::{OwnPoints, PathSampler};
+use super::path::{PathSampler, Points};
 use super::plan::Plan;
 use super::spots::LitSpots;
 use super::vertex::Vertex;
@@ -24,6 +24,9 @@ use crate::scene::Scene;
 
 /// Points that are asked of each kind where one sampler serves all, at most.
 const MOST: usize = 16;
+
+/// Probability of the area strategy where some parts are near what the pixel sees.
+const BESIDE_LOBE: f64 = 0.75;
 
 /// Spots times parts up to which each spot has its own guess: 64 MiB, and as much in each thread.
 const MOST_NUMBERS: usize = 1 << 23;
@@ -80,10 +83,11 @@ impl Guide {
         !self.lit_by.is_empty()
     }
 
-    /// Whether any surface comes so near to a spot that its parts are too large for it.
-    pub(super) fn is_too_coarse_for(&self, spots: &LitSpots<'_>, spot: usize) -> bool {
-        let target = spots.scene.laser.spots[spot].target.position;
-        !self.parts.are_far_from(target, spots.beams.reach())
+    /// Whether any surface comes so near to a spot of radius `reach` that its parts are too large
+    /// for it.
+    pub(super) fn is_too_coarse_for(&self, scene: &Scene, spot: usize, reach: f64) -> bool {
+        let target = scene.laser.spots[spot].target.position;
+        !self.parts.are_far_from(target, reach)
     }
 
     /// One sampler for all pixels and spots.
@@ -118,10 +122,10 @@ pub(super) struct PixelGuide<'a> {
     guide: &'a Guide,
     /// By part.
     seen: Vec<f64>,
-    /// Whether all parts are far from what the pixel sees.
-    alone: bool,
+    /// Probability of the area strategy.
+    share: f64,
     /// By column, or one for all.
-    samplers: Vec<Option<OwnPoints>>,
+    samplers: Vec<Option<AreaSampler>>,
 }
 
 impl<'a> PixelGuide<'a> {
@@ -132,6 +136,9 @@ impl<'a> PixelGuide<'a> {
         scene: &Scene,
     ) -> Option<Self> {
         let x = view.vertex(scene, [0.5; 2])?;
+        if !path.chooses_at(x.shape) {
+            return None;
+        }
         let flat = scene.surfaces[x.shape as usize].is_lambertian() && view.shape().is_some();
         let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let reach = corners.map(|c| {
@@ -139,28 +146,27 @@ impl<'a> PixelGuide<'a> {
             corner.map_or(f64::INFINITY, |c| (c.position - x.position).length())
         });
         let reach = reach.into_iter().fold(0.0, f64::max);
-        path.chooses_at(x.shape).then(|| Self {
+        let alone = flat && guide.parts.are_far_from(x.position, reach);
+        Some(Self {
             seen: guide.parts.seen_from(scene, &x),
-            alone: flat && guide.parts.are_far_from(x.position, reach),
+            share: if alone { 1.0 } else { BESIDE_LOBE },
             samplers: (0..guide.lit_by.len().max(1)).map(|_| None).collect(),
             guide,
         })
     }
 
     /// The points of a column, or of all.
-    pub(super) fn points(&mut self, column: usize) -> &OwnPoints {
+    pub(super) fn points(&mut self, column: usize) -> Points<'_> {
         let Self {
             guide,
             seen,
-            alone,
+            share,
             samplers,
         } = self;
         let lit_by = guide.lit_by.get(column).filter(|lit| !lit.is_empty());
         let lit = lit_by.unwrap_or(&guide.lit);
         let column = column.min(samplers.len() - 1);
-        samplers[column].get_or_insert_with(|| OwnPoints {
-            points: AreaSampler::guided(&guide.parts, |k| seen[k] * lit[k]),
-            alone: *alone,
-        })
+        let sampler = || AreaSampler::guided(&guide.parts, |k| seen[k] * lit[k]);
+        (samplers[column].get_or_insert_with(sampler), *share)
     }
 }

@@ -55,8 +55,9 @@ const POINTS: usize = 4;
 const EDGE: f64 = 0.3;
 /// The share of G that is counted where nothing is seen.
 const UNSEEN: f64 = 0.1;
-/// A part this many of its radii away is sampled by area alone: the kernel varies little over it.
-const FAR: f64 = 1.25;
+/// A surface, or a part of one, this many of its circumradii away is sampled by area alone: the
+/// kernel varies little over it.
+pub(super) const FAR: f64 = 1.25;
 
 impl Parts {
     /// Each surface is one part.

@@ -10,6 +10,7 @@ use crate::scene::material::{Material, Part, mirrored};
 
 use super::area::{AreaSampler, SurfacePoint};
 use super::light_path::LightEnd;
+use super::parts::FAR;
 use super::vertex::{Vertex, geometry_term};
 use super::visibility::may_be_visible;
 
@@ -50,19 +51,8 @@ pub(super) struct PathSampler<'a> {
     far: Vec<bool>,
 }
 
-/// Points for the first step of the paths of one pixel that choose.
-#[derive(Debug)]
-pub(super) struct OwnPoints {
-    pub points: AreaSampler,
-    /// Whether nothing is near: the lobe is not needed.
-    pub alone: bool,
-}
-
-/// Probability of the area strategy where a pixel has points of its own and some of them are near.
-const OWN: f64 = 0.75;
-/// A hidden surface this many of its circumradii away is sampled by area alone: the kernel varies
-/// little over it.
-const FAR: f64 = 1.25;
+/// Points of the area strategy, with its probability.
+pub(super) type Points<'p> = (&'p AreaSampler, f64);
 
 impl<'a> PathSampler<'a> {
     /// `seen` are the shapes that pixels may see; `guide` samples those that light may meet before.
@@ -119,7 +109,7 @@ impl<'a> PathSampler<'a> {
         &self,
         first: Option<Vertex>,
         vertices: u32,
-        (first_step, own): ([f64; 3], Option<&OwnPoints>),
+        (first_step, own): ([f64; 3], Option<Points<'_>>),
         stream: &mut Stream,
         mut visit: impl FnMut(u32, &Vertex),
     ) {
@@ -151,7 +141,7 @@ impl<'a> PathSampler<'a> {
         &self,
         x: &Vertex,
         [u, v, choice]: [f64; 3],
-        own: Option<&OwnPoints>,
+        own: Option<Points<'_>>,
     ) -> Option<Vertex> {
         let (points, q) = self.points(x, own)?;
         let point = if choice < q {
@@ -163,19 +153,11 @@ impl<'a> PathSampler<'a> {
         self.arrive(x, &point, &segment, (points, q), 0.0)
     }
 
-    /// The points of the area strategy at x, and its probability; `None` where no path goes on.
-    fn points<'p>(
-        &'p self,
-        x: &Vertex,
-        own: Option<&'p OwnPoints>,
-    ) -> Option<(&'p AreaSampler, f64)> {
+    /// The area strategy at x; `None` where no path goes on.
+    fn points<'p>(&'p self, x: &Vertex, own: Option<Points<'p>>) -> Option<Points<'p>> {
         let strategy = self.strategies[x.shape as usize];
-        match own {
-            Some(own) if strategy == Strategy::Both => {
-                Some((&own.points, if own.alone { 1.0 } else { OWN }))
-            }
-            _ => Some((&self.points, strategy.share_of_area()?)),
-        }
+        let own = own.filter(|_| strategy == Strategy::Both);
+        own.or_else(|| Some((&self.points, strategy.share_of_area()?)))
     }
 
     /// Whether paths that go on from `shape` choose.
@@ -189,7 +171,7 @@ impl<'a> PathSampler<'a> {
         &self,
         x: &Vertex,
         end: &LightEnd,
-        own: Option<&OwnPoints>,
+        own: Option<Points<'_>>,
     ) -> Option<Vertex> {
         let points = self.points(x, own)?;
         let segment = geometry_term(x.oriented(), end.at.oriented())?;
@@ -207,7 +189,7 @@ impl<'a> PathSampler<'a> {
         x: &Vertex,
         at: &SurfacePoint,
         (term, ray): &(f64, Ray),
-        (points, q): (&AreaSampler, f64),
+        (points, q): Points<'_>,
         density: f64,
     ) -> Option<Vertex> {
         let by_lobe = if q < 1.0 {

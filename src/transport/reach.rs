@@ -5,9 +5,8 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::beam::Beams;
 use super::camera::{DirectLight, PixelView, sees_nothing};
-use super::plan::Plan;
-use super::spots::LitSpots;
 use super::visibility::{any_may_be_visible, between, known_or_all};
 use crate::geometry::ShapeId;
 use crate::scene::Scene;
@@ -26,8 +25,8 @@ pub(super) struct MayBeLit<'a> {
 }
 
 impl<'a> MayBeLit<'a> {
-    pub(super) fn new(scene: &'a Scene, plan: &Plan, spots: Range<usize>) -> Self {
-        let spots = LitSpots::new(scene, spots, (plan.sampling, plan.budget.size));
+    pub(super) fn new(scene: &'a Scene, spots: Range<usize>) -> Self {
+        let beams = Beams::new(scene);
         let all = || known_or_all(scene, None);
         let seen = |pixel: usize| {
             let known = PixelView::new(scene, pixel).shape().map(|s| vec![s]);
@@ -36,7 +35,7 @@ impl<'a> MayBeLit<'a> {
             seen.retain(|s| !scene.surfaces[*s as usize].is_black());
             seen
         };
-        let lit = |spot: usize| match spots.beams.ideal.get(spot) {
+        let lit = |spot: usize| match beams.ideal.get(spot) {
             Some(Some(point)) => vec![point.shape],
             Some(None) => Vec::new(),
             None => all(),
@@ -44,9 +43,9 @@ impl<'a> MayBeLit<'a> {
         let pixels = (0..scene.camera.pixels()).into_par_iter();
         Self {
             scene,
-            direct: DirectLight::new(scene, &spots),
+            direct: DirectLight::new(&beams, &spots),
             seen: pixels.map(seen).collect(),
-            lit: spots.range.clone().map(lit).collect(),
+            lit: spots.map(lit).collect(),
             known: BTreeMap::new(),
         }
     }

@@ -67,7 +67,7 @@ pub fn render(
         control,
         go_on,
     )?
-    .traced(scene, plan, spots)
+    .traced(scene, spots)
     .ok_or(RenderError::Stopped(Stopped))
 }
 

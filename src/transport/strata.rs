@@ -33,8 +33,8 @@ impl Drawn {
 /// points, or where a net over all of them is stratified by each of them already.
 ///
 /// Where a surface comes close to what the camera sees, area alone would seldom hit what matters:
-/// half of the points then follow a guess of what matters, and as many are sent out from an anchor in the
-/// middle of the view, by the cosine.
+/// half of the points then follow a guess of what matters, and as many are sent out from an anchor
+/// in the middle of the view, by the cosine.
 #[derive(Debug)]
 pub(super) struct Strata<'a> {
     scene: &'a Scene,

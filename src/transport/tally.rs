@@ -256,10 +256,10 @@ impl Tally {
     /// % confidence, m what a lit block would bring (the rule of three; Hanley, Lippman-Hand, JAMA
     /// 249, 1983). That is its standard error, with m the largest block of its column, or the
     /// laser's power where all of the column is dark.
-    pub fn traced(&self, scene: &Scene, plan: &Plan, spots: Range<usize>) -> Option<Traced> {
+    pub fn traced(&self, scene: &Scene, spots: Range<usize>) -> Option<Traced> {
         let mut known = None;
         self.means(scene.laser.power, &mut |pixel, column| {
-            let may_be_lit = known.get_or_insert_with(|| MayBeLit::new(scene, plan, spots.clone()));
+            let may_be_lit = known.get_or_insert_with(|| MayBeLit::new(scene, spots.clone()));
             may_be_lit.entry(pixel, column)
         })
     }

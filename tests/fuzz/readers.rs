@@ -226,7 +226,7 @@ pub const SHARD: Reader = Reader {
                     let _ = tally.add_part(range, &bytes).map_err(reason);
                 }
                 assert_eq!(end, shard.range.end);
-                if let Some(traced) = tally.traced(scene, &plan, 0..1) {
+                if let Some(traced) = tally.traced(scene, 0..1) {
                     assert!(traced.flux.iter().all(|x| *x >= 0.0));
                     assert!(traced.stderr.iter().all(|x| *x >= 0.0));
                 }

@@ -95,15 +95,13 @@ impl Work for Render {
         let [mut flux, mut stderr, mut tails] = [(); 3].map(|()| Matrix::zeros(pixels, spots));
         for group in Spots::all(scene, plan) {
             let tally = group.tally(group.first, shards.parts(group.blocks()))?;
-            let traced = tally
-                .traced(scene, plan, group.range.clone())
-                .ok_or_else(|| {
-                    let cause = format!(
-                        "the shards in {} do not make up every block",
-                        shards.place.display()
-                    );
-                    Failure::new(cause, "merge again, and do not change the folder meanwhile")
-                })?;
+            let traced = tally.traced(scene, group.range.clone()).ok_or_else(|| {
+                let cause = format!(
+                    "the shards in {} do not make up every block",
+                    shards.place.display()
+                );
+                Failure::new(cause, "merge again, and do not change the folder meanwhile")
+            })?;
             folder.write_frames(scene, &record, &group.range, &traced)?;
             let (first, n) = (group.range.start, group.range.len());
             flux.columns_mut(first, n).copy_from(&traced.flux);

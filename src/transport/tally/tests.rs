@@ -196,7 +196,7 @@ fn traced_in_pieces_or_at_once_the_bits_are_the_same() {
             }
         }
         assert_eq!(
-            merged.traced(&scene, &plan, 0..5).unwrap(),
+            merged.traced(&scene, 0..5).unwrap(),
             whole,
             "{estimator:?} {sampling:?}"
         );
