@@ -51,7 +51,7 @@
 //!                    indicators, coverage, wall BRDFs, the laboratory experiment, the published study
 //!    5  recovery/    Φcam → reflectance              metrics/   how far two things are apart
 //!    4  transport/   the path tracer → Φcam          model/     G12, G23 → Φcam             sensor/  flux → electrons → counts
-//!    3  film/        frames, EXR                     matrix/    pixels × spots, .npy        store  whole files
+//!    3  film/        frames, EXR                     matrix/    pixels × spots, .npy        store  whole files, one writer each folder
 //!    2  scene/       laser, surface, texture, camera, scene file
 //!    1  geometry/    basis, shapes, BVH              image/     PNG, JPEG, EXR bytes ↔ pictures
 //!    0  num/         constants, streams (random and Sobol'), warps, quadrature, statistics, linear algebra, summation, wide arithmetic

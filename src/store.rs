@@ -6,11 +6,17 @@
 //! system does entirely or not at all), and the folder is flushed so that the rename outlives a
 //! power cut.
 
+mod lock;
+
 use std::fs::{self, File};
-use std::io::{self, BufWriter, ErrorKind, Write};
+use std::io::{self, BufWriter, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
+
+use sha2::{Digest, Sha256};
+
+pub use lock::{FolderLock, LockError};
 
 /// Why a file or a folder could not be written. Each message names the path, the cause and the
 /// cure.
@@ -26,6 +32,12 @@ pub enum StoreError {
     #[error("cannot write {}: it is there already and is no ordinary file; choose another file name", path.display())]
     NotAFile {
         /// What stands in the way.
+        path: PathBuf,
+    },
+    /// A file is there that is not to be replaced.
+    #[error("{} is there already; choose another file name, or replace it (--force)", path.display())]
+    Taken {
+        /// The file.
         path: PathBuf,
     },
     /// The system refuses.
@@ -47,6 +59,7 @@ impl StoreError {
                 return Self::NotAFolder { path };
             }
             ErrorKind::IsADirectory => return Self::NotAFile { path },
+            ErrorKind::AlreadyExists => return Self::Taken { path },
             ErrorKind::NotFound => {
                 "its folder does not exist; create the folder or choose another output"
             }
@@ -135,14 +148,15 @@ pub fn is_missing(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory)
 }
 
-/// Whether the file is one that [`write_whole`] was writing when its process ended: by the
-/// process's number if it ran on this machine, else by its age.
+/// Whether the file is one that [`write_whole`] was writing, or the [`FolderLock`] of a process, when
+/// that ended: by the process's number if it ran on this machine, else by its age.
 pub fn is_abandoned(path: &Path) -> bool {
     let name = path.file_name().and_then(|n| n.to_str()).unwrap_or("");
-    let Some(own) = name
-        .strip_prefix(PREFIX)
-        .and_then(|n| n.strip_suffix(SUFFIX))
-    else {
+    let own = name.strip_prefix(PREFIX).and_then(|n| {
+        n.strip_suffix(SUFFIX)
+            .or_else(|| n.strip_suffix(lock::SUFFIX))
+    });
+    let Some(own) = own else {
         return false;
     };
     let mut words = own.split('-');
@@ -167,6 +181,15 @@ fn flush_folder(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
+/// When a file is to be safe from a power cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Safe {
+    /// When the call returns.
+    Now,
+    /// After the next [`flush`] of its folder.
+    Later,
+}
+
 /// Writes the file `path` whole or not at all: `contents` writes into a temporary file of the same
 /// folder, which then takes the name `path`, replacing what had it. If anything fails, what `path`
 /// held before is untouched and nothing is left behind. A symbolic link at `path` is itself
@@ -178,6 +201,84 @@ fn flush_folder(folder: &Path) -> io::Result<()> {
 pub fn write_whole(
     path: &Path,
     contents: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), StoreError> {
+    put(path, Safe::Now, contents, true)
+}
+
+/// The same where nothing has the name `path` yet.
+///
+/// # Errors
+/// [`StoreError::Taken`] if something has; and those of [`write_whole`].
+pub fn write_new(
+    path: &Path,
+    contents: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), StoreError> {
+    put(path, Safe::Now, contents, false)
+}
+
+/// The same for one of many files that can be made again: other processes see it whole or not at
+/// all, and a power cut may leave it empty or cut off until its folder is [flushed](flush).
+///
+/// # Errors
+/// Those of [`write_whole`].
+pub fn write_soon(
+    path: &Path,
+    contents: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), StoreError> {
+    put(path, Safe::Later, contents, true)
+}
+
+/// Makes all files of the folder `dir` safe from a power cut.
+///
+/// # Errors
+/// [`StoreError`] if the system cannot.
+pub fn flush(dir: &Path) -> Result<(), StoreError> {
+    flush_files(dir).map_err(|e| StoreError::new(dir, e))
+}
+
+/// The whole file system at once: for each of thousands of files it would take milliseconds.
+#[cfg(target_os = "linux")]
+fn flush_files(dir: &Path) -> io::Result<()> {
+    Ok(rustix::fs::syncfs(File::open(dir)?)?)
+}
+
+#[cfg(not(target_os = "linux"))]
+fn flush_files(dir: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(dir)? {
+        let path = entry?.path();
+        if path.is_file() {
+            File::open(path)?.sync_all()?;
+        }
+    }
+    flush_folder(dir)
+}
+
+/// SHA-256 of a file, in hexadecimal digits.
+///
+/// # Errors
+/// [`io::Error`] if it cannot be read.
+pub fn digest(path: &Path) -> io::Result<String> {
+    let mut file = File::open(path)?;
+    let mut digest = Sha256::new();
+    let mut stretch = vec![0; 1 << 16];
+    loop {
+        match file.read(&mut stretch)? {
+            0 => return Ok(hex(&digest.finalize())),
+            n => digest.update(&stretch[..n]),
+        }
+    }
+}
+
+/// Hexadecimal digits of a digest.
+pub fn hex(digest: &[u8]) -> String {
+    digest.iter().map(|b| format!("{b:02x}")).collect()
+}
+
+fn put(
+    path: &Path,
+    safe: Safe,
+    contents: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    replace: bool,
 ) -> Result<(), StoreError> {
     let obstacle = fs::metadata(path).is_ok_and(|there| !there.is_file());
     if obstacle || path.file_name().is_none() {
@@ -192,9 +293,18 @@ pub fn write_whole(
         let file = writer
             .into_inner()
             .map_err(io::IntoInnerError::into_error)?;
-        file.as_file().sync_all()?;
-        file.persist(path).map_err(|e| e.error)?;
-        flush_folder(folder)
+        if safe == Safe::Now {
+            file.as_file().sync_all()?;
+        }
+        if replace {
+            file.persist(path).map_err(|e| e.error)?;
+        } else {
+            file.persist_noclobber(path).map_err(|e| e.error)?;
+        }
+        if safe == Safe::Now {
+            flush_folder(folder)?;
+        }
+        Ok(())
     };
     write().map_err(|e| StoreError::new(path, e))
 }

@@ -2,12 +2,10 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
-
 use super::console::Console;
 use super::failure::Failure;
 use super::interrupt::warned;
-use super::partial;
+use super::partial::{self, Kept, together};
 use super::process::process;
 use super::progress::Tracing;
 use super::record::Record;
@@ -15,7 +13,7 @@ use super::run_folder::RunFolder;
 use crate::jobs::{Checkpoint, Parts, Spots};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
-use crate::transport::{Plan, Tally};
+use crate::transport::{Plan, Tally, Traced};
 
 /// The spots of a render that are to be traced, batch by batch.
 pub(super) struct Batches<'a> {
@@ -24,54 +22,43 @@ pub(super) struct Batches<'a> {
     pub folder: &'a RunFolder,
     pub record: &'a Record,
     pub pool: &'a rayon::ThreadPool,
-    /// Whether to go on from the blocks that an earlier process has finished.
-    pub resume: bool,
 }
 
 impl Batches<'_> {
-    /// Traces the spots of `todo`; blocks, frames and kept spots are written as soon as they are
-    /// finished. If it was stopped, so many blocks of the next spots are finished as well.
+    /// Traces the spots of `todo`, beginning with those of which an earlier process has left blocks
+    /// (`begun`); what is finished of a batch is put on disk while it is traced, and its frames when
+    /// it is whole. If it was stopped, so many blocks of the next spots are finished as well.
     pub(super) fn trace(
         &self,
         todo: &[usize],
+        begun: &[Kept],
         kept: &mut [Option<Matrix>],
         console: Console,
     ) -> Result<Option<u32>, Failure> {
         let Self { scene, plan, .. } = *self;
-        let partial = self.folder.partial();
-        let spots = |range| Spots {
-            scene,
-            plan,
-            range,
-            first: 0,
-        };
-        let batches: Vec<Spots<'_>> = self.ranges(todo, kept).into_iter().map(spots).collect();
+        let ranges = self.ranges(todo, begun, kept);
+        let batches: Vec<Spots<'_>> = ranges.iter().map(|r| together(scene, plan, r)).collect();
         let blocks = u64::from(plan.budget.blocks);
         let paths = batches.iter().map(|spots| spots.paths(blocks)).sum();
         let mut tracing = Tracing::start(console, &scene.name, paths);
         // Those that a begun batch traces once more count when it is finished.
-        let again = |spot: usize| batches.iter().any(|spots| spots.range.contains(&spot));
-        let apart = (0..).zip(kept.iter()).filter(|(spot, _)| !again(*spot));
+        let mut again = vec![false; kept.len()];
+        ranges.into_iter().flatten().for_each(|s| again[s] = true);
+        let apart = kept.iter().zip(&again).filter(|(_, again)| !**again);
         apart
-            .filter_map(|(_, column)| column.as_ref())
+            .filter_map(|(column, _)| column.as_ref())
             .for_each(|column| tracing.finished(column));
         for (number, spots) in batches.iter().enumerate() {
             let tally = self.trace_batch(spots, &mut tracing, console)?;
             let Some(traced) = tally.traced(scene, spots.range.clone()) else {
                 return Ok(Some(tally.range().end));
             };
-            let keep = |(column, spot)| partial.keep(spot, &traced, column);
-            let columns = self.pool.install(|| {
-                self.folder
-                    .write_frames(scene, self.record, &spots.range, &traced)?;
-                let spots = spots.range.clone().into_par_iter().enumerate();
-                spots.map(keep).collect::<Result<Vec<Matrix>, Failure>>()
-            });
-            for (spot, column) in spots.range.clone().zip(columns?) {
+            self.pool
+                .install(|| self.folder.write_frames(scene, self.record, spots, &traced))?;
+            for (spot, column) in spots.range.clone().zip(columns(&traced)) {
                 tracing.finished(&column);
                 kept[spot] = Some(column);
             }
-            partial.remove_checkpoint(&spots.range)?;
             if warned() && number + 1 < batches.len() {
                 return Ok(Some(0));
             }
@@ -80,7 +67,7 @@ impl Batches<'_> {
         Ok(None)
     }
 
-    /// The blocks of one batch; fewer if it was stopped, and those are then in its checkpoint.
+    /// The blocks of one batch, which are then on disk; fewer if it was stopped.
     fn trace_batch(
         &self,
         spots: &Spots<'_>,
@@ -90,13 +77,9 @@ impl Batches<'_> {
         let Range { start, end } = spots.range;
         let blocks = spots.blocks();
         let identity = partial::identity(self.scene, self.plan, &spots.range);
-        let path = self.folder.partial().checkpoint(&spots.range)?;
+        let path = self.folder.partial().file(&spots.range)?;
         let mut checkpoint = Checkpoint::new(path, identity, process(self.pool));
-        let done = if self.resume {
-            checkpoint.resume(&blocks, blocks.end)
-        } else {
-            Parts::new()
-        };
+        let done = checkpoint.resume(&blocks, blocks.end);
         let tally = spots.tally(0, done.into_iter().map(Ok))?;
         let there = u64::from(tally.range().end);
         if there > 0 {
@@ -113,33 +96,25 @@ impl Batches<'_> {
             let trace = || spots.trace(tally, blocks.end, control, look, kept);
             self.pool.install(trace)
         })?;
-        if u64::from(tally.range().end) < blocks.end {
-            checkpoint.keep(&spots.parts(&tally))?;
-        }
+        checkpoint.keep(&spots.parts(&tally))?;
         Ok(tally)
     }
 
-    /// Runs of neighbouring spots to be traced together: one spot each where nothing is shared, as
-    /// many as memory bears where paths serve all spots. Where an earlier process has left blocks
-    /// of some of them, these stay together, with those of them that are finished: to write these
-    /// again costs less than to trace the others anew.
-    fn ranges(&self, todo: &[usize], kept: &[Option<Matrix>]) -> Vec<Range<usize>> {
+    /// Runs of neighbouring spots to be traced together: as many as [`Spots::together`] says. Where
+    /// an earlier process has left blocks of some of them, these stay together, with those of them
+    /// that are finished: to write these again costs less than to trace the others anew.
+    fn ranges(&self, todo: &[usize], begun: &[Kept], kept: &[Option<Matrix>]) -> Vec<Range<usize>> {
         let most = Spots::together(self.scene, self.plan.estimator);
-        let begun = if self.resume {
-            self.folder.partial().checkpoints(self.scene, self.plan)
-        } else {
-            Vec::new()
-        };
         let mut free: Vec<bool> = vec![false; kept.len()];
         todo.iter().for_each(|s| free[*s] = true);
         let mut ranges: Vec<Range<usize>> = Vec::new();
-        for range in begun {
+        for range in begun.iter().map(|b| &b.spots) {
             let needed = range.clone().any(|s| free[s]);
             let ours = range.clone().all(|s| free[s] || kept[s].is_some());
             let apart = ranges.last().is_none_or(|r| r.end <= range.start);
             if needed && ours && apart {
                 range.clone().for_each(|s| free[s] = false);
-                ranges.push(range);
+                ranges.push(range.clone());
             }
         }
         let begun = ranges.len();
@@ -152,4 +127,14 @@ impl Batches<'_> {
         ranges.sort_by_key(|r| r.start);
         ranges
     }
+}
+
+/// What is kept of each spot: one column per bounce count, then the standard error and its code.
+pub(super) fn columns(traced: &Traced) -> impl Iterator<Item = Matrix> {
+    (0..traced.flux.ncols()).map(|column| {
+        let kept = traced.bounces.iter();
+        let kept = kept.chain([&traced.stderr, &traced.tails]);
+        let kept: Vec<_> = kept.map(|m| m.column(column).into_owned()).collect();
+        Matrix::from_columns(&kept)
+    })
 }

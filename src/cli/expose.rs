@@ -20,7 +20,9 @@ use super::load_run::{read_matrix, read_run, read_stderr};
 use super::output;
 use super::process::version;
 use super::record::Record;
-use super::run_folder::{self, COUNTS, EXPOSED, EXPOSURE, PHI, SATURATED, STDERR, remove_exposed};
+use super::run_folder::{
+    self, COUNTS, EXPOSED, EXPOSURE, PHI, RunFolder, SATURATED, STDERR, remove_exposed,
+};
 use crate::film::{self, Channel, Frame, frame_name};
 use crate::lab::{Errors, describe_exposure};
 use crate::matrix::{Matrix, npy};
@@ -30,7 +32,7 @@ use crate::sensor::{
     Exposed, Exposure, Figures, Light, PhotonTransfer, Range, Sensor, Stated, Summary,
     builtin_summary, glare, glare_to_signal,
 };
-use crate::store::ensure_writable;
+use crate::store::{ensure_writable, flush};
 
 /// exposure.json.
 #[derive(Debug, Serialize)]
@@ -86,6 +88,8 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
     }
     let out = args.output.clone().unwrap_or_else(|| dir.join(EXPOSED));
     refuse_obstacles(&out)?;
+    let lock = |folder| RunFolder::lock(folder, "phicam expose");
+    let _run = args.output.is_none().then(|| lock(dir)).transpose()?;
     let photon_transfer = match args.stderr {
         StatedBy::Counts => Some(sensor.photon_transfer(args.seed)),
         StatedBy::Oracle => None,
@@ -114,7 +118,12 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
         result,
     };
     let json = output::json(&account)?;
+    let _own = args.output.as_deref().map(lock).transpose()?;
     write(&out, &exposed, (&scene, &record), &sensor, &json)?;
+    if args.output.is_none() {
+        Record::vouch_anew(dir, EXPOSED)?;
+        Record::vouch_anew(dir, &format!("{EXPOSED}/{COUNTS}"))?;
+    }
     output::print(&if args.json {
         json
     } else {
@@ -259,6 +268,7 @@ fn write(
     for spot in 0..spots {
         write_counts(&counts, exposed, (scene, record), sensor, spot)?;
     }
+    flush(&counts)?;
     let mask = Matrix::from_iterator(
         pixels,
         spots,

@@ -24,6 +24,12 @@ pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), 
     })?;
     let path = dir.join(SCENE);
     let scene = console.load_scene(&path.to_string_lossy())?;
+    if record.check(dir, SCENE).is_err() {
+        console.say(format!(
+            "warning: {} was edited after the run was finished",
+            path.display()
+        ));
+    }
     if scene.hash != record.scene_hash {
         let cause = format!(
             "{} is not the scene that {} was rendered from",
@@ -35,7 +41,7 @@ pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), 
             "restore it, or render the changed scene into another folder",
         ));
     }
-    if record.finished < record.spots && !dir.join(PHI).exists() {
+    if !record.is_complete() && !dir.join(PHI).exists() {
         let cause = format!(
             "{} holds {} of {} spots",
             dir.display(),
@@ -44,16 +50,30 @@ pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), 
         );
         return Err(Failure::new(
             cause,
-            "finish it with `phicam render --resume`",
+            "finish it with the same command that began it",
         ));
     }
     Ok((scene, record))
 }
 
-/// Φcam, or anything of its shape: finite, pixels × spots of `scene`.
+/// Refuses a file that the run vouches for to which it belongs (that of its folder, or of the two
+/// above), and that is not what was written.
+pub(super) fn refuse_damaged(path: &Path) -> Result<(), Failure> {
+    let full = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    for dir in full.ancestors().skip(1).take(3) {
+        let name = full.strip_prefix(dir).ok().and_then(Path::to_str);
+        if let (Some(name), Some(record)) = (name, Record::read(dir)?) {
+            return record.check(dir, &name.replace('\\', "/"));
+        }
+    }
+    Ok(())
+}
+
+/// Φcam, or anything of its shape: finite, pixels × spots of `scene`; of a run, what it wrote.
 pub(super) fn read_matrix(path: &Path, scene: &Scene) -> Result<Matrix, Failure> {
     let matrix = npy::read_finite(path)?;
     refuse_shape(path, matrix.shape(), scene)?;
+    refuse_damaged(path)?;
     Ok(matrix)
 }
 
@@ -78,28 +98,35 @@ pub(super) fn refuse_shape(
 
 /// Standard errors of Φcam: as [`read_matrix`], and none negative.
 pub(super) fn read_stderr(path: &Path, scene: &Scene) -> Result<Matrix, Failure> {
-    let matrix = read_errors(path)?;
+    let matrix = finite_errors(path)?;
     refuse_shape(path, matrix.shape(), scene)?;
+    refuse_damaged(path)?;
     Ok(matrix)
 }
 
-/// Standard errors of any shape: finite, none negative.
+/// Standard errors of any shape: finite, none negative; of a run, what it wrote.
 pub(super) fn read_errors(path: &Path) -> Result<Matrix, Failure> {
+    let matrix = finite_errors(path)?;
+    refuse_damaged(path)?;
+    Ok(matrix)
+}
+
+fn finite_errors(path: &Path) -> Result<Matrix, Failure> {
     let matrix = npy::read_finite(path)?;
     let negative = matrix.iter().position(|x| *x < 0.0);
-    if let Some(at) = negative {
-        let (pixel, spot) = (at % matrix.nrows(), at / matrix.nrows());
-        let cause = format!(
-            "{} has the negative standard error {} at pixel {pixel}, spot {spot}",
-            path.display(),
-            matrix[at]
-        );
-        return Err(Failure::new(
-            cause,
-            "give standard errors, or render or stack again",
-        ));
-    }
-    Ok(matrix)
+    let Some(at) = negative else {
+        return Ok(matrix);
+    };
+    let (pixel, spot) = (at % matrix.nrows(), at / matrix.nrows());
+    let cause = format!(
+        "{} has the negative standard error {} at pixel {pixel}, spot {spot}",
+        path.display(),
+        matrix[at]
+    );
+    Err(Failure::new(
+        cause,
+        "give standard errors, or render or stack again",
+    ))
 }
 
 /// Which entries of a run have a standard error that is not to be trusted; `None` if nothing says

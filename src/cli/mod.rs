@@ -9,13 +9,14 @@
 //! | file | content |
 //! | --- | --- |
 //! | `files/` | copies of the meshes, pictures and materials that the scene names |
-//! | `scene.toml`, `run.json` | the scene, whole; version, scene hash, seed, samples, estimator, threads, time |
+//! | `scene.toml`, `run.json` | the scene, whole; version, scene hash, seed, samples, estimator, threads, time, SHA-256 of the files and of itself |
 //! | `frames/spot-0000.exr` | one frame a spot, f32: `flux`, `flux.stderr`, and `flux.bN` for light that met N surfaces, W |
 //! | `phi.npy`, `phi.stderr.npy` | Φcam and its standard error, f64, (pixels, spots), C order, W |
 //! | `phi.tails.npy` | how far each standard error is to be trusted: 0, or the sum of 1 (one block has most of the scatter), 2 (blocks too skewed), 4 (light in few blocks), 8 (no light met yet: the standard error is an upper bound), 16 (like its neighbours); f64, (pixels, spots) |
 //! | `model/g12.npy`, `g23.npy`, `phi.npy` | the analytic side |
 //! | `model/laser_side.npy`, `camera_side.npy` | D and C: G12 and G23 with the walls' BRDFs and in W, Φcam = C·diag(ρ)·D |
 //! | `model/z.npy` | z of every entry, what `run` compared by: deviation of the traced from the modelled flux in standard errors, (pixels, spots) |
+//! | `recovered-NAME-DIGEST/` | what `phicam recover --phi` made of other photographs |
 //! | `recovered/METHOD.npy`, `.png` | recovered reflectance, (nv, nu); `truth` beside it |
 //! | `recovered/determined.npy`, `.png` | share of each element that the photographs determine at their noise, (nv, nu), 0 to 1 |
 //! | `recovered/METHOD.stderr.npy` | its standard error, (nv, nu), where the noise is known |
@@ -24,6 +25,8 @@
 //! | `summary.json`, `report.html` | what was found |
 //! | `exposed/` | what `phicam expose` made of it: `phi.npy`, `phi.stderr.npy`, `saturated.npy`, `counts/`, `exposure.json` |
 //! | `partial/` | finished spots and blocks of an unfinished run; gone when it is complete |
+//! | `.replacement/` | a run with other settings that will take the place of this one when it is whole |
+//! | `.phicam-….lock` | who writes the folder now: there is one writer |
 //! | `merged.json` | of which plan it is, where it was put together from shards |
 //!
 //! A study keeps its finished tasks in `NAME.phs` beside its files until it is complete, and `study

@@ -10,6 +10,7 @@ use super::cleanup::remove_named;
 use super::console::Console;
 use super::failure::Failure;
 use super::output;
+use super::record::Record;
 use super::run_folder::{MODEL, RunFolder, Z};
 use crate::lab::Integration;
 use crate::matrix::{Matrix, npy};
@@ -29,7 +30,7 @@ pub(super) fn execute(args: &ModelArgs, console: Console) -> Result<Outcome, Fai
     }
     let folder = RunFolder::at(&args.output);
     folder.refuse_foreign(&scene, console)?;
-    ensure_writable(&args.output)?;
+    let _lock = RunFolder::lock(&args.output, "phicam model")?;
     console.warn(&scene);
     let (phi, change, how) = match args.integration {
         Integration::Centres => (model.phi(), None, "by centres".to_owned()),
@@ -43,6 +44,7 @@ pub(super) fn execute(args: &ModelArgs, console: Console) -> Result<Outcome, Fai
     // into it.
     folder.write_scene(&scene)?;
     write(&args.output, &model, &phi)?;
+    Record::vouch_anew(&args.output, MODEL)?;
     let place = args.output.join(MODEL);
     let shape = |m: &Matrix| [m.nrows(), m.ncols()];
     let [g12, g23, shown] = [&model.g12, &model.g23, &phi].map(shape);

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::failure::Failure;
-use crate::store::write_whole;
+use crate::store::{self, StoreError, write_whole};
 
 /// A result on standard output. A reader that has gone away (`| head`) is no error.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
@@ -26,12 +26,31 @@ pub(super) fn result(
     print(&if as_json { json(value)? } else { text() })
 }
 
-/// Writes text to a file, or prints it.
-pub(super) fn deliver(text: &str, file: Option<&Path>) -> Result<(), Failure> {
+/// Writes text to a file, or prints it. A file that is there is replaced if `force`.
+pub(super) fn deliver(text: &str, file: Option<&Path>, force: bool) -> Result<(), Failure> {
     match file {
         None => print(text),
-        Some(path) => write(path, text),
+        Some(path) => write_new(path, text, force),
     }
+}
+
+/// Refuses a file that is there, unless `force`: before the work, not after it.
+pub(super) fn refuse_taken(path: &Path, force: bool) -> Result<(), Failure> {
+    let path = path.to_owned();
+    if force || std::fs::symlink_metadata(&path).is_err() {
+        return Ok(());
+    }
+    Err(StoreError::Taken { path }.into())
+}
+
+/// Writes a file, whole or not at all; one that is there is replaced if `force`.
+pub(super) fn write_new(path: &Path, bytes: impl AsRef<[u8]>, force: bool) -> Result<(), Failure> {
+    if force {
+        return write(path, bytes);
+    }
+    Ok(store::write_new(path, |file| {
+        file.write_all(bytes.as_ref())
+    })?)
 }
 
 /// Writes a file, whole or not at all.

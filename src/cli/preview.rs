@@ -12,6 +12,7 @@ use crate::report;
 
 pub(super) fn execute(args: &PreviewArgs, console: Console) -> Result<Outcome, Failure> {
     let scene = console.load_scene(&args.scene)?;
+    output::refuse_taken(&args.output, args.force)?;
     let options = ViewOptions {
         from: args.from.map(DVec3::from_array),
         to: args.to.map(DVec3::from_array),
@@ -31,7 +32,7 @@ pub(super) fn execute(args: &PreviewArgs, console: Console) -> Result<Outcome, F
         preview(&scene, &plan, control)
     });
     let made = made.map_err(|e| Failure::from(e).if_stopped("no picture was written"))?;
-    output::write(&args.output, report::preview_png(&made)?)?;
+    output::write_new(&args.output, report::preview_png(&made)?, args.force)?;
     let place = |p: DVec3| format!("{:.4},{:.4},{:.4}", p.x, p.y, p.z);
     console.say(format!(
         "{}: {w} × {h} pixels of scene `{}`, seen with --from {} --to {} (in {})",

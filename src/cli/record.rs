@@ -1,15 +1,18 @@
 //! run.json: what was rendered, and how.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 
 use super::failure::Failure;
 use super::output;
 use super::process::version;
+use super::run_folder::SCENE;
 use crate::lab::Tails;
 use crate::scene::Scene;
-use crate::store::is_missing;
+use crate::store::{digest, hex, is_missing};
 use crate::transport::Plan;
 
 /// The record of a run.
@@ -31,6 +34,13 @@ pub(super) struct Record {
     /// Of a complete run: how many standard errors cannot be trusted, and where.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tails: Option<Tails>,
+    /// SHA-256 of the files of a complete run, by their names in its folder.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub files: BTreeMap<String, String>,
+    /// SHA-256 of all above as JSON, so that no setting can be changed unnoticed. Nothing vouches for
+    /// a record without.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    digest: Option<String>,
 }
 
 impl Record {
@@ -55,7 +65,14 @@ impl Record {
             threads,
             seconds,
             tails: None,
+            files: BTreeMap::new(),
+            digest: None,
         }
+    }
+
+    /// Whether every spot is finished.
+    pub(super) fn is_complete(&self) -> bool {
+        self.finished == self.spots
     }
 
     /// A line on its standard errors; none of an unfinished run.
@@ -81,15 +98,118 @@ impl Record {
                 ));
             }
         };
-        serde_json::from_slice(&bytes).map(Some).map_err(|e| {
-            let cause = format!("{} is damaged: {e}", path.display());
+        Self::parse(&bytes).map(Some).map_err(|what| {
+            let cause = format!("{} is damaged: {what}", path.display());
             Failure::new(cause, "render again into another folder")
         })
     }
 
+    /// The record in the bytes of a run.json, or what is wrong with them.
+    pub(super) fn parse(bytes: &[u8]) -> Result<Self, String> {
+        let record: Self = serde_json::from_slice(bytes).map_err(|e| e.to_string())?;
+        let own = record.sealed().map_err(|e| e.to_string())?;
+        if record.digest.is_none() || own.digest == record.digest {
+            Ok(record)
+        } else {
+            Err("it does not say what was written: its digest is another".to_owned())
+        }
+    }
+
+    /// With its digest.
+    fn sealed(&self) -> Result<Self, serde_json::Error> {
+        let mut record = Self {
+            digest: None,
+            ..self.clone()
+        };
+        record.digest = Some(hex(&Sha256::digest(serde_json::to_vec(&record)?)));
+        Ok(record)
+    }
+
+    /// The text of its file.
+    pub(super) fn json(&self) -> Result<String, Failure> {
+        output::json(&self.sealed()?)
+    }
+
     pub(super) fn write(&self, dir: &Path) -> Result<(), Failure> {
-        let text = output::json(self)?;
-        output::write(&dir.join(Self::FILE), text)
+        output::write(&dir.join(Self::FILE), self.json()?)
+    }
+
+    /// Vouches for the files `names` of `dir` as they are; those that are not there it forgets.
+    pub(super) fn vouch<'n>(
+        &mut self,
+        dir: &Path,
+        names: impl IntoIterator<Item = &'n str>,
+    ) -> Result<(), Failure> {
+        for name in names {
+            match digest(&dir.join(name)) {
+                Ok(digest) => self.files.insert(name.to_owned(), digest),
+                Err(e) if is_missing(&e) => self.files.remove(name),
+                Err(e) => {
+                    let cause = format!("cannot read {}: {e}", dir.join(name).display());
+                    return Err(Failure::system(cause, "make it readable"));
+                }
+            };
+        }
+        Ok(())
+    }
+
+    /// The same for all files in the folder `folder` of `dir`.
+    pub(super) fn vouch_all(&mut self, dir: &Path, folder: &str) -> Result<(), Failure> {
+        let inside = format!("{folder}/");
+        self.files.retain(|name, _| !name.starts_with(&inside));
+        let Ok(entries) = std::fs::read_dir(dir.join(folder)) else {
+            return Ok(());
+        };
+        let paths = entries.filter_map(Result::ok).map(|entry| entry.path());
+        let files = paths.filter(|path| path.is_file());
+        let names: Vec<String> = files
+            .filter_map(|path| Some(inside.clone() + path.file_name()?.to_str()?))
+            .collect();
+        self.vouch(dir, names.iter().map(String::as_str))
+    }
+
+    /// Lets the run in `dir`, if there is one, vouch for the files that were written into its folder
+    /// `folder`.
+    pub(super) fn vouch_anew(dir: &Path, folder: &str) -> Result<(), Failure> {
+        if let Some(mut record) = Self::read(dir)? {
+            record.vouch_all(dir, folder)?;
+            record.write(dir)?;
+        }
+        Ok(())
+    }
+
+    /// Refuses the file `name` of `dir` if it is vouched for and not what was written.
+    pub(super) fn check(&self, dir: &Path, name: &str) -> Result<(), Failure> {
+        let Some(written) = self.files.get(name) else {
+            return Ok(());
+        };
+        let path = dir.join(name);
+        let found = match digest(&path) {
+            Ok(found) => found,
+            Err(e) => {
+                let cause = format!("cannot read {}: {e}", path.display());
+                return Err(Failure::system(cause, "restore it, or render again"));
+            }
+        };
+        if found == *written {
+            return Ok(());
+        }
+        let cause = format!(
+            "{} is not what phicam wrote: its SHA-256 is not that in {}",
+            path.display(),
+            Self::FILE
+        );
+        Err(Failure::new(
+            cause,
+            "restore it, or give data of your own with --phi; the same render into the same folder makes it again",
+        ))
+    }
+
+    /// Refuses the files of `dir` that are vouched for, if one is there and not what was written.
+    pub(super) fn check_all(&self, dir: &Path) -> Result<(), Failure> {
+        let there = self.files.keys().filter(|name| dir.join(name).exists());
+        let mut light = there.filter(|name| *name != SCENE);
+        light.try_for_each(|name| self.check(dir, name))
     }
 
     /// Whether the same scene was rendered by the same plan and program.

@@ -10,7 +10,7 @@ use super::load_run::{read_matrix, read_run, read_stderr};
 use super::output;
 use super::record::Record;
 use super::recover_memory::{self, Errors, Held, Strips};
-use super::run_folder::{PHI, RECOVERED, SATURATED, SCENE, STDERR};
+use super::run_folder::{PHI, RECOVERED, RunFolder, SATURATED, SCENE, STDERR};
 use super::{Outcome, recover_options};
 use crate::lab::finding::Describe;
 use crate::lab::{
@@ -21,7 +21,7 @@ use crate::model::MatrixModel;
 use crate::recovery::{Method, Nuisance, Options, Picard, Uncertainty};
 use crate::report::{self, Panel};
 use crate::scene::{Division, Scene};
-use crate::store::ensure_writable;
+use crate::store::{digest, ensure_writable};
 
 /// Elements whose covariance and resolution are still written: 32 MiB each.
 const MOST_CORRELATED: usize = 2048;
@@ -44,6 +44,8 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
         let (scene, record) = read_run(&args.dir, console)?;
         (scene, Some(record))
     };
+    let lock = |folder| RunFolder::lock(folder, "phicam recover");
+    let _run = args.output.is_none().then(|| lock(&args.dir)).transpose()?;
     let held = recover_memory::plan(args, &scene, &methods, &options, console)?;
     let job = Job {
         args,
@@ -65,7 +67,14 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
         Held::Strips(pixels) => (job.strips(pixels)?, Vec::new()),
     };
     let objects = collect(attempts, methods.len() == 1, console)?;
-    write(&args.dir, &scene, &objects, &picards)?;
+    let (out, place) = results(args, record.is_some())?;
+    let _own = args.output.as_deref().map(lock).transpose()?;
+    write(&out, &scene, &objects, &picards)?;
+    if place == Place::Run {
+        Record::vouch_anew(&args.dir, RECOVERED)?;
+    } else {
+        console.say(format!("{}: written", out.display()));
+    }
     output::result(args.json, &objects, || {
         report::finding_text(&describe_recovery(&objects))
     })?;
@@ -73,6 +82,43 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
         return Ok(Outcome::Disagreed);
     }
     Ok(Outcome::Done)
+}
+
+/// To what the results of a recovery belong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Place {
+    /// To the run, whose Φcam was inverted.
+    Run,
+    /// To another Φcam.
+    Other,
+}
+
+/// The folder of the results. Those of a Φcam that is not the run's have one of their own, named
+/// after it and its bytes, so that what lies in the run's belongs together.
+fn results(args: &RecoverArgs, of_run: bool) -> Result<(PathBuf, Place), Failure> {
+    let usual = args.dir.join(RECOVERED);
+    let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    let other = args
+        .phi
+        .as_ref()
+        .filter(|phi| !same(phi, &args.dir.join(PHI)));
+    Ok(match (&args.output, other) {
+        (Some(output), _) => (output.clone(), Place::Other),
+        (None, Some(phi)) if of_run => {
+            let digest = digest(phi).map_err(|e| {
+                let cause = format!("cannot read {}: {e}", phi.display());
+                Failure::system(cause, "make it readable")
+            })?;
+            let full = std::path::absolute(phi)?;
+            let folder = full.parent().and_then(Path::file_stem);
+            let own = full.file_stem().filter(|stem| *stem != "phi");
+            let name = own.or(folder).unwrap_or_default().to_string_lossy();
+            let name = format!("{RECOVERED}-{name}-{}", &digest[..8]);
+            (args.dir.join(name), Place::Other)
+        }
+        (None, Some(_)) => (usual, Place::Other),
+        (None, None) => (usual, Place::Run),
+    })
 }
 
 /// A recovery that was asked for.
@@ -249,7 +295,7 @@ pub(super) fn collect(
     Ok(objects)
 }
 
-/// Writes DIR/recovered/METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png, what the
+/// Writes into `folder` METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png, what the
 /// photographs determine of each element in determined.npy and determined.png, and overview.png with all of them side by side (no pictures of elements that are the triangles of a
 /// mesh); METHOD.texture.png, the reflectance as a texture for a scene, and METHOD.ply, the surface
 /// with it as colours; what is known of the uncertainty in METHOD.stderr.npy (nv × nu),
@@ -258,14 +304,13 @@ pub(super) fn collect(
 /// NAME.csv and NAME.svg of each of `picards`, and no others. Where several surfaces are hidden the
 /// names are METHOD-0, METHOD-1, … in file order.
 pub(super) fn write(
-    dir: &Path,
+    folder: &Path,
     scene: &Scene,
     objects: &[RecoveredObject],
     picards: &[Picard],
 ) -> Result<(), Failure> {
-    let folder = dir.join(RECOVERED);
-    ensure_writable(&folder)?;
-    remove_named(&folder, &["picard-joint.csv", "picard-joint.svg"])?;
+    ensure_writable(folder)?;
+    remove_named(folder, &["picard-joint.csv", "picard-joint.svg"])?;
     for picard in picards {
         for (name, text) in report::finding_files(&picard.describe()) {
             output::write(&folder.join(name), text)?;
@@ -292,7 +337,7 @@ pub(super) fn write(
         let shares = known.and_then(|o| o.determined_share.as_ref());
         if shares.is_none() {
             let stale = ["npy", "png"].map(|what| named("determined", what));
-            remove_named(&folder, &stale.each_ref().map(String::as_str))?;
+            remove_named(folder, &stale.each_ref().map(String::as_str))?;
         }
         for object in objects.iter().filter(|o| o.surface == *surface) {
             let [nu, nv] = object.elements;
@@ -323,7 +368,7 @@ pub(super) fn write(
                 let name = named(method, &format!("{what}.npy"));
                 match matrix {
                     Some(matrix) => npy::write(&folder.join(name), &matrix)?,
-                    None => remove_named(&folder, &[&name])?,
+                    None => remove_named(folder, &[&name])?,
                 }
             }
         }

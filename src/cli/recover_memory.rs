@@ -6,7 +6,7 @@ use std::path::Path;
 use super::args::RecoverArgs;
 use super::console::Console;
 use super::failure::Failure;
-use super::load_run::refuse_shape;
+use super::load_run::{refuse_damaged, refuse_shape};
 use crate::lab::{Attempt, Certainty, Judged, Residuals, measured};
 use crate::matrix::npy::Rows;
 use crate::model::MatrixModel;
@@ -130,6 +130,7 @@ fn free() -> Option<f64> {
 pub(super) fn open(path: &Path, scene: &Scene) -> Result<Rows, Failure> {
     let rows = Rows::open(path)?;
     refuse_shape(path, rows.shape(), scene)?;
+    refuse_damaged(path)?;
     Ok(rows)
 }
 

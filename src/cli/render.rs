@@ -1,19 +1,21 @@
 //! `phicam render`: frames and Φcam.
 
-use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
 
+use rayon::prelude::*;
+
 use super::args::{RenderArgs, TraceArgs};
-use super::batches::Batches;
+use super::batches::{Batches, columns};
 use super::console::Console;
 use super::failure::Failure;
 use super::interrupt::SignalGuard;
 use super::load_run::read_matrix;
 use super::output;
+use super::partial::Kept;
 use super::process::pool;
 use super::record::Record;
-use super::run_folder::{PHI, Resume, RunFolder, STDERR, TAILS};
+use super::run_folder::{Claim, PHI, RunFolder, STDERR, TAILS};
 use super::{Outcome, settings};
 use crate::film;
 use crate::lab::describe_render;
@@ -36,35 +38,14 @@ pub(super) fn execute(args: &RenderArgs, console: Console) -> Result<Outcome, Fa
             format!("use a range within 0..{total}"),
         ));
     }
-    let resume = match (args.resume, spots.len() < total) {
-        (true, _) => Resume::Finished,
-        (false, true) => Resume::OtherSpots,
-        (false, false) => Resume::Nothing,
-    };
     let plan = settings::plan(&args.trace.paths)?;
-    let complete = match resume {
-        Resume::Nothing => None,
-        _ => complete(&scene, &plan, &args.output)?,
+    let claim = Claim {
+        what: "phicam render".to_owned(),
+        spots: (spots.len() < total).then_some(spots),
+        replace: args.replace,
     };
-    let (record, traced) = match complete {
-        Some(record) => {
-            // What the earlier process was killed over.
-            RunFolder::at(&args.output).tidy()?;
-            (record, None)
-        }
-        None => {
-            let rendered = into_folder(
-                &scene,
-                &plan,
-                &args.trace,
-                spots,
-                resume,
-                &args.output,
-                console,
-            )?;
-            (rendered.record, rendered.phi)
-        }
-    };
+    let Rendered { record, traced, .. } =
+        into_folder(&scene, &plan, &args.trace, &claim, &args.output, console)?;
     let place = args.output.display();
     let Record {
         finished,
@@ -74,7 +55,7 @@ pub(super) fn execute(args: &RenderArgs, console: Console) -> Result<Outcome, Fa
         ..
     } = &record;
     output::print(&match traced {
-        _ if args.json => output::json(&record)?,
+        _ if args.json => record.json()?,
         Some(traced) => {
             let found = describe_render(&scene, plan, &traced, *seconds);
             let table = report::finding_text(&found);
@@ -101,31 +82,36 @@ pub(super) fn execute(args: &RenderArgs, console: Console) -> Result<Outcome, Fa
 pub(super) fn complete(scene: &Scene, plan: &Plan, path: &Path) -> Result<Option<Record>, Failure> {
     let asked = Record::new(scene, plan, 0, 0, 0.0);
     let record = Record::read(path)?
-        .filter(|earlier| earlier.same_settings(&asked) && earlier.finished == earlier.spots);
-    let whole = || {
-        [PHI, STDERR, TAILS]
-            .iter()
-            .all(|name| read_matrix(&path.join(name), scene).is_ok())
-            && film::stack(path).is_ok()
+        .filter(|earlier| earlier.same_settings(&asked) && earlier.is_complete());
+    let whole = |record: &Record| {
+        let frames = || film::stack(path).is_ok();
+        let matrix = |name: &&str| read_matrix(&path.join(name), scene).is_ok();
+        let rendered = |name: &&str| name.starts_with("frames/");
+        let mut names = record.files.keys().map(String::as_str).filter(rendered);
+        [PHI, STDERR, TAILS].iter().all(matrix)
+            && names.all(|name| record.check(path, name).is_ok())
+            && frames()
     };
-    Ok(record.filter(|_| whole()))
+    Ok(record.filter(whole))
 }
 
 /// What a render left.
 #[derive(Debug)]
 pub(super) struct Rendered {
     pub record: Record,
-    /// Every column of Φcam, if all spots are finished.
-    pub phi: Option<Traced>,
+    /// Every column of Φcam, if they were finished by this process.
+    pub traced: Option<Traced>,
+    /// The folder, which nobody else may write meanwhile.
+    pub folder: RunFolder,
 }
 
-/// Renders `spots` into the run folder `path`, every finished spot safe on disk.
+/// Renders what `claim` says into the run folder `path`, every finished spot safe on disk. What an
+/// earlier process has finished of the same is not traced again.
 pub(super) fn into_folder(
     scene: &Scene,
     plan: &Plan,
     args: &TraceArgs,
-    spots: Range<usize>,
-    resume: Resume,
+    claim: &Claim,
     path: &Path,
     console: Console,
 ) -> Result<Rendered, Failure> {
@@ -134,24 +120,34 @@ pub(super) fn into_folder(
     let pool = pool(args.threads)?;
     let threads = pool.current_num_threads();
     let mut record = Record::new(scene, plan, 0, threads, 0.0);
-    if resume == Resume::Finished
-        && let Some(earlier) = Record::read(path)?
-    {
-        record.seconds = earlier.seconds;
-    }
     refuse_too_large(scene)?;
-    let folder = RunFolder::open(path, scene, &record, resume, console)?;
+    let mut folder = RunFolder::open(path, scene, &record, claim, console)?;
+    if let Some(record) = complete(scene, plan, &folder.path)? {
+        // What the earlier process was ended over.
+        folder.tidy()?;
+        folder.settle()?;
+        return Ok(Rendered {
+            record,
+            traced: None,
+            folder,
+        });
+    }
     console.warn(scene);
+    if Record::read(&folder.path)?.is_some_and(|there| there.is_complete()) {
+        let place = folder.path.display();
+        console.say(format!(
+            "warning: {place} does not hold what was written there: it is traced again"
+        ));
+    }
     let total = scene.laser.spots.len();
-    let there = |s: usize| match resume {
-        Resume::Finished => true,
-        Resume::OtherSpots => !spots.contains(&s),
-        Resume::Nothing => false,
-    };
-    let mut kept: Vec<Option<Matrix>> = (0..total)
-        .map(|s| there(s).then(|| folder.kept(s, scene, &record)).flatten())
-        .collect();
+    let mut kept: Vec<Option<Matrix>> = vec![None; total];
+    let begun = take_finished(&folder, scene, plan, &mut kept);
+    let spots = claim.spots.clone().unwrap_or(0..total);
     let todo: Vec<usize> = spots.filter(|s| kept[*s].is_none()).collect();
+    let there = kept.iter().flatten().count();
+    if there > 0 {
+        console.say(format!("going on after {there} of {total} finished spots"));
+    }
     let points = block_size(scene, plan) as u64;
     if points > u64::from(plan.budget.size) {
         console.say(format!(
@@ -166,45 +162,98 @@ pub(super) fn into_folder(
         folder: &folder,
         record: &record,
         pool: &pool,
-        resume: resume == Resume::Finished,
     };
     let guard = SignalGuard::new();
-    let stopped = batches.trace(&todo, &mut kept, console);
+    let stopped = batches.trace(&todo, &begun, &mut kept, console);
     drop(guard);
-    record.seconds += start.elapsed().as_secs_f64();
-    record.finished = kept.iter().flatten().count();
-    let phi = match stopped {
-        Ok(None) => gather(scene, kept),
-        _ => None,
-    };
-    if let Some(traced) = &phi {
+    let seconds = start.elapsed().as_secs_f64();
+    let traced = folder.alone(|| {
+        let there = Record::read(&folder.path)?.filter(|there| there.same_settings(&record));
+        if let Some(there) = there {
+            record.seconds = there.seconds;
+            if there.is_complete() && !folder.partial().is_there() {
+                // Another process wrote the last spots, and saw these.
+                record = there;
+                return Ok(None);
+            }
+        }
+        record.seconds += seconds;
+        take_finished(&folder, scene, plan, &mut kept);
+        record.finished = kept.iter().flatten().count();
+        if !matches!(stopped, Ok(None)) || record.finished < total {
+            return record.write(&folder.path).map(|()| None);
+        }
+        let mut others: Vec<bool> = vec![true; total];
+        todo.iter().for_each(|s| others[*s] = false);
+        pool.install(|| write_missing_frames(&folder, scene, &record, &kept, &others))?;
+        let Some(traced) = gather(scene, std::mem::take(&mut kept)) else {
+            return Ok(None);
+        };
         let matrices = [&traced.flux, &traced.stderr, &traced.tails];
-        folder.finish(&mut record, matrices)?;
-    } else {
-        note(&record, path)?;
-    }
+        folder.finish(&mut record, matrices).map(|()| Some(traced))
+    })?;
     let Some(blocks) = stopped? else {
-        return Ok(Rendered { record, phi });
+        if record.is_complete() {
+            folder.settle()?;
+        }
+        return Ok(Rendered {
+            record,
+            traced,
+            folder,
+        });
     };
     let blocks = match blocks {
         0 => String::new(),
         n => format!(" and {n} of {} blocks of the next", plan.budget.blocks),
     };
     Err(Failure::Stopped(format!(
-        "{} of {total} spots{blocks} are finished and kept in {}; go on with `phicam render --resume` and the same settings",
+        "{} of {total} spots{blocks} are finished and kept in {}; go on with the same command",
         record.finished,
         path.display()
     )))
 }
 
-/// Writes how far a run has come, unless another process has finished it meanwhile.
-fn note(record: &Record, path: &Path) -> Result<(), Failure> {
-    let whole = |there: &Record| there.same_settings(record) && there.finished == there.spots;
-    if Record::read(path)?.is_some_and(|there| whole(&there)) {
-        Ok(())
-    } else {
-        record.write(path)
+/// Takes into `kept` the spots that are finished in the folder; returns what is only begun.
+fn take_finished(
+    folder: &RunFolder,
+    scene: &Scene,
+    plan: &Plan,
+    kept: &mut [Option<Matrix>],
+) -> Vec<Kept> {
+    let mut begun = Vec::new();
+    for file in folder.partial().kept(scene, plan) {
+        let lacking =
+            |kept: &[Option<Matrix>]| kept[file.spots.clone()].iter().any(Option::is_none);
+        if !lacking(kept) {
+            continue;
+        }
+        let Some(traced) = file.traced(scene, plan) else {
+            begun.push(file);
+            continue;
+        };
+        for (spot, column) in file.spots.clone().zip(columns(&traced)) {
+            kept[spot].get_or_insert(column);
+        }
     }
+    begun
+}
+
+/// Writes the frames of `others` that are not what was kept of their spots: an earlier process was
+/// ended, or the power was cut, before they were safe.
+fn write_missing_frames(
+    folder: &RunFolder,
+    scene: &Scene,
+    record: &Record,
+    kept: &[Option<Matrix>],
+    others: &[bool],
+) -> Result<(), Failure> {
+    kept.par_iter().enumerate().try_for_each(|(spot, kept)| {
+        let missing = |kept: &&Matrix| others[spot] && !folder.has_frame(scene, record, spot, kept);
+        match kept.as_ref().filter(missing) {
+            Some(kept) => folder.write_frame(scene, record, spot, kept),
+            None => Ok(()),
+        }
+    })
 }
 
 /// Bytes that Φcam with all its bounce counts may take in memory.

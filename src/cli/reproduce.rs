@@ -11,6 +11,7 @@ use super::failure::Failure;
 use super::interrupt::control;
 use super::output;
 use super::process::{pool, version};
+use super::run_folder::RunFolder;
 use super::tasks::Tasks;
 use super::{Outcome, progress};
 use crate::lab::finding::Finding;
@@ -25,7 +26,12 @@ use crate::transport::Control;
 pub(super) fn execute(args: &ReproduceArgs, console: Console) -> Result<Outcome, Failure> {
     let (items, plan) = asked(args)?;
     let pool = pool(args.threads)?;
-    ensure_writable(&args.output)?;
+    let _lock = RunFolder::lock(&args.output, "phicam reproduce")?;
+    if !args.replace {
+        items
+            .iter()
+            .try_for_each(|item| refuse_other(&args.output, *item, &plan))?;
+    }
     let bar = progress::start(console, "published items", Work::Tasks(items.len() as u64));
     let mut kept = 0;
     for &item in &items {
@@ -105,13 +111,33 @@ fn write(
     }
     let summary = summary(files.iter().map(|f| f.0.clone()).collect());
     let path = folder.join(format!("{}.json", summary.item));
-    output::deliver(&output::json(&summary)?, Some(&path))
+    output::write(&path, output::json(&summary)?)
+}
+
+/// What the folder says of an item.
+fn summary(folder: &Path, item: Item) -> Option<ItemSummary> {
+    let text = fs::read_to_string(folder.join(format!("{item}.json"))).ok()?;
+    serde_json::from_str(&text).ok()
+}
+
+/// Refuses to replace an item that was computed with other settings.
+fn refuse_other(folder: &Path, item: Item, plan: &ReproducePlan) -> Result<(), Failure> {
+    let wanted = plan.settings(item);
+    let Some(there) = summary(folder, item).filter(|there| there.settings != wanted) else {
+        return Ok(());
+    };
+    let cause = format!(
+        "{} holds {item} with other settings ({}; now asked for: {wanted})",
+        folder.display(),
+        there.settings
+    );
+    let cure = "give the same settings, choose another folder (-o), or replace it (--replace)";
+    Err(Failure::new(cause, cure))
 }
 
 /// The summary of an item that was computed with the same settings and whose files are all there.
 fn finished(folder: &Path, item: Item, settings: &str) -> Option<ItemSummary> {
-    let text = fs::read_to_string(folder.join(format!("{item}.json"))).ok()?;
-    let found: ItemSummary = serde_json::from_str(&text).ok()?;
+    let found = summary(folder, item)?;
     let whole = found.files.iter().all(|f| folder.join(f).is_file());
     (whole && found.settings == settings && found.item == item.name()).then_some(found)
 }
@@ -130,7 +156,7 @@ fn pages(folder: &Path, plan: &ReproducePlan) -> Result<(), Failure> {
         ("reproduction.md", report::reproduction_markdown(&found)),
         ("reproduction.html", html),
     ] {
-        output::deliver(&text, Some(&folder.join(name)))?;
+        output::write(&folder.join(name), text)?;
     }
     Ok(())
 }

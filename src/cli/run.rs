@@ -1,5 +1,6 @@
 //! `phicam run`: the main job from end to end.
 
+use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -7,13 +8,13 @@ use super::args::RunArgs;
 use super::console::Console;
 use super::failure::Failure;
 use super::interrupt::stop_flag;
+use super::load_run::read_matrix;
 use super::output;
 use super::progress;
-use super::record::Record;
 use super::render::{self, Rendered};
-use super::run_folder::{REPORT, Resume, SUMMARY};
+use super::run_folder::{Claim, MODEL, PHI, RECOVERED, REPORT, STDERR, SUMMARY, TAILS};
 use super::{Outcome, model, recover, settings, validate};
-use crate::film;
+use crate::film::{self, Stack};
 use crate::lab::finding::Describe;
 use crate::lab::{
     self, Against, Certainty, GalleryPlan, GalleryTasks, Measured, Noise, Occlusion, RunGallery,
@@ -24,51 +25,46 @@ use crate::metrics::relative_frobenius;
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Nuisance, Options};
 use crate::report;
+use crate::scene::Scene;
 
 pub(super) fn execute(args: &RunArgs, console: Console) -> Result<Outcome, Failure> {
     let scene = console.load_scene(&args.scene)?;
     let mut clock = Clock::start();
     let plan = settings::plan(&args.trace.paths)?;
     let test = settings::test(&args.test, &plan, console)?;
-    let spots = 0..scene.laser.spots.len();
-    let asked = Record::new(&scene, &plan, 0, 0, 0.0);
-    let resume = match Record::read(&args.output)? {
-        Some(earlier) if earlier.same_settings(&asked) && earlier.finished < earlier.spots => {
-            console.say("going on with the unfinished run");
-            Resume::Finished
-        }
-        _ => Resume::Nothing,
+    let claim = Claim {
+        what: "phicam run".to_owned(),
+        spots: None,
+        replace: args.replace,
     };
-    let Rendered { record, phi } = render::into_folder(
-        &scene,
-        &plan,
-        &args.trace,
-        spots,
-        resume,
-        &args.output,
-        console,
-    )?;
-    let Some(traced) = phi else {
-        return Err(Failure::new("not every spot was rendered", "run again"));
+    let Rendered {
+        mut record,
+        traced,
+        folder,
+    } = render::into_folder(&scene, &plan, &args.trace, &claim, &args.output, console)?;
+    let [flux, stderr, tails] = match traced {
+        Some(traced) => [traced.flux, traced.stderr, traced.tails],
+        None => finished_matrices(&args.output, &scene)?,
     };
     clock.lap("render")?;
 
     console.say("stacking the frames");
-    refuse_unfaithful_frames(&args.output, &traced.flux)?;
+    let stacked = film::stack(&args.output)?;
+    refuse_unfaithful_frames(&args.output, &stacked, &flux)?;
     clock.lap("stack")?;
 
-    let total: f64 = traced.flux.sum();
+    let total: f64 = stacked.phi.sum();
     let share = |m: &Matrix| if total > 0.0 { m.sum() / total } else { 0.0 };
     let bounces = (1..)
-        .zip(&traced.bounces)
-        .map(|(n, m)| (n, share(m)))
+        .zip(&stacked.bounces)
+        .map(|(n, (_, m))| (n, share(m)))
         .collect();
     let mut results = RunResults {
-        version: record.version,
+        version: record.version.clone(),
         plan,
-        phi: traced.flux,
-        stderr: traced.stderr,
-        tails: traced.tails,
+        phi: flux,
+        stderr,
+        tails,
         bounces,
         model: None,
         z: None,
@@ -90,6 +86,11 @@ pub(super) fn execute(args: &RunArgs, console: Console) -> Result<Outcome, Failu
     output::write(&path(SUMMARY), &summary)?;
     let page = report::run_html(&results);
     output::write(&path(REPORT), page)?;
+    record.vouch(&args.output, [SUMMARY, REPORT])?;
+    record.vouch_all(&args.output, MODEL)?;
+    record.vouch_all(&args.output, RECOVERED)?;
+    record.write(&args.output)?;
+    drop(folder);
     let text = if args.json {
         summary
     } else {
@@ -104,6 +105,13 @@ pub(super) fn execute(args: &RunArgs, console: Console) -> Result<Outcome, Failu
         .agreement
         .as_ref()
         .map_or(Outcome::Done, validate::outcome))
+}
+
+/// Φcam, its standard error and how far that is to be trusted, of a run that an earlier process has
+/// finished.
+fn finished_matrices(dir: &Path, scene: &Scene) -> Result<[Matrix; 3], Failure> {
+    let read = |name| read_matrix(&dir.join(name), scene);
+    Ok([read(PHI)?, read(STDERR)?, read(TAILS)?])
 }
 
 /// Model, verdict and recoveries.
@@ -163,7 +171,7 @@ fn compare_and_recover(
         &options,
     )?;
     recover::write(
-        &args.output,
+        &args.output.join(RECOVERED),
         &results.scene,
         &results.recovered,
         &results.picards,
@@ -195,8 +203,7 @@ fn gallery(results: &RunResults, matrices: &MatrixModel, console: Console) -> Op
 const FAINTEST: f64 = 1e-30;
 
 /// The frames must hold Φcam to f32 rounding: what is read back is compared with what was traced.
-fn refuse_unfaithful_frames(dir: &std::path::Path, flux: &Matrix) -> Result<(), Failure> {
-    let stacked = film::stack(dir)?;
+fn refuse_unfaithful_frames(dir: &Path, stacked: &Stack, flux: &Matrix) -> Result<(), Failure> {
     // Rounding to f32 is off by at most 2⁻²⁴ of each entry, so also of the norm.
     let off = relative_frobenius(&stacked.phi, flux).unwrap_or(0.0);
     if off <= f64::from(f32::EPSILON) {

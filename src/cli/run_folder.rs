@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
+use super::batches::columns;
 use super::cleanup::{remove_files, remove_named, remove_numbered};
 use super::console::Console;
 use super::failure::Failure;
@@ -22,11 +23,12 @@ use super::output;
 use super::partial::{PARTIAL, Partial};
 use super::record::Record;
 use crate::film::{self, Channel, Frame, FrameMeta, RunMeta, frame_name};
+use crate::jobs::Spots;
 use crate::lab::Tails;
 use crate::matrix::{Matrix, npy};
 use crate::recovery::Method;
 use crate::scene::{COPIES, Scene};
-use crate::store::{StoreError, ensure_writable};
+use crate::store::{FolderLock, StoreError, ensure_writable, flush, is_missing};
 use crate::transport::Traced;
 
 pub(super) const PHI: &str = "phi.npy";
@@ -40,6 +42,15 @@ pub(super) const SCENE: &str = "scene.toml";
 pub(super) const MODEL: &str = "model";
 /// Deviations of traced from modelled entries, in [`MODEL`].
 pub(super) const Z: &str = "z.npy";
+/// What is in [`MODEL`].
+pub(super) const MODEL_FILES: [&str; 6] = [
+    "g12.npy",
+    "g23.npy",
+    "laser_side.npy",
+    "camera_side.npy",
+    "phi.npy",
+    Z,
+];
 /// Recovered reflectances.
 pub(super) const RECOVERED: &str = "recovered";
 /// Photographs of `phicam expose`: [`PHI`], [`STDERR`] and these.
@@ -48,86 +59,210 @@ pub(super) const EXPOSURE: &str = "exposure.json";
 pub(super) const SATURATED: &str = "saturated.npy";
 pub(super) const COUNTS: &str = "counts";
 
-/// What is kept of an earlier render into the same folder.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Resume {
-    /// Nothing: all spots are rendered.
-    Nothing,
-    /// Other spots, and none of those asked for.
-    OtherSpots,
-    /// Every finished spot.
-    Finished,
+/// A run that takes the place of another, until it is whole.
+const REPLACEMENT: &str = ".replacement";
+/// The same while its files are moved to their places; nothing of the other is left.
+const INCOMING: &str = ".incoming";
+
+/// What a process is going to do with a run folder.
+#[derive(Clone, Debug)]
+pub(super) struct Claim {
+    /// What it says to others.
+    pub what: String,
+    /// The spots that it writes; all of the folder unless given.
+    pub spots: Option<Range<usize>>,
+    /// Whether it may replace a run with other settings, once the new one is whole.
+    pub replace: bool,
 }
 
-/// An open run folder.
+/// A run folder.
 #[derive(Debug)]
 pub(super) struct RunFolder {
     pub path: PathBuf,
+    /// The folder that is to be replaced by this one.
+    replaces: Option<PathBuf>,
+    /// The right to write it.
+    lock: Option<FolderLock>,
 }
 
 impl RunFolder {
-    /// The folder of a run that is there.
+    /// The folder of a run, to look at.
     pub(super) fn at(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
+            replaces: None,
+            lock: None,
         }
     }
 
-    /// Makes sure that the run `record` may be written to `path`, and that it can be. Nothing is
+    /// The folder `path`, to write other things than a render into it: nobody else writes it.
+    pub(super) fn lock(path: &Path, what: &str) -> Result<FolderLock, Failure> {
+        ensure_writable(path)?;
+        let first = || Self::at(path).finish_replacement();
+        FolderLock::take(path, &(0..u64::MAX), what, first).map(|(lock, ())| lock)
+    }
+
+    /// The folder `path`, to write the run `record` into it. Of a run with the same settings all
+    /// that is finished stays; one with other settings, or of another scene, is refused, unless
+    /// `claim` says that it is to be replaced: the new one is then traced beside it. Nothing is
     /// changed before every check has passed.
     pub(super) fn open(
         path: &Path,
         scene: &Scene,
         record: &Record,
-        resume: Resume,
+        claim: &Claim,
         console: Console,
     ) -> Result<Self, Failure> {
-        let folder = Self {
-            path: path.to_owned(),
+        refuse_obstacles(path, &OWN_FOLDERS, &OWN_FILES)?;
+        ensure_writable(path)?;
+        let differs = || -> Result<Option<Record>, Failure> {
+            Ok(Record::read(path)?.filter(|there| !there.same_settings(record)))
         };
-        folder.refuse_foreign(scene, console)?;
-        let earlier = Record::read(path)?;
-        let same = earlier.as_ref().is_some_and(|e| e.same_settings(record));
-        if let Some(e) = earlier.filter(|_| !same) {
-            if resume != Resume::Nothing {
-                let cause = format!(
-                    "{} holds a run with other settings ({})",
-                    path.display(),
-                    e.plan
-                );
-                return Err(Failure::new(
-                    cause,
-                    "use the same settings, or another folder (-o)",
-                ));
+        // Who replaces a run writes all of it.
+        let alone = claim.replace && differs()?.is_some();
+        let parts = match &claim.spots {
+            Some(spots) if !alone => spots.start as u64..spots.end as u64,
+            _ => 0..u64::MAX,
+        };
+        let begin = || -> Result<Self, Failure> {
+            let mut folder = Self::at(path);
+            folder.finish_replacement()?;
+            match differs()? {
+                None => folder.refuse_foreign(scene, console)?,
+                Some(there) if claim.replace && parts.end == u64::MAX => {
+                    folder = folder.replacement(record, &there, console)?;
+                }
+                Some(there) => return Err(other_run(path, &there, scene)),
             }
-            ensure_writable(path)?;
-            console.say(format!(
-                "replacing the earlier run in {} ({})",
-                path.display(),
-                e.plan
-            ));
-            folder.remove_frames()?;
-        } else {
-            ensure_writable(path)?;
-        }
-        if resume == Resume::Nothing {
-            folder.partial().remove()?;
-        }
-        record.write(path)?;
-        ensure_writable(&folder.frames())?;
-        folder.remove_abandoned()?;
-        folder.write_scene(scene)?;
+            folder.begin(scene, record, console)?;
+            Ok(folder)
+        };
+        let (lock, mut folder) = FolderLock::take(path, &parts, &claim.what, begin)?;
+        folder.lock = Some(lock);
         Ok(folder)
+    }
+
+    /// Where the run `record` is traced that is to replace `there`.
+    fn replacement(
+        self,
+        record: &Record,
+        there: &Record,
+        console: Console,
+    ) -> Result<Self, Failure> {
+        let path = self.path.join(REPLACEMENT);
+        console.say(format!(
+            "the run in {} ({}) stays until this one is whole",
+            self.path.display(),
+            there.plan
+        ));
+        // Begun with yet other settings: nobody will go on with it. One that cannot be read is none.
+        if !matches!(Record::read(&path), Ok(Some(begun)) if begun.same_settings(record)) {
+            remove_folder(&path)?;
+        }
+        ensure_writable(&path)?;
+        Ok(Self {
+            path,
+            replaces: Some(self.path),
+            lock: None,
+        })
+    }
+
+    /// Writes what a run has from its first moment on; what is there of it stays.
+    fn begin(&self, scene: &Scene, record: &Record, console: Console) -> Result<(), Failure> {
+        let own = self.path.join(SCENE);
+        // A sensor may have been written into it: the light is the same.
+        let there = own.exists();
+        let same = || {
+            console
+                .load_scene(&own.to_string_lossy())
+                .is_ok_and(|s| s.hash == scene.hash)
+        };
+        if there && !same() {
+            let cause = format!("{} is not the scene of the run beside it", own.display());
+            let cure = "restore or remove it, or render the changed scene into another folder";
+            return Err(Failure::new(cause, cure));
+        }
+        if Record::read(&self.path)?.is_none() {
+            record.write(&self.path)?;
+        }
+        ensure_writable(&self.frames())?;
+        self.remove_abandoned()?;
+        if there {
+            Ok(())
+        } else {
+            self.write_scene(scene)
+        }
+    }
+
+    /// Puts the run that was traced beside another into its place, once it is complete.
+    pub(super) fn settle(&mut self) -> Result<(), Failure> {
+        if let Some(path) = self.replaces.take() {
+            self.path = path;
+            self.replace()?;
+        }
+        Ok(())
+    }
+
+    /// Removes the old run and moves the new one to its place. A process that ends midway leaves
+    /// what [`Self::finish_replacement`] goes on with.
+    fn replace(&self) -> Result<(), Failure> {
+        self.remove_run()?;
+        fs::rename(self.path.join(REPLACEMENT), self.path.join(INCOMING))?;
+        self.move_in()
+    }
+
+    /// Goes on where a process was ended while it put a new run in the place of the old one.
+    fn finish_replacement(&self) -> Result<(), Failure> {
+        if self.path.join(INCOMING).is_dir() {
+            return self.move_in();
+        }
+        let without = !self.path.join(Record::FILE).exists();
+        let staged = || Record::read(&self.path.join(REPLACEMENT));
+        if without && staged()?.is_some_and(|r| r.is_complete()) {
+            return self.replace();
+        }
+        Ok(())
+    }
+
+    /// Moves what is in [`INCOMING`] to its place, the record last.
+    fn move_in(&self) -> Result<(), Failure> {
+        let from = self.path.join(INCOMING);
+        for folder in ["frames", COPIES] {
+            let (from, to) = (from.join(folder), self.path.join(folder));
+            let Ok(entries) = fs::read_dir(&from) else {
+                continue;
+            };
+            ensure_writable(&to)?;
+            for entry in entries {
+                let name = entry?.file_name();
+                fs::rename(from.join(&name), to.join(&name))?;
+            }
+        }
+        for name in [SCENE, TAILS, STDERR, PHI, Record::FILE] {
+            match fs::rename(from.join(name), self.path.join(name)) {
+                Err(e) if !is_missing(&e) => return Err(e.into()),
+                _ => {}
+            }
+        }
+        flush(&self.path)?;
+        remove_folder(&from)
+    }
+
+    /// Calls `change` while no other writer of the folder changes what all of them share.
+    pub(super) fn alone<T>(
+        &self,
+        change: impl FnOnce() -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        match &self.lock {
+            Some(lock) => lock.alone(change),
+            None => change(),
+        }
     }
 
     /// A folder that holds another scene, or frames of unknown origin, or something else under the
     /// name of an output, is not written to.
     pub(super) fn refuse_foreign(&self, scene: &Scene, console: Console) -> Result<(), Failure> {
-        refuse_obstacles(
-            &self.path,
-            &["frames", PARTIAL, MODEL, RECOVERED, COPIES],
-            &[SCENE, PHI, STDERR, TAILS, Record::FILE, SUMMARY, REPORT],
-        )?;
+        refuse_obstacles(&self.path, &OWN_FOLDERS, &OWN_FILES)?;
         let path = self.path.display();
         let cure = "choose another folder (-o), or remove this one";
         if let Some(record) = Record::read(&self.path)? {
@@ -196,12 +331,20 @@ impl RunFolder {
         Partial::of(&self.path)
     }
 
-    /// A finished spot of the run `record`: one column per bounce count, then the standard error
-    /// and its code; `None` unless both this and its frame are there and whole.
-    pub(super) fn kept(&self, spot: usize, scene: &Scene, record: &Record) -> Option<Matrix> {
-        let frame = film::exr::read(&self.frames().join(frame_name(spot as u32))).ok()?;
-        let own = frame.meta == meta(scene, record, spot);
-        self.partial().read(spot, scene).filter(|_| own)
+    /// Whether the frame of a spot is there and has what was kept of it.
+    pub(super) fn has_frame(
+        &self,
+        scene: &Scene,
+        record: &Record,
+        spot: usize,
+        kept: &Matrix,
+    ) -> bool {
+        let path = self.frames().join(frame_name(spot as u32));
+        film::exr::read(&path).is_ok_and(|there| {
+            let mut due = frame(scene, record, spot, kept).channels;
+            due.sort_by(|a, b| a.name.cmp(&b.name));
+            there.meta == meta(scene, record, spot) && there.channels == due
+        })
     }
 
     /// Removes from a run that is complete what an ended process has left beside it.
@@ -216,17 +359,19 @@ impl RunFolder {
         remove_files(&self.frames(), nothing)
     }
 
-    /// Removes what was rendered, and what was found from it.
-    fn remove_frames(&self) -> Result<(), Failure> {
+    /// Removes what was rendered, and what was found from it; the record first, so that nobody takes
+    /// what is left for a run.
+    fn remove_run(&self) -> Result<(), Failure> {
+        remove_named(&self.path, &[Record::FILE])?;
         self.partial().remove()?;
         remove_numbered(&self.frames(), "exr")?;
         remove_recovered(&self.path.join(RECOVERED))?;
         remove_exposed(&self.path.join(EXPOSED))?;
-        remove_named(&self.path.join(MODEL), &[Z])?;
-        remove_named(
-            &self.path,
-            &[PHI, STDERR, TAILS, Record::FILE, SUMMARY, REPORT],
-        )
+        let model = self.path.join(MODEL);
+        remove_named(&model, &MODEL_FILES)?;
+        // Anything else in it is not ours, and keeps it.
+        let _ = fs::remove_dir(model);
+        remove_named(&self.path, &[PHI, STDERR, TAILS, SUMMARY, REPORT])
     }
 
     /// Writes the frames of `spots` from the columns of `traced`, on the threads of the pool.
@@ -234,48 +379,29 @@ impl RunFolder {
         &self,
         scene: &Scene,
         record: &Record,
-        spots: &Range<usize>,
+        spots: &Spots<'_>,
         traced: &Traced,
     ) -> Result<(), Failure> {
         refuse_beyond_f32(traced)?;
-        let frames = spots.clone().into_par_iter().enumerate();
-        frames.try_for_each(|(column, spot)| self.write_frame(scene, record, spot, traced, column))
+        let kept: Vec<Matrix> = columns(traced).collect();
+        let frames = spots.range.clone().into_par_iter().zip(kept);
+        frames.try_for_each(|(spot, kept)| self.write_frame(scene, record, spot, &kept))
     }
 
-    /// Writes the frame of a spot from column `column` of `traced`.
-    fn write_frame(
+    /// Writes the frame of a spot from what is kept of it.
+    pub(super) fn write_frame(
         &self,
         scene: &Scene,
         record: &Record,
         spot: usize,
-        traced: &Traced,
-        column: usize,
+        kept: &Matrix,
     ) -> Result<(), Failure> {
-        let channel = |name: String, m: &Matrix| Channel {
-            name,
-            values: m.column(column).iter().map(|x| *x as f32).collect(),
-        };
-        let mut channels = vec![
-            channel(film::frame::FLUX.into(), &traced.flux),
-            channel(film::frame::FLUX_STDERR.into(), &traced.stderr),
-        ];
-        for (n, m) in traced.bounces.iter().enumerate() {
-            channels.push(channel(film::frame::bounce_channel(n + 1), m));
-        }
-        let frame = Frame {
-            columns: scene.camera.columns,
-            rows: scene.camera.rows,
-            channels,
-            meta: meta(scene, record, spot),
-        };
-        Ok(film::exr::write(
-            &self.frames().join(frame_name(spot as u32)),
-            &frame,
-        )?)
+        let path = self.frames().join(frame_name(spot as u32));
+        Ok(film::exr::write(&path, &frame(scene, record, spot, kept))?)
     }
 
     /// Writes Φcam, its standard error and how far that is to be trusted, and that the run is
-    /// complete.
+    /// complete; the record vouches for its files from now on.
     pub(super) fn finish(
         &self,
         record: &mut Record,
@@ -285,8 +411,65 @@ impl RunFolder {
         npy::write(&self.path.join(TAILS), tails)?;
         npy::write(&self.path.join(STDERR), stderr)?;
         npy::write(&self.path.join(PHI), phi)?;
+        flush(&self.frames())?;
+        record.finished = record.spots;
+        record.files.clear();
+        record.vouch(&self.path, [SCENE, PHI, STDERR, TAILS])?;
+        record.vouch_all(&self.path, "frames")?;
+        record.vouch_all(&self.path, COPIES)?;
         record.write(&self.path)?;
         self.partial().remove()
+    }
+}
+
+/// Names of a run's folders and files, under which nothing else may stand.
+const OWN_FOLDERS: [&str; 5] = ["frames", PARTIAL, MODEL, RECOVERED, COPIES];
+const OWN_FILES: [&str; 7] = [SCENE, PHI, STDERR, TAILS, Record::FILE, SUMMARY, REPORT];
+
+/// That a folder holds a run that is not to be replaced.
+fn other_run(path: &Path, there: &Record, scene: &Scene) -> Failure {
+    let path = path.display();
+    let cause = if there.scene_hash == scene.hash {
+        format!("{path} holds a run with other settings ({})", there.plan)
+    } else {
+        format!("{path} holds a run of another scene (`{}`)", there.scene)
+    };
+    let cure = "give the same settings, choose another folder (-o), or replace it (--replace)";
+    Failure::new(cause, cure)
+}
+
+/// Removes a folder of phicam's own with all that is in it, if it is there.
+fn remove_folder(path: &Path) -> Result<(), Failure> {
+    match fs::remove_dir_all(path) {
+        Err(e) if !is_missing(&e) => {
+            let cause = format!("cannot remove {}: {e}", path.display());
+            Err(Failure::system(cause, "make its folder writable for you"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The frame of a spot, from what is kept of it: one column per bounce count, then the standard
+/// error and its code.
+fn frame(scene: &Scene, record: &Record, spot: usize, kept: &Matrix) -> Frame {
+    let orders = kept.ncols() - 2;
+    let channel = |name: String, values: Vec<f64>| Channel {
+        name,
+        values: values.into_iter().map(|x| x as f32).collect(),
+    };
+    let column = |n: usize| kept.column(n).iter().copied().collect();
+    // The same order of additions as in the tracer, so that the bits are the same.
+    let flux = kept.row_iter().map(|row| row.iter().take(orders).sum());
+    let mut channels = vec![
+        channel(film::frame::FLUX.into(), flux.collect()),
+        channel(film::frame::FLUX_STDERR.into(), column(orders)),
+    ];
+    channels.extend((0..orders).map(|n| channel(film::frame::bounce_channel(n + 1), column(n))));
+    Frame {
+        columns: scene.camera.columns,
+        rows: scene.camera.rows,
+        channels,
+        meta: meta(scene, record, spot),
     }
 }
 

@@ -36,16 +36,21 @@ pub(super) fn execute(args: &SceneArgs, console: Console) -> Result<Outcome, Fai
             })?;
             let _ = loaded?;
         }
-        SceneCommand::Show { scene, output } => {
+        SceneCommand::Show {
+            scene,
+            output,
+            force,
+        } => {
             let scene = console.load_scene(scene)?;
             console.warn(&scene);
-            output::deliver(&report::bench_svg(&scene), output.as_deref())?;
+            output::deliver(&report::bench_svg(&scene), output.as_deref(), *force)?;
         }
         SceneCommand::View(view) => return preview::execute(view, console),
         SceneCommand::Export {
             scene,
             mitsuba,
             output,
+            force,
         } => {
             let scene = console.load_scene(scene)?;
             let text = if *mitsuba {
@@ -53,7 +58,7 @@ pub(super) fn execute(args: &SceneArgs, console: Console) -> Result<Outcome, Fai
             } else {
                 scene.text
             };
-            output::deliver(&text, output.as_deref())?;
+            output::deliver(&text, output.as_deref(), *force)?;
         }
     }
     Ok(Outcome::Done)

@@ -9,15 +9,19 @@ use super::args::StackArgs;
 use super::console::Console;
 use super::failure::Failure;
 use super::output;
-use super::run_folder::{PHI, STDERR};
+use super::record::Record;
+use super::run_folder::{PHI, RunFolder, STDERR};
 use crate::film;
 use crate::matrix::{Matrix, npy};
-use crate::store::ensure_writable;
 
 pub(super) fn execute(args: &StackArgs, _: Console) -> Result<Outcome, Failure> {
     let stack = film::stack(&args.dir)?;
+    let record = Record::read(&args.dir)?;
+    if let Some(record) = &record {
+        record.check_all(&args.dir)?;
+    }
     let dir = args.output.as_ref().unwrap_or(&args.dir);
-    ensure_writable(dir)?;
+    let _lock = RunFolder::lock(dir, "phicam stack")?;
     let path = dir.join(PHI);
     let there = path.exists();
     let precision = if there {
@@ -26,6 +30,10 @@ pub(super) fn execute(args: &StackArgs, _: Console) -> Result<Outcome, Failure> 
     } else {
         npy::write(&dir.join(STDERR), &stack.stderr)?;
         npy::write(&path, &stack.phi)?;
+        if let Some(mut record) = record.filter(|_| args.output.is_none()) {
+            record.vouch(dir, [PHI, STDERR])?;
+            record.write(dir)?;
+        }
         "to the f32 precision of the frames"
     };
     let (pixels, spots) = stack.phi.shape();

@@ -60,7 +60,7 @@ fn deliver(
     console: Console,
 ) -> Result<Outcome, Failure> {
     let path = args.output.as_deref().unwrap_or(Path::new(usual));
-    output::write(path, bytes)?;
+    output::write_new(path, bytes, args.force)?;
     console.say(format!("{}: {what}", path.display()));
     Ok(Outcome::Done)
 }

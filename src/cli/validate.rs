@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use super::args::ValidateArgs;
 use super::console::Console;
 use super::failure::Failure;
-use super::load_run::{read_errors, read_matrix, read_run, read_stderr, read_tails};
+use super::load_run::{
+    read_errors, read_matrix, read_run, read_stderr, read_tails, refuse_damaged,
+};
 use super::output;
 use super::record::Record;
 use super::run_folder::{self, PHI, STDERR};
@@ -17,7 +19,7 @@ use crate::matrix::{Matrix, npy};
 use crate::num::statistics::normal_two_sided;
 use crate::report::{self, Panel, Scale};
 use crate::scene::Scene;
-use crate::store::ensure_writable;
+use crate::store::{ensure_writable, flush};
 
 pub(super) fn execute(args: &ValidateArgs, console: Console) -> Result<Outcome, Failure> {
     let given = given(args, console)?;
@@ -82,14 +84,17 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
         Some(dir) => Some((dir, read_run(dir, console)?)),
     };
     match (&args.phi, &args.stderr, run) {
-        (Some(phi), Some(stderr), run) => Ok(Given {
-            scene: run.map(|(_, (scene, _))| scene),
-            phi: npy::read_finite(phi)?,
-            stderr: read_errors(stderr)?,
-            left_out: None,
-            test: settings::test_of_matrix(&args.test, args.errors, args.replicates)?,
-            run: None,
-        }),
+        (Some(phi), Some(stderr), run) => {
+            refuse_damaged(phi)?;
+            Ok(Given {
+                scene: run.map(|(_, (scene, _))| scene),
+                phi: npy::read_finite(phi)?,
+                stderr: read_errors(stderr)?,
+                left_out: None,
+                test: settings::test_of_matrix(&args.test, args.errors, args.replicates)?,
+                run: None,
+            })
+        }
         (_, _, Some((dir, (scene, record)))) => Ok(Given {
             phi: read_matrix(&dir.join(PHI), &scene)?,
             stderr: read_stderr(&dir.join(STDERR), &scene)?,
@@ -142,6 +147,7 @@ fn write_map(dir: &Path, scene: &Scene, record: &Record, z: &Matrix) -> Result<(
         meta: run_folder::meta(scene, record, 0),
     };
     film::exr::write(&folder.join("p.exr"), &frame)?;
+    flush(&folder)?;
     let smallest = f64::MIN_POSITIVE;
     let surprise = map(&|z| -libm::log10(normal_two_sided(z).max(smallest)));
     let scale = Scale::sequential(&surprise);

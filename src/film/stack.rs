@@ -96,7 +96,7 @@ pub enum StackError {
         spot_count: u32,
     },
     /// Not every spot has its frame.
-    #[error("{} lacks the frames of {count} of {spot_count} spots: {spots}; render them with `phicam render --resume`", path.display())]
+    #[error("{} lacks the frames of {count} of {spot_count} spots: {spots}; render them with `phicam render`, which goes on", path.display())]
     Missing {
         /// The folder of the frames.
         path: PathBuf,

@@ -14,6 +14,10 @@ const LOOK: f64 = 0.25;
 /// Numbers of one part of a [`Tally`]: half a gibibyte.
 const MOST_NUMBERS: usize = 1 << 26;
 
+/// Entries of Φcam that are traced together where spots share nothing: for a second or so at the
+/// usual samples, so that few files are written and few are lost.
+const ENTRIES: usize = 1 << 12;
+
 /// Neighbouring spots that are traced together. Their sample blocks count from `first` in the work
 /// that they belong to.
 #[derive(Clone, Debug)]
@@ -29,14 +33,17 @@ pub struct Spots<'a> {
 }
 
 impl<'a> Spots<'a> {
-    /// Spots that are traced together at most: one where they share nothing, else as many as memory
-    /// bears.
+    /// Spots that are traced together at most: where they share nothing one, or so many as have a
+    /// few thousand entries; else as many as memory bears.
     pub fn together(scene: &Scene, estimator: Estimator) -> usize {
-        if !estimator.serves_all_spots() {
-            return 1;
-        }
-        let column = scene.camera.pixels() * (scene.max_bounces as usize + 4);
-        (MOST_NUMBERS / column).max(1)
+        let pixels = scene.camera.pixels();
+        let most = MOST_NUMBERS / (pixels * (scene.max_bounces as usize + 4));
+        let wanted = if estimator.serves_all_spots() {
+            most
+        } else {
+            most.min(ENTRIES / pixels)
+        };
+        wanted.max(1)
     }
 
     /// All spots of a render, in the order of their blocks.

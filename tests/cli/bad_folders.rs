@@ -121,7 +121,7 @@ fn no_run_at_all() {
 fn an_unfinished_run() {
     let workspace = Workspace::with_scenes();
     let _ = workspace.phicam(&format!("{QUICK} --spots 0..3")).exits(0);
-    readers_refuse(&workspace, &["3 of 8 spots", "--resume"]);
+    readers_refuse(&workspace, &["3 of 8 spots", "the same command"]);
 }
 
 #[test]

@@ -64,7 +64,7 @@ fn a_value_that_no_rendering_gives() {
 fn one_missing() {
     let workspace = with_frames();
     std::fs::remove_file(workspace.path(THIRD)).unwrap();
-    stack_refuses(&workspace, &["1 of 8 spots", ": 2;", "--resume"]);
+    stack_refuses(&workspace, &["1 of 8 spots", ": 2;", "phicam render"]);
     std::fs::remove_file(workspace.path("done/frames/spot-0007.exr")).unwrap();
     stack_refuses(&workspace, &["2 of 8 spots", ": 2, 7;"]);
 }

@@ -326,6 +326,7 @@ fn bad_settings_are_refused_before_anything_is_written() {
 #[test]
 fn a_flux_that_no_camera_can_see_is_refused() {
     let workspace = with_run();
+    workspace.disown("done");
     let clean = workspace.matrix("done/phi.npy");
     let path = workspace.path("done/phi.npy");
     phicam::matrix::npy::write(&path, &(&clean * 0.0)).unwrap();
@@ -365,7 +366,7 @@ fn rendering_again_removes_the_photographs() {
     let workspace = with_run();
     let _ = workspace.phicam("expose done --sensor ccd").exits(0);
     let _ = workspace
-        .phicam("render tiny.toml -o done --samples 32 --seed 9")
+        .phicam("render tiny.toml -o done --samples 32 --seed 9 --replace")
         .exits(0);
     assert!(workspace.contents("done/exposed").is_empty());
 }

@@ -258,9 +258,9 @@ fn bands_are_files_of_their_own() {
 #[test]
 fn every_method_can_be_asked_for() {
     let workspace = with_run();
-    let line = "recover done --method nnls,joint-tv,joint-two-valued --phi done/model/phi.npy --noise 0.001";
+    let line = "recover done --method nnls,joint-tv,joint-two-valued --phi done/model/phi.npy --noise 0.001 -o own";
     let _ = workspace.phicam(line).exits(0);
-    let names = workspace.contents("done/recovered");
+    let names = workspace.contents("own");
     for name in ["nnls.npy", "joint-tv.npy", "joint-two-valued.npy"] {
         assert!(names.contains_key(name), "no {name}");
     }

@@ -135,8 +135,8 @@ fn a_damaged_part_is_rendered_again() {
     let workspace = workspace();
     let whole = rendered(&workspace, "whole", "");
     let _ = rendered(&workspace, "out", "--spots 0..3");
-    let kept = workspace.read("out/partial/spot-0001.npy");
-    workspace.write("out/partial/spot-0001.npy", &kept[..kept.len() / 2]);
+    let kept = workspace.read("out/partial/spots-0000-0003.phs");
+    workspace.write("out/partial/spots-0000-0003.phs", &kept[..kept.len() / 2]);
     assert_same(&whole, &rendered(&workspace, "out", "--resume"), "resumed");
 }
 

@@ -128,7 +128,7 @@ fn a_real_run_is_served_and_made_again_meanwhile() {
     assert_eq!(values("stderr"), row("out/phi.stderr.npy"));
     assert_eq!(values("modelled"), row("out/model/phi.npy"));
     let _ = workspace
-        .phicam("render tiny.toml -o out --samples 32 --seed 2")
+        .phicam("render tiny.toml -o out --samples 32 --seed 2 --replace")
         .exits(0);
     let second = values("traced");
     assert_eq!(second, row("out/phi.npy"));

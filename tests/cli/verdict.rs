@@ -194,6 +194,7 @@ fn a_matrix_of_ones_own_is_judged() {
 fn nothing_is_no_evidence() {
     let workspace = Workspace::with_scenes();
     let _ = workspace.phicam("render tiny.toml -o done").exits(0);
+    workspace.disown("done");
     let flags = npy(6, 8, 1.0);
     std::fs::write(workspace.path("done/phi.tails.npy"), flags).unwrap();
     let ended = workspace.phicam("validate done").exits(4);

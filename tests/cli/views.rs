@@ -80,7 +80,9 @@ fn without_a_terminal_the_picture_goes_beside_the_file() {
     assert!(picture(&workspace, &format!("{FRAME}.png")).width > 600);
     // One EV more halves the scale's end: the largest value at least is above.
     let ended = workspace
-        .phicam(&format!("view {FRAME} --exposure 1 --channel flux.stderr"))
+        .phicam(&format!(
+            "view {FRAME} --exposure 1 --channel flux.stderr --force"
+        ))
         .exits(0);
     assert!(
         ended.stderr.contains("of 6 values above"),

@@ -153,6 +153,9 @@ pub(in crate::cli) struct RunArgs {
     pub trace: TraceArgs,
     #[command(flatten)]
     pub test: TestArgs,
+    /// Replace a run with other settings, or of another scene, once this one is whole
+    #[arg(long)]
+    pub replace: bool,
     /// Print summary.json instead of the table
     #[arg(long)]
     pub json: bool,
@@ -170,8 +173,11 @@ pub(in crate::cli) struct RenderArgs {
     /// Only spots A to B − 1; phi.npy follows when every spot is there
     #[arg(long, value_name = "A..B", value_parser = spot_range)]
     pub spots: Option<Range<usize>>,
-    /// Keep the spots and blocks that an interrupted run with the same settings has finished
+    /// Replace a run with other settings, or of another scene, once this one is whole
     #[arg(long)]
+    pub replace: bool,
+    /// Goes on where the same run stopped, as it does without being told
+    #[arg(long, hide = true)]
     pub resume: bool,
     /// Print the record of the run (run.json)
     #[arg(long)]
@@ -291,6 +297,9 @@ pub(in crate::cli) enum SceneCommand {
         /// File to write; standard output unless given
         #[arg(long, short)]
         output: Option<PathBuf>,
+        /// Replace the file if it is there
+        #[arg(long)]
+        force: bool,
     },
     /// Look at a scene from any place, in ordinary light, as PNG
     View(Box<PreviewArgs>),
@@ -304,6 +313,9 @@ pub(in crate::cli) enum SceneCommand {
         /// File to write; standard output unless given
         #[arg(long, short)]
         output: Option<PathBuf>,
+        /// Replace the file if it is there
+        #[arg(long)]
+        force: bool,
     },
 }
 

@@ -13,6 +13,10 @@ use crate::recovery::{Rule, WeightRule};
 pub(in crate::cli) struct RecoverArgs {
     /// Folder of a run; with --phi a folder with a scene.toml is enough
     pub dir: PathBuf,
+    /// Folder for the results; DIR/recovered unless given, and for another Φcam than the run's
+    /// DIR/recovered-NAME-DIGEST
+    #[arg(long, short, value_name = "FOLDER")]
+    pub output: Option<PathBuf>,
     /// Methods, separated by commas: pinv, left-inverse, right-inverse, rdivide, rdivide-min-norm,
     /// tsvd, tikhonov, tikhonov-gradient, joint-unbounded, joint, nnls, joint-tv, joint-two-valued;
     /// pinv, tsvd, tikhonov, joint-unbounded and joint unless given

@@ -26,6 +26,9 @@ pub(in crate::cli) struct ReproduceArgs {
     /// Threads; all cores unless given. Does not change a byte of the result
     #[arg(long)]
     pub threads: Option<usize>,
+    /// Replace finished items with other settings
+    #[arg(long)]
+    pub replace: bool,
     /// Print the summaries of the items as JSON
     #[arg(long)]
     pub json: bool,

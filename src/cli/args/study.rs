@@ -17,6 +17,7 @@ pub(in crate::cli) struct StudyArgs {
     pub scene: String,
     pub output: PathBuf,
     pub threads: Option<usize>,
+    pub replace: bool,
     pub json: bool,
     /// Every option with its values as they were given, or as they are unless given.
     pub options: Vec<(&'static str, Vec<String>)>,
@@ -71,6 +72,12 @@ fn command(study: &'static Registered) -> Command {
                 .value_name("THREADS")
                 .help("Threads; all cores unless given")
                 .value_parser(value_parser!(usize)),
+        )
+        .arg(
+            Arg::new("replace")
+                .long("replace")
+                .action(ArgAction::SetTrue)
+                .help("Replace what is kept of this study with other settings"),
         )
         .arg(
             Arg::new("json")
@@ -133,6 +140,7 @@ impl FromArgMatches for StudyArgs {
                 .cloned()
                 .ok_or_else(missing)?,
             threads: given.get_one("threads").copied(),
+            replace: given.get_flag("replace"),
             json: given.get_flag("json"),
             options: study.options.iter().map(text).collect(),
         })

@@ -17,6 +17,9 @@ pub(in crate::cli) struct TargetArgs {
     /// File to write; NAME.png, of a mesh NAME.ply, unless given
     #[arg(long, short, requires = "name")]
     pub output: Option<PathBuf>,
+    /// Replace the file if it is there
+    #[arg(long, requires = "name")]
+    pub force: bool,
     /// Columns and rows, 1 to 4096 each; the target's own unless given
     #[arg(long, value_name = "W,H", value_parser = size, requires = "name")]
     pub size: Option<[usize; 2]>,

@@ -20,6 +20,9 @@ pub(in crate::cli) struct PreviewArgs {
     /// PNG file to write
     #[arg(long, short)]
     pub output: PathBuf,
+    /// Replace the PNG file if it is there
+    #[arg(long)]
+    pub force: bool,
     /// Where the viewer stands, in the scene's unit; chosen unless given, so that all is in the
     /// picture and much of it seen from its front
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
@@ -63,6 +66,9 @@ pub(in crate::cli) struct ViewArgs {
     /// PNG file to write
     #[arg(long, short)]
     pub output: Option<PathBuf>,
+    /// Replace the PNG file if it is there
+    #[arg(long)]
+    pub force: bool,
     /// Channel of a frame or picture; flux, luminance or the only one unless given
     #[arg(long)]
     pub channel: Option<String>,

@@ -10,7 +10,7 @@ use crate::cli::output;
 use crate::cli::progress::Tracing;
 use crate::cli::record::Record;
 use crate::cli::render::{complete, refuse_too_large};
-use crate::cli::run_folder::{Resume, RunFolder};
+use crate::cli::run_folder::{Claim, RunFolder};
 use crate::cli::{Outcome, settings};
 use crate::jobs::{Checkpoint, Identity, Parts, Shards, Spots, end};
 use crate::matrix::Matrix;
@@ -77,20 +77,15 @@ impl Work for Render {
     ) -> Result<Outcome, Failure> {
         let Self { scene, plan } = self;
         let mut record = Record::new(scene, plan, 0, shards.threads(), shards.seconds());
-        if let Some(there) = Record::read(output)? {
-            if !there.same_settings(&record) {
-                let cause = format!(
-                    "{} holds a run with other settings ({})",
-                    output.display(),
-                    there.plan
-                );
-                return Err(Failure::new(cause, "merge into another folder (-o)"));
-            }
-            if let Some(there) = complete(scene, plan, output)? {
-                return told(&there, output, json);
-            }
+        let claim = Claim {
+            what: "phicam merge".to_owned(),
+            spots: None,
+            replace: false,
+        };
+        let folder = RunFolder::open(output, scene, &record, &claim, console)?;
+        if let Some(there) = complete(scene, plan, output)? {
+            return told(&there, output, json);
         }
-        let folder = RunFolder::open(output, scene, &record, Resume::Finished, console)?;
         let (pixels, spots) = (scene.camera.pixels(), scene.laser.spots.len());
         let [mut flux, mut stderr, mut tails] = [(); 3].map(|()| Matrix::zeros(pixels, spots));
         for group in Spots::all(scene, plan) {
@@ -102,14 +97,13 @@ impl Work for Render {
                 );
                 Failure::new(cause, "merge again, and do not change the folder meanwhile")
             })?;
-            folder.write_frames(scene, &record, &group.range, &traced)?;
+            folder.write_frames(scene, &record, &group, &traced)?;
             let (first, n) = (group.range.start, group.range.len());
             flux.columns_mut(first, n).copy_from(&traced.flux);
             stderr.columns_mut(first, n).copy_from(&traced.stderr);
             tails.columns_mut(first, n).copy_from(&traced.tails);
         }
         flag_neighbours(&mut tails, &flux, &stderr);
-        record.finished = spots;
         folder.finish(&mut record, [&flux, &stderr, &tails])?;
         told(&record, output, json)
     }
@@ -117,7 +111,7 @@ impl Work for Render {
 
 fn told(record: &Record, dir: &Path, json: bool) -> Result<Outcome, Failure> {
     output::print(&if json {
-        output::json(record)?
+        record.json()?
     } else {
         format!(
             "{}: {} spots merged ({}): frames, phi.npy, phi.stderr.npy and phi.tails.npy\n{}",

@@ -10,11 +10,11 @@ use crate::cli::args::{Args, Command};
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::process::pool;
+use crate::cli::run_folder::RunFolder;
 use crate::cli::tasks::{Tasks, compute, identity};
 use crate::cli::{Outcome, reproduce, study};
 use crate::jobs::{Checkpoint, Identity, Parts, Shards};
 use crate::scene::Scene;
-use crate::store::ensure_writable;
 
 /// A command whose blocks are its tasks.
 pub(super) struct Study {
@@ -105,7 +105,7 @@ impl Work for Study {
             }
             results.push(bytes);
         }
-        ensure_writable(output)?;
+        let _lock = RunFolder::lock(output, "phicam merge")?;
         let pool = pool(None)?;
         pool.install(|| self.tasks.deliver(&results, output))
             .map_err(|e| e.if_stopped("nothing was written; merge again"))

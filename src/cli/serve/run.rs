@@ -6,8 +6,8 @@ use super::answer::Refusal;
 use super::folder::Served;
 use crate::cli::record::Record;
 
-/// Longest run.json that is read, bytes: phicam's own has 400.
-const RECORD_MAX: u64 = 1 << 20;
+/// Longest run.json that is read, bytes: phicam's own has a hundred for each frame.
+const RECORD_MAX: u64 = 64 << 20;
 
 /// Its bytes.
 pub(super) fn bytes(folder: &Served) -> Result<Vec<u8>, Refusal> {
@@ -22,7 +22,7 @@ pub(super) fn bytes(folder: &Served) -> Result<Vec<u8>, Refusal> {
 /// What `bytes` say, with a number of pixels that is one.
 pub(super) fn parsed(bytes: &[u8]) -> Result<Record, Refusal> {
     let damaged = |what: String| Refusal::broken(format!("{} is damaged: {what}", Record::FILE));
-    let record: Record = serde_json::from_slice(bytes).map_err(|e| damaged(e.to_string()))?;
+    let record: Record = Record::parse(bytes).map_err(damaged)?;
     match record.pixels {
         [columns, rows] if columns.checked_mul(rows).is_some() => Ok(record),
         [columns, rows] => Err(damaged(format!("{columns} × {rows} pixels"))),

@@ -11,6 +11,7 @@ use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::interrupt::{SignalGuard, control};
 use crate::cli::process::{pool, process, version};
+use crate::cli::run_folder::RunFolder;
 use crate::cli::tasks::{Tasks, compute, identity};
 use crate::jobs::{BlockFile, Checkpoint, EXTENSION, Identity, JobError, end};
 use crate::lab::{AnyStudy, Sharing, Work};
@@ -26,6 +27,7 @@ pub(super) struct Job {
     invocation: Invocation,
     threads: Option<usize>,
     output: PathBuf,
+    replace: bool,
     json: bool,
 }
 
@@ -39,6 +41,7 @@ impl Job {
             invocation: invocation(args, scene),
             threads: args.threads,
             output: args.output.clone(),
+            replace: args.replace,
             json: args.json,
         })
     }
@@ -51,10 +54,10 @@ impl Job {
         let (all, identity) = (0..self.study.tasks() as u64, self.identity());
         let file = format!("{}.{EXTENSION}", self.name);
         let path = self.output.join(&file);
-        if self.study.keeps() {
+        let lock = RunFolder::lock(&self.output, &format!("phicam study {}", self.name))?;
+        if !self.replace {
             refuse_other(&path, &identity, all.end, console)?;
         }
-        ensure_writable(&self.output)?;
         let scene = &self.invocation.scene;
         console.warn(scene);
         let mut checkpoint = Checkpoint::new(path.clone(), identity, process(&pool));
@@ -91,6 +94,7 @@ impl Job {
         if !self.study.keeps() {
             remove_named(&self.output, &[&file])?;
         }
+        drop(lock);
         Ok(outcome)
     }
 
@@ -120,7 +124,7 @@ fn refuse_other(
                 "{} holds results of another study (its {name} is {found}; now asked for: {expected})",
                 path.display()
             ),
-            "give the same settings, or choose another folder (-o)",
+            "give the same settings, choose another folder (-o), or replace them (--replace)",
         )),
         Err(JobError::Spoilt { path, what }) => {
             let path = path.display();

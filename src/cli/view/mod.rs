@@ -42,7 +42,7 @@ pub(super) fn execute(args: &ViewArgs, console: Console) -> Result<Outcome, Fail
         None => {
             let path = args.output.clone().unwrap_or_else(|| beside(&args.file));
             let png = png()?;
-            output::write(&path, &png)?;
+            output::write_new(&path, &png, args.force)?;
             console.say(format!("{}: written", path.display()));
             for (_, words) in shown.outside() {
                 console.say(words);

@@ -7,6 +7,7 @@ use std::path::Path;
 use super::super::args::ViewArgs;
 use super::super::console::{Console, harmless};
 use super::super::failure::Failure;
+use super::super::load_run::refuse_damaged;
 use super::super::record::Record;
 use super::super::run_folder;
 use crate::film;
@@ -33,6 +34,7 @@ pub(super) struct Source {
 impl Source {
     pub(super) fn read(args: &ViewArgs, console: Console) -> Result<Self, Failure> {
         let path = &args.file;
+        refuse_damaged(path)?;
         if path.extension().is_some_and(|e| e == "npy") {
             if args.channel.is_some() {
                 let cause = format!("{} is a matrix: it has no channels", path.display());
@@ -170,6 +172,14 @@ fn file_name(path: &Path) -> String {
     )
 }
 
+/// Whether a folder has results of `phicam recover`, by its name: `recovered`, or for other Φcam
+/// `recovered-NAME-DIGEST`.
+fn in_recovered(folder: &Path) -> bool {
+    let name = folder.file_name().and_then(|n| n.to_str()).unwrap_or("");
+    let rest = name.strip_prefix(run_folder::RECOVERED);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
+}
+
 /// Columns, rows and spots of the run or scene to which a file belongs: that of its folder, or of
 /// the one above.
 fn camera(path: &Path, console: Console) -> Result<Option<([usize; 2], usize)>, Failure> {
@@ -220,7 +230,7 @@ fn matrix(path: &Path, spot: Option<usize>, console: Console) -> Result<Source, 
         return Ok(Source::seen(title, size, values, unit));
     }
     let stacked = camera.is_some_and(|([w, h], spots)| (w * h, spots) == (rows, columns));
-    let recovered = path.parent().is_some_and(|p| p.ends_with("recovered")) && !stacked;
+    let recovered = path.parent().is_some_and(|p| in_recovered(p)) && !stacked;
     // METHOD.npy and truth.npy; what has another dot is something else about them.
     let reflectance = recovered && name.matches('.').count() == 1;
     let (axes, unit) = match (stacked, recovered) {

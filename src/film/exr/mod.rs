@@ -75,8 +75,8 @@ pub enum FrameError {
     Store(#[from] StoreError),
 }
 
-/// Writes `frame` to `path`, whole or not at all. Every bit of every value is kept, of NaN and
-/// infinity too.
+/// Writes `frame` to `path`, whole or not at all; it is safe from a power cut after the next
+/// [`flush`](store::flush) of its folder. Every bit of every value is kept, of NaN and infinity too.
 ///
 /// # Errors
 /// [`FrameError::Malformed`] if a channel has not columns·rows values, if names are empty, double,
@@ -87,7 +87,7 @@ pub fn write(path: &Path, frame: &Frame) -> Result<(), FrameError> {
         path: path.into(),
         reason,
     })?;
-    Ok(store::write_whole(path, |file| file.write_all(&bytes))?)
+    Ok(store::write_soon(path, |file| file.write_all(&bytes))?)
 }
 
 /// Reads the frame at `path`; its channels come in order of name. NaN and infinity are passed on:
