@@ -1,12 +1,11 @@
-//! Files that appear whole or not at all.
+//! Files: read through one door, which opens nothing but regular files ([`read`], [`open`]), and
+//! written whole or not at all.
 //!
 //! A result that took hours must not be half a file because a disk filled up, and an older result
 //! must not be gone before the new one is safe. So every output is written under a temporary name
 //! in its own folder, flushed to the device, renamed over the final name (one step that a file
 //! system does entirely or not at all), and the folder is flushed so that the rename outlives a
 //! power cut.
-
-mod lock;
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Read, Write};
@@ -16,7 +15,11 @@ use std::time::Duration;
 
 use sha2::{Digest, Sha256};
 
+mod lock;
+mod reading;
+
 pub use lock::{FolderLock, LockError};
+pub use reading::{ReadError, ReadFault, open, read};
 
 /// Why a file or a folder could not be written. Each message names the path, the cause and the
 /// cure.
@@ -122,8 +125,14 @@ pub fn machine() -> &'static str {
     MACHINE.get_or_init(found_machine)
 }
 
+/// Most bytes of what the system says of itself.
+const SYSTEM_TEXT: u64 = 4096;
+
 fn found_machine() -> String {
-    let read = |path: &str| fs::read_to_string(path).unwrap_or_default();
+    let read = |path: &str| {
+        let text = read(Path::new(path), SYSTEM_TEXT).unwrap_or_default();
+        String::from_utf8(text).unwrap_or_default()
+    };
     let (name, start) = (
         read("/proc/sys/kernel/hostname"),
         read("/proc/sys/kernel/random/boot_id"),
@@ -256,15 +265,16 @@ fn flush_files(dir: &Path) -> io::Result<()> {
 /// SHA-256 of a file, in hexadecimal digits.
 ///
 /// # Errors
-/// [`io::Error`] if it cannot be read.
-pub fn digest(path: &Path) -> io::Result<String> {
-    let mut file = File::open(path)?;
+/// [`ReadError`] if it cannot be read.
+pub fn digest(path: &Path) -> Result<String, ReadError> {
+    let mut file = open(path)?;
     let mut digest = Sha256::new();
     let mut stretch = vec![0; 1 << 16];
     loop {
-        match file.read(&mut stretch)? {
-            0 => return Ok(hex(&digest.finalize())),
-            n => digest.update(&stretch[..n]),
+        match file.read(&mut stretch) {
+            Ok(0) => return Ok(hex(&digest.finalize())),
+            Ok(n) => digest.update(&stretch[..n]),
+            Err(e) => return Err(ReadError::system(path, e)),
         }
     }
 }

@@ -9,7 +9,7 @@ use super::interrupt;
 use crate::jobs::JobError;
 use crate::lab::StudyError;
 use crate::lab::options::OptionError;
-use crate::store::StoreError;
+use crate::store::{LockError, StoreError};
 use crate::transport::Stopped;
 
 /// How a command ended that did its work, by its exit code.
@@ -158,5 +158,5 @@ impl Failure {
 
 /// Whether trying again, elsewhere or later, may help.
 fn is_of_the_system(error: &(dyn Error + 'static)) -> bool {
-    error.is::<StoreError>() || error.is::<io::Error>()
+    error.is::<StoreError>() || error.is::<LockError>() || error.is::<io::Error>()
 }

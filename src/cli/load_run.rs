@@ -71,8 +71,9 @@ pub(super) fn refuse_damaged(path: &Path) -> Result<(), Failure> {
 
 /// Φcam, or anything of its shape: finite, pixels × spots of `scene`; of a run, what it wrote.
 pub(super) fn read_matrix(path: &Path, scene: &Scene) -> Result<Matrix, Failure> {
+    // By its header, before memory is taken for its numbers.
+    refuse_shape(path, npy::shape(path)?, scene)?;
     let matrix = npy::read_finite(path)?;
-    refuse_shape(path, matrix.shape(), scene)?;
     refuse_damaged(path)?;
     Ok(matrix)
 }
@@ -98,23 +99,12 @@ pub(super) fn refuse_shape(
 
 /// Standard errors of Φcam: as [`read_matrix`], and none negative.
 pub(super) fn read_stderr(path: &Path, scene: &Scene) -> Result<Matrix, Failure> {
-    let matrix = finite_errors(path)?;
-    refuse_shape(path, matrix.shape(), scene)?;
-    refuse_damaged(path)?;
-    Ok(matrix)
-}
-
-/// Standard errors of any shape: finite, none negative; of a run, what it wrote.
-pub(super) fn read_errors(path: &Path) -> Result<Matrix, Failure> {
-    let matrix = finite_errors(path)?;
-    refuse_damaged(path)?;
-    Ok(matrix)
-}
-
-fn finite_errors(path: &Path) -> Result<Matrix, Failure> {
+    // By its header, before memory is taken for its numbers.
+    refuse_shape(path, npy::shape(path)?, scene)?;
     let matrix = npy::read_finite(path)?;
     let negative = matrix.iter().position(|x| *x < 0.0);
     let Some(at) = negative else {
+        refuse_damaged(path)?;
         return Ok(matrix);
     };
     let (pixel, spot) = (at % matrix.nrows(), at / matrix.nrows());

@@ -12,7 +12,7 @@ use super::process::version;
 use super::run_folder::SCENE;
 use crate::lab::Tails;
 use crate::scene::Scene;
-use crate::store::{digest, hex, is_missing};
+use crate::store::{self, hex};
 use crate::transport::Plan;
 
 /// The record of a run.
@@ -45,6 +45,8 @@ pub(super) struct Record {
 
 impl Record {
     pub(super) const FILE: &'static str = "run.json";
+    /// Most bytes that it may have: a hundred for each frame.
+    pub(super) const LARGEST: u64 = 64 << 20;
 
     pub(super) fn new(
         scene: &Scene,
@@ -84,19 +86,10 @@ impl Record {
     /// The record in `dir`, if there is one.
     pub(super) fn read(dir: &Path) -> Result<Option<Self>, Failure> {
         let path = dir.join(Self::FILE);
-        let bytes = match std::fs::read(&path) {
-            Ok(bytes) => bytes,
+        let bytes = match store::read(&path, Self::LARGEST) {
             // Neither a folder that is not there nor a file in its place holds a run.
-            Err(e) if is_missing(&e) => {
-                return Ok(None);
-            }
-            Err(e) => {
-                let cause = format!("cannot read {}: {e}", path.display());
-                return Err(Failure::system(
-                    cause,
-                    "make it readable, or choose another folder",
-                ));
-            }
+            Err(e) if e.is_missing() => return Ok(None),
+            other => other?,
         };
         Self::parse(&bytes).map(Some).map_err(|what| {
             let cause = format!("{} is damaged: {what}", path.display());
@@ -141,13 +134,9 @@ impl Record {
         names: impl IntoIterator<Item = &'n str>,
     ) -> Result<(), Failure> {
         for name in names {
-            match digest(&dir.join(name)) {
-                Ok(digest) => self.files.insert(name.to_owned(), digest),
-                Err(e) if is_missing(&e) => self.files.remove(name),
-                Err(e) => {
-                    let cause = format!("cannot read {}: {e}", dir.join(name).display());
-                    return Err(Failure::system(cause, "make it readable"));
-                }
+            match store::digest(&dir.join(name)) {
+                Err(e) if e.is_missing() => self.files.remove(name),
+                digest => self.files.insert(name.to_owned(), digest?),
             };
         }
         Ok(())
@@ -184,14 +173,7 @@ impl Record {
             return Ok(());
         };
         let path = dir.join(name);
-        let found = match digest(&path) {
-            Ok(found) => found,
-            Err(e) => {
-                let cause = format!("cannot read {}: {e}", path.display());
-                return Err(Failure::system(cause, "restore it, or render again"));
-            }
-        };
-        if found == *written {
+        if store::digest(&path)? == *written {
             return Ok(());
         }
         let cause = format!(

@@ -105,10 +105,7 @@ fn results(args: &RecoverArgs, of_run: bool) -> Result<(PathBuf, Place), Failure
     Ok(match (&args.output, other) {
         (Some(output), _) => (output.clone(), Place::Other),
         (None, Some(phi)) if of_run => {
-            let digest = digest(phi).map_err(|e| {
-                let cause = format!("cannot read {}: {e}", phi.display());
-                Failure::system(cause, "make it readable")
-            })?;
+            let digest = digest(phi)?;
             let full = std::path::absolute(phi)?;
             let folder = full.parent().and_then(Path::file_stem);
             let own = full.file_stem().filter(|stem| *stem != "phi");

@@ -1,7 +1,6 @@
 //! `phicam reproduce`: the published tables and figures, computed again; finished items are not
 //! repeated.
 
-use std::fs;
 use std::ops::Range;
 use std::path::Path;
 
@@ -20,7 +19,7 @@ use crate::lab::published::{
 };
 use crate::lab::{Study, Work, decode, encoded};
 use crate::report::{self, ReproductionSettings};
-use crate::store::{ensure_writable, write_whole};
+use crate::store::{self, ensure_writable, write_whole};
 use crate::transport::Control;
 
 pub(super) fn execute(args: &ReproduceArgs, console: Console) -> Result<Outcome, Failure> {
@@ -116,8 +115,8 @@ fn write(
 
 /// What the folder says of an item.
 fn summary(folder: &Path, item: Item) -> Option<ItemSummary> {
-    let text = fs::read_to_string(folder.join(format!("{item}.json"))).ok()?;
-    serde_json::from_str(&text).ok()
+    let text = store::read(&folder.join(format!("{item}.json")), LARGEST).ok()?;
+    serde_json::from_slice(&text).ok()
 }
 
 /// Refuses to replace an item that was computed with other settings.
@@ -135,6 +134,9 @@ fn refuse_other(folder: &Path, item: Item, plan: &ReproducePlan) -> Result<(), F
     Err(Failure::new(cause, cure))
 }
 
+/// Most bytes of a file of an item: 64 MiB.
+const LARGEST: u64 = 64 << 20;
+
 /// The summary of an item that was computed with the same settings and whose files are all there.
 fn finished(folder: &Path, item: Item, settings: &str) -> Option<ItemSummary> {
     let found = summary(folder, item)?;
@@ -150,7 +152,7 @@ fn pages(folder: &Path, plan: &ReproducePlan) -> Result<(), Failure> {
         plan,
         version: version(),
     };
-    let read = |file: &str| fs::read(folder.join(file)).ok();
+    let read = |file: &str| store::read(&folder.join(file), LARGEST).ok();
     let html = report::reproduction_html(&found, settings, read);
     for (name, text) in [
         ("reproduction.md", report::reproduction_markdown(&found)),

@@ -12,6 +12,7 @@ use super::output;
 use super::record::Record;
 use super::run_folder::{PHI, RunFolder, STDERR};
 use crate::film;
+use crate::matrix::npy::NpyError;
 use crate::matrix::{Matrix, npy};
 
 pub(super) fn execute(args: &StackArgs, _: Console) -> Result<Outcome, Failure> {
@@ -57,9 +58,10 @@ pub(super) fn execute(args: &StackArgs, _: Console) -> Result<Outcome, Failure> 
 /// Refuses to go on where the Φcam in `path` does not round to `stacked`: it is not overwritten.
 fn refuse_other(path: &Path, stacked: &Matrix) -> Result<(), Failure> {
     let cure = "give another folder with -o, or remove it";
-    let there = npy::read(path).map_err(|e| Failure::new(e.to_string(), cure))?;
-    let rounds = there.shape() == stacked.shape()
-        && there
+    let failure = |e: NpyError| Failure::new(e.to_string(), cure);
+    let rounds = npy::shape(path).map_err(failure)? == stacked.shape()
+        && npy::read(path)
+            .map_err(failure)?
             .iter()
             .zip(stacked.iter())
             .all(|(a, b)| f64::from(*a as f32) == *b);

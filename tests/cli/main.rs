@@ -9,6 +9,8 @@ mod bad_settings;
 mod digests;
 mod exposing;
 mod foreign_files;
+#[cfg(unix)]
+mod forged_kinds;
 mod interruption;
 mod killing;
 mod large_photographs;

@@ -6,15 +6,12 @@ use super::answer::Refusal;
 use super::folder::Served;
 use crate::cli::record::Record;
 
-/// Longest run.json that is read, bytes: phicam's own has a hundred for each frame.
-const RECORD_MAX: u64 = 64 << 20;
-
 /// Its bytes.
 pub(super) fn bytes(folder: &Served) -> Result<Vec<u8>, Refusal> {
     let name = Record::FILE;
     let mut bytes = Vec::new();
     let file = folder.open(name)?.file;
-    let read = file.take(RECORD_MAX).read_to_end(&mut bytes);
+    let read = file.take(Record::LARGEST).read_to_end(&mut bytes);
     read.map_err(|e| Refusal::broken(format!("cannot read {name}: {e}")))?;
     Ok(bytes)
 }
