@@ -157,27 +157,27 @@ pub fn is_missing(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory)
 }
 
-/// Whether the file is one that [`write_whole`] was writing, or the [`FolderLock`] of a process, when
-/// that ended: by the process's number if it ran on this machine, else by its age.
+/// Whether the file is one that [`write_whole`] was writing when its process ended: by the
+/// process's number if it ran on this machine, else by its age.
 pub fn is_abandoned(path: &Path) -> bool {
     let name = path.file_name().and_then(|n| n.to_str()).unwrap_or("");
-    let own = name.strip_prefix(PREFIX).and_then(|n| {
-        n.strip_suffix(SUFFIX)
-            .or_else(|| n.strip_suffix(lock::SUFFIX))
-    });
-    let Some(own) = own else {
+    if !name.starts_with(PREFIX) || !name.ends_with(SUFFIX) {
         return false;
-    };
-    let mut words = own.split('-');
-    let here = words
-        .next()
-        .is_some_and(|h| !h.is_empty() && h == machine());
-    let process = words.next().and_then(|p| p.parse::<u32>().ok());
-    if let (true, Some(process)) = (here, process) {
-        return !Path::new("/proc").join(process.to_string()).exists();
+    }
+    if let Some(lives) = process_lives(name) {
+        return !lives;
     }
     let modified = fs::metadata(path).and_then(|m| m.modified());
     modified.is_ok_and(|m| m.elapsed().is_ok_and(|age| age > FORSAKEN))
+}
+
+/// Whether the process lives whose temporary file or lock has this name; `None` if it did not run on
+/// this machine, or nobody knows.
+fn process_lives(name: &str) -> Option<bool> {
+    let mut words = name.strip_prefix(PREFIX)?.split('-');
+    let here = words.next().filter(|h| !h.is_empty() && *h == machine());
+    let process: u32 = here.and(words.next())?.parse().ok()?;
+    Some(Path::new("/proc").join(process.to_string()).exists())
 }
 
 /// Makes a rename inside `folder` durable. File systems that know no such thing are left alone.

@@ -376,6 +376,33 @@ BREAKS = [
         "scene::spots::tests::the_square_is_the_published_one",
         1,
     ),
+    Break(
+        "A folder has one writer",
+        "src/store/lock.rs",
+        "        refuse_others(folder, parts)?;\n",
+        "",
+        "cli",
+        "writers::who_comes_second_is_refused_and_a_killed_writer_is_no_obstacle",
+        5,
+    ),
+    Break(
+        "No run is replaced unasked",
+        "src/cli/run_folder.rs",
+        "Some(there) => return Err(other_run(path, &there, scene)),",
+        "Some(_) => folder.remove_run()?,",
+        "cli",
+        "replacing::other_settings_are_refused_unless_they_are_to_replace",
+        5,
+    ),
+    Break(
+        "A changed file of a finished run is found",
+        "src/cli/record.rs",
+        "if store::digest(&path)? == *written {",
+        "if store::digest(&path).is_ok() {",
+        "cli",
+        "digests::a_flipped_bit_is_found_in_every_file_of_a_run",
+        5,
+    ),
 ]
 
 

@@ -53,9 +53,11 @@ impl Batches<'_> {
             let Some(traced) = tally.traced(scene, spots.range.clone()) else {
                 return Ok(Some(tally.range().end));
             };
-            self.pool
-                .install(|| self.folder.write_frames(scene, self.record, spots, &traced))?;
-            for (spot, column) in spots.range.clone().zip(columns(&traced)) {
+            let write = || {
+                self.folder
+                    .write_frames(scene, self.record, &spots.range, &traced)
+            };
+            for (spot, column) in spots.range.clone().zip(self.pool.install(write)?) {
                 tracing.finished(&column);
                 kept[spot] = Some(column);
             }
@@ -100,11 +102,11 @@ impl Batches<'_> {
         Ok(tally)
     }
 
-    /// Runs of neighbouring spots to be traced together: as many as [`Spots::together`] says. Where
+    /// Runs of neighbouring spots to be traced together: as many as [`Spots::at_a_time`] says. Where
     /// an earlier process has left blocks of some of them, these stay together, with those of them
     /// that are finished: to write these again costs less than to trace the others anew.
     fn ranges(&self, todo: &[usize], begun: &[Kept], kept: &[Option<Matrix>]) -> Vec<Range<usize>> {
-        let most = Spots::together(self.scene, self.plan.estimator);
+        let most = Spots::at_a_time(self.scene, self.plan.estimator);
         let mut free: Vec<bool> = vec![false; kept.len()];
         todo.iter().for_each(|s| free[*s] = true);
         let mut ranges: Vec<Range<usize>> = Vec::new();

@@ -62,7 +62,8 @@ pub(super) fn refuse_damaged(path: &Path) -> Result<(), Failure> {
     let full = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     for dir in full.ancestors().skip(1).take(3) {
         let name = full.strip_prefix(dir).ok().and_then(Path::to_str);
-        if let (Some(name), Some(record)) = (name, Record::read(dir)?) {
+        // A run.json that cannot be read may be another program's.
+        if let (Some(name), Ok(Some(record))) = (name, Record::read(dir)) {
             return record.check(dir, &name.replace('\\', "/"));
         }
     }

@@ -40,7 +40,7 @@ pub(super) fn execute(args: &RenderArgs, console: Console) -> Result<Outcome, Fa
     }
     let plan = settings::plan(&args.trace.paths)?;
     let claim = Claim {
-        what: "phicam render".to_owned(),
+        what: "phicam render",
         spots: (spots.len() < total).then_some(spots),
         replace: args.replace,
     };
@@ -178,7 +178,9 @@ pub(super) fn into_folder(
             }
         }
         record.seconds += seconds;
-        take_finished(&folder, scene, plan, &mut kept);
+        if kept.contains(&None) {
+            take_finished(&folder, scene, plan, &mut kept);
+        }
         record.finished = kept.iter().flatten().count();
         if !matches!(stopped, Ok(None)) || record.finished < total {
             return record.write(&folder.path).map(|()| None);

@@ -33,7 +33,7 @@ pub(super) fn execute(args: &RunArgs, console: Console) -> Result<Outcome, Failu
     let plan = settings::plan(&args.trace.paths)?;
     let test = settings::test(&args.test, &plan, console)?;
     let claim = Claim {
-        what: "phicam run".to_owned(),
+        what: "phicam run",
         spots: None,
         replace: args.replace,
     };

@@ -23,7 +23,6 @@ use super::output;
 use super::partial::{PARTIAL, Partial};
 use super::record::Record;
 use crate::film::{self, Channel, Frame, FrameMeta, RunMeta, frame_name};
-use crate::jobs::Spots;
 use crate::lab::Tails;
 use crate::matrix::{Matrix, npy};
 use crate::recovery::Method;
@@ -51,6 +50,8 @@ pub(super) const MODEL_FILES: [&str; 6] = [
     "phi.npy",
     Z,
 ];
+/// The map of `phicam validate`.
+pub(super) const VALIDATION: &str = "validation";
 /// Recovered reflectances.
 pub(super) const RECOVERED: &str = "recovered";
 /// Photographs of `phicam expose`: [`PHI`], [`STDERR`] and these.
@@ -68,7 +69,7 @@ const INCOMING: &str = ".incoming";
 #[derive(Clone, Debug)]
 pub(super) struct Claim {
     /// What it says to others.
-    pub what: String,
+    pub what: &'static str,
     /// The spots that it writes; all of the folder unless given.
     pub spots: Option<Range<usize>>,
     /// Whether it may replace a run with other settings, once the new one is whole.
@@ -137,7 +138,7 @@ impl RunFolder {
             folder.begin(scene, record, console)?;
             Ok(folder)
         };
-        let (lock, mut folder) = FolderLock::take(path, &parts, &claim.what, begin)?;
+        let (lock, mut folder) = FolderLock::take(path, &parts, claim.what, begin)?;
         folder.lock = Some(lock);
         Ok(folder)
     }
@@ -363,21 +364,26 @@ impl RunFolder {
         remove_named(&model, &MODEL_FILES)?;
         // Anything else in it is not ours, and keeps it.
         let _ = fs::remove_dir(model);
+        let validation = self.path.join(VALIDATION);
+        remove_named(&validation, &["p.exr", "p.png"])?;
+        let _ = fs::remove_dir(validation);
         remove_named(&self.path, &[PHI, STDERR, TAILS, SUMMARY, REPORT])
     }
 
-    /// Writes the frames of `spots` from the columns of `traced`, on the threads of the pool.
+    /// Writes the frames of `spots` from the columns of `traced`, on the threads of the pool. Returns
+    /// what is kept of each: see [`columns`].
     pub(super) fn write_frames(
         &self,
         scene: &Scene,
         record: &Record,
-        spots: &Spots<'_>,
+        spots: &Range<usize>,
         traced: &Traced,
-    ) -> Result<(), Failure> {
+    ) -> Result<Vec<Matrix>, Failure> {
         refuse_beyond_f32(traced)?;
         let kept: Vec<Matrix> = columns(traced).collect();
-        let frames = spots.range.clone().into_par_iter().zip(kept);
-        frames.try_for_each(|(spot, kept)| self.write_frame(scene, record, spot, &kept))
+        let frames = spots.clone().into_par_iter().zip(&kept);
+        frames.try_for_each(|(spot, kept)| self.write_frame(scene, record, spot, kept))?;
+        Ok(kept)
     }
 
     /// Writes the frame of a spot from what is kept of it.

@@ -8,7 +8,7 @@ use super::failure::Failure;
 use super::load_run::{read_matrix, read_run, read_stderr, read_tails};
 use super::output;
 use super::record::Record;
-use super::run_folder::{self, PHI, STDERR};
+use super::run_folder::{self, PHI, STDERR, VALIDATION};
 use super::{Outcome, settings};
 use crate::film::{self, Channel, Frame};
 use crate::lab::finding::Describe;
@@ -44,7 +44,7 @@ pub(super) fn execute(args: &ValidateArgs, console: Console) -> Result<Outcome, 
         write_map(dir, &scene, record, &found.z)?;
         console.say(format!(
             "the probability of each entry is mapped in {}, pixels upwards and spots to the right",
-            dir.join(MAP).join("p.exr").display()
+            dir.join(VALIDATION).join("p.exr").display()
         ));
     }
     output::result(args.json, &found.agreement, || {
@@ -115,13 +115,10 @@ pub(super) fn outcome(agreement: &Agreement) -> Outcome {
     }
 }
 
-/// Folder of the map.
-const MAP: &str = "validation";
-
 /// Writes validation/p.exr (channels `p`, two-sided probability of each entry, and `z`; a row of
 /// pixels per matrix row, spots along it) and validation/p.png (−log10 p).
 fn write_map(dir: &Path, scene: &Scene, record: &Record, z: &Matrix) -> Result<(), Failure> {
-    let folder = dir.join(MAP);
+    let folder = dir.join(VALIDATION);
     ensure_writable(&folder)?;
     let (rows, columns) = z.shape();
     // By rows: column + row·columns, as a frame has it.

@@ -33,17 +33,21 @@ pub struct Spots<'a> {
 }
 
 impl<'a> Spots<'a> {
-    /// Spots that are traced together at most: where they share nothing one, or so many as have a
-    /// few thousand entries; else as many as memory bears.
+    /// Spots that are traced together at most: one where they share nothing, else as many as memory
+    /// bears.
     pub fn together(scene: &Scene, estimator: Estimator) -> usize {
-        let pixels = scene.camera.pixels();
-        let most = MOST_NUMBERS / (pixels * (scene.max_bounces as usize + 4));
-        let wanted = if estimator.serves_all_spots() {
-            most
+        if estimator.serves_all_spots() {
+            bearable(scene)
         } else {
-            most.min(ENTRIES / pixels)
-        };
-        wanted.max(1)
+            1
+        }
+    }
+
+    /// Spots of a render on one machine that are traced together at most: where they share nothing
+    /// one, or so many as have a few thousand entries.
+    pub fn at_a_time(scene: &Scene, estimator: Estimator) -> usize {
+        let few = (ENTRIES / scene.camera.pixels()).min(bearable(scene));
+        Self::together(scene, estimator).max(few)
     }
 
     /// All spots of a render, in the order of their blocks.
@@ -204,4 +208,10 @@ impl<'a> Spots<'a> {
             |b: u64| u32::try_from(b.saturating_sub(self.first)).map_or(blocks, |b| b.min(blocks));
         local(range.start)..local(range.end)
     }
+}
+
+/// Spots of which one part of a [`Tally`] is borne by memory, at least one.
+fn bearable(scene: &Scene) -> usize {
+    let column = scene.camera.pixels() * (scene.max_bounces as usize + 4);
+    (MOST_NUMBERS / column).max(1)
 }

@@ -4,8 +4,8 @@
 //! the operating system (`flock`), which ends with its process, however that ends. FROM to TO are
 //! the parts of the folder that it writes (spots of a render); disjoint parts may be written side by
 //! side. Who looks for others, or changes what all of them share, does so alone, under a lock on
-//! `.phicam.lock`. Where a file system knows no locks, a writer counts as gone when its process is
-//! (on this machine), or an hour after it began (on another).
+//! `.phicam.lock`. Where a file system knows no locks, a writer counts as gone when its process on
+//! this machine is; of one on another machine the user has to tell.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Write};
@@ -14,10 +14,10 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use super::{PREFIX, StoreError, is_abandoned, is_missing, machine};
+use super::{PREFIX, StoreError, is_missing, machine, process_lives};
 
 /// What the name of a writer's file ends in.
-pub(super) const SUFFIX: &str = ".lock";
+const SUFFIX: &str = ".lock";
 /// The file of those that look.
 const GATE: &str = ".phicam.lock";
 /// So long one waits for another that changes what all share: it writes large matrices meanwhile.
@@ -216,18 +216,22 @@ fn writer(path: &Path) -> io::Result<Option<String>> {
         Err(e) if is_missing(&e) => return Ok(None),
         other => other?,
     };
-    let gone = match file.try_lock() {
-        Ok(()) => true,
-        Err(TryLockError::WouldBlock) => false,
-        Err(TryLockError::Error(_)) => is_abandoned(path),
+    let locks = match file.try_lock() {
+        Ok(()) => return Ok(None),
+        Err(TryLockError::WouldBlock) => true,
+        Err(TryLockError::Error(_)) => false,
     };
-    if gone {
+    let name = path.file_name().and_then(|n| n.to_str()).unwrap_or("");
+    if !locks && process_lives(name) == Some(false) {
         return Ok(None);
     }
     let mut who = String::new();
     let _ = (&mut file).take(LONGEST).read_to_string(&mut who);
     if who.is_empty() {
         who = "by a process that began just now".to_owned();
+    }
+    if !locks {
+        who = format!("{who} (if it has ended, remove {})", path.display());
     }
     Ok(Some(who))
 }

@@ -78,7 +78,7 @@ impl Work for Render {
         let Self { scene, plan } = self;
         let mut record = Record::new(scene, plan, 0, shards.threads(), shards.seconds());
         let claim = Claim {
-            what: "phicam merge".to_owned(),
+            what: "phicam merge",
             spots: None,
             replace: false,
         };
@@ -97,7 +97,7 @@ impl Work for Render {
                 );
                 Failure::new(cause, "merge again, and do not change the folder meanwhile")
             })?;
-            folder.write_frames(scene, &record, &group, &traced)?;
+            let _ = folder.write_frames(scene, &record, &group.range, &traced)?;
             let (first, n) = (group.range.start, group.range.len());
             flux.columns_mut(first, n).copy_from(&traced.flux);
             stderr.columns_mut(first, n).copy_from(&traced.stderr);
