@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::console::Console;
 use super::failure::Failure;
+use super::need;
 use super::record::Record;
 use super::run_folder::{PHI, SCENE, TAILS};
 use crate::matrix::{Matrix, npy};
@@ -52,6 +53,7 @@ pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), 
 
 /// Φcam, or anything of its shape: finite, pixels × spots of `scene`.
 pub(super) fn read_matrix(path: &Path, scene: &Scene) -> Result<Matrix, Failure> {
+    need::photographs(scene, 1.0)?;
     let matrix = npy::read_finite(path)?;
     refuse_shape(path, matrix.shape(), scene)?;
     Ok(matrix)

@@ -61,7 +61,7 @@ impl Workspace {
     }
 
     /// The same with `memory` KiB of address space.
-    fn phicam_within(&self, memory: u64, line: &str) -> Ended {
+    pub(crate) fn phicam_within(&self, memory: u64, line: &str) -> Ended {
         let mut shell = assert_cmd::Command::new("sh");
         let limited = format!("ulimit -v {memory} && exec \"$0\" \"$@\"");
         shell
