@@ -40,13 +40,19 @@ fn frames_that_no_file_holds_are_refused_at_once() {
         "scene show huge.toml",
         "render huge.toml -o out",
         "run huge.toml -o out",
-        "plan huge.toml -o out",
     ] {
         workspace.refuses(
             line,
             &["67108864 pixels", "1.25 GiB", "at most 53687091 pixels"],
         );
     }
+    // A scheduler is told that the data are refused.
+    let planned = workspace.phicam("plan huge.toml -o out").exits(65);
+    assert!(
+        planned.stderr.contains("67108864 pixels"),
+        "{}",
+        planned.account()
+    );
     assert!(
         start.elapsed() < Duration::from_secs(10),
         "{:?}",
@@ -111,12 +117,12 @@ fn threads_without_room_are_refused() {
         .exits(0);
 }
 
-/// Ctrl-C while a million pixels are prepared ends the process within two seconds, with the code of
+/// Ctrl-C in the midst of a million pixels ends the process within two seconds, with the code of
 /// Ctrl-C, under each estimator.
 #[test]
 fn ctrl_c_is_answered_while_a_scene_is_prepared() {
     let workspace = Workspace::new();
-    workspace.write("wide.toml", one_spot("pixels = [2048, 2048]"));
+    workspace.write("wide.toml", one_spot("pixels = [1024, 1024]"));
     for estimator in ["independent", "shared", "factored"] {
         let child = Command::new(env!("CARGO_BIN_EXE_phicam"))
             .args([
