@@ -51,9 +51,10 @@
 //!                    indicators, coverage, wall BRDFs, the laboratory experiment, the published study
 //!    5  recovery/    Φcam → reflectance              metrics/   how far two things are apart
 //!    4  transport/   the path tracer → Φcam          model/     G12, G23 → Φcam             sensor/  flux → electrons → counts
-//!    3  film/        frames, EXR                     matrix/    pixels × spots, .npy        store  whole files
+//!    3  film/        frames, EXR                     matrix/    pixels × spots, .npy
 //!    2  scene/       laser, surface, texture, camera, scene file
 //!    1  geometry/    basis, shapes, BVH              image/     PNG, JPEG, EXR bytes ↔ pictures
+//!       store        files: regular ones read through one door, whole ones written
 //!    0  num/         constants, streams (random and Sobol'), warps, quadrature, statistics, linear algebra, summation, wide arithmetic
 //! ```
 //!
@@ -67,7 +68,7 @@
 //! 3. **One door per foreign crate**: obvhs only in `geometry/tree`, exr only in `film/exr` and
 //!    `image/exr` (frames and pictures), png only in `image/png`, matrix decompositions only in
 //!    `num::linalg`, random generators only in [`num::stream`], the argument parser only in
-//!    [`cli`].
+//!    [`cli`]. And one door for files: only [`store`] opens them for reading.
 //! 4. **A random number is a function of (seed, spot, pixel, sample block)**, never of the thread
 //!    or the order. The same seed gives the same bytes. Blocks are added along one fixed binary
 //!    tree (`num::tree`), so that any part of a computation can be done elsewhere or later, and

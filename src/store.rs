@@ -1,4 +1,5 @@
-//! Files that appear whole or not at all.
+//! Files: read through one door, which opens nothing but regular files ([`read`], [`open`]), and
+//! written whole or not at all.
 //!
 //! A result that took hours must not be half a file because a disk filled up, and an older result
 //! must not be gone before the new one is safe. So every output is written under a temporary name
@@ -11,6 +12,10 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{OnceLock, RwLock};
 use std::time::Duration;
+
+mod reading;
+
+pub use reading::{ReadError, ReadFault, open, read};
 
 /// Why a file or a folder could not be written. Each message names the path, the cause and the
 /// cure.
@@ -109,8 +114,14 @@ pub fn machine() -> &'static str {
     MACHINE.get_or_init(found_machine)
 }
 
+/// Most bytes of what the system says of itself.
+const SYSTEM_TEXT: u64 = 4096;
+
 fn found_machine() -> String {
-    let read = |path: &str| fs::read_to_string(path).unwrap_or_default();
+    let read = |path: &str| {
+        let text = read(Path::new(path), SYSTEM_TEXT).unwrap_or_default();
+        String::from_utf8(text).unwrap_or_default()
+    };
     let (name, start) = (
         read("/proc/sys/kernel/hostname"),
         read("/proc/sys/kernel/random/boot_id"),

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 /// beside it.
 const FLOORS: [&[&str]; 9] = [
     &["num"],
-    &["geometry", "image"],
+    &["geometry", "image", "store"],
     &["scene"],
-    &["film", "matrix", "store"],
+    &["film", "matrix"],
     &["transport", "model", "sensor"],
     &["recovery", "metrics"],
     &["lab"],
@@ -18,12 +18,12 @@ const FLOORS: [&[&str]; 9] = [
 ];
 
 /// Imports beside the arrows: files of one floor that build on each other.
-const BESIDE: [(&str, &str); 3] = [("film", "matrix"), ("film", "store"), ("matrix", "store")];
+const BESIDE: [(&str, &str); 1] = [("film", "matrix")];
 
 /// Foreign crates and the one place that may name them. `exr` has two: frames are written and read
 /// with all their attributes, pictures of other programs are read without any; what both must know
 /// of a file's bytes stands in `image/exr/envelope`.
-const DOORS: [(&str, &[&str]); 28] = [
+const DOORS: [(&str, &[&str]); 29] = [
     ("obvhs", &["geometry/tree"]),
     ("exr", &["film/exr", "image/exr"]),
     ("faer", &["num/linalg"]),
@@ -44,6 +44,7 @@ const DOORS: [(&str, &[&str]); 28] = [
     ("ply_rs_bw", &["scene/mesh/ply"]),
     ("gltf_json", &["scene/mesh/gltf"]),
     ("postcard", &["lab/bytes"]),
+    ("libc", &["store/reading"]),
     ("clap", &["cli"]),
     ("indicatif", &["cli"]),
     ("terminal_size", &["cli/view/terminal"]),
@@ -253,6 +254,46 @@ fn one_door_per_crate() {
             .any(|s| doors.iter().any(|d| s.path.starts_with(d)) && names_crate(&s.code, name));
         assert!(used, "crate {name} is not used behind its door");
     }
+}
+
+/// Where `code` opens a file, but for what the system says of itself.
+fn opens_a_file(code: &str) -> Option<&'static str> {
+    let ways = [
+        "File::open",
+        "File::options",
+        "OpenOptions",
+        "fs::read(",
+        "fs::read_to_string(",
+        "fs::copy(",
+        "open_ambient",
+    ];
+    ways.into_iter().find(|way| {
+        code.match_indices(way).any(|(at, _)| {
+            let whole = !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_');
+            whole && !code[at + way.len()..].starts_with("\"/proc/")
+        })
+    })
+}
+
+/// Files are read through [`store`](phicam::store) alone, which opens regular ones only, without
+/// waiting, with a bound; `serve` opens what lies below its folder through a door of its own.
+#[test]
+fn one_door_for_files() {
+    let doors = ["store", "cli/serve/folder"];
+    for source in sources() {
+        let is_test = source.path.contains("tests") || source.path.ends_with("fake.rs");
+        if is_test || doors.iter().any(|d| source.path.starts_with(d)) {
+            continue;
+        }
+        let found = opens_a_file(shipped(&source.code));
+        assert_eq!(found, None, "{} opens a file by itself", source.path);
+    }
+    assert_eq!(opens_a_file("let f = BlockFile::open(path)?;"), None);
+    assert_eq!(
+        opens_a_file("let f = File::open(path)?;"),
+        Some("File::open")
+    );
+    assert_eq!(opens_a_file("fs::read_to_string(\"/proc/meminfo\")"), None);
 }
 
 /// Invariant 4: below the command line nothing asks which thread it runs on, what time it is, or

@@ -53,10 +53,10 @@ pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), 
 
 /// Φcam, or anything of its shape: finite, pixels × spots of `scene`.
 pub(super) fn read_matrix(path: &Path, scene: &Scene) -> Result<Matrix, Failure> {
+    // By its header, before memory is taken for its numbers.
+    refuse_shape(path, npy::shape(path)?, scene)?;
     need::photographs(scene, 1.0)?;
-    let matrix = npy::read_finite(path)?;
-    refuse_shape(path, matrix.shape(), scene)?;
-    Ok(matrix)
+    Ok(npy::read_finite(path)?)
 }
 
 /// Refuses a matrix that is not pixels × spots of `scene`.
@@ -80,14 +80,7 @@ pub(super) fn refuse_shape(
 
 /// Standard errors of Φcam: as [`read_matrix`], and none negative.
 pub(super) fn read_stderr(path: &Path, scene: &Scene) -> Result<Matrix, Failure> {
-    let matrix = read_errors(path)?;
-    refuse_shape(path, matrix.shape(), scene)?;
-    Ok(matrix)
-}
-
-/// Standard errors of any shape: finite, none negative.
-pub(super) fn read_errors(path: &Path) -> Result<Matrix, Failure> {
-    let matrix = npy::read_finite(path)?;
+    let matrix = read_matrix(path, scene)?;
     let negative = matrix.iter().position(|x| *x < 0.0);
     if let Some(at) = negative {
         let (pixel, spot) = (at % matrix.nrows(), at / matrix.nrows());

@@ -53,9 +53,9 @@ impl Partial {
     /// A finished spot, if it is there and whole: one column per bounce count, then the standard
     /// error and its code.
     pub(super) fn read(&self, spot: usize, scene: &Scene) -> Option<Matrix> {
-        let matrix = npy::read_finite(&self.spot(spot)).ok()?;
+        let path = self.spot(spot);
         let shape = (scene.camera.pixels(), scene.max_bounces as usize + 2);
-        (matrix.shape() == shape).then_some(matrix)
+        (npy::shape(&path).ok()? == shape).then(|| npy::read_finite(&path).ok())?
     }
 
     /// The file for the finished blocks of `spots`.

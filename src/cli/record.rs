@@ -9,7 +9,7 @@ use super::output;
 use super::process::version;
 use crate::lab::Tails;
 use crate::scene::Scene;
-use crate::store::is_missing;
+use crate::store;
 use crate::transport::Plan;
 
 /// The record of a run.
@@ -35,6 +35,8 @@ pub(super) struct Record {
 
 impl Record {
     pub(super) const FILE: &'static str = "run.json";
+    /// Most bytes that it may have: 16 MiB.
+    const LARGEST: u64 = 16 << 20;
 
     pub(super) fn new(
         scene: &Scene,
@@ -67,19 +69,10 @@ impl Record {
     /// The record in `dir`, if there is one.
     pub(super) fn read(dir: &Path) -> Result<Option<Self>, Failure> {
         let path = dir.join(Self::FILE);
-        let bytes = match std::fs::read(&path) {
-            Ok(bytes) => bytes,
+        let bytes = match store::read(&path, Self::LARGEST) {
             // Neither a folder that is not there nor a file in its place holds a run.
-            Err(e) if is_missing(&e) => {
-                return Ok(None);
-            }
-            Err(e) => {
-                let cause = format!("cannot read {}: {e}", path.display());
-                return Err(Failure::system(
-                    cause,
-                    "make it readable, or choose another folder",
-                ));
-            }
+            Err(e) if e.is_missing() => return Ok(None),
+            other => other?,
         };
         serde_json::from_slice(&bytes).map(Some).map_err(|e| {
             let cause = format!("{} is damaged: {e}", path.display());

@@ -1,7 +1,6 @@
 //! `phicam reproduce`: the published tables and figures, computed again; finished items are not
 //! repeated.
 
-use std::fs;
 use std::ops::Range;
 use std::path::Path;
 
@@ -19,7 +18,7 @@ use crate::lab::published::{
 };
 use crate::lab::{Study, Work, decode, encoded};
 use crate::report::{self, ReproductionSettings};
-use crate::store::{ensure_writable, write_whole};
+use crate::store::{self, ensure_writable, write_whole};
 use crate::transport::Control;
 
 pub(super) fn execute(args: &ReproduceArgs, console: Console) -> Result<Outcome, Failure> {
@@ -108,10 +107,13 @@ fn write(
     output::deliver(&output::json(&summary)?, Some(&path))
 }
 
+/// Most bytes of a file of an item: 64 MiB.
+const LARGEST: u64 = 64 << 20;
+
 /// The summary of an item that was computed with the same settings and whose files are all there.
 fn finished(folder: &Path, item: Item, settings: &str) -> Option<ItemSummary> {
-    let text = fs::read_to_string(folder.join(format!("{item}.json"))).ok()?;
-    let found: ItemSummary = serde_json::from_str(&text).ok()?;
+    let text = store::read(&folder.join(format!("{item}.json")), LARGEST).ok()?;
+    let found: ItemSummary = serde_json::from_slice(&text).ok()?;
     let whole = found.files.iter().all(|f| folder.join(f).is_file());
     (whole && found.settings == settings && found.item == item.name()).then_some(found)
 }
@@ -124,7 +126,7 @@ fn pages(folder: &Path, plan: &ReproducePlan) -> Result<(), Failure> {
         plan,
         version: version(),
     };
-    let read = |file: &str| fs::read(folder.join(file)).ok();
+    let read = |file: &str| store::read(&folder.join(file), LARGEST).ok();
     let html = report::reproduction_html(&found, settings, read);
     for (name, text) in [
         ("reproduction.md", report::reproduction_markdown(&found)),

@@ -171,17 +171,9 @@ impl RunFolder {
             if to.canonicalize().is_ok_and(|to| to == file.path) {
                 continue;
             }
-            let bytes = fs::read(&file.path).map_err(|e| {
-                let cause = format!("cannot read `{}` again: {e}", file.name);
-                Failure::new(
-                    cause,
-                    "leave the scene's files in place while phicam starts",
-                )
-            })?;
-            if !file.holds(&bytes) {
-                let cause = format!("`{}` has changed since the scene was read", file.name);
-                return Err(Failure::new(cause, "start again"));
-            }
+            let bytes = file
+                .again()
+                .map_err(|(cause, cure)| Failure::new(cause, cure))?;
             output::write(&to, &bytes)?;
         }
         output::write(&self.path.join(SCENE), &scene.text)

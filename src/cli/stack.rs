@@ -12,6 +12,7 @@ use super::need;
 use super::output;
 use super::run_folder::{PHI, SCENE, STDERR};
 use crate::film;
+use crate::matrix::npy::NpyError;
 use crate::matrix::{Matrix, npy};
 use crate::store::ensure_writable;
 
@@ -54,9 +55,10 @@ pub(super) fn execute(args: &StackArgs, console: Console) -> Result<Outcome, Fai
 /// Refuses to go on where the Φcam in `path` does not round to `stacked`: it is not overwritten.
 fn refuse_other(path: &Path, stacked: &Matrix) -> Result<(), Failure> {
     let cure = "give another folder with -o, or remove it";
-    let there = npy::read(path).map_err(|e| Failure::new(e.to_string(), cure))?;
-    let rounds = there.shape() == stacked.shape()
-        && there
+    let failure = |e: NpyError| Failure::new(e.to_string(), cure);
+    let rounds = npy::shape(path).map_err(failure)? == stacked.shape()
+        && npy::read(path)
+            .map_err(failure)?
             .iter()
             .zip(stacked.iter())
             .all(|(a, b)| f64::from(*a as f32) == *b);

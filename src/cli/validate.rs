@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::args::ValidateArgs;
 use super::console::Console;
 use super::failure::Failure;
-use super::load_run::{read_errors, read_matrix, read_run, read_stderr, read_tails};
+use super::load_run::{read_matrix, read_run, read_stderr, read_tails};
 use super::output;
 use super::record::Record;
 use super::run_folder::{self, PHI, STDERR};
@@ -13,7 +13,7 @@ use super::{Outcome, need, settings};
 use crate::film::{self, Channel, Frame};
 use crate::lab::finding::Describe;
 use crate::lab::{Against, Agreement, Measured, Occlusion, Test, validate};
-use crate::matrix::{Matrix, npy};
+use crate::matrix::Matrix;
 use crate::num::statistics::normal_two_sided;
 use crate::report::{self, Panel, Scale};
 use crate::scene::Scene;
@@ -21,17 +21,7 @@ use crate::store::ensure_writable;
 
 pub(super) fn execute(args: &ValidateArgs, console: Console) -> Result<Outcome, Failure> {
     let given = given(args, console)?;
-    let mut scene = match (&args.against, given.scene) {
-        (Some(other), _) => console.load_scene(other)?,
-        (None, Some(own)) => own,
-        (None, None) => {
-            let cause = "nothing says of which scene the matrix is";
-            return Err(Failure::usage(
-                cause,
-                "give the folder of a run, or --against SCENE",
-            ));
-        }
-    };
+    let mut scene = given.scene;
     if let Some(by) = args.shift_spots {
         scene = scene.with_shifted_spots(by)?;
     }
@@ -66,8 +56,8 @@ pub(super) fn execute(args: &ValidateArgs, console: Console) -> Result<Outcome, 
 
 /// What is to be tested.
 struct Given {
-    /// The scene it is of, as far as the folder of a run says so.
-    scene: Option<Scene>,
+    /// The scene of --against, or that of the run.
+    scene: Scene,
     phi: Matrix,
     stderr: Matrix,
     left_out: Option<Matrix>,
@@ -82,21 +72,30 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
         None => None,
         Some(dir) => Some((dir, read_run(dir, console)?)),
     };
+    let other = args.against.as_deref();
+    let other = other.map(|s| console.load_scene(s)).transpose()?;
     match (&args.phi, &args.stderr, run) {
-        (Some(phi), Some(stderr), run) => Ok(Given {
-            scene: run.map(|(_, (scene, _))| scene),
-            phi: npy::read_finite(phi)?,
-            stderr: read_errors(stderr)?,
-            left_out: None,
-            test: settings::test_of_matrix(&args.test, args.errors, args.replicates)?,
-            run: None,
-        }),
+        (Some(phi), Some(stderr), run) => {
+            let own = run.map(|(_, (scene, _))| scene);
+            let scene = other.or(own).ok_or_else(|| {
+                let cause = "nothing says of which scene the matrix is";
+                Failure::usage(cause, "give the folder of a run, or --against SCENE")
+            })?;
+            Ok(Given {
+                phi: read_matrix(phi, &scene)?,
+                stderr: read_stderr(stderr, &scene)?,
+                left_out: None,
+                test: settings::test_of_matrix(&args.test, args.errors, args.replicates)?,
+                run: None,
+                scene,
+            })
+        }
         (_, _, Some((dir, (scene, record)))) => Ok(Given {
             phi: read_matrix(&dir.join(PHI), &scene)?,
             stderr: read_stderr(&dir.join(STDERR), &scene)?,
             left_out: read_tails(dir, &scene)?,
             test: settings::test(&args.test, &record.plan, console)?,
-            scene: Some(scene),
+            scene: other.unwrap_or(scene),
             run: Some((dir.clone(), record)),
         }),
         (_, _, None) => {

@@ -1,6 +1,6 @@
 //! What a range of blocks came to, as a file.
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::{Identity, JobError};
-use crate::store::{StoreError, write_whole};
+use crate::store::{self, ReadError, ReadFault, StoreError, write_whole};
 
 /// Ranges of blocks, each following the one before, and what they came to.
 pub type Parts = Vec<(Range<u64>, Vec<u8>)>;
@@ -137,11 +137,10 @@ impl BlockFile {
     pub fn open(path: &Path, identity: &Identity, total: u64) -> Result<Self, JobError> {
         let unreadable = |source| unreadable(path, source);
         let spoilt = |what: String| spoilt(path, what);
-        // Before it is opened: opening a pipe waits for somebody to write.
-        if !fs::metadata(path).map_err(unreadable)?.is_file() {
-            return Err(no_shard(path));
-        }
-        let file = File::open(path).map_err(unreadable)?;
+        let file = match store::open(path) {
+            Err(e) if matches!(e.fault, ReadFault::NotAFile(_)) => return Err(no_shard(path)),
+            other => other?,
+        };
         let length = file.metadata().map_err(unreadable)?.len();
         let mut file = Digesting {
             file: BufReader::with_capacity(STRETCH, file),
@@ -207,14 +206,11 @@ impl BlockFile {
         let inside =
             move |part: &&Place| part.blocks.start >= range.start && part.blocks.end <= range.end;
         self.parts.iter().filter(inside).map(|part| {
-            let read = || {
-                let mut file = File::open(&self.path)?;
-                file.seek(SeekFrom::Start(part.start))?;
-                let mut bytes = vec![0; part.length];
-                file.read_exact(&mut bytes)?;
-                Ok(bytes)
-            };
-            let bytes = read().map_err(|e| unreadable(&self.path, e))?;
+            let mut file = store::open(&self.path)?;
+            let mut bytes = vec![0; part.length];
+            file.seek(SeekFrom::Start(part.start))
+                .and_then(|_| file.read_exact(&mut bytes))
+                .map_err(|e| unreadable(&self.path, e))?;
             if Sha256::digest(&bytes)[..] != part.digest {
                 let what = "is damaged: it was replaced while it was read";
                 return Err(spoilt(&self.path, what.to_owned()));
@@ -225,8 +221,7 @@ impl BlockFile {
 }
 
 fn unreadable(path: &Path, source: io::Error) -> JobError {
-    let path = path.to_owned();
-    JobError::Unreadable { path, source }
+    ReadError::system(path, source).into()
 }
 
 fn spoilt(path: &Path, what: String) -> JobError {

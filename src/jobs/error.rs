@@ -1,11 +1,10 @@
 //! Why a job cannot go on.
 
 use std::error::Error;
-use std::io;
 use std::path::{Path, PathBuf};
 
 use super::Identity;
-use crate::store::StoreError;
+use crate::store::{ReadError, StoreError};
 
 /// Why a job cannot go on. Each message names the cause and the cure.
 #[derive(Debug, thiserror::Error)]
@@ -43,13 +42,8 @@ pub enum JobError {
         what: String,
     },
     /// A file of blocks that cannot be read.
-    #[error("cannot read {}: {source}; check the file and its device", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
+    #[error(transparent)]
+    Unreadable(#[from] ReadError),
     /// A file that cannot be written.
     #[error("{0}")]
     Store(#[from] StoreError),

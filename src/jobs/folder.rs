@@ -125,11 +125,7 @@ impl PlanFolder {
             }
             match self.read(&path) {
                 Ok(shard) => found.push(shard),
-                Err(JobError::Unreadable { path, source })
-                    if source.kind() != ErrorKind::NotFound =>
-                {
-                    return Err(JobError::Unreadable { path, source });
-                }
+                Err(JobError::Unreadable(e)) if !e.is_missing() => return Err(e.into()),
                 Err(e) => wrong.push(e),
             }
         }

@@ -1,7 +1,5 @@
 //! plan.json: what is divided into shards, and into how many.
 
-use std::fs::File;
-use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
 
@@ -9,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Identity, JobError};
 use crate::num::stream::Sampling;
-use crate::store::{StoreError, is_missing, write_whole};
+use crate::store::{self, StoreError, write_whole};
 use crate::transport::{Estimator, Plan};
 
 /// plan.json.
@@ -88,15 +86,10 @@ impl PlanFile {
     /// # Errors
     /// [`JobError`] if it cannot be read, or is none.
     pub fn read(path: &Path) -> Result<Option<Self>, JobError> {
-        let mut text = Vec::new();
-        let read = File::open(path).and_then(|f| f.take(Self::LARGEST + 1).read_to_end(&mut text));
-        match read {
-            Err(e) if is_missing(&e) => Ok(None),
-            Err(e) => Err(JobError::System(format!(
-                "cannot read {}: {e}; make it readable, or plan into another folder",
-                path.display()
-            ))),
-            Ok(_) => {
+        match store::read(path, Self::LARGEST) {
+            Err(e) if e.is_missing() => Ok(None),
+            Err(e) => Err(e.into()),
+            Ok(text) => {
                 let refused = |what| JobError::Refused(format!("{} {what}", path.display()));
                 Self::parse(&text).map(Some).map_err(refused)
             }
@@ -106,9 +99,6 @@ impl PlanFile {
     /// The plan in a text, or what is wrong with it.
     fn parse(text: &[u8]) -> Result<Self, String> {
         let damaged = |what: String| format!("is damaged: {what}; plan again into another folder");
-        if text.len() as u64 > Self::LARGEST {
-            return Err(damaged("it is too large".to_owned()));
-        }
         let file: Self = serde_json::from_slice(text).map_err(|e| damaged(e.to_string()))?;
         let Self {
             layout,

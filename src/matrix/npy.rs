@@ -24,7 +24,7 @@ pub use entries::Entries;
 pub use rows::Rows;
 
 use super::Matrix;
-use crate::store::{self, StoreError};
+use crate::store::{self, ReadError, StoreError};
 
 /// Longest header accepted, bytes: NumPy's own for two dimensions has 118.
 const HEADER_MAX: usize = 1024;
@@ -38,14 +38,9 @@ const BAND: usize = 32;
 /// Why a `.npy` file cannot serve as a matrix.
 #[derive(Debug, thiserror::Error)]
 pub enum NpyError {
-    /// The system cannot read the file.
-    #[error("cannot read {}: {source}; check that the file exists and that you may read it", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
+    /// The file cannot be read.
+    #[error(transparent)]
+    Unreadable(#[from] ReadError),
     /// The header is none, or not that of a plain array.
     #[error("{} is not a .npy file of plain numbers: {reason}; write it with numpy.save", path.display())]
     NotNpy {
@@ -128,8 +123,7 @@ struct Opened {
 }
 
 fn open(path: &Path) -> Result<Opened, NpyError> {
-    let file = File::open(path).map_err(|source| unreadable(path, source))?;
-    examine(path, file)
+    examine(path, store::open(path)?)
 }
 
 /// Looks at the header of an open file, which messages call `path`.
@@ -189,6 +183,15 @@ fn examine(path: &Path, file: File) -> Result<Opened, NpyError> {
         header,
         bytes,
     })
+}
+
+/// Rows and columns of the matrix in `path`, by its header: to be held against what is expected
+/// before [`read`] takes memory for it.
+///
+/// # Errors
+/// As [`read`].
+pub fn shape(path: &Path) -> Result<(usize, usize), NpyError> {
+    open(path).map(|opened| (opened.rows, opened.columns))
 }
 
 /// Reads a matrix from `path`: f64 or f32 of either byte order, C or Fortran order, two dimensions,
@@ -251,10 +254,7 @@ fn finite(path: &Path, first: usize, matrix: Matrix) -> Result<Matrix, NpyError>
 }
 
 fn unreadable(path: &Path, source: io::Error) -> NpyError {
-    NpyError::Unreadable {
-        path: path.into(),
-        source,
-    }
+    ReadError::system(path, source).into()
 }
 
 fn not_npy(path: &Path, reason: &str) -> NpyError {

@@ -5,13 +5,11 @@ use std::sync::Arc;
 
 use super::error::{Fault, Step, keys};
 use super::file::{MeshTable, ScaleTable};
-use super::files::Files;
+use super::files::{Files, LARGEST};
 use super::mesh::{self, Defects, Generator, Triangles};
 use super::surface::Surface;
 use crate::geometry::{DAffine3, DQuat, DVec3, Instance, Mesh, Shape, Side};
 
-/// A mesh file larger than this is not read: 1 GiB.
-const LARGEST_FILE: u64 = 1 << 30;
 /// Triangles of a mesh that phicam makes, unless the scene says how many.
 const FACES: u64 = 20_000;
 /// More are not made, of all meshes of a scene together.
@@ -200,14 +198,14 @@ fn rotation(axis: DVec3, degrees: f64) -> DQuat {
 
 fn read(name: &str, files: &mut Files) -> Result<Triangles, Fault> {
     let fault = |(cause, cure): (String, String)| Fault::new(keys!["file"], cause, cure);
-    let bytes = files.bytes(name, LARGEST_FILE).map_err(fault)?;
+    let bytes = files.bytes(name, LARGEST).map_err(fault)?;
     let folder = name.rsplit_once('/').map_or("", |(folder, _)| folder);
     let mut beside = |other: &str| {
         let path = match folder {
             "" => other.to_owned(),
             folder => format!("{folder}/{other}"),
         };
-        files.bytes_or_words(&path, LARGEST_FILE)
+        files.bytes_or_words(&path, LARGEST)
     };
     mesh::read(name, &bytes, &mut beside).map_err(|e| {
         Fault::new(

@@ -1,8 +1,9 @@
 //! The scenes that are compiled in, and reading of the others.
 
-use std::io::Read;
+use std::path::Path;
 
 use super::error::SceneError;
+use crate::store;
 
 /// A scene file larger than this is not one.
 const LARGEST_FILE: u64 = 64 << 20;
@@ -54,23 +55,16 @@ pub(super) fn read(path: &str) -> Result<String, SceneError> {
         cure,
     };
     let known = names.clone().collect::<Vec<_>>().join(", ");
-    let file = std::fs::File::open(path).map_err(|e| {
+    let cure = || format!("give the path of a TOML scene file, or a built-in scene: {known}");
+    let bytes = store::read(Path::new(path), LARGEST_FILE).map_err(|e| {
         let near = names
             .clone()
-            .find(|n| strsim::damerau_levenshtein(n, path) <= 2);
+            .find(|n| e.is_missing() && strsim::damerau_levenshtein(n, path) <= 2);
         let cure = match near {
             Some(n) => format!("did you mean the built-in scene `{n}`?"),
-            None => format!("give the path of a scene file, or a built-in scene: {known}"),
+            None => cure(),
         };
-        error(format!("cannot open this scene: {e}"), cure)
+        error(format!("cannot read this scene: {}", e.fault), cure)
     })?;
-    let mut bytes = Vec::new();
-    let cure = || format!("give the path of a TOML scene file, or a built-in scene: {known}");
-    file.take(LARGEST_FILE + 1)
-        .read_to_end(&mut bytes)
-        .map_err(|e| error(format!("cannot read this scene: {e}"), cure()))?;
-    if bytes.len() as u64 > LARGEST_FILE {
-        return Err(error("the file is larger than 64 MiB".into(), cure()));
-    }
     String::from_utf8(bytes).map_err(|_| error("the file is not UTF-8 text".into(), cure()))
 }

@@ -5,14 +5,17 @@
 //! read is remembered with its digest, so that the scene's hash speaks of the contents, and a run
 //! can keep a copy.
 
-use std::fs::{self, File};
-use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
+use crate::store;
+
 /// Folder of copies beside a scene file: looked into for what is not there itself.
 pub const COPIES: &str = "files";
+
+/// A file that a scene names, of any kind, is not read if it is larger: 1 GiB.
+pub(super) const LARGEST: u64 = 1 << 30;
 
 /// A file that a scene names.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,9 +35,21 @@ impl Referenced {
         copy_name(&self.name)
     }
 
-    /// Whether these are its bytes.
-    pub fn holds(&self, bytes: &[u8]) -> bool {
-        hex(&Sha256::digest(bytes)) == self.digest
+    /// Its bytes once more: those that were read before.
+    ///
+    /// # Errors
+    /// Cause and cure, where it has changed meanwhile or cannot be read.
+    pub fn again(&self) -> Result<Vec<u8>, (String, &'static str)> {
+        let bytes = store::read(&self.path, LARGEST).map_err(|e| {
+            let cause = format!("cannot read `{}` again: {}", self.name, e.fault);
+            let cure = "leave the scene's files in place while phicam starts";
+            (cause, cure)
+        })?;
+        if hex(&Sha256::digest(&bytes)) == self.digest {
+            return Ok(bytes);
+        }
+        let cause = format!("`{}` has changed since the scene was read", self.name);
+        Err((cause, "start again"))
     }
 }
 
@@ -83,24 +98,16 @@ impl Files {
     /// and the cure.
     pub(super) fn bytes(&mut self, name: &str, most: u64) -> Result<Vec<u8>, (String, String)> {
         let path = self.find(name)?;
-        let cannot = |e: std::io::Error| {
-            let cause = format!("cannot read `{name}`: {e}");
-            (cause, "check the file and its permissions".to_owned())
-        };
-        // Before it is opened: opening a pipe waits for somebody to write.
-        if !fs::metadata(&path).map_err(cannot)?.is_file() {
-            let cause = format!("`{name}` is no ordinary file");
-            return Err((cause, "name a file".to_owned()));
-        }
-        let file = File::open(&path).map_err(cannot)?;
-        let mut bytes = Vec::new();
-        file.take(most + 1)
-            .read_to_end(&mut bytes)
-            .map_err(cannot)?;
-        if bytes.len() as u64 > most {
-            let cause = format!("`{name}` is larger than {} MiB", most >> 20);
-            return Err((cause, "use a smaller one".to_owned()));
-        }
+        let bytes = store::read(&path, most).map_err(|e| {
+            let copy = format!("{COPIES}/{}", copy_name(name));
+            let place = if path.ends_with(&copy) {
+                format!(", its copy {copy}")
+            } else {
+                String::new()
+            };
+            let cause = format!("cannot read `{name}`{place}: {}", e.fault);
+            (cause, e.fault.cure().to_owned())
+        })?;
         let digest = hex(&Sha256::digest(&bytes));
         if let Some(earlier) = self.read.iter().find(|r| r.name == name) {
             if earlier.digest != digest {
@@ -191,7 +198,7 @@ mod tests {
                 .digest
                 .starts_with("8a798890fe93817163b10b5f7bd2ca4d")
         );
-        assert!(files.bytes("own", 2).unwrap_err().0.contains("larger"));
+        assert!(files.bytes("own", 2).unwrap_err().0.contains("at most 2"));
         assert!(files.bytes("below", 10).unwrap_err().0.contains("ordinary"));
         assert!(files.bytes("absent", 10).unwrap_err().0.contains("no file"));
     }

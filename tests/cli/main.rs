@@ -8,6 +8,8 @@ mod bad_scenes;
 mod bad_settings;
 mod exposing;
 mod foreign_files;
+#[cfg(unix)]
+mod forged_kinds;
 mod interruption;
 mod killing;
 mod large_photographs;

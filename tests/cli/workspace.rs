@@ -12,6 +12,17 @@ pub(crate) struct Workspace {
     dir: tempfile::TempDir,
 }
 
+/// No command of these tests takes longer.
+const LONG: Duration = Duration::from_secs(120);
+
+/// `phicam`, started by a shell that has done `limit` before.
+fn limited(limit: &str) -> assert_cmd::Command {
+    let mut shell = assert_cmd::Command::new("sh");
+    let line = format!("{limit} && exec \"$0\" \"$@\"");
+    shell.args(["-c", &line]).arg(env!("CARGO_BIN_EXE_phicam"));
+    shell
+}
+
 /// How a command ended.
 #[must_use]
 pub(crate) struct Ended {
@@ -57,24 +68,24 @@ impl Workspace {
     /// Runs `phicam` with the words of `line`. A panic of the program fails the test, whatever else
     /// it expects.
     pub(crate) fn phicam(&self, line: &str) -> Ended {
-        self.end(line, assert_cmd::cargo::cargo_bin_cmd!("phicam"))
+        self.end(line, assert_cmd::cargo::cargo_bin_cmd!("phicam"), LONG)
+    }
+
+    /// The same, with an answer wanted in a few seconds and 200 MB of memory of its own.
+    pub(crate) fn answers(&self, line: &str) -> Ended {
+        self.end(line, limited("ulimit -d 195312"), Duration::from_secs(8))
     }
 
     /// The same with `memory` KiB of address space.
     pub(crate) fn phicam_within(&self, memory: u64, line: &str) -> Ended {
-        let mut shell = assert_cmd::Command::new("sh");
-        let limited = format!("ulimit -v {memory} && exec \"$0\" \"$@\"");
-        shell
-            .args(["-c", &limited])
-            .arg(env!("CARGO_BIN_EXE_phicam"));
-        self.end(line, shell)
+        self.end(line, limited(&format!("ulimit -v {memory}")), LONG)
     }
 
-    fn end(&self, line: &str, mut command: assert_cmd::Command) -> Ended {
+    fn end(&self, line: &str, mut command: assert_cmd::Command, most: Duration) -> Ended {
         let output = command
             .args(line.split_whitespace())
             .current_dir(self.dir.path())
-            .timeout(Duration::from_secs(120))
+            .timeout(most)
             .output()
             .expect("the program starts");
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();

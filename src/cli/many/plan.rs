@@ -1,6 +1,5 @@
 //! `phicam plan`.
 
-use std::fs;
 use std::path::Path;
 
 use super::planned::{Planned, work};
@@ -12,7 +11,7 @@ use crate::cli::output;
 use crate::cli::run_folder::{RunFolder, SCENE};
 use crate::cli::{Outcome, settings};
 use crate::jobs::{PlanFile, Settings};
-use crate::store::ensure_writable;
+use crate::store::{self, ensure_writable};
 
 /// Shards of a plan unless told otherwise.
 const USUAL_SHARDS: u64 = 32;
@@ -74,8 +73,12 @@ pub(in crate::cli) fn execute(args: &PlanArgs, console: Console) -> Result<Outco
 /// planned.
 fn is_free(dir: &Path, work: &dyn Work) -> bool {
     let path = dir.join(SCENE);
-    let own = || work.scene().map(|s| s.text.as_bytes().to_vec());
-    !path.exists() || fs::read(path).ok() == own()
+    let own = work.scene().map(|s| s.text.as_bytes());
+    let most = own.map_or(0, <[u8]>::len) as u64;
+    match store::read(&path, most) {
+        Err(e) => e.is_missing(),
+        Ok(there) => own == Some(&*there),
+    }
 }
 
 /// A render of the scene, or the command after `--`.

@@ -1,7 +1,6 @@
 //! A plan in its folder, and what it is a plan of.
 
-use std::fs::{self, File};
-use std::io::ErrorKind;
+use std::fs;
 use std::path::Path;
 
 use super::render::Render;
@@ -12,6 +11,7 @@ use crate::cli::failure::Failure;
 use crate::cli::run_folder::SCENE;
 use crate::jobs::{PlanFolder, Settings};
 use crate::scene::COPIES;
+use crate::store::{self, ReadFault};
 use crate::transport::Plan;
 
 /// A plan that was read and found to be what it says.
@@ -46,12 +46,11 @@ fn refuse_unreadable(dir: &Path) -> Result<(), Failure> {
         files.extend(copies.flatten().map(|entry| entry.path()));
     }
     for path in files {
-        match File::open(&path) {
-            Err(e) if e.kind() != ErrorKind::NotFound => {
-                let cause = format!("cannot read {}: {e}", path.display());
-                let cure = "check the folder and its file server";
-                return Err(Failure::system(cause, cure));
+        match store::open(&path) {
+            Err(e) if matches!(e.fault, ReadFault::System(_)) && !e.is_missing() => {
+                return Err(e.into());
             }
+            // What is no file is refused by those who need it.
             _ => {}
         }
     }

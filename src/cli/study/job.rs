@@ -16,7 +16,7 @@ use crate::jobs::{BlockFile, Checkpoint, EXTENSION, Identity, JobError, end};
 use crate::lab::{AnyStudy, Sharing, Work};
 use crate::report::Invocation;
 use crate::scene::Scene;
-use crate::store::{ensure_writable, is_missing};
+use crate::store::ensure_writable;
 use crate::transport::Control;
 
 /// A study, checked and ready.
@@ -129,7 +129,7 @@ fn refuse_other(
             ));
             Ok(())
         }
-        Err(JobError::Unreadable { source, .. }) if is_missing(&source) => Ok(()),
+        Err(JobError::Unreadable(e)) if e.is_missing() => Ok(()),
         Err(e) => Err(e.into()),
         Ok(_) => Ok(()),
     }

@@ -1,7 +1,5 @@
 //! What is to be viewed: values with their size, unit and name.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use super::super::args::ViewArgs;
@@ -16,8 +14,9 @@ use crate::film::frame::{COUNTS, FLUX};
 use crate::image::{self, Channel, Image};
 use crate::matrix::npy;
 use crate::report::Panel;
+use crate::store;
 
-/// Pictures of more bytes than this are not read: 1 GiB.
+/// Pictures of more bytes than this are not read, nor matrices that would take more: 1 GiB.
 const LARGEST: u64 = 1 << 30;
 /// Times that a matrix is held at most: as it is read, by rows, its values to be shown, their
 /// colours.
@@ -112,15 +111,7 @@ fn frame(path: &Path, frame: &film::Frame, channel: Option<&str>) -> Result<Sour
 /// A picture of another program; its first row is the top one.
 fn picture(path: &Path, channel: Option<&str>) -> Result<Source, Failure> {
     let name = path.display().to_string();
-    let unreadable = |e: std::io::Error| {
-        let cause = format!("cannot read {name}: {e}");
-        Failure::new(cause, "check that the file exists and that you may read it")
-    };
-    let mut bytes = Vec::new();
-    let file = File::open(path).map_err(unreadable)?;
-    file.take(LARGEST)
-        .read_to_end(&mut bytes)
-        .map_err(unreadable)?;
+    let bytes = store::read(path, LARGEST)?;
     if !bytes.starts_with(b"v/1\x01") {
         let cause = format!("{name} is neither OpenEXR nor .npy");
         let cure =
@@ -195,8 +186,18 @@ fn camera(path: &Path, console: Console) -> Result<Option<([usize; 2], usize)>, 
 }
 
 fn matrix(path: &Path, spot: Option<usize>, console: Console) -> Result<Source, Failure> {
+    let (rows, columns) = npy::shape(path)?;
+    if (rows as u64).saturating_mul(columns as u64) > LARGEST / 8 {
+        let cause = format!(
+            "{} has {rows} × {columns} numbers, too many to view",
+            path.display()
+        );
+        return Err(Failure::new(
+            cause,
+            "view a frame of its run, or a part of it",
+        ));
+    }
     let matrix = npy::read(path)?;
-    let (rows, columns) = matrix.shape();
     let camera = camera(path, console)?;
     let name = file_name(path);
     // By the names that a run gives.

@@ -12,8 +12,7 @@
 
 mod attributes;
 
-use std::fs::File;
-use std::io::{self, Cursor, Read};
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use exr::meta::attribute::LineOrder;
@@ -27,7 +26,7 @@ use exr::prelude::{
 use super::{Channel, Frame};
 use crate::image::DEFLATE_RATIO_MAX;
 use crate::image::exr::{channels, envelope};
-use crate::store::{self, StoreError};
+use crate::store::{self, ReadError, StoreError};
 
 /// Most bytes that the pixels of a frame may take, all channels together: 1 GiB, sixteen channels
 /// of 4096 × 4096.
@@ -38,14 +37,9 @@ const NAME_MAX: usize = 31;
 /// Why a frame cannot be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum FrameError {
-    /// The system cannot read the file.
-    #[error("cannot read the frame {}: {source}; check that the file exists and that you may read it", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
+    /// The file cannot be read, or is larger than any frame.
+    #[error(transparent)]
+    Unreadable(#[from] ReadError),
     /// A whole OpenEXR file perhaps, but no frame of this program.
     #[error("{} is not a frame of phicam: {reason}; use the files that `phicam render` wrote, unchanged", path.display())]
     Foreign {
@@ -96,10 +90,6 @@ pub fn write(path: &Path, frame: &Frame) -> Result<(), FrameError> {
 /// # Errors
 /// [`FrameError::Unreadable`], [`FrameError::Foreign`] or [`FrameError::Damaged`].
 pub fn read(path: &Path) -> Result<Frame, FrameError> {
-    let unreadable = |source| FrameError::Unreadable {
-        path: path.into(),
-        source,
-    };
     let foreign = |reason| FrameError::Foreign {
         path: path.into(),
         reason,
@@ -108,17 +98,7 @@ pub fn read(path: &Path) -> Result<Frame, FrameError> {
         path: path.into(),
         reason,
     };
-    let file = File::open(path).map_err(unreadable)?;
-    let length = file.metadata().map_err(unreadable)?.len();
-    if length > PIXEL_BYTES_MAX as u64 {
-        return Err(foreign(format!(
-            "it has {length} bytes, more than {PIXEL_BYTES_MAX}"
-        )));
-    }
-    let mut bytes = Vec::new();
-    file.take(length)
-        .read_to_end(&mut bytes)
-        .map_err(unreadable)?;
+    let bytes = store::read(path, PIXEL_BYTES_MAX as u64)?;
 
     if bytes.is_empty() {
         return Err(damaged("it is empty".into()));
