@@ -10,7 +10,7 @@
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{OnceLock, RwLock};
 use std::time::Duration;
 
 use sha2::{Digest, Sha256};
@@ -190,6 +190,14 @@ fn flush_folder(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
+/// Held by whoever writes a file.
+static AT_WORK: RwLock<()> = RwLock::new(());
+
+/// Whether no file is being written at this moment.
+pub fn is_at_rest() -> bool {
+    AT_WORK.try_write().is_ok()
+}
+
 /// When a file is to be safe from a power cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Safe {
@@ -290,6 +298,7 @@ fn put(
     contents: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     replace: bool,
 ) -> Result<(), StoreError> {
+    let _at_work = AT_WORK.read();
     let obstacle = fs::metadata(path).is_ok_and(|there| !there.is_file());
     if obstacle || path.file_name().is_none() {
         return Err(StoreError::NotAFile {

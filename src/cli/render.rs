@@ -16,7 +16,7 @@ use super::partial::Kept;
 use super::process::pool;
 use super::record::Record;
 use super::run_folder::{Claim, PHI, RunFolder, STDERR, TAILS};
-use super::{Outcome, settings};
+use super::{Outcome, need, settings, suspicious};
 use crate::film;
 use crate::lab::describe_render;
 use crate::matrix::Matrix;
@@ -120,7 +120,7 @@ pub(super) fn into_folder(
     let pool = pool(args.threads)?;
     let threads = pool.current_num_threads();
     let mut record = Record::new(scene, plan, 0, threads, 0.0);
-    refuse_too_large(scene)?;
+    need::render(scene, plan)?;
     let mut folder = RunFolder::open(path, scene, &record, claim, console)?;
     if let Some(record) = complete(scene, plan, &folder.path)? {
         // What the earlier process was ended over.
@@ -133,6 +133,7 @@ pub(super) fn into_folder(
         });
     }
     console.warn(scene);
+    pool.install(|| suspicious::warn(scene, plan, console))?;
     if Record::read(&folder.path)?.is_some_and(|there| there.is_complete()) {
         let place = folder.path.display();
         console.say(format!(
@@ -256,30 +257,6 @@ fn write_missing_frames(
             None => Ok(()),
         }
     })
-}
-
-/// Bytes that Φcam with all its bounce counts may take in memory.
-const MOST_BYTES: f64 = 16.0 * 1024.0 * 1024.0 * 1024.0;
-
-/// What will not fit in the end is refused at the start.
-pub(super) fn refuse_too_large(scene: &Scene) -> Result<(), Failure> {
-    let (pixels, spots) = (scene.camera.pixels() as f64, scene.laser.spots.len() as f64);
-    let channels = f64::from(scene.max_bounces) + 2.0;
-    let (frame, matrix) = (4.0 * pixels * channels, 8.0 * pixels * spots * channels);
-    if frame <= film::exr::PIXEL_BYTES_MAX as f64 && matrix <= MOST_BYTES {
-        return Ok(());
-    }
-    let gib = |bytes: f64| bytes / 1024.0 / 1024.0 / 1024.0;
-    let cause = format!(
-        "{pixels} pixels × {spots} spots with {} bounce counts take {:.1} GiB of memory and {:.2} GiB a frame",
-        scene.max_bounces,
-        gib(matrix),
-        gib(frame)
-    );
-    Err(Failure::new(
-        cause,
-        "use fewer pixels, spots or max_bounces: at most 16 GiB and 1 GiB a frame",
-    ))
 }
 
 /// All columns from what was kept of each spot, if every spot is there.

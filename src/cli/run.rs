@@ -13,7 +13,7 @@ use super::output;
 use super::progress;
 use super::render::{self, Rendered};
 use super::run_folder::{Claim, MODEL, PHI, RECOVERED, REPORT, STDERR, SUMMARY, TAILS};
-use super::{Outcome, model, recover, settings, validate};
+use super::{Outcome, model, need, recover, settings, validate};
 use crate::film::{self, Stack};
 use crate::lab::finding::Describe;
 use crate::lab::{
@@ -32,6 +32,7 @@ pub(super) fn execute(args: &RunArgs, console: Console) -> Result<Outcome, Failu
     let mut clock = Clock::start();
     let plan = settings::plan(&args.trace.paths)?;
     let test = settings::test(&args.test, &plan, console)?;
+    need::run(&scene, &plan)?;
     let claim = Claim {
         what: "phicam run",
         spots: None,

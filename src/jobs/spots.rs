@@ -36,17 +36,22 @@ impl<'a> Spots<'a> {
     /// Spots that are traced together at most: one where they share nothing, else as many as memory
     /// bears.
     pub fn together(scene: &Scene, estimator: Estimator) -> usize {
-        if estimator.serves_all_spots() {
-            bearable(scene)
-        } else {
-            1
+        let orders = scene.max_bounces as usize;
+        Self::together_of(scene.camera.pixels(), orders, estimator)
+    }
+
+    /// The same for so many pixels and bounce counts.
+    pub fn together_of(pixels: usize, orders: usize, estimator: Estimator) -> usize {
+        if !estimator.serves_all_spots() {
+            return 1;
         }
+        (MOST_NUMBERS / (pixels * (orders + 4)).max(1)).max(1)
     }
 
     /// Spots of a render on one machine that are traced together at most: where they share nothing
     /// one, or so many as have a few thousand entries.
     pub fn at_a_time(scene: &Scene, estimator: Estimator) -> usize {
-        let few = (ENTRIES / scene.camera.pixels()).min(bearable(scene));
+        let few = ENTRIES / scene.camera.pixels();
         Self::together(scene, estimator).max(few)
     }
 
@@ -208,10 +213,4 @@ impl<'a> Spots<'a> {
             |b: u64| u32::try_from(b.saturating_sub(self.first)).map_or(blocks, |b| b.min(blocks));
         local(range.start)..local(range.end)
     }
-}
-
-/// Spots of which one part of a [`Tally`] is borne by memory, at least one.
-fn bearable(scene: &Scene) -> usize {
-    let column = scene.camera.pixels() * (scene.max_bounces as usize + 4);
-    (MOST_NUMBERS / column).max(1)
 }
