@@ -10,7 +10,7 @@
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{OnceLock, RwLock};
 use std::time::Duration;
 
 mod reading;
@@ -178,6 +178,14 @@ fn flush_folder(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
+/// Held by whoever writes a file.
+static AT_WORK: RwLock<()> = RwLock::new(());
+
+/// Whether no file is being written at this moment.
+pub fn is_at_rest() -> bool {
+    AT_WORK.try_write().is_ok()
+}
+
 /// Writes the file `path` whole or not at all: `contents` writes into a temporary file of the same
 /// folder, which then takes the name `path`, replacing what had it. If anything fails, what `path`
 /// held before is untouched and nothing is left behind. A symbolic link at `path` is itself
@@ -190,6 +198,7 @@ pub fn write_whole(
     path: &Path,
     contents: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), StoreError> {
+    let _at_work = AT_WORK.read();
     let obstacle = fs::metadata(path).is_ok_and(|there| !there.is_file());
     if obstacle || path.file_name().is_none() {
         return Err(StoreError::NotAFile {

@@ -17,6 +17,7 @@ use super::args::{ExposeArgs, StatedBy};
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_matrix, read_run, read_stderr};
+use super::need;
 use super::output;
 use super::process::version;
 use super::record::Record;
@@ -31,6 +32,9 @@ use crate::sensor::{
     builtin_summary, glare, glare_to_signal,
 };
 use crate::store::ensure_writable;
+
+/// Matrices of Φcam's size that are held at once, beside one for each exposure.
+const EXPOSING: f64 = 12.0;
 
 /// exposure.json.
 #[derive(Debug, Serialize)]
@@ -65,6 +69,10 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
     let (scene, record) = read_run(dir, console)?;
     let settings = settings(args, &scene)?;
     let sensor = Sensor::from_settings(&settings)?;
+    need::photographs(
+        &scene,
+        EXPOSING + settings.brackets.as_ref().map_or(1, Vec::len) as f64,
+    )?;
     let exposure = Exposure::from_settings(&settings)?;
     let phi = read_matrix(&dir.join(PHI), &scene)?;
     let scattered = match settings.glare {

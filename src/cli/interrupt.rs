@@ -1,9 +1,12 @@
 //! Ctrl-C, and the warning that a scheduler sends before it ends a job.
 
 use std::sync::Once;
-
-use crate::transport::Control;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use super::console::complain;
+use crate::store::is_at_rest;
+use crate::transport::Control;
 
 static STOP: AtomicBool = AtomicBool::new(false);
 static WARNED: AtomicBool = AtomicBool::new(false);
@@ -72,6 +75,9 @@ fn listen() {
             } else if STOP.swap(true, Ordering::Relaxed) {
                 std::process::exit(130);
             }
+            if STOP.load(Ordering::Relaxed) {
+                let _ = std::thread::Builder::new().spawn(end_soon);
+            }
         }
     };
     let _ = std::thread::Builder::new().spawn(wait);
@@ -79,6 +85,28 @@ fn listen() {
 
 #[cfg(not(unix))]
 fn listen() {}
+
+/// Time in which work that is to stop comes to an end of its own, and time that a file at work has
+/// besides.
+#[cfg(unix)]
+const ORDERLY: Duration = Duration::from_millis(1500);
+#[cfg(unix)]
+const WRITING: Duration = Duration::from_secs(20);
+
+/// Ends the process where the work has not looked at the flag: it is in the midst of a step that
+/// nothing divides. Files appear whole or not at all, so that what is finished is on disk.
+#[cfg(unix)]
+fn end_soon() {
+    std::thread::sleep(ORDERLY);
+    let start = Instant::now();
+    while !is_at_rest() && start.elapsed() < WRITING {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    complain(
+        "stopped in the midst of a step: what was finished before is kept, and every file is whole",
+    );
+    std::process::exit(if warned() { 75 } else { 130 });
+}
 
 /// A file that grows beyond a limit on its size shall be an error with a name, not the end of the
 /// process.

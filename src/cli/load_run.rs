@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::console::Console;
 use super::failure::Failure;
+use super::need;
 use super::record::Record;
 use super::run_folder::{PHI, SCENE, TAILS};
 use crate::matrix::{Matrix, npy};
@@ -54,6 +55,7 @@ pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), 
 pub(super) fn read_matrix(path: &Path, scene: &Scene) -> Result<Matrix, Failure> {
     // By its header, before memory is taken for its numbers.
     refuse_shape(path, npy::shape(path)?, scene)?;
+    need::photographs(scene, 1.0)?;
     Ok(npy::read_finite(path)?)
 }
 

@@ -49,7 +49,9 @@ mod interrupt;
 mod load_run;
 mod many;
 pub mod many_machines;
+mod memory;
 mod model;
+mod need;
 mod output;
 mod partial;
 mod preview;
@@ -68,6 +70,7 @@ pub mod serve;
 mod settings;
 mod stack;
 mod study;
+mod suspicious;
 mod target;
 mod tasks;
 mod validate;
@@ -94,6 +97,10 @@ pub fn main() -> ExitCode {
         quiet: args.quiet,
         also_read: &args.also_read,
     };
+    if let Err(failure) = process::start_threads() {
+        failure.report();
+        return ExitCode::from(failure.code(args.command.codes()));
+    }
     let result = match &args.command {
         Command::Run(a) => run::execute(a, console),
         Command::Render(a) => render::execute(a, console),

@@ -9,6 +9,7 @@ use super::args::ModelArgs;
 use super::cleanup::remove_named;
 use super::console::Console;
 use super::failure::Failure;
+use super::need;
 use super::output;
 use super::run_folder::{MODEL, RunFolder, Z};
 use crate::lab::Integration;
@@ -19,6 +20,8 @@ use crate::store::ensure_writable;
 pub(super) fn execute(args: &ModelArgs, console: Console) -> Result<Outcome, Failure> {
     let scene = console.load_scene(&args.scene)?;
     let kernel = args.kernel;
+    let quadrature = args.integration == Integration::Quadrature;
+    need::model(&scene, args.elements, quadrature)?;
     let mut model = MatrixModel::new(&scene, kernel, args.elements)?;
     if args.occlusion {
         if args.integration == Integration::Quadrature {

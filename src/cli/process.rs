@@ -7,6 +7,7 @@ use rayon::ThreadPool;
 
 use super::failure::Failure;
 use super::interrupt::warned;
+use super::memory::{available_threads, threads_that_fit};
 use crate::jobs::Process;
 
 /// The version of the program.
@@ -22,9 +23,33 @@ pub(super) fn pool(threads: Option<usize>) -> Result<ThreadPool, Failure> {
             "use 1 to 4096, or leave it out",
         ));
     }
-    Ok(rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.unwrap_or(0))
-        .build()?)
+    let wanted = threads.unwrap_or_else(available_threads);
+    let fit = threads_that_fit(wanted);
+    let refused = |why: String| {
+        let cause = format!("{wanted} threads cannot be started: {why}");
+        let cure = "use fewer --threads, or raise the limits on address space and processes";
+        Failure::new(cause, format!("{cure} (ulimit -v, ulimit -u)"))
+    };
+    if threads.is_some() && fit < wanted {
+        return Err(refused(format!("the address space has room for {fit}")));
+    }
+    let built = rayon::ThreadPoolBuilder::new().num_threads(fit).build();
+    built.map_err(|e| refused(e.to_string()))
+}
+
+/// Starts the threads that serve what asks for no pool of its own.
+pub(super) fn start_threads() -> Result<(), Failure> {
+    let fit = threads_that_fit(available_threads());
+    let started = rayon::ThreadPoolBuilder::new()
+        .num_threads(fit)
+        .build_global();
+    started.map_err(|e| {
+        let cause = format!("{fit} threads cannot be started: {e}");
+        Failure::system(
+            cause,
+            "raise the limits on address space and processes (ulimit -v, ulimit -u)",
+        )
+    })
 }
 
 /// This process, with the threads of `pool`, for work in blocks.

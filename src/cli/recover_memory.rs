@@ -1,19 +1,18 @@
 //! How much memory a recovery takes, and Φcam by rows where it would be more than there is.
 
-use std::fs;
 use std::path::Path;
 
 use super::args::RecoverArgs;
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::refuse_shape;
+use super::memory::{GIB, Room};
 use crate::lab::{Attempt, Certainty, Judged, Residuals, measured};
 use crate::matrix::npy::Rows;
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Options, Problem, Recovered, Strip, recover_strips};
 use crate::scene::Scene;
 
-const GIB: f64 = (1u64 << 30) as f64;
 /// What the program takes besides.
 const BASE: f64 = 64.0 * 1024.0 * 1024.0;
 /// Pixels of the largest strip.
@@ -86,7 +85,10 @@ pub(super) fn plan(
         spots: scene.laser.spots.len() as f64,
         elements: scene.hidden().map(|(_, s)| elements(s.elements)).sum(),
     };
-    let allowed = args.memory.map(|m| m * GIB).or_else(free);
+    let allowed = args
+        .memory
+        .map(|m| m * GIB)
+        .or_else(|| Room::now().map(|room| room.bytes));
     let joint = methods.iter().any(|m| m.is_joint());
     let whole = size.whole(joint, options.budget);
     if allowed.is_none_or(|allowed| whole <= allowed) {
@@ -116,14 +118,6 @@ pub(super) fn plan(
         allowed / GIB
     ));
     Ok(Held::Strips(pixels as usize))
-}
-
-/// Three quarters of the memory that is free, where the system says.
-fn free() -> Option<f64> {
-    let said = fs::read_to_string("/proc/meminfo").ok()?;
-    let line = said.lines().find(|l| l.starts_with("MemAvailable:"))?;
-    let kib: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(0.75 * kib * 1024.0)
 }
 
 /// A file of Φcam's shape, opened.

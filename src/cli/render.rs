@@ -14,7 +14,7 @@ use super::output;
 use super::process::pool;
 use super::record::Record;
 use super::run_folder::{PHI, Resume, RunFolder, STDERR, TAILS};
-use super::{Outcome, settings};
+use super::{Outcome, need, settings, suspicious};
 use crate::film;
 use crate::lab::describe_render;
 use crate::matrix::Matrix;
@@ -139,9 +139,10 @@ pub(super) fn into_folder(
     {
         record.seconds = earlier.seconds;
     }
-    refuse_too_large(scene)?;
+    need::render(scene, plan)?;
     let folder = RunFolder::open(path, scene, &record, resume, console)?;
     console.warn(scene);
+    pool.install(|| suspicious::warn(scene, plan, console))?;
     let total = scene.laser.spots.len();
     let there = |s: usize| match resume {
         Resume::Finished => true,
@@ -205,30 +206,6 @@ fn note(record: &Record, path: &Path) -> Result<(), Failure> {
     } else {
         record.write(path)
     }
-}
-
-/// Bytes that Φcam with all its bounce counts may take in memory.
-const MOST_BYTES: f64 = 16.0 * 1024.0 * 1024.0 * 1024.0;
-
-/// What will not fit in the end is refused at the start.
-pub(super) fn refuse_too_large(scene: &Scene) -> Result<(), Failure> {
-    let (pixels, spots) = (scene.camera.pixels() as f64, scene.laser.spots.len() as f64);
-    let channels = f64::from(scene.max_bounces) + 2.0;
-    let (frame, matrix) = (4.0 * pixels * channels, 8.0 * pixels * spots * channels);
-    if frame <= film::exr::PIXEL_BYTES_MAX as f64 && matrix <= MOST_BYTES {
-        return Ok(());
-    }
-    let gib = |bytes: f64| bytes / 1024.0 / 1024.0 / 1024.0;
-    let cause = format!(
-        "{pixels} pixels × {spots} spots with {} bounce counts take {:.1} GiB of memory and {:.2} GiB a frame",
-        scene.max_bounces,
-        gib(matrix),
-        gib(frame)
-    );
-    Err(Failure::new(
-        cause,
-        "use fewer pixels, spots or max_bounces: at most 16 GiB and 1 GiB a frame",
-    ))
 }
 
 /// All columns from what was kept of each spot, if every spot is there.

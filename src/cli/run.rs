@@ -12,7 +12,7 @@ use super::progress;
 use super::record::Record;
 use super::render::{self, Rendered};
 use super::run_folder::{REPORT, Resume, SUMMARY};
-use super::{Outcome, model, recover, settings, validate};
+use super::{Outcome, model, need, recover, settings, validate};
 use crate::film;
 use crate::lab::finding::Describe;
 use crate::lab::{
@@ -30,6 +30,7 @@ pub(super) fn execute(args: &RunArgs, console: Console) -> Result<Outcome, Failu
     let mut clock = Clock::start();
     let plan = settings::plan(&args.trace.paths)?;
     let test = settings::test(&args.test, &plan, console)?;
+    need::run(&scene, &plan)?;
     let spots = 0..scene.laser.spots.len();
     let asked = Record::new(&scene, &plan, 0, 0, 0.0);
     let resume = match Record::read(&args.output)? {

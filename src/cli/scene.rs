@@ -8,8 +8,10 @@ use super::Outcome;
 use super::args::{SceneArgs, SceneCommand};
 use super::console::{Console, concise};
 use super::failure::Failure;
+use super::need;
 use super::output;
 use super::preview;
+use super::suspicious::dark;
 use crate::report;
 use crate::scene::{Builtin, Role, Scene, builtins};
 
@@ -22,10 +24,13 @@ pub(super) fn execute(args: &SceneArgs, console: Console) -> Result<Outcome, Fai
             output::print(&output::json(&all)?)?;
         }
         SceneCommand::Check { scene, json: false } => {
-            output::print(&check(&console.load_scene(scene)?))?;
+            let scene = console.load_scene(scene)?;
+            need::frames(&scene)?;
+            output::print(&check(&scene)?)?;
         }
         SceneCommand::Check { scene, json: true } => {
             let loaded = console.load_scene(scene).map_err(Failure::from);
+            let loaded = loaded.and_then(|scene| need::frames(&scene).map(|()| scene));
             output::print(&match &loaded {
                 Ok(loaded) => checked(scene, loaded)?,
                 Err(failure) => output::json(&json!({
@@ -38,6 +43,7 @@ pub(super) fn execute(args: &SceneArgs, console: Console) -> Result<Outcome, Fai
         }
         SceneCommand::Show { scene, output } => {
             let scene = console.load_scene(scene)?;
+            need::frames(&scene)?;
             console.warn(&scene);
             output::deliver(&report::bench_svg(&scene), output.as_deref())?;
         }
@@ -72,7 +78,7 @@ fn checked(given: &str, scene: &Scene) -> Result<String, Failure> {
         let of_role = scene.surfaces.iter().filter(|s| s.role == role);
         of_role.map(|s| s.name.as_str()).collect()
     };
-    let warnings: Vec<String> = scene.warnings().iter().map(ToString::to_string).collect();
+    let warnings = suspicious(scene)?;
     output::json(&json!({
         "scene": given,
         "ok": true,
@@ -91,7 +97,14 @@ fn checked(given: &str, scene: &Scene) -> Result<String, Failure> {
     }))
 }
 
-fn check(scene: &Scene) -> String {
+/// What is suspicious, also in what a few samples find.
+fn suspicious(scene: &Scene) -> Result<Vec<String>, Failure> {
+    let mut found: Vec<String> = scene.warnings().iter().map(ToString::to_string).collect();
+    found.extend(dark(scene)?.map(|dark| dark.to_string()));
+    Ok(found)
+}
+
+fn check(scene: &Scene) -> Result<String, Failure> {
     let count = |role| scene.surfaces.iter().filter(|s| s.role == role).count();
     let mut text = format!(
         "{}: {} relay, {} hidden, {} occluding surfaces; {} spots; {} × {} pixels; up to {} bounces; lengths in {}\n",
@@ -105,12 +118,12 @@ fn check(scene: &Scene) -> String {
         scene.max_bounces,
         scene.unit.symbol(),
     );
-    let warnings = scene.warnings();
+    let warnings = suspicious(scene)?;
     for warning in &warnings {
         let _ = writeln!(text, "suspicious: {warning}");
     }
     if warnings.is_empty() {
         text += "nothing wrong, nothing suspicious\n";
     }
-    text
+    Ok(text)
 }

@@ -8,14 +8,19 @@ use super::Outcome;
 use super::args::StackArgs;
 use super::console::Console;
 use super::failure::Failure;
+use super::need;
 use super::output;
-use super::run_folder::{PHI, STDERR};
+use super::run_folder::{PHI, SCENE, STDERR};
 use crate::film;
 use crate::matrix::npy::NpyError;
 use crate::matrix::{Matrix, npy};
 use crate::store::ensure_writable;
 
-pub(super) fn execute(args: &StackArgs, _: Console) -> Result<Outcome, Failure> {
+pub(super) fn execute(args: &StackArgs, console: Console) -> Result<Outcome, Failure> {
+    // Of frames without a scene only the frames themselves say how large they are.
+    if let Ok(scene) = console.load_scene(&args.dir.join(SCENE).to_string_lossy()) {
+        need::photographs(&scene, f64::from(scene.max_bounces) + 3.0)?;
+    }
     let stack = film::stack(&args.dir)?;
     let dir = args.output.as_ref().unwrap_or(&args.dir);
     ensure_writable(dir)?;

@@ -9,7 +9,7 @@ use super::load_run::{read_matrix, read_run, read_stderr, read_tails};
 use super::output;
 use super::record::Record;
 use super::run_folder::{self, PHI, STDERR};
-use super::{Outcome, settings};
+use super::{Outcome, need, settings};
 use crate::film::{self, Channel, Frame};
 use crate::lab::finding::Describe;
 use crate::lab::{Against, Agreement, Measured, Occlusion, Test, validate};
@@ -25,6 +25,7 @@ pub(super) fn execute(args: &ValidateArgs, console: Console) -> Result<Outcome, 
     if let Some(by) = args.shift_spots {
         scene = scene.with_shifted_spots(by)?;
     }
+    need::verdict(&scene)?;
     let measured = Measured {
         phi: &given.phi,
         stderr: &given.stderr,

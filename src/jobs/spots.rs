@@ -32,11 +32,16 @@ impl<'a> Spots<'a> {
     /// Spots that are traced together at most: one where they share nothing, else as many as memory
     /// bears.
     pub fn together(scene: &Scene, estimator: Estimator) -> usize {
+        let orders = scene.max_bounces as usize;
+        Self::together_of(scene.camera.pixels(), orders, estimator)
+    }
+
+    /// The same for so many pixels and bounce counts.
+    pub fn together_of(pixels: usize, orders: usize, estimator: Estimator) -> usize {
         if !estimator.serves_all_spots() {
             return 1;
         }
-        let column = scene.camera.pixels() * (scene.max_bounces as usize + 4);
-        (MOST_NUMBERS / column).max(1)
+        (MOST_NUMBERS / (pixels * (orders + 4)).max(1)).max(1)
     }
 
     /// All spots of a render, in the order of their blocks.

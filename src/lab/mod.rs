@@ -167,6 +167,7 @@ mod noise;
 mod objects;
 pub mod options;
 mod picard;
+mod pilot;
 mod power;
 mod preview;
 pub mod published;
@@ -213,6 +214,7 @@ pub use noise::{
 pub use objects::{
     Attempt, Noise, ObjectBands, RecoveredObject, measured, picards, recover_objects,
 };
+pub use pilot::{Foretold, PilotError, darkness, foretold};
 pub use power::{Detection, Power, PowerPlan, PowerRow, PowerTasks};
 pub use preview::{
     Colour, Preview, PreviewError, PreviewPlan, ViewOptions, Viewpoint, auto_viewpoint, preview,

@@ -80,7 +80,7 @@ const TARGET: f64 = 1e-10;
 const ENTRY_TARGET: f64 = 1e-7;
 /// Relative change below which the rule before is good enough for derivatives.
 const ROUGH: f64 = 1e-4;
-/// Nodes handled at once.
+/// Nodes, and pixels, handled at once.
 pub(super) const CHUNK: usize = 4096;
 /// The Gaussian profile is cut at this many of its 1/e² radii, beyond which lies e^−32 of the
 /// power.
@@ -255,12 +255,15 @@ impl<'a> Cut<'a> {
         };
         let mut phi = Matrix::zeros(seen.len(), lit.len());
         for chunk in hidden.chunks(CHUNK) {
-            let camera =
-                Matrix::from_fn(seen.len(), chunk.len(), |p, q| side(&seen[p], &chunk[q].0));
             let laser = Matrix::from_fn(chunk.len(), lit.len(), |q, l| {
                 chunk[q].1 * side(&lit[l], &chunk[q].0)
             });
-            phi.gemm(1.0, &camera, &laser, 1.0);
+            for (strip, seen) in seen.chunks(CHUNK).enumerate() {
+                let camera =
+                    Matrix::from_fn(seen.len(), chunk.len(), |p, q| side(&seen[p], &chunk[q].0));
+                let mut rows = phi.rows_mut(strip * CHUNK, seen.len());
+                rows.gemm(1.0, &camera, &laser, 1.0);
+            }
         }
         phi
     }

@@ -46,6 +46,11 @@ pub(super) fn refuse_visible_hidden_face(scene: &Scene) -> Result<(), Fault> {
     Ok(())
 }
 
+/// A decade beyond the wavelengths of lasers, F₂ at 157 nm to CO₂ at 10.6 µm, m; and three beyond
+/// their continuous powers, 1 µW to 100 kW, W.
+const WAVELENGTHS: [f64; 2] = [1.6e-8, 1.1e-4];
+const POWERS: [f64; 2] = [1e-9, 1e8];
+
 /// Collects what is suspicious.
 pub(super) fn warnings(scene: &Scene) -> Vec<Warning> {
     let mut found = scene.found.clone();
@@ -66,6 +71,22 @@ pub(super) fn warnings(scene: &Scene) -> Vec<Warning> {
         if surface.role == Role::Hidden && !aligned {
             found.push(Warning::ElementsAcrossCells(surface.name.clone()));
         }
+    }
+    let laser = &scene.laser;
+    let beyond = |x: f64, [low, high]: [f64; 2]| x < low || x > high;
+    if beyond(laser.wavelength, WAVELENGTHS) {
+        found.push(Warning::Wavelength(laser.wavelength));
+    }
+    if beyond(laser.power, POWERS) {
+        found.push(Warning::Power(laser.power));
+    }
+    let entries = scene.camera.pixels() * laser.spots.len();
+    let elements = scene
+        .hidden()
+        .map(|(_, s)| s.elements[0] * s.elements[1])
+        .sum();
+    if entries < elements {
+        found.push(Warning::FewPhotographs { entries, elements });
     }
     spots(scene, &mut found);
     pixels(scene, &mut found);

@@ -29,6 +29,17 @@ pub enum Warning {
     Mesh(String, Defects),
     /// Spots of which a part falls beside the wall and is lost.
     SpotsOverhang(Vec<usize>),
+    /// A wavelength, m, far from those of lasers.
+    Wavelength(f64),
+    /// A power, W, far from those of lasers.
+    Power(f64),
+    /// Entries of Φcam that are fewer than the elements.
+    FewPhotographs {
+        /// Pixels × spots.
+        entries: usize,
+        /// Of all hidden surfaces.
+        elements: usize,
+    },
 }
 
 impl fmt::Display for Warning {
@@ -37,6 +48,18 @@ impl fmt::Display for Warning {
             Self::NothingHidden => write!(
                 f,
                 "no surface is hidden: frames can be rendered, but there is nothing to model or recover"
+            ),
+            Self::Wavelength(metres) => write!(
+                f,
+                "a wavelength of {metres:e} m: lasers have 1.6e-7 to 1.1e-5 m (`wavelength` is in metres whatever the unit)"
+            ),
+            Self::Power(watts) => write!(
+                f,
+                "a laser of {watts:e} W: lasers have 1e-6 to 1e5 W (`power` is in watts)"
+            ),
+            Self::FewPhotographs { entries, elements } => write!(
+                f,
+                "{entries} photographed values (pixels × spots) for {elements} elements: fewer than what is to be recovered"
             ),
             Self::Mesh(surface, defects) => write!(f, "the mesh of `{surface}`: {defects}"),
             Self::SpotsInView(spots) => {

@@ -41,30 +41,32 @@ pub(super) fn first_vertex(scene: &Scene, pixel: usize, ab: [f64; 2]) -> Option<
 #[derive(Clone, Debug)]
 pub(super) struct PixelView {
     pub pixel: usize,
-    /// The flat shape that fills the pixel, with nothing before it, and its outline there.
-    filled_by: Option<(ShapeId, Parallelogram, Region)>,
+    /// The flat shape that fills the pixel, with nothing before it.
+    filled_by: Option<ShapeId>,
 }
 
 impl PixelView {
     pub(super) fn new(scene: &Scene, pixel: usize) -> Self {
         let mut shapes = 0..scene.surfaces.len() as ShapeId;
-        let filled_by = shapes.find_map(|id| fills(scene, pixel, id));
+        let filled_by = shapes.find(|id| fills(scene, pixel, *id).is_some());
         Self { pixel, filled_by }
     }
 
     /// The shape that fills the pixel, if that is known.
     pub(super) fn shape(&self) -> Option<ShapeId> {
-        self.filled_by.as_ref().map(|(shape, ..)| *shape)
+        self.filled_by
     }
 
     /// By shape: what can stand between the pixel's first vertices and each of `targets`.
     pub(super) fn blockers(&self, scene: &Scene, targets: &[ShapeId]) -> Vec<Blockers> {
         let mut all = vec![Blockers::Any; scene.surfaces.len()];
-        if let Some((shape, _, region)) = &self.filled_by {
+        if let Some(shape) = self.filled_by
+            && let Some(outline) = fills(scene, self.pixel, shape)
+        {
             for &to in targets {
                 let other = Region::around(&scene.surfaces[to as usize].shape);
-                let ends = [Some(*shape), Some(to)];
-                all[to as usize] = scene.bvh().blockers(region, &other, ends);
+                let ends = [Some(shape), Some(to)];
+                all[to as usize] = scene.bvh().blockers(&outline, &other, ends);
             }
         }
         all
@@ -72,25 +74,34 @@ impl PixelView {
 
     /// [`first_vertex`] of the pixel, without a ray where one shape fills it.
     pub(super) fn vertex(&self, scene: &Scene, ab: [f64; 2]) -> Option<Vertex> {
-        let Some((shape, plane, _)) = &self.filled_by else {
+        let Some((shape, plane)) = self.plane(scene) else {
             return first_vertex(scene, self.pixel, ab);
         };
         let (ray, etendue) = line_of_sight(scene, self.pixel, ab)?;
         let height = plane.normal().dot(plane.corner() - ray.origin);
         let at = ray.origin + ray.direction * (height / plane.normal().dot(ray.direction));
         let point = plane.at_position(at);
-        let x = Vertex::arrive(scene, *shape, &point, ray.direction, etendue);
+        let x = Vertex::arrive(scene, shape, &point, ray.direction, etendue);
         x.filter(|x| x.reflects(scene))
+    }
+
+    /// The plane of the shape that fills the pixel.
+    fn plane<'s>(&self, scene: &'s Scene) -> Option<(ShapeId, &'s Parallelogram)> {
+        let id = self.filled_by?;
+        match &scene.surfaces[id as usize].shape {
+            Shape::Parallelogram(plane) => Some((id, plane)),
+            _ => None,
+        }
     }
 
     /// First vertices for many points of the footprint, weighted by étendue · c (length² sr), c the
     /// constant factor of the BRDF; of weight 0 where nothing is seen.
     pub(super) fn vertices(&self, scene: &Scene, places: &[[f64; 2]], out: &mut Batch) {
-        if let Some((shape, plane, _)) = &self.filled_by {
-            let surface = &scene.surfaces[*shape as usize];
+        if let Some((shape, plane)) = self.plane(scene) {
+            let surface = &scene.surfaces[shape as usize];
             if let Texture::Constant(albedo) = surface.albedo {
                 let factor = constant_factor(surface, albedo);
-                return self.on_plane(scene, places, out, (*shape, plane, factor));
+                return self.on_plane(scene, places, out, (shape, plane, factor));
             }
         }
         for (i, ab) in places.iter().enumerate() {
@@ -161,10 +172,10 @@ pub(super) fn camera_terms(
     hide(scene.bvh(), out, between, |k| [x.place(k), y.place(k)]);
 }
 
-/// Shape `id` with its outline in the pixel, if it is flat, shows its front to the pinhole over the
+/// The outline of shape `id` in the pixel, if it is flat, shows its front to the pinhole over the
 /// whole footprint, and nothing can stand before it.
-fn fills(scene: &Scene, pixel: usize, id: ShapeId) -> Option<(ShapeId, Parallelogram, Region)> {
-    let Shape::Parallelogram(plane) = scene.surfaces[id as usize].shape else {
+fn fills(scene: &Scene, pixel: usize, id: ShapeId) -> Option<Region> {
+    let Shape::Parallelogram(plane) = &scene.surfaces[id as usize].shape else {
         return None;
     };
     let camera = &scene.camera;
@@ -183,7 +194,7 @@ fn fills(scene: &Scene, pixel: usize, id: ShapeId) -> Option<(ShapeId, Parallelo
     let pinhole = Region::point(camera.position);
     let bvh = scene.bvh();
     let free = bvh.surely_free(&pinhole, &outline, [None, Some(id)]);
-    free.then_some((id, plane, outline))
+    free.then_some(outline)
 }
 
 /// Whether no shape can be in the pixel: between the pinhole and the footprint, enlarged from there

@@ -77,7 +77,7 @@ impl Workspace {
     }
 
     /// The same with `memory` KiB of address space.
-    fn phicam_within(&self, memory: u64, line: &str) -> Ended {
+    pub(crate) fn phicam_within(&self, memory: u64, line: &str) -> Ended {
         self.end(line, limited(&format!("ulimit -v {memory}")), LONG)
     }
 

@@ -45,8 +45,8 @@ pub(in crate::cli) fn execute(args: &PlanArgs, console: Console) -> Result<Outco
         return Err(Failure::new(cause, "plan into another folder (-o)"));
     }
     ensure_writable(dir)?;
+    work.warn(console)?;
     if let Some(scene) = work.scene() {
-        console.warn(scene);
         RunFolder::at(dir).write_scene(scene)?;
     }
     file.write(&dir.join(PlanFile::NAME))?;

@@ -9,9 +9,9 @@ use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::cli::progress::Tracing;
 use crate::cli::record::Record;
-use crate::cli::render::{complete, refuse_too_large};
+use crate::cli::render::complete;
 use crate::cli::run_folder::{Resume, RunFolder};
-use crate::cli::{Outcome, settings};
+use crate::cli::{Outcome, need, settings, suspicious};
 use crate::jobs::{Checkpoint, Identity, Parts, Shards, Spots, end};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
@@ -30,7 +30,7 @@ impl Render {
     /// Refuses what cannot be rendered, or not be put together afterwards.
     pub(super) fn new(scene: Scene, plan: Plan) -> Result<Self, Failure> {
         settings::suited(&scene, &plan)?;
-        refuse_too_large(&scene)?;
+        need::frames(&scene)?;
         Ok(Self { scene, plan })
     }
 }
@@ -38,6 +38,19 @@ impl Render {
 impl Work for Render {
     fn scene(&self) -> Option<&Scene> {
         Some(&self.scene)
+    }
+
+    fn warn(&self, console: Console) -> Result<(), Failure> {
+        let Self { scene, plan } = self;
+        console.warn(scene);
+        let needs = [need::shard(scene, plan), need::merge(scene, plan)];
+        for refused in needs.iter().filter_map(|need| need.as_ref().err()) {
+            console.say(format!(
+                "warning: not on this machine: {}",
+                refused.message()
+            ));
+        }
+        suspicious::warn(scene, plan, console)
     }
 
     fn identity(&self) -> Identity {
@@ -58,6 +71,7 @@ impl Work for Render {
     ) -> Result<Parts, Failure> {
         let todo = end(&done, range)..range.end;
         let Self { scene, plan } = self;
+        need::shard(scene, plan)?;
         let paths = |spots: Spots<'_>| spots.paths(spots.within(&todo).count() as u64);
         let paths = Spots::all(scene, plan).map(paths).sum();
         let mut tracing = Tracing::start(console, &scene.name, paths);
@@ -76,6 +90,7 @@ impl Work for Render {
         console: Console,
     ) -> Result<Outcome, Failure> {
         let Self { scene, plan } = self;
+        need::merge(scene, plan)?;
         let mut record = Record::new(scene, plan, 0, shards.threads(), shards.seconds());
         if let Some(there) = Record::read(output)? {
             if !there.same_settings(&record) {

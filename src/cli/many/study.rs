@@ -64,6 +64,13 @@ impl Work for Study {
         self.scene.as_ref()
     }
 
+    fn warn(&self, console: Console) -> Result<(), Failure> {
+        if let Some(scene) = &self.scene {
+            console.warn(scene);
+        }
+        Ok(())
+    }
+
     fn identity(&self) -> Identity {
         let words = [("command".to_owned(), format!("{:?}", self.arguments))];
         identity(self.scene.as_ref(), words, self.tasks.count())

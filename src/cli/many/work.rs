@@ -14,6 +14,9 @@ pub(super) trait Work: Sync {
     /// The scene, if there is one.
     fn scene(&self) -> Option<&Scene>;
 
+    /// Says what will not fit this machine's memory, and what is suspicious in the scene.
+    fn warn(&self, console: Console) -> Result<(), Failure>;
+
     /// All that the result depends on.
     fn identity(&self) -> Identity;
 

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::super::args::ViewArgs;
 use super::super::console::Console;
 use super::super::failure::Failure;
+use super::super::memory;
 use super::super::record::Record;
 use super::super::run_folder;
 use crate::film;
@@ -17,6 +18,9 @@ use crate::store;
 
 /// Pictures of more bytes than this are not read, nor matrices that would take more: 1 GiB.
 const LARGEST: u64 = 1 << 30;
+/// Times that a matrix is held at most: as it is read, by rows, its values to be shown, their
+/// colours.
+const HELD: f64 = 4.0;
 /// Luminance of linear R, G, B (ITU-R BT.709).
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
@@ -37,6 +41,8 @@ impl Source {
                 let cause = format!("{} is a matrix: it has no channels", path.display());
                 return Err(Failure::new(cause, "leave out --channel"));
             }
+            let length = path.metadata().map_or(0, |m| m.len()) as f64;
+            memory::refuse("the matrix and its picture", HELD * length, &[])?;
             return matrix(path, args.spot, console);
         }
         if args.spot.is_some() {

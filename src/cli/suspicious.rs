@@ -1,0 +1,30 @@
+//! What only tracing shows to be suspicious, said before the hours are spent.
+
+use super::console::Console;
+use super::failure::Failure;
+use super::interrupt::control;
+use crate::lab::{Foretold, PilotError, darkness, foretold};
+use crate::scene::Scene;
+use crate::transport::{Estimator, Plan, RenderError, Sampling};
+
+/// Says what the first samples of a render foretell.
+pub(super) fn warn(scene: &Scene, plan: &Plan, console: Console) -> Result<(), Failure> {
+    if let Some(found) = known(foretold(scene, plan, control()))? {
+        console.say(format!("warning: {found}"));
+    }
+    Ok(())
+}
+
+/// Whether light reaches the camera, as far as samples and geometry say.
+pub(super) fn dark(scene: &Scene) -> Result<Option<Foretold>, Failure> {
+    let plan = Plan::new(Estimator::Shared, Sampling::Sobol, 1, 64)?;
+    known(darkness(scene, &plan, control()))
+}
+
+/// What cannot be traced is for the render itself to refuse.
+fn known(found: Result<Option<Foretold>, PilotError>) -> Result<Option<Foretold>, Failure> {
+    match found {
+        Err(PilotError::Render(RenderError::Stopped(stopped))) => Err(stopped.into()),
+        found => Ok(found.unwrap_or(None)),
+    }
+}

@@ -1,0 +1,110 @@
+//! What is suspicious in a scene is said before the hours are spent, and nothing that is not true.
+
+use crate::small_scene::{TINY, altered};
+use crate::workspace::Workspace;
+
+/// The tiny bench with one more replacement: what `scene check` and a render say of it.
+fn said(change: (&str, &str), render: &str) -> [String; 2] {
+    let workspace = Workspace::new();
+    workspace.write("odd.toml", altered(&[TINY[0], TINY[1], change]));
+    let check = workspace.phicam("scene check odd.toml").exits(0).stdout;
+    let line = format!("render odd.toml -o out {render}");
+    [check, workspace.phicam(&line).exits(0).stderr]
+}
+
+#[test]
+fn a_laser_in_other_units_is_told() {
+    for (change, words) in [
+        (
+            ("wavelength = 632.8e-9", "wavelength = 632.8"),
+            "a wavelength of 6.328e2 m",
+        ),
+        (
+            ("wavelength = 632.8e-9", "wavelength = 632.8e-12"),
+            "a wavelength of 6.328e-10 m",
+        ),
+        (("power = 5.0e-3", "power = 5.0e9"), "a laser of 5e9 W"),
+        (("power = 5.0e-3", "power = 5.0e-12"), "a laser of 5e-12 W"),
+    ] {
+        let [check, render] = said(change, "--samples 1");
+        assert!(check.contains(&format!("suspicious: {words}")), "{check}");
+        assert!(render.contains(&format!("warning: {words}")), "{render}");
+    }
+}
+
+/// 3 × 2 pixels and 8 spots are 48 values: fewer than 8 × 8 elements.
+#[test]
+fn fewer_values_than_elements_are_told() {
+    let words = "48 photographed values (pixels × spots) for 64 elements";
+    let [check, render] = said(("elements = [8, 8]", "elements = [8, 8] # "), "--samples 1");
+    assert!(check.contains(words), "{check}");
+    assert!(render.contains(words), "{render}");
+    let [check, _] = said(("elements = [8, 8]", "elements = [6, 8]"), "--samples 1");
+    assert!(!check.contains("photographed values"), "{check}");
+}
+
+/// Two surfaces at most, and what lies between the walls takes a third: no light can come back, and
+/// that is known from where the surfaces lie.
+#[test]
+fn a_dark_scene_is_told() {
+    let change = ("max_bounces = 3 ", "max_bounces = 2 ");
+    let [check, render] = said(change, "--samples 65536 --estimator shared");
+    for text in [check, render] {
+        assert!(text.contains("no light reaches the camera"), "{text}");
+    }
+}
+
+/// A sphere that nearly touches the wall in view, by few samples: what is foretold of the overall
+/// standard error is what the render then states, within a factor of two; without the sphere nothing
+/// is.
+#[test]
+fn a_coarse_result_is_foretold() {
+    let workspace = Workspace::new();
+    let pixels = [("pixels = [16, 16]", "pixels = [48, 48]"), TINY[1]];
+    let sphere = "\n[[surface]]\nname = \"ball\"\nrole = \"occluder\"\n\
+        sphere = { centre = [5.0, 4.4, 0.3], radius = 0.25, face = \"outside\" }\n\
+        material = { lambertian = 0.9 }\n";
+    workspace.write("plain.toml", altered(&pixels));
+    workspace.write("ball.toml", altered(&pixels) + sphere);
+    let line = "--estimator factored --samples 64";
+    let plain = workspace.phicam(&format!("render plain.toml -o plain {line}"));
+    let plain = plain.exits(0);
+    assert!(!plain.stderr.contains("foretell"), "{}", plain.account());
+    let ball = workspace
+        .phicam(&format!("render ball.toml -o ball {line}"))
+        .exits(0);
+    let number = |text: &str, before: &str| {
+        let rest = text.split(before).nth(1)?;
+        rest.split_whitespace().next()?.parse::<f64>().ok()
+    };
+    let foretold = number(&ball.stderr, "standard error of about ");
+    let found = number(&ball.stdout, "standard error ");
+    let (Some(foretold), Some(found)) = (foretold, found) else {
+        panic!("{}", ball.account());
+    };
+    let ratio = foretold / found;
+    assert!((0.5..=2.0).contains(&ratio), "{}", ball.account());
+}
+
+/// None of the built-in scenes is told anything by its first samples that its defaults do not bear
+/// out: by default none of them is dark, and none as coarse as 10 %.
+#[test]
+fn built_in_scenes_are_lit() {
+    let workspace = Workspace::new();
+    for scene in [
+        "bench",
+        "thesis",
+        "experiment",
+        "dual",
+        "card",
+        "satin",
+        "shelf",
+        "corner",
+        "furnace",
+    ] {
+        let check = workspace.phicam(&format!("scene check {scene}")).exits(0);
+        for word in ["no light", "met no light", "wavelength of", "a laser of"] {
+            assert!(!check.stdout.contains(word), "{}", check.account());
+        }
+    }
+}
