@@ -2,7 +2,7 @@
 
 use std::ffi::OsStr;
 use std::fs;
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind};
 use std::path::Path;
 
 use super::failure::Failure;
@@ -22,10 +22,9 @@ pub(super) fn remove_numbered(dir: &Path, extension: &str) -> Result<(), Failure
 /// Removes the files of `dir` with these names, where they are there.
 pub(super) fn remove_named(dir: &Path, names: &[&str]) -> Result<(), Failure> {
     for name in names {
-        match fs::remove_file(dir.join(name)) {
-            Err(e) if !is_missing(&e) => {
-                return Err(e.into());
-            }
+        let path = dir.join(name);
+        match fs::remove_file(&path) {
+            Err(e) if !is_missing(&e) => return Err(irremovable(&path, &e)),
             _ => {}
         }
     }
@@ -47,8 +46,14 @@ pub(super) fn remove_files(dir: &Path, ours: impl Fn(&str, &str) -> bool) -> Res
         match fs::remove_file(&path) {
             // Another process was faster.
             Err(e) if e.kind() == ErrorKind::NotFound => {}
-            other => other?,
+            other => other.map_err(|e| irremovable(&path, &e))?,
         }
     }
     Ok(())
+}
+
+fn irremovable(path: &Path, error: &io::Error) -> Failure {
+    let cause = format!("cannot remove {}: {error}", path.display());
+    let cure = "make its folder writable for you, and move it away if it is no file";
+    Failure::system(cause, cure)
 }

@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
+use crate::report::harmless;
 use crate::scene::{Scene, SceneError};
 
 /// What the options of every command ask for.
@@ -37,20 +38,25 @@ impl Console<'_> {
 }
 
 /// A line on standard error; that nobody reads it is no error. It may quote a file from
-/// anyone: control characters, which a terminal would obey, are shown as such.
+/// anyone: what a terminal would obey is spelled out, and a line is not endless.
 pub(super) fn complain(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{}", harmless(text));
+    let _ = writeln!(io::stderr().lock(), "{}", harmless(&concise(text)));
 }
 
-/// The text with its control characters, but line feeds and tabs, spelled out.
-pub(super) fn harmless(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '\n' | '\t' => out.push(c),
-            c if c.is_control() => out.extend(c.escape_unicode()),
-            c => out.push(c),
+/// Most characters of a line that is to be read.
+const LINE: usize = 1000;
+
+/// The text with the middle of its longest lines left out.
+pub(super) fn concise(text: &str) -> String {
+    let short = |line: &str| {
+        let count = line.chars().count();
+        if count <= LINE {
+            return line.to_owned();
         }
-    }
-    out
+        let first = line.chars().take(LINE / 2);
+        let last = line.chars().skip(count - LINE / 2);
+        let left_out = format!(" … ({} characters) … ", count - LINE);
+        first.chain(left_out.chars()).chain(last).collect()
+    };
+    text.split('\n').map(short).collect::<Vec<_>>().join("\n")
 }

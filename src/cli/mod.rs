@@ -35,7 +35,9 @@
 //! compare (`validate`, `run`: no evidence), 75 stopped by SIGTERM
 //! and 130 by Ctrl-C with what is finished kept. The commands for many machines (`plan`, `shard`,
 //! `status`, `merge`, `slurm`, `clean`) tell schedulers more: 3 not complete (`status`), 64 wrong
-//! usage, 65 refused data, 66 missing blocks, 74 the system cannot read or write.
+//! usage, 65 refused data, 66 missing blocks, 74 the system cannot read or write. What lies in
+//! `shards/` is judged alike by `status`, `slurm` and `merge`: a damaged shard of the plan counts as
+//! missing (3, 66); a file `.phs` that is none of the plan, or contradicts another, is refused (65).
 
 mod args;
 mod batches;
@@ -79,8 +81,10 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser};
 
 use args::{Args, Command};
-use console::Console;
+use console::{Console, complain};
 use failure::{Codes, Failure, Outcome};
+
+use crate::report::harmless;
 
 /// Parses the arguments, runs the command and returns its exit code.
 pub fn main() -> ExitCode {
@@ -129,10 +133,21 @@ pub fn main() -> ExitCode {
 
 /// What clap says of arguments that it cannot read, or of a question for help.
 fn refuse(error: &clap::Error) -> ExitCode {
-    // That nobody reads it is no reason for another code.
-    let _ = error.print();
     if !error.use_stderr() {
-        return ExitCode::SUCCESS;
+        return match error.print() {
+            Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+                output::unwritten(&e).report();
+                ExitCode::from(2)
+            }
+            _ => ExitCode::SUCCESS,
+        };
+    }
+    let plain = error.render().to_string();
+    if harmless(&plain) == plain {
+        // That nobody reads it is no reason for another code.
+        let _ = error.print();
+    } else {
+        complain(plain.trim_end());
     }
     // The first word that is a command, whatever options stand before it.
     let commands = Args::command();

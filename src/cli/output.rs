@@ -1,20 +1,39 @@
 //! Results on standard output, and files.
 
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
 use serde::Serialize;
 
 use super::failure::Failure;
+use crate::report::{harmless, harmless_json};
 use crate::store::write_whole;
 
-/// A result on standard output. A reader that has gone away (`| head`) is no error.
+/// A result on standard output, for people: names in it may be anyone's, and what a terminal would
+/// obey in them is spelled out.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
+    draw(&harmless(text))
+}
+
+/// What a terminal or a shell is to obey, on standard output: a drawing, a script. A reader that
+/// has gone away (`| head`) is no error.
+pub(super) fn draw(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(e.into()),
+        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(unwritten(&e)),
         _ => Ok(()),
     }
+}
+
+/// That a result could not be written to standard output.
+pub(super) fn unwritten(error: &io::Error) -> Failure {
+    let cure = match error.kind() {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            "free some space there, or send the output somewhere else"
+        }
+        _ => "send the output somewhere else",
+    };
+    Failure::system(format!("cannot write to standard output: {error}"), cure)
 }
 
 /// A result on standard output: `text`, or with `as_json` the value.
@@ -29,7 +48,9 @@ pub(super) fn result(
 /// Writes text to a file, or prints it.
 pub(super) fn deliver(text: &str, file: Option<&Path>) -> Result<(), Failure> {
     match file {
-        None => print(text),
+        None if io::stdout().is_terminal() => print(text),
+        // A copy, to the byte.
+        None => draw(text),
         Some(path) => write(path, text),
     }
 }
@@ -41,5 +62,5 @@ pub(super) fn write(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Failure>
 
 /// A value as pretty JSON with a final newline.
 pub(super) fn json(value: &impl Serialize) -> Result<String, Failure> {
-    Ok(serde_json::to_string_pretty(value)? + "\n")
+    Ok(harmless_json(&serde_json::to_string_pretty(value)?) + "\n")
 }

@@ -7,11 +7,12 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-use super::console::{Console, harmless};
+use super::console::Console;
 use super::interrupt::stop_flag;
 use crate::lab::Work;
 use crate::matrix::Matrix;
 use crate::num::digits::significant;
+use crate::report::harmless;
 use crate::transport::{Control, Tally};
 
 /// Characters of what is done that are shown.

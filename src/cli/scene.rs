@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::Outcome;
 use super::args::{SceneArgs, SceneCommand};
-use super::console::Console;
+use super::console::{Console, concise};
 use super::failure::Failure;
 use super::need;
 use super::output;
@@ -36,7 +36,7 @@ pub(super) fn execute(args: &SceneArgs, console: Console) -> Result<Outcome, Fai
                 Err(failure) => output::json(&json!({
                     "scene": scene,
                     "ok": false,
-                    "error": failure.message(),
+                    "error": concise(failure.message()),
                 }))?,
             })?;
             let _ = loaded?;

@@ -132,13 +132,26 @@ impl PlanFolder {
         Ok((found, wrong))
     }
 
-    /// All shards of the folder, of which none may be anything else.
+    /// All shards of the folder, and what is wrong with those of the plan that are not whole: what
+    /// they held is missing.
     ///
     /// # Errors
-    /// [`JobError`] if one is.
-    pub fn all(&self) -> Result<Vec<BlockFile>, JobError> {
-        let paths = files(&self.shards(), EXTENSION)?;
-        paths.iter().map(|path| self.read(path)).collect()
+    /// [`JobError`] if a file that ends as a shard does is none, or one of another plan, or cannot
+    /// be read for now.
+    pub fn all(&self) -> Result<(Vec<BlockFile>, Vec<JobError>), JobError> {
+        let (mut found, mut wrong) = (Vec::new(), Vec::new());
+        for path in files(&self.shards(), EXTENSION)? {
+            match self.read(&path) {
+                Ok(shard) => found.push(shard),
+                // Somebody removed it just now, or it is a link to nothing.
+                Err(JobError::Unreadable(e)) if e.is_missing() => wrong.push(e.into()),
+                Err(e) if e.spoilt().is_some() && self.named_range(&path).is_some() => {
+                    wrong.push(e);
+                }
+                Err(e) => return Err(e),
+            }
+        }
+        Ok((found, wrong))
     }
 
     /// The indices of the shards of which blocks are in none of the `ranges`.
@@ -209,6 +222,10 @@ fn files(dir: &Path, extension: &str) -> Result<Vec<PathBuf>, JobError> {
     };
     match list() {
         Err(e) if e.kind() == ErrorKind::NotFound => Ok(Vec::new()),
+        Err(e) if e.kind() == ErrorKind::NotADirectory => {
+            let cause = format!("{} is no folder", dir.display());
+            Err(JobError::refused(cause, "move it away"))
+        }
         Err(e) => {
             let cause = format!("cannot list {}: {e}", dir.display());
             Err(JobError::system(cause, "make it readable"))

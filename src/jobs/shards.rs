@@ -27,27 +27,35 @@ pub struct Shards {
 }
 
 impl Shards {
-    /// The shards of `plan`, once all are there.
+    /// The shards of `plan` that are there, and what is wrong with those that are not whole.
     ///
     /// # Errors
-    /// [`JobError`] if blocks are missing after some looks, if two shards contradict each other, or
-    /// if a file is no shard of the plan.
-    pub fn whole(plan: &PlanFolder) -> Result<Self, JobError> {
+    /// [`JobError`] if two shards contradict each other, or if a file is no shard of the plan.
+    pub fn there(plan: &PlanFolder) -> Result<(Self, Vec<JobError>), JobError> {
+        let (files, wrong) = plan.all()?;
+        let found = Self {
+            place: plan.shards(),
+            files: select(files)?,
+        };
+        Ok((found, wrong))
+    }
+
+    /// The same, once all blocks are there.
+    ///
+    /// # Errors
+    /// [`JobError`] as [`there`](Self::there), or if blocks are missing after some looks.
+    pub fn whole(plan: &PlanFolder) -> Result<(Self, Vec<JobError>), JobError> {
         let mut looks = 1;
         loop {
-            let files = plan.all().and_then(select);
-            let ranges = |files: &Vec<BlockFile>| -> Vec<_> {
-                files.iter().map(|f| f.range.clone()).collect()
-            };
-            let gaps = |files: &Vec<BlockFile>| gaps(0..plan.file.blocks, ranges(files));
-            if looks == LOOKS || files.as_ref().is_ok_and(|f| gaps(f).is_empty()) {
-                let files = files?;
-                let gaps = gaps(&files);
+            let found = Self::there(plan);
+            let gaps = |found: &Self| gaps(0..plan.file.blocks, found.ranges());
+            if looks == LOOKS || found.as_ref().is_ok_and(|(f, _)| gaps(f).is_empty()) {
+                let (found, wrong) = found?;
+                let gaps = gaps(&found);
                 if !gaps.is_empty() {
-                    return Err(lack(plan, ranges(&files), &gaps));
+                    return Err(lack(plan, &found, &gaps, &wrong));
                 }
-                let place = plan.shards();
-                return Ok(Self { place, files });
+                return Ok((found, wrong));
             }
             looks += 1;
             sleep(BETWEEN);
@@ -63,6 +71,11 @@ impl Shards {
         range: Range<u64>,
     ) -> impl Iterator<Item = Result<(Range<u64>, Vec<u8>), JobError>> {
         self.files.iter().flat_map(move |s| s.parts(range.clone()))
+    }
+
+    /// Their ranges of blocks.
+    pub fn ranges(&self) -> impl Iterator<Item = Range<u64>> {
+        self.files.iter().map(|s| s.range.clone())
     }
 
     /// The most threads that worked on one.
@@ -109,9 +122,11 @@ pub fn select(mut shards: Vec<BlockFile>) -> Result<Vec<BlockFile>, JobError> {
     Ok(chosen)
 }
 
-/// That blocks are missing: in which shards, and which blocks.
-fn lack(plan: &PlanFolder, ranges: Vec<Range<u64>>, gaps: &[Range<u64>]) -> JobError {
-    let indices = plan.missing(ranges);
+/// That blocks are missing: in which shards, which blocks, and what is wrong with the files that
+/// held them.
+fn lack(plan: &PlanFolder, found: &Shards, gaps: &[Range<u64>], wrong: &[JobError]) -> JobError {
+    let indices = plan.missing(found.ranges());
+    let wrong = wrong.iter().take(NAMED).map(|e| format!("\n  {e}"));
     let named = gaps
         .iter()
         .take(NAMED)
@@ -119,10 +134,11 @@ fn lack(plan: &PlanFolder, ranges: Vec<Range<u64>>, gaps: &[Range<u64>]) -> JobE
     let more = if gaps.len() > NAMED { ", …" } else { "" };
     let dir = plan.path.display();
     JobError::Missing(format!(
-        "{} of {} shards of {dir} are not there, or not whole: {} (blocks {}{more})\n  cure: phicam shard {dir} --index K for each of them, or phicam slurm {dir}, then merge again",
+        "{} of {} shards of {dir} are not there, or not whole: {} (blocks {}{more}){}\n  cure: phicam shard {dir} --index K for each of them, or phicam slurm {dir}, then merge again",
         indices.len(),
         plan.file.shards,
         array_syntax(&indices),
-        named.collect::<Vec<_>>().join(", ")
+        named.collect::<Vec<_>>().join(", "),
+        wrong.collect::<String>()
     ))
 }

@@ -1,5 +1,6 @@
 //! A table of a finding as comma-separated values.
 
+use super::harmless::harmless;
 use crate::lab::finding::{Cell, Column, Table};
 
 /// A header line of the columns' keys, then a line a row. Numbers have all their digits; what is
@@ -34,8 +35,8 @@ fn cell(column: &Column, cell: Option<&Cell>) -> String {
     let number = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x:e}"));
     let text = match cell {
         None => String::new(),
-        Some(Cell::Text(text)) => format!("\"{}\"", text.replace('"', "'")),
-        Some(Cell::Name(name)) => name.clone(),
+        Some(Cell::Text(text)) => format!("\"{}\"", harmless(text).replace('"', "'")),
+        Some(Cell::Name(name)) => harmless(name),
         Some(Cell::Flag(yes)) => yes.to_string(),
         Some(Cell::Count(n)) => n.to_string(),
         Some(Cell::Number(x) | Cell::Share(x)) => number(*x),

@@ -4,6 +4,8 @@
 
 use serde::Serialize;
 
+use super::harmless::shown_json;
+
 /// How a series is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -59,7 +61,7 @@ impl Plotted<'_> {
     /// The element that holds it.
     pub(super) fn metadata(&self) -> String {
         // Numbers and text always serialise.
-        let json = serde_json::to_string(self).unwrap_or_default();
+        let json = shown_json(&serde_json::to_string(self).unwrap_or_default());
         // As JSON writes them these signs are no markup.
         let json = ['&', '<', '>'].iter().fold(json, |text, c| {
             text.replace(*c, &format!("\\u{:04x}", u32::from(*c)))

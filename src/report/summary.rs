@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use super::harmless::harmless_json;
 use crate::lab::{RecoveredObject, RunResults, Tails};
 
 /// What a run found, without any matrix, as indented JSON. What is absent or not a finite number is
@@ -62,7 +63,7 @@ pub fn summary_json(results: &RunResults) -> String {
         "times": times.collect::<Vec<Value>>(),
     });
     // A `Value` always has a JSON text.
-    format!("{value:#}\n")
+    harmless_json(&format!("{value:#}\n"))
 }
 
 fn root_mean_square(values: &[f64]) -> f64 {

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use super::harmless::harmless;
+
 /// Okabe and Ito's colours, told apart by every kind of colour vision.
 pub(super) mod ink {
     pub(in super::super) const BLACK: &str = "#222222";
@@ -37,6 +39,9 @@ pub(super) const END: &str = "text-anchor=\"end\"";
 /// hold become U+FFFD.
 pub(super) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
+    // Control characters are no part of XML.
+    let shown = |c: char| c.is_control() && !matches!(c, '\t' | '\n');
+    let text = harmless(&text.replace(shown, "\u{fffd}"));
     for c in text.chars() {
         match c {
             '&' => out.push_str("&amp;"),
@@ -44,8 +49,7 @@ pub(super) fn escape(text: &str) -> String {
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
             '\'' => out.push_str("&#39;"),
-            '\t' | '\n' => out.push(c),
-            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => out.push('\u{fffd}'),
+            '\u{fffe}' | '\u{ffff}' => out.push('\u{fffd}'),
             c => out.push(c),
         }
     }

@@ -23,7 +23,7 @@ pub struct Place {
     pub line: usize,
     /// From 1, in characters.
     pub column: usize,
-    /// The text of the line.
+    /// The text of the line: of a long one 200 characters around the column.
     pub text: String,
 }
 
@@ -35,12 +35,29 @@ impl Place {
             .find(|i| text.is_char_boundary(*i));
         let before = &text[..start.unwrap_or(0)];
         let line_start = before.rfind('\n').map_or(0, |i| i + 1);
+        let column = before[line_start..].chars().count() + 1;
         Self {
             line: before.matches('\n').count() + 1,
-            column: before[line_start..].chars().count() + 1,
-            text: text[line_start..].lines().next().unwrap_or("").to_owned(),
+            column,
+            text: around(text[line_start..].lines().next().unwrap_or(""), column),
         }
     }
+}
+
+/// Most characters that are shown of a line.
+const SHOWN: usize = 200;
+
+/// At most [`SHOWN`] characters of `line`, those around `column`; an ellipsis for the others.
+fn around(line: &str, column: usize) -> String {
+    let count = line.chars().count();
+    if count <= SHOWN {
+        return line.to_owned();
+    }
+    let first = column.saturating_sub(SHOWN / 2).min(count - SHOWN);
+    let part: String = line.chars().skip(first).take(SHOWN).collect();
+    let ellipsis = |there| if there { "…" } else { "" };
+    let [before, behind] = [first > 0, first + SHOWN < count].map(ellipsis);
+    format!("{before}{part}{behind}")
 }
 
 impl fmt::Display for SceneError {

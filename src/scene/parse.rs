@@ -66,6 +66,8 @@ fn cure(message: &str) -> String {
         Some(word) if unknown => {
             let nearest = known
                 .iter()
+                // A word of a megabyte is near to none of them.
+                .filter(|k| word.len() <= 2 * k.len())
                 .map(|k| (strsim::damerau_levenshtein(word, k), *k))
                 .min_by_key(|(distance, _)| *distance);
             match nearest {

@@ -120,7 +120,7 @@ fn a_camera_that_sees_the_hidden_face() {
 fn a_scene_that_is_not_there() {
     let workspace = Workspace::new();
     for command in ["run", "render", "model"] {
-        let words = ["nowhere.toml", "cannot open", "cure: ", "bench, thesis"];
+        let words = ["nowhere.toml", "cannot read", "cure: ", "bench, thesis"];
         workspace.refuses(&format!("{command} nowhere.toml -o out"), &words);
     }
     workspace.refuses("scene check .", &["cannot read", "cure: "]);

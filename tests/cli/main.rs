@@ -26,6 +26,7 @@ mod serving;
 mod serving_deaf;
 mod serving_forged;
 mod serving_many;
+mod small_doors;
 mod small_scene;
 mod stacking;
 mod studies;

@@ -142,12 +142,12 @@ fn spoilt_and_foreign_shards_are_refused_each_by_its_own_words() {
     let whole = fs::read(&second).expect("a shard");
     let spoil = |bytes: &[u8], word: &str| {
         fs::write(&second, bytes).expect("written");
+        // It counts as missing, and is computed again to the same payload.
         merge_refused(
             &workspace,
-            65,
+            66,
             &[word, &second.file_name().unwrap().to_string_lossy()],
         );
-        // It counts as missing, and is computed again to the same payload.
         assert_eq!(workspace.phicam("status job").exits(3).stdout, "1\n");
         let _ = workspace.phicam("shard job --index 1").exits(0);
         let _ = workspace.phicam("status job").exits(0);
@@ -172,16 +172,16 @@ fn spoilt_and_foreign_shards_are_refused_each_by_its_own_words() {
         "belongs to another plan",
         "its seed is 6, that of this plan is 5",
     ];
+    let lines = ["status job", "slurm job --dry-run", "shard job --index 1"];
     merge_refused(&workspace, 65, &words);
-    refused(&workspace, "shard job --index 1", 65, &words);
+    for line in lines {
+        refused(&workspace, line, 65, &words);
+    }
     fs::write(&second, b"A picture of something else").expect("written");
     merge_refused(&workspace, 65, &["is no shard of phicam"]);
-    refused(
-        &workspace,
-        "shard job --index 1",
-        65,
-        &["is no shard of phicam"],
-    );
+    for line in lines {
+        refused(&workspace, line, 65, &["is no shard of phicam"]);
+    }
 }
 
 /// A shard written by the library, with what it says of itself changed, and its closing digest

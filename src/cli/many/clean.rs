@@ -20,25 +20,29 @@ pub(in crate::cli) fn execute(args: &CleanArgs, console: Console) -> Result<Outc
         console.say(format!("warning: {error}"));
     }
     let mut bytes = 0;
+    let (mut removed, mut kept) = (Vec::new(), Vec::new());
     for path in &needless {
-        bytes += fs::metadata(path).map_or(0, |m| m.len());
-        if args.dry_run {
-            continue;
-        }
-        match fs::remove_file(path) {
+        let size = fs::symlink_metadata(path).map_or(0, |m| m.len());
+        match if args.dry_run {
+            Ok(())
+        } else {
+            fs::remove_file(path)
+        } {
             Err(e) if e.kind() != ErrorKind::NotFound => {
-                let cause = format!("cannot remove {}: {e}", path.display());
-                return Err(Failure::system(cause, "make its folder writable for you"));
+                kept.push(format!("{}: {e}", path.display()));
             }
-            _ => {}
+            _ => {
+                bytes += size;
+                removed.push(path.to_string_lossy());
+            }
         }
     }
-    let removed: Vec<_> = needless.iter().map(|path| path.to_string_lossy()).collect();
     output::print(&if args.json {
         output::json(&json!({
             "files": removed,
             "bytes": bytes,
             "removed": !args.dry_run,
+            "not_removed": kept,
         }))?
     } else {
         removed.iter().map(|path| format!("{path}\n")).collect()
@@ -53,5 +57,12 @@ pub(in crate::cli) fn execute(args: &CleanArgs, console: Console) -> Result<Outc
         removed.len(),
         bytes as f64 / f64::from(1 << 20)
     ));
-    Ok(Outcome::Done)
+    if kept.is_empty() {
+        return Ok(Outcome::Done);
+    }
+    let cause = format!("cannot remove {}", kept.join("\n  "));
+    Err(Failure::system(
+        cause,
+        "make the folder writable for you, and move away what is no file",
+    ))
 }

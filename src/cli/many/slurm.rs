@@ -35,10 +35,10 @@ pub(in crate::cli) fn execute(args: &SlurmArgs, console: Console) -> Result<Outc
     if !args.dry_run {
         request.submit(&slurm, &mut |line| output::print(line))?;
     } else if slurm.is_there() {
-        output::print(&request.rehearsal(Some(&slurm))?)?;
+        output::draw(&request.rehearsal(Some(&slurm))?)?;
     } else {
         console.say("there is no Slurm here to be asked: as if nothing were queued, and arrays as long as they are where nothing is configured");
-        output::print(&request.rehearsal(None)?)?;
+        output::draw(&request.rehearsal(None)?)?;
     }
     Ok(Outcome::Done)
 }

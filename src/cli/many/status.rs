@@ -10,7 +10,7 @@ use crate::cli::args::StatusArgs;
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::output;
-use crate::jobs::{PlanFolder, array_syntax};
+use crate::jobs::{PlanFolder, Shards, array_syntax};
 
 pub(in crate::cli) fn execute(args: &StatusArgs, console: Console) -> Result<Outcome, Failure> {
     let plan = Planned::open(&args.dir, console)?.folder;
@@ -36,14 +36,14 @@ pub(in crate::cli) fn execute(args: &StatusArgs, console: Console) -> Result<Out
 }
 
 /// The indices of the shards that are not there whole; says what is wrong with files that should be
-/// one.
+/// one. What `merge` would refuse is refused.
 pub(super) fn missing_shards(
     plan: &PlanFolder,
     console: Console,
 ) -> Result<BTreeSet<usize>, Failure> {
-    let (there, wrong) = plan.find(&(0..plan.file.blocks))?;
+    let (there, wrong) = Shards::there(plan)?;
     for error in wrong {
         console.say(format!("warning: {error}"));
     }
-    Ok(plan.missing(there.into_iter().map(|s| s.range)))
+    Ok(plan.missing(there.ranges()))
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::lab::Found;
-use crate::report::{Invocation, finding_files, finding_html, finding_text};
+use crate::report::{Invocation, finding_files, finding_html, finding_text, harmless_json};
 use crate::store::write_whole;
 
 /// Writes the result of the study `name` into `folder`: `NAME.json`, the tables that have a file,
@@ -17,6 +17,7 @@ pub(super) fn deliver(
     invocation: &Invocation,
     print_json: bool,
 ) -> Result<(), Failure> {
+    let json = &harmless_json(json);
     let mut files = vec![(format!("{name}.json"), json.clone())];
     files.extend(finding_files(finding));
     let page = finding_html(finding, invocation, &files);

@@ -36,9 +36,9 @@ pub(super) fn execute(args: &ViewArgs, console: Console) -> Result<Outcome, Fail
     };
     let columns = terminal::columns();
     match terminal {
-        Some(Terminal::Kitty) => output::print(&kitty(&png()?, columns))?,
-        Some(Terminal::Iterm) => output::print(&iterm(&png()?, columns))?,
-        Some(Terminal::Blocks | Terminal::Auto) => output::print(&shown.blocks(columns))?,
+        Some(Terminal::Kitty) => output::draw(&kitty(&png()?, columns))?,
+        Some(Terminal::Iterm) => output::draw(&iterm(&png()?, columns))?,
+        Some(Terminal::Blocks | Terminal::Auto) => output::draw(&shown.blocks(columns))?,
         None => {
             let path = args.output.clone().unwrap_or_else(|| beside(&args.file));
             let png = png()?;

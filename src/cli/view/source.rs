@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::super::args::ViewArgs;
-use super::super::console::{Console, harmless};
+use super::super::console::Console;
 use super::super::failure::Failure;
 use super::super::memory;
 use super::super::record::Record;
@@ -13,7 +13,7 @@ use crate::film::exr::FrameError;
 use crate::film::frame::{COUNTS, FLUX};
 use crate::image::{self, Channel, Image};
 use crate::matrix::npy;
-use crate::report::Panel;
+use crate::report::{Panel, harmless};
 use crate::store;
 
 /// Pictures of more bytes than this are not read, nor matrices that would take more: 1 GiB.
@@ -71,7 +71,7 @@ impl Source {
         axes: [&str; 2],
     ) -> Self {
         let panel = Panel {
-            title,
+            title: harmless(&title),
             size,
             values,
             axes: axes.map(str::to_owned),
@@ -102,7 +102,7 @@ fn frame(path: &Path, frame: &film::Frame, channel: Option<&str>) -> Result<Sour
         _ => "",
     };
     let (scene, spot) = (&frame.meta.run.scene_name, frame.meta.spot_index);
-    let title = harmless(&format!("{scene}, spot {spot}: {name}"));
+    let title = format!("{scene}, spot {spot}: {name}");
     let values = values.iter().copied().map(f64::from).collect();
     let size = [frame.columns, frame.rows];
     Ok(Source::seen(title, size, values, unit))

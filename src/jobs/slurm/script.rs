@@ -5,8 +5,17 @@ const RESTARTS_DISK: u32 = 2;
 /// Restarts that a shard may ask for after the warning that its time is over (exit code 75).
 const RESTARTS_TIME: u32 = 20;
 
-/// `text` as one word of a POSIX shell.
+/// `text` as one word of bash. What is not printable ASCII is spelled by its bytes: a terminal
+/// might obey it, and a line feed could end the document that a script is printed in.
 pub(super) fn quote(text: &str) -> String {
+    if !text.bytes().all(|b| matches!(b, b' '..=b'~')) {
+        let byte = |b: u8| match b {
+            b'\'' | b'\\' => format!("\\{}", char::from(b)),
+            b' '..=b'~' => char::from(b).to_string(),
+            _ => format!("\\x{b:02x}"),
+        };
+        return format!("$'{}'", text.bytes().map(byte).collect::<String>());
+    }
     let plain = |c: char| c.is_ascii_alphanumeric() || "_-+=./:,@%".contains(c);
     if !text.is_empty() && text.chars().all(plain) {
         return text.to_owned();

@@ -17,6 +17,7 @@ use serde::Serialize;
 
 use super::colour::Map;
 use super::encode::base64;
+use super::harmless::shown_json;
 use super::look::looks;
 use super::svg::escape;
 
@@ -129,7 +130,7 @@ impl Page {
         // page stays as it is without script.
         if let Ok(text) = serde_json::to_string(value) {
             // Inside of a script element nothing may look like its end.
-            let text = text.replace('<', "\\u003c");
+            let text = shown_json(&text.replace('<', "\\u003c"));
             self.data +=
                 &format!("<script type=\"application/json\" id=\"{id}\">{text}</script>\n");
         }
