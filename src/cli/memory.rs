@@ -69,13 +69,11 @@ pub(super) fn available_threads() -> usize {
     given.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
 }
 
-/// Refuses what needs more memory than there is: `what` it is, and `cures`, each a number with its
-/// words (`{}`) of which a smaller one needs less: the largest that fits is told.
-pub(super) fn refuse(
-    what: &str,
-    need: f64,
-    cures: &[(&str, u64, &dyn Fn(f64) -> f64)],
-) -> Result<(), Failure> {
+/// A number by its name, its value, and the need as a function of it: the largest that fits is told.
+pub(super) type Cure<'a> = (&'a str, u64, &'a dyn Fn(f64) -> f64);
+
+/// Refuses what needs more memory than there is, and tells of each cure how much would fit.
+pub(super) fn refuse(what: &str, need: f64, cures: &[Cure<'_>]) -> Result<(), Failure> {
     let Some(room) = Room::now().filter(|room| need > room.bytes) else {
         return Ok(());
     };
@@ -120,9 +118,12 @@ pub(super) fn size(bytes: f64) -> String {
     format!("{:.2} GiB", bytes / GIB)
 }
 
-/// What the system says in a file: some kB.
+/// Most bytes of what the system says of itself.
+const SAID: u64 = 1 << 20;
+
+/// What the system says in one of its files.
 fn said(path: &Path) -> Option<String> {
-    String::from_utf8(store::read(path, 1 << 20).ok()?).ok()
+    String::from_utf8(store::read(path, SAID).ok()?).ok()
 }
 
 /// The number behind `key`, times `unit`.
