@@ -256,7 +256,7 @@ fn one_door_per_crate() {
     }
 }
 
-/// Where `code` opens a file, but for what the system says of itself.
+/// How `code` opens a file, if it does.
 fn opens_a_file(code: &str) -> Option<&'static str> {
     let ways = [
         "File::open",
@@ -268,10 +268,8 @@ fn opens_a_file(code: &str) -> Option<&'static str> {
         "open_ambient",
     ];
     ways.into_iter().find(|way| {
-        code.match_indices(way).any(|(at, _)| {
-            let whole = !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_');
-            whole && !code[at + way.len()..].starts_with("\"/proc/")
-        })
+        code.match_indices(way)
+            .any(|(at, _)| !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_'))
     })
 }
 
@@ -293,7 +291,6 @@ fn one_door_for_files() {
         opens_a_file("let f = File::open(path)?;"),
         Some("File::open")
     );
-    assert_eq!(opens_a_file("fs::read_to_string(\"/proc/meminfo\")"), None);
 }
 
 /// Invariant 4: below the command line nothing asks which thread it runs on, what time it is, or

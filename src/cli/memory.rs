@@ -7,10 +7,10 @@
 //! The last is that of the address space and of data (`ulimit -v`, `ulimit -d`). What the system
 //! does not say bounds nothing.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
+use crate::store;
 
 pub(super) const GIB: f64 = (1u64 << 30) as f64;
 const MIB: f64 = (1u64 << 20) as f64;
@@ -69,13 +69,11 @@ pub(super) fn available_threads() -> usize {
     given.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
 }
 
-/// Refuses what needs more memory than there is: `what` it is, and `cures`, each a number with its
-/// words (`{}`) of which a smaller one needs less: the largest that fits is told.
-pub(super) fn refuse(
-    what: &str,
-    need: f64,
-    cures: &[(&str, u64, &dyn Fn(f64) -> f64)],
-) -> Result<(), Failure> {
+/// A number by its name, its value, and the need as a function of it: the largest that fits is told.
+pub(super) type Cure<'a> = (&'a str, u64, &'a dyn Fn(f64) -> f64);
+
+/// Refuses what needs more memory than there is, and tells of each cure how much would fit.
+pub(super) fn refuse(what: &str, need: f64, cures: &[Cure<'_>]) -> Result<(), Failure> {
     let Some(room) = Room::now().filter(|room| need > room.bytes) else {
         return Ok(());
     };
@@ -120,9 +118,17 @@ pub(super) fn size(bytes: f64) -> String {
     format!("{:.2} GiB", bytes / GIB)
 }
 
+/// Most bytes of what the system says of itself.
+const SAID: u64 = 1 << 20;
+
+/// What the system says in one of its files.
+fn said(path: &Path) -> Option<String> {
+    String::from_utf8(store::read(path, SAID).ok()?).ok()
+}
+
 /// The number behind `key`, times `unit`.
 fn number(path: &Path, key: &str, unit: f64) -> Option<f64> {
-    let said = fs::read_to_string(path).ok()?;
+    let said = said(path)?;
     let rest = said.lines().find_map(|line| line.strip_prefix(key))?;
     let value: f64 = rest.split_whitespace().next()?.parse().ok()?;
     Some(unit * value)
@@ -143,7 +149,7 @@ fn limits(root: &Path) -> Option<f64> {
 
 /// The control groups of the process, of both versions, each with those around it.
 fn groups(root: &Path) -> Vec<PathBuf> {
-    let said = fs::read_to_string(root.join("proc/self/cgroup")).unwrap_or_default();
+    let said = said(&root.join("proc/self/cgroup")).unwrap_or_default();
     let mounted = root.join("sys/fs/cgroup");
     let mut found = Vec::new();
     for line in said.lines() {
@@ -177,6 +183,8 @@ fn group_room(group: &Path) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     const MEMINFO: &str = "MemTotal:       8388608 kB\nMemAvailable:    4194304 kB\n";

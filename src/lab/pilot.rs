@@ -146,6 +146,6 @@ fn thinned(scene: &Scene) -> Scene {
     let all = &scene.laser.spots;
     let count = all.len().min(SPOTS);
     let places = (0..count).map(|i| (2 * i + 1) * all.len() / (2 * count));
-    few.laser.spots = places.map(|i| all[i].clone()).collect();
+    few.laser.spots = places.map(|i| all[i]).collect();
     few
 }
