@@ -13,7 +13,7 @@ use super::run_folder::RunFolder;
 use crate::jobs::{Checkpoint, Parts, Spots};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
-use crate::transport::{Plan, Tally, Traced};
+use crate::transport::{Plan, Tally};
 
 /// The spots of a render that are to be traced, batch by batch.
 pub(super) struct Batches<'a> {
@@ -129,14 +129,4 @@ impl Batches<'_> {
         ranges.sort_by_key(|r| r.start);
         ranges
     }
-}
-
-/// What is kept of each spot: one column per bounce count, then the standard error and its code.
-pub(super) fn columns(traced: &Traced) -> impl Iterator<Item = Matrix> {
-    (0..traced.flux.ncols()).map(|column| {
-        let kept = traced.bounces.iter();
-        let kept = kept.chain([&traced.stderr, &traced.tails]);
-        let kept: Vec<_> = kept.map(|m| m.column(column).into_owned()).collect();
-        Matrix::from_columns(&kept)
-    })
 }

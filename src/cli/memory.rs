@@ -20,6 +20,8 @@ const SHARE: f64 = 0.75;
 /// Address space of a thread: its stack, and the arena of 64 MiB that glibc reserves for it, aligned
 /// by as much again.
 const THREAD: f64 = 132.0 * MIB;
+/// What of that counts as data: the stack, and what the arena begins with.
+const THREAD_DATA: f64 = 4.0 * MIB;
 /// Pools at work at once: the one that a command asks for, and the one of all others.
 const POOLS: f64 = 2.0;
 
@@ -45,8 +47,10 @@ impl Room {
             .filter_map(|group| group_room(group))
             .reduce(f64::min)
             .map(|free| (SHARE * free, "the limit of its control group"));
-        let reserve = POOLS * THREAD * threads as f64;
-        let limit = limits(root).map(|left| (left - reserve, "the limit of its address space"));
+        let limit = limits(root)
+            .map(|(left, thread)| left - POOLS * thread * threads as f64)
+            .reduce(f64::min)
+            .map(|left| (left, "the limit of its address space"));
         let rooms = [free, group, limit].into_iter().flatten();
         let (bytes, by) = rooms.reduce(|a, b| if b.0 < a.0 { b } else { a })?;
         Some(Self {
@@ -58,7 +62,8 @@ impl Room {
 
 /// Threads that fit a limit on the address space, a pool of them: half of what is left is theirs.
 pub(super) fn threads_that_fit(wanted: usize) -> usize {
-    let most = limits(Path::new("/")).map(|left| (0.5 * left / (POOLS * THREAD)) as usize);
+    let fit = |(left, thread): (f64, f64)| (0.5 * left / (POOLS * thread)) as usize;
+    let most = limits(Path::new("/")).map(fit).min();
     most.map_or(wanted, |most| wanted.min(most.max(1)))
 }
 
@@ -134,17 +139,17 @@ fn number(path: &Path, key: &str, unit: f64) -> Option<f64> {
     Some(unit * value)
 }
 
-/// What is left of the limits on the address space and on data, if there are any.
-fn limits(root: &Path) -> Option<f64> {
+/// What is left of the limits on the address space and on data, if there are any, and what a thread
+/// takes of each.
+fn limits(root: &Path) -> impl Iterator<Item = (f64, f64)> {
     let [limits, status] = ["limits", "status"].map(|f| root.join("proc/self").join(f));
     let left = |limit, used| Some(number(&limits, limit, 1.0)? - number(&status, used, 1024.0)?);
     [
-        left("Max address space", "VmSize:"),
-        left("Max data size", "VmData:"),
+        left("Max address space", "VmSize:").map(|left| (left, THREAD)),
+        left("Max data size", "VmData:").map(|left| (left, THREAD_DATA)),
     ]
     .into_iter()
     .flatten()
-    .reduce(f64::min)
 }
 
 /// The control groups of the process, of both versions, each with those around it.

@@ -9,7 +9,6 @@ use sha2::{Digest, Sha256};
 use super::failure::Failure;
 use super::output;
 use super::process::version;
-use super::run_folder::SCENE;
 use crate::lab::Tails;
 use crate::scene::Scene;
 use crate::store::{self, hex};
@@ -187,10 +186,11 @@ impl Record {
         ))
     }
 
-    /// Refuses the files of `dir` that are vouched for, if one is there and not what was written.
-    pub(super) fn check_all(&self, dir: &Path) -> Result<(), Failure> {
+    /// Refuses the files of `dir` that are vouched for, but for `except`, if one is there and not what
+    /// was written.
+    pub(super) fn check_all(&self, dir: &Path, except: &str) -> Result<(), Failure> {
         let there = self.files.keys().filter(|name| dir.join(name).exists());
-        let mut light = there.filter(|name| *name != SCENE);
+        let mut light = there.filter(|name| *name != except);
         light.try_for_each(|name| self.check(dir, name))
     }
 

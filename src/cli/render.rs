@@ -6,13 +6,13 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use super::args::{RenderArgs, TraceArgs};
-use super::batches::{Batches, columns};
+use super::batches::Batches;
 use super::console::Console;
 use super::failure::Failure;
 use super::interrupt::SignalGuard;
 use super::load_run::read_matrix;
 use super::output;
-use super::partial::Kept;
+use super::partial::{Kept, columns};
 use super::process::pool;
 use super::record::Record;
 use super::run_folder::{Claim, PHI, RunFolder, STDERR, TAILS};

@@ -15,12 +15,11 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::batches::columns;
 use super::cleanup::{remove_files, remove_named, remove_numbered};
 use super::console::Console;
 use super::failure::Failure;
 use super::output;
-use super::partial::{PARTIAL, Partial};
+use super::partial::{PARTIAL, Partial, columns};
 use super::record::Record;
 use crate::film::{self, Channel, Frame, FrameMeta, RunMeta, frame_name};
 use crate::lab::Tails;

@@ -24,7 +24,7 @@ pub(super) fn execute(args: &StackArgs, console: Console) -> Result<Outcome, Fai
     let stack = film::stack(&args.dir)?;
     let record = Record::read(&args.dir)?;
     if let Some(record) = &record {
-        record.check_all(&args.dir)?;
+        record.check_all(&args.dir, SCENE)?;
     }
     let dir = args.output.as_ref().unwrap_or(&args.dir);
     let _lock = RunFolder::lock(dir, "phicam stack")?;

@@ -12,7 +12,7 @@ use std::io::{self, Read, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::{PREFIX, StoreError, is_missing, machine, process_lives};
 
@@ -20,8 +20,9 @@ use super::{PREFIX, StoreError, is_missing, machine, process_lives};
 const SUFFIX: &str = ".lock";
 /// The file of those that look.
 const GATE: &str = ".phicam.lock";
-/// So long one waits for another that changes what all share: it writes large matrices meanwhile.
-const PATIENCE: Duration = Duration::from_secs(300);
+/// So often one asks while another changes what all share, for five minutes: it may write large
+/// matrices meanwhile.
+const TRIES: usize = 30_000;
 const BETWEEN: Duration = Duration::from_millis(10);
 /// Bytes that a writer says of itself at most.
 const LONGEST: u64 = 1 << 10;
@@ -128,22 +129,19 @@ struct Gate {
 impl Gate {
     fn pass(folder: &Path) -> Result<Self, LockError> {
         let path = folder.join(GATE);
-        let start = Instant::now();
-        loop {
+        for _ in 0..TRIES {
             let file = open(&path).map_err(|e| StoreError::new(&path, e))?;
             let mine = held(file.try_lock()).map_err(|e| StoreError::new(&path, e))?;
             // Who held it before has removed it: the lock on a file without a name keeps nobody out.
             if mine && is_at(&file, &path) {
                 return Ok(Self { path, _held: file });
             }
-            if start.elapsed() > PATIENCE {
-                return Err(LockError::Busy {
-                    path: folder.to_owned(),
-                    who: "another process has been finishing there for minutes".to_owned(),
-                });
-            }
             sleep(BETWEEN);
         }
+        Err(LockError::Busy {
+            path: folder.to_owned(),
+            who: "another process has been finishing there for minutes".to_owned(),
+        })
     }
 }
 

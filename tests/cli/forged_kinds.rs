@@ -147,10 +147,9 @@ fn in_a_run() {
 fn in_an_unfinished_run() {
     let render = format!("render own.toml -o part {PATHS}");
     let w = with(&[&format!("{render} --spots 0..2")]);
-    // A spot that cannot be read is rendered again; another thing under its name is not replaced.
-    let spot = "part/partial/spot-0001.npy";
-    let resume = format!("{render} --resume --spots 0..1");
-    each_kind(&w, spot, &[(0, &resume)]);
+    // A part that cannot be read is rendered again; another thing under its name is not replaced.
+    let resume = format!("{render} --spots 0..1");
+    each_kind(&w, "part/partial/spots-0000-0002.phs", &[(0, &resume)]);
     each_kind(&w, "part/partial/spots-0001-0002.phs", &[(0, &resume)]);
 }
 

@@ -237,7 +237,7 @@ fn matrix(path: &Path, spot: Option<usize>, console: Console) -> Result<Source, 
         return Ok(Source::seen(title, size, values, unit));
     }
     let stacked = camera.is_some_and(|([w, h], spots)| (w * h, spots) == (rows, columns));
-    let recovered = path.parent().is_some_and(|p| in_recovered(p)) && !stacked;
+    let recovered = path.parent().is_some_and(in_recovered) && !stacked;
     // METHOD.npy and truth.npy; what has another dot is something else about them.
     let reflectance = recovered && name.matches('.').count() == 1;
     let (axes, unit) = match (stacked, recovered) {
