@@ -270,6 +270,15 @@ fn flush_files(dir: &Path) -> io::Result<()> {
     flush_folder(dir)
 }
 
+/// Bytes of a file.
+///
+/// # Errors
+/// [`ReadError`] if it cannot be read.
+pub fn length(path: &Path) -> Result<u64, ReadError> {
+    let metadata = open(path)?.metadata();
+    Ok(metadata.map_err(|e| ReadError::system(path, e))?.len())
+}
+
 /// SHA-256 of a file, in hexadecimal digits.
 ///
 /// # Errors

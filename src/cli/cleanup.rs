@@ -57,3 +57,8 @@ fn irremovable(path: &Path, error: &io::Error) -> Failure {
     let cure = "make its folder writable for you, and move it away if it is no file";
     Failure::system(cause, cure)
 }
+
+/// Removes from `dir` what killed processes were writing there.
+pub(super) fn remove_abandoned(dir: &Path) -> Result<(), Failure> {
+    remove_files(dir, |_, _| false)
+}

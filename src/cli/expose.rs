@@ -14,6 +14,7 @@ use serde::Serialize;
 
 use super::Outcome;
 use super::args::{ExposeArgs, StatedBy};
+use super::cleanup::remove_abandoned;
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_matrix, read_run, read_stderr};
@@ -270,6 +271,8 @@ fn write(
 ) -> Result<(), Failure> {
     let counts = out.join(COUNTS);
     ensure_writable(&counts)?;
+    remove_abandoned(&counts)?;
+    remove_abandoned(out)?;
     remove_exposed(out)?;
     ensure_writable(&counts)?;
     let (pixels, spots) = exposed.flux.shape();

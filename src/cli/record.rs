@@ -11,7 +11,7 @@ use super::output;
 use super::process::version;
 use crate::lab::Tails;
 use crate::scene::Scene;
-use crate::store::{self, hex};
+use crate::store::{self, ReadError, hex};
 use crate::transport::Plan;
 
 /// The record of a run.
@@ -33,13 +33,35 @@ pub(super) struct Record {
     /// Of a complete run: how many standard errors cannot be trusted, and where.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tails: Option<Tails>,
-    /// SHA-256 of the files of a complete run, by their names in its folder.
+    /// What was written of a complete run, by the names of the files in its folder.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub files: BTreeMap<String, String>,
+    pub files: BTreeMap<String, Written>,
     /// SHA-256 of all above as JSON, so that no setting can be changed unnoticed. Nothing vouches for
     /// a record without.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     digest: Option<String>,
+}
+
+/// A file as it was written.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub(super) struct Written {
+    bytes: u64,
+    sha256: String,
+}
+
+impl Written {
+    /// The file `path` as it is.
+    fn of(path: &Path) -> Result<Self, ReadError> {
+        Ok(Self {
+            bytes: store::length(path)?,
+            sha256: store::digest(path)?,
+        })
+    }
+
+    /// Whether the file `path` is still this; one of another length is not read.
+    fn is_at(&self, path: &Path) -> Result<bool, ReadError> {
+        Ok(store::length(path)? == self.bytes && store::digest(path)? == self.sha256)
+    }
 }
 
 impl Record {
@@ -133,9 +155,9 @@ impl Record {
         names: impl IntoIterator<Item = &'n str>,
     ) -> Result<(), Failure> {
         for name in names {
-            match store::digest(&dir.join(name)) {
+            match Written::of(&dir.join(name)) {
                 Err(e) if e.is_missing() => self.files.remove(name),
-                digest => self.files.insert(name.to_owned(), digest?),
+                written => self.files.insert(name.to_owned(), written?),
             };
         }
         Ok(())
@@ -172,7 +194,7 @@ impl Record {
             return Ok(());
         };
         let path = dir.join(name);
-        if store::digest(&path)? == *written {
+        if written.is_at(&path)? {
             return Ok(());
         }
         let cause = format!(

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::args::RecoverArgs;
-use super::cleanup::remove_named;
+use super::cleanup::{remove_abandoned, remove_named};
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_matrix, read_run, read_stderr};
@@ -307,6 +307,7 @@ pub(super) fn write(
     picards: &[Picard],
 ) -> Result<(), Failure> {
     ensure_writable(folder)?;
+    remove_abandoned(folder)?;
     remove_named(folder, &["picard-joint.csv", "picard-joint.svg"])?;
     for picard in picards {
         for (name, text) in report::finding_files(&picard.describe()) {

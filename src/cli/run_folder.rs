@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::cleanup::{remove_files, remove_named, remove_numbered};
+use super::cleanup::{remove_abandoned, remove_files, remove_named, remove_numbered};
 use super::console::Console;
 use super::failure::Failure;
 use super::output;
@@ -98,7 +98,10 @@ impl RunFolder {
     /// The folder `path`, to write other things than a render into it: nobody else writes it.
     pub(super) fn lock(path: &Path, what: &str) -> Result<FolderLock, Failure> {
         ensure_writable(path)?;
-        let first = || Self::at(path).finish_replacement();
+        let first = || {
+            Self::at(path).finish_replacement()?;
+            remove_abandoned(path)
+        };
         FolderLock::take(path, &(0..u64::MAX), what, first).map(|(lock, ())| lock)
     }
 
@@ -346,9 +349,8 @@ impl RunFolder {
     }
 
     fn remove_abandoned(&self) -> Result<(), Failure> {
-        let nothing = |_: &str, _: &str| false;
-        remove_files(&self.path, nothing)?;
-        remove_files(&self.frames(), nothing)
+        remove_abandoned(&self.path)?;
+        remove_abandoned(&self.frames())
     }
 
     /// Removes what was rendered, and what was found from it; the record first, so that nobody takes

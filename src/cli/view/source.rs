@@ -44,7 +44,8 @@ impl Source {
                 return Err(Failure::new(cause, "leave out --channel"));
             }
             let length = path.metadata().map_or(0, |m| m.len()) as f64;
-            memory::refuse("the matrix and its picture", HELD * length, &[])?;
+            let what = format!("{} and its picture", path.display());
+            memory::refuse(&what, HELD * length, &[])?;
             return matrix(path, args.spot, console);
         }
         if args.spot.is_some() {
