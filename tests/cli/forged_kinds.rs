@@ -131,7 +131,7 @@ fn in_a_run() {
     each_kind(
         &w,
         "done/phi.npy",
-        &[&all[..], &[(2, "stack done")]].concat(),
+        &[&all[..], &[(2, "stack done -o again")]].concat(),
     );
     each_kind(&w, "done/phi.stderr.npy", &[all[0], all[2]]);
     each_kind(&w, "done/phi.tails.npy", &[(2, validate)]);
