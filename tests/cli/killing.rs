@@ -79,7 +79,9 @@ fn killed_at_fifty_moments_it_ends_with_the_same_bytes() {
             let line =
                 format!("render tiny.toml --estimator {plan} --samples {samples} --threads 2");
             let begun = Instant::now();
-            let _ = workspace.phicam(&format!("{line} -o whole")).exits(0);
+            let _ = workspace
+                .phicam(&format!("{line} -o whole --replace"))
+                .exits(0);
             if begun.elapsed() >= LONG {
                 break (line, begun.elapsed());
             }

@@ -240,11 +240,11 @@ fn a_render_with_another_seed_leaves_no_result_of_the_earlier_run() {
     let _ = workspace.phicam("run small.toml --samples 64").exits(0);
     workspace.write("out/notes.txt", "mine");
     workspace.write("out/recovered/notes.txt", "mine");
-    let line = "render small.toml -o out --samples 64 --seed 2";
+    let line = "render small.toml -o out --samples 64 --seed 2 --replace";
     let _ = workspace.phicam(line).exits(0);
     let mut names: Vec<String> = workspace.contents("out").into_keys().collect();
-    names.retain(|n| !n.starts_with("frames/spot-") && !n.starts_with("model/"));
-    // The model is that of the scene, which is the same; what is not the program's own stays.
+    names.retain(|n| !n.starts_with("frames/spot-"));
+    // What is not the program's own stays.
     let left = [
         "frames/",
         "notes.txt",
@@ -312,10 +312,10 @@ fn another_seed_replaces_the_run_wholly() {
         .phicam("run small.toml -o twice --samples 64")
         .exits(0);
     let again = workspace
-        .phicam("run small.toml -o twice --samples 64 --seed 2")
+        .phicam("run small.toml -o twice --samples 64 --seed 2 --replace")
         .exits(0);
     assert!(
-        again.stderr.contains("replacing the earlier run"),
+        again.stderr.contains("stays until this one is whole"),
         "{}",
         again.account()
     );

@@ -50,7 +50,9 @@ fn items_by_name_become_files_and_pages() {
             .iter()
             .all(|i| page.contains(&format!("data-name=\"{i}\"")))
     );
-    let ended = workspace.phicam("reproduce table2 -o r --seed 2").exits(0);
+    let ended = workspace
+        .phicam("reproduce table2 -o r --seed 2 --replace")
+        .exits(0);
     assert!(
         !ended.stderr.contains("finished already"),
         "{}",

@@ -159,7 +159,7 @@ fn an_exported_scene_is_the_built_in_one() {
             .exits(0)
             .stdout;
         let _ = workspace
-            .phicam(&format!("scene export {name} -o mine.toml"))
+            .phicam(&format!("scene export {name} -o mine.toml --force"))
             .exits(0);
         assert_eq!(workspace.text("mine.toml"), text);
         let own = workspace.phicam("scene check mine.toml").exits(0);
@@ -184,7 +184,7 @@ fn show_draws_an_svg() {
         );
         assert_eq!(svg.matches("<svg").count(), svg.matches("</svg>").count());
         let _ = workspace
-            .phicam(&format!("scene show {name} -o drawing.svg"))
+            .phicam(&format!("scene show {name} -o drawing.svg --force"))
             .exits(0);
         assert_eq!(workspace.text("drawing.svg"), printed.stdout);
     }
