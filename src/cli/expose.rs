@@ -130,8 +130,7 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
     let _own = args.output.as_deref().map(lock).transpose()?;
     write(&out, &exposed, (&scene, &record), &sensor, &json)?;
     if args.output.is_none() {
-        Record::vouch_anew(dir, EXPOSED)?;
-        Record::vouch_anew(dir, &format!("{EXPOSED}/{COUNTS}"))?;
+        Record::vouch_anew(dir, &[EXPOSED, &format!("{EXPOSED}/{COUNTS}")])?;
     }
     output::print(&if args.json {
         json

@@ -47,7 +47,7 @@ pub(super) fn execute(args: &ModelArgs, console: Console) -> Result<Outcome, Fai
     // into it.
     folder.write_scene(&scene)?;
     write(&args.output, &model, &phi)?;
-    Record::vouch_anew(&args.output, MODEL)?;
+    Record::vouch_anew(&args.output, &[MODEL])?;
     let place = args.output.join(MODEL);
     let shape = |m: &Matrix| [m.nrows(), m.ncols()];
     let [g12, g23, shown] = [&model.g12, &model.g23, &phi].map(shape);

@@ -178,11 +178,13 @@ impl Record {
         self.vouch(dir, names.iter().map(String::as_str))
     }
 
-    /// Lets the run in `dir`, if there is one, vouch for the files that were written into its folder
-    /// `folder`.
-    pub(super) fn vouch_anew(dir: &Path, folder: &str) -> Result<(), Failure> {
+    /// Lets the run in `dir`, if there is one, vouch for the files that were written into its
+    /// folders `folders`.
+    pub(super) fn vouch_anew(dir: &Path, folders: &[&str]) -> Result<(), Failure> {
         if let Some(mut record) = Self::read(dir)? {
-            record.vouch_all(dir, folder)?;
+            for folder in folders {
+                record.vouch_all(dir, folder)?;
+            }
             record.write(dir)?;
         }
         Ok(())

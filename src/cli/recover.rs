@@ -71,7 +71,7 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     let _own = args.output.as_deref().map(lock).transpose()?;
     write(&out, &scene, &objects, &picards)?;
     if place == Place::Run {
-        Record::vouch_anew(&args.dir, RECOVERED)?;
+        Record::vouch_anew(&args.dir, &[RECOVERED])?;
     } else {
         console.say(format!("{}: written", out.display()));
     }

@@ -225,9 +225,7 @@ fn take_finished(
 ) -> Vec<Kept> {
     let mut begun = Vec::new();
     for file in folder.partial().kept(scene, plan) {
-        let lacking =
-            |kept: &[Option<Matrix>]| kept[file.spots.clone()].iter().any(Option::is_none);
-        if !lacking(kept) {
+        if !kept[file.spots.clone()].contains(&None) {
             continue;
         }
         let Some(traced) = file.traced(scene, plan) else {

@@ -9,7 +9,7 @@ use std::path::{Component, Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
-use crate::store;
+use crate::store::{self, hex};
 
 /// Folder of copies beside a scene file: looked into for what is not there itself.
 pub const COPIES: &str = "files";
@@ -68,11 +68,6 @@ fn copy_name(name: &str) -> String {
         })
         .collect();
     format!("{}-{last}", &hex(&Sha256::digest(name))[..12])
-}
-
-/// Hexadecimal digits of a digest.
-pub(super) fn hex(digest: &[u8]) -> String {
-    digest.iter().map(|b| format!("{b:02x}")).collect()
 }
 
 /// What a scene may read, and has read.

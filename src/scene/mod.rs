@@ -328,7 +328,7 @@ impl Scene {
         for file in &files.read {
             digest.update(&file.digest);
         }
-        let hash = files::hex(&digest.finalize());
+        let hash = crate::store::hex(&digest.finalize());
         let scene = Self {
             name: file.name.clone(),
             unit: file.unit,

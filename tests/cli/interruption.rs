@@ -1,7 +1,7 @@
 //! Ctrl-C in the middle of a render, and going on afterwards.
 #![cfg(unix)]
 
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use crate::workspace::{Workspace, assert_same};
@@ -9,14 +9,7 @@ use crate::workspace::{Workspace, assert_same};
 /// Starts a render of the tiny scene into `cut`, sends `signal` as soon as its first blocks are on
 /// disk, and returns the exit code and standard error.
 fn interrupted(workspace: &Workspace, samples: u64, signal: &str) -> (Option<i32>, String) {
-    let child = Command::new(env!("CARGO_BIN_EXE_phicam"))
-        .args(["render", "tiny.toml", "-o", "cut", "--samples"])
-        .arg(samples.to_string())
-        .current_dir(workspace.path(""))
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
+    let child = workspace.begins(&format!("render tiny.toml -o cut --samples {samples}"));
     let kept = workspace.path("cut/partial/spots-0000-0008.phs");
     let start = Instant::now();
     while !kept.exists() && start.elapsed() < Duration::from_secs(60) {

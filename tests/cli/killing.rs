@@ -3,7 +3,7 @@
 #![cfg(unix)]
 
 use std::collections::BTreeMap;
-use std::process::{Child, Command, Stdio};
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use crate::small_scene::{TINY, altered};
@@ -19,16 +19,6 @@ const PLANS: [(&str, u64); 3] = [
 const LONG: Duration = Duration::from_millis(800);
 /// Moments, over all plans.
 const KILLS: usize = 51;
-
-fn start(workspace: &Workspace, line: &str) -> Child {
-    Command::new(env!("CARGO_BIN_EXE_phicam"))
-        .args(line.split_whitespace())
-        .current_dir(workspace.path(""))
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("the program starts")
-}
 
 fn is_temporary(name: &str) -> bool {
     name.contains(".phicam") && (name.ends_with(".part") || name.ends_with(".lock"))
@@ -96,7 +86,7 @@ fn killed_at_fifty_moments_it_ends_with_the_same_bytes() {
             let cut = format!("cut-{renders}");
             let mut blocks = 0;
             loop {
-                let mut child = start(&workspace, &format!("{line} -o {cut} --resume"));
+                let mut child = workspace.begins(&format!("{line} -o {cut} --resume"));
                 random ^= random << 13;
                 random ^= random >> 7;
                 random ^= random << 17;
@@ -140,7 +130,7 @@ fn short_spots_are_kept_one_by_one() {
         }
         assert!(what(), "nothing was finished within a minute");
     };
-    let mut child = start(&workspace, "render many.toml -o cut --samples 512");
+    let mut child = workspace.begins("render many.toml -o cut --samples 512");
     wait(&|| workspace.path("cut/frames/spot-0003.exr").exists());
     let sent = Command::new("kill")
         .args(["-TERM", &child.id().to_string()])
@@ -152,7 +142,7 @@ fn short_spots_are_kept_one_by_one() {
     let _ = workspace
         .phicam("plan many.toml -o job --samples 65536 --shards 1")
         .exits(0);
-    let mut child = start(&workspace, "shard job --index 0");
+    let mut child = workspace.begins("shard job --index 0");
     let unfinished = || {
         let names = workspace.contents("job/shards");
         names.keys().any(|n| n.ends_with(".checkpoint"))
@@ -160,7 +150,7 @@ fn short_spots_are_kept_one_by_one() {
     wait(&unfinished);
     child.kill().expect("it can be killed");
     assert!(!child.wait().expect("it ends").success());
-    let mut child = start(&workspace, "shard job --index 0");
+    let mut child = workspace.begins("shard job --index 0");
     std::thread::sleep(Duration::from_millis(200));
     child.kill().expect("it can be killed");
     let _ = child.wait();
@@ -178,7 +168,7 @@ fn a_warned_shard_keeps_its_blocks_and_goes_on() {
     let _ = workspace
         .phicam(&format!("plan tiny.toml -o job {paths} --shards 1"))
         .exits(0);
-    let mut child = start(&workspace, "shard job --index 0 --threads 1");
+    let mut child = workspace.begins("shard job --index 0 --threads 1");
     let unfinished = |workspace: &Workspace| {
         let names = workspace.contents("job/shards");
         names

@@ -3,19 +3,11 @@
 
 use std::fs;
 use std::os::unix::fs::MetadataExt;
-use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::workspace::{Contents, Workspace, assert_same};
+use crate::workspace::{Workspace, assert_same};
 
 const QUICK: &str = "render tiny.toml -o done --samples 32";
-
-/// What a render leaves, but for times.
-fn rendered(workspace: &Workspace, folder: &str) -> Contents {
-    let mut contents = workspace.contents(folder);
-    contents.remove("run.json");
-    contents
-}
 
 #[test]
 fn the_same_render_goes_on_where_it_stopped() {
@@ -36,7 +28,7 @@ fn the_same_render_goes_on_where_it_stopped() {
     let _ = workspace
         .phicam("render tiny.toml -o whole --samples 32")
         .exits(0);
-    let [done, whole] = ["done", "whole"].map(|f| rendered(&workspace, f));
+    let [done, whole] = ["done", "whole"].map(|f| workspace.rendered(f));
     assert_same(&done, &whole, "in three steps and in one");
     // And once more: nothing is traced, nothing is written.
     let all = workspace.contents("done");
@@ -72,7 +64,7 @@ fn other_settings_are_refused_unless_they_are_to_replace() {
     let _ = workspace
         .phicam(&format!("render tiny.toml -o fresh {fresh}"))
         .exits(0);
-    let [done, fresh] = ["done", "fresh"].map(|f| rendered(&workspace, f));
+    let [done, fresh] = ["done", "fresh"].map(|f| workspace.rendered(f));
     assert_same(
         &done,
         &fresh,
@@ -89,14 +81,7 @@ fn a_killed_replacement_leaves_the_old_run_and_goes_on() {
     let mut samples = 1u64 << 17;
     let line = loop {
         let line = format!("render tiny.toml --seed 2 --samples {samples}");
-        let mut child = Command::new(env!("CARGO_BIN_EXE_phicam"))
-            .args(line.split_whitespace())
-            .args(["-o", "done", "--replace"])
-            .current_dir(workspace.path(""))
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("the program starts");
+        let mut child = workspace.begins(&format!("{line} -o done --replace"));
         let kept = workspace.path("done/.replacement/partial/spots-0000-0008.phs");
         let begun = Instant::now();
         while !kept.exists() && begun.elapsed() < Duration::from_secs(60) {
@@ -128,7 +113,7 @@ fn a_killed_replacement_leaves_the_old_run_and_goes_on() {
         ended.account()
     );
     let _ = workspace.phicam(&format!("{line} -o fresh")).exits(0);
-    let [done, fresh] = ["done", "fresh"].map(|f| rendered(&workspace, f));
+    let [done, fresh] = ["done", "fresh"].map(|f| workspace.rendered(f));
     assert_same(&done, &fresh, "replaced in two steps and fresh");
 }
 
@@ -138,7 +123,7 @@ fn a_replacement_that_ended_midway_is_finished_by_the_next_writer() {
     let workspace = Workspace::with_scenes();
     let fresh = "render tiny.toml --samples 64 --seed 2";
     let _ = workspace.phicam(&format!("{fresh} -o fresh")).exits(0);
-    let whole = rendered(&workspace, "fresh");
+    let whole = workspace.rendered("fresh");
     let copy = |to: &str| {
         let _ = fs::create_dir_all(workspace.path(to));
         for (name, bytes) in workspace.contents("fresh") {
@@ -158,7 +143,7 @@ fn a_replacement_that_ended_midway_is_finished_by_the_next_writer() {
     }
     let ended = workspace.phicam(&format!("{fresh} -o done")).exits(0);
     assert!(ended.stdout.contains("8 of 8 spots"), "{}", ended.account());
-    assert_same(&whole, &rendered(&workspace, "done"), "after removing");
+    assert_same(&whole, &workspace.rendered("done"), "after removing");
     // The new run half moved, its record not yet.
     copy("moved/.incoming");
     for name in ["frames", "files"] {
@@ -175,7 +160,7 @@ fn a_replacement_that_ended_midway_is_finished_by_the_next_writer() {
     }
     fs::remove_dir(workspace.path("moved/files")).unwrap();
     let _ = workspace.phicam(&format!("{fresh} -o moved")).exits(0);
-    assert_same(&whole, &rendered(&workspace, "moved"), "after moving");
+    assert_same(&whole, &workspace.rendered("moved"), "after moving");
 }
 
 #[test]

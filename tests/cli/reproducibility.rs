@@ -23,9 +23,7 @@ fn workspace() -> Workspace {
 fn rendered(workspace: &Workspace, dir: &str, settings: &str) -> Contents {
     let line = format!("render tiny.toml -o {dir} --samples 200 {settings}");
     let _ = workspace.phicam(&line).exits(0);
-    let mut files = workspace.contents(dir);
-    assert!(files.remove("run.json").is_some());
-    files
+    workspace.rendered(dir)
 }
 
 fn assert_complete(files: &Contents) {

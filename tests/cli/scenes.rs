@@ -3,7 +3,7 @@
 use crate::small_scene::{bench, with_points_and_surface};
 use crate::workspace::Workspace;
 
-const BUILT_IN: [&str; 10] = [
+pub(crate) const BUILT_IN: [&str; 10] = [
     "bench",
     "thesis",
     "experiment",

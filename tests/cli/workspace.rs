@@ -126,6 +126,26 @@ impl Workspace {
         assert_same(before, &self.contents(""), line);
     }
 
+    /// Starts `phicam` with the words of `line`, and does not wait for it.
+    #[cfg(unix)]
+    pub(crate) fn begins(&self, line: &str) -> std::process::Child {
+        use std::process::{Command, Stdio};
+        Command::new(env!("CARGO_BIN_EXE_phicam"))
+            .args(line.split_whitespace())
+            .current_dir(self.dir.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program starts")
+    }
+
+    /// What a render leaves in `folder`, but for the record, which has times.
+    pub(crate) fn rendered(&self, folder: &str) -> Contents {
+        let mut contents = self.contents(folder);
+        assert!(contents.remove("run.json").is_some(), "{folder}");
+        contents
+    }
+
     /// Lets the run in `folder` vouch for nothing any more, so that its files can be changed.
     pub(crate) fn disown(&self, folder: &str) {
         let file = format!("{folder}/run.json");

@@ -1,21 +1,11 @@
 //! One writer a folder: never two processes, never mixed frames.
 #![cfg(unix)]
 
-use std::process::{Child, Command, Stdio};
+use std::process::Child;
 use std::time::{Duration, Instant};
 
 use crate::small_scene::{TINY, altered};
 use crate::workspace::{Contents, Workspace, assert_same};
-
-fn start(workspace: &Workspace, line: &str) -> Child {
-    Command::new(env!("CARGO_BIN_EXE_phicam"))
-        .args(line.split_whitespace())
-        .current_dir(workspace.path(""))
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts")
-}
 
 /// Exit code and standard error.
 fn ended(child: Child) -> (Option<i32>, String) {
@@ -25,10 +15,9 @@ fn ended(child: Child) -> (Option<i32>, String) {
     (output.status.code(), words)
 }
 
-/// What a render leaves, but for times.
+/// What a render leaves, but for times; no lock and no half file.
 fn rendered(workspace: &Workspace, folder: &str) -> Contents {
-    let mut contents = workspace.contents(folder);
-    contents.remove("run.json");
+    let contents = workspace.rendered(folder);
     assert!(
         !contents.keys().any(|name| name.contains(".phicam")),
         "{:?}",
@@ -39,7 +28,7 @@ fn rendered(workspace: &Workspace, folder: &str) -> Contents {
 
 /// A render that takes a while, at work in `busy`.
 fn at_work(workspace: &Workspace) -> Child {
-    let child = start(workspace, "render tiny.toml -o busy --samples 16777216");
+    let child = workspace.begins("render tiny.toml -o busy --samples 16777216");
     let begun = Instant::now();
     while !workspace.path("busy/partial/spots-0000-0008.phs").exists() {
         assert!(
@@ -95,7 +84,7 @@ fn disjoint_spots_are_rendered_side_by_side_and_the_last_puts_them_together() {
     for round in 0..4 {
         let out = format!("parts-{round}");
         let parts = ["0..3", "3..4", "4..8"]
-            .map(|spots| start(&workspace, &format!("{line} -o {out} --spots {spots}")));
+            .map(|spots| workspace.begins(&format!("{line} -o {out} --spots {spots}")));
         for part in parts {
             let (code, words) = ended(part);
             assert_eq!(code, Some(0), "{words}");
@@ -119,7 +108,7 @@ fn pairs_never_mix_their_frames() {
     for pair in 0..20 {
         let seeds = [1, 1 + pair % 2];
         let out = format!("pair-{pair}");
-        let both = seeds.map(|seed| start(&workspace, &format!("{} -o {out}", line(seed))));
+        let both = seeds.map(|seed| workspace.begins(&format!("{} -o {out}", line(seed))));
         let codes = both.map(|child| {
             let (code, words) = ended(child);
             let told = words.contains("is being written") || words.contains("other settings");

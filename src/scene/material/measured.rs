@@ -10,7 +10,7 @@ use super::slanted;
 use crate::geometry::DVec3;
 use crate::num::quadrature::Rule;
 use crate::scene::error::{Fault, keys};
-use crate::scene::files::hex;
+use crate::store::hex;
 
 /// An isotropic BRDF measured on a surface, from a file: one colour of a binary table of the MERL
 /// database, or, where the file's name ends in `.csv`, text with the header
