@@ -23,14 +23,8 @@ pub(super) fn execute(args: &ModelArgs, console: Console) -> Result<Outcome, Fai
     let kernel = args.kernel;
     let quadrature = args.integration == Integration::Quadrature;
     need::model(&scene, args.elements, quadrature)?;
-    let mut model = MatrixModel::new(&scene, kernel, args.elements)?;
-    if args.occlusion {
-        if args.integration == Integration::Quadrature {
-            let cause = "--occlusion is asked at the middles of elements, pixels and spots only";
-            return Err(Failure::new(cause, "leave --integration at centres"));
-        }
-        model = model.with_occlusion(&scene);
-    }
+    let occlusion = args.occlusion.occlusion();
+    let model = MatrixModel::with(&scene, kernel, args.elements, occlusion)?;
     let folder = RunFolder::at(&args.output);
     folder.refuse_foreign(&scene, console)?;
     let _lock = RunFolder::lock(&args.output, "phicam model")?;
@@ -38,7 +32,11 @@ pub(super) fn execute(args: &ModelArgs, console: Console) -> Result<Outcome, Fai
     let (phi, change, how) = match args.integration {
         Integration::Centres => (model.phi(), None, "by centres".to_owned()),
         Integration::Quadrature => {
-            let integral = converged(&scene, kernel, Extent::FULL)?;
+            let extent = Extent {
+                occlusion,
+                ..Extent::FULL
+            };
+            let integral = converged(&scene, kernel, extent)?;
             let how = format!("by quadrature, last refinement {:.1e}", integral.change);
             (integral.phi, Some(integral.change), how)
         }
@@ -49,6 +47,7 @@ pub(super) fn execute(args: &ModelArgs, console: Console) -> Result<Outcome, Fai
     write(&args.output, &model, &phi)?;
     Record::vouch_anew(&args.output, &[MODEL])?;
     let place = args.output.join(MODEL);
+    let product_error = model.product_error();
     let shape = |m: &Matrix| [m.nrows(), m.ncols()];
     let [g12, g23, shown] = [&model.g12, &model.g23, &phi].map(shape);
     let value = json!({
@@ -58,12 +57,21 @@ pub(super) fn execute(args: &ModelArgs, console: Console) -> Result<Outcome, Fai
         "g23": g23,
         "phi": shown,
         "last_refinement": change,
+        "terms": model.factors.as_ref().map(|f| f.element.len()),
+        "product_error": product_error,
     });
     output::result(args.json, &value, || {
         let [g12, g23, phi] =
             [g12, g23, shown].map(|[rows, columns]| format!("{rows} × {columns}"));
         let (place, kernel) = (place.display(), kernel.name());
-        format!("{place}: g12.npy {g12}, g23.npy {g23}, phi.npy {phi} ({kernel} kernel, {how})\n")
+        let past = product_error.map_or(String::new(), |error| {
+            format!(
+                "what stands in the way is left out by areas; C·diag(ρ)·D of one term an element is off by {error:.1e}\n"
+            )
+        });
+        format!(
+            "{place}: g12.npy {g12}, g23.npy {g23}, phi.npy {phi} ({kernel} kernel, {how})\n{past}"
+        )
     })?;
     Ok(Outcome::Done)
 }

@@ -146,7 +146,8 @@ impl Job<'_> {
                 None
             }
         };
-        let model = self.occluded(MatrixModel::new(scene, args.kernel, args.elements)?);
+        let occlusion = args.occlusion.occlusion();
+        let model = MatrixModel::with(scene, args.kernel, args.elements, occlusion)?;
         let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
             Noise::StandardError(stderr, self.certainty)
         });
@@ -177,8 +178,8 @@ impl Job<'_> {
             Errors::File(file) => Errors::File(Box::new(recover_memory::open(&file, scene)?)),
             Errors::Unknown => Errors::Unknown,
         };
-        let model = MatrixModel::without_photographs(scene, args.kernel, args.elements)?;
-        let model = self.occluded(model);
+        let occlusion = args.occlusion.occlusion();
+        let model = MatrixModel::without_photographs(scene, args.kernel, args.elements, occlusion)?;
         self.console
             .say("Φcam is read by rows: no covariance, no resolution, no Picard plot");
         let mut strips = Strips {
@@ -189,14 +190,6 @@ impl Job<'_> {
             pixels,
         };
         strips.recover(self.methods, &self.options)
-    }
-
-    fn occluded(&self, model: MatrixModel) -> MatrixModel {
-        if self.args.occlusion {
-            model.with_occlusion(self.scene)
-        } else {
-            model
-        }
     }
 
     /// Of a foreign Φcam nothing is known but what is given.

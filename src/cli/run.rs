@@ -17,8 +17,8 @@ use super::{Outcome, model, need, recover, settings, validate};
 use crate::film::{self, Stack};
 use crate::lab::finding::Describe;
 use crate::lab::{
-    self, Against, Certainty, GalleryPlan, GalleryTasks, Measured, Noise, Occlusion, RunGallery,
-    RunResults, Work,
+    self, Against, Certainty, GalleryPlan, GalleryTasks, Measured, Noise, RunGallery, RunResults,
+    Work,
 };
 use crate::matrix::Matrix;
 use crate::metrics::relative_frobenius;
@@ -125,7 +125,8 @@ fn compare_and_recover(
 ) -> Result<(), Failure> {
     let kernel = args.test.kernel;
     console.say("computing the model and comparing");
-    let matrices = MatrixModel::new(&results.scene, kernel, None)?;
+    let occlusion = args.occlusion.occlusion();
+    let matrices = MatrixModel::with(&results.scene, kernel, None, occlusion)?;
     let measured = Measured {
         phi: &results.phi,
         stderr: &results.stderr,
@@ -134,7 +135,7 @@ fn compare_and_recover(
     let against = Against {
         kernel,
         integration: args.test.integration,
-        occlusion: Occlusion::Ignored,
+        occlusion,
     };
     let found = lab::validate(&results.scene, measured, against, test)?;
     model::write(&args.output, &matrices, &found.model)?;

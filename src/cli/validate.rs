@@ -12,7 +12,7 @@ use super::run_folder::{self, PHI, STDERR, VALIDATION};
 use super::{Outcome, need, settings};
 use crate::film::{self, Channel, Frame};
 use crate::lab::finding::Describe;
-use crate::lab::{Against, Agreement, Measured, Occlusion, Test, validate};
+use crate::lab::{Against, Agreement, Measured, Test, validate};
 use crate::matrix::Matrix;
 use crate::num::statistics::normal_two_sided;
 use crate::report::{self, Panel, Scale};
@@ -34,11 +34,7 @@ pub(super) fn execute(args: &ValidateArgs, console: Console) -> Result<Outcome, 
     let against = Against {
         kernel: args.test.kernel,
         integration: args.test.integration,
-        occlusion: if args.occlusion {
-            Occlusion::Considered
-        } else {
-            Occlusion::Ignored
-        },
+        occlusion: args.occlusion.occlusion(),
     };
     let found = validate(&scene, measured, against, given.test)?;
     if let (Some((dir, record)), Outcome::Disagreed) = (&given.run, outcome(&found.agreement)) {

@@ -97,6 +97,17 @@ impl Bvh {
         (0..self.shapes().len()).all(|id| self.is_beside(id, a, b, ends))
     }
 
+    /// Whether shape `id` may stand between the two.
+    pub fn may_block(
+        &self,
+        id: ShapeId,
+        a: &Region,
+        b: &Region,
+        ends: [Option<ShapeId>; 2],
+    ) -> bool {
+        !self.is_beside(id as usize, a, b, ends)
+    }
+
     /// Whether shape `id` cannot stand in the way.
     fn is_beside(&self, id: usize, a: &Region, b: &Region, ends: [Option<ShapeId>; 2]) -> bool {
         let shape = &self.shapes()[id];

@@ -101,7 +101,7 @@ fn contradiction(best: &Attainable) -> String {
         "DOES NOT FIT, by any method: no reflectances between 0 and 1 explain the photographs \
          ({told}); {any}. The scene is not what was photographed, or the standard errors are too \
          small. Check geometry, order and orientation of the frames, unit and --stderr; more \
-         --elements where they are coarse; --occlusion where something stands in the way; \
+         --elements where they are coarse; what stands in the way, in the scene; \
          --frame-constant or --background for other light"
     )
 }

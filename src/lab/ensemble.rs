@@ -1,13 +1,14 @@
 //! Repetitions: draws of the noise with what is recovered from them, and independent renders of one
 //! matrix.
 
+use super::problem::problem;
 use serde::{Deserialize, Serialize};
 
 use super::deviate::normal_deviates;
 use crate::matrix::Matrix;
 use crate::model::MatrixModel;
 use crate::num::summation::{mean_and_stderr, tree_sum};
-use crate::recovery::{Method, Options, Problem, Recovered, RecoveryError, recover};
+use crate::recovery::{Method, Options, Recovered, RecoveryError, recover};
 
 /// A noisy Φcam and the standard errors that a recovery is told, pixels × spots, W.
 #[derive(Debug)]
@@ -35,9 +36,8 @@ impl Photographs {
         method: Method,
         options: &Options,
     ) -> Result<Recovered, RecoveryError> {
-        let (c, d) = (&model.camera_side, &model.laser_side);
         let grids: Vec<[usize; 2]> = model.grids.iter().map(|grid| grid.count).collect();
-        let problem = Problem::new(&self.phi, c, d, Some(&self.stderr))?.with_grids(&grids)?;
+        let problem = problem(model, &self.phi, Some(&self.stderr))?.with_grids(&grids)?;
         recover(method, &problem, options)
     }
 }

@@ -298,8 +298,7 @@ mod tests {
             for method in methods {
                 let alarms = (0..400).filter(|seed| {
                     let shot = Photographs::relative(&exact, 0.05, *seed);
-                    let (c, d) = (&model.camera_side, &model.laser_side);
-                    let problem = Problem::new(&shot.phi, c, d, Some(&shot.stderr)).unwrap();
+                    let problem = problem(&model, &shot.phi, Some(&shot.stderr)).unwrap();
                     let found = recover(method, &problem, &Options::default()).unwrap();
                     fit(&problem, (&shot.stderr, certainty), &found).unwrap().p < 0.1
                 });

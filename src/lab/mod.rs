@@ -170,6 +170,7 @@ mod picard;
 mod pilot;
 mod power;
 mod preview;
+mod problem;
 pub mod published;
 mod registered;
 mod registry;
@@ -229,6 +230,4 @@ pub use summary::{
 };
 pub use tails::Tails;
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
-pub use validation::{
-    Against, Integration, Measured, Occlusion, Validation, ValidationError, validate,
-};
+pub use validation::{Against, Integration, Measured, Validation, ValidationError, validate};

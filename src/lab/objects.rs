@@ -6,12 +6,13 @@ use serde::Serialize;
 
 use super::doubt::doubts;
 use super::fit::{Certainty, Fit, Judged};
+use super::problem::problem;
 use crate::matrix::Matrix;
 use crate::metrics::{correlation, mtf_normalized, mtf_raw, rmse};
 use crate::model::MatrixModel;
 use crate::recovery::{
     self, BandKind, Bands, Choice, Estimated, Method, Nuisance, Options, Parameter, Picard,
-    Problem, Recovered, RecoveryError, recover,
+    Recovered, RecoveryError, recover,
 };
 
 /// A recovered hidden surface.
@@ -131,7 +132,7 @@ pub fn recover_objects(
     options: &Options,
 ) -> Vec<Attempt> {
     let grids: Vec<[usize; 2]> = model.grids.iter().map(|grid| grid.count).collect();
-    let problem = problem(model, phi, noise)
+    let problem = problem(model, phi, noise.known().map(|known| known.0))
         .and_then(|p| p.with_grids(&grids))
         .and_then(|p| p.with_nuisance(nuisance));
     let problem = match problem {
@@ -177,7 +178,7 @@ pub fn picards(
     methods: &[Method],
     options: &Options,
 ) -> Result<Vec<Picard>, RecoveryError> {
-    let problem = problem(model, phi, noise)?;
+    let problem = problem(model, phi, noise.known().map(|known| known.0))?;
     let mut found = vec![recovery::picard(&problem)?];
     if methods.iter().any(|m| m.is_joint()) {
         match recovery::picard_joint(&problem.with_nuisance(nuisance)?, options) {
@@ -186,15 +187,6 @@ pub fn picards(
         }
     }
     Ok(found)
-}
-
-fn problem<'a>(
-    model: &'a MatrixModel,
-    phi: &'a Matrix,
-    noise: Noise<'a>,
-) -> Result<Problem<'a>, RecoveryError> {
-    let stderr = noise.known().map(|known| known.0);
-    Problem::new(phi, &model.camera_side, &model.laser_side, stderr)
 }
 
 /// What was recovered, surface by surface, measured against the true albedo at the element centres,

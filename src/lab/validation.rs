@@ -1,7 +1,7 @@
 //! Traced Φcam against the matrix model of its scene.
 
 use crate::matrix::Matrix;
-use crate::model::{Extent, Kernel, MatrixModel, ModelError, converged, visible};
+use crate::model::{Extent, Kernel, MatrixModel, ModelError, Occlusion, converged};
 use crate::scene::Scene;
 
 use super::agreement::{Agreement, agree};
@@ -48,17 +48,8 @@ pub struct Against {
     pub kernel: Kernel,
     /// How it integrates.
     pub integration: Integration,
-    /// Whether it asks what stands in the way.
+    /// Whether it knows what stands in the way.
     pub occlusion: Occlusion,
-}
-
-/// Whether the model knows what stands in the way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Occlusion {
-    /// It does not, as published.
-    Ignored,
-    /// It asks, point by point ([`visible`](fn@visible)).
-    Considered,
 }
 
 /// Why nothing can be validated.
@@ -122,25 +113,19 @@ pub fn validate(
         integration,
         occlusion,
     } = against;
-    let integral = converged(scene, kernel, Extent::FULL)?;
-    let nodes = integral.rough;
+    let integral = converged(
+        scene,
+        kernel,
+        Extent {
+            occlusion,
+            ..Extent::FULL
+        },
+    )?;
+    let (nodes, visible) = (integral.rough, integral.visible);
     let (mut phi, mut bound) = (integral.phi, integral.bound);
-    let sight = match occlusion {
-        Occlusion::Ignored => None,
-        Occlusion::Considered => Some(visible(scene, kernel)?),
-    };
-    if let Some(sight) = &sight {
-        // |Φ s − Φ′ s′| ≤ b_Φ s + Φ b_s.
-        bound = bound.component_mul(&sight.share) + phi.component_mul(&sight.bound);
-        phi.component_mul_assign(&sight.share);
-    }
     let base = phi.clone();
     if integration == Integration::Centres {
-        let mut matrices = MatrixModel::new(scene, kernel, None)?;
-        if sight.is_some() {
-            matrices = matrices.with_occlusion(scene);
-        }
-        let centres = matrices.phi();
+        let centres = MatrixModel::with(scene, kernel, None, occlusion)?.phi();
         bound += (&centres - phi).abs();
         phi = centres;
     }
@@ -151,7 +136,7 @@ pub fn validate(
         bound: Some(&bound),
         left_out: measured.left_out,
     };
-    let share = sight.as_ref().map(|s| &s.share);
+    let share = visible.as_ref().map(|v| &v.share);
     let off = SceneDerivatives::new(scene, kernel, nodes, &base, share);
     let derivatives = Derivatives {
         parameters: &off.parameters,
@@ -160,7 +145,7 @@ pub fn validate(
     let (mut agreement, z) = agree(evidence, test, Some(&derivatives));
     kernel.name().clone_into(&mut agreement.kernel);
     integration.name().clone_into(&mut agreement.integration);
-    agreement.occlusion = sight.map(|s| s.points);
+    agreement.occlusion = visible.map(|v| v.points);
     Ok(Validation {
         agreement,
         z,

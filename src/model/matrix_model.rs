@@ -2,54 +2,15 @@
 
 use std::f64::consts::FRAC_1_PI;
 
+use super::error::ModelError;
+use super::extent::Occlusion;
+use super::factors::{ElementGrid, Factors, factors};
 use super::kernel::{HiddenPoint, Kernel};
+use super::occlusion::obstacles;
 use super::wall_point::{self, WallPoint};
-use crate::geometry::{DVec3, Ray, ShapeId};
+use crate::geometry::DVec3;
 use crate::matrix::Matrix;
 use crate::scene::{Division, Scene};
-
-/// Why a scene has no matrix model.
-#[derive(Debug, thiserror::Error, PartialEq)]
-pub enum ModelError {
-    /// Nothing is hidden.
-    #[error(
-        "the scene has no hidden surface, so there is no matrix model (give one surface role = \"hidden\")"
-    )]
-    NothingHidden,
-    /// The matrices would be absurdly large.
-    #[error(
-        "{elements} elements make matrices of {entries:e} entries (use fewer elements, pixels or spots)"
-    )]
-    TooLarge {
-        /// Elements asked for.
-        elements: usize,
-        /// Entries of all matrices.
-        entries: f64,
-    },
-}
-
-/// How one hidden surface is divided.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ElementGrid {
-    /// Name of the surface.
-    pub surface: String,
-    /// Elements along u and v.
-    pub count: [usize; 2],
-    /// Index of its first element; element iu + iv·nu follows by that much.
-    pub first: usize,
-}
-
-impl ElementGrid {
-    /// Number of elements.
-    pub fn len(&self) -> usize {
-        self.count[0] * self.count[1]
-    }
-
-    /// Whether it has none (it never has).
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-}
 
 /// The matrix model of a scene.
 #[derive(Clone, Debug)]
@@ -71,13 +32,17 @@ pub struct MatrixModel {
     /// D, elements × spots, W: Φlaser·(ρ1/π)·A_j·G12, so that Φcam\[p,l\] = Σ_j
     /// C\[p,j\]·ρ2_j·D\[j,l\].
     pub laser_side: Matrix,
+    /// The terms of each element, where something stands in the way: C and D then hold the visible
+    /// share of each entry, and their product is an approximation ([`MatrixModel::product_error`]).
+    pub factors: Option<Factors>,
 }
 
 /// Entries that all matrices of a model together may have: 8 GB.
 const MOST_ENTRIES: f64 = 1e9;
 
 impl MatrixModel {
-    /// The model of `scene`; `elements` replaces the elements a side that the scene gives.
+    /// The model of `scene`, past what stands in the way; `elements` replaces the elements a side that
+    /// the scene gives.
     ///
     /// # Errors
     /// [`ModelError`] if nothing is hidden or the matrices would have more than 1e9 entries in all.
@@ -86,8 +51,21 @@ impl MatrixModel {
         kernel: Kernel,
         elements: Option<[usize; 2]>,
     ) -> Result<Self, ModelError> {
+        Self::with(scene, kernel, elements, Occlusion::Considered)
+    }
+
+    /// The same with or without what stands in the way.
+    ///
+    /// # Errors
+    /// Those of [`MatrixModel::new`].
+    pub fn with(
+        scene: &Scene,
+        kernel: Kernel,
+        elements: Option<[usize; 2]>,
+        occlusion: Occlusion,
+    ) -> Result<Self, ModelError> {
         let photographs = scene.camera.pixels() as f64 * scene.laser.spots.len() as f64;
-        Self::beside(scene, kernel, elements, photographs)
+        Self::beside(scene, kernel, elements, photographs)?.past(scene, occlusion)
     }
 
     /// The same for photographs that are never held at once, and so do not count.
@@ -98,8 +76,9 @@ impl MatrixModel {
         scene: &Scene,
         kernel: Kernel,
         elements: Option<[usize; 2]>,
+        occlusion: Occlusion,
     ) -> Result<Self, ModelError> {
-        Self::beside(scene, kernel, elements, 0.0)
+        Self::beside(scene, kernel, elements, 0.0)?.past(scene, occlusion)
     }
 
     fn beside(
@@ -166,58 +145,54 @@ impl MatrixModel {
             albedo,
             camera_side,
             laser_side,
+            factors: None,
         })
     }
 
-    /// The same model with occlusion: every entry of G12, G23, C and D between whose wall point and
-    /// element (by their middles) something stands is 0, and so are the rows of pixels and the
-    /// columns of spots whose wall point camera or laser cannot see. The published model has none;
-    /// where a scene's obstacles are known, this is what takes them in.
-    pub fn with_occlusion(mut self, scene: &Scene) -> Self {
-        let hidden = scene.hidden().zip(&self.grids);
-        let elements: Vec<(ShapeId, DVec3)> = hidden
-            .flat_map(|((id, surface), grid)| {
-                let elements = surface.divided(grid.count);
-                elements
-                    .into_iter()
-                    .map(move |e| (id as ShapeId, e.position))
-            })
-            .collect();
-        let blocked = |wall: &WallPoint, (id, element): (ShapeId, DVec3)| {
-            Ray::between(wall.position, element)
-                .is_none_or(|ray| scene.bvh().blocked(&ray, [wall.surface, Some(id)]))
+    /// The same past what stands in the way: C and D times the visible share of each entry, and the
+    /// terms of each element.
+    fn past(mut self, scene: &Scene, occlusion: Occlusion) -> Result<Self, ModelError> {
+        let obstacles = match occlusion {
+            Occlusion::Considered => obstacles(scene),
+            Occlusion::Ignored => Vec::new(),
         };
-        // The elements to which a wall point that `device` looks at or lights has no free way.
-        let hidden = |device: DVec3, wall: &WallPoint, g: &[f64]| -> Vec<usize> {
-            let dark = Ray::between(device, wall.position)
-                .is_none_or(|ray| scene.bvh().blocked(&ray, [None, wall.surface]));
-            let is_hidden = |j: &usize| dark || g[*j] != 0.0 && blocked(wall, elements[*j]);
-            (0..elements.len()).filter(is_hidden).collect()
-        };
-        for p in 0..self.g23.nrows() {
-            let wall = wall_point::seen(scene, p, [0.5, 0.5], 1.0);
-            let g: Vec<f64> = self.g23.row(p).iter().copied().collect();
-            for j in hidden(scene.camera.position, &wall, &g) {
-                self.g23[(p, j)] = 0.0;
-                self.camera_side[(p, j)] = 0.0;
-            }
+        if obstacles.is_empty() {
+            return Ok(self);
         }
-        for l in 0..self.g12.ncols() {
-            let wall = wall_point::lit(scene, l, DVec3::ZERO, 1.0);
-            for j in hidden(scene.laser.position, &wall, self.g12.column(l).as_slice()) {
-                self.g12[(j, l)] = 0.0;
-                self.laser_side[(j, l)] = 0.0;
-            }
+        let (factors, [seen, lit]) = factors(scene, self.kernel, &obstacles, &self.grids)?;
+        for side in [&mut self.g23, &mut self.camera_side] {
+            side.component_mul_assign(&seen);
         }
-        self
+        for side in [&mut self.g12, &mut self.laser_side] {
+            side.component_mul_assign(&lit);
+        }
+        self.factors = Some(factors);
+        Ok(self)
     }
 
-    /// Φcam, pixels × spots, W.
-    pub fn phi(&self) -> Matrix {
+    /// C·diag(ρ)·D, pixels × spots, W: with one term an element.
+    pub fn product(&self) -> Matrix {
         let mut lit = self.laser_side.clone();
         for (mut row, rho) in lit.row_iter_mut().zip(&self.albedo) {
             row *= *rho;
         }
         &self.camera_side * lit
+    }
+
+    /// What that differs from [`MatrixModel::phi`] by, relative Frobenius norm; none where nothing
+    /// stands in the way.
+    pub fn product_error(&self) -> Option<f64> {
+        let factors = self.factors.as_ref()?;
+        let phi = factors.phi(&self.albedo);
+        let norm = phi.norm();
+        (norm > 0.0).then(|| (self.product() - phi).norm() / norm)
+    }
+
+    /// Φcam, pixels × spots, W.
+    pub fn phi(&self) -> Matrix {
+        match &self.factors {
+            Some(factors) => factors.phi(&self.albedo),
+            None => self.product(),
+        }
     }
 }

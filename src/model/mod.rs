@@ -5,20 +5,29 @@
 //!
 //! with absolute scale: watts, and no free factor. Elements, pixels and spots are taken at their
 //! centres ([`MatrixModel`]), or everything is integrated until it no longer changes
-//! ([`converged`]). Three surfaces, a Lambertian object, and no occlusion unless asked for
-//! ([`MatrixModel::with_occlusion`]): what light does beyond that is for `transport` to show, which
-//! this floor never sees.
+//! ([`converged`]). What stands in the way takes its share of each entry, by areas
+//! ([`visible`](fn@visible), [`Factors`]), unless it is to be left out ([`Occlusion::Ignored`]). Three
+//! surfaces and a Lambertian object: what light does beyond that is for `transport` to show, which this
+//! floor never sees.
 
 mod converged;
+mod cut;
+mod error;
+mod extent;
+mod factors;
 mod kernel;
 mod matrix_model;
+mod occlusion;
 mod parts;
 mod published;
 mod visible;
 mod wall_point;
 
-pub use converged::{Converged, Extent, Nodes, Take, converged, integrated};
+pub use converged::{Converged, Nodes, converged, integrated};
+pub use error::ModelError;
+pub use extent::{Extent, Occlusion, Take};
+pub use factors::{ElementGrid, Factors};
 pub use kernel::Kernel;
-pub use matrix_model::{ElementGrid, MatrixModel, ModelError};
+pub use matrix_model::MatrixModel;
 pub use published::{PixelGrid, Published, Stagger, flattened_k, table_distances};
 pub use visible::{Visible, visible};

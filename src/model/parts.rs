@@ -10,7 +10,7 @@
 use std::borrow::Cow;
 
 use super::kernel::HiddenPoint;
-use crate::geometry::{DVec3, Instance, Shape, ShapeId};
+use crate::geometry::{DVec3, Instance, Polygon, Shape, ShapeId};
 use crate::num::quadrature::Rule;
 use crate::scene::{Division, Element, Scene, Surface};
 
@@ -98,12 +98,69 @@ pub(super) struct HiddenParts<'a> {
     coarse_side: usize,
 }
 
-/// A node on a hidden surface.
-pub(super) struct HiddenNode {
+/// A small part of a hidden surface, taken at its middle.
+pub(super) struct HiddenCell {
     pub point: HiddenPoint,
-    /// Its share of the area · albedo/π, length².
-    pub weight: f64,
+    /// Its area/π, length².
+    pub area: f64,
+    pub albedo: f64,
     pub surface: ShapeId,
+    /// Its corners, where it is flat.
+    pub corners: Option<Polygon>,
+}
+
+impl HiddenCell {
+    /// `None` without area.
+    fn new(element: &Element, surface: ShapeId, corners: Option<Polygon>) -> Option<Self> {
+        (element.area > 0.0).then(|| Self {
+            point: HiddenPoint::from(element),
+            area: element.area * std::f64::consts::FRAC_1_PI,
+            albedo: element.albedo,
+            surface,
+            corners,
+        })
+    }
+}
+
+/// The elements of a hidden surface, `count` a side, each in 4^`halvings` cells: squares of its
+/// parameters, or of its texture's on a mesh; of triangles triangles.
+pub(super) fn cells_of_elements(
+    (id, surface): (usize, &Surface),
+    count @ [nu, nv]: [usize; 2],
+    halvings: u32,
+) -> Vec<Vec<HiddenCell>> {
+    let surface = surface.lambertian_equivalent();
+    let id = id as ShapeId;
+    let of_place = |place: &Place| {
+        let (element, corners) = place.cell(&surface)?;
+        HiddenCell::new(&element, id, corners)
+    };
+    let mut found = Vec::new();
+    if let (Shape::Instance(body), Division::Faces) = (&surface.shape, surface.division) {
+        for triangle in 0..body.mesh().triangles().len() as u32 {
+            let whole = Place::Triangle {
+                id: triangle,
+                corners: body.corners(triangle),
+            };
+            let quarter = |all: Vec<Place>, _| all.iter().flat_map(Place::quarters).collect();
+            let parts = (0..halvings).fold(vec![whole], quarter);
+            found.push(parts.iter().filter_map(of_place).collect());
+        }
+        return found;
+    }
+    found.resize_with(nu * nv, Vec::new);
+    let fine = count.map(|n| n << halvings);
+    let element = |cell: usize| (cell % fine[0] >> halvings) + (cell / fine[0] >> halvings) * nu;
+    if let Shape::Instance(_) = surface.shape {
+        for (k, e) in surface.divided(fine).iter().enumerate() {
+            found[element(k)].extend(HiddenCell::new(e, id, None));
+        }
+    } else {
+        for (k, place) in grid(fine).enumerate() {
+            found[element(k)].extend(of_place(&place));
+        }
+    }
+    found
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -134,20 +191,10 @@ impl<'a> HiddenParts<'a> {
                 _ if surface.division == Division::Cells && cells(surface) > most => {
                     found.coarse.push(index);
                 }
-                Shape::Instance(body) => {
-                    let ids = 0..body.mesh().triangles().len() as u32;
-                    whole.extend(ids.filter(|t| body.triangle_area(*t) > 0.0).map(|id| {
-                        let corners = body.corners(id);
-                        (index, Place::Triangle { id, corners })
-                    }));
-                }
+                Shape::Instance(body) => whole.extend(triangles(body).map(|place| (index, place))),
                 _ => {
-                    let [nu, nv] = surface.albedo.smooth_cells();
-                    let size = [1.0 / nu as f64, 1.0 / nv as f64];
-                    whole.extend((0..nu * nv).map(|cell| {
-                        let from = [(cell % nu) as f64 * size[0], (cell / nu) as f64 * size[1]];
-                        (index, Place::Cell { from, size })
-                    }));
+                    let cells = grid(surface.albedo.smooth_cells());
+                    whole.extend(cells.map(|place| (index, place)));
                 }
             }
         }
@@ -191,6 +238,23 @@ impl<'a> HiddenParts<'a> {
         }
     }
 
+    /// Each part once, by its middle.
+    pub(super) fn cells(&self) -> Vec<HiddenCell> {
+        let cell = |index: usize, place: &Place| {
+            let surface = &*self.surfaces[index];
+            let (element, corners) = place.cell(surface)?;
+            HiddenCell::new(&element, self.ids[index], corners)
+        };
+        let parts = self.parts.iter();
+        let parts = parts.filter_map(|(index, place, _)| cell(*index, place));
+        let coarse = self.coarse.iter().flat_map(|index| {
+            let surface = &self.surfaces[*index];
+            let elements = surface.divided([self.coarse_side; 2]).into_iter();
+            elements.filter_map(|e| HiddenCell::new(&e, self.ids[*index], None))
+        });
+        parts.chain(coarse).collect()
+    }
+
     /// Number of nodes at `level`.
     pub(super) fn count(&self, level: usize) -> usize {
         let parts = self.parts.iter();
@@ -202,17 +266,14 @@ impl<'a> HiddenParts<'a> {
 
     /// Nodes of a rule over all of it: n × n a part, a triangle's folded onto it from the square
     /// by (u, v) → (1 − u, u·(1 − v), u·v), whose area element is twice the triangle's area times u;
-    /// with one node its centroid.
-    pub(super) fn nodes(&self, level: usize) -> Vec<HiddenNode> {
+    /// with one node its centroid. Each with its share of the area · albedo/π, length².
+    pub(super) fn nodes(&self, level: usize) -> Vec<(HiddenPoint, f64)> {
         let mut found = Vec::with_capacity(self.count(level));
         let mut rules: Vec<Option<Vec<_>>> = Vec::new();
-        let mut add = |index: usize, element: &Element| {
+        let mut add = |element: &Element| {
             if element.albedo > 0.0 && element.area > 0.0 {
-                found.push(HiddenNode {
-                    point: HiddenPoint::from(element),
-                    weight: element.area * element.albedo * std::f64::consts::FRAC_1_PI,
-                    surface: self.ids[index],
-                });
+                let weight = element.area * element.albedo * std::f64::consts::FRAC_1_PI;
+                found.push((HiddenPoint::from(element), weight));
             }
         };
         for (index, place, distance) in &self.parts {
@@ -225,10 +286,7 @@ impl<'a> HiddenParts<'a> {
             match (place, &surface.shape) {
                 (Place::Triangle { id, corners }, Shape::Instance(body)) => {
                     for (weights, share) in folded(n, square) {
-                        add(
-                            *index,
-                            &on_triangle(surface, body, *id, corners, weights, share),
-                        );
+                        add(&on_triangle(surface, body, *id, corners, weights, share));
                     }
                 }
                 (Place::Triangle { .. }, _) => {}
@@ -237,13 +295,10 @@ impl<'a> HiddenParts<'a> {
                     for ([a, b], w) in square {
                         let uv = [from[0] + a * size[0], from[1] + b * size[1]];
                         let point = surface.element_at(uv);
-                        add(
-                            *index,
-                            &Element {
-                                area: w * area,
-                                ..point
-                            },
-                        );
+                        add(&Element {
+                            area: w * area,
+                            ..point
+                        });
                     }
                 }
             }
@@ -251,13 +306,54 @@ impl<'a> HiddenParts<'a> {
         for index in &self.coarse {
             let surface = &self.surfaces[*index];
             let elements = surface.divided([self.coarse_side << level; 2]);
-            elements.iter().for_each(|e| add(*index, e));
+            elements.iter().for_each(|e| add(e));
         }
         found
     }
 }
 
+/// The triangles of a mesh that have an area.
+fn triangles(body: &Instance) -> impl Iterator<Item = Place> {
+    let ids = 0..body.mesh().triangles().len() as u32;
+    ids.filter(|t| body.triangle_area(*t) > 0.0)
+        .map(|id| Place::Triangle {
+            id,
+            corners: body.corners(id),
+        })
+}
+
+/// Cells of equal size, iu + iv·nu.
+fn grid([nu, nv]: [usize; 2]) -> impl Iterator<Item = Place> {
+    let size = [1.0 / nu as f64, 1.0 / nv as f64];
+    (0..nu * nv).map(move |cell| Place::Cell {
+        from: [(cell % nu) as f64 * size[0], (cell / nu) as f64 * size[1]],
+        size,
+    })
+}
+
 impl Place {
+    /// All of it taken at its middle, and its corners where it is flat.
+    fn cell(&self, surface: &Surface) -> Option<(Element, Option<Polygon>)> {
+        match (self, &surface.shape) {
+            (Self::Triangle { id, corners }, Shape::Instance(body)) => {
+                let element = on_triangle(surface, body, *id, corners, [1.0 / 3.0; 3], 1.0);
+                Some((element, Some(corners.to_vec())))
+            }
+            (Self::Triangle { .. }, _) => None,
+            (Self::Cell { from, size }, shape) => {
+                let at = |[a, b]: [f64; 2]| [from[0] + a * size[0], from[1] + b * size[1]];
+                let element = Element {
+                    area: shape.area() * size[0] * size[1],
+                    ..surface.element_at(at([0.5; 2]))
+                };
+                let rim = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+                let corners = matches!(shape, Shape::Parallelogram(_))
+                    .then(|| rim.map(|ab| shape.at(at(ab)).position).to_vec());
+                Some((element, corners))
+            }
+        }
+    }
+
     /// Its middle and the largest distance from there to its rim.
     fn ball(&self, surface: &Surface) -> (DVec3, f64) {
         let furthest = |middle: DVec3, rim: &[DVec3]| {

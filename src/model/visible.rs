@@ -1,11 +1,13 @@
 //! What share of each entry of Φcam the scene's surfaces leave visible.
 
-use super::ModelError;
-use super::converged::{CHUNK, Cut, Extent};
+use rayon::prelude::*;
+
+use super::cut::Cut;
+use super::error::ModelError;
+use super::extent::Extent;
 use super::kernel::Kernel;
-use super::parts::{HiddenNode, HiddenParts};
-use super::wall_point::WallPoint;
-use crate::geometry::{DVec3, Ray};
+use super::occlusion::{Both, Obstructed, obstacles};
+use super::parts::HiddenCell;
 use crate::matrix::Matrix;
 use crate::scene::Scene;
 
@@ -14,108 +16,94 @@ use crate::scene::Scene;
 pub struct Visible {
     /// Φcam with occlusion over Φcam without, 0 to 1, pixels × spots.
     pub share: Matrix,
-    /// How far off that may be: the larger of what the last halving of the parts changed and half
-    /// of what the one before changed. A shadow's edge makes the integrand jump, so that this is an
-    /// estimate; an object smaller than the last parts may be missed.
+    /// How far off that may be: the larger of what the last halving of the cells changed and half of
+    /// what the one before changed. An estimate: edges of shadows make the integrand bend, and what
+    /// is smaller than the last cells may be missed where it is asked ray by ray.
     pub bound: Matrix,
-    /// Points on the hidden surfaces, in the last step.
+    /// Cells of the hidden surfaces, in the last step.
     pub points: usize,
 }
 
-/// Wall points of a pixel or a spot, each with whether its device sees it.
-type Looked = Vec<(WallPoint, bool)>;
-
-/// Lines that are asked for at most.
-const MOST_RAYS: f64 = 1e7;
-/// Level of the rules on footprints, spots and parts.
+/// Relative change of Φcam below which no finer cells are tried.
+const TARGET: f64 = 3e-4;
+/// Level of the rule on spots.
 const LEVEL: usize = 1;
+/// Entries of each side that are held at once.
+const HELD: usize = 1 << 22;
 
-/// Asks, for 2 × 2 points of each pixel and the points of each spot, which of the hidden surfaces'
-/// points are in free sight, laser and camera included; then again with every part of the hidden
-/// surfaces in four, until there are 1e7 lines to ask for. The share of an entry is Φ with occlusion
-/// over Φ without from the same points, so that what both leave out cancels.
+/// Φcam past everything that stands in the way over Φcam with nothing in the way, both by the same
+/// cells of the hidden surfaces, so that what both leave out cancels; the cells are cut in four until
+/// Φcam changes by less than 3e-4, or there are 1e8 pairs of them with pixels and spots (1e7 where
+/// they are asked ray by ray). `None` where
+/// nothing can stand in the way.
 ///
 /// # Errors
 /// [`ModelError::NothingHidden`].
-pub fn visible(scene: &Scene, kernel: Kernel) -> Result<Visible, ModelError> {
+pub fn visible(scene: &Scene, kernel: Kernel) -> Result<Option<Visible>, ModelError> {
     if scene.hidden().next().is_none() {
         return Err(ModelError::NothingHidden);
     }
-    let cut = Cut::new(scene, Extent::FULL);
-    let looking = |device: DVec3, walls: Vec<Vec<WallPoint>>| -> Vec<Looked> {
-        let free = |w: WallPoint| {
-            let ray = Ray::between(device, w.position);
-            let free = ray.is_some_and(|ray| !scene.bvh().blocked(&ray, [None, w.surface]));
-            (w, free)
-        };
-        let each = walls.into_iter();
-        each.map(|walls| walls.into_iter().map(free).collect())
-            .collect()
-    };
-    let seen = looking(scene.camera.position, cut.seen(scene, LEVEL));
-    let lit = looking(scene.laser.position, cut.lit(scene, LEVEL));
-    let walls: usize = seen.iter().chain(&lit).map(Vec::len).sum();
+    let obstacles = obstacles(scene);
+    if obstacles.is_empty() {
+        return Ok(None);
+    }
+    let cut = Cut::new(scene, Extent::UNOBSTRUCTED);
+    let lit = cut.lit(scene, LEVEL);
+    let walls = scene.camera.pixels() + lit.iter().map(Vec::len).sum::<usize>();
+    let occlusion = Obstructed::new(scene, kernel, &obstacles, lit);
     let mut parts = cut.hidden;
-    let mut share = shares(scene, kernel, [&seen, &lit], &parts);
+    let mut cells = parts.cells();
+    let mut now = photographs(&occlusion, &cells);
     let mut before: Option<Matrix> = None;
     loop {
         parts = parts.quartered();
-        let next = shares(scene, kernel, [&seen, &lit], &parts);
-        let change = (&next - &share).abs();
-        let points = parts.count(0);
-        if before.is_some() && 4.0 * points as f64 * walls as f64 > MOST_RAYS {
+        cells = parts.cells();
+        cells.retain(|cell| cell.albedo > 0.0);
+        let next = photographs(&occlusion, &cells);
+        let (share, old) = (share(&next), share(&now));
+        let change = (&share - old).abs();
+        let moved = change.component_mul(&next[0]).norm() / next[1].norm().max(f64::MIN_POSITIVE);
+        let exhausted = 4.0 * (cells.len() * walls) as f64 > occlusion.most_pairs();
+        if before.is_some() && (exhausted || moved < TARGET) {
             let bound = match before {
                 None => change,
                 Some(before) => change.zip_map(&before, |now, then| now.max(0.5 * then)),
             };
-            return Ok(Visible {
-                share: next,
+            return Ok(Some(Visible {
+                share,
                 bound,
-                points,
-            });
+                points: cells.len(),
+            }));
         }
-        (share, before) = (next, Some(change));
+        (now, before) = (next, Some(change));
     }
 }
 
 /// Φ with occlusion over Φ without; 1 where there is none.
-fn shares(
-    scene: &Scene,
-    kernel: Kernel,
-    [seen, lit]: [&[Looked]; 2],
-    parts: &HiddenParts<'_>,
-) -> Matrix {
-    let mut all = [0; 2].map(|_| Matrix::zeros(seen.len(), lit.len()));
-    // What arrives without and with what stands in the way.
-    let side = |walls: &[(WallPoint, bool)], node: &HiddenNode| {
-        walls.iter().fold([0.0; 2], |[all, left], (wall, free)| {
-            let light = wall.towards(scene, kernel, &node.point);
-            let arrives = *free && light != 0.0 && {
-                let ray = Ray::between(wall.position, node.point.position);
-                ray.is_some_and(|r| !scene.bvh().blocked(&r, [wall.surface, Some(node.surface)]))
-            };
-            [all + light, if arrives { left + light } else { left }]
-        })
-    };
-    for chunk in parts.nodes(0).chunks(CHUNK) {
-        let mut camera = [0; 2].map(|_| Matrix::zeros(seen.len(), chunk.len()));
-        let mut laser = [0; 2].map(|_| Matrix::zeros(chunk.len(), lit.len()));
-        for (q, node) in chunk.iter().enumerate() {
-            for (p, walls) in seen.iter().enumerate() {
-                let both = side(walls, node);
-                (camera[0][(p, q)], camera[1][(p, q)]) = (both[0], both[1]);
-            }
-            for (l, walls) in lit.iter().enumerate() {
-                let both = side(walls, node).map(|x| x * node.weight);
-                (laser[0][(q, l)], laser[1][(q, l)]) = (both[0], both[1]);
-            }
-        }
-        for ((phi, camera), laser) in all.iter_mut().zip(&camera).zip(&laser) {
-            phi.gemm(1.0, camera, laser, 1.0);
+fn share([all, left]: &[Matrix; 2]) -> Matrix {
+    left.zip_map(all, |left, all| if all > 0.0 { left / all } else { 1.0 })
+}
+
+/// Φ without and with occlusion.
+fn photographs(occlusion: &Obstructed<'_>, cells: &[HiddenCell]) -> [Matrix; 2] {
+    let (pixels, spots) = (occlusion.pixels(), occlusion.spots());
+    let mut all = [0; 2].map(|_| Matrix::zeros(pixels, spots));
+    for chunk in cells.chunks((HELD / (pixels + spots)).max(1)) {
+        let camera: Vec<Vec<Both>> = chunk
+            .par_iter()
+            .map(|cell| occlusion.camera(cell))
+            .collect();
+        let laser: Vec<Vec<Both>> = (0..spots)
+            .into_par_iter()
+            .map(|l| occlusion.laser(l, chunk))
+            .collect();
+        for (which, phi) in all.iter_mut().enumerate() {
+            let c = Matrix::from_fn(pixels, chunk.len(), |p, q| camera[q][p][which]);
+            let d = Matrix::from_fn(chunk.len(), spots, |q, l| {
+                laser[l][q][which] * chunk[q].albedo
+            });
+            phi.gemm(1.0, &c, &d, 1.0);
         }
     }
-    all[1].zip_map(
-        &all[0],
-        |left, all| if all > 0.0 { left / all } else { 1.0 },
-    )
+    all
 }

@@ -105,6 +105,19 @@ pub(super) fn seen(scene: &Scene, pixel: usize, ab: [f64; 2], share: f64) -> Wal
     }
 }
 
+/// A piece of `area` of the wall `id` that the camera sees, at its middle: dE =
+/// A_lens·cosθ_cam·cosθ_wall/d² dA.
+pub(super) fn seen_piece(scene: &Scene, id: ShapeId, middle: DVec3, area: f64) -> WallPoint {
+    let camera = &scene.camera;
+    let line = middle - camera.position;
+    let d2 = line.length_squared();
+    let direction = line / d2.sqrt();
+    let point = scene.surfaces[id as usize].shape.at_position(middle);
+    let cosines = camera.view.normal().dot(direction) * point.normal.dot(direction);
+    let etendue = camera.aperture_area * cosines.abs() / d2 * area;
+    reflecting(scene, id as usize, &point, direction, etendue)
+}
+
 /// The wall where the beam that is aimed at `offset` from the target of spot `spot` meets it, lit
 /// by `share` of the laser's power. Its weight is 0 where the beam misses the wall.
 pub(super) fn lit(scene: &Scene, spot: usize, offset: DVec3, share: f64) -> WallPoint {

@@ -114,7 +114,7 @@ pub use outcome::{Choice, Parameter, Recovered, Solver, Weighting};
 pub use picard::{Directions, Picard, picard};
 pub use pixelwise::laser_side::{LaserSide, Parts};
 pub use pixelwise::strips::{Strip, recover_strips};
-pub use problem::Problem;
+pub use problem::{Problem, Terms};
 use spectrum::Spectrum;
 
 /// Recovers the reflectances of the r elements by the method asked for.

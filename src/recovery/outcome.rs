@@ -2,7 +2,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::problem::Lit;
 use super::{Bands, Estimated, Method, Problem, RecoveryError, bands};
 
 /// A regularisation parameter.
@@ -262,7 +261,7 @@ impl Recovered {
         sigma: DVector<f64>,
         rank: usize,
     ) -> Result<Self, RecoveryError> {
-        let residual = problem.residual(&Lit::new(problem.d, &reflectance)?);
+        let residual = problem.misfit(&reflectance)?;
         let norms = [residual, problem.phi.norm()];
         Ok(Self::with_norms(method, norms, reflectance, sigma, rank))
     }

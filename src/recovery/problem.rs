@@ -7,6 +7,34 @@ use crate::num::linalg::{
     Range, Svd, Tolerance, columns_times, product, range, rows_times, subtract_product, svd_to,
 };
 
+/// The light of element j as a sum of products: A_j = Σ_s c\[p,s\] d\[s,l\] over its terms s, where
+/// C\[p,j\] D\[j,l\] alone is only near it.
+#[derive(Debug, Clone, Copy)]
+pub struct Terms<'a> {
+    /// Pixels × terms.
+    pub c: &'a DMatrix<f64>,
+    /// Terms × spots; with `c` W.
+    pub d: &'a DMatrix<f64>,
+    /// The element of each term.
+    pub element: &'a [usize],
+}
+
+impl Terms<'_> {
+    /// Rows of terms added up to rows of elements.
+    pub(super) fn gathered(
+        element: &[usize],
+        rows: &DMatrix<f64>,
+        elements: usize,
+    ) -> DMatrix<f64> {
+        let mut sums = DMatrix::zeros(elements, rows.ncols());
+        for (s, j) in element.iter().enumerate() {
+            let mut sum = sums.row_mut(*j);
+            sum += rows.row(s);
+        }
+        sums
+    }
+}
+
 /// Φ\[p,l\] = Σ_j C\[p,j\] ρ_j D\[j,l\] + noise, checked: shapes that fit, finite entries.
 #[derive(Debug, Clone, Copy)]
 pub struct Problem<'a> {
@@ -16,6 +44,7 @@ pub struct Problem<'a> {
     pub(super) stderr: Option<&'a DMatrix<f64>>,
     pub(super) grids: Option<&'a [[usize; 2]]>,
     pub(super) nuisance: Nuisance<'a>,
+    terms: Option<Terms<'a>>,
 }
 
 impl<'a> Problem<'a> {
@@ -55,16 +84,7 @@ impl<'a> Problem<'a> {
             .into_iter()
             .chain(stderr.map(|s| ("stderr", s)))
         {
-            if let Some(at) = matrix.iter().position(|x| !x.is_finite()) {
-                let (row, column) = (at % matrix.nrows(), at / matrix.nrows());
-                return Err(RecoveryError::NotFinite {
-                    name,
-                    row,
-                    column,
-                    value: matrix[at],
-                });
-            }
-            refuse_scale(name, matrix.amax())?;
+            finite(name, matrix)?;
         }
         if let Some(stderr) = stderr {
             expect("stderr", stderr, pixels, spots)?;
@@ -86,7 +106,54 @@ impl<'a> Problem<'a> {
             stderr,
             grids: None,
             nuisance: Nuisance::default(),
+            terms: None,
         })
+    }
+
+    /// The same with the terms of each element: the joint methods take them in place of C and D.
+    ///
+    /// # Errors
+    /// [`RecoveryError::Shape`], [`RecoveryError::NotFinite`] or [`RecoveryError::OutOfScale`].
+    pub fn with_terms(self, terms: Terms<'a>) -> Result<Self, RecoveryError> {
+        let Terms { c, d, element } = terms;
+        let shape = |name, matrix: &DMatrix<f64>, rows, columns| {
+            let (found_rows, found_columns) = matrix.shape();
+            let fits = (found_rows, found_columns) == (rows, columns);
+            let wrong = RecoveryError::Shape {
+                name,
+                rows,
+                columns,
+                found_rows,
+                found_columns,
+            };
+            if fits {
+                finite(name, matrix)
+            } else {
+                Err(wrong)
+            }
+        };
+        let (pixels, spots) = self.phi.shape();
+        shape("the terms of c", c, pixels, element.len())?;
+        shape("the terms of d", d, element.len(), spots)?;
+        let elements = self.elements();
+        match element.iter().find(|j| **j >= elements) {
+            Some(j) => Err(RecoveryError::Grids {
+                covered: *j + 1,
+                elements,
+            }),
+            None => Ok(Problem {
+                terms: Some(terms),
+                ..self
+            }),
+        }
+    }
+
+    /// The sides of the operator, and the element of each of their terms.
+    pub(super) fn sides(&self) -> (&'a DMatrix<f64>, &'a DMatrix<f64>, Vec<usize>) {
+        match self.terms {
+            Some(Terms { c, d, element }) => (c, d, element.to_vec()),
+            None => (self.c, self.d, (0..self.elements()).collect()),
+        }
     }
 
     /// The same with the element grids known, \[nu, nv\] of each hidden surface in the order of the
@@ -99,7 +166,7 @@ impl<'a> Problem<'a> {
         let covered = grids.iter().fold(0usize, |sum, [nu, nv]| {
             sum.saturating_add(nu.saturating_mul(*nv))
         });
-        let elements = self.c.ncols();
+        let elements = self.elements();
         if covered != elements || grids.iter().any(|[nu, nv]| nu * nv == 0) {
             return Err(RecoveryError::Grids { covered, elements });
         }
@@ -128,15 +195,7 @@ impl<'a> Problem<'a> {
                     found_columns,
                 });
             }
-            if let Some(at) = pattern.iter().position(|x| !x.is_finite()) {
-                return Err(RecoveryError::NotFinite {
-                    name: "the glare pattern",
-                    row: at % rows,
-                    column: at / rows,
-                    value: pattern[at],
-                });
-            }
-            refuse_scale("the glare pattern", pattern.amax())?;
+            finite("the glare pattern", pattern)?;
         }
         Ok(Problem { nuisance, ..self })
     }
@@ -154,7 +213,8 @@ impl<'a> Problem<'a> {
     /// The best single factor ⟨Φ, C D⟩/‖C D‖² of what a surface of reflectance 1 throughout
     /// photographs. Where C and D are not negative, as light is, no surface makes it more than 1.
     pub fn brightness(&self) -> f64 {
-        let white = self.c * self.d;
+        let (c, d, _) = self.sides();
+        let white = c * d;
         self.phi.dot(&white) / white.norm_squared()
     }
 
@@ -183,9 +243,19 @@ impl<'a> Problem<'a> {
         Ok(decomposed)
     }
 
-    /// C diag(ρ) D, W.
+    /// Σ_j ρ_j A_j, W.
     pub(super) fn light(&self, reflectance: &DVector<f64>) -> DMatrix<f64> {
-        columns_times(self.c.clone(), reflectance) * self.d
+        let (c, d, element) = self.sides();
+        let of_terms: Vec<f64> = element.iter().map(|j| reflectance[*j]).collect();
+        columns_times(c.clone(), &of_terms) * d
+    }
+
+    /// ‖Φ − Σ_j ρ_j A_j‖, Frobenius, W.
+    pub(super) fn misfit(&self, reflectance: &DVector<f64>) -> Result<f64, RecoveryError> {
+        Ok(match self.terms {
+            Some(_) => (self.phi - self.light(reflectance)).norm(),
+            None => self.residual(&Lit::new(self.d, reflectance)?),
+        })
     }
 
     /// ‖Φ − C diag(ρ) D‖, Frobenius, W.
@@ -223,6 +293,19 @@ impl Lit {
 
 /// Sizes whose squares, and products of squares of two matrices, stay well within f64.
 const SCALE: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
+
+/// Refuses entries that are not finite, or whose squares are not.
+fn finite(name: &'static str, matrix: &DMatrix<f64>) -> Result<(), RecoveryError> {
+    match matrix.iter().position(|x| !x.is_finite()) {
+        Some(at) => Err(RecoveryError::NotFinite {
+            name,
+            row: at % matrix.nrows(),
+            column: at / matrix.nrows(),
+            value: matrix[at],
+        }),
+        None => refuse_scale(name, matrix.amax()),
+    }
+}
 
 /// Refuses a matrix by the size of an entry that decides its scale; zero has none.
 fn refuse_scale(name: &'static str, value: f64) -> Result<(), RecoveryError> {

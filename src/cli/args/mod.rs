@@ -11,6 +11,7 @@ mod target;
 mod value;
 mod view;
 
+use crate::model::Occlusion;
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -153,6 +154,8 @@ pub(in crate::cli) struct RunArgs {
     pub trace: TraceArgs,
     #[command(flatten)]
     pub test: TestArgs,
+    #[command(flatten)]
+    pub occlusion: OcclusionArgs,
     /// Replace a run with other settings, or of another scene, once this one is whole
     #[arg(long)]
     pub replace: bool,
@@ -209,16 +212,35 @@ pub(in crate::cli) struct ModelArgs {
     /// Elements along u and v, in place of the scene's: N or NxM
     #[arg(long, value_name = "N", value_parser = elements)]
     pub elements: Option<[usize; 2]>,
-    /// Leave out, entry by entry, what the scene's surfaces stand in the way of: the published
-    /// model knows no occlusion
-    #[arg(long)]
-    pub occlusion: bool,
+    #[command(flatten)]
+    pub occlusion: OcclusionArgs,
     /// Where Φcam is evaluated; G12 and G23 are always those of the centres
     #[arg(long, value_parser = choice::integration(), default_value = "centres")]
     pub integration: Integration,
     /// Print the shapes of the matrices as JSON
     #[arg(long)]
     pub json: bool,
+}
+
+/// Whether the model knows what stands in the way.
+#[derive(Debug, Arguments)]
+pub(in crate::cli) struct OcclusionArgs {
+    /// Leave out of the model what stands in the way, as the published one does
+    #[arg(long)]
+    no_occlusion: bool,
+    /// What stands in the way is considered without being asked
+    #[arg(long = "occlusion", hide = true, conflicts_with = "no_occlusion")]
+    _occlusion: bool,
+}
+
+impl OcclusionArgs {
+    pub(in crate::cli) fn occlusion(&self) -> Occlusion {
+        if self.no_occlusion {
+            Occlusion::Ignored
+        } else {
+            Occlusion::Considered
+        }
+    }
 }
 
 /// How traced and modelled are compared.
@@ -242,9 +264,8 @@ pub(in crate::cli) struct ValidateArgs {
     pub dir: Option<PathBuf>,
     #[command(flatten)]
     pub test: TestArgs,
-    /// Let the model ask what stands in the way of its light
-    #[arg(long)]
-    pub occlusion: bool,
+    #[command(flatten)]
+    pub occlusion: OcclusionArgs,
     /// Test this matrix (.npy, pixels × spots, W) instead of the run's
     #[arg(long, value_name = "FILE", requires = "stderr")]
     pub phi: Option<PathBuf>,

@@ -1,5 +1,6 @@
 //! Arguments of `phicam recover`.
 
+use super::OcclusionArgs;
 use std::path::PathBuf;
 
 use clap::Args as Arguments;
@@ -42,10 +43,8 @@ pub(in crate::cli) struct RecoverArgs {
     /// Elements along u and v, in place of the scene's: N or NxM
     #[arg(long, value_name = "N", value_parser = elements)]
     pub elements: Option<[usize; 2]>,
-    /// Leave out, entry by entry, what the scene's surfaces stand in the way of: the published
-    /// model knows no occlusion
-    #[arg(long)]
-    pub occlusion: bool,
+    #[command(flatten)]
+    pub occlusion: OcclusionArgs,
     /// How tsvd, tikhonov and tikhonov-gradient choose their parameter
     #[arg(long, value_parser = choice::rule(), default_value = "discrepancy")]
     pub rule: Rule,

@@ -10,6 +10,7 @@ use crate::lab::registered::{Registered, prepared};
 use crate::lab::study::{Sharing, Study, Work};
 use crate::lab::traced::{Kept, SHARES, share, side_by_side};
 use crate::matrix::Matrix;
+use crate::model::Occlusion;
 use crate::model::{Extent, Kernel, ModelError, Take, converged};
 use crate::num::stream::Sampling;
 use crate::scene::{Role, Scene};
@@ -79,6 +80,7 @@ const CENTRES: Extent = Extent {
     elements: Take::Centre,
     footprints: Take::Centre,
     spots: Take::Centre,
+    occlusion: Occlusion::Ignored,
 };
 const AREAS: Extent = Extent {
     elements: Take::Integral,
@@ -183,7 +185,7 @@ impl Study for BudgetTasks {
     }
 
     fn context(&self, _: Control<'_>) -> Result<[Matrix; 2], LabError> {
-        let m3 = self.integral(Extent::FULL)?;
+        let m3 = self.integral(Extent::UNOBSTRUCTED)?;
         if m3[0].norm() <= 0.0 {
             return Err(LabError::DARK);
         }
@@ -203,7 +205,7 @@ impl Study for BudgetTasks {
             Task::Integral(extent) => self.integral(extent)?.into(),
             Task::Grey => {
                 let grey = self.scene.with_lambertian_hidden().with_mean_albedo();
-                vec![converged(&grey, Kernel::Physical, Extent::FULL)?.phi]
+                vec![converged(&grey, Kernel::Physical, Extent::UNOBSTRUCTED)?.phi]
             }
             Task::Long(k) => {
                 let traced = self.member(&self.long(), k + 1, control)?;

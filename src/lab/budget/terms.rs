@@ -4,6 +4,7 @@ use super::results::Term;
 use super::sizes::Sizes;
 use crate::lab::ensemble::Ensemble;
 use crate::matrix::Matrix;
+use crate::model::Occlusion;
 use crate::model::{Kernel, MatrixModel, ModelError};
 use crate::scene::Scene;
 
@@ -113,7 +114,7 @@ impl Found {
 
 /// The matrix model if every pixel had the mean étendue.
 fn constant_etendue(scene: &Scene) -> Result<Matrix, ModelError> {
-    let model = MatrixModel::new(scene, Kernel::Physical, None)?;
+    let model = MatrixModel::with(scene, Kernel::Physical, None, Occlusion::Ignored)?;
     let camera = scene.camera.position;
     let etendue = |p: usize| {
         let to = scene.camera.footprint(p).at([0.5, 0.5]) - camera;

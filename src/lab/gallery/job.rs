@@ -2,10 +2,11 @@
 
 use super::plan::works_by_directions;
 use crate::lab::objects::{chosen_words, words};
+use crate::lab::problem::problem;
 use crate::matrix::Matrix;
 use crate::model::MatrixModel;
 use crate::recovery::{
-    LaserSide, Method, Options, Parameter, Parts, Problem, RecoveryError, Uncertainty, recover,
+    LaserSide, Method, Options, Parameter, Parts, RecoveryError, Uncertainty, recover,
 };
 
 /// What is done in one go, and the noise that it is done for.
@@ -49,7 +50,7 @@ impl<'s> Outcome<'s> {
         methods: &[Method],
     ) -> Self {
         let found = |side: &'s LaserSide| {
-            let problem = problem(model, phi, stderr)?;
+            let problem = problem(model, phi, Some(stderr))?;
             let choose = |method: &Method| {
                 let chosen = side.automatic(*method, &problem).map_err(|e| e.to_string());
                 let said = chosen.map(|(parameter, choice)| {
@@ -77,7 +78,7 @@ impl<'s> Outcome<'s> {
             uncertainty: Uncertainty::StandardError,
             ..Options::default()
         };
-        match problem(model, phi, stderr).and_then(|p| recover(method, &p, &options)) {
+        match problem(model, phi, Some(stderr)).and_then(|p| recover(method, &p, &options)) {
             Ok(found) => Self::Whole(found.reflectance.as_slice().to_vec(), words(&found)),
             Err(e) => Self::Nothing(e.to_string()),
         }
@@ -107,19 +108,11 @@ impl<'s> Outcome<'s> {
     }
 }
 
-fn problem<'a>(
-    model: &'a MatrixModel,
-    phi: &'a Matrix,
-    stderr: &'a Matrix,
-) -> Result<Problem<'a>, RecoveryError> {
-    Problem::new(phi, &model.camera_side, &model.laser_side, Some(stderr))
-}
-
 /// The laser side of photographs, decomposed.
 pub(super) fn laser_side(
     model: &MatrixModel,
     phi: &Matrix,
     stderr: &Matrix,
 ) -> Result<LaserSide, RecoveryError> {
-    LaserSide::new(&problem(model, phi, stderr)?)
+    LaserSide::new(&problem(model, phi, Some(stderr))?)
 }

@@ -1,5 +1,6 @@
 //! Benches without noise: what is recovered, and the figures that might predict it.
 
+use crate::lab::problem::problem;
 use serde::{Deserialize, Serialize};
 
 use super::projection::Projection;
@@ -7,7 +8,7 @@ use super::sweep::{Arrangement, Site};
 use crate::lab::LabError;
 use crate::metrics::mtf_raw;
 use crate::model::MatrixModel;
-use crate::recovery::{Method, Options, Problem, recover};
+use crate::recovery::{Method, Options, recover};
 
 /// One bench with one object.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -78,7 +79,7 @@ pub(super) fn configurations(
             None => Projection::new(&model)?,
         };
         let phi = model.phi();
-        let problem = Problem::new(&phi, &model.camera_side, &model.laser_side, None)?;
+        let problem = problem(&model, &phi, None)?;
         let recovered = recover(Method::Pinv, &problem, &Options::default())?;
         let mtf = mtf_raw(recovered.reflectance.as_slice(), &model.albedo);
         let projected = mtf_raw(&projection.noiseless(&model), &model.albedo);

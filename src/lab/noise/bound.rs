@@ -1,10 +1,11 @@
 //! What no unbiased recovery undercuts.
 
+use crate::lab::problem::problem;
 use rayon::prelude::*;
 
 use super::stage::Stage;
 use crate::model::MatrixModel;
-use crate::recovery::{Problem, cramer_rao};
+use crate::recovery::cramer_rao;
 
 /// √(tr CRB/r) at each level: the least root mean square error, over elements and draws, of
 /// unbiased recoveries from independent errors of the level's standard error. `None` where there is
@@ -15,8 +16,7 @@ use crate::recovery::{Problem, cramer_rao};
 pub(super) fn bounds(stage: &Stage, model: &MatrixModel, levels: &[f64]) -> Vec<Option<f64>> {
     let bound = |level: f64| {
         let stderr = stage.stderr(level).ok()?;
-        let (c, d) = (&model.camera_side, &model.laser_side);
-        let problem = Problem::new(&stage.exact, c, d, Some(&stderr)).ok()?;
+        let problem = problem(model, &stage.exact, Some(&stderr)).ok()?;
         let errors = cramer_rao(&problem).ok()?.standard_error;
         let mean = errors.norm_squared() / errors.len() as f64;
         mean.is_finite().then(|| mean.sqrt())

@@ -1,5 +1,6 @@
 //! The study in tasks: each one thing misplaced by one size.
 
+use crate::lab::problem::problem;
 use serde::{Deserialize, Serialize};
 
 use super::results::{Misplacement, Sensitivity, Tolerance};
@@ -12,7 +13,7 @@ use crate::matrix::Matrix;
 use crate::metrics::mtf_raw;
 use crate::model::{Extent, Kernel, MatrixModel, ModelError, converged};
 use crate::num::summation::tree_sum;
-use crate::recovery::{Method, Options, Problem, recover};
+use crate::recovery::{Method, Options, recover};
 use crate::scene::Scene;
 use crate::transport::Control;
 
@@ -79,8 +80,7 @@ impl ToleranceTasks {
     fn mtf(&self, bench: &Bench, assumed: &Scene) -> Result<Option<f64>, ModelError> {
         let model = MatrixModel::new(assumed, Kernel::Physical, None)?;
         let recovered = |(phi, stderr): &(Matrix, Matrix)| {
-            let problem =
-                Problem::new(phi, &model.camera_side, &model.laser_side, Some(stderr)).ok()?;
+            let problem = problem(&model, phi, Some(stderr)).ok()?;
             let found = recover(Method::Joint, &problem, &Options::default()).ok()?;
             mtf_raw(found.reflectance.as_slice(), &model.albedo)
         };

@@ -3,7 +3,7 @@
 //! > minimise Σ_pl w_p v_l (Φ\[p,l\] − Σ_j C\[p,j\] ρ_j D\[j,l\])²
 //!
 //! Its matrix has a row for every (pixel, spot) and is the Khatri–Rao (column-wise Kronecker)
-//! product of C̃ = √W C and (D √V)ᵀ = D̃ᵀ. With C̃ = U_c Σ_c V_cᵀ and D̃ = U_d Σ_d V_dᵀ the sum
+//! product of C̃ = √W C and (D √V)ᵀ = D̃ᵀ, summed over the terms of an element where it has several. With C̃ = U_c Σ_c V_cᵀ and D̃ = U_d Σ_d V_dᵀ the sum
 //! above is, but for a constant,
 //!
 //! > Σ_ab (F\[a,b\] − Σ_j (Σ_c V_cᵀ)\[a,j\] (U_d Σ_d)\[j,b\] ρ_j)²,   F = U_cᵀ √W Φ √V V_d,
@@ -23,7 +23,7 @@ use crate::num::linalg::{
     LeastSquares, Route, Svd, Tolerance, Triangle, columns_over, least_squares, normal_triangle,
     product, rows_times, svd_of_range, svd_to, tr_product, triangle,
 };
-use crate::recovery::{Estimated, Options, Problem, RecoveryError, WeightRule, Weighting};
+use crate::recovery::{Estimated, Options, Problem, RecoveryError, Terms, WeightRule, Weighting};
 
 /// Elements whose Gram matrix (and its few copies) is still formed: 512 MiB each.
 const MOST_ELEMENTS: usize = 8192;
@@ -32,6 +32,8 @@ const MOST_ELEMENTS: usize = 8192;
 pub(super) struct Operator {
     form: Form,
     elements: usize,
+    /// The element of each term of the sides.
+    element: Vec<usize>,
     weights: Weights,
     sides: Option<Sides>,
     pub(super) weighting: Weighting,
@@ -124,12 +126,14 @@ fn pairs(t: &DMatrix<f64>, s: &DMatrix<f64>, budget: usize) -> Vec<[usize; 2]> {
 impl Operator {
     /// Weighs, eliminates what is not asked about, and compresses.
     pub(super) fn new(problem: &Problem<'_>, options: &Options) -> Result<Self, RecoveryError> {
-        if problem.c.ncols() > MOST_ELEMENTS {
+        let elements = problem.elements();
+        if elements > MOST_ELEMENTS {
             return Err(RecoveryError::TooManyElements {
-                elements: problem.c.ncols(),
+                elements,
                 most: MOST_ELEMENTS,
             });
         }
+        let (c, d, element) = problem.sides();
         let (pixels, spots) = problem.phi.shape();
         let known = known(problem, options);
         let weights = weights::fit(known, pixels, spots);
@@ -141,7 +145,8 @@ impl Operator {
                     coupled: stacked.coupled,
                     rows: pixels * spots,
                 },
-                elements: problem.c.ncols(),
+                elements,
+                element,
                 sides: None,
                 weighting: match known {
                     Some(_) => Weighting::EntryByEntry,
@@ -156,11 +161,7 @@ impl Operator {
         let by_spot = |m: &DMatrix<f64>| {
             DMatrix::from_fn(m.nrows(), m.ncols(), |j, l| m[(j, l)] * weights.spots[l])
         };
-        let (mut c, mut d, mut phi) = (
-            by_pixel(problem.c),
-            by_spot(problem.d),
-            by_spot(&by_pixel(problem.phi)),
-        );
+        let (mut c, mut d, mut phi) = (by_pixel(c), by_spot(d), by_spot(&by_pixel(problem.phi)));
         let before = (c.norm(), d.norm());
         if problem.nuisance.frame_constant {
             let u = unit(&weights.pixels);
@@ -174,16 +175,19 @@ impl Operator {
         }
         let (camera, rc) = compress(&c, before.0, "camera side C")?;
         let (laser, rd) = compress(&d, before.1, "laser side D")?;
-        let elements = c.ncols();
-        let t = DMatrix::from_fn(rc, elements, |a, j| camera.sigma[a] * camera.vt[(a, j)]);
-        let s = DMatrix::from_fn(elements, rd, |j, b| laser.u[(j, b)] * laser.sigma[b]);
+        let terms = element.len();
+        let t = DMatrix::from_fn(rc, terms, |a, j| camera.sigma[a] * camera.vt[(a, j)]);
+        let s = DMatrix::from_fn(terms, rd, |j, b| laser.u[(j, b)] * laser.sigma[b]);
         let u = camera.u.columns(0, rc).into_owned();
         let v = laser.vt.rows(0, rd).into_owned();
         let pairs = pairs(&t, &s, options.budget);
         let form = if pairs.len().saturating_mul(elements) <= options.budget {
-            let a = DMatrix::from_fn(pairs.len(), elements, |row, j| {
-                t[(pairs[row][0], j)] * s[(j, pairs[row][1])]
-            });
+            let mut a = DMatrix::zeros(pairs.len(), elements);
+            for (term, j) in element.iter().enumerate() {
+                for (row, pair) in pairs.iter().enumerate() {
+                    a[(row, *j)] += t[(pair[0], term)] * s[(term, pair[1])];
+                }
+            }
             let f = product(&tr_product(&u, &phi), &v.transpose());
             Form::Small {
                 a,
@@ -191,8 +195,10 @@ impl Operator {
                 rows: rc * rd,
             }
         } else {
+            let gathered = |m: &DMatrix<f64>| Terms::gathered(&element, m, elements);
             let gram = tr_product(&c, &c).component_mul(&product(&d, &d.transpose()));
-            let along = tr_product(&c, &phi).component_mul(&d);
+            let gram = gathered(&gathered(&gram).transpose());
+            let along = gathered(&tr_product(&c, &phi).component_mul(&d));
             Form::Normal(normal_triangle(
                 &gram,
                 &along.column_sum(),
@@ -202,6 +208,7 @@ impl Operator {
         Ok(Operator {
             form,
             elements,
+            element,
             weighting: weights.weighting,
             weights,
             sides: Some(Sides { u, t, s, v }),
@@ -266,13 +273,13 @@ impl Operator {
             return (self.weighting == Weighting::EntryByEntry)
                 .then(|| DMatrix::identity(solved.rank, solved.rank));
         };
-        let towards = towards(solved);
+        let towards = towards(solved).select_rows(&self.element);
         // T diag(S_b) v_k/s_k of each direction b of the laser side, as columns.
         let (c, k) = (t.nrows(), solved.rank);
         let mut lit = DMatrix::zeros(c * k, s.ncols());
         for (b, mut target) in lit.column_iter_mut().enumerate() {
-            let by_element = rows_times(towards.clone(), s.column(b).iter());
-            target.copy_from_slice(product(t, &by_element).as_slice());
+            let by_term = rows_times(towards.clone(), s.column(b).iter());
+            target.copy_from_slice(product(t, &by_term).as_slice());
         }
         let mut sum = DMatrix::zeros(k, k);
         for l in 0..v.ncols() {

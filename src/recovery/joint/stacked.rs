@@ -51,13 +51,19 @@ pub(super) fn stack(
     root: impl Fn(usize, usize) -> f64,
 ) -> Result<Stacked, RecoveryError> {
     let (pixels, spots) = problem.phi.shape();
-    let elements = problem.c.ncols();
+    let elements = problem.elements();
+    let (c, d, element) = problem.sides();
+    let mut terms: Vec<Vec<usize>> = vec![Vec::new(); elements];
+    element
+        .iter()
+        .enumerate()
+        .for_each(|(s, j)| terms[*j].push(s));
     let nuisance = &problem.nuisance;
     let pattern = |p: usize, l: usize| nuisance.glare.map_or(0.0, |m| m[(p, l)]);
     let data = |p: usize, l: usize, j: usize| {
         root(p, l)
             * if j < elements {
-                problem.c[(p, j)] * problem.d[(j, l)]
+                terms[j].iter().map(|s| c[(p, *s)] * d[(*s, l)]).sum()
             } else {
                 problem.phi[(p, l)]
             }
@@ -96,17 +102,17 @@ pub(super) fn stack(
             coupled: None,
         });
     }
-    let terms = kinds * spots;
-    let mut rows = Rows::new(terms + elements + 1);
+    let own_terms = kinds * spots;
+    let mut rows = Rows::new(own_terms + elements + 1);
     for p in 0..pixels {
         let length = (0..spots).map(|l| root(p, l).powi(2)).sum::<f64>().sqrt();
-        let block = DMatrix::from_fn(spots, 1 + terms + elements + 1, |l, k| match k {
+        let block = DMatrix::from_fn(spots, 1 + own_terms + elements + 1, |l, k| match k {
             0 => root(p, l) / length,
-            k if k <= terms => match ((k - 1) / spots, (k - 1) % spots) {
+            k if k <= own_terms => match ((k - 1) / spots, (k - 1) % spots) {
                 (kind, of) if of == l => own[kind](p, l) / lengths[kind][l],
                 _ => 0.0,
             },
-            k => data(p, l, k - 1 - terms),
+            k => data(p, l, k - 1 - own_terms),
         });
         rows.push(eliminate(&reduce(&block)?.joined(), 1)?.remaining)?;
     }
@@ -114,11 +120,11 @@ pub(super) fn stack(
         remaining,
         inverse,
         top,
-    } = eliminate(&rows.finish()?.joined(), terms)?;
+    } = eliminate(&rows.finish()?.joined(), own_terms)?;
     let mut last = Rows::new(elements + 1);
     last.push(remaining)?;
-    let coupled = (terms > 0).then(|| Coupled {
-        inverse: DMatrix::from_fn(terms, inverse.ncols(), |k, i| {
+    let coupled = (own_terms > 0).then(|| Coupled {
+        inverse: DMatrix::from_fn(own_terms, inverse.ncols(), |k, i| {
             inverse[(k, i)] / lengths[k / spots][k % spots]
         }),
         along: top.columns(0, elements).into_owned(),

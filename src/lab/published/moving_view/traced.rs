@@ -9,10 +9,11 @@ use super::layout::{self, BOARDS, ELEMENTS, HALF_WIDTHS, PIXELS, View, board, sc
 use super::modelled::contrast_error;
 use super::system::System;
 use crate::lab::LabError;
-use crate::lab::{Against, Errors, Integration, Measured, Occlusion, Test, validate};
+use crate::lab::{Against, Errors, Integration, Measured, Test, validate};
 use crate::matrix::Matrix;
 use crate::metrics::{mtf_raw, rmse};
 use crate::model::Kernel;
+use crate::model::Occlusion;
 use crate::recovery::Method;
 use crate::scene::Scene;
 use crate::transport::{Control, Estimator};

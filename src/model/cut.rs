@@ -1,0 +1,190 @@
+//! A scene cut into parts on which the rules of quadrature converge.
+
+use std::f64::consts::FRAC_1_PI;
+
+use super::extent::{Extent, Take};
+use super::kernel::{HiddenPoint, Kernel};
+use super::parts::{Ball, FootprintPart, HiddenParts, footprint_parts};
+use super::wall_point::{self, WallPoint};
+use crate::geometry::Basis;
+use crate::matrix::Matrix;
+use crate::num::quadrature::Rule;
+use crate::scene::{Profile, Scene};
+
+/// Nodes, and pixels, handled at once.
+pub(super) const CHUNK: usize = 4096;
+/// The Gaussian profile is cut at this many of its 1/e² radii, beyond which lies e^−32 of the
+/// power.
+const GAUSSIAN_REACH: f64 = 4.0;
+
+/// How far from its target a spot lights the wall.
+pub(super) fn reach(profile: Profile) -> f64 {
+    match profile {
+        Profile::Ideal => 0.0,
+        Profile::Disc { radius } => radius,
+        Profile::Gaussian { radius } => GAUSSIAN_REACH * radius,
+    }
+}
+
+/// A scene cut into parts on which the rules converge.
+pub(super) struct Cut<'a> {
+    elements: Take,
+    pub(super) hidden: HiddenParts<'a>,
+    /// Of each pixel.
+    footprints: Vec<Vec<FootprintPart>>,
+    spots: usize,
+    profile: Profile,
+}
+
+impl<'a> Cut<'a> {
+    pub(super) fn new(scene: &'a Scene, extent: Extent) -> Self {
+        let profile = match extent.spots {
+            Take::Centre => Profile::Ideal,
+            Take::Integral => scene.laser.profile,
+        };
+        let reach = reach(profile);
+        let footprint = |p| match extent.footprints {
+            Take::Centre => vec![FootprintPart::centre(scene, p)],
+            Take::Integral => footprint_parts(scene, p),
+        };
+        let footprints: Vec<_> = (0..scene.camera.pixels()).map(footprint).collect();
+        let spots = scene.laser.spots.iter().map(|s| Ball {
+            middle: s.target.position,
+            radius: reach,
+        });
+        let near: Vec<Ball> = footprints
+            .iter()
+            .flatten()
+            .map(|p| p.ball)
+            .chain(spots)
+            .collect();
+        Self {
+            elements: extent.elements,
+            hidden: HiddenParts::new(scene, &near),
+            footprints,
+            spots: scene.laser.spots.len(),
+            profile,
+        }
+    }
+
+    /// Connections between wall points and hidden points at `level`.
+    pub(super) fn connections(&self, level: usize) -> f64 {
+        let seen = self.footprints.iter().flatten();
+        let seen: usize = seen.map(|part| part.nodes(level).count()).sum();
+        let lit = self.spots * profile_nodes(self.profile, 2 + 2 * level).len();
+        self.hidden.count(level) as f64 * (seen + lit) as f64
+    }
+
+    /// The wall as each pixel sees it, at `level`.
+    pub(super) fn seen(&self, scene: &Scene, level: usize) -> Vec<Vec<WallPoint>> {
+        let seen = |p: usize| {
+            let nodes = self.footprints[p].iter().flat_map(|part| part.nodes(level));
+            nodes
+                .map(|(ab, w)| wall_point::seen(scene, p, ab, w))
+                .collect()
+        };
+        (0..self.footprints.len()).map(seen).collect()
+    }
+
+    /// The wall as each spot lights it, at `level`.
+    pub(super) fn lit(&self, scene: &Scene, level: usize) -> Vec<Vec<WallPoint>> {
+        let offsets = profile_nodes(self.profile, 2 + 2 * level);
+        let lit = |l: usize| {
+            let basis = Basis::around(scene.laser.spots[l].target.normal);
+            let lit = |([x, y], w): &([f64; 2], f64)| {
+                wall_point::lit(scene, l, basis.to_world([*x, *y, 0.0]), *w)
+            };
+            offsets.iter().map(lit).collect()
+        };
+        (0..self.spots).map(lit).collect()
+    }
+
+    /// One quadrature: Φ = Σ_q C\[p,q\]·D\[q,l\] over the nodes q of the hidden surfaces, in
+    /// chunks.
+    pub(super) fn integrate(&self, scene: &Scene, kernel: Kernel, level: usize) -> Matrix {
+        let (seen, lit) = (self.seen(scene, level), self.lit(scene, level));
+        let side = |walls: &[WallPoint], point| {
+            walls
+                .iter()
+                .map(|w| w.towards(scene, kernel, point))
+                .sum::<f64>()
+        };
+        let hidden = match self.elements {
+            Take::Centre => elements(scene),
+            Take::Integral => self.hidden.nodes(level),
+        };
+        let mut phi = Matrix::zeros(seen.len(), lit.len());
+        for chunk in hidden.chunks(CHUNK) {
+            let laser = Matrix::from_fn(chunk.len(), lit.len(), |q, l| {
+                chunk[q].1 * side(&lit[l], &chunk[q].0)
+            });
+            for (strip, seen) in seen.chunks(CHUNK).enumerate() {
+                let camera =
+                    Matrix::from_fn(seen.len(), chunk.len(), |p, q| side(&seen[p], &chunk[q].0));
+                let mut rows = phi.rows_mut(strip * CHUNK, seen.len());
+                rows.gemm(1.0, &camera, &laser, 1.0);
+            }
+        }
+        phi
+    }
+}
+
+/// The middles of the scene's elements with area · albedo/π.
+fn elements(scene: &Scene) -> Vec<(HiddenPoint, f64)> {
+    let all = scene.hidden().flat_map(|(_, s)| s.divided(s.elements));
+    let light = all.filter(|e| e.albedo > 0.0 && e.area > 0.0);
+    light
+        .map(|e| (HiddenPoint::from(&e), e.area * e.albedo * FRAC_1_PI))
+        .collect()
+}
+
+/// Offsets in the wall's plane and shares of the power; the shares add up to 1 (a Gaussian's to 1 −
+/// e^−32).
+fn profile_nodes(profile: Profile, n: usize) -> Vec<([f64; 2], f64)> {
+    let (reach, gaussian) = match profile {
+        Profile::Ideal => return vec![([0.0, 0.0], 1.0)],
+        Profile::Disc { radius } => (radius, None),
+        Profile::Gaussian { radius } => (GAUSSIAN_REACH * radius, Some(radius)),
+    };
+    // Radially Gauss–Legendre in r, with r dr; around the circle the trapezoidal rule, exact for
+    // low orders.
+    let (radial, around) = (if gaussian.is_some() { 4 * n } else { n }, 2 * n);
+    let mut nodes = Vec::with_capacity(radial * around);
+    for (r, w) in Rule::gauss_legendre(radial).on(0.0, reach) {
+        let share = match gaussian {
+            None => w * 2.0 * r / (reach * reach),
+            Some(radius) => {
+                let x = r / radius;
+                w * 4.0 * x / radius * libm::exp(-2.0 * x * x)
+            }
+        };
+        for k in 0..around {
+            let (sin, cos) = libm::sincos(std::f64::consts::TAU * (k as f64 + 0.5) / around as f64);
+            nodes.push(([r * cos, r * sin], share / around as f64));
+        }
+    }
+    nodes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// ∫ dP = 1 and ∫ r² dP = ½R² (disc), ½w² (Gaussian of 1/e² radius w).
+    #[test]
+    fn profiles_have_their_moments() {
+        for (profile, second) in [
+            (Profile::Disc { radius: 0.25 }, 0.5 * 0.0625),
+            (Profile::Gaussian { radius: 0.25 }, 0.5 * 0.0625),
+        ] {
+            let nodes = profile_nodes(profile, 8);
+            let total: f64 = nodes.iter().map(|(_, w)| w).sum();
+            let moment: f64 = nodes.iter().map(|([x, y], w)| w * (x * x + y * y)).sum();
+            assert!((total - 1.0).abs() < 1e-10, "{profile:?}: {total}");
+            assert!(
+                (moment / second - 1.0).abs() < 1e-10,
+                "{profile:?}: {moment}"
+            );
+        }
+    }
+}

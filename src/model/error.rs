@@ -1,0 +1,26 @@
+//! Why a scene has no matrix model.
+
+use crate::num::linalg::LinalgError;
+
+/// Why a scene has no matrix model.
+#[derive(Debug, thiserror::Error, PartialEq)]
+pub enum ModelError {
+    /// Nothing is hidden.
+    #[error(
+        "the scene has no hidden surface, so there is no matrix model (give one surface role = \"hidden\")"
+    )]
+    NothingHidden,
+    /// The matrices would be absurdly large.
+    #[error(
+        "{elements} elements make matrices of {entries:e} entries (use fewer elements, pixels or spots)"
+    )]
+    TooLarge {
+        /// Elements asked for.
+        elements: usize,
+        /// Entries of all matrices.
+        entries: f64,
+    },
+    /// The terms of an element cannot be found.
+    #[error(transparent)]
+    Linalg(#[from] LinalgError),
+}

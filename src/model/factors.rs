@@ -1,0 +1,251 @@
+//! The three-bounce integral of each element past what stands in the way, as few products.
+
+use rayon::prelude::*;
+
+use super::cut::Cut;
+use super::error::ModelError;
+use super::extent::Extent;
+use super::kernel::Kernel;
+use super::occlusion::{Both, Obstructed};
+use super::parts::{HiddenCell, cells_of_elements};
+use super::wall_point::WallPoint;
+use crate::geometry::ShapeId;
+use crate::matrix::Matrix;
+use crate::num::linalg::svd;
+use crate::scene::{Scene, Surface};
+
+/// Element j's light between every spot and every pixel where something stands in the way:
+///
+/// > A_j\[p,l\] = ∫_j c_p(x) d_l(x) dA/π = Σ_s camera\[p,s\] laser\[s,l\],   s over the terms of j.
+///
+/// Without obstacles c and d hardly vary over an element and one term does, C\[p,j\] D\[j,l\]; past an
+/// edge both jump, and the mean of the product is not the product of the means.
+#[derive(Clone, Debug)]
+pub struct Factors {
+    /// Pixels × terms.
+    pub camera: Matrix,
+    /// Terms × spots; with `camera` W.
+    pub laser: Matrix,
+    /// The element of each term, ascending.
+    pub element: Vec<usize>,
+    /// Relative Frobenius norm of what the last halving of the cells changed in all A_j.
+    pub change: f64,
+    /// Cells of the hidden surfaces in the last step.
+    pub cells: usize,
+}
+
+/// How one hidden surface is divided.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ElementGrid {
+    /// Name of the surface.
+    pub surface: String,
+    /// Elements along u and v.
+    pub count: [usize; 2],
+    /// Index of its first element; element iu + iv·nu follows by that much.
+    pub first: usize,
+}
+
+impl ElementGrid {
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        self.count[0] * self.count[1]
+    }
+
+    /// Whether it has none (it never has).
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// Visible shares of C (pixels × elements) and D (elements × spots), each weighted by the kernel over
+/// the areas of both ends; 1 where no light arrives in any case.
+pub(super) type Shares = [Matrix; 2];
+
+/// Relative change below which no finer cells are tried; the next halving would change a fourth.
+const TARGET: f64 = 1e-3;
+/// Terms less than this share of an element's largest are left out.
+const NEGLIGIBLE: f64 = 1e-6;
+/// Level of the rules on spots, and on footprints where nothing is in the way.
+const LEVEL: usize = 1;
+
+/// The factors of the elements, cells of them cut in four until all A_j together change by less than
+/// 1e-3, or there are 1e8 pairs of cells with pixels and spots.
+///
+/// # Errors
+/// [`ModelError::Linalg`].
+pub(super) fn factors(
+    scene: &Scene,
+    kernel: Kernel,
+    obstacles: &[ShapeId],
+    grids: &[ElementGrid],
+) -> Result<(Factors, Shares), ModelError> {
+    let cut = Cut::new(scene, Extent::UNOBSTRUCTED);
+    let lit = cut.lit(scene, LEVEL);
+    let walls = scene.camera.pixels() + lit.iter().map(Vec::len).sum::<usize>();
+    let past = Past {
+        scene,
+        kernel,
+        footprints: cut.seen(scene, LEVEL),
+        occlusion: Obstructed::new(scene, kernel, obstacles, lit),
+    };
+    let hidden: Vec<(usize, &Surface)> = scene.hidden().collect();
+    let mut before: Option<Vec<Own>> = None;
+    for halvings in 1.. {
+        let each = hidden.iter().zip(grids);
+        let of: Vec<Vec<HiddenCell>> = each
+            .flat_map(|(surface, grid)| cells_of_elements(*surface, grid.count, halvings))
+            .collect();
+        let cells: usize = of.iter().map(Vec::len).sum();
+        let now = of.par_iter().map(|cells| past.own(cells));
+        let now: Vec<Own> = now.collect::<Result<_, ModelError>>()?;
+        let exhausted = 4.0 * (cells * walls) as f64 > past.occlusion.most_pairs();
+        if let Some(change) = before.as_ref().map(|before| moved(before, &now))
+            && (exhausted || change < TARGET)
+        {
+            return Ok(joined(&now, change, cells));
+        }
+        before = Some(now);
+    }
+    unreachable!("every halving brings the end nearer")
+}
+
+/// An element's terms, and its light without and with what stands in the way, summed over its cells.
+struct Own {
+    camera: Matrix,
+    laser: Matrix,
+    /// By pixel.
+    seen: Vec<Both>,
+    /// By spot.
+    lit: Vec<Both>,
+}
+
+/// The scene past what stands in the way.
+struct Past<'a> {
+    scene: &'a Scene,
+    kernel: Kernel,
+    /// Of each pixel.
+    footprints: Vec<Vec<WallPoint>>,
+    occlusion: Obstructed<'a>,
+}
+
+impl Past<'_> {
+    /// Of the element that these cells make up.
+    fn own(&self, cells: &[HiddenCell]) -> Result<Own, ModelError> {
+        let (pixels, spots) = (self.occlusion.pixels(), self.occlusion.spots());
+        let camera: Vec<Vec<Both>> = cells.iter().map(|c| self.occlusion.camera(c)).collect();
+        let laser: Vec<Vec<Both>> = (0..spots).map(|l| self.occlusion.laser(l, cells)).collect();
+        let add = |[a, b]: Both, [x, y]: Both| [a + x, b + y];
+        let seen = |p: usize| {
+            let each = cells.iter().zip(&camera);
+            let each = each.map(|(cell, seen)| seen[p].map(|x| x * cell.area));
+            each.fold([0.0; 2], add)
+        };
+        let lit = |l: usize| laser[l].iter().copied().fold([0.0; 2], add);
+        // Where nothing hides a footprint its rule holds, not its middle.
+        let middle = cells.len() / 2;
+        let by_rule = |p: usize| {
+            let towards = |w: &WallPoint| w.towards(self.scene, self.kernel, &cells[middle].point);
+            match camera[middle][p][0] {
+                0.0 => 1.0,
+                by_middle => self.footprints[p].iter().map(towards).sum::<f64>() / by_middle,
+            }
+        };
+        let ratio: Vec<f64> = if cells.is_empty() {
+            Vec::new()
+        } else {
+            (0..pixels).map(by_rule).collect()
+        };
+        let c = Matrix::from_fn(pixels, cells.len(), |p, q| ratio[p] * camera[q][p][1]);
+        let d = Matrix::from_fn(cells.len(), spots, |q, l| laser[l][q][1]);
+        let (camera, laser) = compressed(&c, &d)?;
+        Ok(Own {
+            camera,
+            laser,
+            seen: (0..pixels).map(seen).collect(),
+            lit: (0..spots).map(lit).collect(),
+        })
+    }
+}
+
+/// ‖A′ − A‖/‖A′‖ over all elements.
+fn moved(before: &[Own], now: &[Own]) -> f64 {
+    // ⟨C D, C′ D′⟩ = ⟨CᵀC′, D D′ᵀ⟩.
+    let dot = |a: &Own, b: &Own| {
+        a.camera
+            .tr_mul(&b.camera)
+            .dot(&(&a.laser * b.laser.transpose()))
+    };
+    let each = before.iter().zip(now);
+    let change: f64 = each
+        .map(|(a, b)| dot(a, a) - 2.0 * dot(a, b) + dot(b, b))
+        .sum();
+    let whole: f64 = now.iter().map(|b| dot(b, b)).sum();
+    (change.max(0.0) / whole.max(f64::MIN_POSITIVE)).sqrt()
+}
+
+fn joined(all: &[Own], change: f64, cells: usize) -> (Factors, Shares) {
+    let share = |[all, left]: Both| if all > 0.0 { left / all } else { 1.0 };
+    let (pixels, spots) = all
+        .first()
+        .map_or((0, 0), |own| (own.seen.len(), own.lit.len()));
+    let shares = [
+        Matrix::from_fn(pixels, all.len(), |p, j| share(all[j].seen[p])),
+        Matrix::from_fn(all.len(), spots, |j, l| share(all[j].lit[l])),
+    ];
+    let terms = |j: usize| all[j].laser.nrows();
+    let element: Vec<usize> = (0..all.len())
+        .flat_map(|j| std::iter::repeat_n(j, terms(j)))
+        .collect();
+    let mut camera = Matrix::zeros(pixels, element.len());
+    let mut laser = Matrix::zeros(element.len(), spots);
+    let mut at = 0;
+    for own in all {
+        let count = own.laser.nrows();
+        camera.columns_mut(at, count).copy_from(&own.camera);
+        laser.rows_mut(at, count).copy_from(&own.laser);
+        at += count;
+    }
+    let factors = Factors {
+        camera,
+        laser,
+        element,
+        change,
+        cells,
+    };
+    (factors, shares)
+}
+
+impl Factors {
+    /// Σ_j ρ_j A_j, pixels × spots, W.
+    pub fn phi(&self, albedo: &[f64]) -> Matrix {
+        let mut lit = self.laser.clone();
+        for (mut row, j) in lit.row_iter_mut().zip(&self.element) {
+            row *= albedo[*j];
+        }
+        &self.camera * lit
+    }
+}
+
+/// C D with as few terms as carry it: D = U Σ Vᵀ, C U Σ = U′ Σ′ V′ᵀ, C D = (U′ Σ′)(V′ᵀ Vᵀ).
+fn compressed(c: &Matrix, d: &Matrix) -> Result<(Matrix, Matrix), ModelError> {
+    let nothing = (Matrix::zeros(c.nrows(), 0), Matrix::zeros(0, d.ncols()));
+    if c.amax() == 0.0 || d.amax() == 0.0 {
+        return Ok(nothing);
+    }
+    let kept = |sigma: &[f64]| {
+        sigma
+            .iter()
+            .take_while(|s| **s > NEGLIGIBLE * sigma[0])
+            .count()
+    };
+    let right = svd(d)?;
+    let n = kept(right.sigma.as_slice());
+    let scaled = Matrix::from_fn(d.nrows(), n, |q, k| right.u[(q, k)] * right.sigma[k]);
+    let left = svd(&(c * scaled))?;
+    if left.sigma[0] == 0.0 {
+        return Ok(nothing);
+    }
+    let r = kept(left.sigma.as_slice());
+    let camera = Matrix::from_fn(c.nrows(), r, |p, k| left.u[(p, k)] * left.sigma[k]);
+    Ok((camera, left.vt.rows(0, r) * right.vt.rows(0, n)))
+}

@@ -1,0 +1,471 @@
+//! The two sides of the three-bounce integral past what stands in the way.
+//!
+//! > c_p(x) = ∫_p f_r3 G(x, w) V(x, w) dE(w),   d_l(x) = ∫_l f_r1 G(x, w) V(x, w) dΦ(w),
+//! > Φ\[p,l\] = ∫ c_p(x) (ρ(x)/π) d_l(x) dA
+//!
+//! Of a flat wall what the camera sees of a pixel's footprint, and of that what x sees, are convex
+//! pieces, found exactly ([`Shadow`]); each is taken at its centroid. So is what a lit point sees of
+//! a flat cell of the hidden surface. Other walls, cells and large meshes are asked ray by ray.
+
+use super::cut::reach;
+use super::kernel::{HiddenPoint, Kernel};
+use super::parts::{FootprintPart, HiddenCell, footprint_parts};
+use super::wall_point::{self, WallPoint};
+use crate::geometry::{
+    Blockers, DVec3, Hidden, Opaque, Pieces, Polygon, Ray, Region, ShapeId, area_and_middle,
+};
+use crate::scene::Scene;
+
+/// Light with nothing in the way, and past what is.
+pub(super) type Both = [f64; 2];
+
+/// A part of a footprint on the wall.
+struct Patch {
+    /// All of it, at its middle.
+    whole: WallPoint,
+    /// Its corners, where the wall is flat.
+    corners: Option<Polygon>,
+    /// What the camera sees of it,
+    seen: Vec<Polygon>,
+    /// and whether that is all; of a wall that is not flat whether it sees the middle.
+    open: bool,
+}
+
+/// Pixels of a rectangle of the photograph, with points whose convex hull holds their footprints.
+struct Block {
+    hull: Vec<DVec3>,
+    columns: std::ops::Range<usize>,
+    rows: std::ops::Range<usize>,
+    /// The two halves, unless it is one pixel.
+    halves: Option<[usize; 2]>,
+    /// Whether the wall is flat and the camera sees all of it.
+    open: bool,
+}
+
+/// A scene ready to be asked.
+pub(super) struct Obstructed<'a> {
+    scene: &'a Scene,
+    kernel: Kernel,
+    opaque: Opaque,
+    pixels: Vec<Vec<Patch>>,
+    blocks: Vec<Block>,
+    /// Of each spot, each with whether the laser reaches it.
+    lit: Vec<Vec<(WallPoint, bool)>>,
+}
+
+/// Shapes that may stand between what the camera sees of the wall, or a spot, and a hidden surface or
+/// the device.
+pub(super) fn obstacles(scene: &Scene) -> Vec<ShapeId> {
+    let shapes = scene.bvh().shapes();
+    let around = |(id, _): (usize, &_)| (Some(id as ShapeId), Region::around(&shapes[id]));
+    let device = |p: DVec3| (None, Region::point(p));
+    let hidden: Vec<End> = scene.hidden().map(around).collect();
+    let spots = scene.laser.spots.iter().map(|spot| {
+        let reach = reach(scene.laser.profile);
+        let at = spot.target.position;
+        let corners = hull([at - DVec3::splat(reach), at + DVec3::splat(reach)].into_iter());
+        (Some(spot.surface), Region::flat(corners))
+    });
+    let lit: Vec<End> = spots.collect();
+    let seen = seen_walls(scene).unwrap_or_else(|| scene.relays().map(around).collect());
+    let may = |id: &ShapeId| {
+        let between = |(s, a): &End, (t, b): &End| scene.bvh().may_block(*id, a, b, [*s, *t]);
+        let any = |walls: &[End], from: DVec3| {
+            let from = device(from);
+            let own = |wall: &End| {
+                between(wall, &from) || hidden.iter().any(|surface| between(wall, surface))
+            };
+            walls.iter().any(own)
+        };
+        any(&seen, scene.camera.position) || any(&lit, scene.laser.position)
+    };
+    (0..shapes.len() as ShapeId).filter(may).collect()
+}
+
+/// A region of a surface, or a device.
+type End = (Option<ShapeId>, Region);
+
+/// What the camera sees of one flat wall, if it sees nothing else.
+fn seen_walls(scene: &Scene) -> Option<Vec<End>> {
+    let camera = &scene.camera;
+    let (right, last) = (camera.columns - 1, camera.pixels() - 1);
+    let rim = [
+        (0, [0.0, 0.0]),
+        (right, [1.0, 0.0]),
+        (last, [1.0, 1.0]),
+        (last - right, [0.0, 1.0]),
+    ];
+    let rim = rim.map(|(p, ab)| wall_point::seen(scene, p, ab, 1.0));
+    let id = rim[0].surface?;
+    let one = scene.surfaces[id as usize].shape.is_flat();
+    let same = rim.iter().all(|w| w.surface == Some(id));
+    let middle = wall_point::seen(scene, last / 2, [0.5; 2], 1.0).surface == Some(id);
+    (one && same && middle && scene.relays().count() == 1)
+        .then(|| vec![(Some(id), Region::flat(rim.map(|w| w.position).to_vec()))])
+}
+
+impl<'a> Obstructed<'a> {
+    /// `lit`: the wall points of each spot.
+    pub(super) fn new(
+        scene: &'a Scene,
+        kernel: Kernel,
+        obstacles: &[ShapeId],
+        lit: Vec<Vec<WallPoint>>,
+    ) -> Self {
+        let opaque = Opaque::new(scene.bvh(), |id| obstacles.contains(&id));
+        let hidden = opaque.from(scene.camera.position, None, scene.bvh());
+        let pixel = |p| {
+            let parts = footprint_parts(scene, p);
+            parts
+                .iter()
+                .map(|part| Patch::new(scene, p, part, &hidden))
+                .collect()
+        };
+        let pixels: Vec<Vec<Patch>> = (0..scene.camera.pixels()).map(pixel).collect();
+        let laser = |w: WallPoint| {
+            let ray = Ray::between(scene.laser.position, w.position);
+            let free = ray.is_some_and(|ray| !scene.bvh().blocked(&ray, [None, w.surface]));
+            (w, free)
+        };
+        let lit = lit
+            .into_iter()
+            .map(|spot| spot.into_iter().map(laser).collect());
+        let mut found = Self {
+            scene,
+            kernel,
+            opaque,
+            pixels,
+            blocks: Vec::new(),
+            lit: lit.collect(),
+        };
+        found.add_block(0..scene.camera.columns, 0..scene.camera.rows);
+        found
+    }
+
+    fn add_block(
+        &mut self,
+        columns: std::ops::Range<usize>,
+        rows: std::ops::Range<usize>,
+    ) -> usize {
+        let all = rows
+            .clone()
+            .flat_map(|row| columns.clone().map(move |c| (c, row)));
+        let patches: Vec<&Patch> = all
+            .flat_map(|(c, row)| &self.pixels[c + row * self.scene.camera.columns])
+            .collect();
+        let points = |p: &&Patch| p.corners.clone().unwrap_or_else(|| vec![p.whole.position]);
+        let at = self.blocks.len();
+        let block = Block {
+            hull: hull(patches.iter().flat_map(points)),
+            open: patches.iter().all(|p| p.open && p.corners.is_some()),
+            columns: columns.clone(),
+            rows: rows.clone(),
+            halves: None,
+        };
+        self.blocks.push(block);
+        let middle = |r: &std::ops::Range<usize>| r.start + r.len() / 2;
+        if columns.len() * rows.len() > 1 {
+            let [first, second] = if columns.len() >= rows.len() {
+                let m = middle(&columns);
+                [(columns.start..m, rows.clone()), (m..columns.end, rows)]
+            } else {
+                let m = middle(&rows);
+                [(columns.clone(), rows.start..m), (columns, m..rows.end)]
+            };
+            let halves = [
+                self.add_block(first.0, first.1),
+                self.add_block(second.0, second.1),
+            ];
+            self.blocks[at].halves = Some(halves);
+        }
+        at
+    }
+
+    /// Number of spots.
+    pub(super) fn spots(&self) -> usize {
+        self.lit.len()
+    }
+
+    /// Number of pixels.
+    pub(super) fn pixels(&self) -> usize {
+        self.pixels.len()
+    }
+
+    /// Pairs of a cell and a pixel, or a point of a spot, that are worth looking at.
+    pub(super) fn most_pairs(&self) -> f64 {
+        let mut patches = self.pixels.iter().flatten();
+        let by_rays = self.opaque.has_meshes() || patches.any(|p| p.corners.is_none());
+        if by_rays { 1e7 } else { 1e8 }
+    }
+
+    /// What each pixel sees of a cell's middle: c_p.
+    pub(super) fn camera(&self, cell: &HiddenCell) -> Vec<Both> {
+        let whole = |patches: &Vec<Patch>| {
+            let light = |p: &Patch| p.whole.towards(self.scene, self.kernel, &cell.point);
+            let all: f64 = patches.iter().map(light).sum();
+            [all, all]
+        };
+        let origin = cell.point.position;
+        let hidden = self
+            .opaque
+            .from(origin, Some(cell.surface), self.scene.bvh());
+        let mut visit = Visit {
+            cell,
+            met: (0..hidden.shadows.len()).collect(),
+            hidden,
+            found: self.pixels.iter().map(whole).collect(),
+            pieces: Pieces::default(),
+        };
+        self.visit(0, 0, &mut visit);
+        visit.found
+    }
+
+    /// A block of pixels, of which the shadows `met[first..]` may take something.
+    fn visit(&self, block: usize, first: usize, visit: &mut Visit<'_>) {
+        let block = &self.blocks[block];
+        let own = visit.met.len();
+        for k in first..own {
+            let shadow = visit.met[k];
+            if !visit.hidden.shadows[shadow].misses(&block.hull) {
+                visit.met.push(shadow);
+            }
+        }
+        let met = &visit.met[own..];
+        let shadows = &visit.hidden.shadows;
+        if met.iter().any(|s| shadows[*s].covers(&block.hull)) {
+            for row in block.rows.clone() {
+                let first = row * self.scene.camera.columns;
+                let own = first + block.columns.start..first + block.columns.end;
+                visit.found[own].iter_mut().for_each(|both| both[1] = 0.0);
+            }
+        } else if !met.is_empty() || !block.open || !visit.hidden.asked(&block.hull).none() {
+            match block.halves {
+                Some(halves) => halves.iter().for_each(|half| self.visit(*half, own, visit)),
+                None => {
+                    let p = block.columns.start + block.rows.start * self.scene.camera.columns;
+                    let patches = self.pixels[p].iter();
+                    let left = patches.map(|patch| self.seen_past(patch, own, visit)).sum();
+                    visit.found[p][1] = left;
+                }
+            }
+        }
+        visit.met.truncate(own);
+    }
+
+    /// What a patch of the wall sends past everything.
+    fn seen_past(&self, patch: &Patch, first: usize, visit: &mut Visit<'_>) -> f64 {
+        let Visit {
+            cell,
+            hidden,
+            met,
+            pieces,
+            ..
+        } = visit;
+        let towards = |w: &WallPoint| w.towards(self.scene, self.kernel, &cell.point);
+        let whole = towards(&patch.whole);
+        let (Some(wall), true) = (patch.whole.surface, whole != 0.0) else {
+            return 0.0;
+        };
+        let to = (cell.surface, cell.point.position);
+        let Some(corners) = &patch.corners else {
+            let open = patch.open && self.is_free(patch.whole.position, to, wall, &Blockers::Any);
+            return if open { whole } else { 0.0 };
+        };
+        let asked = hidden.asked(corners);
+        pieces.of(patch.seen.iter().map(Vec::as_slice));
+        let mut open = patch.open && asked.none();
+        for shadow in met[first..].iter().map(|s| &hidden.shadows[*s]) {
+            if !shadow.misses(corners) {
+                pieces.cut(shadow);
+                open = false;
+            }
+        }
+        if open {
+            return whole;
+        }
+        let light = |(area, middle): (f64, DVec3)| {
+            if area > 0.0 && self.is_free(middle, to, wall, &asked) {
+                towards(&wall_point::seen_piece(self.scene, wall, middle, area))
+            } else {
+                0.0
+            }
+        };
+        pieces.iter().map(|piece| over(piece, &asked, light)).sum()
+    }
+
+    /// Whether nothing of `blockers` stands between a point of the first surface and the place on the
+    /// other.
+    fn is_free(
+        &self,
+        from: DVec3,
+        to: (ShapeId, DVec3),
+        wall: ShapeId,
+        blockers: &Blockers,
+    ) -> bool {
+        blockers.none()
+            || Ray::between(from, to.1).is_some_and(|ray| {
+                let ends = [Some(wall), Some(to.0)];
+                !self.scene.bvh().blocked_by(blockers, &ray, ends)
+            })
+    }
+
+    /// What arrives of spot `spot` on each of the cells: d_l times the cell's area/π.
+    pub(super) fn laser(&self, spot: usize, cells: &[HiddenCell]) -> Vec<Both> {
+        let mut found = vec![[0.0; 2]; cells.len()];
+        let mut pieces = Pieces::default();
+        for (wall, free) in &self.lit[spot] {
+            let hidden = self
+                .opaque
+                .from(wall.position, wall.surface, self.scene.bvh());
+            for (both, cell) in found.iter_mut().zip(cells) {
+                let all = wall.towards(self.scene, self.kernel, &cell.point) * cell.area;
+                both[0] += all;
+                if *free && all != 0.0 {
+                    both[1] += self.lit_past(wall, &hidden, cell, all, &mut pieces);
+                }
+            }
+        }
+        found
+    }
+
+    /// What of `all` arrives on a cell past everything.
+    fn lit_past(
+        &self,
+        wall: &WallPoint,
+        hidden: &Hidden,
+        cell: &HiddenCell,
+        all: f64,
+        pieces: &mut Pieces,
+    ) -> f64 {
+        let Some(id) = wall.surface else { return 0.0 };
+        let is_free =
+            |to, blockers: &Blockers| self.is_free(wall.position, (cell.surface, to), id, blockers);
+        let Some(corners) = &cell.corners else {
+            let free = is_free(cell.point.position, &Blockers::Any);
+            return if free { all } else { 0.0 };
+        };
+        let asked = hidden.asked(corners);
+        pieces.of([&**corners]);
+        let mut open = asked.none();
+        for shadow in hidden.shadows.iter().filter(|s| !s.misses(corners)) {
+            pieces.cut(shadow);
+            open = false;
+        }
+        if open {
+            return all;
+        }
+        let (whole, _) = area_and_middle(corners);
+        let light = |(area, middle): (f64, DVec3)| {
+            if area == 0.0 || !is_free(middle, &asked) {
+                return 0.0;
+            }
+            let point = HiddenPoint {
+                position: middle,
+                ..cell.point
+            };
+            wall.towards(self.scene, self.kernel, &point) * cell.area * (area / whole)
+        };
+        pieces.iter().map(|piece| over(piece, &asked, light)).sum()
+    }
+}
+
+/// What is needed to find the light of all pixels on one cell.
+struct Visit<'a> {
+    cell: &'a HiddenCell,
+    hidden: Hidden,
+    /// Indices of shadows: of each block on the way down those that its parent's may meet.
+    met: Vec<usize>,
+    found: Vec<Both>,
+    pieces: Pieces,
+}
+
+impl Patch {
+    fn new(scene: &Scene, pixel: usize, part: &FootprintPart, hidden: &Hidden) -> Self {
+        let ([a, b], side) = (part.from, part.side);
+        let at = |[x, y]: [f64; 2]| {
+            let ab = [a + x * side, b + y * side];
+            wall_point::seen(scene, pixel, ab, side * side)
+        };
+        let whole = at([0.5; 2]);
+        let rim = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(at);
+        let is_flat = |id: ShapeId| scene.surfaces[id as usize].shape.is_flat();
+        let free = |to: DVec3, blockers: &Blockers| {
+            let ray = Ray::between(scene.camera.position, to);
+            let ends = [None, whole.surface];
+            ray.is_some_and(|ray| !scene.bvh().blocked_by(blockers, &ray, ends))
+        };
+        if !whole.surface.is_some_and(is_flat) || rim.iter().any(|w| w.surface != whole.surface) {
+            return Self {
+                corners: None,
+                seen: Vec::new(),
+                open: free(whole.position, &Blockers::Any),
+                whole,
+            };
+        }
+        let corners = rim.map(|w| w.position).to_vec();
+        let asked = hidden.asked(&corners);
+        let mut pieces = Pieces::default();
+        pieces.of([&*corners]);
+        let mut open = asked.none();
+        for shadow in hidden.shadows.iter().filter(|s| !s.misses(&corners)) {
+            pieces.cut(shadow);
+            open = false;
+        }
+        let mut seen: Vec<Polygon> = pieces.iter().map(<[DVec3]>::to_vec).collect();
+        if !asked.none() {
+            seen = seen.iter().flat_map(|p| triangles(p)).collect();
+            seen.retain(|piece| free(area_and_middle(piece).1, &asked));
+        }
+        Self {
+            whole,
+            corners: Some(corners),
+            seen,
+            open,
+        }
+    }
+}
+
+/// A convex figure in triangles, each in four.
+fn triangles(figure: &[DVec3]) -> Vec<Polygon> {
+    let Some(first) = figure.first() else {
+        return Vec::new();
+    };
+    let fan = figure[1..]
+        .windows(2)
+        .map(|pair| [*first, pair[0], pair[1]]);
+    fan.flat_map(|[a, b, c]| {
+        let [p, q, r] = [(a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5];
+        [vec![a, p, r], vec![p, b, q], vec![r, q, c], vec![p, q, r]]
+    })
+    .collect()
+}
+
+/// The light of a piece by its area and middle; of its triangles where something has to be asked ray
+/// by ray.
+fn over(piece: &[DVec3], asked: &Blockers, light: impl Fn((f64, DVec3)) -> f64) -> f64 {
+    if asked.none() {
+        light(area_and_middle(piece))
+    } else {
+        let parts = triangles(piece);
+        parts.iter().map(|t| light(area_and_middle(t))).sum()
+    }
+}
+
+/// Corners of the axis-aligned box around points: a hull of them.
+fn hull(points: impl Iterator<Item = DVec3>) -> Vec<DVec3> {
+    let (low, high) = points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
+        (low.min(p), high.max(p))
+    });
+    let corner = |k: usize| {
+        let pick = |d: usize| if k >> d & 1 == 0 { low[d] } else { high[d] };
+        DVec3::new(pick(0), pick(1), pick(2))
+    };
+    let mut corners: Vec<DVec3> = Vec::with_capacity(8);
+    for k in 0..8 {
+        let corner = corner(k);
+        if !corners.contains(&corner) {
+            corners.push(corner);
+        }
+    }
+    corners
+}
