@@ -219,6 +219,26 @@ pub fn area_and_middle(figure: &[DVec3]) -> (f64, DVec3) {
     }
 }
 
+/// Triangles as figures: of two that follow each other and make up a parallelogram, that.
+fn figures(triangles: Vec<[DVec3; 3]>) -> Vec<Polygon> {
+    let mut found: Vec<Polygon> = Vec::new();
+    for [a, b, c] in triangles {
+        match found.last_mut() {
+            // (p, q, r) and (p, r, s) with s = p + r − q.
+            Some(last) if last.len() == 3 && last[0] == a && last[2] == b => {
+                let expected = last[0] + last[2] - last[1];
+                if (c - expected).length() <= EDGE_ON * (c - a).length() {
+                    last.push(c);
+                } else {
+                    found.push(vec![a, b, c]);
+                }
+            }
+            _ => found.push(vec![a, b, c]),
+        }
+    }
+    found
+}
+
 /// A polygon of a circle's area.
 fn circle(centre: DVec3, normal: DVec3, radius: f64) -> Polygon {
     let basis = Basis::around(normal);
@@ -270,8 +290,9 @@ impl Opaque {
                     if count > MOST_TRIANGLES {
                         found.by_rays.push(id);
                     } else {
-                        let corners = (0..count as u32).map(|t| (id, body.corners(t).to_vec()));
-                        found.figures.extend(corners);
+                        let triangles = (0..count as u32).map(|t| body.corners(t));
+                        let figures = figures(triangles.collect());
+                        found.figures.extend(figures.into_iter().map(|f| (id, f)));
                     }
                 }
             }

@@ -244,6 +244,7 @@ impl Judged {
 mod tests {
     use super::*;
     use crate::lab::ensemble::Photographs;
+    use crate::lab::problem::problem;
     use crate::lab::study::tests::small;
     use crate::model::{Kernel, MatrixModel};
 

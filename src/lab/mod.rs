@@ -165,6 +165,7 @@ mod measures;
 mod misplaced;
 mod noise;
 mod objects;
+mod occluder;
 pub mod options;
 mod picard;
 mod pilot;

@@ -14,4 +14,5 @@ pub static STUDIES: &[&Registered] = &[
     &super::coverage::STUDY,
     &super::experiment::STUDY,
     &super::spots::STUDY,
+    &super::occluder::STUDY,
 ];

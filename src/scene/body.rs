@@ -128,27 +128,39 @@ impl Meshes {
         files: &mut Files,
     ) -> Result<(Arc<Mesh>, Defects), Fault> {
         let key = format!(
-            "{:?} {:?} {:?} {stretch:?}",
-            table.file, table.generate, table.faces
+            "{:?} {:?} {:?} {:?} {stretch:?}",
+            table.file, table.generate, table.mask, table.faces
         );
         if let Some((mesh, defects)) = self.made.get(&key) {
             return Ok((mesh.clone(), *defects));
         }
-        let (at, mut triangles): (Step, Triangles) = match (&table.file, table.generate) {
-            (Some(file), None) => {
+        let (at, mut triangles): (Step, Triangles) = match (
+            &table.file,
+            table.generate,
+            &table.mask,
+        ) {
+            (Some(file), None, None) => {
                 if table.faces.is_some() {
                     let cause = "`faces` belongs to `generate`: a file has the triangles it has";
                     return Err(Fault::new(keys!["faces"], cause, "remove `faces`"));
                 }
                 (Step::Key("file"), read(file, files)?)
             }
-            (None, Some(generator)) => (
+            (None, None, Some(rows)) => {
+                if table.faces.is_some() {
+                    let cause = "a mask has the triangles of its cells, and no `faces`";
+                    return Err(Fault::new(keys!["faces"], cause, "remove `faces`"));
+                }
+                let fault = |(cause, cure)| Fault::new(keys!["mask"], cause, cure);
+                (Step::Key("mask"), mesh::mask(rows).map_err(fault)?)
+            }
+            (None, Some(generator), None) => (
                 Step::Key("generate"),
                 self.generate(generator, table.faces)?,
             ),
             _ => {
-                let cause = "a mesh needs exactly one of `file` and `generate`";
-                let cure = "add `file = \"body.ply\"`, or `generate = \"bust\"`";
+                let cause = "a mesh needs exactly one of `file`, `generate` and `mask`";
+                let cure = "add `file = \"body.ply\"`, `generate = \"bust\"`, or `mask = [\"#.\", \".#\"]`";
                 return Err(Fault::new(keys![], cause, cure));
             }
         };

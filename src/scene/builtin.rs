@@ -39,6 +39,8 @@ pub fn builtins() -> &'static [Builtin] {
         "card": "a playing card face down over a table, 47 × 31 elements; laser and camera peek under it",
         "satin": "the bench with a wall in satin paint: its BRDF enters the model",
         "shelf": "the bench with a shelf between wall and object",
+        "periscope": "a plate between object and wall: the edge of its shadow is a lens",
+        "mask": "the same with a half-open mask: its shadow is another for each element",
         "corner": "a letter chart around a corner: the relay wall is seen past another wall",
         "room": "a furnished room with a bust of a million triangles in it",
         "furnace": "an integrating sphere, whose flux at every bounce count is known in closed form",

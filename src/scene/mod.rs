@@ -52,6 +52,7 @@
 //! | --- | --- |
 //! | `file` | PLY (ASCII or binary), OBJ, glTF or GLB, relative to the scene file; [`mesh`] says what is read of each. The front of a triangle is where its corners run counterclockwise; normals in the file are not used |
 //! | `generate` | in place of a file: `"bust"`, `"sphere"`, `"rectangle"` (the unit square) or `"box"` (the unit cube), as `phicam target` writes them |
+//! | `mask` | in place of a file: rows of `#` (opaque) and `.` (open) on the unit square, the first at y = 1 |
 //! | `faces` | at least so many triangles (`generate`); default 20 000 |
 //! | `scale` | a factor, or one for each axis; first |
 //! | `rotate` | `[{ axis, angle }, …]`: turns about axes through the origin, degrees, in this order |

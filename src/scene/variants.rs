@@ -7,7 +7,7 @@ use super::error::{Fault, keys};
 use super::laser;
 use super::parse;
 use super::surface::{self, Surface};
-use super::{Cells, Material, Role, Scene, SceneError, Texture};
+use super::{Cells, Division, Material, Role, Scene, SceneError, Texture};
 use crate::geometry::{DVec3, Facing, Parallelogram, Shape, Sphere};
 
 impl Scene {
@@ -45,6 +45,26 @@ impl Scene {
             surface.material = Material::Lambertian;
             surface.albedo = Texture::Constant(0.0);
         })
+    }
+
+    /// The same scene with these shapes in it, black on both sides.
+    ///
+    /// # Errors
+    /// [`SceneError`] where one has no proper shape.
+    pub fn with_black(&self, shapes: &[Option<Shape>]) -> Result<Self, SceneError> {
+        let mut scene = self.clone();
+        for (k, shape) in shapes.iter().enumerate() {
+            scene.surfaces.push(Surface {
+                name: format!("occluder {}", k + 1),
+                role: Role::Occluder,
+                shape: shape.clone().ok_or_else(|| self.locate(no_shape()))?,
+                material: Material::Lambertian,
+                albedo: Texture::Constant(0.0),
+                elements: [0; 2],
+                division: Division::Cells,
+            });
+        }
+        scene.rebuilt()
     }
 
     /// The same scene with each hidden surface's albedo replaced by its mean over the area.

@@ -3,7 +3,7 @@
 use crate::small_scene::{bench, with_points_and_surface};
 use crate::workspace::Workspace;
 
-pub(crate) const BUILT_IN: [&str; 10] = [
+pub(crate) const BUILT_IN: [&str; 12] = [
     "bench",
     "thesis",
     "experiment",
@@ -11,6 +11,8 @@ pub(crate) const BUILT_IN: [&str; 10] = [
     "card",
     "satin",
     "shelf",
+    "periscope",
+    "mask",
     "corner",
     "room",
     "furnace",
@@ -39,6 +41,8 @@ fn every_built_in_scene_is_sound() {
         "128 spots; 72 × 48 pixels",
         "120 spots; 16 × 16 pixels",
         "120 spots; 16 × 16 pixels",
+        "100 spots; 32 × 32 pixels",
+        "100 spots; 32 × 32 pixels",
         "144 spots; 32 × 32 pixels",
         "120 spots; 64 × 64 pixels",
         "3 spots; 4 × 4 pixels",

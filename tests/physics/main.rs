@@ -13,6 +13,7 @@ mod meshes;
 mod model;
 mod noise;
 mod obstacles;
+mod occluders;
 mod random_scenes;
 mod reference;
 mod sensor;

@@ -262,35 +262,3 @@ fn two_sides_are_two_surfaces() {
         relative(&half, &two)
     );
 }
-
-/// The shelf's model with occlusion comes to what is traced as its elements become finer, the spot
-/// that the rod takes for itself included; the plain one stays away from it, and by what stands
-/// between wall and object alone too.
-#[test]
-#[ignore = "slow"]
-fn occlusion_brings_the_model_nearer() {
-    let shelf = builtin("shelf", &[FEW_SPOTS]).with_black_occluders();
-    let traced = trace(
-        &shelf,
-        Way(Estimator::Factored, Sampling::Sobol, 1, 1 << 16),
-    )
-    .flux;
-    let model = |elements| {
-        let plain = MatrixModel::new(&shelf, Kernel::Physical, Some([elements; 2])).unwrap();
-        let occluded = plain.clone().with_occlusion(&shelf).phi();
-        let mut plain = plain.phi();
-        for l in (0..plain.ncols()).filter(|l| traced.column(*l).sum() == 0.0) {
-            assert!(plain.column(l).sum() > 0.0 && occluded.column(l).sum() == 0.0);
-            plain.column_mut(l).fill(0.0);
-        }
-        [plain, occluded].map(|phi| relative(&phi, &traced))
-    };
-    let lost = (0..traced.ncols()).filter(|l| traced.column(*l).sum() == 0.0);
-    assert_eq!(lost.count(), 1);
-    let [plain, coarse] = model(8);
-    let [_, fine] = model(48);
-    assert!(
-        plain > 0.3 && coarse < 0.1 && fine < 0.012,
-        "{plain} {coarse} {fine}"
-    );
-}

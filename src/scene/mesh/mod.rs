@@ -13,6 +13,7 @@ mod defects;
 mod generator;
 mod gltf;
 mod grid;
+mod mask;
 mod obj;
 mod ply;
 mod write;
@@ -21,6 +22,7 @@ pub use bust::bust;
 pub use defects::Defects;
 pub use generator::Generator;
 pub use grid::{cube, rectangle, sphere};
+pub use mask::mask;
 pub use write::{FaceValues, to_ply};
 
 use crate::geometry::DVec3;

@@ -1,0 +1,198 @@
+//! Occluders to choose from, and where they stand.
+
+use serde::{Deserialize, Serialize};
+
+use crate::geometry::{Disc, Parallelogram, Shape};
+use crate::scene::{Scene, SceneError};
+
+/// What stands between object and wall, black on both sides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Kind {
+    /// Nothing.
+    None,
+    /// A square plate, its side the size.
+    Plate,
+    /// A disc, its diameter the size.
+    Disc,
+    /// A strip along the view's v, a quarter of the size wide and four sizes long.
+    Rod,
+    /// A plate of eight sizes with a square hole of a quarter of the size.
+    Pinhole,
+    /// The same with a slit of that width along the view's v.
+    Slit,
+    /// A mask of 6 × 6 cells of 0.4 sizes, half of them open, chosen at random.
+    Random,
+    /// A mask of 2·7 − 1 a side of cells of 0.2 sizes, the 7 × 7 modified uniformly redundant array
+    /// repeated (Gottesman and Fenimore 1989): wherever it is looked through, all of the 7 × 7 are
+    /// met.
+    Mura,
+}
+
+/// Names on the command line, with what they mean.
+pub(super) const KINDS: &[(&str, &str)] = &[
+    ("none", "Nothing"),
+    ("plate", "A square plate"),
+    ("disc", "A disc"),
+    ("rod", "A strip, a quarter of the size wide"),
+    (
+        "pinhole",
+        "A plate with a square hole of a quarter of the size",
+    ),
+    ("slit", "A plate with a slit of that width"),
+    ("random", "A mask of 6 × 6 cells of 0.4 sizes, half open"),
+    (
+        "mura",
+        "A mask of 13 × 13 cells of 0.2 sizes, the 7 × 7 MURA repeated",
+    ),
+];
+
+/// In the order of [`KINDS`].
+const ALL: [Kind; 8] = [
+    Kind::None,
+    Kind::Plate,
+    Kind::Disc,
+    Kind::Rod,
+    Kind::Pinhole,
+    Kind::Slit,
+    Kind::Random,
+    Kind::Mura,
+];
+
+/// Where an occluder stands: in a plane parallel to the view, around the line from the middle of the
+/// view to the middle of the hidden surface.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Place {
+    /// Share of the way from the view (0) to the hidden surface (1).
+    pub height: f64,
+    /// Offset from the line along the view's u and v, length.
+    pub offset: [f64; 2],
+    /// Length.
+    pub size: f64,
+}
+
+impl Kind {
+    /// By its name on the command line.
+    pub(super) fn by_name(name: &str) -> Option<Self> {
+        let at = KINDS.iter().position(|(known, _)| *known == name)?;
+        Some(ALL[at])
+    }
+
+    /// Its name.
+    pub(super) fn name(self) -> &'static str {
+        let at = ALL.iter().position(|kind| *kind == self).unwrap_or(0);
+        KINDS[at].0
+    }
+
+    /// The scene with it at `place`.
+    ///
+    /// # Errors
+    /// [`SceneError`] where the shapes have no proper size.
+    pub(super) fn in_scene(self, scene: &Scene, place: &Place) -> Result<Scene, SceneError> {
+        let view = &scene.camera.view;
+        let from = view.at([0.5; 2]).position;
+        let hidden = scene.hidden().next();
+        let to = hidden.map_or(from, |(_, s)| s.shape.at([0.5; 2]).position);
+        let u = view.u().normalize_or_zero();
+        let v = (view.v() - u * view.v().dot(u)).normalize_or_zero();
+        let middle = from + (to - from) * place.height + u * place.offset[0] + v * place.offset[1];
+        let s = place.size;
+        let plate = |[a, b, wide, high]: &[f64; 4]| {
+            let corner = middle + (u * *a + v * *b) * s;
+            Parallelogram::new(corner, u * (wide * s), v * (high * s)).map(Shape::Parallelogram)
+        };
+        let shapes: Vec<Option<Shape>> = match self {
+            Self::Disc => vec![Disc::new(middle, view.normal(), 0.5 * s).map(Shape::Disc)],
+            _ => self.rectangles().iter().map(plate).collect(),
+        };
+        scene.with_black(&shapes)
+    }
+
+    /// The rectangles of a flat occluder: left, low, wide and high, in sizes around its middle.
+    fn rectangles(self) -> Vec<[f64; 4]> {
+        match self {
+            Self::None | Self::Disc => Vec::new(),
+            Self::Plate => vec![[-0.5, -0.5, 1.0, 1.0]],
+            Self::Rod => vec![[-0.125, -2.0, 0.25, 4.0]],
+            Self::Slit => vec![[-4.0, -4.0, 3.875, 8.0], [0.125, -4.0, 3.875, 8.0]],
+            Self::Pinhole => vec![
+                [-4.0, -4.0, 3.875, 8.0],
+                [0.125, -4.0, 3.875, 8.0],
+                [-0.125, -4.0, 0.25, 3.875],
+                [-0.125, 0.125, 0.25, 3.875],
+            ],
+            Self::Random => cells(6, 0.4, &|i, j| RANDOM[j].as_bytes()[i] == b'#'),
+            Self::Mura => cells(13, 0.2, &|i, j| !is_open(i % 7, j % 7)),
+        }
+    }
+}
+
+/// The mask of the scene `mask`, its lowest row first.
+const RANDOM: [&str; 6] = ["###.#.", ".##.##", ".####.", "#.##..", "#.#.#.", "......"];
+
+/// Whether cell (i, j) of the 7 × 7 MURA is open: A(0, j) = 0, A(i, 0) = 1 for i > 0, else whether i and
+/// j are both squares modulo 7, or neither is.
+fn is_open(i: usize, j: usize) -> bool {
+    let square = |x: usize| matches!(x, 1 | 2 | 4);
+    i != 0 && (j == 0 || square(i) == square(j))
+}
+
+/// Opaque cells of `n` a side around the middle, neighbours in a row as one.
+fn cells(n: usize, side: f64, opaque: &dyn Fn(usize, usize) -> bool) -> Vec<[f64; 4]> {
+    let low = -0.5 * n as f64 * side;
+    let mut found: Vec<[f64; 4]> = Vec::new();
+    for j in 0..n {
+        let mut from = None;
+        for i in 0..=n {
+            let is_opaque = i < n && opaque(i, j);
+            match from {
+                None if is_opaque => from = Some(i),
+                Some(start) if !is_opaque => {
+                    let [x, y] = [start, j].map(|k| low + k as f64 * side);
+                    found.push([x, y, (i - start) as f64 * side, side]);
+                    from = None;
+                }
+                _ => {}
+            }
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The MURA's defining property: with G = 1 where A is open and −1 elsewhere, but G(0, 0) = 1, the
+    /// periodic correlation of A with G is 24 at no shift and 0 at all others (p = 7: (p² − 1)/2).
+    #[test]
+    fn the_mura_has_one_peak() {
+        let a = |i: usize, j: usize| i64::from(is_open(i % 7, j % 7));
+        let g = |i: usize, j: usize| {
+            if i % 7 == 0 && j % 7 == 0 {
+                1
+            } else {
+                2 * a(i, j) - 1
+            }
+        };
+        for shift in 0..49 {
+            let (x, y) = (shift % 7, shift / 7);
+            let sum: i64 = (0..49)
+                .map(|k| a(k % 7, k / 7) * g(k % 7 + x, k / 7 + y))
+                .sum();
+            assert_eq!(sum, if shift == 0 { 24 } else { 0 }, "{x} {y}");
+        }
+    }
+
+    /// The masks have the area that their cells have, and the random one is half open.
+    #[test]
+    fn masks_cover_what_is_opaque() {
+        let area = |kind: Kind| -> f64 { kind.rectangles().iter().map(|r| r[2] * r[3]).sum() };
+        assert!((area(Kind::Random) - 18.0 * 0.16).abs() < 1e-12);
+        let opaque = (0..169)
+            .filter(|k| !is_open(k % 13 % 7, k / 13 % 7))
+            .count();
+        assert!((area(Kind::Mura) - opaque as f64 * 0.04).abs() < 1e-12);
+        assert!((area(Kind::Pinhole) - (64.0 - 0.0625)).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,97 @@
+//! What does an occluder between object and wall do for the picture, and where should it stand?
+//!
+//! Past an edge c_p(x), what pixel p sees of the point x, jumps where x comes into its sight. The
+//! singular values of the operator Φ\[p,l\] = Σ_j ρ_j A_j\[p,l\] then fall no longer like those of a
+//! smooth kernel. Of each occluder the place and the size are searched for which the photographs leave
+//! least of the variance of the reflectances,
+//!
+//! > R = (1/n) Σ_j var(ρ_j | Φ)/τ² = 1 − (1/n) Σ_j R_jj,
+//!
+//! the Bayes risk of a Gaussian prior about ½ with a standard deviation τ of ½
+//! ([`determined`](determined())). Then boards are recovered from draws of the noise.
+
+mod kinds;
+mod search;
+mod tasks;
+
+use super::options::Opt;
+use super::registered::{Registered, prepared};
+use kinds::{KINDS, Kind, Place};
+use tasks::{OccluderTasks, Plan};
+
+/// Kinds of noise: how the standard error goes with the light of an entry.
+pub(super) const NOISES: &[(&str, &str)] = &[
+    ("relative", "A share of each entry"),
+    (
+        "shot",
+        "The same share of the brightest entry, of others by the root of their light",
+    ),
+    ("read", "The same for all entries, a share of the brightest"),
+];
+
+/// `phicam study occluder`.
+pub(super) const STUDY: Registered = Registered {
+    name: "occluder",
+    about: "What an occluder between object and wall does for the picture, and its best place: table, JSON, CSV, figure",
+    scene: Some("thesis"),
+    files: "occluder.csv, misplaced.csv, occluder.svg",
+    options: &[
+        Opt::choice("kinds", "Occluders, separated by commas", KINDS)
+            .list()
+            .or("none,plate,disc,rod,pinhole,slit,random,mura"),
+        Opt::whole("spots", "Numbers of spots, separated by commas, evenly among those of the scene; all unless given")
+            .list()
+            .within(1, 1_000_000),
+        Opt::choice("noise", "How the noise goes with the light", NOISES).or("relative"),
+        Opt::number("level", "Noise for which the place is searched, relative to the light")
+            .or("0.01")
+            .rule(
+                |x| x > 0.0 && x <= 1.0,
+                "is not a noise level",
+                "use a number above 0, up to 1",
+            ),
+        Opt::number("size", "Size with which the search begins, in the scene's unit")
+            .or("1")
+            .rule(|x| x > 0.0 && x.is_finite(), "is not a size", "use a length above 0"),
+        Opt::number("height", "Share of the way from the view to the object with which it begins")
+            .or("0.36")
+            .rule(
+                |x| x > 0.0 && x < 1.0,
+                "is not between view and object",
+                "use a number between 0 and 1",
+            ),
+        Opt::whole("search", "Places and sizes that are tried; 0 stays where it begins").or("24"),
+        Opt::whole("boards", "Checks a side of the boards that are recovered, separated by commas")
+            .list()
+            .within(2, 64)
+            .or("2,4,8"),
+        Opt::whole("draws", "Draws of the noise at each level").within(1, 1000).or("3"),
+        Opt::number("misplaced", "Distances along the view by which the model is wrong, separated by commas")
+            .list()
+            .or("0.01,0.03,0.1"),
+        Opt::whole("elements", "Elements a side, in place of the scene's").within(1, 64),
+        Opt::seed("Seed of the first draw"),
+    ],
+    prepare: |scene, values| {
+        let kinds: Vec<String> = values.list("kinds")?;
+        let noise: String = values.one("noise")?;
+        let plan = Plan {
+            kinds: kinds.iter().filter_map(|name| Kind::by_name(name)).collect(),
+            spots: values.list("spots")?,
+            noise: NOISES.iter().position(|(name, _)| *name == noise).unwrap_or(0),
+            level: values.one("level")?,
+            start: Place {
+                height: values.one("height")?,
+                offset: [0.0; 2],
+                size: values.one("size")?,
+            },
+            search: values.one("search")?,
+            boards: values.list("boards")?,
+            draws: values.one("draws")?,
+            misplaced: values.list("misplaced")?,
+            elements: values.maybe("elements")?,
+            seed: values.one("seed")?,
+        };
+        Ok(prepared(OccluderTasks::new(scene, plan)?))
+    },
+};

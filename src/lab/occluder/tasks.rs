@@ -1,0 +1,484 @@
+//! The tasks of the study: an occluder and a number of spots each.
+
+use serde::{Deserialize, Serialize};
+
+use super::kinds::{Kind, Place};
+use super::search::search;
+use super::{NOISES, STUDY};
+use crate::lab::deviate::normal_deviates;
+use crate::lab::error::LabError;
+use crate::lab::finding::{
+    Axis, Cell, Column, Curve, Describe, Figure, Finding, Mark, Plot, Table, listed,
+};
+use crate::lab::fit::{Certainty, Residuals};
+use crate::lab::problem::problem;
+use crate::lab::study::{Sharing, Study};
+use crate::matrix::Matrix;
+use crate::metrics::mtf_raw;
+use crate::model::{Kernel, MatrixModel};
+use crate::num::digits::figure;
+use crate::recovery::{Method, Options, determined, picard_joint, recover};
+use crate::scene::Scene;
+use crate::transport::Control;
+
+/// Noise levels at which directions are counted.
+const LEVELS: [f64; 4] = [0.1, 0.01, 1e-3, 1e-4];
+/// Pixels a side, and spots, of the scene on which the place is searched.
+const SEARCHED: [usize; 2] = [12, 25];
+/// Contrast at which a board counts as resolved.
+const RESOLVED: f64 = 0.9;
+/// Decades of noise, from 1 down, in which its limit is looked for, and halvings.
+const DECADES: f64 = 10.0;
+const HALVINGS: usize = 8;
+/// Standard deviation of the prior, about ½.
+const BEFORE: f64 = 0.5;
+
+/// What is studied.
+#[derive(Clone, Debug)]
+pub(super) struct Plan {
+    pub kinds: Vec<Kind>,
+    pub spots: Vec<usize>,
+    /// Index in [`NOISES`].
+    pub noise: usize,
+    pub level: f64,
+    pub start: Place,
+    pub search: usize,
+    pub boards: Vec<usize>,
+    pub draws: u64,
+    pub misplaced: Vec<f64>,
+    pub elements: Option<usize>,
+    pub seed: u64,
+}
+
+/// The study of a scene.
+#[derive(Debug)]
+pub(super) struct OccluderTasks {
+    scene: Scene,
+    plan: Plan,
+}
+
+/// An occluder at its best place.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Row {
+    kind: Kind,
+    spots: usize,
+    place: Place,
+    /// Places that were tried.
+    tries: usize,
+    /// Directions whose signal, τ s, is above a noise of 10 %, 1 %, 0.1 %, 0.01 %.
+    directions: Vec<usize>,
+    /// Share of the prior variance that is left at the level of the plan.
+    risk: f64,
+    /// Of each board the most noise at which its MTF is 0.9.
+    limits: Vec<Option<f64>>,
+    misplaced: Vec<Misplaced>,
+}
+
+/// What a wrong place costs.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Misplaced {
+    by: f64,
+    /// MTF of the first board at the level of the plan.
+    mtf: Option<f64>,
+    /// Probability of as bad a fit by noise alone.
+    p: Option<f64>,
+}
+
+/// What the occluders do.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Occluders {
+    scene: String,
+    scene_hash: String,
+    pixels: usize,
+    elements: usize,
+    noise: String,
+    level: f64,
+    boards: Vec<usize>,
+    draws: u64,
+    rows: Vec<Row>,
+}
+
+impl OccluderTasks {
+    /// # Errors
+    /// [`LabError`] where nothing is hidden, or more spots are asked for than there are.
+    pub(super) fn new(scene: &Scene, mut plan: Plan) -> Result<Self, LabError> {
+        let all = scene.laser.spots.len();
+        if plan.spots.is_empty() {
+            plan.spots.push(all);
+        }
+        plan.spots.iter_mut().for_each(|n| *n = (*n).min(all));
+        plan.spots.dedup();
+        let elements = plan.elements.map(|n| [n; 2]);
+        MatrixModel::without_photographs(
+            scene,
+            Kernel::Physical,
+            elements,
+            crate::model::Occlusion::Ignored,
+        )?;
+        Ok(Self {
+            scene: scene.clone(),
+            plan,
+        })
+    }
+
+    fn model(&self, scene: &Scene) -> Result<MatrixModel, LabError> {
+        let elements = self.plan.elements.map(|n| [n; 2]);
+        Ok(MatrixModel::new(scene, Kernel::Physical, elements)?)
+    }
+
+    /// Standard errors of photographs `phi` at noise `level`.
+    fn stderr(&self, phi: &Matrix, level: f64) -> Matrix {
+        let top = phi.amax();
+        let of = |x: f64| match NOISES[self.plan.noise].0 {
+            "relative" => x,
+            "shot" => (x * top).sqrt(),
+            _ => top,
+        };
+        // Entries without light have the noise of a ten-thousandth of the brightest.
+        phi.map(|x| level * of(x.abs()).max(1e-4 * top))
+    }
+
+    /// Share of the prior variance that photographs of a surface of mean ½ leave.
+    fn risk(&self, model: &MatrixModel, level: f64) -> Result<f64, LabError> {
+        let grey = photograph(model, &vec![BEFORE; model.albedo.len()]);
+        let stderr = self.stderr(&grey, level);
+        let shares = determined(&problem(model, &grey, Some(&stderr))?)?;
+        Ok(1.0 - shares.rank / model.albedo.len() as f64)
+    }
+
+    /// MTF of the recovered board and χ² of its photographs under `assumed`, from one draw.
+    fn recovered(
+        &self,
+        [actual, assumed]: [&MatrixModel; 2],
+        board: &[f64],
+        level: f64,
+        seed: u64,
+    ) -> Result<(Option<f64>, Option<f64>), LabError> {
+        let exact = photograph(actual, board);
+        let stderr = self.stderr(&exact, level);
+        let deviates = normal_deviates(seed, exact.nrows(), exact.ncols());
+        let phi = exact + deviates.component_mul(&stderr);
+        let problem = problem(assumed, &phi, Some(&stderr))?;
+        let found = recover(Method::Joint, &problem, &Options::default())?;
+        let mut residuals = Residuals::default();
+        residuals.add(
+            &phi,
+            &found.photographs(&problem),
+            &stderr,
+            Certainty::STATED,
+        );
+        let fit = residuals.fit(found.freedom_used(), Certainty::STATED.errors);
+        Ok((
+            mtf_raw(found.reflectance.as_slice(), board),
+            fit.map(|f| f.p),
+        ))
+    }
+
+    /// The most noise at which the board's mean MTF over the draws is 0.9; none below 1e-10.
+    fn limit(
+        &self,
+        model: &MatrixModel,
+        board: &[f64],
+        control: Control<'_>,
+    ) -> Result<Option<f64>, LabError> {
+        let resolved = |decades: f64| -> Result<bool, LabError> {
+            let mut sum = 0.0;
+            for draw in 0..self.plan.draws {
+                control.check()?;
+                let level = libm::pow(10.0, -decades);
+                let seed = self.plan.seed.wrapping_add(draw);
+                sum += self
+                    .recovered([model; 2], board, level, seed)?
+                    .0
+                    .unwrap_or(0.0);
+            }
+            Ok(sum >= RESOLVED * self.plan.draws as f64)
+        };
+        if resolved(0.0)? {
+            return Ok(Some(1.0));
+        }
+        let [mut lost, mut kept] = [0.0, DECADES];
+        if !resolved(kept)? {
+            return Ok(None);
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (lost + kept);
+            if resolved(middle)? {
+                kept = middle;
+            } else {
+                lost = middle;
+            }
+        }
+        Ok(Some(libm::pow(10.0, -kept)))
+    }
+}
+
+/// Φ of these reflectances, W.
+fn photograph(model: &MatrixModel, albedo: &[f64]) -> Matrix {
+    let of = MatrixModel {
+        albedo: albedo.to_vec(),
+        ..model.clone()
+    };
+    of.phi()
+}
+
+/// `n` of the scene's spots, evenly among them, and at most so many pixels a side.
+fn thinned(scene: &Scene, n: usize, side: usize) -> Scene {
+    let mut few = scene.clone();
+    let all = scene.laser.spots.len();
+    few.laser.spots = (0..n).map(|k| scene.laser.spots[k * all / n]).collect();
+    few.camera.columns = few.camera.columns.min(side);
+    few.camera.rows = few.camera.rows.min(side);
+    few
+}
+
+impl Study for OccluderTasks {
+    type Context = ();
+    type Output = Row;
+    type Result = Occluders;
+    type Error = LabError;
+
+    fn name(&self) -> &'static str {
+        STUDY.name
+    }
+
+    fn tasks(&self) -> usize {
+        self.plan.kinds.len() * self.plan.spots.len()
+    }
+
+    fn sharing(&self) -> Sharing {
+        Sharing::InTurn
+    }
+
+    fn context(&self, _: Control<'_>) -> Result<(), LabError> {
+        Ok(())
+    }
+
+    fn task(&self, (): &(), index: usize, control: Control<'_>) -> Result<Row, LabError> {
+        let plan = &self.plan;
+        let kind = plan.kinds[index % plan.kinds.len()];
+        let spots = plan.spots[index / plan.kinds.len()];
+        let rough = thinned(&self.scene, spots.min(SEARCHED[1]), SEARCHED[0]);
+        let merit = |place: &Place| -> Result<f64, LabError> {
+            control.check()?;
+            let scene = kind.in_scene(&rough, place)?;
+            self.risk(&self.model(&scene)?, plan.level)
+        };
+        let tries = if kind == Kind::None { 0 } else { plan.search };
+        let (place, tries) = search(plan.start, tries, merit)?;
+        let whole = thinned(&self.scene, spots, usize::MAX);
+        let at = |place: &Place| self.model(&kind.in_scene(&whole, place)?);
+        let model = at(&place)?;
+        let grey = photograph(&model, &vec![BEFORE; model.albedo.len()]);
+        let stderr = self.stderr(&grey, 1.0);
+        let sigma =
+            picard_joint(&problem(&model, &grey, Some(&stderr))?, &Options::default())?.sigma;
+        let above = |level: f64| sigma.iter().filter(|s| **s * BEFORE > level).count();
+        let boards: Vec<Vec<f64>> = plan
+            .boards
+            .iter()
+            .map(|b| board(&self.scene, &model, *b))
+            .collect();
+        let limits = boards.iter().map(|b| self.limit(&model, b, control));
+        let limits = limits.collect::<Result<_, LabError>>()?;
+        let shifts: &[f64] = if kind == Kind::None {
+            &[]
+        } else {
+            &plan.misplaced
+        };
+        let wrong = |by: &f64| -> Result<Misplaced, LabError> {
+            control.check()?;
+            let mut there = place;
+            there.offset[0] += by;
+            let (mtf, p) = match boards.first() {
+                Some(b) => self.recovered([&model, &at(&there)?], b, plan.level, plan.seed)?,
+                None => (None, None),
+            };
+            Ok(Misplaced { by: *by, mtf, p })
+        };
+        Ok(Row {
+            kind,
+            spots,
+            tries,
+            directions: LEVELS.iter().map(|l| above(*l)).collect(),
+            risk: self.risk(&model, plan.level)?,
+            limits,
+            misplaced: shifts.iter().map(wrong).collect::<Result<_, LabError>>()?,
+            place,
+        })
+    }
+
+    fn fits(&self, (): &(), index: usize, row: &Row) -> bool {
+        row.kind == self.plan.kinds[index % self.plan.kinds.len()]
+            && row.limits.len() == self.plan.boards.len()
+    }
+
+    fn finish(&self, (): &(), rows: Vec<Row>) -> Result<Occluders, LabError> {
+        let elements = self.plan.elements.map_or_else(
+            || {
+                self.scene
+                    .hidden()
+                    .map(|(_, s)| s.elements[0] * s.elements[1])
+                    .sum()
+            },
+            |n| n * n * self.scene.hidden().count(),
+        );
+        Ok(Occluders {
+            scene: self.scene.name.clone(),
+            scene_hash: self.scene.hash.clone(),
+            pixels: self.scene.camera.pixels(),
+            elements,
+            noise: NOISES[self.plan.noise].0.to_owned(),
+            level: self.plan.level,
+            boards: self.plan.boards.clone(),
+            draws: self.plan.draws,
+            rows,
+        })
+    }
+}
+
+/// A board of `checks` a side by the elements of the model.
+fn board(scene: &Scene, model: &MatrixModel, checks: usize) -> Vec<f64> {
+    let scene = scene.with_checkerboard(checks);
+    let each = scene.hidden().zip(&model.grids);
+    each.flat_map(|((_, surface), grid)| surface.divided(grid.count))
+        .map(|element| element.albedo)
+        .collect()
+}
+
+impl Occluders {
+    fn table(&self) -> Table {
+        let mut columns = vec![
+            Column::text("occluder", "occluder"),
+            Column::text("spots", "spots"),
+            Column::number("height", "height", "", 3),
+            Column::number("aside, u", "offset_u", "", 2),
+            Column::number("aside, v", "offset_v", "", 2),
+            Column::number("size", "size", "", 3),
+        ];
+        columns.extend(LEVELS.iter().map(|l| {
+            Column::text(
+                &format!("above {} %", figure(100.0 * l, 1)),
+                &format!("directions_{l:e}"),
+            )
+        }));
+        columns.push(Column::number("risk", "risk", "", 2));
+        columns.extend(
+            self.boards
+                .iter()
+                .map(|b| Column::number(&format!("{b} × {b}"), &format!("noise_{b}"), "", 2)),
+        );
+        let row = |row: &Row| {
+            let [u, v] = row.place.offset;
+            let there = |x: f64| Cell::Number((row.kind != Kind::None).then_some(x));
+            let mut cells = vec![Cell::name(row.kind.name()), row.spots.into()];
+            cells.extend([row.place.height, u, v, row.place.size].map(there));
+            cells.extend(row.directions.iter().map(|n| Cell::from(*n)));
+            cells.push(row.risk.into());
+            cells.extend(row.limits.iter().map(|x| Cell::Number(*x)));
+            cells
+        };
+        Table {
+            caption: format!(
+                "Directions of {} above a noise, share of the prior variance that is left at {}, and the most {} noise at which a board has an MTF of 0.9",
+                self.elements,
+                figure(self.level, 1),
+                self.noise
+            ),
+            file: Some("occluder.csv".to_owned()),
+            columns,
+            rows: self.rows.iter().map(row).collect(),
+            ..Table::default()
+        }
+    }
+
+    fn misplaced(&self) -> Table {
+        let each = self
+            .rows
+            .iter()
+            .flat_map(|row| row.misplaced.iter().map(move |m| (row, m)));
+        let cells = |(row, m): (&Row, &Misplaced)| {
+            vec![
+                Cell::name(row.kind.name()),
+                row.spots.into(),
+                m.by.into(),
+                Cell::Number(m.mtf),
+                Cell::Number(m.p),
+            ]
+        };
+        Table {
+            caption: format!(
+                "The model's occluder misplaced along the view: MTF of the first board at a noise of {}, and how probable so bad a fit is",
+                figure(self.level, 1)
+            ),
+            file: Some("misplaced.csv".to_owned()),
+            columns: vec![
+                Column::text("occluder", "occluder"),
+                Column::text("spots", "spots"),
+                Column::number("by", "by", "", 2),
+                Column::number("MTF", "mtf", "", 3),
+                Column::number("P of the fit", "p", "", 2),
+            ],
+            rows: each.map(cells).collect(),
+            ..Table::default()
+        }
+    }
+
+    fn sentence(&self) -> String {
+        let risk = |row: &&Row| row.risk;
+        let least = self.rows.iter().min_by(|a, b| risk(a).total_cmp(&risk(b)));
+        let none = self.rows.iter().find(|row| row.kind == Kind::None);
+        let of = |row: &Row| {
+            format!(
+                "{} with {} spots leaves {} of the variance at a noise of {}",
+                row.kind.name(),
+                row.spots,
+                figure(row.risk, 2),
+                figure(self.level, 1)
+            )
+        };
+        let said: Vec<String> = [none, least].into_iter().flatten().map(of).collect();
+        format!("On {} {}.", self.scene, listed(&said))
+    }
+}
+
+impl Describe for Occluders {
+    fn describe(&self) -> Finding {
+        let title = format!("Occluders between object and wall: {}", self.scene);
+        let curve = |row: &Row| {
+            let points = LEVELS.iter().zip(&row.directions);
+            let points = points.map(|(l, n)| [*l, *n as f64]).collect();
+            Curve::new(
+                format!("{}, {} spots", row.kind.name(), row.spots),
+                Mark::Line,
+                points,
+            )
+        };
+        let axes = [
+            Axis::decades("noise"),
+            Axis::linear("directions above it", [0.0, self.elements as f64]),
+        ];
+        let plot = Plot::new("", axes, self.rows.iter().map(curve).collect());
+        let mut tables = vec![self.table()];
+        if self.rows.iter().any(|row| !row.misplaced.is_empty()) {
+            tables.push(self.misplaced());
+        }
+        Finding {
+            sentence: self.sentence(),
+            notes: vec![
+                format!(
+                    "Places are searched on at most {} × {} pixels and {} spots by compass search: a local optimum.",
+                    SEARCHED[0], SEARCHED[0], SEARCHED[1]
+                ),
+                format!(
+                    "Boards have albedos 0 and 1, recovered by joint from {} draws of the modelled photographs, whose occluder is black. Light that an occluder reflects, and what the sensor does, is for `render` and `expose`.",
+                    self.draws
+                ),
+            ],
+            tables,
+            figures: vec![Figure::new("occluder.svg", title.clone(), vec![plot])],
+            title,
+            ..Finding::default()
+        }
+    }
+}

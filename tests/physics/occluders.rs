@@ -1,0 +1,83 @@
+//! What stands in the way, model against tracer.
+
+use crate::{Way, builtin, relative, trace};
+use phicam::lab::{Against, Errors, Integration, Measured, Test, validate};
+use phicam::model::{Extent, Kernel, MatrixModel, Occlusion, converged};
+use phicam::num::stream::Sampling;
+use phicam::scene::Scene;
+use phicam::transport::Estimator;
+
+/// The scene `periscope` with other occluders in place of its plate.
+fn past(occluders: &str) -> Scene {
+    let text = builtin("periscope", &[]).text;
+    let (bare, _) = text.split_once("[[surface]]\nname = \"plate\"").unwrap();
+    Scene::from_toml("past", &format!("{bare}{occluders}")).unwrap()
+}
+
+fn surface(name: &str, shape: &str) -> String {
+    format!(
+        "[[surface]]\nname = \"{name}\"\nrole = \"occluder\"\n{shape}\nmaterial = {{ lambertian = 0.0 }}\n"
+    )
+}
+
+const PLATE: &str = "rectangle = { corner = [4.44, 5.9, 2.0], u = [1, 0, 0], v = [0, 1, 0] }";
+const SPHERE: &str = "sphere = { centre = [4.94, 6.4, 2.0], radius = 0.5, face = \"outside\" }";
+
+/// What the tracer, which knows nothing of shadows, makes of each occluder is what the model has to
+/// 1e-3, by quadrature and by elements; with the occluder left out of the model it is rejected.
+#[test]
+#[ignore = "slow"]
+fn the_model_sees_past_what_the_tracer_sees_past() {
+    let rod = "mesh = { generate = \"box\", scale = [0.25, 4.0, 0.25], translate = [4.8, 4.4, 2.0], closed = true }";
+    let mask =
+        "mesh = { mask = [\"#.#\", \"..#\", \"#..\"], scale = 1.5, translate = [4.2, 5.6, 2.0] }";
+    let ball =
+        "mesh = { generate = \"sphere\", faces = 2000, scale = 0.5, translate = [4.94, 6.4, 2.0] }";
+    let two = surface("plate", PLATE)
+        + &surface(
+            "disc",
+            "disc = { centre = [4.2, 6.0, 1.2], normal = [0.2, 0, 1], radius = 0.4 }",
+        );
+    let cases = [
+        ("plate", surface("plate", PLATE), 1e-3),
+        ("sphere", surface("ball", SPHERE), 1e-3),
+        ("rod", surface("rod", rod), 1e-3),
+        ("mask", surface("mask", mask), 1e-3),
+        ("two", two, 1e-3),
+        // Of 2000 triangles, asked ray by ray.
+        ("mesh", surface("ball", ball), 1e-3),
+    ];
+    for (name, occluders, most) in cases {
+        let scene = past(&occluders);
+        let way = Way(Estimator::Factored, Sampling::Sobol, 1, 1 << 17);
+        let traced = trace(&scene, way);
+        let truth = converged(&scene, Kernel::Physical, Extent::FULL).unwrap();
+        let model = MatrixModel::new(&scene, Kernel::Physical, None).unwrap();
+        let errors = [&truth.phi, &model.phi()].map(|phi| relative(phi, &traced.flux));
+        println!("{name}: {errors:?}");
+        assert!(errors.iter().all(|e| *e < most), "{name}: {errors:?}");
+        let measured = Measured {
+            phi: &traced.flux,
+            stderr: &traced.stderr,
+            left_out: Some(&traced.tails),
+        };
+        let verdict = |occlusion| {
+            let against = Against {
+                kernel: Kernel::Physical,
+                integration: Integration::Quadrature,
+                occlusion,
+            };
+            let test = Test {
+                significance: 1e-3,
+                errors: Errors::Everywhere,
+                replicates: way.plan().budget.blocks,
+            };
+            validate(&scene, measured, against, test)
+                .unwrap()
+                .agreement
+                .agrees
+        };
+        assert!(verdict(Occlusion::Considered), "{name}");
+        assert!(!verdict(Occlusion::Ignored), "{name}");
+    }
+}
