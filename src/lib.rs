@@ -82,8 +82,8 @@
 //! Trace a scene made in code and compare it with the model:
 //!
 //! ```
-//! use phicam::lab::{Against, Errors, Integration, Measured, Occlusion, Test, validate};
-//! use phicam::model::Kernel;
+//! use phicam::lab::{Against, Errors, Integration, Measured, Test, validate};
+//! use phicam::model::{Kernel, Occlusion};
 //! use phicam::scene::{Scene, file::SceneFile};
 //! use phicam::transport::{Budget, Control, Estimator, Plan, Sampling, render};
 //!
@@ -106,7 +106,7 @@
 //! let test = Test { significance: 1e-3, replicates: plan.budget.blocks, errors: Errors::Independent };
 //! let measured = Measured { phi: &traced.flux, stderr: &traced.stderr, left_out: None };
 //! let against = |kernel| {
-//!     let (integration, occlusion) = (Integration::Quadrature, Occlusion::Ignored);
+//!     let (integration, occlusion) = (Integration::Quadrature, Occlusion::Considered);
 //!     validate(&scene, measured, Against { kernel, integration, occlusion }, test)
 //! };
 //! assert!(against(Kernel::Physical)?.agreement.agrees);

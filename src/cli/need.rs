@@ -6,6 +6,7 @@ use super::memory;
 use crate::film::exr::PIXEL_BYTES_MAX;
 use crate::geometry::Shape;
 use crate::jobs::Spots;
+use crate::model::is_obstructed;
 use crate::scene::{Profile, Scene};
 use crate::transport::{Estimator, Plan};
 
@@ -32,11 +33,17 @@ pub(super) struct Need {
     surfaces: f64,
     cells: f64,
     wide: bool,
+    /// Whether something stands in the way of the model's light.
+    obstructed: bool,
     threads: f64,
 }
 
 /// A need of memory as a function of the numbers.
 type Bytes<'a> = &'a dyn Fn(&Need) -> f64;
+
+/// Terms of an element past what stands in the way, and cells of it.
+const TERMS: f64 = 6.0;
+const CELLS: f64 = 1024.0;
 
 impl Need {
     /// Of `scene`; `elements` in place of its own for each surface that is divided by cells.
@@ -61,7 +68,16 @@ impl Need {
             surfaces: scene.surfaces.len() as f64,
             cells: cells.sum(),
             wide: scene.laser.profile != Profile::Ideal,
+            obstructed: false,
             threads: memory::available_threads() as f64,
+        }
+    }
+
+    /// The same for what computes the model.
+    fn of_model(scene: &Scene, elements: Option<[usize; 2]>) -> Self {
+        Self {
+            obstructed: is_obstructed(scene),
+            ..Self::of(scene, elements)
         }
     }
 
@@ -163,7 +179,18 @@ impl Need {
     fn model(&self) -> f64 {
         let sides = 2.0 * self.elements * (self.pixels + self.spots);
         let points = 256.0 * (self.pixels + self.spots + self.elements);
-        BASE + 8.0 * (sides + 2.0 * self.entries() + self.elements * self.spots) + points
+        let matrices = 8.0 * (sides + 2.0 * self.entries() + self.elements * self.spots);
+        BASE + matrices + points + self.past(3.0 * TERMS * sides)
+    }
+
+    /// What it takes to see past what stands in the way, beside `terms` numbers: the footprints' parts,
+    /// and the light of the cells that are held at once.
+    fn past(&self, terms: f64) -> f64 {
+        if !self.obstructed {
+            return 0.0;
+        }
+        let cells = CELLS * self.threads.min(self.elements) * self.pixels;
+        8.0 * terms + 1024.0 * self.pixels + 48.0 * cells.max(CELLS * CHUNK)
     }
 
     /// The quadrature: wall points of every pixel and spot, a chunk of hidden points against all of
@@ -171,7 +198,7 @@ impl Need {
     fn quadrature(&self) -> f64 {
         let ends = self.pixels + self.spots;
         let chunk = 8.0 * CHUNK * (self.pixels.min(CHUNK) + self.spots);
-        BASE + ends * WALL + chunk + 5.0 * 8.0 * self.entries()
+        BASE + ends * WALL + chunk + 8.0 * 8.0 * self.entries() + self.past(0.0)
     }
 
     /// A verdict beside what is tested: the quadrature, then z, derivatives and their scores.
@@ -245,7 +272,7 @@ pub(super) fn run(scene: &Scene, plan: &Plan) -> Result<(), Failure> {
         let traced = 8.0 * need.entries() * (need.orders + 4.0);
         traced + need.model() + need.verdict().max(8.0 * 8.0 * need.entries())
     };
-    Need::of(scene, None).refuse("the frames and their comparison with the model", &bytes)
+    Need::of_model(scene, None).refuse("the frames and their comparison with the model", &bytes)
 }
 
 /// Refuses a model that does not fit; `quadrature` where that is asked for besides.
@@ -258,13 +285,13 @@ pub(super) fn model(
         let more = if quadrature { need.quadrature() } else { 0.0 };
         need.model() + more
     };
-    Need::of(scene, elements).refuse("the matrices of the model", &bytes)
+    Need::of_model(scene, elements).refuse("the matrices of the model", &bytes)
 }
 
 /// Refuses photographs that do not fit beside the model that they are compared with.
 pub(super) fn verdict(scene: &Scene) -> Result<(), Failure> {
     let bytes = |need: &Need| 4.0 * 8.0 * need.entries() + need.model() + need.verdict();
-    Need::of(scene, None).refuse("the photographs and the model", &bytes)
+    Need::of_model(scene, None).refuse("the photographs and the model", &bytes)
 }
 
 /// Refuses `matrices` of Φcam's size that do not fit.
@@ -281,5 +308,5 @@ pub(super) fn study(scene: &Scene) -> Result<(), Failure> {
         let trials = need.threads * 8.0 * 8.0 * need.entries();
         traced + need.model() + need.quadrature() + trials
     };
-    Need::of(scene, None).refuse("the photographs of a study", &bytes)
+    Need::of_model(scene, None).refuse("the photographs of a study", &bytes)
 }

@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 
+use super::cells::{HiddenCell, cells_of_elements};
 use super::cut::Cut;
 use super::error::ModelError;
 use super::extent::Extent;
 use super::kernel::Kernel;
 use super::occlusion::{Both, Obstructed};
-use super::parts::{HiddenCell, cells_of_elements};
 use super::wall_point::WallPoint;
 use crate::geometry::ShapeId;
 use crate::matrix::Matrix;
@@ -61,6 +61,8 @@ impl ElementGrid {
 /// the areas of both ends; 1 where no light arrives in any case.
 pub(super) type Shares = [Matrix; 2];
 
+/// Halvings of an element: 32 × 32 cells, all of which are held with all pixels.
+const MOST_HALVINGS: u32 = 5;
 /// Relative change below which no finer cells are tried; the next halving would change a fourth.
 const TARGET: f64 = 1e-3;
 /// Terms less than this share of an element's largest are left out.
@@ -100,7 +102,7 @@ pub(super) fn factors(
         let now: Vec<Own> = now.collect::<Result<_, ModelError>>()?;
         let exhausted = 4.0 * (cells * walls) as f64 > past.occlusion.most_pairs();
         if let Some(change) = before.as_ref().map(|before| moved(before, &now))
-            && (exhausted || change < TARGET)
+            && (exhausted || halvings == MOST_HALVINGS || change < TARGET)
         {
             return Ok(joined(&now, change, cells));
         }

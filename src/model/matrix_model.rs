@@ -6,7 +6,7 @@ use super::error::ModelError;
 use super::extent::Occlusion;
 use super::factors::{ElementGrid, Factors, factors};
 use super::kernel::{HiddenPoint, Kernel};
-use super::occlusion::obstacles;
+use super::obstacles::obstacles;
 use super::wall_point::{self, WallPoint};
 use crate::geometry::DVec3;
 use crate::matrix::Matrix;
@@ -39,6 +39,11 @@ pub struct MatrixModel {
 
 /// Entries that all matrices of a model together may have: 8 GB.
 const MOST_ENTRIES: f64 = 1e9;
+
+/// Whether anything may stand in the way of the model's light.
+pub fn is_obstructed(scene: &Scene) -> bool {
+    !obstacles(scene).is_empty()
+}
 
 impl MatrixModel {
     /// The model of `scene`, past what stands in the way; `elements` replaces the elements a side that

@@ -10,6 +10,7 @@
 //! surfaces and a Lambertian object: what light does beyond that is for `transport` to show, which this
 //! floor never sees.
 
+mod cells;
 mod converged;
 mod cut;
 mod error;
@@ -17,8 +18,11 @@ mod extent;
 mod factors;
 mod kernel;
 mod matrix_model;
+mod obstacles;
 mod occlusion;
 mod parts;
+mod patch;
+mod place;
 mod published;
 mod visible;
 mod wall_point;
@@ -28,6 +32,6 @@ pub use error::ModelError;
 pub use extent::{Extent, Occlusion, Take};
 pub use factors::{ElementGrid, Factors};
 pub use kernel::Kernel;
-pub use matrix_model::MatrixModel;
+pub use matrix_model::{MatrixModel, is_obstructed};
 pub use published::{PixelGrid, Published, Stagger, flattened_k, table_distances};
 pub use visible::{Visible, visible};

@@ -7,29 +7,17 @@
 //! pieces, found exactly ([`Shadow`]); each is taken at its centroid. So is what a lit point sees of
 //! a flat cell of the hidden surface. Other walls, cells and large meshes are asked ray by ray.
 
-use super::cut::reach;
+use super::cells::HiddenCell;
 use super::kernel::{HiddenPoint, Kernel};
-use super::parts::{FootprintPart, HiddenCell, footprint_parts};
+use super::obstacles::hull;
+use super::parts::footprint_parts;
+use super::patch::{Patch, triangles};
 use super::wall_point::{self, WallPoint};
-use crate::geometry::{
-    Blockers, DVec3, Hidden, Opaque, Pieces, Polygon, Ray, Region, ShapeId, area_and_middle,
-};
+use crate::geometry::{Blockers, DVec3, Hidden, Opaque, Pieces, Ray, ShapeId, area_and_middle};
 use crate::scene::Scene;
 
 /// Light with nothing in the way, and past what is.
 pub(super) type Both = [f64; 2];
-
-/// A part of a footprint on the wall.
-struct Patch {
-    /// All of it, at its middle.
-    whole: WallPoint,
-    /// Its corners, where the wall is flat.
-    corners: Option<Polygon>,
-    /// What the camera sees of it,
-    seen: Vec<Polygon>,
-    /// and whether that is all; of a wall that is not flat whether it sees the middle.
-    open: bool,
-}
 
 /// Pixels of a rectangle of the photograph, with points whose convex hull holds their footprints.
 struct Block {
@@ -51,57 +39,6 @@ pub(super) struct Obstructed<'a> {
     blocks: Vec<Block>,
     /// Of each spot, each with whether the laser reaches it.
     lit: Vec<Vec<(WallPoint, bool)>>,
-}
-
-/// Shapes that may stand between what the camera sees of the wall, or a spot, and a hidden surface or
-/// the device.
-pub(super) fn obstacles(scene: &Scene) -> Vec<ShapeId> {
-    let shapes = scene.bvh().shapes();
-    let around = |(id, _): (usize, &_)| (Some(id as ShapeId), Region::around(&shapes[id]));
-    let device = |p: DVec3| (None, Region::point(p));
-    let hidden: Vec<End> = scene.hidden().map(around).collect();
-    let spots = scene.laser.spots.iter().map(|spot| {
-        let reach = reach(scene.laser.profile);
-        let at = spot.target.position;
-        let corners = hull([at - DVec3::splat(reach), at + DVec3::splat(reach)].into_iter());
-        (Some(spot.surface), Region::flat(corners))
-    });
-    let lit: Vec<End> = spots.collect();
-    let seen = seen_walls(scene).unwrap_or_else(|| scene.relays().map(around).collect());
-    let may = |id: &ShapeId| {
-        let between = |(s, a): &End, (t, b): &End| scene.bvh().may_block(*id, a, b, [*s, *t]);
-        let any = |walls: &[End], from: DVec3| {
-            let from = device(from);
-            let own = |wall: &End| {
-                between(wall, &from) || hidden.iter().any(|surface| between(wall, surface))
-            };
-            walls.iter().any(own)
-        };
-        any(&seen, scene.camera.position) || any(&lit, scene.laser.position)
-    };
-    (0..shapes.len() as ShapeId).filter(may).collect()
-}
-
-/// A region of a surface, or a device.
-type End = (Option<ShapeId>, Region);
-
-/// What the camera sees of one flat wall, if it sees nothing else.
-fn seen_walls(scene: &Scene) -> Option<Vec<End>> {
-    let camera = &scene.camera;
-    let (right, last) = (camera.columns - 1, camera.pixels() - 1);
-    let rim = [
-        (0, [0.0, 0.0]),
-        (right, [1.0, 0.0]),
-        (last, [1.0, 1.0]),
-        (last - right, [0.0, 1.0]),
-    ];
-    let rim = rim.map(|(p, ab)| wall_point::seen(scene, p, ab, 1.0));
-    let id = rim[0].surface?;
-    let one = scene.surfaces[id as usize].shape.is_flat();
-    let same = rim.iter().all(|w| w.surface == Some(id));
-    let middle = wall_point::seen(scene, last / 2, [0.5; 2], 1.0).surface == Some(id);
-    (one && same && middle && scene.relays().count() == 1)
-        .then(|| vec![(Some(id), Region::flat(rim.map(|w| w.position).to_vec()))])
 }
 
 impl<'a> Obstructed<'a> {
@@ -379,67 +316,6 @@ struct Visit<'a> {
     pieces: Pieces,
 }
 
-impl Patch {
-    fn new(scene: &Scene, pixel: usize, part: &FootprintPart, hidden: &Hidden) -> Self {
-        let ([a, b], side) = (part.from, part.side);
-        let at = |[x, y]: [f64; 2]| {
-            let ab = [a + x * side, b + y * side];
-            wall_point::seen(scene, pixel, ab, side * side)
-        };
-        let whole = at([0.5; 2]);
-        let rim = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(at);
-        let is_flat = |id: ShapeId| scene.surfaces[id as usize].shape.is_flat();
-        let free = |to: DVec3, blockers: &Blockers| {
-            let ray = Ray::between(scene.camera.position, to);
-            let ends = [None, whole.surface];
-            ray.is_some_and(|ray| !scene.bvh().blocked_by(blockers, &ray, ends))
-        };
-        if !whole.surface.is_some_and(is_flat) || rim.iter().any(|w| w.surface != whole.surface) {
-            return Self {
-                corners: None,
-                seen: Vec::new(),
-                open: free(whole.position, &Blockers::Any),
-                whole,
-            };
-        }
-        let corners = rim.map(|w| w.position).to_vec();
-        let asked = hidden.asked(&corners);
-        let mut pieces = Pieces::default();
-        pieces.of([&*corners]);
-        let mut open = asked.none();
-        for shadow in hidden.shadows.iter().filter(|s| !s.misses(&corners)) {
-            pieces.cut(shadow);
-            open = false;
-        }
-        let mut seen: Vec<Polygon> = pieces.iter().map(<[DVec3]>::to_vec).collect();
-        if !asked.none() {
-            seen = seen.iter().flat_map(|p| triangles(p)).collect();
-            seen.retain(|piece| free(area_and_middle(piece).1, &asked));
-        }
-        Self {
-            whole,
-            corners: Some(corners),
-            seen,
-            open,
-        }
-    }
-}
-
-/// A convex figure in triangles, each in four.
-fn triangles(figure: &[DVec3]) -> Vec<Polygon> {
-    let Some(first) = figure.first() else {
-        return Vec::new();
-    };
-    let fan = figure[1..]
-        .windows(2)
-        .map(|pair| [*first, pair[0], pair[1]]);
-    fan.flat_map(|[a, b, c]| {
-        let [p, q, r] = [(a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5];
-        [vec![a, p, r], vec![p, b, q], vec![r, q, c], vec![p, q, r]]
-    })
-    .collect()
-}
-
 /// The light of a piece by its area and middle; of its triangles where something has to be asked ray
 /// by ray.
 fn over(piece: &[DVec3], asked: &Blockers, light: impl Fn((f64, DVec3)) -> f64) -> f64 {
@@ -449,23 +325,4 @@ fn over(piece: &[DVec3], asked: &Blockers, light: impl Fn((f64, DVec3)) -> f64) 
         let parts = triangles(piece);
         parts.iter().map(|t| light(area_and_middle(t))).sum()
     }
-}
-
-/// Corners of the axis-aligned box around points: a hull of them.
-fn hull(points: impl Iterator<Item = DVec3>) -> Vec<DVec3> {
-    let (low, high) = points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
-        (low.min(p), high.max(p))
-    });
-    let corner = |k: usize| {
-        let pick = |d: usize| if k >> d & 1 == 0 { low[d] } else { high[d] };
-        DVec3::new(pick(0), pick(1), pick(2))
-    };
-    let mut corners: Vec<DVec3> = Vec::with_capacity(8);
-    for k in 0..8 {
-        let corner = corner(k);
-        if !corners.contains(&corner) {
-            corners.push(corner);
-        }
-    }
-    corners
 }

@@ -9,8 +9,10 @@
 
 use std::borrow::Cow;
 
+use super::cells::HiddenCell;
 use super::kernel::HiddenPoint;
-use crate::geometry::{DVec3, Instance, Polygon, Shape, ShapeId};
+use super::place::{Place, grid, on_triangle, triangles};
+use crate::geometry::{DVec3, Shape, ShapeId};
 use crate::num::quadrature::Rule;
 use crate::scene::{Division, Element, Scene, Surface};
 
@@ -96,79 +98,6 @@ pub(super) struct HiddenParts<'a> {
     /// level 0: each with its mean albedo, and a node in its middle.
     coarse: Vec<usize>,
     coarse_side: usize,
-}
-
-/// A small part of a hidden surface, taken at its middle.
-pub(super) struct HiddenCell {
-    pub point: HiddenPoint,
-    /// Its area/π, length².
-    pub area: f64,
-    pub albedo: f64,
-    pub surface: ShapeId,
-    /// Its corners, where it is flat.
-    pub corners: Option<Polygon>,
-}
-
-impl HiddenCell {
-    /// `None` without area.
-    fn new(element: &Element, surface: ShapeId, corners: Option<Polygon>) -> Option<Self> {
-        (element.area > 0.0).then(|| Self {
-            point: HiddenPoint::from(element),
-            area: element.area * std::f64::consts::FRAC_1_PI,
-            albedo: element.albedo,
-            surface,
-            corners,
-        })
-    }
-}
-
-/// The elements of a hidden surface, `count` a side, each in 4^`halvings` cells: squares of its
-/// parameters, or of its texture's on a mesh; of triangles triangles.
-pub(super) fn cells_of_elements(
-    (id, surface): (usize, &Surface),
-    count @ [nu, nv]: [usize; 2],
-    halvings: u32,
-) -> Vec<Vec<HiddenCell>> {
-    let surface = surface.lambertian_equivalent();
-    let id = id as ShapeId;
-    let of_place = |place: &Place| {
-        let (element, corners) = place.cell(&surface)?;
-        HiddenCell::new(&element, id, corners)
-    };
-    let mut found = Vec::new();
-    if let (Shape::Instance(body), Division::Faces) = (&surface.shape, surface.division) {
-        for triangle in 0..body.mesh().triangles().len() as u32 {
-            let whole = Place::Triangle {
-                id: triangle,
-                corners: body.corners(triangle),
-            };
-            let quarter = |all: Vec<Place>, _| all.iter().flat_map(Place::quarters).collect();
-            let parts = (0..halvings).fold(vec![whole], quarter);
-            found.push(parts.iter().filter_map(of_place).collect());
-        }
-        return found;
-    }
-    found.resize_with(nu * nv, Vec::new);
-    let fine = count.map(|n| n << halvings);
-    let element = |cell: usize| (cell % fine[0] >> halvings) + (cell / fine[0] >> halvings) * nu;
-    if let Shape::Instance(_) = surface.shape {
-        for (k, e) in surface.divided(fine).iter().enumerate() {
-            found[element(k)].extend(HiddenCell::new(e, id, None));
-        }
-    } else {
-        for (k, place) in grid(fine).enumerate() {
-            found[element(k)].extend(of_place(&place));
-        }
-    }
-    found
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Place {
-    /// \[u, u + width\] × \[v, v + height\] of the surface's equal-area parameters.
-    Cell { from: [f64; 2], size: [f64; 2] },
-    /// A triangle within triangle `id` of a mesh.
-    Triangle { id: u32, corners: [DVec3; 3] },
 }
 
 impl<'a> HiddenParts<'a> {
@@ -312,115 +241,6 @@ impl<'a> HiddenParts<'a> {
     }
 }
 
-/// The triangles of a mesh that have an area.
-fn triangles(body: &Instance) -> impl Iterator<Item = Place> {
-    let ids = 0..body.mesh().triangles().len() as u32;
-    ids.filter(|t| body.triangle_area(*t) > 0.0)
-        .map(|id| Place::Triangle {
-            id,
-            corners: body.corners(id),
-        })
-}
-
-/// Cells of equal size, iu + iv·nu.
-fn grid([nu, nv]: [usize; 2]) -> impl Iterator<Item = Place> {
-    let size = [1.0 / nu as f64, 1.0 / nv as f64];
-    (0..nu * nv).map(move |cell| Place::Cell {
-        from: [(cell % nu) as f64 * size[0], (cell / nu) as f64 * size[1]],
-        size,
-    })
-}
-
-impl Place {
-    /// All of it taken at its middle, and its corners where it is flat.
-    fn cell(&self, surface: &Surface) -> Option<(Element, Option<Polygon>)> {
-        match (self, &surface.shape) {
-            (Self::Triangle { id, corners }, Shape::Instance(body)) => {
-                let element = on_triangle(surface, body, *id, corners, [1.0 / 3.0; 3], 1.0);
-                Some((element, Some(corners.to_vec())))
-            }
-            (Self::Triangle { .. }, _) => None,
-            (Self::Cell { from, size }, shape) => {
-                let at = |[a, b]: [f64; 2]| [from[0] + a * size[0], from[1] + b * size[1]];
-                let element = Element {
-                    area: shape.area() * size[0] * size[1],
-                    ..surface.element_at(at([0.5; 2]))
-                };
-                let rim = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-                let corners = matches!(shape, Shape::Parallelogram(_))
-                    .then(|| rim.map(|ab| shape.at(at(ab)).position).to_vec());
-                Some((element, corners))
-            }
-        }
-    }
-
-    /// Its middle and the largest distance from there to its rim.
-    fn ball(&self, surface: &Surface) -> (DVec3, f64) {
-        let furthest = |middle: DVec3, rim: &[DVec3]| {
-            let far = rim.iter().map(|p| (*p - middle).length());
-            (middle, far.fold(0.0, f64::max))
-        };
-        match self {
-            Self::Triangle {
-                corners: [a, b, c], ..
-            } => furthest((*a + *b + *c) / 3.0, &[*a, *b, *c]),
-            Self::Cell { from, size } => {
-                let at = |[a, b]: [f64; 2]| {
-                    let uv = [from[0] + a * size[0], from[1] + b * size[1]];
-                    surface.shape.at(uv).position
-                };
-                let rim = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(at);
-                let sides = [[0.5, 0.0], [1.0, 0.5], [0.5, 1.0], [0.0, 0.5]].map(at);
-                furthest(at([0.5; 2]), &[rim, sides].concat())
-            }
-        }
-    }
-
-    /// Whether the texture of a mesh differs between corners, middles of sides and middle of a
-    /// triangle: an edge of it may run through, and no rule converges fast over that.
-    fn has_edge(&self, surface: &Surface) -> bool {
-        let (Self::Triangle { id, corners }, Shape::Instance(body)) = (self, &surface.shape) else {
-            return false;
-        };
-        let [a, b, c] = *corners;
-        let inside = |p: DVec3| {
-            let middle = (a + b + c) / 3.0;
-            let uv = body.on_triangle(*id, middle + (p - middle) * 0.999).uv;
-            surface.albedo.albedo(uv)
-        };
-        let sides = [(a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5];
-        let first = inside(a);
-        let mut others = [b, c].into_iter().chain(sides);
-        others.any(|p| inside(p) != first)
-    }
-
-    fn quarters(&self) -> [Self; 4] {
-        match *self {
-            Self::Cell {
-                from: [u, v],
-                size: [w, h],
-            } => {
-                let size = [0.5 * w, 0.5 * h];
-                [
-                    [u, v],
-                    [u + size[0], v],
-                    [u, v + size[1]],
-                    [u + size[0], v + size[1]],
-                ]
-                .map(|from| Self::Cell { from, size })
-            }
-            Self::Triangle {
-                id,
-                corners: [a, b, c],
-            } => {
-                let [p, q, r] = [(a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5];
-                [[a, p, r], [p, b, q], [r, q, c], [p, q, r]]
-                    .map(|corners| Self::Triangle { id, corners })
-            }
-        }
-    }
-}
-
 /// A part of a footprint: corner and side in its coordinates, the ball around what is seen there,
 /// and its distance from the hidden surfaces in radii.
 pub(super) struct FootprintPart {
@@ -492,25 +312,6 @@ pub(super) fn footprint_parts(scene: &Scene, pixel: usize) -> Vec<FootprintPart>
         open = next;
     }
     done
-}
-
-fn on_triangle(
-    surface: &Surface,
-    body: &Instance,
-    id: u32,
-    [a, b, c]: &[DVec3; 3],
-    [x, y, z]: [f64; 3],
-    share: f64,
-) -> Element {
-    let point = body.on_triangle(id, *a * x + *b * y + *c * z);
-    let area = 0.5 * (*b - *a).cross(*c - *a).length();
-    Element {
-        position: point.position,
-        normal: point.normal,
-        area: area * share,
-        u_axis: DVec3::X,
-        albedo: surface.albedo.albedo(point.uv),
-    }
 }
 
 /// Barycentric nodes of a triangle with their shares of its area.

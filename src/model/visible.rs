@@ -2,12 +2,13 @@
 
 use rayon::prelude::*;
 
+use super::cells::HiddenCell;
 use super::cut::Cut;
 use super::error::ModelError;
 use super::extent::Extent;
 use super::kernel::Kernel;
-use super::occlusion::{Both, Obstructed, obstacles};
-use super::parts::HiddenCell;
+use super::obstacles::obstacles;
+use super::occlusion::{Both, Obstructed};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
 

@@ -3,10 +3,10 @@
 use std::sync::OnceLock;
 
 use phicam::lab::{
-    Against, Deviation, Errors, Integration, Measured, Occlusion, Score, Test, Validation, validate,
+    Against, Deviation, Errors, Integration, Measured, Score, Test, Validation, validate,
 };
 use phicam::matrix::Matrix;
-use phicam::model::{Extent, Kernel, converged};
+use phicam::model::{Extent, Kernel, Occlusion, converged};
 use phicam::num::statistics::binomial_interval;
 use phicam::num::stream::{Key, Sampling, Stream};
 use phicam::scene::Scene;

@@ -10,6 +10,7 @@
 //! the Bayes risk of a Gaussian prior about ½ with a standard deviation τ of ½
 //! ([`determined`](determined())). Then boards are recovered from draws of the noise.
 
+mod found;
 mod kinds;
 mod search;
 mod tasks;
@@ -17,17 +18,7 @@ mod tasks;
 use super::options::Opt;
 use super::registered::{Registered, prepared};
 use kinds::{KINDS, Kind, Place};
-use tasks::{OccluderTasks, Plan};
-
-/// Kinds of noise: how the standard error goes with the light of an entry.
-pub(super) const NOISES: &[(&str, &str)] = &[
-    ("relative", "A share of each entry"),
-    (
-        "shot",
-        "The same share of the brightest entry, of others by the root of their light",
-    ),
-    ("read", "The same for all entries, a share of the brightest"),
-];
+use tasks::{NOISES, OccluderTasks, Plan};
 
 /// `phicam study occluder`.
 pub(super) const STUDY: Registered = Registered {

@@ -1,30 +1,30 @@
 //! The tasks of the study: an occluder and a number of spots each.
 
-use serde::{Deserialize, Serialize};
-
+use super::found::{LEVELS, Misplaced, Occluders, Row, SEARCHED};
 use super::kinds::{Kind, Place};
 use super::search::search;
-use super::{NOISES, STUDY};
 use crate::lab::deviate::normal_deviates;
 use crate::lab::error::LabError;
-use crate::lab::finding::{
-    Axis, Cell, Column, Curve, Describe, Figure, Finding, Mark, Plot, Table, listed,
-};
 use crate::lab::fit::{Certainty, Residuals};
 use crate::lab::problem::problem;
 use crate::lab::study::{Sharing, Study};
 use crate::matrix::Matrix;
 use crate::metrics::mtf_raw;
 use crate::model::{Kernel, MatrixModel};
-use crate::num::digits::figure;
 use crate::recovery::{Method, Options, determined, picard_joint, recover};
 use crate::scene::Scene;
 use crate::transport::Control;
 
-/// Noise levels at which directions are counted.
-const LEVELS: [f64; 4] = [0.1, 0.01, 1e-3, 1e-4];
-/// Pixels a side, and spots, of the scene on which the place is searched.
-const SEARCHED: [usize; 2] = [12, 25];
+/// Kinds of noise: how the standard error goes with the light of an entry.
+pub(super) const NOISES: &[(&str, &str)] = &[
+    ("relative", "A share of each entry"),
+    (
+        "shot",
+        "The same share of the brightest entry, of others by the root of their light",
+    ),
+    ("read", "The same for all entries, a share of the brightest"),
+];
+
 /// Contrast at which a board counts as resolved.
 const RESOLVED: f64 = 0.9;
 /// Decades of noise, from 1 down, in which its limit is looked for, and halvings.
@@ -55,47 +55,6 @@ pub(super) struct Plan {
 pub(super) struct OccluderTasks {
     scene: Scene,
     plan: Plan,
-}
-
-/// An occluder at its best place.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Row {
-    kind: Kind,
-    spots: usize,
-    place: Place,
-    /// Places that were tried.
-    tries: usize,
-    /// Directions whose signal, τ s, is above a noise of 10 %, 1 %, 0.1 %, 0.01 %.
-    directions: Vec<usize>,
-    /// Share of the prior variance that is left at the level of the plan.
-    risk: f64,
-    /// Of each board the most noise at which its MTF is 0.9.
-    limits: Vec<Option<f64>>,
-    misplaced: Vec<Misplaced>,
-}
-
-/// What a wrong place costs.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct Misplaced {
-    by: f64,
-    /// MTF of the first board at the level of the plan.
-    mtf: Option<f64>,
-    /// Probability of as bad a fit by noise alone.
-    p: Option<f64>,
-}
-
-/// What the occluders do.
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct Occluders {
-    scene: String,
-    scene_hash: String,
-    pixels: usize,
-    elements: usize,
-    noise: String,
-    level: f64,
-    boards: Vec<usize>,
-    draws: u64,
-    rows: Vec<Row>,
 }
 
 impl OccluderTasks {
@@ -239,7 +198,7 @@ impl Study for OccluderTasks {
     type Error = LabError;
 
     fn name(&self) -> &'static str {
-        STUDY.name
+        "occluder"
     }
 
     fn tasks(&self) -> usize {
@@ -344,141 +303,4 @@ fn board(scene: &Scene, model: &MatrixModel, checks: usize) -> Vec<f64> {
     each.flat_map(|((_, surface), grid)| surface.divided(grid.count))
         .map(|element| element.albedo)
         .collect()
-}
-
-impl Occluders {
-    fn table(&self) -> Table {
-        let mut columns = vec![
-            Column::text("occluder", "occluder"),
-            Column::text("spots", "spots"),
-            Column::number("height", "height", "", 3),
-            Column::number("aside, u", "offset_u", "", 2),
-            Column::number("aside, v", "offset_v", "", 2),
-            Column::number("size", "size", "", 3),
-        ];
-        columns.extend(LEVELS.iter().map(|l| {
-            Column::text(
-                &format!("above {} %", figure(100.0 * l, 1)),
-                &format!("directions_{l:e}"),
-            )
-        }));
-        columns.push(Column::number("risk", "risk", "", 2));
-        columns.extend(
-            self.boards
-                .iter()
-                .map(|b| Column::number(&format!("{b} × {b}"), &format!("noise_{b}"), "", 2)),
-        );
-        let row = |row: &Row| {
-            let [u, v] = row.place.offset;
-            let there = |x: f64| Cell::Number((row.kind != Kind::None).then_some(x));
-            let mut cells = vec![Cell::name(row.kind.name()), row.spots.into()];
-            cells.extend([row.place.height, u, v, row.place.size].map(there));
-            cells.extend(row.directions.iter().map(|n| Cell::from(*n)));
-            cells.push(row.risk.into());
-            cells.extend(row.limits.iter().map(|x| Cell::Number(*x)));
-            cells
-        };
-        Table {
-            caption: format!(
-                "Directions of {} above a noise, share of the prior variance that is left at {}, and the most {} noise at which a board has an MTF of 0.9",
-                self.elements,
-                figure(self.level, 1),
-                self.noise
-            ),
-            file: Some("occluder.csv".to_owned()),
-            columns,
-            rows: self.rows.iter().map(row).collect(),
-            ..Table::default()
-        }
-    }
-
-    fn misplaced(&self) -> Table {
-        let each = self
-            .rows
-            .iter()
-            .flat_map(|row| row.misplaced.iter().map(move |m| (row, m)));
-        let cells = |(row, m): (&Row, &Misplaced)| {
-            vec![
-                Cell::name(row.kind.name()),
-                row.spots.into(),
-                m.by.into(),
-                Cell::Number(m.mtf),
-                Cell::Number(m.p),
-            ]
-        };
-        Table {
-            caption: format!(
-                "The model's occluder misplaced along the view: MTF of the first board at a noise of {}, and how probable so bad a fit is",
-                figure(self.level, 1)
-            ),
-            file: Some("misplaced.csv".to_owned()),
-            columns: vec![
-                Column::text("occluder", "occluder"),
-                Column::text("spots", "spots"),
-                Column::number("by", "by", "", 2),
-                Column::number("MTF", "mtf", "", 3),
-                Column::number("P of the fit", "p", "", 2),
-            ],
-            rows: each.map(cells).collect(),
-            ..Table::default()
-        }
-    }
-
-    fn sentence(&self) -> String {
-        let risk = |row: &&Row| row.risk;
-        let least = self.rows.iter().min_by(|a, b| risk(a).total_cmp(&risk(b)));
-        let none = self.rows.iter().find(|row| row.kind == Kind::None);
-        let of = |row: &Row| {
-            format!(
-                "{} with {} spots leaves {} of the variance at a noise of {}",
-                row.kind.name(),
-                row.spots,
-                figure(row.risk, 2),
-                figure(self.level, 1)
-            )
-        };
-        let said: Vec<String> = [none, least].into_iter().flatten().map(of).collect();
-        format!("On {} {}.", self.scene, listed(&said))
-    }
-}
-
-impl Describe for Occluders {
-    fn describe(&self) -> Finding {
-        let title = format!("Occluders between object and wall: {}", self.scene);
-        let curve = |row: &Row| {
-            let points = LEVELS.iter().zip(&row.directions);
-            let points = points.map(|(l, n)| [*l, *n as f64]).collect();
-            Curve::new(
-                format!("{}, {} spots", row.kind.name(), row.spots),
-                Mark::Line,
-                points,
-            )
-        };
-        let axes = [
-            Axis::decades("noise"),
-            Axis::linear("directions above it", [0.0, self.elements as f64]),
-        ];
-        let plot = Plot::new("", axes, self.rows.iter().map(curve).collect());
-        let mut tables = vec![self.table()];
-        if self.rows.iter().any(|row| !row.misplaced.is_empty()) {
-            tables.push(self.misplaced());
-        }
-        Finding {
-            sentence: self.sentence(),
-            notes: vec![
-                format!(
-                    "Places are searched on at most {} × {} pixels and {} spots by compass search: a local optimum.",
-                    SEARCHED[0], SEARCHED[0], SEARCHED[1]
-                ),
-                format!(
-                    "Boards have albedos 0 and 1, recovered by joint from {} draws of the modelled photographs, whose occluder is black. Light that an occluder reflects, and what the sensor does, is for `render` and `expose`.",
-                    self.draws
-                ),
-            ],
-            tables,
-            figures: vec![Figure::new("occluder.svg", title.clone(), vec![plot])],
-            title,
-            ..Finding::default()
-        }
-    }
 }

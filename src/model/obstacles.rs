@@ -1,0 +1,88 @@
+//! Which surfaces of a scene may stand in the way.
+
+use super::cut::reach;
+use super::wall_point;
+use crate::geometry::{DVec3, Region, ShapeId};
+use crate::scene::{Scene, Spot};
+
+/// Shapes that may stand between what the camera sees of the wall, or a spot, and a hidden surface or
+/// the device.
+pub(super) fn obstacles(scene: &Scene) -> Vec<ShapeId> {
+    let shapes = scene.bvh().shapes();
+    let around = |(id, _): (usize, &_)| (Some(id as ShapeId), Region::around(&shapes[id]));
+    let device = |p: DVec3| (None, Region::point(p));
+    let hidden: Vec<End> = scene.hidden().map(around).collect();
+    let reach = DVec3::splat(reach(scene.laser.profile));
+    let rim = |spot: &Spot| [spot.target.position - reach, spot.target.position + reach];
+    let region = |id, corners: Vec<DVec3>| (Some(id), Region::flat(corners));
+    let spots = scene.laser.spots.iter();
+    let lit: Vec<End> = spots
+        .map(|spot| region(spot.surface, hull(rim(spot).into_iter())))
+        .collect();
+    // All spots of a wall in one box: mostly that decides.
+    let together = scene.relays().filter_map(|(id, _)| {
+        let own = scene
+            .laser
+            .spots
+            .iter()
+            .filter(|s| s.surface as usize == id);
+        let corners: Vec<DVec3> = own.flat_map(rim).collect();
+        (!corners.is_empty()).then(|| region(id as ShapeId, hull(corners.into_iter())))
+    });
+    let together: Vec<End> = together.collect();
+    let seen = seen_walls(scene).unwrap_or_else(|| scene.relays().map(around).collect());
+    let may = |id: &ShapeId| {
+        let between = |(s, a): &End, (t, b): &End| scene.bvh().may_block(*id, a, b, [*s, *t]);
+        let any = |walls: &[End], from: DVec3| {
+            let from = device(from);
+            let own = |wall: &End| {
+                between(wall, &from) || hidden.iter().any(|surface| between(wall, surface))
+            };
+            walls.iter().any(own)
+        };
+        let laser = scene.laser.position;
+        any(&seen, scene.camera.position) || any(&together, laser) && any(&lit, laser)
+    };
+    (0..shapes.len() as ShapeId).filter(may).collect()
+}
+
+/// A region of a surface, or a device.
+type End = (Option<ShapeId>, Region);
+
+/// What the camera sees of one flat wall, if it sees nothing else.
+fn seen_walls(scene: &Scene) -> Option<Vec<End>> {
+    let camera = &scene.camera;
+    let (right, last) = (camera.columns - 1, camera.pixels() - 1);
+    let rim = [
+        (0, [0.0, 0.0]),
+        (right, [1.0, 0.0]),
+        (last, [1.0, 1.0]),
+        (last - right, [0.0, 1.0]),
+    ];
+    let rim = rim.map(|(p, ab)| wall_point::seen(scene, p, ab, 1.0));
+    let id = rim[0].surface?;
+    let one = scene.surfaces[id as usize].shape.is_flat();
+    let same = rim.iter().all(|w| w.surface == Some(id));
+    let middle = wall_point::seen(scene, last / 2, [0.5; 2], 1.0).surface == Some(id);
+    (one && same && middle && scene.relays().count() == 1)
+        .then(|| vec![(Some(id), Region::flat(rim.map(|w| w.position).to_vec()))])
+}
+
+/// Corners of the axis-aligned box around points: a hull of them.
+pub(super) fn hull(points: impl Iterator<Item = DVec3>) -> Vec<DVec3> {
+    let (low, high) = points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
+        (low.min(p), high.max(p))
+    });
+    let corner = |k: usize| {
+        let pick = |d: usize| if k >> d & 1 == 0 { low[d] } else { high[d] };
+        DVec3::new(pick(0), pick(1), pick(2))
+    };
+    let mut corners: Vec<DVec3> = Vec::with_capacity(8);
+    for k in 0..8 {
+        let corner = corner(k);
+        if !corners.contains(&corner) {
+            corners.push(corner);
+        }
+    }
+    corners
+}

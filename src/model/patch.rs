@@ -1,0 +1,79 @@
+//! Parts of footprints on the wall, and what the camera sees of them.
+
+use super::parts::FootprintPart;
+use super::wall_point::{self, WallPoint};
+use crate::geometry::{Blockers, DVec3, Hidden, Pieces, Polygon, Ray, ShapeId, area_and_middle};
+use crate::scene::Scene;
+
+/// A part of a footprint on the wall.
+pub(super) struct Patch {
+    /// All of it, at its middle.
+    pub whole: WallPoint,
+    /// Its corners, where the wall is flat.
+    pub corners: Option<Polygon>,
+    /// What the camera sees of it,
+    pub seen: Vec<Polygon>,
+    /// and whether that is all; of a wall that is not flat whether it sees the middle.
+    pub open: bool,
+}
+
+impl Patch {
+    pub(super) fn new(scene: &Scene, pixel: usize, part: &FootprintPart, hidden: &Hidden) -> Self {
+        let ([a, b], side) = (part.from, part.side);
+        let at = |[x, y]: [f64; 2]| {
+            let ab = [a + x * side, b + y * side];
+            wall_point::seen(scene, pixel, ab, side * side)
+        };
+        let whole = at([0.5; 2]);
+        let rim = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(at);
+        let is_flat = |id: ShapeId| scene.surfaces[id as usize].shape.is_flat();
+        let free = |to: DVec3, blockers: &Blockers| {
+            let ray = Ray::between(scene.camera.position, to);
+            let ends = [None, whole.surface];
+            ray.is_some_and(|ray| !scene.bvh().blocked_by(blockers, &ray, ends))
+        };
+        if !whole.surface.is_some_and(is_flat) || rim.iter().any(|w| w.surface != whole.surface) {
+            return Self {
+                corners: None,
+                seen: Vec::new(),
+                open: free(whole.position, &Blockers::Any),
+                whole,
+            };
+        }
+        let corners = rim.map(|w| w.position).to_vec();
+        let asked = hidden.asked(&corners);
+        let mut pieces = Pieces::default();
+        pieces.of([&*corners]);
+        let mut open = asked.none();
+        for shadow in hidden.shadows.iter().filter(|s| !s.misses(&corners)) {
+            pieces.cut(shadow);
+            open = false;
+        }
+        let mut seen: Vec<Polygon> = pieces.iter().map(<[DVec3]>::to_vec).collect();
+        if !asked.none() {
+            seen = seen.iter().flat_map(|p| triangles(p)).collect();
+            seen.retain(|piece| free(area_and_middle(piece).1, &asked));
+        }
+        Self {
+            whole,
+            corners: Some(corners),
+            seen,
+            open,
+        }
+    }
+}
+
+/// A convex figure in triangles, each in four.
+pub(super) fn triangles(figure: &[DVec3]) -> Vec<Polygon> {
+    let Some(first) = figure.first() else {
+        return Vec::new();
+    };
+    let fan = figure[1..]
+        .windows(2)
+        .map(|pair| [*first, pair[0], pair[1]]);
+    fan.flat_map(|[a, b, c]| {
+        let [p, q, r] = [(a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5];
+        [vec![a, p, r], vec![p, b, q], vec![r, q, c], vec![p, q, r]]
+    })
+    .collect()
+}
