@@ -2,7 +2,7 @@
 
 use super::cut::reach;
 use super::wall_point;
-use crate::geometry::{DVec3, Region, ShapeId};
+use crate::geometry::{DVec3, Region, Shape, ShapeId};
 use crate::scene::{Scene, Spot};
 
 /// Shapes that may stand between what the camera sees of the wall, or a spot, and a hidden surface or
@@ -32,18 +32,42 @@ pub(super) fn obstacles(scene: &Scene) -> Vec<ShapeId> {
     let together: Vec<End> = together.collect();
     let seen = seen_walls(scene).unwrap_or_else(|| scene.relays().map(around).collect());
     let may = |id: &ShapeId| {
+        let convex = is_convex(&shapes[*id as usize]);
         let between = |(s, a): &End, (t, b): &End| scene.bvh().may_block(*id, a, b, [*s, *t]);
         let any = |walls: &[End], from: DVec3| {
             let from = device(from);
-            let own = |wall: &End| {
-                between(wall, &from) || hidden.iter().any(|surface| between(wall, surface))
+            let others = || {
+                hidden
+                    .iter()
+                    .filter(|(own, _)| *own != Some(*id) || !convex)
             };
-            walls.iter().any(own)
+            let to =
+                |wall: &End| between(wall, &from) || others().any(|surface| between(wall, surface));
+            walls.iter().any(to)
         };
         let laser = scene.laser.position;
         any(&seen, scene.camera.position) || any(&together, laser) && any(&lit, laser)
     };
     (0..shapes.len() as ShapeId).filter(may).collect()
+}
+
+/// Whether it is a mesh with no vertex in front of any of its triangles, so that it hides nothing of its
+/// own front; large meshes are taken not to be.
+fn is_convex(shape: &Shape) -> bool {
+    const MOST: usize = 10_000_000;
+    let Shape::Instance(body) = shape else {
+        return false;
+    };
+    let (count, vertices) = (body.mesh().triangles().len(), body.mesh().positions().len());
+    let (low, high) = body.bounds();
+    let slack = 1e-9 * (high - low).length();
+    count * vertices <= MOST
+        && (0..count as u32).all(|t| {
+            let [a, b, c] = body.corners(t);
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            let mut all = (0..count as u32).flat_map(|t| body.corners(t));
+            all.all(|p| normal.dot(p - a) <= slack)
+        })
 }
 
 /// A region of a surface, or a device.

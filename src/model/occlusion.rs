@@ -128,11 +128,15 @@ impl<'a> Obstructed<'a> {
         self.pixels.len()
     }
 
+    /// Whether anything is asked ray by ray.
+    pub(super) fn by_rays(&self) -> bool {
+        let mut patches = self.pixels.iter().flatten();
+        self.opaque.has_meshes() || patches.any(|p| p.corners.is_none())
+    }
+
     /// Pairs of a cell and a pixel, or a point of a spot, that are worth looking at.
     pub(super) fn most_pairs(&self) -> f64 {
-        let mut patches = self.pixels.iter().flatten();
-        let by_rays = self.opaque.has_meshes() || patches.any(|p| p.corners.is_none());
-        if by_rays { 1e7 } else { 1e8 }
+        if self.by_rays() { 2e6 } else { 1e8 }
     }
 
     /// What each pixel sees of a cell's middle: c_p.
@@ -221,13 +225,15 @@ impl<'a> Obstructed<'a> {
             return whole;
         }
         let light = |(area, middle): (f64, DVec3)| {
-            if area > 0.0 && self.is_free(middle, to, wall, &asked) {
+            if area > 0.0 {
                 towards(&wall_point::seen_piece(self.scene, wall, middle, area))
             } else {
                 0.0
             }
         };
-        pieces.iter().map(|piece| over(piece, &asked, light)).sum()
+        let free = |middle| self.is_free(middle, to, wall, &asked);
+        let over = |piece| light(area_and_middle(piece)) * free_share(piece, &asked, light, free);
+        pieces.iter().map(over).sum()
     }
 
     /// Whether nothing of `blockers` stands between a point of the first surface and the place on the
@@ -293,16 +299,15 @@ impl<'a> Obstructed<'a> {
         }
         let (whole, _) = area_and_middle(corners);
         let light = |(area, middle): (f64, DVec3)| {
-            if area == 0.0 || !is_free(middle, &asked) {
-                return 0.0;
-            }
             let point = HiddenPoint {
                 position: middle,
                 ..cell.point
             };
             wall.towards(self.scene, self.kernel, &point) * cell.area * (area / whole)
         };
-        pieces.iter().map(|piece| over(piece, &asked, light)).sum()
+        let free = |middle| is_free(middle, &asked);
+        let over = |piece| light(area_and_middle(piece)) * free_share(piece, &asked, light, free);
+        pieces.iter().map(over).sum()
     }
 }
 
@@ -316,13 +321,25 @@ struct Visit<'a> {
     pieces: Pieces,
 }
 
-/// The light of a piece by its area and middle; of its triangles where something has to be asked ray
-/// by ray.
-fn over(piece: &[DVec3], asked: &Blockers, light: impl Fn((f64, DVec3)) -> f64) -> f64 {
+/// The share of a piece's light that is in free sight, by its triangles, where something has to be
+/// asked ray by ray.
+fn free_share(
+    piece: &[DVec3],
+    asked: &Blockers,
+    light: impl Fn((f64, DVec3)) -> f64,
+    free: impl Fn(DVec3) -> bool,
+) -> f64 {
     if asked.none() {
-        light(area_and_middle(piece))
-    } else {
-        let parts = triangles(piece);
-        parts.iter().map(|t| light(area_and_middle(t))).sum()
+        return 1.0;
     }
+    let (mut all, mut left) = (0.0, 0.0);
+    for part in triangles(piece) {
+        let (area, middle) = area_and_middle(&part);
+        let own = light((area, middle));
+        all += own;
+        if free(middle) {
+            left += own;
+        }
+    }
+    if all > 0.0 { left / all } else { 0.0 }
 }

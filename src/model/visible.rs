@@ -27,6 +27,9 @@ pub struct Visible {
 
 /// Relative change of Φcam below which no finer cells are tried.
 const TARGET: f64 = 3e-4;
+/// What is asked ray by ray scatters: a single entry's change may be small by luck, and its bound is at
+/// least so many times what the entries change on average (in 1e5 normal deviates one exceeds 4.4).
+const SCATTER: f64 = 4.5;
 /// Level of the rule on spots.
 const LEVEL: usize = 1;
 /// Entries of each side that are held at once.
@@ -34,7 +37,7 @@ const HELD: usize = 1 << 22;
 
 /// Φcam past everything that stands in the way over Φcam with nothing in the way, both by the same
 /// cells of the hidden surfaces, so that what both leave out cancels; the cells are cut in four until
-/// Φcam changes by less than 3e-4, or there are 1e8 pairs of them with pixels and spots (1e7 where
+/// Φcam changes by less than 3e-4, or there are 1e8 pairs of them with pixels and spots (2e6 where
 /// they are asked ray by ray). `None` where
 /// nothing can stand in the way.
 ///
@@ -66,9 +69,17 @@ pub fn visible(scene: &Scene, kernel: Kernel) -> Result<Option<Visible>, ModelEr
         let moved = change.component_mul(&next[0]).norm() / next[1].norm().max(f64::MIN_POSITIVE);
         let exhausted = 4.0 * (cells.len() * walls) as f64 > occlusion.most_pairs();
         if before.is_some() && (exhausted || moved < TARGET) {
+            let least = if occlusion.by_rays() {
+                SCATTER * scatter(&change)
+            } else {
+                0.0
+            };
             let bound = match before {
                 None => change,
-                Some(before) => change.zip_map(&before, |now, then| now.max(0.5 * then)),
+                Some(before) => change.zip_map(&before, |now, then| match now.max(0.5 * then) {
+                    0.0 => 0.0,
+                    bound => bound.max(least),
+                }),
             };
             return Ok(Some(Visible {
                 share,
@@ -78,6 +89,12 @@ pub fn visible(scene: &Scene, kernel: Kernel) -> Result<Option<Visible>, ModelEr
         }
         (now, before) = (next, Some(change));
     }
+}
+
+/// Root mean square of the changes that are not 0.
+fn scatter(change: &Matrix) -> f64 {
+    let moved = change.iter().filter(|x| **x > 0.0).count();
+    change.norm() / (moved.max(1) as f64).sqrt()
 }
 
 /// Φ with occlusion over Φ without; 1 where there is none.

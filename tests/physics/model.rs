@@ -205,7 +205,8 @@ fn spots_beside_the_hinge_have_the_integral() {
         .join(", ");
     let text = format!("{head}layout = \"list\"\npoints = [{points}]\n[camera]{rest}");
     let scene = Scene::from_toml("hinge", &text).unwrap_or_else(|e| panic!("{e}"));
-    let found = converged(&scene, Kernel::Physical, Extent::FULL).unwrap();
+    // Some spots lie in the board's own shadow.
+    let found = converged(&scene, Kernel::Physical, Extent::UNOBSTRUCTED).unwrap();
     for (l, (x, h)) in places.into_iter().enumerate() {
         for (p, truth) in beside_the_hinge(x, h).into_iter().enumerate() {
             let (phi, bound) = (found.phi[(p, l)], found.bound[(p, l)]);

@@ -7,7 +7,7 @@ use super::projection::Projection;
 use super::sweep::{Arrangement, Site};
 use crate::lab::LabError;
 use crate::metrics::mtf_raw;
-use crate::model::MatrixModel;
+use crate::model::{MatrixModel, Occlusion};
 use crate::recovery::{Method, Options, recover};
 
 /// One bench with one object.
@@ -51,10 +51,12 @@ pub(super) fn model(
         return Ok(None);
     };
     let elements = Some([arrangement.elements; 2]);
-    Ok(Some(MatrixModel::new(
+    // The published inversion knows nothing of what stands in the way.
+    Ok(Some(MatrixModel::with(
         &scene.with_checkerboard(board),
         arrangement.kernel,
         elements,
+        Occlusion::Ignored,
     )?))
 }
 
