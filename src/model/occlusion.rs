@@ -136,7 +136,7 @@ impl<'a> Obstructed<'a> {
 
     /// Pairs of a cell and a pixel, or a point of a spot, that are worth looking at.
     pub(super) fn most_pairs(&self) -> f64 {
-        if self.by_rays() { 2e6 } else { 1e8 }
+        if self.by_rays() { 8e6 } else { 1e8 }
     }
 
     /// What each pixel sees of a cell's middle: c_p.

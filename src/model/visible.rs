@@ -37,7 +37,7 @@ const HELD: usize = 1 << 22;
 
 /// Φcam past everything that stands in the way over Φcam with nothing in the way, both by the same
 /// cells of the hidden surfaces, so that what both leave out cancels; the cells are cut in four until
-/// Φcam changes by less than 3e-4, or there are 1e8 pairs of them with pixels and spots (2e6 where
+/// Φcam changes by less than 3e-4, or there are 1e8 pairs of them with pixels and spots (8e6 where
 /// they are asked ray by ray). `None` where
 /// nothing can stand in the way.
 ///
