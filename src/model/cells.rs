@@ -61,7 +61,8 @@ pub(super) fn cells_of_elements(
     }
     found.resize_with(nu * nv, Vec::new);
     let fine = count.map(|n| n << halvings);
-    let element = |cell: usize| (cell % fine[0] >> halvings) + (cell / fine[0] >> halvings) * nu;
+    let element =
+        |cell: usize| ((cell % fine[0]) >> halvings) + ((cell / fine[0]) >> halvings) * nu;
     if let Shape::Instance(_) = surface.shape {
         for (k, e) in surface.divided(fine).iter().enumerate() {
             found[element(k)].extend(HiddenCell::new(e, id, None));

@@ -235,7 +235,7 @@ impl<'a> HiddenParts<'a> {
         for index in &self.coarse {
             let surface = &self.surfaces[*index];
             let elements = surface.divided([self.coarse_side << level; 2]);
-            elements.iter().for_each(|e| add(e));
+            elements.iter().for_each(&mut add);
         }
         found
     }

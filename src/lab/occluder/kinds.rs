@@ -169,7 +169,7 @@ mod tests {
     fn the_mura_has_one_peak() {
         let a = |i: usize, j: usize| i64::from(is_open(i % 7, j % 7));
         let g = |i: usize, j: usize| {
-            if i % 7 == 0 && j % 7 == 0 {
+            if [i % 7, j % 7] == [0, 0] {
                 1
             } else {
                 2 * a(i, j) - 1
