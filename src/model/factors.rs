@@ -92,7 +92,9 @@ pub(super) fn factors(
     };
     let hidden: Vec<(usize, &Surface)> = scene.hidden().collect();
     let mut before: Option<Vec<Own>> = None;
-    for halvings in 1.. {
+    let mut halvings = 0;
+    loop {
+        halvings += 1;
         let each = hidden.iter().zip(grids);
         let of: Vec<Vec<HiddenCell>> = each
             .flat_map(|(surface, grid)| cells_of_elements(*surface, grid.count, halvings))
@@ -108,7 +110,6 @@ pub(super) fn factors(
         }
         before = Some(now);
     }
-    unreachable!("every halving brings the end nearer")
 }
 
 /// An element's terms, and its light without and with what stands in the way, summed over its cells.
