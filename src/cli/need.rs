@@ -183,8 +183,8 @@ impl Need {
         BASE + matrices + points + self.past(3.0 * TERMS * sides)
     }
 
-    /// What it takes to see past what stands in the way, beside `terms` numbers: the footprints' parts,
-    /// and the light of the cells that are held at once.
+    /// What it takes to see past what stands in the way, beside `terms` numbers: the footprints'
+    /// parts, and the light of the cells that are held at once.
     fn past(&self, terms: f64) -> f64 {
         if !self.obstructed {
             return 0.0;

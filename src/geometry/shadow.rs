@@ -95,8 +95,8 @@ impl Hidden {
     }
 }
 
-/// Convex pieces of flat figures that stay in sight, shadow after shadow. Kept for reuse: a piece is
-/// found in less time than its memory.
+/// Convex pieces of flat figures that stay in sight, shadow after shadow. Kept for reuse: a piece
+/// is found in less time than its memory.
 #[derive(Clone, Debug, Default)]
 pub struct Pieces {
     now: Figures,
@@ -136,10 +136,22 @@ impl Figures {
 }
 
 impl Pieces {
-    /// Starts anew with these figures.
-    pub fn of<'f>(&mut self, figures: impl IntoIterator<Item = &'f [DVec3]>) {
+    /// Starts anew with these figures, which lie in the convex hull of some points, and takes away
+    /// what shadows hide. Returns whether any shadow meets the hull.
+    pub fn past<'f, 's>(
+        &mut self,
+        figures: impl IntoIterator<Item = &'f [DVec3]>,
+        hull: &[DVec3],
+        shadows: impl IntoIterator<Item = &'s Shadow>,
+    ) -> bool {
         self.now.clear();
         figures.into_iter().for_each(|figure| self.now.push(figure));
+        let mut met = false;
+        for shadow in shadows.into_iter().filter(|s| !s.misses(hull)) {
+            self.cut(shadow);
+            met = true;
+        }
+        met
     }
 
     /// The pieces.
@@ -149,7 +161,7 @@ impl Pieces {
 
     /// Takes away what a shadow hides: of each figure what lies outside each half-space in turn
     /// stays, and what lies inside all goes.
-    pub fn cut(&mut self, shadow: &Shadow) {
+    fn cut(&mut self, shadow: &Shadow) {
         let Self {
             now,
             next,
@@ -305,8 +317,8 @@ impl Opaque {
         !self.by_rays.is_empty()
     }
 
-    /// What is hidden from `from`, a point of shape `own`: that shape hides nothing of its own unless
-    /// it is a mesh.
+    /// What is hidden from `from`, a point of shape `own`: that shape hides nothing of its own
+    /// unless it is a mesh.
     pub fn from(&self, from: DVec3, own: Option<ShapeId>, bvh: &Bvh) -> Hidden {
         let is_mesh = |id: ShapeId| matches!(bvh.shapes()[id as usize], Shape::Instance(_));
         let other = |id: &ShapeId| Some(*id) != own || is_mesh(*id);
@@ -358,8 +370,7 @@ mod tests {
             let opaque = Opaque::new(&bvh, |id| which.contains(&id));
             let hidden = opaque.from(from, None, &bvh);
             let mut left = Pieces::default();
-            left.of([&*square]);
-            hidden.shadows.iter().for_each(|s| left.cut(s));
+            left.past([&*square], &square, &hidden.shadows);
             let area: f64 = left.iter().map(|p| area_and_middle(p).0).sum();
             let n = 1000;
             let free = |i: usize| {

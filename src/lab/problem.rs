@@ -4,8 +4,8 @@ use crate::matrix::Matrix;
 use crate::model::MatrixModel;
 use crate::recovery::{Problem, RecoveryError, Terms};
 
-/// Photographs Φ, pixels × spots, W, with their standard errors where these are known, to be inverted
-/// by `model`: with the terms of its elements where something stands in the way.
+/// Photographs Φ, pixels × spots, W, with their standard errors where these are known, to be
+/// inverted by `model`: with the terms of its elements where something stands in the way.
 ///
 /// # Errors
 /// Those of [`Problem::new`].

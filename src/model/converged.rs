@@ -66,7 +66,8 @@ const ROUGH: f64 = 1e-4;
 /// refined together until Φcam changes by less than 1e-10, and every entry by less than 1e-7, or
 /// the rules are as large as they may be. Cells and footprints that come close to each other or to
 /// a spot are cut into smaller ones there. What stands in the way takes its share of each entry
-/// ([`visible`](fn@visible)) where `extent` says so. As in the matrix model light meets three surfaces, and the hidden ones are Lambertian: one that is not is taken for
+/// ([`visible`](fn@visible)) where `extent` says so. As in the matrix model light meets three
+/// surfaces, and the hidden ones are Lambertian: one that is not is taken for
 /// [`Surface::lambertian_equivalent`](crate::scene::Surface::lambertian_equivalent).
 ///
 /// # Errors

@@ -11,15 +11,15 @@ use super::occlusion::{Both, Obstructed};
 use super::wall_point::WallPoint;
 use crate::geometry::ShapeId;
 use crate::matrix::Matrix;
-use crate::num::linalg::svd;
+use crate::num::linalg::{rows_times, svd};
 use crate::scene::{Scene, Surface};
 
 /// Element j's light between every spot and every pixel where something stands in the way:
 ///
 /// > A_j\[p,l\] = ∫_j c_p(x) d_l(x) dA/π = Σ_s camera\[p,s\] laser\[s,l\],   s over the terms of j.
 ///
-/// Without obstacles c and d hardly vary over an element and one term does, C\[p,j\] D\[j,l\]; past an
-/// edge both jump, and the mean of the product is not the product of the means.
+/// Without obstacles c and d hardly vary over an element and one term does, C\[p,j\] D\[j,l\]; past
+/// an edge both jump, and the mean of the product is not the product of the means.
 #[derive(Clone, Debug)]
 pub struct Factors {
     /// Pixels × terms.
@@ -57,8 +57,8 @@ impl ElementGrid {
     }
 }
 
-/// Visible shares of C (pixels × elements) and D (elements × spots), each weighted by the kernel over
-/// the areas of both ends; 1 where no light arrives in any case.
+/// Visible shares of C (pixels × elements) and D (elements × spots), each weighted by the kernel
+/// over the areas of both ends; 1 where no light arrives in any case.
 pub(super) type Shares = [Matrix; 2];
 
 /// Halvings of an element: 32 × 32 cells, all of which are held with all pixels.
@@ -70,8 +70,8 @@ const NEGLIGIBLE: f64 = 1e-6;
 /// Level of the rules on spots, and on footprints where nothing is in the way.
 const LEVEL: usize = 1;
 
-/// The factors of the elements, cells of them cut in four until all A_j together change by less than
-/// 1e-3, or there are 1e8 pairs of cells with pixels and spots.
+/// The factors of the elements, cells of them cut in four until all A_j together change by less
+/// than 1e-3, or there are 1e8 pairs of cells with pixels and spots.
 ///
 /// # Errors
 /// [`ModelError::Linalg`].
@@ -112,7 +112,8 @@ pub(super) fn factors(
     }
 }
 
-/// An element's terms, and its light without and with what stands in the way, summed over its cells.
+/// An element's terms, and its light without and with what stands in the way, summed over its
+/// cells.
 struct Own {
     camera: Matrix,
     laser: Matrix,
@@ -221,11 +222,8 @@ fn joined(all: &[Own], change: f64, cells: usize) -> (Factors, Shares) {
 impl Factors {
     /// Σ_j ρ_j A_j, pixels × spots, W.
     pub fn phi(&self, albedo: &[f64]) -> Matrix {
-        let mut lit = self.laser.clone();
-        for (mut row, j) in lit.row_iter_mut().zip(&self.element) {
-            row *= albedo[*j];
-        }
-        &self.camera * lit
+        let of_terms: Vec<f64> = self.element.iter().map(|j| albedo[*j]).collect();
+        &self.camera * rows_times(self.laser.clone(), &of_terms)
     }
 }
 

@@ -10,6 +10,7 @@ use super::obstacles::obstacles;
 use super::wall_point::{self, WallPoint};
 use crate::geometry::DVec3;
 use crate::matrix::Matrix;
+use crate::num::linalg::rows_times;
 use crate::scene::{Division, Scene};
 
 /// The matrix model of a scene.
@@ -46,8 +47,8 @@ pub fn is_obstructed(scene: &Scene) -> bool {
 }
 
 impl MatrixModel {
-    /// The model of `scene`, past what stands in the way; `elements` replaces the elements a side that
-    /// the scene gives.
+    /// The model of `scene`, past what stands in the way; `elements` replaces the elements a side
+    /// that the scene gives.
     ///
     /// # Errors
     /// [`ModelError`] if nothing is hidden or the matrices would have more than 1e9 entries in all.
@@ -177,11 +178,11 @@ impl MatrixModel {
 
     /// C·diag(ρ)·D, pixels × spots, W: with one term an element.
     pub fn product(&self) -> Matrix {
-        let mut lit = self.laser_side.clone();
-        for (mut row, rho) in lit.row_iter_mut().zip(&self.albedo) {
-            row *= *rho;
-        }
-        &self.camera_side * lit
+        self.product_of(&self.albedo)
+    }
+
+    fn product_of(&self, albedo: &[f64]) -> Matrix {
+        &self.camera_side * rows_times(self.laser_side.clone(), albedo)
     }
 
     /// What that differs from [`MatrixModel::phi`] by, relative Frobenius norm; none where nothing
@@ -195,9 +196,22 @@ impl MatrixModel {
 
     /// Φcam, pixels × spots, W.
     pub fn phi(&self) -> Matrix {
+        self.phi_of(&self.albedo)
+    }
+
+    /// Φcam of elements with these albedos in place of the scene's.
+    pub fn phi_of(&self, albedo: &[f64]) -> Matrix {
         match &self.factors {
-            Some(factors) => factors.phi(&self.albedo),
-            None => self.product(),
+            Some(factors) => factors.phi(albedo),
+            None => self.product_of(albedo),
+        }
+    }
+
+    /// Multiplies the camera's side, and so Φcam, by `factor`.
+    pub fn scale(&mut self, factor: f64) {
+        self.camera_side *= factor;
+        if let Some(factors) = &mut self.factors {
+            factors.camera *= factor;
         }
     }
 }

@@ -6,9 +6,9 @@
 //! with absolute scale: watts, and no free factor. Elements, pixels and spots are taken at their
 //! centres ([`MatrixModel`]), or everything is integrated until it no longer changes
 //! ([`converged`]). What stands in the way takes its share of each entry, by areas
-//! ([`visible`](fn@visible), [`Factors`]), unless it is to be left out ([`Occlusion::Ignored`]). Three
-//! surfaces and a Lambertian object: what light does beyond that is for `transport` to show, which this
-//! floor never sees.
+//! ([`visible`](fn@visible), [`Factors`]), unless it is to be left out ([`Occlusion::Ignored`]).
+//! Three surfaces and a Lambertian object: what light does beyond that is for `transport` to show,
+//! which this floor never sees.
 
 mod cells;
 mod converged;

@@ -5,8 +5,8 @@ use super::wall_point;
 use crate::geometry::{DVec3, Region, Shape, ShapeId};
 use crate::scene::{Scene, Spot};
 
-/// Shapes that may stand between what the camera sees of the wall, or a spot, and a hidden surface or
-/// the device.
+/// Shapes that may stand between what the camera sees of the wall, or a spot, and a hidden surface
+/// or the device.
 pub(super) fn obstacles(scene: &Scene) -> Vec<ShapeId> {
     let shapes = scene.bvh().shapes();
     let around = |(id, _): (usize, &_)| (Some(id as ShapeId), Region::around(&shapes[id]));
@@ -51,8 +51,8 @@ pub(super) fn obstacles(scene: &Scene) -> Vec<ShapeId> {
     (0..shapes.len() as ShapeId).filter(may).collect()
 }
 
-/// Whether it is a mesh with no vertex in front of any of its triangles, so that it hides nothing of its
-/// own front; large meshes are taken not to be.
+/// Whether it is a mesh with no vertex in front of any of its triangles, so that it hides nothing
+/// of its own front; large meshes are taken not to be.
 fn is_convex(shape: &Shape) -> bool {
     const MOST: usize = 10_000_000;
     let Shape::Instance(body) = shape else {

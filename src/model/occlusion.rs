@@ -4,8 +4,8 @@
 //! > Φ\[p,l\] = ∫ c_p(x) (ρ(x)/π) d_l(x) dA
 //!
 //! Of a flat wall what the camera sees of a pixel's footprint, and of that what x sees, are convex
-//! pieces, found exactly ([`Shadow`]); each is taken at its centroid. So is what a lit point sees of
-//! a flat cell of the hidden surface. Other walls, cells and large meshes are asked ray by ray.
+//! pieces, found exactly ([`Shadow`]); each is taken at its centroid. So is what a lit point sees
+//! of a flat cell of the hidden surface. Other walls, cells and large meshes are asked ray by ray.
 
 use super::cells::HiddenCell;
 use super::kernel::{HiddenPoint, Kernel};
@@ -213,15 +213,9 @@ impl<'a> Obstructed<'a> {
             return if open { whole } else { 0.0 };
         };
         let asked = hidden.asked(corners);
-        pieces.of(patch.seen.iter().map(Vec::as_slice));
-        let mut open = patch.open && asked.none();
-        for shadow in met[first..].iter().map(|s| &hidden.shadows[*s]) {
-            if !shadow.misses(corners) {
-                pieces.cut(shadow);
-                open = false;
-            }
-        }
-        if open {
+        let seen = patch.seen.iter().map(Vec::as_slice);
+        let shadows = met[first..].iter().map(|s| &hidden.shadows[*s]);
+        if !pieces.past(seen, corners, shadows) && patch.open && asked.none() {
             return whole;
         }
         let light = |(area, middle): (f64, DVec3)| {
@@ -236,8 +230,8 @@ impl<'a> Obstructed<'a> {
         pieces.iter().map(over).sum()
     }
 
-    /// Whether nothing of `blockers` stands between a point of the first surface and the place on the
-    /// other.
+    /// Whether nothing of `blockers` stands between a point of the first surface and the place on
+    /// the other.
     fn is_free(
         &self,
         from: DVec3,
@@ -288,13 +282,7 @@ impl<'a> Obstructed<'a> {
             return if free { all } else { 0.0 };
         };
         let asked = hidden.asked(corners);
-        pieces.of([&**corners]);
-        let mut open = asked.none();
-        for shadow in hidden.shadows.iter().filter(|s| !s.misses(corners)) {
-            pieces.cut(shadow);
-            open = false;
-        }
-        if open {
+        if !pieces.past([&**corners], corners, &hidden.shadows) && asked.none() {
             return all;
         }
         let (whole, _) = area_and_middle(corners);

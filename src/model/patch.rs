@@ -43,12 +43,7 @@ impl Patch {
         let corners = rim.map(|w| w.position).to_vec();
         let asked = hidden.asked(&corners);
         let mut pieces = Pieces::default();
-        pieces.of([&*corners]);
-        let mut open = asked.none();
-        for shadow in hidden.shadows.iter().filter(|s| !s.misses(&corners)) {
-            pieces.cut(shadow);
-            open = false;
-        }
+        let open = !pieces.past([&*corners], &corners, &hidden.shadows) && asked.none();
         let mut seen: Vec<Polygon> = pieces.iter().map(<[DVec3]>::to_vec).collect();
         if !asked.none() {
             seen = seen.iter().flat_map(|p| triangles(p)).collect();

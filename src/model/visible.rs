@@ -17,9 +17,9 @@ use crate::scene::Scene;
 pub struct Visible {
     /// Φcam with occlusion over Φcam without, 0 to 1, pixels × spots.
     pub share: Matrix,
-    /// How far off that may be: the larger of what the last halving of the cells changed and half of
-    /// what the one before changed. An estimate: edges of shadows make the integrand bend, and what
-    /// is smaller than the last cells may be missed where it is asked ray by ray.
+    /// How far off that may be: the larger of what the last halving of the cells changed and half
+    /// of what the one before changed. An estimate: edges of shadows make the integrand bend, and
+    /// what is smaller than the last cells may be missed where it is asked ray by ray.
     pub bound: Matrix,
     /// Cells of the hidden surfaces, in the last step.
     pub points: usize,
@@ -27,8 +27,9 @@ pub struct Visible {
 
 /// Relative change of Φcam below which no finer cells are tried.
 const TARGET: f64 = 3e-4;
-/// What is asked ray by ray scatters: a single entry's change may be small by luck, and its bound is at
-/// least so many times what the entries change on average (in 1e5 normal deviates one exceeds 4.4).
+/// What is asked ray by ray scatters: a single entry's change may be small by luck, and its bound
+/// is at least so many times what the entries change on average (in 1e5 normal deviates one exceeds
+/// 4.4).
 const SCATTER: f64 = 4.5;
 /// Level of the rule on spots.
 const LEVEL: usize = 1;
@@ -36,10 +37,9 @@ const LEVEL: usize = 1;
 const HELD: usize = 1 << 22;
 
 /// Φcam past everything that stands in the way over Φcam with nothing in the way, both by the same
-/// cells of the hidden surfaces, so that what both leave out cancels; the cells are cut in four until
-/// Φcam changes by less than 3e-4, or there are 1e8 pairs of them with pixels and spots (8e6 where
-/// they are asked ray by ray). `None` where
-/// nothing can stand in the way.
+/// cells of the hidden surfaces, so that what both leave out cancels; the cells are cut in four
+/// until Φcam changes by less than 3e-4, or there are 1e8 pairs of them with pixels and spots (8e6
+/// where they are asked ray by ray). `None` where nothing can stand in the way.
 ///
 /// # Errors
 /// [`ModelError::NothingHidden`].

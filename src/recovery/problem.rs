@@ -19,22 +19,6 @@ pub struct Terms<'a> {
     pub element: &'a [usize],
 }
 
-impl Terms<'_> {
-    /// Rows of terms added up to rows of elements.
-    pub(super) fn gathered(
-        element: &[usize],
-        rows: &DMatrix<f64>,
-        elements: usize,
-    ) -> DMatrix<f64> {
-        let mut sums = DMatrix::zeros(elements, rows.ncols());
-        for (s, j) in element.iter().enumerate() {
-            let mut sum = sums.row_mut(*j);
-            sum += rows.row(s);
-        }
-        sums
-    }
-}
-
 /// Φ\[p,l\] = Σ_j C\[p,j\] ρ_j D\[j,l\] + noise, checked: shapes that fit, finite entries.
 #[derive(Debug, Clone, Copy)]
 pub struct Problem<'a> {

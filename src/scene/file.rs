@@ -284,8 +284,8 @@ pub struct MeshTable {
     /// unit cube).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub generate: Option<Generator>,
-    /// A flat mask on the unit square, in place of a file: rows of # (opaque) and . (open), the first
-    /// at y = 1.
+    /// A flat mask on the unit square, in place of a file: rows of # (opaque) and . (open), the
+    /// first at y = 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mask: Option<Vec<String>>,
     /// At least so many triangles (generate).

@@ -125,7 +125,7 @@ impl BrdfTasks {
         agreement.kernel = Kernel::Physical.name().to_owned();
         agreement.integration = Integration::Quadrature.name().to_owned();
         let mut matrices = MatrixModel::new(&assumed.scene, Kernel::Physical, None)?;
-        matrices.camera_side *= scale;
+        matrices.scale(scale);
         Ok(Assumption {
             name: assumed.name.clone(),
             scale,

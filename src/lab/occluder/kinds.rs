@@ -59,8 +59,8 @@ const ALL: [Kind; 8] = [
     Kind::Mura,
 ];
 
-/// Where an occluder stands: in a plane parallel to the view, around the line from the middle of the
-/// view to the middle of the hidden surface.
+/// Where an occluder stands: in a plane parallel to the view, around the line from the middle of
+/// the view to the middle of the hidden surface.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Place {
     /// Share of the way from the view (0) to the hidden surface (1).
@@ -163,8 +163,9 @@ fn cells(n: usize, side: f64, opaque: &dyn Fn(usize, usize) -> bool) -> Vec<[f64
 mod tests {
     use super::*;
 
-    /// The MURA's defining property: with G = 1 where A is open and −1 elsewhere, but G(0, 0) = 1, the
-    /// periodic correlation of A with G is 24 at no shift and 0 at all others (p = 7: (p² − 1)/2).
+    /// The MURA's defining property: with G = 1 where A is open and −1 elsewhere, but G(0, 0) = 1,
+    /// the periodic correlation of A with G is 24 at no shift and 0 at all others (p = 7: (p² −
+    /// 1)/2).
     #[test]
     fn the_mura_has_one_peak() {
         let a = |i: usize, j: usize| i64::from(is_open(i % 7, j % 7));

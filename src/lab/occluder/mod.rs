@@ -1,9 +1,9 @@
 //! What does an occluder between object and wall do for the picture, and where should it stand?
 //!
 //! Past an edge c_p(x), what pixel p sees of the point x, jumps where x comes into its sight. The
-//! singular values of the operator Φ\[p,l\] = Σ_j ρ_j A_j\[p,l\] then fall no longer like those of a
-//! smooth kernel. Of each occluder the place and the size are searched for which the photographs leave
-//! least of the variance of the reflectances,
+//! singular values of the operator Φ\[p,l\] = Σ_j ρ_j A_j\[p,l\] then fall no longer like those of
+//! a smooth kernel. Of each occluder the place and the size are searched for which the photographs
+//! leave least of the variance of the reflectances,
 //!
 //! > R = (1/n) Σ_j var(ρ_j | Φ)/τ² = 1 − (1/n) Σ_j R_jj,
 //!

@@ -2,9 +2,9 @@
 
 use super::kinds::Place;
 
-/// Compass search (Kolda, Lewis and Torczon 2003): from `start` each coordinate is tried by a step to
-/// both sides, the best is gone to, and where none is better the steps are halved; so many tries in
-/// all. `merit` is what is to be small. Returns the best place and the tries.
+/// Compass search (Kolda, Lewis and Torczon 2003): from `start` each coordinate is tried by a step
+/// to both sides, the best is gone to, and where none is better the steps are halved; so many tries
+/// in all. `merit` is what is to be small. Returns the best place and the tries.
 pub(super) fn search<E>(
     start: Place,
     tries: usize,
@@ -30,8 +30,8 @@ pub(super) fn search<E>(
     Ok((best.0, made))
 }
 
-/// Places a step away along each coordinate: a factor of 1.5 in size, a seventh of the way, half a size
-/// aside.
+/// Places a step away along each coordinate: a factor of 1.5 in size, a seventh of the way, half a
+/// size aside.
 fn neighbours(at: &Place, step: f64) -> Vec<Place> {
     let both = [step, -step];
     let size = both.map(|s| Place {

@@ -3,14 +3,14 @@
 use super::found::{LEVELS, Misplaced, Occluders, Row, SEARCHED};
 use super::kinds::{Kind, Place};
 use super::search::search;
-use crate::lab::deviate::normal_deviates;
+use crate::lab::ensemble::Photographs;
 use crate::lab::error::LabError;
 use crate::lab::fit::{Certainty, Residuals};
 use crate::lab::problem::problem;
 use crate::lab::study::{Sharing, Study};
 use crate::matrix::Matrix;
 use crate::metrics::mtf_raw;
-use crate::model::{Kernel, MatrixModel};
+use crate::model::{Kernel, MatrixModel, ModelError};
 use crate::recovery::{Method, Options, determined, picard_joint, recover};
 use crate::scene::Scene;
 use crate::transport::Control;
@@ -59,7 +59,7 @@ pub(super) struct OccluderTasks {
 
 impl OccluderTasks {
     /// # Errors
-    /// [`LabError`] where nothing is hidden, or more spots are asked for than there are.
+    /// [`ModelError::NothingHidden`].
     pub(super) fn new(scene: &Scene, mut plan: Plan) -> Result<Self, LabError> {
         let all = scene.laser.spots.len();
         if plan.spots.is_empty() {
@@ -67,13 +67,9 @@ impl OccluderTasks {
         }
         plan.spots.iter_mut().for_each(|n| *n = (*n).min(all));
         plan.spots.dedup();
-        let elements = plan.elements.map(|n| [n; 2]);
-        MatrixModel::without_photographs(
-            scene,
-            Kernel::Physical,
-            elements,
-            crate::model::Occlusion::Ignored,
-        )?;
+        if scene.hidden().next().is_none() {
+            return Err(ModelError::NothingHidden.into());
+        }
         Ok(Self {
             scene: scene.clone(),
             plan,
@@ -99,25 +95,24 @@ impl OccluderTasks {
 
     /// Share of the prior variance that photographs of a surface of mean ½ leave.
     fn risk(&self, model: &MatrixModel, level: f64) -> Result<f64, LabError> {
-        let grey = photograph(model, &vec![BEFORE; model.albedo.len()]);
+        let grey = model.phi_of(&vec![BEFORE; model.albedo.len()]);
         let stderr = self.stderr(&grey, level);
         let shares = determined(&problem(model, &grey, Some(&stderr))?)?;
         Ok(1.0 - shares.rank / model.albedo.len() as f64)
     }
 
-    /// MTF of the recovered board and χ² of its photographs under `assumed`, from one draw.
+    /// MTF of the recovered board and P of its fit, from one draw of the photographs `exact`.
     fn recovered(
         &self,
-        [actual, assumed]: [&MatrixModel; 2],
+        model: &MatrixModel,
         board: &[f64],
+        exact: &Matrix,
         level: f64,
         seed: u64,
     ) -> Result<(Option<f64>, Option<f64>), LabError> {
-        let exact = photograph(actual, board);
-        let stderr = self.stderr(&exact, level);
-        let deviates = normal_deviates(seed, exact.nrows(), exact.ncols());
-        let phi = exact + deviates.component_mul(&stderr);
-        let problem = problem(assumed, &phi, Some(&stderr))?;
+        let Photographs { phi, stderr } =
+            Photographs::drawn(exact, self.stderr(exact, level), seed);
+        let problem = problem(model, &phi, Some(&stderr))?;
         let found = recover(Method::Joint, &problem, &Options::default())?;
         let mut residuals = Residuals::default();
         residuals.add(
@@ -140,6 +135,7 @@ impl OccluderTasks {
         board: &[f64],
         control: Control<'_>,
     ) -> Result<Option<f64>, LabError> {
+        let exact = model.phi_of(board);
         let resolved = |decades: f64| -> Result<bool, LabError> {
             let mut sum = 0.0;
             for draw in 0..self.plan.draws {
@@ -147,7 +143,7 @@ impl OccluderTasks {
                 let level = libm::pow(10.0, -decades);
                 let seed = self.plan.seed.wrapping_add(draw);
                 sum += self
-                    .recovered([model; 2], board, level, seed)?
+                    .recovered(model, board, &exact, level, seed)?
                     .0
                     .unwrap_or(0.0);
             }
@@ -170,15 +166,6 @@ impl OccluderTasks {
         }
         Ok(Some(libm::pow(10.0, -kept)))
     }
-}
-
-/// Φ of these reflectances, W.
-fn photograph(model: &MatrixModel, albedo: &[f64]) -> Matrix {
-    let of = MatrixModel {
-        albedo: albedo.to_vec(),
-        ..model.clone()
-    };
-    of.phi()
 }
 
 /// `n` of the scene's spots, evenly among them, and at most so many pixels a side.
@@ -228,7 +215,7 @@ impl Study for OccluderTasks {
         let whole = thinned(&self.scene, spots, usize::MAX);
         let at = |place: &Place| self.model(&kind.in_scene(&whole, place)?);
         let model = at(&place)?;
-        let grey = photograph(&model, &vec![BEFORE; model.albedo.len()]);
+        let grey = model.phi_of(&vec![BEFORE; model.albedo.len()]);
         let stderr = self.stderr(&grey, 1.0);
         let sigma =
             picard_joint(&problem(&model, &grey, Some(&stderr))?, &Options::default())?.sigma;
@@ -250,7 +237,10 @@ impl Study for OccluderTasks {
             let mut there = place;
             there.offset[0] += by;
             let (mtf, p) = match boards.first() {
-                Some(b) => self.recovered([&model, &at(&there)?], b, plan.level, plan.seed)?,
+                Some(b) => {
+                    let exact = model.phi_of(b);
+                    self.recovered(&at(&there)?, b, &exact, plan.level, plan.seed)?
+                }
                 None => (None, None),
             };
             Ok(Misplaced { by: *by, mtf, p })

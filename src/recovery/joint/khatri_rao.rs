@@ -3,8 +3,8 @@
 //! > minimise Σ_pl w_p v_l (Φ\[p,l\] − Σ_j C\[p,j\] ρ_j D\[j,l\])²
 //!
 //! Its matrix has a row for every (pixel, spot) and is the Khatri–Rao (column-wise Kronecker)
-//! product of C̃ = √W C and (D √V)ᵀ = D̃ᵀ, summed over the terms of an element where it has several. With C̃ = U_c Σ_c V_cᵀ and D̃ = U_d Σ_d V_dᵀ the sum
-//! above is, but for a constant,
+//! product of C̃ = √W C and (D √V)ᵀ = D̃ᵀ, summed over the terms of an element where it has
+//! several. With C̃ = U_c Σ_c V_cᵀ and D̃ = U_d Σ_d V_dᵀ the sum above is, but for a constant,
 //!
 //! > Σ_ab (F\[a,b\] − Σ_j (Σ_c V_cᵀ)\[a,j\] (U_d Σ_d)\[j,b\] ρ_j)²,   F = U_cᵀ √W Φ √V V_d,
 //!
@@ -23,7 +23,7 @@ use crate::num::linalg::{
     LeastSquares, Route, Svd, Tolerance, Triangle, columns_over, least_squares, normal_triangle,
     product, rows_times, svd_of_range, svd_to, tr_product, triangle,
 };
-use crate::recovery::{Estimated, Options, Problem, RecoveryError, Terms, WeightRule, Weighting};
+use crate::recovery::{Estimated, Options, Problem, RecoveryError, WeightRule, Weighting};
 
 /// Elements whose Gram matrix (and its few copies) is still formed: 512 MiB each.
 const MOST_ELEMENTS: usize = 8192;
@@ -123,6 +123,16 @@ fn pairs(t: &DMatrix<f64>, s: &DMatrix<f64>, budget: usize) -> Vec<[usize; 2]> {
     by_size.split_off(first.unwrap_or(0))
 }
 
+/// Rows of terms added up to rows of elements.
+fn gathered(element: &[usize], rows: &DMatrix<f64>, elements: usize) -> DMatrix<f64> {
+    let mut sums = DMatrix::zeros(elements, rows.ncols());
+    for (s, j) in element.iter().enumerate() {
+        let mut sum = sums.row_mut(*j);
+        sum += rows.row(s);
+    }
+    sums
+}
+
 impl Operator {
     /// Weighs, eliminates what is not asked about, and compresses.
     pub(super) fn new(problem: &Problem<'_>, options: &Options) -> Result<Self, RecoveryError> {
@@ -195,7 +205,7 @@ impl Operator {
                 rows: rc * rd,
             }
         } else {
-            let gathered = |m: &DMatrix<f64>| Terms::gathered(&element, m, elements);
+            let gathered = |m: &DMatrix<f64>| gathered(&element, m, elements);
             let gram = tr_product(&c, &c).component_mul(&product(&d, &d.transpose()));
             let gram = gathered(&gathered(&gram).transpose());
             let along = gathered(&tr_product(&c, &phi).component_mul(&d));

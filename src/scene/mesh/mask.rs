@@ -3,8 +3,9 @@
 use super::Triangles;
 use crate::geometry::DVec3;
 
-/// The unit square \[0, 1\]² in the plane z = 0, front towards +z, where `rows` have a `#`, the first
-/// row at y = 1; open where they have a `.`. Neighbours in a row are one rectangle. u is x, v is y.
+/// The unit square \[0, 1\]² in the plane z = 0, front towards +z, where `rows` have a `#`, the
+/// first row at y = 1; open where they have a `.`. Neighbours in a row are one rectangle. u is x, v
+/// is y.
 ///
 /// # Errors
 /// What is wrong with the rows, and how to mend it.
