@@ -46,10 +46,14 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     };
     let lock = |folder| RunFolder::lock(folder, "phicam recover");
     let _run = args.output.is_none().then(|| lock(&args.dir)).transpose()?;
-    let held = recover_memory::plan(args, &scene, &methods, &options, console)?;
+    let modelled = match args.joint.occluder_light {
+        true => scene.with_occluders_as_elements()?,
+        false => scene.clone(),
+    };
+    let held = recover_memory::plan(args, &modelled, &methods, &options, console)?;
     let job = Job {
         args,
-        scene: &scene,
+        scene: &modelled,
         methods: &methods,
         options,
         // Of the run's own errors more is known than of those that are given.
@@ -69,7 +73,9 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     let objects = collect(attempts, methods.len() == 1, console)?;
     let (out, place) = results(args, record.is_some())?;
     let _own = args.output.as_deref().map(lock).transpose()?;
-    write(&out, &scene, &objects, &picards)?;
+    let hidden = |object: &&RecoveredObject| scene.hidden().any(|(_, s)| s.name == object.surface);
+    let pictured: Vec<RecoveredObject> = objects.iter().filter(hidden).cloned().collect();
+    write(&out, &scene, &pictured, &picards)?;
     if place == Place::Run {
         Record::vouch_anew(&args.dir, &[RECOVERED])?;
     } else {

@@ -96,7 +96,8 @@ fn used(args: &RecoverArgs, methods: &[Method]) -> Result<(), Failure> {
         Method::RdivideMinNorm,
         Method::JointUnbounded,
     ];
-    let needs: [(&str, bool, &[Method]); 10] = [
+    let bounded = &all_joint[..4];
+    let needs: [(&str, bool, &[Method]); 11] = [
         ("--rank", args.rank.is_some(), &[Method::Tsvd]),
         ("--damping", args.damping.is_some(), &damped),
         ("--tolerance", args.tolerance.is_some(), &cutting),
@@ -114,6 +115,7 @@ fn used(args: &RecoverArgs, methods: &[Method]) -> Result<(), Failure> {
         ("--frame-constant", joint.frame_constant, &all_joint),
         ("--background", joint.background, &all_joint),
         ("--free-scale", joint.free_scale, &all_joint),
+        ("--occluder-light", joint.occluder_light, bounded),
         ("--glare-pattern", joint.glare_pattern.is_some(), &all_joint),
     ];
     match needs.iter().find(|(_, given, of)| *given && !any(of)) {

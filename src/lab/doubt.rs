@@ -102,7 +102,7 @@ fn contradiction(best: &Attainable) -> String {
          ({told}); {any}. The scene is not what was photographed, or the standard errors are too \
          small. Check geometry, order and orientation of the frames, unit and --stderr; more \
          --elements where they are coarse; what stands in the way, in the scene; \
-         --frame-constant or --background for other light"
+         --frame-constant, --background or --occluder-light for other light"
     )
 }
 

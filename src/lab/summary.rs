@@ -214,30 +214,38 @@ pub fn describe_recovery(recovered: &[RecoveredObject]) -> Finding {
     }
 }
 
-/// How good each method is on one surface, and what it chose.
+/// How good each method is on one surface, and what it chose; of a single element what it found.
 pub fn recovery(group: &[&RecoveredObject]) -> Table {
-    let caption = group.first().map_or(String::new(), |first| {
-        let [nu, nv] = first.elements;
-        format!("recovered: {}, {nu} × {nv} elements", first.surface)
-    });
-    let row = |r: &&RecoveredObject| {
-        let numbers = [r.mtf_raw, r.mtf_normalized, r.correlation, Some(r.rmse)];
-        let mut row: Vec<Cell> = vec![r.method.as_str().into()];
-        row.extend(numbers.map(Cell::from));
-        row.push(r.parameter.as_str().into());
-        row
+    let [nu, nv] = group.first().map_or([0; 2], |first| first.elements);
+    let surface = group.first().map_or("", |first| &first.surface);
+    let (names, caption) = if [nu, nv] == [1, 1] {
+        let names = ["reflectance", "standard error", "truth"].as_slice();
+        (names, format!("recovered: {surface}, one element"))
+    } else {
+        let names = ["MTF raw", "MTF normalized", "correlation", "RMSE"].as_slice();
+        (names, format!("recovered: {surface}, {nu} × {nv} elements"))
     };
-    let number = |name: &str| Column::number(name, "", "", 3);
+    let numbers = |r: &RecoveredObject| -> Vec<Option<f64>> {
+        if [nu, nv] == [1, 1] {
+            let stderr = r.standard_error.as_ref().map(|s| s[0]);
+            vec![Some(r.reflectance[0]), stderr, Some(r.truth[0])]
+        } else {
+            vec![r.mtf_raw, r.mtf_normalized, r.correlation, Some(r.rmse)]
+        }
+    };
+    let row = |r: &&RecoveredObject| {
+        let numbers = numbers(r).into_iter().map(Cell::from);
+        let method = std::iter::once(r.method.as_str().into());
+        let chosen = std::iter::once(r.parameter.as_str().into());
+        method.chain(numbers).chain(chosen).collect()
+    };
+    let numbers = names.iter().map(|name| Column::number(name, "", "", 3));
     Table {
         caption,
-        columns: vec![
-            Column::text("method", ""),
-            number("MTF raw"),
-            number("MTF normalized"),
-            number("correlation"),
-            number("RMSE"),
-            Column::text("parameter", ""),
-        ],
+        columns: std::iter::once(Column::text("method", ""))
+            .chain(numbers)
+            .chain([Column::text("parameter", "")])
+            .collect(),
         rows: group.iter().map(row).collect(),
         ..Table::default()
     }

@@ -47,7 +47,9 @@ pub(super) fn cells_of_elements(
         HiddenCell::new(&element, id, corners)
     };
     let mut found = Vec::new();
-    if let (Shape::Instance(body), Division::Faces) = (&surface.shape, surface.division) {
+    if let (Shape::Instance(body), Division::Faces | Division::Whole) =
+        (&surface.shape, surface.division)
+    {
         for triangle in 0..body.mesh().triangles().len() as u32 {
             let whole = Place::Triangle {
                 id: triangle,
@@ -57,7 +59,10 @@ pub(super) fn cells_of_elements(
             let parts = (0..halvings).fold(vec![whole], quarter);
             found.push(parts.iter().filter_map(of_place).collect());
         }
-        return found;
+        return match surface.division {
+            Division::Whole => vec![found.into_iter().flatten().collect()],
+            _ => found,
+        };
     }
     found.resize_with(nu * nv, Vec::new);
     let fine = count.map(|n| n << halvings);

@@ -100,7 +100,7 @@ impl MatrixModel {
                 surface: surface.name.clone(),
                 count: match surface.division {
                     Division::Cells => elements.unwrap_or(surface.elements),
-                    Division::Faces => surface.elements,
+                    Division::Faces | Division::Whole => surface.elements,
                 },
                 first: count,
             };

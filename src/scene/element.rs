@@ -32,6 +32,9 @@ impl Surface {
         match (&matt.shape, matt.division) {
             (Shape::Instance(body), Division::Faces) => faces(body, &matt.albedo),
             (Shape::Instance(body), Division::Cells) => cells(body, &matt.albedo, [nu, nv]),
+            (Shape::Instance(body), Division::Whole) => {
+                vec![together(body, &faces(body, &matt.albedo))]
+            }
             (shape, _) => {
                 let area = shape.area() / (nu * nv) as f64;
                 let range = |i: usize, n: usize| [i as f64 / n as f64, (i + 1) as f64 / n as f64];
@@ -58,6 +61,7 @@ impl Surface {
         let uv = match self.division {
             Division::Faces => return (0..body.mesh().triangles().len()).collect(),
             Division::Cells => body.mesh().uv().unwrap_or_default(),
+            Division::Whole => return vec![0; body.mesh().triangles().len()],
         };
         let largest = |uv: &[[f32; 2]; 3]| {
             let parts = shares(uv.map(|c| c.map(f64::from)), count);
@@ -105,6 +109,21 @@ fn faces(body: &Instance, albedo: &Texture) -> Vec<Element> {
             }
         })
         .collect()
+}
+
+/// Faces as one element: their area, mean albedo, direction of the vector area, and the point of the
+/// mesh nearest to the centroid.
+fn together(body: &Instance, faces: &[Element]) -> Element {
+    let area: f64 = faces.iter().map(|e| e.area).sum();
+    let vector: DVec3 = faces.iter().map(|e| e.normal * e.area).sum();
+    let moment: DVec3 = faces.iter().map(|e| e.position * e.area).sum();
+    Element {
+        position: body.at_position(moment / area).position,
+        normal: vector.normalize_or_zero(),
+        area,
+        u_axis: DVec3::X,
+        albedo: faces.iter().map(|e| e.albedo * e.area).sum::<f64>() / area,
+    }
 }
 
 const NOTHING: Element = Element {

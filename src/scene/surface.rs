@@ -36,7 +36,7 @@ pub struct Surface {
     /// Its albedo, or what the material makes of that number.
     pub albedo: Texture,
     /// Elements along u and v into which the matrix model divides it (of triangles: all of them,
-    /// and 1); \[0, 0\] unless hidden.
+    /// and 1; of the whole 1 and 1); \[0, 0\] unless hidden.
     pub elements: [usize; 2],
     /// What the elements are.
     pub division: Division,
@@ -49,6 +49,8 @@ pub enum Division {
     Cells,
     /// The triangles of a mesh.
     Faces,
+    /// All of it, whatever its shape.
+    Whole,
 }
 
 impl Surface {

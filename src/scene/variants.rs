@@ -67,6 +67,24 @@ impl Scene {
         scene.rebuilt()
     }
 
+    /// The same scene with each side of each occluder a hidden surface of one element: what the
+    /// matrix model needs to estimate the light that they reflect.
+    ///
+    /// # Errors
+    /// [`SceneError`] where nothing is an occluder.
+    pub fn with_occluders_as_elements(&self) -> Result<Self, SceneError> {
+        if !self.surfaces.iter().any(|s| s.role == Role::Occluder) {
+            let cause = "no surface has the role `occluder`, whose light could be estimated";
+            let cure = "leave --occluder-light out, or say in the scene what stands there";
+            return Err(self.locate(Fault::new(keys!["surface"], cause, cure)));
+        }
+        Ok(self.with_each(Role::Occluder, |surface| {
+            surface.role = Role::Hidden;
+            surface.elements = [1, 1];
+            surface.division = Division::Whole;
+        }))
+    }
+
     /// The same scene with each hidden surface's albedo replaced by its mean over the area.
     pub fn with_mean_albedo(&self) -> Self {
         self.with_each(Role::Hidden, |s| s.albedo = mean_albedo(&s.albedo))
@@ -76,11 +94,16 @@ impl Scene {
     /// albedo 0 and 1, the one at its corner dark.
     pub fn with_checkerboard(&self, checks: usize) -> Self {
         let check = |i: usize| f64::from(u8::from((i % checks + i / checks) % 2 == 1));
+        self.with_cells(&Cells {
+            count: [checks; 2],
+            albedo: (0..checks * checks).map(check).collect(),
+        })
+    }
+
+    /// The same scene with each hidden surface painted like this.
+    pub fn with_cells(&self, cells: &Cells) -> Self {
         self.with_each(Role::Hidden, |surface| {
-            surface.albedo = Texture::Cells(Cells {
-                count: [checks; 2],
-                albedo: (0..checks * checks).map(check).collect(),
-            });
+            surface.albedo = Texture::Cells(cells.clone());
         })
     }
 

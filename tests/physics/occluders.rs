@@ -1,9 +1,13 @@
 //! What stands in the way, model against tracer.
 
 use crate::{Way, builtin, relative, trace};
-use phicam::lab::{Against, Errors, Integration, Measured, Test, validate};
+use phicam::lab::{
+    Against, Certainty, Errors, Integration, Measured, Noise, RecoveredObject, Test,
+    recover_objects, validate,
+};
 use phicam::model::{Extent, Kernel, MatrixModel, Occlusion, converged};
 use phicam::num::stream::Sampling;
+use phicam::recovery::{Method, Nuisance, Options};
 use phicam::scene::Scene;
 use phicam::transport::Estimator;
 
@@ -80,4 +84,62 @@ fn the_model_sees_past_what_the_tracer_sees_past() {
         assert!(verdict(Occlusion::Considered), "{name}");
         assert!(!verdict(Occlusion::Ignored), "{name}");
     }
+}
+
+/// Light that occluders reflect spoils the picture; with an albedo of each of their sides as one
+/// more unknown the picture is there again, and what faces the wall comes out as grey as it was
+/// painted. The tracer knows nothing of unknowns.
+#[test]
+#[ignore = "slow"]
+fn an_occluders_light_is_estimated_with_the_picture() {
+    let body = "mesh = { generate = \"box\", scale = [0.8, 0.8, 0.2], translate = [4.5, 6.0, 2.0], closed = true }";
+    let cases = [
+        ("plate", format!("{PLATE}\nsides = \"two\"")),
+        ("ball", SPHERE.to_owned()),
+        ("box", body.to_owned()),
+    ];
+    for (name, shape) in cases {
+        let grey = surface(name, &shape).replace("lambertian = 0.0", "lambertian = 0.6");
+        let scene = past(&grey);
+        let traced = trace(
+            &scene,
+            Way(Estimator::Factored, Sampling::Sobol, 1, 1 << 15),
+        );
+        let with = scene.with_occluders_as_elements().unwrap();
+        let recovered = |scene: &Scene| {
+            let model = MatrixModel::new(scene, Kernel::Physical, None).unwrap();
+            let noise = Noise::StandardError(&traced.stderr, Certainty::STATED);
+            let methods = [Method::Joint];
+            let found = recover_objects(
+                &model,
+                &traced.flux,
+                noise,
+                Nuisance::default(),
+                &methods,
+                &Options::default(),
+            );
+            found.into_iter().next().unwrap().outcome.unwrap()
+        };
+        let picture = |objects: &[RecoveredObject]| {
+            let object = objects.iter().find(|o| o.surface == "object");
+            object.unwrap().mtf_raw.unwrap()
+        };
+        let without = picture(&recovered(&scene));
+        let found = recovered(&with);
+        let sides = found.iter().filter(|o| o.surface != "object");
+        let albedo: Vec<f64> = sides
+            .filter(|o| o.determined_share.as_ref().is_some_and(|s| s[0] > 0.99))
+            .map(|o| o.reflectance[0])
+            .collect();
+        println!(
+            "{name}: {without} without, {} with, {albedo:?}",
+            picture(&found)
+        );
+        assert!(without < 0.5 && picture(&found) > 0.9, "{name}: {without}");
+        assert!(
+            albedo.len() == 1 && (albedo[0] - 0.6).abs() < 0.01,
+            "{name}: {albedo:?}"
+        );
+    }
+    assert!(past("").with_occluders_as_elements().is_err());
 }

@@ -94,6 +94,9 @@ pub(in crate::cli) struct JointArgs {
     /// Estimate one factor of all photographs; the brightest element is the unit then
     #[arg(long)]
     pub free_scale: bool,
+    /// Estimate the light that occluders reflect, with one albedo for each of their sides
+    #[arg(long, conflicts_with_all = ["no_occlusion", "free_scale"])]
+    pub occluder_light: bool,
     /// Estimate the strength of this pattern in each frame: pixels × spots
     #[arg(long, value_name = "FILE")]
     pub glare_pattern: Option<PathBuf>,

@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::kinds::{Kind, Place};
+use super::sight::Seen;
+use super::subject::{Recovery, Subject};
 use crate::lab::finding::{
     Axis, Cell, Column, Curve, Describe, Figure, Finding, Mark, Plot, Table, listed,
 };
@@ -25,8 +27,10 @@ pub(super) struct Row {
     pub directions: Vec<usize>,
     /// Share of the prior variance that is left at the level of the plan.
     pub risk: f64,
-    /// Of each board the most noise at which its MTF is 0.9.
+    /// Of each picture the most noise at which it is resolved.
     pub limits: Vec<Option<f64>>,
+    /// Of each picture what traced photographs show.
+    pub seen: Vec<Seen>,
     pub misplaced: Vec<Misplaced>,
 }
 
@@ -34,10 +38,8 @@ pub(super) struct Row {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Misplaced {
     pub by: f64,
-    /// MTF of the first board at the level of the plan.
-    pub mtf: Option<f64>,
-    /// Probability of as bad a fit by noise alone.
-    pub p: Option<f64>,
+    /// Of the first picture at the level of the plan.
+    pub recovery: Recovery,
 }
 
 /// What the occluders do.
@@ -49,7 +51,8 @@ pub(super) struct Occluders {
     pub elements: usize,
     pub noise: String,
     pub level: f64,
-    pub boards: Vec<usize>,
+    pub subjects: Vec<Subject>,
+    pub sensor: &'static str,
     pub draws: u64,
     pub rows: Vec<Row>,
 }
@@ -72,9 +75,9 @@ impl Occluders {
         }));
         columns.push(Column::number("risk", "risk", "", 2));
         columns.extend(
-            self.boards
+            self.subjects
                 .iter()
-                .map(|b| Column::number(&format!("{b} × {b}"), &format!("noise_{b}"), "", 2)),
+                .map(|s| Column::number(&s.name(), &format!("noise_{}", s.column()), "", 2)),
         );
         let row = |row: &Row| {
             let [u, v] = row.place.offset;
@@ -88,7 +91,7 @@ impl Occluders {
         };
         Table {
             caption: format!(
-                "Directions of {} above a noise, share of the prior variance that is left at {}, and the most {} noise at which a board has an MTF of 0.9",
+                "Directions of {} above a noise, share of the prior variance that is left at {}, and the most {} noise at which a board has an MTF of 0.9, another picture a correlation of 0.9",
                 self.elements,
                 figure(self.level, 1),
                 self.noise
@@ -110,13 +113,15 @@ impl Occluders {
                 Cell::name(row.kind.name()),
                 row.spots.into(),
                 m.by.into(),
-                Cell::Number(m.mtf),
-                Cell::Number(m.p),
+                Cell::Number(m.recovery.likeness),
+                Cell::Number(m.recovery.p),
             ]
         };
         Table {
             caption: format!(
-                "The model's occluder misplaced along the view: MTF of the first board at a noise of {}, and how probable so bad a fit is",
+                "The model's occluder misplaced along the view: {} of {} at a noise of {}, and how probable so bad a fit is",
+                self.subjects[0].measure(),
+                self.subjects[0].name(),
                 figure(self.level, 1)
             ),
             file: Some("misplaced.csv".to_owned()),
@@ -124,7 +129,48 @@ impl Occluders {
                 Column::text("occluder", "occluder"),
                 Column::text("spots", "spots"),
                 Column::number("by", "by", "", 2),
-                Column::number("MTF", "mtf", "", 3),
+                Column::number(self.subjects[0].measure(), "likeness", "", 3),
+                Column::number("P of the fit", "p", "", 2),
+            ],
+            rows: each.map(cells).collect(),
+            ..Table::default()
+        }
+    }
+
+    fn seen(&self) -> Table {
+        let each = self
+            .rows
+            .iter()
+            .flat_map(|row| row.seen.iter().map(move |seen| (row, seen)));
+        let cells = |(row, seen): (&Row, &Seen)| {
+            let photographs = seen.frames as usize * row.spots;
+            vec![
+                Cell::name(row.kind.name()),
+                row.spots.into(),
+                Cell::name(&seen.subject.name()),
+                seen.exposure.into(),
+                (seen.frames as usize).into(),
+                (seen.exposure * photographs as f64).into(),
+                Cell::name(seen.subject.measure()),
+                Cell::Number(seen.recovery.likeness),
+                Cell::Number(seen.recovery.p),
+            ]
+        };
+        Table {
+            caption: format!(
+                "Traced photographs through the sensor {}: the fewest frames a spot, of 1, 2, 4, …, that resolve the picture (else the most tried), and what joint makes of them",
+                self.sensor
+            ),
+            file: Some("traced.csv".to_owned()),
+            columns: vec![
+                Column::text("occluder", "occluder"),
+                Column::text("spots", "spots"),
+                Column::text("picture", "picture"),
+                Column::number("exposure", "exposure", "s", 2),
+                Column::text("frames", "frames"),
+                Column::number("time in all", "time", "s", 2),
+                Column::text("measure", "measure"),
+                Column::number("value", "value", "", 3),
                 Column::number("P of the fit", "p", "", 2),
             ],
             rows: each.map(cells).collect(),
@@ -168,6 +214,9 @@ impl Describe for Occluders {
         ];
         let plot = Plot::new("", axes, self.rows.iter().map(curve).collect());
         let mut tables = vec![self.table()];
+        if self.rows.iter().any(|row| !row.seen.is_empty()) {
+            tables.push(self.seen());
+        }
         if self.rows.iter().any(|row| !row.misplaced.is_empty()) {
             tables.push(self.misplaced());
         }
@@ -179,7 +228,7 @@ impl Describe for Occluders {
                     SEARCHED[0], SEARCHED[0], SEARCHED[1]
                 ),
                 format!(
-                    "Boards have albedos 0 and 1, recovered by joint from {} draws of the modelled photographs, whose occluder is black. Light that an occluder reflects, and what the sensor does, is for `render` and `expose`.",
+                    "Boards have albedos 0 and 1. Limits are of {} draws of modelled photographs, recovered by joint. Occluders are black; of one that reflects `recover --occluder-light` estimates the light.",
                     self.draws
                 ),
             ],

@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::{Disc, Parallelogram, Shape};
+use crate::num::stream::{Key, Sampling, Stream};
+use crate::scene::mesh::opaque_runs;
 use crate::scene::{Scene, SceneError};
 
 /// What stands between object and wall, black on both sides.
@@ -21,7 +23,7 @@ pub(super) enum Kind {
     Pinhole,
     /// The same with a slit of that width along the view's v.
     Slit,
-    /// A mask of 6 × 6 cells of 0.4 sizes, half of them open, chosen at random.
+    /// A mask of 2.4 sizes a side, half of its cells open, chosen at random.
     Random,
     /// A mask of 2·7 − 1 a side of cells of 0.2 sizes, the 7 × 7 modified uniformly redundant array
     /// repeated (Gottesman and Fenimore 1989): wherever it is looked through, all of the 7 × 7 are
@@ -40,7 +42,10 @@ pub(super) const KINDS: &[(&str, &str)] = &[
         "A plate with a square hole of a quarter of the size",
     ),
     ("slit", "A plate with a slit of that width"),
-    ("random", "A mask of 6 × 6 cells of 0.4 sizes, half open"),
+    (
+        "random",
+        "A mask of 2.4 sizes a side, half of its cells open",
+    ),
     (
         "mura",
         "A mask of 13 × 13 cells of 0.2 sizes, the 7 × 7 MURA repeated",
@@ -84,11 +89,16 @@ impl Kind {
         KINDS[at].0
     }
 
-    /// The scene with it at `place`.
+    /// The scene with it at `place`; `mask` is the random one.
     ///
     /// # Errors
     /// [`SceneError`] where the shapes have no proper size.
-    pub(super) fn in_scene(self, scene: &Scene, place: &Place) -> Result<Scene, SceneError> {
+    pub(super) fn in_scene(
+        self,
+        scene: &Scene,
+        place: &Place,
+        mask: &Cells,
+    ) -> Result<Scene, SceneError> {
         let view = &scene.camera.view;
         let from = view.at([0.5; 2]).position;
         let hidden = scene.hidden().next();
@@ -103,13 +113,13 @@ impl Kind {
         };
         let shapes: Vec<Option<Shape>> = match self {
             Self::Disc => vec![Disc::new(middle, view.normal(), 0.5 * s).map(Shape::Disc)],
-            _ => self.rectangles().iter().map(plate).collect(),
+            _ => self.rectangles(mask).iter().map(plate).collect(),
         };
         scene.with_black(&shapes)
     }
 
     /// The rectangles of a flat occluder: left, low, wide and high, in sizes around its middle.
-    fn rectangles(self) -> Vec<[f64; 4]> {
+    fn rectangles(self, mask: &Cells) -> Vec<[f64; 4]> {
         match self {
             Self::None | Self::Disc => Vec::new(),
             Self::Plate => vec![[-0.5, -0.5, 1.0, 1.0]],
@@ -121,14 +131,44 @@ impl Kind {
                 [-0.125, -4.0, 0.25, 3.875],
                 [-0.125, 0.125, 0.25, 3.875],
             ],
-            Self::Random => cells(6, 0.4, &|i, j| RANDOM[j].as_bytes()[i] == b'#'),
-            Self::Mura => cells(13, 0.2, &|i, j| !is_open(i % 7, j % 7)),
+            Self::Random => rectangles(mask, RANDOM_WIDTH),
+            Self::Mura => rectangles(&mura(), 0.2 * MURA as f64),
         }
     }
 }
 
-/// The mask of the scene `mask`, its lowest row first.
-const RANDOM: [&str; 6] = ["###.#.", ".##.##", ".####.", "#.##..", "#.#.#.", "......"];
+/// Rows of cells, whether they are opaque, the lowest row first.
+pub(super) type Cells = Vec<Vec<bool>>;
+
+/// Width of the random mask, sizes.
+const RANDOM_WIDTH: f64 = 2.4;
+/// Cells a side of the repeated array.
+const MURA: usize = 13;
+
+/// `n` × `n` cells, half of them opaque (the lesser half of an odd number), by the first numbers of
+/// a stream of random ones.
+pub(super) fn random(n: usize, seed: u64) -> Cells {
+    let key = Key {
+        seed,
+        spot: Key::ALL_SPOTS,
+        pixel: Key::ALL_PIXELS,
+        block: 0,
+    };
+    let mut stream = Stream::new(Sampling::Pcg, key);
+    let mut order: Vec<(f64, usize)> = (0..n * n).map(|k| (stream.uniform(), k)).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut found = vec![vec![false; n]; n];
+    for (_, k) in &order[..n * n / 2] {
+        found[k / n][k % n] = true;
+    }
+    found
+}
+
+/// The 7 × 7 array repeated.
+fn mura() -> Cells {
+    let row = |j: usize| (0..MURA).map(|i| !is_open(i % 7, j % 7)).collect();
+    (0..MURA).map(row).collect()
+}
 
 /// Whether cell (i, j) of the 7 × 7 MURA is open: A(0, j) = 0, A(i, 0) = 1 for i > 0, else whether i and
 /// j are both squares modulo 7, or neither is.
@@ -137,26 +177,14 @@ fn is_open(i: usize, j: usize) -> bool {
     i != 0 && (j == 0 || square(i) == square(j))
 }
 
-/// Opaque cells of `n` a side around the middle, neighbours in a row as one.
-fn cells(n: usize, side: f64, opaque: &dyn Fn(usize, usize) -> bool) -> Vec<[f64; 4]> {
-    let low = -0.5 * n as f64 * side;
-    let mut found: Vec<[f64; 4]> = Vec::new();
-    for j in 0..n {
-        let mut from = None;
-        for i in 0..=n {
-            let is_opaque = i < n && opaque(i, j);
-            match from {
-                None if is_opaque => from = Some(i),
-                Some(start) if !is_opaque => {
-                    let [x, y] = [start, j].map(|k| low + k as f64 * side);
-                    found.push([x, y, (i - start) as f64 * side, side]);
-                    from = None;
-                }
-                _ => {}
-            }
-        }
-    }
-    found
+/// The opaque cells of a square mask around the middle, neighbours in a row as one.
+fn rectangles(mask: &Cells, width: f64) -> Vec<[f64; 4]> {
+    let side = width / mask.len() as f64;
+    let at = |k: usize| k as f64 * side - 0.5 * width;
+    let rows = mask.iter().enumerate();
+    rows.flat_map(|(j, row)| opaque_runs(row).map(move |run| (j, run)))
+        .map(|(j, run)| [at(run.start), at(j), run.len() as f64 * side, side])
+        .collect()
 }
 
 #[cfg(test)]
@@ -188,12 +216,17 @@ mod tests {
     /// The masks have the area that their cells have, and the random one is half open.
     #[test]
     fn masks_cover_what_is_opaque() {
-        let area = |kind: Kind| -> f64 { kind.rectangles().iter().map(|r| r[2] * r[3]).sum() };
-        assert!((area(Kind::Random) - 18.0 * 0.16).abs() < 1e-12);
+        let area = |kind: Kind, n: usize| -> f64 {
+            let rectangles = kind.rectangles(&random(n, 1));
+            rectangles.iter().map(|r| r[2] * r[3]).sum()
+        };
+        assert!((area(Kind::Random, 6) - 18.0 * 0.16).abs() < 1e-12);
+        assert!((area(Kind::Random, 9) - 40.0 * (2.4f64 / 9.0).powi(2)).abs() < 1e-12);
+        assert_ne!(random(6, 1), random(6, 2));
         let opaque = (0..169)
             .filter(|k| !is_open(k % 13 % 7, k / 13 % 7))
             .count();
-        assert!((area(Kind::Mura) - opaque as f64 * 0.04).abs() < 1e-12);
-        assert!((area(Kind::Pinhole) - (64.0 - 0.0625)).abs() < 1e-12);
+        assert!((area(Kind::Mura, 6) - opaque as f64 * 0.04).abs() < 1e-12);
+        assert!((area(Kind::Pinhole, 6) - (64.0 - 0.0625)).abs() < 1e-12);
     }
 }

@@ -13,11 +13,17 @@
 mod found;
 mod kinds;
 mod search;
+mod sight;
+mod subject;
 mod tasks;
 
 use super::options::Opt;
+use super::options::OptionError;
 use super::registered::{Registered, prepared};
+use crate::scene::SensorModel;
 use kinds::{KINDS, Kind, Place};
+use sight::Camera;
+use subject::{PICTURES, Subject};
 use tasks::{NOISES, OccluderTasks, Plan};
 
 /// `phicam study occluder`.
@@ -25,7 +31,7 @@ pub(super) const STUDY: Registered = Registered {
     name: "occluder",
     about: "What an occluder between object and wall does for the picture, and its best place: table, JSON, CSV, figure",
     scene: Some("thesis"),
-    files: "occluder.csv, misplaced.csv, occluder.svg",
+    files: "occluder.csv, traced.csv, misplaced.csv, occluder.svg",
     options: &[
         Opt::choice("kinds", "Occluders, separated by commas", KINDS)
             .list()
@@ -55,20 +61,41 @@ pub(super) const STUDY: Registered = Registered {
         Opt::whole("boards", "Checks a side of the boards that are recovered, separated by commas")
             .list()
             .within(2, 64)
-            .or("2,4,8"),
+            .or("2,4,8,16"),
+        Opt::choice("pictures", "Pictures that are recovered besides, separated by commas", PICTURES).list(),
+        Opt::whole("cells", "Cells a side of the random mask").or("6").within(2, 64),
         Opt::whole("draws", "Draws of the noise at each level").within(1, 1000).or("3"),
         Opt::number("misplaced", "Distances along the view by which the model is wrong, separated by commas")
             .list()
             .or("0.01,0.03,0.1"),
-        Opt::whole("elements", "Elements a side, in place of the scene's").within(1, 64),
+        Opt::whole("elements", "Elements a side, in place of the scene's; finer boards have as many as checks")
+            .within(1, 64),
+        Opt::whole("samples", "Points of the light that is traced for photographs through the sensor; 0 traces none")
+            .or("65536")
+            .within(0, 1 << 32),
+        Opt::text("sensor", "Built-in sensor (ideal, ccd, dslr, machine-vision)").or("machine-vision"),
+        Opt::number("exposure", "Seconds that a frame takes, or half of what saturates its brightest pixel, if that is less")
+            .or("0.1")
+            .rule(|x| x > 0.0 && x.is_finite(), "is no exposure", "use a time above 0"),
+        Opt::whole("frames", "Most frames of a spot that are averaged").or("16").within(1, 65_536),
         Opt::seed("Seed of the first draw"),
     ],
     prepare: |scene, values| {
         let kinds: Vec<String> = values.list("kinds")?;
         let noise: String = values.one("noise")?;
+        let spots: Vec<usize> = values.list("spots")?;
+        let all = scene.laser.spots.len();
+        if let Some(more) = spots.iter().find(|n| **n > all) {
+            let cause = format!("--spots {more}: the scene has {all}");
+            return Err(OptionError::new(cause, format!("use at most {all}")).into());
+        }
+        let boards: Vec<usize> = values.list("boards")?;
+        let pictures: Vec<Subject> = values.list("pictures")?;
+        let subjects = boards.into_iter().map(Subject::Board).chain(pictures);
+        let (seed, sensor): (u64, SensorModel) = (values.one("seed")?, values.one("sensor")?);
         let plan = Plan {
             kinds: kinds.iter().filter_map(|name| Kind::by_name(name)).collect(),
-            spots: values.list("spots")?,
+            spots,
             noise: NOISES.iter().position(|(name, _)| *name == noise).unwrap_or(0),
             level: values.one("level")?,
             start: Place {
@@ -77,11 +104,19 @@ pub(super) const STUDY: Registered = Registered {
                 size: values.one("size")?,
             },
             search: values.one("search")?,
-            boards: values.list("boards")?,
+            subjects: subjects.collect(),
+            mask: kinds::random(values.one("cells")?, seed),
+            camera: Camera {
+                sensor,
+                exposure: values.one("exposure")?,
+                frames: values.one("frames")?,
+                samples: values.one("samples")?,
+                seed,
+            },
             draws: values.one("draws")?,
             misplaced: values.list("misplaced")?,
             elements: values.maybe("elements")?,
-            seed: values.one("seed")?,
+            seed,
         };
         Ok(prepared(OccluderTasks::new(scene, plan)?))
     },

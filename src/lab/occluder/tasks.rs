@@ -1,17 +1,17 @@
 //! The tasks of the study: an occluder and a number of spots each.
 
 use super::found::{LEVELS, Misplaced, Occluders, Row, SEARCHED};
-use super::kinds::{Kind, Place};
+use super::kinds::{Cells, Kind, Place};
 use super::search::search;
+use super::sight::Camera;
+use super::subject::{RESOLVED, Subject, recovered};
 use crate::lab::ensemble::Photographs;
 use crate::lab::error::LabError;
-use crate::lab::fit::{Certainty, Residuals};
 use crate::lab::problem::problem;
 use crate::lab::study::{Sharing, Study};
 use crate::matrix::Matrix;
-use crate::metrics::mtf_raw;
 use crate::model::{Kernel, MatrixModel, ModelError};
-use crate::recovery::{Method, Options, determined, picard_joint, recover};
+use crate::recovery::{Options, determined, picard_joint};
 use crate::scene::Scene;
 use crate::transport::Control;
 
@@ -25,8 +25,6 @@ pub(super) const NOISES: &[(&str, &str)] = &[
     ("read", "The same for all entries, a share of the brightest"),
 ];
 
-/// Contrast at which a board counts as resolved.
-const RESOLVED: f64 = 0.9;
 /// Decades of noise, from 1 down, in which its limit is looked for, and halvings.
 const DECADES: f64 = 10.0;
 const HALVINGS: usize = 8;
@@ -43,7 +41,10 @@ pub(super) struct Plan {
     pub level: f64,
     pub start: Place,
     pub search: usize,
-    pub boards: Vec<usize>,
+    pub subjects: Vec<Subject>,
+    /// The random mask.
+    pub mask: Cells,
+    pub camera: Camera,
     pub draws: u64,
     pub misplaced: Vec<f64>,
     pub elements: Option<usize>,
@@ -65,8 +66,6 @@ impl OccluderTasks {
         if plan.spots.is_empty() {
             plan.spots.push(all);
         }
-        plan.spots.iter_mut().for_each(|n| *n = (*n).min(all));
-        plan.spots.dedup();
         if scene.hidden().next().is_none() {
             return Err(ModelError::NothingHidden.into());
         }
@@ -79,6 +78,14 @@ impl OccluderTasks {
     fn model(&self, scene: &Scene) -> Result<MatrixModel, LabError> {
         let elements = self.plan.elements.map(|n| [n; 2]);
         Ok(MatrixModel::new(scene, Kernel::Physical, elements)?)
+    }
+
+    /// Elements a side of the first hidden surface.
+    fn elements(&self) -> [usize; 2] {
+        let own = self.scene.hidden().next().map(|(_, s)| s.elements);
+        self.plan
+            .elements
+            .map_or(own.unwrap_or_default(), |n| [n; 2])
     }
 
     /// Standard errors of photographs `phi` at noise `level`.
@@ -101,51 +108,24 @@ impl OccluderTasks {
         Ok(1.0 - shares.rank / model.albedo.len() as f64)
     }
 
-    /// MTF of the recovered board and P of its fit, from one draw of the photographs `exact`.
-    fn recovered(
-        &self,
-        model: &MatrixModel,
-        board: &[f64],
-        exact: &Matrix,
-        level: f64,
-        seed: u64,
-    ) -> Result<(Option<f64>, Option<f64>), LabError> {
-        let Photographs { phi, stderr } =
-            Photographs::drawn(exact, self.stderr(exact, level), seed);
-        let problem = problem(model, &phi, Some(&stderr))?;
-        let found = recover(Method::Joint, &problem, &Options::default())?;
-        let mut residuals = Residuals::default();
-        residuals.add(
-            &phi,
-            &found.photographs(&problem),
-            &stderr,
-            Certainty::STATED,
-        );
-        let fit = residuals.fit(found.freedom_used(), Certainty::STATED.errors);
-        Ok((
-            mtf_raw(found.reflectance.as_slice(), board),
-            fit.map(|f| f.p),
-        ))
-    }
-
-    /// The most noise at which the board's mean MTF over the draws is 0.9; none below 1e-10.
+    /// The most noise at which the picture is resolved on average over the draws; none below 1e-10.
     fn limit(
         &self,
         model: &MatrixModel,
-        board: &[f64],
+        subject: Subject,
         control: Control<'_>,
     ) -> Result<Option<f64>, LabError> {
-        let exact = model.phi_of(board);
+        let truth = subject.albedo(&self.scene, model);
+        let exact = model.phi_of(&truth);
         let resolved = |decades: f64| -> Result<bool, LabError> {
             let mut sum = 0.0;
             for draw in 0..self.plan.draws {
                 control.check()?;
                 let level = libm::pow(10.0, -decades);
                 let seed = self.plan.seed.wrapping_add(draw);
-                sum += self
-                    .recovered(model, board, &exact, level, seed)?
-                    .0
-                    .unwrap_or(0.0);
+                let photographs = Photographs::drawn(&exact, self.stderr(&exact, level), seed);
+                let found = recovered(model, subject, &truth, &photographs)?;
+                sum += found.likeness.unwrap_or(0.0);
             }
             Ok(sum >= RESOLVED * self.plan.draws as f64)
         };
@@ -207,90 +187,86 @@ impl Study for OccluderTasks {
         let rough = thinned(&self.scene, spots.min(SEARCHED[1]), SEARCHED[0]);
         let merit = |place: &Place| -> Result<f64, LabError> {
             control.check()?;
-            let scene = kind.in_scene(&rough, place)?;
+            let scene = kind.in_scene(&rough, place, &plan.mask)?;
             self.risk(&self.model(&scene)?, plan.level)
         };
         let tries = if kind == Kind::None { 0 } else { plan.search };
         let (place, tries) = search(plan.start, tries, merit)?;
         let whole = thinned(&self.scene, spots, usize::MAX);
-        let at = |place: &Place| self.model(&kind.in_scene(&whole, place)?);
-        let model = at(&place)?;
-        let grey = model.phi_of(&vec![BEFORE; model.albedo.len()]);
+        let at = |place: &Place| kind.in_scene(&whole, place, &plan.mask);
+        let scene = at(&place)?;
+        let own = self.model(&scene)?;
+        let grey = own.phi_of(&vec![BEFORE; own.albedo.len()]);
         let stderr = self.stderr(&grey, 1.0);
-        let sigma =
-            picard_joint(&problem(&model, &grey, Some(&stderr))?, &Options::default())?.sigma;
+        let sigma = picard_joint(&problem(&own, &grey, Some(&stderr))?, &Options::default())?.sigma;
         let above = |level: f64| sigma.iter().filter(|s| **s * BEFORE > level).count();
-        let boards: Vec<Vec<f64>> = plan
-            .boards
-            .iter()
-            .map(|b| board(&self.scene, &model, *b))
-            .collect();
-        let limits = boards.iter().map(|b| self.limit(&model, b, control));
-        let limits = limits.collect::<Result<_, LabError>>()?;
+        let (mut limits, mut seen) = (Vec::new(), Vec::new());
+        for subject in &plan.subjects {
+            let elements = subject.elements(self.elements());
+            let finer = if elements == self.elements() {
+                None
+            } else {
+                Some(MatrixModel::new(&scene, Kernel::Physical, Some(elements))?)
+            };
+            let model = finer.as_ref().unwrap_or(&own);
+            limits.push(self.limit(model, *subject, control)?);
+            if plan.camera.samples > 0 {
+                let scene = subject.in_scene(&scene);
+                seen.push(plan.camera.see(&scene, model, *subject, control)?);
+            }
+        }
         let shifts: &[f64] = if kind == Kind::None {
             &[]
         } else {
             &plan.misplaced
         };
-        let wrong = |by: &f64| -> Result<Misplaced, LabError> {
+        let misplaced = |by: &f64| -> Result<Misplaced, LabError> {
             control.check()?;
             let mut there = place;
             there.offset[0] += by;
-            let (mtf, p) = match boards.first() {
-                Some(b) => {
-                    let exact = model.phi_of(b);
-                    self.recovered(&at(&there)?, b, &exact, plan.level, plan.seed)?
-                }
-                None => (None, None),
-            };
-            Ok(Misplaced { by: *by, mtf, p })
+            let wrong = self.model(&at(&there)?)?;
+            let subject = plan.subjects[0];
+            let truth = subject.albedo(&self.scene, &own);
+            let exact = own.phi_of(&truth);
+            let stderr = self.stderr(&exact, plan.level);
+            let photographs = Photographs::drawn(&exact, stderr, plan.seed);
+            let recovery = recovered(&wrong, subject, &truth, &photographs)?;
+            Ok(Misplaced { by: *by, recovery })
         };
         Ok(Row {
             kind,
             spots,
             tries,
             directions: LEVELS.iter().map(|l| above(*l)).collect(),
-            risk: self.risk(&model, plan.level)?,
+            risk: self.risk(&own, plan.level)?,
             limits,
-            misplaced: shifts.iter().map(wrong).collect::<Result<_, LabError>>()?,
+            seen,
+            misplaced: shifts
+                .iter()
+                .map(misplaced)
+                .collect::<Result<_, LabError>>()?,
             place,
         })
     }
 
     fn fits(&self, (): &(), index: usize, row: &Row) -> bool {
         row.kind == self.plan.kinds[index % self.plan.kinds.len()]
-            && row.limits.len() == self.plan.boards.len()
+            && row.limits.len() == self.plan.subjects.len()
     }
 
     fn finish(&self, (): &(), rows: Vec<Row>) -> Result<Occluders, LabError> {
-        let elements = self.plan.elements.map_or_else(
-            || {
-                self.scene
-                    .hidden()
-                    .map(|(_, s)| s.elements[0] * s.elements[1])
-                    .sum()
-            },
-            |n| n * n * self.scene.hidden().count(),
-        );
+        let [nu, nv] = self.elements();
         Ok(Occluders {
             scene: self.scene.name.clone(),
             scene_hash: self.scene.hash.clone(),
             pixels: self.scene.camera.pixels(),
-            elements,
+            elements: nu * nv,
             noise: NOISES[self.plan.noise].0.to_owned(),
             level: self.plan.level,
-            boards: self.plan.boards.clone(),
+            subjects: self.plan.subjects.clone(),
+            sensor: self.plan.camera.sensor.name(),
             draws: self.plan.draws,
             rows,
         })
     }
-}
-
-/// A board of `checks` a side by the elements of the model.
-fn board(scene: &Scene, model: &MatrixModel, checks: usize) -> Vec<f64> {
-    let scene = scene.with_checkerboard(checks);
-    let each = scene.hidden().zip(&model.grids);
-    each.flat_map(|((_, surface), grid)| surface.divided(grid.count))
-        .map(|element| element.albedo)
-        .collect()
 }

@@ -1,7 +1,20 @@
 //! Flat masks of opaque and open cells.
 
+use std::ops::Range;
+
 use super::Triangles;
 use crate::geometry::DVec3;
+
+/// Where a row of cells is opaque: neighbours as one.
+pub fn opaque_runs(row: &[bool]) -> impl Iterator<Item = Range<usize>> {
+    let mut end = 0;
+    let run = move |run: &[bool]| {
+        let start = end;
+        end += run.len();
+        run[0].then_some(start..end)
+    };
+    row.chunk_by(|a, b| a == b).filter_map(run)
+}
 
 /// The unit square \[0, 1\]² in the plane z = 0, front towards +z, where `rows` have a `#`, the
 /// first row at y = 1; open where they have a `.`. Neighbours in a row are one rectangle. u is x, v
@@ -30,13 +43,9 @@ pub fn mask(rows: &[String]) -> Result<Triangles, (String, &'static str)> {
             return Err((cause, "use # for opaque cells and . for open ones"));
         }
         let y = [nv - 1 - j, nv - j].map(|k| k as f64 / nv as f64);
-        let mut from = 0;
-        for run in row.chunk_by(|a, b| a == b) {
-            let x = [from, from + run.len()].map(|k| k as f64 / nu as f64);
-            from += run.len();
-            if run[0] == '.' {
-                continue;
-            }
+        let opaque: Vec<bool> = row.iter().map(|c| *c == '#').collect();
+        for run in opaque_runs(&opaque) {
+            let x = [run.start, run.end].map(|k| k as f64 / nu as f64);
             let first = made.positions.len() as u32;
             let corners = [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]];
             let place = corners.map(|[x, y]| DVec3::new(x, y, 0.0));

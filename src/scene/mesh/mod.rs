@@ -22,7 +22,7 @@ pub use bust::bust;
 pub use defects::Defects;
 pub use generator::Generator;
 pub use grid::{cube, rectangle, sphere};
-pub use mask::mask;
+pub use mask::{mask, opaque_runs};
 pub use write::{FaceValues, to_ply};
 
 use crate::geometry::DVec3;
