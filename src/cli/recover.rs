@@ -14,7 +14,7 @@ use super::run_folder::{PHI, RECOVERED, RunFolder, SATURATED, SCENE, STDERR};
 use super::{Outcome, recover_options};
 use crate::lab::finding::Describe;
 use crate::lab::{
-    Attempt, Certainty, Noise, RecoveredObject, describe_recovery, picards, recover_objects,
+    Attempt, Certainty, Noise, RecoveredObject, describe_recovery, recover_with_picards,
 };
 use crate::matrix::{Matrix, npy};
 use crate::model::MatrixModel;
@@ -46,9 +46,10 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     };
     let lock = |folder| RunFolder::lock(folder, "phicam recover");
     let _run = args.output.is_none().then(|| lock(&args.dir)).transpose()?;
-    let modelled = match args.joint.occluder_light {
-        true => scene.with_occluders_as_elements()?,
-        false => scene.clone(),
+    let modelled = if args.joint.occluder_light {
+        scene.with_occluders_as_elements()?
+    } else {
+        scene.clone()
     };
     let held = recover_memory::plan(args, &modelled, &methods, &options, console)?;
     let job = Job {
@@ -169,8 +170,8 @@ impl Job<'_> {
             uncertainty: uncertainty(&model, self.console),
             ..self.options
         };
-        let attempts = recover_objects(&model, &phi, noise, nuisance, self.methods, &options);
-        let picards = picards(&model, &phi, noise, nuisance, self.methods, &options);
+        let (attempts, picards) =
+            recover_with_picards(&model, &phi, noise, nuisance, self.methods, &options);
         Ok((attempts, picards?))
     }
 

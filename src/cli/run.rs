@@ -155,7 +155,7 @@ fn compare_and_recover(
         uncertainty: recover::uncertainty(&matrices, console),
         ..Options::default()
     };
-    let attempts = lab::recover_objects(
+    let (attempts, picards) = lab::recover_with_picards(
         &matrices,
         &results.phi,
         noise,
@@ -164,14 +164,7 @@ fn compare_and_recover(
         &options,
     );
     results.recovered = recover::collect(attempts, false, console)?;
-    results.picards = lab::picards(
-        &matrices,
-        &results.phi,
-        noise,
-        Nuisance::default(),
-        &Method::USUAL,
-        &options,
-    )?;
+    results.picards = picards?;
     recover::write(
         &args.output.join(RECOVERED),
         &results.scene,

@@ -17,7 +17,7 @@
 //! * [`preview`](fn@preview): a picture of the scene in ordinary light, for people.
 //! * [`published`]: the published tables and figures, computed again.
 //! * [`recover_objects`]: every recovery method on one Φcam, measured against the true object;
-//!   [`picards`] show what of it noise leaves.
+//!   [`recover_with_picards`] show what of it noise leaves.
 //!
 //! Those that take long are a [`Study`]: independent tasks that one process works off by [`run`],
 //! and many machines share.
@@ -214,7 +214,7 @@ pub use noise::{
     NoiseTasks, Point, Reach, RenderNoise,
 };
 pub use objects::{
-    Attempt, Noise, ObjectBands, RecoveredObject, measured, picards, recover_objects,
+    Attempt, Noise, ObjectBands, RecoveredObject, measured, recover_objects, recover_with_picards,
 };
 pub use pilot::{Foretold, PilotError, darkness, foretold};
 pub use power::{Detection, Power, PowerPlan, PowerRow, PowerTasks};

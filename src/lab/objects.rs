@@ -12,7 +12,7 @@ use crate::metrics::{correlation, mtf_normalized, mtf_raw, rmse};
 use crate::model::MatrixModel;
 use crate::recovery::{
     self, BandKind, Bands, Choice, Estimated, Method, Nuisance, Options, Parameter, Picard,
-    Recovered, RecoveryError, recover,
+    Recovered, RecoveryError, Shared, recover,
 };
 
 /// A recovered hidden surface.
@@ -131,10 +131,52 @@ pub fn recover_objects(
     methods: &[Method],
     options: &Options,
 ) -> Vec<Attempt> {
+    recover_sharing(
+        model,
+        phi,
+        noise,
+        nuisance,
+        methods,
+        options,
+        &Shared::default(),
+    )
+}
+
+/// The same with Φ in the singular directions of the model's laser side, and, where one of `methods`
+/// works on all pixels and spots at once, in those of the joint operator: see [`recovery::picard`]
+/// and [`recovery::picard_joint`].
+///
+/// # Errors
+/// Of the directions those of both, but not where there are too many elements for a joint method:
+/// then it is left out.
+pub fn recover_with_picards(
+    model: &MatrixModel,
+    phi: &Matrix,
+    noise: Noise<'_>,
+    nuisance: Nuisance<'_>,
+    methods: &[Method],
+    options: &Options,
+) -> (Vec<Attempt>, Result<Vec<Picard>, RecoveryError>) {
+    let shared = Shared::default();
+    let attempts = recover_sharing(model, phi, noise, nuisance, methods, options, &shared);
+    let picards = picards(model, phi, noise, nuisance, methods, options, &shared);
+    (attempts, picards)
+}
+
+fn recover_sharing(
+    model: &MatrixModel,
+    phi: &Matrix,
+    noise: Noise<'_>,
+    nuisance: Nuisance<'_>,
+    methods: &[Method],
+    options: &Options,
+    shared: &Shared,
+) -> Vec<Attempt> {
     let grids: Vec<[usize; 2]> = model.grids.iter().map(|grid| grid.count).collect();
     let problem = problem(model, phi, noise.known().map(|known| known.0))
         .and_then(|p| p.with_grids(&grids))
-        .and_then(|p| p.with_nuisance(nuisance));
+        .and_then(|p| p.with_nuisance(nuisance))
+        .map(|p| p.sharing(shared));
     let problem = match problem {
         Ok(problem) => problem,
         Err(e) => {
@@ -163,25 +205,20 @@ pub fn recover_objects(
         .collect()
 }
 
-/// Φ in the singular directions of the model's laser side, and, where one of `methods` works on all
-/// pixels and spots at once, in those of the joint operator: see [`recovery::picard`] and
-/// [`recovery::picard_joint`].
-///
-/// # Errors
-/// Those of both, but not where there are too many elements for a joint method: then it is left
-/// out.
-pub fn picards(
+fn picards(
     model: &MatrixModel,
     phi: &Matrix,
     noise: Noise<'_>,
     nuisance: Nuisance<'_>,
     methods: &[Method],
     options: &Options,
+    shared: &Shared,
 ) -> Result<Vec<Picard>, RecoveryError> {
     let problem = problem(model, phi, noise.known().map(|known| known.0))?;
+    let problem = problem.with_nuisance(nuisance)?.sharing(shared);
     let mut found = vec![recovery::picard(&problem)?];
     if methods.iter().any(|m| m.is_joint()) {
-        match recovery::picard_joint(&problem.with_nuisance(nuisance)?, options) {
+        match recovery::picard_joint(&problem, options) {
             Err(RecoveryError::TooManyElements { .. }) => {}
             joint => found.push(joint?),
         }

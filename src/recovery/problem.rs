@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Nuisance, RecoveryError};
+use super::{Nuisance, RecoveryError, Shared};
 use crate::num::linalg::{
     Range, Svd, Tolerance, columns_times, product, range, rows_times, subtract_product, svd_to,
 };
@@ -29,6 +29,7 @@ pub struct Problem<'a> {
     pub(super) grids: Option<&'a [[usize; 2]]>,
     pub(super) nuisance: Nuisance<'a>,
     terms: Option<Terms<'a>>,
+    pub(super) shared: Option<&'a Shared>,
 }
 
 impl<'a> Problem<'a> {
@@ -91,7 +92,17 @@ impl<'a> Problem<'a> {
             grids: None,
             nuisance: Nuisance::default(),
             terms: None,
+            shared: None,
         })
+    }
+
+    /// The same, its operators shared among all copies of it: to be asked for last, for a problem
+    /// with other terms, nuisance or grids made from it shares none.
+    pub fn sharing(self, shared: &'a Shared) -> Self {
+        Problem {
+            shared: Some(shared),
+            ..self
+        }
     }
 
     /// The same with the terms of each element: the joint methods take them in place of C and D.
@@ -127,6 +138,7 @@ impl<'a> Problem<'a> {
             }),
             None => Ok(Problem {
                 terms: Some(terms),
+                shared: None,
                 ..self
             }),
         }
@@ -181,7 +193,11 @@ impl<'a> Problem<'a> {
             }
             finite("the glare pattern", pattern)?;
         }
-        Ok(Problem { nuisance, ..self })
+        Ok(Problem {
+            nuisance,
+            shared: None,
+            ..self
+        })
     }
 
     /// Φ, pixels × spots, W.

@@ -35,11 +35,11 @@ pub use householder::{Complement, complement};
 pub use least_squares::least_squares;
 pub use pinv::{Pinv, pinv};
 pub use pivoted_qr::{PivotedQr, pivoted_qr, pivoted_qr_to};
-pub use product::{product, subtract_product, tr_product};
+pub use product::{gram_product, product, subtract_product, tr_product};
 pub use range::{Range, range};
 pub use solution::{LeastSquares, Route};
 pub use svd::{Svd, svd, svd_of_range, svd_to};
-pub use triangle::{Triangle, normal_triangle, triangle};
+pub use triangle::{Triangle, normal_triangle, pivoted_triangle, triangle};
 
 use nalgebra::DMatrix;
 

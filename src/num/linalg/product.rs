@@ -2,6 +2,7 @@
 //! number of cores.
 
 use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::DMatrix;
 
@@ -42,6 +43,28 @@ pub fn tr_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
     target
 }
 
+/// C + AᵀA in place of the symmetric C.
+///
+/// # Panics
+/// Where the shapes do not fit.
+pub fn gram_product(c: &mut DMatrix<f64>, a: &DMatrix<f64>) {
+    let n = a.ncols();
+    assert!(c.shape() == (n, n));
+    let lower = BlockStructure::TriangularLower;
+    triangular::matmul(
+        MatMut::from_column_major_slice_mut(c.as_mut_slice(), n, n),
+        lower,
+        Accum::Add,
+        view(a).transpose(),
+        BlockStructure::Rectangular,
+        view(a),
+        BlockStructure::Rectangular,
+        1.0,
+        Par::Seq,
+    );
+    c.fill_upper_triangle_with_lower_triangle();
+}
+
 /// C − A B in place of C.
 ///
 /// # Panics
@@ -62,6 +85,9 @@ mod tests {
         // Small integers: exact in any order.
         assert_eq!(product(&a, &b), by_hand);
         assert_eq!(tr_product(&a.transpose(), &b), by_hand);
+        let mut c = tr_product(&a, &a);
+        gram_product(&mut c, &a);
+        assert_eq!(c, tr_product(&a, &a) * 2.0);
         let mut c = by_hand.clone();
         subtract_product(&mut c, &a, &b);
         assert_eq!(c, DMatrix::zeros(5, 3));

@@ -2,6 +2,7 @@
 
 mod active_set;
 mod certificate;
+mod dense;
 mod differences;
 mod extent;
 mod interior_point;
@@ -135,7 +136,12 @@ pub fn box_least_squares(
     bounds: &Bounds,
 ) -> Result<BoxSolution, QuadraticError> {
     let scaled = Scaled::new(r, d, bounds)?;
-    let start = interior_point::solve(&scaled.r, &scaled.d, &scaled.width)?;
+    let method = if r.len() < dense::LARGE {
+        interior_point::solve
+    } else {
+        dense::solve
+    };
+    let start = method(&scaled.r, &scaled.d, &scaled.width)?;
     scaled.finish(bounds, start)
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::khatri_rao::Operator;
+use super::shared::operator;
 use crate::recovery::{Options, Problem, RecoveryError, WeightRule};
 
 /// Standard deviation of what is known of a reflectance beforehand: half of the range from 0 to 1.
@@ -43,7 +43,8 @@ pub fn determined(problem: &Problem<'_>) -> Result<Determined, RecoveryError> {
         weighting: WeightRule::Noise,
         ..Options::default()
     };
-    let (directions, _) = Operator::new(problem, &options)?.directions()?;
+    let found = operator(problem, &options)?.directions()?;
+    let (directions, _) = &*found;
     let mut shares = DVector::zeros(problem.c.ncols());
     for (s, v) in directions.sigma.iter().zip(directions.vt.row_iter()) {
         let signal = (s * BEFORE) * (s * BEFORE);

@@ -11,24 +11,34 @@
 //! so only rank(C̃)·rank(D̃) rows remain. Directions below the rounding of C̃ and D̃ are dropped;
 //! of large products also the pairs (a, b) of two weak directions, whose rows together are less
 //! than one rounding of the whole. Frame constants and a background are projected out of both sides
-//! first ([`super::elimination`]); with glare patterns there is no such product, and the rows are
+//! first ([`super::elimination`]). Of more than 512 elements, where the noise is known, the normal
+//! equations are summed with each entry's own weight, and reduced to the rows that the noise leaves
+//! ([`super::gram`]); with glare patterns there is no such product, and the rows are
 //! stacked instead ([`super::stacked`]), each with its own weight.
+
+use std::sync::{Arc, OnceLock};
 
 use nalgebra::{DMatrix, DVector};
 
 use super::elimination::{estimate, unit, without_left, without_right};
+use super::gram;
 use super::stacked::{Coupled, stack};
 use super::weights::{self, Weights};
 use crate::num::linalg::{
     LeastSquares, Route, Svd, Tolerance, Triangle, columns_over, least_squares, normal_triangle,
-    product, rows_times, svd_of_range, svd_to, tr_product, triangle,
+    pivoted_triangle, product, rows_times, svd_of_range, svd_to, tr_product, triangle,
 };
 use crate::recovery::{Estimated, Options, Problem, RecoveryError, WeightRule, Weighting};
 
 /// Elements whose Gram matrix (and its few copies) is still formed: 512 MiB each.
 const MOST_ELEMENTS: usize = 8192;
 
+/// Elements up to which the operator is compressed to rounding, whatever the noise; of more, where
+/// the noise is known, to what it leaves.
+const FEW: usize = 512;
+
 /// The problem after compression.
+#[derive(Debug)]
 pub(super) struct Operator {
     form: Form,
     elements: usize,
@@ -37,9 +47,13 @@ pub(super) struct Operator {
     weights: Weights,
     sides: Option<Sides>,
     pub(super) weighting: Weighting,
+    /// Kept from the first time they are asked for.
+    directions: OnceLock<Arc<(Svd, DVector<f64>)>>,
+    solved: OnceLock<Arc<LeastSquares>>,
 }
 
 /// Weighted and projected sides: C̃ = U T and D̃ = S V, U and Vᵀ with few orthonormal columns.
+#[derive(Debug)]
 struct Sides {
     u: DMatrix<f64>,
     t: DMatrix<f64>,
@@ -58,6 +72,7 @@ fn towards(solved: &LeastSquares) -> DMatrix<f64> {
     columns_over(solved.vt.transpose(), &solved.sigma)
 }
 
+#[derive(Debug)]
 enum Form {
     /// The Khatri–Rao product of the small factors and the compressed Φ as one column.
     Small {
@@ -147,6 +162,23 @@ impl Operator {
         let (pixels, spots) = problem.phi.shape();
         let known = known(problem, options);
         let weights = weights::fit(known, pixels, spots);
+        let many = known.is_some() && elements > FEW;
+        if many && let Some(triangle) = gram::reduced(problem, |p, l| weights.root(known, p, l))? {
+            return Ok(Operator {
+                form: Form::Stacked {
+                    rows: triangle.r.nrows(),
+                    triangle,
+                    coupled: None,
+                },
+                elements,
+                element,
+                sides: None,
+                weighting: Weighting::EntryByEntry,
+                weights,
+                directions: OnceLock::new(),
+                solved: OnceLock::new(),
+            });
+        }
         if problem.nuisance.glare.is_some() {
             let stacked = stack(problem, |p, l| weights.root(known, p, l))?;
             return Ok(Operator {
@@ -163,6 +195,8 @@ impl Operator {
                     None => Weighting::Unweighted,
                 },
                 weights,
+                directions: OnceLock::new(),
+                solved: OnceLock::new(),
             });
         }
         let by_pixel = |m: &DMatrix<f64>| {
@@ -206,14 +240,19 @@ impl Operator {
             }
         } else {
             let gathered = |m: &DMatrix<f64>| gathered(&element, m, elements);
-            let gram = tr_product(&c, &c).component_mul(&product(&d, &d.transpose()));
-            let gram = gathered(&gathered(&gram).transpose());
+            let both = tr_product(&c, &c).component_mul(&product(&d, &d.transpose()));
+            let whole = gathered(&gathered(&both).transpose());
             let along = gathered(&tr_product(&c, &phi).component_mul(&d));
-            Form::Normal(normal_triangle(
-                &gram,
-                &along.column_sum(),
-                phi.norm_squared(),
-            )?)
+            let (moment, square) = (along.column_sum(), phi.norm_squared());
+            let fewer = if many {
+                pivoted_triangle(&whole, &moment, square, gram::LOST)?
+            } else {
+                None
+            };
+            Form::Normal(match fewer {
+                Some(triangle) => triangle,
+                None => normal_triangle(&whole, &moment, square)?,
+            })
         };
         Ok(Operator {
             form,
@@ -222,6 +261,8 @@ impl Operator {
             weighting: weights.weighting,
             weights,
             sides: Some(Sides { u, t, s, v }),
+            directions: OnceLock::new(),
+            solved: OnceLock::new(),
         })
     }
 
@@ -324,22 +365,37 @@ impl Operator {
     }
 
     /// The minimum-norm solution, singular values cut at [`Operator::tolerance`].
-    pub(super) fn solve(&self, tolerance: Tolerance) -> Result<LeastSquares, RecoveryError> {
-        let tolerance = self.tolerance(tolerance);
+    pub(super) fn solve(&self, tolerance: Tolerance) -> Result<Arc<LeastSquares>, RecoveryError> {
+        if let (Tolerance::Auto, Some(known)) = (tolerance, self.solved.get()) {
+            return Ok(Arc::clone(known));
+        }
+        let cut = self.tolerance(tolerance);
         let solved = match &self.form {
-            Form::Small { a, b, .. } => least_squares(a, b, tolerance)?,
-            Form::Normal(reduced) => reduced.solve(self.elements, tolerance, Route::Normal)?,
-            Form::Stacked { triangle, rows, .. } => triangle.solve(*rows, tolerance, Route::Qr)?,
+            Form::Small { a, b, .. } => least_squares(a, b, cut)?,
+            Form::Normal(reduced) => reduced.solve(self.elements, cut, Route::Normal)?,
+            Form::Stacked { triangle, rows, .. } => triangle.solve(*rows, cut, Route::Qr)?,
         };
         if solved.rank == 0 {
             return Err(RecoveryError::NO_DIRECTION);
+        }
+        let solved = Arc::new(solved);
+        if tolerance == Tolerance::Auto {
+            let _ = self.solved.set(Arc::clone(&solved));
         }
         Ok(solved)
     }
 
     /// The directions of the operator, U Σ Vᵀ, and Uᵀ times the data: Σ Vᵀ ρ against it is the same
     /// objective but for a constant.
-    pub(super) fn directions(&self) -> Result<(Svd, DVector<f64>), RecoveryError> {
+    pub(super) fn directions(&self) -> Result<Arc<(Svd, DVector<f64>)>, RecoveryError> {
+        if let Some(known) = self.directions.get() {
+            return Ok(Arc::clone(known));
+        }
+        let found = Arc::new(self.decomposed()?);
+        Ok(Arc::clone(self.directions.get_or_init(|| found)))
+    }
+
+    fn decomposed(&self) -> Result<(Svd, DVector<f64>), RecoveryError> {
         let reduced = match &self.form {
             Form::Small { a, b, .. } => match svd_of_range(a, Tolerance::Auto)? {
                 Some(decomposed) => {

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::khatri_rao::Operator;
+use super::shared::operator;
 use crate::recovery::{Directions, Options, Picard, Problem, RecoveryError, Weighting};
 
 /// The Picard data of all pixels and spots at once: of √W K = U S Vᵀ, K the Khatri–Rao product of C
@@ -16,7 +16,7 @@ use crate::recovery::{Directions, Options, Picard, Problem, RecoveryError, Weigh
 /// decomposition that failed.
 pub fn picard_joint(problem: &Problem<'_>, options: &Options) -> Result<Picard, RecoveryError> {
     problem.refuse_darkness()?;
-    let operator = Operator::new(problem, options)?;
+    let operator = operator(problem, options)?;
     let solved = operator.solve(crate::num::linalg::Tolerance::Auto)?;
     // The solution holds the data along direction i over s_i.
     let along = &solved.vt * &solved.solution;

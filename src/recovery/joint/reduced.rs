@@ -1,9 +1,12 @@
 //! What the bounded methods share: the operator reduced to as many rows as it has directions, and
 //! the way back to reflectances.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::khatri_rao::Operator;
+use super::shared::operator;
 use crate::num::linalg::{Svd, Tolerance, cut, rows_times};
 use crate::num::quadratic::{Bounds, BoxSolution};
 use crate::recovery::{
@@ -12,7 +15,7 @@ use crate::recovery::{
 
 /// ½‖R x − d‖² is the objective but for a constant, x = s ρ.
 pub(super) struct Reduced {
-    operator: Operator,
+    operator: Arc<Operator>,
     pub(super) r: DMatrix<f64>,
     pub(super) d: DVector<f64>,
     pub(super) sigma: DVector<f64>,
@@ -22,8 +25,9 @@ pub(super) struct Reduced {
 
 impl Reduced {
     pub(super) fn new(problem: &Problem<'_>, options: &Options) -> Result<Self, RecoveryError> {
-        let operator = Operator::new(problem, options)?;
-        let (Svd { sigma, vt, .. }, data) = operator.directions()?;
+        let operator = operator(problem, options)?;
+        let directions = operator.directions()?;
+        let (Svd { sigma, vt, .. }, data) = &*directions;
         let tolerance = operator.tolerance(Tolerance::Auto);
         let (rank, cutoff) = cut(
             sigma.as_slice(),
@@ -39,9 +43,9 @@ impl Reduced {
         let (rows, _) = cut(sigma.as_slice(), 1, 1, Tolerance::Relative(f64::EPSILON))?;
         Ok(Reduced {
             operator,
-            r: rows_times(vt.rows(0, rows).into_owned(), &sigma),
+            r: rows_times(vt.rows(0, rows).into_owned(), sigma),
             d: data.rows(0, rows).into_owned(),
-            sigma,
+            sigma: sigma.clone(),
             rank,
             cutoff,
         })

@@ -31,6 +31,7 @@ pub(super) struct Stacked {
 }
 
 /// The terms of the frames as they follow from ρ.
+#[derive(Debug)]
 pub(super) struct Coupled {
     /// Their pseudo-inverse, in their own unit, times the rows they were eliminated with.
     inverse: DMatrix<f64>,

@@ -10,8 +10,8 @@
 
 use nalgebra::DMatrix;
 
-use super::khatri_rao::Operator;
 use super::reduced::finish;
+use super::shared::operator;
 use crate::num::linalg::{Tolerance, tr_product};
 use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
 
@@ -19,7 +19,7 @@ pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
-    let operator = Operator::new(problem, options)?;
+    let operator = operator(problem, options)?;
     let solved = operator.solve(options.tolerance)?;
     let elements = problem.c.ncols();
     let mut covariance = operator.covariance(problem, &solved);
@@ -37,8 +37,8 @@ pub(in crate::recovery) fn recover(
         problem,
         options,
         &operator,
-        solved.solution,
-        solved.sigma,
+        solved.solution.clone(),
+        solved.sigma.clone(),
         solved.rank,
     )?;
     (found.parameter, found.choice) = match options.tolerance {

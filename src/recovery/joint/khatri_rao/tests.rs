@@ -27,12 +27,11 @@ fn the_compressed_objective_is_the_full_one() {
             .norm_squared()
     };
     for budget in [usize::MAX, 0] {
-        let (found, data) = Operator::new(&problem, &with(budget))
-            .unwrap()
-            .directions()
-            .unwrap();
+        let operator = Operator::new(&problem, &with(budget)).unwrap();
+        let directions = operator.directions().unwrap();
+        let (found, data) = &*directions;
         let along = DMatrix::from_diagonal(&found.sigma) * &found.vt;
-        let small = |rho: &DVector<f64>| (&along * rho - &data).norm_squared();
+        let small = |rho: &DVector<f64>| (&along * rho - data).norm_squared();
         let zero = DVector::zeros(9);
         for _ in 0..4 {
             let rho = DVector::from_fn(9, |_, _| normal());
@@ -83,6 +82,6 @@ fn both_routes_solve_a_well_conditioned_problem_alike() {
     assert_eq!((small.route, normal.route), (Route::Qr, Route::Normal));
     let condition = small.sigma[0] / small.sigma[3];
     assert!(
-        (small.solution - normal.solution).norm() < 100.0 * f64::EPSILON * condition * condition
+        (&small.solution - &normal.solution).norm() < 100.0 * f64::EPSILON * condition * condition
     );
 }

@@ -1,0 +1,160 @@
+//! The normal equations of many elements, each entry of Φ with its own weight.
+
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+use super::elimination::without_left;
+use crate::num::linalg::{Triangle, gram_product, pivoted_triangle};
+use crate::recovery::{Problem, RecoveryError};
+
+/// Multiplications that the Gram matrix may take.
+const MOST_WORK: f64 = 2e12;
+/// Parts of the spots that are summed side by side: a fixed number, whatever the threads.
+const PARTS: usize = 4;
+/// A nuisance column that others leave less of than this is one of theirs.
+const DEPENDENT: f64 = 1e-12;
+/// The trace of the Gram matrix, in units of the noise, that may be left out: of n reflectances up to
+/// 1 the light of what is lost is at most √(n·1e-6) standard deviations in all of Φ together.
+pub(super) const LOST: f64 = 1e-6;
+
+/// ‖√W (Φ − Σ_j ρ_j A_j)‖² without what constants and glare of the frames take, as ‖R ρ − d‖² +
+/// rest², from
+///
+/// > G_ij = Σ_pl w\[p,l\] A_i\[p,l\] A_j\[p,l\],
+///
+/// frame by frame; `root`(p, l) is √w, 1/σ. R has the rows that the noise leaves ([`LOST`]). `None`
+/// where that is below the rounding of G, where it takes too long, and with a background, which ties
+/// the frames together.
+pub(super) fn reduced(
+    problem: &Problem<'_>,
+    root: impl Fn(usize, usize) -> f64 + Sync,
+) -> Result<Option<Triangle>, RecoveryError> {
+    let (pixels, spots) = problem.phi.shape();
+    let n = problem.elements();
+    let work = (pixels * spots) as f64 * (n as f64) * (n as f64);
+    if problem.nuisance.background || work > MOST_WORK {
+        return Ok(None);
+    }
+    let (c, d, element) = problem.sides();
+    let frame = |l: usize| {
+        let mut rows = DMatrix::zeros(pixels, n + 1);
+        for (s, j) in element.iter().enumerate() {
+            rows.column_mut(*j).axpy(d[(s, l)], &c.column(s), 1.0);
+        }
+        rows.set_column(n, &problem.phi.column(l));
+        for mut column in rows.column_iter_mut() {
+            column
+                .iter_mut()
+                .enumerate()
+                .for_each(|(p, x)| *x *= root(p, l));
+        }
+        without_frame(problem, &root, l, &mut rows);
+        rows
+    };
+    let part = |k: usize| {
+        let mut sum = DMatrix::zeros(n + 1, n + 1);
+        (k * spots / PARTS..(k + 1) * spots / PARTS)
+            .for_each(|l| gram_product(&mut sum, &frame(l)));
+        sum
+    };
+    let parts: Vec<DMatrix<f64>> = (0..PARTS).into_par_iter().map(part).collect();
+    let all = parts
+        .iter()
+        .skip(1)
+        .fold(parts[0].clone(), |sum, part| sum + part);
+    let gram = all.view((0, 0), (n, n)).into_owned();
+    let moment = all.column(n).rows(0, n).into_owned();
+    Ok(pivoted_triangle(&gram, &moment, all[(n, n)], LOST)?)
+}
+
+/// Takes out of the weighted rows of frame l what its constant and its glare could be.
+fn without_frame(
+    problem: &Problem<'_>,
+    root: &impl Fn(usize, usize) -> f64,
+    l: usize,
+    rows: &mut DMatrix<f64>,
+) {
+    let nuisance = &problem.nuisance;
+    let constant = nuisance
+        .frame_constant
+        .then(|| DMatrix::from_element(rows.nrows(), 1, 1.0));
+    let glare = nuisance
+        .glare
+        .map(|pattern| pattern.columns(l, 1).into_owned());
+    let mut taken = Vec::new();
+    for own in [constant, glare].into_iter().flatten() {
+        let own = DMatrix::from_fn(own.nrows(), 1, |p, _| root(p, l) * own[(p, 0)]);
+        let length = own.norm();
+        let mut left = own;
+        taken.iter().for_each(|u| without_left(&mut left, u));
+        if left.norm() > DEPENDENT * length {
+            taken.push(left.column(0).normalize());
+        }
+    }
+    taken.iter().for_each(|u| without_left(rows, u));
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DVector;
+
+    use super::super::stacked::stack;
+    use super::*;
+    use crate::recovery::Nuisance;
+    use crate::recovery::bench::{Bench, normal_stream};
+
+    /// Differences of the objective are those of rows reduced by orthogonal transformations,
+    /// with and without constants and glare, to what may be lost.
+    #[test]
+    fn it_is_the_objective_of_the_rows() {
+        let bench = Bench::new(3.0, 6, 8);
+        let exact = bench.phi(&bench.board(2));
+        let stderr = exact.map(|x| 0.02 * x.abs() + 1e-3 * exact.amax());
+        let mut normal = normal_stream(3);
+        let phi = exact.zip_map(&stderr, |x, s| x + s * normal());
+        let pattern = DMatrix::from_fn(64, 120, |p, l| 1.0 + ((p * 7 + l) % 11) as f64);
+        let plain = Nuisance::default();
+        let cases = [
+            plain,
+            Nuisance {
+                frame_constant: true,
+                ..plain
+            },
+            Nuisance {
+                frame_constant: true,
+                glare: Some(&pattern),
+                ..plain
+            },
+        ];
+        for nuisance in cases {
+            let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+            let problem = problem.with_nuisance(nuisance).unwrap();
+            let root = |p: usize, l: usize| 1.0 / stderr[(p, l)];
+            let found = reduced(&problem, root).unwrap().unwrap();
+            let whole = stack(&problem, root).unwrap().triangle;
+            assert!(
+                found.r.nrows() < 36 && whole.r.nrows() == 36,
+                "{}",
+                found.r.nrows()
+            );
+            let of =
+                |t: &Triangle, x: &DVector<f64>| (&t.r * x - &t.d).norm_squared() + t.rest * t.rest;
+            for _ in 0..10 {
+                let x = DVector::from_fn(36, |_, _| libm::erfc(normal()) / 2.0);
+                let [a, b] = [&found, &whole].map(|t| of(t, &x).sqrt());
+                assert!((a - b).abs() < (36.0 * LOST).sqrt(), "{a} {b}");
+            }
+        }
+        let background = Nuisance {
+            background: true,
+            ..plain
+        };
+        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+        let problem = problem.with_nuisance(background).unwrap();
+        assert!(reduced(&problem, |_, _| 1.0).unwrap().is_none());
+        // In units of a millionth of the noise too much is below the rounding.
+        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+        let finer = |p: usize, l: usize| 1e6 / stderr[(p, l)];
+        assert!(reduced(&problem, finer).unwrap().is_none());
+    }
+}
