@@ -17,16 +17,18 @@ use rayon::prelude::*;
 
 use super::cleanup::{remove_abandoned, remove_files, remove_named, remove_numbered};
 use super::console::Console;
+use super::exposed_folder::ExposedFolder;
 use super::failure::Failure;
 use super::output;
 use super::partial::{PARTIAL, Partial, columns};
 use super::record::Record;
+use super::replacement::{self, INCOMING, REPLACEMENT, remove_folder};
 use crate::film::{self, Channel, Frame, FrameMeta, RunMeta, frame_name};
 use crate::lab::Tails;
 use crate::matrix::{Matrix, npy};
 use crate::recovery::Method;
 use crate::scene::{COPIES, Scene};
-use crate::store::{FolderLock, StoreError, ensure_writable, flush, is_missing};
+use crate::store::{FolderLock, StoreError, ensure_writable, flush};
 use crate::transport::Traced;
 
 pub(super) const PHI: &str = "phi.npy";
@@ -58,11 +60,6 @@ pub(super) const EXPOSED: &str = "exposed";
 pub(super) const EXPOSURE: &str = "exposure.json";
 pub(super) const SATURATED: &str = "saturated.npy";
 pub(super) const COUNTS: &str = "counts";
-
-/// A run that takes the place of another, until it is whole.
-const REPLACEMENT: &str = ".replacement";
-/// The same while its files are moved to their places; nothing of the other is left.
-const INCOMING: &str = ".incoming";
 
 /// What a process is going to do with a run folder.
 #[derive(Clone, Debug)]
@@ -229,26 +226,8 @@ impl RunFolder {
 
     /// Moves what is in [`INCOMING`] to its place, the record last.
     fn move_in(&self) -> Result<(), Failure> {
-        let from = self.path.join(INCOMING);
-        for folder in ["frames", COPIES] {
-            let (from, to) = (from.join(folder), self.path.join(folder));
-            let Ok(entries) = fs::read_dir(&from) else {
-                continue;
-            };
-            ensure_writable(&to)?;
-            for entry in entries {
-                let name = entry?.file_name();
-                fs::rename(from.join(&name), to.join(&name))?;
-            }
-        }
-        for name in [SCENE, TAILS, STDERR, PHI, Record::FILE] {
-            match fs::rename(from.join(name), self.path.join(name)) {
-                Err(e) if !is_missing(&e) => return Err(e.into()),
-                _ => {}
-            }
-        }
-        flush(&self.path)?;
-        remove_folder(&from)
+        let files = [SCENE, TAILS, STDERR, PHI, Record::FILE];
+        replacement::move_in(&self.path, &["frames", COPIES], &files)
     }
 
     /// Calls `change` while no other writer of the folder changes what all of them share.
@@ -360,7 +339,7 @@ impl RunFolder {
         self.partial().remove()?;
         remove_numbered(&self.frames(), "exr")?;
         remove_recovered(&self.path.join(RECOVERED))?;
-        remove_exposed(&self.path.join(EXPOSED))?;
+        ExposedFolder::at(&self.path.join(EXPOSED)).remove()?;
         let model = self.path.join(MODEL);
         remove_named(&model, &MODEL_FILES)?;
         // Anything else in it is not ours, and keeps it.
@@ -437,17 +416,6 @@ fn other_run(path: &Path, there: &Record, scene: &Scene) -> Failure {
     Failure::new(cause, cure)
 }
 
-/// Removes a folder of phicam's own with all that is in it, if it is there.
-fn remove_folder(path: &Path) -> Result<(), Failure> {
-    match fs::remove_dir_all(path) {
-        Err(e) if !is_missing(&e) => {
-            let cause = format!("cannot remove {}: {e}", path.display());
-            Err(Failure::system(cause, "make its folder writable for you"))
-        }
-        _ => Ok(()),
-    }
-}
-
 /// The frame of a spot, from what is kept of it: one column per bounce count, then the standard
 /// error and its code.
 fn frame(scene: &Scene, record: &Record, spot: usize, kept: &Matrix) -> Frame {
@@ -522,16 +490,6 @@ pub(super) fn meta(scene: &Scene, record: &Record, spot: usize) -> FrameMeta {
         spot_index: spot as u32,
         spot_position: scene.laser.spots[spot].target.position.to_array(),
     }
-}
-
-/// Removes the photographs of `phicam expose` from `dir`, and `dir` if that empties it.
-pub(super) fn remove_exposed(dir: &Path) -> Result<(), Failure> {
-    let counts = dir.join(COUNTS);
-    remove_numbered(&counts, "exr")?;
-    remove_numbered(&counts, "png")?;
-    remove_named(dir, &[PHI, STDERR, SATURATED, EXPOSURE])?;
-    let _ = fs::remove_dir(dir);
-    Ok(())
 }
 
 /// Removes the matrices, tables and pictures METHOD.npy, METHOD-0.png, METHOD.stderr.npy,

@@ -223,7 +223,7 @@ fn what_is_recovered_from_other_photographs_has_its_own_folder() {
     for seed in [1, 2] {
         let _ = workspace
             .phicam(&format!(
-                "expose done --sensor machine-vision --exposure 1 --seed {seed}"
+                "expose done --sensor machine-vision --exposure 1 --seed {seed} --replace"
             ))
             .exits(0);
         let line = "recover done --phi done/exposed/phi.npy --stderr done/exposed/phi.stderr.npy --method tikhonov --keep-clipped";
