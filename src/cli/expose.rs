@@ -15,7 +15,7 @@ use super::need;
 use super::output;
 use super::process::version;
 use super::record::Record;
-use super::run_folder::{COUNTS, EXPOSED, PHI, RunFolder, SATURATED, STDERR};
+use super::run_folder::{EXPOSED, PHI, RunFolder, SATURATED, STDERR};
 use crate::lab::{Errors, describe_exposure};
 use crate::matrix::Matrix;
 use crate::report;
@@ -119,7 +119,7 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
     let json = output::json(&account)?;
     let _own = args.output.as_deref().map(lock).transpose()?;
     let vouch = || match args.output {
-        None => Record::vouch_anew(dir, &[EXPOSED, &format!("{EXPOSED}/{COUNTS}")]),
+        None => ExposedFolder::vouch(dir),
         Some(_) => Ok(()),
     };
     if folder.finish_replacement()? {

@@ -16,7 +16,7 @@ use super::failure::Failure;
 use super::output;
 use super::record::Record;
 use super::replacement::{INCOMING, REPLACEMENT, move_in, remove_folder};
-use super::run_folder::{self, COUNTS, EXPOSURE, PHI, SATURATED, STDERR};
+use super::run_folder::{self, COUNTS, EXPOSED, EXPOSURE, PHI, SATURATED, STDERR, is_frame};
 use crate::film::{self, Channel, Frame, frame_name};
 use crate::matrix::{Matrix, npy};
 use crate::report;
@@ -115,6 +115,21 @@ impl ExposedFolder {
         npy::write(&staged.join(PHI), &exposed.flux)?;
         output::write(&staged.join(EXPOSURE), json)?;
         self.replace()
+    }
+
+    /// Lets the run in `dir` vouch for the photographs in its folder [`EXPOSED`].
+    pub(super) fn vouch(dir: &Path) -> Result<(), Failure> {
+        let Some(mut record) = Record::read(dir)? else {
+            return Ok(());
+        };
+        let spots = record.spots;
+        let count = |name: &str| {
+            let stem = name.strip_suffix(".exr").or(name.strip_suffix(".png"));
+            stem.is_some_and(|stem| is_frame(&format!("{stem}.exr"), spots))
+        };
+        record.vouch_all(dir, EXPOSED, |name| FILES.contains(&name))?;
+        record.vouch_all(dir, &format!("{EXPOSED}/{COUNTS}"), count)?;
+        record.write(dir)
     }
 
     /// Removes the old photographs and moves the new ones to their place. A process that ends midway

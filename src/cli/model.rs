@@ -12,7 +12,7 @@ use super::failure::Failure;
 use super::need;
 use super::output;
 use super::record::Record;
-use super::run_folder::{MODEL, RunFolder, Z};
+use super::run_folder::{MODEL, RunFolder, Z, is_of_model};
 use crate::lab::Integration;
 use crate::matrix::{Matrix, npy};
 use crate::model::{Extent, MatrixModel, converged};
@@ -45,7 +45,7 @@ pub(super) fn execute(args: &ModelArgs, console: Console) -> Result<Outcome, Fai
     // into it.
     folder.write_scene(&scene)?;
     write(&args.output, &model, &phi, None)?;
-    Record::vouch_anew(&args.output, &[MODEL])?;
+    Record::vouch_anew(&args.output, MODEL, is_of_model)?;
     let place = args.output.join(MODEL);
     let product_error = model.product_error();
     let shape = |m: &Matrix| [m.nrows(), m.ncols()];

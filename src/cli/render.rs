@@ -193,7 +193,9 @@ pub(super) fn into_folder(
             return Ok(None);
         };
         let matrices = [&traced.flux, &traced.stderr, &traced.tails];
-        folder.finish(&mut record, matrices).map(|()| Some(traced))
+        folder
+            .finish(scene, &mut record, matrices)
+            .map(|()| Some(traced))
     })?;
     let Some(blocks) = stopped? else {
         if record.is_complete() {

@@ -12,7 +12,9 @@ use super::load_run::read_matrix;
 use super::output;
 use super::progress;
 use super::render::{self, Rendered};
-use super::run_folder::{Claim, MODEL, PHI, RECOVERED, REPORT, STDERR, SUMMARY, TAILS};
+use super::run_folder::{
+    Claim, MODEL, PHI, RECOVERED, REPORT, STDERR, SUMMARY, TAILS, is_of_model, is_of_recovered,
+};
 use super::{Outcome, model, need, recover, settings, validate};
 use crate::film::{self, Stack};
 use crate::lab::finding::Describe;
@@ -88,8 +90,8 @@ pub(super) fn execute(args: &RunArgs, console: Console) -> Result<Outcome, Failu
     let page = report::run_html(&results);
     output::write(&path(REPORT), page)?;
     record.vouch(&args.output, [SUMMARY, REPORT])?;
-    record.vouch_all(&args.output, MODEL)?;
-    record.vouch_all(&args.output, RECOVERED)?;
+    record.vouch_all(&args.output, MODEL, is_of_model)?;
+    record.vouch_all(&args.output, RECOVERED, is_of_recovered)?;
     record.write(&args.output)?;
     drop(folder);
     let text = if args.json {

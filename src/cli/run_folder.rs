@@ -382,6 +382,7 @@ impl RunFolder {
     /// complete; the record vouches for its files from now on.
     pub(super) fn finish(
         &self,
+        scene: &Scene,
         record: &mut Record,
         [phi, stderr, tails]: [&Matrix; 3],
     ) -> Result<(), Failure> {
@@ -390,11 +391,14 @@ impl RunFolder {
         npy::write(&self.path.join(STDERR), stderr)?;
         npy::write(&self.path.join(PHI), phi)?;
         flush(&self.frames())?;
-        record.finished = record.spots;
+        let spots = record.spots;
+        record.finished = spots;
         record.files.clear();
         record.vouch(&self.path, [SCENE, PHI, STDERR, TAILS])?;
-        record.vouch_all(&self.path, "frames")?;
-        record.vouch_all(&self.path, COPIES)?;
+        record.vouch_all(&self.path, "frames", |name| is_frame(name, spots))?;
+        record.vouch_all(&self.path, COPIES, |name| {
+            scene.files.iter().any(|file| file.copy_name() == name)
+        })?;
         record.write(&self.path)?;
         self.partial().remove()
     }
@@ -492,29 +496,45 @@ pub(super) fn meta(scene: &Scene, record: &Record, spot: usize) -> FrameMeta {
     }
 }
 
-/// Removes the matrices, tables and pictures METHOD.npy, METHOD-0.png, METHOD.stderr.npy,
-/// picard.csv, … and those of the truth from `dir`, and `dir` if that empties it.
+/// Whether `name` is that of the frame of one of `spots` spots.
+pub(super) fn is_frame(name: &str, spots: usize) -> bool {
+    let number = name.strip_prefix("spot-").and_then(|n| n.split_once('.'));
+    let number = number.and_then(|(n, _)| n.parse::<u32>().ok());
+    number.is_some_and(|n| (n as usize) < spots && frame_name(n) == name)
+}
+
+/// Whether `name` is that of a file of [`MODEL`].
+pub(super) fn is_of_model(name: &str) -> bool {
+    MODEL_FILES.contains(&name)
+}
+
+/// Whether `name` is that of a file of [`RECOVERED`]: METHOD.npy, METHOD-0.png, METHOD.stderr.npy,
+/// picard.csv, …, or one of the truth.
+pub(super) fn is_of_recovered(name: &str) -> bool {
+    let Some((stem, ext)) = name.rsplit_once('.') else {
+        return false;
+    };
+    let (name, what) = stem.split_once('.').unwrap_or((stem, ""));
+    let name = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let name = name.strip_suffix('-').unwrap_or(name);
+    let pictures = ["truth", "overview", "picard", "picard-joint", "determined"];
+    let known = pictures.contains(&name) || name.parse::<Method>().is_ok();
+    let whats = [
+        "",
+        "stderr",
+        "covariance",
+        "resolution",
+        "bias",
+        "lower",
+        "upper",
+        "texture",
+    ];
+    known && whats.contains(&what) && matches!(ext, "npy" | "png" | "csv" | "svg" | "ply")
+}
+
+/// Removes what [`is_of_recovered`] from `dir`, and `dir` if that empties it.
 pub(super) fn remove_recovered(dir: &Path) -> Result<(), Failure> {
-    remove_files(dir, |stem, ext| {
-        let (name, what) = stem.split_once('.').unwrap_or((stem, ""));
-        let name = name.trim_end_matches(|c: char| c.is_ascii_digit());
-        let name = name.strip_suffix('-').unwrap_or(name);
-        let pictures = ["truth", "overview", "picard", "picard-joint", "determined"];
-        let known = pictures.contains(&name) || name.parse::<Method>().is_ok();
-        let ours = known
-            && [
-                "",
-                "stderr",
-                "covariance",
-                "resolution",
-                "bias",
-                "lower",
-                "upper",
-                "texture",
-            ]
-            .contains(&what);
-        ours && matches!(ext, "npy" | "png" | "csv" | "svg" | "ply")
-    })?;
+    remove_files(dir, is_of_recovered)?;
     let _ = fs::remove_dir(dir);
     Ok(())
 }
