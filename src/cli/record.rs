@@ -209,15 +209,22 @@ impl Record {
         if written.is_at(&path)? {
             return Ok(());
         }
-        let cause = format!(
-            "{} is not what phicam wrote: its SHA-256 is not that in {}",
-            path.display(),
-            Self::FILE
-        );
-        Err(Failure::new(
-            cause,
-            "restore it, or give data of your own with --phi; the same render into the same folder makes it again",
-        ))
+        Err(changed(&path, "SHA-256"))
+    }
+
+    /// Refuses the files in the folder `folder` of `dir` that are vouched for and of another length:
+    /// before they are read.
+    pub(super) fn check_lengths(&self, dir: &Path, folder: &str) -> Result<(), Failure> {
+        for (name, written) in &self.files {
+            let path = dir.join(name);
+            if Path::new(name).starts_with(folder)
+                && path.exists()
+                && store::length(&path)? != written.bytes
+            {
+                return Err(changed(&path, "length"));
+            }
+        }
+        Ok(())
     }
 
     /// Refuses the files of `dir` that are vouched for, but for `except`, if one is there and not what
@@ -233,4 +240,17 @@ impl Record {
         let key = |r: &'_ Self| (r.scene_hash.clone(), r.version.clone(), r.plan);
         key(self) == key(other)
     }
+}
+
+/// That a file is not what was written, by what of it.
+fn changed(path: &Path, what: &str) -> Failure {
+    let cause = format!(
+        "{} is not what phicam wrote: its {what} is not that in {}",
+        path.display(),
+        Record::FILE
+    );
+    Failure::new(
+        cause,
+        "restore it, or give data of your own with --phi; the same render into the same folder makes it again",
+    )
 }

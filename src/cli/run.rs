@@ -13,7 +13,8 @@ use super::output;
 use super::progress;
 use super::render::{self, Rendered};
 use super::run_folder::{
-    Claim, MODEL, PHI, RECOVERED, REPORT, STDERR, SUMMARY, TAILS, is_of_model, is_of_recovered,
+    Claim, MODEL, PHI, RECOVERED, REPORT, STDERR, SUMMARY, TAILS, frame_max, is_of_model,
+    is_of_recovered,
 };
 use super::{Outcome, model, need, recover, settings, validate};
 use crate::film::{self, Stack};
@@ -52,7 +53,7 @@ pub(super) fn execute(args: &RunArgs, console: Console) -> Result<Outcome, Failu
     clock.lap("render")?;
 
     console.say("stacking the frames");
-    let stacked = film::stack(&args.output)?;
+    let stacked = film::stack_within(&args.output, frame_max(&scene))?;
     refuse_unfaithful_frames(&args.output, &stacked, &flux)?;
     clock.lap("stack")?;
 

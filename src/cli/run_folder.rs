@@ -169,6 +169,10 @@ impl RunFolder {
 
     /// Writes what a run has from its first moment on; what is there of it stays.
     fn begin(&self, scene: &Scene, record: &Record, console: Console) -> Result<(), Failure> {
+        let record_there = Record::read(&self.path)?;
+        if let Some(record) = &record_there {
+            record.check_lengths(&self.path, COPIES)?;
+        }
         let own = self.path.join(SCENE);
         // A sensor may have been written into it: the light is the same.
         let there = own.exists();
@@ -182,7 +186,7 @@ impl RunFolder {
             let cure = "restore or remove it, or render the changed scene into another folder";
             return Err(Failure::new(cause, cure));
         }
-        if Record::read(&self.path)?.is_none() {
+        if record_there.is_none() {
             record.write(&self.path)?;
         }
         ensure_writable(&self.frames())?;
@@ -314,7 +318,7 @@ impl RunFolder {
         kept: &Matrix,
     ) -> bool {
         let path = self.frames().join(frame_name(spot as u32));
-        film::exr::read(&path).is_ok_and(|there| {
+        film::exr::read_within(&path, frame_max(scene)).is_ok_and(|there| {
             let mut due = frame(scene, record, spot, kept).channels;
             due.sort_by(|a, b| a.name.cmp(&b.name));
             there.meta == meta(scene, record, spot) && there.channels == due
@@ -494,6 +498,12 @@ pub(super) fn meta(scene: &Scene, record: &Record, spot: usize) -> FrameMeta {
         spot_index: spot as u32,
         spot_position: scene.laser.spots[spot].target.position.to_array(),
     }
+}
+
+/// Bytes that the file of a frame of `scene` has at most.
+pub(super) fn frame_max(scene: &Scene) -> u64 {
+    let size = [scene.camera.columns, scene.camera.rows];
+    film::exr::file_max(size, scene.max_bounces as usize + 2)
 }
 
 /// Whether `name` is that of the frame of one of `spots` spots.
