@@ -19,7 +19,7 @@ mod lock;
 mod reading;
 
 pub use lock::{FolderLock, LockError};
-pub use reading::{ReadError, ReadFault, open, read};
+pub use reading::{ReadError, ReadFault, open, read, start};
 
 /// Why a file or a folder could not be written. Each message names the path, the cause and the
 /// cure.
