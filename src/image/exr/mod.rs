@@ -71,6 +71,14 @@ pub(super) fn read_exr(name: &str, bytes: &[u8]) -> Result<Image, ImageError> {
     interleaved(name, [width, height], found)
 }
 
+/// Columns and rows.
+pub(super) fn size(bytes: &[u8]) -> Option<[usize; 2]> {
+    envelope::check_list(bytes).ok()?;
+    let metadata = MetaData::read_from_buffered(bytes, true).ok()?;
+    let Vec2(width, height) = metadata.headers.first()?.layer_size;
+    Some([width, height])
+}
+
 /// Pixels of a file of `length` bytes by its first ones, and bytes of all of them in memory; no more
 /// than the file can hold. `None` if its header is not whole in `start`.
 pub(crate) fn claimed(start: &[u8], length: u64) -> Option<[f64; 2]> {
