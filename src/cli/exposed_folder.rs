@@ -15,7 +15,7 @@ use super::cleanup::{remove_abandoned, remove_named, remove_numbered};
 use super::failure::Failure;
 use super::output;
 use super::record::Record;
-use super::replacement::{INCOMING, REPLACEMENT, move_in, remove_folder};
+use super::replacement::{move_in, remove_folder};
 use super::run_folder::{self, COUNTS, EXPOSED, EXPOSURE, PHI, SATURATED, STDERR, is_frame};
 use crate::film::{self, Channel, Frame, frame_name};
 use crate::matrix::{Matrix, npy};
@@ -26,6 +26,11 @@ use crate::store::{self, ensure_writable, flush};
 
 /// Its files; the last says that all are there.
 const FILES: [&str; 4] = [SATURATED, STDERR, PHI, EXPOSURE];
+
+/// Photographs that take the place of others, until they are whole.
+const REPLACEMENT: &str = ".exposed-new";
+/// The same while they are moved to their places; nothing of the others is left.
+const INCOMING: &str = ".exposed-incoming";
 
 /// A folder of photographs.
 #[derive(Debug)]
@@ -141,7 +146,7 @@ impl ExposedFolder {
     }
 
     fn move_in(&self) -> Result<(), Failure> {
-        move_in(&self.path, &[COUNTS], &FILES)
+        move_in(&self.path.join(INCOMING), &self.path, &[COUNTS], &FILES)
     }
 
     /// Removes the photographs, the account first, so that nobody takes what is left for whole.

@@ -25,7 +25,7 @@
 //! | `summary.json`, `report.html` | what was found |
 //! | `exposed/` | what `phicam expose` made of it: `phi.npy`, `phi.stderr.npy`, `saturated.npy`, `counts/`, `exposure.json` |
 //! | `partial/` | finished spots and blocks of an unfinished run; gone when it is complete |
-//! | `.replacement/` | a run with other settings that will take the place of this one when it is whole; in `exposed/`, photographs |
+//! | `.replacement/` | a run with other settings that will take the place of this one when it is whole |
 //! | `.phicam-….lock` | who writes the folder now: there is one writer |
 //! | `merged.json` | of which plan it is, where it was put together from shards |
 //!

@@ -7,15 +7,14 @@ use std::path::Path;
 use super::failure::Failure;
 use crate::store::{ensure_writable, flush, is_missing};
 
-/// What takes the place of another, until it is whole.
-pub(super) const REPLACEMENT: &str = ".replacement";
-/// The same while its files are moved to their places; nothing of the other is left.
-pub(super) const INCOMING: &str = ".incoming";
-
-/// Moves what is in [`INCOMING`] of `dir` to its place: what the folders `folders` hold, then
-/// `files`, the last of which says that all are there.
-pub(super) fn move_in(dir: &Path, folders: &[&str], files: &[&str]) -> Result<(), Failure> {
-    let incoming = dir.join(INCOMING);
+/// Moves what is in the folder `incoming` to its place in `dir`: what the folders `folders` hold,
+/// then `files`, the last of which says that all are there.
+pub(super) fn move_in(
+    incoming: &Path,
+    dir: &Path,
+    folders: &[&str],
+    files: &[&str],
+) -> Result<(), Failure> {
     for folder in folders {
         let (from, to) = (incoming.join(folder), dir.join(folder));
         let Ok(entries) = fs::read_dir(&from) else {
@@ -34,7 +33,7 @@ pub(super) fn move_in(dir: &Path, folders: &[&str], files: &[&str]) -> Result<()
         }
     }
     flush(dir)?;
-    remove_folder(&incoming)
+    remove_folder(incoming)
 }
 
 /// Removes a folder of phicam's own with all that is in it, if it is there.

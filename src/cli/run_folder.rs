@@ -22,7 +22,7 @@ use super::failure::Failure;
 use super::output;
 use super::partial::{PARTIAL, Partial, columns};
 use super::record::Record;
-use super::replacement::{self, INCOMING, REPLACEMENT, remove_folder};
+use super::replacement::{move_in, remove_folder};
 use crate::film::{self, Channel, Frame, FrameMeta, RunMeta, frame_name};
 use crate::lab::Tails;
 use crate::matrix::{Matrix, npy};
@@ -60,6 +60,11 @@ pub(super) const EXPOSED: &str = "exposed";
 pub(super) const EXPOSURE: &str = "exposure.json";
 pub(super) const SATURATED: &str = "saturated.npy";
 pub(super) const COUNTS: &str = "counts";
+
+/// A run that takes the place of another, until it is whole.
+const REPLACEMENT: &str = ".replacement";
+/// The same while its files are moved to their places; nothing of the other is left.
+const INCOMING: &str = ".incoming";
 
 /// What a process is going to do with a run folder.
 #[derive(Clone, Debug)]
@@ -231,7 +236,8 @@ impl RunFolder {
     /// Moves what is in [`INCOMING`] to its place, the record last.
     fn move_in(&self) -> Result<(), Failure> {
         let files = [SCENE, TAILS, STDERR, PHI, Record::FILE];
-        replacement::move_in(&self.path, &["frames", COPIES], &files)
+        let incoming = self.path.join(INCOMING);
+        move_in(&incoming, &self.path, &["frames", COPIES], &files)
     }
 
     /// Calls `change` while no other writer of the folder changes what all of them share.

@@ -49,7 +49,7 @@ fn what_cannot_be_written_whole_replaces_nothing() {
         let ended = workspace.phicam_after("ulimit -f 16", line).exits(2);
         assert!(ended.stderr.contains("ulimit -f"), "{}", ended.account());
         let mut there = workspace.contents("done/exposed");
-        there.retain(|name, _| !name.starts_with(".replacement/"));
+        there.retain(|name, _| !name.starts_with(".exposed-new/"));
         assert_same(&first, &there, line);
     }
     let _ = workspace.phicam(SEED_1).exits(0);
@@ -60,30 +60,32 @@ fn what_cannot_be_written_whole_replaces_nothing() {
 #[test]
 fn a_replacement_that_ended_midway_is_finished_by_the_next_writer() {
     let workspace = photographed(SEED_1);
-    let _ = workspace.phicam(&format!("{SEED_2} -o fresh")).exits(0);
-    let fresh = workspace.contents("fresh");
-    let finished = |what: &str| {
-        let words = ["other settings", "--replace"];
-        let ended = workspace.phicam(&format!("{SEED_1} --seed 3")).exits(2);
-        let told = |word: &&str| ended.stderr.contains(*word);
-        assert!(words.iter().all(told), "{}", ended.account());
-        assert_same(&fresh, &workspace.contents("done/exposed"), what);
-        // And the run vouches for them.
-        let _ = workspace
-            .phicam("view done/exposed/phi.npy -o seen.png --force")
-            .exits(0);
-    };
-    let place = |name: &str| workspace.path("done/exposed").join(name);
-    // The old photographs half removed, the account first.
-    fs::rename(workspace.path("fresh"), place(".replacement")).unwrap();
-    for name in ["exposure.json", "counts/spot-0003.exr"] {
-        fs::remove_file(place(name)).unwrap();
+    let _ = workspace.phicam(&format!("{SEED_1} -o seen")).exits(0);
+    for (folder, output) in [("done/exposed", ""), ("seen", "-o seen")] {
+        let _ = workspace.phicam(&format!("{SEED_2} -o fresh")).exits(0);
+        let fresh = workspace.contents("fresh");
+        let finished = |what: &str| {
+            let line = format!("{SEED_1} --seed 3 {output}");
+            let ended = workspace.phicam(&line).exits(2);
+            let told = ended.stderr.contains("other settings");
+            assert!(told, "{}", ended.account());
+            assert_same(&fresh, &workspace.contents(folder), what);
+            // And the run vouches for its own.
+            let line = format!("view {folder}/phi.npy -o seen.png --force");
+            let _ = workspace.phicam(&line).exits(0);
+        };
+        let place = |name: &str| workspace.path(folder).join(name);
+        // The old photographs half removed, the account first.
+        fs::rename(workspace.path("fresh"), place(".exposed-new")).unwrap();
+        for name in ["exposure.json", "counts/spot-0003.exr"] {
+            fs::remove_file(place(name)).unwrap();
+        }
+        finished("after removing");
+        // The new ones half moved, the account not yet.
+        fs::create_dir_all(place(".exposed-incoming/counts")).unwrap();
+        for name in ["exposure.json", "phi.npy", "counts/spot-0000.exr"] {
+            fs::rename(place(name), place(".exposed-incoming").join(name)).unwrap();
+        }
+        finished("after moving");
     }
-    finished("after removing");
-    // The new ones half moved, the account not yet.
-    fs::create_dir_all(place(".incoming/counts")).unwrap();
-    for name in ["exposure.json", "phi.npy", "counts/spot-0000.exr"] {
-        fs::rename(place(name), place(".incoming").join(name)).unwrap();
-    }
-    finished("after moving");
 }
