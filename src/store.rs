@@ -17,9 +17,11 @@ use sha2::{Digest, Sha256};
 
 mod lock;
 mod reading;
+mod room;
 
 pub use lock::{FolderLock, LockError};
-pub use reading::{ReadError, ReadFault, open, read};
+pub use reading::{ReadError, ReadFault, open, read, start};
+pub use room::{Room, threads_that_fit};
 
 /// Why a file or a folder could not be written. Each message names the path, the cause and the
 /// cure.

@@ -10,7 +10,8 @@ use crate::store::{is_abandoned, is_missing};
 
 /// Removes the spot-NNNN files of `dir` with the given extension, and `dir` if that empties it.
 pub(super) fn remove_numbered(dir: &Path, extension: &str) -> Result<(), Failure> {
-    remove_files(dir, |stem, ext| {
+    remove_files(dir, |name| {
+        let (stem, ext) = name.rsplit_once('.').unwrap_or((name, ""));
         let number = stem.strip_prefix("spot-").unwrap_or("");
         ext == extension && !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit())
     })?;
@@ -31,16 +32,14 @@ pub(super) fn remove_named(dir: &Path, names: &[&str]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Removes the files of `dir` that are `ours` by stem and extension, and what a killed process was
-/// writing there.
-pub(super) fn remove_files(dir: &Path, ours: impl Fn(&str, &str) -> bool) -> Result<(), Failure> {
+/// Removes the files of `dir` that are `ours` by name, and what a killed process was writing there.
+pub(super) fn remove_files(dir: &Path, ours: impl Fn(&str) -> bool) -> Result<(), Failure> {
     let Ok(entries) = fs::read_dir(dir) else {
         return Ok(());
     };
     for path in entries.filter_map(Result::ok).map(|e| e.path()) {
-        let part = |s: Option<&OsStr>| s.and_then(OsStr::to_str).unwrap_or("").to_owned();
-        let (stem, ext) = (part(path.file_stem()), part(path.extension()));
-        if !is_abandoned(&path) && !ours(&stem, &ext) {
+        let name = path.file_name().and_then(OsStr::to_str).unwrap_or("");
+        if !is_abandoned(&path) && !ours(name) {
             continue;
         }
         match fs::remove_file(&path) {
@@ -60,5 +59,5 @@ fn irremovable(path: &Path, error: &io::Error) -> Failure {
 
 /// Removes from `dir` what killed processes were writing there.
 pub(super) fn remove_abandoned(dir: &Path) -> Result<(), Failure> {
-    remove_files(dir, |_, _| false)
+    remove_files(dir, |_| false)
 }

@@ -1,40 +1,29 @@
-//! `phicam expose`: what a camera makes of the clean flux of a finished run.
-//!
-//! | file | content |
-//! | --- | --- |
-//! | phi.npy, phi.stderr.npy | linearised flux and its standard deviation, pixels × spots, W |
-//! | saturated.npy | 1 where an entry is saturated in every exposure, 0.5 where it is only near that, −1 where the converter cut it off below, else 0 |
-//! | counts/spot-NNNN.exr, .png | mean counts, a channel for each exposure time; the longest as 16-bit grey |
-//! | exposure.json | sensor, exposure, what came of it |
+//! `phicam expose`: what a camera makes of the clean flux of a finished run; its files are those of
+//! [`ExposedFolder`].
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use super::Outcome;
 use super::args::{ExposeArgs, StatedBy};
-use super::cleanup::remove_abandoned;
 use super::console::Console;
+use super::exposed_folder::ExposedFolder;
 use super::failure::Failure;
 use super::load_run::{read_matrix, read_run, read_stderr};
 use super::need;
 use super::output;
 use super::process::version;
 use super::record::Record;
-use super::run_folder::{
-    self, COUNTS, EXPOSED, EXPOSURE, PHI, RunFolder, SATURATED, STDERR, remove_exposed,
-};
-use crate::film::{self, Channel, Frame, frame_name};
+use super::run_folder::{EXPOSED, PHI, RunFolder, SATURATED, STDERR};
 use crate::lab::{Errors, describe_exposure};
-use crate::matrix::{Matrix, npy};
+use crate::matrix::Matrix;
 use crate::report;
 use crate::scene::{Glare, Quantity, Scene, SensorModel, SensorSettings, Spread};
 use crate::sensor::{
-    Exposed, Exposure, Figures, Light, PhotonTransfer, Range, Sensor, Stated, Summary,
-    builtin_summary, glare, glare_to_signal,
+    Exposed, Exposure, Figures, Light, PhotonTransfer, Sensor, Stated, Summary, builtin_summary,
+    glare, glare_to_signal,
 };
-use crate::store::{ensure_writable, flush};
 
 /// Matrices of Φcam's size that are held at once, beside one for each exposure.
 const EXPOSING: f64 = 12.0;
@@ -96,7 +85,8 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
         ));
     }
     let out = args.output.clone().unwrap_or_else(|| dir.join(EXPOSED));
-    refuse_obstacles(&out)?;
+    let folder = ExposedFolder::at(&out);
+    folder.refuse_obstacles()?;
     let lock = |folder| RunFolder::lock(folder, "phicam expose");
     let _run = args.output.is_none().then(|| lock(dir)).transpose()?;
     let photon_transfer = match args.stderr {
@@ -128,10 +118,18 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
     };
     let json = output::json(&account)?;
     let _own = args.output.as_deref().map(lock).transpose()?;
-    write(&out, &exposed, (&scene, &record), &sensor, &json)?;
-    if args.output.is_none() {
-        Record::vouch_anew(dir, &[EXPOSED, &format!("{EXPOSED}/{COUNTS}")])?;
+    let vouch = || match args.output {
+        None => ExposedFolder::vouch(dir),
+        Some(_) => Ok(()),
+    };
+    if folder.finish_replacement()? {
+        vouch()?;
     }
+    if !args.replace {
+        folder.refuse_other(&json)?;
+    }
+    folder.write(&exposed, (&scene, &record), &sensor, &json)?;
+    vouch()?;
     output::print(&if args.json {
         json
     } else {
@@ -194,18 +192,6 @@ fn checked(glare: Glare) -> Result<Glare, Failure> {
     }
 }
 
-/// What stands in the way of an output shows before anything is written. The folder of a run is not
-/// overwritten.
-fn refuse_obstacles(out: &Path) -> Result<(), Failure> {
-    if out.join(Record::FILE).exists() {
-        let out = out.display();
-        let cause = format!("{out} is the folder of a run, with its clean flux");
-        return Err(Failure::new(cause, "choose another folder (-o)"));
-    }
-    let files = [PHI, STDERR, SATURATED, EXPOSURE];
-    run_folder::refuse_obstacles(out, &[COUNTS], &files)
-}
-
 /// What is wrong with the photographs.
 fn remark(result: &Summary, strict: bool, console: Console) -> Result<(), Failure> {
     let (entries, saturated, floored) = (result.entries, result.saturated, result.floored);
@@ -259,74 +245,6 @@ fn remark_render(result: &Summary, record: &Record, console: Console) {
         "warning: {:.2} % of the variance is that of the render itself{shared}; render with more --samples",
         100.0 * result.render
     ));
-}
-
-fn write(
-    out: &Path,
-    exposed: &Exposed,
-    (scene, record): (&Scene, &Record),
-    sensor: &Sensor,
-    json: &str,
-) -> Result<(), Failure> {
-    let counts = out.join(COUNTS);
-    ensure_writable(&counts)?;
-    remove_abandoned(&counts)?;
-    remove_abandoned(out)?;
-    remove_exposed(out)?;
-    ensure_writable(&counts)?;
-    let (pixels, spots) = exposed.flux.shape();
-    for spot in 0..spots {
-        write_counts(&counts, exposed, (scene, record), sensor, spot)?;
-    }
-    flush(&counts)?;
-    let mask = Matrix::from_iterator(
-        pixels,
-        spots,
-        exposed.range.iter().map(|range| match range {
-            Range::Within => 0.0,
-            Range::Saturated => 1.0,
-            Range::Near => 0.5,
-            Range::Floored => -1.0,
-        }),
-    );
-    npy::write(&out.join(SATURATED), &mask)?;
-    npy::write(&out.join(STDERR), &exposed.stderr)?;
-    npy::write(&out.join(PHI), &exposed.flux)?;
-    output::write(&out.join(EXPOSURE), json)
-}
-
-/// The frame of one spot: its counts at each exposure time as EXR, those of the longest as PNG.
-fn write_counts(
-    folder: &Path,
-    exposed: &Exposed,
-    (scene, record): (&Scene, &Record),
-    sensor: &Sensor,
-    spot: usize,
-) -> Result<(), Failure> {
-    let single = exposed.counts.len() == 1;
-    let channel = |(k, counts): (usize, &Matrix)| Channel {
-        name: if single {
-            film::frame::COUNTS.to_owned()
-        } else {
-            format!("{}.{k}", film::frame::COUNTS)
-        },
-        values: counts.column(spot).iter().map(|x| *x as f32).collect(),
-    };
-    let frame = Frame {
-        columns: scene.camera.columns,
-        rows: scene.camera.rows,
-        channels: exposed.counts.iter().enumerate().map(channel).collect(),
-        meta: run_folder::meta(scene, record, spot),
-    };
-    let path: PathBuf = folder.join(frame_name(spot as u32));
-    film::exr::write(&path, &frame)?;
-    let values: Vec<f64> = exposed.counts[0].column(spot).iter().copied().collect();
-    let white = match sensor.figures().bits {
-        Some(_) => 65535.0,
-        None => exposed.counts[0].max(),
-    };
-    let png = report::counts_png([frame.columns, frame.rows], &values, white)?;
-    output::write(&path.with_extension("png"), &png)
 }
 
 fn list() -> String {

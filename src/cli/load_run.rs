@@ -8,7 +8,7 @@ use super::need;
 use super::record::Record;
 use super::run_folder::{PHI, SCENE, TAILS};
 use crate::matrix::{Matrix, npy};
-use crate::scene::Scene;
+use crate::scene::{COPIES, Scene};
 
 /// The scene and the record of a finished run.
 pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), Failure> {
@@ -23,6 +23,7 @@ pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), 
             "give a folder that `phicam run` or `phicam render` has written",
         )
     })?;
+    record.check_lengths(dir, COPIES)?;
     let path = dir.join(SCENE);
     let scene = console.load_scene(&path.to_string_lossy())?;
     if record.check(dir, SCENE).is_err() {

@@ -12,7 +12,7 @@ use super::failure::Failure;
 use super::need;
 use super::output;
 use super::record::Record;
-use super::run_folder::{MODEL, RunFolder, Z};
+use super::run_folder::{MODEL, RunFolder, Z, is_of_model};
 use crate::lab::Integration;
 use crate::matrix::{Matrix, npy};
 use crate::model::{Extent, MatrixModel, converged};
@@ -44,8 +44,8 @@ pub(super) fn execute(args: &ModelArgs, console: Console) -> Result<Outcome, Fai
     // Which scene the matrices are of: nothing else in the folder says so if nothing is rendered
     // into it.
     folder.write_scene(&scene)?;
-    write(&args.output, &model, &phi)?;
-    Record::vouch_anew(&args.output, &[MODEL])?;
+    write(&args.output, &model, &phi, None)?;
+    Record::vouch_anew(&args.output, MODEL, is_of_model)?;
     let place = args.output.join(MODEL);
     let product_error = model.product_error();
     let shape = |m: &Matrix| [m.nrows(), m.ncols()];
@@ -76,18 +76,17 @@ pub(super) fn execute(args: &ModelArgs, console: Console) -> Result<Outcome, Fai
     Ok(Outcome::Done)
 }
 
-/// Writes DIR/model/z.npy, the deviate of every traced entry from the model that lies there.
-pub(super) fn write_z(dir: &Path, z: &Matrix) -> Result<(), Failure> {
-    Ok(npy::write(&dir.join(MODEL).join(Z), z)?)
-}
-
 /// Writes DIR/model/g12.npy, g23.npy and phi.npy; and with the walls' BRDFs and the scale of the
-/// light, entry by entry, laser_side.npy (D, W) and camera_side.npy (C): Φcam = C·diag(ρ)·D.
-pub(super) fn write(dir: &Path, model: &MatrixModel, phi: &Matrix) -> Result<(), Failure> {
+/// light, entry by entry, laser_side.npy (D, W) and camera_side.npy (C): Φcam = C·diag(ρ)·D. Then
+/// z.npy, the deviate of every traced entry from that model, where it is known.
+pub(super) fn write(
+    dir: &Path,
+    model: &MatrixModel,
+    phi: &Matrix,
+    z: Option<&Matrix>,
+) -> Result<(), Failure> {
     let folder = dir.join(MODEL);
     ensure_writable(&folder)?;
-    // Deviations from another model are none from this one.
-    remove_named(&folder, &[Z])?;
     for (name, matrix) in [
         ("g12.npy", &model.g12),
         ("g23.npy", &model.g23),
@@ -97,5 +96,9 @@ pub(super) fn write(dir: &Path, model: &MatrixModel, phi: &Matrix) -> Result<(),
     ] {
         npy::write(&folder.join(name), matrix)?;
     }
-    Ok(())
+    match z {
+        Some(z) => Ok(npy::write(&folder.join(Z), z)?),
+        // Deviations from another model are none from this one.
+        None => remove_named(&folder, &[Z]),
+    }
 }

@@ -233,6 +233,22 @@ pub(super) fn frames(scene: &Scene) -> Result<(), Failure> {
     ))
 }
 
+/// Refuses a scene whose program for Mitsuba does not fit: numbers as text, held up to five times
+/// while it grows.
+pub(super) fn mitsuba(scene: &Scene) -> Result<(), Failure> {
+    const NUMBER: f64 = 5.0 * 25.0;
+    const FACE: f64 = 5.0 * 80.0;
+    let need = scene.surfaces.iter().map(|s| {
+        let [nu, nv] = s.albedo.smooth_cells();
+        let faces = match &s.shape {
+            Shape::Instance(body) => body.mesh().triangles().len(),
+            _ => 0,
+        };
+        NUMBER * nu as f64 * nv as f64 + FACE * faces as f64
+    });
+    memory::refuse("the meshes and textures as text", need.sum(), &[])
+}
+
 /// Refuses what cannot be rendered in the memory there is.
 pub(super) fn render(scene: &Scene, plan: &Plan) -> Result<(), Failure> {
     frames(scene)?;

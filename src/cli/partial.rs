@@ -84,8 +84,9 @@ impl Partial {
 
     /// Removes all of it.
     pub(super) fn remove(&self) -> Result<(), Failure> {
-        remove_files(&self.0, |stem, ext| {
-            stem.starts_with("spots-") && ext == jobs::EXTENSION
+        remove_files(&self.0, |name| {
+            let stem = name.strip_suffix(jobs::EXTENSION);
+            stem.is_some_and(|stem| stem.starts_with("spots-") && stem.ends_with('.'))
         })?;
         // Anything else in it is not ours, and keeps it.
         let _ = fs::remove_dir(&self.0);

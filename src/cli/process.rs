@@ -7,8 +7,9 @@ use rayon::ThreadPool;
 
 use super::failure::Failure;
 use super::interrupt::warned;
-use super::memory::{available_threads, threads_that_fit};
+use super::memory::available_threads;
 use crate::jobs::Process;
+use crate::store::threads_that_fit;
 
 /// The version of the program.
 pub(super) fn version() -> &'static str {

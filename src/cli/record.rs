@@ -163,28 +163,38 @@ impl Record {
         Ok(())
     }
 
-    /// The same for all files in the folder `folder` of `dir`.
-    pub(super) fn vouch_all(&mut self, dir: &Path, folder: &str) -> Result<(), Failure> {
+    /// The same for the files in the folder `folder` of `dir` whose names are `ours`; what else lies
+    /// there is read by nobody.
+    pub(super) fn vouch_all(
+        &mut self,
+        dir: &Path,
+        folder: &str,
+        ours: impl Fn(&str) -> bool,
+    ) -> Result<(), Failure> {
         let inside = format!("{folder}/");
         self.files.retain(|name, _| !name.starts_with(&inside));
         let Ok(entries) = std::fs::read_dir(dir.join(folder)) else {
             return Ok(());
         };
         let paths = entries.filter_map(Result::ok).map(|entry| entry.path());
-        let files = paths.filter(|path| path.is_file());
-        let names: Vec<String> = files
-            .filter_map(|path| Some(inside.clone() + path.file_name()?.to_str()?))
+        let names: Vec<String> = paths
+            .filter(|path| path.is_file())
+            .filter_map(|path| Some(path.file_name()?.to_str()?.to_owned()))
+            .filter(|name| ours(name))
+            .map(|name| inside.clone() + &name)
             .collect();
         self.vouch(dir, names.iter().map(String::as_str))
     }
 
-    /// Lets the run in `dir`, if there is one, vouch for the files that were written into its
-    /// folders `folders`.
-    pub(super) fn vouch_anew(dir: &Path, folders: &[&str]) -> Result<(), Failure> {
+    /// Lets the run in `dir`, if there is one, vouch for the files whose names are `ours` in its
+    /// folder `folder`.
+    pub(super) fn vouch_anew(
+        dir: &Path,
+        folder: &str,
+        ours: impl Fn(&str) -> bool,
+    ) -> Result<(), Failure> {
         if let Some(mut record) = Self::read(dir)? {
-            for folder in folders {
-                record.vouch_all(dir, folder)?;
-            }
+            record.vouch_all(dir, folder, ours)?;
             record.write(dir)?;
         }
         Ok(())
@@ -199,15 +209,22 @@ impl Record {
         if written.is_at(&path)? {
             return Ok(());
         }
-        let cause = format!(
-            "{} is not what phicam wrote: its SHA-256 is not that in {}",
-            path.display(),
-            Self::FILE
-        );
-        Err(Failure::new(
-            cause,
-            "restore it, or give data of your own with --phi; the same render into the same folder makes it again",
-        ))
+        Err(changed(&path, "SHA-256"))
+    }
+
+    /// Refuses the files in the folder `folder` of `dir` that are vouched for and of another length:
+    /// before they are read.
+    pub(super) fn check_lengths(&self, dir: &Path, folder: &str) -> Result<(), Failure> {
+        for (name, written) in &self.files {
+            let path = dir.join(name);
+            if Path::new(name).starts_with(folder)
+                && path.exists()
+                && store::length(&path)? != written.bytes
+            {
+                return Err(changed(&path, "length"));
+            }
+        }
+        Ok(())
     }
 
     /// Refuses the files of `dir` that are vouched for, but for `except`, if one is there and not what
@@ -223,4 +240,17 @@ impl Record {
         let key = |r: &'_ Self| (r.scene_hash.clone(), r.version.clone(), r.plan);
         key(self) == key(other)
     }
+}
+
+/// That a file is not what was written, by what of it.
+fn changed(path: &Path, what: &str) -> Failure {
+    let cause = format!(
+        "{} is not what phicam wrote: its {what} is not that in {}",
+        path.display(),
+        Record::FILE
+    );
+    Failure::new(
+        cause,
+        "restore it, or give data of your own with --phi; the same render into the same folder makes it again",
+    )
 }

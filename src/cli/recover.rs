@@ -10,7 +10,7 @@ use super::load_run::{read_matrix, read_run, read_stderr};
 use super::output;
 use super::record::Record;
 use super::recover_memory::{self, Errors, Held, Strips};
-use super::run_folder::{PHI, RECOVERED, RunFolder, SATURATED, SCENE, STDERR};
+use super::run_folder::{PHI, RECOVERED, RunFolder, SATURATED, SCENE, STDERR, is_of_recovered};
 use super::{Outcome, recover_options};
 use crate::lab::finding::Describe;
 use crate::lab::{
@@ -78,7 +78,7 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     let pictured: Vec<RecoveredObject> = objects.iter().filter(hidden).cloned().collect();
     write(&out, &scene, &pictured, &picards)?;
     if place == Place::Run {
-        Record::vouch_anew(&args.dir, &[RECOVERED])?;
+        Record::vouch_anew(&args.dir, RECOVERED, is_of_recovered)?;
     } else {
         console.say(format!("{}: written", out.display()));
     }

@@ -6,7 +6,7 @@ use super::args::RecoverArgs;
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{refuse_damaged, refuse_shape};
-use super::memory::{GIB, Room};
+use super::memory::{GIB, room};
 use crate::lab::{Attempt, Certainty, Judged, Residuals, measured};
 use crate::matrix::npy::Rows;
 use crate::model::MatrixModel;
@@ -88,7 +88,7 @@ pub(super) fn plan(
     let allowed = args
         .memory
         .map(|m| m * GIB)
-        .or_else(|| Room::now().map(|room| room.bytes));
+        .or_else(|| room().map(|room| room.bytes));
     let joint = methods.iter().any(|m| m.is_joint());
     let whole = size.whole(joint, options.budget);
     if allowed.is_none_or(|allowed| whole <= allowed) {

@@ -15,7 +15,7 @@ use super::output;
 use super::partial::{Kept, columns};
 use super::process::pool;
 use super::record::Record;
-use super::run_folder::{Claim, PHI, RunFolder, STDERR, TAILS};
+use super::run_folder::{Claim, PHI, RunFolder, STDERR, TAILS, frame_max};
 use super::{Outcome, need, settings, suspicious};
 use crate::film;
 use crate::lab::describe_render;
@@ -84,7 +84,7 @@ pub(super) fn complete(scene: &Scene, plan: &Plan, path: &Path) -> Result<Option
     let record = Record::read(path)?
         .filter(|earlier| earlier.same_settings(&asked) && earlier.is_complete());
     let whole = |record: &Record| {
-        let frames = || film::stack(path).is_ok();
+        let frames = || film::stack_within(path, frame_max(scene)).is_ok();
         let matrix = |name: &&str| read_matrix(&path.join(name), scene).is_ok();
         let rendered = |name: &&str| name.starts_with("frames/");
         let mut names = record.files.keys().map(String::as_str).filter(rendered);
@@ -193,7 +193,9 @@ pub(super) fn into_folder(
             return Ok(None);
         };
         let matrices = [&traced.flux, &traced.stderr, &traced.tails];
-        folder.finish(&mut record, matrices).map(|()| Some(traced))
+        folder
+            .finish(scene, &mut record, matrices)
+            .map(|()| Some(traced))
     })?;
     let Some(blocks) = stopped? else {
         if record.is_complete() {

@@ -12,7 +12,10 @@ use super::load_run::read_matrix;
 use super::output;
 use super::progress;
 use super::render::{self, Rendered};
-use super::run_folder::{Claim, MODEL, PHI, RECOVERED, REPORT, STDERR, SUMMARY, TAILS};
+use super::run_folder::{
+    Claim, MODEL, PHI, RECOVERED, REPORT, STDERR, SUMMARY, TAILS, frame_max, is_of_model,
+    is_of_recovered,
+};
 use super::{Outcome, model, need, recover, settings, validate};
 use crate::film::{self, Stack};
 use crate::lab::finding::Describe;
@@ -50,7 +53,7 @@ pub(super) fn execute(args: &RunArgs, console: Console) -> Result<Outcome, Failu
     clock.lap("render")?;
 
     console.say("stacking the frames");
-    let stacked = film::stack(&args.output)?;
+    let stacked = film::stack_within(&args.output, frame_max(&scene))?;
     refuse_unfaithful_frames(&args.output, &stacked, &flux)?;
     clock.lap("stack")?;
 
@@ -88,8 +91,8 @@ pub(super) fn execute(args: &RunArgs, console: Console) -> Result<Outcome, Failu
     let page = report::run_html(&results);
     output::write(&path(REPORT), page)?;
     record.vouch(&args.output, [SUMMARY, REPORT])?;
-    record.vouch_all(&args.output, MODEL)?;
-    record.vouch_all(&args.output, RECOVERED)?;
+    record.vouch_all(&args.output, MODEL, is_of_model)?;
+    record.vouch_all(&args.output, RECOVERED, is_of_recovered)?;
     record.write(&args.output)?;
     drop(folder);
     let text = if args.json {
@@ -138,8 +141,7 @@ fn compare_and_recover(
         occlusion,
     };
     let found = lab::validate(&results.scene, measured, against, test)?;
-    model::write(&args.output, &matrices, &found.model)?;
-    model::write_z(&args.output, &found.z)?;
+    model::write(&args.output, &matrices, &found.model, Some(&found.z))?;
     results.model = Some(found.model);
     results.z = Some(found.z);
     results.agreement = Some(found.agreement);

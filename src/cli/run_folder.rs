@@ -17,16 +17,18 @@ use rayon::prelude::*;
 
 use super::cleanup::{remove_abandoned, remove_files, remove_named, remove_numbered};
 use super::console::Console;
+use super::exposed_folder::ExposedFolder;
 use super::failure::Failure;
 use super::output;
 use super::partial::{PARTIAL, Partial, columns};
 use super::record::Record;
+use super::replacement::{move_in, remove_folder};
 use crate::film::{self, Channel, Frame, FrameMeta, RunMeta, frame_name};
 use crate::lab::Tails;
 use crate::matrix::{Matrix, npy};
 use crate::recovery::Method;
 use crate::scene::{COPIES, Scene};
-use crate::store::{FolderLock, StoreError, ensure_writable, flush, is_missing};
+use crate::store::{FolderLock, StoreError, ensure_writable, flush};
 use crate::transport::Traced;
 
 pub(super) const PHI: &str = "phi.npy";
@@ -172,6 +174,10 @@ impl RunFolder {
 
     /// Writes what a run has from its first moment on; what is there of it stays.
     fn begin(&self, scene: &Scene, record: &Record, console: Console) -> Result<(), Failure> {
+        let record_there = Record::read(&self.path)?;
+        if let Some(record) = &record_there {
+            record.check_lengths(&self.path, COPIES)?;
+        }
         let own = self.path.join(SCENE);
         // A sensor may have been written into it: the light is the same.
         let there = own.exists();
@@ -185,7 +191,7 @@ impl RunFolder {
             let cure = "restore or remove it, or render the changed scene into another folder";
             return Err(Failure::new(cause, cure));
         }
-        if Record::read(&self.path)?.is_none() {
+        if record_there.is_none() {
             record.write(&self.path)?;
         }
         ensure_writable(&self.frames())?;
@@ -229,26 +235,9 @@ impl RunFolder {
 
     /// Moves what is in [`INCOMING`] to its place, the record last.
     fn move_in(&self) -> Result<(), Failure> {
-        let from = self.path.join(INCOMING);
-        for folder in ["frames", COPIES] {
-            let (from, to) = (from.join(folder), self.path.join(folder));
-            let Ok(entries) = fs::read_dir(&from) else {
-                continue;
-            };
-            ensure_writable(&to)?;
-            for entry in entries {
-                let name = entry?.file_name();
-                fs::rename(from.join(&name), to.join(&name))?;
-            }
-        }
-        for name in [SCENE, TAILS, STDERR, PHI, Record::FILE] {
-            match fs::rename(from.join(name), self.path.join(name)) {
-                Err(e) if !is_missing(&e) => return Err(e.into()),
-                _ => {}
-            }
-        }
-        flush(&self.path)?;
-        remove_folder(&from)
+        let files = [SCENE, TAILS, STDERR, PHI, Record::FILE];
+        let incoming = self.path.join(INCOMING);
+        move_in(&incoming, &self.path, &["frames", COPIES], &files)
     }
 
     /// Calls `change` while no other writer of the folder changes what all of them share.
@@ -335,7 +324,7 @@ impl RunFolder {
         kept: &Matrix,
     ) -> bool {
         let path = self.frames().join(frame_name(spot as u32));
-        film::exr::read(&path).is_ok_and(|there| {
+        film::exr::read_within(&path, frame_max(scene)).is_ok_and(|there| {
             let mut due = frame(scene, record, spot, kept).channels;
             due.sort_by(|a, b| a.name.cmp(&b.name));
             there.meta == meta(scene, record, spot) && there.channels == due
@@ -360,7 +349,7 @@ impl RunFolder {
         self.partial().remove()?;
         remove_numbered(&self.frames(), "exr")?;
         remove_recovered(&self.path.join(RECOVERED))?;
-        remove_exposed(&self.path.join(EXPOSED))?;
+        ExposedFolder::at(&self.path.join(EXPOSED)).remove()?;
         let model = self.path.join(MODEL);
         remove_named(&model, &MODEL_FILES)?;
         // Anything else in it is not ours, and keeps it.
@@ -403,6 +392,7 @@ impl RunFolder {
     /// complete; the record vouches for its files from now on.
     pub(super) fn finish(
         &self,
+        scene: &Scene,
         record: &mut Record,
         [phi, stderr, tails]: [&Matrix; 3],
     ) -> Result<(), Failure> {
@@ -411,11 +401,14 @@ impl RunFolder {
         npy::write(&self.path.join(STDERR), stderr)?;
         npy::write(&self.path.join(PHI), phi)?;
         flush(&self.frames())?;
-        record.finished = record.spots;
+        let spots = record.spots;
+        record.finished = spots;
         record.files.clear();
         record.vouch(&self.path, [SCENE, PHI, STDERR, TAILS])?;
-        record.vouch_all(&self.path, "frames")?;
-        record.vouch_all(&self.path, COPIES)?;
+        record.vouch_all(&self.path, "frames", |name| is_frame(name, spots))?;
+        record.vouch_all(&self.path, COPIES, |name| {
+            scene.files.iter().any(|file| file.copy_name() == name)
+        })?;
         record.write(&self.path)?;
         self.partial().remove()
     }
@@ -435,17 +428,6 @@ fn other_run(path: &Path, there: &Record, scene: &Scene) -> Failure {
     };
     let cure = "give the same settings, choose another folder (-o), or replace it (--replace)";
     Failure::new(cause, cure)
-}
-
-/// Removes a folder of phicam's own with all that is in it, if it is there.
-fn remove_folder(path: &Path) -> Result<(), Failure> {
-    match fs::remove_dir_all(path) {
-        Err(e) if !is_missing(&e) => {
-            let cause = format!("cannot remove {}: {e}", path.display());
-            Err(Failure::system(cause, "make its folder writable for you"))
-        }
-        _ => Ok(()),
-    }
 }
 
 /// The frame of a spot, from what is kept of it: one column per bounce count, then the standard
@@ -524,39 +506,51 @@ pub(super) fn meta(scene: &Scene, record: &Record, spot: usize) -> FrameMeta {
     }
 }
 
-/// Removes the photographs of `phicam expose` from `dir`, and `dir` if that empties it.
-pub(super) fn remove_exposed(dir: &Path) -> Result<(), Failure> {
-    let counts = dir.join(COUNTS);
-    remove_numbered(&counts, "exr")?;
-    remove_numbered(&counts, "png")?;
-    remove_named(dir, &[PHI, STDERR, SATURATED, EXPOSURE])?;
-    let _ = fs::remove_dir(dir);
-    Ok(())
+/// Bytes that the file of a frame of `scene` has at most.
+pub(super) fn frame_max(scene: &Scene) -> u64 {
+    let size = [scene.camera.columns, scene.camera.rows];
+    film::exr::file_max(size, scene.max_bounces as usize + 2)
 }
 
-/// Removes the matrices, tables and pictures METHOD.npy, METHOD-0.png, METHOD.stderr.npy,
-/// picard.csv, … and those of the truth from `dir`, and `dir` if that empties it.
+/// Whether `name` is that of the frame of one of `spots` spots.
+pub(super) fn is_frame(name: &str, spots: usize) -> bool {
+    let number = name.strip_prefix("spot-").and_then(|n| n.split_once('.'));
+    let number = number.and_then(|(n, _)| n.parse::<u32>().ok());
+    number.is_some_and(|n| (n as usize) < spots && frame_name(n) == name)
+}
+
+/// Whether `name` is that of a file of [`MODEL`].
+pub(super) fn is_of_model(name: &str) -> bool {
+    MODEL_FILES.contains(&name)
+}
+
+/// Whether `name` is that of a file of [`RECOVERED`]: METHOD.npy, METHOD-0.png, METHOD.stderr.npy,
+/// picard.csv, …, or one of the truth.
+pub(super) fn is_of_recovered(name: &str) -> bool {
+    let Some((stem, ext)) = name.rsplit_once('.') else {
+        return false;
+    };
+    let (name, what) = stem.split_once('.').unwrap_or((stem, ""));
+    let name = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let name = name.strip_suffix('-').unwrap_or(name);
+    let pictures = ["truth", "overview", "picard", "picard-joint", "determined"];
+    let known = pictures.contains(&name) || name.parse::<Method>().is_ok();
+    let whats = [
+        "",
+        "stderr",
+        "covariance",
+        "resolution",
+        "bias",
+        "lower",
+        "upper",
+        "texture",
+    ];
+    known && whats.contains(&what) && matches!(ext, "npy" | "png" | "csv" | "svg" | "ply")
+}
+
+/// Removes what [`is_of_recovered`] from `dir`, and `dir` if that empties it.
 pub(super) fn remove_recovered(dir: &Path) -> Result<(), Failure> {
-    remove_files(dir, |stem, ext| {
-        let (name, what) = stem.split_once('.').unwrap_or((stem, ""));
-        let name = name.trim_end_matches(|c: char| c.is_ascii_digit());
-        let name = name.strip_suffix('-').unwrap_or(name);
-        let pictures = ["truth", "overview", "picard", "picard-joint", "determined"];
-        let known = pictures.contains(&name) || name.parse::<Method>().is_ok();
-        let ours = known
-            && [
-                "",
-                "stderr",
-                "covariance",
-                "resolution",
-                "bias",
-                "lower",
-                "upper",
-                "texture",
-            ]
-            .contains(&what);
-        ours && matches!(ext, "npy" | "png" | "csv" | "svg" | "ply")
-    })?;
+    remove_files(dir, is_of_recovered)?;
     let _ = fs::remove_dir(dir);
     Ok(())
 }

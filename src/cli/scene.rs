@@ -60,6 +60,7 @@ pub(super) fn execute(args: &SceneArgs, console: Console) -> Result<Outcome, Fai
         } => {
             let scene = console.load_scene(scene)?;
             let text = if *mitsuba {
+                need::mitsuba(&scene)?;
                 report::mitsuba_script(&scene)?
             } else {
                 scene.text

@@ -11,18 +11,25 @@ use super::failure::Failure;
 use super::need;
 use super::output;
 use super::record::Record;
-use super::run_folder::{PHI, RunFolder, SCENE, STDERR};
+use super::run_folder::{PHI, RunFolder, SCENE, STDERR, frame_max};
 use crate::film;
 use crate::matrix::npy::NpyError;
 use crate::matrix::{Matrix, npy};
+use crate::scene::COPIES;
 
 pub(super) fn execute(args: &StackArgs, console: Console) -> Result<Outcome, Failure> {
-    // Of frames without a scene only the frames themselves say how large they are.
-    if let Ok(scene) = console.load_scene(&args.dir.join(SCENE).to_string_lossy()) {
-        need::photographs(&scene, f64::from(scene.max_bounces) + 3.0)?;
-    }
-    let stack = film::stack(&args.dir)?;
     let record = Record::read(&args.dir)?;
+    if let Some(record) = &record {
+        record.check_lengths(&args.dir, COPIES)?;
+    }
+    // Of frames without a scene only the frames themselves say how large they are.
+    let stack = match console.load_scene(&args.dir.join(SCENE).to_string_lossy()) {
+        Ok(scene) => {
+            need::photographs(&scene, f64::from(scene.max_bounces) + 3.0)?;
+            film::stack_within(&args.dir, frame_max(&scene))?
+        }
+        Err(_) => film::stack(&args.dir)?,
+    };
     if let Some(record) = &record {
         record.check_all(&args.dir, SCENE)?;
     }

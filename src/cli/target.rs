@@ -7,6 +7,7 @@ use super::Outcome;
 use super::args::TargetArgs;
 use super::console::Console;
 use super::failure::Failure;
+use super::memory;
 use super::output;
 use crate::image::Transfer;
 use crate::report;
@@ -78,6 +79,9 @@ const MESHES: [(&str, Generator, &str); 4] = [
 ];
 /// Triangles unless told.
 const FACES: u64 = 1_000_000;
+/// Bytes that a triangle takes: its corners, their places in the texture and its half of a vertex, in
+/// lists that have grown to twice what they hold, and all as a file.
+const FACE: f64 = 176.0;
 /// More are not made.
 const MOST_FACES: u64 = 100_000_000;
 
@@ -101,6 +105,12 @@ fn mesh(name: &str, args: &TargetArgs) -> Result<Option<Triangles>, Failure> {
     if !(1..=MOST_FACES).contains(&faces) {
         let cause = format!("--faces {faces}");
         return Err(Failure::new(cause, format!("use 1 to {MOST_FACES}")));
+    }
+    if *generator != Generator::Box {
+        let what = format!("{faces} triangles");
+        let need = |faces: f64| FACE * faces;
+        let cure: memory::Cure<'_> = ("triangles (--faces)", faces, &need);
+        memory::refuse(&what, need(faces as f64), &[cure])?;
     }
     Ok(Some(generator.triangles(faces as usize)))
 }

@@ -9,4 +9,4 @@ pub mod frame;
 pub mod stack;
 
 pub use frame::{Channel, Frame, FrameMeta, RunMeta, frame_name};
-pub use stack::{Stack, StackError, stack};
+pub use stack::{Stack, StackError, stack, stack_within};

@@ -144,6 +144,14 @@ pub enum StackError {
 /// missing, double or contradicts its file name, if a value is NaN or infinite, or a standard error
 /// negative.
 pub fn stack(dir: &Path) -> Result<Stack, StackError> {
+    stack_within(dir, exr::PIXEL_BYTES_MAX as u64)
+}
+
+/// The same of frames whose files have at most `most` bytes each: see [`exr::file_max`].
+///
+/// # Errors
+/// Those of [`stack`].
+pub fn stack_within(dir: &Path, most: u64) -> Result<Stack, StackError> {
     let inner = dir.join("frames");
     let folder = if inner.is_dir() {
         inner
@@ -154,7 +162,7 @@ pub fn stack(dir: &Path) -> Result<Stack, StackError> {
     let Some((_, first_path)) = files.first() else {
         return Err(StackError::NoFrames { path: folder });
     };
-    let first = exr::read(first_path)?;
+    let first = exr::read_within(first_path, most)?;
     spots::check_spots(&folder, &files, first.meta.run.spot_count)?;
 
     let pixels = first.pixels();
@@ -170,8 +178,9 @@ pub fn stack(dir: &Path) -> Result<Stack, StackError> {
         spot_positions: Vec::with_capacity(files.len()),
         run: first.meta.run.clone(),
     };
+    let most = exr::file_max([first.columns, first.rows], first.channels.len());
     for (l, (spot, path)) in files.iter().enumerate() {
-        let frame = exr::read(path)?;
+        let frame = exr::read_within(path, most)?;
         if let Some((property, found, expected)) = run::difference(&frame, &first) {
             let (path, first) = (path.clone(), first_path.clone());
             return Err(StackError::Mismatch {

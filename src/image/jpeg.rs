@@ -20,6 +20,13 @@ const PIXELS_PER_BYTE: usize = 8 * 64;
 /// The two bytes that end a JPEG.
 const END: [u8; 2] = [0xff, 0xd9];
 
+/// Columns and rows.
+pub(super) fn size(bytes: &[u8]) -> Option<[usize; 2]> {
+    let mut decoder = JpegDecoder::new(ZCursor::new(bytes));
+    decoder.decode_headers().ok()?;
+    decoder.dimensions().map(|(width, height)| [width, height])
+}
+
 pub(super) fn read_jpeg(name: &str, bytes: &[u8]) -> Result<Image, ImageError> {
     let fault = |e| damaged(name, e);
     let options = DecoderOptions::default()

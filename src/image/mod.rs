@@ -8,8 +8,8 @@
 //! A file is believed nothing. Width and height are read from its header and held against
 //! [`MOST_PIXELS`] and against the file's length before memory is taken for pixels: deflate (PNG,
 //! most OpenEXR) makes at most 1032 bytes of one, and a JPEG takes at least a bit for a block of 8
-//! × 8 pixels. So decoding takes at most 48 bytes for each of [`MOST_PIXELS`], whatever a file
-//! claims.
+//! × 8 pixels. So decoding takes at most [`PIXEL_BYTES`] for each of [`MOST_PIXELS`], whatever a
+//! file claims.
 
 pub(crate) mod exr;
 mod jpeg;
@@ -25,6 +25,8 @@ use jpeg::read_jpeg;
 
 /// Most pixels of a picture that is decoded: 4096 × 4096.
 pub const MOST_PIXELS: usize = 1 << 24;
+/// Most bytes that decoding takes for each pixel.
+pub const PIXEL_BYTES: usize = 48;
 
 /// Deflate's best: no n bytes hold more than 1032·n (its longest match of 258 bytes for two bits).
 pub const DEFLATE_RATIO_MAX: usize = 1032;
@@ -118,6 +120,16 @@ pub fn decode(name: &str, bytes: &[u8]) -> Result<Image, ImageError> {
         [0xff, 0xd8, 0xff, ..] => read_jpeg(name, bytes),
         [0x76, 0x2f, 0x31, 0x01, ..] => read_exr(name, bytes),
         _ => Err(ImageError::Unknown(name.to_owned())),
+    }
+}
+
+/// Columns and rows of a picture by its header, if that can be read.
+pub fn size(bytes: &[u8]) -> Option<[usize; 2]> {
+    match bytes {
+        [0x89, b'P', b'N', b'G', ..] => png::size(bytes),
+        [0xff, 0xd8, 0xff, ..] => jpeg::size(bytes),
+        [0x76, 0x2f, 0x31, 0x01, ..] => exr::size(bytes),
+        _ => None,
     }
 }
 

@@ -50,6 +50,13 @@ pub fn grey16_png([width, height]: [u32; 2], pixels: &[u16]) -> Result<Vec<u8>, 
     Ok(bytes)
 }
 
+/// Columns and rows.
+pub(super) fn size(bytes: &[u8]) -> Option<[usize; 2]> {
+    let mut decoder = png::Decoder::new(Cursor::new(bytes));
+    let header = decoder.read_header_info().ok()?;
+    Some([header.width, header.height].map(|n| n as usize))
+}
+
 /// A PNG of any colour type and depth; palettes become colours, a transparent colour becomes alpha.
 /// Of an animation the still picture.
 pub(super) fn read_png(name: &str, bytes: &[u8]) -> Result<Image, ImageError> {

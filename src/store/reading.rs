@@ -125,6 +125,17 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
     Ok(bytes)
 }
 
+/// The first `most` bytes of the regular file `path`, or all of them if they are fewer.
+///
+/// # Errors
+/// [`ReadError`] as of [`open`].
+pub fn start(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
+    let mut bytes = Vec::new();
+    let read = open(path)?.take(most).read_to_end(&mut bytes);
+    read.map_err(|e| ReadError::system(path, e))?;
+    Ok(bytes)
+}
+
 /// A link that leads nowhere is told from nothing at all.
 fn dangling(path: &Path, error: io::Error) -> io::Error {
     if error.kind() == ErrorKind::NotFound && fs::symlink_metadata(path).is_ok() {
@@ -164,6 +175,8 @@ mod tests {
         let path = dir.path().join("file");
         fs::write(&path, b"12345").unwrap();
         assert_eq!(read(&path, 5).unwrap(), b"12345");
+        assert_eq!(start(&path, 3).unwrap(), b"123");
+        assert_eq!(start(&path, 9).unwrap(), b"12345");
         let refused = read(&path, 4).unwrap_err();
         assert!(
             matches!(refused.fault, ReadFault::TooLarge { length: 5, most: 4 }),

@@ -47,6 +47,53 @@ fn a_flipped_bit_is_found_in_every_file_of_a_run() {
     let _ = workspace.phicam("stack done").exits(0);
 }
 
+/// What lies in a run folder under names that are not phicam's is nobody's: it is neither read nor
+/// vouched for.
+#[test]
+fn strays_are_not_vouched_for() {
+    let workspace = Workspace::with_scenes();
+    let run = "run small.toml -o done --samples 64";
+    let expose = "expose done --sensor machine-vision --exposure 1";
+    let _ = workspace.phicam(run);
+    let _ = workspace.phicam(expose).exits(0);
+    std::fs::create_dir_all(workspace.path("done/files")).unwrap();
+    let strays = [
+        "frames/foreign.exr",
+        "frames/spot-0024.exr",
+        "frames/spot-00001.exr",
+        "files/foreign.ply",
+        "model/foreign.npy",
+        "recovered/foreign.npy",
+        "exposed/foreign.npy",
+        "exposed/counts/foreign.exr",
+    ];
+    // A run that is not whole is finished, and vouched for, once more.
+    std::fs::remove_file(workspace.path("done/phi.npy")).unwrap();
+    for stray in strays {
+        let file = std::fs::File::create(workspace.path("done").join(stray)).unwrap();
+        file.set_len(1 << 20).unwrap();
+    }
+    let ended = workspace.phicam("render small.toml -o done --samples 64");
+    assert_eq!(ended.code, 0, "{}", ended.account());
+    let _ = workspace.phicam(expose).exits(0);
+    let _ = workspace.phicam("model small.toml -o done").exits(0);
+    let _ = workspace.phicam("recover done --method joint");
+    let record = workspace.json("done/run.json");
+    let files = record["files"].as_object().unwrap();
+    for own in [
+        "frames/spot-0023.exr",
+        "model/phi.npy",
+        "recovered/joint.npy",
+        "exposed/phi.npy",
+        "exposed/counts/spot-0023.png",
+    ] {
+        assert!(files.contains_key(own), "{own}: {:?}", files.keys());
+    }
+    for stray in strays {
+        assert!(!files.contains_key(stray), "{stray}");
+    }
+}
+
 #[test]
 fn an_edited_record_is_found() {
     let workspace = Workspace::with_scenes();

@@ -107,7 +107,7 @@ fn the_ideal_sensor_gives_the_clean_flux_back() {
     let blocks = workspace.json("done/run.json")["blocks"].as_f64().unwrap();
     for (noise, rest) in [(0.0, ""), (0.01, " --noise 0.01")] {
         let _ = workspace
-            .phicam(&format!("expose done --sensor ideal{rest}"))
+            .phicam(&format!("expose done --sensor ideal --replace{rest}"))
             .exits(0);
         let [noisy, stderr] =
             ["phi", "phi.stderr"].map(|n| workspace.matrix(&format!("done/exposed/{n}.npy")));
@@ -127,7 +127,7 @@ fn the_ideal_sensor_gives_the_clean_flux_back() {
 fn the_deviation_comes_from_counts_or_from_the_oracle() {
     let workspace = with_run();
     let stated = |by: &str| {
-        let line = format!("expose done --sensor ccd --exposure 0.004{by}");
+        let line = format!("expose done --sensor ccd --exposure 0.004 --replace{by}");
         let _ = workspace.phicam(&line).exits(0);
         let account = workspace.json("done/exposed/exposure.json");
         let [phi, stderr] =
@@ -168,12 +168,13 @@ fn the_table_of_the_scene_is_used_and_the_command_line_goes_before_it() {
     assert_eq!(own["times"], serde_json::json!([0.5]));
     let ratio = own["glare_to_signal"].as_f64().unwrap();
     assert!(ratio > 0.1, "{ratio}");
-    let other = account("expose done --json --brackets 0.1,2 --glare 2e-3 --ambient 1e-15");
+    let other =
+        account("expose done --replace --json --brackets 0.1,2 --glare 2e-3 --ambient 1e-15");
     assert_eq!(other["times"], serde_json::json!([2.0, 0.1]));
     assert!((other["glare_to_signal"].as_f64().unwrap() / ratio - 2.0).abs() < 1e-12);
     assert_eq!(other["ambient"], 1e-15);
     // Another sensor keeps the exposure, and none of the figures.
-    let other = account("expose done --json --sensor machine-vision");
+    let other = account("expose done --replace --json --sensor machine-vision");
     assert_eq!(other["sensor"]["read_noise"], 3.1);
     assert_eq!(other["times"], serde_json::json!([0.5]));
 }
@@ -212,7 +213,7 @@ fn saturation_is_marked_counted_and_refused_if_asked() {
     assert!(account["result"]["snr_mean"].is_null());
     // A shorter time in a series holds them.
     let _ = workspace
-        .phicam("expose done --sensor machine-vision --brackets 1000,0.001 --strict")
+        .phicam("expose done --sensor machine-vision --brackets 1000,0.001 --strict --replace")
         .exits(0);
     assert_eq!(workspace.matrix("done/exposed/saturated.npy").sum(), 0.0);
 }
@@ -235,7 +236,7 @@ fn clipped_photographs_are_not_recovered_from_in_silence() {
     let _ = workspace.phicam(&format!("{line} --keep-clipped")).exits(0);
     workspace.refuses("recover done --keep-clipped", &["--phi"]);
     let _ = workspace
-        .phicam("expose done --sensor machine-vision --exposure 0.001")
+        .phicam("expose done --sensor machine-vision --exposure 0.001 --replace")
         .exits(0);
     let _ = workspace.phicam(line).exits(0);
 }
@@ -252,7 +253,7 @@ fn light_that_stays_and_noise_that_is_shared_are_said() {
         ("--ambient 1e-12", "stay in every entry"),
         ("--dark-frames 1", "all spots of a pixel share"),
     ] {
-        let line = format!("expose done --sensor ccd --exposure 0.001 {rest}");
+        let line = format!("expose done --sensor ccd --exposure 0.001 --replace {rest}");
         let ended = workspace.phicam(&line).exits(0);
         assert!(ended.stderr.contains(words), "{}", ended.account());
     }
@@ -265,7 +266,7 @@ fn light_that_stays_and_noise_that_is_shared_are_said() {
     let found = account["result"]["common"].as_f64().unwrap();
     assert!((found / share - 1.0).abs() < 1e-9, "{found} {share}");
     let quiet = workspace
-        .phicam("expose done --sensor ccd --exposure 0.001 --dark-frames 2000")
+        .phicam("expose done --sensor ccd --exposure 0.001 --dark-frames 2000 --replace")
         .exits(0);
     assert!(!quiet.stderr.contains("warning"), "{}", quiet.account());
 }

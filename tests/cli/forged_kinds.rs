@@ -178,6 +178,30 @@ fn in_a_plan() {
     each_kind(&w, "job/shards/stray", &commands(0));
 }
 
+/// 1 GB, which some frame or mesh may have, and this one cannot: its length says so.
+#[test]
+fn a_gigabyte_where_a_few_bytes_are_due() {
+    let w = with(&[&format!("render own.toml -o done {PATHS}")]);
+    fs::remove_file(w.path("edge.png")).unwrap();
+    let copy = copy_of_the_picture(&w, "done");
+    let frame = "done/frames/spot-0003.exr".to_owned();
+    let length = "its length is not that in run.json";
+    for (name, line, words) in [
+        (&frame, "stack done -o again", "1000000000 bytes"),
+        (&copy, "stack done -o again", length),
+        (&copy, "validate done", length),
+    ] {
+        let own = w.read(name);
+        let file = File::create(w.path(name)).unwrap();
+        file.set_len(1_000_000_000).unwrap();
+        let ended = w.answers(line).exits(2);
+        let told = ended.stderr.contains(name.as_str()) && ended.stderr.contains(words);
+        assert!(told, "{}", ended.account());
+        w.write(name, own);
+    }
+    let _ = w.phicam("stack done -o again").exits(0);
+}
+
 /// The header is whole and promises what is there: 3 GB of zeros, of another shape than the run.
 #[test]
 fn a_matrix_of_three_gigabytes() {

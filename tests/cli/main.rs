@@ -8,6 +8,7 @@ mod bad_scenes;
 mod bad_settings;
 mod digests;
 mod exposing;
+mod exposing_again;
 mod foreign_files;
 #[cfg(unix)]
 mod forged_kinds;

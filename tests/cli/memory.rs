@@ -84,6 +84,37 @@ fn what_does_not_fit_is_refused_before_it_is_taken() {
     }
 }
 
+/// So do meshes that the program makes itself, pictures while they are decoded or drawn, and scenes
+/// that become the text of a program.
+#[test]
+fn meshes_and_pictures_are_refused_before_they_are_taken() {
+    let workspace = Workspace::new();
+    let words = ["100000000 triangles", "GiB may be taken", "--faces"];
+    for name in ["mesh", "sphere", "rectangle"] {
+        let line = format!("target {name} --faces 100000000 -o x.ply");
+        workspace.refuses_within(ONE_GIB, &line, &words);
+    }
+    let _ = workspace
+        .phicam("target letters --linear --size 4096,4096 -o large.png")
+        .exits(0);
+    let board = "lambertian = { checkerboard = [2, 2], dark = 0.0, light = 1.0 }";
+    let painted = |texture: &str| {
+        let texture = format!("lambertian = {{ {texture} }}");
+        altered(TINY.iter().chain([&(board, texture.as_str())]))
+    };
+    let words = ["4096 × 4096 pixels", "GiB may be taken", "scale it down"];
+    workspace.write(
+        "image.toml",
+        painted("image = \"large.png\", transfer = \"linear\""),
+    );
+    workspace.refuses_within(ONE_GIB, "scene check image.toml", &words);
+    let target = "target = \"letters\", size = [4096, 4096]";
+    workspace.write("target.toml", painted(target));
+    workspace.refuses_within(ONE_GIB / 8 * 3, "scene check target.toml", &words);
+    let line = "scene export target.toml --mitsuba -o x.py";
+    workspace.refuses_within(ONE_GIB, line, &["as text", "GiB may be taken"]);
+}
+
 /// What would fit, does: the number of pixels that the refusal names is rendered in the same memory.
 #[test]
 fn what_is_said_to_fit_fits() {

@@ -185,6 +185,21 @@ fn a_run_is_not_traced_twice_and_its_results_come_again() {
     assert_same(&before, &after, "after a stop");
 }
 
+/// Deviations from a model stay until there is another model beside them.
+#[test]
+fn the_deviations_of_a_run_outlive_a_model_that_is_not_written() {
+    let workspace = Workspace::with_scenes();
+    let _ = workspace.phicam("run small.toml -o done --samples 64");
+    let before = workspace.contents("done/model");
+    assert!(before.contains_key("z.npy"));
+    let line = "model small.toml -o done";
+    let ended = workspace.phicam_after("ulimit -f 16", line).exits(2);
+    assert!(ended.stderr.contains("g12.npy"), "{}", ended.account());
+    assert_same(&before, &workspace.contents("done/model"), line);
+    let _ = workspace.phicam(line).exits(0);
+    assert!(!workspace.path("done/model/z.npy").exists());
+}
+
 #[test]
 fn files_are_not_overwritten_without_force() {
     let workspace = Workspace::with_scenes();
@@ -223,7 +238,7 @@ fn what_is_recovered_from_other_photographs_has_its_own_folder() {
     for seed in [1, 2] {
         let _ = workspace
             .phicam(&format!(
-                "expose done --sensor machine-vision --exposure 1 --seed {seed}"
+                "expose done --sensor machine-vision --exposure 1 --seed {seed} --replace"
             ))
             .exits(0);
         let line = "recover done --phi done/exposed/phi.npy --stderr done/exposed/phi.stderr.npy --method tikhonov --keep-clipped";

@@ -143,6 +143,25 @@ fn what_cannot_be_shown_is_refused() {
     workspace.refuses("view lonely.npy --spot 0", &["lonely.npy", "run.json"]);
 }
 
+/// A gigabyte is not read to see that it is no picture, or too large a one.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_is_large_is_refused_by_its_first_bytes() {
+    let workspace = with_run();
+    for (start, words) in [
+        (vec![0], "neither OpenEXR nor .npy"),
+        (workspace.read(FRAME), "may be taken"),
+    ] {
+        workspace.write("large.exr", start);
+        let path = workspace.path("large.exr");
+        let file = std::fs::File::options().write(true).open(path).unwrap();
+        file.set_len(1_000_000_000).unwrap();
+        let ended = workspace.answers("view large.exr -o seen.png").exits(2);
+        let told = ended.stderr.contains("large.exr") && ended.stderr.contains(words);
+        assert!(told, "{}", ended.account());
+    }
+}
+
 #[test]
 fn a_scene_is_drawn_in_the_size_that_is_asked_for() {
     let workspace = Workspace::with_scenes();

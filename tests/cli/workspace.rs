@@ -78,7 +78,12 @@ impl Workspace {
 
     /// The same with `memory` KiB of address space.
     pub(crate) fn phicam_within(&self, memory: u64, line: &str) -> Ended {
-        self.end(line, limited(&format!("ulimit -v {memory}")), LONG)
+        self.phicam_after(&format!("ulimit -v {memory}"), line)
+    }
+
+    /// The same in a shell that has done `limit` before.
+    pub(crate) fn phicam_after(&self, limit: &str, line: &str) -> Ended {
+        self.end(line, limited(limit), LONG)
     }
 
     fn end(&self, line: &str, mut command: assert_cmd::Command, most: Duration) -> Ended {

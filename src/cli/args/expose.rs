@@ -53,6 +53,9 @@ pub(in crate::cli) struct ExposeArgs {
     /// Refuse photographs with saturated or cut-off entries, or such that are near to it
     #[arg(long)]
     pub strict: bool,
+    /// Replace photographs with other settings, once these are whole
+    #[arg(long)]
+    pub replace: bool,
     /// Print exposure.json instead of the table
     #[arg(long)]
     pub json: bool,

@@ -119,7 +119,7 @@ impl Work for Render {
             tails.columns_mut(first, n).copy_from(&traced.tails);
         }
         flag_neighbours(&mut tails, &flux, &stderr);
-        folder.finish(&mut record, [&flux, &stderr, &tails])?;
+        folder.finish(scene, &mut record, [&flux, &stderr, &tails])?;
         told(&record, output, json)
     }
 }

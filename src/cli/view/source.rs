@@ -19,9 +19,11 @@ use crate::store;
 
 /// Pictures of more bytes than this are not read, nor matrices that would take more: 1 GiB.
 const LARGEST: u64 = 1 << 30;
-/// Times that a matrix is held at most: as it is read, by rows, its values to be shown, their
-/// colours.
+/// Times that a matrix or picture is held at most: as it is read, by rows, its values to be shown,
+/// their colours.
 const HELD: f64 = 4.0;
+/// First bytes of a picture, in which its header ends.
+const HEAD: u64 = 1 << 16;
 /// Luminance of linear R, G, B (ITU-R BT.709).
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
@@ -54,6 +56,7 @@ impl Source {
             return Err(Failure::new(cause, "leave out --spot, or give a file .npy"));
         }
         let channel = args.channel.as_deref();
+        refuse_unseen(path)?;
         match film::exr::read(path) {
             Ok(frame) => self::frame(path, &frame, channel),
             Err(FrameError::Foreign { .. }) => picture(path, channel),
@@ -111,16 +114,29 @@ fn frame(path: &Path, frame: &film::Frame, channel: Option<&str>) -> Result<Sour
     Ok(Source::seen(title, size, values, unit))
 }
 
-/// A picture of another program; its first row is the top one.
-fn picture(path: &Path, channel: Option<&str>) -> Result<Source, Failure> {
-    let name = path.display().to_string();
-    let bytes = store::read(path, LARGEST)?;
-    if !bytes.starts_with(b"v/1\x01") {
+/// Refuses by its first bytes what is no OpenEXR, or takes more memory than there is: before it is
+/// read.
+fn refuse_unseen(path: &Path) -> Result<(), Failure> {
+    let name = path.display();
+    let start = store::start(path, HEAD)?;
+    if !start.is_empty() && !start.starts_with(b"v/1\x01") {
         let cause = format!("{name} is neither OpenEXR nor .npy");
         let cure =
             "give a frame, an OpenEXR picture or a matrix; other pictures open in any viewer";
         return Err(Failure::new(cause, cure));
     }
+    let length = store::length(path)?;
+    let claimed = image::exr::claimed(&start, length);
+    let [pixels, bytes] = claimed.unwrap_or_default();
+    let bytes = bytes.min(film::exr::PIXEL_BYTES_MAX as f64);
+    let need = length as f64 + HELD * (bytes + 8.0 * pixels.min(bytes));
+    memory::refuse(&format!("{name} and its picture"), need, &[])
+}
+
+/// A picture of another program; its first row is the top one.
+fn picture(path: &Path, channel: Option<&str>) -> Result<Source, Failure> {
+    let name = path.display().to_string();
+    let bytes = store::read(path, LARGEST)?;
     let image = image::decode(&name, &bytes)?;
     let (chosen, values) = chosen(path, &image, channel)?;
     let rows = values.chunks(image.width).rev();

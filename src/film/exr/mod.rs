@@ -31,6 +31,9 @@ use crate::store::{self, ReadError, StoreError};
 /// Most bytes that the pixels of a frame may take, all channels together: 1 GiB, sixteen channels
 /// of 4096 × 4096.
 pub const PIXEL_BYTES_MAX: usize = 1 << 30;
+/// What a frame's file takes at most beside its pixels: header, and by line offset, place and size.
+const HEADER_MAX: u64 = 1 << 20;
+const LINE_MAX: u64 = 16;
 /// Longest channel name that every OpenEXR reader accepts, bytes.
 const NAME_MAX: usize = 31;
 
@@ -84,12 +87,29 @@ pub fn write(path: &Path, frame: &Frame) -> Result<(), FrameError> {
     Ok(store::write_soon(path, |file| file.write_all(&bytes))?)
 }
 
+/// Bytes that the file of a frame of `columns` × `rows` pixels has at most: what deflate does not
+/// shrink is stored as it is.
+pub fn file_max([columns, rows]: [usize; 2], channels: usize) -> u64 {
+    let [columns, rows, channels] = [columns, rows, channels].map(|n| n as u64);
+    let line = columns.saturating_mul(4).saturating_mul(channels);
+    let pixels = rows.saturating_mul(line.saturating_add(LINE_MAX));
+    pixels.saturating_add(HEADER_MAX)
+}
+
 /// Reads the frame at `path`; its channels come in order of name. NaN and infinity are passed on:
 /// stacking refuses them.
 ///
 /// # Errors
 /// [`FrameError::Unreadable`], [`FrameError::Foreign`] or [`FrameError::Damaged`].
 pub fn read(path: &Path) -> Result<Frame, FrameError> {
+    read_within(path, PIXEL_BYTES_MAX as u64)
+}
+
+/// The same for a frame whose file has at most `most` bytes: see [`file_max`].
+///
+/// # Errors
+/// Those of [`read`].
+pub fn read_within(path: &Path, most: u64) -> Result<Frame, FrameError> {
     let foreign = |reason| FrameError::Foreign {
         path: path.into(),
         reason,
@@ -98,7 +118,7 @@ pub fn read(path: &Path) -> Result<Frame, FrameError> {
         path: path.into(),
         reason,
     };
-    let bytes = store::read(path, PIXEL_BYTES_MAX as u64)?;
+    let bytes = store::read(path, most)?;
 
     if bytes.is_empty() {
         return Err(damaged("it is empty".into()));

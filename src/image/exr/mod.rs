@@ -71,6 +71,29 @@ pub(super) fn read_exr(name: &str, bytes: &[u8]) -> Result<Image, ImageError> {
     interleaved(name, [width, height], found)
 }
 
+/// Columns and rows.
+pub(super) fn size(bytes: &[u8]) -> Option<[usize; 2]> {
+    envelope::check_list(bytes).ok()?;
+    let metadata = MetaData::read_from_buffered(bytes, true).ok()?;
+    let Vec2(width, height) = metadata.headers.first()?.layer_size;
+    Some([width, height])
+}
+
+/// Pixels of a file of `length` bytes by its first ones, and bytes of all of them in memory; no more
+/// than the file can hold. `None` if its header is not whole in `start`.
+pub(crate) fn claimed(start: &[u8], length: u64) -> Option<[f64; 2]> {
+    envelope::check_list(start).ok()?;
+    let metadata = MetaData::read_from_buffered(start, true).ok()?;
+    let header = metadata.headers.first()?;
+    let Vec2(width, height) = header.layer_size;
+    let channels = header.channels.list.iter();
+    let bytes: usize = channels.map(|c| c.sample_type.bytes_per_sample()).sum();
+    let bytes = bytes.max(1) as f64;
+    let held = length as f64 * DEFLATE_RATIO_MAX as f64 / bytes;
+    let pixels = (width as f64 * height as f64).min(held);
+    Some([pixels, pixels * bytes])
+}
+
 /// All channels of a file whose header and blocks have been checked.
 pub(crate) fn channels(
     bytes: &[u8],

@@ -2,9 +2,13 @@
 
 use super::file::{Filter, PictureChannel, VariedTable};
 use super::{Bilinear, Cells, Files, MOST_CELLS, Texture, Wrap, albedo};
-use crate::image::{self, Channel, Encoding, Image, Transfer};
+use crate::image::{self, Channel, Encoding, Image, MOST_PIXELS, Transfer};
 use crate::scene::error::{Fault, keys};
 use crate::scene::target::Target;
+use crate::store::Room;
+
+/// Bytes of a value.
+const NUMBER: usize = 8;
 
 /// Luminance of linear red, green and blue: ITU-R BT.709.
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
@@ -27,6 +31,10 @@ pub(super) fn from_image(
         let cure = "put the file into the scene's folder, or below it, and name it from there";
         Fault::new(keys!["image"], cause, cure)
     })?;
+    if let Some(size) = image::size(&bytes) {
+        refuse_large(&format!("`{name}`"), size, image::PIXEL_BYTES)
+            .map_err(|f| f.within(keys!["image"]))?;
+    }
     let image = image::decode(name, &bytes).map_err(|error| {
         let text = error.to_string();
         let (cause, cure) = text.rsplit_once("; ").unwrap_or((&text, "save it again"));
@@ -73,12 +81,31 @@ pub(super) fn from_target(name: &str, table: &VariedTable) -> Result<Texture, Fa
     let size = table
         .size
         .map_or_else(|| target.usual_size(), |s| s.map(|n| n as usize));
+    refuse_large(&format!("target `{name}`"), size, NUMBER)
+        .map_err(|f| f.within(keys!["target"]))?;
     let picture = target.picture(size).ok_or_else(|| {
         let [w, h] = size;
         let cure = format!("use 1 to {MOST_CELLS} a side");
         Fault::new(keys!["size"], format!("a target of {w} × {h} pixels"), cure)
     })?;
     texture(size, &picture.values, table)
+}
+
+/// Refuses a picture that does not fit into memory, of at most [`MOST_PIXELS`]: as it is made, of
+/// `made` bytes a pixel, as values and as albedo.
+fn refuse_large(what: &str, [width, height]: [usize; 2], made: usize) -> Result<(), Fault> {
+    let pixels = width.saturating_mul(height).min(MOST_PIXELS);
+    let need = ((made + 2 * NUMBER) * pixels) as f64;
+    let Some(room) = Room::now(0).filter(|room| need > room.bytes) else {
+        return Ok(());
+    };
+    let [need, bytes] = [need, room.bytes].map(|bytes| bytes / (1u64 << 30) as f64);
+    let cause = format!(
+        "{what} of {width} × {height} pixels needs up to {need:.2} GiB of memory, and {bytes:.2} GiB may be taken ({})",
+        room.by
+    );
+    let cure = "scale it down, free some memory, or use a larger machine";
+    Err(Fault::new(keys![], cause, cure))
 }
 
 /// Linear values in \[0, 1\], row by row from the top, as albedo: the lowest row first.
