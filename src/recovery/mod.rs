@@ -102,11 +102,12 @@ mod picard;
 mod pixelwise;
 mod problem;
 mod rule;
+mod shared;
 mod spectrum;
 
 pub use bands::{BandKind, Bands};
 pub use error::RecoveryError;
-pub use joint::{CramerRao, Determined, Shared, cramer_rao, determined, picard_joint};
+pub use joint::{CramerRao, Determined, cramer_rao, determined, picard_joint};
 pub use method::{Method, UnknownMethod};
 pub use nuisance::{Estimated, Nuisance};
 pub use options::{Options, Rule, Uncertainty, WeightRule};
@@ -115,6 +116,7 @@ pub use picard::{Directions, Picard, picard};
 pub use pixelwise::laser_side::{LaserSide, Parts};
 pub use pixelwise::strips::{Strip, recover_strips};
 pub use problem::{Problem, Terms};
+pub use shared::Shared;
 use spectrum::Spectrum;
 
 /// Recovers the reflectances of the r elements by the method asked for.

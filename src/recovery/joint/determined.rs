@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::shared::operator;
+use super::khatri_rao::operator;
 use crate::recovery::{Options, Problem, RecoveryError, WeightRule};
 
 /// Standard deviation of what is known of a reflectance beforehand: half of the range from 0 to 1.

@@ -148,6 +148,18 @@ fn gathered(element: &[usize], rows: &DMatrix<f64>, elements: usize) -> DMatrix<
     sums
 }
 
+/// The operator of the problem, that of an earlier call where the problem shares them.
+pub(super) fn operator(
+    problem: &Problem<'_>,
+    options: &Options,
+) -> Result<Arc<Operator>, RecoveryError> {
+    let find = || Operator::new(problem, options);
+    match problem.shared {
+        Some(shared) => shared.get(options, find),
+        None => find().map(Arc::new),
+    }
+}
+
 impl Operator {
     /// Weighs, eliminates what is not asked about, and compresses.
     pub(super) fn new(problem: &Problem<'_>, options: &Options) -> Result<Self, RecoveryError> {

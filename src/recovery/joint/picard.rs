@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::shared::operator;
+use super::khatri_rao::operator;
 use crate::recovery::{Directions, Options, Picard, Problem, RecoveryError, Weighting};
 
 /// The Picard data of all pixels and spots at once: of √W K = U S Vᵀ, K the Khatri–Rao product of C

@@ -5,8 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::khatri_rao::Operator;
-use super::shared::operator;
+use super::khatri_rao::{Operator, operator};
 use crate::num::linalg::{Svd, Tolerance, cut, rows_times};
 use crate::num::quadratic::{Bounds, BoxSolution};
 use crate::recovery::{

@@ -10,8 +10,8 @@
 
 use nalgebra::DMatrix;
 
+use super::khatri_rao::operator;
 use super::reduced::finish;
-use super::shared::operator;
 use crate::num::linalg::{Tolerance, tr_product};
 use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
 

@@ -1,40 +1,44 @@
-//! The operators of one problem, each found and decomposed once for all that ask.
+//! What several recoveries of one problem need, found once.
 
+use std::any::Any;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::khatri_rao::Operator;
-use crate::recovery::{Options, Problem, RecoveryError, WeightRule};
+use super::{Options, RecoveryError, WeightRule};
 
-/// Operators of a [`Problem`] by weighting and budget. Several methods, the Picard plot and the share
-/// that is determined all need one and the same.
+/// What was found for a [`Problem`](super::Problem), by weighting and budget: its operator, which
+/// methods, Picard plot and the share that is determined all decompose.
 #[derive(Debug, Default)]
-pub struct Shared(Mutex<Vec<(WeightRule, usize, Arc<Operator>)>>);
+pub struct Shared(Mutex<Vec<(Key, Arc<dyn Any + Send + Sync>)>>);
 
-/// The operator of the problem, that of an earlier call where the problem shares them.
-pub(super) fn operator(
-    problem: &Problem<'_>,
-    options: &Options,
-) -> Result<Arc<Operator>, RecoveryError> {
-    let Some(Shared(known)) = problem.shared else {
-        return Ok(Arc::new(Operator::new(problem, options)?));
-    };
-    let lock = || known.lock().unwrap_or_else(PoisonError::into_inner);
-    let same = |(rule, budget, _): &&(WeightRule, usize, Arc<Operator>)| {
-        (*rule, *budget) == (options.weighting, options.budget)
-    };
-    if let Some((.., operator)) = lock().iter().find(same) {
-        return Ok(Arc::clone(operator));
+type Key = (WeightRule, usize);
+
+impl Shared {
+    /// What an earlier call has found for these options, or what `find` finds.
+    pub(super) fn get<T: Any + Send + Sync>(
+        &self,
+        options: &Options,
+        find: impl FnOnce() -> Result<T, RecoveryError>,
+    ) -> Result<Arc<T>, RecoveryError> {
+        let key = (options.weighting, options.budget);
+        let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = lock().iter().find_map(|(of, known)| {
+            let own = (*of == key).then(|| Arc::clone(known))?;
+            own.downcast::<T>().ok()
+        });
+        if let Some(known) = known {
+            return Ok(known);
+        }
+        let found = Arc::new(find()?);
+        lock().push((key, Arc::clone(&found) as Arc<dyn Any + Send + Sync>));
+        Ok(found)
     }
-    let operator = Arc::new(Operator::new(problem, options)?);
-    lock().push((options.weighting, options.budget, Arc::clone(&operator)));
-    Ok(operator)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::recovery::bench::Bench;
-    use crate::recovery::{Method, Nuisance, determined, picard_joint, recover};
+    use crate::recovery::{Method, Nuisance, Problem, determined, picard_joint, recover};
 
     /// What shares its operators has the same results bit by bit, and holds one for each weighting;
     /// another problem made from it shares nothing.
