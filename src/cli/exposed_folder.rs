@@ -13,10 +13,10 @@ use std::path::{Path, PathBuf};
 
 use super::cleanup::{remove_abandoned, remove_named, remove_numbered};
 use super::failure::Failure;
+use super::names::{COUNTS, EXPOSED, EXPOSURE, PHI, SATURATED, STDERR, is_frame};
 use super::output;
 use super::record::Record;
 use super::replacement::{move_in, remove_folder};
-use super::run_folder::{self, COUNTS, EXPOSED, EXPOSURE, PHI, SATURATED, STDERR, is_frame};
 use crate::film::{self, Channel, Frame, frame_name};
 use crate::matrix::{Matrix, npy};
 use crate::report;
@@ -53,7 +53,7 @@ impl ExposedFolder {
             let cause = format!("{path} is the folder of a run, with its clean flux");
             return Err(Failure::new(cause, "choose another folder (-o)"));
         }
-        run_folder::refuse_obstacles(&self.path, &[COUNTS], &FILES)
+        output::refuse_obstacles(&self.path, &[COUNTS], &FILES)
     }
 
     /// Refuses to replace photographs of other settings, of other light or of unknown origin: those
@@ -190,7 +190,7 @@ fn write_counts(
         columns: scene.camera.columns,
         rows: scene.camera.rows,
         channels: exposed.counts.iter().enumerate().map(channel).collect(),
-        meta: run_folder::meta(scene, record, spot),
+        meta: record.meta(scene, spot),
     };
     let path: PathBuf = folder.join(frame_name(spot as u32));
     film::exr::write(&path, &frame)?;

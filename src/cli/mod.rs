@@ -55,6 +55,7 @@ mod many;
 pub mod many_machines;
 mod memory;
 mod model;
+mod names;
 mod need;
 mod output;
 mod partial;

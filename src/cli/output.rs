@@ -1,7 +1,7 @@
 //! Results on standard output, and files.
 
 use std::io::{self, IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
@@ -82,4 +82,27 @@ pub(super) fn write(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Failure>
 /// A value as pretty JSON with a final newline.
 pub(super) fn json(value: &impl Serialize) -> Result<String, Failure> {
     Ok(harmless_json(&serde_json::to_string_pretty(value)?) + "\n")
+}
+
+/// Refuses what stands in `dir` where `folders` and `files` have to stand: before the long work,
+/// not after it.
+pub(super) fn refuse_obstacles(
+    dir: &Path,
+    folders: &[&str],
+    files: &[&str],
+) -> Result<(), Failure> {
+    let paths = |names: &[&str]| -> Vec<PathBuf> { names.iter().map(|n| dir.join(n)).collect() };
+    if let Some(path) = paths(folders)
+        .into_iter()
+        .find(|p| p.exists() && !p.is_dir())
+    {
+        return Err(StoreError::NotAFolder { path }.into());
+    }
+    if let Some(path) = paths(files)
+        .into_iter()
+        .find(|p| p.exists() && !p.is_file())
+    {
+        return Err(StoreError::NotAFile { path }.into());
+    }
+    Ok(())
 }

@@ -9,6 +9,7 @@ use sha2::{Digest, Sha256};
 use super::failure::Failure;
 use super::output;
 use super::process::version;
+use crate::film::{FrameMeta, RunMeta};
 use crate::lab::Tails;
 use crate::scene::Scene;
 use crate::store::{self, ReadError, hex};
@@ -233,6 +234,25 @@ impl Record {
         let there = self.files.keys().filter(|name| dir.join(name).exists());
         let mut light = there.filter(|name| *name != except);
         light.try_for_each(|name| self.check(dir, name))
+    }
+
+    /// What the frame of `spot` says of its origin.
+    pub(super) fn meta(&self, scene: &Scene, spot: usize) -> FrameMeta {
+        FrameMeta {
+            run: RunMeta {
+                scene_name: scene.name.clone(),
+                scene_hash: scene.hash.clone(),
+                unit: scene.unit.symbol().to_owned(),
+                spot_count: self.spots as u32,
+                seed: self.plan.seed,
+                samples: self.plan.budget.samples(),
+                estimator: self.plan.estimator.to_string(),
+                sampler: self.plan.sampling.to_string(),
+                version: self.version.clone(),
+            },
+            spot_index: spot as u32,
+            spot_position: scene.laser.spots[spot].target.position.to_array(),
+        }
     }
 
     /// Whether the same scene was rendered by the same plan and program.

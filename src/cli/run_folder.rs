@@ -19,47 +19,21 @@ use super::cleanup::{remove_abandoned, remove_files, remove_named, remove_number
 use super::console::Console;
 use super::exposed_folder::ExposedFolder;
 use super::failure::Failure;
+pub(super) use super::names::{
+    EXPOSED, MODEL, PHI, RECOVERED, REPORT, SATURATED, SCENE, STDERR, SUMMARY, TAILS, VALIDATION,
+    Z, is_of_model, is_of_recovered,
+};
+use super::names::{MODEL_FILES, is_frame};
 use super::output;
 use super::partial::{PARTIAL, Partial, columns};
 use super::record::Record;
 use super::replacement::{move_in, remove_folder};
-use crate::film::{self, Channel, Frame, FrameMeta, RunMeta, frame_name};
+use crate::film::{self, Channel, Frame, frame_name};
 use crate::lab::Tails;
 use crate::matrix::{Matrix, npy};
-use crate::recovery::Method;
 use crate::scene::{COPIES, Scene};
-use crate::store::{FolderLock, StoreError, ensure_writable, flush};
+use crate::store::{FolderLock, ensure_writable, flush};
 use crate::transport::Traced;
-
-pub(super) const PHI: &str = "phi.npy";
-pub(super) const STDERR: &str = "phi.stderr.npy";
-/// Entries whose standard error is not to be trusted: 0 where it is, f64, pixels × spots.
-pub(super) const TAILS: &str = "phi.tails.npy";
-pub(super) const SUMMARY: &str = "summary.json";
-pub(super) const REPORT: &str = "report.html";
-pub(super) const SCENE: &str = "scene.toml";
-/// The analytic side.
-pub(super) const MODEL: &str = "model";
-/// Deviations of traced from modelled entries, in [`MODEL`].
-pub(super) const Z: &str = "z.npy";
-/// What is in [`MODEL`].
-pub(super) const MODEL_FILES: [&str; 6] = [
-    "g12.npy",
-    "g23.npy",
-    "laser_side.npy",
-    "camera_side.npy",
-    "phi.npy",
-    Z,
-];
-/// The map of `phicam validate`.
-pub(super) const VALIDATION: &str = "validation";
-/// Recovered reflectances.
-pub(super) const RECOVERED: &str = "recovered";
-/// Photographs of `phicam expose`: [`PHI`], [`STDERR`] and these.
-pub(super) const EXPOSED: &str = "exposed";
-pub(super) const EXPOSURE: &str = "exposure.json";
-pub(super) const SATURATED: &str = "saturated.npy";
-pub(super) const COUNTS: &str = "counts";
 
 /// A run that takes the place of another, until it is whole.
 const REPLACEMENT: &str = ".replacement";
@@ -118,7 +92,7 @@ impl RunFolder {
         claim: &Claim,
         console: Console,
     ) -> Result<Self, Failure> {
-        refuse_obstacles(path, &OWN_FOLDERS, &OWN_FILES)?;
+        output::refuse_obstacles(path, &OWN_FOLDERS, &OWN_FILES)?;
         ensure_writable(path)?;
         let differs = || -> Result<Option<Record>, Failure> {
             Ok(Record::read(path)?.filter(|there| !there.same_settings(record)))
@@ -254,7 +228,7 @@ impl RunFolder {
     /// A folder that holds another scene, or frames of unknown origin, or something else under the
     /// name of an output, is not written to.
     pub(super) fn refuse_foreign(&self, scene: &Scene, console: Console) -> Result<(), Failure> {
-        refuse_obstacles(&self.path, &OWN_FOLDERS, &OWN_FILES)?;
+        output::refuse_obstacles(&self.path, &OWN_FOLDERS, &OWN_FILES)?;
         let path = self.path.display();
         let cure = "choose another folder (-o), or remove this one";
         if let Some(record) = Record::read(&self.path)? {
@@ -327,7 +301,7 @@ impl RunFolder {
         film::exr::read_within(&path, frame_max(scene)).is_ok_and(|there| {
             let mut due = frame(scene, record, spot, kept).channels;
             due.sort_by(|a, b| a.name.cmp(&b.name));
-            there.meta == meta(scene, record, spot) && there.channels == due
+            there.meta == record.meta(scene, spot) && there.channels == due
         })
     }
 
@@ -450,7 +424,7 @@ fn frame(scene: &Scene, record: &Record, spot: usize, kept: &Matrix) -> Frame {
         columns: scene.camera.columns,
         rows: scene.camera.rows,
         channels,
-        meta: meta(scene, record, spot),
+        meta: record.meta(scene, spot),
     }
 }
 
@@ -464,88 +438,10 @@ fn refuse_beyond_f32(traced: &Traced) -> Result<(), Failure> {
     Err(Failure::new(cause, "lower the laser's power in the scene"))
 }
 
-/// Refuses what stands in `dir` where `folders` and `files` have to stand: before the long work,
-/// not after it.
-pub(super) fn refuse_obstacles(
-    dir: &Path,
-    folders: &[&str],
-    files: &[&str],
-) -> Result<(), Failure> {
-    let paths = |names: &[&str]| -> Vec<PathBuf> { names.iter().map(|n| dir.join(n)).collect() };
-    if let Some(path) = paths(folders)
-        .into_iter()
-        .find(|p| p.exists() && !p.is_dir())
-    {
-        return Err(StoreError::NotAFolder { path }.into());
-    }
-    if let Some(path) = paths(files)
-        .into_iter()
-        .find(|p| p.exists() && !p.is_file())
-    {
-        return Err(StoreError::NotAFile { path }.into());
-    }
-    Ok(())
-}
-
-/// What the frame of `spot` says of its origin.
-pub(super) fn meta(scene: &Scene, record: &Record, spot: usize) -> FrameMeta {
-    FrameMeta {
-        run: RunMeta {
-            scene_name: scene.name.clone(),
-            scene_hash: scene.hash.clone(),
-            unit: scene.unit.symbol().to_owned(),
-            spot_count: record.spots as u32,
-            seed: record.plan.seed,
-            samples: record.plan.budget.samples(),
-            estimator: record.plan.estimator.to_string(),
-            sampler: record.plan.sampling.to_string(),
-            version: record.version.clone(),
-        },
-        spot_index: spot as u32,
-        spot_position: scene.laser.spots[spot].target.position.to_array(),
-    }
-}
-
 /// Bytes that the file of a frame of `scene` has at most.
 pub(super) fn frame_max(scene: &Scene) -> u64 {
     let size = [scene.camera.columns, scene.camera.rows];
     film::exr::file_max(size, scene.max_bounces as usize + 2)
-}
-
-/// Whether `name` is that of the frame of one of `spots` spots.
-pub(super) fn is_frame(name: &str, spots: usize) -> bool {
-    let number = name.strip_prefix("spot-").and_then(|n| n.split_once('.'));
-    let number = number.and_then(|(n, _)| n.parse::<u32>().ok());
-    number.is_some_and(|n| (n as usize) < spots && frame_name(n) == name)
-}
-
-/// Whether `name` is that of a file of [`MODEL`].
-pub(super) fn is_of_model(name: &str) -> bool {
-    MODEL_FILES.contains(&name)
-}
-
-/// Whether `name` is that of a file of [`RECOVERED`]: METHOD.npy, METHOD-0.png, METHOD.stderr.npy,
-/// picard.csv, …, or one of the truth.
-pub(super) fn is_of_recovered(name: &str) -> bool {
-    let Some((stem, ext)) = name.rsplit_once('.') else {
-        return false;
-    };
-    let (name, what) = stem.split_once('.').unwrap_or((stem, ""));
-    let name = name.trim_end_matches(|c: char| c.is_ascii_digit());
-    let name = name.strip_suffix('-').unwrap_or(name);
-    let pictures = ["truth", "overview", "picard", "picard-joint", "determined"];
-    let known = pictures.contains(&name) || name.parse::<Method>().is_ok();
-    let whats = [
-        "",
-        "stderr",
-        "covariance",
-        "resolution",
-        "bias",
-        "lower",
-        "upper",
-        "texture",
-    ];
-    known && whats.contains(&what) && matches!(ext, "npy" | "png" | "csv" | "svg" | "ply")
 }
 
 /// Removes what [`is_of_recovered`] from `dir`, and `dir` if that empties it.

@@ -79,7 +79,7 @@ const MESHES: [(&str, Generator, &str); 4] = [
 ];
 /// Triangles unless told.
 const FACES: u64 = 1_000_000;
-/// Bytes that a triangle takes: its corners, their places in the texture and its half of a vertex, in
+/// Bytes that a triangle takes: corners, their places in the texture and its half of a vertex, in
 /// lists that have grown to twice what they hold, and all as a file.
 const FACE: f64 = 176.0;
 /// More are not made.

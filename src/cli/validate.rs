@@ -8,7 +8,7 @@ use super::failure::Failure;
 use super::load_run::{read_matrix, read_run, read_stderr, read_tails};
 use super::output;
 use super::record::Record;
-use super::run_folder::{self, PHI, STDERR, VALIDATION};
+use super::run_folder::{PHI, STDERR, VALIDATION};
 use super::{Outcome, need, settings};
 use crate::film::{self, Channel, Frame};
 use crate::lab::finding::Describe;
@@ -132,7 +132,7 @@ fn write_map(dir: &Path, scene: &Scene, record: &Record, z: &Matrix) -> Result<(
             channel("p", map(&normal_two_sided)),
             channel("z", map(&|z| z)),
         ],
-        meta: run_folder::meta(scene, record, 0),
+        meta: record.meta(scene, 0),
     };
     film::exr::write(&folder.join("p.exr"), &frame)?;
     flush(&folder)?;

@@ -11,7 +11,7 @@ mod spots;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::exr::{self, FrameError};
+use super::exr::{self, FrameError, file_max, read_within};
 use super::frame::{FLUX, FLUX_STDERR, Frame, RunMeta, frame_name};
 use crate::matrix::Matrix;
 
@@ -162,7 +162,7 @@ pub fn stack_within(dir: &Path, most: u64) -> Result<Stack, StackError> {
     let Some((_, first_path)) = files.first() else {
         return Err(StackError::NoFrames { path: folder });
     };
-    let first = exr::read_within(first_path, most)?;
+    let first = read_within(first_path, most)?;
     spots::check_spots(&folder, &files, first.meta.run.spot_count)?;
 
     let pixels = first.pixels();
@@ -178,9 +178,9 @@ pub fn stack_within(dir: &Path, most: u64) -> Result<Stack, StackError> {
         spot_positions: Vec::with_capacity(files.len()),
         run: first.meta.run.clone(),
     };
-    let most = exr::file_max([first.columns, first.rows], first.channels.len());
+    let most = file_max([first.columns, first.rows], first.channels.len());
     for (l, (spot, path)) in files.iter().enumerate() {
-        let frame = exr::read_within(path, most)?;
+        let frame = read_within(path, most)?;
         if let Some((property, found, expected)) = run::difference(&frame, &first) {
             let (path, first) = (path.clone(), first_path.clone());
             return Err(StackError::Mismatch {

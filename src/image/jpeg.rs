@@ -21,7 +21,7 @@ const PIXELS_PER_BYTE: usize = 8 * 64;
 const END: [u8; 2] = [0xff, 0xd9];
 
 /// Columns and rows.
-pub(super) fn size(bytes: &[u8]) -> Option<[usize; 2]> {
+pub(super) fn jpeg_size(bytes: &[u8]) -> Option<[usize; 2]> {
     let mut decoder = JpegDecoder::new(ZCursor::new(bytes));
     decoder.decode_headers().ok()?;
     decoder.dimensions().map(|(width, height)| [width, height])

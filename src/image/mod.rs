@@ -19,9 +19,9 @@ mod transfer;
 pub use self::png::{EncodingError, grey16_png, rgb_png};
 pub use transfer::Transfer;
 
-use self::exr::read_exr;
-use self::png::read_png;
-use jpeg::read_jpeg;
+use self::exr::{exr_size, read_exr};
+use self::png::{png_size, read_png};
+use jpeg::{jpeg_size, read_jpeg};
 
 /// Most pixels of a picture that is decoded: 4096 × 4096.
 pub const MOST_PIXELS: usize = 1 << 24;
@@ -126,9 +126,9 @@ pub fn decode(name: &str, bytes: &[u8]) -> Result<Image, ImageError> {
 /// Columns and rows of a picture by its header, if that can be read.
 pub fn size(bytes: &[u8]) -> Option<[usize; 2]> {
     match bytes {
-        [0x89, b'P', b'N', b'G', ..] => png::size(bytes),
-        [0xff, 0xd8, 0xff, ..] => jpeg::size(bytes),
-        [0x76, 0x2f, 0x31, 0x01, ..] => exr::size(bytes),
+        [0x89, b'P', b'N', b'G', ..] => png_size(bytes),
+        [0xff, 0xd8, 0xff, ..] => jpeg_size(bytes),
+        [0x76, 0x2f, 0x31, 0x01, ..] => exr_size(bytes),
         _ => None,
     }
 }

@@ -51,7 +51,7 @@ pub fn grey16_png([width, height]: [u32; 2], pixels: &[u16]) -> Result<Vec<u8>, 
 }
 
 /// Columns and rows.
-pub(super) fn size(bytes: &[u8]) -> Option<[usize; 2]> {
+pub(super) fn png_size(bytes: &[u8]) -> Option<[usize; 2]> {
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     let header = decoder.read_header_info().ok()?;
     Some([header.width, header.height].map(|n| n as usize))

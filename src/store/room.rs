@@ -31,7 +31,8 @@ pub struct Room {
 }
 
 impl Room {
-    /// At this moment, beside what pools of so many threads take; `None` where the system does not say.
+    /// At this moment, beside what pools of so many threads take; `None` where the system does not
+    /// say.
     pub fn now(threads: usize) -> Option<Self> {
         Self::of(Path::new("/"), threads)
     }

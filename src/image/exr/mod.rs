@@ -72,7 +72,7 @@ pub(super) fn read_exr(name: &str, bytes: &[u8]) -> Result<Image, ImageError> {
 }
 
 /// Columns and rows.
-pub(super) fn size(bytes: &[u8]) -> Option<[usize; 2]> {
+pub(super) fn exr_size(bytes: &[u8]) -> Option<[usize; 2]> {
     envelope::check_list(bytes).ok()?;
     let metadata = MetaData::read_from_buffered(bytes, true).ok()?;
     let Vec2(width, height) = metadata.headers.first()?.layer_size;
