@@ -12,7 +12,7 @@ use crate::metrics::{correlation, mtf_normalized, mtf_raw, rmse};
 use crate::model::MatrixModel;
 use crate::recovery::{
     self, BandKind, Bands, Choice, Estimated, Method, Nuisance, Options, Parameter, Picard,
-    Recovered, RecoveryError, Shared, recover,
+    Problem, Recovered, RecoveryError, Shared, recover,
 };
 
 /// A recovered hidden surface.
@@ -131,15 +131,9 @@ pub fn recover_objects(
     methods: &[Method],
     options: &Options,
 ) -> Vec<Attempt> {
-    recover_sharing(
-        model,
-        phi,
-        noise,
-        nuisance,
-        methods,
-        options,
-        &Shared::default(),
-    )
+    let (grids, shared) = (counts(model), Shared::default());
+    let problem = ready(model, phi, noise, nuisance, &grids, &shared);
+    attempts(model, &problem, noise, methods, options)
 }
 
 /// The same with Φ in the singular directions of the model's laser side, and, where one of `methods`
@@ -157,26 +151,39 @@ pub fn recover_with_picards(
     methods: &[Method],
     options: &Options,
 ) -> (Vec<Attempt>, Result<Vec<Picard>, RecoveryError>) {
-    let shared = Shared::default();
-    let attempts = recover_sharing(model, phi, noise, nuisance, methods, options, &shared);
-    let picards = picards(model, phi, noise, nuisance, methods, options, &shared);
+    let (grids, shared) = (counts(model), Shared::default());
+    let problem = ready(model, phi, noise, nuisance, &grids, &shared);
+    let attempts = attempts(model, &problem, noise, methods, options);
+    let picards = problem.and_then(|problem| picards(&problem, methods, options));
     (attempts, picards)
 }
 
-fn recover_sharing(
+/// Elements along u and v of each surface.
+fn counts(model: &MatrixModel) -> Vec<[usize; 2]> {
+    model.grids.iter().map(|grid| grid.count).collect()
+}
+
+/// All that is known of the photographs, as one problem.
+fn ready<'a>(
+    model: &'a MatrixModel,
+    phi: &'a Matrix,
+    noise: Noise<'a>,
+    nuisance: Nuisance<'a>,
+    grids: &'a [[usize; 2]],
+    shared: &'a Shared,
+) -> Result<Problem<'a>, RecoveryError> {
+    let problem = problem(model, phi, noise.known().map(|known| known.0))?;
+    let problem = problem.with_grids(grids)?.with_nuisance(nuisance)?;
+    Ok(problem.sharing(shared))
+}
+
+fn attempts(
     model: &MatrixModel,
-    phi: &Matrix,
+    problem: &Result<Problem<'_>, RecoveryError>,
     noise: Noise<'_>,
-    nuisance: Nuisance<'_>,
     methods: &[Method],
     options: &Options,
-    shared: &Shared,
 ) -> Vec<Attempt> {
-    let grids: Vec<[usize; 2]> = model.grids.iter().map(|grid| grid.count).collect();
-    let problem = problem(model, phi, noise.known().map(|known| known.0))
-        .and_then(|p| p.with_grids(&grids))
-        .and_then(|p| p.with_nuisance(nuisance))
-        .map(|p| p.sharing(shared));
     let problem = match problem {
         Ok(problem) => problem,
         Err(e) => {
@@ -189,12 +196,12 @@ fn recover_sharing(
     };
     let found: Vec<Result<Recovered, RecoveryError>> = methods
         .iter()
-        .map(|method| recover(*method, &problem, options))
+        .map(|method| recover(*method, problem, options))
         .collect();
     let known = noise.known();
     let all: Vec<&Recovered> = found.iter().flatten().collect();
-    let any = Judged::any(&problem, known, &all, options);
-    let judged = |found: Recovered| measured(model, &found, &any.of(&problem, known, &found));
+    let any = Judged::any(problem, known, &all, options);
+    let judged = |found: Recovered| measured(model, &found, &any.of(problem, known, &found));
     methods
         .iter()
         .zip(found)
@@ -206,19 +213,13 @@ fn recover_sharing(
 }
 
 fn picards(
-    model: &MatrixModel,
-    phi: &Matrix,
-    noise: Noise<'_>,
-    nuisance: Nuisance<'_>,
+    problem: &Problem<'_>,
     methods: &[Method],
     options: &Options,
-    shared: &Shared,
 ) -> Result<Vec<Picard>, RecoveryError> {
-    let problem = problem(model, phi, noise.known().map(|known| known.0))?;
-    let problem = problem.with_nuisance(nuisance)?.sharing(shared);
-    let mut found = vec![recovery::picard(&problem)?];
+    let mut found = vec![recovery::picard(problem)?];
     if methods.iter().any(|m| m.is_joint()) {
-        match recovery::picard_joint(&problem, options) {
+        match recovery::picard_joint(problem, options) {
             Err(RecoveryError::TooManyElements { .. }) => {}
             joint => found.push(joint?),
         }

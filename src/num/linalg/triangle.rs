@@ -63,6 +63,22 @@ pub fn triangle(a: &DMatrix<f64>, b: &DVector<f64>) -> Result<Triangle, LinalgEr
     }
 }
 
+/// Unknowns of normal equations; refuses those whose sides do not fit.
+fn unknowns(gram: &DMatrix<f64>, moment: &DVector<f64>) -> Result<usize, LinalgError> {
+    let n = gram.nrows();
+    same_length(
+        "columns of the Gram matrix against its rows",
+        n,
+        gram.ncols(),
+    )?;
+    same_length(
+        "entries of Aᵀb against rows of the Gram matrix",
+        n,
+        moment.len(),
+    )?;
+    Ok(n)
+}
+
 /// The same reduction from the normal equations: `gram` = AᵀA (n × n, symmetric), `moment` = Aᵀb
 /// (n), `square` = ‖b‖². By Cholesky, G = LLᵀ, R = Lᵀ, d = L⁻¹Aᵀb; where G is not positive definite
 /// to rounding by its singular values. Solve the result with a [`Tolerance`] no tighter than √(n
@@ -75,17 +91,7 @@ pub fn normal_triangle(
     moment: &DVector<f64>,
     square: f64,
 ) -> Result<Triangle, LinalgError> {
-    let n = gram.nrows();
-    same_length(
-        "columns of the Gram matrix against its rows",
-        n,
-        gram.ncols(),
-    )?;
-    same_length(
-        "entries of Aᵀb against rows of the Gram matrix",
-        n,
-        moment.len(),
-    )?;
+    let n = unknowns(gram, moment)?;
     let (mut g, mut exponent) = scaled(gram)?;
     if exponent % 2 != 0 {
         // An even exponent has a square root that is a power of two as well.
@@ -146,17 +152,7 @@ pub fn pivoted_triangle(
     square: f64,
     lost: f64,
 ) -> Result<Option<Triangle>, LinalgError> {
-    let n = gram.nrows();
-    same_length(
-        "columns of the Gram matrix against its rows",
-        n,
-        gram.ncols(),
-    )?;
-    same_length(
-        "entries of Aᵀb against rows of the Gram matrix",
-        n,
-        moment.len(),
-    )?;
+    let n = unknowns(gram, moment)?;
     let mut left = gram.diagonal();
     let trace = left.sum();
     if !trace.is_finite() || 10.0 * f64::EPSILON * trace > lost {

@@ -175,30 +175,31 @@ impl Operator {
         let known = known(problem, options);
         let weights = weights::fit(known, pixels, spots);
         let many = known.is_some() && elements > FEW;
-        if many && let Some(triangle) = gram::reduced(problem, |p, l| weights.root(known, p, l))? {
-            return Ok(Operator {
-                form: Form::Stacked {
-                    rows: triangle.r.nrows(),
-                    triangle,
-                    coupled: None,
-                },
-                elements,
-                element,
-                sides: None,
-                weighting: Weighting::EntryByEntry,
-                weights,
-                directions: OnceLock::new(),
-                solved: OnceLock::new(),
-            });
-        }
-        if problem.nuisance.glare.is_some() {
-            let stacked = stack(problem, |p, l| weights.root(known, p, l))?;
-            return Ok(Operator {
-                form: Form::Stacked {
+        let root = |p: usize, l: usize| weights.root(known, p, l);
+        let reduced = if many {
+            gram::reduced(problem, root)?
+        } else {
+            None
+        };
+        let by_rows = match reduced {
+            Some(triangle) => Some(Form::Stacked {
+                rows: triangle.r.nrows(),
+                triangle,
+                coupled: None,
+            }),
+            None if problem.nuisance.glare.is_some() => {
+                let stacked = stack(problem, root)?;
+                Some(Form::Stacked {
                     triangle: stacked.triangle,
                     coupled: stacked.coupled,
                     rows: pixels * spots,
-                },
+                })
+            }
+            None => None,
+        };
+        if let Some(form) = by_rows {
+            return Ok(Operator {
+                form,
                 elements,
                 element,
                 sides: None,
