@@ -84,6 +84,7 @@ fn used(args: &RecoverArgs, methods: &[Method]) -> Result<(), Failure> {
         Method::JointUnbounded,
         Method::Joint,
         Method::Nnls,
+        Method::JointGp,
         Method::JointTv,
         Method::JointTwoValued,
     ];
@@ -96,7 +97,7 @@ fn used(args: &RecoverArgs, methods: &[Method]) -> Result<(), Failure> {
         Method::RdivideMinNorm,
         Method::JointUnbounded,
     ];
-    let bounded = &all_joint[..4];
+    let bounded = &all_joint[..5];
     let needs: [(&str, bool, &[Method]); 11] = [
         ("--rank", args.rank.is_some(), &[Method::Tsvd]),
         ("--damping", args.damping.is_some(), &damped),

@@ -419,7 +419,7 @@ fn row(method: Method, truth: &[f64], trials: &[Result<Trial, String>]) -> Cover
 
 fn words(kind: BandKind) -> &'static str {
     match kind {
-        BandKind::Gaussian => "each alone",
+        BandKind::Gaussian | BandKind::Posterior => "each alone",
         BandKind::Simultaneous => "all together",
     }
 }

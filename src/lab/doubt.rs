@@ -72,7 +72,7 @@ fn cure(method: Method) -> &'static str {
         Method::JointTwoValued => {
             "Give other --levels, or use joint: more than two values are there"
         }
-        Method::Joint | Method::Nnls | Method::JointUnbounded => {
+        Method::Joint | Method::Nnls | Method::JointUnbounded | Method::JointGp => {
             "Leave --weighting and --tolerance to the noise"
         }
         _ => "It amplifies noise: use joint, or tsvd or tikhonov",

@@ -171,7 +171,7 @@ impl Attainable {
         found: &[&Recovered],
         options: &Options,
     ) -> Option<Self> {
-        let weighted = options.weighting == WeightRule::Noise;
+        let weighted = options.weighting != WeightRule::Unweighted;
         let options = Options {
             bands: None,
             weighting: WeightRule::Noise,

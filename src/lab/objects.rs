@@ -173,7 +173,10 @@ fn ready<'a>(
     shared: &'a Shared,
 ) -> Result<Problem<'a>, RecoveryError> {
     let problem = problem(model, phi, noise.known().map(|known| known.0))?;
-    let problem = problem.with_grids(grids)?.with_nuisance(nuisance)?;
+    let problem = problem
+        .with_grids(grids)?
+        .with_places(&model.places)?
+        .with_nuisance(nuisance)?;
     Ok(problem.sharing(shared))
 }
 
@@ -277,6 +280,7 @@ pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<
 fn object_bands(bands: &Bands, range: Range<usize>) -> ObjectBands {
     let kind = match bands.kind {
         BandKind::Gaussian => "gaussian",
+        BandKind::Posterior => "posterior",
         BandKind::Simultaneous => "simultaneous",
     };
     let intervals = &bands.intervals[range];
@@ -315,6 +319,9 @@ pub(super) fn chosen_words(parameter: Parameter, rank: usize, choice: Choice) ->
         Parameter::Rank(k) => format!("{k} singular directions"),
         Parameter::Damping(lambda) => format!("damping {lambda:.2e} of σ1"),
         Parameter::TotalVariation(lambda) => format!("total variation {lambda:.2e} of σ1²"),
+        Parameter::GaussianProcess { spread, length } => {
+            format!("spread {spread:.3}, length {length:.3}")
+        }
         Parameter::Levels([dark, light]) => format!("levels {dark:.3} and {light:.3}"),
     };
     let why = match choice {
@@ -331,6 +338,7 @@ pub(super) fn chosen_words(parameter: Parameter, rank: usize, choice: Choice) ->
         } => {
             format!(", by the discrepancy principle (χ² {residual:.1}, noise {target:.1})")
         }
+        Choice::Evidence { log } => format!(", by the evidence (ln {log:.1} below a perfect fit)"),
         Choice::Estimated => ", estimated".to_owned(),
         Choice::Gcv {
             freedom, predicted, ..

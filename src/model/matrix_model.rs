@@ -28,6 +28,8 @@ pub struct MatrixModel {
     /// that reflects as much
     /// ([`Surface::lambertian_equivalent`](crate::scene::Surface::lambertian_equivalent)).
     pub albedo: Vec<f64>,
+    /// Centre of each element, in the scene's unit of length.
+    pub places: Vec<[f64; 3]>,
     /// C, pixels × elements: E_p·(ρ3/π)·G23/π.
     pub camera_side: Matrix,
     /// D, elements × spots, W: Φlaser·(ρ1/π)·A_j·G12, so that Φcam\[p,l\] = Σ_j
@@ -149,6 +151,7 @@ impl MatrixModel {
             g12,
             g23,
             albedo,
+            places: points.iter().map(|p| p.position.to_array()).collect(),
             camera_side,
             laser_side,
             factors: None,

@@ -29,6 +29,10 @@ pub enum BandKind {
     /// ρ̂ ± z σ of an unbiased linear estimate: covers with exactly its confidence under normal
     /// noise of the stated standard errors.
     Gaussian,
+    /// The probability of ρ_j given the photographs and the method's assumption, as much beyond either
+    /// limit: covers as often as it says **on average over pictures as the assumption describes
+    /// them**, not for every picture.
+    Posterior,
     /// The values of ρ_j among all reflectances within the bounds that are as near to the data as the
     /// truth is with the stated probability,
     ///

@@ -28,6 +28,8 @@ pub enum Method {
     Joint,
     /// The same with reflectances of 0 or more, without an upper bound.
     Nnls,
+    /// Reflectances as a Gaussian process: neighbours resemble one another, without bounds.
+    JointGp,
     /// `joint` with a penalty on differences between neighbours.
     JointTv,
     /// The same with reflectances of two values only.
@@ -36,7 +38,7 @@ pub enum Method {
 
 impl Method {
     /// Every method, simplest first.
-    pub const ALL: [Method; 13] = [
+    pub const ALL: [Method; 14] = [
         Method::Pinv,
         Method::LeftInverse,
         Method::RightInverse,
@@ -48,6 +50,7 @@ impl Method {
         Method::JointUnbounded,
         Method::Joint,
         Method::Nnls,
+        Method::JointGp,
         Method::JointTv,
         Method::JointTwoValued,
     ];
@@ -74,6 +77,7 @@ impl Method {
             Method::JointUnbounded
                 | Method::Joint
                 | Method::Nnls
+                | Method::JointGp
                 | Method::JointTv
                 | Method::JointTwoValued
         )
@@ -93,6 +97,7 @@ impl Method {
             Method::JointUnbounded => "joint-unbounded",
             Method::Joint => "joint",
             Method::Nnls => "nnls",
+            Method::JointGp => "joint-gp",
             Method::JointTv => "joint-tv",
             Method::JointTwoValued => "joint-two-valued",
         }

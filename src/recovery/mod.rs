@@ -23,6 +23,7 @@
 //! | [`Method::JointUnbounded`] | least squares over all pixels and spots at once; unbiased |
 //! | [`Method::Joint`] | the same under 0 ≤ ρ ≤ 1 |
 //! | [`Method::Nnls`] | the same under 0 ≤ ρ |
+//! | [`Method::JointGp`] | mean of a Gaussian process on the surface given the photographs: pictures whose neighbours resemble one another |
 //! | [`Method::JointTv`] | `joint` with λ Σ \|ρ_i − ρ_j\| over neighbours i, j: patches of one value |
 //! | [`Method::JointTwoValued`] | `joint` with two reflectances only, given or estimated |
 //!
@@ -150,6 +151,7 @@ pub fn recover(
         | Method::TikhonovGradient => pixelwise::recover(method, problem, options),
         Method::JointUnbounded => joint::unbounded::recover(problem, options),
         Method::Joint | Method::Nnls => joint::bounded::recover(method, problem, options),
+        Method::JointGp => joint::gaussian_process::recover(problem, options),
         Method::JointTv => joint::total_variation::recover(problem, options),
         Method::JointTwoValued => joint::two_valued::recover(problem, options),
     }?;

@@ -44,6 +44,9 @@ pub enum WeightRule {
     /// By the noise: separable weights fitted to 1/σ², where standard errors are given.
     #[default]
     Noise,
+    /// By 1/σ² of each entry, wherever standard errors are given and their normal equations hold
+    /// what the noise leaves.
+    Entries,
     /// All alike.
     Unweighted,
 }

@@ -17,6 +17,14 @@ pub enum Parameter {
     /// λ of the total variation, as a fraction of the largest squared singular value of the
     /// weighted operator.
     TotalVariation(f64),
+    /// Of `joint-gp`, the likeliest pair: standard deviation τ of the reflectances about their mean,
+    /// and length ℓ over which they resemble one another, in the unit of the places.
+    GaussianProcess {
+        /// τ.
+        spread: f64,
+        /// ℓ.
+        length: f64,
+    },
     /// The two reflectances.
     Levels([f64; 2]),
 }
@@ -44,6 +52,12 @@ pub enum Choice {
         target: f64,
         /// The target four standard deviations of χ² up: an unpenalised fit beyond it is refused.
         limit: f64,
+    },
+    /// The likeliest of a mixture that holds all, each by its evidence.
+    Evidence {
+        /// ln of the probability density that the method gives the photographs, over that of the
+        /// numbers that fit them best: at most 0, and comparable among methods.
+        log: f64,
     },
     /// Estimated together with the reflectances.
     Estimated,

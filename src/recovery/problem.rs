@@ -27,6 +27,7 @@ pub struct Problem<'a> {
     pub(super) d: &'a DMatrix<f64>,
     pub(super) stderr: Option<&'a DMatrix<f64>>,
     pub(super) grids: Option<&'a [[usize; 2]]>,
+    pub(super) places: Option<&'a [[f64; 3]]>,
     pub(super) nuisance: Nuisance<'a>,
     terms: Option<Terms<'a>>,
     pub(super) shared: Option<&'a Shared>,
@@ -90,6 +91,7 @@ impl<'a> Problem<'a> {
             d,
             stderr,
             grids: None,
+            places: None,
             nuisance: Nuisance::default(),
             terms: None,
             shared: None,
@@ -168,6 +170,30 @@ impl<'a> Problem<'a> {
         }
         Ok(Problem {
             grids: Some(grids),
+            ..self
+        })
+    }
+
+    /// The same with the centre of each element known, in any unit of length: `joint-gp` compares
+    /// elements by their distance. Without them it takes the elements of a grid as squares.
+    ///
+    /// # Errors
+    /// [`RecoveryError::Shape`] where there are not as many as elements,
+    /// [`RecoveryError::NotFinite`].
+    pub fn with_places(self, places: &'a [[f64; 3]]) -> Result<Self, RecoveryError> {
+        if places.len() != self.elements() {
+            return Err(RecoveryError::Shape {
+                name: "the places of the elements",
+                rows: self.elements(),
+                columns: 3,
+                found_rows: places.len(),
+                found_columns: 3,
+            });
+        }
+        let places_only = DMatrix::from_fn(places.len(), 3, |j, k| places[j][k]);
+        finite("the places of the elements", &places_only)?;
+        Ok(Problem {
+            places: Some(places),
             ..self
         })
     }

@@ -90,6 +90,11 @@ pub(super) fn weighting() -> impl TypedValueParser<Value = WeightRule> {
             WeightRule::Noise,
             "By the noise, where it is known",
         ),
+        (
+            "entries",
+            WeightRule::Entries,
+            "By the noise of each entry, as joint-gp and more than 512 elements have it",
+        ),
         ("none", WeightRule::Unweighted, "All alike"),
     ])
 }

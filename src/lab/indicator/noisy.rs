@@ -158,8 +158,8 @@ fn fixed(pilot: &Recovered) -> Options {
         Parameter::Rank(rank) => options.rank = Some(rank),
         Parameter::Damping(damping) => options.damping = Some(damping),
         Parameter::TotalVariation(strength) => options.total_variation = Some(strength),
-        // Levels are found with the pattern: nothing to hold.
-        Parameter::Levels(_) | Parameter::None => {}
+        // Found with the picture: nothing to hold.
+        Parameter::Levels(_) | Parameter::GaussianProcess { .. } | Parameter::None => {}
     }
     options
 }

@@ -19,6 +19,7 @@
 //! [`svd`]: svd()
 //! [`svd_to`]: svd_to()
 
+mod cholesky;
 mod diagonal;
 mod householder;
 mod least_squares;
@@ -30,6 +31,7 @@ mod solution;
 mod svd;
 mod triangle;
 
+pub use cholesky::Cholesky;
 pub use diagonal::{columns_over, columns_times, rows_over, rows_times};
 pub use householder::{Complement, complement};
 pub use least_squares::least_squares;

@@ -63,7 +63,7 @@ struct Sides {
 
 /// The noise by which entries are weighted.
 fn known<'a>(problem: &Problem<'a>, options: &Options) -> Option<&'a DMatrix<f64>> {
-    let weighted = options.weighting == WeightRule::Noise;
+    let weighted = options.weighting != WeightRule::Unweighted;
     problem.noise().filter(|_| weighted)
 }
 
@@ -174,9 +174,10 @@ impl Operator {
         let (pixels, spots) = problem.phi.shape();
         let known = known(problem, options);
         let weights = weights::fit(known, pixels, spots);
-        let many = known.is_some() && elements > FEW;
+        let by_entry = elements > FEW || options.weighting == WeightRule::Entries;
+        let by_entry = known.is_some() && by_entry;
         let root = |p: usize, l: usize| weights.root(known, p, l);
-        let reduced = if many {
+        let reduced = if by_entry {
             gram::reduced(problem, root)?
         } else {
             None
@@ -257,7 +258,7 @@ impl Operator {
             let whole = gathered(&gathered(&both).transpose());
             let along = gathered(&tr_product(&c, &phi).component_mul(&d));
             let (moment, square) = (along.column_sum(), phi.norm_squared());
-            let fewer = if many {
+            let fewer = if by_entry {
                 pivoted_triangle(&whole, &moment, square, gram::LOST)?
             } else {
                 None

@@ -5,6 +5,8 @@ mod branch;
 mod cramer_rao;
 mod determined;
 mod elimination;
+mod exponential;
+pub(super) mod gaussian_process;
 mod gram;
 mod khatri_rao;
 mod picard;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::khatri_rao::{Operator, operator};
-use crate::num::linalg::{Svd, Tolerance, cut, rows_times};
+use crate::num::linalg::{Svd, Tolerance, cut, product, rows_times};
 use crate::num::quadratic::{Bounds, BoxSolution};
 use crate::recovery::{
     Choice, Estimated, Method, Options, Parameter, Problem, Recovered, RecoveryError, Solver,
@@ -98,6 +98,15 @@ pub(super) fn report(solved: &BoxSolution) -> Solver {
         objective: solved.objective,
         gap: solved.gap,
     }
+}
+
+/// Covariance of ρ̂ = x̂/x̂_m, m the brightest element, to first order in the noise:
+/// (1 − ρ̂ e_mᵀ) Cov(x̂) (1 − e_m ρ̂ᵀ)/x̂_m². Element m, the unit, has none.
+pub(super) fn over_brightest(of_x: &DMatrix<f64>, x: &DVector<f64>) -> DMatrix<f64> {
+    let (m, largest) = x.argmax();
+    let mut slope = DMatrix::identity(x.len(), x.len());
+    slope.column_mut(m).axpy(-1.0 / largest, x, 1.0);
+    product(&product(&slope, of_x), &slope.transpose()) / (largest * largest)
 }
 
 /// The recovery from x = s ρ: scale by the brightest element where that is the convention, nuisance

@@ -3,15 +3,9 @@
 //! ρ̂ = argmin Σ w_p v_l (Φ − C diag(ρ) D)², of minimum norm where that is not unique. Unbiased
 //! wherever the model has full rank; its covariance under the noise model Σ is (KᵀWK)⁻¹ KᵀWΣWK
 //! (KᵀWK)⁻¹, K the Khatri–Rao product, and (KᵀWK)⁻¹ where W = Σ⁻¹.
-//!
-//! With a free scale ρ̂ = x̂/x̂_m, m the brightest element; its covariance is then that of first
-//! order in the noise, (1 − ρ̂ e_mᵀ) Cov(x̂) (1 − e_m ρ̂ᵀ)/x̂_m², and element m, the unit, has
-//! none.
-
-use nalgebra::DMatrix;
 
 use super::khatri_rao::operator;
-use super::reduced::finish;
+use super::reduced::{finish, over_brightest};
 use crate::num::linalg::{Tolerance, tr_product};
 use crate::recovery::{Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError};
 
@@ -24,12 +18,7 @@ pub(in crate::recovery) fn recover(
     let elements = problem.c.ncols();
     let mut covariance = operator.covariance(problem, &solved);
     if let (true, Some(of_x)) = (problem.nuisance.free_scale, covariance.as_mut()) {
-        let (m, largest) = solved.solution.argmax();
-        let mut slope = DMatrix::identity(elements, elements);
-        slope
-            .column_mut(m)
-            .axpy(-1.0 / largest, &solved.solution, 1.0);
-        *of_x = &slope * &*of_x * slope.transpose() / (largest * largest);
+        *of_x = over_brightest(of_x, &solved.solution);
     }
     let resolution = tr_product(&solved.vt, &solved.vt);
     let mut found = finish(

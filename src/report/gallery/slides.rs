@@ -110,6 +110,9 @@ fn words(parameter: &Parameter) -> String {
         Parameter::Rank(kept) => format!("{kept} singular directions"),
         Parameter::Damping(damping) => format!("damping {damping:.2e} of σ1"),
         Parameter::TotalVariation(lambda) => format!("total variation {lambda:.2e} of σ1²"),
+        Parameter::GaussianProcess { spread, length } => {
+            format!("spread {spread:.3}, length {length:.3}")
+        }
         Parameter::Levels([dark, light]) => format!("levels {dark:.3} and {light:.3}"),
         Parameter::None => "no parameter".to_owned(),
     }

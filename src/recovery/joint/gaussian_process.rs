@@ -1,0 +1,372 @@
+//! Reflectances as a Gaussian process on the surfaces: pictures whose elements resemble their
+//! neighbours, without bounds and without edges known beforehand.
+//!
+//! > ρ_j = m + f_j,   m ~ N(½, ½²),   cov(f_i, f_j) = τ² exp(−|x_i − x_j|/ℓ) on one surface
+//!
+//! The photographs know ρ by the coordinates y = V ρ̂ of the unbounded least-squares estimate ρ̂ along
+//! the k directions V (k × n) of the joint operator, with errors of covariance E. So with
+//! K = ¼ 11ᵀ + τ² k(ℓ), all closed (Rasmussen and Williams 2006):
+//!
+//! > S = V K Vᵀ + E,   ln p(y | τ, ℓ) = −½ (zᵀS⁻¹z + ln det S + ln det E),    z = y − ½ V 1
+//! > E\[ρ | y\] = ½ + K Vᵀ S⁻¹ z,   cov\[ρ | y\] = K − K Vᵀ S⁻¹ V K
+//!
+//! How much and over what length a picture varies (τ, ℓ) the photographs say only roughly, and of
+//! what is finer than they resolve nothing: one best pair gives errors that are too small. So all
+//! pairs of a lattice count, each by its evidence p(y | τ, ℓ) and by how often pictures are such:
+//! ln ℓ evenly from less than the distance of neighbours to a slope over the whole surface, ln τ
+//! normal. The estimate is the mean of that mixture, its covariance and bands those of the mixture.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::exponential::Exponential;
+use super::khatri_rao::operator;
+use super::reduced::{finish, over_brightest};
+use crate::num::linalg::{Cholesky, gram_product, product, tr_product};
+use crate::recovery::{
+    BandKind, Bands, Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError,
+    WeightRule, bands,
+};
+
+/// Mean and standard deviation of a picture's mean.
+const MEAN: f64 = 0.5;
+/// ln τ of pictures, mean and standard deviation: of best fits to 96 crops of 16 × 16 elements of
+/// eight photographs.
+const LN_SPREAD: [f64; 2] = [-2.13, 0.98];
+/// Step of ln τ, and how many of them from the mean down and up.
+const STEP: f64 = 0.35;
+const STEPS: [i32; 2] = [-9, 9];
+/// What is less likely than the likeliest pair by more than e to this counts for nothing.
+const NEGLIGIBLE: f64 = 6.0;
+/// A direction that is known to no better than this many times the largest picture says nothing.
+const UNKNOWN: f64 = 100.0;
+/// Elements up to which the covariance matrix is made.
+const MOST_COVARIANCE: usize = 2048;
+
+/// What the photographs say: y = V ρ + errors.
+struct Seen {
+    v: DMatrix<f64>,
+    y: DVector<f64>,
+    errors: DMatrix<f64>,
+    /// ln det of the errors.
+    log_errors: f64,
+    /// The unit of the reflectances: 1, or with a free scale what the photographs say of s.
+    unit: f64,
+}
+
+/// One length: V k and V k Vᵀ.
+struct Length {
+    length: f64,
+    vk: DMatrix<f64>,
+    vkv: DMatrix<f64>,
+}
+
+/// A pair (τ, ℓ) of the lattice.
+struct Pair {
+    length: usize,
+    spread: f64,
+    /// ln of evidence times prior.
+    weight: f64,
+}
+
+pub(in crate::recovery) fn recover(
+    problem: &Problem<'_>,
+    options: &Options,
+) -> Result<Recovered, RecoveryError> {
+    let by_entry = Options {
+        weighting: match options.weighting {
+            WeightRule::Noise => WeightRule::Entries,
+            other => other,
+        },
+        ..*options
+    };
+    let operator = operator(problem, &by_entry)?;
+    let solved = operator.solve(options.tolerance)?;
+    let raw = |x: DVector<f64>| {
+        let (sigma, rank) = (solved.sigma.clone(), solved.rank);
+        finish(Method::JointGp, problem, options, &operator, x, sigma, rank)
+    };
+    let noise = match operator.noise(problem, &solved) {
+        Some(noise) => noise,
+        None => {
+            // Of unknown noise: what least squares leaves over, the same in all entries.
+            let left = raw(solved.solution.clone())?;
+            let freedom = problem.phi.len() as f64 - left.freedom_used();
+            if freedom < 1.0 {
+                return Err(bands::without_noise(Method::JointGp));
+            }
+            let floor = f64::EPSILON * problem.phi.norm_squared().sqrt();
+            let variance = (left.residual.max(floor)).powi(2) / freedom;
+            DMatrix::identity(solved.rank, solved.rank) * variance
+        }
+    };
+    let unit = if problem.nuisance.free_scale {
+        problem.brightness().abs()
+    } else {
+        1.0
+    };
+    let seen = Seen::new(&solved.vt, &solved.sigma, &solved.solution, &noise, unit)?;
+    let prior = Exponential::new(problem);
+    let (lengths, pairs, evidence) = seen.lattice(&prior)?;
+    let mut found = seen.mixture(&prior, &lengths, &pairs, options.bands)?;
+    let best = &pairs[0];
+    let mut recovered = raw(found.mean.clone())?;
+    if problem.nuisance.free_scale {
+        found.relative(&recovered.reflectance, options.bands);
+    }
+    recovered.weighting = operator.weighting;
+    recovered.effective_rank = found.freedom;
+    recovered.parameter = Parameter::GaussianProcess {
+        spread: best.spread * unit,
+        length: lengths[best.length].length,
+    };
+    recovered.choice = Choice::Evidence { log: evidence };
+    recovered.standard_error = Some(found.standard_error);
+    recovered.covariance = found.covariance;
+    recovered.bands = found.bands;
+    Ok(recovered)
+}
+
+/// The mixture of all pairs.
+struct Mixture {
+    mean: DVector<f64>,
+    standard_error: DVector<f64>,
+    covariance: Option<DMatrix<f64>>,
+    bands: Option<Bands>,
+    freedom: f64,
+}
+
+impl Mixture {
+    /// The same over the brightest element; bands to first order in the errors.
+    fn relative(&mut self, reflectance: &DVector<f64>, confidence: Option<f64>) {
+        self.standard_error /= self.mean.max();
+        if let Some(covariance) = &mut self.covariance {
+            *covariance = over_brightest(covariance, &self.mean);
+            self.standard_error = covariance.diagonal().map(|x| x.max(0.0).sqrt());
+        }
+        self.bands = confidence.map(|confidence| Bands {
+            kind: BandKind::Posterior,
+            ..bands::gaussian(reflectance, &self.standard_error, confidence)
+        });
+    }
+}
+
+impl Seen {
+    fn new(
+        vt: &DMatrix<f64>,
+        sigma: &DVector<f64>,
+        solution: &DVector<f64>,
+        noise: &DMatrix<f64>,
+        unit: f64,
+    ) -> Result<Self, RecoveryError> {
+        let k = vt.nrows();
+        let errors = DMatrix::from_fn(k, k, |i, j| noise[(i, j)] / (sigma[i] * sigma[j]));
+        let largest = UNKNOWN * unit * (vt.ncols() as f64).sqrt();
+        let told: Vec<usize> = (0..k)
+            .filter(|&i| errors[(i, i)] < largest * largest)
+            .collect();
+        if told.is_empty() || unit == 0.0 {
+            return Err(RecoveryError::NO_DIRECTION);
+        }
+        let v = vt.select_rows(&told);
+        let errors = errors.select_rows(&told).select_columns(&told) / (unit * unit);
+        let log_errors = Cholesky::new(&errors).ok_or(RecoveryError::NO_DIRECTION)?;
+        Ok(Self {
+            y: &v * solution / unit,
+            log_errors: log_errors.log_det(),
+            errors,
+            v,
+            unit,
+        })
+    }
+
+    /// S of a pair; none where rounding makes it indefinite.
+    fn factor(&self, of: &Length, spread: f64) -> Option<Cholesky> {
+        let level = self.v.column_sum();
+        let mut s = &of.vkv * (spread * spread) + &self.errors;
+        s.ger(MEAN * MEAN, &level, &level, 1.0);
+        Cholesky::new(&s)
+    }
+
+    /// y − ½ V 1.
+    fn left(&self) -> DMatrix<f64> {
+        let left = &self.y - self.v.column_sum() * MEAN;
+        DMatrix::from_column_slice(left.len(), 1, left.as_slice())
+    }
+
+    /// ln of p(y | τ, ℓ) p(τ) over that of a picture that fits y exactly, but for the prior's common
+    /// factor.
+    fn weight(&self, of: &Length, spread: f64, left: &DMatrix<f64>) -> f64 {
+        let Some(factor) = self.factor(of, spread) else {
+            return f64::NEG_INFINITY;
+        };
+        let chi2 = factor.forward(left.clone()).norm_squared();
+        let evidence = -0.5 * (chi2 + factor.log_det() - self.log_errors);
+        let z = (libm::log(spread) - LN_SPREAD[0]) / LN_SPREAD[1];
+        evidence - 0.5 * z * z
+    }
+
+    /// The pairs that count, likeliest first, with weights that sum to 1, and ln of p(y) over that
+    /// of a picture that fits y exactly.
+    fn lattice(&self, prior: &Exponential) -> Result<(Vec<Length>, Vec<Pair>, f64), RecoveryError> {
+        let left = self.left();
+        let spread = |step: i32| libm::exp(LN_SPREAD[0] + STEP * f64::from(step));
+        let [least, most] = STEPS;
+        let (mut lengths, mut pairs, mut best) = (Vec::new(), Vec::new(), f64::NEG_INFINITY);
+        let mut start = 0;
+        let all = prior.lengths();
+        let count = all.len();
+        for length in all {
+            let vk = product(&self.v, &prior.matrix(length));
+            let vkv = product(&vk, &self.v.transpose());
+            let of = Length { length, vk, vkv };
+            let mut known: Vec<(i32, f64)> = Vec::new();
+            let mut at = |step: i32| {
+                let weight = self.weight(&of, spread(step), &left);
+                known.push((step, weight));
+                weight
+            };
+            // From the best spread of the length before down and up as far as it counts.
+            let mut top = at(start);
+            for way in [-1, 1] {
+                let mut step = start + way;
+                let mut before = top;
+                while (least..=most).contains(&step) {
+                    let weight = at(step);
+                    top = top.max(weight);
+                    if weight < before && weight < top.max(best) - NEGLIGIBLE {
+                        break;
+                    }
+                    before = weight;
+                    step += way;
+                }
+            }
+            best = best.max(top);
+            if let Some((step, _)) = known.iter().find(|known| known.1 == top) {
+                start = *step;
+            }
+            pairs.extend(known.into_iter().map(|(step, weight)| Pair {
+                length: lengths.len(),
+                spread: spread(step),
+                weight,
+            }));
+            lengths.push(of);
+        }
+        if !best.is_finite() {
+            return Err(RecoveryError::NO_DIRECTION);
+        }
+        pairs.retain(|pair| pair.weight > best - NEGLIGIBLE);
+        pairs.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+        let sum: f64 = pairs.iter().map(|p| libm::exp(p.weight - best)).sum();
+        for pair in &mut pairs {
+            pair.weight = libm::exp(pair.weight - best) / sum;
+        }
+        let spreads: f64 = (least..=most)
+            .map(|step| (f64::from(step) * STEP / LN_SPREAD[1]).powi(2))
+            .map(|z2| libm::exp(-0.5 * z2))
+            .sum();
+        let evidence = best + libm::log(sum / (spreads * count as f64));
+        Ok((lengths, pairs, evidence))
+    }
+
+    fn mixture(
+        &self,
+        prior: &Exponential,
+        lengths: &[Length],
+        pairs: &[Pair],
+        confidence: Option<f64>,
+    ) -> Result<Mixture, RecoveryError> {
+        let n = self.v.ncols();
+        let left = self.left();
+        let level = self.v.column_sum();
+        let (mut mean, mut square) = (DVector::zeros(n), DVector::zeros(n));
+        let mut covariance = (n <= MOST_COVARIANCE).then(|| DMatrix::zeros(n, n));
+        let mut parts: Vec<(f64, DVector<f64>, DVector<f64>)> = Vec::new();
+        let mut freedom = 0.0;
+        let mut alike: Option<(usize, DMatrix<f64>)> = None;
+        let mut order: Vec<&Pair> = pairs.iter().collect();
+        order.sort_by_key(|pair| pair.length);
+        for pair in order {
+            let (of, tau2) = (&lengths[pair.length], pair.spread * pair.spread);
+            let factor = self
+                .factor(of, pair.spread)
+                .ok_or(RecoveryError::NO_DIRECTION)?;
+            let mut vk = &of.vk * tau2;
+            for mut column in vk.column_iter_mut() {
+                column.axpy(MEAN * MEAN, &level, 1.0);
+            }
+            let towards = factor.forward(vk);
+            let own = factor.forward(left.clone());
+            let found = (tr_product(&towards, &own).column(0)).add_scalar(MEAN);
+            let variance = DVector::from_fn(n, |j, _| {
+                (tau2 + MEAN * MEAN - towards.column(j).norm_squared()).max(0.0)
+            });
+            // tr(S⁻¹ (S − E)): how much of the data's directions goes into the picture.
+            let errors = factor.forward(self.errors.clone());
+            let unseen = factor.forward(errors.transpose()).trace();
+            freedom += pair.weight * (self.y.len() as f64 - unseen);
+            mean.axpy(pair.weight, &found, 1.0);
+            square.axpy(pair.weight, &(found.component_mul(&found) + &variance), 1.0);
+            if let Some(covariance) = &mut covariance {
+                if alike.as_ref().is_none_or(|(of, _)| *of != pair.length) {
+                    alike = Some((pair.length, prior.matrix(of.length)));
+                }
+                let k = alike.as_ref().map(|(_, k)| k);
+                let mut own = DMatrix::zeros(n, n);
+                gram_product(&mut own, &towards);
+                *covariance -= own * pair.weight;
+                if let Some(k) = k {
+                    *covariance += k * (pair.weight * tau2);
+                }
+                covariance.add_scalar_mut(pair.weight * MEAN * MEAN);
+                covariance.ger(pair.weight, &found, &found, 1.0);
+            }
+            parts.push((pair.weight, found, variance));
+        }
+        if let Some(covariance) = &mut covariance {
+            covariance.ger(-1.0, &mean, &mean, 1.0);
+            *covariance *= self.unit * self.unit;
+        }
+        let variance = square - mean.component_mul(&mean);
+        let bands = confidence.map(|confidence| Bands {
+            confidence,
+            intervals: (0..n).map(|j| interval(&parts, j, confidence)).collect(),
+            kind: BandKind::Posterior,
+        });
+        Ok(Mixture {
+            mean: mean * self.unit,
+            standard_error: variance.map(|x| x.max(0.0).sqrt()) * self.unit,
+            covariance,
+            bands,
+            freedom,
+        })
+    }
+}
+
+/// Between which values element j lies, as much of it beyond either, by bisection of
+/// Σ w Φ((x − m)/s).
+fn interval(parts: &[(f64, DVector<f64>, DVector<f64>)], j: usize, confidence: f64) -> [f64; 2] {
+    let below = |x: f64| -> f64 {
+        let of = |(w, m, v): &(f64, DVector<f64>, DVector<f64>)| {
+            let z = (x - m[j]) / v[j].sqrt().max(f64::MIN_POSITIVE);
+            0.5 * w * libm::erfc(-z * std::f64::consts::FRAC_1_SQRT_2)
+        };
+        parts.iter().map(of).sum()
+    };
+    let reach = |(_, m, v): &(f64, DVector<f64>, DVector<f64>)| m[j].abs() + 40.0 * v[j].sqrt();
+    let far = parts.iter().map(reach).fold(0.0, f64::max);
+    [0.5 - 0.5 * confidence, 0.5 + 0.5 * confidence].map(|share| {
+        let (mut low, mut high) = (-far, far);
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            if below(middle) < share {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        0.5 * (low + high)
+    })
+}
+
+#[cfg(test)]
+mod tests;

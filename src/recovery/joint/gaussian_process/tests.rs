@@ -1,0 +1,183 @@
+use nalgebra::{DMatrix, DVector};
+
+use crate::recovery::bench::{Bench, normal_stream, relative_noise};
+use crate::recovery::{
+    BandKind, Choice, Method, Nuisance, Options, Problem, Recovered, RecoveryError, WeightRule,
+    recover,
+};
+
+fn gp(problem: &Problem<'_>, options: &Options) -> Recovered {
+    recover(Method::JointGp, problem, options).unwrap()
+}
+
+/// One element seen n times with signal a and noise σ: ŷ = Φ̄/a with variance e = σ²/(n a²). At one τ
+/// the posterior is N(½ + v z/(v + e), v e/(v + e)), v = ¼ + τ², z = ŷ − ½, and
+/// p(y | τ) ∝ N(z; 0, v + e); over τ a sum of many terms, ten times as fine as the lattice.
+#[test]
+fn one_element_by_hand() {
+    let (c, d) = (
+        DMatrix::from_element(2, 1, 0.3),
+        DMatrix::from_element(1, 3, 1.0),
+    );
+    let stderr = DMatrix::from_element(2, 3, 0.4);
+    for y in [0.45, 1.2] {
+        let phi = DMatrix::from_element(2, 3, 0.3 * y);
+        let problem = Problem::new(&phi, &c, &d, Some(&stderr)).unwrap();
+        let found = gp(&problem, &Options::default());
+        let e: f64 = 0.16 / (6.0 * 0.09);
+        let (mut sum, mut first, mut second, mut prior) = (0.0, 0.0, 0.0, 0.0);
+        for step in -90..=90 {
+            let z = 0.035 * f64::from(step);
+            let tau = libm::exp(-2.13 + z);
+            let (v, left) = (0.25 + tau * tau, y - 0.5);
+            let own = libm::exp(-0.5 * (z / 0.98).powi(2));
+            let weight = own * libm::exp(-0.5 * left * left / (v + e)) / (v + e).sqrt();
+            let (mean, variance) = (0.5 + v * left / (v + e), v * e / (v + e));
+            prior += own;
+            sum += weight;
+            first += weight * mean;
+            second += weight * (variance + mean * mean);
+        }
+        let mean = first / sum;
+        let sd = (second / sum - mean * mean).sqrt();
+        assert!((found.reflectance[0] - mean).abs() < 3e-3 * sd, "{y}");
+        assert!((found.standard_error.as_ref().unwrap()[0] / sd - 1.0).abs() < 3e-3);
+        assert!((found.covariance.unwrap()[(0, 0)] / (sd * sd) - 1.0).abs() < 6e-3);
+        let Choice::Evidence { log } = found.choice else {
+            panic!("{:?}", found.choice);
+        };
+        assert!(
+            (log - libm::log(sum / prior * e.sqrt())).abs() < 3e-3,
+            "{log}"
+        );
+    }
+}
+
+/// Pictures that are what the method takes them for, spread and length drawn as it says: of all
+/// their elements 95 % bands cover 95 %, and z = (ρ̂ − ρ)/σ has the square 1 in the mean. 300 pictures;
+/// elements of one hang together, so the error is taken from the scatter among pictures, five
+/// standard errors.
+#[test]
+fn pictures_of_the_prior_are_covered_as_promised() {
+    let bench = Bench::new(6.0, 5, 8);
+    let mut normal = normal_stream(21);
+    let options = Options {
+        bands: Some(0.95),
+        ..Options::default()
+    };
+    for noise in [1e-3, 1e-1] {
+        let mut shares = Vec::new();
+        let mut squares = Vec::new();
+        for seed in 0..300u64 {
+            let tau = libm::exp(-2.13 + 0.98 * normal());
+            // Twelve lengths of the lattice, one after the other.
+            let length = 0.4 * libm::exp(0.5 * (seed % 10) as f64);
+            let distance = |i: usize, j: usize| {
+                libm::hypot(
+                    (i % 5) as f64 - (j % 5) as f64,
+                    (i / 5) as f64 - (j / 5) as f64,
+                )
+            };
+            let k = DMatrix::from_fn(25, 25, |i, j| libm::exp(-distance(i, j) / length));
+            let root = k.cholesky().unwrap().l();
+            let mean = 0.5 + 0.5 * normal();
+            let white = DVector::from_fn(25, |_, _| normal());
+            let truth = (root * white * tau).add_scalar(mean);
+            let exact = bench.phi(&truth);
+            let stderr = bench.phi(&DVector::from_element(25, 0.5)) * noise;
+            let phi = exact.zip_map(&stderr, |x, s| x + s * normal());
+            let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+            let found = gp(&problem.with_grids(&[[5, 5]]).unwrap(), &options);
+            let bands = found.bands.unwrap();
+            assert_eq!(bands.kind, BandKind::Posterior);
+            shares.push(bands.covered(truth.as_slice()) as f64 / 25.0);
+            let z = (found.reflectance - truth).component_div(&found.standard_error.unwrap());
+            squares.push(z.norm_squared() / 25.0);
+        }
+        for (values, expected) in [(shares, 0.95), (squares, 1.0)] {
+            let values = DVector::from_vec(values);
+            let error = (values.variance() / 300.0).sqrt();
+            let off = (values.mean() - expected) / error;
+            assert!(off.abs() < 5.0, "{noise}: {} {off}", values.mean());
+        }
+    }
+}
+
+/// Where the photographs say all, the picture is theirs: the truth without noise, and with little
+/// the unbounded estimate with its errors.
+#[test]
+fn good_photographs_have_the_last_word() {
+    let bench = Bench::new(6.0, 2, 8);
+    let truth = DVector::from_row_slice(&[0.9, 0.1, 0.2, 0.7]);
+    let exact = bench.phi(&truth);
+    let problem = Problem::new(&exact, &bench.c, &bench.d, None).unwrap();
+    let found = gp(&problem, &Options::default());
+    assert!((found.reflectance - &truth).amax() < 1e-9);
+    let (phi, stderr) = relative_noise(&exact, 1e-5, 4);
+    let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+    let entries = Options {
+        weighting: WeightRule::Entries,
+        ..Options::default()
+    };
+    let [own, free] = [Method::JointGp, Method::JointUnbounded]
+        .map(|method| recover(method, &problem, &entries).unwrap());
+    let sigma = free.standard_error.unwrap();
+    let off = (own.reflectance - free.reflectance).component_div(&sigma);
+    assert!(off.amax() < 1e-2, "{off}");
+    let ratio = own.standard_error.unwrap().component_div(&sigma);
+    assert!(ratio.add_scalar(-1.0).amax() < 1e-3, "{ratio}");
+}
+
+/// Of unknown noise the same picture as of known, nearly; of a free scale the same relative to the
+/// brightest.
+#[test]
+fn noise_and_scale_may_be_unknown() {
+    let bench = Bench::new(6.0, 4, 8);
+    let truth = DVector::from_fn(16, |j, _| {
+        0.3 + 0.04 * (j % 4) as f64 + 0.02 * (j / 4) as f64
+    });
+    let exact = bench.phi(&truth);
+    let stderr = DMatrix::from_element(64, 120, 1e-3 * exact.mean());
+    let mut normal = normal_stream(8);
+    let phi = exact.zip_map(&stderr, |x, s| x + s * normal());
+    let problem = |stderr| {
+        let problem = Problem::new(&phi, &bench.c, &bench.d, stderr).unwrap();
+        problem.with_grids(&[[4, 4]]).unwrap()
+    };
+    let known = gp(&problem(Some(&stderr)), &Options::default());
+    let unknown = gp(&problem(None), &Options::default());
+    let sigma = known.standard_error.clone().unwrap();
+    let off = (&unknown.reflectance - &known.reflectance).component_div(&sigma);
+    assert!(off.amax() < 0.1, "{off}");
+    let free = Nuisance {
+        free_scale: true,
+        ..Nuisance::default()
+    };
+    let scaled = &phi * 7.0;
+    let errors = &stderr * 7.0;
+    let of = Problem::new(&scaled, &bench.c, &bench.d, Some(&errors)).unwrap();
+    let of = of
+        .with_grids(&[[4, 4]])
+        .unwrap()
+        .with_nuisance(free)
+        .unwrap();
+    let relative = gp(&of, &Options::default());
+    assert_eq!(relative.reflectance.max(), 1.0);
+    let expected = &known.reflectance / known.reflectance.max();
+    let off = (&relative.reflectance - expected).component_div(&sigma);
+    assert!(off.amax() < 0.5, "{off}");
+    assert!((relative.nuisance.unwrap().scale.unwrap() / 7.0 / 0.48 - 1.0).abs() < 0.2);
+}
+
+/// Fewer entries than unknowns, and no noise known.
+#[test]
+fn nothing_to_tell_the_noise_from() {
+    let one = |rows, columns| DMatrix::from_element(rows, columns, 1.0);
+    let (phi, c, d) = (one(1, 1), one(1, 1), one(1, 1));
+    let problem = Problem::new(&phi, &c, &d, None).unwrap();
+    let error = recover(Method::JointGp, &problem, &Options::default()).unwrap_err();
+    assert!(
+        matches!(error, RecoveryError::NotForMethod { .. }),
+        "{error}"
+    );
+}
