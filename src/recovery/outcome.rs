@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Bands, Estimated, Method, Problem, RecoveryError, bands};
+use super::{Bands, Estimated, Method, Patterns, Problem, RecoveryError, bands};
 
 /// A regularisation parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -166,6 +166,8 @@ pub struct Recovered {
     pub solver: Option<Solver>,
     /// What was estimated beside the reflectances, where it was asked for.
     pub nuisance: Option<Estimated>,
+    /// What is known of the pattern, of `joint-two-valued` where the scale is known.
+    pub patterns: Option<Patterns>,
     /// Bands around the reflectances, where they were asked for and the method can promise any.
     pub bands: Option<Bands>,
     /// Why there are none, where they were asked for.
@@ -304,6 +306,7 @@ impl Recovered {
             relative_residual: if whole > 0.0 { residual / whole } else { 0.0 },
             solver: None,
             nuisance: None,
+            patterns: None,
             bands: None,
             no_bands: None,
         }

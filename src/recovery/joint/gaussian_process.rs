@@ -3,9 +3,8 @@
 //!
 //! > ρ_j = m + f_j,   m ~ N(½, ½²),   cov(f_i, f_j) = τ² exp(−|x_i − x_j|/ℓ) on one surface
 //!
-//! The photographs know ρ by the coordinates y = V ρ̂ of the unbounded least-squares estimate ρ̂ along
-//! the k directions V (k × n) of the joint operator, with errors of covariance E. So with
-//! K = ¼ 11ᵀ + τ² k(ℓ), all closed (Rasmussen and Williams 2006):
+//! The photographs know ρ by the coordinates y = V ρ + errors of covariance E ([`Coordinates`]). So
+//! with K = ¼ 11ᵀ + τ² k(ℓ), all is closed (Rasmussen and Williams 2006):
 //!
 //! > S = V K Vᵀ + E,   ln p(y | τ, ℓ) = −½ (zᵀS⁻¹z + ln det S + ln det E),    z = y − ½ V 1
 //! > E\[ρ | y\] = ½ + K Vᵀ S⁻¹ z,   cov\[ρ | y\] = K − K Vᵀ S⁻¹ V K
@@ -18,13 +17,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::coordinates::Coordinates;
 use super::exponential::Exponential;
-use super::khatri_rao::operator;
-use super::reduced::{finish, over_brightest};
+use super::reduced::over_brightest;
 use crate::num::linalg::{Cholesky, gram_product, product, tr_product};
 use crate::recovery::{
-    BandKind, Bands, Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError,
-    WeightRule, bands,
+    BandKind, Bands, Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, bands,
 };
 
 /// Mean and standard deviation of a picture's mean.
@@ -37,8 +35,6 @@ const STEP: f64 = 0.35;
 const STEPS: [i32; 2] = [-9, 9];
 /// What is less likely than the likeliest pair by more than e to this counts for nothing.
 const NEGLIGIBLE: f64 = 6.0;
-/// A direction that is known to no better than this many times the largest picture says nothing.
-const UNKNOWN: f64 = 100.0;
 /// Elements up to which the covariance matrix is made.
 const MOST_COVARIANCE: usize = 2048;
 
@@ -72,48 +68,25 @@ pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
-    let by_entry = Options {
-        weighting: match options.weighting {
-            WeightRule::Noise => WeightRule::Entries,
-            other => other,
-        },
-        ..*options
-    };
-    let operator = operator(problem, &by_entry)?;
-    let solved = operator.solve(options.tolerance)?;
-    let raw = |x: DVector<f64>| {
-        let (sigma, rank) = (solved.sigma.clone(), solved.rank);
-        finish(Method::JointGp, problem, options, &operator, x, sigma, rank)
-    };
-    let noise = match operator.noise(problem, &solved) {
-        Some(noise) => noise,
-        None => {
-            // Of unknown noise: what least squares leaves over, the same in all entries.
-            let left = raw(solved.solution.clone())?;
-            let freedom = problem.phi.len() as f64 - left.freedom_used();
-            if freedom < 1.0 {
-                return Err(bands::without_noise(Method::JointGp));
-            }
-            let floor = f64::EPSILON * problem.phi.norm_squared().sqrt();
-            let variance = (left.residual.max(floor)).powi(2) / freedom;
-            DMatrix::identity(solved.rank, solved.rank) * variance
-        }
-    };
     let unit = if problem.nuisance.free_scale {
         problem.brightness().abs()
     } else {
         1.0
     };
-    let seen = Seen::new(&solved.vt, &solved.sigma, &solved.solution, &noise, unit)?;
+    if unit == 0.0 {
+        return Err(RecoveryError::NO_DIRECTION);
+    }
+    let coordinates = Coordinates::new(Method::JointGp, problem, options, unit)?;
+    let seen = Seen::new(&coordinates, unit);
     let prior = Exponential::new(problem);
     let (lengths, pairs, evidence) = seen.lattice(&prior)?;
     let mut found = seen.mixture(&prior, &lengths, &pairs, options.bands)?;
     let best = &pairs[0];
-    let mut recovered = raw(found.mean.clone())?;
+    let mut recovered =
+        coordinates.finish(Method::JointGp, problem, options, found.mean.clone())?;
     if problem.nuisance.free_scale {
         found.relative(&recovered.reflectance, options.bands);
     }
-    recovered.weighting = operator.weighting;
     recovered.effective_rank = found.freedom;
     recovered.parameter = Parameter::GaussianProcess {
         spread: best.spread * unit,
@@ -151,32 +124,15 @@ impl Mixture {
 }
 
 impl Seen {
-    fn new(
-        vt: &DMatrix<f64>,
-        sigma: &DVector<f64>,
-        solution: &DVector<f64>,
-        noise: &DMatrix<f64>,
-        unit: f64,
-    ) -> Result<Self, RecoveryError> {
-        let k = vt.nrows();
-        let errors = DMatrix::from_fn(k, k, |i, j| noise[(i, j)] / (sigma[i] * sigma[j]));
-        let largest = UNKNOWN * unit * (vt.ncols() as f64).sqrt();
-        let told: Vec<usize> = (0..k)
-            .filter(|&i| errors[(i, i)] < largest * largest)
-            .collect();
-        if told.is_empty() || unit == 0.0 {
-            return Err(RecoveryError::NO_DIRECTION);
-        }
-        let v = vt.select_rows(&told);
-        let errors = errors.select_rows(&told).select_columns(&told) / (unit * unit);
-        let log_errors = Cholesky::new(&errors).ok_or(RecoveryError::NO_DIRECTION)?;
-        Ok(Self {
-            y: &v * solution / unit,
-            log_errors: log_errors.log_det(),
-            errors,
-            v,
+    fn new(coordinates: &Coordinates, unit: f64) -> Self {
+        let k = coordinates.y.len() as f64;
+        Self {
+            v: coordinates.v.clone(),
+            y: &coordinates.y / unit,
+            errors: &coordinates.errors / (unit * unit),
+            log_errors: coordinates.factor.log_det() - 2.0 * k * libm::log(unit),
             unit,
-        })
+        }
     }
 
     /// S of a pair; none where rounding makes it indefinite.

@@ -2,19 +2,25 @@
 
 pub(super) mod bounded;
 mod branch;
+mod coordinates;
 mod cramer_rao;
 mod determined;
 mod elimination;
+mod enumerated;
 mod exponential;
 pub(super) mod gaussian_process;
 mod gram;
+mod ground;
 mod khatri_rao;
+mod levels;
 mod picard;
 mod reduced;
 mod stacked;
+mod tempered;
 pub(super) mod total_variation;
 pub(super) mod two_valued;
 pub(super) mod unbounded;
+mod walker;
 mod weights;
 
 pub use cramer_rao::{CramerRao, cramer_rao};

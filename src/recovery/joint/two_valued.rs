@@ -3,7 +3,8 @@
 //!
 //! A combinatorial problem, searched in two ways. Descent: from the minimiser over all 0 ≤ ρ ≤ 1,
 //! cut at several thresholds, the change of one or two elements that lowers ‖R ρ − d‖ most is made
-//! until none lowers it. Branch and bound ([`super::branch`]): with the levels held, elements are
+//! until none lowers it; without given levels also from the minimisers between pairs of levels.
+//! Branch and bound ([`super::branch`]): with the levels held, elements are
 //! put to one level after the other, and what relaxation shows to be hopeless is left out; it ends
 //! with a proof or after a fixed number of relaxations. Where the levels are not given they are the
 //! best for each pattern (least squares in [0, 1]), found anew after every search, until nothing
@@ -16,21 +17,31 @@
 //! ≤ ρ ≤ 1.
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use super::branch;
-use super::reduced::Reduced;
-use crate::num::quadratic::{Bounds, box_least_squares};
+use super::coordinates::Coordinates;
+use super::ground::Ground;
+use super::{enumerated, tempered};
+use crate::num::linalg::gram_product;
+use crate::num::quadratic::{Bounds, box_least_squares, box_least_squares_from};
 use crate::recovery::{
-    Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, Solver,
+    Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, Solver, Sum,
 };
 
 /// Thresholds that the relaxation is cut at.
 const STARTS: usize = 12;
+/// Steps of the lattice of levels.
+const LEVELS: usize = 10;
 /// Above this many elements pairs are not tried: their number times the rows is the cost of one
 /// step.
-const MOST_PAIRED: usize = 512;
+const MOST_PAIRED: usize = 2048;
+/// Above this many elements patterns are not sampled.
+const MOST_SAMPLED: usize = 1024;
 /// Searches by branch and bound, each with the levels of the best pattern so far.
-const ROUNDS: usize = 5;
+const ROUNDS: usize = 8;
+/// Of the best descents so many have their levels searched with.
+const TRIALS: usize = 6;
 /// Levels that differ by less, relative to the light one, are searched with once.
 const SAME: f64 = 1e-3;
 /// A change must lower ‖R ρ − d‖² by more than this fraction, or rounding would go round in
@@ -52,37 +63,46 @@ pub(in crate::recovery) fn recover(
             cure: "give two reflectances, 0 ≤ dark < light ≤ 1",
         });
     }
-    let reduced = Reduced::new(problem, options)?;
-    let n = problem.c.ncols();
-    let top = if problem.nuisance.free_scale {
-        f64::INFINITY
+    let free = problem.nuisance.free_scale;
+    let unit = if free {
+        problem.brightness().abs()
     } else {
         1.0
     };
+    let coordinates = Coordinates::new(method, problem, options, unit)?;
+    let (r, d) = coordinates.whitened();
+    let n = problem.c.ncols();
+    let top = if free { f64::INFINITY } else { 1.0 };
     let given = options.levels.filter(|_| top == 1.0);
     let bounds = match given {
         Some([dark, light]) => Bounds::all(n, dark, light),
         None => Bounds::all(n, 0.0, top),
     };
-    let relaxed = box_least_squares(&reduced.r, &reduced.d, &bounds)?;
+    let relaxed = box_least_squares(&r, &d, &bounds)?;
+    let mut gram = DMatrix::zeros(n, n);
+    gram_product(&mut gram, &r);
     let search = Search {
-        r: &reduced.r,
-        d: &reduced.d,
+        r: &r,
+        d: &d,
+        gram,
         levels: match (options.levels, top == 1.0) {
             (Some(levels), true) => Levels::Given(levels),
             (Some(levels), false) => Levels::Ratio(levels),
             (None, _) => Levels::Within(top),
         },
     };
-    let mut best: Option<Pattern> = None;
-    let mut changes = 0;
-    for start in thresholds(&relaxed.solution) {
-        let found = search.descend(start, &mut changes)?;
-        if best.as_ref().is_none_or(|b| found.misfit < b.misfit) {
-            best = Some(found);
-        }
-    }
-    let Some(mut best) = best else {
+    let starts = starts(&r, &d, &relaxed.solution, given, top)?;
+    let descents: Result<Vec<(Pattern, usize)>, RecoveryError> = starts
+        .into_par_iter()
+        .map(|start| {
+            let mut changes = 0;
+            Ok((search.descend(start, &mut changes)?, changes))
+        })
+        .collect();
+    let mut descents = descents?;
+    let mut changes = descents.iter().map(|(_, changes)| changes).sum();
+    descents.sort_by(|(a, _), (b, _)| a.misfit.total_cmp(&b.misfit));
+    let Some((mut best, _)) = descents.first().cloned() else {
         return Err(RecoveryError::NO_DIRECTION);
     };
     let mut bound = relaxed.objective - relaxed.gap;
@@ -92,6 +112,13 @@ pub(in crate::recovery) fn recover(
         None if top == 1.0 => vec![[relaxed.solution.min(), relaxed.solution.max()], [0.0, 1.0]],
         None => vec![[relaxed.solution.min(), relaxed.solution.max()]],
     };
+    if given.is_none() {
+        let known = descents.iter().take(TRIALS).rev();
+        trials.extend(known.map(|(found, _)| {
+            let [a, b] = found.levels;
+            [a.min(b), a.max(b)]
+        }));
+    }
     let mut tried: Vec<[f64; 2]> = Vec::new();
     for _ in 0..ROUNDS {
         let Some(levels) = trials.pop() else { break };
@@ -107,7 +134,7 @@ pub(in crate::recovery) fn recover(
             Some(_) => 0.5 * best.misfit,
             None => f64::INFINITY,
         };
-        let searched = branch::search(&reduced.r, &reduced.d, levels, &relaxed.solution, known)?;
+        let searched = branch::search(&r, &d, levels, &relaxed.solution, known)?;
         if given.is_some() {
             bound = bound.max(searched.bound);
         }
@@ -121,8 +148,30 @@ pub(in crate::recovery) fn recover(
             trials.push([a.min(b), a.max(b)]);
         }
     }
+    // A scale that is free has no measure of what is likely.
+    let ground = Ground::new(&r, &d, given);
+    let summed = if free || n > MOST_SAMPLED {
+        None
+    } else if enumerated::can(&ground) {
+        Some(enumerated::sum(&ground))
+    } else {
+        Some(tempered::sample(&ground, &best.light)?)
+    };
+    if let Some(summed) = &summed {
+        let found = search.descend(summed.best.clone(), &mut changes)?;
+        if found.misfit < best.misfit {
+            best = found;
+        }
+    }
     let objective = 0.5 * best.misfit;
-    let mut recovered = reduced.finish(method, problem, options, best.values())?;
+    if given.is_some() && summed.as_ref().is_some_and(|s| s.sum == Sum::Exhaustive) {
+        bound = objective;
+    }
+    let mut recovered = coordinates.finish(method, problem, options, best.values())?;
+    let patterns = summed.map(|summed| summed.finish(&best.light));
+    let known = patterns.as_ref().filter(|p| p.sum.converged());
+    recovered.standard_error = known.map(|p| p.deviation.clone());
+    recovered.patterns = patterns;
     let levels = [recovered.reflectance.min(), recovered.reflectance.max()];
     recovered.parameter = Parameter::Levels(given.unwrap_or(levels));
     recovered.choice = match given {
@@ -170,6 +219,8 @@ impl Pattern {
 struct Search<'a> {
     r: &'a DMatrix<f64>,
     d: &'a DVector<f64>,
+    /// RᵀR.
+    gram: DMatrix<f64>,
     levels: Levels,
 }
 
@@ -222,13 +273,15 @@ impl Search<'_> {
         }
     }
 
-    /// Makes the best change of one or two elements until none is worth it; how many were made.
+    /// Makes the best change of one or two elements until none is worth it; how many were made. With
+    /// x_j changed by t, ‖R x − d‖² changes by −2 t g_j + t² G_jj, g = Rᵀ(d − R x), G = RᵀR.
     fn change(&self, light: &mut [bool], [dark, bright]: [f64; 2]) -> usize {
         let n = light.len();
         let mut made = 0;
         loop {
             let values = DVector::from_fn(n, |j, _| if light[j] { bright } else { dark });
-            let residual = self.r * values - self.d;
+            let residual = self.d - self.r * values;
+            let slope = self.r.tr_mul(&residual);
             let step = |j: usize| {
                 if light[j] {
                     dark - bright
@@ -236,23 +289,20 @@ impl Search<'_> {
                     bright - dark
                 }
             };
-            let (mut least, mut which) = (residual.norm_squared() * (1.0 - WORTH), None);
+            let single: Vec<f64> = (0..n)
+                .map(|j| step(j) * (step(j) * self.gram[(j, j)] - 2.0 * slope[j]))
+                .collect();
+            let (mut least, mut which) = (-WORTH * residual.norm_squared(), None);
             for i in 0..n {
-                let one = &residual + self.r.column(i) * step(i);
-                let misfit = one.norm_squared();
-                if misfit < least {
-                    (least, which) = (misfit, Some((i, None)));
+                if single[i] < least {
+                    (least, which) = (single[i], Some((i, None)));
                 }
                 let others = if n <= MOST_PAIRED { i + 1..n } else { n..n };
+                let column = self.gram.column(i);
                 for j in others {
-                    let by = step(j);
-                    let misfit: f64 = one
-                        .iter()
-                        .zip(self.r.column(j).iter())
-                        .map(|(e, c)| (e + c * by) * (e + c * by))
-                        .sum();
-                    if misfit < least {
-                        (least, which) = (misfit, Some((i, Some(j))));
+                    let change = single[i] + single[j] + 2.0 * step(i) * step(j) * column[j];
+                    if change < least {
+                        (least, which) = (change, Some((i, Some(j))));
                     }
                 }
             }
@@ -260,9 +310,51 @@ impl Search<'_> {
             for at in std::iter::once(i).chain(j) {
                 light[at] = !light[at];
             }
+            // Measured: what little noise leaves is not told by differences.
+            let values = DVector::from_fn(n, |j, _| if light[j] { bright } else { dark });
+            let found = (self.d - self.r * values).norm_squared();
+            if found >= residual.norm_squared() * (1.0 - WORTH) {
+                for at in std::iter::once(i).chain(j) {
+                    light[at] = !light[at];
+                }
+                return made;
+            }
             made += 1;
         }
     }
+}
+
+/// Patterns to descend from: those of the relaxation to all values, and, where the levels are not
+/// given, of the relaxations between the pairs of levels of a lattice. Near the true levels a
+/// relaxation between them is nearly the pattern; between others it is not.
+fn starts(
+    r: &DMatrix<f64>,
+    d: &DVector<f64>,
+    relaxed: &DVector<f64>,
+    given: Option<[f64; 2]>,
+    top: f64,
+) -> Result<Vec<Vec<bool>>, RecoveryError> {
+    let mut starts = thresholds(relaxed);
+    if given.is_some() || top > 1.0 {
+        return Ok(starts);
+    }
+    let level = |k: usize| k as f64 / LEVELS as f64;
+    let pairs: Vec<[f64; 2]> = (0..LEVELS)
+        .flat_map(|a| (a + 1..=LEVELS).map(move |b| [level(a), level(b)]))
+        .collect();
+    let between = |[dark, light]: &[f64; 2]| -> Result<Vec<bool>, RecoveryError> {
+        let bounds = Bounds::all(r.ncols(), *dark, *light);
+        let found = box_least_squares_from(r, d, &bounds, relaxed)?.solution;
+        let middle = 0.5 * (dark + light);
+        Ok(found.iter().map(|x| *x > middle).collect())
+    };
+    let found: Result<Vec<Vec<bool>>, RecoveryError> = pairs.par_iter().map(between).collect();
+    for start in found? {
+        if !starts.contains(&start) {
+            starts.push(start);
+        }
+    }
+    Ok(starts)
 }
 
 /// Patterns of a relaxation: light where it exceeds a threshold, thresholds between neighbouring

@@ -1,0 +1,223 @@
+//! The two levels of a pattern: their least squares, and how likely the pattern is whatever they
+//! are.
+
+use nalgebra::DVector;
+
+use crate::num::quadrature::Rule;
+
+/// Nodes of the quadrature over the dark level.
+const NODES: usize = 40;
+/// Standard deviations on either side of its likeliest value.
+const REACH: f64 = 9.0;
+
+/// χ²(a, b) = ‖d − a u − b w‖² of the levels a, b of elements whose light is u (dark) and w (light),
+/// in standard deviations: a parabola about its minimum.
+pub(super) struct LevelFit {
+    /// \[a, b\] of the minimum over the plane.
+    best: [f64; 2],
+    /// ½ ∂²χ²: uᵀu, uᵀw, wᵀw.
+    curvature: [f64; 3],
+    /// The minimum.
+    pub(super) chi2: f64,
+}
+
+/// A pattern's weight, all levels 0 ≤ a < b ≤ 1 being equally likely beforehand.
+pub(super) struct Weight {
+    /// ln of 2 ∫∫ exp(−½ χ²) da db.
+    pub(super) log: f64,
+    /// Means of a and b under it, and of their squares.
+    pub(super) moments: [[f64; 2]; 2],
+}
+
+/// Whether these can be levels.
+pub(super) fn possible([a, b]: [f64; 2]) -> bool {
+    0.0 <= a && a < b && b <= 1.0
+}
+
+/// Φ(y) − Φ(x) of a normal distribution, x ≤ y, without cancellation in either tail.
+fn between(x: f64, y: f64) -> f64 {
+    let upper = |z: f64| 0.5 * libm::erfc(z * std::f64::consts::FRAC_1_SQRT_2);
+    if x > 0.0 {
+        upper(x) - upper(y)
+    } else {
+        upper(-y) - upper(-x)
+    }
+}
+
+impl LevelFit {
+    /// None where light of one level does not tell from the other's.
+    pub(super) fn new(d: &DVector<f64>, u: &DVector<f64>, w: &DVector<f64>) -> Option<Self> {
+        let (uu, uw, ww) = (u.norm_squared(), u.dot(w), w.norm_squared());
+        // The part of w beside u: no cancellation between products.
+        let beside = w - u * (uw / uu);
+        let own = beside.norm_squared();
+        if uu.is_nan() || uu <= 0.0 || own.is_nan() || own <= 1e-20 * ww {
+            return None;
+        }
+        let b = beside.dot(d) / own;
+        let a = (u.dot(d) - uw * b) / uu;
+        let left = d - u * a - w * b;
+        Some(Self {
+            best: [a, b],
+            curvature: [uu, uw, ww],
+            chi2: left.norm_squared(),
+        })
+    }
+
+    /// The same from what is left over at levels `at`: its square `left`, its products with u and w,
+    /// and \[uᵀu, uᵀw, wᵀw\]. No large numbers cancel where little is left over.
+    pub(super) fn about(
+        at: [f64; 2],
+        left: f64,
+        along: [f64; 2],
+        curvature: [f64; 3],
+    ) -> Option<Self> {
+        let [uu, uw, ww] = curvature;
+        let own = ww - uw / uu * uw;
+        if uu.is_nan() || uu <= 0.0 || own.is_nan() || own <= 1e-9 * ww {
+            return None;
+        }
+        let b = (along[1] - uw / uu * along[0]) / own;
+        let a = (along[0] - uw * b) / uu;
+        Some(Self {
+            best: [at[0] + a, at[1] + b],
+            curvature,
+            chi2: (left - a * along[0] - b * along[1]).max(0.0),
+        })
+    }
+
+    fn determinant(&self) -> f64 {
+        let [uu, uw, ww] = self.curvature;
+        (uu * ww - uw * uw).max(f64::MIN_POSITIVE)
+    }
+
+    /// ln of 2 ∫∫ exp(−β ½ χ²) over the whole plane: −β ½ χ²_min + ln(4π/(β √det)).
+    pub(super) fn log_plane(&self, beta: f64) -> f64 {
+        let width = 4.0 * std::f64::consts::PI / (beta * self.determinant().sqrt());
+        -0.5 * beta * self.chi2 + libm::log(width)
+    }
+
+    /// Levels of density ∝ exp(−β ½ χ²) over the plane, from two standard normal numbers.
+    pub(super) fn draw(&self, beta: f64, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [_, uw, ww] = self.curvature;
+        let a = x * (ww / (beta * self.determinant())).sqrt();
+        let b = -a * uw / ww + y / (beta * ww).sqrt();
+        [self.best[0] + a, self.best[1] + b]
+    }
+
+    /// The weight over 0 ≤ a < b ≤ 1: closed in b, Gauss–Legendre in a.
+    pub(super) fn weight(&self, rule: &Rule) -> Option<Weight> {
+        let [_, uw, ww] = self.curvature;
+        let (sa, sb) = ((ww / self.determinant()).sqrt(), ww.sqrt().recip());
+        // ln ∫ exp(−½ χ²) db at a, and the moments of b there.
+        let at = |a: f64| {
+            let middle = self.best[1] - uw / ww * (a - self.best[0]);
+            let [x, y] = [a, 1.0].map(|b| (b - middle) / sb);
+            let share = between(x, y);
+            if share <= 0.0 {
+                return None;
+            }
+            let z = (a - self.best[0]) / sa;
+            let log = -0.5 * (self.chi2 + z * z)
+                + libm::log(share * sb * (2.0 * std::f64::consts::PI).sqrt());
+            let density = |z: f64| libm::exp(-0.5 * z * z) / (2.0 * std::f64::consts::PI).sqrt();
+            let (dx, dy) = (density(x), density(y));
+            let mean = middle + sb * (dx - dy) / share;
+            let spread = 1.0 + (x * dx - y * dy) / share - ((dx - dy) / share).powi(2);
+            Some((log, mean, mean * mean + sb * sb * spread.max(0.0)))
+        };
+        // Where b = 1 pulls a, it is likeliest on the line b = 1.
+        let on_line = self.best[0] - (1.0 - self.best[1]) * uw / self.curvature[0];
+        let middle = if self.best[1] > 1.0 {
+            on_line
+        } else {
+            self.best[0]
+        };
+        let middle = middle.clamp(0.0, 1.0);
+        let low = (middle - REACH * sa).max(0.0);
+        let high = (middle + REACH * sa).min(1.0);
+        let values: Vec<(f64, f64, (f64, f64, f64))> = rule
+            .on(low, high)
+            .filter_map(|(a, weight)| Some((a, weight, at(a)?)))
+            .collect();
+        let top = values
+            .iter()
+            .map(|v| v.2.0)
+            .fold(f64::NEG_INFINITY, f64::max);
+        if !top.is_finite() {
+            return None;
+        }
+        let (mut sum, mut moments) = (0.0, [[0.0; 2]; 2]);
+        for (a, weight, (log, b, b2)) in values {
+            let own = weight * libm::exp(log - top);
+            sum += own;
+            moments[0][0] += own * a;
+            moments[0][1] += own * a * a;
+            moments[1][0] += own * b;
+            moments[1][1] += own * b2;
+        }
+        Some(Weight {
+            log: top + libm::log(2.0 * sum),
+            moments: moments.map(|m| m.map(|x| x / sum)),
+        })
+    }
+}
+
+/// The rule of [`LevelFit::weight`].
+pub(super) fn rule() -> Rule {
+    Rule::gauss_legendre(NODES)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sums over a fine grid of the triangle: inside it, at its corner and beyond it.
+    #[test]
+    fn weights_are_integrals_over_the_triangle() {
+        let u = DVector::from_row_slice(&[9.0, 3.0, 1.0]);
+        let w = DVector::from_row_slice(&[2.0, 5.0, 8.0]);
+        for [a, b] in [[0.3, 0.7], [0.0, 1.0], [-0.2, 1.3], [0.6, 0.5], [0.9, 1.2]] {
+            let d = &u * a + &w * b + DVector::from_row_slice(&[0.4, -0.2, 0.3]);
+            let fit = LevelFit::new(&d, &u, &w).unwrap();
+            let found = fit.weight(&rule()).unwrap();
+            let (n, mut sum, mut first, mut second) = (2000, 0.0, 0.0, 0.0);
+            for i in 0..n {
+                for j in i..n {
+                    let [x, y] = [i, j].map(|k| (f64::from(k) + 0.5) / f64::from(n));
+                    let half = if i == j { 0.5 } else { 1.0 };
+                    let own = half * libm::exp(-0.5 * (&d - &u * x - &w * y).norm_squared());
+                    sum += own;
+                    first += own * x;
+                    second += own * y * y;
+                }
+            }
+            let expected = libm::log(2.0 * sum / f64::from(n * n));
+            assert!(
+                (found.log - expected).abs() < 2e-3,
+                "{a} {b} {} {expected}",
+                found.log
+            );
+            assert!((found.moments[0][0] - first / sum).abs() < 1e-3);
+            assert!((found.moments[1][1] - second / sum).abs() < 1e-3);
+        }
+        assert!(LevelFit::new(&u, &u, &(&u * 2.0)).is_none());
+    }
+
+    /// Over the plane: ln 2 − ½ β χ² + ln(2π/(β √det)); draws have the covariance (β M)⁻¹.
+    #[test]
+    fn the_plane_by_hand() {
+        let u = DVector::from_row_slice(&[2.0, 0.0, 0.0]);
+        let w = DVector::from_row_slice(&[0.0, 4.0, 0.0]);
+        let d = DVector::from_row_slice(&[1.0, 2.0, 3.0]);
+        let fit = LevelFit::new(&d, &u, &w).unwrap();
+        assert!((fit.chi2 - 9.0).abs() < 1e-12);
+        let expected = libm::log(2.0) - 4.5 * 0.5 + libm::log(std::f64::consts::PI / 2.0);
+        assert!((fit.log_plane(0.5) - expected).abs() < 1e-12);
+        let drawn = fit.draw(0.25, [1.0, -1.0]);
+        assert!(
+            (drawn[0] - 1.5).abs() < 1e-12 && drawn[1].abs() < 1e-12,
+            "{drawn:?}"
+        );
+    }
+}

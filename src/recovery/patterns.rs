@@ -1,0 +1,53 @@
+//! How likely each element is to be light, where there are two levels.
+
+use nalgebra::DVector;
+
+/// How the probabilities of patterns were found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Sum {
+    /// Over all patterns.
+    Exhaustive,
+    /// By two independent ladders of Markov chains (parallel tempering).
+    Sampled {
+        /// Sweeps of each ladder after the first fifth.
+        sweeps: usize,
+        /// The largest difference of an element's probability between halves of the ladders.
+        disagreement: f64,
+    },
+}
+
+impl Sum {
+    /// Largest [`Sum::Sampled::disagreement`] at which probabilities are to be believed.
+    pub const AGREEMENT: f64 = 0.1;
+
+    /// Whether the probabilities are to be believed.
+    pub fn converged(self) -> bool {
+        match self {
+            Self::Exhaustive => true,
+            Self::Sampled { disagreement, .. } => disagreement <= Self::AGREEMENT,
+        }
+    }
+}
+
+/// What the photographs say of a picture of two levels, every pattern being equally likely
+/// beforehand, and so every pair of levels 0 ≤ dark < light ≤ 1 where they are not given.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Patterns {
+    /// Probability of each element to be light.
+    pub light: DVector<f64>,
+    /// Mean reflectance of each element, and its standard deviation.
+    pub mean: DVector<f64>,
+    /// The same.
+    pub deviation: DVector<f64>,
+    /// Means of the dark and of the light level.
+    pub levels: [f64; 2],
+    /// Their standard deviations; 0 where they were given.
+    pub level_errors: [f64; 2],
+    /// Probability of the pattern that was recovered, by all.
+    pub pattern: f64,
+    /// ln of the probability density of the photographs, over that of the numbers that fit them
+    /// best.
+    pub log_evidence: f64,
+    /// How it was found.
+    pub sum: Sum,
+}
