@@ -65,6 +65,11 @@ pub(super) fn is_of_recovered(name: &str) -> bool {
         "lower",
         "upper",
         "texture",
+        "choice",
+        "frame_constant",
+        "background",
+        "glare",
     ];
-    known && whats.contains(&what) && matches!(ext, "npy" | "png" | "csv" | "svg" | "ply")
+    let exts = ["npy", "png", "csv", "svg", "ply", "json"];
+    known && whats.contains(&what) && exts.contains(&ext)
 }

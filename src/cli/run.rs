@@ -16,7 +16,7 @@ use super::run_folder::{
     Claim, MODEL, PHI, RECOVERED, REPORT, STDERR, SUMMARY, TAILS, frame_max, is_of_model,
     is_of_recovered,
 };
-use super::{Outcome, model, need, recover, settings, validate};
+use super::{Outcome, model, need, recover, recovered, settings, validate};
 use crate::film::{self, Stack};
 use crate::lab::finding::Describe;
 use crate::lab::{
@@ -167,7 +167,7 @@ fn compare_and_recover(
     );
     results.recovered = recover::collect(attempts, false, console)?;
     results.picards = picards?;
-    recover::write(
+    recovered::write(
         &args.output.join(RECOVERED),
         &results.scene,
         &results.recovered,

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use serde::Serialize;
 
+use super::chosen::{Beside, Chosen, Ended, words};
 use super::doubt::doubts;
 use super::fit::{Certainty, Fit, Judged};
 use super::problem::problem;
@@ -11,8 +12,8 @@ use crate::matrix::Matrix;
 use crate::metrics::{correlation, mtf_normalized, mtf_raw, rmse};
 use crate::model::MatrixModel;
 use crate::recovery::{
-    self, BandKind, Bands, Choice, Estimated, Method, Nuisance, Options, Parameter, Picard,
-    Problem, Recovered, RecoveryError, Shared, recover,
+    self, BandKind, Bands, Method, Nuisance, Options, Picard, Problem, Recovered, RecoveryError,
+    Shared, recover,
 };
 
 /// A recovered hidden surface.
@@ -38,6 +39,12 @@ pub struct RecoveredObject {
     pub rmse: f64,
     /// Parameter used and why, in words.
     pub parameter: String,
+    /// The same in numbers.
+    pub choice: Chosen,
+    /// How the solver ended; absent where none iterates.
+    pub solver: Option<Ended>,
+    /// What was estimated beside the reflectances; absent where nothing was asked for.
+    pub estimated: Option<Beside>,
     /// Bands around the reflectances, where they were asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bands: Option<ObjectBands>,
@@ -246,6 +253,9 @@ pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<
             correlation: correlation(&reflectance, &truth),
             rmse: rmse(&reflectance, &truth).unwrap_or(f64::NAN),
             parameter: words(found),
+            choice: Chosen::of(found),
+            solver: Ended::of(found),
+            estimated: Beside::of(found),
             bands: found
                 .bands
                 .as_ref()
@@ -286,83 +296,4 @@ fn object_bands(bands: &Bands, range: Range<usize>) -> ObjectBands {
         lower: intervals.iter().map(|i| i[0]).collect(),
         upper: intervals.iter().map(|i| i[1]).collect(),
     }
-}
-
-/// The regularisation used and why, in words.
-pub(super) fn words(found: &Recovered) -> String {
-    let solver = match &found.solver {
-        // That an iteration has converged says nothing of the fit.
-        Some(s) if s.status == "Solved" => {
-            format!(
-                "; minimum after {} iterations, gap {:.1e}",
-                s.iterations, s.gap
-            )
-        }
-        Some(s) => format!(
-            "; {} after {} iterations, gap {:.1e}",
-            s.status, s.iterations, s.gap
-        ),
-        None => String::new(),
-    };
-    let estimated = found.nuisance.as_ref().map_or(String::new(), estimated);
-    chosen_words(found.parameter, found.rank, found.choice) + &solver + &estimated
-}
-
-/// A parameter and why it is this one, in words; of a method without one the rank.
-pub(super) fn chosen_words(parameter: Parameter, rank: usize, choice: Choice) -> String {
-    let what = match parameter {
-        Parameter::None => format!("rank {rank}"),
-        Parameter::Rank(k) => format!("{k} singular directions"),
-        Parameter::Damping(lambda) => format!("damping {lambda:.2e} of σ1"),
-        Parameter::TotalVariation(lambda) => format!("total variation {lambda:.2e} of σ1²"),
-        Parameter::Levels([dark, light]) => format!("levels {dark:.3} and {light:.3}"),
-    };
-    let why = match choice {
-        Choice::Given => ", as given".to_owned(),
-        Choice::Discrepancy {
-            residual, target, ..
-        } => {
-            format!(
-                ", by the discrepancy principle (residual {residual:.3e} W, noise {target:.3e} W)"
-            )
-        }
-        Choice::JointDiscrepancy {
-            residual, target, ..
-        } => {
-            format!(", by the discrepancy principle (χ² {residual:.1}, noise {target:.1})")
-        }
-        Choice::Estimated => ", estimated".to_owned(),
-        Choice::Gcv {
-            freedom, predicted, ..
-        } => {
-            format!(
-                ", by generalised cross-validation (entries predicted to {predicted:.3e} W, {freedom:.1} degrees of freedom left)"
-            )
-        }
-        Choice::LCurve { residual, turn, .. } => {
-            format!(", at the corner of the L-curve (residual {residual:.3e} W, turn {turn:.2})")
-        }
-        Choice::Tolerance { cutoff } => format!(", cut at {cutoff:.2e}"),
-        Choice::None => String::new(),
-    };
-    what + &why
-}
-
-/// What was estimated beside the reflectances, in words: means over frames or pixels.
-fn estimated(nuisance: &Estimated) -> String {
-    let mut words = String::new();
-    let terms = [
-        ("frame constant", &nuisance.frame_constant, " W"),
-        ("background", &nuisance.background, " W"),
-        ("glare", &nuisance.glare, ""),
-    ];
-    for (name, values, unit) in terms {
-        if let Some(values) = values {
-            words += &format!("; {name} {:.3e}{unit} on average", values.mean());
-        }
-    }
-    if let Some(scale) = nuisance.scale {
-        words += &format!("; scale {scale:.4}");
-    }
-    words
 }

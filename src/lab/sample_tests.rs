@@ -1,6 +1,6 @@
 //! Made-up runs for tests: no physics, only shapes and plausible sizes.
 
-use crate::lab::{Agreement, Entry, Fit, RecoveredObject, RunResults};
+use crate::lab::{Agreement, Chosen, Entry, Fit, RecoveredObject, RunResults};
 use crate::matrix::Matrix;
 use crate::num::stream::Sampling;
 use crate::scene::Scene;
@@ -148,6 +148,15 @@ pub(crate) fn whole(mut run: RunResults) -> RunResults {
                 rmse: 0.05,
                 parameter: "λ 1.3e-15 by the discrepancy principle from the standard error of Φcam"
                     .into(),
+                choice: Chosen {
+                    parameter: None,
+                    value: Vec::new(),
+                    rule: None,
+                    measures: Default::default(),
+                    repeat: None,
+                },
+                solver: None,
+                estimated: None,
                 bands: None,
                 standard_error: None,
                 bias: None,

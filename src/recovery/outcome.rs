@@ -35,15 +35,15 @@ pub enum Choice {
         /// The target two standard deviations of ‖noise‖² up: residuals to here are accepted.
         limit: f64,
     },
-    /// The same of weighted joint residuals, without unit: what the reduced problem leaves over, in
-    /// standard deviations.
-    JointDiscrepancy {
-        /// ‖R ρ − d‖².
+    /// The largest evidence: the λ of `joint-tv` at which the photographs are likeliest, whatever
+    /// the picture.
+    Evidence {
+        /// −2 ln of it, but for a constant.
+        deviance: f64,
+        /// ‖R ρ − d‖², what the reduced problem leaves over, in variances of the noise.
         residual: f64,
-        /// Its mean for noise alone: degrees of freedom that ρ leaves over.
-        target: f64,
-        /// The target four standard deviations of χ² up: an unpenalised fit beyond it is refused.
-        limit: f64,
+        /// Patches of one value.
+        patches: usize,
     },
     /// Estimated together with the reflectances.
     Estimated,

@@ -433,3 +433,46 @@ fn files_of_an_earlier_recovery_do_not_stay_beside_those_of_a_later() {
         .exits(0);
     assert!(!names(&workspace).contains_key("picard-joint.csv"));
 }
+
+/// The parameter in the JSON has all its digits: given again it makes the same picture to the last
+/// bit. What was estimated beside it is there in the JSON and in files.
+#[test]
+fn a_run_can_be_repeated_at_its_own_choice() {
+    let workspace = with_run();
+    let line = "recover done --phi done/model/phi.npy --noise 1e-3 -o own --json --method";
+    for method in ["tsvd", "tikhonov", "joint-tv"] {
+        let mut found = objects(workspace.phicam(&format!("{line} {method}")));
+        let (first, repeat) = (found.remove(0), |v: &serde_json::Value| {
+            v["choice"]["repeat"].as_str().unwrap().to_owned()
+        });
+        let again = format!("{line} {method} {}", repeat(&first));
+        let second = objects(workspace.phicam(&again)).remove(0);
+        assert_eq!(first["reflectance"], second["reflectance"], "{again}");
+        assert_eq!(first["choice"]["value"], second["choice"]["value"]);
+        assert_eq!(second["choice"]["rule"], "given");
+        let names = workspace.contents("own");
+        let kept = &names[&format!("{method}.choice.json")];
+        let kept: serde_json::Value = serde_json::from_slice(kept).unwrap();
+        assert_eq!(kept["choice"], second["choice"]);
+    }
+    let line = format!("{line} joint");
+    let beside = objects(workspace.phicam(&format!(
+        "{line} --frame-constant --background --free-scale"
+    )));
+    let estimated = &beside[0]["estimated"];
+    assert!(estimated["scale"].as_f64().unwrap() > 0.0);
+    assert!(beside[0]["solver"]["gap"].as_f64().unwrap() >= 0.0);
+    for (name, whole) in [("frame_constant", (1, 24)), ("background", (64, 1))] {
+        let written = workspace.matrix(&format!("own/joint.{name}.npy"));
+        assert_eq!(written.shape(), whole, "{name}");
+        let told = estimated[name].as_array().unwrap().iter();
+        let told: Vec<f64> = told.map(|x| x.as_f64().unwrap()).collect();
+        assert_eq!(told, written.as_slice(), "{name}");
+    }
+    let _ = workspace.phicam(&line).exits(0);
+    assert!(
+        !workspace
+            .contents("own")
+            .contains_key("joint.background.npy")
+    );
+}

@@ -10,6 +10,7 @@ use crate::num::linalg::{Svd, Tolerance, cut, rows_times};
 use crate::num::quadratic::{Bounds, BoxSolution};
 use crate::recovery::{
     Choice, Estimated, Method, Options, Parameter, Problem, Recovered, RecoveryError, Solver,
+    Weighting,
 };
 
 /// ½‖R x − d‖² is the objective but for a constant, x = s ρ.
@@ -60,6 +61,32 @@ impl Reduced {
         Bounds::all(self.r.ncols(), 0.0, upper)
     }
 
+    /// The report of a box solver, its status by what is proved: whatever it says of itself, the
+    /// gap is what its end may be above the minimum.
+    pub(super) fn report(&self, solved: &BoxSolution) -> Solver {
+        let BoxSolution { objective, gap, .. } = *solved;
+        // Where the noise is the unit, 2 gap is in variances of it.
+        let (near, far) = match self.operator.weighting {
+            Weighting::Unweighted => (1e-6 * objective, 1e-2 * objective),
+            _ => (5e-4, 5e-2),
+        };
+        let rounding = (1e-12 * self.d.norm()).powi(2);
+        let status = if gap <= near + rounding {
+            "minimum"
+        } else if gap <= far + rounding {
+            "near its minimum"
+        } else {
+            "NOT PROVED to be near its minimum"
+        };
+        Solver {
+            status: status.to_owned(),
+            iterations: solved.iterations,
+            refinements: solved.refinements,
+            objective,
+            gap,
+        }
+    }
+
     /// The recovery from x = s ρ, a rank cut recorded.
     pub(super) fn finish(
         &self,
@@ -86,17 +113,6 @@ impl Reduced {
             );
         }
         Ok(found)
-    }
-}
-
-/// The report of a box solver.
-pub(super) fn report(solved: &BoxSolution) -> Solver {
-    Solver {
-        status: solved.status.clone(),
-        iterations: solved.iterations,
-        refinements: solved.refinements,
-        objective: solved.objective,
-        gap: solved.gap,
     }
 }
 

@@ -1,0 +1,230 @@
+//! What a recovery chose and found beside the reflectances, in words and as numbers with all their
+//! digits.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::recovery::{Choice, Estimated, Method, Parameter, Recovered};
+
+/// A parameter, why it is this one, and what a run needs to take the same again.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Chosen {
+    /// `rank`, `damping`, `tv` or `levels`; absent for a method without parameter.
+    pub parameter: Option<&'static str>,
+    /// Its value or values, as the option of this name takes them.
+    pub value: Vec<f64>,
+    /// What chose it: `given`, `discrepancy`, `evidence`, `estimated`, `gcv`, `l-curve` or
+    /// `tolerance`; absent where nothing was chosen.
+    pub rule: Option<&'static str>,
+    /// What the rule went by, each by its name; see [`Choice`].
+    pub measures: BTreeMap<&'static str, f64>,
+    /// The option of `phicam recover` that takes the same again; absent where none does.
+    pub repeat: Option<String>,
+}
+
+/// How an iterative solver ended.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Ended {
+    /// In words.
+    pub status: String,
+    /// Iterations.
+    pub iterations: u32,
+    /// Active-set steps after them.
+    pub refinements: usize,
+    /// ½ Σ w (Φ − C diag(ρ) D)², less what no ρ can change: ½ χ² where the weights are those of the
+    /// noise. With the penalty of `joint-tv`.
+    pub objective: f64,
+    /// Upper bound on its distance from the minimum.
+    pub gap: f64,
+}
+
+/// What was estimated beside the reflectances; each is there if it was asked for.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Beside {
+    /// s of s C diag(ρ) D.
+    pub scale: Option<f64>,
+    /// b_l, W, of each frame.
+    pub frame_constant: Option<Vec<f64>>,
+    /// a_p, W, of each pixel.
+    pub background: Option<Vec<f64>>,
+    /// g_l, W per unit of the pattern, of each frame.
+    pub glare: Option<Vec<f64>>,
+}
+
+impl Chosen {
+    /// Of a recovery.
+    pub fn of(found: &Recovered) -> Self {
+        let (parameter, value) = match found.parameter {
+            Parameter::None => (None, Vec::new()),
+            Parameter::Rank(k) => (Some("rank"), vec![k as f64]),
+            Parameter::Damping(lambda) => (Some("damping"), vec![lambda]),
+            Parameter::TotalVariation(lambda) => (Some("tv"), vec![lambda]),
+            Parameter::Levels(levels) => (Some("levels"), levels.to_vec()),
+        };
+        let (rule, measures) = went_by(found.choice);
+        // The rank of the methods that only drop what is lost in rounding is no option of theirs.
+        let own = parameter.filter(|name| *name != "rank" || found.method == Method::Tsvd);
+        let each = value.iter().map(|x| match found.parameter {
+            Parameter::Rank(k) => k.to_string(),
+            _ => format!("{x:e}"),
+        });
+        let each = each.collect::<Vec<_>>().join(",");
+        let repeat = own.map(|name| format!("--{name} {each}"));
+        Self {
+            parameter,
+            value,
+            rule,
+            measures,
+            repeat,
+        }
+    }
+}
+
+/// The rule and what it went by.
+fn went_by(choice: Choice) -> (Option<&'static str>, BTreeMap<&'static str, f64>) {
+    let (rule, measures) = match choice {
+        Choice::Given => ("given", vec![]),
+        Choice::Discrepancy {
+            residual,
+            target,
+            limit,
+        } => (
+            "discrepancy",
+            vec![("residual", residual), ("target", target), ("limit", limit)],
+        ),
+        Choice::Evidence {
+            deviance,
+            residual,
+            patches,
+        } => (
+            "evidence",
+            vec![
+                ("deviance", deviance),
+                ("residual", residual),
+                ("patches", patches as f64),
+            ],
+        ),
+        Choice::Estimated => ("estimated", vec![]),
+        Choice::Gcv {
+            residual,
+            freedom,
+            predicted,
+        } => (
+            "gcv",
+            vec![
+                ("residual", residual),
+                ("freedom", freedom),
+                ("predicted", predicted),
+            ],
+        ),
+        Choice::LCurve {
+            residual,
+            penalty,
+            turn,
+        } => (
+            "l-curve",
+            vec![("residual", residual), ("penalty", penalty), ("turn", turn)],
+        ),
+        Choice::Tolerance { cutoff } => ("tolerance", vec![("cutoff", cutoff)]),
+        Choice::None => return (None, BTreeMap::new()),
+    };
+    (Some(rule), measures.into_iter().collect())
+}
+
+impl Ended {
+    /// Of a recovery by an iterative solver.
+    pub fn of(found: &Recovered) -> Option<Self> {
+        found.solver.as_ref().map(|s| Self {
+            status: s.status.clone(),
+            iterations: s.iterations,
+            refinements: s.refinements,
+            objective: s.objective,
+            gap: s.gap,
+        })
+    }
+}
+
+impl Beside {
+    /// Of a recovery that estimated something.
+    pub fn of(found: &Recovered) -> Option<Self> {
+        let values = |v: &Option<nalgebra::DVector<f64>>| v.as_ref().map(|v| v.as_slice().to_vec());
+        found.nuisance.as_ref().map(|n| Self {
+            scale: n.scale,
+            frame_constant: values(&n.frame_constant),
+            background: values(&n.background),
+            glare: values(&n.glare),
+        })
+    }
+}
+
+/// The regularisation used and why, in words.
+pub(super) fn words(found: &Recovered) -> String {
+    let solver = found.solver.as_ref().map_or(String::new(), |s| {
+        format!(
+            "; {} after {} iterations, gap {:.1e}",
+            s.status, s.iterations, s.gap
+        )
+    });
+    let estimated = found.nuisance.as_ref().map_or(String::new(), estimated);
+    chosen_words(found.parameter, found.rank, found.choice) + &solver + &estimated
+}
+
+/// A parameter and why it is this one, in words; of a method without one the rank.
+pub(super) fn chosen_words(parameter: Parameter, rank: usize, choice: Choice) -> String {
+    let what = match parameter {
+        Parameter::None => format!("rank {rank}"),
+        Parameter::Rank(k) => format!("{k} singular directions"),
+        Parameter::Damping(lambda) => format!("damping {lambda:.2e} of σ1"),
+        Parameter::TotalVariation(lambda) => format!("total variation {lambda:.2e} of σ1²"),
+        Parameter::Levels([dark, light]) => format!("levels {dark:.3} and {light:.3}"),
+    };
+    let why = match choice {
+        Choice::Given => ", as given".to_owned(),
+        Choice::Discrepancy {
+            residual, target, ..
+        } => {
+            format!(
+                ", by the discrepancy principle (residual {residual:.3e} W, noise {target:.3e} W)"
+            )
+        }
+        Choice::Evidence {
+            residual, patches, ..
+        } => {
+            format!(", by the evidence (χ² {residual:.1}, {patches} patches)")
+        }
+        Choice::Estimated => ", estimated".to_owned(),
+        Choice::Gcv {
+            freedom, predicted, ..
+        } => {
+            format!(
+                ", by generalised cross-validation (entries predicted to {predicted:.3e} W, {freedom:.1} degrees of freedom left)"
+            )
+        }
+        Choice::LCurve { residual, turn, .. } => {
+            format!(", at the corner of the L-curve (residual {residual:.3e} W, turn {turn:.2})")
+        }
+        Choice::Tolerance { cutoff } => format!(", cut at {cutoff:.2e}"),
+        Choice::None => String::new(),
+    };
+    what + &why
+}
+
+/// What was estimated beside the reflectances, in words: means over frames or pixels.
+fn estimated(nuisance: &Estimated) -> String {
+    let mut words = String::new();
+    let terms = [
+        ("frame constant", &nuisance.frame_constant, " W"),
+        ("background", &nuisance.background, " W"),
+        ("glare", &nuisance.glare, ""),
+    ];
+    for (name, values, unit) in terms {
+        if let Some(values) = values {
+            words += &format!("; {name} {:.3e}{unit} on average", values.mean());
+        }
+    }
+    if let Some(scale) = nuisance.scale {
+        words += &format!("; scale {scale:.4}");
+    }
+    words
+}
