@@ -213,7 +213,7 @@ pub use indicator::{
 pub use measures::Measures;
 pub use noise::{
     AxisLabel, Best, Held, LIMITS, Lost, NamedSensor, NoiseAxis, NoiseCurve, NoisePlan, NoiseStudy,
-    NoiseTasks, Point, Reach, RenderNoise,
+    NoiseTasks, Picture, Point, Reach, RenderNoise,
 };
 pub use objects::{
     Attempt, Noise, ObjectBands, RecoveredObject, measured, recover_objects, recover_with_picards,
