@@ -148,12 +148,11 @@ impl Ended {
 impl Beside {
     /// Of a recovery that estimated something.
     pub fn of(found: &Recovered) -> Option<Self> {
-        let values = |v: &Option<nalgebra::DVector<f64>>| v.as_ref().map(|v| v.as_slice().to_vec());
         found.nuisance.as_ref().map(|n| Self {
             scale: n.scale,
-            frame_constant: values(&n.frame_constant),
-            background: values(&n.background),
-            glare: values(&n.glare),
+            frame_constant: n.frame_constant.as_ref().map(|v| v.as_slice().to_vec()),
+            background: n.background.as_ref().map(|v| v.as_slice().to_vec()),
+            glare: n.glare.as_ref().map(|v| v.as_slice().to_vec()),
         })
     }
 }

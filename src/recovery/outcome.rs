@@ -63,8 +63,7 @@ pub enum Choice {
         /// What is weighed against it: ‖X‖ (C times ρ), or the norm of the differences, of
         /// `tikhonov-gradient`.
         penalty: f64,
-        /// How sharp the corner is: the curvature of the log–log curve where directions are damped,
-        /// the angle by which it turns (rad) where they are left out.
+        /// How sharp the corner is: the angle by which the log–log curve turns there, rad.
         turn: f64,
     },
     /// A numerical rank cut.

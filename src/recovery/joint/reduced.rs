@@ -157,3 +157,47 @@ pub(super) fn finish(
     found.nuisance = Some(estimated);
     Ok(found)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recovery::bench::{Bench, relative_noise};
+
+    /// Half a hundredth of ½ χ² is no "Solved", and what the solver says of itself does not count.
+    #[test]
+    fn the_status_says_what_the_gap_proves() {
+        let bench = Bench::new(6.0, 2, 4);
+        let board = bench.board(2);
+        let (phi, stderr) = relative_noise(&bench.phi(&board), 1e-2, 1);
+        let status = |stderr, objective, gap| {
+            let problem = Problem::new(&phi, &bench.c, &bench.d, stderr).unwrap();
+            let reduced = Reduced::new(&problem, &Options::default()).unwrap();
+            let solved = BoxSolution {
+                solution: board.clone(),
+                status: "Solved".to_owned(),
+                iterations: 9,
+                refinements: 0,
+                objective,
+                gap,
+            };
+            reduced.report(&solved).status
+        };
+        let far = "NOT PROVED to be near its minimum";
+        for (gap, told) in [
+            (1e-9, "minimum"),
+            (5e-3, "near its minimum"),
+            (5.0, far),
+            (f64::INFINITY, far),
+        ] {
+            assert_eq!(status(Some(&stderr), 20.0, gap), told, "{gap}");
+        }
+        // Without noise the objective is the unit.
+        for (gap, told) in [
+            (1e-34, "minimum"),
+            (1e-29, "near its minimum"),
+            (1e-26, far),
+        ] {
+            assert_eq!(status(None, 1e-26, gap), told, "{gap}");
+        }
+    }
+}
