@@ -37,7 +37,7 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     let measured = args.phi.is_some() && !args.dir.join(Record::FILE).exists();
     let (scene, record) = if measured {
         let path = args.dir.join(SCENE);
-        (console.load_scene(&path.to_string_lossy())?, None)
+        (console.load_any_scene(&path.to_string_lossy())?, None)
     } else {
         let (scene, record) = read_run(&args.dir, console)?;
         (scene, Some(record))

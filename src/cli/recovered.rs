@@ -15,7 +15,7 @@ use crate::report::{self, Panel};
 use crate::scene::{Division, Scene};
 use crate::store::ensure_writable;
 
-/// Writes into `folder` METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png, what the
+/// Writes into `folder` METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png where it is known, what the
 /// photographs determine of each element in determined.npy and determined.png, and overview.png with
 /// all of them side by side (no pictures of elements that are the triangles of a mesh); METHOD.texture.png, the reflectance as a texture for a scene, and METHOD.ply, the surface
 /// with it as colours; what is known of the uncertainty in METHOD.stderr.npy (nv × nu),
@@ -62,11 +62,16 @@ pub(super) fn write(
             let stale = ["npy", "png"].map(|what| named("determined", what));
             remove_named(folder, &stale.each_ref().map(String::as_str))?;
         }
+        if known.is_some_and(|o| o.truth.is_none()) {
+            let stale = ["npy", "png"].map(|what| named("truth", what));
+            remove_named(folder, &stale.each_ref().map(String::as_str))?;
+        }
         for object in objects.iter().filter(|o| o.surface == *surface) {
             let [nu, nv] = object.elements;
             let method = object.method.as_str();
             let first = known.is_some_and(|known| std::ptr::eq(known, object));
-            let truth = first.then_some(("truth", &object.truth));
+            let truth = object.truth.as_ref().filter(|_| first);
+            let truth = truth.map(|t| ("truth", t));
             let shares = shares.filter(|_| first).map(|s| ("determined", s));
             let own = [(method, &object.reflectance)];
             for (name, values) in truth.into_iter().chain(shares).chain(own) {

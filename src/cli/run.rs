@@ -141,7 +141,7 @@ fn compare_and_recover(
         occlusion,
     };
     let found = lab::validate(&results.scene, measured, against, test)?;
-    model::write(&args.output, &matrices, &found.model, Some(&found.z))?;
+    model::write(&args.output, &matrices, Some(&found.model), Some(&found.z))?;
     results.model = Some(found.model);
     results.z = Some(found.z);
     results.agreement = Some(found.agreement);

@@ -7,9 +7,9 @@ use serde::Serialize;
 use super::chosen::{Beside, Chosen, Ended, words};
 use super::doubt::doubts;
 use super::fit::{Certainty, Fit, Judged};
+use super::measures::Measures;
 use super::problem::problem;
 use crate::matrix::Matrix;
-use crate::metrics::{correlation, mtf_normalized, mtf_raw, rmse};
 use crate::model::MatrixModel;
 use crate::recovery::{
     self, BandKind, Bands, Method, Nuisance, Options, Picard, Problem, Recovered, RecoveryError,
@@ -27,8 +27,9 @@ pub struct RecoveredObject {
     pub elements: [usize; 2],
     /// Recovered reflectance of element iu + iv·nu.
     pub reflectance: Vec<f64>,
-    /// True albedo of the elements.
-    pub truth: Vec<f64>,
+    /// True albedo of the elements; absent, as all that is measured against it, where the scene does
+    /// not know it.
+    pub truth: Option<Vec<f64>>,
     /// (White − Black)/(White + Black); absent if the truth has no contrast.
     pub mtf_raw: Option<f64>,
     /// The same after stretching the recovered values to [0, 1].
@@ -36,7 +37,7 @@ pub struct RecoveredObject {
     /// Pearson correlation with the truth.
     pub correlation: Option<f64>,
     /// Root mean square error against the truth.
-    pub rmse: f64,
+    pub rmse: Option<f64>,
     /// Parameter used and why, in words.
     pub parameter: String,
     /// The same in numbers.
@@ -237,21 +238,24 @@ fn picards(
 /// What was recovered, surface by surface, measured against the true albedo at the element centres,
 /// and what the photographs say of it.
 pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<RecoveredObject> {
-    let bias = found.bias(&model.albedo);
+    // The bias of one element is of the truth of all.
+    let known = model.grids.iter().all(|grid| grid.is_known);
+    let bias = found.bias(&model.albedo).filter(|_| known);
     let warnings = doubts(found, judged);
     let cut = |grid: &crate::model::ElementGrid| {
         let range = grid.first..grid.first + grid.len();
         let reflectance = found.reflectance.as_slice()[range.clone()].to_vec();
-        let truth = model.albedo[range.clone()].to_vec();
+        let truth = grid.is_known.then(|| model.albedo[range.clone()].to_vec());
+        let scores = truth.as_ref().map(|t| Measures::of(&reflectance, t));
         let own = |m: &Matrix| m.rows(range.start, range.len()).into_owned();
         RecoveredObject {
             surface: grid.surface.clone(),
             method: found.method.name().to_owned(),
             elements: grid.count,
-            mtf_raw: mtf_raw(&reflectance, &truth),
-            mtf_normalized: mtf_normalized(&reflectance, &truth),
-            correlation: correlation(&reflectance, &truth),
-            rmse: rmse(&reflectance, &truth).unwrap_or(f64::NAN),
+            mtf_raw: scores.and_then(|s| s.mtf_raw),
+            mtf_normalized: scores.and_then(|s| s.mtf_normalized),
+            correlation: scores.and_then(|s| s.correlation),
+            rmse: scores.and_then(|s| s.rmse),
             parameter: words(found),
             choice: Chosen::of(found),
             solver: Ended::of(found),

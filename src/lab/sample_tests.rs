@@ -141,11 +141,11 @@ pub(crate) fn whole(mut run: RunResults) -> RunResults {
                 method: method.into(),
                 elements,
                 reflectance: reflectance.collect(),
-                truth: truth.clone(),
+                truth: Some(truth.clone()),
                 mtf_raw: Some(0.5 * stretch),
                 mtf_normalized: Some(0.98),
                 correlation: Some(0.97),
-                rmse: 0.05,
+                rmse: Some(0.05),
                 parameter: "λ 1.3e-15 by the discrepancy principle from the standard error of Φcam"
                     .into(),
                 choice: Chosen {

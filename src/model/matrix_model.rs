@@ -26,7 +26,8 @@ pub struct MatrixModel {
     pub g23: Matrix,
     /// Mean albedo of each element; of a surface that is not Lambertian that of the Lambertian one
     /// that reflects as much
-    /// ([`Surface::lambertian_equivalent`](crate::scene::Surface::lambertian_equivalent)).
+    /// ([`Surface::lambertian_equivalent`](crate::scene::Surface::lambertian_equivalent)). Where it
+    /// is unknown ([`ElementGrid::is_known`]) a grey that means nothing.
     pub albedo: Vec<f64>,
     /// C, pixels × elements: E_p·(ρ3/π)·G23/π.
     pub camera_side: Matrix,
@@ -103,6 +104,7 @@ impl MatrixModel {
                     Division::Faces | Division::Whole => surface.elements,
                 },
                 first: count,
+                is_known: surface.is_known,
             };
             count += grid.len();
             grids.push(grid);

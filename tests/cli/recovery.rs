@@ -32,6 +32,7 @@ fn a_method_writes_its_matrix_and_its_picture() {
     let written = [
         "determined.npy",
         "determined.png",
+        "joint.choice.json",
         "joint.npy",
         "joint.ply",
         "joint.png",
@@ -475,4 +476,56 @@ fn a_run_can_be_repeated_at_its_own_choice() {
             .contents("own")
             .contains_key("joint.background.npy")
     );
+}
+
+/// An object of which nothing is known is recovered, and nothing is told of a truth; its light is
+/// not made up either.
+#[test]
+fn an_unknown_albedo_has_no_truth_and_no_scores() {
+    let workspace = with_run();
+    let text = workspace.text("small.toml");
+    let board = "{ checkerboard = [2, 2], dark = 0.0, light = 1.0 }";
+    let unknown = text.replace(board, "\"unknown\"");
+    workspace.write("unknown.toml", &unknown);
+    for line in ["render unknown.toml -o r", "run unknown.toml -o r"] {
+        workspace.refuses(line, &["unknown.toml:", "`object`", "give it a number"]);
+    }
+    let wall = unknown.replace("lambertian = 0.8", "lambertian = \"unknown\"");
+    workspace.write("wall.toml", wall);
+    workspace.refuses("model wall.toml -o r", &["only `lambertian` of a hidden"]);
+    let modelled = workspace.phicam("model unknown.toml -o bench").exits(0);
+    assert!(
+        modelled.stdout.contains("no phi.npy"),
+        "{}",
+        modelled.account()
+    );
+    assert!(!workspace.contents("bench/model").contains_key("phi.npy"));
+    let line = "recover bench --phi done/model/phi.npy --noise 1e-3 --method joint-unbounded,joint";
+    let told = workspace
+        .phicam(&format!("{line} --elements 4"))
+        .exits(0)
+        .stdout;
+    for word in ["RMSE", "MTF", "correlation", "truth"] {
+        assert!(!told.contains(word), "{word} in {told}");
+    }
+    let found = objects(workspace.phicam(&format!("{line} --elements 4 --json")));
+    for object in &found {
+        for key in ["truth", "rmse", "mtf_raw", "mtf_normalized", "correlation"] {
+            assert!(object[key].is_null(), "{key}: {object}");
+        }
+        assert!(object.get("bias").is_none(), "{object}");
+    }
+    let names = workspace.contents("bench/recovered");
+    assert!(names.contains_key("joint.npy") && names.contains_key("overview.png"));
+    assert!(
+        names
+            .keys()
+            .all(|n| !n.starts_with("truth") && !n.contains("bias"))
+    );
+    // The same photographs with the board known: the same picture, and its scores.
+    let line =
+        "recover done --phi done/model/phi.npy --noise 1e-3 --method joint --elements 4 --json";
+    let known = objects(workspace.phicam(line));
+    assert_eq!(known[0]["reflectance"], found[1]["reflectance"]);
+    assert!(known[0]["rmse"].is_f64());
 }
