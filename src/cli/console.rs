@@ -17,8 +17,17 @@ pub(super) struct Console<'a> {
 }
 
 impl Console<'_> {
-    /// A built-in scene by name, or a scene file by path.
+    /// A built-in scene by name, or a scene file by path, all of whose albedos are known.
     pub(super) fn load_scene(self, name_or_path: &str) -> Result<Scene, SceneError> {
+        let scene = self.load_any_scene(name_or_path)?;
+        scene.known().map_err(|refused| SceneError {
+            source: name_or_path.to_owned(),
+            ..refused
+        })
+    }
+
+    /// The same whose albedos may be unknown: for what needs none of them.
+    pub(super) fn load_any_scene(self, name_or_path: &str) -> Result<Scene, SceneError> {
         Scene::load_with(name_or_path, self.also_read)
     }
 

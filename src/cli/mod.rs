@@ -66,6 +66,7 @@ mod record;
 mod recover;
 mod recover_memory;
 mod recover_options;
+mod recovered;
 mod render;
 mod replacement;
 mod reproduce;

@@ -59,12 +59,18 @@ pub(super) fn is_of_recovered(name: &str) -> bool {
     let whats = [
         "",
         "stderr",
+        "light",
         "covariance",
         "resolution",
         "bias",
         "lower",
         "upper",
         "texture",
+        "choice",
+        "frame_constant",
+        "background",
+        "glare",
     ];
-    known && whats.contains(&what) && matches!(ext, "npy" | "png" | "csv" | "svg" | "ply")
+    let exts = ["npy", "png", "csv", "svg", "ply", "json"];
+    known && whats.contains(&what) && exts.contains(&ext)
 }

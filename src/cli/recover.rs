@@ -3,25 +3,23 @@
 use std::path::{Path, PathBuf};
 
 use super::args::RecoverArgs;
-use super::cleanup::{remove_abandoned, remove_named};
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_matrix, read_run, read_stderr};
 use super::output;
 use super::record::Record;
 use super::recover_memory::{self, Errors, Held, Strips};
+use super::recovered::write;
 use super::run_folder::{PHI, RECOVERED, RunFolder, SATURATED, SCENE, STDERR, is_of_recovered};
 use super::{Outcome, recover_options};
-use crate::lab::finding::Describe;
 use crate::lab::{
     Attempt, Certainty, Noise, RecoveredObject, describe_recovery, recover_with_picards,
 };
-use crate::matrix::{Matrix, npy};
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Nuisance, Options, Picard, Uncertainty};
-use crate::report::{self, Panel};
-use crate::scene::{Division, Scene};
-use crate::store::{digest, ensure_writable};
+use crate::report;
+use crate::scene::Scene;
+use crate::store::digest;
 
 /// Elements whose covariance and resolution are still written: 32 MiB each.
 const MOST_CORRELATED: usize = 2048;
@@ -30,7 +28,7 @@ const MASK_ROWS: usize = 256;
 
 pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, Failure> {
     let methods: Vec<Method> = match args.method.as_slice() {
-        [] => Method::USUAL.to_vec(),
+        [] => Method::TRIED.to_vec(),
         names => names.iter().map(|n| n.parse()).collect::<Result<_, _>>()?,
     };
     let options = recover_options::checked(args, &methods)?;
@@ -39,7 +37,7 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     let measured = args.phi.is_some() && !args.dir.join(Record::FILE).exists();
     let (scene, record) = if measured {
         let path = args.dir.join(SCENE);
-        (console.load_scene(&path.to_string_lossy())?, None)
+        (console.load_any_scene(&path.to_string_lossy())?, None)
     } else {
         let (scene, record) = read_run(&args.dir, console)?;
         (scene, Some(record))
@@ -290,105 +288,4 @@ pub(super) fn collect(
         console.say(reason);
     }
     Ok(objects)
-}
-
-/// Writes into `folder` METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png, what the
-/// photographs determine of each element in determined.npy and determined.png, and overview.png with all of them side by side (no pictures of elements that are the triangles of a
-/// mesh); METHOD.texture.png, the reflectance as a texture for a scene, and METHOD.ply, the surface
-/// with it as colours; what is known of the uncertainty in METHOD.stderr.npy (nv × nu),
-/// METHOD.covariance.npy and METHOD.resolution.npy (own elements × elements of all surfaces),
-/// METHOD.bias.npy (nv × nu), METHOD.lower.npy and METHOD.upper.npy where bands were asked for;
-/// NAME.csv and NAME.svg of each of `picards`, and no others. Where several surfaces are hidden the
-/// names are METHOD-0, METHOD-1, … in file order.
-pub(super) fn write(
-    folder: &Path,
-    scene: &Scene,
-    objects: &[RecoveredObject],
-    picards: &[Picard],
-) -> Result<(), Failure> {
-    ensure_writable(folder)?;
-    remove_abandoned(folder)?;
-    remove_named(folder, &["picard-joint.csv", "picard-joint.svg"])?;
-    for picard in picards {
-        for (name, text) in report::finding_files(&picard.describe()) {
-            output::write(&folder.join(name), text)?;
-        }
-    }
-    let mut surfaces: Vec<&str> = Vec::new();
-    for object in objects {
-        if !surfaces.contains(&object.surface.as_str()) {
-            surfaces.push(&object.surface);
-        }
-    }
-    for (i, surface) in surfaces.iter().enumerate() {
-        let suffix = if surfaces.len() > 1 {
-            format!("-{i}")
-        } else {
-            String::new()
-        };
-        let named = |name: &str, what: &str| format!("{name}{suffix}.{what}");
-        let file = |name: &str, what: &str| folder.join(named(name, what));
-        let shape = scene.surfaces.iter().find(|s| s.name == **surface);
-        let drawn = shape.is_none_or(|s| s.division == Division::Cells);
-        let mut panels = Vec::new();
-        let known = objects.iter().find(|o| o.surface == *surface);
-        let shares = known.and_then(|o| o.determined_share.as_ref());
-        if shares.is_none() {
-            let stale = ["npy", "png"].map(|what| named("determined", what));
-            remove_named(folder, &stale.each_ref().map(String::as_str))?;
-        }
-        for object in objects.iter().filter(|o| o.surface == *surface) {
-            let [nu, nv] = object.elements;
-            let method = object.method.as_str();
-            let first = known.is_some_and(|known| std::ptr::eq(known, object));
-            let truth = first.then_some(("truth", &object.truth));
-            let shares = shares.filter(|_| first).map(|s| ("determined", s));
-            let own = [(method, &object.reflectance)];
-            for (name, values) in truth.into_iter().chain(shares).chain(own) {
-                npy::write(&file(name, "npy"), &Matrix::from_row_slice(nv, nu, values))?;
-                if drawn {
-                    let panel = Panel::elements(name, object.elements, values.clone());
-                    let png = report::grey_png(surface, std::slice::from_ref(&panel))?;
-                    output::write(&file(name, "png"), png)?;
-                    panels.push(panel);
-                }
-            }
-            if let Some(shape) = shape {
-                let (elements, values) = (object.elements, &object.reflectance);
-                if drawn {
-                    let png = report::texture_png(elements, values)?;
-                    output::write(&file(method, "texture.png"), png)?;
-                }
-                let ply = report::recovered_ply(shape, elements, values);
-                output::write(&file(method, "ply"), ply)?;
-            }
-            for (what, matrix) in uncertainties(object) {
-                let name = named(method, &format!("{what}.npy"));
-                match matrix {
-                    Some(matrix) => npy::write(&folder.join(name), &matrix)?,
-                    None => remove_named(folder, &[&name])?,
-                }
-            }
-        }
-        if drawn {
-            let png = report::grey_png(surface, &panels)?;
-            output::write(&file("overview", "png"), png)?;
-        }
-    }
-    Ok(())
-}
-
-/// What is known of the uncertainty of `object`, by the names of its files.
-fn uncertainties(object: &RecoveredObject) -> [(&'static str, Option<Matrix>); 6] {
-    let [nu, nv] = object.elements;
-    let picture = |values: &Vec<f64>| Matrix::from_row_slice(nv, nu, values);
-    let bands = object.bands.as_ref();
-    [
-        ("stderr", object.standard_error.as_ref().map(picture)),
-        ("bias", object.bias.as_ref().map(picture)),
-        ("lower", bands.map(|b| picture(&b.lower))),
-        ("upper", bands.map(|b| picture(&b.upper))),
-        ("covariance", object.covariance.clone()),
-        ("resolution", object.resolution.clone()),
-    ]
 }

@@ -16,7 +16,7 @@ use super::run_folder::{
     Claim, MODEL, PHI, RECOVERED, REPORT, STDERR, SUMMARY, TAILS, frame_max, is_of_model,
     is_of_recovered,
 };
-use super::{Outcome, model, need, recover, settings, validate};
+use super::{Outcome, model, need, recover, recovered, settings, validate};
 use crate::film::{self, Stack};
 use crate::lab::finding::Describe;
 use crate::lab::{
@@ -141,7 +141,7 @@ fn compare_and_recover(
         occlusion,
     };
     let found = lab::validate(&results.scene, measured, against, test)?;
-    model::write(&args.output, &matrices, &found.model, Some(&found.z))?;
+    model::write(&args.output, &matrices, Some(&found.model), Some(&found.z))?;
     results.model = Some(found.model);
     results.z = Some(found.z);
     results.agreement = Some(found.agreement);
@@ -162,12 +162,12 @@ fn compare_and_recover(
         &results.phi,
         noise,
         Nuisance::default(),
-        &Method::USUAL,
+        &Method::TRIED,
         &options,
     );
     results.recovered = recover::collect(attempts, false, console)?;
     results.picards = picards?;
-    recover::write(
+    recovered::write(
         &args.output.join(RECOVERED),
         &results.scene,
         &results.recovered,

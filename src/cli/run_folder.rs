@@ -157,7 +157,7 @@ impl RunFolder {
         let there = own.exists();
         let same = || {
             console
-                .load_scene(&own.to_string_lossy())
+                .load_any_scene(&own.to_string_lossy())
                 .is_ok_and(|s| s.hash == scene.hash)
         };
         if there && !same() {
@@ -242,7 +242,7 @@ impl RunFolder {
         if own.exists() {
             // What cannot be read as a scene is not this one either.
             if !console
-                .load_scene(&own.to_string_lossy())
+                .load_any_scene(&own.to_string_lossy())
                 .is_ok_and(|s| s.hash == scene.hash)
             {
                 return Err(Failure::new(

@@ -24,12 +24,12 @@ pub(super) fn execute(args: &SceneArgs, console: Console) -> Result<Outcome, Fai
             output::print(&output::json(&all)?)?;
         }
         SceneCommand::Check { scene, json: false } => {
-            let scene = console.load_scene(scene)?;
+            let scene = console.load_any_scene(scene)?;
             need::frames(&scene)?;
             output::print(&check(&scene)?)?;
         }
         SceneCommand::Check { scene, json: true } => {
-            let loaded = console.load_scene(scene).map_err(Failure::from);
+            let loaded = console.load_any_scene(scene).map_err(Failure::from);
             let loaded = loaded.and_then(|scene| need::frames(&scene).map(|()| scene));
             output::print(&match &loaded {
                 Ok(loaded) => checked(scene, loaded)?,
@@ -46,7 +46,7 @@ pub(super) fn execute(args: &SceneArgs, console: Console) -> Result<Outcome, Fai
             output,
             force,
         } => {
-            let scene = console.load_scene(scene)?;
+            let scene = console.load_any_scene(scene)?;
             need::frames(&scene)?;
             console.warn(&scene);
             output::deliver(&report::bench_svg(&scene), output.as_deref(), *force)?;
@@ -58,8 +58,9 @@ pub(super) fn execute(args: &SceneArgs, console: Console) -> Result<Outcome, Fai
             output,
             force,
         } => {
-            let scene = console.load_scene(scene)?;
+            let scene = console.load_any_scene(scene)?;
             let text = if *mitsuba {
+                let scene = scene.known()?;
                 need::mitsuba(&scene)?;
                 report::mitsuba_script(&scene)?
             } else {

@@ -2,7 +2,7 @@
 
 use super::fit::{Attainable, Fit, Judged};
 use crate::num::digits::{figure, significant};
-use crate::recovery::{Method, Recovered, Weighting};
+use crate::recovery::{Method, Recovered, Sum, Weighting};
 
 /// More than this share of the elements is most of them.
 const MOST: f64 = 0.5;
@@ -25,6 +25,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         on_bounds(found),
         unfinished(found, judged),
         without_bands(found),
+        unsampled(found),
     ];
     every.into_iter().flatten().collect()
 }
@@ -164,6 +165,21 @@ fn without_bands(found: &Recovered) -> Option<String> {
     Some(format!(
         "it {why}. Ask for those of joint, or of joint-unbounded where it drops no direction"
     ))
+}
+
+/// Probabilities of patterns that the sampling did not settle.
+fn unsampled(found: &Recovered) -> Option<String> {
+    let Sum::Sampled { disagreement, .. } = found.patterns.as_ref()?.sum else {
+        return None;
+    };
+    (disagreement > Sum::AGREEMENT).then(|| {
+        format!(
+            "the probabilities of its patterns are NOT to be believed: two samplings from different \
+             starts differ by {} in an element. Use fewer --elements, give the --levels, or believe \
+             joint-gp",
+            significant(disagreement, 2)
+        )
+    })
 }
 
 /// An iteration that ended away from its minimum by what can be seen in the picture.

@@ -146,6 +146,7 @@ mod brdf;
 mod budget;
 mod bytes;
 mod check;
+mod chosen;
 mod convergence;
 mod coverage;
 mod derivatives;
@@ -170,6 +171,7 @@ pub mod options;
 mod picard;
 mod pilot;
 mod power;
+mod preferred;
 mod preview;
 mod problem;
 pub mod published;
@@ -193,6 +195,7 @@ pub use agreement::{Agreement, Entry, EntryBound, agree};
 pub use brdf::{Assumption, BrdfPlan, BrdfStudy, BrdfTasks, Quality, Ratio};
 pub use budget::{BudgetPlan, BudgetTasks, Closure, ErrorBudget, Term};
 pub use bytes::{LAYOUT, TaskError, decode, encode, encoded};
+pub use chosen::{Beside, Chosen, Ended, Probable};
 pub use convergence::{Convergence, ConvergenceTasks, Curve, Step};
 pub use coverage::{Coverage, CoveragePlan, CoverageRow, CoverageTasks};
 pub use ensemble::{Estimate, Spread};
@@ -211,7 +214,7 @@ pub use indicator::{
 pub use measures::Measures;
 pub use noise::{
     AxisLabel, Best, Held, LIMITS, Lost, NamedSensor, NoiseAxis, NoiseCurve, NoisePlan, NoiseStudy,
-    NoiseTasks, Point, Reach, RenderNoise,
+    NoiseTasks, Picture, Point, Reach, RenderNoise,
 };
 pub use objects::{
     Attempt, Noise, ObjectBands, RecoveredObject, measured, recover_objects, recover_with_picards,

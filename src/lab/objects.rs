@@ -4,15 +4,17 @@ use std::ops::Range;
 
 use serde::Serialize;
 
+use super::chosen::{Beside, Chosen, Ended, Probable, words};
 use super::doubt::doubts;
 use super::fit::{Certainty, Fit, Judged};
+use super::measures::Measures;
+use super::preferred::preferred;
 use super::problem::problem;
 use crate::matrix::Matrix;
-use crate::metrics::{correlation, mtf_normalized, mtf_raw, rmse};
 use crate::model::MatrixModel;
 use crate::recovery::{
-    self, BandKind, Bands, Choice, Estimated, Method, Nuisance, Options, Parameter, Picard,
-    Problem, Recovered, RecoveryError, Shared, recover,
+    self, BandKind, Bands, Method, Nuisance, Options, Picard, Problem, Recovered, RecoveryError,
+    Shared, recover,
 };
 
 /// A recovered hidden surface.
@@ -26,8 +28,9 @@ pub struct RecoveredObject {
     pub elements: [usize; 2],
     /// Recovered reflectance of element iu + iv·nu.
     pub reflectance: Vec<f64>,
-    /// True albedo of the elements.
-    pub truth: Vec<f64>,
+    /// True albedo of the elements; absent, as all that is measured against it, where the scene does
+    /// not know it.
+    pub truth: Option<Vec<f64>>,
     /// (White − Black)/(White + Black); absent if the truth has no contrast.
     pub mtf_raw: Option<f64>,
     /// The same after stretching the recovered values to [0, 1].
@@ -35,9 +38,28 @@ pub struct RecoveredObject {
     /// Pearson correlation with the truth.
     pub correlation: Option<f64>,
     /// Root mean square error against the truth.
-    pub rmse: f64,
+    pub rmse: Option<f64>,
     /// Parameter used and why, in words.
     pub parameter: String,
+    /// The same in numbers.
+    pub choice: Chosen,
+    /// How the solver ended; absent where none iterates.
+    pub solver: Option<Ended>,
+    /// What was estimated beside the reflectances; absent where nothing was asked for.
+    pub estimated: Option<Beside>,
+    /// Why this picture is shown before the others; absent for those.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub preferred: Option<String>,
+    /// ln of how likely its method's assumption makes the photographs, over the numbers that fit them
+    /// best; absent for methods that do not know.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub log_evidence: Option<f64>,
+    /// Probability of each element to be light, of `joint-two-valued`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light: Option<Vec<f64>>,
+    /// What is known of its pattern and levels.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub patterns: Option<Probable>,
     /// Bands around the reflectances, where they were asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bands: Option<ObjectBands>,
@@ -204,15 +226,28 @@ fn attempts(
     let known = noise.known();
     let all: Vec<&Recovered> = found.iter().flatten().collect();
     let any = Judged::any(problem, known, &all, options);
-    let judged = |found: Recovered| measured(model, &found, &any.of(problem, known, &found));
-    methods
+    // Photographs that nothing explains are likeliest by no assumption.
+    let explained = any.best.as_ref().is_none_or(|best| best.possible.fits);
+    let first = preferred(&all).filter(|_| explained);
+    let judged = |found: Recovered| {
+        let mut objects = measured(model, &found, &any.of(problem, known, &found));
+        let own = first.as_ref().filter(|f| f.method == found.method);
+        let why = own.map(|own| own.why.clone());
+        objects
+            .iter_mut()
+            .for_each(|o| o.preferred.clone_from(&why));
+        objects
+    };
+    let mut attempts: Vec<Attempt> = methods
         .iter()
         .zip(found)
         .map(|(&method, found)| Attempt {
             method,
             outcome: found.map(judged),
         })
-        .collect()
+        .collect();
+    attempts.sort_by_key(|a| first.as_ref().is_none_or(|f| f.method != a.method));
+    attempts
 }
 
 fn picards(
@@ -233,22 +268,35 @@ fn picards(
 /// What was recovered, surface by surface, measured against the true albedo at the element centres,
 /// and what the photographs say of it.
 pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<RecoveredObject> {
-    let bias = found.bias(&model.albedo);
+    // The bias of one element is of the truth of all.
+    let known = model.grids.iter().all(|grid| grid.is_known);
+    let bias = found.bias(&model.albedo).filter(|_| known);
     let warnings = doubts(found, judged);
     let cut = |grid: &crate::model::ElementGrid| {
         let range = grid.first..grid.first + grid.len();
         let reflectance = found.reflectance.as_slice()[range.clone()].to_vec();
-        let truth = model.albedo[range.clone()].to_vec();
+        let truth = grid.is_known.then(|| model.albedo[range.clone()].to_vec());
+        let scores = truth.as_ref().map(|t| Measures::of(&reflectance, t));
         let own = |m: &Matrix| m.rows(range.start, range.len()).into_owned();
         RecoveredObject {
             surface: grid.surface.clone(),
             method: found.method.name().to_owned(),
             elements: grid.count,
-            mtf_raw: mtf_raw(&reflectance, &truth),
-            mtf_normalized: mtf_normalized(&reflectance, &truth),
-            correlation: correlation(&reflectance, &truth),
-            rmse: rmse(&reflectance, &truth).unwrap_or(f64::NAN),
+            mtf_raw: scores.and_then(|s| s.mtf_raw),
+            mtf_normalized: scores.and_then(|s| s.mtf_normalized),
+            correlation: scores.and_then(|s| s.correlation),
+            rmse: scores.and_then(|s| s.rmse),
             parameter: words(found),
+            choice: Chosen::of(found),
+            solver: Ended::of(found),
+            estimated: Beside::of(found),
+            preferred: None,
+            log_evidence: found.log_evidence,
+            light: found
+                .patterns
+                .as_ref()
+                .map(|p| p.light.as_slice()[range.clone()].to_vec()),
+            patterns: Probable::of(found),
             bands: found
                 .bands
                 .as_ref()
@@ -290,87 +338,4 @@ fn object_bands(bands: &Bands, range: Range<usize>) -> ObjectBands {
         lower: intervals.iter().map(|i| i[0]).collect(),
         upper: intervals.iter().map(|i| i[1]).collect(),
     }
-}
-
-/// The regularisation used and why, in words.
-pub(super) fn words(found: &Recovered) -> String {
-    let solver = match &found.solver {
-        // That an iteration has converged says nothing of the fit.
-        Some(s) if s.status == "Solved" => {
-            format!(
-                "; minimum after {} iterations, gap {:.1e}",
-                s.iterations, s.gap
-            )
-        }
-        Some(s) => format!(
-            "; {} after {} iterations, gap {:.1e}",
-            s.status, s.iterations, s.gap
-        ),
-        None => String::new(),
-    };
-    let estimated = found.nuisance.as_ref().map_or(String::new(), estimated);
-    chosen_words(found.parameter, found.rank, found.choice) + &solver + &estimated
-}
-
-/// A parameter and why it is this one, in words; of a method without one the rank.
-pub(super) fn chosen_words(parameter: Parameter, rank: usize, choice: Choice) -> String {
-    let what = match parameter {
-        Parameter::None => format!("rank {rank}"),
-        Parameter::Rank(k) => format!("{k} singular directions"),
-        Parameter::Damping(lambda) => format!("damping {lambda:.2e} of σ1"),
-        Parameter::TotalVariation(lambda) => format!("total variation {lambda:.2e} of σ1²"),
-        Parameter::GaussianProcess { spread, length } => {
-            format!("spread {spread:.3}, length {length:.3}")
-        }
-        Parameter::Levels([dark, light]) => format!("levels {dark:.3} and {light:.3}"),
-    };
-    let why = match choice {
-        Choice::Given => ", as given".to_owned(),
-        Choice::Discrepancy {
-            residual, target, ..
-        } => {
-            format!(
-                ", by the discrepancy principle (residual {residual:.3e} W, noise {target:.3e} W)"
-            )
-        }
-        Choice::JointDiscrepancy {
-            residual, target, ..
-        } => {
-            format!(", by the discrepancy principle (χ² {residual:.1}, noise {target:.1})")
-        }
-        Choice::Evidence { log } => format!(", by the evidence (ln {log:.1} below a perfect fit)"),
-        Choice::Estimated => ", estimated".to_owned(),
-        Choice::Gcv {
-            freedom, predicted, ..
-        } => {
-            format!(
-                ", by generalised cross-validation (entries predicted to {predicted:.3e} W, {freedom:.1} degrees of freedom left)"
-            )
-        }
-        Choice::LCurve { residual, turn, .. } => {
-            format!(", at the corner of the L-curve (residual {residual:.3e} W, turn {turn:.2})")
-        }
-        Choice::Tolerance { cutoff } => format!(", cut at {cutoff:.2e}"),
-        Choice::None => String::new(),
-    };
-    what + &why
-}
-
-/// What was estimated beside the reflectances, in words: means over frames or pixels.
-fn estimated(nuisance: &Estimated) -> String {
-    let mut words = String::new();
-    let terms = [
-        ("frame constant", &nuisance.frame_constant, " W"),
-        ("background", &nuisance.background, " W"),
-        ("glare", &nuisance.glare, ""),
-    ];
-    for (name, values, unit) in terms {
-        if let Some(values) = values {
-            words += &format!("; {name} {:.3e}{unit} on average", values.mean());
-        }
-    }
-    if let Some(scale) = nuisance.scale {
-        words += &format!("; scale {scale:.4}");
-    }
-    words
 }

@@ -1,6 +1,6 @@
 //! Made-up runs for tests: no physics, only shapes and plausible sizes.
 
-use crate::lab::{Agreement, Entry, Fit, RecoveredObject, RunResults};
+use crate::lab::{Agreement, Chosen, Entry, Fit, RecoveredObject, RunResults};
 use crate::matrix::Matrix;
 use crate::num::stream::Sampling;
 use crate::scene::Scene;
@@ -141,13 +141,26 @@ pub(crate) fn whole(mut run: RunResults) -> RunResults {
                 method: method.into(),
                 elements,
                 reflectance: reflectance.collect(),
-                truth: truth.clone(),
+                truth: Some(truth.clone()),
                 mtf_raw: Some(0.5 * stretch),
                 mtf_normalized: Some(0.98),
                 correlation: Some(0.97),
-                rmse: 0.05,
+                rmse: Some(0.05),
                 parameter: "λ 1.3e-15 by the discrepancy principle from the standard error of Φcam"
                     .into(),
+                choice: Chosen {
+                    parameter: None,
+                    value: Vec::new(),
+                    rule: None,
+                    measures: Default::default(),
+                    repeat: None,
+                },
+                solver: None,
+                estimated: None,
+                preferred: None,
+                log_evidence: None,
+                light: None,
+                patterns: None,
                 bands: None,
                 standard_error: None,
                 bias: None,

@@ -218,23 +218,27 @@ pub fn describe_recovery(recovered: &[RecoveredObject]) -> Finding {
 pub fn recovery(group: &[&RecoveredObject]) -> Table {
     let [nu, nv] = group.first().map_or([0; 2], |first| first.elements);
     let surface = group.first().map_or("", |first| &first.surface);
+    let known = group.first().is_some_and(|first| first.truth.is_some());
     let (names, caption) = if [nu, nv] == [1, 1] {
-        let names = ["reflectance", "standard error", "truth"].as_slice();
-        (names, format!("recovered: {surface}, one element"))
+        let names = ["reflectance", "standard error", "truth"];
+        let names = &names[..2 + usize::from(known)];
+        (names.to_vec(), format!("recovered: {surface}, one element"))
     } else {
-        let names = ["MTF raw", "MTF normalized", "correlation", "RMSE"].as_slice();
+        let names = ["MTF raw", "MTF normalized", "correlation", "RMSE"];
+        let names = if known { names.to_vec() } else { Vec::new() };
         (names, format!("recovered: {surface}, {nu} × {nv} elements"))
     };
     let numbers = |r: &RecoveredObject| -> Vec<Option<f64>> {
         if [nu, nv] == [1, 1] {
             let stderr = r.standard_error.as_ref().map(|s| s[0]);
-            vec![Some(r.reflectance[0]), stderr, Some(r.truth[0])]
+            let truth = r.truth.as_ref().map(|t| t[0]);
+            vec![Some(r.reflectance[0]), stderr, truth]
         } else {
-            vec![r.mtf_raw, r.mtf_normalized, r.correlation, Some(r.rmse)]
+            vec![r.mtf_raw, r.mtf_normalized, r.correlation, r.rmse]
         }
     };
     let row = |r: &&RecoveredObject| {
-        let numbers = numbers(r).into_iter().map(Cell::from);
+        let numbers = numbers(r).into_iter().take(names.len()).map(Cell::from);
         let method = std::iter::once(r.method.as_str().into());
         let chosen = std::iter::once(r.parameter.as_str().into());
         method.chain(numbers).chain(chosen).collect()
@@ -278,9 +282,19 @@ pub fn fits(group: &[&RecoveredObject]) -> Table {
             Column::number("P", "", "", 2),
         ],
         rows: group.iter().map(row).collect(),
-        note: determined(group),
+        note: first_of(group) + &determined(group),
         ..Table::default()
     }
+}
+
+/// Which picture is shown first and why, where that was decided.
+fn first_of(group: &[&RecoveredObject]) -> String {
+    let of = group
+        .iter()
+        .find_map(|r| Some((&r.method, r.preferred.as_ref()?)));
+    of.map_or(String::new(), |(method, why)| {
+        format!("{method} is {why}. ")
+    })
 }
 
 /// How much of the pictures of one surface the photographs determine, in words.

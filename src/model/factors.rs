@@ -43,6 +43,8 @@ pub struct ElementGrid {
     pub count: [usize; 2],
     /// Index of its first element; element iu + iv·nu follows by that much.
     pub first: usize,
+    /// Whether its albedo is known.
+    pub is_known: bool,
 }
 
 impl ElementGrid {

@@ -26,7 +26,8 @@ pub struct MatrixModel {
     pub g23: Matrix,
     /// Mean albedo of each element; of a surface that is not Lambertian that of the Lambertian one
     /// that reflects as much
-    /// ([`Surface::lambertian_equivalent`](crate::scene::Surface::lambertian_equivalent)).
+    /// ([`Surface::lambertian_equivalent`](crate::scene::Surface::lambertian_equivalent)). Where it
+    /// is unknown ([`ElementGrid::is_known`]) a grey that means nothing.
     pub albedo: Vec<f64>,
     /// Centre of each element, in the scene's unit of length.
     pub places: Vec<[f64; 3]>,
@@ -105,6 +106,7 @@ impl MatrixModel {
                     Division::Faces | Division::Whole => surface.elements,
                 },
                 first: count,
+                is_known: surface.is_known,
             };
             count += grid.len();
             grids.push(grid);

@@ -12,6 +12,24 @@ fn other_rules(method: Method) -> &'static str {
     }
 }
 
+/// Why a rule has no answer.
+fn no_answer(rule: Rule) -> &'static str {
+    match rule {
+        Rule::LCurve => "the L-curve has no corner, it nowhere turns by as much as π/8",
+        Rule::Gcv => "no spot is left to predict",
+        Rule::Discrepancy => "no residual is as the noise makes it",
+    }
+}
+
+/// What to use in its place.
+fn other_than(rule: Rule) -> &'static str {
+    match rule {
+        Rule::LCurve => "discrepancy (give the standard errors of phi) or gcv (needs none)",
+        Rule::Gcv => "discrepancy (give the standard errors of phi)",
+        Rule::Discrepancy => "gcv",
+    }
+}
+
 /// Why nothing was recovered.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RecoveryError {
@@ -135,8 +153,8 @@ pub enum RecoveryError {
     },
     /// A rule that has no answer for these data.
     #[error(
-        "the {rule} rule finds no {parameter} for {method}: its curve has no corner, or no spot is left to predict; \
-         choose by another rule, or give the {parameter} yourself"
+        "the {rule} rule finds no {parameter} for {method}: {}; choose by {}, or give the {parameter} yourself",
+        no_answer(*rule), other_than(*rule)
     )]
     Undecided {
         /// The method's name.

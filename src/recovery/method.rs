@@ -55,7 +55,19 @@ impl Method {
         Method::JointTwoValued,
     ];
 
-    /// The methods that are tried where none is named, simplest first.
+    /// The methods that are tried where none is named, simplest first: those of [`Method::USUAL`] and
+    /// those that know how likely the photographs are by what they assume.
+    pub const TRIED: [Method; 7] = [
+        Method::Pinv,
+        Method::Tsvd,
+        Method::Tikhonov,
+        Method::JointUnbounded,
+        Method::Joint,
+        Method::JointGp,
+        Method::JointTwoValued,
+    ];
+
+    /// The methods that are compared over regularisation and noise, simplest first.
     pub const USUAL: [Method; 5] = [
         Method::Pinv,
         Method::Tsvd,

@@ -84,7 +84,7 @@ pub struct Options {
     /// Weights of the joint methods.
     pub weighting: WeightRule,
     /// The strength λ of `joint-tv` as a fraction of σ₁², σ₁ the largest singular value of the
-    /// weighted operator; by the discrepancy principle where not given.
+    /// weighted operator; by the largest evidence where not given.
     pub total_variation: Option<f64>,
     /// The reflectances \[dark, light\] of `joint-two-valued`; estimated with the pattern where not
     /// given.

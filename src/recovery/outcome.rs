@@ -43,22 +43,18 @@ pub enum Choice {
         /// The target two standard deviations of ‖noise‖² up: residuals to here are accepted.
         limit: f64,
     },
-    /// The same of weighted joint residuals, without unit: what the reduced problem leaves over, in
-    /// standard deviations.
-    JointDiscrepancy {
-        /// ‖R ρ − d‖².
-        residual: f64,
-        /// Its mean for noise alone: degrees of freedom that ρ leaves over.
-        target: f64,
-        /// The target four standard deviations of χ² up: an unpenalised fit beyond it is refused.
-        limit: f64,
-    },
-    /// The likeliest of a mixture that holds all, each by its evidence.
+    /// The largest evidence: the λ of `joint-tv` at which the photographs are likeliest, whatever
+    /// the picture.
     Evidence {
-        /// ln of the probability density that the method gives the photographs, over that of the
-        /// numbers that fit them best: at most 0, and comparable among methods.
-        log: f64,
+        /// −2 ln of it, but for a constant.
+        deviance: f64,
+        /// ‖R ρ − d‖², what the reduced problem leaves over, in variances of the noise.
+        residual: f64,
+        /// Patches of one value.
+        patches: usize,
     },
+    /// The likeliest of all that count, each by its evidence: the picture is their mean.
+    Averaged,
     /// Estimated together with the reflectances.
     Estimated,
     /// Generalised cross-validation: the least predicted error.
@@ -77,8 +73,7 @@ pub enum Choice {
         /// What is weighed against it: ‖X‖ (C times ρ), or the norm of the differences, of
         /// `tikhonov-gradient`.
         penalty: f64,
-        /// How sharp the corner is: the curvature of the log–log curve where directions are damped,
-        /// the angle by which it turns (rad) where they are left out.
+        /// How sharp the corner is: the angle by which the log–log curve turns there, rad.
         turn: f64,
     },
     /// A numerical rank cut.
@@ -166,6 +161,10 @@ pub struct Recovered {
     pub solver: Option<Solver>,
     /// What was estimated beside the reflectances, where it was asked for.
     pub nuisance: Option<Estimated>,
+    /// ln of the probability density that the method's assumption gives the photographs, over that of
+    /// the numbers that fit them best: at most 0, and comparable among methods. Of `joint-gp` and
+    /// `joint-two-valued`.
+    pub log_evidence: Option<f64>,
     /// What is known of the pattern, of `joint-two-valued` where the scale is known.
     pub patterns: Option<Patterns>,
     /// Bands around the reflectances, where they were asked for and the method can promise any.
@@ -306,6 +305,7 @@ impl Recovered {
             relative_residual: if whole > 0.0 { residual / whole } else { 0.0 },
             solver: None,
             nuisance: None,
+            log_evidence: None,
             patterns: None,
             bands: None,
             no_bands: None,

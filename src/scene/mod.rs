@@ -34,7 +34,7 @@
 //! | `surface.sphere` | `{ centre, radius, face = "outside" or "inside" }` |
 //! | `surface.mesh` | triangles from a file or made by phicam, below |
 //! | `surface.sides` | `"one"` (default): the back is black; `"two"`: it reflects as the front does (not of spheres and hidden surfaces) |
-//! | `surface.material` | `{ lambertian = ρ }` with ρ a number, or one of the tables below; [`material`] has the others |
+//! | `surface.material` | `{ lambertian = ρ }` with ρ a number, one of the tables below, or (hidden surfaces only) `"unknown"`: then nothing is rendered, and what is recovered has no truth; [`material`] has the others |
 //! | `surface.elements` | elements along u and v (hidden surfaces only); of a mesh in its texture coordinates, or `"faces"`: one for each triangle |
 //! | `known.pixel`, `known.spot` | `[[known]]`, optional, any number: an entry of Φcam whose exact value is known |
 //! | `known.flux` | the exact flux into that pixel when that spot is lit, W |
@@ -357,6 +357,14 @@ impl Scene {
     /// The hidden surfaces with their shape ids, in file order.
     pub fn hidden(&self) -> impl Iterator<Item = (usize, &Surface)> {
         surface::of_role(Role::Hidden, &self.surfaces)
+    }
+
+    /// The hidden surfaces of unknown albedo, by name, in quotes and separated by commas; none where
+    /// every albedo is known.
+    pub fn unknown(&self) -> Option<String> {
+        let names = self.hidden().filter(|(_, s)| !s.is_known);
+        let names: Vec<String> = names.map(|(_, s)| format!("`{}`", s.name)).collect();
+        (!names.is_empty()).then(|| names.join(", "))
     }
 
     /// The relay surfaces with their shape ids, in file order.

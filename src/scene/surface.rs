@@ -35,6 +35,8 @@ pub struct Surface {
     pub material: Material,
     /// Its albedo, or what the material makes of that number.
     pub albedo: Texture,
+    /// Whether that is known; else a grey stands in its place, of which nothing may be told.
+    pub is_known: bool,
     /// Elements along u and v into which the matrix model divides it (of triangles: all of them,
     /// and 1; of the whole 1 and 1); \[0, 0\] unless hidden.
     pub elements: [usize; 2],

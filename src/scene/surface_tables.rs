@@ -6,7 +6,7 @@ use super::file::{ElementsTable, Sides, SurfaceTable};
 use super::files::Files;
 use super::material::Material;
 use super::surface::{Division, Role, Surface};
-use super::texture::Texture;
+use super::texture::{AlbedoTable, Texture};
 use super::warning::Warning;
 use super::{FARTHEST, FINEST};
 use crate::geometry::{DVec3, Disc, Parallelogram, Shape, Sphere};
@@ -18,6 +18,9 @@ const MOST_ELEMENTS: u32 = 1024;
 const MOST_CELLS: usize = 1 << 26;
 /// A picture or a measured material larger than this is not read: 256 MiB.
 const LARGEST_PICTURE: u64 = 256 << 20;
+
+/// The albedo with which a hidden surface of unknown albedo is drawn.
+const STAND_IN: f64 = 0.5;
 
 /// Checks all surfaces.
 pub(super) fn from_tables(
@@ -158,7 +161,13 @@ impl Surface {
         let wavelength = sources.wavelength;
         let files = &mut *sources.files;
         let mut read = |path: &str| files.bytes_or_words(path, LARGEST_PICTURE);
-        let (material, albedo) = Material::from_table(&table.material, wavelength, &mut read)
+        let is_known = role != Role::Hidden
+            || !matches!(table.material.lambertian, Some(AlbedoTable::Unknown(_)));
+        let mut painted = table.material.clone();
+        if !is_known {
+            painted.lambertian = Some(STAND_IN.into());
+        }
+        let (material, albedo) = Material::from_table(&painted, wavelength, &mut read)
             .map_err(|f| f.within(keys!["material"]))?;
         let elements = match (role, table.elements) {
             (Role::Hidden, Some(ElementsTable::Faces(_))) => {
@@ -228,6 +237,7 @@ impl Surface {
             shape,
             material,
             albedo,
+            is_known,
             elements,
             division,
         })

@@ -60,6 +60,7 @@ impl Scene {
                 shape: shape.clone().ok_or_else(|| self.locate(no_shape()))?,
                 material: Material::Lambertian,
                 albedo: Texture::Constant(0.0),
+                is_known: true,
                 elements: [0; 2],
                 division: Division::Cells,
             });
@@ -104,7 +105,25 @@ impl Scene {
     pub fn with_cells(&self, cells: &Cells) -> Self {
         self.with_each(Role::Hidden, |surface| {
             surface.albedo = Texture::Cells(cells.clone());
+            surface.is_known = true;
         })
+    }
+
+    /// The scene, if every albedo is known.
+    ///
+    /// # Errors
+    /// [`SceneError`], at the first hidden surface whose albedo is `"unknown"`.
+    pub fn known(self) -> Result<Self, SceneError> {
+        match self.surfaces.iter().position(|s| !s.is_known) {
+            None => Ok(self),
+            Some(i) => {
+                let name = &self.surfaces[i].name;
+                let cause = format!("the albedo of `{name}` is unknown, so its light is too");
+                let cure = "give it a number or a picture; `model` and `recover --phi` do without";
+                let at = keys!["surface", i, "material", "lambertian"];
+                Err(self.locate(Fault::new(at, cause, cure)))
+            }
+        }
     }
 
     /// The same scene with each flat relay surface reaching further by `margin` on all four sides.
@@ -256,6 +275,30 @@ mod tests {
         let albedo = |scene: &Scene| scene.hidden().next().unwrap().1.albedo.clone();
         assert_eq!(albedo(&bench.with_checkerboard(4)), albedo(&own));
         assert_ne!(albedo(&bench), albedo(&own));
+    }
+
+    /// An unknown albedo is the hidden surface's alone, is written as it was read, and is refused at
+    /// its line by what needs it; painted over it is known.
+    #[test]
+    fn an_unknown_albedo_is_known_to_be_so() {
+        let board = "{ checkerboard = [2, 2], dark = 0.0, light = 1.0 }";
+        let bench = Scene::load("bench").unwrap().text;
+        let text = bench.replace(board, "\"unknown\"");
+        let scene = Scene::from_toml("own", &text).unwrap();
+        assert_eq!(scene.unknown().as_deref(), Some("`object`"));
+        let line = text.lines().position(|l| l.contains("unknown")).unwrap() + 1;
+        let refused = scene.clone().known().unwrap_err().to_string();
+        let told = refused.contains(&format!("bench:{line}:")) && refused.contains("`object`");
+        assert!(told, "{refused}");
+        let painted = scene.with_checkerboard(4);
+        assert!(painted.unknown().is_none() && painted.known().is_ok());
+        let wall = bench.replace("lambertian = 0.8", "lambertian = \"unknown\"");
+        let refused = Scene::from_toml("own", &wall).unwrap_err().to_string();
+        assert!(refused.contains("of a hidden surface"), "{refused}");
+        let file: crate::scene::file::SceneFile = toml::from_str(&text).unwrap();
+        let again = toml::to_string(&file).unwrap();
+        let again = Scene::from_toml("again", &again).unwrap();
+        assert_eq!(again.unknown().as_deref(), Some("`object`"));
     }
 
     /// The bench's wall ends at x = 0 and 11.5, y = 0 and 15.5; albedo 0.8.

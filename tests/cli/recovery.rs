@@ -32,6 +32,7 @@ fn a_method_writes_its_matrix_and_its_picture() {
     let written = [
         "determined.npy",
         "determined.png",
+        "joint.choice.json",
         "joint.npy",
         "joint.ply",
         "joint.png",
@@ -432,4 +433,99 @@ fn files_of_an_earlier_recovery_do_not_stay_beside_those_of_a_later() {
         .phicam("recover done --elements 2 --method pinv")
         .exits(0);
     assert!(!names(&workspace).contains_key("picard-joint.csv"));
+}
+
+/// The parameter in the JSON has all its digits: given again it makes the same picture to the last
+/// bit. What was estimated beside it is there in the JSON and in files.
+#[test]
+fn a_run_can_be_repeated_at_its_own_choice() {
+    let workspace = with_run();
+    let line = "recover done --phi done/model/phi.npy --noise 1e-3 -o own --json --method";
+    for method in ["tsvd", "tikhonov", "joint-tv"] {
+        let mut found = objects(workspace.phicam(&format!("{line} {method}")));
+        let (first, repeat) = (found.remove(0), |v: &serde_json::Value| {
+            v["choice"]["repeat"].as_str().unwrap().to_owned()
+        });
+        let again = format!("{line} {method} {}", repeat(&first));
+        let second = objects(workspace.phicam(&again)).remove(0);
+        assert_eq!(first["reflectance"], second["reflectance"], "{again}");
+        assert_eq!(first["choice"]["value"], second["choice"]["value"]);
+        assert_eq!(second["choice"]["rule"], "given");
+        let names = workspace.contents("own");
+        let kept = &names[&format!("{method}.choice.json")];
+        let kept: serde_json::Value = serde_json::from_slice(kept).unwrap();
+        assert_eq!(kept["choice"], second["choice"]);
+    }
+    let line = format!("{line} joint");
+    let beside = objects(workspace.phicam(&format!(
+        "{line} --frame-constant --background --free-scale"
+    )));
+    let estimated = &beside[0]["estimated"];
+    assert!(estimated["scale"].as_f64().unwrap() > 0.0);
+    assert!(beside[0]["solver"]["gap"].as_f64().unwrap() >= 0.0);
+    for (name, whole) in [("frame_constant", (1, 24)), ("background", (64, 1))] {
+        let written = workspace.matrix(&format!("own/joint.{name}.npy"));
+        assert_eq!(written.shape(), whole, "{name}");
+        let told = estimated[name].as_array().unwrap().iter();
+        let told: Vec<f64> = told.map(|x| x.as_f64().unwrap()).collect();
+        assert_eq!(told, written.as_slice(), "{name}");
+    }
+    let _ = workspace.phicam(&line).exits(0);
+    assert!(
+        !workspace
+            .contents("own")
+            .contains_key("joint.background.npy")
+    );
+}
+
+/// An object of which nothing is known is recovered, and nothing is told of a truth; its light is
+/// not made up either.
+#[test]
+fn an_unknown_albedo_has_no_truth_and_no_scores() {
+    let workspace = with_run();
+    let text = workspace.text("small.toml");
+    let board = "{ checkerboard = [2, 2], dark = 0.0, light = 1.0 }";
+    let unknown = text.replace(board, "\"unknown\"");
+    workspace.write("unknown.toml", &unknown);
+    for line in ["render unknown.toml -o r", "run unknown.toml -o r"] {
+        workspace.refuses(line, &["unknown.toml:", "`object`", "give it a number"]);
+    }
+    let wall = unknown.replace("lambertian = 0.8", "lambertian = \"unknown\"");
+    workspace.write("wall.toml", wall);
+    workspace.refuses("model wall.toml -o r", &["only `lambertian` of a hidden"]);
+    let modelled = workspace.phicam("model unknown.toml -o bench").exits(0);
+    assert!(
+        modelled.stdout.contains("no phi.npy"),
+        "{}",
+        modelled.account()
+    );
+    assert!(!workspace.contents("bench/model").contains_key("phi.npy"));
+    let line = "recover bench --phi done/model/phi.npy --noise 1e-3 --method joint-unbounded,joint";
+    let told = workspace
+        .phicam(&format!("{line} --elements 4"))
+        .exits(0)
+        .stdout;
+    for word in ["RMSE", "MTF", "correlation", "truth"] {
+        assert!(!told.contains(word), "{word} in {told}");
+    }
+    let found = objects(workspace.phicam(&format!("{line} --elements 4 --json")));
+    for object in &found {
+        for key in ["truth", "rmse", "mtf_raw", "mtf_normalized", "correlation"] {
+            assert!(object[key].is_null(), "{key}: {object}");
+        }
+        assert!(object.get("bias").is_none(), "{object}");
+    }
+    let names = workspace.contents("bench/recovered");
+    assert!(names.contains_key("joint.npy") && names.contains_key("overview.png"));
+    assert!(
+        names
+            .keys()
+            .all(|n| !n.starts_with("truth") && !n.contains("bias"))
+    );
+    // The same photographs with the board known: the same picture, and its scores.
+    let line =
+        "recover done --phi done/model/phi.npy --noise 1e-3 --method joint --elements 4 --json";
+    let known = objects(workspace.phicam(line));
+    assert_eq!(known[0]["reflectance"], found[1]["reflectance"]);
+    assert!(known[0]["rmse"].is_f64());
 }

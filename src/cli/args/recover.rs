@@ -79,7 +79,7 @@ pub(in crate::cli) struct JointArgs {
     /// By what the joint methods weigh the entries of Φcam
     #[arg(long, value_parser = choice::weighting(), default_value = "noise")]
     pub weighting: WeightRule,
-    /// Weight of joint-tv's total variation relative to σ1², in place of the discrepancy principle
+    /// Weight of joint-tv's total variation relative to σ1², in place of the one of the largest evidence
     #[arg(long, value_name = "LAMBDA", allow_negative_numbers = true)]
     pub tv: Option<f64>,
     /// The two reflectances of joint-two-valued, estimated unless given: DARK,LIGHT

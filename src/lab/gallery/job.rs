@@ -1,7 +1,7 @@
 //! The recoveries of one noise.
 
 use super::plan::works_by_directions;
-use crate::lab::objects::{chosen_words, words};
+use crate::lab::chosen::{chosen_words, words};
 use crate::lab::problem::problem;
 use crate::matrix::Matrix;
 use crate::model::MatrixModel;

@@ -93,7 +93,7 @@ fn same(found: &GalleryPicture, known: &RecoveredObject, what: &str) {
         "{what}: {own:?}"
     );
     assert!(near(own.correlation, known.correlation), "{what}: {own:?}");
-    assert!(near(own.rmse, Some(known.rmse)), "{what}: {own:?}");
+    assert!(near(own.rmse, known.rmse), "{what}: {own:?}");
 }
 
 /// At every noise the automatic step is what a run would recover from those photographs, picture,

@@ -174,6 +174,15 @@ impl NoiseAxis {
         }
     }
 
+    /// Whether a and b are too far apart to interpolate between them.
+    pub(super) fn is_far(&self, [a, b]: [f64; 2]) -> bool {
+        if self.is_linear() {
+            (a - b).abs() > 3.0
+        } else {
+            libm::log10(a / b).abs() > 1.0 + 1e-9
+        }
+    }
+
     /// What lies at `t` of the way from a to b.
     pub(super) fn at(&self, [a, b]: [f64; 2], t: f64) -> f64 {
         if self.is_linear() {

@@ -4,14 +4,16 @@ use serde::Serialize;
 
 use super::axis::NoiseAxis;
 use super::curve::{Held, NoiseCurve, Point, Reach};
+use super::picture::Picture;
 
 /// Of one object and its elements the method that holds its mean raw MTF at or above the first of
 /// [`LIMITS`](super::LIMITS) up to the loudest noise; of equals the one with the smaller root mean
 /// square error there.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Best {
-    /// Checks a side of the object.
-    pub board: usize,
+    /// The object: checks a side, or `own`.
+    #[serde(rename = "board")]
+    pub picture: Picture,
     /// Elements a side of the recovery.
     pub elements: usize,
     /// The method; none where no method reaches the limit at the quietest level.
@@ -28,10 +30,14 @@ pub struct Best {
 }
 
 /// The best of the `curves` of one object.
-pub(super) fn best(axis: &NoiseAxis, [board, elements]: [usize; 2], curves: &[NoiseCurve]) -> Best {
+pub(super) fn best(
+    axis: &NoiseAxis,
+    (picture, elements): (Picture, usize),
+    curves: &[NoiseCurve],
+) -> Best {
     let own = curves
         .iter()
-        .filter(|c| (c.board, c.elements) == (board, elements));
+        .filter(|c| (c.picture, c.elements) == (picture, elements));
     let found = own
         .filter_map(|c| {
             let held = c.held?;
@@ -52,7 +58,7 @@ pub(super) fn best(axis: &NoiseAxis, [board, elements]: [usize; 2], curves: &[No
             }
         });
     Best {
-        board,
+        picture,
         elements,
         method: found.map(|(c, ..)| c.method.clone()),
         level: found.map(|(_, held, ..)| held.level),
@@ -112,7 +118,7 @@ mod tests {
             ..Point::of(level, &[], Some(10.0 * level))
         };
         NoiseCurve {
-            board: 2,
+            picture: Picture::Board(2),
             elements: 8,
             method: method.to_owned(),
             points: vec![point(1e-4, errors[0]), point(1e-2, errors[1])],
@@ -132,7 +138,7 @@ mod tests {
             curve("coarse", Some((1e-3, Reach::Falls)), [0.04, 0.09]),
             curve("fine", Some((1e-3, Reach::AtLeast)), [0.01, 0.07]),
         ];
-        let found = best(&NoiseAxis::Relative, [2, 8], &curves);
+        let found = best(&NoiseAxis::Relative, (Picture::Board(2), 8), &curves);
         assert_eq!(found.method.as_deref(), Some("fine"));
         assert_eq!(
             (found.level, found.reach),
@@ -142,9 +148,14 @@ mod tests {
         assert!((found.rmse_over_bound.unwrap() / 5.0 - 1.0).abs() < 1e-12);
         // Where few photons are loud the one that does with least wins.
         assert_eq!(
-            best(&NoiseAxis::Photons, [2, 8], &curves).method.as_deref(),
+            best(&NoiseAxis::Photons, (Picture::Board(2), 8), &curves)
+                .method
+                .as_deref(),
             Some("early")
         );
-        assert_eq!(best(&NoiseAxis::Relative, [4, 8], &curves).method, None);
+        assert_eq!(
+            best(&NoiseAxis::Relative, (Picture::Board(4), 8), &curves).method,
+            None
+        );
     }
 }

@@ -4,6 +4,7 @@
 use serde::Serialize;
 
 use super::axis::NoiseAxis;
+use super::picture::Picture;
 use super::plan::NoisePlan;
 use super::trial::Trial;
 use crate::lab::ensemble::{Draws, MOST_SPREAD, Spread};
@@ -84,6 +85,9 @@ pub enum Lost {
     /// level at or above the limit and the next. Where large levels are the quiet ones it is the
     /// smallest from which on the mean stays at or above the limit.
     At(f64),
+    /// Between these two levels, the quieter first, which are too far apart to interpolate: more
+    /// than a decade, of bits more than 3.
+    Between([f64; 2]),
     /// It is below the limit at the quietest level already.
     Before,
     /// It is not below the limit at any level.
@@ -100,8 +104,8 @@ pub enum Lost {
 pub enum Reach {
     /// Up to the level, where its mean falls below.
     Falls,
-    /// Up to the level, and beyond it nothing is known: it is the loudest studied, or there is no
-    /// mean to speak of at the next ([`Lost::Unknown`]).
+    /// Up to the level, and beyond it nothing is known: it is the loudest studied, the next is too
+    /// far ([`Lost::Between`]), or there is no mean to speak of there ([`Lost::Unknown`]).
     AtLeast,
 }
 
@@ -117,8 +121,9 @@ pub struct Held {
 /// One method on one object.
 #[derive(Clone, Debug, Serialize)]
 pub struct NoiseCurve {
-    /// Checks a side of the object.
-    pub board: usize,
+    /// The object: checks a side, or `own`.
+    #[serde(rename = "board")]
+    pub picture: Picture,
     /// Elements a side of the recovery.
     pub elements: usize,
     /// The method.
@@ -139,12 +144,12 @@ impl NoiseCurve {
     /// levels.
     pub(super) fn of(
         plan: &NoisePlan,
-        [board, elements]: [usize; 2],
+        (picture, elements): (Picture, usize),
         method: Method,
         (trials, bounds): (&[Trial], &[Option<f64>]),
     ) -> Self {
         let asked = |t: &&Trial| {
-            (t.board, t.elements, t.method) == (board, elements, method)
+            (t.picture, t.elements, t.method) == (picture, elements, method)
                 && t.seed.wrapping_sub(plan.first_seed) < plan.seeds
         };
         let own: Vec<&Trial> = trials.iter().filter(asked).collect();
@@ -166,7 +171,7 @@ impl NoiseCurve {
         let normalized: Vec<_> = points.iter().map(|p| known(p, p.mtf_normalized)).collect();
         let lost = |means: &[_]| LIMITS.map(|limit| lost(means, limit, &plan.axis));
         Self {
-            board,
+            picture,
             elements,
             method: method.name().to_owned(),
             lost_raw: lost(&raw),
@@ -186,9 +191,13 @@ fn lost(curve: &[(f64, Option<f64>)], limit: f64, axis: &NoiseAxis) -> Lost {
             return Lost::Unknown;
         };
         if mean < limit {
-            return before.map_or(Lost::Before, |(quiet, high)| {
-                Lost::At(axis.at([quiet, level], (high - limit) / (high - mean)))
-            });
+            return match before {
+                None => Lost::Before,
+                Some((quiet, _)) if axis.is_far([quiet, level]) => Lost::Between([quiet, level]),
+                Some((quiet, high)) => {
+                    Lost::At(axis.at([quiet, level], (high - limit) / (high - mean)))
+                }
+            };
         }
         before = Some((level, mean));
     }
@@ -227,37 +236,52 @@ mod tests {
 
     #[test]
     fn the_level_is_interpolated_in_its_logarithm() {
-        let curve = [(1e-4, Some(1.0)), (1e-2, Some(0.8)), (1.0, Some(0.2))];
+        let curve = [(1e-4, Some(1.0)), (1e-3, Some(0.8)), (1e-2, Some(0.2))];
         let lost = |curve: &[_], limit| lost(curve, limit, &NoiseAxis::Relative);
         let at = |limit| match lost(&curve, limit) {
             Lost::At(level) => level,
             other => panic!("{other:?}"),
         };
-        // Half way from 1 to 0.8: the geometric mean of 1e-4 and 1e-2. From 0.8 to 0.2 half way is
+        // Half way from 1 to 0.8: the geometric mean of 1e-4 and 1e-3. From 0.8 to 0.2 half way is
         // 0.5.
-        assert!((at(0.9) / 1e-3 - 1.0).abs() < 1e-12 && (at(0.5) / 0.1 - 1.0).abs() < 1e-12);
+        let half = 10f64.sqrt();
+        assert!((at(0.9) / (1e-4 * half) - 1.0).abs() < 1e-12);
+        assert!((at(0.5) / (1e-3 * half) - 1.0).abs() < 1e-12);
         assert_eq!(lost(&curve, 0.1), Lost::Never);
         assert_eq!(lost(&curve[1..], 0.9), Lost::Before);
         assert_eq!(lost(&curve[..1], 0.9), Lost::Never);
         assert_eq!(lost(&[], 0.9), Lost::Unknown);
         // An axis on which quiet is a large number.
-        let photons = [(1e6, Some(1.0)), (1e4, Some(0.0))];
+        let photons = [(1e6, Some(1.0)), (1e5, Some(0.0))];
         let Lost::At(level) = lost(&photons, 0.5) else {
             panic!("{:?}", lost(&photons, 0.5))
         };
-        assert!((level / 1e5 - 1.0).abs() < 1e-12);
+        assert!((level / (1e5 * half) - 1.0).abs() < 1e-12);
         let gap = [(1e-4, Some(1.0)), (1e-3, None), (1e-2, Some(0.1))];
         assert_eq!(lost(&gap, 0.5), Lost::Unknown);
     }
 
-    /// Bits run from many to few and by differences: half way from 12 to 8 the mean is half way
+    /// Over four decades nothing says where between them the mean falls.
+    #[test]
+    fn levels_far_apart_are_not_interpolated() {
+        let axis = &NoiseAxis::Relative;
+        let far = [(1e-6, Some(1.0)), (1e-2, Some(0.2))];
+        assert_eq!(lost(&far, 0.9, axis), Lost::Between([1e-6, 1e-2]));
+        let quiet = held(&far, 0.9, axis).unwrap();
+        assert_eq!((quiet.level, quiet.reach), (1e-6, Reach::AtLeast));
+        let bits = [(12.0, Some(1.0)), (8.0, Some(0.6))];
+        let between = lost(&bits, 0.8, &NoiseAxis::Bits);
+        assert_eq!(between, Lost::Between([12.0, 8.0]));
+    }
+
+    /// Bits run from many to few and by differences: half way from 11 to 9 the mean is half way
     /// from 1 to 0.6.
     #[test]
     fn bits_are_interpolated_in_their_number() {
         let bits = [
             (16.0, Some(1.0)),
-            (12.0, Some(1.0)),
-            (8.0, Some(0.6)),
+            (11.0, Some(1.0)),
+            (9.0, Some(0.6)),
             (4.0, Some(0.95)),
         ];
         let (limit, axis) = (0.8, &NoiseAxis::Bits);

@@ -2,6 +2,7 @@
 
 use super::best::Best;
 use super::curve::{LIMITS, Lost, NoiseCurve, Point, Reach};
+use super::picture::Picture;
 use super::render::RenderNoise;
 use super::study::NoiseStudy;
 use crate::lab::ensemble::Spread;
@@ -79,18 +80,19 @@ impl NoiseStudy {
         let own = self
             .curves
             .iter()
-            .find(|c| [c.board, c.elements] == [b.board, b.elements] && c.method == PUBLISHED);
+            .find(|c| (c.picture, c.elements) == (b.picture, b.elements) && c.method == PUBLISHED);
         let published = own.filter(|c| b.method.as_deref() != Some(&c.method));
         let published = published.map_or(String::new(), |c| {
             let level = match c.lost_raw[0] {
                 Lost::At(x) => figure(x, 2),
+                Lost::Between(levels) => between(levels),
                 Lost::Before => "not even the quietest".to_owned(),
                 Lost::Never => "the loudest studied".to_owned(),
                 Lost::Unknown => "undefined".to_owned(),
             };
             format!(" (the published {PUBLISHED}: {level})")
         });
-        let object = object([b.board, b.elements], " on ");
+        let object = object((b.picture, b.elements), " on ");
         match (&b.method, b.level) {
             (Some(method), Some(level)) => {
                 let sign = match (b.reach, self.axis.falls()) {
@@ -119,11 +121,12 @@ impl NoiseStudy {
             let levels = c.lost_raw.iter().chain(&c.lost_normalized);
             let levels = levels.map(|lost| match lost {
                 Lost::At(level) => Cell::from(*level),
+                Lost::Between(levels) => between(*levels).into(),
                 Lost::Before => "always".into(),
                 Lost::Never => "never".into(),
                 Lost::Unknown => "undefined".into(),
             });
-            key([c.board, c.elements], &c.method)
+            key((c.picture, c.elements), &c.method)
                 .chain(levels)
                 .collect()
         };
@@ -133,7 +136,8 @@ impl NoiseStudy {
         );
         Table::new(caption, columns, self.curves.iter().map(row)).noted(format!(
             "{} Always: below at the quietest level already; never: not below at any; undefined: before that some \
-             draw gave nothing, or no mean is known.",
+             draw gave nothing, or no mean is known. `a to b`: between these two levels, more than a decade \
+             (3 bits) apart; study more levels between them (--noise).",
             label.procedure
         ))
     }
@@ -151,7 +155,7 @@ impl NoiseStudy {
             };
             let method = b.method.as_deref().unwrap_or("none");
             let found = [level, b.rmse.into(), b.rmse_over_bound.into()];
-            key([b.board, b.elements], method).chain(found).collect()
+            key((b.picture, b.elements), method).chain(found).collect()
         };
         let caption = format!(
             "The best method: mean raw MTF of {} or more up to the loudest noise, of equals the least RMSE",
@@ -194,7 +198,7 @@ impl NoiseStudy {
         keys += ",rmse_over_draws,cramer_rao,rmse_over_bound";
         let row = |c: &NoiseCurve, p: &Point| {
             let mut cells: Vec<Cell> = vec![
-                c.board.into(),
+                Cell::Name(c.picture.to_string()),
                 c.elements.into(),
                 Cell::name(&c.method),
                 p.level.into(),
@@ -234,7 +238,8 @@ impl NoiseStudy {
                 Some(Curve::new(name, Mark::Level, vec![[m.level?, 0.0]; 2]))
             })
         };
-        let same = |a: &NoiseCurve, b: &NoiseCurve| (a.board, a.elements) == (b.board, b.elements);
+        let same =
+            |a: &NoiseCurve, b: &NoiseCurve| (a.picture, a.elements) == (b.picture, b.elements);
         let plot = |own: &[NoiseCurve]| {
             let lines = own.iter();
             let lines = lines.map(|c| line(&c.method, c, &|p| Some(of(p)?.mean)));
@@ -244,7 +249,7 @@ impl NoiseStudy {
                 line(name, c, &|p| p.cramer_rao)
             });
             let curves = lines.chain(bound).chain(renders()).collect();
-            let title = object([own[0].board, own[0].elements], ", ");
+            let title = object((own[0].picture, own[0].elements), ", ");
             Plot::new(title, [self.axis.of_plot(), y()], curves)
         };
         let file = format!("noise-{}.svg", name.replace('_', "-"));
@@ -264,14 +269,30 @@ fn keys() -> Vec<Column> {
 }
 
 /// What a row is of.
-fn key(object: [usize; 2], method: &str) -> impl Iterator<Item = Cell> {
-    let sides = object.map(|n| Cell::Name(format!("{n} × {n}")));
-    sides.into_iter().chain([Cell::name(method)])
+fn key((picture, n): (Picture, usize), method: &str) -> impl Iterator<Item = Cell> {
+    let checks = match picture {
+        Picture::Own => "own picture".to_owned(),
+        Picture::Board(checks) => format!("{checks} × {checks}"),
+    };
+    let elements = format!("{n} × {n}");
+    [checks, elements]
+        .map(Cell::Name)
+        .into_iter()
+        .chain([Cell::name(method)])
+}
+
+/// Two levels between which a modulation is lost.
+fn between([quiet, loud]: [f64; 2]) -> String {
+    format!("{} to {}", figure(quiet, 2), figure(loud, 2))
 }
 
 /// An object and its elements.
-fn object([board, elements]: [usize; 2], between: &str) -> String {
-    format!("{board} × {board} checks{between}{elements} × {elements} elements")
+fn object((picture, elements): (Picture, usize), between: &str) -> String {
+    let painted = match picture {
+        Picture::Own => "the scene's own picture".to_owned(),
+        Picture::Board(checks) => format!("{checks} × {checks} checks"),
+    };
+    format!("{painted}{between}{elements} × {elements} elements")
 }
 
 /// Draws from which a method gave nothing, with the quietest level of them and the reason there.
@@ -280,7 +301,7 @@ fn failures(c: &NoiseCurve) -> Option<String> {
     let sum = |f: fn(&Point) -> usize| c.points.iter().map(f).sum::<usize>();
     Some(format!(
         "{}, {}: {} of {} draws gave nothing, from {} on: {}",
-        object([c.board, c.elements], ", "),
+        object((c.picture, c.elements), ", "),
         c.method,
         sum(|p| p.failed),
         sum(|p| p.draws),

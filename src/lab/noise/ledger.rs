@@ -13,7 +13,7 @@ pub(super) fn write_ledger(study: &str, trials: &[Trial]) -> String {
     for t in sorted {
         let key = format!(
             "{},{},{},{:e},{}",
-            t.board, t.elements, t.method, t.level, t.seed
+            t.picture, t.elements, t.method, t.level, t.seed
         );
         let (measures, failure) = match &t.outcome {
             Ok(measures) => (measures.all(), String::new()),
@@ -30,6 +30,7 @@ pub(super) fn write_ledger(study: &str, trials: &[Trial]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::picture::Picture;
     use super::*;
     use crate::lab::measures::Measures;
     use crate::recovery::Method;
@@ -43,7 +44,7 @@ mod tests {
             rmse: Some(5e-324),
         };
         let trial = |seed, outcome| Trial {
-            board: 2,
+            picture: Picture::Board(2),
             elements: 8,
             method: Method::JointUnbounded,
             level: 1e-9 / 3.0,

@@ -1,6 +1,7 @@
 //! How much noise does each recovery bear?
 //!
-//! The object is a checkerboard of albedo 0 and 1, Φcam that of the matrix model (elements, pixels
+//! The object is a checkerboard of albedo 0 and 1, and the scene's own picture where that is
+//! another, Φcam that of the matrix model (elements, pixels
 //! and spots at their centres), and the recovery inverts this very model: what is lost is lost to
 //! noise, and to what the method does even without it. Each draw of the noise is recovered by every
 //! method.
@@ -21,6 +22,7 @@ mod curve;
 mod describe;
 mod ledger;
 mod options;
+mod picture;
 mod plan;
 mod render;
 mod stage;
@@ -32,6 +34,7 @@ pub use axis::{AxisLabel, NamedSensor, NoiseAxis};
 pub use best::Best;
 pub use curve::{Held, LIMITS, Lost, NoiseCurve, Point, Reach};
 pub(super) use options::STUDY;
+pub use picture::Picture;
 pub use plan::NoisePlan;
 pub use render::RenderNoise;
 pub use study::NoiseStudy;

@@ -17,7 +17,10 @@ pub(in crate::lab) const STUDY: Registered = Registered {
     scene: Some("bench"),
     files: "noise.csv (every trial), noise-curves.csv, the figures, noise.phs (a rerun continues from it)",
     options: &[
-        Opt::whole("boards", "Checks a side of the objects, separated by commas")
+        Opt::whole(
+            "boards",
+            "Checks a side of the boards, separated by commas; the scene's own picture is studied beside them if it is no board",
+        )
             .or("2,4,8")
             .list()
             .within(2, 1024),

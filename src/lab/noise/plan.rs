@@ -1,6 +1,7 @@
 //! What is studied.
 
 use super::axis::NoiseAxis;
+use super::picture::Picture;
 use crate::lab::error::LabError;
 use crate::model::{Kernel, MatrixModel, ModelError};
 use crate::recovery::Method;
@@ -61,7 +62,7 @@ impl NoisePlan {
     /// The brightest entry of all objects, W.
     fn brightest(&self, scene: &Scene) -> Result<f64, LabError> {
         let mut brightest = 0.0f64;
-        for object in self.objects() {
+        for object in self.objects(scene) {
             brightest = brightest.max(self.model(scene, object)?.phi().max());
         }
         if brightest > 0.0 {
@@ -75,10 +76,9 @@ impl NoisePlan {
     pub(super) fn model(
         &self,
         scene: &Scene,
-        [board, elements]: [usize; 2],
+        (picture, elements): (Picture, usize),
     ) -> Result<MatrixModel, ModelError> {
-        let scene = scene.with_checkerboard(board);
-        MatrixModel::new(&scene, self.kernel, Some([elements; 2]))
+        MatrixModel::new(&picture.on(scene), self.kernel, Some([elements; 2]))
     }
 
     /// Refuses exposures that saturate whatever the noise.
@@ -96,12 +96,16 @@ impl NoisePlan {
         }
     }
 
-    /// Objects with the elements that they are recovered at.
-    pub(super) fn objects(&self) -> Vec<[usize; 2]> {
-        let pairs = self
-            .boards
-            .iter()
-            .flat_map(|b| self.elements.iter().map(|e| [*b, *e]));
-        pairs.filter(|[b, e]| e % b == 0).collect()
+    /// Objects with the elements that they are recovered at: the scene's own picture, where it is
+    /// no board, and the boards.
+    pub(super) fn objects(&self, scene: &Scene) -> Vec<(Picture, usize)> {
+        let boards = self.boards.iter().map(|b| Picture::Board(*b));
+        let pictures = Picture::own(scene).into_iter().chain(boards);
+        let at = |picture| self.elements.iter().map(move |e| (picture, *e));
+        let divides = |(picture, e): &(Picture, usize)| match picture {
+            Picture::Own => true,
+            Picture::Board(checks) => e % checks == 0,
+        };
+        pictures.flat_map(at).filter(divides).collect()
     }
 }

@@ -7,6 +7,7 @@ use super::best::best;
 use super::bound::bounds;
 use super::curve::NoiseCurve;
 use super::ledger::write_ledger;
+use super::picture::Picture;
 use super::plan::NoisePlan;
 use super::render::{ESTIMATORS, RenderNoise, render_noise};
 use super::stage::Stage;
@@ -29,7 +30,7 @@ pub struct NoiseTasks {
     scene: Scene,
     plan: NoisePlan,
     renders: Vec<(Estimator, u64)>,
-    objects: Vec<[usize; 2]>,
+    objects: Vec<(Picture, usize)>,
     draws: Vec<(f64, u64)>,
 }
 
@@ -59,7 +60,7 @@ impl NoiseTasks {
         Self {
             scene: scene.clone(),
             renders: ESTIMATORS.into_iter().flat_map(renders).collect(),
-            objects: plan.objects(),
+            objects: plan.objects(scene),
             draws,
             plan,
         }
@@ -85,9 +86,9 @@ impl NoiseTasks {
         (level, seed): (f64, u64),
         outcomes: Vec<Result<Measures, String>>,
     ) -> impl Iterator<Item = Trial> + 'a {
-        let [board, elements] = self.objects[object];
+        let (picture, elements) = self.objects[object];
         let trial = move |(method, outcome): (&_, _)| Trial {
-            board,
+            picture,
             elements,
             method: *method,
             level,
@@ -166,7 +167,7 @@ impl Study for NoiseTasks {
             return Err(LabError::NO_OBJECT);
         }
         self.plan.refuse_saturation(&self.scene)?;
-        let object = |object: &[usize; 2]| {
+        let object = |object: &(Picture, usize)| {
             let model = self.plan.model(&self.scene, *object)?;
             let stage = Stage::new(&self.plan.axis, &self.scene, model.phi())?;
             Ok(Object { model, stage })

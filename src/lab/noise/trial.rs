@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use super::picture::Picture;
 use crate::lab::ensemble::Photographs;
 use crate::lab::measures::Measures;
 use crate::model::MatrixModel;
@@ -10,8 +11,8 @@ use crate::recovery::{Method, Options, Uncertainty};
 /// What one method made of one draw of the noise.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Trial {
-    /// Checks a side of the object.
-    pub board: usize,
+    /// The object.
+    pub picture: Picture,
     /// Elements a side of the recovery.
     pub elements: usize,
     /// The method.
@@ -46,7 +47,7 @@ impl Trial {
     pub(super) fn order(&self, other: &Self) -> Ordering {
         let place = |t: &Self| {
             (
-                t.board,
+                t.picture,
                 t.elements,
                 Method::ALL.iter().position(|m| *m == t.method),
             )

@@ -132,7 +132,7 @@ pub(super) fn figure(control: Control<'_>) -> Result<Finding, LabError> {
             ("spots", |f| f.spots.into()),
             ("rank", |f| f.rank.into()),
             ("condition", |f| f.condition.into()),
-            ("smallest_eigenvalue", |f| f.smallest.into()),
+            ("smallest_eigenvalue_over_largest", |f| f.smallest.into()),
             ("mtf_raw", |f| f.raw.into()),
         ],
     );

@@ -8,13 +8,22 @@
 //! with Rᵀh > 0 on those columns and ε just large enough: h = R 1 does for a matrix without
 //! negative entries (RᵀR 1 is then positive), h = (R⁺)ᵀ 1 for every matrix of full column rank (Rᵀh
 //! = 1). The proof holds for whatever h; a bad one only proves less.
+//!
+//! Where columns without an upper bound cancel, R z = 0 for some z ≥ 0, there is no such h: Rᵀν is
+//! 0 along z at best, in rounding a little less, and no dual point proves anything of x far along
+//! z. Along z the objective does not change, so there is a minimiser in reach; what is proved is
+//! then the distance from the least objective of all x within [`REACH`] times the larger of max x
+//! and ‖d‖/‖R_j‖, the most that column j takes to make d alone.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::QuadraticError;
 use crate::num::linalg::{Tolerance, least_squares};
 
-/// The least gap that the dual points prove, or infinity; NaN where a point is not a number.
+/// How much farther than x a minimiser is looked for where columns cancel.
+const REACH: f64 = 1e3;
+
+/// The least gap that the dual points and ν = 0 prove; NaN where a point is not a number.
 pub(super) fn gap(
     r: &DMatrix<f64>,
     residual: &DVector<f64>,
@@ -23,24 +32,33 @@ pub(super) fn gap(
     upper: &DVector<f64>,
     x: &DVector<f64>,
 ) -> Result<f64, QuadraticError> {
-    let least = |duals: &[DVector<f64>]| {
+    let least = |duals: &[DVector<f64>], upper: &DVector<f64>| {
         duals
             .iter()
             .map(|dual| duality_gap(r, residual, linear, dual, upper, x))
             .fold(f64::INFINITY, f64::min)
     };
-    let duals = duals.map(Clone::clone);
-    let plain = least(&duals);
+    let none = DVector::zeros(r.nrows());
+    let [a, b, c] = duals.map(Clone::clone);
+    let duals = [a, b, c, none];
+    let plain = least(&duals, upper);
     if upper.iter().all(|u| u.is_finite()) {
         return Ok(plain);
     }
-    let mut moved = Vec::new();
-    for lift in Lift::all(r, upper)? {
-        for dual in &duals {
-            moved.push(lift.apply(r, linear, dual));
-        }
+    let lifts = Lift::all(r, upper)?;
+    let each = lifts.iter();
+    let moved: Vec<_> = each
+        .flat_map(|lift| duals.iter().map(|dual| lift.apply(r, linear, dual)))
+        .collect();
+    if !moved.is_empty() {
+        return Ok(plain.min(least(&moved, upper)));
     }
-    Ok(plain.min(least(&moved)))
+    let data = (r * x - residual).norm();
+    let near = DVector::from_fn(x.len(), |j, _| {
+        let reach = REACH * x.amax().max(data / r.column(j).norm());
+        upper[j].min(if reach.is_finite() { reach } else { 0.0 })
+    });
+    Ok(plain.min(least(&duals, &near)))
 }
 
 /// A direction h with Rᵀh > 0 on all columns without an upper bound.

@@ -19,6 +19,10 @@ pub struct Fused {
     /// Connected sets of pairwise equal variables that lie strictly between their bounds: the
     /// degrees of freedom (Tibshirani and Taylor 2012).
     pub free_sets: usize,
+    /// Connected sets of pairwise equal variables in all.
+    pub sets: usize,
+    /// Singular values of R on the sets between the bounds: what the data say of their values.
+    pub sigma: DVector<f64>,
 }
 
 /// min ½‖R x − d‖² + λ Σ_(a,b) |x_a − x_b| over l ≤ x ≤ u, the sum over `pairs`; λ ≥ 0 in the unit
@@ -51,7 +55,8 @@ pub fn fused_least_squares(
     };
     let interior = problem.interior(start)?;
     let mut x = interior.x;
-    let (polished, mut free_sets) = problem.polish(&x)?;
+    let (polished, sigma) = problem.polish(&x)?;
+    let mut free_sets = sigma.len();
     if problem.objective(&polished) <= problem.objective(&x) {
         x = polished;
         free_sets = problem
@@ -62,6 +67,7 @@ pub fn fused_least_squares(
             .count()
             .max(usize::from(free_sets > 0));
     }
+    let sets = problem.sets(&x).1.len();
     let differences = DVector::from_fn(pairs.len(), |i, _| x[pairs[i][0]] - x[pairs[i][1]]);
     let penalty: f64 = differences.iter().map(|t| lambda * t.abs()).sum();
     let mut pull = DVector::zeros(x.len());
@@ -93,6 +99,8 @@ pub fn fused_least_squares(
             gap,
         },
         free_sets,
+        sets,
+        sigma,
     })
 }
 
@@ -238,11 +246,12 @@ impl Problem<'_> {
     }
 
     /// The values of the free sets solved for with the sets and the order of neighbours held, and
-    /// the number of free sets.
-    fn polish(&self, x: &DVector<f64>) -> Result<(DVector<f64>, usize), QuadraticError> {
+    /// the singular values of R on the free sets.
+    fn polish(&self, x: &DVector<f64>) -> Result<(DVector<f64>, DVector<f64>), QuadraticError> {
         let (of, sets) = self.sets(x);
         let free: Vec<usize> = (0..sets.len()).filter(|&s| sets[s].free).collect();
         let mut values: Vec<f64> = sets.iter().map(|s| s.value).collect();
+        let mut sigma = DVector::zeros(0);
         if !free.is_empty() {
             let columns: Vec<DVector<f64>> = free
                 .iter()
@@ -271,11 +280,12 @@ impl Problem<'_> {
             for (&s, &value) in free.iter().zip(solved.iter()) {
                 values[s] = value;
             }
+            sigma = fit.sigma.resize_vertically(free.len(), 0.0);
         }
         let polished = DVector::from_fn(x.len(), |j, _| {
             values[of[j]].clamp(self.bounds.lower[j], self.bounds.upper[j])
         });
-        Ok((polished, free.len()))
+        Ok((polished, sigma))
     }
 }
 

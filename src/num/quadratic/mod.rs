@@ -55,7 +55,8 @@ pub struct BoxSolution {
     /// ½‖R x − d‖².
     pub objective: f64,
     /// Upper bound on how far the objective lies above its minimum, from the optimality conditions
-    /// at x and so independent of either solver.
+    /// at x and so independent of either solver. Where columns without an upper bound cancel it is
+    /// over the x of at most 1000 times the size; see the module `certificate`.
     pub gap: f64,
 }
 
@@ -84,8 +85,8 @@ pub enum QuadraticError {
     },
     /// The solver ended away from the minimum.
     #[error(
-        "bounded least squares ended {gap:.1e} above its minimum (relative; allowed {allowed:.1e}), solver status {status}; \
-         scale the problem, or recover without bounds"
+        "bounded least squares is not proved to be at its minimum: the objective may lie {gap:.1e} above it (relative to the data; \
+         allowed {allowed:.1e}; the solver says of itself: {status}); scale the problem, or recover without bounds"
     )]
     NotSolved {
         /// What the solver said.

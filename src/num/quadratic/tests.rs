@@ -82,6 +82,40 @@ fn without_upper_bounds_it_is_the_best_of_all_sets_at_zero() {
     }
 }
 
+/// Columns that cancel, R z = 0 for some z > 0, let x grow without end along z, so that no h has
+/// Rᵀh > 0. By hand: what lies along R x can be fitted, what lies across cannot.
+#[test]
+fn unbounded_columns_that_cancel_have_a_proved_minimum() {
+    let mut state = 5u64;
+    let mut next = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 33) as f64 / (1u64 << 31) as f64 - 0.5
+    };
+    for copies in [1, 2, 3] {
+        // Each of 4 directions with both signs, repeated: collinear columns. The fifth and sixth
+        // row are across.
+        let frame = DMatrix::from_fn(4, 4, |_, _| next());
+        let r = DMatrix::from_fn(6, 8 * copies, |i, j| {
+            let sign = if j / 4 % 2 == 0 { 1.0 } else { -1.3 };
+            if i < 4 { sign * frame[(i, j % 4)] } else { 0.0 }
+        });
+        for across in [0.0, 1e-6, 1.0] {
+            let d = DVector::from_fn(6, |i, _| if i < 4 { next() } else { across });
+            let bounds = Bounds::all(r.ncols(), 0.0, f64::INFINITY);
+            let found = box_least_squares(&r, &d, &bounds).unwrap();
+            let exact = across * across;
+            assert!(
+                (found.objective - exact).abs() <= 1e-12 && found.gap <= 1e-10,
+                "{copies} {across}: {} {}",
+                found.objective,
+                found.gap
+            );
+        }
+    }
+}
+
 #[test]
 fn bounds_can_lie_anywhere() {
     let r = DMatrix::from_diagonal(&DVector::from_row_slice(&[2.0, 1.0, 1.0]));

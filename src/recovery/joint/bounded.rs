@@ -1,7 +1,7 @@
 //! Least squares over all pixels and spots with reflectances that a surface can have: 0 ≤ ρ ≤ 1
 //! (`joint`), or ρ ≥ 0 alone (`nnls`).
 
-use super::reduced::{Reduced, report};
+use super::reduced::Reduced;
 use super::stacked::stack;
 use super::weights;
 use crate::num::quadratic::{Bounds, box_least_squares};
@@ -32,7 +32,7 @@ pub(in crate::recovery) fn recover(
         None => None,
     };
     let mut found = reduced.finish(method, problem, options, solved.solution.clone())?;
-    found.solver = Some(report(&solved));
+    found.solver = Some(reduced.report(&solved));
     (found.bands, found.no_bands) = match asked {
         Some(Ok(bands)) => (Some(bands), None),
         Some(Err(why)) => (None, Some(why)),

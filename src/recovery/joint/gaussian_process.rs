@@ -92,7 +92,8 @@ pub(in crate::recovery) fn recover(
         spread: best.spread * unit,
         length: lengths[best.length].length,
     };
-    recovered.choice = Choice::Evidence { log: evidence };
+    recovered.choice = Choice::Averaged;
+    recovered.log_evidence = Some(evidence);
     recovered.standard_error = Some(found.standard_error);
     recovered.covariance = found.covariance;
     recovered.bands = found.bands;

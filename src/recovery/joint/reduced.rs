@@ -10,6 +10,7 @@ use crate::num::linalg::{Svd, Tolerance, cut, product, rows_times};
 use crate::num::quadratic::{Bounds, BoxSolution};
 use crate::recovery::{
     Choice, Estimated, Method, Options, Parameter, Problem, Recovered, RecoveryError, Solver,
+    Weighting,
 };
 
 /// ½‖R x − d‖² is the objective but for a constant, x = s ρ.
@@ -60,6 +61,32 @@ impl Reduced {
         Bounds::all(self.r.ncols(), 0.0, upper)
     }
 
+    /// The report of a box solver, its status by what is proved: whatever it says of itself, the
+    /// gap is what its end may be above the minimum.
+    pub(super) fn report(&self, solved: &BoxSolution) -> Solver {
+        let BoxSolution { objective, gap, .. } = *solved;
+        // Where the noise is the unit, 2 gap is in variances of it.
+        let (near, far) = match self.operator.weighting {
+            Weighting::Unweighted => (1e-6 * objective, 1e-2 * objective),
+            _ => (5e-4, 5e-2),
+        };
+        let rounding = (1e-12 * self.d.norm()).powi(2);
+        let status = if gap <= near + rounding {
+            "minimum"
+        } else if gap <= far + rounding {
+            "near its minimum"
+        } else {
+            "NOT PROVED to be near its minimum"
+        };
+        Solver {
+            status: status.to_owned(),
+            iterations: solved.iterations,
+            refinements: solved.refinements,
+            objective,
+            gap,
+        }
+    }
+
     /// The recovery from x = s ρ, a rank cut recorded.
     pub(super) fn finish(
         &self,
@@ -86,17 +113,6 @@ impl Reduced {
             );
         }
         Ok(found)
-    }
-}
-
-/// The report of a box solver.
-pub(super) fn report(solved: &BoxSolution) -> Solver {
-    Solver {
-        status: solved.status.clone(),
-        iterations: solved.iterations,
-        refinements: solved.refinements,
-        objective: solved.objective,
-        gap: solved.gap,
     }
 }
 
@@ -149,4 +165,48 @@ pub(super) fn finish(
     }
     found.nuisance = Some(estimated);
     Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recovery::bench::{Bench, relative_noise};
+
+    /// Half a hundredth of ½ χ² is no "Solved", and what the solver says of itself does not count.
+    #[test]
+    fn the_status_says_what_the_gap_proves() {
+        let bench = Bench::new(6.0, 2, 4);
+        let board = bench.board(2);
+        let (phi, stderr) = relative_noise(&bench.phi(&board), 1e-2, 1);
+        let status = |stderr, objective, gap| {
+            let problem = Problem::new(&phi, &bench.c, &bench.d, stderr).unwrap();
+            let reduced = Reduced::new(&problem, &Options::default()).unwrap();
+            let solved = BoxSolution {
+                solution: board.clone(),
+                status: "Solved".to_owned(),
+                iterations: 9,
+                refinements: 0,
+                objective,
+                gap,
+            };
+            reduced.report(&solved).status
+        };
+        let far = "NOT PROVED to be near its minimum";
+        for (gap, told) in [
+            (1e-9, "minimum"),
+            (5e-3, "near its minimum"),
+            (5.0, far),
+            (f64::INFINITY, far),
+        ] {
+            assert_eq!(status(Some(&stderr), 20.0, gap), told, "{gap}");
+        }
+        // Without noise the objective is the unit.
+        for (gap, told) in [
+            (1e-34, "minimum"),
+            (1e-29, "near its minimum"),
+            (1e-26, far),
+        ] {
+            assert_eq!(status(None, 1e-26, gap), told, "{gap}");
+        }
+    }
 }

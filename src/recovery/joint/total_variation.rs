@@ -7,36 +7,38 @@
 //! free scale the penalty is on s ρ, and only s ρ ≥ 0 is asked.
 //!
 //! λ is given as a fraction of σ₁², σ₁ the largest singular value of the weighted operator, or it
-//! is the largest that the noise allows. Of the pixels·spots weighted residuals, those outside the
-//! range of the operator say nothing of ρ, but their scatter, √(2 N), would hide any pattern of
-//! less. So the test is on what is left inside, where the unbounded fit has no residual at all:
-//! with noise of unit variance (that is what the weights make) and k singular values above
-//! rounding,
+//! is the one at which the photographs are likeliest if the penalty is a prior, p(ρ|λ) ∝ exp(−λ TV)
+//! (noise of unit variance: that is what the weights make). Over the n − 1 differences of n elements
+//! ∫ exp(−λ TV) ∝ λ^(1 − n). About ρ_λ what lies within a patch of one value or on a bound integrates
+//! to some 1/λ each, n − F times where F patches lie between the bounds, and the values of those to
+//! a normal integral (Laplace), so that the evidence E is
 //!
-//! > ‖R ρ_λ − d‖² ≤ target = k − dof(λ),
+//! > −2 ln E(λ) = ‖R ρ_λ − d‖² + 2 λ TV(ρ_λ) − 2 (F − 1) ln λ + Σ_i ln(1 + s_i²/2π) + const,
 //!
-//! dof(λ) the number of patches of one value strictly between the bounds (Tibshirani and Taylor
-//! 2012). No deviation is allowed on top: two of them, 2 √(2 k), are negligible against the
-//! thousands of residuals of the methods that work pixel by pixel, but a third of the few tens
-//! here, and a λ that spends them flattens the pattern. Where the unpenalised fit (λ = 0) is above
-//! the target already, but by no more than four, it is kept; where it is above that, the noise is
-//! understated.
+//! s_i the singular values of R on those F patches, and the 1 the range that a reflectance has
+//! without any data (no power of λ where F is 0). As λ → 0 the evidence of a picture with an edge
+//! between the bounds vanishes; a flat one has no λ of its own: the largest is taken. Where even the
+//! unpenalised fit is more than four standard deviations of χ² above its mean, k − F (k singular
+//! values above rounding; Tibshirani and Taylor 2012), the noise is understated and nothing is
+//! chosen.
+//!
+//! Over 180 draws on 8 × 8 elements (five kinds of pictures, noise 0.1 to 1e-3, both rings) its RMSE
+//! is 1.07 times that at the best λ in the median, and more than 1.55 times in a tenth; a slow test
+//! holds the median of 210 others below 1.1. λ is never 0.
 
-use super::reduced::{Reduced, report};
+use super::reduced::Reduced;
 use crate::num::quadratic::{Bounds, Fused, box_least_squares, fused_least_squares};
 use crate::recovery::{
     Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, WeightRule,
 };
 
-/// Trial values of λ/σ₁² fall from 1 by this factor until one is accepted, and bisection goes on to
-/// within this of the answer.
+/// Trial values of λ/σ₁² fall from 1 by this factor; then the neighbours of the best are tried at
+/// its root, and at the root of that.
 const STEP: f64 = 0.1;
-const NEAR: f64 = 1.02;
-/// Standard deviations of χ² above its mean, √(2 target) each, beyond which noise does not explain
-/// a residual.
+/// The least λ tried: a step of reflectance 1 costs no more of χ².
+const LEAST: f64 = 1e-3;
+/// Standard deviations of χ² above its mean beyond which noise does not explain a residual.
 const DEVIATIONS: f64 = 4.0;
-/// The smallest λ/σ₁² tried: some roundings.
-const LEAST: f64 = 1e-24;
 
 pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
@@ -80,13 +82,13 @@ pub(in crate::recovery) fn recover(
                 None => RecoveryError::NoNoiseModel { method, parameter },
             });
         }
-        None => search.largest()?,
+        None => search.likeliest()?,
     };
     let found = search.at(lambda)?.found;
     let mut recovered = reduced.finish(method, problem, options, found.solution.clone())?;
     recovered.parameter = Parameter::TotalVariation(lambda);
     recovered.choice = choice;
-    recovered.solver = Some(report(&found));
+    recovered.solver = Some(reduced.report(&found));
     Ok(recovered)
 }
 
@@ -114,67 +116,82 @@ impl Search<'_> {
         )?)
     }
 
-    /// Residual, target and limit of λ.
-    fn level(&self, lambda: f64) -> Result<Level, RecoveryError> {
+    /// λ/σ₁², what it leaves over, and its evidence.
+    fn trial(&self, lambda: f64) -> Result<Trial, RecoveryError> {
         let fused = self.at(lambda)?;
-        let Reduced { r, d, .. } = self.reduced;
-        let target = r.nrows().saturating_sub(fused.free_sets).max(1) as f64;
-        Ok(Level {
-            residual: (r * &fused.found.solution - d).norm_squared(),
-            target,
-            limit: target + DEVIATIONS * (2.0 * target).sqrt(),
+        let residual = self.residual(&fused);
+        let objective = fused.found.objective;
+        let known = |s: &f64| libm::log1p(s * s / std::f64::consts::TAU);
+        let information: f64 = fused.sigma.iter().map(known).sum();
+        // ‖R ρ − d‖² + 2 λ TV is twice the objective.
+        let power = fused.free_sets.saturating_sub(1) as f64 * libm::log(lambda * self.unit);
+        Ok(Trial {
+            lambda,
+            residual,
+            patches: fused.sets,
+            deviance: 2.0 * (objective - power) + information,
         })
     }
 
-    /// The largest λ/σ₁² that the noise allows, no larger than 1.
-    fn largest(&self) -> Result<(f64, Choice), RecoveryError> {
-        let none = self.level(0.0)?;
-        if none.residual > none.limit {
-            return Err(RecoveryError::JointNoiseUnderstated {
-                residual: none.residual,
-                limit: none.limit,
-            });
+    fn residual(&self, fused: &Fused) -> f64 {
+        (&self.reduced.r * &fused.found.solution - &self.reduced.d).norm_squared()
+    }
+
+    /// Refuses photographs that no ρ explains.
+    fn refuse_understated(&self) -> Result<(), RecoveryError> {
+        let fused = self.at(0.0)?;
+        let residual = self.residual(&fused);
+        let rows = self.reduced.r.nrows();
+        let mean = rows.saturating_sub(fused.free_sets).max(1) as f64;
+        let limit = mean + DEVIATIONS * (2.0 * mean).sqrt();
+        if residual > limit {
+            return Err(RecoveryError::JointNoiseUnderstated { residual, limit });
         }
-        let (mut high, mut low) = (1.0, 1.0);
-        let mut level = self.level(low)?;
-        while !level.accepted() {
-            high = low;
-            low *= STEP;
-            if low < LEAST {
-                return Ok((0.0, none.choice()));
+        Ok(())
+    }
+
+    /// The λ/σ₁² of the largest evidence, of equals the largest.
+    fn likeliest(&self) -> Result<(f64, Choice), RecoveryError> {
+        self.refuse_understated()?;
+        let mut best = self.trial(1.0)?;
+        let mut lambda = STEP;
+        while lambda * self.unit > LEAST {
+            best = best.or(self.trial(lambda)?);
+            lambda *= STEP;
+        }
+        for by in [STEP.sqrt(), STEP.sqrt().sqrt()] {
+            let centre = best.lambda;
+            for lambda in [centre / by, centre * by] {
+                if lambda <= 1.0 {
+                    best = best.or(self.trial(lambda)?);
+                }
             }
-            level = self.level(low)?;
         }
-        while high / low > NEAR {
-            let middle = (high * low).sqrt();
-            let between = self.level(middle)?;
-            if between.accepted() {
-                (low, level) = (middle, between);
-            } else {
-                high = middle;
-            }
-        }
-        Ok((low, level.choice()))
+        let choice = Choice::Evidence {
+            deviance: best.deviance,
+            residual: best.residual,
+            patches: best.patches,
+        };
+        Ok((best.lambda, choice))
     }
 }
 
-/// The three numbers of [`Choice::JointDiscrepancy`].
-struct Level {
+/// A trial value of λ.
+struct Trial {
+    lambda: f64,
     residual: f64,
-    target: f64,
-    limit: f64,
+    patches: usize,
+    /// −2 ln E but for a constant.
+    deviance: f64,
 }
 
-impl Level {
-    fn accepted(&self) -> bool {
-        self.residual <= self.target
-    }
-
-    fn choice(&self) -> Choice {
-        Choice::JointDiscrepancy {
-            residual: self.residual,
-            target: self.target,
-            limit: self.limit,
+impl Trial {
+    /// The likelier of two.
+    fn or(self, other: Self) -> Self {
+        if other.deviance < self.deviance {
+            other
+        } else {
+            self
         }
     }
 }
@@ -198,122 +215,4 @@ fn neighbours(grids: &[[usize; 2]]) -> Vec<[usize; 2]> {
 }
 
 #[cfg(test)]
-mod tests {
-    use nalgebra::DMatrix;
-
-    use super::*;
-    use crate::recovery::bench::{Bench, normal_stream};
-    use crate::recovery::recover;
-
-    fn noisy(bench: &Bench, exact: &DMatrix<f64>, noise: f64, seed: u64) -> [DMatrix<f64>; 2] {
-        let stderr = exact * noise;
-        let mut normal = normal_stream(seed);
-        assert_eq!(exact.nrows(), bench.c.nrows());
-        [exact.zip_map(&stderr, |x, s| x + s * normal()), stderr]
-    }
-
-    #[test]
-    fn neighbours_are_those_of_each_grid() {
-        // 3 × 2: rows 0-1-2 and 3-4-5; then 1 × 2.
-        let pairs = neighbours(&[[3, 2], [1, 2]]);
-        let exact = [
-            [0, 1],
-            [0, 3],
-            [1, 2],
-            [1, 4],
-            [2, 5],
-            [3, 4],
-            [4, 5],
-            [6, 7],
-        ];
-        assert_eq!(pairs, exact);
-    }
-
-    #[test]
-    fn the_chosen_weight_leaves_what_noise_leaves() {
-        let bench = Bench::new(6.0, 8, 16);
-        let exact = bench.phi(&bench.board(2).map(|x| 0.3 + 0.4 * x));
-        for (noise, seed) in [(0.1, 1), (1e-2, 2), (1e-3, 3)] {
-            let [phi, stderr] = noisy(&bench, &exact, noise, seed);
-            let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
-            let problem = problem.with_grids(&[[8, 8]]).unwrap();
-            let found = recover(Method::JointTv, &problem, &Options::default()).unwrap();
-            let Choice::JointDiscrepancy {
-                residual,
-                target,
-                limit,
-            } = found.choice
-            else {
-                panic!("{:?}", found.choice)
-            };
-            let Parameter::TotalVariation(lambda) = found.parameter else {
-                panic!("{:?}", found.parameter)
-            };
-            // As large as can be, or no penalty where noise is above its mean already.
-            let within = residual <= target && residual > 0.8 * target;
-            assert!(
-                within || (lambda == 0.0 && residual <= limit),
-                "{residual} {target} {limit}"
-            );
-            let solver = found.solver.unwrap();
-            assert!(solver.gap < 1e-2 * solver.objective, "{solver:?}");
-        }
-    }
-
-    #[test]
-    fn no_weight_is_joint_and_a_great_one_is_flat() {
-        let bench = Bench::new(6.0, 4, 8);
-        let [phi, stderr] = noisy(&bench, &bench.phi(&bench.board(2)), 1e-2, 1);
-        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
-        let problem = problem.with_grids(&[[4, 4]]).unwrap();
-        let of = |weight| {
-            let options = Options {
-                total_variation: Some(weight),
-                ..Options::default()
-            };
-            recover(Method::JointTv, &problem, &options)
-        };
-        let joint = recover(Method::Joint, &problem, &Options::default()).unwrap();
-        assert!((of(0.0).unwrap().reflectance - joint.reflectance).amax() < 1e-9);
-        let flat = of(1.0).unwrap().reflectance;
-        assert!(flat.max() - flat.min() < 1e-9 && flat[0] > 0.1);
-        for bad in [-1.0, f64::NAN] {
-            assert!(matches!(of(bad), Err(RecoveryError::BadParameter { .. })));
-        }
-    }
-
-    #[test]
-    fn what_is_missing_is_said() {
-        let bench = Bench::new(6.0, 2, 4);
-        let phi = bench.phi(&bench.board(2));
-        let problem = Problem::new(&phi, &bench.c, &bench.d, None).unwrap();
-        let error = recover(Method::JointTv, &problem, &Options::default()).unwrap_err();
-        assert!(
-            matches!(error, RecoveryError::NotForMethod { .. }),
-            "{error}"
-        );
-        assert!(matches!(
-            problem.with_grids(&[[2, 3]]),
-            Err(RecoveryError::Grids {
-                elements: 4,
-                covered: 6
-            })
-        ));
-        let problem = problem.with_grids(&[[2, 2]]).unwrap();
-        let error = recover(Method::JointTv, &problem, &Options::default()).unwrap_err();
-        assert!(
-            matches!(error, RecoveryError::NoNoiseModel { .. }),
-            "{error}"
-        );
-        // Errors a hundred times too small: no ρ fits.
-        let [phi, stderr] = noisy(&bench, &phi, 1e-2, 1);
-        let small = stderr * 1e-2;
-        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&small)).unwrap();
-        let problem = problem.with_grids(&[[2, 2]]).unwrap();
-        let error = recover(Method::JointTv, &problem, &Options::default()).unwrap_err();
-        assert!(
-            matches!(error, RecoveryError::JointNoiseUnderstated { .. }),
-            "{error}"
-        );
-    }
-}
+mod tests;

@@ -168,7 +168,11 @@ pub(in crate::recovery) fn recover(
         bound = objective;
     }
     let mut recovered = coordinates.finish(method, problem, options, best.values())?;
+    // The pattern alone is no more than all of them.
+    let own = ground.log_weight(&best.light).unwrap_or(f64::NEG_INFINITY);
+    let own = own - n as f64 * std::f64::consts::LN_2;
     let patterns = summed.map(|summed| summed.finish(&best.light));
+    recovered.log_evidence = patterns.as_ref().map(|p| p.log_evidence.max(own));
     let known = patterns.as_ref().filter(|p| p.sum.converged());
     recovered.standard_error = known.map(|p| p.deviation.clone());
     recovered.patterns = patterns;

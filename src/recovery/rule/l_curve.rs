@@ -7,13 +7,19 @@
 //!   Φ‖² and b = ½ log ‖X‖² as functions of t = log λ between the smallest and the largest singular
 //!   value, with the derivatives in closed form from f = σ²/(σ² + λ²), df/dt = −2 f (1 − f);
 //! * truncation, whose curve is a row of points P_k: the vertex of the sharpest triangle (P_j, P_k,
-//!   P_n), j < k < n, n the last point, among those that turn the way of an L by more than π/8
-//!   (Castellanos, Gómez and Guerra 2002).
+//!   P_n), j < k < n, n the last point (Castellanos, Gómez and Guerra 2002).
+//!
+//! Every curve has a point of largest curvature. A corner is one where such a triangle, its vertex
+//! there, turns the way of an L by more than π/8; of the damped curve its corners are looked for at
+//! the singular values. Without one the rule has no answer.
 
 use std::f64::consts::PI;
 
 use super::{Data, search};
 use crate::recovery::Choice;
+
+/// The least turn of a corner, rad.
+const LEAST_TURN: f64 = PI / 8.0;
 
 impl Data<'_> {
     fn l_curve(&self, filter: &[f64], turn: f64) -> Choice {
@@ -50,32 +56,45 @@ impl Data<'_> {
         (a1 * b2 - a2 * b1) / (speed * speed.sqrt())
     }
 
-    /// The damping λ of largest curvature; `None` where the curve nowhere turns as an L does.
+    /// ½ log of residual and penalty.
+    fn point(&self, filter: &[f64]) -> [f64; 2] {
+        let half_log = |square: f64| 0.5 * libm::log(square);
+        [
+            half_log(self.residual(filter)),
+            half_log(self.penalty(filter)),
+        ]
+    }
+
+    /// The damping λ of largest curvature; `None` where the curve does not turn there as an L does.
     pub(in crate::recovery) fn damped_by_l_curve(&self) -> Option<(f64, Choice)> {
         let sigma = self.spectrum.filtered();
         let (low, high) = (*sigma.last()?, *sigma.first()?);
-        let (lambda, turn) = search::largest(low, high, |x| self.curvature(x));
+        let (lambda, _) = search::largest(low, high, |x| self.curvature(x));
+        let point = |lambda: f64| self.point(&self.spectrum.damped(lambda));
+        let (vertex, last) = (point(lambda), point(low));
+        let before = sigma.iter().filter(|s| **s > lambda);
+        let turns = before.map(|s| turn([point(*s), vertex, last]));
+        let turn = turns.fold(0.0, f64::max);
         let filter = self.spectrum.damped(lambda);
-        (turn > 0.0).then(|| (lambda, self.l_curve(&filter, turn)))
+        (turn > LEAST_TURN).then(|| (lambda, self.l_curve(&filter, turn)))
     }
 
     /// The truncation at the corner; `None` where there is none. As many directions as spots leave
     /// no residual and so no point.
     pub(in crate::recovery) fn kept_by_l_curve(&self) -> Option<(usize, Choice)> {
-        let point = |kept: usize| {
-            let filter = self.spectrum.truncated(kept);
-            let half_log = |square: f64| 0.5 * libm::log(square);
-            [
-                half_log(self.residual(&filter)),
-                half_log(self.penalty(&filter)),
-            ]
-        };
         let most = self.spectrum.len().min(self.spots as usize - 1);
-        let points: Vec<[f64; 2]> = (1..=most).map(point).collect();
-        let (at, turn) = corner(&points)?;
+        let points = (1..=most).map(|kept| self.point(&self.spectrum.truncated(kept)));
+        let (at, turn) = corner(&points.collect::<Vec<_>>())?;
         let kept = at + 1;
         Some((kept, self.l_curve(&self.spectrum.truncated(kept), turn)))
     }
+}
+
+/// By how much a path over three points turns at the middle one, rad: positive from left to up.
+fn turn([a, b, c]: [[f64; 2]; 3]) -> f64 {
+    let along = |from: [f64; 2], to: [f64; 2]| [to[0] - from[0], to[1] - from[1]];
+    let ([ax, ay], [bx, by]) = (along(a, b), along(b, c));
+    -libm::atan2(ax * by - ay * bx, ax * bx + ay * by)
 }
 
 /// The corner of a row of points that runs to the left and up, and by how much it turns there
@@ -86,16 +105,8 @@ fn corner(points: &[[f64; 2]]) -> Option<(usize, f64)> {
     let mut best = None;
     for k in (1..last).filter(|&k| whole(&points[k])) {
         for j in (0..k).filter(|&j| whole(&points[j])) {
-            let along = |from: usize, to: usize| {
-                [
-                    points[to][0] - points[from][0],
-                    points[to][1] - points[from][1],
-                ]
-            };
-            let ([ax, ay], [bx, by]) = (along(j, k), along(k, last));
-            // Clockwise turns are positive: from left to up.
-            let turn = -libm::atan2(ax * by - ay * bx, ax * bx + ay * by);
-            if turn > PI / 8.0 && best.is_none_or(|(_, most)| turn > most) {
+            let turn = turn([points[j], points[k], points[last]]);
+            if turn > LEAST_TURN && best.is_none_or(|(_, most)| turn > most) {
                 best = Some((k, turn));
             }
         }
@@ -167,8 +178,43 @@ mod tests {
         let brute = (0..=5000)
             .map(|k| data.curvature(libm::exp(low + (high - low) * f64::from(k) / 5000.0)))
             .fold(0.0, f64::max);
-        assert!(turn >= brute * (1.0 - 1e-6), "{turn} {brute}");
-        assert!((data.curvature(damping * first) / turn - 1.0).abs() < 1e-6);
+        let sharpest = data.curvature(damping * first);
+        assert!(sharpest >= brute * (1.0 - 1e-6), "{sharpest} {brute}");
+        // The corner of an L turns by a right angle.
+        assert!((turn - PI / 2.0).abs() < 0.2, "{turn}");
+    }
+
+    /// Of noise of a tenth the curve of differences only bends a little, and most where 2e8 is
+    /// recovered; without noise the norm of the solution has nothing to rise with. Neither is a
+    /// corner.
+    #[test]
+    fn a_bend_is_no_corner() {
+        let bench = Bench::new(6.0, 8, 8);
+        let exact = bench.phi(&bench.board(2));
+        let grids = [[8, 8]];
+        for (noise, method) in [
+            (0.1, Method::TikhonovGradient),
+            (0.3, Method::TikhonovGradient),
+            (0.0, Method::TikhonovGradient),
+            (0.0, Method::Tikhonov),
+        ] {
+            let (phi, _) = relative_noise(&exact, noise, 3);
+            let problem = Problem::new(&phi, &bench.c, &bench.d, None).unwrap();
+            let problem = problem.with_grids(&grids).unwrap();
+            let options = Options {
+                rule: Rule::LCurve,
+                ..Options::default()
+            };
+            let error = recover(method, &problem, &options).unwrap_err();
+            let told = error.to_string();
+            let whole = ["no corner", "gcv", "damping"]
+                .iter()
+                .all(|w| told.contains(w));
+            assert!(
+                matches!(error, RecoveryError::Undecided { .. }) && whole,
+                "{told}"
+            );
+        }
     }
 
     #[test]

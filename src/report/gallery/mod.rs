@@ -37,9 +37,14 @@ pub(super) fn recoveries(results: &RunResults) -> String {
                 value,
             )
         };
-        let (truth, said) = picture("truth", &first.truth);
+        let (_, said) = picture("", &first.reflectance);
         let last = [nu, nv].map(|n| n.saturating_sub(1));
-        let mut figures = figure(&truth, last, Entries::Square, &scale, "");
+        let (mut panels, mut figures) = (Vec::new(), String::new());
+        if let Some(truth) = &first.truth {
+            let (panel, _) = picture("truth", truth);
+            figures.push_str(&figure(&panel, last, Entries::Square, &scale, ""));
+            panels.push(panel);
+        }
         if let Some(shares) = &first.determined_share {
             let (panel, _) = picture("determined by the photographs", shares);
             let more = format!(
@@ -48,7 +53,6 @@ pub(super) fn recoveries(results: &RunResults) -> String {
             );
             figures.push_str(&figure(&panel, last, Entries::Square, &scale, &more));
         }
-        let mut panels = vec![truth];
         for r in group.iter().take(left) {
             let (panel, _) = picture(&r.method, &r.reflectance);
             let more = format!(
@@ -58,6 +62,15 @@ pub(super) fn recoveries(results: &RunResults) -> String {
             );
             figures.push_str(&figure(&panel, last, Entries::Square, &scale, &more));
             panels.push(panel);
+            for (what, values) in [
+                ("standard error", &r.standard_error),
+                ("probability to be light", &r.light),
+            ] {
+                if let Some(values) = values {
+                    let (panel, _) = picture(&format!("{}, {what}", r.method), values);
+                    figures.push_str(&figure(&panel, last, Entries::Square, &scale, ""));
+                }
+            }
         }
         let unseen = group.len().saturating_sub(left);
         left -= left.min(group.len());

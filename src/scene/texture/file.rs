@@ -6,7 +6,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use super::bilinear::Wrap;
 use crate::image::Transfer;
 
-/// `0.8`, or a table that says how the albedo varies.
+/// `0.8`, a table that says how the albedo varies, or `"unknown"`.
 #[derive(Clone, Debug, Serialize)]
 #[serde(untagged)]
 pub enum AlbedoTable {
@@ -14,6 +14,16 @@ pub enum AlbedoTable {
     Constant(f64),
     /// As a table says.
     Varied(Box<VariedTable>),
+    /// Nothing is known of it.
+    Unknown(Unknown),
+}
+
+/// The word `"unknown"`.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub enum Unknown {
+    /// That it is.
+    #[serde(rename = "unknown")]
+    Unknown,
 }
 
 impl From<f64> for AlbedoTable {
@@ -101,13 +111,19 @@ impl<'de> Deserialize<'de> for AlbedoTable {
         impl<'de> Visitor<'de> for Albedo {
             type Value = AlbedoTable;
             fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-                f.write_str("an albedo: a number in [0, 1], or a table with `checkerboard`, `cells`, `ramp`, `image` or `target`")
+                f.write_str("an albedo: a number in [0, 1], a table with `checkerboard`, `cells`, `ramp`, `image` or `target`, or \"unknown\"")
             }
             fn visit_f64<E: de::Error>(self, x: f64) -> Result<AlbedoTable, E> {
                 Ok(AlbedoTable::Constant(x))
             }
             fn visit_i64<E: de::Error>(self, x: i64) -> Result<AlbedoTable, E> {
                 Ok(AlbedoTable::Constant(x as f64))
+            }
+            fn visit_str<E: de::Error>(self, word: &str) -> Result<AlbedoTable, E> {
+                match word {
+                    "unknown" => Ok(AlbedoTable::Unknown(Unknown::Unknown)),
+                    other => Err(E::invalid_value(de::Unexpected::Str(other), &self)),
+                }
             }
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<AlbedoTable, A::Error> {
                 let table = VariedTable::deserialize(MapAccessDeserializer::new(map))?;

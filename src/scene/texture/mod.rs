@@ -168,6 +168,11 @@ impl Texture {
         match table {
             AlbedoTable::Constant(rho) => albedo(*rho).map(Self::Constant),
             AlbedoTable::Varied(varied) => Self::varied(varied, wavelength, files),
+            AlbedoTable::Unknown(_) => Err(Fault::new(
+                keys![],
+                "an albedo that is unknown where it has to be known",
+                "give a number in [0, 1]; only `lambertian` of a hidden surface can be \"unknown\"",
+            )),
         }
     }
 

@@ -53,6 +53,7 @@ fn impossible_albedos_are_refused() {
         "1.2",
         "-0.1",
         "nan",
+        "\"unknown\"",
         "{ checkerboard = [2, 2], dark = 0, light = 2 }",
         "{ checkerboard = [0, 2], dark = 0, light = 1 }",
         "{ checkerboard = [2, 2], dark = 0 }",

@@ -1,0 +1,158 @@
+//! The files of a recovery.
+
+use std::path::Path;
+
+use serde_json::json;
+
+use super::cleanup::{remove_abandoned, remove_named};
+use super::failure::Failure;
+use super::output;
+use crate::lab::finding::Describe;
+use crate::lab::{Beside, RecoveredObject};
+use crate::matrix::{Matrix, npy};
+use crate::recovery::Picard;
+use crate::report::{self, Panel};
+use crate::scene::{Division, Scene};
+use crate::store::ensure_writable;
+
+/// Writes into `folder` METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png where it is known, what the
+/// photographs determine of each element in determined.npy and determined.png, and overview.png with
+/// all of them side by side (no pictures of elements that are the triangles of a mesh); METHOD.texture.png, the reflectance as a texture for a scene, and METHOD.ply, the surface
+/// with it as colours; what is known of the uncertainty in METHOD.stderr.npy (nv × nu), METHOD.light.npy (nv × nu,
+/// probability to be light),
+/// METHOD.covariance.npy and METHOD.resolution.npy (own elements × elements of all surfaces),
+/// METHOD.bias.npy (nv × nu), METHOD.lower.npy and METHOD.upper.npy where bands were asked for;
+/// what was chosen and found beside it in METHOD.choice.json, METHOD.frame_constant.npy and
+/// METHOD.glare.npy (1 × spots) and METHOD.background.npy (pixels × 1);
+/// NAME.csv and NAME.svg of each of `picards`, and no others. Where several surfaces are hidden the
+/// names are METHOD-0, METHOD-1, … in file order.
+pub(super) fn write(
+    folder: &Path,
+    scene: &Scene,
+    objects: &[RecoveredObject],
+    picards: &[Picard],
+) -> Result<(), Failure> {
+    ensure_writable(folder)?;
+    remove_abandoned(folder)?;
+    remove_named(folder, &["picard-joint.csv", "picard-joint.svg"])?;
+    for picard in picards {
+        for (name, text) in report::finding_files(&picard.describe()) {
+            output::write(&folder.join(name), text)?;
+        }
+    }
+    let mut surfaces: Vec<&str> = Vec::new();
+    for object in objects {
+        if !surfaces.contains(&object.surface.as_str()) {
+            surfaces.push(&object.surface);
+        }
+    }
+    for (i, surface) in surfaces.iter().enumerate() {
+        let suffix = if surfaces.len() > 1 {
+            format!("-{i}")
+        } else {
+            String::new()
+        };
+        let named = |name: &str, what: &str| format!("{name}{suffix}.{what}");
+        let file = |name: &str, what: &str| folder.join(named(name, what));
+        let shape = scene.surfaces.iter().find(|s| s.name == **surface);
+        let drawn = shape.is_none_or(|s| s.division == Division::Cells);
+        let mut panels = Vec::new();
+        let known = objects.iter().find(|o| o.surface == *surface);
+        let shares = known.and_then(|o| o.determined_share.as_ref());
+        if shares.is_none() {
+            let stale = ["npy", "png"].map(|what| named("determined", what));
+            remove_named(folder, &stale.each_ref().map(String::as_str))?;
+        }
+        if known.is_some_and(|o| o.truth.is_none()) {
+            let stale = ["npy", "png"].map(|what| named("truth", what));
+            remove_named(folder, &stale.each_ref().map(String::as_str))?;
+        }
+        for object in objects.iter().filter(|o| o.surface == *surface) {
+            let [nu, nv] = object.elements;
+            let method = object.method.as_str();
+            let first = known.is_some_and(|known| std::ptr::eq(known, object));
+            let truth = object.truth.as_ref().filter(|_| first);
+            let truth = truth.map(|t| ("truth", t));
+            let shares = shares.filter(|_| first).map(|s| ("determined", s));
+            let own = [(method, &object.reflectance)];
+            for (name, values) in truth.into_iter().chain(shares).chain(own) {
+                npy::write(&file(name, "npy"), &Matrix::from_row_slice(nv, nu, values))?;
+                if drawn {
+                    let panel = Panel::elements(name, object.elements, values.clone());
+                    let png = report::grey_png(surface, std::slice::from_ref(&panel))?;
+                    output::write(&file(name, "png"), png)?;
+                    panels.push(panel);
+                }
+            }
+            let uncertain = [
+                ("standard error", &object.standard_error),
+                ("probability light", &object.light),
+            ];
+            for (what, values) in uncertain.into_iter().filter(|_| drawn) {
+                let of = |values: &Vec<f64>| {
+                    let name = format!("{method}, {what}");
+                    Panel::elements(&name, object.elements, values.clone())
+                };
+                panels.extend(values.as_ref().map(of));
+            }
+            if let Some(shape) = shape {
+                let (elements, values) = (object.elements, &object.reflectance);
+                if drawn {
+                    let png = report::texture_png(elements, values)?;
+                    output::write(&file(method, "texture.png"), png)?;
+                }
+                let ply = report::recovered_ply(shape, elements, values);
+                output::write(&file(method, "ply"), ply)?;
+            }
+            let choice = json!({
+                "method": method,
+                "choice": object.choice,
+                "solver": object.solver,
+                "estimated": object.estimated,
+            });
+            output::write(&file(method, "choice.json"), output::json(&choice)?)?;
+            for (what, matrix) in uncertainties(object).into_iter().chain(beside(object)) {
+                let name = named(method, &format!("{what}.npy"));
+                match matrix {
+                    Some(matrix) => npy::write(&folder.join(name), &matrix)?,
+                    None => remove_named(folder, &[&name])?,
+                }
+            }
+        }
+        if drawn {
+            let png = report::grey_png(surface, &panels)?;
+            output::write(&file("overview", "png"), png)?;
+        }
+    }
+    Ok(())
+}
+
+/// What is known of the uncertainty of `object`, by the names of its files.
+fn uncertainties(object: &RecoveredObject) -> [(&'static str, Option<Matrix>); 7] {
+    let [nu, nv] = object.elements;
+    let picture = |values: &Vec<f64>| Matrix::from_row_slice(nv, nu, values);
+    let bands = object.bands.as_ref();
+    [
+        ("stderr", object.standard_error.as_ref().map(picture)),
+        ("light", object.light.as_ref().map(picture)),
+        ("bias", object.bias.as_ref().map(picture)),
+        ("lower", bands.map(|b| picture(&b.lower))),
+        ("upper", bands.map(|b| picture(&b.upper))),
+        ("covariance", object.covariance.clone()),
+        ("resolution", object.resolution.clone()),
+    ]
+}
+
+/// What was estimated beside the reflectances of `object`, by the names of its files: b and g of a
+/// frame as a row, a of a pixel as a column, as they add to Φcam.
+fn beside(object: &RecoveredObject) -> [(&'static str, Option<Matrix>); 3] {
+    let found = object.estimated.as_ref();
+    let of = |values: fn(&Beside) -> &Option<Vec<f64>>| found.and_then(|b| values(b).as_deref());
+    let row = |v: &[f64]| Matrix::from_row_slice(1, v.len(), v);
+    let column = |v: &[f64]| Matrix::from_row_slice(v.len(), 1, v);
+    [
+        ("frame_constant", of(|b| &b.frame_constant).map(row)),
+        ("background", of(|b| &b.background).map(column)),
+        ("glare", of(|b| &b.glare).map(row)),
+    ]
+}
