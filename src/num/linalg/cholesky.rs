@@ -71,7 +71,7 @@ mod tests {
         let graded = DMatrix::from_fn(7, 7, |i, j| grade(i) * least[(i, j)] * grade(j));
         let graded = Cholesky::new(&graded).unwrap();
         for i in 0..7 {
-            assert!((graded.l[(i, 0)] / grade(i) / grade(0) - 1.0).abs() < 1e-12 || i > 0);
+            assert!((graded.l[(i, 0)] / grade(i) - 1.0).abs() < 1e-12);
             assert!((graded.l[(6, i)] / grade(6) - 1.0).abs() < 1e-12);
         }
     }

@@ -25,7 +25,7 @@ use crate::recovery::Sum;
 /// Multiplications that one ladder may take.
 const MOST_WORK: f64 = 6e8;
 /// Fewest and most sweeps.
-const SWEEPS: [usize; 2] = [60, 6000];
+const SWEEPS: [usize; 2] = [60, 20_000];
 /// Most copies in a ladder.
 const MOST_COPIES: usize = 72;
 /// Evidences that differ by less, ln, tell nothing of which is larger.

@@ -1,3 +1,5 @@
+use nalgebra::{DMatrix, DVector};
+
 use super::*;
 use crate::recovery::bench::{Bench, normal_stream};
 use crate::recovery::recover;
@@ -78,7 +80,7 @@ fn levels_are_kept_or_estimated() {
 fn probabilities_are_those_of_all_patterns() {
     let bench = Bench::new(6.0, 3, 8);
     let truth = DVector::from_fn(9, |j, _| if j % 4 == 1 { 0.7 } else { 0.3 });
-    let [phi, stderr] = noisy(&bench, &truth, 0.4, 5);
+    let [phi, stderr] = noisy(&bench, &truth, 3.0, 5);
     let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
     let options = Options {
         levels: Some([0.3, 0.7]),

@@ -1,0 +1,326 @@
+//! The pattern of two values that fits best, as far as it can be found.
+//!
+//! A combinatorial problem, searched in two ways. Descent: from the minimiser over all 0 ≤ x ≤ 1,
+//! cut at several thresholds, the change of one or two elements that lowers ‖R x − d‖ most is made
+//! until none lowers it; without given levels also from the minimisers between pairs of levels.
+//! Branch and bound ([`super::branch`]): with the levels held, elements are put to one level after
+//! the other, and what relaxation shows to be hopeless is left out; it ends with a proof or after a
+//! fixed number of relaxations. Where the levels are not given they are the best for each pattern
+//! (least squares in [0, 1]), found anew after every search, until nothing improves. Misfits are
+//! norms of R x − d itself, never differences of Gram products, which would lose what little noise
+//! leaves.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::branch;
+use crate::num::linalg::gram_product;
+use crate::num::quadratic::{Bounds, box_least_squares, box_least_squares_from};
+use crate::recovery::RecoveryError;
+
+/// Thresholds that the relaxation is cut at.
+const STARTS: usize = 12;
+/// Steps of the lattice of levels.
+const LEVELS: usize = 10;
+/// Above this many elements pairs are not tried.
+const MOST_PAIRED: usize = 2048;
+/// Searches by branch and bound, each with the levels of a good pattern.
+const ROUNDS: usize = 10;
+/// Of the best descents so many have their levels searched with.
+const TRIALS: usize = 6;
+/// Levels that differ by less, relative to the light one, are searched with once.
+const SAME: f64 = 1e-3;
+/// A change must lower ‖R x − d‖² by more than this fraction, or rounding would go round in circles.
+const WORTH: f64 = 1e-10;
+
+/// What the two levels can be.
+#[derive(Clone, Copy)]
+pub(super) enum Levels {
+    /// As given.
+    Given([f64; 2]),
+    /// A common factor of the given ones, 0 or more, is free.
+    Ratio([f64; 2]),
+    /// Both free from 0 to this.
+    Within(f64),
+}
+
+/// A pattern with its levels.
+#[derive(Clone)]
+pub(super) struct Pattern {
+    pub(super) light: Vec<bool>,
+    levels: [f64; 2],
+    /// ‖R ρ − d‖².
+    pub(super) misfit: f64,
+}
+
+impl Pattern {
+    /// Its reflectances, times the scale.
+    pub(super) fn values(&self) -> DVector<f64> {
+        let [dark, light] = self.levels;
+        DVector::from_fn(
+            self.light.len(),
+            |j, _| if self.light[j] { light } else { dark },
+        )
+    }
+}
+
+pub(super) struct Search<'a> {
+    r: &'a DMatrix<f64>,
+    d: &'a DVector<f64>,
+    /// RᵀR.
+    gram: DMatrix<f64>,
+    levels: Levels,
+}
+
+/// What a search has found.
+pub(super) struct Found {
+    pub(super) best: Pattern,
+    /// No pattern has a smaller ½‖R x − d‖².
+    pub(super) bound: f64,
+    pub(super) iterations: u32,
+    pub(super) changes: usize,
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(r: &'a DMatrix<f64>, d: &'a DVector<f64>, levels: Levels) -> Self {
+        let mut gram = DMatrix::zeros(r.ncols(), r.ncols());
+        gram_product(&mut gram, r);
+        Search { r, d, gram, levels }
+    }
+
+    /// The best pattern that is found.
+    pub(super) fn best(&self) -> Result<Found, RecoveryError> {
+        let n = self.r.ncols();
+        let (given, top) = match self.levels {
+            Levels::Given(levels) => (Some(levels), 1.0),
+            Levels::Ratio(_) => (None, f64::INFINITY),
+            Levels::Within(top) => (None, top),
+        };
+        let bounds = match given {
+            Some([dark, light]) => Bounds::all(n, dark, light),
+            None => Bounds::all(n, 0.0, top),
+        };
+        let relaxed = box_least_squares(self.r, self.d, &bounds)?;
+        let starts = self.starts(&relaxed.solution, given, top)?;
+        let descents: Result<Vec<(Pattern, usize)>, RecoveryError> = starts
+            .into_par_iter()
+            .map(|start| {
+                let mut changes = 0;
+                Ok((self.descend(start, &mut changes)?, changes))
+            })
+            .collect();
+        let mut descents = descents?;
+        let mut changes = descents.iter().map(|(_, changes)| changes).sum();
+        descents.sort_by(|(a, _), (b, _)| a.misfit.total_cmp(&b.misfit));
+        let Some((mut best, _)) = descents.first().cloned() else {
+            return Err(RecoveryError::NO_DIRECTION);
+        };
+        let mut bound = relaxed.objective - relaxed.gap;
+        // Levels yet to be searched with, last first.
+        let whole = [relaxed.solution.min(), relaxed.solution.max()];
+        let mut trials = Vec::new();
+        match given {
+            Some(levels) => trials.push(levels),
+            None => {
+                let known = descents.iter().take(TRIALS).rev();
+                trials.extend(known.map(|(found, _)| ascending(found.levels)));
+                trials.push(whole);
+                if top == 1.0 {
+                    trials.push([0.0, 1.0]);
+                }
+            }
+        }
+        let mut tried: Vec<[f64; 2]> = Vec::new();
+        for _ in 0..ROUNDS {
+            let Some(levels) = trials.pop() else { break };
+            let near = |old: &[f64; 2]| {
+                (old[0] - levels[0]).abs() + (old[1] - levels[1]).abs() < SAME * levels[1]
+            };
+            if levels[0] >= levels[1] || tried.iter().any(near) {
+                continue;
+            }
+            tried.push(levels);
+            // Misfits at other levels than a pattern's best do not compare.
+            let known = match given {
+                Some(_) => 0.5 * best.misfit,
+                None => f64::INFINITY,
+            };
+            let searched = branch::search(self.r, self.d, levels, &relaxed.solution, known)?;
+            if given.is_some() {
+                bound = bound.max(searched.bound);
+            }
+            let Some(light) = searched.light else {
+                continue;
+            };
+            let found = self.descend(light, &mut changes)?;
+            if found.misfit < best.misfit * (1.0 - WORTH) {
+                best = found;
+                trials.push(ascending(best.levels));
+            }
+        }
+        Ok(Found {
+            best,
+            bound,
+            iterations: relaxed.iterations,
+            changes,
+        })
+    }
+
+    /// The pattern with its best levels.
+    fn fit(&self, light: Vec<bool>) -> Result<Pattern, RecoveryError> {
+        let of = |which: bool| {
+            let set = DVector::from_fn(light.len(), |j, _| f64::from(u8::from(light[j] == which)));
+            self.r * set
+        };
+        let columns = [of(false), of(true)];
+        let levels = match self.levels {
+            Levels::Given(levels) => levels,
+            Levels::Ratio([a, b]) => {
+                let one = &columns[0] * a + &columns[1] * b;
+                let factor = (one.dot(self.d) / one.norm_squared()).max(0.0);
+                [factor * a, factor * b]
+            }
+            Levels::Within(top) => {
+                let x = box_least_squares(
+                    &DMatrix::from_columns(&columns),
+                    self.d,
+                    &Bounds::all(2, 0.0, top),
+                )?
+                .solution;
+                [x[0], x[1]]
+            }
+        };
+        let misfit = (&columns[0] * levels[0] + &columns[1] * levels[1] - self.d).norm_squared();
+        Ok(Pattern {
+            light,
+            levels,
+            misfit,
+        })
+    }
+
+    /// Patterns to descend from: those of the relaxation to all values, and, where the levels are not
+    /// given, of the relaxations between the pairs of levels of a lattice. Near the true levels a
+    /// relaxation between them is nearly the pattern; between others it is not.
+    fn starts(
+        &self,
+        relaxed: &DVector<f64>,
+        given: Option<[f64; 2]>,
+        top: f64,
+    ) -> Result<Vec<Vec<bool>>, RecoveryError> {
+        let mut starts = thresholds(relaxed);
+        if given.is_some() || top > 1.0 {
+            return Ok(starts);
+        }
+        let level = |k: usize| k as f64 / LEVELS as f64;
+        let pairs: Vec<[f64; 2]> = (0..LEVELS)
+            .flat_map(|a| (a + 1..=LEVELS).map(move |b| [level(a), level(b)]))
+            .collect();
+        let between = |[dark, light]: &[f64; 2]| -> Result<Vec<bool>, RecoveryError> {
+            let bounds = Bounds::all(self.r.ncols(), *dark, *light);
+            let found = box_least_squares_from(self.r, self.d, &bounds, relaxed)?.solution;
+            let middle = 0.5 * (dark + light);
+            Ok(found.iter().map(|x| *x > middle).collect())
+        };
+        let found: Result<Vec<Vec<bool>>, RecoveryError> = pairs.par_iter().map(between).collect();
+        for start in found? {
+            if !starts.contains(&start) {
+                starts.push(start);
+            }
+        }
+        Ok(starts)
+    }
+
+    /// Changes and levels in turn until neither lowers the misfit.
+    pub(super) fn descend(
+        &self,
+        start: Vec<bool>,
+        changes: &mut usize,
+    ) -> Result<Pattern, RecoveryError> {
+        let mut best = self.fit(start)?;
+        loop {
+            let before = best.misfit;
+            let mut light = best.light.clone();
+            *changes += self.change(&mut light, best.levels);
+            let found = self.fit(light)?;
+            if found.misfit < before * (1.0 - WORTH) {
+                best = found;
+            } else {
+                return Ok(best);
+            }
+        }
+    }
+
+    /// Makes the best change of one or two elements until none is worth it; how many were made. With
+    /// x_j changed by t, ‖R x − d‖² changes by −2 t g_j + t² G_jj, g = Rᵀ(d − R x), G = RᵀR.
+    fn change(&self, light: &mut [bool], [dark, bright]: [f64; 2]) -> usize {
+        let n = light.len();
+        let mut made = 0;
+        loop {
+            let values = DVector::from_fn(n, |j, _| if light[j] { bright } else { dark });
+            let residual = self.d - self.r * values;
+            let slope = self.r.tr_mul(&residual);
+            let step = |j: usize| {
+                if light[j] {
+                    dark - bright
+                } else {
+                    bright - dark
+                }
+            };
+            let single: Vec<f64> = (0..n)
+                .map(|j| step(j) * (step(j) * self.gram[(j, j)] - 2.0 * slope[j]))
+                .collect();
+            let (mut least, mut which) = (-WORTH * residual.norm_squared(), None);
+            for i in 0..n {
+                if single[i] < least {
+                    (least, which) = (single[i], Some((i, None)));
+                }
+                let others = if n <= MOST_PAIRED { i + 1..n } else { n..n };
+                let column = self.gram.column(i);
+                for j in others {
+                    let change = single[i] + single[j] + 2.0 * step(i) * step(j) * column[j];
+                    if change < least {
+                        (least, which) = (change, Some((i, Some(j))));
+                    }
+                }
+            }
+            let Some((i, j)) = which else { return made };
+            for at in std::iter::once(i).chain(j) {
+                light[at] = !light[at];
+            }
+            // Measured: what little noise leaves is not told by differences.
+            let values = DVector::from_fn(n, |j, _| if light[j] { bright } else { dark });
+            let found = (self.d - self.r * values).norm_squared();
+            if found >= residual.norm_squared() * (1.0 - WORTH) {
+                for at in std::iter::once(i).chain(j) {
+                    light[at] = !light[at];
+                }
+                return made;
+            }
+            made += 1;
+        }
+    }
+}
+
+/// The lesser first.
+fn ascending([a, b]: [f64; 2]) -> [f64; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// Patterns of a relaxation: light where it exceeds a threshold, thresholds between neighbouring
+/// values, spread over the values' ranks.
+fn thresholds(relaxed: &DVector<f64>) -> Vec<Vec<bool>> {
+    let mut values: Vec<f64> = relaxed.iter().copied().collect();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    let middles: Vec<f64> = values.windows(2).map(|w| 0.5 * (w[0] + w[1])).collect();
+    let half = 0.5 * (values[0] + values[values.len() - 1]);
+    let chosen = (0..STARTS).filter_map(|k| middles.get(k * middles.len() / STARTS).copied());
+    let mut starts: Vec<Vec<bool>> = Vec::new();
+    for threshold in chosen.chain([half]) {
+        let start: Vec<bool> = relaxed.iter().map(|x| *x > threshold).collect();
+        if !starts.contains(&start) {
+            starts.push(start);
+        }
+    }
+    starts
+}
