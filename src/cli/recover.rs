@@ -27,12 +27,20 @@ const MOST_CORRELATED: usize = 2048;
 const MASK_ROWS: usize = 256;
 
 pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, Failure> {
-    let methods: Vec<Method> = match args.method.as_slice() {
-        [] => Method::TRIED.to_vec(),
-        names => names.iter().map(|n| n.parse()).collect::<Result<_, _>>()?,
+    let named: Vec<Method> = args
+        .method
+        .iter()
+        .map(|name| name.parse())
+        .collect::<Result<_, _>>()?;
+    let methods = |elements: usize| {
+        if named.is_empty() {
+            Method::tried(elements)
+        } else {
+            named.clone()
+        }
     };
-    let options = recover_options::checked(args, &methods)?;
-    refuse_repetition(&methods)?;
+    let options = recover_options::checked(args, &methods(0))?;
+    refuse_repetition(&named)?;
     // Measured photographs come without a run: a scene.toml is enough for them.
     let measured = args.phi.is_some() && !args.dir.join(Record::FILE).exists();
     let (scene, record) = if measured {
@@ -49,6 +57,8 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     } else {
         scene.clone()
     };
+    let methods = methods(recover_memory::elements(args, &modelled));
+    recover_options::checked(args, &methods)?;
     let held = recover_memory::plan(args, &modelled, &methods, &options, console)?;
     let job = Job {
         args,

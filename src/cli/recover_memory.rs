@@ -67,6 +67,15 @@ impl Size {
     }
 }
 
+/// Elements of all hidden surfaces.
+pub(super) fn elements(args: &RecoverArgs, scene: &Scene) -> usize {
+    let of = |[nu, nv]: [usize; 2]| nu.saturating_mul(nv);
+    let each = scene
+        .hidden()
+        .map(|(_, s)| of(args.elements.unwrap_or(s.elements)));
+    each.fold(0, usize::saturating_add)
+}
+
 /// How the photographs are to be held within the memory allowed; says what will be taken where that
 /// is much.
 pub(super) fn plan(
@@ -76,14 +85,10 @@ pub(super) fn plan(
     options: &Options,
     console: Console,
 ) -> Result<Held, Failure> {
-    let elements = |surface: [usize; 2]| {
-        let [nu, nv] = args.elements.unwrap_or(surface);
-        nu as f64 * nv as f64
-    };
     let size = Size {
         pixels: scene.camera.pixels() as f64,
         spots: scene.laser.spots.len() as f64,
-        elements: scene.hidden().map(|(_, s)| elements(s.elements)).sum(),
+        elements: elements(args, scene) as f64,
     };
     let allowed = args
         .memory

@@ -162,7 +162,7 @@ fn compare_and_recover(
         &results.phi,
         noise,
         Nuisance::default(),
-        &Method::TRIED,
+        &Method::tried(matrices.albedo.len()),
         &options,
     );
     results.recovered = recover::collect(attempts, false, console)?;

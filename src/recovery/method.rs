@@ -55,17 +55,15 @@ impl Method {
         Method::JointTwoValued,
     ];
 
-    /// The methods that are tried where none is named, simplest first: those of [`Method::USUAL`] and
-    /// those that know how likely the photographs are by what they assume.
-    pub const TRIED: [Method; 7] = [
-        Method::Pinv,
-        Method::Tsvd,
-        Method::Tikhonov,
-        Method::JointUnbounded,
-        Method::Joint,
-        Method::JointGp,
-        Method::JointTwoValued,
-    ];
+    /// The methods that are tried for so many elements where none is named, simplest first: those of
+    /// [`Method::USUAL`], and of those that know how likely the photographs are by what they assume the
+    /// ones that end within a minute or so.
+    pub fn tried(elements: usize) -> Vec<Method> {
+        let limits = [(Method::JointGp, 2048), (Method::JointTwoValued, 100)];
+        let few = limits.into_iter().filter(|(_, most)| elements <= *most);
+        let few = few.map(|(method, _)| method);
+        Method::USUAL.into_iter().chain(few).collect()
+    }
 
     /// The methods that are compared over regularisation and noise, simplest first.
     pub const USUAL: [Method; 5] = [
@@ -155,5 +153,7 @@ mod tests {
             "{said}"
         );
         assert!(Method::USUAL.iter().all(|m| Method::ALL.contains(m)));
+        assert_eq!(Method::tried(5000), Method::USUAL);
+        assert_eq!(Method::tried(64).len(), 7);
     }
 }

@@ -19,8 +19,9 @@ pub(in crate::cli) struct RecoverArgs {
     #[arg(long, short, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
     /// Methods, separated by commas: pinv, left-inverse, right-inverse, rdivide, rdivide-min-norm,
-    /// tsvd, tikhonov, tikhonov-gradient, joint-unbounded, joint, nnls, joint-tv, joint-two-valued;
-    /// pinv, tsvd, tikhonov, joint-unbounded and joint unless given
+    /// tsvd, tikhonov, tikhonov-gradient, joint-unbounded, joint, nnls, joint-gp, joint-tv,
+    /// joint-two-valued; unless given pinv, tsvd, tikhonov, joint-unbounded, joint, joint-gp and
+    /// joint-two-valued, the likelier of the last two first
     #[arg(long, value_delimiter = ',', value_name = "METHOD")]
     pub method: Vec<String>,
     /// Φcam to invert, pixels × spots in W, in place of DIR/phi.npy

@@ -9,8 +9,8 @@
 //!
 //! A model that is not exact, or a surface that is not quite of two values, fits no pattern, and least
 //! squares then takes noise for what the model lacks. Where the best pattern is refuted, elements may
-//! therefore deviate from their level, x_j = level + N(0, ν²), the ν that makes the photographs
-//! likeliest; the pattern is searched for and summed anew with it, and ν is told.
+//! therefore deviate from their level, x_j = level + N(0, ν²): of a few ν the one whose best pattern
+//! makes the photographs likeliest; patterns are summed with it, and it is told.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -28,8 +28,8 @@ use crate::recovery::{
 const MOST_SAMPLED: usize = 1024;
 /// A pattern of two values is refuted below this probability.
 const REFUTED: f64 = 1e-3;
-/// Deviations from a level that are tried: from the first on, each √2 times the one before.
-const DEVIATIONS: (f64, usize) = (1e-4, 24);
+/// Deviations from a level that are tried.
+const DEVIATIONS: [f64; 5] = [1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
 
 pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
@@ -62,17 +62,19 @@ pub(in crate::recovery) fn recover(
         (None, false) => Levels::Within(1.0),
     };
     let mut found = Search::new(&r, &d, levels).best()?;
-    let mut deviation = 0.0;
-    let mut log_width = 0.0;
-    if let Some((own, factor)) = deviating(&r, &d, &found) {
-        deviation = own;
-        log_width = factor.log_det();
-        r = factor.forward(r);
-        d = factor
-            .forward(DMatrix::from_column_slice(d.len(), 1, d.as_slice()))
-            .column(0)
-            .into_owned();
-        found = Search::new(&r, &d, levels).best()?;
+    let (mut deviation, mut log_width) = (0.0, 0.0);
+    if chi_square_sf(found.best.misfit, d.len() as f64) < REFUTED {
+        let mut score = found.best.misfit;
+        let (exact_r, exact_d) = (r.clone(), d.clone());
+        for own in DEVIATIONS {
+            let (wide_r, wide_d, width) = widened(&exact_r, &exact_d, own)?;
+            let tried = Search::new(&wide_r, &wide_d, levels).best()?;
+            if tried.best.misfit + width < score {
+                score = tried.best.misfit + width;
+                (deviation, log_width) = (own, width);
+                (r, d, found) = (wide_r, wide_d, tried);
+            }
+        }
     }
     let search = Search::new(&r, &d, levels);
     let Found {
@@ -133,26 +135,19 @@ pub(in crate::recovery) fn recover(
     Ok(recovered)
 }
 
-/// ν and the factor of 1 + ν² R Rᵀ that make what the best pattern leaves over likeliest; none where
-/// noise alone explains that.
-fn deviating(r: &DMatrix<f64>, d: &DVector<f64>, found: &Found) -> Option<(f64, Cholesky)> {
-    let left = d - r * found.best.values();
-    let chi2 = left.norm_squared();
-    if chi_square_sf(chi2, d.len() as f64) >= REFUTED {
-        return None;
-    }
-    let left = DMatrix::from_column_slice(left.len(), 1, left.as_slice());
-    let both = product(r, &r.transpose());
+/// R and d in standard deviations where elements deviate by ν from their level, whose errors have the
+/// covariance 1 + ν² R Rᵀ, and ln det of that.
+fn widened(
+    r: &DMatrix<f64>,
+    d: &DVector<f64>,
+    nu: f64,
+) -> Result<(DMatrix<f64>, DVector<f64>, f64), RecoveryError> {
     let identity = DMatrix::identity(d.len(), d.len());
-    let (first, count) = DEVIATIONS;
-    let at = |k: usize| first * libm::exp(0.5 * std::f64::consts::LN_2 * k as f64);
-    let tried = (0..count).map(at).filter_map(|nu| {
-        let factor = Cholesky::new(&(&identity + &both * (nu * nu)))?;
-        let misfit = factor.forward(left.clone()).norm_squared() + factor.log_det();
-        Some((misfit, nu, factor))
-    });
-    let best = tried.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    (best.0 < chi2).then_some((best.1, best.2))
+    let errors = identity + product(r, &r.transpose()) * (nu * nu);
+    let factor = Cholesky::new(&errors).ok_or(RecoveryError::NO_DIRECTION)?;
+    let column = DMatrix::from_column_slice(d.len(), 1, d.as_slice());
+    let d = factor.forward(column).column(0).into_owned();
+    Ok((factor.forward(r.clone()), d, factor.log_det()))
 }
 
 #[cfg(test)]

@@ -62,6 +62,8 @@ pub(super) struct Walker {
     slope: DVector<f64>,
     /// G s, s the light elements.
     lit: DVector<f64>,
+    /// s as numbers.
+    mask: DVector<f64>,
     tally: Tally,
 }
 
@@ -87,6 +89,7 @@ impl Walker {
             chi2: 0.0,
             slope: DVector::zeros(n),
             lit: DVector::zeros(n),
+            mask: DVector::zeros(n),
             tally: Tally::default(),
         };
         new.measure(land);
@@ -128,21 +131,22 @@ impl Walker {
         self.chi2 = left.norm_squared();
         self.slope = ground.r.tr_mul(&left);
         self.lit = ground.r.tr_mul(&lit);
+        for (mask, light) in self.mask.iter_mut().zip(&self.light) {
+            *mask = f64::from(u8::from(*light));
+        }
         self.count(land);
     }
 
     fn count(&mut self, land: &Land<'_>) {
-        let mut tally = Tally::default();
-        for (j, light) in self.light.iter().enumerate() {
-            tally.all += self.slope[j];
-            if *light {
-                tally.count += 1;
-                tally.both += land.sums[j];
-                tally.own += self.lit[j];
-                tally.along += self.slope[j];
-            }
+        if land.ground.given.is_none() {
+            self.tally = Tally {
+                count: self.mask.sum() as usize,
+                both: self.mask.dot(&land.sums),
+                own: self.mask.dot(&self.lit),
+                all: self.slope.sum(),
+                along: self.mask.dot(&self.slope),
+            };
         }
-        self.tally = tally;
     }
 
     /// One turn of each element, and of the levels.
@@ -164,12 +168,11 @@ impl Walker {
                     self.change(land, beta, &[i, j], random);
                 }
             }
-            if free {
-                if self.light[other[1]] == self.light[j] {
-                    self.change_with_levels(land, beta, &[j], random);
-                } else {
-                    self.change_with_levels(land, beta, &[j, other[1]], random);
-                }
+            // Which kind is tried must not depend on the pattern, or the way back would be another.
+            if free && random.uniform() < 0.5 {
+                self.change_with_levels(land, beta, &[j], random);
+            } else if free && self.light[other[1]] != self.light[j] {
+                self.change_with_levels(land, beta, &[j, other[1]], random);
             }
         }
         if free {
@@ -206,6 +209,7 @@ impl Walker {
             self.slope.axpy(-sign * step, &land.gram.column(j), 1.0);
             self.lit.axpy(sign, &land.gram.column(j), 1.0);
             self.light[j] = !self.light[j];
+            self.mask[j] += sign;
         }
         self.chi2 = chi2;
         self.count(land);

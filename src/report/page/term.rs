@@ -3,7 +3,7 @@
 use super::super::svg::escape;
 
 /// Words and what they mean. A word that holds another one stands before it.
-const TERMS: [(&str, &str); 22] = [
+const TERMS: [(&str, &str); 24] = [
     (
         "χ²/dof",
         "mean of the squared deviations, each in units of its own standard error: 1 on average where the model is right and its errors are known",
@@ -42,6 +42,14 @@ const TERMS: [(&str, &str); 22] = [
     (
         "joint-unbounded",
         "all pixels and spots at once, least squares without bounds",
+    ),
+    (
+        "joint-gp",
+        "all pixels and spots at once, the mean of a Gaussian process: neighbours resemble one another, as in photographs",
+    ),
+    (
+        "joint-two-valued",
+        "all pixels and spots at once, reflectances of two values in any pattern",
     ),
     (
         "joint-tv",
