@@ -61,9 +61,6 @@ pub struct Probable {
     pub levels: [f64; 2],
     /// Their standard deviations.
     pub level_errors: [f64; 2],
-    /// Standard deviation of the elements about their level; 0 where two values explain the
-    /// photographs.
-    pub spread: f64,
     /// Largest difference of an element's probability between halves of the sampling; absent where
     /// all patterns were summed.
     pub disagreement: Option<f64>,
@@ -76,7 +73,6 @@ impl Probable {
     pub fn of(found: &Recovered) -> Option<Self> {
         found.patterns.as_ref().map(|p| Self {
             pattern: p.pattern,
-            spread: p.spread,
             levels: p.levels,
             level_errors: p.level_errors,
             disagreement: match p.sum {
@@ -224,15 +220,10 @@ fn patterns(of: &Patterns) -> String {
             disagreement,
         } => format!("by {sweeps} sweeps of two ladders that differ by {disagreement:.2}"),
     };
-    let about = if of.spread > 0.0 {
-        format!(", elements deviating from them by {:.1e}", of.spread)
-    } else {
-        String::new()
-    };
     let undecided = of.light.iter().filter(|p| (0.05..=0.95).contains(*p));
     format!(
         "; this pattern has probability {:.3}, {} elements are undecided, levels {:.3} ± {:.3} and \
-         {:.3} ± {:.3}{about} ({how})",
+         {:.3} ± {:.3} ({how})",
         of.pattern,
         undecided.count(),
         of.levels[0],

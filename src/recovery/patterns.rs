@@ -43,9 +43,6 @@ pub struct Patterns {
     pub levels: [f64; 2],
     /// Their standard deviations; 0 where they were given.
     pub level_errors: [f64; 2],
-    /// Standard deviation ν of the elements about their level; 0 where two values explain the
-    /// photographs.
-    pub spread: f64,
     /// Probability of the pattern that was recovered, by all.
     pub pattern: f64,
     /// ln of the probability density of the photographs, over that of the numbers that fit them

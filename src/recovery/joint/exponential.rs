@@ -103,7 +103,10 @@ mod tests {
         assert!((k[(0, 5)] - libm::exp(-5f64.sqrt() / 2.0)).abs() < 1e-15);
         assert_eq!((k[(0, 6)], k[(6, 6)], k[(1, 0)]), (0.0, 1.0, k[(0, 1)]));
         let lengths = found.lengths();
-        assert!(lengths[0] == SHORTEST && lengths[lengths.len() - 1] >= LONGEST * 5f64.sqrt());
+        assert!(
+            (lengths[0] - SHORTEST).abs() < 1e-15
+                && lengths[lengths.len() - 1] >= LONGEST * 5f64.sqrt()
+        );
         let places: Vec<[f64; 3]> = (0..7).map(|j| [0.0, 0.0, 3.0 * f64::from(j)]).collect();
         let placed = Exponential::new(&problem.with_places(&places).unwrap());
         assert!((placed.matrix(2.0)[(1, 3)] - libm::exp(-3.0)).abs() < 1e-15);

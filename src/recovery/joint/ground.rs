@@ -151,7 +151,6 @@ impl Moments {
             mean,
             levels: levels.map(|[first, _]| first),
             level_errors: levels.map(|[first, second]| spread(first, second)),
-            spread: 0.0,
             pattern,
             log_evidence,
             sum,
