@@ -7,8 +7,8 @@ use serde::Serialize;
 use super::chosen::{Beside, Chosen, Ended, Probable, words};
 use super::doubt::doubts;
 use super::fit::{Certainty, Fit, Judged};
+use super::likelier::likelier;
 use super::measures::Measures;
-use super::preferred::preferred;
 use super::problem::problem;
 use crate::matrix::Matrix;
 use crate::model::MatrixModel;
@@ -47,9 +47,10 @@ pub struct RecoveredObject {
     pub solver: Option<Ended>,
     /// What was estimated beside the reflectances; absent where nothing was asked for.
     pub estimated: Option<Beside>,
-    /// Why this picture is shown before the others; absent for those.
+    /// Where its method's assumption makes the photographs the likeliest, by how much; absent of the
+    /// other methods.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub preferred: Option<String>,
+    pub likelier: Option<String>,
     /// ln of how likely its method's assumption makes the photographs, over the numbers that fit them
     /// best; absent for methods that do not know.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -228,26 +229,24 @@ fn attempts(
     let any = Judged::any(problem, known, &all, options);
     // Photographs that nothing explains are likeliest by no assumption.
     let explained = any.best.as_ref().is_none_or(|best| best.possible.fits);
-    let first = preferred(&all).filter(|_| explained);
+    let first = likelier(&all).filter(|_| explained);
     let judged = |found: Recovered| {
         let mut objects = measured(model, &found, &any.of(problem, known, &found));
-        let own = first.as_ref().filter(|f| f.method == found.method);
-        let why = own.map(|own| own.why.clone());
+        let own = first.as_ref().filter(|(method, _)| *method == found.method);
+        let words = own.map(|(_, words)| words.clone());
         objects
             .iter_mut()
-            .for_each(|o| o.preferred.clone_from(&why));
+            .for_each(|o| o.likelier.clone_from(&words));
         objects
     };
-    let mut attempts: Vec<Attempt> = methods
+    methods
         .iter()
         .zip(found)
         .map(|(&method, found)| Attempt {
             method,
             outcome: found.map(judged),
         })
-        .collect();
-    attempts.sort_by_key(|a| first.as_ref().is_none_or(|f| f.method != a.method));
-    attempts
+        .collect()
 }
 
 fn picards(
@@ -290,7 +289,7 @@ pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<
             choice: Chosen::of(found),
             solver: Ended::of(found),
             estimated: Beside::of(found),
-            preferred: None,
+            likelier: None,
             log_evidence: found.log_evidence,
             light: found
                 .patterns

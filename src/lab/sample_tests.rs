@@ -157,7 +157,7 @@ pub(crate) fn whole(mut run: RunResults) -> RunResults {
                 },
                 solver: None,
                 estimated: None,
-                preferred: None,
+                likelier: None,
                 log_evidence: None,
                 light: None,
                 patterns: None,

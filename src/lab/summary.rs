@@ -282,19 +282,15 @@ pub fn fits(group: &[&RecoveredObject]) -> Table {
             Column::number("P", "", "", 2),
         ],
         rows: group.iter().map(row).collect(),
-        note: first_of(group) + &determined(group),
+        note: likelier(group) + &determined(group),
         ..Table::default()
     }
 }
 
-/// Which picture is shown first and why, where that was decided.
-fn first_of(group: &[&RecoveredObject]) -> String {
-    let of = group
-        .iter()
-        .find_map(|r| Some((&r.method, r.preferred.as_ref()?)));
-    of.map_or(String::new(), |(method, why)| {
-        format!("{method} is {why}. ")
-    })
+/// Under which assumption the photographs are likelier, where two were tried.
+fn likelier(group: &[&RecoveredObject]) -> String {
+    let words = group.iter().find_map(|r| r.likelier.as_ref());
+    words.map_or(String::new(), |words| format!("{words} "))
 }
 
 /// How much of the pictures of one surface the photographs determine, in words.

@@ -20,8 +20,8 @@ pub(in crate::cli) struct RecoverArgs {
     pub output: Option<PathBuf>,
     /// Methods, separated by commas: pinv, left-inverse, right-inverse, rdivide, rdivide-min-norm,
     /// tsvd, tikhonov, tikhonov-gradient, joint-unbounded, joint, nnls, joint-gp, joint-tv,
-    /// joint-two-valued; unless given pinv, tsvd, tikhonov, joint-unbounded, joint, joint-gp and
-    /// joint-two-valued, the likelier of the last two first
+    /// joint-two-valued; unless given pinv, tsvd, tikhonov, joint-unbounded, joint, and of few
+    /// enough elements joint-gp (2048) and joint-two-valued (100)
     #[arg(long, value_delimiter = ',', value_name = "METHOD")]
     pub method: Vec<String>,
     /// Φcam to invert, pixels × spots in W, in place of DIR/phi.npy
