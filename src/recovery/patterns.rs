@@ -35,9 +35,9 @@ impl Sum {
 pub struct Patterns {
     /// Probability of each element to be light.
     pub light: DVector<f64>,
-    /// Mean reflectance of each element, and its standard deviation.
+    /// Mean reflectance of each element over all patterns and levels.
     pub mean: DVector<f64>,
-    /// The same.
+    /// Standard deviation of each about it.
     pub deviation: DVector<f64>,
     /// Means of the dark and of the light level.
     pub levels: [f64; 2],

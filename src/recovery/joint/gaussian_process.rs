@@ -6,7 +6,8 @@
 //! The photographs know ρ by the coordinates y = V ρ + errors of covariance E ([`Coordinates`]). So
 //! with K = ¼ 11ᵀ + τ² k(ℓ), all is closed (Rasmussen and Williams 2006):
 //!
-//! > S = V K Vᵀ + E,   ln p(y | τ, ℓ) = −½ (zᵀS⁻¹z + ln det S + ln det E),    z = y − ½ V 1
+//! > S = V K Vᵀ + E,   z = y − ½ V 1
+//! > ln p(y | τ, ℓ)/p_best = −½ (zᵀS⁻¹z + ln det S − ln det E),   p_best that of an exact fit
 //! > E\[ρ | y\] = ½ + K Vᵀ S⁻¹ z,   cov\[ρ | y\] = K − K Vᵀ S⁻¹ V K
 //!
 //! How much and over what length a picture varies (τ, ℓ) the photographs say only roughly, and of
