@@ -89,6 +89,9 @@ pub struct Options {
     /// The reflectances \[dark, light\] of `joint-two-valued`; estimated with the pattern where not
     /// given.
     pub levels: Option<[f64; 2]>,
+    /// Whether `joint-two-valued` sums over patterns, and searches widely for the best one; seconds in
+    /// place of tenths of them.
+    pub probabilities: bool,
     /// Confidence level, in (0, 1), of the bands to be computed ([`Bands`](super::Bands)); none
     /// where not given.
     pub bands: Option<f64>,
@@ -106,6 +109,7 @@ impl Default for Options {
             weighting: WeightRule::Noise,
             total_variation: None,
             levels: None,
+            probabilities: true,
             bands: None,
         }
     }

@@ -177,7 +177,15 @@ fn the_usual_methods_unless_some_are_named() {
     let all = objects(workspace.phicam("recover done --json"));
     assert_eq!(
         names(&all),
-        ["pinv", "tsvd", "tikhonov", "joint-unbounded", "joint"]
+        [
+            "pinv",
+            "tsvd",
+            "tikhonov",
+            "joint-unbounded",
+            "joint",
+            "joint-gp",
+            "joint-two-valued"
+        ]
     );
     let two = objects(workspace.phicam("recover done --method joint,pinv --json"));
     assert_eq!(names(&two), ["joint", "pinv"]);

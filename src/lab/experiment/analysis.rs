@@ -153,6 +153,7 @@ impl Laboratory {
         let options = Options {
             rule: Rule::Gcv,
             uncertainty: Uncertainty::StandardError,
+            probabilities: false,
             ..Options::default()
         };
         let problem = Problem::new(&flux, camera_side, &model.laser_side, Some(&stderr))?

@@ -70,6 +70,8 @@ pub(super) struct Search<'a> {
     /// RᵀR.
     gram: DMatrix<f64>,
     levels: Levels,
+    /// Whether to start from between pairs of levels too, and to search with more of them.
+    wide: bool,
 }
 
 /// What a search has found.
@@ -82,10 +84,21 @@ pub(super) struct Found {
 }
 
 impl<'a> Search<'a> {
-    pub(super) fn new(r: &'a DMatrix<f64>, d: &'a DVector<f64>, levels: Levels) -> Self {
+    pub(super) fn new(
+        r: &'a DMatrix<f64>,
+        d: &'a DVector<f64>,
+        levels: Levels,
+        wide: bool,
+    ) -> Self {
         let mut gram = DMatrix::zeros(r.ncols(), r.ncols());
         gram_product(&mut gram, r);
-        Search { r, d, gram, levels }
+        Search {
+            r,
+            d,
+            gram,
+            levels,
+            wide,
+        }
     }
 
     /// The best pattern that is found.
@@ -122,7 +135,8 @@ impl<'a> Search<'a> {
         match given {
             Some(levels) => trials.push(levels),
             None => {
-                let known = descents.iter().take(TRIALS).rev();
+                let most = if self.wide { TRIALS } else { 0 };
+                let known = descents.iter().take(most).rev();
                 trials.extend(known.map(|(found, _)| ascending(found.levels)));
                 trials.push(whole);
                 if top == 1.0 {
@@ -131,7 +145,8 @@ impl<'a> Search<'a> {
             }
         }
         let mut tried: Vec<[f64; 2]> = Vec::new();
-        for _ in 0..ROUNDS {
+        let rounds = if self.wide { ROUNDS } else { ROUNDS / 2 };
+        for _ in 0..rounds {
             let Some(levels) = trials.pop() else { break };
             let near = |old: &[f64; 2]| {
                 (old[0] - levels[0]).abs() + (old[1] - levels[1]).abs() < SAME * levels[1]
@@ -208,7 +223,7 @@ impl<'a> Search<'a> {
         top: f64,
     ) -> Result<Vec<Vec<bool>>, RecoveryError> {
         let mut starts = thresholds(relaxed);
-        if given.is_some() || top > 1.0 {
+        if given.is_some() || top > 1.0 || !self.wide {
             return Ok(starts);
         }
         let level = |k: usize| k as f64 / LEVELS as f64;
