@@ -11,7 +11,7 @@
 //!
 //! > p(y) = Π_k ⟨exp(−(β_k − β_k+1) ½ χ²)⟩_k+1.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -38,8 +38,8 @@ struct Ladder {
     halves: [Moments; 2],
     log_evidence: f64,
     best: (f64, Vec<bool>),
-    /// How often each pattern was met.
-    patterns: HashMap<Vec<bool>, f64>,
+    /// How often each pattern was met, in an order of their own, so that sums have the same bits.
+    patterns: BTreeMap<Vec<bool>, f64>,
 }
 
 fn ladder(
@@ -62,7 +62,7 @@ fn ladder(
     let mut best = (f64::INFINITY, copies[0].light.clone());
     let mut halves = [Moments::new(n), Moments::new(n)];
     let mut steps = vec![Vec::with_capacity(sweeps); betas.len() - 1];
-    let mut patterns = HashMap::new();
+    let mut patterns = BTreeMap::new();
     let first = sweeps / 5;
     for sweep in 0..sweeps {
         for (copy, &beta) in copies.iter_mut().zip(betas) {
@@ -159,17 +159,20 @@ pub(super) fn sample(ground: &Ground<'_>, start: &[bool]) -> Result<Summed, Lina
     let [own, other] = [&ladders[0], &ladders[1]];
     let whole = [own, other].map(|l| Moments::together(&l.halves));
     let between = apart(&whole[0].light(), &whole[1].light());
-    // From the best pattern: what was met, pattern by pattern, a lower bound.
-    let known = own
-        .patterns
-        .keys()
-        .filter_map(|light| ground.log_weight(light));
-    let known: Vec<f64> = known.collect();
-    let met = log_mean(&known) + libm::log(known.len() as f64) - n as f64 * std::f64::consts::LN_2;
-    let (shares, log_evidence) = if between <= Sum::AGREEMENT || known.is_empty() {
+    // Of ladders that end apart the one from the best pattern counts by what it met, pattern by
+    // pattern: a lower bound.
+    let known: Vec<f64> = if between <= Sum::AGREEMENT {
+        Vec::new()
+    } else {
+        let met = own.patterns.keys();
+        met.filter_map(|light| ground.log_weight(light)).collect()
+    };
+    let (shares, log_evidence) = if known.is_empty() {
         let logs = [own.log_evidence, other.log_evidence];
         ([0.5, 0.5], log_mean(&logs))
     } else {
+        let all = n as f64 * std::f64::consts::LN_2;
+        let met = log_mean(&known) + libm::log(known.len() as f64) - all;
         let ahead = met - other.log_evidence;
         let share = if ahead.abs() < CLEAR {
             0.5
