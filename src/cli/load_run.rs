@@ -77,6 +77,11 @@ pub(super) fn read_matrix(path: &Path, scene: &Scene) -> Result<Matrix, Failure>
     // By its header, before memory is taken for its numbers.
     refuse_shape(path, npy::shape(path)?, scene)?;
     need::photographs(scene, 1.0)?;
+    read_undamaged(path)
+}
+
+/// A finite matrix of whatever shape; of a run, what it wrote.
+pub(super) fn read_undamaged(path: &Path) -> Result<Matrix, Failure> {
     let matrix = npy::read_finite(path)?;
     refuse_damaged(path)?;
     Ok(matrix)
@@ -88,16 +93,26 @@ pub(super) fn refuse_shape(
     (rows, columns): (usize, usize),
     scene: &Scene,
 ) -> Result<(), Failure> {
-    let (pixels, spots) = (scene.camera.pixels(), scene.laser.spots.len());
+    let expected = (scene.camera.pixels(), scene.laser.spots.len());
+    let of = format!("scene `{}`", scene.name);
+    refuse_other_shape(path, (rows, columns), expected, &of)
+}
+
+/// Refuses a matrix that is not pixels × spots of what is called `of`.
+pub(super) fn refuse_other_shape(
+    path: &Path,
+    (rows, columns): (usize, usize),
+    (pixels, spots): (usize, usize),
+    of: &str,
+) -> Result<(), Failure> {
     if (rows, columns) == (pixels, spots) {
         return Ok(());
     }
     let cause = format!(
-        "{} is {rows} × {columns}, but scene `{}` has {pixels} pixels and {spots} spots",
-        path.display(),
-        scene.name
+        "{} is {rows} × {columns}, but {of} has {pixels} pixels and {spots} spots",
+        path.display()
     );
-    let cure = "give the matrix of this scene, pixels × spots";
+    let cure = "give the matrix that belongs to it, pixels × spots";
     Err(Failure::new(cause, cure))
 }
 
@@ -105,11 +120,15 @@ pub(super) fn refuse_shape(
 pub(super) fn read_stderr(path: &Path, scene: &Scene) -> Result<Matrix, Failure> {
     // By its header, before memory is taken for its numbers.
     refuse_shape(path, npy::shape(path)?, scene)?;
-    let matrix = npy::read_finite(path)?;
-    let negative = matrix.iter().position(|x| *x < 0.0);
-    let Some(at) = negative else {
-        refuse_damaged(path)?;
-        return Ok(matrix);
+    let matrix = read_undamaged(path)?;
+    refuse_negative(path, &matrix)?;
+    Ok(matrix)
+}
+
+/// Refuses standard errors below 0.
+pub(super) fn refuse_negative(path: &Path, matrix: &Matrix) -> Result<(), Failure> {
+    let Some(at) = matrix.iter().position(|x| *x < 0.0) else {
+        return Ok(());
     };
     let (pixel, spot) = (at % matrix.nrows(), at / matrix.nrows());
     let cause = format!(

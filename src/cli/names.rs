@@ -5,6 +5,8 @@ use crate::recovery::Method;
 
 pub(super) const PHI: &str = "phi.npy";
 pub(super) const STDERR: &str = "phi.stderr.npy";
+/// Entries that do not count: those that are not 0, f64, pixels × spots.
+pub(super) const LEFT_OUT: &str = "left_out.npy";
 /// Entries whose standard error is not to be trusted: 0 where it is, f64, pixels × spots.
 pub(super) const TAILS: &str = "phi.tails.npy";
 pub(super) const SUMMARY: &str = "summary.json";
@@ -68,6 +70,7 @@ pub(super) fn is_of_recovered(name: &str) -> bool {
         "texture",
         "choice",
         "frame_constant",
+        "frame_patterns",
         "background",
         "glare",
     ];

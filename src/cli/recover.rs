@@ -8,15 +8,17 @@ use super::failure::Failure;
 use super::load_run::{read_matrix, read_run, read_stderr};
 use super::output;
 use super::record::Record;
+use super::recover_beside::{Beside, Photographs};
 use super::recover_memory::{self, Errors, Held, Strips};
 use super::recovered::write;
 use super::run_folder::{PHI, RECOVERED, RunFolder, SATURATED, SCENE, STDERR, is_of_recovered};
-use super::{Outcome, recover_options};
+use super::{Outcome, recover_options, recover_own};
 use crate::lab::{
-    Attempt, Certainty, Noise, RecoveredObject, describe_recovery, recover_with_picards,
+    Attempt, Certainty, Noise, RecoveredObject, by_trust, describe_recovery, inverted,
+    recover_with_picards,
 };
 use crate::model::MatrixModel;
-use crate::recovery::{Method, Nuisance, Options, Picard, Uncertainty};
+use crate::recovery::{Method, Options, Picard, Uncertainty};
 use crate::report;
 use crate::scene::Scene;
 use crate::store::digest;
@@ -41,17 +43,24 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     };
     let options = recover_options::checked(args, &methods(0))?;
     refuse_repetition(&named)?;
+    if let Some(camera_side) = &args.camera_side {
+        return recover_own::execute(args, camera_side, &named, options, console);
+    }
+    let Some(dir) = &args.dir else {
+        let cure = "give the folder of a run, or --camera-side and --phi";
+        return Err(Failure::usage("nothing says what is to be recovered", cure));
+    };
     // Measured photographs come without a run: a scene.toml is enough for them.
-    let measured = args.phi.is_some() && !args.dir.join(Record::FILE).exists();
+    let measured = args.phi.is_some() && !dir.join(Record::FILE).exists();
     let (scene, record) = if measured {
-        let path = args.dir.join(SCENE);
+        let path = dir.join(SCENE);
         (console.load_any_scene(&path.to_string_lossy())?, None)
     } else {
-        let (scene, record) = read_run(&args.dir, console)?;
+        let (scene, record) = read_run(dir, console)?;
         (scene, Some(record))
     };
     let lock = |folder| RunFolder::lock(folder, "phicam recover");
-    let _run = args.output.is_none().then(|| lock(&args.dir)).transpose()?;
+    let _run = args.output.is_none().then(|| lock(dir)).transpose()?;
     let modelled = if args.joint.occluder_light {
         scene.with_occluders_as_elements()?
     } else {
@@ -62,6 +71,7 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     let held = recover_memory::plan(args, &modelled, &methods, &options, console)?;
     let job = Job {
         args,
+        dir,
         scene: &modelled,
         methods: &methods,
         options,
@@ -72,21 +82,25 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
             }
             _ => Certainty::STATED,
         },
-        phi: args.phi.clone().unwrap_or_else(|| args.dir.join(PHI)),
+        phi: args.phi.clone().unwrap_or_else(|| dir.join(PHI)),
         console,
     };
     let (attempts, picards) = match held {
         Held::Whole => job.whole()?,
         Held::Strips(pixels) => (job.strips(pixels)?, Vec::new()),
     };
-    let objects = collect(attempts, methods.len() == 1, console)?;
-    let (out, place) = results(args, record.is_some())?;
+    let mut objects = collect(attempts, methods.len() == 1, console)?;
+    // Methods that are named keep their order.
+    if named.is_empty() {
+        by_trust(&mut objects);
+    }
+    let (out, place) = results(args, dir, record.is_some())?;
     let _own = args.output.as_deref().map(lock).transpose()?;
     let hidden = |object: &&RecoveredObject| scene.hidden().any(|(_, s)| s.name == object.surface);
     let pictured: Vec<RecoveredObject> = objects.iter().filter(hidden).cloned().collect();
-    write(&out, &scene, &pictured, &picards)?;
+    write(&out, Some(&scene), &pictured, &picards)?;
     if place == Place::Run {
-        Record::vouch_anew(&args.dir, RECOVERED, is_of_recovered)?;
+        Record::vouch_anew(dir, RECOVERED, is_of_recovered)?;
     } else {
         console.say(format!("{}: written", out.display()));
     }
@@ -110,13 +124,10 @@ enum Place {
 
 /// The folder of the results. Those of a Φcam that is not the run's have one of their own, named
 /// after it and its bytes, so that what lies in the run's belongs together.
-fn results(args: &RecoverArgs, of_run: bool) -> Result<(PathBuf, Place), Failure> {
-    let usual = args.dir.join(RECOVERED);
+fn results(args: &RecoverArgs, dir: &Path, of_run: bool) -> Result<(PathBuf, Place), Failure> {
+    let usual = dir.join(RECOVERED);
     let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
-    let other = args
-        .phi
-        .as_ref()
-        .filter(|phi| !same(phi, &args.dir.join(PHI)));
+    let other = args.phi.as_ref().filter(|phi| !same(phi, &dir.join(PHI)));
     Ok(match (&args.output, other) {
         (Some(output), _) => (output.clone(), Place::Other),
         (None, Some(phi)) if of_run => {
@@ -126,7 +137,7 @@ fn results(args: &RecoverArgs, of_run: bool) -> Result<(PathBuf, Place), Failure
             let own = full.file_stem().filter(|stem| *stem != "phi");
             let name = own.or(folder).unwrap_or_default().to_string_lossy();
             let name = format!("{RECOVERED}-{name}-{}", &digest[..8]);
-            (args.dir.join(name), Place::Other)
+            (dir.join(name), Place::Other)
         }
         (None, Some(_)) => (usual, Place::Other),
         (None, None) => (usual, Place::Run),
@@ -136,6 +147,8 @@ fn results(args: &RecoverArgs, of_run: bool) -> Result<(PathBuf, Place), Failure
 /// A recovery that was asked for.
 struct Job<'a> {
     args: &'a RecoverArgs,
+    /// Folder of the run.
+    dir: &'a Path,
     scene: &'a Scene,
     methods: &'a [Method],
     options: Options,
@@ -162,18 +175,24 @@ impl Job<'_> {
             }
         };
         let occlusion = args.occlusion.occlusion();
-        let model = MatrixModel::with(scene, args.kernel, args.elements, occlusion)?;
+        let model = inverted(
+            scene,
+            args.kernel,
+            args.elements,
+            occlusion,
+            args.integration,
+        )?;
         let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
             Noise::StandardError(stderr, self.certainty)
         });
-        let glare = args.joint.glare_pattern.as_ref();
-        let glare = glare.map(|file| read_matrix(file, scene)).transpose()?;
-        let nuisance = Nuisance {
-            frame_constant: args.joint.frame_constant,
-            background: args.joint.background,
-            glare: glare.as_ref(),
-            free_scale: args.joint.free_scale,
+        let of = Photographs {
+            name: format!("scene `{}`", scene.name),
+            grid: Some([scene.camera.columns, scene.camera.rows]),
+            pixels: scene.camera.pixels(),
+            spots: scene.laser.spots.len(),
         };
+        let beside = Beside::read(args, &of, self.console)?;
+        let nuisance = beside.nuisance(args);
         let options = Options {
             uncertainty: uncertainty(&model, self.console),
             ..self.options
@@ -212,7 +231,7 @@ impl Job<'_> {
         match (&self.args.stderr, self.args.noise) {
             (_, Some(noise)) => Errors::Relative(noise),
             (Some(file), None) => Errors::File(file.clone()),
-            (None, None) if self.args.phi.is_none() => Errors::File(self.args.dir.join(STDERR)),
+            (None, None) if self.args.phi.is_none() => Errors::File(self.dir.join(STDERR)),
             (None, None) => Errors::Unknown,
         }
     }
@@ -221,7 +240,8 @@ impl Job<'_> {
     /// or too high by an unknown amount, and no standard error says so.
     fn refuse_clipped(&self) -> Result<(), Failure> {
         let mask = self.phi.with_file_name(SATURATED);
-        if self.args.phi.is_none() || self.args.keep_clipped || !mask.exists() {
+        let asked = self.args.keep_clipped || self.args.left_out.is_some();
+        if self.args.phi.is_none() || asked || !mask.exists() {
             return Ok(());
         }
         let mut rows = recover_memory::open(&mask, self.scene)?;
@@ -241,7 +261,10 @@ impl Job<'_> {
                 self.phi.display(),
                 mask.display()
             ),
-            "expose for a shorter time or in --brackets; --keep-clipped takes them as they are",
+            format!(
+                "expose for a shorter time or in --brackets; --left-out {} leaves them out of the joint methods; --keep-clipped takes them as they are",
+                mask.display()
+            ),
         ))
     }
 }

@@ -98,7 +98,7 @@ fn used(args: &RecoverArgs, methods: &[Method]) -> Result<(), Failure> {
         Method::JointUnbounded,
     ];
     let bounded = &all_joint[..5];
-    let needs: [(&str, bool, &[Method]); 11] = [
+    let needs: [(&str, bool, &[Method]); 14] = [
         ("--rank", args.rank.is_some(), &[Method::Tsvd]),
         ("--damping", args.damping.is_some(), &damped),
         ("--tolerance", args.tolerance.is_some(), &cutting),
@@ -114,6 +114,17 @@ fn used(args: &RecoverArgs, methods: &[Method]) -> Result<(), Failure> {
             &all_joint,
         ),
         ("--frame-constant", joint.frame_constant, &all_joint),
+        (
+            "--frame-polynomial",
+            joint.frame_polynomial.is_some(),
+            &all_joint,
+        ),
+        (
+            "--frame-patterns",
+            joint.frame_patterns.is_some(),
+            &all_joint,
+        ),
+        ("--left-out", args.left_out.is_some(), &all_joint),
         ("--background", joint.background, &all_joint),
         ("--free-scale", joint.free_scale, &all_joint),
         ("--occluder-light", joint.occluder_light, bounded),

@@ -28,7 +28,7 @@ use crate::store::ensure_writable;
 /// names are METHOD-0, METHOD-1, … in file order.
 pub(super) fn write(
     folder: &Path,
-    scene: &Scene,
+    scene: Option<&Scene>,
     objects: &[RecoveredObject],
     picards: &[Picard],
 ) -> Result<(), Failure> {
@@ -54,7 +54,8 @@ pub(super) fn write(
         };
         let named = |name: &str, what: &str| format!("{name}{suffix}.{what}");
         let file = |name: &str, what: &str| folder.join(named(name, what));
-        let shape = scene.surfaces.iter().find(|s| s.name == **surface);
+        let mut surfaces = scene.iter().flat_map(|scene| &scene.surfaces);
+        let shape = surfaces.find(|s| s.name == **surface);
         let drawn = shape.is_none_or(|s| s.division == Division::Cells);
         let mut panels = Vec::new();
         let known = objects.iter().find(|o| o.surface == *surface);
@@ -143,15 +144,19 @@ fn uncertainties(object: &RecoveredObject) -> [(&'static str, Option<Matrix>); 7
     ]
 }
 
-/// What was estimated beside the reflectances of `object`, by the names of its files: b and g of a
+/// What was estimated beside the reflectances of `object`, by the names of its files: b, f and g of a
 /// frame as a row, a of a pixel as a column, as they add to Φcam.
-fn beside(object: &RecoveredObject) -> [(&'static str, Option<Matrix>); 3] {
+fn beside(object: &RecoveredObject) -> [(&'static str, Option<Matrix>); 4] {
     let found = object.estimated.as_ref();
     let of = |values: fn(&Beside) -> &Option<Vec<f64>>| found.and_then(|b| values(b).as_deref());
     let row = |v: &[f64]| Matrix::from_row_slice(1, v.len(), v);
+    let rows = |v: &Vec<Vec<f64>>| Matrix::from_fn(v.len(), v[0].len(), |k, l| v[k][l]);
+    let patterns = found.and_then(|b| b.frame_patterns.as_ref());
+    let patterns = patterns.filter(|v| !v.is_empty()).map(rows);
     let column = |v: &[f64]| Matrix::from_row_slice(v.len(), 1, v);
     [
         ("frame_constant", of(|b| &b.frame_constant).map(row)),
+        ("frame_patterns", patterns),
         ("background", of(|b| &b.background).map(column)),
         ("glare", of(|b| &b.glare).map(row)),
     ]

@@ -129,7 +129,8 @@ fn compare_and_recover(
     let kernel = args.test.kernel;
     console.say("computing the model and comparing");
     let occlusion = args.occlusion.occlusion();
-    let matrices = MatrixModel::with(&results.scene, kernel, None, occlusion)?;
+    let integration = args.test.integration;
+    let matrices = lab::inverted(&results.scene, kernel, None, occlusion, integration)?;
     let measured = Measured {
         phi: &results.phi,
         stderr: &results.stderr,
@@ -137,7 +138,7 @@ fn compare_and_recover(
     };
     let against = Against {
         kernel,
-        integration: args.test.integration,
+        integration,
         occlusion,
     };
     let found = lab::validate(&results.scene, measured, against, test)?;
@@ -166,10 +167,11 @@ fn compare_and_recover(
         &options,
     );
     results.recovered = recover::collect(attempts, false, console)?;
+    lab::by_trust(&mut results.recovered);
     results.picards = picards?;
     recovered::write(
         &args.output.join(RECOVERED),
-        &results.scene,
+        Some(&results.scene),
         &results.recovered,
         &results.picards,
     )?;

@@ -20,8 +20,8 @@ use super::console::Console;
 use super::exposed_folder::ExposedFolder;
 use super::failure::Failure;
 pub(super) use super::names::{
-    EXPOSED, MODEL, PHI, RECOVERED, REPORT, SATURATED, SCENE, STDERR, SUMMARY, TAILS, VALIDATION,
-    Z, is_of_model, is_of_recovered,
+    EXPOSED, LEFT_OUT, MODEL, PHI, RECOVERED, REPORT, SATURATED, SCENE, STDERR, SUMMARY, TAILS,
+    VALIDATION, Z, is_of_model, is_of_recovered,
 };
 use super::names::{MODEL_FILES, is_frame};
 use super::output;

@@ -80,7 +80,7 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
             Ok(Given {
                 phi: read_matrix(phi, &scene)?,
                 stderr: read_stderr(stderr, &scene)?,
-                left_out: None,
+                left_out: left_out(args, None, &scene)?,
                 test: settings::test_of_matrix(&args.test, args.errors, args.replicates)?,
                 run: None,
                 scene,
@@ -89,7 +89,7 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
         (_, _, Some((dir, (scene, record)))) => Ok(Given {
             phi: read_matrix(&dir.join(PHI), &scene)?,
             stderr: read_stderr(&dir.join(STDERR), &scene)?,
-            left_out: read_tails(dir, &scene)?,
+            left_out: left_out(args, read_tails(dir, &scene)?, &scene)?,
             test: settings::test(&args.test, &record.plan, console)?,
             scene: other.unwrap_or(scene),
             run: Some((dir.clone(), record)),
@@ -99,6 +99,21 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
             Err(Failure::usage("there is nothing to validate", cure))
         }
     }
+}
+
+/// Entries that do not count: those whose standard error is not to be trusted, and those of
+/// --left-out.
+fn left_out(
+    args: &ValidateArgs,
+    tails: Option<Matrix>,
+    scene: &Scene,
+) -> Result<Option<Matrix>, Failure> {
+    let Some(file) = &args.left_out else {
+        return Ok(tails);
+    };
+    let own = read_matrix(file, scene)?;
+    let both = |tails: Matrix| tails.zip_map(&own, |a, b| a.abs() + b.abs());
+    Ok(Some(tails.map_or_else(|| own.clone(), both)))
 }
 
 /// Exit code of a verdict.

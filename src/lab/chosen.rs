@@ -46,6 +46,8 @@ pub struct Beside {
     pub scale: Option<f64>,
     /// b_l, W, of each frame.
     pub frame_constant: Option<Vec<f64>>,
+    /// f_kl, W per unit of the pattern: of each pattern in each frame.
+    pub frame_patterns: Option<Vec<Vec<f64>>>,
     /// a_p, W, of each pixel.
     pub background: Option<Vec<f64>>,
     /// g_l, W per unit of the pattern, of each frame.
@@ -192,6 +194,10 @@ impl Beside {
         found.nuisance.as_ref().map(|n| Self {
             scale: n.scale,
             frame_constant: n.frame_constant.as_ref().map(|v| v.as_slice().to_vec()),
+            frame_patterns: n
+                .frame_patterns
+                .as_ref()
+                .map(|m| m.row_iter().map(|r| r.iter().copied().collect()).collect()),
             background: n.background.as_ref().map(|v| v.as_slice().to_vec()),
             glare: n.glare.as_ref().map(|v| v.as_slice().to_vec()),
         })
@@ -289,6 +295,9 @@ fn estimated(nuisance: &Estimated) -> String {
         if let Some(values) = values {
             words += &format!("; {name} {:.3e}{unit} on average", values.mean());
         }
+    }
+    if let Some(strengths) = &nuisance.frame_patterns {
+        words += &format!("; {} patterns in each frame", strengths.nrows());
     }
     if let Some(scale) = nuisance.scale {
         words += &format!("; scale {scale:.4}");

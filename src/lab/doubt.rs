@@ -103,7 +103,8 @@ fn contradiction(best: &Attainable) -> String {
          ({told}); {any}. The scene is not what was photographed, or the standard errors are too \
          small. Check geometry, order and orientation of the frames, unit and --stderr; more \
          --elements where they are coarse; what stands in the way, in the scene; \
-         --frame-constant, --background or --occluder-light for other light"
+         --frame-constant, --background or --occluder-light for other light; --integration centres \
+         where elements were taken at their centres, as `phicam model` does"
     )
 }
 
@@ -194,7 +195,10 @@ fn unfinished(found: &Recovered, judged: &Judged) -> Option<String> {
         }
     };
     let above = 2.0 * solver.gap / unit;
-    (above > GAP).then(|| {
+    // The gap of a pattern is to the best of all numbers; what other patterns could do is known from
+    // their probabilities.
+    let known = found.patterns.as_ref().is_some_and(|p| p.sum.converged());
+    (above > GAP && !known).then(|| {
         let cure = match found.method {
             Method::JointTwoValued => "Compare with joint, or give the --levels",
             _ => "Scale the photographs, or use joint-unbounded",

@@ -72,7 +72,7 @@ pub struct Fit {
     pub p: f64,
     /// Entries compared, N.
     pub entries: usize,
-    /// Entries left out, because their standard error is zero.
+    /// Entries left out, because they do not count or their standard error is zero.
     pub left_out: usize,
     /// Below this p the picture is refuted.
     pub level: f64,
@@ -145,7 +145,8 @@ fn fit(
 ) -> Option<Fit> {
     let mut residuals = Residuals::default();
     let seen = found.photographs(problem);
-    residuals.add(problem.photographed(), &seen, stderr, certainty);
+    let stderr = problem.counted(stderr.clone());
+    residuals.add(problem.photographed(), &seen, &stderr, certainty);
     residuals.fit(found.freedom_used(), certainty.errors)
 }
 

@@ -42,7 +42,7 @@ mod tests {
     use crate::recovery::{Options, recover};
 
     /// A slope over the surface is no picture of two values, a board of random elements no surface
-    /// whose neighbours resemble one another.
+    /// whose neighbours resemble one another, and one reflectance throughout no pattern.
     #[test]
     fn slopes_and_patterns_are_told_apart() {
         let mut model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([4, 4])).unwrap();
@@ -56,6 +56,7 @@ mod tests {
                 (0..16).map(board).collect::<Vec<f64>>(),
                 Method::JointTwoValued,
             ),
+            (vec![0.4; 16], Method::JointGp),
         ] {
             model.albedo = picture;
             let exact = model.phi();

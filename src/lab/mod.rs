@@ -182,12 +182,14 @@ mod results;
 #[path = "sample_tests.rs"]
 pub(crate) mod sample;
 mod score;
+mod smooth;
 mod spots;
 mod study;
 mod summary;
 mod tails;
 mod tolerance;
 mod traced;
+mod trust;
 mod validation;
 mod verdict;
 
@@ -224,14 +226,17 @@ pub use power::{Detection, Power, PowerPlan, PowerRow, PowerTasks};
 pub use preview::{
     Colour, Preview, PreviewError, PreviewPlan, ViewOptions, Viewpoint, auto_viewpoint, preview,
 };
+pub use problem::inverted;
 pub use registered::{AnyStudy, Found, Prepare, Registered, prepared};
 pub use registry::STUDIES;
 pub use results::RunResults;
 pub use score::{Derivatives, Deviation, Parameter, Score};
+pub use smooth::polynomials;
 pub use study::{Sharing, Study, Work, context, outputs, run};
 pub use summary::{
     by_surface, describe_recovery, describe_render, determined, fits, recovery, warnings,
 };
 pub use tails::Tails;
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
+pub use trust::by_trust;
 pub use validation::{Against, Integration, Measured, Validation, ValidationError, validate};

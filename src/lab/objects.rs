@@ -196,10 +196,10 @@ fn ready<'a>(
     shared: &'a Shared,
 ) -> Result<Problem<'a>, RecoveryError> {
     let problem = problem(model, phi, noise.known().map(|known| known.0))?;
-    let problem = problem
-        .with_grids(grids)?
-        .with_places(&model.places)?
-        .with_nuisance(nuisance)?;
+    let mut problem = problem.with_grids(grids)?.with_nuisance(nuisance)?;
+    if !model.places.is_empty() {
+        problem = problem.with_places(&model.places)?;
+    }
     Ok(problem.sharing(shared))
 }
 

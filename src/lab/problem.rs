@@ -1,11 +1,41 @@
 //! The inverse problem of a matrix model.
 
+use super::validation::Integration;
 use crate::matrix::Matrix;
-use crate::model::MatrixModel;
+use crate::model::{Kernel, MatrixModel, ModelError, Occlusion};
 use crate::recovery::{Problem, RecoveryError, Terms};
+use crate::scene::Scene;
+
+/// Elements whose light is integrated: of more, each is so small that its centre does, and its terms
+/// would take four times the memory.
+const MOST_INTEGRATED: usize = 1024;
+
+/// The model by which photographs of `scene` are inverted. By quadrature the light of each of up to
+/// 1024 elements is integrated over its area, footprints and spots ([`MatrixModel::over_areas`]),
+/// with the physical kernel; the published one is that of the centres.
+///
+/// # Errors
+/// Those of [`MatrixModel::new`] and [`MatrixModel::over_areas`].
+pub fn inverted(
+    scene: &Scene,
+    kernel: Kernel,
+    elements: Option<[usize; 2]>,
+    occlusion: Occlusion,
+    integration: Integration,
+) -> Result<MatrixModel, ModelError> {
+    let model = MatrixModel::with(scene, kernel, elements, occlusion)?;
+    let integrated = integration == Integration::Quadrature
+        && kernel == Kernel::Physical
+        && model.albedo.len() <= MOST_INTEGRATED;
+    if integrated {
+        model.over_areas(scene)
+    } else {
+        Ok(model)
+    }
+}
 
 /// Photographs Φ, pixels × spots, W, with their standard errors where these are known, to be
-/// inverted by `model`: with the terms of its elements where something stands in the way.
+/// inverted by `model`: with the terms of its elements where it has them.
 ///
 /// # Errors
 /// Those of [`Problem::new`].

@@ -20,6 +20,20 @@ pub enum ModelError {
         /// Entries of all matrices.
         entries: f64,
     },
+    /// Matrices given in place of a scene's do not belong together.
+    #[error(
+        "the camera side has {columns} columns, the laser side {rows} rows, and {} × {} elements were asked for: one is needed of each for every element",
+        count[0],
+        count[1]
+    )]
+    Sides {
+        /// Columns of C.
+        columns: usize,
+        /// Rows of D.
+        rows: usize,
+        /// Elements along u and v.
+        count: [usize; 2],
+    },
     /// The terms of an element cannot be found.
     #[error(transparent)]
     Linalg(#[from] LinalgError),

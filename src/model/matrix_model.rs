@@ -29,7 +29,7 @@ pub struct MatrixModel {
     /// ([`Surface::lambertian_equivalent`](crate::scene::Surface::lambertian_equivalent)). Where it
     /// is unknown ([`ElementGrid::is_known`]) a grey that means nothing.
     pub albedo: Vec<f64>,
-    /// Centre of each element, in the scene's unit of length.
+    /// Centre of each element, in the scene's unit of length; empty where it is not known.
     pub places: Vec<[f64; 3]>,
     /// C, pixels × elements: E_p·(ρ3/π)·G23/π.
     pub camera_side: Matrix,
@@ -61,6 +61,44 @@ impl MatrixModel {
         elements: Option<[usize; 2]>,
     ) -> Result<Self, ModelError> {
         Self::with(scene, kernel, elements, Occlusion::Considered)
+    }
+
+    /// A model of matrices that were measured or computed elsewhere, without a scene: C pixels ×
+    /// elements, D elements × spots, `count` elements along u and v of one surface of unknown
+    /// reflectance. G23 = π C and G12 = D, those of unit light.
+    ///
+    /// # Errors
+    /// [`ModelError::Sides`] where they do not belong together.
+    pub fn of_sides(
+        camera_side: Matrix,
+        laser_side: Matrix,
+        count: [usize; 2],
+    ) -> Result<Self, ModelError> {
+        let elements = camera_side.ncols();
+        if laser_side.nrows() != elements || count[0].saturating_mul(count[1]) != elements {
+            return Err(ModelError::Sides {
+                columns: elements,
+                rows: laser_side.nrows(),
+                count,
+            });
+        }
+        let grid = ElementGrid {
+            surface: "surface".to_owned(),
+            count,
+            first: 0,
+            is_known: false,
+        };
+        Ok(Self {
+            kernel: Kernel::Physical,
+            grids: vec![grid],
+            g12: laser_side.clone(),
+            g23: &camera_side * std::f64::consts::PI,
+            albedo: vec![0.5; elements],
+            places: Vec::new(),
+            camera_side,
+            laser_side,
+            factors: None,
+        })
     }
 
     /// The same with or without what stands in the way.
@@ -178,6 +216,20 @@ impl MatrixModel {
             side.component_mul_assign(&lit);
         }
         self.factors = Some(factors);
+        Ok(self)
+    }
+
+    /// The same with the light of each element integrated over its area, over footprints and spots,
+    /// also where nothing stands in the way ([`MatrixModel::factors`]); C and D stay those of the
+    /// centres.
+    ///
+    /// # Errors
+    /// [`ModelError::Linalg`].
+    pub fn over_areas(mut self, scene: &Scene) -> Result<Self, ModelError> {
+        if self.factors.is_none() {
+            let (terms, _) = factors(scene, self.kernel, &[], &self.grids)?;
+            self.factors = Some(terms);
+        }
         Ok(self)
     }
 

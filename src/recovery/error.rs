@@ -50,6 +50,9 @@ pub enum RecoveryError {
         /// Columns given.
         found_columns: usize,
     },
+    /// No entry counts.
+    #[error("every entry of phi is left out; leave some in")]
+    NothingCounts,
     /// An entry is NaN or infinite.
     #[error(
         "{name}[{row}, {column}] is {value}; photographs and model must be finite, so render or repair that entry first"

@@ -136,8 +136,8 @@ pub fn recover(
     if problem.nuisance.is_some() && !method.is_joint() {
         return Err(RecoveryError::NotForMethod {
             method,
-            what: "does not estimate frame constants, backgrounds, glare or scale",
-            cure: "use a joint method, or subtract them first",
+            what: "takes every entry as light of the surface, and estimates nothing else: no frame constants or patterns, background, glare or scale, no entries left out",
+            cure: "use a joint method, or subtract what else is there first",
         });
     }
     if let Some(confidence) = options.bands {

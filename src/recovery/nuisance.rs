@@ -1,6 +1,6 @@
 //! What photographs hold beside the light of the hidden surface, of known form and unknown size.
 //!
-//! > Φ\[p,l\] = s Σ_j C\[p,j\] ρ_j D\[j,l\] + b_l + a_p + g_l P\[p,l\] + noise
+//! > Φ\[p,l\] = s Σ_j C\[p,j\] ρ_j D\[j,l\] + b_l + Σ_k f_kl F\[p,k\] + a_p + g_l P\[p,l\] + noise
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,6 +9,10 @@ use nalgebra::{DMatrix, DVector};
 pub struct Nuisance<'a> {
     /// A constant of each frame, b_l: an offset of the sensor, light that fills the view evenly.
     pub frame_constant: bool,
+    /// Patterns F\[p,k\] (pixels × patterns, any unit) each of which is in each frame with an
+    /// unknown strength f_kl: light from elsewhere that varies smoothly over the wall, a photograph
+    /// without the laser.
+    pub frame_patterns: Option<&'a DMatrix<f64>>,
     /// An image that is the same in all frames, a_p: ambient light.
     pub background: bool,
     /// A pattern P\[p,l\] (pixels × spots, any unit) whose strength g_l in each frame is unknown:
@@ -18,12 +22,31 @@ pub struct Nuisance<'a> {
     /// element has ρ = 1**; a surface without a white element is recovered relative to its
     /// brightest. Bounds from above mean nothing then: `joint` keeps ρ ≥ 0 alone.
     pub free_scale: bool,
+    /// Entries that do not count, pixels × spots: those that are not 0. Each holds an unknown light
+    /// of its own, so that its value says nothing; it must be finite.
+    pub left_out: Option<&'a DMatrix<f64>>,
 }
 
 impl Nuisance<'_> {
     /// Whether anything is asked for.
     pub(super) fn is_some(&self) -> bool {
         *self != Nuisance::default()
+    }
+
+    /// Whether an entry counts.
+    pub(super) fn counts(&self, p: usize, l: usize) -> bool {
+        self.left_out.is_none_or(|flags| flags[(p, l)] == 0.0)
+    }
+
+    /// The patterns whose strength in each frame is unknown, pixels × patterns: 1 for a constant,
+    /// then the others.
+    pub(super) fn of_frames(&self, pixels: usize) -> DMatrix<f64> {
+        let ones = usize::from(self.frame_constant);
+        let others = self.frame_patterns.map_or(0, DMatrix::ncols);
+        DMatrix::from_fn(pixels, ones + others, |p, k| match self.frame_patterns {
+            Some(patterns) if k >= ones => patterns[(p, k - ones)],
+            _ => 1.0,
+        })
     }
 }
 
@@ -33,6 +56,8 @@ pub struct Estimated {
     /// b_l, W. Where a background is estimated too, the common level of all entries is counted
     /// here: Σ_p w_p a_p = 0.
     pub frame_constant: Option<DVector<f64>>,
+    /// f_kl, patterns × spots, W per unit of the pattern.
+    pub frame_patterns: Option<DMatrix<f64>>,
     /// a_p, W.
     pub background: Option<DVector<f64>>,
     /// g_l, W per unit of the pattern; zero for a frame whose pattern the other terms contain.
@@ -51,11 +76,15 @@ impl Estimated {
     ) -> DMatrix<f64> {
         let entry =
             |values: &Option<DVector<f64>>, at: usize| values.as_ref().map_or(0.0, |v| v[at]);
-        DMatrix::from_fn(pixels, spots, |p, l| {
+        let own = DMatrix::from_fn(pixels, spots, |p, l| {
             let pattern = nuisance.glare.map_or(0.0, |pattern| pattern[(p, l)]);
             entry(&self.frame_constant, l)
                 + entry(&self.background, p)
                 + entry(&self.glare, l) * pattern
-        })
+        });
+        match (nuisance.frame_patterns, &self.frame_patterns) {
+            (Some(patterns), Some(strengths)) => own + patterns * strengths,
+            _ => own,
+        }
     }
 }

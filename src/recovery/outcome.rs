@@ -227,7 +227,8 @@ impl Recovered {
                 .filter_map(|v| v.as_ref())
                 .map(|v| v.len())
                 .sum();
-            count + usize::from(n.scale.is_some())
+            let patterns = n.frame_patterns.as_ref().map_or(0, DMatrix::len);
+            count + patterns + usize::from(n.scale.is_some())
         });
         own + terms as f64
     }

@@ -205,19 +205,35 @@ impl<'a> Problem<'a> {
     /// [`RecoveryError::Shape`], [`RecoveryError::NotFinite`] or [`RecoveryError::OutOfScale`] of a
     /// glare pattern.
     pub fn with_nuisance(self, nuisance: Nuisance<'a>) -> Result<Self, RecoveryError> {
-        if let Some(pattern) = nuisance.glare {
-            let (rows, columns) = self.phi.shape();
-            let (found_rows, found_columns) = pattern.shape();
-            if (found_rows, found_columns) != (rows, columns) {
-                return Err(RecoveryError::Shape {
-                    name: "the glare pattern (pixels × spots)",
-                    rows,
-                    columns,
-                    found_rows,
-                    found_columns,
-                });
-            }
-            finite("the glare pattern", pattern)?;
+        let (pixels, spots) = self.phi.shape();
+        let fits = |name, matrix: Option<&DMatrix<f64>>, columns| match matrix {
+            Some(matrix) if matrix.shape() == (pixels, columns) => finite(name, matrix),
+            Some(matrix) => Err(RecoveryError::Shape {
+                name,
+                rows: pixels,
+                columns,
+                found_rows: matrix.nrows(),
+                found_columns: matrix.ncols(),
+            }),
+            None => Ok(()),
+        };
+        let patterns = nuisance.frame_patterns.map_or(0, DMatrix::ncols);
+        fits("the glare pattern (pixels × spots)", nuisance.glare, spots)?;
+        fits(
+            "the patterns of a frame (pixels × patterns)",
+            nuisance.frame_patterns,
+            patterns,
+        )?;
+        fits(
+            "what is left out (pixels × spots)",
+            nuisance.left_out,
+            spots,
+        )?;
+        if nuisance
+            .left_out
+            .is_some_and(|flags| flags.iter().all(|x| *x != 0.0))
+        {
+            return Err(RecoveryError::NothingCounts);
         }
         Ok(Problem {
             nuisance,
@@ -240,13 +256,16 @@ impl<'a> Problem<'a> {
     /// photographs. Where C and D are not negative, as light is, no surface makes it more than 1.
     pub fn brightness(&self) -> f64 {
         let (c, d, _) = self.sides();
-        let white = c * d;
+        let white = self.counted(c * d);
         self.phi.dot(&white) / white.norm_squared()
     }
 
     /// Refuses photographs that are black throughout.
     pub(super) fn refuse_darkness(&self) -> Result<(), RecoveryError> {
-        if self.phi.iter().any(|&x| x != 0.0) {
+        let entries =
+            (0..self.phi.ncols()).flat_map(|l| (0..self.phi.nrows()).map(move |p| (p, l)));
+        let mut counted = entries.filter(|(p, l)| self.nuisance.counts(*p, *l));
+        if counted.any(|at| self.phi[at] != 0.0) {
             Ok(())
         } else {
             Err(RecoveryError::Dark)
@@ -256,6 +275,18 @@ impl<'a> Problem<'a> {
     /// The standard errors, where they are given and not all zero.
     pub(super) fn noise(&self) -> Option<&'a DMatrix<f64>> {
         self.stderr.filter(|s| s.iter().any(|&x| x > 0.0))
+    }
+
+    /// Entries, pixels × spots, with 0 where one does not count.
+    pub fn counted(&self, mut entries: DMatrix<f64>) -> DMatrix<f64> {
+        if let Some(flags) = self.nuisance.left_out {
+            entries.zip_apply(flags, |x, flag| {
+                if flag != 0.0 {
+                    *x = 0.0;
+                }
+            });
+        }
+        entries
     }
 
     /// The laser side decomposed as far as a cut at `tolerance` needs it.
@@ -279,8 +310,10 @@ impl<'a> Problem<'a> {
     /// ‖Φ − Σ_j ρ_j A_j‖, Frobenius, W.
     pub(super) fn misfit(&self, reflectance: &DVector<f64>) -> Result<f64, RecoveryError> {
         Ok(match self.terms {
-            Some(_) => (self.phi - self.light(reflectance)).norm(),
-            None => self.residual(&Lit::new(self.d, reflectance)?),
+            None if self.nuisance.left_out.is_none() => {
+                self.residual(&Lit::new(self.d, reflectance)?)
+            }
+            _ => self.counted(self.phi - self.light(reflectance)).norm(),
         })
     }
 

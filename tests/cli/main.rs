@@ -20,6 +20,7 @@ mod main_job;
 mod many;
 mod memory;
 mod recovery;
+mod recovery_own;
 mod replacing;
 mod reproducibility;
 mod reproducing;

@@ -80,9 +80,11 @@ fn rows_of_the_file_are_rows_of_elements() {
 #[test]
 fn fewer_elements() {
     let workspace = with_run();
+    let line = "recover done --method joint --elements 4x4";
+    let _ = workspace.phicam(line).exits(0);
     // Elements taken at their centres are off by more than the error of the render here: exit code 1.
     let ended = workspace
-        .phicam("recover done --method joint --elements 4x4")
+        .phicam(&format!("{line} --integration centres"))
         .exits(1);
     let words = ["DOES NOT FIT", "more --elements"];
     assert!(
@@ -97,11 +99,28 @@ fn fewer_elements() {
 #[test]
 fn the_model_s_own_matrix_gives_the_truth_back() {
     let workspace = with_run();
-    let line = "recover done --method joint --phi done/model/phi.npy --json";
+    let line = "recover done --method joint --phi done/model/phi.npy --integration centres --json";
     let found = objects(workspace.phicam(line));
     let raw = found[0]["mtf_raw"].as_f64().unwrap();
     assert!(raw > 0.99, "{raw}");
     assert!(found[0]["rmse"].as_f64().unwrap() < 1e-3, "{}", found[0]);
+}
+
+/// Light integrated over elements, footprints and spots by another quadrature than that of the
+/// operator: what is left of it comes back as an error of the reflectance, from centres a larger one.
+#[test]
+fn integrated_light_is_inverted_by_integrated_elements() {
+    let workspace = with_run();
+    let _ = workspace
+        .phicam("model small.toml -o exact --integration quadrature")
+        .exits(0);
+    let rmse = |more: &str| {
+        let line = format!("recover exact --phi exact/model/phi.npy --method joint --json{more}");
+        let found = objects(workspace.phicam(&line));
+        found[0]["rmse"].as_f64().unwrap()
+    };
+    let (own, centres) = (rmse(""), rmse(" --integration centres"));
+    assert!(own < 2e-3 && own < 0.1 * centres, "{own} {centres}");
 }
 
 #[test]
@@ -175,18 +194,27 @@ fn the_usual_methods_unless_some_are_named() {
             .collect()
     };
     let all = objects(workspace.phicam("recover done --json"));
+    let mut tried = names(&all);
+    tried.sort();
     assert_eq!(
-        names(&all),
+        tried,
         [
-            "pinv",
-            "tsvd",
-            "tikhonov",
-            "joint-unbounded",
             "joint",
             "joint-gp",
-            "joint-two-valued"
+            "joint-two-valued",
+            "joint-unbounded",
+            "pinv",
+            "tikhonov",
+            "tsvd"
         ]
     );
+    // What explains the photographs comes first, then what knows how likely it makes them.
+    let fits = |f: &serde_json::Value| f["fit"]["fits"].as_bool().unwrap();
+    let refuted = all.iter().position(|f| !fits(f)).unwrap_or(all.len());
+    assert!(!all[refuted..].iter().any(fits), "{:?}", names(&all));
+    let evidence = |f: &serde_json::Value| f["log_evidence"].as_f64().unwrap_or(f64::MIN);
+    let first = &all[..refuted];
+    assert!(first.len() > 1 && first.is_sorted_by(|a, b| evidence(a) >= evidence(b)));
     let two = objects(workspace.phicam("recover done --method joint,pinv --json"));
     assert_eq!(names(&two), ["joint", "pinv"]);
 }
@@ -199,7 +227,7 @@ fn other_light_is_estimated_with_the_object() {
     let spoilt =
         model.map_with_location(|_, l, x| 2.5 * x + 100.0 * model.amax() * (1.0 + l as f64));
     npy::write(&workspace.path("spoilt.npy"), &spoilt).unwrap();
-    let line = "recover done --phi spoilt.npy --frame-constant --free-scale --method joint --json";
+    let line = "recover done --phi spoilt.npy --frame-constant --free-scale --method joint --integration centres --json";
     let found = objects(workspace.phicam(line));
     assert!(found[0]["mtf_raw"].as_f64().unwrap() > 0.99, "{}", found[0]);
     let words = found[0]["parameter"].as_str().unwrap();
@@ -268,7 +296,7 @@ fn bands_are_files_of_their_own() {
 #[test]
 fn every_method_can_be_asked_for() {
     let workspace = with_run();
-    let line = "recover done --method nnls,joint-tv,joint-two-valued --phi done/model/phi.npy --noise 0.001 -o own";
+    let line = "recover done --method nnls,joint-tv,joint-two-valued --phi done/model/phi.npy --integration centres --noise 0.001 -o own";
     let _ = workspace.phicam(line).exits(0);
     let names = workspace.contents("own");
     for name in ["nnls.npy", "joint-tv.npy", "joint-two-valued.npy"] {
@@ -448,7 +476,7 @@ fn files_of_an_earlier_recovery_do_not_stay_beside_those_of_a_later() {
 #[test]
 fn a_run_can_be_repeated_at_its_own_choice() {
     let workspace = with_run();
-    let line = "recover done --phi done/model/phi.npy --noise 1e-3 -o own --json --method";
+    let line = "recover done --phi done/model/phi.npy --integration centres --noise 1e-3 -o own --json --method";
     for method in ["tsvd", "tikhonov", "joint-tv"] {
         let mut found = objects(workspace.phicam(&format!("{line} {method}")));
         let (first, repeat) = (found.remove(0), |v: &serde_json::Value| {
@@ -508,7 +536,7 @@ fn an_unknown_albedo_has_no_truth_and_no_scores() {
         modelled.account()
     );
     assert!(!workspace.contents("bench/model").contains_key("phi.npy"));
-    let line = "recover bench --phi done/model/phi.npy --noise 1e-3 --method joint-unbounded,joint";
+    let line = "recover bench --phi done/model/phi.npy --integration centres --noise 1e-3 --method joint-unbounded,joint";
     let told = workspace
         .phicam(&format!("{line} --elements 4"))
         .exits(0)
@@ -531,8 +559,7 @@ fn an_unknown_albedo_has_no_truth_and_no_scores() {
             .all(|n| !n.starts_with("truth") && !n.contains("bias"))
     );
     // The same photographs with the board known: the same picture, and its scores.
-    let line =
-        "recover done --phi done/model/phi.npy --noise 1e-3 --method joint --elements 4 --json";
+    let line = "recover done --phi done/model/phi.npy --integration centres --noise 1e-3 --method joint --elements 4 --json";
     let known = objects(workspace.phicam(line));
     assert_eq!(known[0]["reflectance"], found[1]["reflectance"]);
     assert!(known[0]["rmse"].is_f64());

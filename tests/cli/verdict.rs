@@ -190,6 +190,29 @@ fn a_matrix_of_ones_own_is_judged() {
 }
 
 /// Zero light from both, and entries that are all flagged, are no evidence.
+/// Entries that are wrong refute a right model, unless they do not count.
+#[test]
+fn what_is_left_out_does_not_count() {
+    let workspace = Workspace::with_scenes();
+    let _ = workspace.phicam("model small.toml -o done").exits(0);
+    let model = workspace.matrix("done/model/phi.npy");
+    let flags = model.map_with_location(|p, l, _| f64::from(u8::from(p % 7 == l % 5)));
+    let files = [
+        ("phi.npy", model.zip_map(&flags, |x, flag| x * (1.0 + flag))),
+        ("stderr.npy", model.map(|x| 0.01 * x)),
+        ("flags.npy", flags),
+    ];
+    for (name, matrix) in &files {
+        phicam::matrix::npy::write(&workspace.path(name), matrix).unwrap();
+    }
+    let line = "validate --phi phi.npy --stderr stderr.npy --against small.toml --json";
+    let _ = workspace.phicam(line).exits(1);
+    let ended = workspace.phicam(&format!("{line} --left-out flags.npy"));
+    let found: serde_json::Value = serde_json::from_str(&ended.exits(0).stdout).unwrap();
+    let counted = files[2].1.iter().filter(|x| **x == 0.0).count();
+    assert_eq!(found["entries"], counted, "{found}");
+}
+
 #[test]
 fn nothing_is_no_evidence() {
     let workspace = Workspace::with_scenes();

@@ -65,7 +65,7 @@ pub(in crate::cli) enum Command {
     /// Test traced or measured against modelled Φcam: exit 0 agree, 1 disagree, 2 error, 4 no evidence
     Validate(ValidateArgs),
     /// Recover the hidden reflectance from Φcam: exit 0 done, 1 no reflectances explain it, 2 error
-    Recover(RecoverArgs),
+    Recover(Box<RecoverArgs>),
     /// Photograph the clean flux with a sensor: shot noise, read noise, glare, converter
     Expose(ExposeArgs),
     /// Look at a frame or a matrix in false colour, as PNG or in the terminal
@@ -272,6 +272,9 @@ pub(in crate::cli) struct ValidateArgs {
     /// Standard errors of --phi, of the same shape
     #[arg(long, value_name = "FILE", requires = "phi")]
     pub stderr: Option<PathBuf>,
+    /// Entries that do not count, of the same shape: those that are not 0
+    #[arg(long, value_name = "FILE")]
+    pub left_out: Option<PathBuf>,
     /// Replicates from which --stderr was estimated, at least 2; known errors unless given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..), requires = "phi")]
     pub replicates: Option<u32>,

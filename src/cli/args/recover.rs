@@ -7,13 +7,19 @@ use clap::Args as Arguments;
 
 use super::choice;
 use super::value::{elements, levels};
+use crate::lab::Integration;
 use crate::model::Kernel;
 use crate::recovery::{Rule, WeightRule};
 
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct RecoverArgs {
-    /// Folder of a run; with --phi a folder with a scene.toml is enough
-    pub dir: PathBuf,
+    /// Folder of a run; with --phi a folder with a scene.toml is enough, with --camera-side none is
+    /// needed
+    #[arg(
+        required_unless_present = "camera_side",
+        conflicts_with = "camera_side"
+    )]
+    pub dir: Option<PathBuf>,
     /// Folder for the results; DIR/recovered unless given, and for another Φcam than the run's
     /// DIR/recovered-NAME-DIGEST
     #[arg(long, short, value_name = "FOLDER")]
@@ -38,6 +44,18 @@ pub(in crate::cli) struct RecoverArgs {
     /// (saturated.npy) as if they were right
     #[arg(long, requires = "phi")]
     pub keep_clipped: bool,
+    /// Entries that do not count, pixels × spots: those that are not 0; DIR/left_out.npy unless given
+    #[arg(long, value_name = "FILE", conflicts_with = "keep_clipped")]
+    pub left_out: Option<PathBuf>,
+    /// Invert this matrix C in place of a model's, pixels × elements: Φcam = C·diag(x)·D
+    #[arg(long, value_name = "FILE", requires_all = ["phi", "output"])]
+    pub camera_side: Option<PathBuf>,
+    /// D that belongs to --camera-side, elements × spots; all 1 unless given: a surface that shines
+    #[arg(long, value_name = "FILE", requires = "camera_side")]
+    pub laser_side: Option<PathBuf>,
+    /// Columns and rows of a photograph, for --frame-polynomial beside --camera-side: N or NxM
+    #[arg(long, value_name = "NxM", value_parser = elements, requires = "camera_side")]
+    pub pixels: Option<[usize; 2]>,
     /// Kernel of the model that is inverted
     #[arg(long, value_parser = choice::kernel(), default_value = "physical")]
     pub kernel: Kernel,
@@ -46,6 +64,10 @@ pub(in crate::cli) struct RecoverArgs {
     pub elements: Option<[usize; 2]>,
     #[command(flatten)]
     pub occlusion: OcclusionArgs,
+    /// How the model of the joint methods integrates; the published kernel, more than 1024 elements
+    /// and the other methods are by centres
+    #[arg(long, value_parser = choice::integration(), default_value = "quadrature")]
+    pub integration: Integration,
     /// How tsvd, tikhonov and tikhonov-gradient choose their parameter
     #[arg(long, value_parser = choice::rule(), default_value = "discrepancy")]
     pub rule: Rule,
@@ -89,6 +111,17 @@ pub(in crate::cli) struct JointArgs {
     /// Estimate a constant of each frame with the reflectances
     #[arg(long)]
     pub frame_constant: bool,
+    /// Estimate a polynomial of this degree over each frame, 0 to 8: other light on the wall
+    #[arg(
+        long,
+        value_name = "DEGREE",
+        value_parser = clap::value_parser!(u8).range(0..=8),
+        conflicts_with = "frame_constant"
+    )]
+    pub frame_polynomial: Option<u8>,
+    /// Estimate the strengths of these patterns in each frame: pixels × patterns
+    #[arg(long, value_name = "FILE")]
+    pub frame_patterns: Option<PathBuf>,
     /// Estimate an image that is the same in all frames
     #[arg(long)]
     pub background: bool,

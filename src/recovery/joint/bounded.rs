@@ -25,7 +25,7 @@ pub(in crate::recovery) fn recover(
             // Each entry by its own error: separable weights would not make them all units.
             let (pixels, spots) = problem.phi.shape();
             let fitted = weights::fit(Some(stderr), pixels, spots);
-            let exact = stack(problem, |p, l| fitted.root(Some(stderr), p, l))?.triangle;
+            let exact = stack(problem, |p, l| fitted.root(problem, Some(stderr), p, l))?.triangle;
             let found = bands::simultaneous(&exact.r, &exact.d, &bounds, confidence)?;
             Some(found)
         }

@@ -45,7 +45,8 @@ pub fn cramer_rao(problem: &Problem<'_>) -> Result<CramerRao, RecoveryError> {
         cure: "give the standard error of phi (phi.stderr.npy)",
     })?;
     let fitted = weights::fit(Some(stderr), stderr.nrows(), stderr.ncols());
-    let reduced = stacked::stack(problem, |p, l| fitted.root(Some(stderr), p, l))?.triangle;
+    let reduced =
+        stacked::stack(problem, |p, l| fitted.root(problem, Some(stderr), p, l))?.triangle;
     let decomposed = svd(&reduced.r)?;
     let elements = problem.c.ncols();
     let (rank, _) = decomposed.cut(Tolerance::Relative(LOST))?;

@@ -2,7 +2,7 @@
 //!
 //! Everything but ρ enters linearly once s ρ is one unknown, so it is eliminated exactly (variable
 //! projection), never guessed first. With weights w_p v_l the constants b_l are all matrices u b'ᵀ
-//! of the weighted problem, u_p = √w_p, and the background all a' vᵀ, v_l = √v_l; what either
+//! of the weighted problem, u_p = √w_p (of patterns √w_p F\[p,k\]), and the background all a' vᵀ, v_l = √v_l; what either
 //! cannot reach is the tensor product of what is orthogonal to u and what is orthogonal to v. So
 //! both at once are eliminated by
 //!
@@ -16,6 +16,26 @@ use nalgebra::{DMatrix, DVector};
 use super::stacked::Coupled;
 use crate::num::linalg::{Tolerance, columns_over, least_squares};
 use crate::recovery::{Estimated, Nuisance, RecoveryError};
+
+/// A pattern that others leave less of than this is one of theirs.
+const DEPENDENT: f64 = 1e-12;
+
+/// Orthonormal directions of the weighted patterns, √w_p F\[p,k\].
+pub(super) fn directions(
+    patterns: &DMatrix<f64>,
+    root: impl Fn(usize) -> f64,
+) -> Vec<DVector<f64>> {
+    let mut taken: Vec<DVector<f64>> = Vec::new();
+    for pattern in patterns.column_iter() {
+        let mut left = DMatrix::from_fn(pattern.len(), 1, |p, _| root(p) * pattern[p]);
+        let length = left.norm();
+        taken.iter().for_each(|u| without_left(&mut left, u));
+        if left.norm() > DEPENDENT * length {
+            taken.push(left.column(0).normalize());
+        }
+    }
+    taken
+}
 
 /// û, the unit vector along the roots of the weights of one side.
 pub(super) fn unit(roots: &[f64]) -> DVector<f64> {
@@ -49,21 +69,26 @@ pub(super) fn estimate(
 ) -> Result<Estimated, RecoveryError> {
     let (pixels, spots) = left.shape();
     let weight = |p: usize, l: usize| root(p, l) * root(p, l);
-    let mut constant = nuisance.frame_constant.then(|| DVector::zeros(spots));
-    let mut glare = nuisance.glare.map(|_| DVector::zeros(spots));
+    let patterns = nuisance.of_frames(pixels);
+    let of_frames = patterns.ncols();
+    let kinds = of_frames + usize::from(nuisance.glare.is_some());
+    // Of each kind in each frame.
+    let mut sizes = DMatrix::zeros(kinds, spots);
     if let Some((coupled, rho)) = coupled {
-        let sizes = coupled.solve(rho);
-        if let Some(b) = constant.as_mut() {
-            b.copy_from(&sizes.rows(0, spots));
-        }
-        if let Some(g) = glare.as_mut() {
-            g.copy_from(&sizes.rows(sizes.len() - spots, spots));
-        }
-    } else if let Some(pattern) = nuisance.glare {
+        let found = coupled.solve(rho);
+        sizes = DMatrix::from_fn(kinds, spots, |k, l| found[k * spots + l]);
+    } else if kinds == 1 && nuisance.frame_constant {
         for l in 0..spots {
-            let ones = usize::from(nuisance.frame_constant);
-            let columns = DMatrix::from_fn(pixels, ones + 1, |p, k| {
-                root(p, l) * if k < ones { 1.0 } else { pattern[(p, l)] }
+            sizes[(0, l)] = mean((0..pixels).map(|p| (weight(p, l), left[(p, l)])));
+        }
+    } else if kinds > 0 {
+        for l in 0..spots {
+            let columns = DMatrix::from_fn(pixels, kinds, |p, k| {
+                let pattern = match nuisance.glare {
+                    Some(glare) if k == of_frames => glare[(p, l)],
+                    _ => patterns[(p, k)],
+                };
+                root(p, l) * pattern
             });
             let lengths: Vec<f64> = columns.column_iter().map(|c| nonzero(c.norm())).collect();
             let columns = columns_over(columns, &lengths);
@@ -71,23 +96,19 @@ pub(super) fn estimate(
             if columns.amax() == 0.0 {
                 continue;
             }
-            let sizes = least_squares(&columns, &data, Tolerance::Relative(1e-12))?.solution;
-            if let Some(b) = constant.as_mut() {
-                b[l] = sizes[0] / lengths[0];
-            }
-            if let Some(g) = glare.as_mut() {
-                g[l] = sizes[ones] / lengths[ones];
-            }
-        }
-    } else if let Some(b) = constant.as_mut() {
-        for l in 0..spots {
-            b[l] = mean((0..pixels).map(|p| (weight(p, l), left[(p, l)])));
+            let found = least_squares(&columns, &data, Tolerance::Relative(1e-12))?.solution;
+            sizes.set_column(l, &DVector::from_fn(kinds, |k, _| found[k] / lengths[k]));
         }
     }
+    let ones = usize::from(nuisance.frame_constant);
+    let row = |k: usize| sizes.row(k).transpose();
     let mut found = Estimated {
-        frame_constant: constant,
+        frame_constant: nuisance.frame_constant.then(|| row(0)),
+        frame_patterns: nuisance
+            .frame_patterns
+            .map(|patterns| sizes.rows(ones, patterns.ncols()).into_owned()),
         background: None,
-        glare,
+        glare: nuisance.glare.map(|_| row(of_frames)),
         scale: None,
     };
     if nuisance.background {
@@ -114,7 +135,7 @@ fn mean(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
     let (weights, sum) = pairs.fold((0.0, 0.0), |(weights, sum), (w, x)| {
         (weights + w, sum + w * x)
     });
-    sum / weights
+    if weights > 0.0 { sum / weights } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@
 //! what is finer than they resolve nothing: one best pair gives errors that are too small. So all
 //! pairs of a lattice count, each by its evidence p(y | τ, ℓ) and by how often pictures are such:
 //! ln ℓ evenly from less than the distance of neighbours to a slope over the whole surface, ln τ
-//! normal. The estimate is the mean of that mixture, its covariance and bands those of the mixture.
+//! normal; one surface in fifty is of one reflectance throughout, τ = 0. The estimate is the mean of that mixture, its covariance and bands those of the mixture.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -34,6 +34,8 @@ const LN_SPREAD: [f64; 2] = [-2.13, 0.98];
 /// Step of ln τ, and how many of them from the mean down and up.
 const STEP: f64 = 0.35;
 const STEPS: [i32; 2] = [-9, 9];
+/// Share of surfaces of one reflectance throughout.
+const FLAT: f64 = 0.02;
 /// What is less likely than the likeliest pair by more than e to this counts for nothing.
 const NEGLIGIBLE: f64 = 6.0;
 /// Elements up to which the covariance matrix is made.
@@ -151,16 +153,19 @@ impl Seen {
         DMatrix::from_column_slice(left.len(), 1, left.as_slice())
     }
 
-    /// ln of p(y | τ, ℓ) p(τ) over that of a picture that fits y exactly, but for the prior's common
-    /// factor.
-    fn weight(&self, of: &Length, spread: f64, left: &DMatrix<f64>) -> f64 {
+    /// ln of p(y | τ, ℓ) over that of a picture that fits y exactly.
+    fn evidence(&self, of: &Length, spread: f64, left: &DMatrix<f64>) -> f64 {
         let Some(factor) = self.factor(of, spread) else {
             return f64::NEG_INFINITY;
         };
         let chi2 = factor.forward(left.clone()).norm_squared();
-        let evidence = -0.5 * (chi2 + factor.log_det() - self.log_errors);
+        -0.5 * (chi2 + factor.log_det() - self.log_errors)
+    }
+
+    /// The same times p(τ), but for the prior's common factor.
+    fn weight(&self, of: &Length, spread: f64, left: &DMatrix<f64>) -> f64 {
         let z = (libm::log(spread) - LN_SPREAD[0]) / LN_SPREAD[1];
-        evidence - 0.5 * z * z
+        self.evidence(of, spread, left) - 0.5 * z * z
     }
 
     /// The pairs that count, likeliest first, with weights that sum to 1, and ln of p(y) over that
@@ -171,9 +176,9 @@ impl Seen {
         let [least, most] = STEPS;
         let (mut lengths, mut pairs, mut best) = (Vec::new(), Vec::new(), f64::NEG_INFINITY);
         let mut start = 0;
-        let all = prior.lengths();
-        let count = all.len();
-        for length in all {
+        let tried = prior.lengths();
+        let count = tried.len();
+        for length in tried {
             let vk = product(&self.v, &prior.matrix(length));
             let vkv = product(&vk, &self.v.transpose());
             let of = Length { length, vk, vkv };
@@ -209,6 +214,21 @@ impl Seen {
             }));
             lengths.push(of);
         }
+        let spreads: f64 = (least..=most)
+            .map(|step| (f64::from(step) * STEP / LN_SPREAD[1]).powi(2))
+            .map(|z2| libm::exp(-0.5 * z2))
+            .sum();
+        let all = spreads * count as f64;
+        if let Some(of) = lengths.first() {
+            let share = libm::log(FLAT / (1.0 - FLAT) * all);
+            let weight = self.evidence(of, 0.0, &left) + share;
+            best = best.max(weight);
+            pairs.push(Pair {
+                length: 0,
+                spread: 0.0,
+                weight,
+            });
+        }
         if !best.is_finite() {
             return Err(RecoveryError::NO_DIRECTION);
         }
@@ -218,11 +238,7 @@ impl Seen {
         for pair in &mut pairs {
             pair.weight = libm::exp(pair.weight - best) / sum;
         }
-        let spreads: f64 = (least..=most)
-            .map(|step| (f64::from(step) * STEP / LN_SPREAD[1]).powi(2))
-            .map(|z2| libm::exp(-0.5 * z2))
-            .sum();
-        let evidence = best + libm::log(sum / (spreads * count as f64));
+        let evidence = best + libm::log((1.0 - FLAT) * sum / all);
         Ok((lengths, pairs, evidence))
     }
 

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use super::elimination::without_left;
+use super::elimination::{directions, without_left};
 use crate::num::linalg::{Triangle, gram_product, pivoted_triangle};
 use crate::recovery::{Problem, RecoveryError};
 
@@ -11,8 +11,6 @@ use crate::recovery::{Problem, RecoveryError};
 const MOST_WORK: f64 = 2e12;
 /// Parts of the spots that are summed side by side: a fixed number, whatever the threads.
 const PARTS: usize = 4;
-/// A nuisance column that others leave less of than this is one of theirs.
-const DEPENDENT: f64 = 1e-12;
 /// The trace of the Gram matrix, in units of the noise, that may be left out: of n reflectances up to
 /// 1 the light of what is lost is at most √(n·1e-6) standard deviations in all of Φ together.
 pub(super) const LOST: f64 = 1e-6;
@@ -67,7 +65,7 @@ pub(super) fn reduced(
     Ok(pivoted_triangle(&gram, &moment, all[(n, n)], LOST)?)
 }
 
-/// Takes out of the weighted rows of frame l what its constant and its glare could be.
+/// Takes out of the weighted rows of frame l what its patterns and its glare could be.
 fn without_frame(
     problem: &Problem<'_>,
     root: &impl Fn(usize, usize) -> f64,
@@ -75,22 +73,13 @@ fn without_frame(
     rows: &mut DMatrix<f64>,
 ) {
     let nuisance = &problem.nuisance;
-    let constant = nuisance
-        .frame_constant
-        .then(|| DMatrix::from_element(rows.nrows(), 1, 1.0));
-    let glare = nuisance
-        .glare
-        .map(|pattern| pattern.columns(l, 1).into_owned());
-    let mut taken = Vec::new();
-    for own in [constant, glare].into_iter().flatten() {
-        let own = DMatrix::from_fn(own.nrows(), 1, |p, _| root(p, l) * own[(p, 0)]);
-        let length = own.norm();
-        let mut left = own;
-        taken.iter().for_each(|u| without_left(&mut left, u));
-        if left.norm() > DEPENDENT * length {
-            taken.push(left.column(0).normalize());
-        }
+    let mut patterns = nuisance.of_frames(rows.nrows());
+    if let Some(glare) = nuisance.glare {
+        let at = patterns.ncols();
+        patterns = patterns.insert_column(at, 0.0);
+        patterns.set_column(at, &glare.column(l));
     }
+    let taken = directions(&patterns, |p| root(p, l));
     taken.iter().for_each(|u| without_left(rows, u));
 }
 

@@ -20,7 +20,7 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::{DMatrix, DVector};
 
-use super::elimination::{estimate, unit, without_left, without_right};
+use super::elimination::{directions, estimate, unit, without_left, without_right};
 use super::gram;
 use super::stacked::{Coupled, stack};
 use super::weights::{self, Weights};
@@ -175,8 +175,9 @@ impl Operator {
         let known = known(problem, options);
         let weights = weights::fit(known, pixels, spots);
         let by_entry = elements > FEW || options.weighting == WeightRule::Entries;
-        let by_entry = known.is_some() && by_entry;
-        let root = |p: usize, l: usize| weights.root(known, p, l);
+        let holed = problem.nuisance.left_out.is_some();
+        let by_entry = known.is_some() && (by_entry || holed);
+        let root = |p: usize, l: usize| weights.root(problem, known, p, l);
         let reduced = if by_entry {
             gram::reduced(problem, root)?
         } else {
@@ -188,7 +189,7 @@ impl Operator {
                 triangle,
                 coupled: None,
             }),
-            None if problem.nuisance.glare.is_some() => {
+            None if problem.nuisance.glare.is_some() || holed => {
                 let stacked = stack(problem, root)?;
                 Some(Form::Stacked {
                     triangle: stacked.triangle,
@@ -221,8 +222,8 @@ impl Operator {
         };
         let (mut c, mut d, mut phi) = (by_pixel(c), by_spot(d), by_spot(&by_pixel(problem.phi)));
         let before = (c.norm(), d.norm());
-        if problem.nuisance.frame_constant {
-            let u = unit(&weights.pixels);
+        let frames = problem.nuisance.of_frames(pixels);
+        for u in directions(&frames, |p| weights.pixels[p]) {
             without_left(&mut c, &u);
             without_left(&mut phi, &u);
         }
@@ -293,7 +294,7 @@ impl Operator {
             Form::Stacked { coupled, .. } => estimate(
                 &problem.nuisance,
                 &left,
-                |p, l| self.weights.root(known, p, l),
+                |p, l| self.weights.root(problem, known, p, l),
                 coupled.as_ref().map(|c| (c, seen)),
             ),
             _ => {

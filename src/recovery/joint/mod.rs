@@ -13,6 +13,7 @@ mod gram;
 mod ground;
 mod khatri_rao;
 mod levels;
+mod neighbours;
 mod pattern_search;
 mod picard;
 mod reduced;

@@ -145,8 +145,8 @@ pub(super) fn finish(
     let mut estimated = operator.nuisances(problem, options, &x)?;
     let (pixels, spots) = problem.phi.shape();
     let left = problem.phi - problem.light(&x) - estimated.light(nuisance, pixels, spots);
-    found.residual = left.norm();
-    let whole = problem.phi.norm();
+    found.residual = problem.counted(left).norm();
+    let whole = problem.counted(problem.phi.clone()).norm();
     found.relative_residual = if whole > 0.0 {
         found.residual / whole
     } else {

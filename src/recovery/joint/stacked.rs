@@ -69,10 +69,12 @@ pub(super) fn stack(
                 problem.phi[(p, l)]
             }
     };
+    let patterns = &nuisance.of_frames(pixels);
     // A frame's own columns: value at (p, l), and the length over the frame.
     let mut own: Vec<Box<dyn Fn(usize, usize) -> f64 + '_>> = Vec::new();
-    if nuisance.frame_constant {
-        own.push(Box::new(&root));
+    for k in 0..patterns.ncols() {
+        let root = &root;
+        own.push(Box::new(move |p, l| root(p, l) * patterns[(p, k)]));
     }
     if nuisance.glare.is_some() {
         own.push(Box::new(|p, l| root(p, l) * pattern(p, l)));
@@ -107,6 +109,9 @@ pub(super) fn stack(
     let mut rows = Rows::new(own_terms + elements + 1);
     for p in 0..pixels {
         let length = (0..spots).map(|l| root(p, l).powi(2)).sum::<f64>().sqrt();
+        if length == 0.0 {
+            continue;
+        }
         let block = DMatrix::from_fn(spots, 1 + own_terms + elements + 1, |l, k| match k {
             0 => root(p, l) / length,
             k if k <= own_terms => match ((k - 1) / spots, (k - 1) % spots) {

@@ -5,12 +5,14 @@
 //! ([`super::pattern_search`]). The reported gap says how far it can be above that: with given levels
 //! above what branch and bound left open (zero: proved best), with estimated ones above the minimum
 //! over all 0 ≤ ρ ≤ 1. The probabilities are sums over all patterns of few elements
-//! ([`super::enumerated`]), of more by sampling ([`super::tempered`]).
+//! ([`super::enumerated`]), of more by sampling ([`super::tempered`]), every pattern as likely
+//! beforehand. How likely the photographs are by two levels, against what other methods assume, takes
+//! neighbours to be alike by an unknown degree ([`super::neighbours`]).
 
 use super::coordinates::Coordinates;
 use super::ground::Ground;
 use super::pattern_search::{Found, Levels, Search};
-use super::{enumerated, tempered};
+use super::{enumerated, neighbours, tempered};
 use crate::recovery::{
     Choice, Method, Options, Parameter, Patterns, Problem, Recovered, RecoveryError, Solver, Sum,
 };
@@ -79,6 +81,9 @@ pub(in crate::recovery) fn recover(
     // The pattern alone is no more than all of them.
     let own = ground.log_weight(&best.light).unwrap_or(f64::NEG_INFINITY);
     let own = own - n as f64 * std::f64::consts::LN_2;
+    let gained = summed.as_ref().map_or(0.0, |summed| {
+        neighbours::gained(problem.grids.unwrap_or(&[[n, 1]]), &summed.weights)
+    });
     recovered.patterns = summed.map(|summed| {
         let of = summed.finish(&best.light);
         Patterns {
@@ -86,7 +91,7 @@ pub(in crate::recovery) fn recover(
             ..of
         }
     });
-    recovered.log_evidence = recovered.patterns.as_ref().map(|p| p.log_evidence);
+    recovered.log_evidence = recovered.patterns.as_ref().map(|p| p.log_evidence + gained);
     let known = recovered.patterns.as_ref().filter(|p| p.sum.converged());
     recovered.standard_error = known.map(|p| p.deviation.clone());
     let levels = [recovered.reflectance.min(), recovered.reflectance.max()];

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::recovery::Weighting;
+use crate::recovery::{Problem, Weighting};
 
 /// √w_p and √v_l with w_p v_l ≈ 1/σ²\[p,l\].
 #[derive(Debug, Clone)]
@@ -13,9 +13,17 @@ pub(super) struct Weights {
 }
 
 impl Weights {
-    /// 1/σ\[p,l\], where σ is known and not zero; else the separable fit.
-    pub(super) fn root(&self, stderr: Option<&DMatrix<f64>>, p: usize, l: usize) -> f64 {
+    /// 1/σ\[p,l\], where σ is known and not zero, else the separable fit; 0 of entries that do not
+    /// count.
+    pub(super) fn root(
+        &self,
+        problem: &Problem<'_>,
+        stderr: Option<&DMatrix<f64>>,
+        p: usize,
+        l: usize,
+    ) -> f64 {
         match stderr.map(|s| s[(p, l)]) {
+            _ if !problem.nuisance.counts(p, l) => 0.0,
             Some(s) if s > 0.0 => 1.0 / s,
             _ => self.pixels[p] * self.spots[l],
         }

@@ -16,9 +16,22 @@ fn terms(pattern: &DMatrix<f64>) -> Vec<Nuisance<'_>> {
             frame_constant: set & 1 > 0,
             background: set & 2 > 0,
             glare: (set & 4 > 0).then_some(pattern),
-            free_scale: false,
+            ..Nuisance::default()
         })
         .collect()
+}
+
+/// The same with neither, either and both of these.
+fn with_and_without<'a>(
+    nuisance: Nuisance<'a>,
+    patterns: &'a DMatrix<f64>,
+    left_out: &'a DMatrix<f64>,
+) -> [Nuisance<'a>; 4] {
+    [(false, false), (true, false), (false, true), (true, true)].map(|(with, without)| Nuisance {
+        frame_patterns: with.then_some(patterns),
+        left_out: without.then_some(left_out),
+        ..nuisance
+    })
 }
 
 /// All columns of the problem, nuisances last, every row over its σ; and the data.
@@ -40,6 +53,11 @@ fn whole(
         if terms.frame_constant {
             columns.push(DVector::from_fn(rows, |row, _| hot(at(row).1 == l)));
         }
+        for pattern in terms.frame_patterns.iter().flat_map(|m| m.column_iter()) {
+            columns.push(DVector::from_fn(rows, |row, _| {
+                hot(at(row).1 == l) * pattern[at(row).0]
+            }));
+        }
         if let Some(pattern) = terms.glare {
             columns.push(DVector::from_fn(rows, |row, _| {
                 hot(at(row).1 == l) * pattern[at(row)]
@@ -55,8 +73,10 @@ fn whole(
     let mut data = DVector::from_fn(rows, |row, _| phi[at(row)]);
     for row in 0..rows {
         let mut line = all.row_mut(row);
-        line /= stderr[at(row)];
-        data[row] /= stderr[at(row)];
+        let flag = terms.left_out.map_or(0.0, |flags| flags[at(row)]);
+        let root = hot(flag == 0.0) / stderr[at(row)];
+        line *= root;
+        data[row] *= root;
     }
     (all, data)
 }
@@ -68,13 +88,24 @@ fn elimination_is_the_dense_least_squares_with_all_columns() {
     let mut normal = normal_stream(17);
     let mut random = |rows, columns| DMatrix::from_fn(rows, columns, |_, _| 1.0 + 0.5 * normal());
     let (c, d, phi) = (random(9, 3), random(3, 6), random(9, 6));
-    let pattern = random(9, 6);
+    let (pattern, of_frames) = (random(9, 6), random(9, 2));
+    let flags = DMatrix::from_fn(
+        9,
+        6,
+        |p, l| if (p * 4 + l * 3) % 11 == 0 { 2.0 } else { 0.0 },
+    );
     let separable = DMatrix::from_fn(9, 6, |p, l| (1.0 + p as f64) * (2.0 + l as f64) / 20.0);
     let other =
         separable.map_with_location(|p, l, s| s * (1.0 + 0.3 * ((p * 5 + l * 3) % 4) as f64));
-    for nuisance in terms(&pattern) {
-        // With glare each row has its own weight, without the weights are separable.
-        let stderr = if nuisance.glare.is_some() {
+    let more = |nuisance| with_and_without(nuisance, &of_frames, &flags);
+    for nuisance in terms(&pattern).into_iter().flat_map(more) {
+        // What does not count may be anything.
+        let phi = match nuisance.left_out {
+            Some(flags) => phi.zip_map(flags, |x, flag| x + 1e3 * flag),
+            None => phi.clone(),
+        };
+        // With glare and holes each row has its own weight, without the weights are separable.
+        let stderr = if nuisance.glare.is_some() || nuisance.left_out.is_some() {
             &other
         } else {
             &separable
@@ -100,6 +131,14 @@ fn elimination_is_the_dense_least_squares_with_all_columns() {
             .map_or(DMatrix::zeros(9, 6), |n| n.light(&nuisance, 9, 6));
         let mut weighted = DVector::from_column_slice(light.as_slice());
         weighted.component_div_assign(&DVector::from_column_slice(stderr.as_slice()));
+        let holes = nuisance.left_out.map_or(&[][..], |m| m.as_slice());
+        for (x, _) in weighted
+            .iter_mut()
+            .zip(holes)
+            .filter(|(_, flag)| **flag != 0.0)
+        {
+            *x = 0.0;
+        }
         let rest = all.columns(3, all.ncols() - 3) * dense.solution.rows(3, all.ncols() - 3);
         assert!((weighted - rest).amax() < 1e-9, "{nuisance:?}");
     }
@@ -164,7 +203,7 @@ fn huge_terms_change_nothing() {
             glare: nuisance
                 .glare
                 .map(|_| DVector::from_fn(120, |l, _| huge * (1.0 - (l % 3) as f64))),
-            scale: None,
+            ..Estimated::default()
         };
         let phi = &signal + planted.light(&nuisance, 36, 120);
         let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr))

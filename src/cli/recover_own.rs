@@ -1,0 +1,106 @@
+//! `phicam recover --camera-side`: with matrices measured or computed elsewhere, without a scene.
+
+use std::path::Path;
+
+use super::Outcome;
+use super::args::RecoverArgs;
+use super::console::Console;
+use super::failure::Failure;
+use super::load_run::{read_undamaged, refuse_negative};
+use super::output;
+use super::recover::{collect, uncertainty};
+use super::recover_beside::{Beside, Photographs};
+use super::recover_options;
+use super::recovered::write;
+use super::run_folder::RunFolder;
+use crate::lab::{
+    Certainty, Noise, RecoveredObject, by_trust, describe_recovery, recover_with_picards,
+};
+use crate::matrix::Matrix;
+use crate::model::MatrixModel;
+use crate::recovery::{Method, Options};
+use crate::report;
+
+/// Recovers x of Φ = C diag(x) D + noise.
+pub(super) fn execute(
+    args: &RecoverArgs,
+    camera_side: &Path,
+    named: &[Method],
+    options: Options,
+    console: Console,
+) -> Result<Outcome, Failure> {
+    let (Some(phi), Some(out)) = (&args.phi, &args.output) else {
+        let cause = "--camera-side needs to know what to invert, and where to write";
+        return Err(Failure::usage(cause, "give --phi FILE and -o FOLDER"));
+    };
+    let phi = read_undamaged(phi)?;
+    let camera = read_undamaged(camera_side)?;
+    let laser = match &args.laser_side {
+        Some(file) => read_undamaged(file)?,
+        None => Matrix::from_element(camera.ncols(), phi.ncols(), 1.0),
+    };
+    let elements = camera.ncols();
+    let count = args.elements.unwrap_or([elements, 1]);
+    let model = MatrixModel::of_sides(camera, laser, count)?;
+    let methods = if named.is_empty() {
+        Method::tried(elements)
+    } else {
+        named.to_vec()
+    };
+    recover_options::checked(args, &methods)?;
+    let stderr = match (&args.stderr, args.noise) {
+        (Some(file), _) => {
+            let stderr = read_undamaged(file)?;
+            refuse_negative(file, &stderr)?;
+            Some(stderr)
+        }
+        (None, Some(noise)) => Some(phi.map(|x| x.abs() * noise)),
+        (None, None) => None,
+    };
+    let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
+        Noise::StandardError(stderr, Certainty::STATED)
+    });
+    let of = Photographs {
+        name: args
+            .phi
+            .as_ref()
+            .map_or(String::new(), |p| p.display().to_string()),
+        grid: args.pixels,
+        pixels: phi.nrows(),
+        spots: phi.ncols(),
+    };
+    if let Some([columns, rows]) = args.pixels.filter(|[c, r]| c * r != phi.nrows()) {
+        let cause = format!(
+            "--pixels {columns}x{rows} are {} pixels, and {} has {}",
+            columns * rows,
+            of.name,
+            phi.nrows()
+        );
+        return Err(Failure::new(
+            cause,
+            "give columns and rows of the photographs",
+        ));
+    }
+    let beside = Beside::read(args, &of, console)?;
+    let options = Options {
+        uncertainty: uncertainty(&model, console),
+        ..options
+    };
+    let nuisance = beside.nuisance(args);
+    let (attempts, picards) =
+        recover_with_picards(&model, &phi, noise, nuisance, &methods, &options);
+    let mut objects = collect(attempts, methods.len() == 1, console)?;
+    if named.is_empty() {
+        by_trust(&mut objects);
+    }
+    let _own = RunFolder::lock(out, "phicam recover")?;
+    write(out, None, &objects, &picards?)?;
+    console.say(format!("{}: written", out.display()));
+    output::result(args.json, &objects, || {
+        report::finding_text(&describe_recovery(&objects))
+    })?;
+    if objects.iter().any(RecoveredObject::contradicted) {
+        return Ok(Outcome::Disagreed);
+    }
+    Ok(Outcome::Done)
+}

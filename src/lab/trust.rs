@@ -1,0 +1,67 @@
+//! Which picture is shown first.
+
+use super::objects::RecoveredObject;
+
+/// No surface's reflectance is as far from ½ as this.
+const IMPOSSIBLE: f64 = 1.0;
+
+/// Puts first what can be vouched for: pictures that explain the photographs before others; of those
+/// the ones that know how likely their assumption makes the photographs, the likeliest first; then
+/// those that a surface can be, and those with the fewest warnings. What is equal stays in its order.
+pub fn by_trust(objects: &mut [RecoveredObject]) {
+    let refuted = |o: &RecoveredObject| o.fit.as_ref().is_some_and(|fit| !fit.fits);
+    let evidence = |o: &RecoveredObject| o.log_evidence.unwrap_or(f64::NEG_INFINITY);
+    let impossible = |o: &RecoveredObject| {
+        let mut beyond = o.reflectance.iter().map(|x| (x - 0.5).abs());
+        o.estimated.as_ref().is_none_or(|e| e.scale.is_none()) && beyond.any(|x| x > IMPOSSIBLE)
+    };
+    objects.sort_by(|a, b| {
+        let fits = refuted(a).cmp(&refuted(b));
+        let likelier = evidence(b).total_cmp(&evidence(a));
+        fits.then(likelier)
+            .then(impossible(a).cmp(&impossible(b)))
+            .then(a.warnings.len().cmp(&b.warnings.len()))
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::study::tests::small;
+    use crate::lab::{Certainty, Noise, recover_objects};
+    use crate::model::{Kernel, MatrixModel};
+    use crate::recovery::{Method, Nuisance, Options};
+
+    /// Of a board of two levels the pattern comes first, then what fits, the possible before the
+    /// impossible; what does not fit is last, in its order.
+    #[test]
+    fn what_explains_comes_first_and_what_is_likeliest_before_it() {
+        let model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([4, 4])).unwrap();
+        let exact = model.phi();
+        let stderr = exact.map(|x| 1e-3 * x.abs());
+        let phi = exact.map_with_location(|p, l, x| {
+            x * (1.0 + 1e-3 * libm::sin((p * 37 + l * 101) as f64) * std::f64::consts::SQRT_2)
+        });
+        let noise = Noise::StandardError(&stderr, Certainty::STATED);
+        let tried = Method::tried(16);
+        let (nuisance, options) = (Nuisance::default(), Options::default());
+        let found = recover_objects(&model, &phi, noise, nuisance, &tried, &options);
+        let mut objects: Vec<_> = found.into_iter().flat_map(|a| a.outcome.unwrap()).collect();
+        by_trust(&mut objects);
+        assert_eq!(objects[0].method, "joint-two-valued");
+        assert_eq!(objects[1].method, "joint-gp");
+        let fits: Vec<bool> = objects
+            .iter()
+            .map(|o| o.fit.as_ref().unwrap().fits)
+            .collect();
+        assert!(fits[0] && fits.is_sorted_by(|a, b| a >= b), "{fits:?}");
+        let at = |name: &str| objects.iter().position(|o| o.method == name);
+        assert!(at("joint") < at("joint-unbounded"), "{fits:?}");
+        // Without its fit the first is no longer one to be shown.
+        let mut refuted = objects[0].clone();
+        refuted.fit.as_mut().unwrap().fits = false;
+        objects[0] = refuted;
+        by_trust(&mut objects);
+        assert_eq!(objects[0].method, "joint-gp");
+    }
+}

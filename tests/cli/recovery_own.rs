@@ -1,0 +1,133 @@
+//! `phicam recover` of photographs from elsewhere: matrices of one's own, entries left out, light
+//! that is not the surface's.
+
+use phicam::matrix::{Matrix, npy};
+
+use crate::workspace::Workspace;
+
+/// The model of the small scene, by centres.
+fn with_model() -> Workspace {
+    let workspace = Workspace::with_scenes();
+    let _ = workspace.phicam("model small.toml -o done").exits(0);
+    workspace
+}
+
+/// Matrices given in place of a model's are the model's: the same bytes come back.
+#[test]
+fn matrices_of_one_s_own_are_inverted_as_a_model_s() {
+    let workspace = with_model();
+    let phi = "--phi done/model/phi.npy --noise 0.01 --method joint,tsvd,joint-gp";
+    let own = "--camera-side done/model/camera_side.npy --laser-side done/model/laser_side.npy";
+    let line = format!("recover {own} {phi} --elements 8x8 -o own");
+    let _ = workspace.phicam(&line).exits(0);
+    let line = format!("recover done {phi} --integration centres -o theirs");
+    let _ = workspace.phicam(&line).exits(0);
+    for method in ["joint", "tsvd"] {
+        let of = |folder: &str| workspace.read(&format!("{folder}/{method}.npy"));
+        assert!(of("own") == of("theirs"), "{method}");
+    }
+    // Their places are not known; those of a grid are alike but for its size.
+    let of = |folder: &str| workspace.matrix(&format!("{folder}/joint-gp.npy"));
+    let off = (of("own") - of("theirs")).amax();
+    assert!(off < 0.05, "{off}");
+    assert!(!workspace.path("own/truth.npy").exists());
+}
+
+/// A surface that shines is one photograph of C x: a matrix of random numbers gives x back.
+#[test]
+fn a_surface_that_shines_needs_a_camera_side_alone() {
+    let workspace = Workspace::new();
+    let c = Matrix::from_fn(40, 6, |p, j| {
+        1.0 + libm::sin(0.37 * ((7 * p + 1) * (j + 1)) as f64)
+    });
+    let x = Matrix::from_column_slice(6, 1, &[0.1, 0.9, 0.4, 0.0, 1.0, 0.6]);
+    npy::write(&workspace.path("a.npy"), &c).unwrap();
+    npy::write(&workspace.path("phi.npy"), &(&c * &x)).unwrap();
+    let line = "recover --camera-side a.npy --phi phi.npy --noise 0.001 --method joint -o out";
+    let _ = workspace.phicam(line).exits(0);
+    let found = workspace.matrix("out/joint.npy");
+    assert!((found - x.transpose()).amax() < 1e-6);
+    for (line, words) in [
+        ("recover", ["DIR", "--camera-side"]),
+        ("recover --camera-side a.npy -o o", ["--phi", "required"]),
+        (
+            "recover --camera-side a.npy --phi phi.npy -o o --elements 5",
+            ["6 columns", "5 × 5"],
+        ),
+        (
+            "recover --camera-side phi.npy --phi a.npy -o o --method joint",
+            ["d (elements × spots)", "1 × 6"],
+        ),
+        (
+            "recover --camera-side a.npy --phi phi.npy -o o --frame-polynomial 1 --method joint",
+            ["--pixels", "--frame-patterns"],
+        ),
+        (
+            "recover --camera-side a.npy --phi phi.npy -o o --pixels 3x4",
+            ["12 pixels", "has 40"],
+        ),
+    ] {
+        workspace.refuses(line, &words);
+    }
+}
+
+/// Entries that are wrong by a thousand times the light do not count where they are left out, and
+/// spoil the picture where they are not; a polynomial over each frame is told from the object.
+#[test]
+fn what_is_not_the_surface_s_light_is_left_out_or_estimated() {
+    let workspace = with_model();
+    let model = workspace.matrix("done/model/phi.npy");
+    let flags = model.map_with_location(|p, l, _| f64::from(u8::from((p * 5 + l * 3) % 13 == 0)));
+    let bright = model.amax();
+    let spoilt = model.zip_map(&flags, |x, flag| x + 1e3 * bright * flag);
+    npy::write(&workspace.path("flags.npy"), &flags).unwrap();
+    npy::write(&workspace.path("spoilt.npy"), &spoilt).unwrap();
+    let rmse = |more: &str| {
+        let line = format!("recover done --integration centres --method joint --json {more}");
+        let ended = workspace.phicam(&line);
+        let found: serde_json::Value = serde_json::from_str(&ended.stdout).unwrap();
+        (ended, found[0]["rmse"].as_f64().unwrap())
+    };
+    let (ended, found) = rmse("--phi spoilt.npy --left-out flags.npy");
+    assert!(found < 1e-3, "{found}");
+    assert!(ended.stderr.contains("are left out"), "{}", ended.account());
+    assert!(rmse("--phi spoilt.npy").1 > 0.1);
+
+    // Pixel p of the 8 × 8 is column p % 8: x² and y, different in each frame.
+    let lit = model.map_with_location(|p, l, x| {
+        let (u, v) = ((p % 8) as f64, (p / 8) as f64);
+        x + bright * (1.0 + l as f64) * (3.0 + u * u - 2.0 * v)
+    });
+    npy::write(&workspace.path("lit.npy"), &lit).unwrap();
+    let (ended, found) = rmse("--phi lit.npy --frame-polynomial 2");
+    assert!(found < 1e-3, "{found}: {}", ended.account());
+    assert!(rmse("--phi lit.npy --frame-polynomial 1").1 > 0.1);
+    let strengths = workspace.path("done").join("recovered-lit");
+    let folder = workspace.contents("done").into_keys();
+    let written = folder.filter(|name| name.ends_with("joint.frame_patterns.npy"));
+    assert!(written.count() > 0, "{}", strengths.display());
+    // The same from a file of patterns.
+    let patterns = Matrix::from_fn(64, 4, |p, k| {
+        let (u, v) = ((p % 8) as f64, (p / 8) as f64);
+        [1.0, u, u * u, v][k]
+    });
+    npy::write(&workspace.path("patterns.npy"), &patterns).unwrap();
+    assert!(rmse("--phi lit.npy --frame-patterns patterns.npy").1 < 1e-3);
+    workspace.refuses(
+        "recover done --phi lit.npy --frame-patterns flags.npy --method pinv",
+        &["--frame-patterns", "joint"],
+    );
+    workspace.refuses(
+        "recover done --phi lit.npy --left-out patterns.npy --method joint",
+        &["64 × 4", "pixels"],
+    );
+    workspace.refuses(
+        "recover done --phi lit.npy --frame-polynomial 9",
+        &["0..=8"],
+    );
+    npy::write(&workspace.path("all.npy"), &model.map(|_| 1.0)).unwrap();
+    workspace.refuses(
+        "recover done --phi lit.npy --left-out all.npy --method joint",
+        &["every entry of phi is left out"],
+    );
+}
