@@ -10,21 +10,20 @@ use super::output;
 use super::record::Record;
 use super::recover_beside::{Beside, Photographs};
 use super::recover_memory::{self, Errors, Held, Strips};
-use super::recovered::write;
+use super::recover_options::{self, uncertainty};
+use super::recovered::{collect, write};
 use super::run_folder::{PHI, RECOVERED, RunFolder, SATURATED, SCENE, STDERR, is_of_recovered};
-use super::{Outcome, recover_options, recover_own};
+use super::{Outcome, recover_own};
 use crate::lab::{
     Attempt, Certainty, Noise, RecoveredObject, by_trust, describe_recovery, inverted,
     recover_with_picards,
 };
 use crate::model::MatrixModel;
-use crate::recovery::{Method, Options, Picard, Uncertainty};
+use crate::recovery::{Method, Options, Picard};
 use crate::report;
 use crate::scene::Scene;
 use crate::store::digest;
 
-/// Elements whose covariance and resolution are still written: 32 MiB each.
-const MOST_CORRELATED: usize = 2048;
 /// Pixels of a mask that are looked at together.
 const MASK_ROWS: usize = 256;
 
@@ -278,47 +277,4 @@ fn refuse_repetition(methods: &[Method]) -> Result<(), Failure> {
             "name each once: their files would overwrite each other",
         )),
     }
-}
-
-/// How much of the uncertainty fits the elements of the model.
-pub(super) fn uncertainty(model: &MatrixModel, console: Console) -> Uncertainty {
-    if model.laser_side.nrows() <= MOST_CORRELATED {
-        return Uncertainty::Full;
-    }
-    console.say(format!(
-        "more than {MOST_CORRELATED} elements: no covariance and no resolution of the methods that work pixel by pixel"
-    ));
-    Uncertainty::StandardError
-}
-
-/// The objects that were recovered. A method that cannot work is reported; if none can, or the only
-/// one asked for, that is the command's failure.
-pub(super) fn collect(
-    attempts: Vec<Attempt>,
-    strict: bool,
-    console: Console,
-) -> Result<Vec<RecoveredObject>, Failure> {
-    let mut objects = Vec::new();
-    let mut reasons = Vec::new();
-    for attempt in attempts {
-        match attempt.outcome {
-            Ok(found) => objects.extend(found),
-            Err(e) if strict => return Err(e.into()),
-            Err(e) => reasons.push(format!("{}: {e}", attempt.method)),
-        }
-    }
-    if objects.is_empty() {
-        let cause = format!(
-            "no method could recover anything\n  {}",
-            reasons.join("\n  ")
-        );
-        return Err(Failure::new(
-            cause,
-            "see the reason of each, or choose one with --method",
-        ));
-    }
-    for reason in reasons {
-        console.say(reason);
-    }
-    Ok(objects)
 }

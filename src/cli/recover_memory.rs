@@ -7,7 +7,7 @@ use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{refuse_damaged, refuse_shape};
 use super::memory::{GIB, room};
-use crate::lab::{Attempt, Certainty, Judged, Residuals, measured};
+use crate::lab::{Attempt, Certainty, Judged, MOST_INTEGRATED, Residuals, measured};
 use crate::matrix::npy::Rows;
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Options, Problem, Recovered, Strip, recover_strips};
@@ -42,12 +42,19 @@ impl Size {
 
     /// Everything at once, an upper bound: Φcam, its errors and three matrices of their size on the
     /// way, four of D's; of a joint method weighted copies of both sides and three of its product
-    /// besides.
+    /// besides, the normal equations six times over, and of few elements their terms, four each and
+    /// twice.
     fn whole(self, joint: bool, budget: usize) -> f64 {
         let phi = self.pixels * self.spots;
         let sides = self.elements * (self.pixels + self.spots);
         let more = if joint {
-            2.0 * phi + 3.0 * sides + 3.0 * budget as f64
+            let terms = if self.elements <= MOST_INTEGRATED as f64 {
+                8.0 * sides
+            } else {
+                0.0
+            };
+            let normal = 6.0 * self.elements * self.elements;
+            2.0 * phi + 3.0 * sides + 3.0 * budget as f64 + terms + normal
         } else {
             0.0
         };

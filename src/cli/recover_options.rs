@@ -3,9 +3,14 @@
 use std::fmt::Display;
 
 use super::args::RecoverArgs;
+use super::console::Console;
 use super::failure::Failure;
+use crate::model::MatrixModel;
 use crate::num::linalg::Tolerance;
-use crate::recovery::{Method, Options, WeightRule};
+use crate::recovery::{Method, Options, Uncertainty, WeightRule};
+
+/// Elements whose covariance and resolution are still written: 32 MiB each.
+const MOST_CORRELATED: usize = 2048;
 
 /// The options that the arguments describe, for `methods`.
 pub(super) fn checked(args: &RecoverArgs, methods: &[Method]) -> Result<Options, Failure> {
@@ -143,4 +148,15 @@ fn used(args: &RecoverArgs, methods: &[Method]) -> Result<(), Failure> {
             ))
         }
     }
+}
+
+/// How much of the uncertainty fits the elements of the model.
+pub(super) fn uncertainty(model: &MatrixModel, console: Console) -> Uncertainty {
+    if model.laser_side.nrows() <= MOST_CORRELATED {
+        return Uncertainty::Full;
+    }
+    console.say(format!(
+        "more than {MOST_CORRELATED} elements: no covariance and no resolution of the methods that work pixel by pixel"
+    ));
+    Uncertainty::StandardError
 }

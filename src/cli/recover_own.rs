@@ -8,10 +8,9 @@ use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_undamaged, refuse_negative};
 use super::output;
-use super::recover::{collect, uncertainty};
 use super::recover_beside::{Beside, Photographs};
-use super::recover_options;
-use super::recovered::write;
+use super::recover_options::{self, uncertainty};
+use super::recovered::{collect, write};
 use super::run_folder::RunFolder;
 use crate::lab::{
     Certainty, Noise, RecoveredObject, by_trust, describe_recovery, recover_with_picards,

@@ -5,15 +5,48 @@ use std::path::Path;
 use serde_json::json;
 
 use super::cleanup::{remove_abandoned, remove_named};
+use super::console::Console;
 use super::failure::Failure;
 use super::output;
 use crate::lab::finding::Describe;
-use crate::lab::{Beside, RecoveredObject};
+use crate::lab::{Attempt, Beside, RecoveredObject};
 use crate::matrix::{Matrix, npy};
 use crate::recovery::Picard;
 use crate::report::{self, Panel};
 use crate::scene::{Division, Scene};
 use crate::store::ensure_writable;
+
+/// The objects that were recovered. A method that cannot work is reported; if none can, or the only
+/// one asked for, that is the command's failure.
+pub(super) fn collect(
+    attempts: Vec<Attempt>,
+    strict: bool,
+    console: Console,
+) -> Result<Vec<RecoveredObject>, Failure> {
+    let mut objects = Vec::new();
+    let mut reasons = Vec::new();
+    for attempt in attempts {
+        match attempt.outcome {
+            Ok(found) => objects.extend(found),
+            Err(e) if strict => return Err(e.into()),
+            Err(e) => reasons.push(format!("{}: {e}", attempt.method)),
+        }
+    }
+    if objects.is_empty() {
+        let cause = format!(
+            "no method could recover anything\n  {}",
+            reasons.join("\n  ")
+        );
+        return Err(Failure::new(
+            cause,
+            "see the reason of each, or choose one with --method",
+        ));
+    }
+    for reason in reasons {
+        console.say(reason);
+    }
+    Ok(objects)
+}
 
 /// Writes into `folder` METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png where it is known, what the
 /// photographs determine of each element in determined.npy and determined.png, and overview.png with

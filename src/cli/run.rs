@@ -16,7 +16,7 @@ use super::run_folder::{
     Claim, MODEL, PHI, RECOVERED, REPORT, STDERR, SUMMARY, TAILS, frame_max, is_of_model,
     is_of_recovered,
 };
-use super::{Outcome, model, need, recover, recovered, settings, validate};
+use super::{Outcome, model, need, recover_options, recovered, settings, validate};
 use crate::film::{self, Stack};
 use crate::lab::finding::Describe;
 use crate::lab::{
@@ -155,7 +155,7 @@ fn compare_and_recover(
     console.say("recovering the object");
     let noise = Noise::StandardError(&results.stderr, Certainty::of(&results.plan));
     let options = Options {
-        uncertainty: recover::uncertainty(&matrices, console),
+        uncertainty: recover_options::uncertainty(&matrices, console),
         ..Options::default()
     };
     let (attempts, picards) = lab::recover_with_picards(
@@ -166,7 +166,7 @@ fn compare_and_recover(
         &Method::tried(matrices.albedo.len()),
         &options,
     );
-    results.recovered = recover::collect(attempts, false, console)?;
+    results.recovered = recovered::collect(attempts, false, console)?;
     lab::by_trust(&mut results.recovered);
     results.picards = picards?;
     recovered::write(

@@ -226,7 +226,7 @@ pub use power::{Detection, Power, PowerPlan, PowerRow, PowerTasks};
 pub use preview::{
     Colour, Preview, PreviewError, PreviewPlan, ViewOptions, Viewpoint, auto_viewpoint, preview,
 };
-pub use problem::inverted;
+pub use problem::{MOST_INTEGRATED, inverted};
 pub use registered::{AnyStudy, Found, Prepare, Registered, prepared};
 pub use registry::STUDIES;
 pub use results::RunResults;

@@ -8,7 +8,7 @@ use crate::scene::Scene;
 
 /// Elements whose light is integrated: of more, each is so small that its centre does, and its terms
 /// would take four times the memory.
-const MOST_INTEGRATED: usize = 1024;
+pub const MOST_INTEGRATED: usize = 1024;
 
 /// The model by which photographs of `scene` are inverted. By quadrature the light of each of up to
 /// 1024 elements is integrated over its area, footprints and spots ([`MatrixModel::over_areas`]),

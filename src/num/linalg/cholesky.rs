@@ -1,9 +1,11 @@
 //! The Cholesky factor of a symmetric positive definite matrix.
 
 use faer::linalg::solvers::Llt;
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::linalg::triangular_solve::{
+    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
+};
 use faer::{MatMut, MatRef, Par, Side};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// L of A = L Lᵀ. Its errors are those of A scaled to a unit diagonal, so that a graded matrix loses
 /// nothing by its grades (Demmel 1989).
@@ -49,6 +51,21 @@ impl Cholesky {
             Par::Seq,
         );
         b
+    }
+
+    /// A⁻¹ b.
+    ///
+    /// # Panics
+    /// Where b has not n entries.
+    pub fn solve(&self, b: &DVector<f64>) -> DVector<f64> {
+        let n = self.l.nrows();
+        let mut x = self.forward(DMatrix::from_column_slice(n, 1, b.as_slice()));
+        solve_upper_triangular_in_place(
+            MatRef::from_column_major_slice(self.l.as_slice(), n, n).transpose(),
+            MatMut::from_column_major_slice_mut(x.as_mut_slice(), n, 1),
+            Par::Seq,
+        );
+        x.column(0).into_owned()
     }
 }
 

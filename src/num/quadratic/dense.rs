@@ -217,7 +217,7 @@ impl<'a> State<'a> {
 
 /// x of A x = b by conjugate gradients, preconditioned by an inverse that rounding disturbs: mostly a
 /// step or two.
-fn conjugate(
+pub(super) fn conjugate(
     b: &DVector<f64>,
     times: impl Fn(&DVector<f64>) -> DVector<f64>,
     inverse: impl Fn(&DVector<f64>) -> DVector<f64>,

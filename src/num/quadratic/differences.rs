@@ -3,6 +3,7 @@
 use clarabel::solver::{DefaultSettingsBuilder, NonnegativeConeT, ZeroConeT};
 use nalgebra::{DMatrix, DVector};
 
+use super::dense_differences::{self, Penalised};
 use super::program::{Program, half_square};
 use super::{Bounds, BoxSolution, GAP_ALLOWED, QuadraticError, certificate, not_solved};
 use crate::num::linalg::{Tolerance, least_squares};
@@ -10,6 +11,8 @@ use crate::num::linalg::{Tolerance, least_squares};
 /// Values nearer than this fraction of the solution's size count as one, and as their bound, before
 /// the rest is solved for anew.
 const ONE: f64 = 1e-6;
+/// Variables from which on the problem is solved by dense matrices.
+const LARGE: usize = 200;
 
 /// The minimiser, and what it consists of.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,7 +56,10 @@ pub fn fused_least_squares(
         pairs,
         lambda,
     };
-    let interior = problem.interior(start)?;
+    let interior = match problem.dense() {
+        Some(found) => found,
+        None => problem.interior(start)?,
+    };
     let mut x = interior.x;
     let (polished, sigma) = problem.polish(&x)?;
     let mut free_sets = sigma.len();
@@ -134,6 +140,31 @@ impl Problem<'_> {
     fn objective(&self, x: &DVector<f64>) -> f64 {
         let penalty: f64 = self.pairs.iter().map(|&[a, b]| (x[a] - x[b]).abs()).sum();
         0.5 * (self.r * x - self.d).norm_squared() + self.lambda * penalty
+    }
+
+    /// By dense matrices, where there are many variables.
+    fn dense(&self) -> Option<Interior> {
+        if self.r.ncols() < LARGE {
+            return None;
+        }
+        let found = dense_differences::solve(&self.dense_form())?;
+        found.closed.then(|| Interior {
+            y: self.r * &found.x - self.d,
+            x: found.x,
+            w: found.pull,
+            status: "Solved".to_owned(),
+            iterations: found.iterations,
+        })
+    }
+
+    fn dense_form(&self) -> Penalised<'_> {
+        Penalised {
+            r: self.r,
+            d: self.d,
+            bounds: self.bounds,
+            pairs: self.pairs,
+            lambda: self.lambda,
+        }
     }
 
     fn interior(&self, start: &DVector<f64>) -> Result<Interior, QuadraticError> {

@@ -3,6 +3,7 @@
 mod active_set;
 mod certificate;
 mod dense;
+mod dense_differences;
 mod differences;
 mod extent;
 mod interior_point;

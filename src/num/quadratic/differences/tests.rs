@@ -55,3 +55,53 @@ fn no_point_of_a_grid_is_better() {
         );
     }
 }
+
+/// Both methods end at one minimum, with multipliers that prove it, between two bounds and above one.
+#[test]
+fn dense_matrices_end_where_the_conic_solver_ends() {
+    let mut state = 11u64;
+    let mut next = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 33) as f64 / (1u64 << 31) as f64 - 0.5
+    };
+    // A grid of 6 × 5 seen in fewer rows, which fall off as directions do.
+    let r = DMatrix::from_fn(20, 30, |i, j| {
+        (0.6 + next()) * libm::exp(-0.4 * ((i + j) % 13) as f64)
+    });
+    let d = DVector::from_fn(20, |_, _| next());
+    let across = (0..30).filter(|j| j % 6 < 5).map(|j| [j, j + 1]);
+    let along = (0..24).map(|j| [j, j + 6]);
+    let pairs: Vec<[usize; 2]> = across.chain(along).collect();
+    for (upper, lambda) in [(1.0, 0.3), (1.0, 1e-4), (f64::INFINITY, 0.01)] {
+        let bounds = Bounds::all(30, 0.0, upper);
+        let start = box_least_squares(&r, &d, &bounds).unwrap().solution;
+        let problem = Problem {
+            r: &r,
+            d: &d,
+            bounds: &bounds,
+            pairs: &pairs,
+            lambda,
+        };
+        let exact = fused_least_squares(&r, &d, &bounds, &pairs, lambda, &start).unwrap();
+        let found = dense_differences::solve(&problem.dense_form()).unwrap();
+        assert!(
+            found.closed && found.iterations < 40,
+            "{}",
+            found.iterations
+        );
+        let above = problem.objective(&found.x) - exact.found.objective;
+        assert!(above.abs() < 1e-9, "{upper} {lambda}: {above:e}");
+        // Stationary: Rᵀ(R x − d) + Tᵀν points out of the box where a bound holds, else is 0.
+        let mut gradient = r.tr_mul(&(&r * &found.x - &d));
+        for (&[a, b], w) in pairs.iter().zip(found.pull.iter()) {
+            gradient[a] += w;
+            gradient[b] -= w;
+        }
+        for (x, g) in found.x.iter().zip(gradient.iter()) {
+            let outwards = (*x < 1e-5 && *g > 0.0) || (*x > upper - 1e-5 && *g < 0.0);
+            assert!(outwards || g.abs() < 1e-5, "{upper} {lambda}: {x} {g:e}");
+        }
+    }
+}
