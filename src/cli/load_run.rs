@@ -120,8 +120,9 @@ pub(super) fn refuse_other_shape(
 pub(super) fn read_stderr(path: &Path, scene: &Scene) -> Result<Matrix, Failure> {
     // By its header, before memory is taken for its numbers.
     refuse_shape(path, npy::shape(path)?, scene)?;
-    let matrix = read_undamaged(path)?;
+    let matrix = npy::read_finite(path)?;
     refuse_negative(path, &matrix)?;
+    refuse_damaged(path)?;
     Ok(matrix)
 }
 

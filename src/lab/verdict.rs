@@ -19,7 +19,7 @@ impl Agreement {
         let left_out = if self.left_out > 0 {
             let all = self.entries + self.left_out;
             format!(
-                "; {} of {all} entries left out, their error not being trusted",
+                "; {} of {all} entries left out, their error not being trusted or as asked",
                 self.left_out
             )
         } else {

@@ -4,7 +4,7 @@
 //!
 //! > P(s | β) = exp(β Σ_⟨ij⟩ s_i s_j)/Z(β),
 //!
-//! the sum over neighbours along u and v. β = 0 is a fair coin for each element, 2⁻ⁿ for each
+//! the sum over neighbours along u and v, of the patterns in which both levels are seen. β = 0 is a fair coin for each element, 2⁻ⁿ for each
 //! pattern; the larger β, the larger the patches (above 0.44 they fill the grid, Onsager 1944). β is
 //! not known: each of eleven values from 0 to 1 is as likely.
 
@@ -16,11 +16,11 @@ const COUPLINGS: u32 = 11;
 const MOST_ACROSS: usize = 12;
 
 /// ln of Σ_s w_s P(s)/2⁻ⁿ over Σ_s w_s: with `weights` those of the patterns where every one is as
-/// likely beforehand, what their evidence gains where neighbours may be alike. 0 where a grid is too
-/// wide to tell.
-pub(super) fn gained(grids: &[[usize; 2]], weights: &HashMap<Vec<bool>, f64>) -> f64 {
-    if grids.iter().any(|[nu, nv]| *nu.min(nv) > MOST_ACROSS) {
-        return 0.0;
+/// likely beforehand, what their evidence gains where neighbours may be alike. 0 where there is no
+/// grid, or one too wide to tell; `None` where no pattern has both levels: one reflectance throughout is no pattern.
+pub(super) fn gained(grids: &[[usize; 2]], weights: &HashMap<Vec<bool>, f64>) -> Option<f64> {
+    if grids.is_empty() || grids.iter().any(|[nu, nv]| *nu.min(nv) > MOST_ACROSS) {
+        return Some(0.0);
     }
     let couplings = (0..COUPLINGS).map(|k| f64::from(k) / f64::from(COUPLINGS - 1));
     let n: usize = grids.iter().map(|[nu, nv]| nu * nv).sum();
@@ -28,7 +28,8 @@ pub(super) fn gained(grids: &[[usize; 2]], weights: &HashMap<Vec<bool>, f64>) ->
     let sums: Vec<(f64, f64)> = couplings
         .map(|beta| {
             let z: f64 = grids.iter().map(|grid| log_sum(*grid, beta)).sum();
-            (beta, fair - z)
+            let one = beta * alike(grids, &vec![true; n]) as f64 + std::f64::consts::LN_2;
+            (beta, fair - z - libm::log1p(-libm::exp(one - z)))
         })
         .collect();
     // In an order of their own, so that the sum has the same bits.
@@ -36,13 +37,15 @@ pub(super) fn gained(grids: &[[usize; 2]], weights: &HashMap<Vec<bool>, f64>) ->
     patterns.sort_unstable_by(|a, b| a.0.cmp(b.0));
     let total: f64 = patterns.iter().map(|p| p.1).sum();
     let mut logs = Vec::with_capacity(patterns.len() * sums.len());
-    for (pattern, weight) in patterns.iter().filter(|p| p.1 > 0.0) {
+    let both = |light: &[bool]| light.contains(&true) && light.contains(&false);
+    for (pattern, weight) in patterns.iter().filter(|p| p.1 > 0.0 && both(p.0)) {
         let alike = alike(grids, pattern) as f64;
         let share = libm::log(weight / total / f64::from(COUPLINGS));
         logs.extend(sums.iter().map(|(beta, rest)| share + beta * alike + rest));
     }
     let top = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    top + libm::log(logs.iter().map(|log| libm::exp(log - top)).sum::<f64>())
+    top.is_finite()
+        .then(|| top + libm::log(logs.iter().map(|log| libm::exp(log - top)).sum::<f64>()))
 }
 
 /// Σ_⟨ij⟩ s_i s_j.
@@ -136,8 +139,10 @@ mod tests {
         let grids = [[3, 2], [2, 2]];
         let pattern = |at: usize| -> Vec<bool> { (0..10).map(|j| at >> j & 1 == 1).collect() };
         let all = (0..1 << 10).map(|at| (pattern(at), 0.7)).collect();
-        assert!(gained(&grids, &all).abs() < 1e-12);
-        let one = |light: Vec<bool>| gained(&[[8, 8]], &HashMap::from([(light, 1.0)]));
+        assert!(gained(&grids, &all).unwrap().abs() < 1e-12);
+        let known = |light: Vec<bool>| gained(&[[8, 8]], &HashMap::from([(light, 1.0)]));
+        assert_eq!(known(vec![true; 64]), None);
+        let one = |light: Vec<bool>| known(light).unwrap();
         let board = |of: usize| -> Vec<bool> {
             (0..64)
                 .map(|j| (j % 8 / of + j / 8 / of).is_multiple_of(2))
@@ -146,6 +151,6 @@ mod tests {
         assert!(one(board(4)) > 20.0);
         assert!(one(board(1)) > -libm::log(f64::from(COUPLINGS)) - 1e-12);
         assert!(one(board(1)) < -2.0);
-        assert_eq!(gained(&[[13, 13]], &HashMap::new()), 0.0);
+        assert_eq!(gained(&[[13, 13]], &HashMap::new()), Some(0.0));
     }
 }

@@ -81,9 +81,10 @@ pub(in crate::recovery) fn recover(
     // The pattern alone is no more than all of them.
     let own = ground.log_weight(&best.light).unwrap_or(f64::NEG_INFINITY);
     let own = own - n as f64 * std::f64::consts::LN_2;
-    let gained = summed.as_ref().map_or(0.0, |summed| {
-        neighbours::gained(problem.grids.unwrap_or(&[[n, 1]]), &summed.weights)
-    });
+    let grids = problem.grids.unwrap_or(&[]);
+    let gained = summed
+        .as_ref()
+        .and_then(|summed| neighbours::gained(grids, &summed.weights));
     recovered.patterns = summed.map(|summed| {
         let of = summed.finish(&best.light);
         Patterns {
@@ -91,7 +92,8 @@ pub(in crate::recovery) fn recover(
             ..of
         }
     });
-    recovered.log_evidence = recovered.patterns.as_ref().map(|p| p.log_evidence + gained);
+    let of_patterns = recovered.patterns.as_ref().map(|p| p.log_evidence);
+    recovered.log_evidence = gained.and_then(|gained| Some(of_patterns? + gained));
     let known = recovered.patterns.as_ref().filter(|p| p.sum.converged());
     recovered.standard_error = known.map(|p| p.deviation.clone());
     let levels = [recovered.reflectance.min(), recovered.reflectance.max()];
