@@ -17,11 +17,13 @@ mod jpeg;
 mod orientation;
 mod png;
 mod samples;
+mod stored;
 mod tiff;
 mod transfer;
 
 pub use self::png::{EncodingError, grey16_png, rgb_png};
-pub use samples::{MOST_SAMPLED, MOST_SAMPLES, Samples, samples};
+pub use samples::{MOST_SAMPLED, MOST_SAMPLES, Samples};
+pub use stored::samples;
 pub use transfer::Transfer;
 
 use self::exr::{exr_size, read_exr};

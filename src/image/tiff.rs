@@ -4,9 +4,9 @@
 
 use std::io::Cursor;
 
-use ::tiff::decoder::{Decoder, DecodingResult, Limits};
-use ::tiff::tags::Tag;
-use ::tiff::{ColorType, TiffError};
+use tiff::decoder::{Decoder, DecodingResult, Limits};
+use tiff::tags::Tag;
+use tiff::{ColorType, TiffError};
 
 use super::orientation::Orientation;
 use super::samples::{MOST_SAMPLED, MOST_SAMPLES, Samples, TOO_MANY, unknown_turn, upright};

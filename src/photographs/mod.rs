@@ -18,6 +18,8 @@
 //! Entries that mean nothing are left out, with codes that add up ([`left_out`]): their flux and
 //! standard error are 0.
 
+mod account;
+mod columns;
 mod correct;
 mod error;
 mod footprints;
@@ -27,16 +29,19 @@ mod lens;
 mod mapping;
 pub mod noise;
 mod pattern;
+mod placing;
 mod plane;
 mod read;
 mod response;
 pub mod set;
+mod shots;
 mod takes;
 
+pub use account::{ImportAccount, Imported};
 pub use correct::{Corrected, Correction, Flat};
 pub use error::PhotographError;
 pub use footprints::{Evenness, Footprints};
-pub use import::{ImportAccount, Imported, import, scene_of};
+pub use import::{import, scene_of};
 pub use lens::Lens;
 pub use mapping::{Fitted, Mapping, Mark};
 pub use plane::{Averaged, Chosen, Plane, linearised};

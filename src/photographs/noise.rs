@@ -6,9 +6,10 @@
 //! g (counts per electron), the light above the dark frames s − d, the read noise σ with the dark
 //! current's, and the rounding to integers. Averaging F frames divides all but what rounding leaves
 //! where other noise is too small to move values from one integer to the next: with the variance v
-//! before rounding that is LSB²·B(v/LSB²), B(x) = 1/12 at 0 and, by the first term of the Fourier
-//! series of a rounding error (Widrow and Kollár, *Quantization Noise*, 2008),
-//! exp(−4π²x)/(2π²) where it is below 1/12.
+//! before rounding that is LSB²·B(v/LSB²), by the Fourier series of a rounding error (Widrow and
+//! Kollár, *Quantization Noise*, 2008)
+//!
+//! > B(x) = Σ_n exp(−4π²n²x)/(2π²n²),   B(0) = 1/12
 
 use std::f64::consts::PI;
 
@@ -56,13 +57,27 @@ impl CameraNoise {
     }
 }
 
+/// Terms of the series that are summed, and the size below which the others count for nothing.
+const TERMS: u32 = 64;
+const NEGLIGIBLE: f64 = 1e-7;
+
 /// What averaging any number of frames leaves of the rounding's variance.
 fn left_by_rounding(moving: f64, rounding: f64) -> f64 {
     if rounding == 0.0 {
         return 0.0;
     }
     let x = moving / (12.0 * rounding);
-    rounding * (12.0 * libm::exp(-4.0 * PI * PI * x) / (2.0 * PI * PI)).min(1.0)
+    let mut series = 0.0;
+    for n in 1..=TERMS {
+        let n2 = f64::from(n * n);
+        let term = libm::exp(-4.0 * PI * PI * n2 * x) / (2.0 * PI * PI * n2);
+        series += term;
+        if term < NEGLIGIBLE {
+            return 12.0 * rounding * series;
+        }
+    }
+    // So little noise that rounding is all there is.
+    rounding
 }
 
 /// Repeats of one pixel.

@@ -167,7 +167,7 @@ mod tests {
                 "{pattern} {name}"
             );
         }
-        assert_eq!(last_number("IMG_0412.CR2.tif"), Some(412));
+        assert_eq!(last_number("IMG_0412_b.tif"), Some(412));
         assert_eq!(last_number("spot-3-b.png"), Some(3));
         assert_eq!(last_number("é7.png"), Some(7));
         assert_eq!(last_number("flat.png"), None);

@@ -55,6 +55,26 @@ impl ResponseTable {
     }
 }
 
+/// The lines `stored,light` of a CSV file; lines that do not begin with a number are passed over.
+pub(super) fn response_table(name: &str, bytes: &[u8]) -> Result<ResponseTable, PhotographError> {
+    let text = String::from_utf8_lossy(bytes);
+    let mut pairs = Vec::new();
+    for (k, line) in text.lines().enumerate() {
+        let cells: Vec<Option<f64>> = line.split(',').map(|c| c.trim().parse().ok()).collect();
+        match cells[..] {
+            [Some(stored), Some(light)] => pairs.push([stored, light]),
+            [None, ..] if pairs.is_empty() || line.trim().is_empty() => {}
+            _ => {
+                return Err(refused(
+                    format!("line {} of {name} is not `stored,light`", k + 1),
+                    "give two numbers a line",
+                ));
+            }
+        }
+    }
+    ResponseTable::new(&pairs)
+}
+
 impl Response {
     /// A power law of the full scale.
     ///

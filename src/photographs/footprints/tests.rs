@@ -69,7 +69,7 @@ fn the_ratio_of_etendues_is_that_of_the_cameras() {
         fx: 260.0,
         fy: 260.0,
         cx: 150.0,
-        cy: 118.0,
+        cy: 100.0,
         k1: -0.15,
         k2: 0.02,
         p1: 1e-3,
@@ -78,7 +78,7 @@ fn the_ratio_of_etendues_is_that_of_the_cameras() {
     };
     // Above the wall and aside, looking straight down with its rows along −y.
     let centre = view.corner() + view.u() * 0.4 + view.v() * 0.6;
-    let distance = 1.1 * view.u().length();
+    let distance = 1.3 * view.u().length();
     let project = |a: f64, b: f64| {
         let x = view.corner() + view.u() * a + view.v() * b - centre;
         lens.pixel(lens.distorted([x.x / distance, -x.y / distance]).0)
@@ -124,7 +124,6 @@ fn the_ratio_of_etendues_is_that_of_the_cameras() {
         .collect();
     let factor = flux.iter().sum::<f64>() / due.iter().sum::<f64>();
     for (p, (found, due)) in flux.iter().zip(&due).enumerate() {
-        assert!(!(found / (due * factor) - 1.0).is_nan());
         assert!(
             (found / (due * factor) - 1.0).abs() < 2e-4,
             "{p}: {}",
