@@ -10,7 +10,9 @@ use super::output;
 use super::record::Record;
 use super::recover_memory::{self, Errors, Held, Strips};
 use super::recovered::write;
-use super::run_folder::{PHI, RECOVERED, RunFolder, SATURATED, SCENE, STDERR, is_of_recovered};
+use super::run_folder::{
+    LEFT_OUT, PHI, RECOVERED, RunFolder, SATURATED, SCENE, STDERR, is_of_recovered,
+};
 use super::{Outcome, recover_options};
 use crate::lab::{
     Attempt, Certainty, Noise, RecoveredObject, describe_recovery, recover_with_picards,
@@ -79,6 +81,7 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
         phi: args.phi.clone().unwrap_or_else(|| args.dir.join(PHI)),
         console,
     };
+    job.remark_left_out()?;
     let (attempts, picards) = match held {
         Held::Whole => job.whole()?,
         Held::Strips(pixels) => (job.strips(pixels)?, Vec::new()),
@@ -211,6 +214,24 @@ impl Job<'_> {
             pixels,
         };
         strips.recover(self.methods, &self.options)
+    }
+
+    /// Says what of imported photographs is left out of Φcam, where it stands as 0.
+    fn remark_left_out(&self) -> Result<(), Failure> {
+        let path = self.args.dir.join(LEFT_OUT);
+        if !self.is_imported || self.args.phi.is_some() || !path.exists() {
+            return Ok(());
+        }
+        let left_out = read_matrix(&path, self.scene)?;
+        let count = left_out.iter().filter(|code| **code != 0.0).count();
+        if count > 0 {
+            self.console.say(format!(
+                "warning: {count} of {} entries are left out ({}), and taken as dark here",
+                left_out.len(),
+                path.display()
+            ));
+        }
+        Ok(())
     }
 
     /// Of a foreign Φcam nothing is known but what is given.

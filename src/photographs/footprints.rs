@@ -10,9 +10,9 @@
 //!
 //! a_pq the fraction of q's area that lies in the footprint of p, seen in the photograph, and ρ the
 //! ratio of the étendues at its centroid. A photograph without marks is that of the scene's own
-//! camera: ρ = 1, and Φ is a sum of pixels. Else ρ is known up to a factor (the aperture of a camera
-//! is), which makes its mean over the view 1: the sum of Φ over a wall of even radiance is that of
-//! the photograph's pixels there. e′ is even after a flat field of even radiance; with a camera matrix
+//! camera: ρ = 1, and Φ is a sum of pixels. Else ρ is known up to a factor (as the aperture of a
+//! camera is), such that of a wall of even radiance the sum of Φ is that of the photograph's pixels in
+//! the view: Σ a·e′·ρ = Σ a·e′. e′ is even after a flat field of even radiance; with a camera matrix
 //! it is [`Lens::etendue`](super::Lens::etendue); else it is taken as even.
 //!
 //! The footprint is a polygon in the photograph, cut exactly at the borders of pixels. With a lens
@@ -63,8 +63,9 @@ impl Footprints {
     ) -> Result<Self, PhotographError> {
         let row = |pixel: usize| row(camera, mapping, size, evenness, pixel);
         let rows: Vec<Pieces> = (0..camera.pixels()).into_par_iter().map(row).collect();
-        let area: f64 = rows.iter().flatten().map(|piece| piece.fraction).sum();
-        let weighed: f64 = rows.iter().flatten().map(|p| p.fraction * p.ratio).sum();
+        let pieces = || rows.iter().flatten();
+        let area: f64 = pieces().map(|p| p.fraction * p.own).sum();
+        let weighed: f64 = pieces().map(|p| p.fraction * p.own * p.ratio).sum();
         if area <= 0.0 || weighed <= 0.0 {
             return Err(refused(
                 format!(
@@ -126,6 +127,8 @@ struct Piece {
     fraction: f64,
     /// ρ up to a factor.
     ratio: f64,
+    /// e′ up to a factor.
+    own: f64,
 }
 
 type Pieces = Vec<Piece>;
@@ -168,13 +171,14 @@ fn row(
                 continue;
             }
             covered += fraction;
-            let Some(ratio) = ratio(camera, mapping, evenness, centroid) else {
+            let Some([ratio, own]) = ratio(camera, mapping, evenness, centroid) else {
                 return Vec::new();
             };
             pieces.push(Piece {
                 pixel: (u + v * width) as u32,
                 fraction,
                 ratio,
+                own,
             });
         }
     }
@@ -202,10 +206,10 @@ fn outline(camera: &Camera, mapping: &Mapping, pixel: usize) -> Option<Vec<[f64;
     Some(polygon)
 }
 
-/// ρ up to a factor at a place of the photograph.
-fn ratio(camera: &Camera, mapping: &Mapping, evenness: Evenness, at: [f64; 2]) -> Option<f64> {
+/// ρ and e′, each up to a factor, at a place of the photograph.
+fn ratio(camera: &Camera, mapping: &Mapping, evenness: Evenness, at: [f64; 2]) -> Option<[f64; 2]> {
     let own = match evenness {
-        Evenness::Same => return Some(1.0),
+        Evenness::Same => return Some([1.0; 2]),
         Evenness::Even => 1.0,
         Evenness::ByLens => mapping.lens()?.etendue(at)?,
     };
@@ -214,7 +218,7 @@ fn ratio(camera: &Camera, mapping: &Mapping, evenness: Evenness, at: [f64; 2]) -
     let point = view.corner() + view.u() * a + view.v() * b;
     let r2 = (point - camera.position).length_squared();
     // h² is the same for all pixels.
-    Some(area / (r2 * r2) / own)
+    Some([area / (r2 * r2) / own, own])
 }
 
 /// The part of a polygon between two values of coordinate `axis` (Sutherland and Hodgman, *CACM* 17,

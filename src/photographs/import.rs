@@ -7,12 +7,13 @@ use super::columns::Columns;
 use super::error::{PhotographError, refused};
 use super::footprints::Evenness;
 use super::left_out::LeftOut;
+use super::list::{positions, tables};
 use super::noise::PhotonTransferFit;
 use super::placing::Placing;
 use super::read::Reader;
 use super::set::{ChannelName, Set};
 use super::shots::Shots;
-use super::takes::{positions, tables};
+
 use crate::scene::Scene;
 
 /// Probability of the photon transfer line below which it is said not to fit.

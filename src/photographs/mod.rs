@@ -26,6 +26,7 @@ mod footprints;
 mod import;
 pub mod left_out;
 mod lens;
+mod list;
 mod mapping;
 pub mod noise;
 mod pattern;

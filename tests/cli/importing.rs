@@ -352,7 +352,7 @@ fn what_does_not_fit_is_refused_and_nothing_is_written() {
         format!("[[marks]]\npixel = [{u}, {v}]\nwall = [{x}, {y}]\n")
     };
     let line: String = (0..4)
-        .map(|k| f64::from(k))
+        .map(f64::from)
         .map(|k| mark(k, k, 3.5 + k, 3.0 + k))
         .collect();
     import(&format!("{frames}{line}"), &["no mapping", "cure: "]);

@@ -36,7 +36,8 @@ fn expected([columns, rows]: [usize; 2], channels: usize, page: usize, step: f64
 #[test]
 fn samples_are_those_that_were_saved() {
     let (grey, colour) = (1, 3);
-    let all: [(&[u8], [usize; 2], usize, f64, Option<f64>); 8] = [
+    type Saved = (&'static [u8], [usize; 2], usize, f64, Option<f64>);
+    let all: [Saved; 8] = [
         (
             file!("grey8-s1-strips-lzw.tif"),
             [7, 5],
