@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::error::{PhotographError, refused};
 use super::noise::{PhotonTransferFit, Repeated, photon_transfer};
 use super::pattern::expanded;
-use super::plane::{Averaged, Chosen, Plane, linearised};
+use super::plane::{Averaged, Chosen, Plane, linearised, same_size};
 use super::read::Reader;
 use super::response::{Response, ResponseTable, response_table};
 use super::set::{ChannelName, DarkTable, DeadTable, Files, FrameTable, Set};
@@ -94,6 +94,7 @@ impl<'a> Shots<'a> {
 
     /// One channel of a photograph as light.
     fn plane(&self, name: &str, samples: &Samples) -> Result<Plane, PhotographError> {
+        same_size(name, [samples.width, samples.height], self.size)?;
         let full_scale = self.set.full_scale.or(samples.full_scale);
         let response = match (&self.response, self.set.gamma) {
             (Some(table), _) => Response::Table(table.clone()),

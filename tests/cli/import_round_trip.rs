@@ -63,7 +63,7 @@ const P2: f64 = -5e-4;
 /// The middle of the view, inches.
 const MIDDLE: [f64; 2] = [4.875, 4.375];
 /// The eye.
-const EYE: [f64; 3] = [5.9, 3.7, 4.9];
+const EYE: [f64; 3] = [5.9, 3.7, 5.5];
 
 type Vector = [f64; 3];
 

@@ -139,13 +139,19 @@ fn a_list_says_what_the_photographs_are() {
     w.write("set.toml", &list);
     let _ = w.phicam("import set.toml -o out").exits(0);
     let (phi, stderr) = (w.matrix("out/phi.npy"), w.matrix("out/phi.stderr.npy"));
+    let taken = |p: usize| -> f64 {
+        let x = 3.25 + 3.25 * ((p % 3) as f64 + 0.5) / 3.0;
+        let y = 2.75 + 3.25 * ((p / 3) as f64 + 0.5) / 2.0;
+        1.0 / ((x + 20.0).powi(2) + (y - 10.0).powi(2) + 225.0).powi(2)
+    };
+    let mean = (0..6).map(taken).sum::<f64>() / 6.0;
     for (p, spot) in [(0, 0), (2, 2), (4, 7)] {
         let k = 7 - spot;
         let gain = if spot == 2 { 2.0 } else { 1.0 };
         let [u, v] = [2 * (p % 3), 2 * (1 - p / 3)];
         let (mut flux, mut variance) = (0.0, 0.0);
-        // The flat field has 1000 and 3000 counts, so 0.5 and 1.5; a flat-fielded photograph is one
-        // of radiance, and the scene's camera is far away: its etendue is even to 3 %.
+        // The flat field has 1000 and 3000 counts, so 0.5 and 1.5; what it leaves is radiance, of which
+        // the scene's camera takes 1/r⁴ of each part of the wall, relative to the mean.
         for [i, j] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
             let level: f64 = if u + i < 3 { 0.5 } else { 1.5 };
             let signal = f64::from(stored(k, u + i, v + j)) - 50.0;
@@ -156,9 +162,10 @@ fn a_list_says_what_the_photographs_are() {
             variance += (2.0 * signal + 2.0 * (9.0 + 1.0 / 12.0)) * scale * scale
                 + of_flat * (signal * scale).powi(2);
         }
-        let (flux, variance) = (1e-12 * flux / gain, 1e-24 * variance / (gain * gain));
+        let scale = 1e-12 * taken(p) / mean / gain;
+        let (flux, variance) = (scale * flux, scale * scale * variance);
         let found = phi[(p, spot)];
-        assert!((found / flux - 1.0).abs() < 0.1, "{found} {flux}");
+        assert!((found / flux - 1.0).abs() < 5e-3, "{found} {flux}");
         let of_gain = if spot == 2 { 0.05 * flux } else { 0.0 };
         let due = (variance + of_gain * of_gain).sqrt();
         let relative = stderr[(p, spot)] / found / (due / flux);
@@ -482,7 +489,7 @@ fn public_photographs_are_imported_in_one_command() {
     // Frames 0 and 1 are nearly dark, as their authors' are; others are not.
     let mean = |spot: usize| phi.column(spot).mean();
     assert!(
-        mean(0) < 0.2 * mean(9) && mean(1) < 0.3 * mean(9),
+        mean(0) < 0.3 * mean(9) && mean(1) < 0.3 * mean(9),
         "{} {} {}",
         mean(0),
         mean(1),
