@@ -331,12 +331,12 @@ fn a_modelled_scene_comes_back_from_the_files_of_a_camera() {
     let w = Workspace::new();
     w.write("scene.toml", &coarse.text);
     let mut noise = Noise(11);
-    // A lattice of 8 × 8 marks, and where they are believed to be.
-    let places: Vec<[f64; 2]> = (0..64)
+    // A lattice of 12 × 12 marks, as of a chessboard, and where they are believed to be.
+    let places: Vec<[f64; 2]> = (0..144)
         .map(|k| {
             [
-                3.3 + 3.15 * f64::from(k % 8) / 7.0,
-                2.8 + 3.15 * f64::from(k / 8) / 7.0,
+                3.3 + 3.15 * f64::from(k % 12) / 11.0,
+                2.8 + 3.15 * f64::from(k / 12) / 11.0,
             ]
         })
         .collect();

@@ -139,12 +139,12 @@ fn a_list_says_what_the_photographs_are() {
     w.write("set.toml", &list);
     let _ = w.phicam("import set.toml -o out").exits(0);
     let (phi, stderr) = (w.matrix("out/phi.npy"), w.matrix("out/phi.stderr.npy"));
-    let taken = |p: usize| -> f64 {
-        let x = 3.25 + 3.25 * ((p % 3) as f64 + 0.5) / 3.0;
-        let y = 2.75 + 3.25 * ((p / 3) as f64 + 0.5) / 2.0;
+    let taken = |u: usize, v: usize| -> f64 {
+        let x = 3.25 + 3.25 * (u as f64 + 0.5) / 6.0;
+        let y = 6.0 - 3.25 * (v as f64 + 0.5) / 4.0;
         1.0 / ((x + 20.0).powi(2) + (y - 10.0).powi(2) + 225.0).powi(2)
     };
-    let mean = (0..6).map(taken).sum::<f64>() / 6.0;
+    let mean = (0..24).map(|q| taken(q % 6, q / 6)).sum::<f64>() / 24.0;
     for (p, spot) in [(0, 0), (2, 2), (4, 7)] {
         let k = 7 - spot;
         let gain = if spot == 2 { 2.0 } else { 1.0 };
@@ -155,21 +155,21 @@ fn a_list_says_what_the_photographs_are() {
         for [i, j] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
             let level: f64 = if u + i < 3 { 0.5 } else { 1.5 };
             let signal = f64::from(stored(k, u + i, v + j)) - 50.0;
-            let scale = 1.0 / (level * 0.5);
+            let scale = taken(u + i, v + j) / mean / (level * 0.5);
             let of_flat =
                 (2.0 * 2000.0 * level + 2.0 * (9.0 + 1.0 / 12.0)) / (2000.0 * level).powi(2);
             flux += signal * scale;
             variance += (2.0 * signal + 2.0 * (9.0 + 1.0 / 12.0)) * scale * scale
                 + of_flat * (signal * scale).powi(2);
         }
-        let scale = 1e-12 * taken(p) / mean / gain;
+        let scale = 1e-12 / gain;
         let (flux, variance) = (scale * flux, scale * scale * variance);
         let found = phi[(p, spot)];
-        assert!((found / flux - 1.0).abs() < 5e-3, "{found} {flux}");
+        assert!((found / flux - 1.0).abs() < 1e-6, "{found} {flux}");
         let of_gain = if spot == 2 { 0.05 * flux } else { 0.0 };
         let due = (variance + of_gain * of_gain).sqrt();
         let relative = stderr[(p, spot)] / found / (due / flux);
-        assert!((relative - 1.0).abs() < 1e-3, "{relative}");
+        assert!((relative - 1.0).abs() < 1e-6, "{relative}");
     }
     let record = w.json("out/run.json");
     assert_eq!(record["imported"]["flux_unit"], "W");
