@@ -51,9 +51,10 @@
 //!                    indicators, coverage, wall BRDFs, the laboratory experiment, the published study
 //!    5  recovery/    Φcam → reflectance              metrics/   how far two things are apart
 //!    4  transport/   the path tracer → Φcam          model/     G12, G23 → Φcam             sensor/  flux → electrons → counts
-//!    3  film/        frames, EXR                     matrix/    pixels × spots, .npy
+//!       photographs/ files of a real camera → Φcam
+//!    3  film/        frames, EXR                     matrix/    pixels × spots, .npy, .mat
 //!    2  scene/       laser, surface, texture, camera, scene file
-//!    1  geometry/    basis, shapes, BVH              image/     PNG, JPEG, EXR bytes ↔ pictures
+//!    1  geometry/    basis, shapes, BVH              image/     PNG, JPEG, EXR, TIFF bytes ↔ pictures
 //!       store        files: regular ones read through one door, whole ones written, one writer a folder
 //!    0  num/         constants, streams (random and Sobol'), warps, quadrature, statistics, linear algebra, summation, wide arithmetic
 //! ```
@@ -66,7 +67,7 @@
 //! 2. **Blind recovery.** [`recovery`] imports [`num`] and [`matrix`] only; it never learns what
 //!    scene it inverts.
 //! 3. **One door per foreign crate**: obvhs only in `geometry/tree`, exr only in `film/exr` and
-//!    `image/exr` (frames and pictures), png only in `image/png`, matrix decompositions only in
+//!    `image/exr` (frames and pictures), png only in `image/png`, tiff only in `image/tiff`, matrix decompositions only in
 //!    `num::linalg`, random generators only in [`num::stream`], the argument parser only in
 //!    [`cli`]. And one door for files: only [`store`] opens them for reading.
 //! 4. **A random number is a function of (seed, spot, pixel, sample block)**, never of the thread
@@ -124,6 +125,7 @@
 //! * [`transport`]: the integral that is estimated, and how.
 //! * [`model`]: the matrices, and what they leave out.
 //! * [`sensor`]: from the flux to what a camera stores, and its noise.
+//! * [`photographs`]: from what a real camera has stored to the flux.
 //! * [`lab`]: what "agree" means.
 //! * [`sensor`]: what a camera makes of the flux, and the built-in sensors with their sources.
 //! * [`recovery`]: the methods, their parameters, their uncertainty.
@@ -145,6 +147,7 @@ pub mod matrix;
 pub mod metrics;
 pub mod model;
 pub mod num;
+pub mod photographs;
 pub mod recovery;
 #[doc(hidden)]
 pub mod report;

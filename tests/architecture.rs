@@ -10,7 +10,7 @@ const FLOORS: [&[&str]; 9] = [
     &["geometry", "image", "store"],
     &["scene"],
     &["film", "matrix"],
-    &["transport", "model", "sensor"],
+    &["transport", "model", "sensor", "photographs"],
     &["recovery", "metrics"],
     &["lab"],
     &["report", "jobs"],
@@ -23,7 +23,7 @@ const BESIDE: [(&str, &str); 1] = [("film", "matrix")];
 /// Foreign crates and the one place that may name them. `exr` has two: frames are written and read
 /// with all their attributes, pictures of other programs are read without any; what both must know
 /// of a file's bytes stands in `image/exr/envelope`.
-const DOORS: [(&str, &[&str]); 29] = [
+const DOORS: [(&str, &[&str]); 30] = [
     ("obvhs", &["geometry/tree"]),
     ("exr", &["film/exr", "image/exr"]),
     ("faer", &["num/linalg"]),
@@ -37,9 +37,10 @@ const DOORS: [(&str, &[&str]); 29] = [
     ("npyz", &["matrix/npy"]),
     ("png", &["image/png"]),
     ("zune_jpeg", &["image/jpeg"]),
+    ("tiff", &["image/tiff"]),
     ("resvg", &["report/raster"]),
     ("dejavu", &["report/raster"]),
-    ("flate2", &["report/page/packed"]),
+    ("flate2", &["report/page/packed", "matrix/mat"]),
     ("toml", &["scene"]),
     ("ply_rs_bw", &["scene/mesh/ply"]),
     ("gltf_json", &["scene/mesh/gltf"]),
@@ -352,6 +353,7 @@ fn transcendental_functions_are_the_portable_ones() {
         "transport",
         "model",
         "sensor",
+        "photographs",
         "recovery",
         "metrics",
         "lab",

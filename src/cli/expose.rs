@@ -14,7 +14,6 @@ use super::load_run::{read_matrix, read_run, read_stderr};
 use super::need;
 use super::output;
 use super::process::version;
-use super::record::Record;
 use super::run_folder::{EXPOSED, PHI, RunFolder, SATURATED, STDERR};
 use crate::lab::{Errors, describe_exposure};
 use crate::matrix::Matrix;
@@ -24,6 +23,7 @@ use crate::sensor::{
     Exposed, Exposure, Figures, Light, PhotonTransfer, Sensor, Stated, Summary, builtin_summary,
     glare, glare_to_signal,
 };
+use crate::transport::Estimator;
 
 /// Matrices of Φcam's size that are held at once, beside one for each exposure.
 const EXPOSING: f64 = 12.0;
@@ -59,6 +59,10 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
         _ => return output::print(&list()).map(|()| Outcome::Done),
     };
     let (scene, record) = read_run(dir, console)?;
+    let plan = *record.origin.plan().ok_or_else(|| {
+        let cause = format!("{} holds photographs of a real camera", dir.display());
+        Failure::new(cause, "give the folder of a rendered run")
+    })?;
     let settings = settings(args, &scene)?;
     let sensor = Sensor::from_settings(&settings)?;
     need::photographs(
@@ -75,7 +79,7 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
     let ambient = settings.ambient.unwrap_or(0.0);
     let light = Light::new(&phi, scene.laser.wavelength)?
         .with_glare(&scattered)?
-        .with_render_error(&render_error, record.plan.budget.blocks)?
+        .with_render_error(&render_error, plan.budget.blocks)?
         .with_ambient(ambient)?;
     if phi.max() <= 0.0 {
         let cause = format!("{} is dark in every pixel", dir.join(PHI).display());
@@ -98,7 +102,7 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
     let result = Summary::new(&sensor, &light, &exposure, &exposed);
     remark(&result, args.strict, console)?;
     remark_dark(&result, &exposed, console);
-    remark_render(&result, &record, console);
+    remark_render(&result, plan.estimator, console);
     let account = Account {
         version: version().to_owned(),
         scene: scene.name.clone(),
@@ -232,11 +236,11 @@ fn remark_dark(result: &Summary, exposed: &Exposed, console: Console) {
 }
 
 /// What of the render's own error a recovery has to know.
-fn remark_render(result: &Summary, record: &Record, console: Console) {
+fn remark_render(result: &Summary, estimator: Estimator, console: Console) {
     if result.render <= 0.1 {
         return;
     }
-    let shared = match Errors::of(record.plan.estimator) {
+    let shared = match Errors::of(estimator) {
         Errors::Independent => "",
         Errors::WithinRows => ", which spots of a pixel share",
         Errors::Everywhere => ", which all entries share",

@@ -6,7 +6,7 @@ use super::console::Console;
 use super::failure::Failure;
 use super::need;
 use super::record::Record;
-use super::run_folder::{PHI, SCENE, TAILS};
+use super::run_folder::{LEFT_OUT, PHI, SCENE, TAILS};
 use crate::matrix::{Matrix, npy};
 use crate::scene::{COPIES, Scene};
 
@@ -25,7 +25,13 @@ pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), 
     })?;
     record.check_lengths(dir, COPIES)?;
     let path = dir.join(SCENE);
-    let scene = console.load_scene(&path.to_string_lossy())?;
+    let name = path.to_string_lossy();
+    // Photographs need no albedo.
+    let scene = if record.is_imported() {
+        console.load_any_scene(&name)?
+    } else {
+        console.load_scene(&name)?
+    };
     if record.check(dir, SCENE).is_err() {
         console.say(format!(
             "warning: {} was edited after the run was finished",
@@ -143,12 +149,10 @@ pub(super) fn refuse_negative(path: &Path, matrix: &Matrix) -> Result<(), Failur
     ))
 }
 
-/// Which entries of a run have a standard error that is not to be trusted; `None` if nothing says
-/// so.
-pub(super) fn read_tails(dir: &Path, scene: &Scene) -> Result<Option<Matrix>, Failure> {
-    let path = dir.join(TAILS);
-    if !path.exists() {
-        return Ok(None);
-    }
-    read_matrix(&path, scene).map(Some)
+/// Which entries of a run do not count: of a render those whose standard error is not to be trusted,
+/// of photographs those that are left out; `None` if nothing says so.
+pub(super) fn read_left_out(dir: &Path, scene: &Scene) -> Result<Option<Matrix>, Failure> {
+    let paths = [TAILS, LEFT_OUT].map(|name| dir.join(name));
+    let there = paths.iter().find(|path| path.exists());
+    there.map(|path| read_matrix(path, scene)).transpose()
 }

@@ -23,6 +23,7 @@
 //! | `recovered/METHOD.covariance.npy`, `METHOD.resolution.npy` | covariance and resolution matrix of a linear method, elements × elements of all surfaces |
 //! | `recovered/picard.csv`, `.svg` | signal and noise in each singular direction of the laser side |
 //! | `summary.json`, `report.html` | what was found |
+//! | `left_out.npy`, `import.json`, `import.png` | of photographs from `phicam import`: why an entry is left out (0: it counts), f64, (pixels, spots); settings, files, noise and marks; the mean photograph with the view, spots and marks |
 //! | `exposed/` | what `phicam expose` made of it: `phi.npy`, `phi.stderr.npy`, `saturated.npy`, `counts/`, `exposure.json` |
 //! | `partial/` | finished spots and blocks of an unfinished run; gone when it is complete |
 //! | `.replacement/` | a run with other settings that will take the place of this one when it is whole |
@@ -49,6 +50,7 @@ mod console;
 mod expose;
 mod exposed_folder;
 mod failure;
+mod import;
 mod interrupt;
 mod load_run;
 mod many;
@@ -57,6 +59,7 @@ mod memory;
 mod model;
 mod names;
 mod need;
+mod origin;
 mod output;
 mod partial;
 mod preview;
@@ -118,6 +121,7 @@ pub fn main() -> ExitCode {
         Command::Validate(a) => validate::execute(a, console),
         Command::Recover(a) => recover::execute(a, console),
         Command::Expose(a) => expose::execute(a, console),
+        Command::Import(a) => import::execute(a, console),
         Command::View(a) => view::execute(a, console),
         Command::Serve(a) => serve::execute(a, console),
         Command::Scene(a) => scene::execute(a, console),

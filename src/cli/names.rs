@@ -5,10 +5,13 @@ use crate::recovery::Method;
 
 pub(super) const PHI: &str = "phi.npy";
 pub(super) const STDERR: &str = "phi.stderr.npy";
-/// Entries that do not count: those that are not 0, f64, pixels × spots.
-pub(super) const LEFT_OUT: &str = "left_out.npy";
 /// Entries whose standard error is not to be trusted: 0 where it is, f64, pixels × spots.
 pub(super) const TAILS: &str = "phi.tails.npy";
+/// Why entries of imported photographs are left out: 0 where they count, f64, pixels × spots.
+pub(super) const LEFT_OUT: &str = "left_out.npy";
+/// How photographs were imported, and the mean of them with what was found in it.
+pub(super) const IMPORT: &str = "import.json";
+pub(super) const IMPORT_PNG: &str = "import.png";
 pub(super) const SUMMARY: &str = "summary.json";
 pub(super) const REPORT: &str = "report.html";
 pub(super) const SCENE: &str = "scene.toml";

@@ -1,4 +1,4 @@
-//! run.json: what was rendered, and how.
+//! run.json: what was rendered, and how; or what was imported.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -7,13 +7,14 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::failure::Failure;
+use super::names::{IMPORT, IMPORT_PNG, LEFT_OUT, PHI, SCENE, STDERR};
+use super::origin::Origin;
 use super::output;
 use super::process::version;
 use crate::film::{FrameMeta, RunMeta};
 use crate::lab::Tails;
-use crate::scene::Scene;
+use crate::scene::{COPIES, Scene};
 use crate::store::{self, ReadError, hex};
-use crate::transport::Plan;
 
 /// The record of a run.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -23,7 +24,7 @@ pub(super) struct Record {
     pub scene_hash: String,
     pub unit: String,
     #[serde(flatten)]
-    pub plan: Plan,
+    pub origin: Origin,
     pub pixels: [usize; 2],
     pub spots: usize,
     /// Spots rendered so far; equal to `spots` when the run is complete.
@@ -72,7 +73,7 @@ impl Record {
 
     pub(super) fn new(
         scene: &Scene,
-        plan: &Plan,
+        origin: impl Into<Origin>,
         finished: usize,
         threads: usize,
         seconds: f64,
@@ -82,7 +83,7 @@ impl Record {
             scene: scene.name.clone(),
             scene_hash: scene.hash.clone(),
             unit: scene.unit.symbol().to_owned(),
-            plan: *plan,
+            origin: origin.into(),
             pixels: [scene.camera.columns, scene.camera.rows],
             spots: scene.laser.spots.len(),
             finished,
@@ -238,16 +239,17 @@ impl Record {
 
     /// What the frame of `spot` says of its origin.
     pub(super) fn meta(&self, scene: &Scene, spot: usize) -> FrameMeta {
+        let plan = self.origin.plan();
         FrameMeta {
             run: RunMeta {
                 scene_name: scene.name.clone(),
                 scene_hash: scene.hash.clone(),
                 unit: scene.unit.symbol().to_owned(),
                 spot_count: self.spots as u32,
-                seed: self.plan.seed,
-                samples: self.plan.budget.samples(),
-                estimator: self.plan.estimator.to_string(),
-                sampler: self.plan.sampling.to_string(),
+                seed: plan.map_or(0, |p| p.seed),
+                samples: plan.map_or(0, |p| p.budget.samples()),
+                estimator: plan.map_or(IMPORTED.to_owned(), |p| p.estimator.to_string()),
+                sampler: plan.map_or(IMPORTED.to_owned(), |p| p.sampling.to_string()),
                 version: self.version.clone(),
             },
             spot_index: spot as u32,
@@ -255,12 +257,30 @@ impl Record {
         }
     }
 
-    /// Whether the same scene was rendered by the same plan and program.
+    /// Whether its photographs were imported.
+    pub(super) fn is_imported(&self) -> bool {
+        self.origin.plan().is_none()
+    }
+
+    /// Vouches for the files of an import in `dir`.
+    pub(super) fn vouch_for_import(&mut self, dir: &Path, scene: &Scene) -> Result<(), Failure> {
+        self.files.clear();
+        self.vouch(dir, [SCENE, PHI, STDERR, LEFT_OUT, IMPORT, IMPORT_PNG])?;
+        self.vouch_all(dir, COPIES, |name| {
+            scene.files.iter().any(|file| file.copy_name() == name)
+        })
+    }
+
+    /// Whether the same scene was rendered by the same plan and program, or the same files were
+    /// imported by the same settings.
     pub(super) fn same_settings(&self, other: &Self) -> bool {
-        let key = |r: &'_ Self| (r.scene_hash.clone(), r.version.clone(), r.plan);
+        let key = |r: &'_ Self| (r.scene_hash.clone(), r.version.clone(), r.origin.clone());
         key(self) == key(other)
     }
 }
+
+/// What stands for the estimator and the sampler of photographs.
+const IMPORTED: &str = "imported";
 
 /// That a file is not what was written, by what of it.
 fn changed(path: &Path, what: &str) -> Failure {

@@ -77,10 +77,14 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
         // Of the run's own errors more is known than of those that are given.
         certainty: match &record {
             Some(record) if args.phi.is_none() && args.stderr.is_none() && args.noise.is_none() => {
-                Certainty::of(&record.plan)
+                record
+                    .origin
+                    .plan()
+                    .map_or(Certainty::STATED, Certainty::of)
             }
             _ => Certainty::STATED,
         },
+        is_imported: record.as_ref().is_some_and(Record::is_imported),
         phi: args.phi.clone().unwrap_or_else(|| dir.join(PHI)),
         console,
     };
@@ -152,6 +156,8 @@ struct Job<'a> {
     methods: &'a [Method],
     options: Options,
     certainty: Certainty,
+    /// Whether the run's photographs were imported: their noise may be unknown.
+    is_imported: bool,
     /// File of Φcam.
     phi: PathBuf,
     console: Console<'a>,
@@ -230,7 +236,13 @@ impl Job<'_> {
         match (&self.args.stderr, self.args.noise) {
             (_, Some(noise)) => Errors::Relative(noise),
             (Some(file), None) => Errors::File(file.clone()),
-            (None, None) if self.args.phi.is_none() => Errors::File(self.dir.join(STDERR)),
+            (None, None) if self.args.phi.is_none() => {
+                let file = self.dir.join(STDERR);
+                if self.is_imported && !file.exists() {
+                    return Errors::Unknown;
+                }
+                Errors::File(file)
+            }
             (None, None) => Errors::Unknown,
         }
     }

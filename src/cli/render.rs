@@ -51,13 +51,13 @@ pub(super) fn execute(args: &RenderArgs, console: Console) -> Result<Outcome, Fa
         finished,
         spots,
         seconds,
-        plan,
+        origin,
         ..
     } = &record;
     output::print(&match traced {
         _ if args.json => record.json()?,
         Some(traced) => {
-            let found = describe_render(&scene, plan, &traced, *seconds);
+            let found = describe_render(&scene, &plan, &traced, *seconds);
             let table = report::finding_text(&found);
             format!(
                 "{table}\n  {place}: {finished} of {spots} spots, frames, phi.npy, phi.stderr.npy and phi.tails.npy\n"
@@ -71,7 +71,7 @@ pub(super) fn execute(args: &RenderArgs, console: Console) -> Result<Outcome, Fa
             };
             let bars = record.error_bars();
             format!(
-                "{place}: {finished} of {spots} spots in {seconds:.1} s ({plan}): {what}\n{bars}"
+                "{place}: {finished} of {spots} spots in {seconds:.1} s ({origin}): {what}\n{bars}"
             )
         }
     })?;

@@ -7,6 +7,7 @@
 //! | frames/spot-NNNN.exr | one frame a spot |
 //! | phi.npy, phi.stderr.npy | Φcam and its standard error, pixels × spots, W |
 //! | phi.tails.npy | how far that is to be trusted: [`tails`](crate::transport::tails), pixels × spots |
+//! | left_out.npy, import.json, import.png | of imported photographs: what is left out and why, how they were made, where things are in them |
 //! | partial/ | what is finished of an unfinished run: see [`super::partial`] |
 
 use std::fs;
@@ -20,8 +21,8 @@ use super::console::Console;
 use super::exposed_folder::ExposedFolder;
 use super::failure::Failure;
 pub(super) use super::names::{
-    EXPOSED, LEFT_OUT, MODEL, PHI, RECOVERED, REPORT, SATURATED, SCENE, STDERR, SUMMARY, TAILS,
-    VALIDATION, Z, is_of_model, is_of_recovered,
+    EXPOSED, IMPORT, IMPORT_PNG, LEFT_OUT, MODEL, PHI, RECOVERED, REPORT, SATURATED, SCENE, STDERR,
+    SUMMARY, TAILS, VALIDATION, Z, is_of_model, is_of_recovered,
 };
 use super::names::{MODEL_FILES, is_frame};
 use super::output;
@@ -108,7 +109,7 @@ impl RunFolder {
             folder.finish_replacement()?;
             match differs()? {
                 None => folder.refuse_foreign(scene, console)?,
-                Some(there) if claim.replace && parts.end == u64::MAX => {
+                Some(there) if claim.replace && parts.end == u64::MAX && !there.is_imported() => {
                     folder = folder.replacement(record, &there, console)?;
                 }
                 Some(there) => return Err(other_run(path, &there, scene)),
@@ -132,7 +133,7 @@ impl RunFolder {
         console.say(format!(
             "the run in {} ({}) stays until this one is whole",
             self.path.display(),
-            there.plan
+            there.origin
         ));
         // Begun with yet other settings: nobody will go on with it. One that cannot be read is none.
         if !matches!(Record::read(&path), Ok(Some(begun)) if begun.same_settings(record)) {
@@ -177,6 +178,54 @@ impl RunFolder {
         }
     }
 
+    /// What stands in the way of a run's files shows before anything is written.
+    pub(super) fn refuse_obstacles(path: &Path) -> Result<(), Failure> {
+        output::refuse_obstacles(path, &OWN_FOLDERS, &OWN_FILES)
+    }
+
+    /// Whether the import that `record` describes is in the folder, whole. Another import is refused
+    /// unless it is to be replaced; a render is not replaced by photographs.
+    pub(super) fn holds_import(&self, record: &Record, replace: bool) -> Result<bool, Failure> {
+        let Some(there) = Record::read(&self.path)? else {
+            return Ok(false);
+        };
+        let path = self.path.display();
+        if !there.is_imported() {
+            let cause = format!("{path} holds a rendered run, which photographs do not replace");
+            return Err(Failure::new(cause, "choose another folder (-o)"));
+        }
+        if there.same_settings(record) {
+            return Ok(there.check_all(&self.path, SCENE).is_ok());
+        }
+        if replace {
+            return Ok(false);
+        }
+        let cause = format!("{path} holds photographs that were imported with other settings");
+        let cure = "give the same, choose another folder (-o), or replace them (--replace)";
+        Err(Failure::new(cause, cure))
+    }
+
+    /// Puts a result that `fill` writes into the place of what the folder holds, once it is whole.
+    /// What is not a run of the folder's is refused, unless it is to be replaced.
+    pub(super) fn put(
+        &self,
+        scene: &Scene,
+        console: Console,
+        replace: bool,
+        fill: impl FnOnce(&Path) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        if !replace {
+            self.refuse_foreign(scene, console)?;
+        }
+        let staged = Self::at(&self.path.join(REPLACEMENT));
+        remove_folder(&staged.path)?;
+        ensure_writable(&staged.path)?;
+        staged.write_scene(scene)?;
+        fill(&staged.path)?;
+        flush(&staged.path)?;
+        self.replace()
+    }
+
     /// Puts the run that was traced beside another into its place, once it is complete.
     pub(super) fn settle(&mut self) -> Result<(), Failure> {
         if let Some(path) = self.replaces.take() {
@@ -209,7 +258,16 @@ impl RunFolder {
 
     /// Moves what is in [`INCOMING`] to its place, the record last.
     fn move_in(&self) -> Result<(), Failure> {
-        let files = [SCENE, TAILS, STDERR, PHI, Record::FILE];
+        let files = [
+            SCENE,
+            TAILS,
+            LEFT_OUT,
+            IMPORT_PNG,
+            IMPORT,
+            STDERR,
+            PHI,
+            Record::FILE,
+        ];
         let incoming = self.path.join(INCOMING);
         move_in(&incoming, &self.path, &["frames", COPIES], &files)
     }
@@ -331,7 +389,8 @@ impl RunFolder {
         let validation = self.path.join(VALIDATION);
         remove_named(&validation, &["p.exr", "p.png"])?;
         let _ = fs::remove_dir(validation);
-        remove_named(&self.path, &[PHI, STDERR, TAILS, SUMMARY, REPORT])
+        remove_named(&self.path, &[PHI, STDERR, TAILS, LEFT_OUT])?;
+        remove_named(&self.path, &[SUMMARY, REPORT, IMPORT, IMPORT_PNG])
     }
 
     /// Writes the frames of `spots` from the columns of `traced`, on the threads of the pool. Returns
@@ -390,13 +449,28 @@ impl RunFolder {
 
 /// Names of a run's folders and files, under which nothing else may stand.
 const OWN_FOLDERS: [&str; 5] = ["frames", PARTIAL, MODEL, RECOVERED, COPIES];
-const OWN_FILES: [&str; 7] = [SCENE, PHI, STDERR, TAILS, Record::FILE, SUMMARY, REPORT];
+const OWN_FILES: [&str; 10] = [
+    SCENE,
+    PHI,
+    STDERR,
+    TAILS,
+    Record::FILE,
+    SUMMARY,
+    REPORT,
+    LEFT_OUT,
+    IMPORT,
+    IMPORT_PNG,
+];
 
 /// That a folder holds a run that is not to be replaced.
 fn other_run(path: &Path, there: &Record, scene: &Scene) -> Failure {
     let path = path.display();
+    if there.is_imported() {
+        let cause = format!("{path} holds imported photographs, which nothing replaces");
+        return Failure::new(cause, "choose another folder (-o)");
+    }
     let cause = if there.scene_hash == scene.hash {
-        format!("{path} holds a run with other settings ({})", there.plan)
+        format!("{path} holds a run with other settings ({})", there.origin)
     } else {
         format!("{path} holds a run of another scene (`{}`)", there.scene)
     };

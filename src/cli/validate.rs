@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 use super::args::ValidateArgs;
 use super::console::Console;
 use super::failure::Failure;
-use super::load_run::{read_matrix, read_run, read_stderr, read_tails};
+use super::load_run::{read_left_out, read_matrix, read_run, read_stderr};
 use super::output;
 use super::record::Record;
 use super::run_folder::{PHI, STDERR, VALIDATION};
 use super::{Outcome, need, settings};
 use crate::film::{self, Channel, Frame};
 use crate::lab::finding::Describe;
-use crate::lab::{Against, Agreement, Measured, Test, validate};
+use crate::lab::{Against, Agreement, Errors, Measured, Test, validate};
 use crate::matrix::Matrix;
 use crate::num::statistics::normal_two_sided;
 use crate::report::{self, Panel, Scale};
@@ -88,10 +88,16 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
         }
         (_, _, Some((dir, (scene, record)))) => Ok(Given {
             phi: read_matrix(&dir.join(PHI), &scene)?,
-            stderr: read_stderr(&dir.join(STDERR), &scene)?,
-            left_out: left_out(args, read_tails(dir, &scene)?, &scene)?,
-            test: settings::test(&args.test, &record.plan, console)?,
-            scene: other.unwrap_or(scene),
+            stderr: read_stderr(&known_noise(dir, &record)?, &scene)?,
+            left_out: left_out(args, read_left_out(dir, &scene)?, &scene)?,
+            test: match record.origin.plan() {
+                Some(plan) => settings::test(&args.test, plan, console)?,
+                None => settings::test_of_matrix(&args.test, Errors::Independent, None)?,
+            },
+            scene: match other {
+                Some(other) => other,
+                None => scene.known()?,
+            },
             run: Some((dir.clone(), record)),
         }),
         (_, _, None) => {
@@ -114,6 +120,21 @@ fn left_out(
     let own = read_matrix(file, scene)?;
     let both = |tails: Matrix| tails.zip_map(&own, |a, b| a.abs() + b.abs());
     Ok(Some(tails.map_or_else(|| own.clone(), both)))
+}
+
+/// The file of a run's standard errors; photographs of unknown noise have none.
+fn known_noise(dir: &Path, record: &Record) -> Result<PathBuf, Failure> {
+    let path = dir.join(STDERR);
+    if record.is_imported() && !path.exists() {
+        let cause = format!(
+            "nothing is known of the noise of the photographs in {}",
+            dir.display()
+        );
+        let cure =
+            "import several photographs of each spot (`repeats`), or give `noise` in the list";
+        return Err(Failure::new(cause, cure));
+    }
+    Ok(path)
 }
 
 /// Exit code of a verdict.

@@ -10,9 +10,7 @@ use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-use super::{
-    Channel, Encoding, Image, ImageError, MOST_PIXELS, checked_size, damaged, unsupported,
-};
+use super::{Channel, Encoding, Image, ImageError, checked_size, damaged, unsupported};
 
 /// No byte codes more pixels: each block of 8 × 8 takes at least one bit.
 const PIXELS_PER_BYTE: usize = 8 * 64;
@@ -27,13 +25,13 @@ pub(super) fn jpeg_size(bytes: &[u8]) -> Option<[usize; 2]> {
     decoder.dimensions().map(|(width, height)| [width, height])
 }
 
-pub(super) fn read_jpeg(name: &str, bytes: &[u8]) -> Result<Image, ImageError> {
+pub(super) fn read_jpeg(name: &str, bytes: &[u8], most: usize) -> Result<Image, ImageError> {
     let fault = |e| damaged(name, e);
     let options = DecoderOptions::default()
         .set_use_unsafe(false)
         .set_strict_mode(true)
-        .set_max_width(MOST_PIXELS)
-        .set_max_height(MOST_PIXELS);
+        .set_max_width(most)
+        .set_max_height(most);
     if !bytes.windows(2).any(|pair| pair == END) {
         return Err(damaged(name, "its end is missing"));
     }
@@ -46,6 +44,7 @@ pub(super) fn read_jpeg(name: &str, bytes: &[u8]) -> Result<Image, ImageError> {
         name,
         [width, height],
         bytes.len().saturating_mul(PIXELS_PER_BYTE),
+        most,
     )?;
     let (space, channels) = match decoder.input_colorspace() {
         Some(ColorSpace::Luma) => (ColorSpace::Luma, vec![Channel::Grey]),

@@ -1,9 +1,10 @@
-//! Floor 1: pictures. PNG, JPEG and OpenEXR bytes into numbers, numbers into PNG bytes; the doors
-//! to the crates behind them.
+//! Floor 1: pictures. PNG, JPEG, OpenEXR and TIFF bytes into numbers, numbers into PNG bytes; the
+//! doors to the crates behind them.
 //!
 //! A decoded [`Image`] has the values that the file stores, without any transfer function: what
 //! they mean is for the one who knows where the picture came from, and [`Transfer`] is how to say
-//! it. Profiles and gamma chunks within a file are not read.
+//! it. Profiles and gamma chunks within a file are not read. Photographs are read by [`fn@samples`], as
+//! the integers that they are.
 //!
 //! A file is believed nothing. Width and height are read from its header and held against
 //! [`MOST_PIXELS`] and against the file's length before memory is taken for pixels: deflate (PNG,
@@ -13,10 +14,16 @@
 
 pub(crate) mod exr;
 mod jpeg;
+mod orientation;
 mod png;
+mod samples;
+mod stored;
+mod tiff;
 mod transfer;
 
 pub use self::png::{EncodingError, grey16_png, rgb_png};
+pub use samples::{MOST_SAMPLED, MOST_SAMPLES, Samples};
+pub use stored::samples;
 pub use transfer::Transfer;
 
 use self::exr::{exr_size, read_exr};
@@ -115,10 +122,15 @@ pub enum ImageError {
 /// # Errors
 /// [`ImageError`].
 pub fn decode(name: &str, bytes: &[u8]) -> Result<Image, ImageError> {
+    decode_within(name, bytes, MOST_PIXELS)
+}
+
+/// [`decode`] up to `most` pixels.
+fn decode_within(name: &str, bytes: &[u8], most: usize) -> Result<Image, ImageError> {
     match bytes {
-        [0x89, b'P', b'N', b'G', ..] => read_png(name, bytes),
-        [0xff, 0xd8, 0xff, ..] => read_jpeg(name, bytes),
-        [0x76, 0x2f, 0x31, 0x01, ..] => read_exr(name, bytes),
+        [0x89, b'P', b'N', b'G', ..] => read_png(name, bytes, most),
+        [0xff, 0xd8, 0xff, ..] => read_jpeg(name, bytes, most),
+        [0x76, 0x2f, 0x31, 0x01, ..] => read_exr(name, bytes, most),
         _ => Err(ImageError::Unknown(name.to_owned())),
     }
 }
@@ -142,13 +154,19 @@ impl Image {
     }
 }
 
-/// A picture's size, held against [`MOST_PIXELS`] and against the most pixels that its file can
-/// hold.
-fn checked_size(name: &str, [width, height]: [usize; 2], held: usize) -> Result<(), ImageError> {
+/// A picture's size, held against the `most` pixels that are read and against the most that its
+/// file can hold.
+fn checked_size(
+    name: &str,
+    [width, height]: [usize; 2],
+    held: usize,
+    most: usize,
+) -> Result<(), ImageError> {
     let reason = match width.checked_mul(height) {
         Some(0) => "it has no pixels",
         Some(n) if n > held => "its file is too short for them",
-        Some(n) if n <= MOST_PIXELS => return Ok(()),
+        Some(n) if n <= most => return Ok(()),
+        _ if most > MOST_PIXELS => "more than 8192 × 8192",
         _ => "more than 4096 × 4096",
     };
     let name = name.to_owned();

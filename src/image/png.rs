@@ -59,7 +59,7 @@ pub(super) fn png_size(bytes: &[u8]) -> Option<[usize; 2]> {
 
 /// A PNG of any colour type and depth; palettes become colours, a transparent colour becomes alpha.
 /// Of an animation the still picture.
-pub(super) fn read_png(name: &str, bytes: &[u8]) -> Result<Image, ImageError> {
+pub(super) fn read_png(name: &str, bytes: &[u8], most: usize) -> Result<Image, ImageError> {
     let fault = |e: png::DecodingError| damaged(name, e);
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(png::Transformations::EXPAND);
@@ -69,7 +69,7 @@ pub(super) fn read_png(name: &str, bytes: &[u8]) -> Result<Image, ImageError> {
     let [width, height] = [header.width, header.height].map(|n| n as usize);
     let bits = header.bits_per_pixel();
     let held = bytes.len().saturating_mul(8 * DEFLATE_RATIO_MAX) / bits.max(1);
-    checked_size(name, [width, height], held)?;
+    checked_size(name, [width, height], held, most)?;
 
     let mut reader = decoder.read_info().map_err(fault)?;
     let (colour, depth) = reader.output_color_type();

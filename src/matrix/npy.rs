@@ -17,9 +17,11 @@ use std::path::{Path, PathBuf};
 
 use npyz::{NpyHeader, Order, TypeChar, WriterBuilder};
 
+mod array;
 mod entries;
 mod rows;
 
+pub use array::read_array;
 pub use entries::Entries;
 pub use rows::Rows;
 

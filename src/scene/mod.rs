@@ -172,6 +172,7 @@ pub use files::{COPIES, Referenced};
 pub use known::Known;
 pub use laser::{Laser, Profile, Spot};
 pub use material::Material;
+pub use parse::read_toml;
 pub use quantity::Quantity;
 pub use sensor::{Glare, MOST_BRACKETS, SensorModel, SensorSettings, Spread};
 pub use surface::{Division, Role, Surface};
@@ -322,14 +323,7 @@ impl Scene {
             .clone()
             .map(SensorSettings::checked)
             .transpose()?;
-        let unfinite =
-            |e: serde_json::Error| Fault::new(keys![], e.to_string(), "use finite numbers only");
-        let json = serde_json::to_vec(&file.of_the_light()).map_err(unfinite)?;
-        let mut digest = Sha256::new_with_prefix(json);
-        for file in &files.read {
-            digest.update(&file.digest);
-        }
-        let hash = crate::store::hex(&digest.finalize());
+        let hash = content_hash(file, &files.read)?;
         let scene = Self {
             name: file.name.clone(),
             unit: file.unit,
@@ -376,4 +370,16 @@ impl Scene {
     pub fn warnings(&self) -> Vec<Warning> {
         check::warnings(self)
     }
+}
+
+/// SHA-256 (hex) of what the light depends on: the tables, and the bytes of the files they name.
+fn content_hash(file: &SceneFile, files: &[Referenced]) -> Result<String, Fault> {
+    let unfinite =
+        |e: serde_json::Error| Fault::new(keys![], e.to_string(), "use finite numbers only");
+    let json = serde_json::to_vec(&file.of_the_light()).map_err(unfinite)?;
+    let mut digest = Sha256::new_with_prefix(json);
+    for file in files {
+        digest.update(&file.digest);
+    }
+    Ok(crate::store::hex(&digest.finalize()))
 }

@@ -10,12 +10,28 @@ use super::error::{Fault, Place, SceneError, Step};
 
 /// Parses the text of a scene file; `source` names it in errors.
 pub(super) fn parse<T: DeserializeOwned>(source: &str, text: &str) -> Result<T, SceneError> {
+    read_toml(
+        source,
+        text,
+        "`phicam scene export bench` shows a whole scene",
+    )
+}
+
+/// Parses TOML text; `source` names it in errors, and `example` says where a right one is shown.
+///
+/// # Errors
+/// [`SceneError`] with line, cause and cure.
+pub fn read_toml<T: DeserializeOwned>(
+    source: &str,
+    text: &str,
+    example: &str,
+) -> Result<T, SceneError> {
     toml::from_str(text).map_err(|e| {
         let message = e.message().trim().replace('\n', "; ");
         SceneError {
             source: source.to_owned(),
             place: e.span().map(|span| Place::new(text, &span)),
-            cure: cure(&message),
+            cure: cure(&message, example),
             cause: message,
         }
     })
@@ -56,7 +72,7 @@ fn span(value: &DeValue<'_>, path: &[Step]) -> Option<Range<usize>> {
 }
 
 /// What to do about a message of the TOML reader.
-fn cure(message: &str) -> String {
+fn cure(message: &str, example: &str) -> String {
     let mut quoted = message.split('`').skip(1).step_by(2);
     let unknown = message.starts_with("unknown field") || message.starts_with("unknown variant");
     let missing = message.starts_with("missing field");
@@ -72,16 +88,16 @@ fn cure(message: &str) -> String {
                 .min_by_key(|(distance, _)| *distance);
             match nearest {
                 Some((distance, k)) if distance <= word.len().max(k.len()) / 2 => {
-                    format!("did you mean `{k}`? (`phicam scene export bench` shows a whole scene)")
+                    format!("did you mean `{k}`? ({example})")
                 }
                 _ if known.is_empty() => format!("remove `{word}`"),
                 _ => format!("remove it, or use one of {}", known.join(", ")),
             }
         }
         Some(word) if missing => {
-            format!("add `{word} = …` here (`phicam scene export bench` shows a whole scene)")
+            format!("add `{word} = …` here ({example})")
         }
-        _ => "write it as in a scene that works: `phicam scene export bench`".to_owned(),
+        _ => format!("write it as in one that works: {example}"),
     }
 }
 

@@ -1,13 +1,14 @@
 //! Scenes that differ from a given one in a single respect, for studies. Their hash and text remain
-//! the original's.
+//! the original's, but for [`Scene::with_listed_spots`].
 
 use glam::DAffine3;
 
 use super::error::{Fault, keys};
+use super::file::{Layout, SceneFile, SpotsTable};
 use super::laser;
 use super::parse;
 use super::surface::{self, Surface};
-use super::{Cells, Division, Material, Role, Scene, SceneError, Texture};
+use super::{Cells, Division, Material, Role, Scene, SceneError, Texture, content_hash};
 use crate::geometry::{DVec3, Facing, Parallelogram, Shape, Sphere};
 
 impl Scene {
@@ -29,6 +30,28 @@ impl Scene {
         scene.laser.spots = laser::place(places, self.laser.position, &self.surfaces)
             .map_err(|fault| self.locate(fault))?;
         Ok(scene)
+    }
+
+    /// The same scene with its spots listed at the given (x, y), in its text and its hash too; known
+    /// answers, which name spots, are gone.
+    ///
+    /// # Errors
+    /// [`SceneError`] if a spot is not on the wall.
+    pub fn with_listed_spots(&self, places: &[[f64; 2]]) -> Result<Self, SceneError> {
+        let mut file: SceneFile = parse::parse(&self.name, &self.text)?;
+        file.laser.spots = SpotsTable {
+            layout: Layout::List,
+            points: Some(places.to_vec()),
+            ..SpotsTable::default()
+        };
+        file.known.clear();
+        let scene = self.with_spots_at(places)?;
+        Ok(Self {
+            text: file.toml()?,
+            hash: content_hash(&file, &self.files).map_err(|fault| self.locate(fault))?,
+            known: Vec::new(),
+            ..scene
+        })
     }
 
     /// The same scene with paths of up to `surfaces` surfaces.
@@ -295,7 +318,7 @@ mod tests {
         let wall = bench.replace("lambertian = 0.8", "lambertian = \"unknown\"");
         let refused = Scene::from_toml("own", &wall).unwrap_err().to_string();
         assert!(refused.contains("of a hidden surface"), "{refused}");
-        let file: crate::scene::file::SceneFile = toml::from_str(&text).unwrap();
+        let file: SceneFile = toml::from_str(&text).unwrap();
         let again = toml::to_string(&file).unwrap();
         let again = Scene::from_toml("again", &again).unwrap();
         assert_eq!(again.unknown().as_deref(), Some("`object`"));

@@ -12,6 +12,8 @@ mod exposing_again;
 mod foreign_files;
 #[cfg(unix)]
 mod forged_kinds;
+mod import_round_trip;
+mod importing;
 mod interruption;
 mod killing;
 mod large_photographs;

@@ -7,10 +7,11 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use phicam::film::exr;
-use phicam::image::{self, DEFLATE_RATIO_MAX, MOST_PIXELS};
+use phicam::image::{self, DEFLATE_RATIO_MAX, MOST_PIXELS, MOST_SAMPLED, MOST_SAMPLES};
 use phicam::jobs::{BlockFile, Identity, PlanFile};
-use phicam::matrix::npy;
+use phicam::matrix::{MOST_ENTRIES, mat, npy};
 use phicam::num::stream::Sampling;
+use phicam::photographs::Set;
 use phicam::scene::{Scene, mesh};
 use phicam::transport::{Budget, Estimator, Plan, Tally};
 use sha2::{Digest, Sha256};
@@ -37,7 +38,9 @@ pub struct Reader {
 }
 
 /// All of them.
-pub const ALL: [Reader; 8] = [SCENE, MESH, PICTURE, MEASURED, FRAME, NPY, SHARD, PLAN];
+pub const ALL: [Reader; 11] = [
+    SCENE, MESH, PICTURE, MEASURED, FRAME, NPY, SHARD, PLAN, PHOTOGRAPH, ARRAY, LIST,
+];
 
 const MIB: usize = 1 << 20;
 
@@ -110,6 +113,62 @@ pub const PICTURE: Reader = Reader {
         Outcome::Accepted
     },
     memory: |length| 48 * MOST_PIXELS.min(8 * DEFLATE_RATIO_MAX * length) + MIB,
+};
+
+/// A photograph, or several in a file, as a camera stored them. LZW makes at most 1400 bytes of one;
+/// the samples are held twice while they are turned upright, each up to 24 bytes.
+pub const PHOTOGRAPH: Reader = Reader {
+    name: "photograph",
+    read: |bytes| {
+        let Ok(frames) = image::samples("a", bytes).map_err(reason) else {
+            return Outcome::Refused;
+        };
+        assert!(!frames.is_empty());
+        for frame in &frames {
+            let pixels = frame.width * frame.height;
+            assert!(pixels > 0 && pixels <= MOST_SAMPLED);
+            assert_eq!(frame.values.len(), pixels * frame.channels.len());
+            assert!(frame.values.iter().all(|x| x.is_finite()));
+        }
+        Outcome::Accepted
+    },
+    memory: |length| 32 * MOST_SAMPLES.min(1400 * length) + 4 * MIB,
+};
+
+/// An array of NumPy or MATLAB, by its first bytes.
+pub const ARRAY: Reader = Reader {
+    name: "array",
+    read: |bytes| {
+        let read = match bytes {
+            [0x93, ..] => npy::read_array("a", bytes),
+            _ => mat::read("a", bytes, None),
+        };
+        let Ok(array) = read.map_err(reason) else {
+            return Outcome::Refused;
+        };
+        assert_eq!(array.shape.iter().product::<usize>(), array.values.len());
+        assert!(array.values.iter().all(|x| x.is_finite()));
+        Outcome::Accepted
+    },
+    memory: |length| 24 * MOST_ENTRIES.min(1032 * length) + 2 * MIB,
+};
+
+/// The list of a set of photographs.
+pub const LIST: Reader = Reader {
+    name: "list",
+    read: |bytes| {
+        let Ok(text) = std::str::from_utf8(bytes) else {
+            return Outcome::Refused;
+        };
+        match Set::parse("set.toml", text).map_err(reason) {
+            Ok(set) => {
+                assert!(set.camera_noise().is_ok());
+                Outcome::Accepted
+            }
+            Err(()) => Outcome::Refused,
+        }
+    },
+    memory: |length| 256 * length + 4 * MIB,
 };
 
 /// A measured material, as a scene names it: the first byte says whether it is a text or a MERL

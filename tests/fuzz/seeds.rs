@@ -25,8 +25,58 @@ pub fn of(name: &str) -> Vec<Vec<u8>> {
         "npy" => arrays(),
         "shard" => shards(),
         "plan" => plans(),
+        "photograph" => photographs(),
+        "array" => stacks(),
+        "list" => lists(),
         other => unreachable!("no seeds of {other}"),
     }
+}
+
+macro_rules! stored {
+    ($($name:literal),*) => {
+        vec![$(include_bytes!(concat!("../photographs/", $name)).to_vec()),*]
+    };
+}
+
+/// What other programs wrote: `tests/photographs/make_files.py`.
+fn photographs() -> Vec<Vec<u8>> {
+    let mut all: Vec<Vec<u8>> = stored![
+        "grey8-s1-strips-lzw.tif",
+        "grey16-s257-big-endian.tif",
+        "grey16-s257-20x37-tiles-deflate.tif",
+        "grey32-s16777259.tif",
+        "float32-s0.25-packbits.tif",
+        "colour16-s257-planar.tif",
+        "pages8-s1-3.tif",
+        "grey8-s1-turned-6.tif",
+        "grey8-s1-turned-6.png",
+        "halves-turned-6.jpg"
+    ];
+    all.extend(grey16_png([3, 2], &[1000; 6]));
+    all.push(pictures::EXR_COLOUR.to_vec());
+    all
+}
+
+fn stacks() -> Vec<Vec<u8>> {
+    stored![
+        "one-v7.mat",
+        "stack-i2-fortran.npy",
+        "stack-u1.npy",
+        "colour-f4.npy"
+    ]
+}
+
+fn lists() -> Vec<Vec<u8>> {
+    let rest = "repeats = 2\ndark = [{ files = \"d*.png\", exposure = 0.5 }]\nflat = [\"a.png\", \"b.png\"]\nflat_dark = \"c.png\"\nchannel = \"mean\"\nvariable = \"x\"\n\
+        axes = \"rows-columns-frames\"\nexposure = 0.5\ngamma = 2.2\nfull_scale = 4095\nsaturation = 4000\ndead = [[1, 2]]\nhalo = 0.1\nnoise = { gain = 1, read_noise = 2 }\n\
+        watts = 1e-9\n[camera]\nfx = 1\nfy = 1\ncx = 0\ncy = 0\nk1 = -0.1\n[[marks]]\npixel = [1, 2]\nwall = [3, 4, 0]\n";
+    [
+        include_str!("../../scenes/steady-state-nlos-set.toml").to_owned(),
+        format!("scene = \"bench\"\nframes = \"a*.tif\"\n{rest}"),
+        "scene = \"bench\"\n[[frame]]\nfile = \"a\"\nposition = [1, 2]\ngain = 2\ngain_error = 0.1\n".to_owned(),
+    ]
+    .map(String::into_bytes)
+    .to_vec()
 }
 
 /// The built-in scenes, smaller, and what they do not use.

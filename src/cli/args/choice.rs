@@ -6,6 +6,7 @@ use crate::lab::options::{ESTIMATORS, SAMPLERS};
 use crate::lab::{Errors, Integration};
 use crate::model::Kernel;
 use crate::num::stream::Sampling;
+use crate::photographs::set::ChannelName;
 use crate::recovery::{Rule, WeightRule};
 use crate::report::{Law, Map};
 use crate::transport::Estimator;
@@ -44,6 +45,20 @@ pub(super) fn kernel() -> impl TypedValueParser<Value = Kernel> {
         (Kernel::Published, "The one in the published simulation"),
     ];
     one_of(kernels.map(|(kernel, help)| (kernel.name(), kernel, help)))
+}
+
+pub(super) fn channel() -> impl TypedValueParser<Value = ChannelName> {
+    one_of([
+        ("red", ChannelName::Red, "Red"),
+        ("green", ChannelName::Green, "Green"),
+        ("blue", ChannelName::Blue, "Blue"),
+        (
+            "mean",
+            ChannelName::Mean,
+            "The mean of the light in all three",
+        ),
+        ("all", ChannelName::All, "Each in a folder of its own"),
+    ])
 }
 
 pub(super) fn integration() -> impl TypedValueParser<Value = Integration> {

@@ -2,6 +2,7 @@
 
 mod choice;
 mod expose;
+mod import;
 mod many;
 mod recover;
 mod reproduce;
@@ -25,6 +26,7 @@ use crate::transport::Estimator;
 use value::{elements, shift, spot_range};
 
 pub(in crate::cli) use expose::{ExposeArgs, StatedBy};
+pub(in crate::cli) use import::ImportArgs;
 pub(in crate::cli) use many::{CleanArgs, MergeArgs, PlanArgs, ShardArgs, SlurmArgs, StatusArgs};
 pub(in crate::cli) use recover::RecoverArgs;
 pub(in crate::cli) use reproduce::ReproduceArgs;
@@ -68,6 +70,8 @@ pub(in crate::cli) enum Command {
     Recover(Box<RecoverArgs>),
     /// Photograph the clean flux with a sensor: shot noise, read noise, glare, converter
     Expose(ExposeArgs),
+    /// Make Φcam of photographs from a real camera: PNG, TIFF, JPEG, OpenEXR, NumPy and MATLAB files
+    Import(Box<ImportArgs>),
     /// Look at a frame or a matrix in false colour, as PNG or in the terminal
     View(ViewArgs),
     /// Show the report of a run or study over a local address, for what is too large to be in one

@@ -132,7 +132,7 @@ fn told(record: &Record, dir: &Path, json: bool) -> Result<Outcome, Failure> {
             "{}: {} spots merged ({}): frames, phi.npy, phi.stderr.npy and phi.tails.npy\n{}",
             dir.display(),
             record.spots,
-            record.plan,
+            record.origin,
             record.error_bars()
         )
     })?;

@@ -77,7 +77,11 @@ impl Kept {
                 format!("{SCENE} is not the scene of {name}: render again into another folder");
             return Err(Refusal::broken(words));
         }
-        let page = Bytes::from(served_html(&scene, &run.plan, model));
+        let plan = run.origin.plan().ok_or_else(|| {
+            let words = "the photographs in this folder were imported: there is no report of them";
+            Refusal::broken(words.to_owned())
+        })?;
+        let page = Bytes::from(served_html(&scene, plan, model));
         self.made = Some(Made {
             record,
             model,

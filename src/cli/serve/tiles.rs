@@ -42,7 +42,7 @@ pub(super) fn about(folder: &Served, query: Option<&str>) -> Result<Answer, Refu
         scene: &'a str,
         hash: &'a str,
         /// As text: JavaScript has no integers of 64 bits.
-        seed: String,
+        seed: Option<String>,
         pixels: [usize; 2],
         spots: usize,
         matrices: Vec<&'a str>,
@@ -54,7 +54,7 @@ pub(super) fn about(folder: &Served, query: Option<&str>) -> Result<Answer, Refu
         version: &record.version,
         scene: &record.scene,
         hash: &record.scene_hash,
-        seed: record.plan.seed.to_string(),
+        seed: record.origin.plan().map(|plan| plan.seed.to_string()),
         pixels: record.pixels,
         spots: record.spots,
         matrices: MATRICES

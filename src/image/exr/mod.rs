@@ -27,7 +27,7 @@ const NAMES: [(&str, Channel); 5] = [
     ("A", Channel::Alpha),
 ];
 
-pub(super) fn read_exr(name: &str, bytes: &[u8]) -> Result<Image, ImageError> {
+pub(super) fn read_exr(name: &str, bytes: &[u8], most: usize) -> Result<Image, ImageError> {
     let table = envelope::check_list(bytes).map_err(|e| {
         damaged(
             name,
@@ -48,7 +48,7 @@ pub(super) fn read_exr(name: &str, bytes: &[u8]) -> Result<Image, ImageError> {
         .map(|c| 8 * c.sample_type.bytes_per_sample())
         .sum();
     let held = bytes.len().saturating_mul(8 * DEFLATE_RATIO_MAX) / bits.max(1);
-    checked_size(name, [width, height], held)?;
+    checked_size(name, [width, height], held, most)?;
     if header.deep || list.iter().any(|c| c.sampling != Vec2(1, 1)) {
         return Err(unsupported(
             name,

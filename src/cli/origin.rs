@@ -1,0 +1,65 @@
+//! Where the Φcam of a run folder comes from.
+
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
+
+use crate::photographs::SourceFile;
+use crate::transport::Plan;
+
+/// Rendered or imported. A record holds the keys of a plan, or the key `imported`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(untagged)]
+pub(super) enum Origin {
+    Rendered(Plan),
+    Imported { imported: Photographs },
+}
+
+/// The photographs of a real camera.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub(super) struct Photographs {
+    /// SHA-256 of all settings as JSON, hex.
+    pub settings: String,
+    /// The unit of Φcam: W, counts/s or counts.
+    pub flux_unit: String,
+    /// The files that they were read from.
+    pub sources: Vec<SourceFile>,
+}
+
+impl Origin {
+    /// The plan of a render.
+    pub(super) fn plan(&self) -> Option<&Plan> {
+        match self {
+            Self::Rendered(plan) => Some(plan),
+            Self::Imported { .. } => None,
+        }
+    }
+}
+
+impl From<&Plan> for Origin {
+    fn from(plan: &Plan) -> Self {
+        Self::Rendered(*plan)
+    }
+}
+
+impl std::fmt::Display for Origin {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Rendered(plan) => plan.fmt(f),
+            Self::Imported { .. } => f.write_str("imported photographs"),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Origin {
+    /// By the key `imported`, so that what is wrong with a plan is told in its own words.
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut keys = serde_json::Value::deserialize(deserializer)?;
+        let read = match keys.get_mut("imported") {
+            Some(own) => {
+                serde_json::from_value(own.take()).map(|imported| Self::Imported { imported })
+            }
+            None => serde_json::from_value(keys).map(Self::Rendered),
+        };
+        read.map_err(D::Error::custom)
+    }
+}

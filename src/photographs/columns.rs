@@ -1,0 +1,147 @@
+//! Φ of every spot.
+
+use super::correct::{Correction, Flat};
+use super::error::{PhotographError, refused};
+use super::footprints::Footprints;
+use super::left_out::{DEAD, HALO, MISSING, OUTSIDE, SATURATED, in_halo};
+use super::noise::CameraNoise;
+use super::placing::Placing;
+use super::plane::Averaged;
+use super::read::Reader;
+use super::set::Set;
+use super::shots::Shots;
+use super::takes::Take;
+use crate::matrix::Matrix;
+use crate::scene::Scene;
+
+/// The columns of all spots.
+pub(super) struct Columns {
+    pub phi: Matrix,
+    pub stderr: Matrix,
+    pub left_out: Matrix,
+    pub mean: Vec<f64>,
+    pub gains: Vec<(usize, f64, f64)>,
+    pub photographs: usize,
+    pub zeros: usize,
+}
+
+impl Columns {
+    /// Φ of every spot.
+    pub(super) fn of(
+        set: &Set,
+        scene: &Scene,
+        (shots, placing): (&Shots<'_>, &Placing),
+        noise: Option<CameraNoise>,
+        reader: &mut Reader<'_>,
+    ) -> Result<Self, PhotographError> {
+        let (pixels, spots) = (scene.camera.pixels(), scene.laser.spots.len());
+        let flat = match &shots.flat {
+            None => None,
+            Some((shot, dark)) => Some(Flat::new(shot, dark.as_ref(), noise)?),
+        };
+        let mut dead = shots.dead.clone();
+        if let Some(flat) = &flat {
+            dead.iter_mut()
+                .zip(&flat.unusable)
+                .for_each(|(dead, bad)| *dead |= bad);
+        }
+        let mut found = Self {
+            phi: Matrix::zeros(pixels, spots),
+            stderr: Matrix::zeros(pixels, spots),
+            left_out: Matrix::from_element(pixels, spots, f64::from(MISSING)),
+            mean: vec![0.0; shots.size[0] * shots.size[1]],
+            gains: Vec::new(),
+            photographs: 0,
+            zeros: 0,
+        };
+        let code = Codes {
+            set,
+            scene,
+            footprints: &placing.footprints,
+            dead: &dead,
+        };
+        let mut seen = 0usize;
+        let visit = |spot: usize, take: &Take, mean: Averaged| {
+            let name = take.path.to_string_lossy();
+            let correction = Correction {
+                dark: shots.dark(take)?,
+                flat: flat.as_ref(),
+                noise,
+                exposure: take.exposure.unwrap_or(1.0),
+            };
+            let corrected = correction.apply(&name, &mean)?;
+            found.photographs += mean.frames;
+            found.zeros += mean.zeros;
+            seen += 1;
+            for (mean, flux) in found.mean.iter_mut().zip(&corrected.flux) {
+                *mean += flux;
+            }
+            let factor = set.watts.unwrap_or(1.0) / take.gain;
+            if (take.gain, take.gain_error) != (1.0, 0.0) {
+                found.gains.push((spot, take.gain, take.gain_error));
+            }
+            let relative = take.gain_error / take.gain;
+            let flux = placing.footprints.gathered(&corrected.flux);
+            let variance = corrected
+                .variance
+                .map(|v| placing.footprints.gathered_variance(&v));
+            for pixel in 0..pixels {
+                let code = code.of(spot, pixel, &mean.saturated);
+                found.left_out[(pixel, spot)] = f64::from(code);
+                if code != 0 {
+                    continue;
+                }
+                let value = factor * flux[pixel];
+                found.phi[(pixel, spot)] = value;
+                if let Some(variance) = &variance {
+                    let of_gain = relative * value;
+                    let all = factor * factor * variance[pixel] + of_gain * of_gain;
+                    found.stderr[(pixel, spot)] = all.sqrt();
+                }
+            }
+            Ok(())
+        };
+        shots.each_spot(reader, visit)?;
+        found.mean.iter_mut().for_each(|x| *x /= seen.max(1) as f64);
+        if found.phi.iter().any(|x| !x.is_finite()) {
+            return Err(refused(
+                "a flux comes out as infinite",
+                "check `watts`, `gain` and the exposure times",
+            ));
+        }
+        Ok(found)
+    }
+}
+
+/// Why entries are left out.
+struct Codes<'a> {
+    set: &'a Set,
+    scene: &'a Scene,
+    footprints: &'a Footprints,
+    dead: &'a [bool],
+}
+
+impl Codes<'_> {
+    /// Why an entry is left out; 0 if it is not.
+    fn of(&self, spot: usize, pixel: usize, saturated: &[bool]) -> u8 {
+        let mut code = 0;
+        if self.footprints.is_outside(pixel) {
+            code |= OUTSIDE;
+        }
+        if self.footprints.touches(pixel, saturated) {
+            code |= SATURATED;
+        }
+        if self.footprints.touches(pixel, self.dead) {
+            code |= DEAD;
+        }
+        let at = self.scene.laser.spots[spot].target.position;
+        if self
+            .set
+            .halo
+            .is_some_and(|radius| in_halo(&self.scene.camera, pixel, at, radius))
+        {
+            code |= HALO;
+        }
+        code
+    }
+}

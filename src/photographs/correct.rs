@@ -1,0 +1,191 @@
+//! From an averaged photograph to flux: dark frames, flat field, exposure time.
+
+use super::error::{PhotographError, refused};
+use super::noise::CameraNoise;
+use super::plane::{Averaged, same_size};
+
+/// What all photographs of one exposure time share.
+#[derive(Clone, Copy, Debug)]
+pub struct Correction<'a> {
+    /// Photographs without the laser, of the same exposure time.
+    pub dark: Option<&'a Averaged>,
+    /// The flat field.
+    pub flat: Option<&'a Flat>,
+    /// The camera's noise, where it is known.
+    pub noise: Option<CameraNoise>,
+    /// Exposure time, s; 1 where none is known.
+    pub exposure: f64,
+}
+
+/// A photograph of even radiance, relative to its mean.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flat {
+    size: [usize; 2],
+    /// F: 1 on average.
+    pub level: Vec<f64>,
+    /// Relative variance of F.
+    pub variance: Vec<f64>,
+    /// Pixels that see nothing in it, or too much.
+    pub unusable: Vec<bool>,
+}
+
+/// Flux into the pixels of a photograph, counts per second.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Corrected {
+    /// (s − d)/(F·t).
+    pub flux: Vec<f64>,
+    /// Its variance, (counts/s)²; `None` where the noise is not known.
+    pub variance: Option<Vec<f64>>,
+}
+
+/// Part of the mean below which a pixel of a flat field counts as dead.
+const DEAD: f64 = 0.05;
+
+impl Flat {
+    /// From averaged photographs of even radiance, less those `dark` of the same exposure time.
+    ///
+    /// # Errors
+    /// [`PhotographError::Refused`] for one without light.
+    pub fn new(
+        shot: &Averaged,
+        dark: Option<&Averaged>,
+        noise: Option<CameraNoise>,
+    ) -> Result<Self, PhotographError> {
+        let correction = Correction {
+            dark,
+            flat: None,
+            noise,
+            exposure: 1.0,
+        };
+        let Corrected { flux, variance } = correction.apply("the flat field", shot)?;
+        let good = |k: &usize| !shot.saturated[*k];
+        let lit: Vec<usize> = (0..flux.len()).filter(good).collect();
+        let mean = lit.iter().map(|k| flux[*k]).sum::<f64>() / lit.len().max(1) as f64;
+        if mean <= 0.0 || !mean.is_finite() {
+            return Err(refused(
+                "the flat field has no light above its dark frames",
+                "give photographs of an evenly lit white surface that are not saturated",
+            ));
+        }
+        let level: Vec<f64> = flux.iter().map(|x| x / mean).collect();
+        let unusable: Vec<bool> = (0..level.len())
+            .map(|k| level[k] < DEAD || shot.saturated[k])
+            .collect();
+        let relative = |k: usize| match &variance {
+            Some(v) if !unusable[k] => v[k] / (flux[k] * flux[k]),
+            _ => 0.0,
+        };
+        Ok(Self {
+            size: shot.size,
+            variance: (0..level.len()).map(relative).collect(),
+            level,
+            unusable,
+        })
+    }
+}
+
+impl Correction<'_> {
+    /// Φ = (s − d)/(F·t) of an averaged photograph, with its variance: that of its own mean, that of
+    /// the dark frames' mean, and F's. `name` is for messages. Pixels that the flat field cannot
+    /// serve are 0.
+    ///
+    /// # Errors
+    /// [`PhotographError::Refused`] for dark frames or a flat field of another size.
+    pub fn apply(&self, name: &str, shot: &Averaged) -> Result<Corrected, PhotographError> {
+        if let Some(dark) = self.dark {
+            same_size("a dark frame", dark.size, shot.size)?;
+        }
+        if let Some(flat) = self.flat {
+            same_size("the flat field", flat.size, shot.size)?;
+        }
+        if !(self.exposure > 0.0 && self.exposure.is_finite()) {
+            return Err(refused(
+                format!("the exposure time of {name} is {} s", self.exposure),
+                "give a positive number of seconds",
+            ));
+        }
+        let pixels = shot.light.len();
+        let mut flux = vec![0.0; pixels];
+        let mut variance = self.noise.map(|_| vec![0.0; pixels]);
+        for k in 0..pixels {
+            let (level, level_variance) = match self.flat {
+                Some(flat) if flat.unusable[k] => continue,
+                Some(flat) => (flat.level[k], flat.variance[k]),
+                None => (1.0, 0.0),
+            };
+            let signal = shot.light[k] - self.dark.map_or(0.0, |d| d.light[k]);
+            let scale = 1.0 / (level * self.exposure);
+            flux[k] = signal * scale;
+            if let (Some(variance), Some(noise)) = (&mut variance, self.noise) {
+                let own = noise.of_mean(signal, shot.rounding[k], shot.frames);
+                let dark = self
+                    .dark
+                    .map_or(0.0, |d| noise.of_mean(0.0, d.rounding[k], d.frames));
+                variance[k] = (own + dark) * scale * scale + level_variance * flux[k] * flux[k];
+            }
+        }
+        Ok(Corrected { flux, variance })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::plane::Plane;
+    use super::*;
+
+    fn shot(light: &[f64]) -> Averaged {
+        Averaged::of(Plane {
+            size: [light.len(), 1],
+            light: light.to_vec(),
+            rounding: vec![1.0 / 12.0; light.len()],
+            saturated: light.iter().map(|x| *x >= 1000.0).collect(),
+            zeros: 0,
+        })
+    }
+
+    /// (s − d)/(F·t) and its variance by hand: gain 0.5, read noise 3 counts.
+    #[test]
+    fn flux_and_variance_are_those_of_the_law() {
+        let noise = Some(CameraNoise::new(0.5, 3.0).unwrap());
+        let (dark, flat_dark) = (shot(&[10.0, 20.0, 10.0]), shot(&[5.0; 3]));
+        let flat = Flat::new(&shot(&[105.0, 305.0, 5.0]), Some(&flat_dark), noise).unwrap();
+        assert_eq!(flat.unusable, [false, false, true]);
+        // 100, 300 and 0: the mean is 400/3.
+        assert!((flat.level[0] - 0.75).abs() < 1e-12 && (flat.level[1] - 2.25).abs() < 1e-12);
+        let correction = Correction {
+            dark: Some(&dark),
+            flat: Some(&flat),
+            noise,
+            exposure: 2.0,
+        };
+        let found = correction.apply("a", &shot(&[70.0, 110.0, 90.0])).unwrap();
+        for (found, due) in found.flux.iter().zip([60.0 / 1.5, 90.0 / 4.5, 0.0]) {
+            assert!((found - due).abs() < 1e-12, "{found} {due}");
+        }
+        let lsb = 1.0 / 12.0;
+        let own = 0.5 * 60.0 + 9.0 + lsb;
+        let of_flat = (0.5 * 100.0 + 9.0 + lsb + 9.0 + lsb) / 1e4;
+        let due = (own + 9.0 + lsb) / 2.25 + of_flat * 1600.0;
+        assert!((found.variance.unwrap()[0] / due - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused() {
+        let dark = shot(&[1.0; 2]);
+        let plain = Correction {
+            dark: Some(&dark),
+            flat: None,
+            noise: None,
+            exposure: 1.0,
+        };
+        let error = plain.apply("a", &shot(&[1.0; 3])).unwrap_err().to_string();
+        assert!(error.contains("a dark frame has 2 × 1"), "{error}");
+        let never = Correction {
+            dark: None,
+            exposure: 0.0,
+            ..plain
+        };
+        assert!(never.apply("a", &shot(&[1.0])).is_err());
+        assert!(Flat::new(&dark, Some(&dark), None).is_err());
+    }
+}

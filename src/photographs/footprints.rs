@@ -1,0 +1,271 @@
+//! From the pixels of a photograph to those of the scene's camera.
+//!
+//! A pixel q of the photograph collects y_q = κ·∫_q L(x)·e′ du counts: L the radiance of the wall,
+//! e′ the étendue of the photograph's camera for each area u of the picture. The scene's camera
+//! collects Φ_p = ∫_p L(x)·e dA over its footprint on the wall, with e = A_lens·h²/r⁴ the étendue
+//! for each area of the wall, h and r the camera's distances from the wall's plane and from x. With L
+//! even within q,
+//!
+//! > Φ_p = (1/κ)·Σ_q a_pq·y_q·ρ_pq,   ρ = e·|∂A/∂u|/e′
+//!
+//! a_pq the fraction of q's area that lies in the footprint of p, seen in the photograph, and ρ the
+//! ratio of the étendues at its centroid. A photograph without marks is that of the scene's own
+//! camera: ρ = 1, and Φ is a sum of pixels. Else ρ is known up to a factor (as the aperture of a
+//! camera is), such that of a wall of even radiance the sum of Φ is that of the photograph's pixels in
+//! the view: Σ a·e′·ρ = Σ a·e′. e′ is even after a flat field of even radiance; with a camera matrix
+//! it is [`Lens::etendue`](super::Lens::etendue); else it is taken as even.
+//!
+//! The footprint is a polygon in the photograph, cut exactly at the borders of pixels. With a lens
+//! each of its edges is drawn by eight chords: an edge of n pixels whose curve leaves the chord by
+//! k·n² px is then off by k·n²/64 px, which is 1e-3 of a pixel for the strongest lenses and n = 10.
+//! Pixels of the photograph are independent; those at a border of footprints belong to two.
+
+use rayon::prelude::*;
+
+use super::error::{PhotographError, refused};
+use super::mapping::Mapping;
+use crate::scene::Camera;
+
+/// Chords of an edge with a lens.
+const CHORDS: usize = 8;
+/// Part of a footprint that may lie outside the photograph by rounding.
+const OUTSIDE: f64 = 1e-6;
+
+/// How the étendue of the photograph's camera goes with the place in the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Evenness {
+    /// The photograph is that of the scene's own camera: fluxes are added up.
+    Same,
+    /// It is even: of a flat-fielded photograph, or where nothing is known.
+    Even,
+    /// It falls to the corners as the camera matrix says.
+    ByLens,
+}
+
+/// What each pixel of the scene's camera takes from the photograph: Φ_p = Σ weight·y.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Footprints {
+    /// For each pixel of the scene, the pixels of the photograph with their weights, in order; none
+    /// where the footprint is not wholly in the photograph.
+    rows: Vec<Vec<(u32, f64)>>,
+}
+
+impl Footprints {
+    /// Those of `camera` in a photograph of `size` (columns, rows) under `mapping`.
+    ///
+    /// # Errors
+    /// [`PhotographError::Refused`] where no footprint lies in the photograph.
+    pub fn new(
+        camera: &Camera,
+        mapping: &Mapping,
+        size: [usize; 2],
+        evenness: Evenness,
+    ) -> Result<Self, PhotographError> {
+        let row = |pixel: usize| row(camera, mapping, size, evenness, pixel);
+        let rows: Vec<Pieces> = (0..camera.pixels()).into_par_iter().map(row).collect();
+        let pieces = || rows.iter().flatten();
+        let area: f64 = pieces().map(|p| p.fraction * p.own).sum();
+        let weighed: f64 = pieces().map(|p| p.fraction * p.own * p.ratio).sum();
+        if area <= 0.0 || weighed <= 0.0 {
+            return Err(refused(
+                format!(
+                    "no pixel of the scene's view lies in the photograph of {} × {} pixels",
+                    size[0], size[1]
+                ),
+                "check the marks or the crop, and which of their axes is which",
+            ));
+        }
+        let unit = match evenness {
+            Evenness::Same => 1.0,
+            _ => area / weighed,
+        };
+        let weights = |pieces: Pieces| {
+            let weight = |p: Piece| (p.pixel, p.fraction * p.ratio * unit);
+            pieces.into_iter().map(weight).collect()
+        };
+        let rows = rows.into_iter().map(weights).collect();
+        Ok(Self { rows })
+    }
+
+    /// The photograph's pixels with their weights for a pixel of the scene; empty where its
+    /// footprint is not wholly in the photograph.
+    pub fn of(&self, pixel: usize) -> &[(u32, f64)] {
+        &self.rows[pixel]
+    }
+
+    /// Whether the footprint of `pixel` is not wholly in the photograph.
+    pub fn is_outside(&self, pixel: usize) -> bool {
+        self.rows[pixel].is_empty()
+    }
+
+    /// Σ weight·values for each pixel of the scene.
+    pub fn gathered(&self, values: &[f64]) -> Vec<f64> {
+        let sum = |row: &Vec<(u32, f64)>| row.iter().map(|(q, w)| w * values[*q as usize]).sum();
+        self.rows.par_iter().map(sum).collect()
+    }
+
+    /// Σ weight²·variances for each pixel of the scene.
+    pub fn gathered_variance(&self, variances: &[f64]) -> Vec<f64> {
+        let sum = |row: &Vec<(u32, f64)>| {
+            row.iter()
+                .map(|(q, w)| w * w * variances[*q as usize])
+                .sum()
+        };
+        self.rows.par_iter().map(sum).collect()
+    }
+
+    /// Whether one of the photograph's pixels that `marked` names is in the footprint.
+    pub fn touches(&self, pixel: usize, marked: &[bool]) -> bool {
+        self.rows[pixel].iter().any(|(q, _)| marked[*q as usize])
+    }
+}
+
+/// What a footprint has of one pixel of the photograph.
+struct Piece {
+    pixel: u32,
+    /// Of the photograph's pixel.
+    fraction: f64,
+    /// ρ up to a factor.
+    ratio: f64,
+    /// e′ up to a factor.
+    own: f64,
+}
+
+type Pieces = Vec<Piece>;
+
+/// The pieces of the footprint of `pixel`.
+fn row(
+    camera: &Camera,
+    mapping: &Mapping,
+    [width, height]: [usize; 2],
+    evenness: Evenness,
+    pixel: usize,
+) -> Pieces {
+    let Some(polygon) = outline(camera, mapping, pixel) else {
+        return Vec::new();
+    };
+    let whole = area_and_centroid(&polygon).0;
+    let bounds = |k: usize, most: usize| {
+        let low = polygon.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
+        let high = polygon
+            .iter()
+            .map(|p| p[k])
+            .fold(f64::NEG_INFINITY, f64::max);
+        let first = (low + 0.5).floor().clamp(0.0, most as f64) as usize;
+        let end = (high + 0.5).ceil().clamp(0.0, most as f64) as usize;
+        first..end
+    };
+    let mut pieces = Vec::new();
+    let mut covered = 0.0;
+    for v in bounds(1, height) {
+        let middle = v as f64;
+        let strip = between(&polygon, 1, [middle - 0.5, middle + 0.5]);
+        if strip.is_empty() {
+            continue;
+        }
+        for u in bounds(0, width) {
+            let centre = u as f64;
+            let part = between(&strip, 0, [centre - 0.5, centre + 0.5]);
+            let (fraction, centroid) = area_and_centroid(&part);
+            if fraction <= 0.0 {
+                continue;
+            }
+            covered += fraction;
+            let Some([ratio, own]) = ratio(camera, mapping, evenness, centroid) else {
+                return Vec::new();
+            };
+            pieces.push(Piece {
+                pixel: (u + v * width) as u32,
+                fraction,
+                ratio,
+                own,
+            });
+        }
+    }
+    if covered < whole * (1.0 - OUTSIDE) {
+        pieces.clear();
+    }
+    pieces
+}
+
+/// The footprint of a scene's pixel in the photograph; `None` where it has none.
+fn outline(camera: &Camera, mapping: &Mapping, pixel: usize) -> Option<Vec<[f64; 2]>> {
+    let chords = mapping.lens().map_or(1, |_| CHORDS);
+    let [column, row] = [pixel % camera.columns, pixel / camera.columns].map(|n| n as f64);
+    let count = [camera.columns, camera.rows].map(|n| n as f64);
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let mut polygon = Vec::with_capacity(4 * chords);
+    for side in 0..4 {
+        let (from, to): ([f64; 2], [f64; 2]) = (corners[side], corners[(side + 1) % 4]);
+        for k in 0..chords {
+            let t = k as f64 / chords as f64;
+            let [x, y] = [0, 1].map(|i| from[i] + t * (to[i] - from[i]));
+            polygon.push(mapping.pixel([(column + x) / count[0], (row + y) / count[1]])?);
+        }
+    }
+    Some(polygon)
+}
+
+/// ρ and e′, each up to a factor, at a place of the photograph.
+fn ratio(camera: &Camera, mapping: &Mapping, evenness: Evenness, at: [f64; 2]) -> Option<[f64; 2]> {
+    let own = match evenness {
+        Evenness::Same => return Some([1.0; 2]),
+        Evenness::Even => 1.0,
+        Evenness::ByLens => mapping.lens()?.etendue(at)?,
+    };
+    let ([a, b], area) = mapping.wall(at)?;
+    let view = &camera.view;
+    let point = view.corner() + view.u() * a + view.v() * b;
+    let r2 = (point - camera.position).length_squared();
+    // h² is the same for all pixels.
+    Some([area / (r2 * r2) / own, own])
+}
+
+/// The part of a polygon between two values of coordinate `axis` (Sutherland and Hodgman, *CACM* 17,
+/// 1974).
+fn between(polygon: &[[f64; 2]], axis: usize, [low, high]: [f64; 2]) -> Vec<[f64; 2]> {
+    let above = cut(polygon, axis, low, 1.0);
+    cut(&above, axis, high, -1.0)
+}
+
+/// The part of a polygon where sign·(coordinate − bound) ≥ 0.
+fn cut(polygon: &[[f64; 2]], axis: usize, bound: f64, sign: f64) -> Vec<[f64; 2]> {
+    let inside = |p: &[f64; 2]| sign * (p[axis] - bound) >= 0.0;
+    let mut kept = Vec::with_capacity(polygon.len() + 2);
+    for (k, to) in polygon.iter().enumerate() {
+        let from = polygon[(k + polygon.len() - 1) % polygon.len()];
+        if inside(&from) != inside(to) {
+            let t = (bound - from[axis]) / (to[axis] - from[axis]);
+            let mut crossing = [0, 1].map(|i| from[i] + t * (to[i] - from[i]));
+            crossing[axis] = bound;
+            kept.push(crossing);
+        }
+        if inside(to) {
+            kept.push(*to);
+        }
+    }
+    kept
+}
+
+/// Area of a polygon, whichever way round, and its centroid.
+fn area_and_centroid(polygon: &[[f64; 2]]) -> (f64, [f64; 2]) {
+    let Some(origin) = polygon.first() else {
+        return (0.0, [0.0; 2]);
+    };
+    let mut twice = 0.0;
+    let mut moment = [0.0; 2];
+    for pair in polygon.windows(2).skip(1) {
+        let [p, q] = [pair[0], pair[1]].map(|x| [x[0] - origin[0], x[1] - origin[1]]);
+        let cross = p[0] * q[1] - p[1] * q[0];
+        twice += cross;
+        moment = [0, 1].map(|i| moment[i] + cross * (p[i] + q[i]));
+    }
+    if twice == 0.0 {
+        return (0.0, *origin);
+    }
+    let centroid = [0, 1].map(|i| origin[i] + moment[i] / (3.0 * twice));
+    (0.5 * twice.abs(), centroid)
+}
+
+#[cfg(test)]
+mod tests;

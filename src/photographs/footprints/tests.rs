@@ -1,0 +1,149 @@
+use super::super::lens::Lens;
+use super::super::mapping::Mark;
+use super::*;
+use crate::num::quadrature::Rule;
+use crate::scene::Scene;
+use crate::scene::file::SceneFile;
+
+/// The bench's camera with 8 × 6 pixels.
+fn camera() -> Camera {
+    let mut file = SceneFile::default();
+    file.camera.pixels = [8, 6];
+    Scene::new(&file, None).unwrap().camera
+}
+
+/// A crop of whole pixels is their sum, upside down: the photograph's first row is the view's top.
+#[test]
+fn a_crop_is_a_sum_of_pixels() {
+    let camera = camera();
+    let mapping = Mapping::upright([4.0, 2.0], [32.0, 18.0]);
+    let found = Footprints::new(&camera, &mapping, [40, 20], Evenness::Same).unwrap();
+    let values: Vec<f64> = (0..800)
+        .map(|q| f64::from(q % 40) + 100.0 * f64::from(q / 40))
+        .collect();
+    let sums = found.gathered(&values);
+    let variances = found.gathered_variance(&values);
+    for (p, (sum, variance)) in sums.iter().zip(variances).enumerate() {
+        let [i, j] = [p % 8, p / 8];
+        let due: f64 = (0..4)
+            .flat_map(|u| (0..3).map(move |v| [4 + 4 * i + u, 2 + 3 * (5 - j) + v]))
+            .map(|[u, v]| u as f64 + 100.0 * v as f64)
+            .sum();
+        assert!(
+            (sum - due).abs() < 1e-9 && (variance - due).abs() < 1e-9,
+            "{p}: {sum} {due}"
+        );
+        assert_eq!(found.of(p).len(), 12);
+    }
+    // Shifted by a third of a pixel the weights are fractions, and still add up to the crop.
+    let part = Mapping::upright([4.0 + 1.0 / 3.0, 1.5], [31.0, 17.25]);
+    let part = Footprints::new(&camera, &part, [40, 20], Evenness::Same).unwrap();
+    let total: f64 = part.gathered(&[1.0; 800]).iter().sum();
+    assert!((total - 31.0 * 17.25).abs() < 1e-9);
+    let mut marked = vec![false; 800];
+    marked[4 + 4 + 40 * 19] = true;
+    assert!(found.touches(1, &marked) && !found.touches(0, &marked));
+}
+
+#[test]
+fn what_reaches_beyond_the_photograph_is_outside() {
+    let camera = camera();
+    let mapping = Mapping::upright([-4.0, 0.0], [32.0, 18.0]);
+    let found = Footprints::new(&camera, &mapping, [40, 18], Evenness::Same).unwrap();
+    for p in 0..48 {
+        assert_eq!(found.is_outside(p), p % 8 == 0, "{p}");
+    }
+    let beyond = Mapping::upright([90.0, 0.0], [32.0, 18.0]);
+    let error = Footprints::new(&camera, &beyond, [40, 18], Evenness::Same).unwrap_err();
+    assert!(error.to_string().contains("no pixel of the scene's view"));
+}
+
+/// An evenly glowing wall, photographed by a camera that stands elsewhere, with distortion: its
+/// pixels have the étendue cos⁴θ·(area of the undistorted pixel), and what is imported is that of the
+/// scene's camera, ∫ h²/r⁴ dA by quadrature, to one factor.
+#[test]
+fn the_ratio_of_etendues_is_that_of_the_cameras() {
+    let camera = camera();
+    let view = &camera.view;
+    let lens = Lens {
+        fx: 260.0,
+        fy: 260.0,
+        cx: 150.0,
+        cy: 100.0,
+        k1: -0.15,
+        k2: 0.02,
+        p1: 1e-3,
+        p2: -5e-4,
+        k3: 0.0,
+    };
+    // Above the wall and aside, looking straight down with its rows along −y.
+    let centre = view.corner() + view.u() * 0.4 + view.v() * 0.6;
+    let distance = 1.3 * view.u().length();
+    let project = |a: f64, b: f64| {
+        let x = view.corner() + view.u() * a + view.v() * b - centre;
+        lens.pixel(lens.distorted([x.x / distance, -x.y / distance]).0)
+    };
+    let marks: Vec<Mark> = (0..16)
+        .map(|k| [f64::from(k % 4) / 3.0, f64::from(k / 4) / 3.0])
+        .map(|wall| Mark {
+            pixel: project(wall[0], wall[1]),
+            wall,
+        })
+        .collect();
+    let mapping = Mapping::from_marks(&marks, Some(lens)).unwrap().mapping;
+    let size = [320, 240];
+    // The counts of each pixel, from the solid angle of its four corners' directions.
+    let counts: Vec<f64> = (0..size[0] * size[1])
+        .map(|q| {
+            let at = |du: f64, dv: f64| {
+                let pixel = [(q % size[0]) as f64 + du, (q / size[0]) as f64 + dv];
+                lens.undistorted(lens.normalised(pixel)).unwrap_or([0.0; 2])
+            };
+            let corners = [at(-0.5, -0.5), at(0.5, -0.5), at(0.5, 0.5), at(-0.5, 0.5)];
+            let [x, y] = at(0.0, 0.0);
+            let cos2 = 1.0 / (1.0 + x * x + y * y);
+            area_and_centroid(&corners).0 * cos2 * cos2
+        })
+        .collect();
+    let found = Footprints::new(&camera, &mapping, size, Evenness::ByLens).unwrap();
+    let flux = found.gathered(&counts);
+    let rule = Rule::gauss_legendre(8);
+    let height = view.normal().dot(camera.position - view.corner()).abs();
+    let due: Vec<f64> = (0..48)
+        .map(|p| {
+            let footprint = camera.footprint(p);
+            let mut sum = 0.0;
+            for (a, wa) in rule.on(0.0, 1.0) {
+                for (b, wb) in rule.on(0.0, 1.0) {
+                    let r2 = (footprint.at([a, b]) - camera.position).length_squared();
+                    sum += wa * wb * footprint.area * height * height / (r2 * r2);
+                }
+            }
+            sum
+        })
+        .collect();
+    let factor = flux.iter().sum::<f64>() / due.iter().sum::<f64>();
+    for (p, (found, due)) in flux.iter().zip(&due).enumerate() {
+        assert!(
+            (found / (due * factor) - 1.0).abs() < 2e-4,
+            "{p}: {}",
+            found / (due * factor)
+        );
+    }
+    // Their sum is that of the photograph's pixels in the view.
+    let all = Footprints::new(&camera, &mapping, size, Evenness::Same).unwrap();
+    let due: f64 = all.gathered(&counts).iter().sum();
+    assert!((flux.iter().sum::<f64>() / due - 1.0).abs() < 1e-5);
+}
+
+/// Areas and centroids by hand, and a cut at a border.
+#[test]
+fn polygons_have_their_area() {
+    let triangle = [[0.0, 0.0], [3.0, 0.0], [0.0, 3.0]];
+    assert_eq!(area_and_centroid(&triangle), (4.5, [1.0, 1.0]));
+    let turned: Vec<[f64; 2]> = triangle.iter().rev().copied().collect();
+    assert_eq!(area_and_centroid(&turned).0, 4.5);
+    // Between x = 1 and x = 2: a trapezium of heights 2 and 1.
+    assert!((area_and_centroid(&between(&triangle, 0, [1.0, 2.0])).0 - 1.5).abs() < 1e-15);
+    assert!(between(&triangle, 0, [4.0, 5.0]).is_empty());
+}

@@ -1,0 +1,164 @@
+//! All photographs of a set as Φcam.
+
+use std::path::Path;
+
+use super::account::{ImportAccount, Imported};
+use super::columns::Columns;
+use super::error::{PhotographError, refused};
+use super::footprints::Evenness;
+use super::left_out::LeftOut;
+use super::list::{positions, tables};
+use super::noise::PhotonTransferFit;
+use super::placing::Placing;
+use super::read::Reader;
+use super::set::{ChannelName, Set};
+use super::shots::Shots;
+
+use crate::scene::Scene;
+
+/// Probability of the photon transfer line below which it is said not to fit.
+const FITS: f64 = 1e-3;
+
+/// The scene with the spots whose positions the set lists, if it does.
+///
+/// # Errors
+/// [`PhotographError`] for spots that are not on the wall.
+pub fn scene_of(set: &Set, scene: Scene, folder: &Path) -> Result<Scene, PhotographError> {
+    let mut reader = Reader::new(folder, None, None);
+    let tables = tables(set, &mut reader, folder)?;
+    Ok(match positions(&tables)? {
+        Some(places) => scene.with_listed_spots(&places)?,
+        None => scene,
+    })
+}
+
+/// Φcam of `scene` ([`scene_of`]) from the photographs of `set` in `folder`, of one channel where
+/// they are in colour. Files are read once, or twice where the noise is found from repeats; of all
+/// photographs those of one file and the average of its spot are held at a time.
+///
+/// # Errors
+/// [`PhotographError`].
+pub fn import(
+    set: &Set,
+    scene: &Scene,
+    folder: &Path,
+    channel: Option<ChannelName>,
+) -> Result<Imported, PhotographError> {
+    let mut reader = Reader::new(folder, set.variable.as_deref(), set.axes);
+    let listed = tables(set, &mut reader, folder)?;
+    let spots = scene.laser.spots.len();
+    let shots = Shots::new(set, spots, folder, channel, &mut reader, &listed)?;
+    let placing = Placing::new(set, &scene.camera, shots.size)?;
+    let unit = unit(set, &shots)?;
+    let given = set.camera_noise()?;
+    let line = match given {
+        Some(_) => None,
+        None => shots.photon_transfer(&mut reader)?,
+    };
+    let noise = given.or(line.map(|l| l.noise));
+    let columns = Columns::of(set, scene, (&shots, &placing), noise, &mut reader)?;
+    let mut warnings = unsaid(set, &placing);
+    warnings.extend(line.and_then(|line| bent(&line)));
+    if noise.is_none() {
+        warnings.push("the noise is not known (one photograph a spot, and no `noise`): there is no standard error; recover weighs all entries alike, or with --noise".to_owned());
+    }
+    if reader.is_lossy && set.gamma.is_none() && set.response.is_none() {
+        warnings.push("JPEG is neither linear nor without loss: give `gamma` or `response`, or photographs that the camera saves as they are".to_owned());
+    }
+    if columns.zeros > 0 {
+        let all = columns.photographs * shots.size[0] * shots.size[1];
+        warnings.push(format!(
+            "{:.2} % of the stored values are 0: what would be below is cut off, so that dark pixels are too bright on average; raise the camera's offset",
+            100.0 * columns.zeros as f64 / all as f64
+        ));
+    }
+    let Placing {
+        fitted, mapping, ..
+    } = placing;
+    let account = ImportAccount {
+        scene: scene.name.clone(),
+        scene_hash: scene.hash.clone(),
+        set: set.clone(),
+        channel,
+        unit,
+        photograph: shots.size,
+        photographs: columns.photographs,
+        noise,
+        photon_transfer: line,
+        mark_rms: fitted.as_ref().map(|f| f.rms),
+        mark_error: fitted.as_ref().and_then(|f| f.mark_error),
+        mark_residuals: fitted.map_or(Vec::new(), |f| f.residuals),
+        gains: columns.gains,
+        left_out: LeftOut::of(&columns.left_out),
+        warnings,
+        files: reader.sources(),
+    };
+    Ok(Imported {
+        phi: columns.phi,
+        stderr: noise.map(|_| columns.stderr),
+        left_out: columns.left_out,
+        mean: (columns.mean, shots.size),
+        mapping,
+        account,
+    })
+}
+
+/// The unit of Φ.
+fn unit(set: &Set, shots: &Shots<'_>) -> Result<&'static str, PhotographError> {
+    let timed = shots.takes.iter().filter(|t| t.exposure.is_some()).count();
+    if timed != 0 && timed != shots.takes.len() {
+        return Err(refused(
+            "some photographs have an exposure time and others not",
+            "give every one, or one `exposure` for all",
+        ));
+    }
+    Ok(match (set.watts, timed) {
+        (Some(_), _) => "W",
+        (None, 0) => "counts",
+        (None, _) => "counts/s",
+    })
+}
+
+/// What the settings leave unsaid.
+fn unsaid(set: &Set, placing: &Placing) -> Vec<String> {
+    let checked = placing
+        .fitted
+        .as_ref()
+        .is_none_or(|f| f.mark_error.is_some());
+    let even = placing.evenness == Evenness::Even && set.flat.is_none();
+    let all = [
+        (
+            set.dark.is_none(),
+            "no dark frames: the camera's offset and other light stay in every entry; give `dark`, or recover with --background",
+        ),
+        (
+            set.flat.is_some() && set.flat_dark.is_none(),
+            "the flat field has no dark frames of its own (`flat_dark`): its offset stays in it",
+        ),
+        (
+            even,
+            "neither a flat field nor a camera matrix says how the photograph falls off to its corners: it is taken as even",
+        ),
+        (
+            !checked,
+            "four marks leave nothing to check the mapping by; give more",
+        ),
+        (
+            set.watts.is_none(),
+            "no factor to watts is known (`watts`): fluxes have an arbitrary unit; recover with --free-scale",
+        ),
+    ];
+    let said = all.into_iter().filter(|(holds, _)| *holds);
+    said.map(|(_, words)| words.to_owned()).collect()
+}
+
+/// That the variance of repeats is no line.
+fn bent(line: &PhotonTransferFit) -> Option<String> {
+    (line.p < FITS).then(|| {
+        format!(
+            "the variance of repeated photographs is no line over their light (probability {:.1e}, off by up to {:.0} %): the laser flickers, or the response is not linear; the standard errors are those of the line",
+            line.p,
+            100.0 * line.largest_deviation
+        )
+    })
+}

@@ -1,0 +1,88 @@
+use super::*;
+use crate::num::stream::{Key, Sampling, Stream};
+
+fn stream(pixel: u32) -> Stream {
+    let key = Key {
+        seed: 5,
+        spot: 0,
+        pixel,
+        block: 0,
+    };
+    Stream::new(Sampling::Pcg, key)
+}
+
+/// Four repeats of 4096 pixels: Poisson electrons at 0.5 counts each, 2 counts of read noise,
+/// rounded. Gain and read noise come back within four of their errors, and the line fits.
+fn repeats(bend: f64) -> Vec<Repeated> {
+    (0..4096u32)
+        .map(|pixel| {
+            let mut stream = stream(pixel);
+            let electrons = f64::from(pixel) * 0.1;
+            let frames: Vec<f64> = (0..4)
+                .map(|_| {
+                    let light = 0.5 * stream.poisson(electrons);
+                    let drift = bend * electrons * electrons * stream.normal();
+                    (light + drift + 2.0 * stream.normal()).round()
+                })
+                .collect();
+            let mean = frames.iter().sum::<f64>() / 4.0;
+            Repeated {
+                signal: mean,
+                variance: frames.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / 3.0,
+                rounding: 1.0 / 12.0,
+                freedom: 3.0,
+            }
+        })
+        .collect()
+}
+
+#[test]
+fn gain_and_read_noise_come_back() {
+    let fit = photon_transfer(repeats(0.0)).unwrap();
+    let CameraNoise {
+        gain,
+        read_variance,
+    } = fit.noise;
+    assert!(
+        (gain - 0.5).abs() < 4.0 * fit.gain_error && fit.gain_error < 0.02,
+        "{fit:?}"
+    );
+    assert!(
+        (read_variance - 4.0).abs() < 4.0 * fit.read_variance_error,
+        "{fit:?}"
+    );
+    assert!(fit.p > 1e-3 && fit.groups == GROUPS, "{fit:?}");
+    // Light that flickers has a variance that is no line.
+    assert!(photon_transfer(repeats(1e-4)).unwrap().p < 1e-6);
+    // Frames that are all the same say nothing.
+    let still = repeats(0.0)
+        .into_iter()
+        .map(|r| Repeated { variance: 0.0, ..r });
+    assert!(photon_transfer(still.collect()).is_err());
+}
+
+/// The mean square error of means of rounded normal values about their truth, which lies
+/// anywhere between two integers: by sampling.
+#[test]
+fn the_variance_of_a_mean_is_that_of_samples() {
+    for (sigma, frames) in [(0.0, 4), (0.2, 4), (0.5, 3), (2.0, 5)] {
+        let noise = CameraNoise::new(0.0, sigma).unwrap();
+        let mut sum = 0.0;
+        const N: u32 = 40_000;
+        for k in 0..N {
+            let mut stream = stream(k);
+            let truth = f64::from(k) / f64::from(N);
+            let mean = (0..frames)
+                .map(|_| (truth + sigma * stream.normal()).round())
+                .sum::<f64>()
+                / frames as f64;
+            sum += (mean - truth) * (mean - truth);
+        }
+        let found = sum / f64::from(N);
+        let due = noise.of_mean(0.0, 1.0 / 12.0, frames);
+        assert!(
+            (due / found - 1.0).abs() < 0.05,
+            "σ {sigma}: {due} for {found}"
+        );
+    }
+}

@@ -1,0 +1,246 @@
+//! One channel of photographs as light, and the average of repeated ones.
+
+use super::error::{PhotographError, refused};
+use super::response::Response;
+use crate::image::{Channel, Samples};
+
+/// Which channel of a photograph is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Chosen {
+    /// The only one; of a coloured photograph it has to be said which.
+    Grey,
+    /// One colour.
+    One(Channel),
+    /// The mean of the light in red, green and blue.
+    Mean,
+}
+
+/// One channel of one photograph, row by row from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plane {
+    /// Columns and rows.
+    pub size: [usize; 2],
+    /// R⁻¹ of the stored values, counts.
+    pub light: Vec<f64>,
+    /// Variance of the rounding to integers, LSB²/12 as light, counts².
+    pub rounding: Vec<f64>,
+    /// Whether a stored value has reached saturation.
+    pub saturated: Vec<bool>,
+    /// Stored values that are 0: cut off below.
+    pub zeros: usize,
+}
+
+/// The chosen channel of `samples` as light. Stored values from `saturation` on are saturated.
+///
+/// # Errors
+/// [`PhotographError::Refused`] if `name` has other channels than were chosen.
+pub fn linearised(
+    name: &str,
+    samples: &Samples,
+    chosen: Chosen,
+    response: &Response,
+    saturation: f64,
+) -> Result<Plane, PhotographError> {
+    let colours = [Channel::Red, Channel::Green, Channel::Blue];
+    let grey = samples.is_grey();
+    let wanted = match chosen {
+        _ if grey => vec![samples.channels[0]],
+        Chosen::Grey => {
+            return Err(refused(
+                format!("{name} is in colour, and nothing says which channel is the laser's light"),
+                "choose `channel`: red, green, blue, mean, or all for one folder each",
+            ));
+        }
+        Chosen::One(channel) => vec![channel],
+        Chosen::Mean => colours.to_vec(),
+    };
+    let pixels = samples.width * samples.height;
+    let mut plane = Plane {
+        size: [samples.width, samples.height],
+        light: vec![0.0; pixels],
+        rounding: vec![0.0; pixels],
+        saturated: vec![false; pixels],
+        zeros: 0,
+    };
+    let share = 1.0 / wanted.len() as f64;
+    let step = if samples.full_scale.is_some() {
+        1.0
+    } else {
+        0.0
+    };
+    for channel in wanted {
+        let at = samples.channels.iter().position(|c| *c == channel);
+        let at = at.ok_or_else(|| {
+            let cause = format!("{name} has no channel {channel:?}").to_lowercase();
+            refused(cause, "leave `channel` out for grey photographs")
+        })?;
+        let stored = samples
+            .values
+            .iter()
+            .skip(at)
+            .step_by(samples.channels.len());
+        for (k, s) in stored.enumerate() {
+            let [light, slope] = response.light(*s);
+            let rounded = share * slope * step;
+            plane.light[k] += share * light;
+            plane.rounding[k] += rounded * rounded / 12.0;
+            plane.saturated[k] |= *s >= saturation;
+            plane.zeros += usize::from(*s == 0.0 && step > 0.0);
+        }
+    }
+    Ok(plane)
+}
+
+/// The mean of repeated photographs, updated one by one (Welford, *Technometrics* 4, 1962).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Averaged {
+    /// Columns and rows.
+    pub size: [usize; 2],
+    /// Photographs so far.
+    pub frames: usize,
+    /// Their mean, counts.
+    pub light: Vec<f64>,
+    /// Mean variance of their rounding, counts².
+    pub rounding: Vec<f64>,
+    /// Whether one of them was saturated.
+    pub saturated: Vec<bool>,
+    /// Stored values that were 0.
+    pub zeros: usize,
+    squares: Vec<f64>,
+}
+
+impl Averaged {
+    /// The first photograph.
+    pub fn of(first: Plane) -> Self {
+        Self {
+            size: first.size,
+            frames: 1,
+            squares: vec![0.0; first.light.len()],
+            light: first.light,
+            rounding: first.rounding,
+            saturated: first.saturated,
+            zeros: first.zeros,
+        }
+    }
+
+    /// One more photograph of the same; `name` is for messages.
+    ///
+    /// # Errors
+    /// [`PhotographError::Refused`] if it has another size.
+    pub fn add(&mut self, name: &str, next: &Plane) -> Result<(), PhotographError> {
+        same_size(name, next.size, self.size)?;
+        self.frames += 1;
+        self.zeros += next.zeros;
+        let n = self.frames as f64;
+        for k in 0..self.light.len() {
+            let off = next.light[k] - self.light[k];
+            self.light[k] += off / n;
+            self.squares[k] += off * (next.light[k] - self.light[k]);
+            self.rounding[k] += (next.rounding[k] - self.rounding[k]) / n;
+            self.saturated[k] |= next.saturated[k];
+        }
+        Ok(())
+    }
+
+    /// Sample variance of one photograph at a pixel, counts²; `None` without repeats.
+    pub fn scatter(&self, pixel: usize) -> Option<f64> {
+        (self.frames > 1).then(|| self.squares[pixel] / (self.frames - 1) as f64)
+    }
+}
+
+/// Refuses a photograph of another size than the first.
+///
+/// # Errors
+/// [`PhotographError::Refused`].
+pub(super) fn same_size(
+    name: &str,
+    found: [usize; 2],
+    expected: [usize; 2],
+) -> Result<(), PhotographError> {
+    if found == expected {
+        return Ok(());
+    }
+    let cause = format!(
+        "{name} has {} × {} pixels, the first photograph {} × {}",
+        found[0], found[1], expected[0], expected[1]
+    );
+    Err(refused(
+        cause,
+        "give photographs of one size: crop or scale none of them alone",
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn photo(values: &[f64], channels: usize) -> Samples {
+        let all = [Channel::Red, Channel::Green, Channel::Blue];
+        Samples {
+            width: values.len() / channels,
+            height: 1,
+            channels: if channels == 1 {
+                vec![Channel::Grey]
+            } else {
+                all.to_vec()
+            },
+            values: values.to_vec(),
+            full_scale: Some(255.0),
+            is_lossy: false,
+        }
+    }
+
+    #[test]
+    fn the_mean_of_colours_is_that_of_their_light() {
+        let gamma = Response::gamma(2.0, 255.0).unwrap();
+        let colour = photo(&[51.0, 102.0, 255.0], 3);
+        let of = |chosen| linearised("a", &colour, chosen, &gamma, 255.0);
+        let mean = of(Chosen::Mean).unwrap();
+        // 255·(0.04 + 0.16 + 1)/3; slopes 0.4, 0.8, 2 give (0.16 + 0.64 + 4)/9/12.
+        assert!((mean.light[0] - 102.0).abs() < 1e-12);
+        assert!((mean.rounding[0] - 4.8 / 108.0).abs() < 1e-12);
+        assert_eq!(mean.saturated, [true]);
+        let green = of(Chosen::One(Channel::Green)).unwrap();
+        assert!((green.light[0] - 255.0 * 0.16).abs() < 1e-12 && !green.saturated[0]);
+        let error = of(Chosen::Grey).unwrap_err().to_string();
+        assert!(
+            error.contains("colour") && error.contains("channel"),
+            "{error}"
+        );
+        // Grey saved in colour is grey.
+        let same = photo(&[7.0, 7.0, 7.0], 3);
+        let grey = linearised("a", &same, Chosen::Grey, &Response::Linear, 255.0).unwrap();
+        assert_eq!((grey.light[0], grey.rounding[0]), (7.0, 1.0 / 12.0));
+    }
+
+    #[test]
+    fn repeats_have_their_mean_and_their_sample_variance() {
+        let plane = |x: f64| {
+            linearised(
+                "a",
+                &photo(&[x, 0.0], 1),
+                Chosen::Grey,
+                &Response::Linear,
+                9.0,
+            )
+            .unwrap()
+        };
+        let mut mean = Averaged::of(plane(1.0));
+        assert_eq!(mean.scatter(0), None);
+        for x in [4.0, 10.0] {
+            mean.add("b", &plane(x)).unwrap();
+        }
+        assert_eq!((mean.light[0], mean.scatter(0)), (5.0, Some(21.0)));
+        assert_eq!((mean.saturated, mean.zeros), (vec![true, false], 3));
+        let mut other = Averaged::of(plane(1.0));
+        let wide = photo(&[1.0; 3], 1);
+        let wide = linearised("b", &wide, Chosen::Grey, &Response::Linear, 9.0).unwrap();
+        assert!(
+            other
+                .add("b.png", &wide)
+                .unwrap_err()
+                .to_string()
+                .contains("b.png has 3 × 1")
+        );
+    }
+}

@@ -1,0 +1,254 @@
+//! The photographs of a set as light, and what they share: dark frames, flat field, dead pixels.
+
+use std::path::{Path, PathBuf};
+
+use super::error::{PhotographError, refused};
+use super::noise::{PhotonTransferFit, Repeated, photon_transfer};
+use super::pattern::expanded;
+use super::plane::{Averaged, Chosen, Plane, linearised, same_size};
+use super::read::Reader;
+use super::response::{Response, ResponseTable, response_table};
+use super::set::{ChannelName, DarkTable, DeadTable, Files, FrameTable, Set};
+use super::takes::{Take, each_spot, takes};
+use crate::image::{Channel, Samples};
+
+/// Most pixels whose repeats the photon transfer line is fitted to.
+const MOST_REPEATED: usize = 1 << 20;
+
+/// The photographs of a set, of one channel.
+pub(super) struct Shots<'a> {
+    set: &'a Set,
+    spots: usize,
+    chosen: Chosen,
+    response: Option<ResponseTable>,
+    pub takes: Vec<Take>,
+    /// Columns and rows.
+    pub size: [usize; 2],
+    /// Averaged dark frames, with the exposure time of each.
+    darks: Vec<(Option<f64>, Averaged)>,
+    /// Averaged photographs of even radiance, and their dark frames.
+    pub flat: Option<(Averaged, Option<Averaged>)>,
+    pub dead: Vec<bool>,
+}
+
+impl<'a> Shots<'a> {
+    /// Reads what all photographs of the set share, of `spots` spots.
+    pub(super) fn new(
+        set: &'a Set,
+        spots: usize,
+        folder: &'a Path,
+        channel: Option<ChannelName>,
+        reader: &mut Reader<'a>,
+        listed: &[FrameTable],
+    ) -> Result<Self, PhotographError> {
+        let takes = takes(set, listed, folder)?;
+        let first = takes.first();
+        let first = first.ok_or_else(|| refused("there are no photographs", "name one or more"))?;
+        let first = reader.photographs(&first.path)?;
+        let first = first.first();
+        let first =
+            first.ok_or_else(|| refused("the first file has no photograph", "name another"))?;
+        let size = [first.width, first.height];
+        let response = match &set.response {
+            None => None,
+            Some(name) => Some(response_table(name, &reader.bytes(&folder.join(name))?)?),
+        };
+        let chosen = match channel {
+            None | Some(ChannelName::All) => Chosen::Grey,
+            Some(ChannelName::Red) => Chosen::One(Channel::Red),
+            Some(ChannelName::Green) => Chosen::One(Channel::Green),
+            Some(ChannelName::Blue) => Chosen::One(Channel::Blue),
+            Some(ChannelName::Mean) => Chosen::Mean,
+        };
+        let mut shots = Self {
+            set,
+            spots,
+            chosen,
+            response,
+            takes,
+            size,
+            darks: Vec::new(),
+            flat: None,
+            dead: Vec::new(),
+        };
+        shots.dead = shots.dead_pixels(folder, reader)?;
+        let mut average = |files: &Files| shots.average(&expanded(folder, files)?, reader);
+        let darks = match &set.dark {
+            None => Vec::new(),
+            Some(DarkTable::Files(files)) => vec![(None, average(files)?)],
+            Some(DarkTable::Series(all)) => all
+                .iter()
+                .map(|s| Ok((Some(s.exposure), average(&s.files)?)))
+                .collect::<Result<_, PhotographError>>()?,
+        };
+        let flat = match &set.flat {
+            None => None,
+            Some(files) => {
+                let dark = set.flat_dark.as_ref().map(&mut average).transpose()?;
+                Some((average(files)?, dark))
+            }
+        };
+        (shots.darks, shots.flat) = (darks, flat);
+        Ok(shots)
+    }
+
+    /// One channel of a photograph as light.
+    fn plane(&self, name: &str, samples: &Samples) -> Result<Plane, PhotographError> {
+        same_size(name, [samples.width, samples.height], self.size)?;
+        let full_scale = self.set.full_scale.or(samples.full_scale);
+        let response = match (&self.response, self.set.gamma) {
+            (Some(table), _) => Response::Table(table.clone()),
+            (None, None) => Response::Linear,
+            (None, Some(gamma)) => {
+                let full_scale = full_scale.ok_or_else(|| {
+                    refused(
+                        format!(
+                            "{name} holds floating-point numbers, and nothing says their full scale"
+                        ),
+                        "give `full_scale` with `gamma`",
+                    )
+                })?;
+                Response::gamma(gamma, full_scale)?
+            }
+        };
+        let saturation = self.set.saturation.or(full_scale).unwrap_or(f64::INFINITY);
+        linearised(name, samples, self.chosen, &response, saturation)
+    }
+
+    /// The mean of all photographs in `paths`.
+    fn average(
+        &self,
+        paths: &[PathBuf],
+        reader: &mut Reader<'_>,
+    ) -> Result<Averaged, PhotographError> {
+        let mut mean: Option<Averaged> = None;
+        for path in paths {
+            let name = reader.name(path);
+            for samples in reader.photographs(path)? {
+                let plane = self.plane(&name, &samples)?;
+                match &mut mean {
+                    Some(mean) => mean.add(&name, &plane)?,
+                    None => mean = Some(Averaged::of(plane)),
+                }
+            }
+        }
+        mean.ok_or_else(|| {
+            refused(
+                "a list of dark or flat frames is empty",
+                "leave it out, or name files",
+            )
+        })
+    }
+
+    fn dead_pixels(
+        &self,
+        folder: &Path,
+        reader: &mut Reader<'_>,
+    ) -> Result<Vec<bool>, PhotographError> {
+        let [width, height] = self.size;
+        let mut dead = vec![false; width * height];
+        match &self.set.dead {
+            None => {}
+            Some(DeadTable::Pixels(pixels)) => {
+                for [u, v] in pixels {
+                    if *u >= width || *v >= height {
+                        return Err(refused(
+                            format!(
+                                "the dead pixel ({u}, {v}) is not in a photograph of {width} × {height}"
+                            ),
+                            "give column and row from (0, 0), the upper left one",
+                        ));
+                    }
+                    dead[u + v * width] = true;
+                }
+            }
+            Some(DeadTable::Picture(name)) => {
+                let found = reader.photographs(&folder.join(name))?;
+                let found = found.first().filter(|s| [s.width, s.height] == self.size);
+                let found = found.ok_or_else(|| {
+                    refused(
+                        format!("{name} is not of {width} × {height} pixels"),
+                        "give a picture of dead pixels of the photographs' size",
+                    )
+                })?;
+                for (dead, pixel) in dead
+                    .iter_mut()
+                    .zip(found.values.chunks(found.channels.len()))
+                {
+                    *dead = pixel.iter().any(|x| *x != 0.0);
+                }
+            }
+        }
+        Ok(dead)
+    }
+
+    /// The dark frames of an exposure time.
+    pub(super) fn dark(&self, take: &Take) -> Result<Option<&Averaged>, PhotographError> {
+        match &self.darks[..] {
+            [] => Ok(None),
+            [(None, dark)] => Ok(Some(dark)),
+            series => {
+                let of = |t: &Option<f64>| t.is_some() && *t == take.exposure;
+                let found = series
+                    .iter()
+                    .find(|(time, _)| of(time))
+                    .map(|(_, dark)| dark);
+                let named = |t: f64| format!("of {t} s");
+                let time = take
+                    .exposure
+                    .map_or("of no known exposure time".to_owned(), named);
+                found.map(Some).ok_or_else(|| {
+                    refused(
+                        format!(
+                            "no dark frames go with {}, a photograph {time}",
+                            take.path.display()
+                        ),
+                        "give dark frames of each exposure time",
+                    )
+                })
+            }
+        }
+    }
+
+    /// Calls `visit` with the averaged photographs of each spot, in the order of the spots.
+    pub(super) fn each_spot(
+        &self,
+        reader: &mut Reader<'_>,
+        visit: impl FnMut(usize, &Take, Averaged) -> Result<(), PhotographError>,
+    ) -> Result<(), PhotographError> {
+        let plane = |name: &str, samples: &Samples| self.plane(name, samples);
+        let repeats = self.set.repeats.map_or(1, |n| n as usize);
+        each_spot(reader, (&self.takes, repeats), self.spots, &plane, visit)
+    }
+
+    /// The photon transfer line of all repeated photographs; `None` where none are.
+    pub(super) fn photon_transfer(
+        &self,
+        reader: &mut Reader<'_>,
+    ) -> Result<Option<PhotonTransferFit>, PhotographError> {
+        let spots = self.spots;
+        let pixels = self.size[0] * self.size[1];
+        let stride = (spots * pixels).div_ceil(MOST_REPEATED);
+        let mut repeated = Vec::new();
+        let visit = |spot: usize, take: &Take, mean: Averaged| {
+            let dark = self.dark(take)?;
+            for k in (0..pixels).skip(spot % stride).step_by(stride) {
+                let good = !mean.saturated[k] && !self.dead[k];
+                if let (Some(variance), true) = (mean.scatter(k), good) {
+                    repeated.push(Repeated {
+                        signal: mean.light[k] - dark.map_or(0.0, |d| d.light[k]),
+                        variance,
+                        rounding: mean.rounding[k],
+                        freedom: (mean.frames - 1) as f64,
+                    });
+                }
+            }
+            Ok(())
+        };
+        self.each_spot(reader, visit)?;
+        if repeated.is_empty() {
+            return Ok(None);
+        }
+        photon_transfer(repeated).map(Some)
+    }
+}

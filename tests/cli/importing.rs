@@ -1,0 +1,506 @@
+//! `phicam import`: photographs of a real camera → Φcam.
+
+use phicam::image::{grey16_png, rgb_png};
+use phicam::matrix::Matrix;
+
+use crate::workspace::{Workspace, assert_same};
+
+/// Stored value of pixel (u, v) of photograph k: some light, more to the right and below.
+fn stored(k: usize, u: usize, v: usize) -> u16 {
+    (100 + 1000 * k + 10 * u + v) as u16
+}
+
+fn photograph(k: usize, size: [usize; 2]) -> Vec<u8> {
+    let all = (0..size[1]).flat_map(|v| (0..size[0]).map(move |u| stored(k, u, v)));
+    let pixels: Vec<u16> = all.collect();
+    grey16_png(size.map(|n| n as u32), &pixels).unwrap()
+}
+
+/// The tiny bench (3 × 2 pixels, 8 spots) with a photograph of 6 × 4 pixels for each spot.
+fn with_photographs() -> Workspace {
+    let w = Workspace::with_scenes();
+    std::fs::create_dir(w.path("in")).unwrap();
+    for k in 0..8 {
+        w.write(&format!("in/input_{k}.png"), photograph(k, [6, 4]));
+    }
+    w
+}
+
+/// Sums of 2 × 2 pixels, the photograph's first row at the top of the view.
+fn sums() -> Matrix {
+    Matrix::from_fn(6, 8, |p, k| {
+        let [u, v] = [2 * (p % 3), 2 * (1 - p / 3)];
+        let block = [[0, 0], [1, 0], [0, 1], [1, 1]];
+        block
+            .iter()
+            .map(|[i, j]| f64::from(stored(k, u + i, v + j)))
+            .sum()
+    })
+}
+
+const PLAIN: &str = "import --frames in/input_*.png --scene tiny.toml -o out";
+
+#[test]
+fn photographs_become_a_run_that_is_recovered() {
+    let w = with_photographs();
+    let told = w.phicam(PLAIN).exits(0);
+    for words in ["--free-scale", "no dark frames", "noise is not known"] {
+        assert!(told.stderr.contains(words), "{}", told.account());
+    }
+    let due = sums();
+    let phi = w.matrix("out/phi.npy");
+    assert!((&phi - &due).amax() < 1e-9 * due.amax(), "{phi}");
+    assert_eq!(w.matrix("out/left_out.npy"), Matrix::zeros(6, 8));
+    assert!(!w.path("out/phi.stderr.npy").exists());
+    let record = w.json("out/run.json");
+    let sources = record["imported"]["sources"].as_array().unwrap();
+    assert_eq!((sources.len(), record["seed"].is_null()), (8, true));
+    assert_eq!(sources[3]["name"], "in/input_3.png");
+    // As sha256sum has it.
+    use sha2::Digest as _;
+    let digest = sha2::Sha256::digest(w.read("in/input_3.png"));
+    let hex: String = digest.iter().map(|b| format!("{b:02x}")).collect();
+    assert_eq!(sources[3]["sha256"], hex);
+    let account = w.json("out/import.json");
+    assert_eq!(
+        (&account["unit"], &account["photographs"]),
+        (&"counts".into(), &8.into())
+    );
+    assert_eq!(w.read("out/import.png")[..4], *b"\x89PNG");
+
+    let recovered = w.phicam("recover out --method pinv").exits(0);
+    assert!(
+        recovered.stderr.contains("no noise model") || w.path("out/recovered/pinv.npy").exists()
+    );
+    w.refuses("validate out", &["noise", "cure: ", "repeats"]);
+    w.refuses("expose out --sensor ccd", &["real camera"]);
+    let of_scene = "validate out --phi out/phi.npy --stderr out/phi.npy";
+    assert!([0, 1].contains(&w.phicam(of_scene).code));
+}
+
+#[test]
+fn an_import_is_replaced_only_by_another_that_is_meant_to() {
+    let w = with_photographs();
+    let _ = w.phicam(PLAIN).exits(0);
+    let before = w.contents("out");
+    let _ = w.phicam(PLAIN).exits(0);
+    assert_same(&before, &w.contents("out"), "the same import again");
+    let other = format!("{PLAIN} --exposure 2");
+    w.refuses(&other, &["other settings", "--replace"]);
+    w.refuses(
+        "render tiny.toml -o out --samples 32",
+        &["imported photographs"],
+    );
+    w.refuses(
+        "render tiny.toml -o out --samples 32 --replace",
+        &["imported photographs"],
+    );
+    let _ = w.phicam(&format!("{other} --replace")).exits(0);
+    assert!((w.matrix("out/phi.npy") * 2.0 - sums()).amax() < 1e-9);
+    // One whose files were changed is made again.
+    w.write("out/left_out.npy", b"");
+    let _ = w.phicam(&other).exits(0);
+    assert_eq!(w.matrix("out/left_out.npy"), Matrix::zeros(6, 8));
+    let _ = w.phicam("render tiny.toml -o run --samples 32").exits(0);
+    w.refuses(
+        "import --frames in/input_*.png --scene tiny.toml -o run --replace",
+        &["rendered run"],
+    );
+    // Another photograph under the same name is another import.
+    w.write("in/input_7.png", photograph(9, [6, 4]));
+    w.refuses(&other, &["other settings"]);
+}
+
+/// Dark frames, flat field, gain, exposure, repeats and given noise: by hand.
+#[test]
+fn a_list_says_what_the_photographs_are() {
+    let w = with_photographs();
+    let level = |x: u16| grey16_png([6, 4], &[x; 24]).unwrap();
+    w.write("in/dark.png", level(50));
+    let flat: Vec<u16> = (0..24)
+        .map(|q| if q % 6 < 3 { 1050 } else { 3050 })
+        .collect();
+    w.write("in/flat.png", grey16_png([6, 4], &flat).unwrap());
+    let mut list = String::from(
+        "scene = \"tiny.toml\"\ndark = \"in/dark.png\"\nflat = \"in/flat.png\"\nflat_dark = \"in/dark.png\"\n\
+         exposure = 0.5\nwatts = 1e-12\nnoise = { gain = 2.0, read_noise = 3.0 }\n",
+    );
+    for k in 0..8 {
+        let gain = if k == 2 {
+            "\ngain = 2.0\ngain_error = 0.1"
+        } else {
+            ""
+        };
+        list += &format!(
+            "[[frame]]\nfile = \"in/input_{}.png\"\nspot = {k}{gain}\n",
+            7 - k
+        );
+    }
+    w.write("set.toml", &list);
+    let _ = w.phicam("import set.toml -o out").exits(0);
+    let (phi, stderr) = (w.matrix("out/phi.npy"), w.matrix("out/phi.stderr.npy"));
+    let taken = |u: usize, v: usize| -> f64 {
+        let x = 3.25 + 3.25 * (u as f64 + 0.5) / 6.0;
+        let y = 6.0 - 3.25 * (v as f64 + 0.5) / 4.0;
+        1.0 / ((x + 20.0).powi(2) + (y - 10.0).powi(2) + 225.0).powi(2)
+    };
+    let mean = (0..24).map(|q| taken(q % 6, q / 6)).sum::<f64>() / 24.0;
+    for (p, spot) in [(0, 0), (2, 2), (4, 7)] {
+        let k = 7 - spot;
+        let gain = if spot == 2 { 2.0 } else { 1.0 };
+        let [u, v] = [2 * (p % 3), 2 * (1 - p / 3)];
+        let (mut flux, mut variance) = (0.0, 0.0);
+        // The flat field has 1000 and 3000 counts, so 0.5 and 1.5; what it leaves is radiance, of which
+        // the scene's camera takes 1/r⁴ of each part of the wall, relative to the mean.
+        for [i, j] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+            let level: f64 = if u + i < 3 { 0.5 } else { 1.5 };
+            let signal = f64::from(stored(k, u + i, v + j)) - 50.0;
+            let scale = taken(u + i, v + j) / mean / (level * 0.5);
+            let of_flat =
+                (2.0 * 2000.0 * level + 2.0 * (9.0 + 1.0 / 12.0)) / (2000.0 * level).powi(2);
+            flux += signal * scale;
+            variance += (2.0 * signal + 2.0 * (9.0 + 1.0 / 12.0)) * scale * scale
+                + of_flat * (signal * scale).powi(2);
+        }
+        let scale = 1e-12 / gain;
+        let (flux, variance) = (scale * flux, scale * scale * variance);
+        let found = phi[(p, spot)];
+        assert!((found / flux - 1.0).abs() < 1e-6, "{found} {flux}");
+        let of_gain = if spot == 2 { 0.05 * flux } else { 0.0 };
+        let due = (variance + of_gain * of_gain).sqrt();
+        let relative = stderr[(p, spot)] / found / (due / flux);
+        assert!((relative - 1.0).abs() < 1e-6, "{relative}");
+    }
+    let record = w.json("out/run.json");
+    assert_eq!(record["imported"]["flux_unit"], "W");
+    // What is written is a run: it is validated, though it cannot be this scene's light.
+    assert_eq!(w.phicam("validate out").code, 1);
+}
+
+/// Repeats tell the noise; a flickering one is told.
+#[test]
+fn repeats_tell_the_noise() {
+    let w = Workspace::with_scenes();
+    std::fs::create_dir(w.path("in")).unwrap();
+    // 48 × 32 pixels, variance 0.5·light + 16 in counts, from a generator of its own.
+    let mut state = 7u64;
+    let mut normal = || {
+        let sum: f64 = (0..12)
+            .map(|_| {
+                state = state
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1_442_695_040_888_963_407);
+                (state >> 11) as f64 / (1u64 << 53) as f64
+            })
+            .sum();
+        sum - 6.0
+    };
+    for k in 0..24 {
+        let pixels: Vec<u16> = (0..48 * 32)
+            .map(|q| {
+                let light = 50.0 + f64::from(q % 48) * 40.0;
+                (200.0 + light + (0.5 * light + 16.0f64).sqrt() * normal()).round() as u16
+            })
+            .collect();
+        w.write(
+            &format!("in/i{k}.png"),
+            grey16_png([48, 32], &pixels).unwrap(),
+        );
+    }
+    w.write("in/dark.png", grey16_png([48, 32], &[200; 1536]).unwrap());
+    let told = w
+        .phicam("import --frames in/i*.png --scene tiny.toml --repeats 3 --dark in/dark.png -o out --json")
+        .exits(0);
+    let account: serde_json::Value = serde_json::from_str(&told.stdout).unwrap();
+    let noise = |key: &str| account["noise"][key].as_f64().unwrap();
+    let error = account["photon_transfer"]["gain_error"].as_f64().unwrap();
+    assert!(
+        (noise("gain") - 0.5).abs() < 4.0 * error && error < 0.02,
+        "{account}"
+    );
+    assert!((noise("read_variance") - 16.0).abs() < 8.0, "{account}");
+    assert!(account["photon_transfer"]["p"].as_f64().unwrap() > 1e-3);
+    // Standard error of a sum of 16 × 16 pixels and 3 photographs at the middle column.
+    let stderr = w.matrix("out/phi.stderr.npy")[(1, 0)];
+    let variance: f64 = (16..32)
+        .map(|u| 0.5 * (50.0 + f64::from(u) * 40.0) + 16.0 + 1.0 / 12.0)
+        .sum();
+    // The one dark frame has the read noise, too.
+    let due = (16.0 * variance / 3.0 + 256.0 * (16.0 + 1.0 / 12.0)).sqrt();
+    assert!((stderr / due - 1.0).abs() < 0.05, "{stderr} {due}");
+    w.refuses(
+        "import --frames in/i*.png --scene tiny.toml --repeats 4 -o other",
+        &["24 photographs for 8 spots with 4 each"],
+    );
+}
+
+#[test]
+fn what_means_nothing_is_left_out_with_its_reason() {
+    let w = with_photographs();
+    w.write("in/dead.png", {
+        let mut pixels = [0u16; 24];
+        pixels[6 * 3 + 5] = 1;
+        grey16_png([6, 4], &pixels).unwrap()
+    });
+    let list = "scene = \"tiny.toml\"\nframes = \"in/input_*.png\"\nsaturation = 7150\n";
+    w.write(
+        "set.toml",
+        format!("{list}dead = \"in/dead.png\"\nhalo = 0.75\n"),
+    );
+    let told = w.phicam("import set.toml -o out").exits(0);
+    assert!(told.stdout.contains("left out"), "{}", told.account());
+    let left = w.matrix("out/left_out.npy");
+    let phi = w.matrix("out/phi.npy");
+    for spot in 0..8 {
+        for p in 0..6 {
+            let code = left[(p, spot)] as u8;
+            // Photograph 7 reaches 7150 at u = 5 (v = 0 to 3) alone.
+            assert_eq!(code & 1, u8::from(spot == 7 && p % 3 == 2), "{p} {spot}");
+            // The dead pixel is in the lower right one of the view.
+            assert_eq!(code & 2, 2 * u8::from(p == 2), "{p} {spot}");
+            assert_eq!(code == 0, phi[(p, spot)] != 0.0);
+        }
+    }
+    // Spots of the square of half-width 3 about (5, 4.37) lie outside the view, two of them within
+    // 0.75 in. of it: nothing else is in the halo.
+    let account = w.json("out/import.json");
+    let halo = left.iter().filter(|c| **c as u8 & 4 != 0).count();
+    assert_eq!(account["left_out"]["halo"], halo);
+    w.write("wide.toml", format!("{list}halo = 50\n"));
+    let _ = w.phicam("import wide.toml -o all").exits(0);
+    assert!(
+        w.matrix("all/left_out.npy")
+            .iter()
+            .all(|c| *c as u8 & 4 != 0)
+    );
+    w.write(
+        "crop.toml",
+        format!("{list}crop = {{ x = 3, y = 0, width = 6, height = 4 }}\n"),
+    );
+    let _ = w.phicam("import crop.toml -o crop").exits(0);
+    let left = w.matrix("crop/left_out.npy");
+    assert!(
+        (0..6).all(|p| (left[(p, 0)] as u8 & 8 != 0) == (p % 3 > 0)),
+        "{left}"
+    );
+}
+
+#[test]
+fn each_channel_has_a_folder_and_listed_positions_are_the_spots() {
+    let w = Workspace::with_scenes();
+    for k in 0..2u8 {
+        let pixels: Vec<u8> = (0..24).flat_map(|q| [10 + k, 20 + q, 30]).collect();
+        w.write(
+            &format!("c{k}.png"),
+            rgb_png([6, 4], &pixels, None).unwrap(),
+        );
+    }
+    w.write("list.csv", "file,x,y,z\nc0.png,4,3,0\nc1.png,5.5,2.5,\n");
+    w.write("set.toml", "scene = \"tiny.toml\"\nlist = \"list.csv\"\n");
+    w.refuses("import set.toml -o out", &["colour", "channel"]);
+    let _ = w.phicam("import set.toml --channel all -o out").exits(0);
+    for (name, due) in [("red", 44.0), ("blue", 120.0)] {
+        let phi = w.matrix(&format!("out/{name}/phi.npy"));
+        assert_eq!((phi.shape(), phi[(0, 1)]), ((6, 2), due));
+    }
+    let scene = w.text("out/green/scene.toml");
+    assert!(
+        scene.contains("layout = \"list\"") && scene.contains("5.5"),
+        "{scene}"
+    );
+    let _ = w.phicam("recover out/green --method pinv").exits(0);
+    let _ = w.phicam("import set.toml --channel mean -o mean").exits(0);
+    let mean = w.matrix("mean/phi.npy");
+    let due = (0..4)
+        .map(|k| [12.0, 13.0, 18.0, 19.0][k] + 20.0 + 10.0 + 30.0)
+        .sum::<f64>()
+        / 3.0;
+    assert!((mean[(0, 0)] - due).abs() < 1e-9, "{} {due}", mean[(0, 0)]);
+}
+
+#[test]
+fn what_does_not_fit_is_refused_and_nothing_is_written() {
+    let w = with_photographs();
+    let import = |list: &str, words: &[&str]| {
+        w.write("bad.toml", list);
+        w.refuses("import bad.toml -o out", words);
+    };
+    let plain = "scene = \"tiny.toml\"\n";
+    let frames = format!("{plain}frames = \"in/input_*.png\"\n");
+    import(
+        &format!("{frames}dakr = \"x\"\n"),
+        &["bad.toml:3", "did you mean `dark`"],
+    );
+    import(plain, &["photographs are not given"]);
+    import(
+        &format!("{plain}frames = \"in/other_*.png\"\n"),
+        &["no file in", "cure: "],
+    );
+    import(&format!("{frames}gamma = 0\n"), &["gamma 0", "cure: "]);
+    import(
+        &format!("{frames}gamma = 2\nresponse = \"a.csv\"\n"),
+        &["exclude each other"],
+    );
+    import(&format!("{frames}exposure = -1\n"), &["exposure = -1"]);
+    import(&format!("{frames}halo = nan\n"), &["halo = NaN"]);
+    import(
+        &format!("{frames}dead = [[6, 0]]\n"),
+        &["dead pixel (6, 0)"],
+    );
+    import(
+        &format!("{frames}noise = {{ gain = -1, read_noise = 0 }}\n"),
+        &["gain of -1"],
+    );
+    import(
+        &format!("{frames}camera = {{ fx = 0, fy = 1, cx = 0, cy = 0 }}\n"),
+        &["camera matrix"],
+    );
+    let mark = |u: f64, v: f64, x: f64, y: f64| {
+        format!("[[marks]]\npixel = [{u}, {v}]\nwall = [{x}, {y}]\n")
+    };
+    let line: String = (0..4)
+        .map(f64::from)
+        .map(|k| mark(k, k, 3.5 + k, 3.0 + k))
+        .collect();
+    import(&format!("{frames}{line}"), &["no mapping", "cure: "]);
+    import(
+        &format!("{frames}{}", mark(0.0, 0.0, 3.5, 3.0)),
+        &["1 marks"],
+    );
+    let off = format!("{frames}[[marks]]\npixel = [0, 0]\nwall = [3.5, 3, 1]\n");
+    import(&off, &["no point of the wall"]);
+    import(
+        "scene = \"tiny.toml\"\nframe = [{ file = \"in/input_0.png\", spot = 8 }]\n",
+        &["spot 8", "8 spots"],
+    );
+    import(
+        "scene = \"none.toml\"\nframes = \"in/input_*.png\"\n",
+        &["none.toml"],
+    );
+    w.refuses("import --frames in/input_*.png -o out", &["--scene"]);
+    w.refuses(
+        "import --frames in/input_*.png --scene small.toml -o out",
+        &["8 photographs for 24 spots"],
+    );
+
+    w.write("in/input_5.png", photograph(5, [4, 6]));
+    w.refuses(PLAIN, &["in/input_5.png has 4 × 6 pixels", "6 × 4"]);
+    let whole = photograph(5, [6, 4]);
+    w.write("in/input_5.png", &whole[..whole.len() - 20]);
+    w.refuses(PLAIN, &["`in/input_5.png` is damaged"]);
+    w.write("in/input_5.png", "no picture");
+    w.refuses(PLAIN, &["`in/input_5.png`"]);
+    std::fs::remove_file(w.path("in/input_5.png")).unwrap();
+    w.refuses(PLAIN, &["input_4.png and", "files are missing"]);
+    // Files of the same kinds, of which nothing is left but a claim.
+    let mut bomb =
+        b"\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\x7f\xff\xff\xff\x7f\xff\xff\xff\x08\0\0\0\0".to_vec();
+    bomb.extend(0x31a2_54ba_u32.to_be_bytes());
+    w.write("in/input_5.png", &bomb);
+    w.refuses_within(3 << 20, PLAIN, &["`in/input_5.png`", "2147483647"]);
+}
+
+/// One file of all frames, from NumPy or MATLAB, and its cures.
+#[test]
+fn stacks_of_other_programs_are_read() {
+    let w = Workspace::with_scenes();
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/photographs");
+    let list = |file: &str, more: &str| {
+        let crop = "crop = { x = 0, y = 0, width = 6, height = 4 }";
+        let spots = "scene = \"three.toml\"";
+        w.write(
+            "set.toml",
+            format!("{spots}\n{crop}\nframes = \"{file}\"\n{more}\n"),
+        );
+    };
+    let square = "layout = \"square\"\ncentre = [5.0, 4.373476808130942]\nhalf_width = 3.0\nper_side = 2\nstagger = [-1.0, 1.0, 0.0]";
+    let text = w.text("tiny.toml");
+    let start = text
+        .find("layout = \"square\"")
+        .unwrap_or_else(|| panic!("{square}"));
+    let end = text.find("[camera]").unwrap();
+    let three = "layout = \"list\"\npoints = [[2.5, 2], [3, 2], [7.5, 2]]\n\n";
+    w.write(
+        "three.toml",
+        format!("{}{three}{}", &text[..start], &text[end..]),
+    );
+    let sample = |page: usize, row: usize, column: usize| {
+        ((37 * row + 101 * column + 5 * page) % 251) as f64
+    };
+    let due = Matrix::from_fn(6, 3, |p, page| {
+        let [u, v] = [2 * (p % 3), 2 * (1 - p / 3)];
+        (0..4).map(|k| sample(page, v + k / 2, u + k % 2)).sum()
+    });
+    for (file, more) in [
+        ("stack-u1.npy", ""),
+        (
+            "stack-v7.mat",
+            "variable = \"frames\"\naxes = \"frames-rows-columns\"",
+        ),
+        ("pages8-s1-3.tif", ""),
+    ] {
+        list(file, more);
+        let line = format!(
+            "import set.toml --from {folder} -o {}",
+            file.replace('.', "-")
+        );
+        let _ = w.phicam(&line).exits(0);
+        let phi = w.matrix(&format!("{}/phi.npy", file.replace('.', "-")));
+        assert!((phi - &due).amax() < 1e-9, "{file}");
+    }
+    list("stack-v7.mat", "");
+    w.refuses(
+        &format!("import set.toml --from {folder} -o out"),
+        &["`frames`", "variable"],
+    );
+    list("stack-v73.mat", "");
+    w.refuses(
+        &format!("import set.toml --from {folder} -o out"),
+        &["7.3", "save -v7"],
+    );
+}
+
+/// The photographs of Chen et al. (CVPR 2019), where `PHICAM_PUBLIC_DATA` names the folder that has
+/// them as `steady-state-nlos`: see tests/README.md.
+#[test]
+fn public_photographs_are_imported_in_one_command() {
+    let Ok(data) = std::env::var("PHICAM_PUBLIC_DATA") else {
+        return;
+    };
+    let w = Workspace::new();
+    let set = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/scenes/steady-state-nlos-set.toml"
+    );
+    let told = w
+        .phicam(&format!(
+            "import {set} --from {data}/steady-state-nlos -o out"
+        ))
+        .exits(0);
+    assert!(
+        told.stdout.contains("24 photographs of 256 × 256"),
+        "{}",
+        told.account()
+    );
+    let phi = w.matrix("out/phi.npy");
+    assert_eq!(phi.shape(), (1024, 24));
+    let digest = &w.json("out/run.json")["imported"]["sources"][0];
+    assert_eq!(digest["name"], "input_0.png");
+    // Frames 0 and 1 are nearly dark, as their authors' are; others are not.
+    let mean = |spot: usize| phi.column(spot).mean();
+    assert!(
+        mean(0) < 0.3 * mean(9) && mean(1) < 0.3 * mean(9),
+        "{} {} {}",
+        mean(0),
+        mean(1),
+        mean(9)
+    );
+    let recovered = w
+        .phicam("recover out --method tikhonov,nnls --free-scale")
+        .exits(0);
+    assert!(
+        w.path("out/recovered/nnls.npy").exists(),
+        "{}",
+        recovered.account()
+    );
+}
