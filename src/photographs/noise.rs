@@ -85,6 +85,9 @@ fn left_by_rounding(moving: f64, rounding: f64) -> f64 {
 pub struct Repeated {
     /// Light above dark, counts.
     pub signal: f64,
+    /// Light of the pixels beside it, counts: groups are formed by it, for its noise is not the
+    /// pixel's. Formed by `signal` itself they would have too large a range of it.
+    pub beside: f64,
     /// Sample variance of one photograph, counts².
     pub variance: f64,
     /// Variance of the rounding, counts².
@@ -125,7 +128,7 @@ const ROUNDS: usize = 8;
 /// # Errors
 /// [`PhotographError::Refused`] if fewer than three groups are left.
 pub fn photon_transfer(mut repeats: Vec<Repeated>) -> Result<PhotonTransferFit, PhotographError> {
-    repeats.sort_by(|a, b| a.signal.total_cmp(&b.signal));
+    repeats.sort_by(|a, b| a.beside.total_cmp(&b.beside));
     let size = repeats.len().div_ceil(GROUPS).max(FEWEST);
     let groups: Vec<Repeated> = repeats
         .chunks(size)
@@ -173,7 +176,8 @@ fn group(pixels: &[Repeated]) -> Repeated {
     let mean =
         |of: fn(&Repeated) -> f64| pixels.iter().map(|p| p.freedom * of(p)).sum::<f64>() / freedom;
     Repeated {
-        signal: mean(|p| p.signal.max(0.0)),
+        signal: mean(|p| p.signal).max(0.0),
+        beside: mean(|p| p.beside),
         variance: mean(|p| p.variance),
         rounding: mean(|p| p.rounding),
         freedom,

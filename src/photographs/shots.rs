@@ -232,11 +232,13 @@ impl<'a> Shots<'a> {
         let mut repeated = Vec::new();
         let visit = |spot: usize, take: &Take, mean: Averaged| {
             let dark = self.dark(take)?;
+            let light = |k: usize| mean.light[k] - dark.map_or(0.0, |d| d.light[k]);
             for k in (0..pixels).skip(spot % stride).step_by(stride) {
                 let good = !mean.saturated[k] && !self.dead[k];
                 if let (Some(variance), true) = (mean.scatter(k), good) {
                     repeated.push(Repeated {
-                        signal: mean.light[k] - dark.map_or(0.0, |d| d.light[k]),
+                        signal: light(k),
+                        beside: 0.5 * (light(k.saturating_sub(1)) + light((k + 1).min(pixels - 1))),
                         variance,
                         rounding: mean.rounding[k],
                         freedom: (mean.frames - 1) as f64,

@@ -28,6 +28,7 @@ fn repeats(bend: f64) -> Vec<Repeated> {
             let mean = frames.iter().sum::<f64>() / 4.0;
             Repeated {
                 signal: mean,
+                beside: 0.5 * electrons,
                 variance: frames.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / 3.0,
                 rounding: 1.0 / 12.0,
                 freedom: 3.0,
