@@ -8,7 +8,7 @@ use super::failure::Failure;
 use super::load_run::{read_matrix, read_run, read_stderr};
 use super::output;
 use super::record::Record;
-use super::recover_beside::{Beside, Photographs};
+use super::recover_beside::{Beside, Photographs, mask};
 use super::recover_memory::{self, Errors, Held, Strips};
 use super::recover_options::{self, uncertainty};
 use super::recovered::{collect, write};
@@ -196,7 +196,7 @@ impl Job<'_> {
             pixels: scene.camera.pixels(),
             spots: scene.laser.spots.len(),
         };
-        let beside = Beside::read(args, &of, self.console)?;
+        let beside = Beside::read(args, &self.phi, &of, self.console)?;
         let nuisance = beside.nuisance(args);
         let options = Options {
             uncertainty: uncertainty(&model, self.console),
@@ -212,6 +212,14 @@ impl Job<'_> {
         let Self { args, scene, .. } = *self;
         let phi = recover_memory::open(&self.phi, scene)?;
         self.refuse_clipped()?;
+        if let Some(mask) = mask(args, &self.phi) {
+            let cause = format!(
+                "{} says which entries do not count, and no method that reads Φcam by rows can leave them out",
+                mask.display()
+            );
+            let cure = "use a joint method, with enough --memory for all of Φcam";
+            return Err(Failure::new(cause, cure));
+        }
         let errors = match self.errors() {
             Errors::Relative(noise) => Errors::Relative(noise),
             Errors::File(file) => Errors::File(Box::new(recover_memory::open(&file, scene)?)),

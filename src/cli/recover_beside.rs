@@ -1,7 +1,7 @@
 //! What the photographs of a recovery hold beside the light of the hidden surface, and what of them
 //! does not count.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::args::RecoverArgs;
 use super::console::Console;
@@ -14,6 +14,9 @@ use crate::recovery::Nuisance;
 
 /// Patterns that may be estimated in each frame.
 const MOST_PATTERNS: usize = 64;
+/// Patterns of all frames together that may be estimated beside a background: a matrix of as many
+/// columns, 128 MiB.
+const MOST_COUPLED: usize = 4096;
 
 /// The size of Φcam.
 pub(super) struct Photographs {
@@ -46,14 +49,28 @@ impl Beside {
     /// Reads them.
     pub(super) fn read(
         args: &RecoverArgs,
+        phi: &Path,
         of: &Photographs,
         console: Console,
     ) -> Result<Self, Failure> {
         let glare = args.joint.glare_pattern.as_ref();
+        let patterns = patterns(args, of)?;
+        // A background ties the terms of all frames together.
+        let of_frame = patterns.as_ref().map_or(0, Matrix::ncols);
+        if args.joint.background && of_frame.saturating_mul(of.spots) > MOST_COUPLED {
+            let cause = format!(
+                "--background and {of_frame} patterns in each of {} frames are too many to estimate together",
+                of.spots
+            );
+            let cure = format!(
+                "leave --background out, or use fewer patterns: {MOST_COUPLED} in all frames together"
+            );
+            return Err(Failure::new(cause, cure));
+        }
         Ok(Self {
             glare: glare.map(|file| of.read(file)).transpose()?,
-            patterns: patterns(args, of)?,
-            left_out: left_out(args, of, console)?,
+            patterns,
+            left_out: left_out(args, phi, of, console)?,
         })
     }
 
@@ -85,14 +102,18 @@ fn patterns(args: &RecoverArgs, of: &Photographs) -> Result<Option<Matrix>, Fail
         return Ok(smooth);
     };
     let (pixels, count) = npy::shape(file)?;
-    if pixels != of.pixels || count > MOST_PATTERNS {
+    if pixels != of.pixels {
         let cause = format!(
             "{} is {pixels} × {count}, but {} has {} pixels",
             file.display(),
             of.name,
             of.pixels
         );
-        let cure = format!("give pixels × patterns, at most {MOST_PATTERNS} of them");
+        return Err(Failure::new(cause, "give pixels × patterns"));
+    }
+    if count > MOST_PATTERNS {
+        let cause = format!("{} holds {count} patterns", file.display());
+        let cure = format!("give at most {MOST_PATTERNS}");
         return Err(Failure::new(cause, cure));
     }
     let own = read_undamaged(file)?;
@@ -105,17 +126,24 @@ fn patterns(args: &RecoverArgs, of: &Photographs) -> Result<Option<Matrix>, Fail
     }))
 }
 
-/// Entries that do not count: those asked for, else those of the run whose Φcam it is.
+/// The file that says which entries do not count: the one asked for, else the one beside Φcam.
+pub(super) fn mask(args: &RecoverArgs, phi: &Path) -> Option<PathBuf> {
+    let beside = phi.with_file_name(LEFT_OUT);
+    let beside = beside.exists().then_some(beside);
+    args.left_out.clone().or(beside)
+}
+
+/// Entries that do not count.
 fn left_out(
     args: &RecoverArgs,
+    phi: &Path,
     of: &Photographs,
     console: Console,
 ) -> Result<Option<Matrix>, Failure> {
-    let of_run = args.dir.as_ref().map(|dir| dir.join(LEFT_OUT));
-    let of_run = of_run.filter(|file| args.phi.is_none() && file.exists());
-    let Some(file) = args.left_out.as_ref().or(of_run.as_ref()) else {
+    let Some(file) = mask(args, phi) else {
         return Ok(None);
     };
+    let file = &file;
     let flags = of.read(file)?;
     let count = flags.iter().filter(|x| **x != 0.0).count();
     if count == 0 {

@@ -42,23 +42,23 @@ impl Size {
 
     /// Everything at once, an upper bound: Φcam, its errors and three matrices of their size on the
     /// way, four of D's; of a joint method weighted copies of both sides and three of its product
-    /// besides, the normal equations six times over, and of few elements their terms, four each and
+    /// besides, and the normal equations six times over; of few elements their terms, four each and
     /// twice.
     fn whole(self, joint: bool, budget: usize) -> f64 {
         let phi = self.pixels * self.spots;
         let sides = self.elements * (self.pixels + self.spots);
         let more = if joint {
-            let terms = if self.elements <= MOST_INTEGRATED as f64 {
-                8.0 * sides
-            } else {
-                0.0
-            };
             let normal = 6.0 * self.elements * self.elements;
-            2.0 * phi + 3.0 * sides + 3.0 * budget as f64 + terms + normal
+            2.0 * phi + 3.0 * sides + 3.0 * budget as f64 + normal
         } else {
             0.0
         };
-        BASE + self.model() + 8.0 * (5.0 * phi + 4.0 * self.elements * self.spots + more)
+        let terms = if self.elements <= MOST_INTEGRATED as f64 {
+            8.0 * sides
+        } else {
+            0.0
+        };
+        BASE + self.model() + 8.0 * (5.0 * phi + 4.0 * self.elements * self.spots + more + terms)
     }
 
     /// What strips need however low they are: the model, D decomposed, a matrix of spots × elements

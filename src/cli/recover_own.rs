@@ -7,18 +7,24 @@ use super::args::RecoverArgs;
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_undamaged, refuse_negative};
+use super::memory;
 use super::output;
-use super::recover_beside::{Beside, Photographs};
+use super::recover_beside::{Beside, Photographs, mask};
 use super::recover_options::{self, uncertainty};
 use super::recovered::{collect, write};
-use super::run_folder::RunFolder;
+use super::run_folder::{RunFolder, SATURATED};
 use crate::lab::{
     Certainty, Noise, RecoveredObject, by_trust, describe_recovery, recover_with_picards,
 };
-use crate::matrix::Matrix;
+use crate::matrix::{Matrix, npy};
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Options};
 use crate::report;
+
+/// Methods that compare neighbouring elements.
+const NEIGHBOURS: [Method; 3] = [Method::JointGp, Method::JointTv, Method::TikhonovGradient];
+/// Copies of all matrices that are held at once.
+const HELD: f64 = 6.0;
 
 /// Recovers x of Φ = C diag(x) D + noise.
 pub(super) fn execute(
@@ -32,6 +38,14 @@ pub(super) fn execute(
         let cause = "--camera-side needs to know what to invert, and where to write";
         return Err(Failure::usage(cause, "give --phi FILE and -o FOLDER"));
     };
+    let phi_file = phi;
+    let sizes = [Some(phi.as_path()), Some(camera_side), args.laser_side.as_deref()]
+        .into_iter()
+        .flatten();
+    let entries: f64 = sizes
+        .map(|file| npy::shape(file).map(|(rows, columns)| rows as f64 * columns as f64))
+        .sum::<Result<_, _>>()?;
+    memory::refuse("these matrices", HELD * 8.0 * entries, &[])?;
     let phi = read_undamaged(phi)?;
     let camera = read_undamaged(camera_side)?;
     let laser = match &args.laser_side {
@@ -41,11 +55,17 @@ pub(super) fn execute(
     let elements = camera.ncols();
     let count = args.elements.unwrap_or([elements, 1]);
     let model = MatrixModel::of_sides(camera, laser, count)?;
-    let methods = if named.is_empty() {
-        Method::tried(elements)
+    // Without a grid nobody knows which elements are neighbours.
+    let alone = |method: &Method| args.elements.is_some() || !NEIGHBOURS.contains(method);
+    let methods: Vec<Method> = if named.is_empty() {
+        Method::tried(elements).into_iter().filter(alone).collect()
     } else {
         named.to_vec()
     };
+    if let Some(method) = methods.iter().find(|method| !alone(method)) {
+        let cause = format!("{method} compares neighbours, and nothing says how the elements lie");
+        return Err(Failure::new(cause, "give --elements NxM, or use joint"));
+    }
     recover_options::checked(args, &methods)?;
     let stderr = match (&args.stderr, args.noise) {
         (Some(file), _) => {
@@ -80,7 +100,16 @@ pub(super) fn execute(
             "give columns and rows of the photographs",
         ));
     }
-    let beside = Beside::read(args, &of, console)?;
+    let clipped = phi_file.with_file_name(SATURATED);
+    if clipped.exists() && !args.keep_clipped && mask(args, phi_file).is_none() {
+        let cause = format!("{} says which entries mean nothing", clipped.display());
+        let cure = format!(
+            "--left-out {} leaves them out; --keep-clipped takes them",
+            clipped.display()
+        );
+        return Err(Failure::new(cause, cure));
+    }
+    let beside = Beside::read(args, phi_file, &of, console)?;
     let options = Options {
         uncertainty: uncertainty(&model, console),
         ..options

@@ -1,27 +1,53 @@
 //! Which picture is shown first.
 
+use std::collections::BTreeMap;
+
 use super::objects::RecoveredObject;
 
 /// No surface's reflectance is as far from ½ as this.
 const IMPOSSIBLE: f64 = 1.0;
 
-/// Puts first what can be vouched for: pictures that explain the photographs before others; of those
+/// Puts first what can be vouched for: methods that explain the photographs before others; of those
 /// the ones that know how likely their assumption makes the photographs, the likeliest first; then
-/// those that a surface can be, and those with the fewest warnings. What is equal stays in its order.
+/// those that a surface can be, and those with the fewest warnings. What is equal stays in its order,
+/// and so do the surfaces of one method, which stand together.
 pub fn by_trust(objects: &mut [RecoveredObject]) {
-    let refuted = |o: &RecoveredObject| o.fit.as_ref().is_some_and(|fit| !fit.fits);
-    let evidence = |o: &RecoveredObject| o.log_evidence.unwrap_or(f64::NEG_INFINITY);
-    let impossible = |o: &RecoveredObject| {
-        let mut beyond = o.reflectance.iter().map(|x| (x - 0.5).abs());
-        o.estimated.as_ref().is_none_or(|e| e.scale.is_none()) && beyond.any(|x| x > IMPOSSIBLE)
-    };
+    let mut ranks: BTreeMap<String, Rank> = BTreeMap::new();
+    for (first, object) in objects.iter().enumerate() {
+        let rank = ranks.entry(object.method.clone()).or_insert(Rank {
+            evidence: object.log_evidence.unwrap_or(f64::NEG_INFINITY),
+            first,
+            ..Rank::default()
+        });
+        rank.refuted |= object.fit.as_ref().is_some_and(|fit| !fit.fits);
+        rank.impossible |= is_impossible(object);
+        rank.warnings = rank.warnings.max(object.warnings.len());
+    }
     objects.sort_by(|a, b| {
-        let fits = refuted(a).cmp(&refuted(b));
-        let likelier = evidence(b).total_cmp(&evidence(a));
-        fits.then(likelier)
-            .then(impossible(a).cmp(&impossible(b)))
-            .then(a.warnings.len().cmp(&b.warnings.len()))
+        let [a, b] = [a, b].map(|object| &ranks[&object.method]);
+        let fits = a.refuted.cmp(&b.refuted);
+        fits.then(b.evidence.total_cmp(&a.evidence))
+            .then(a.impossible.cmp(&b.impossible))
+            .then(a.warnings.cmp(&b.warnings))
+            .then(a.first.cmp(&b.first))
     });
+}
+
+/// What speaks for and against a method, all surfaces together.
+#[derive(Default)]
+struct Rank {
+    refuted: bool,
+    evidence: f64,
+    impossible: bool,
+    warnings: usize,
+    /// Where it stood.
+    first: usize,
+}
+
+fn is_impossible(object: &RecoveredObject) -> bool {
+    let mut beyond = object.reflectance.iter().map(|x| (x - 0.5).abs());
+    let known = object.estimated.as_ref().is_none_or(|e| e.scale.is_none());
+    known && beyond.any(|x| x > IMPOSSIBLE)
 }
 
 #[cfg(test)]
@@ -57,6 +83,15 @@ mod tests {
         assert!(fits[0] && fits.is_sorted_by(|a, b| a >= b), "{fits:?}");
         let at = |name: &str| objects.iter().position(|o| o.method == name);
         assert!(at("joint") < at("joint-unbounded"), "{fits:?}");
+        // Surfaces of one method stand together, whichever of them speaks against it.
+        let of = |surface: &str, x: f64| RecoveredObject {
+            surface: surface.to_owned(),
+            reflectance: vec![x; 16],
+            ..objects[1].clone()
+        };
+        let mut surfaces = vec![of("a", -0.9), of("b", 0.5)];
+        by_trust(&mut surfaces);
+        assert_eq!(surfaces[0].surface, "a");
         // Without its fit the first is no longer one to be shown.
         let mut refuted = objects[0].clone();
         refuted.fit.as_mut().unwrap().fits = false;

@@ -64,6 +64,9 @@ pub struct Estimated {
     pub glare: Option<DVector<f64>>,
     /// s.
     pub scale: Option<f64>,
+    /// Directions of Φ that all these take up, but for s: less than their numbers where some are the
+    /// same, and where nothing counts.
+    pub freedom: usize,
 }
 
 impl Estimated {

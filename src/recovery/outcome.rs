@@ -220,16 +220,10 @@ impl Recovered {
             Method::JointTwoValued => 2.0,
             _ => self.effective_rank,
         };
-        let terms = self.nuisance.as_ref().map_or(0, |n| {
-            let vectors = [&n.frame_constant, &n.background, &n.glare];
-            let count: usize = vectors
-                .iter()
-                .filter_map(|v| v.as_ref())
-                .map(|v| v.len())
-                .sum();
-            let patterns = n.frame_patterns.as_ref().map_or(0, DMatrix::len);
-            count + patterns + usize::from(n.scale.is_some())
-        });
+        let terms = self
+            .nuisance
+            .as_ref()
+            .map_or(0, |n| n.freedom + usize::from(n.scale.is_some()));
         own + terms as f64
     }
 

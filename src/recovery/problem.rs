@@ -277,6 +277,13 @@ impl<'a> Problem<'a> {
         self.stderr.filter(|s| s.iter().any(|&x| x > 0.0))
     }
 
+    /// Number of entries that count.
+    pub(super) fn entries(&self) -> usize {
+        let left_out = self.nuisance.left_out;
+        let none = left_out.map_or(0, |flags| flags.iter().filter(|x| **x != 0.0).count());
+        self.phi.len() - none
+    }
+
     /// Entries, pixels × spots, with 0 where one does not count.
     pub fn counted(&self, mut entries: DMatrix<f64>) -> DMatrix<f64> {
         if let Some(flags) = self.nuisance.left_out {

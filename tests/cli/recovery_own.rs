@@ -63,6 +63,14 @@ fn a_surface_that_shines_needs_a_camera_side_alone() {
             ["--pixels", "--frame-patterns"],
         ),
         (
+            "recover --camera-side a.npy --phi phi.npy -o o --method joint-gp",
+            ["neighbours", "--elements"],
+        ),
+        (
+            "recover --camera-side a.npy --phi phi.npy -o o --kernel published",
+            ["--camera-side", "--kernel"],
+        ),
+        (
             "recover --camera-side a.npy --phi phi.npy -o o --pixels 3x4",
             ["12 pixels", "has 40"],
         ),

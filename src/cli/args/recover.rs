@@ -44,11 +44,17 @@ pub(in crate::cli) struct RecoverArgs {
     /// (saturated.npy) as if they were right
     #[arg(long, requires = "phi")]
     pub keep_clipped: bool,
-    /// Entries that do not count, pixels × spots: those that are not 0; DIR/left_out.npy unless given
+    /// Entries that do not count, pixels × spots: those that are not 0; left_out.npy beside Φcam
+    /// unless given
     #[arg(long, value_name = "FILE", conflicts_with = "keep_clipped")]
     pub left_out: Option<PathBuf>,
     /// Invert this matrix C in place of a model's, pixels × elements: Φcam = C·diag(x)·D
-    #[arg(long, value_name = "FILE", requires_all = ["phi", "output"])]
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires_all = ["phi", "output"],
+        conflicts_with_all = ["kernel", "no_occlusion", "integration", "occluder_light", "memory"]
+    )]
     pub camera_side: Option<PathBuf>,
     /// D that belongs to --camera-side, elements × spots; all 1 unless given: a surface that shines
     #[arg(long, value_name = "FILE", requires = "camera_side")]

@@ -51,11 +51,11 @@ impl Coordinates {
                 let (free, sigma) = (Method::JointUnbounded, solved.sigma.clone());
                 let x = solved.solution.clone();
                 let left = finish(free, problem, options, &operator, x, sigma, rank)?;
-                let freedom = problem.phi.len() as f64 - left.freedom_used();
+                let freedom = problem.entries() as f64 - left.freedom_used();
                 if freedom < 1.0 {
                     return Err(bands::without_noise(method));
                 }
-                let floor = f64::EPSILON * problem.phi.norm();
+                let floor = f64::EPSILON * problem.counted(problem.phi.clone()).norm();
                 let variance = left.residual.max(floor).powi(2) / freedom;
                 DMatrix::identity(rank, rank) * variance
             }

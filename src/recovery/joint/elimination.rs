@@ -110,6 +110,7 @@ pub(super) fn estimate(
         background: None,
         glare: nuisance.glare.map(|_| row(of_frames)),
         scale: None,
+        freedom: freedom(nuisance, &patterns, spots, &root),
     };
     if nuisance.background {
         let rest = left - found.light(nuisance, pixels, spots);
@@ -124,6 +125,33 @@ pub(super) fn estimate(
         found.background = Some(a);
     }
     Ok(found)
+}
+
+/// Directions that the terms take up: those of each frame, and with a background one for each pixel
+/// that counts, less the patterns of the frames that are the same in all of them.
+fn freedom(
+    nuisance: &Nuisance<'_>,
+    patterns: &DMatrix<f64>,
+    spots: usize,
+    root: impl Fn(usize, usize) -> f64,
+) -> usize {
+    let pixels = patterns.nrows();
+    let of_frame = |l: usize| {
+        let mut own = patterns.clone();
+        if let Some(glare) = nuisance.glare {
+            let at = own.ncols();
+            own = own.insert_column(at, 0.0);
+            own.set_column(at, &glare.column(l));
+        }
+        directions(&own, |p| root(p, l)).len()
+    };
+    let frames: usize = (0..spots).map(of_frame).sum();
+    if !nuisance.background {
+        return frames;
+    }
+    let counts = |p: usize| (0..spots).any(|l| root(p, l) > 0.0);
+    let seen = (0..pixels).filter(|p| counts(*p)).count();
+    frames + seen - directions(patterns, |p| f64::from(u8::from(counts(p)))).len()
 }
 
 fn nonzero(x: f64) -> f64 {

@@ -126,6 +126,8 @@ fn elimination_is_the_dense_least_squares_with_all_columns() {
         assert!((bound.covariance - &covariance).amax() < 1e-9 * covariance.amax());
         // Light beside the model: the sizes themselves are not unique where terms overlap, their
         // sum is.
+        let taken = found.nuisance.as_ref().map_or(0, |n| n.freedom);
+        assert_eq!(taken + 3, dense.rank, "{nuisance:?}");
         let light = found
             .nuisance
             .map_or(DMatrix::zeros(9, 6), |n| n.light(&nuisance, 9, 6));
