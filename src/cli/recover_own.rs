@@ -39,9 +39,13 @@ pub(super) fn execute(
         return Err(Failure::usage(cause, "give --phi FILE and -o FOLDER"));
     };
     let phi_file = phi;
-    let sizes = [Some(phi.as_path()), Some(camera_side), args.laser_side.as_deref()]
-        .into_iter()
-        .flatten();
+    let sizes = [
+        Some(phi.as_path()),
+        Some(camera_side),
+        args.laser_side.as_deref(),
+    ]
+    .into_iter()
+    .flatten();
     let entries: f64 = sizes
         .map(|file| npy::shape(file).map(|(rows, columns)| rows as f64 * columns as f64))
         .sum::<Result<_, _>>()?;

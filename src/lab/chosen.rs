@@ -247,7 +247,7 @@ pub(super) fn chosen_words(parameter: Parameter, rank: usize, choice: Choice) ->
         Parameter::Damping(lambda) => format!("damping {lambda:.2e} of σ1"),
         Parameter::TotalVariation(lambda) => format!("total variation {lambda:.2e} of σ1²"),
         Parameter::GaussianProcess { spread, length } => {
-            format!("spread {spread:.3}, length {length:.3}")
+            format!("spread {}, length {length:.3}", sized(spread, 3))
         }
         Parameter::Levels([dark, light]) => format!("levels {dark:.3} and {light:.3}"),
     };
@@ -283,6 +283,15 @@ pub(super) fn chosen_words(parameter: Parameter, rank: usize, choice: Choice) ->
     what + &why
 }
 
+/// A number with so many decimals; far from 1 with as many digits.
+fn sized(value: f64, decimals: usize) -> String {
+    if (1e-3..1e6).contains(&value.abs()) {
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.decimals$e}")
+    }
+}
+
 /// What was estimated beside the reflectances, in words: means over frames or pixels.
 fn estimated(nuisance: &Estimated) -> String {
     let mut words = String::new();
@@ -300,7 +309,7 @@ fn estimated(nuisance: &Estimated) -> String {
         words += &format!("; {} patterns in each frame", strengths.nrows());
     }
     if let Some(scale) = nuisance.scale {
-        words += &format!("; scale {scale:.4}");
+        words += &format!("; scale {}", sized(scale, 4));
     }
     words
 }

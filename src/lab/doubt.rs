@@ -19,7 +19,7 @@ const GAP: f64 = 0.1;
 pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
     let every = [
         misfit(found, judged),
-        unjudged(judged),
+        unjudged(found, judged),
         impossible(found),
         noise(found),
         on_bounds(found),
@@ -108,11 +108,14 @@ fn contradiction(best: &Attainable) -> String {
     )
 }
 
-fn unjudged(judged: &Judged) -> Option<String> {
+fn unjudged(found: &Recovered, judged: &Judged) -> Option<String> {
     judged.fit.is_none().then(|| {
-        "the fit CANNOT BE JUDGED: the noise of the photographs is not known, or there are not more \
-         of them than unknowns. Give standard errors (--stderr FILE, --noise RELATIVE)"
-            .to_owned()
+        format!(
+            "the fit CANNOT BE JUDGED: the noise of the photographs is not known, or there are not \
+             more of them than unknowns. It leaves {} % of Φcam unexplained; errors that are stated \
+             take that for independent noise. Give standard errors (--stderr FILE, --noise RELATIVE)",
+            figure(100.0 * found.relative_residual, 2)
+        )
     })
 }
 

@@ -48,7 +48,7 @@ fn a_surface_that_shines_needs_a_camera_side_alone() {
     let found = workspace.matrix("out/joint.npy");
     assert!((found - x.transpose()).amax() < 1e-6);
     for (line, words) in [
-        ("recover", ["DIR", "--camera-side"]),
+        ("recover", ["DIR", "required"]),
         ("recover --camera-side a.npy -o o", ["--phi", "required"]),
         (
             "recover --camera-side a.npy --phi phi.npy -o o --elements 5",
