@@ -9,7 +9,7 @@ use super::plane::{Averaged, Chosen, Plane, linearised, same_size};
 use super::read::Reader;
 use super::response::{Response, ResponseTable, response_table};
 use super::set::{ChannelName, DarkTable, DeadTable, Files, FrameTable, Set};
-use super::takes::{Take, each_spot, takes};
+use super::takes::{Take, each_spot, one_exposure, takes};
 use crate::image::{Channel, Samples};
 
 /// Most pixels whose repeats the photon transfer line is fitted to.
@@ -75,7 +75,10 @@ impl<'a> Shots<'a> {
         let mut average = |files: &Files| shots.average(&expanded(folder, files)?, reader);
         let darks = match &set.dark {
             None => Vec::new(),
-            Some(DarkTable::Files(files)) => vec![(None, average(files)?)],
+            Some(DarkTable::Files(files)) => {
+                one_exposure(&shots.takes)?;
+                vec![(None, average(files)?)]
+            }
             Some(DarkTable::Series(all)) => all
                 .iter()
                 .map(|s| Ok((Some(s.exposure), average(&s.files)?)))
