@@ -13,6 +13,7 @@ use super::placing::Placing;
 use super::read::Reader;
 use super::set::{ChannelName, Set};
 use super::shots::Shots;
+use super::takes::Take;
 
 use crate::scene::Scene;
 
@@ -49,7 +50,7 @@ pub fn import(
     let spots = scene.laser.spots.len();
     let shots = Shots::new(set, spots, folder, channel, &mut reader, &listed)?;
     let placing = Placing::new(set, &scene.camera, shots.size)?;
-    let unit = unit(set, &shots)?;
+    let unit = unit(set.watts, &shots.takes)?;
     let given = set.camera_noise()?;
     let line = match given {
         Some(_) => None,
@@ -104,19 +105,23 @@ pub fn import(
 }
 
 /// The unit of Φ.
-fn unit(set: &Set, shots: &Shots<'_>) -> Result<&'static str, PhotographError> {
-    let timed = shots.takes.iter().filter(|t| t.exposure.is_some()).count();
-    if timed != 0 && timed != shots.takes.len() {
+fn unit(watts: Option<f64>, takes: &[Take]) -> Result<&'static str, PhotographError> {
+    let timed = takes.iter().filter(|t| t.exposure.is_some()).count();
+    if timed != 0 && timed != takes.len() {
         return Err(refused(
             "some photographs have an exposure time and others not",
             "give every one, or one `exposure` for all",
         ));
     }
-    Ok(match (set.watts, timed) {
-        (Some(_), _) => "W",
-        (None, 0) => "counts",
-        (None, _) => "counts/s",
-    })
+    match (watts, timed) {
+        (Some(_), 0) => Err(refused(
+            "`watts` is for each count per second, and no exposure time is known",
+            "give `exposure`, s",
+        )),
+        (Some(_), _) => Ok("W"),
+        (None, 0) => Ok("counts"),
+        (None, _) => Ok("counts/s"),
+    }
 }
 
 /// What the settings leave unsaid.
@@ -161,4 +166,30 @@ fn bent(line: &PhotonTransferFit) -> Option<String> {
             100.0 * line.largest_deviation
         )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn watts_need_seconds() {
+        let take = |exposure| Take {
+            path: "a".into(),
+            spot: None,
+            exposure,
+            gain: 1.0,
+            gain_error: 0.0,
+        };
+        let (timed, untimed) = (take(Some(0.5)), take(None));
+        let error = unit(Some(2.0), &[untimed.clone()]).unwrap_err().to_string();
+        assert!(
+            error.contains("exposure") && error.contains("watts"),
+            "{error}"
+        );
+        assert_eq!(unit(Some(2.0), &[timed.clone()]).unwrap(), "W");
+        assert_eq!(unit(None, &[timed.clone()]).unwrap(), "counts/s");
+        assert_eq!(unit(None, &[untimed.clone()]).unwrap(), "counts");
+        assert!(unit(None, &[timed, untimed]).is_err());
+    }
 }
