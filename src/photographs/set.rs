@@ -51,8 +51,9 @@ pub struct Set {
     /// The variable of a MATLAB file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub variable: Option<String>,
-    /// What the indices of a three-dimensional array are, where its shape does not say:
-    /// frames-rows-columns, rows-columns-frames or rows-columns-channels.
+    /// What the indices of an array are, where its shape does not say: frames-rows-columns,
+    /// rows-columns-frames, rows-columns-channels, frames-rows-columns-channels or
+    /// rows-columns-channels-frames.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub axes: Option<Axes>,
     /// Exposure time of every photograph, s; without any fluxes are in counts per photograph.
@@ -166,7 +167,7 @@ pub enum ChannelName {
     All,
 }
 
-/// What the indices of a three-dimensional array are.
+/// What the indices of an array of three or four dimensions are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Axes {
@@ -176,6 +177,10 @@ pub enum Axes {
     RowsColumnsFrames,
     /// One photograph in colour.
     RowsColumnsChannels,
+    /// Photographs in colour one after the other.
+    FramesRowsColumnsChannels,
+    /// Photographs in colour, as MATLAB stacks them.
+    RowsColumnsChannelsFrames,
 }
 
 /// Dead pixels.
