@@ -60,17 +60,20 @@ pub fn import(
     let columns = Columns::of(set, scene, (&shots, &placing), noise, &mut reader)?;
     let mut warnings = unsaid(set, &placing);
     warnings.extend(line.and_then(|line| bent(&line)));
+    if noise.is_some_and(|n| n.has_offset) {
+        warnings.push("without dark frames the repeats do not tell the read noise: the photon transfer line is over light with the camera's offset in it, and its value at 0 is σ² − g·offset; give `dark`".to_owned());
+    }
     if noise.is_none() {
         warnings.push("the noise is not known (one photograph a spot, and no `noise`): there is no standard error; recover weighs all entries alike, or with --noise".to_owned());
     }
     if reader.is_lossy && set.gamma.is_none() && set.response.is_none() {
         warnings.push("JPEG is neither linear nor without loss: give `gamma` or `response`, or photographs that the camera saves as they are".to_owned());
     }
-    if columns.zeros > 0 {
+    if columns.zeros > 0.0 {
         let all = columns.photographs * shots.size[0] * shots.size[1];
         warnings.push(format!(
             "{:.2} % of the stored values are 0: what would be below is cut off, so that dark pixels are too bright on average; raise the camera's offset",
-            100.0 * columns.zeros as f64 / all as f64
+            100.0 * columns.zeros / all as f64
         ));
     }
     let Placing {
@@ -159,9 +162,14 @@ fn unsaid(set: &Set, placing: &Placing) -> Vec<String> {
 
 /// That the variance of repeats is no line.
 fn bent(line: &PhotonTransferFit) -> Option<String> {
+    let why = if line.noise.has_offset {
+        "without dark frames it is not told why; give `dark`"
+    } else {
+        "the laser flickers, or the response is not linear"
+    };
     (line.p < FITS).then(|| {
         format!(
-            "the variance of repeated photographs is no line over their light (probability {:.1e}, off by up to {:.0} %): the laser flickers, or the response is not linear; the standard errors are those of the line",
+            "the variance of repeated photographs is no line over their light (probability {:.1e}, off by up to {:.0} %): {why}; the standard errors are those of the line",
             line.p,
             100.0 * line.largest_deviation
         )
