@@ -140,7 +140,7 @@ const ROUNDS: usize = 8;
 
 /// Part of the mean variance of the groups below which the line is not taken to fall: their weights
 /// stay finite where there is no light, no read noise and no rounding.
-const LEAST: f64 = 1e-3;
+const LEAST: f64 = 1e-6;
 
 /// Fits the line to the variances of `repeats`, in groups of like light; each group's variance is
 /// known to the fraction √(2/freedom). Pixels whose variance is below twice that of rounding alone
