@@ -237,13 +237,15 @@ fn summary(account: &ImportAccount, has_noise: bool, dir: &Path) -> String {
     }
     match (account.noise, account.photon_transfer) {
         (Some(noise), Some(line)) => {
+            let read = if noise.has_offset {
+                "read noise not told (no dark frames)".to_owned()
+            } else {
+                format!("read noise {:.3} counts", noise.read_variance.sqrt())
+            };
             let _ = writeln!(
                 text,
-                "  noise, from repeats: gain {:.4} ± {:.4} counts, read noise {:.3} counts; the line fits with probability {:.3}",
-                noise.gain,
-                line.gain_error,
-                noise.read_variance.sqrt(),
-                line.p
+                "  noise, from repeats: gain {:.4} ± {:.4} counts, {read}; the line fits with probability {:.3}",
+                noise.gain, line.gain_error, line.p
             );
         }
         (Some(noise), None) => {

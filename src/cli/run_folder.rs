@@ -205,8 +205,8 @@ impl RunFolder {
         Err(Failure::new(cause, cure))
     }
 
-    /// Puts a result that `fill` writes into the place of what the folder holds, once it is whole.
-    /// What is not a run of the folder's is refused, unless it is to be replaced.
+    /// Puts an import that `fill` writes into the place of what the folder holds, once it is whole.
+    /// Another import gives way if `replace` says so; anything else that is not of `scene` is refused.
     pub(super) fn put(
         &self,
         scene: &Scene,
@@ -214,7 +214,8 @@ impl RunFolder {
         replace: bool,
         fill: impl FnOnce(&Path) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        if !replace {
+        let is_import = Record::read(&self.path)?.is_some_and(|there| there.is_imported());
+        if !(replace && is_import) {
             self.refuse_foreign(scene, console)?;
         }
         let staged = Self::at(&self.path.join(REPLACEMENT));
@@ -524,3 +525,6 @@ pub(super) fn remove_recovered(dir: &Path) -> Result<(), Failure> {
     let _ = fs::remove_dir(dir);
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

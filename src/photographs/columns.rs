@@ -22,7 +22,7 @@ pub(super) struct Columns {
     pub mean: Vec<f64>,
     pub gains: Vec<(usize, f64, f64)>,
     pub photographs: usize,
-    pub zeros: usize,
+    pub zeros: f64,
 }
 
 impl Columns {
@@ -52,7 +52,7 @@ impl Columns {
             mean: vec![0.0; shots.size[0] * shots.size[1]],
             gains: Vec::new(),
             photographs: 0,
-            zeros: 0,
+            zeros: 0.0,
         };
         let code = Codes {
             set,
@@ -71,7 +71,7 @@ impl Columns {
             };
             let corrected = correction.apply(&name, &mean)?;
             found.photographs += mean.frames;
-            found.zeros += mean.zeros;
+            found.zeros += mean.cut_off();
             seen += 1;
             for (mean, flux) in found.mean.iter_mut().zip(&corrected.flux) {
                 *mean += flux;

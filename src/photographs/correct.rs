@@ -117,10 +117,11 @@ impl Correction<'_> {
             let scale = 1.0 / (level * self.exposure);
             flux[k] = signal * scale;
             if let (Some(variance), Some(noise)) = (&mut variance, self.noise) {
-                let own = noise.of_mean(signal, shot.rounding[k], shot.frames);
-                let dark = self
-                    .dark
-                    .map_or(0.0, |d| noise.of_mean(0.0, d.rounding[k], d.frames));
+                let of = |a: &Averaged, below: f64| {
+                    noise.of_mean([a.light[k], below], [a.rounding[k], a.share], a.frames)
+                };
+                let own = of(shot, shot.light[k] - signal);
+                let dark = self.dark.map_or(0.0, |d| of(d, d.light[k]));
                 variance[k] = (own + dark) * scale * scale + level_variance * flux[k] * flux[k];
             }
         }
@@ -139,6 +140,7 @@ mod tests {
             light: light.to_vec(),
             rounding: vec![1.0 / 12.0; light.len()],
             saturated: light.iter().map(|x| *x >= 1000.0).collect(),
+            share: 1.0,
             zeros: 0,
         })
     }
@@ -167,6 +169,28 @@ mod tests {
         let of_flat = (0.5 * 100.0 + 9.0 + lsb + 9.0 + lsb) / 1e4;
         let due = (own + 9.0 + lsb) / 2.25 + of_flat * 1600.0;
         assert!((found.variance.unwrap()[0] / due - 1.0).abs() < 1e-9);
+    }
+
+    /// Var (a + b + c)/3 = (Var a + Var b + Var c)/9: by hand from 30, 60 and 90 counts of gain 0.5
+    /// and read noise 3 counts, and 0 counts in the dark.
+    #[test]
+    fn the_mean_of_channels_has_their_share_of_the_variance() {
+        let noise = Some(CameraNoise::new(0.5, 3.0).unwrap());
+        let of = |light: f64| {
+            let mut mean = shot(&[light]);
+            (mean.share, mean.rounding) = (1.0 / 3.0, vec![0.0]);
+            mean
+        };
+        let (dark, mean) = (of(10.0), of(70.0));
+        let correction = Correction {
+            dark: Some(&dark),
+            flat: None,
+            noise,
+            exposure: 1.0,
+        };
+        let found = correction.apply("a", &mean).unwrap().variance.unwrap()[0];
+        let due = ((0.5 * 30.0 + 9.0) + (0.5 * 60.0 + 9.0) + (0.5 * 90.0 + 9.0) + 3.0 * 9.0) / 9.0;
+        assert!((found / due - 1.0).abs() < 1e-12, "{found} {due}");
     }
 
     #[test]

@@ -13,6 +13,7 @@ use super::placing::Placing;
 use super::read::Reader;
 use super::set::{ChannelName, Set};
 use super::shots::Shots;
+use super::takes::Take;
 
 use crate::scene::Scene;
 
@@ -49,7 +50,7 @@ pub fn import(
     let spots = scene.laser.spots.len();
     let shots = Shots::new(set, spots, folder, channel, &mut reader, &listed)?;
     let placing = Placing::new(set, &scene.camera, shots.size)?;
-    let unit = unit(set, &shots)?;
+    let unit = unit(set.watts, &shots.takes)?;
     let given = set.camera_noise()?;
     let line = match given {
         Some(_) => None,
@@ -59,17 +60,20 @@ pub fn import(
     let columns = Columns::of(set, scene, (&shots, &placing), noise, &mut reader)?;
     let mut warnings = unsaid(set, &placing);
     warnings.extend(line.and_then(|line| bent(&line)));
+    if noise.is_some_and(|n| n.has_offset) {
+        warnings.push("without dark frames the repeats do not tell the read noise: the photon transfer line is over light with the camera's offset in it, and its value at 0 is σ² − g·offset; give `dark`".to_owned());
+    }
     if noise.is_none() {
         warnings.push("the noise is not known (one photograph a spot, and no `noise`): there is no standard error; recover weighs all entries alike, or with --noise".to_owned());
     }
     if reader.is_lossy && set.gamma.is_none() && set.response.is_none() {
         warnings.push("JPEG is neither linear nor without loss: give `gamma` or `response`, or photographs that the camera saves as they are".to_owned());
     }
-    if columns.zeros > 0 {
+    if columns.zeros > 0.0 {
         let all = columns.photographs * shots.size[0] * shots.size[1];
         warnings.push(format!(
             "{:.2} % of the stored values are 0: what would be below is cut off, so that dark pixels are too bright on average; raise the camera's offset",
-            100.0 * columns.zeros as f64 / all as f64
+            100.0 * columns.zeros / all as f64
         ));
     }
     let Placing {
@@ -104,19 +108,23 @@ pub fn import(
 }
 
 /// The unit of Φ.
-fn unit(set: &Set, shots: &Shots<'_>) -> Result<&'static str, PhotographError> {
-    let timed = shots.takes.iter().filter(|t| t.exposure.is_some()).count();
-    if timed != 0 && timed != shots.takes.len() {
+fn unit(watts: Option<f64>, takes: &[Take]) -> Result<&'static str, PhotographError> {
+    let timed = takes.iter().filter(|t| t.exposure.is_some()).count();
+    if timed != 0 && timed != takes.len() {
         return Err(refused(
             "some photographs have an exposure time and others not",
             "give every one, or one `exposure` for all",
         ));
     }
-    Ok(match (set.watts, timed) {
-        (Some(_), _) => "W",
-        (None, 0) => "counts",
-        (None, _) => "counts/s",
-    })
+    match (watts, timed) {
+        (Some(_), 0) => Err(refused(
+            "`watts` is for each count per second, and no exposure time is known",
+            "give `exposure`, s",
+        )),
+        (Some(_), _) => Ok("W"),
+        (None, 0) => Ok("counts"),
+        (None, _) => Ok("counts/s"),
+    }
 }
 
 /// What the settings leave unsaid.
@@ -154,11 +162,42 @@ fn unsaid(set: &Set, placing: &Placing) -> Vec<String> {
 
 /// That the variance of repeats is no line.
 fn bent(line: &PhotonTransferFit) -> Option<String> {
+    let why = if line.noise.has_offset {
+        "without dark frames it is not told why; give `dark`"
+    } else {
+        "the laser flickers, or the response is not linear"
+    };
     (line.p < FITS).then(|| {
         format!(
-            "the variance of repeated photographs is no line over their light (probability {:.1e}, off by up to {:.0} %): the laser flickers, or the response is not linear; the standard errors are those of the line",
+            "the variance of repeated photographs is no line over their light (probability {:.1e}, off by up to {:.0} %): {why}; the standard errors are those of the line",
             line.p,
             100.0 * line.largest_deviation
         )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn watts_need_seconds() {
+        let take = |exposure| Take {
+            path: "a".into(),
+            spot: None,
+            exposure,
+            gain: 1.0,
+            gain_error: 0.0,
+        };
+        let (timed, untimed) = (take(Some(0.5)), take(None));
+        let error = unit(Some(2.0), &[untimed.clone()]).unwrap_err().to_string();
+        assert!(
+            error.contains("exposure") && error.contains("watts"),
+            "{error}"
+        );
+        assert_eq!(unit(Some(2.0), &[timed.clone()]).unwrap(), "W");
+        assert_eq!(unit(None, &[timed.clone()]).unwrap(), "counts/s");
+        assert_eq!(unit(None, &[untimed.clone()]).unwrap(), "counts");
+        assert!(unit(None, &[timed, untimed]).is_err());
+    }
 }

@@ -99,14 +99,15 @@ pub(super) fn parsed(name: &str, text: &str) -> Result<Vec<FrameTable>, Photogra
                 )
             })?),
         };
-        let position = match (number_of("x")?, number_of("y")?) {
-            (Some(x), Some(y)) => Some(
-                [Some(x), Some(y), number_of("z")?]
-                    .into_iter()
-                    .flatten()
-                    .collect(),
-            ),
-            _ => None,
+        let position = match [number_of("x")?, number_of("y")?, number_of("z")?] {
+            [None, None, None] => None,
+            [Some(x), Some(y), z] => Some([Some(x), Some(y), z].into_iter().flatten().collect()),
+            _ => {
+                return Err(refused(
+                    format!("line {number} of {name} has a position without its x or its y"),
+                    "give both x and y, or neither",
+                ));
+            }
         };
         tables.push(FrameTable {
             file: text("file")
@@ -187,6 +188,9 @@ mod tests {
             ("file,x,y\na.png,1\n", "line 2"),
             ("file,spot\na.png,x\n", "spot `x`"),
             ("file,gain\na.png,nan\n", "gain `nan`"),
+            ("file,x,y\na.png,1,2\nb.png,1,\n", "line 3"),
+            ("file,y\na.png,1\n", "without its x"),
+            ("file,x,y,z\na.png,,,1\n", "without its x"),
             ("spot\n3\n", "names no file"),
             ("", "empty"),
         ] {

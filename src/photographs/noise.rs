@@ -4,7 +4,8 @@
 //!
 //! in counts²: the photon transfer line (Janesick, *Photon Transfer*, 2007; EMVA 1288) with the gain
 //! g (counts per electron), the light above the dark frames s − d, the read noise σ with the dark
-//! current's, and the rounding to integers. Averaging F frames divides all but what rounding leaves
+//! current's, and the rounding to integers. Without dark frames the line is over s, and its value at 0
+//! is σ² − g·o with the unknown offset o. The mean of n channels has the n-th part of the variance. Averaging F frames divides all but what rounding leaves
 //! where other noise is too small to move values from one integer to the next: with the variance v
 //! before rounding that is LSB²·B(v/LSB²), by the Fourier series of a rounding error (Widrow and
 //! Kollár, *Quantization Noise*, 2008)
@@ -18,13 +19,16 @@ use serde::Serialize;
 use super::error::{PhotographError, refused};
 use crate::num::statistics::chi_square_sf;
 
-/// Gain and read noise of a camera.
+/// Gain and read noise of one channel of a camera.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CameraNoise {
     /// g: variance per count of light, counts; 0 or more.
     pub gain: f64,
-    /// σ², counts²; 0 or more.
+    /// σ², counts²; 0 or more. With `has_offset` σ² − g·o instead, of any sign: the variance is then
+    /// g·s + σ² − g·o over the stored light s with the camera's offset o.
     pub read_variance: f64,
+    /// Whether the line is over light with the camera's offset in it, for want of dark frames.
+    pub has_offset: bool,
 }
 
 impl CameraNoise {
@@ -45,13 +49,26 @@ impl CameraNoise {
         Ok(Self {
             gain,
             read_variance: read_noise * read_noise,
+            has_offset: false,
         })
     }
 
-    /// Variance of the mean of `frames` photographs of the light `signal` above dark, whose rounding
-    /// has the variance `rounding` (LSB²/12), counts².
-    pub fn of_mean(&self, signal: f64, rounding: f64, frames: usize) -> f64 {
-        let moving = self.gain * signal.max(0.0) + self.read_variance;
+    /// Variance of the mean of `frames` photographs of the light `stored`, `dark` of which is that of
+    /// dark frames. Each is the mean of 1/`share` channels, and its rounding has the variance
+    /// `rounding` (LSB²/12 of one channel, over their number), counts².
+    pub fn of_mean(
+        &self,
+        [stored, dark]: [f64; 2],
+        [rounding, share]: [f64; 2],
+        frames: usize,
+    ) -> f64 {
+        let light = if self.has_offset {
+            stored
+        } else {
+            stored - dark
+        };
+        let one = self.gain * light.max(0.0) + self.read_variance;
+        let moving = share * one.max(0.0);
         let left = left_by_rounding(moving, rounding);
         (moving + rounding - left) / frames.max(1) as f64 + left
     }
@@ -121,13 +138,21 @@ const FEWEST: usize = 32;
 /// Rounds of weighing by the line that was found.
 const ROUNDS: usize = 8;
 
+/// Part of the mean variance of the groups below which the line is not taken to fall: their weights
+/// stay finite where there is no light, no read noise and no rounding.
+const LEAST: f64 = 1e-6;
+
 /// Fits the line to the variances of `repeats`, in groups of like light; each group's variance is
 /// known to the fraction √(2/freedom). Pixels whose variance is below twice that of rounding alone
-/// say nothing of other noise; groups of such are left out.
+/// say nothing of other noise; groups of such are left out. `has_offset` says that the camera's offset
+/// is in their light: σ² − g·o may then be negative, and is not held at 0.
 ///
 /// # Errors
-/// [`PhotographError::Refused`] if fewer than three groups are left.
-pub fn photon_transfer(mut repeats: Vec<Repeated>) -> Result<PhotonTransferFit, PhotographError> {
+/// [`PhotographError::Refused`] if fewer than three groups are left, or no line fits them.
+pub fn photon_transfer(
+    mut repeats: Vec<Repeated>,
+    has_offset: bool,
+) -> Result<PhotonTransferFit, PhotographError> {
     repeats.sort_by(|a, b| a.beside.total_cmp(&b.beside));
     let size = repeats.len().div_ceil(GROUPS).max(FEWEST);
     let groups: Vec<Repeated> = repeats
@@ -136,22 +161,25 @@ pub fn photon_transfer(mut repeats: Vec<Repeated>) -> Result<PhotonTransferFit, 
         .map(group)
         .filter(|g| g.variance > 2.0 * g.rounding)
         .collect();
+    let cure = "give `noise = { gain, read_noise }`, save 16 bits, or raise the exposure";
     if groups.len() < 3 {
         return Err(refused(
             "the repeated photographs do not differ by more than rounding in enough pixels: gain and read noise cannot be found",
-            "give `noise = { gain, read_noise }`, save 16 bits, or raise the exposure",
+            cure,
         ));
     }
+    let mean = groups.iter().map(|g| g.variance).sum::<f64>() / groups.len() as f64;
     let mut noise = CameraNoise {
         gain: 0.0,
-        read_variance: groups.iter().map(|g| g.variance).sum::<f64>() / groups.len() as f64,
+        read_variance: mean,
+        has_offset,
     };
     let mut errors = [0.0; 2];
     for _ in 0..ROUNDS {
-        (noise, errors) = line(&groups, noise);
+        (noise, errors) = line(&groups, noise, LEAST * mean);
     }
     let deviations = groups.iter().map(|g| {
-        let due = noise.gain * g.signal.max(0.0) + noise.read_variance + g.rounding;
+        let due = due(g, noise, LEAST * mean);
         [
             (g.variance - due) / (due * (2.0 / g.freedom).sqrt()),
             g.variance / due - 1.0,
@@ -159,6 +187,13 @@ pub fn photon_transfer(mut repeats: Vec<Repeated>) -> Result<PhotonTransferFit, 
     });
     let deviations: Vec<[f64; 2]> = deviations.collect();
     let chi2: f64 = deviations.iter().map(|d| d[0] * d[0]).sum();
+    let found = [noise.gain, noise.read_variance];
+    if found == [0.0; 2] || found.iter().any(|x| !x.is_finite()) || !chi2.is_finite() {
+        return Err(refused(
+            "no line fits the variance of the repeated photographs over their light: gain and read noise cannot be found",
+            cure,
+        ));
+    }
     Ok(PhotonTransferFit {
         noise,
         gain_error: errors[0],
@@ -168,6 +203,11 @@ pub fn photon_transfer(mut repeats: Vec<Repeated>) -> Result<PhotonTransferFit, 
         p: chi_square_sf(chi2, (groups.len() - 2) as f64),
         largest_deviation: deviations.iter().map(|d| d[1].abs()).fold(0.0, f64::max),
     })
+}
+
+/// The variance of a group by the line, at least `least`, counts².
+fn due(group: &Repeated, noise: CameraNoise, least: f64) -> f64 {
+    (noise.gain * group.signal + noise.read_variance + group.rounding).max(least)
 }
 
 /// The means over pixels of like light.
@@ -185,11 +225,12 @@ fn group(pixels: &[Repeated]) -> Repeated {
 }
 
 /// The weighted line, with weights 1/variance of each group's variance by the line `before`; a
-/// negative gain or read noise becomes 0. Returns it with the standard errors of both.
-fn line(groups: &[Repeated], before: CameraNoise) -> (CameraNoise, [f64; 2]) {
+/// negative gain or read noise becomes 0, but for an offset's. Returns it with the standard errors of
+/// both.
+fn line(groups: &[Repeated], before: CameraNoise, least: f64) -> (CameraNoise, [f64; 2]) {
     let [mut w, mut x, mut y, mut xx, mut xy] = [0.0; 5];
     for g in groups {
-        let due = before.gain * g.signal + before.read_variance + g.rounding;
+        let due = due(g, before, least);
         let weight = g.freedom / (2.0 * due * due);
         let above = g.variance - g.rounding;
         w += weight;
@@ -199,30 +240,30 @@ fn line(groups: &[Repeated], before: CameraNoise) -> (CameraNoise, [f64; 2]) {
         xy += weight * g.signal * above;
     }
     let determinant = w * xx - x * x;
+    let level = |read_variance| CameraNoise {
+        gain: 0.0,
+        read_variance,
+        ..before
+    };
     // Groups of one light say nothing of the gain.
     if determinant <= 1e-12 * w * xx {
-        let noise = CameraNoise {
-            gain: 0.0,
-            read_variance: y / w,
-        };
-        return (noise, [f64::INFINITY, (1.0 / w).sqrt()]);
+        return (level(y / w), [f64::INFINITY, (1.0 / w).sqrt()]);
     }
     let (gain, read) = (
         (w * xy - x * y) / determinant,
         (xx * y - x * xy) / determinant,
     );
-    let noise = match (gain >= 0.0, read >= 0.0) {
+    let noise = match (gain >= 0.0, read >= 0.0 || before.has_offset) {
         (true, true) => CameraNoise {
             gain,
             read_variance: read,
+            ..before
         },
-        (false, _) => CameraNoise {
-            gain: 0.0,
-            read_variance: (y / w).max(0.0),
-        },
+        (false, _) => level((y / w).max(0.0)),
         (_, false) => CameraNoise {
             gain: xy / xx,
             read_variance: 0.0,
+            ..before
         },
     };
     (noise, [(w / determinant).sqrt(), (xx / determinant).sqrt()])

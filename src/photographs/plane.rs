@@ -26,7 +26,10 @@ pub struct Plane {
     pub rounding: Vec<f64>,
     /// Whether a stored value has reached saturation.
     pub saturated: Vec<bool>,
-    /// Stored values that are 0: cut off below.
+    /// 1/n where `light` is the mean of n channels: their noise is independent, so that its variance
+    /// is that of one channel over n.
+    pub share: f64,
+    /// Stored values that are 0, in any of the channels: cut off below.
     pub zeros: usize,
 }
 
@@ -55,14 +58,15 @@ pub fn linearised(
         Chosen::Mean => colours.to_vec(),
     };
     let pixels = samples.width * samples.height;
+    let share = 1.0 / wanted.len() as f64;
     let mut plane = Plane {
         size: [samples.width, samples.height],
         light: vec![0.0; pixels],
         rounding: vec![0.0; pixels],
         saturated: vec![false; pixels],
+        share,
         zeros: 0,
     };
-    let share = 1.0 / wanted.len() as f64;
     let step = if samples.full_scale.is_some() {
         1.0
     } else {
@@ -104,6 +108,8 @@ pub struct Averaged {
     pub rounding: Vec<f64>,
     /// Whether one of them was saturated.
     pub saturated: Vec<bool>,
+    /// Mean of their shares: see [`Plane::share`].
+    pub share: f64,
     /// Stored values that were 0.
     pub zeros: usize,
     squares: Vec<f64>,
@@ -119,6 +125,7 @@ impl Averaged {
             light: first.light,
             rounding: first.rounding,
             saturated: first.saturated,
+            share: first.share,
             zeros: first.zeros,
         }
     }
@@ -132,6 +139,7 @@ impl Averaged {
         self.frames += 1;
         self.zeros += next.zeros;
         let n = self.frames as f64;
+        self.share += (next.share - self.share) / n;
         for k in 0..self.light.len() {
             let off = next.light[k] - self.light[k];
             self.light[k] += off / n;
@@ -140,6 +148,11 @@ impl Averaged {
             self.saturated[k] |= next.saturated[k];
         }
         Ok(())
+    }
+
+    /// Pixels' worth of stored values that were 0: a third for each of three channels.
+    pub fn cut_off(&self) -> f64 {
+        self.zeros as f64 * self.share
     }
 
     /// Sample variance of one photograph at a pixel, counts²; `None` without repeats.
@@ -200,6 +213,12 @@ mod tests {
         assert!((mean.light[0] - 102.0).abs() < 1e-12);
         assert!((mean.rounding[0] - 4.8 / 108.0).abs() < 1e-12);
         assert_eq!(mean.saturated, [true]);
+        // Two of the three stored values of a pixel are 0.
+        let dark = photo(&[0.0, 0.0, 9.0, 0.0, 1.0, 2.0], 3);
+        let dark = linearised("a", &dark, Chosen::Mean, &Response::Linear, 255.0).unwrap();
+        let dark = Averaged::of(dark);
+        assert!((dark.share * 3.0 - 1.0).abs() < 1e-15);
+        assert!((dark.cut_off() - 1.0).abs() < 1e-15);
         let green = of(Chosen::One(Channel::Green)).unwrap();
         assert!((green.light[0] - 255.0 * 0.16).abs() < 1e-12 && !green.saturated[0]);
         let error = of(Chosen::Grey).unwrap_err().to_string();

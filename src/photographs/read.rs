@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 
 use super::error::{PhotographError, refused};
 use super::set::Axes;
-use crate::image::{Channel, Samples, samples};
+use crate::image::{Channel, ImageError, Samples, samples};
 use crate::matrix::{Array, mat, npy};
 use crate::store::{self, hex};
 
@@ -89,7 +89,15 @@ impl<'a> Reader<'a> {
                 self.axes,
                 true,
             )?,
-            _ => samples(&name, &bytes)?,
+            _ => samples(&name, &bytes).map_err(|e| match e {
+                ImageError::Unknown(_) => refused(
+                    format!(
+                        "{name} is no PNG, JPEG, OpenEXR, TIFF, NPY or MAT file by its first bytes"
+                    ),
+                    "save it as one of them (NPY: numpy.save; MAT: `save -v7` in MATLAB or Octave)",
+                ),
+                other => other.into(),
+            })?,
         };
         self.is_lossy |= found.iter().any(|s| s.is_lossy);
         Ok(found)
@@ -102,7 +110,9 @@ impl<'a> Reader<'a> {
 }
 
 /// The photographs in an array of `matlab` or NumPy: (rows, columns); (rows, columns, 3) in colour;
-/// (frames, rows, columns) of NumPy and (rows, columns, frames) of MATLAB; (frames, rows, columns, 3).
+/// (frames, rows, columns) of NumPy and (rows, columns, frames) of MATLAB; in colour
+/// (frames, rows, columns, 3), and of MATLAB (rows, columns, 3, frames) too. Where two of these fit,
+/// `axes` has to say which.
 fn of_array(
     name: &str,
     array: Array,
@@ -115,24 +125,47 @@ fn of_array(
         full_scale,
     } = array;
     let unclear = || {
-        refused(
-            format!("{name} has the shape {shape:?}, which does not say what is what"),
-            "say `axes`: frames-rows-columns, rows-columns-frames or rows-columns-channels",
-        )
+        let cure = match shape.len() {
+            3 => {
+                "say `axes`: frames-rows-columns, rows-columns-frames or rows-columns-channels (3 channels)"
+            }
+            4 => {
+                "say `axes`: frames-rows-columns-channels or rows-columns-channels-frames (3 channels)"
+            }
+            _ => "save an array of two, three or four dimensions",
+        };
+        let known = if axes.is_some() {
+            "the given `axes` do not fit"
+        } else {
+            "which does not say what is what"
+        };
+        refused(format!("{name} has the shape {shape:?}, {known}"), cure)
     };
-    let axes = match (shape.len(), axes) {
-        (3, Some(axes)) => axes,
-        (3, None) if shape[0] == 3 && shape[2] == 3 => return Err(unclear()),
-        (3, None) if shape[2] == 3 => Axes::RowsColumnsChannels,
-        (3, None) if matlab => Axes::RowsColumnsFrames,
+    let axes = match (&shape[..], axes) {
+        (_, Some(axes)) => axes,
+        ([3, _, 3], None) => return Err(unclear()),
+        ([_, _, 3], None) => Axes::RowsColumnsChannels,
+        ([_, _, _], None) if matlab => Axes::RowsColumnsFrames,
+        ([_, _, 3, 3], None) if matlab => return Err(unclear()),
+        ([_, _, 3, _], None) if matlab => Axes::RowsColumnsChannelsFrames,
+        ([_, _, _, _], None) => Axes::FramesRowsColumnsChannels,
         _ => Axes::FramesRowsColumns,
     };
     let [frames, rows, columns, channels] = match (&shape[..], axes) {
         ([rows, columns], _) => [1, *rows, *columns, 1],
-        ([rows, columns, 3], Axes::RowsColumnsChannels) => [1, *rows, *columns, 3],
+        // One of a stack in colour: MATLAB drops a last dimension of 1.
+        (
+            [rows, columns, 3],
+            Axes::RowsColumnsChannels
+            | Axes::RowsColumnsChannelsFrames
+            | Axes::FramesRowsColumnsChannels,
+        ) => [1, *rows, *columns, 3],
         ([frames, rows, columns], Axes::FramesRowsColumns)
         | ([rows, columns, frames], Axes::RowsColumnsFrames) => [*frames, *rows, *columns, 1],
-        ([frames, rows, columns, 3], _) => [*frames, *rows, *columns, 3],
+        ([frames, rows, columns, 3], Axes::FramesRowsColumnsChannels)
+        | ([rows, columns, 3, frames], Axes::RowsColumnsChannelsFrames) => {
+            [*frames, *rows, *columns, 3]
+        }
         _ => return Err(unclear()),
     };
     let each = rows * columns * channels;
@@ -144,7 +177,9 @@ fn of_array(
             _ => vec![Channel::Red, Channel::Green, Channel::Blue],
         },
         values: match axes {
-            Axes::RowsColumnsFrames => values.iter().skip(k).step_by(frames).copied().collect(),
+            Axes::RowsColumnsFrames | Axes::RowsColumnsChannelsFrames if shape.len() > 2 => {
+                values.iter().skip(k).step_by(frames).copied().collect()
+            }
             _ => values[k * each..(k + 1) * each].to_vec(),
         },
         full_scale,
@@ -188,6 +223,36 @@ mod tests {
                 .to_string()
                 .contains("axes")
         );
+        // (rows, columns, 3, frames), as MATLAB stacks colour; row-major, the frame is the last index.
+        let stack = of(&[4, 5, 3, 2], None, true).unwrap();
+        assert_eq!((stack.len(), stack[1].height, stack[1].width), (2, 4, 5));
+        assert_eq!(stack[1].values[..4], [1.0, 3.0, 5.0, 7.0]);
+        assert_eq!(of(&[2, 4, 5, 3], None, true).unwrap().len(), 2);
+        let error = of(&[4, 5, 3, 3], None, true).unwrap_err().to_string();
+        assert!(error.contains("rows-columns-channels-frames"), "{error}");
+        // What the cure says is a cure.
+        for (axes, size) in [
+            (Axes::RowsColumnsChannelsFrames, [5, 4]),
+            (Axes::FramesRowsColumnsChannels, [3, 5]),
+        ] {
+            let stack = of(&[4, 5, 3, 3], Some(axes), true).unwrap();
+            assert_eq!([stack[0].width, stack[0].height], size);
+        }
+        let one = of(&[4, 5, 3], Some(Axes::RowsColumnsChannelsFrames), true).unwrap();
+        assert_eq!((one.len(), one[0].values[1]), (1, 1.0));
+        let error = of(&[4, 5, 3, 2], Some(Axes::RowsColumnsFrames), true);
+        assert!(error.unwrap_err().to_string().contains("do not fit"));
         assert!(of(&[3], None, false).is_err() && of(&[1, 2, 3, 4, 5], None, false).is_err());
+    }
+
+    #[test]
+    fn an_unknown_file_is_told_all_kinds_that_are_read() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let mut reader = Reader::new(folder, None, None);
+        let found = reader.photographs(&folder.join("Cargo.toml"));
+        let error = found.unwrap_err().to_string();
+        for kind in ["PNG", "JPEG", "OpenEXR", "TIFF", "NPY", "MAT"] {
+            assert!(error.contains(kind), "{error}");
+        }
     }
 }

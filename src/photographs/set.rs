@@ -17,7 +17,8 @@ use crate::scene::read_toml;
 #[serde(deny_unknown_fields)]
 pub struct Set {
     /// Built-in scene, or scene file beside the list: its spots, pixels and view are the truth of
-    /// where light falls.
+    /// where light falls. Empty where an argument says it.
+    #[serde(default)]
     pub scene: String,
     /// The photographs: a pattern (`*` and `?` in the file's name), ordered by the last number in the
     /// name, which may not skip any; or a list of files in order. Each file is a spot, each page of a
@@ -50,8 +51,9 @@ pub struct Set {
     /// The variable of a MATLAB file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub variable: Option<String>,
-    /// What the indices of a three-dimensional array are, where its shape does not say:
-    /// frames-rows-columns, rows-columns-frames or rows-columns-channels.
+    /// What the indices of an array are, where its shape does not say: frames-rows-columns,
+    /// rows-columns-frames, rows-columns-channels, frames-rows-columns-channels or
+    /// rows-columns-channels-frames.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub axes: Option<Axes>,
     /// Exposure time of every photograph, s; without any fluxes are in counts per photograph.
@@ -165,7 +167,7 @@ pub enum ChannelName {
     All,
 }
 
-/// What the indices of a three-dimensional array are.
+/// What the indices of an array of three or four dimensions are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Axes {
@@ -175,6 +177,10 @@ pub enum Axes {
     RowsColumnsFrames,
     /// One photograph in colour.
     RowsColumnsChannels,
+    /// Photographs in colour one after the other.
+    FramesRowsColumnsChannels,
+    /// Photographs in colour, as MATLAB stacks them.
+    RowsColumnsChannelsFrames,
 }
 
 /// Dead pixels.
@@ -222,13 +228,13 @@ pub struct MarkTable {
 }
 
 impl Set {
-    /// Reads the text of a list; `source` names it in errors.
+    /// Reads the text of a list; `source` names it in errors. It need not be whole: arguments may take
+    /// the place of what it says before it is [`Set::checked`].
     ///
     /// # Errors
     /// [`PhotographError`] with line, cause and cure.
     pub fn parse(source: &str, text: &str) -> Result<Self, PhotographError> {
-        let set: Self = read_toml(source, text, "see `phicam import --help`")?;
-        set.checked()
+        Ok(read_toml(source, text, "see `phicam import --help`")?)
     }
 
     /// The camera's noise, where it is given.
@@ -238,5 +244,26 @@ impl Set {
     pub fn camera_noise(&self) -> Result<Option<CameraNoise>, PhotographError> {
         let of = |n: NoiseTable| CameraNoise::new(n.gain, n.read_noise);
         self.noise.map(of).transpose()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A list of marks and noise alone is whole once arguments name photographs and scene.
+    #[test]
+    fn arguments_complete_a_list_before_it_is_checked() {
+        let text = "noise = { gain = 0.5, read_noise = 2.0 }\n\
+                    [[marks]]\npixel = [1.0, 2.0]\nwall = [3.0, 4.0]\n";
+        let mut set = Set::parse("calib.toml", text).unwrap();
+        assert!(set.scene.is_empty() && set.marks.len() == 1);
+        let error = set.clone().checked().unwrap_err().to_string();
+        assert!(error.contains("photographs are not given"), "{error}");
+        set.frames = Some(Files::One("a_*.png".into()));
+        set.scene = "bench".into();
+        assert!(set.checked().is_ok());
+        // Names that are no keys are refused at once.
+        assert!(Set::parse("calib.toml", "frams = \"a\"\n").is_err());
     }
 }

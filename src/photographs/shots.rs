@@ -9,7 +9,7 @@ use super::plane::{Averaged, Chosen, Plane, linearised, same_size};
 use super::read::Reader;
 use super::response::{Response, ResponseTable, response_table};
 use super::set::{ChannelName, DarkTable, DeadTable, Files, FrameTable, Set};
-use super::takes::{Take, each_spot, takes};
+use super::takes::{Take, each_spot, one_exposure, takes};
 use crate::image::{Channel, Samples};
 
 /// Most pixels whose repeats the photon transfer line is fitted to.
@@ -75,7 +75,10 @@ impl<'a> Shots<'a> {
         let mut average = |files: &Files| shots.average(&expanded(folder, files)?, reader);
         let darks = match &set.dark {
             None => Vec::new(),
-            Some(DarkTable::Files(files)) => vec![(None, average(files)?)],
+            Some(DarkTable::Files(files)) => {
+                one_exposure(&shots.takes)?;
+                vec![(None, average(files)?)]
+            }
             Some(DarkTable::Series(all)) => all
                 .iter()
                 .map(|s| Ok((Some(s.exposure), average(&s.files)?)))
@@ -221,7 +224,7 @@ impl<'a> Shots<'a> {
         each_spot(reader, (&self.takes, repeats), self.spots, &plane, visit)
     }
 
-    /// The photon transfer line of all repeated photographs; `None` where none are.
+    /// The photon transfer line of one channel, from all repeated photographs; `None` where none are.
     pub(super) fn photon_transfer(
         &self,
         reader: &mut Reader<'_>,
@@ -236,11 +239,12 @@ impl<'a> Shots<'a> {
             for k in (0..pixels).skip(spot % stride).step_by(stride) {
                 let good = !mean.saturated[k] && !self.dead[k];
                 if let (Some(variance), true) = (mean.scatter(k), good) {
+                    // Of one channel, where light is the mean of several.
                     repeated.push(Repeated {
                         signal: light(k),
                         beside: 0.5 * (light(k.saturating_sub(1)) + light((k + 1).min(pixels - 1))),
-                        variance,
-                        rounding: mean.rounding[k],
+                        variance: variance / mean.share,
+                        rounding: mean.rounding[k] / mean.share,
                         freedom: (mean.frames - 1) as f64,
                     });
                 }
@@ -251,6 +255,6 @@ impl<'a> Shots<'a> {
         if repeated.is_empty() {
             return Ok(None);
         }
-        photon_transfer(repeated).map(Some)
+        photon_transfer(repeated, self.darks.is_empty()).map(Some)
     }
 }

@@ -27,7 +27,8 @@ pub(super) struct Take {
 /// The files of a set in the order of their spots.
 ///
 /// # Errors
-/// [`PhotographError::Refused`] for gains without meaning and exposures within a spot that differ.
+/// [`PhotographError::Refused`] for gains without meaning, for gains and exposures within a spot that
+/// differ, and where only some photographs have a spot's number.
 pub(super) fn takes(
     set: &Set,
     tables: &[FrameTable],
@@ -45,6 +46,15 @@ pub(super) fn takes(
         return Ok(paths.into_iter().map(take).collect());
     }
     let places = positions(tables)?;
+    let numbered = tables.iter().filter(|t| t.spot.is_some()).count();
+    if places.is_none() && numbered != 0 && numbered != tables.len() {
+        let without = tables.iter().find(|t| t.spot.is_none());
+        let file = without.map_or("", |t| &t.file);
+        return Err(refused(
+            format!("{file} has no number of its spot, and other photographs have one"),
+            "give every photograph the number of its spot, or none (they are then in the spots' order)",
+        ));
+    }
     let mut takes = Vec::with_capacity(tables.len());
     for (k, table) in tables.iter().enumerate() {
         let spot = match (&places, table.spot) {
@@ -76,18 +86,40 @@ pub(super) fn takes(
     takes.sort_by_key(|t| t.spot);
     for pair in takes.windows(2) {
         let same = |f: fn(&Take) -> Option<f64>| f(&pair[0]) == f(&pair[1]);
-        if pair[0].spot == pair[1].spot && !(same(|t| t.exposure) && same(|t| Some(t.gain))) {
+        let fits = same(|t| t.exposure) && same(|t| Some(t.gain)) && same(|t| Some(t.gain_error));
+        if pair[0].spot == pair[1].spot && !fits {
             return Err(refused(
                 format!(
-                    "{} and {} are of one spot, with different exposure times or gains",
+                    "{} and {} are of one spot, with different exposure times, gains or errors of the gain",
                     pair[0].path.display(),
                     pair[1].path.display()
                 ),
-                "import each exposure time by itself",
+                "give them the same `gain` and `gain_error`, and import each exposure time by itself",
             ));
         }
     }
     Ok(takes)
+}
+
+/// Refuses dark frames of no stated exposure time for photographs of several: dark current grows
+/// with it.
+///
+/// # Errors
+/// [`PhotographError::Refused`].
+pub(super) fn one_exposure(takes: &[Take]) -> Result<(), PhotographError> {
+    let first = takes.first().and_then(|t| t.exposure);
+    let Some(other) = takes.iter().find(|t| t.exposure != first) else {
+        return Ok(());
+    };
+    let named = |t: Option<f64>| t.map_or("none known".to_owned(), |t| format!("{t} s"));
+    Err(refused(
+        format!(
+            "the photographs have several exposure times ({}, {}), and nothing says of which the dark frames are",
+            named(first),
+            named(other.exposure)
+        ),
+        "give `dark = [{ files, exposure }, ...]`, one for each exposure time",
+    ))
 }
 
 /// Calls `visit` with the averaged photographs of each spot, in the order of the spots.
@@ -164,5 +196,30 @@ mod tests {
         assert!(error.to_string().contains("different exposure"));
         let tables = parsed("l", "file,gain\na,0\n").unwrap();
         assert!(takes(&Set::default(), &tables, Path::new("d")).is_err());
+    }
+
+    #[test]
+    fn no_spot_is_guessed_from_a_list_that_lacks_some() {
+        let of = |text| takes(&Set::default(), &parsed("l", text).unwrap(), Path::new("d"));
+        let error = of("file,spot\na,1\nb,\nc,0\n").unwrap_err().to_string();
+        assert!(error.contains("b has no number of its spot"), "{error}");
+        // Without any number, the order is that of the spots.
+        let spots: Vec<_> = of("file\na\nb\n").unwrap();
+        assert_eq!([spots[0].spot, spots[1].spot], [Some(0), Some(1)]);
+        let error = of("file,spot,gain,gain_error\na,0,2,0.1\nb,0,2,0.2\n").unwrap_err();
+        assert!(error.to_string().contains("errors of the gain"), "{error}");
+    }
+
+    #[test]
+    fn dark_frames_of_one_time_do_not_serve_several() {
+        let of = |text| takes(&Set::default(), &parsed("l", text).unwrap(), Path::new("d"));
+        assert!(one_exposure(&of("file,exposure\na,2\nb,2\n").unwrap()).is_ok());
+        assert!(one_exposure(&of("file\na\nb\n").unwrap()).is_ok());
+        let several = of("file,exposure\na,2\nb,0.5\n").unwrap();
+        let error = one_exposure(&several).unwrap_err().to_string();
+        assert!(
+            error.contains("2 s, 0.5 s") && error.contains("dark = [{"),
+            "{error}"
+        );
     }
 }

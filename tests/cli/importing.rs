@@ -318,6 +318,30 @@ fn each_channel_has_a_folder_and_listed_positions_are_the_spots() {
     assert!((mean[(0, 0)] - due).abs() < 1e-9, "{} {due}", mean[(0, 0)]);
 }
 
+/// A list of what is known of the camera serves with photographs and scene from arguments.
+#[test]
+fn arguments_take_their_place_before_the_list_is_checked() {
+    let w = with_photographs();
+    w.write("camera.toml", "noise = { gain = 0.5, read_noise = 2.0 }\n");
+    let named = "--frames in/input_*.png --scene tiny.toml";
+    let _ = w
+        .phicam(&format!("import camera.toml {named} -o out"))
+        .exits(0);
+    assert!(w.path("out/phi.stderr.npy").exists());
+    w.refuses(
+        "import camera.toml --scene tiny.toml -o none",
+        &["photographs are not given"],
+    );
+    // Nor does --replace remove what is no import.
+    std::fs::create_dir(w.path("foreign")).unwrap();
+    w.write("foreign/phi.npy", b"mine");
+    w.refuses(
+        &format!("import camera.toml {named} -o foreign --replace"),
+        &["phi.npy", "run.json"],
+    );
+    assert_eq!(w.read("foreign/phi.npy"), b"mine");
+}
+
 #[test]
 fn what_does_not_fit_is_refused_and_nothing_is_written() {
     let w = with_photographs();

@@ -39,10 +39,11 @@ fn repeats(bend: f64) -> Vec<Repeated> {
 
 #[test]
 fn gain_and_read_noise_come_back() {
-    let fit = photon_transfer(repeats(0.0)).unwrap();
+    let fit = photon_transfer(repeats(0.0), false).unwrap();
     let CameraNoise {
         gain,
         read_variance,
+        ..
     } = fit.noise;
     assert!(
         (gain - 0.5).abs() < 4.0 * fit.gain_error && fit.gain_error < 0.02,
@@ -54,12 +55,76 @@ fn gain_and_read_noise_come_back() {
     );
     assert!(fit.p > 1e-3 && fit.groups == GROUPS, "{fit:?}");
     // Light that flickers has a variance that is no line.
-    assert!(photon_transfer(repeats(1e-4)).unwrap().p < 1e-6);
+    assert!(photon_transfer(repeats(1e-4), false).unwrap().p < 1e-6);
     // Frames that are all the same say nothing.
     let still = repeats(0.0)
         .into_iter()
         .map(|r| Repeated { variance: 0.0, ..r });
-    assert!(photon_transfer(still.collect()).is_err());
+    assert!(photon_transfer(still.collect(), false).is_err());
+}
+
+/// An offset of 100 counts in the light, for want of dark frames: 4 − 0.5·100 at light 0. The gain is
+/// 0.5 still, the line fits, and the variance of a photograph is the same as with dark frames.
+#[test]
+fn an_offset_moves_the_line_and_leaves_the_gain() {
+    const OFFSET: f64 = 100.0;
+    let raised = repeats(0.0).into_iter().map(|r| Repeated {
+        signal: r.signal + OFFSET,
+        beside: r.beside + OFFSET,
+        ..r
+    });
+    let raised: Vec<_> = raised.collect();
+    let fit = photon_transfer(raised.clone(), true).unwrap();
+    let below = photon_transfer(repeats(0.0), false).unwrap();
+    assert!(
+        (fit.noise.gain - 0.5).abs() < 4.0 * fit.gain_error,
+        "{fit:?}"
+    );
+    assert!(
+        (fit.noise.read_variance + 46.0).abs() < 4.0 * fit.read_variance_error,
+        "{fit:?}"
+    );
+    assert!(fit.p > 1e-3, "{fit:?}");
+    let rounding = [1.0 / 12.0, 1.0];
+    let (found, due) = (
+        fit.noise.of_mean([OFFSET + 50.0, 0.0], rounding, 1),
+        below.noise.of_mean([OFFSET + 50.0, OFFSET], rounding, 1),
+    );
+    assert!((found / due - 1.0).abs() < 1e-6, "{found} {due}");
+    // A flat field with dark frames of its own has its variance by the same line.
+    let flat = fit.noise.of_mean([OFFSET + 50.0, OFFSET], rounding, 1);
+    assert_eq!(flat, found);
+    // Held at 0, the line would be another, and would not fit.
+    let held = photon_transfer(raised, false).unwrap();
+    assert!(held.noise.gain < 0.4 && held.p < 1e-6, "{held:?}");
+    // Below the offset there is no negative variance.
+    assert!(fit.noise.of_mean([10.0, 0.0], rounding, 1) > 0.0);
+}
+
+/// Floating-point photographs: 32 groups, no rounding; four see no light and hardly vary. The others
+/// vary by 0.5·s − 0.1, so that the line without bounds is below 0 where there is no light.
+#[test]
+fn groups_without_light_leave_the_line_finite() {
+    let of = |variance: fn(f64) -> f64| -> Vec<Repeated> {
+        (0..1024u32)
+            .map(|pixel| {
+                let light = f64::from(pixel / 32) - 3.0;
+                Repeated {
+                    signal: light,
+                    beside: light,
+                    variance: variance(light),
+                    rounding: 0.0,
+                    freedom: 3.0,
+                }
+            })
+            .collect()
+    };
+    let fit = photon_transfer(of(|s| (0.5 * s - 0.1).max(1e-9)), false).unwrap();
+    assert!((fit.noise.gain - 0.5).abs() < 0.05, "{fit:?}");
+    assert!(fit.chi2.is_finite() && fit.p.is_finite(), "{fit:?}");
+    // No numbers, no line.
+    let error = photon_transfer(of(|s| if s > 20.0 { f64::INFINITY } else { 1.0 }), false);
+    assert!(error.unwrap_err().to_string().contains("no line fits"));
 }
 
 /// The mean square error of means of rounded normal values about their truth, which lies
@@ -80,7 +145,7 @@ fn the_variance_of_a_mean_is_that_of_samples() {
             sum += (mean - truth) * (mean - truth);
         }
         let found = sum / f64::from(N);
-        let due = noise.of_mean(0.0, 1.0 / 12.0, frames);
+        let due = noise.of_mean([0.0; 2], [1.0 / 12.0, 1.0], frames);
         assert!(
             (due / found - 1.0).abs() < 0.05,
             "σ {sigma}: {due} for {found}"
