@@ -178,6 +178,8 @@ fn bent(line: &PhotonTransferFit) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
+    use std::slice::from_ref;
+
     use super::*;
 
     #[test]
@@ -190,14 +192,14 @@ mod tests {
             gain_error: 0.0,
         };
         let (timed, untimed) = (take(Some(0.5)), take(None));
-        let error = unit(Some(2.0), &[untimed.clone()]).unwrap_err().to_string();
+        let error = unit(Some(2.0), from_ref(&untimed)).unwrap_err().to_string();
         assert!(
             error.contains("exposure") && error.contains("watts"),
             "{error}"
         );
-        assert_eq!(unit(Some(2.0), &[timed.clone()]).unwrap(), "W");
-        assert_eq!(unit(None, &[timed.clone()]).unwrap(), "counts/s");
-        assert_eq!(unit(None, &[untimed.clone()]).unwrap(), "counts");
+        assert_eq!(unit(Some(2.0), from_ref(&timed)).unwrap(), "W");
+        assert_eq!(unit(None, from_ref(&timed)).unwrap(), "counts/s");
+        assert_eq!(unit(None, from_ref(&untimed)).unwrap(), "counts");
         assert!(unit(None, &[timed, untimed]).is_err());
     }
 }
