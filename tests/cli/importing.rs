@@ -413,7 +413,7 @@ fn what_does_not_fit_is_refused_and_nothing_is_written() {
     w.write("in/input_5.png", &whole[..whole.len() - 20]);
     w.refuses(PLAIN, &["`in/input_5.png` is damaged"]);
     w.write("in/input_5.png", "no picture");
-    w.refuses(PLAIN, &["`in/input_5.png`"]);
+    w.refuses(PLAIN, &["in/input_5.png is no PNG", "cure: "]);
     std::fs::remove_file(w.path("in/input_5.png")).unwrap();
     w.refuses(PLAIN, &["input_4.png and", "files are missing"]);
     // Files of the same kinds, of which nothing is left but a claim.

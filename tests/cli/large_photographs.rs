@@ -30,7 +30,7 @@ fn by_rows_it_is_what_it_is_at_once() {
         // Sixteen elements are too coarse to explain the photographs, but under noise of 1 %; by rows
         // that is not judged.
         let _ = workspace
-            .phicam(&format!("{line} --elements 4"))
+            .phicam(&format!("{line} --elements 4 --integration centres"))
             .exits(code);
         let names = [
             format!("done/recovered/{method}.npy"),
