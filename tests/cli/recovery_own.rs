@@ -55,8 +55,8 @@ fn a_surface_that_shines_needs_a_camera_side_alone() {
             ["6 columns", "5 × 5"],
         ),
         (
-            "recover --camera-side phi.npy --phi a.npy -o o --method joint",
-            ["d (elements × spots)", "1 × 6"],
+            "recover --camera-side a.npy --laser-side a.npy --phi phi.npy -o o",
+            ["6 columns", "40 rows"],
         ),
         (
             "recover --camera-side a.npy --phi phi.npy -o o --frame-polynomial 1 --method joint",
