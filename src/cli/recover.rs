@@ -6,21 +6,18 @@ use super::args::RecoverArgs;
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_matrix, read_run, read_stderr};
-use super::output;
 use super::record::Record;
 use super::recover_beside::{Beside, Photographs, mask};
 use super::recover_memory::{self, Errors, Held, Strips};
 use super::recover_options::{self, uncertainty};
-use super::recovered::{collect, write};
+use super::recovered::{collect, tell, write};
 use super::run_folder::{PHI, RECOVERED, RunFolder, SATURATED, SCENE, STDERR, is_of_recovered};
 use super::{Outcome, recover_own};
 use crate::lab::{
-    Attempt, Certainty, Noise, RecoveredObject, by_trust, describe_recovery, inverted,
-    recover_with_picards,
+    Attempt, Certainty, Noise, RecoveredObject, by_trust, inverted, recover_with_picards,
 };
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Options, Picard};
-use crate::report;
 use crate::scene::Scene;
 use crate::store::digest;
 
@@ -107,13 +104,7 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     } else {
         console.say(format!("{}: written", out.display()));
     }
-    output::result(args.json, &objects, || {
-        report::finding_text(&describe_recovery(&objects))
-    })?;
-    if objects.iter().any(RecoveredObject::contradicted) {
-        return Ok(Outcome::Disagreed);
-    }
-    Ok(Outcome::Done)
+    tell(&objects, args.json)
 }
 
 /// To what the results of a recovery belong.

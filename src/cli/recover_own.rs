@@ -8,18 +8,14 @@ use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_undamaged, refuse_negative};
 use super::memory;
-use super::output;
 use super::recover_beside::{Beside, Photographs, mask};
 use super::recover_options::{self, uncertainty};
-use super::recovered::{collect, write};
+use super::recovered::{collect, tell, write};
 use super::run_folder::{RunFolder, SATURATED};
-use crate::lab::{
-    Certainty, Noise, RecoveredObject, by_trust, describe_recovery, recover_with_picards,
-};
+use crate::lab::{Certainty, Noise, by_trust, recover_with_picards};
 use crate::matrix::{Matrix, npy};
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Options};
-use crate::report;
 
 /// Methods that compare neighbouring elements.
 const NEIGHBOURS: [Method; 3] = [Method::JointGp, Method::JointTv, Method::TikhonovGradient];
@@ -34,13 +30,12 @@ pub(super) fn execute(
     options: Options,
     console: Console,
 ) -> Result<Outcome, Failure> {
-    let (Some(phi), Some(out)) = (&args.phi, &args.output) else {
+    let (Some(phi_file), Some(out)) = (&args.phi, &args.output) else {
         let cause = "--camera-side needs to know what to invert, and where to write";
         return Err(Failure::usage(cause, "give --phi FILE and -o FOLDER"));
     };
-    let phi_file = phi;
     let sizes = [
-        Some(phi.as_path()),
+        Some(phi_file.as_path()),
         Some(camera_side),
         args.laser_side.as_deref(),
     ]
@@ -50,7 +45,7 @@ pub(super) fn execute(
         .map(|file| npy::shape(file).map(|(rows, columns)| rows as f64 * columns as f64))
         .sum::<Result<_, _>>()?;
     memory::refuse("these matrices", HELD * 8.0 * entries, &[])?;
-    let phi = read_undamaged(phi)?;
+    let phi = read_undamaged(phi_file)?;
     let camera = read_undamaged(camera_side)?;
     let laser = match &args.laser_side {
         Some(file) => read_undamaged(file)?,
@@ -84,10 +79,7 @@ pub(super) fn execute(
         Noise::StandardError(stderr, Certainty::STATED)
     });
     let of = Photographs {
-        name: args
-            .phi
-            .as_ref()
-            .map_or(String::new(), |p| p.display().to_string()),
+        name: phi_file.display().to_string(),
         grid: args.pixels,
         pixels: phi.nrows(),
         spots: phi.ncols(),
@@ -128,11 +120,5 @@ pub(super) fn execute(
     let _own = RunFolder::lock(out, "phicam recover")?;
     write(out, None, &objects, &picards?)?;
     console.say(format!("{}: written", out.display()));
-    output::result(args.json, &objects, || {
-        report::finding_text(&describe_recovery(&objects))
-    })?;
-    if objects.iter().any(RecoveredObject::contradicted) {
-        return Ok(Outcome::Disagreed);
-    }
-    Ok(Outcome::Done)
+    tell(&objects, args.json)
 }

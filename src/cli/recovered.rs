@@ -4,12 +4,13 @@ use std::path::Path;
 
 use serde_json::json;
 
+use super::Outcome;
 use super::cleanup::{remove_abandoned, remove_named};
 use super::console::Console;
 use super::failure::Failure;
 use super::output;
 use crate::lab::finding::Describe;
-use crate::lab::{Attempt, Beside, RecoveredObject};
+use crate::lab::{Attempt, Beside, RecoveredObject, describe_recovery};
 use crate::matrix::{Matrix, npy};
 use crate::recovery::Picard;
 use crate::report::{self, Panel};
@@ -46,6 +47,17 @@ pub(super) fn collect(
         console.say(reason);
     }
     Ok(objects)
+}
+
+/// Prints the objects; the exit code is that of photographs which no picture explains, or 0.
+pub(super) fn tell(objects: &[RecoveredObject], json: bool) -> Result<Outcome, Failure> {
+    output::result(json, &objects, || {
+        report::finding_text(&describe_recovery(objects))
+    })?;
+    if objects.iter().any(RecoveredObject::contradicted) {
+        return Ok(Outcome::Disagreed);
+    }
+    Ok(Outcome::Done)
 }
 
 /// Writes into `folder` METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png where it is known, what the

@@ -48,6 +48,17 @@ impl Nuisance<'_> {
             _ => 1.0,
         })
     }
+
+    /// The same of frame l with its glare last.
+    pub(super) fn of_frame(&self, of_frames: &DMatrix<f64>, l: usize) -> DMatrix<f64> {
+        let Some(glare) = self.glare else {
+            return of_frames.clone();
+        };
+        let at = of_frames.ncols();
+        let mut own = of_frames.clone().insert_column(at, 0.0);
+        own.set_column(at, &glare.column(l));
+        own
+    }
 }
 
 /// The estimated sizes; each is there if it was asked for.

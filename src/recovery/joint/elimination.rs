@@ -2,9 +2,9 @@
 //!
 //! Everything but ρ enters linearly once s ρ is one unknown, so it is eliminated exactly (variable
 //! projection), never guessed first. With weights w_p v_l the constants b_l are all matrices u b'ᵀ
-//! of the weighted problem, u_p = √w_p (of patterns √w_p F\[p,k\]), and the background all a' vᵀ, v_l = √v_l; what either
-//! cannot reach is the tensor product of what is orthogonal to u and what is orthogonal to v. So
-//! both at once are eliminated by
+//! of the weighted problem, u_p = √w_p (of patterns √w_p F\[p,k\]), and the background all a' vᵀ,
+//! v_l = √v_l; what either cannot reach is the tensor product of what is orthogonal to u and what is
+//! orthogonal to v. So both at once are eliminated by
 //!
 //! > C̃ → (1 − û ûᵀ) C̃,   D̃ → D̃ (1 − v̂ v̂ᵀ),   Φ̃ → (1 − û ûᵀ) Φ̃ (1 − v̂ v̂ᵀ)
 //!
@@ -83,13 +83,8 @@ pub(super) fn estimate(
         }
     } else if kinds > 0 {
         for l in 0..spots {
-            let columns = DMatrix::from_fn(pixels, kinds, |p, k| {
-                let pattern = match nuisance.glare {
-                    Some(glare) if k == of_frames => glare[(p, l)],
-                    _ => patterns[(p, k)],
-                };
-                root(p, l) * pattern
-            });
+            let own = nuisance.of_frame(&patterns, l);
+            let columns = DMatrix::from_fn(pixels, kinds, |p, k| root(p, l) * own[(p, k)]);
             let lengths: Vec<f64> = columns.column_iter().map(|c| nonzero(c.norm())).collect();
             let columns = columns_over(columns, &lengths);
             let data = DVector::from_fn(pixels, |p, _| root(p, l) * left[(p, l)]);
@@ -136,15 +131,7 @@ fn freedom(
     root: impl Fn(usize, usize) -> f64,
 ) -> usize {
     let pixels = patterns.nrows();
-    let of_frame = |l: usize| {
-        let mut own = patterns.clone();
-        if let Some(glare) = nuisance.glare {
-            let at = own.ncols();
-            own = own.insert_column(at, 0.0);
-            own.set_column(at, &glare.column(l));
-        }
-        directions(&own, |p| root(p, l)).len()
-    };
+    let of_frame = |l: usize| directions(&nuisance.of_frame(patterns, l), |p| root(p, l)).len();
     let frames: usize = (0..spots).map(of_frame).sum();
     if !nuisance.background {
         return frames;

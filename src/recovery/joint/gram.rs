@@ -73,12 +73,7 @@ fn without_frame(
     rows: &mut DMatrix<f64>,
 ) {
     let nuisance = &problem.nuisance;
-    let mut patterns = nuisance.of_frames(rows.nrows());
-    if let Some(glare) = nuisance.glare {
-        let at = patterns.ncols();
-        patterns = patterns.insert_column(at, 0.0);
-        patterns.set_column(at, &glare.column(l));
-    }
+    let patterns = nuisance.of_frame(&nuisance.of_frames(rows.nrows()), l);
     let taken = directions(&patterns, |p| root(p, l));
     taken.iter().for_each(|u| without_left(rows, u));
 }
