@@ -31,6 +31,7 @@ pub(super) fn read_tiff(name: &str, bytes: &[u8]) -> Result<Vec<Samples>, ImageE
         ),
         other => damaged(name, other),
     };
+    held_directory(bytes).ok_or_else(|| damaged(name, "its first directory is not whole"))?;
     let mut limits = Limits::default();
     limits.decoding_buffer_size = bytes.len().saturating_mul(RATIO).min(8 * MOST_SAMPLES);
     limits.intermediate_buffer_size = limits.decoding_buffer_size;
@@ -89,6 +90,36 @@ pub(super) fn read_tiff(name: &str, bytes: &[u8]) -> Result<Vec<Samples>, ImageE
         }
         decoder.next_image().map_err(fault)?;
     }
+}
+
+/// The first directory, if its entries do not hold more values than the file has bytes: the decoder
+/// reads it, 32 bytes a value, before it can be given limits.
+///
+/// TIFF 6.0, section 2: 2 bytes of order, 42, an offset of 4 bytes; there a count of 2 bytes and
+/// entries of 12: tag, type, count of values. BigTIFF: 43, offset and count of 8, entries of 20.
+fn held_directory(bytes: &[u8]) -> Option<()> {
+    let is_little = bytes.starts_with(b"II");
+    let number = |at: usize, length: usize| -> Option<usize> {
+        let digits = bytes.get(at..at.checked_add(length)?)?;
+        let joined = |n: u64, byte: &u8| n << 8 | u64::from(*byte);
+        let number = if is_little {
+            digits.iter().rev().fold(0, joined)
+        } else {
+            digits.iter().fold(0, joined)
+        };
+        usize::try_from(number).ok()
+    };
+    let (directory, width, entry, count) = match number(2, 2)? {
+        43 => (number(8, 8)?, 8, 20, 8),
+        _ => (number(4, 4)?, 2, 12, 4),
+    };
+    let first = directory.checked_add(width)?;
+    let entries = number(directory, width)?;
+    if entries > bytes.len() / entry {
+        return None;
+    }
+    let is_held = |k| number(first + k * entry + 4, count).is_some_and(|n| n <= bytes.len());
+    (0..entries).all(is_held).then_some(())
 }
 
 /// The channels and their bits, if they are light.
