@@ -50,9 +50,11 @@ mod console;
 mod expose;
 mod exposed_folder;
 mod failure;
+mod findings;
 mod import;
 mod interrupt;
 mod load_run;
+mod locate;
 mod many;
 pub mod many_machines;
 mod memory;
@@ -120,6 +122,7 @@ pub fn main() -> ExitCode {
         Command::Model(a) => model::execute(a, console),
         Command::Validate(a) => validate::execute(a, console),
         Command::Recover(a) => recover::execute(a, console),
+        Command::Locate(a) => locate::execute(a, console),
         Command::Expose(a) => expose::execute(a, console),
         Command::Import(a) => import::execute(a, console),
         Command::View(a) => view::execute(a, console),

@@ -30,6 +30,11 @@ pub(super) const MODEL_FILES: [&str; 6] = [
 ];
 /// The map of `phicam validate`.
 pub(super) const VALIDATION: &str = "validation";
+/// Where the hidden surface is.
+pub(super) const LOCATED: &str = "located";
+/// What is in [`LOCATED`].
+pub(super) const LOCATED_FILES: [&str; 4] =
+    ["locate.json", "locate.csv", "locate.svg", "report.html"];
 /// Recovered reflectances.
 pub(super) const RECOVERED: &str = "recovered";
 /// Photographs of `phicam expose`: [`PHI`], [`STDERR`] and these.

@@ -304,6 +304,18 @@ pub(super) fn model(
     Need::of_model(scene, elements).refuse("the matrices of the model", &bytes)
 }
 
+/// Refuses what is too large to be looked for: the products of the elements' terms with each other,
+/// those of every frame and, while they are formed, of each thread.
+pub(super) fn locate(scene: &Scene, elements: Option<[usize; 2]>) -> Result<(), Failure> {
+    let bytes = |need: &Need| {
+        let (square, terms) = (need.elements * need.elements, 0.5 * TERMS * need.elements);
+        let formed = terms * (terms + 2.0 * need.pixels);
+        let held = need.spots * square * (need.threads + 2.0) + 2.0 * need.threads * formed;
+        3.0 * 8.0 * need.entries() + need.threads * need.model() + 8.0 * held
+    };
+    Need::of_model(scene, elements).refuse("the photographs and the model at each size", &bytes)
+}
+
 /// Refuses photographs that do not fit beside the model that they are compared with.
 pub(super) fn verdict(scene: &Scene) -> Result<(), Failure> {
     let bytes = |need: &Need| 4.0 * 8.0 * need.entries() + need.model() + need.verdict();

@@ -21,8 +21,8 @@ use super::console::Console;
 use super::exposed_folder::ExposedFolder;
 use super::failure::Failure;
 pub(super) use super::names::{
-    EXPOSED, IMPORT, IMPORT_PNG, LEFT_OUT, MODEL, PHI, RECOVERED, REPORT, SATURATED, SCENE, STDERR,
-    SUMMARY, TAILS, VALIDATION, Z, is_of_model, is_of_recovered,
+    EXPOSED, IMPORT, IMPORT_PNG, LEFT_OUT, LOCATED, LOCATED_FILES, MODEL, PHI, RECOVERED, REPORT,
+    SATURATED, SCENE, STDERR, SUMMARY, TAILS, VALIDATION, Z, is_of_model, is_of_recovered,
 };
 use super::names::{MODEL_FILES, is_frame};
 use super::output;
@@ -387,6 +387,9 @@ impl RunFolder {
         remove_named(&model, &MODEL_FILES)?;
         // Anything else in it is not ours, and keeps it.
         let _ = fs::remove_dir(model);
+        let located = self.path.join(LOCATED);
+        remove_named(&located, &LOCATED_FILES)?;
+        let _ = fs::remove_dir(located);
         let validation = self.path.join(VALIDATION);
         remove_named(&validation, &["p.exr", "p.png"])?;
         let _ = fs::remove_dir(validation);

@@ -163,6 +163,7 @@ mod gallery;
 mod indicator;
 mod inversion;
 mod likelier;
+mod located;
 mod measures;
 mod misplaced;
 mod noise;
@@ -213,6 +214,7 @@ pub use indicator::{
     Coefficients, Comparison, Configuration, Indicator, IndicatorPlan, IndicatorTasks, Layout,
     NoisyOutcome, NoisyPoint, NoisySummary,
 };
+pub use located::{Bright, Grid, LOCATABLE, Likelihood, Located, LocatedPlan, Order, Unexplained};
 pub use measures::Measures;
 pub use noise::{
     AxisLabel, Best, Held, LIMITS, Lost, NamedSensor, NoiseAxis, NoiseCurve, NoisePlan, NoiseStudy,

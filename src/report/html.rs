@@ -114,7 +114,7 @@ mod tests {
     fn invocation() -> Invocation {
         let option = |name: &str, value: &str| (name.to_owned(), value.to_owned());
         Invocation {
-            study: "noise".to_owned(),
+            command: ["study", "noise", "bench"].map(str::to_owned).to_vec(),
             scene: Scene::load("bench").unwrap(),
             file: "bench".to_owned(),
             options: vec![

@@ -5,11 +5,11 @@ use super::run::{is_builtin, scene_text};
 use super::svg::escape;
 use crate::scene::Scene;
 
-/// How a study was asked for.
+/// How a finding was asked for.
 #[derive(Clone, Debug)]
 pub struct Invocation {
-    /// Name of the study, as the command has it.
-    pub study: String,
+    /// The words of the command that are not options, without the program's name.
+    pub command: Vec<String>,
     /// The scene.
     pub scene: Scene,
     /// Name of the scene's file without its folder; of a built-in scene its name.
@@ -23,11 +23,8 @@ pub struct Invocation {
 impl Invocation {
     /// The command that repeats it.
     fn command(&self) -> String {
-        let mut words = vec![
-            "phicam study".to_owned(),
-            quoted(&self.study),
-            quoted(&self.file),
-        ];
+        let mut words = vec!["phicam".to_owned()];
+        words.extend(self.command.iter().map(|word| quoted(word)));
         for (option, value) in &self.options {
             words.extend([option.clone(), quoted(value)]);
         }

@@ -1,7 +1,7 @@
 //! `phicam import`: photographs of a real camera → Φcam.
 
 use phicam::image::{grey16_png, rgb_png};
-use phicam::matrix::Matrix;
+use phicam::matrix::{Matrix, npy};
 
 use crate::workspace::{Workspace, assert_same};
 
@@ -527,4 +527,24 @@ fn public_photographs_are_imported_in_one_command() {
         "{}",
         recovered.account()
     );
+    // Where the object is: near 1 m, with an error of centimetres; and the order of the light
+    // positions is in the photographs, but not if they are shuffled.
+    let line = "locate out --elements 6x6 --frame-polynomial 0 --orders 999 --steps 9";
+    let _ = w.phicam(line).exits(0);
+    let found = w.json("out/located/locate.json");
+    let depth = found["middle"][2].as_f64().unwrap();
+    let error = found["by_frames"].as_f64().unwrap();
+    assert!(
+        (depth - 1.0).abs() < 0.2 && (0.01..0.3).contains(&error),
+        "{found:#}"
+    );
+    assert_eq!(found["order"]["as_likely"], 0);
+    let phi = Matrix::from_fn(1024, 24, |p, l| phi[(p, (7 * l + 5) % 24)]);
+    let flags = w.matrix("out/left_out.npy");
+    let flags = Matrix::from_fn(1024, 24, |p, l| flags[(p, (7 * l + 5) % 24)]);
+    npy::write(&w.path("out/phi.npy"), &phi).unwrap();
+    npy::write(&w.path("out/left_out.npy"), &flags).unwrap();
+    w.disown("out");
+    let told = w.phicam(line).exits(1);
+    assert!(told.stdout.contains("Nothing says"), "{}", told.account());
 }

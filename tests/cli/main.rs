@@ -17,6 +17,7 @@ mod importing;
 mod interruption;
 mod killing;
 mod large_photographs;
+mod locating;
 mod machine_readable;
 mod main_job;
 mod many;

@@ -3,6 +3,7 @@
 mod choice;
 mod expose;
 mod import;
+mod locate;
 mod many;
 mod recover;
 mod reproduce;
@@ -27,6 +28,7 @@ use value::{elements, shift, spot_range};
 
 pub(in crate::cli) use expose::{ExposeArgs, StatedBy};
 pub(in crate::cli) use import::ImportArgs;
+pub(in crate::cli) use locate::LocateArgs;
 pub(in crate::cli) use many::{CleanArgs, MergeArgs, PlanArgs, ShardArgs, SlurmArgs, StatusArgs};
 pub(in crate::cli) use recover::RecoverArgs;
 pub(in crate::cli) use reproduce::ReproduceArgs;
@@ -68,6 +70,9 @@ pub(in crate::cli) enum Command {
     Validate(ValidateArgs),
     /// Recover the hidden reflectance from Φcam: exit 0 done, 1 no reflectances explain it, 2 error
     Recover(Box<RecoverArgs>),
+    /// Where the hidden surface is, its reflectances unknown, and whether the photographs belong to
+    /// their spots: exit 0 found, 1 not, 2 error
+    Locate(LocateArgs),
     /// Photograph the clean flux with a sensor: shot noise, read noise, glare, converter
     Expose(ExposeArgs),
     /// Make Φcam of photographs from a real camera: PNG, TIFF, JPEG, OpenEXR, NumPy and MATLAB files

@@ -3,12 +3,12 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::findings::deliver;
 use crate::cli::Outcome;
 use crate::cli::args::StudyArgs;
 use crate::cli::cleanup::remove_named;
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
+use crate::cli::findings::deliver;
 use crate::cli::interrupt::{SignalGuard, control};
 use crate::cli::process::{pool, process, version};
 use crate::cli::run_folder::RunFolder;
@@ -142,10 +142,11 @@ fn refuse_other(
 /// What the page of a study says of how it was called.
 fn invocation(args: &StudyArgs, scene: &Scene) -> Invocation {
     let file = Path::new(&args.scene).file_name();
+    let file = file.map_or(args.scene.clone(), |f| f.to_string_lossy().into_owned());
     Invocation {
-        study: args.study.name.to_owned(),
+        command: vec!["study".to_owned(), args.study.name.to_owned(), file.clone()],
         scene: scene.clone(),
-        file: file.map_or(args.scene.clone(), |f| f.to_string_lossy().into_owned()),
+        file,
         options: args.spelled(),
         version: version().to_owned(),
     }

@@ -1,6 +1,5 @@
 //! `phicam study`: experiments around a scene.
 
-mod findings;
 mod job;
 
 use super::Outcome;

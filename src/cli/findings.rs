@@ -1,14 +1,14 @@
-//! What a study leaves behind.
+//! What a finding leaves behind.
 
 use std::path::Path;
 
-use crate::cli::failure::Failure;
-use crate::cli::output;
+use super::failure::Failure;
+use super::output;
 use crate::lab::Found;
 use crate::report::{Invocation, finding_files, finding_html, finding_text, harmless_json};
 use crate::store::write_whole;
 
-/// Writes the result of the study `name` into `folder`: `NAME.json`, the tables that have a file,
+/// Writes the result `name` into `folder`: `NAME.json`, the tables that have a file,
 /// the figures and the page of them. Prints the finding, or with `print_json` the JSON.
 pub(super) fn deliver(
     name: &str,

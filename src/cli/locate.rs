@@ -1,0 +1,148 @@
+//! `phicam locate`: where the hidden surface is.
+
+use super::args::LocateArgs;
+use super::console::Console;
+use super::failure::Failure;
+use super::findings::deliver;
+use super::interrupt::SignalGuard;
+use super::load_run::{read_left_out, read_matrix, read_run, read_stderr};
+use super::process::{pool, version};
+use super::run_folder::{LOCATED, PHI, RunFolder, STDERR};
+use super::{Outcome, need, progress};
+use crate::lab::finding::Describe;
+use crate::lab::{Found, LocatedPlan, Unexplained, Work, polynomials};
+use crate::report::Invocation;
+use crate::scene::Scene;
+
+/// Elements above which fewer are taken unless they are asked for, and those.
+const MANY: usize = 256;
+const FEWER: [usize; 2] = [12, 12];
+/// The range unless given: part of the distance to the view, and degrees.
+const PART: f64 = 0.3;
+const DEGREES: f64 = 15.0;
+
+pub(super) fn execute(args: &LocateArgs, console: Console) -> Result<Outcome, Failure> {
+    let (scene, record) = read_run(&args.dir, console)?;
+    let plan = plan(args, &scene, console);
+    need::locate(&scene, plan.elements)?;
+    let phi = read_matrix(&args.dir.join(PHI), &scene)?;
+    let file = args.dir.join(STDERR);
+    // Of imported photographs the noise may be unknown.
+    let is_unknown = record.is_imported() && !file.exists();
+    let stderr = if is_unknown {
+        None
+    } else {
+        Some(read_stderr(&file, &scene)?)
+    };
+    let left_out = match &args.left_out {
+        Some(file) => Some(read_matrix(file, &scene)?),
+        None => read_left_out(&args.dir, &scene)?,
+    };
+    let size = [scene.camera.columns, scene.camera.rows];
+    let degree = args.frame_polynomial.map(usize::from);
+    let patterns = degree.map(|degree| polynomials(size, degree));
+    let photographs = Unexplained {
+        phi: &phi,
+        stderr: stderr.as_ref(),
+        left_out: left_out.as_ref(),
+        patterns: patterns.as_ref(),
+    };
+    let output = args
+        .output
+        .clone()
+        .unwrap_or_else(|| args.dir.join(LOCATED));
+    let _lock = RunFolder::lock(&output, "phicam locate")?;
+    let pool = pool(args.threads)?;
+    let guard = SignalGuard::new();
+    let what = format!("locate in {}", scene.name);
+    let found = progress::run(console, &what, Work::Tasks(plan.work()), |control| {
+        pool.install(|| plan.locate(&scene, &photographs, control))
+    });
+    drop(guard);
+    let located = found.map_err(|e| Failure::of(e.into()))?;
+    let found = Found {
+        json: serde_json::to_string_pretty(&located).map_err(|e| Failure::of(e.into()))?,
+        finding: located.describe(),
+        agrees: located.is_found(),
+    };
+    deliver(
+        "locate",
+        &found,
+        &output,
+        &invocation(args, &scene),
+        args.json,
+    )?;
+    console.say(format!("{}: written", output.display()));
+    Ok(if found.agrees {
+        Outcome::Done
+    } else {
+        Outcome::Disagreed
+    })
+}
+
+/// What is to be done, with what is not given.
+fn plan(args: &LocateArgs, scene: &Scene, console: Console) -> LocatedPlan {
+    let own: usize = scene
+        .hidden()
+        .map(|(_, s)| s.elements[0] * s.elements[1])
+        .sum();
+    let fewer = args.elements.is_none() && own > MANY;
+    if fewer {
+        console.say(format!(
+            "{} × {} elements in place of {own} (--elements)",
+            FEWER[0], FEWER[1]
+        ));
+    }
+    let far = if ["angle", "yaw"].contains(&args.what) {
+        DEGREES
+    } else {
+        let seen = scene.camera.view.at([0.5; 2]).position;
+        let hidden = scene.hidden().next();
+        let distance = hidden.map(|(_, s)| (s.shape.at([0.5; 2]).position - seen).length());
+        PART * distance.unwrap_or(1.0)
+    };
+    LocatedPlan {
+        what: args.what,
+        range: args.range.unwrap_or([-far, far]),
+        steps: usize::from(args.steps),
+        elements: if fewer { Some(FEWER) } else { args.elements },
+        occlusion: args.occlusion.occlusion(),
+        integration: args.integration,
+        orders: u64::from(args.orders),
+        seed: args.seed,
+    }
+}
+
+/// How to ask for it again.
+fn invocation(args: &LocateArgs, scene: &Scene) -> Invocation {
+    let dir = args.dir.file_name().unwrap_or(args.dir.as_os_str());
+    let mut options = vec![
+        ("--what".to_owned(), args.what.to_owned()),
+        ("--steps".to_owned(), args.steps.to_string()),
+        ("--orders".to_owned(), args.orders.to_string()),
+        ("--seed".to_owned(), args.seed.to_string()),
+    ];
+    let mut given = |name: &str, value: Option<String>| {
+        options.extend(value.map(|value| (name.to_owned(), value)));
+    };
+    let pair = |x: [String; 2], between: &str| x.join(between);
+    given(
+        "--range",
+        args.range.map(|r| pair(r.map(|x| x.to_string()), ",")),
+    );
+    given(
+        "--elements",
+        args.elements.map(|n| pair(n.map(|x| x.to_string()), "x")),
+    );
+    given(
+        "--frame-polynomial",
+        args.frame_polynomial.map(|n| n.to_string()),
+    );
+    Invocation {
+        command: vec!["locate".to_owned(), dir.to_string_lossy().into_owned()],
+        scene: scene.clone(),
+        file: "scene.toml".to_owned(),
+        options,
+        version: version().to_owned(),
+    }
+}

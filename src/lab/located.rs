@@ -1,0 +1,342 @@
+//! Where the hidden surfaces are, by photographs whose reflectances are unknown.
+//!
+//! The scene is altered in one respect by a size t (its hidden surfaces moved along their normal,
+//! the spots or the view shifted, …). At each t the photographs have a likelihood with the
+//! reflectances, their roughness and the noise all unknown ([`Fit`]); the largest is the estimate.
+//! Its error is the larger of two:
+//!
+//! > σ_L = (−∂²ln p/∂t²)^−½,   σ_J² = (m − 1)/m Σ_l (t_(l) − t̄)²,
+//!
+//! by the curvature of the profile likelihood, and by leaving out one of m frames after the other
+//! (jackknife; Efron and Stein, Annals of Statistics 9 (1981)). The first takes what is not
+//! explained for independent noise. Where the model lacks something, neighbouring pixels err alike
+//! and it is far too small; the frames still err by themselves.
+
+mod frames;
+mod likelihood;
+mod order;
+mod picture;
+mod place;
+mod words;
+
+#[cfg(test)]
+mod tests;
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+pub use frames::Unexplained;
+pub use order::Order;
+
+use super::error::LabError;
+use super::misplaced::{self, Misplaced};
+use super::problem::inverted;
+use super::validation::Integration;
+use crate::model::{ElementGrid, Kernel, MatrixModel, Occlusion};
+use crate::scene::Scene;
+use crate::transport::Control;
+use frames::{TermsOf, covariance_root};
+use order::Fault;
+use picture::Pictured;
+use place::{Lengths, Place, frames_of, parabola};
+
+/// Sizes of the second search: ± 1½ steps of the first.
+const FINE: usize = 9;
+const AROUND: f64 = 1.5;
+
+/// What may be looked for: its name on the command line, and that of the studies.
+pub const LOCATABLE: [(&str, &str); 9] = [
+    ("normal", "S2 along its normal"),
+    ("u", "S2 along u"),
+    ("v", "S2 along v"),
+    ("angle", "hinge angle"),
+    ("yaw", "yaw of S2"),
+    ("spots-x", "all spots, x"),
+    ("spots-y", "all spots, y"),
+    ("view-x", "view, x"),
+    ("view-y", "view, y"),
+];
+
+/// How it is looked for.
+#[derive(Clone, Copy, Debug)]
+pub struct LocatedPlan {
+    /// One of [`LOCATABLE`], by its name on the command line.
+    pub what: &'static str,
+    /// Sizes between which it is looked for, in the scene's unit or degrees.
+    pub range: [f64; 2],
+    /// Sizes that are tried first, at least 3.
+    pub steps: usize,
+    /// Elements in place of the scene's.
+    pub elements: Option<[usize; 2]>,
+    /// Whether things in the way are considered.
+    pub occlusion: Occlusion,
+    /// How the model integrates.
+    pub integration: Integration,
+    /// Random orders of the spots that are tried.
+    pub orders: u64,
+    /// Their seed.
+    pub seed: u64,
+}
+
+/// How likely one size is.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Likelihood {
+    /// The size.
+    pub size: f64,
+    /// ln p(Φ) less that of the likeliest size tried.
+    pub log_likelihood: f64,
+    /// ‖what is not explained‖/‖what other light leaves‖, weighted.
+    pub misfit: f64,
+}
+
+/// The middle of the bright part of a picture: of the elements of at least half the largest
+/// reflectance, weighted by it.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Bright {
+    /// Its place, in the scene's unit.
+    pub middle: [f64; 3],
+    /// Its standard error, by leaving frames out; none of fewer than 3.
+    pub stderr: Option<[f64; 3]>,
+    /// The elements.
+    pub elements: usize,
+}
+
+/// The reflectances of one surface, over the largest of all.
+#[derive(Clone, Debug, Serialize)]
+pub struct Grid {
+    /// Its name.
+    pub surface: String,
+    /// Elements along u and v.
+    pub count: [usize; 2],
+    /// Element iu + iv·nu.
+    pub values: Vec<f64>,
+    /// Their standard errors, by leaving frames out.
+    pub stderr: Vec<f64>,
+}
+
+/// The picture at the likeliest size tried, as smooth as predicts each frame best from the others.
+#[derive(Clone, Debug, Serialize)]
+pub struct Picture {
+    /// The reflectances.
+    pub grids: Vec<Grid>,
+    /// Directions of them that are above what is not explained.
+    pub directions: usize,
+    /// ‖what is not explained‖/‖what other light leaves‖, weighted.
+    pub misfit: f64,
+    /// The same of each frame as the others predict it.
+    pub predicted: f64,
+    /// Its bright part.
+    pub bright: Option<Bright>,
+}
+
+/// What was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Located {
+    /// Name of the scene.
+    pub scene: String,
+    /// Its hash.
+    pub scene_hash: String,
+    /// What was looked for.
+    pub what: String,
+    /// Unit of its sizes.
+    pub unit: String,
+    /// The likeliest size; none where that is at an end of the range.
+    pub size: Option<f64>,
+    /// σ_L.
+    pub by_curvature: Option<f64>,
+    /// σ_J; none of fewer than 3 frames, or where an end was reached without one of them.
+    pub by_frames: Option<f64>,
+    /// The middle of the first hidden surface at the likeliest size tried.
+    pub middle: [f64; 3],
+    /// Sizes tried, growing.
+    pub curve: Vec<Likelihood>,
+    /// Standard deviation of what is not explained, in units of the stated errors (of Φcam's, W,
+    /// where none are stated).
+    pub noise: f64,
+    /// Elements.
+    pub elements: usize,
+    /// The picture there; none of fewer than 3 frames.
+    pub picture: Option<Picture>,
+    /// Whether the photographs belong to their spots.
+    pub order: Option<Order>,
+    /// Entries that count.
+    pub entries: usize,
+    /// Frames.
+    pub frames: usize,
+    /// Whether standard errors are stated.
+    pub is_noise_known: bool,
+}
+
+impl Located {
+    /// The larger of both errors, if both are known.
+    pub fn stderr(&self) -> Option<f64> {
+        Some(self.by_curvature?.max(self.by_frames?))
+    }
+}
+
+impl LocatedPlan {
+    /// Sizes and orders that are tried.
+    pub fn work(&self) -> u64 {
+        (self.steps + FINE) as u64 + self.orders
+    }
+
+    /// Looks for it in `photographs` of `scene`.
+    ///
+    /// # Errors
+    /// [`LabError`]: there is no model, no light, nothing that could be altered, or it was stopped.
+    pub fn locate(
+        &self,
+        scene: &Scene,
+        photographs: &Unexplained<'_>,
+        control: Control<'_>,
+    ) -> Result<Located, LabError> {
+        let altered = self.misplaced()?;
+        let model = self.model(scene)?;
+        if model.places.is_empty() {
+            return Err(LabError::Unsuited(
+                "the places of the elements are not known",
+            ));
+        }
+        let lengths = Lengths::of(&model.places)?;
+        let place = |size: f64| -> Result<Option<Place>, LabError> {
+            control.check()?;
+            let found = match (altered.apply)(scene, size) {
+                Some(scene) => Place::new(size, &self.model(&scene)?, photographs, &lengths)?,
+                None => None,
+            };
+            (control.progress)(1);
+            Ok(found)
+        };
+        let places = |[from, to]: [f64; 2], steps: usize| {
+            let size = |k: usize| from + (to - from) * k as f64 / (steps - 1) as f64;
+            let found = (0..steps).into_par_iter().map(|k| place(size(k)));
+            let found: Vec<Option<Place>> = found.collect::<Result<_, _>>()?;
+            Ok::<_, LabError>(found.into_iter().flatten().collect::<Vec<Place>>())
+        };
+        let coarse = places(self.range, self.steps)?;
+        let first = place::best(coarse.iter().map(Place::log_likelihood)).ok_or(LabError::DARK)?;
+        let step = (self.range[1] - self.range[0]) / (self.steps - 1) as f64;
+        let middle = coarse[first].size;
+        let around = [middle - AROUND * step, middle + AROUND * step];
+        let within = around.map(|t| t.clamp(self.range[0], self.range[1]));
+        let fine = places(within, FINE)?;
+        let at = place::best(fine.iter().map(Place::log_likelihood)).ok_or(LabError::DARK)?;
+        let best = &fine[at];
+        let peak = parabola(&fine, Place::log_likelihood);
+        let order = self.order(scene, photographs, &lengths, control)?;
+        let there = (altered.apply)(scene, best.size).unwrap_or_else(|| scene.clone());
+        let mut curve: Vec<&Place> = coarse.iter().chain(&fine).collect();
+        curve.sort_by(|a, b| a.size.total_cmp(&b.size));
+        let likelihood = |p: &&Place| Likelihood {
+            size: p.size,
+            log_likelihood: p.log_likelihood() - best.log_likelihood(),
+            misfit: p.fit.misfit,
+        };
+        Ok(Located {
+            scene: scene.name.clone(),
+            scene_hash: scene.hash.clone(),
+            what: altered.name.to_owned(),
+            unit: altered.size.unit(scene).to_owned(),
+            size: peak.map(|p| p.size),
+            by_curvature: peak.map(|p| p.stderr),
+            by_frames: place::jackknife(&fine).or_else(|| place::jackknife(&coarse)),
+            middle: there
+                .hidden()
+                .next()
+                .map_or([0.0; 3], |(_, s)| s.shape.at([0.5; 2]).position.to_array()),
+            curve: curve.iter().map(likelihood).collect(),
+            noise: best.fit.noise,
+            elements: model.albedo.len(),
+            picture: self.picture(&there, photographs, &lengths)?,
+            order,
+            entries: photographs.counted(),
+            frames: photographs.phi.ncols(),
+            is_noise_known: photographs.stderr.is_some(),
+        })
+    }
+
+    fn misplaced(&self) -> Result<&'static Misplaced, LabError> {
+        let name = LOCATABLE.iter().find(|(key, _)| *key == self.what);
+        let found = name.and_then(|(_, name)| misplaced::ALL.iter().find(|m| m.name == *name));
+        found.ok_or(LabError::Unsuited("nothing of that name can be looked for"))
+    }
+
+    fn model(&self, scene: &Scene) -> Result<MatrixModel, LabError> {
+        let kernel = Kernel::Physical;
+        let model = inverted(
+            scene,
+            kernel,
+            self.elements,
+            self.occlusion,
+            self.integration,
+        );
+        Ok(model?)
+    }
+
+    fn picture(
+        &self,
+        scene: &Scene,
+        photographs: &Unexplained<'_>,
+        lengths: &Lengths,
+    ) -> Result<Option<Picture>, LabError> {
+        let model = self.model(scene)?;
+        let frames = frames_of(&model, photographs)?;
+        let found = Pictured::new(&frames, &lengths.roots)?;
+        Ok(found.map(|found| Picture {
+            grids: grids(&model, &found),
+            directions: found.directions,
+            misfit: found.misfit,
+            predicted: found.predicted,
+            bright: found.bright(&model.places),
+        }))
+    }
+
+    /// The test of the spots' order, elements by their centres.
+    fn order(
+        &self,
+        scene: &Scene,
+        photographs: &Unexplained<'_>,
+        lengths: &Lengths,
+        control: Control<'_>,
+    ) -> Result<Option<Order>, LabError> {
+        if self.orders == 0 || photographs.phi.ncols() < 2 {
+            return Ok(None);
+        }
+        let model = MatrixModel::with(scene, Kernel::Physical, self.elements, self.occlusion)?;
+        let element: Vec<usize> = (0..model.albedo.len()).collect();
+        let terms = TermsOf {
+            camera: &model.camera_side,
+            laser: &model.laser_side,
+            element: &element,
+            elements: element.len(),
+        };
+        let root = covariance_root(&model.places, lengths.fixed)?;
+        let tried = [self.orders, self.seed];
+        order::order(photographs, terms, &root, tried, control).map_err(|fault| match fault {
+            Fault::Linalg(e) => e.into(),
+            Fault::Stopped(e) => e.into(),
+        })
+    }
+}
+
+/// The reflectances by surfaces, over the largest.
+fn grids(model: &MatrixModel, found: &Pictured) -> Vec<Grid> {
+    let largest = found.rho.amax();
+    let unit = if largest > 0.0 { largest } else { 1.0 };
+    let stderr = found.stderr();
+    let grid = |g: &ElementGrid| Grid {
+        surface: g.surface.clone(),
+        count: g.count,
+        values: found
+            .rho
+            .rows(g.first, g.len())
+            .iter()
+            .map(|x| x / unit)
+            .collect(),
+        stderr: stderr[g.first..][..g.len()]
+            .iter()
+            .map(|x| x / unit)
+            .collect(),
+    };
+    model.grids.iter().map(grid).collect()
+}

@@ -1,0 +1,144 @@
+//! How likely photographs are if the reflectances are unknown.
+
+use nalgebra::DVector;
+
+use super::frames::Frame;
+use crate::matrix::Matrix;
+use crate::num::linalg::{LinalgError, product, svd, tr_product};
+
+/// Signal-to-noise ratios μ₁/λ that are tried, 10⁻² to 10¹², four a decade.
+const DECADES: [i32; 2] = [-2, 12];
+const PER_DECADE: i32 = 4;
+/// Steps of the search between two of them: 0.618⁴⁰ < 1e-8.
+const GOLDEN_STEPS: usize = 40;
+/// What is left of a fit by rounding, of the squares.
+const ROUNDING: f64 = 1e-13;
+
+/// Photographs in the coordinates in which the prior is white and the data are uncorrelated:
+/// K^½ᵀ H K^½ = U diag(μ) Uᵀ, g = Uᵀ K^½ᵀ h.
+#[derive(Debug)]
+pub(super) struct Spectrum<'a> {
+    root: &'a Matrix,
+    u: Matrix,
+    g: DVector<f64>,
+    /// μ, falling.
+    pub mu: DVector<f64>,
+    square: f64,
+    count: f64,
+}
+
+impl<'a> Spectrum<'a> {
+    /// Of `all` photographs with K^½ = `root`; none where there is no light.
+    ///
+    /// # Errors
+    /// [`LinalgError`].
+    pub(super) fn new(all: &Frame, root: &'a Matrix) -> Result<Option<Self>, LinalgError> {
+        let h = tr_product(root, &product(&all.h, root));
+        if !(h.amax() > 0.0 && all.square > 0.0 && all.count > 1.0) {
+            return Ok(None);
+        }
+        let found = svd(&h)?;
+        Ok(Some(Self {
+            root,
+            g: found.u.tr_mul(&root.tr_mul(&all.side)),
+            u: found.u,
+            mu: found.sigma,
+            square: all.square,
+            count: all.count,
+        }))
+    }
+
+    /// λ of μ₁/λ = exp(`log_ratio`).
+    pub(super) fn lambda(&self, log_ratio: f64) -> f64 {
+        self.mu[0] * libm::exp(-log_ratio)
+    }
+
+    /// Posterior mean of ρ.
+    pub(super) fn rho(&self, lambda: f64) -> DVector<f64> {
+        self.root * (&self.u * self.white(lambda))
+    }
+
+    fn white(&self, lambda: f64) -> DVector<f64> {
+        DVector::from_fn(self.g.len(), |i, _| self.g[i] / (self.mu[i] + lambda))
+    }
+
+    /// ‖what is not explained‖/‖what other light leaves‖, weighted.
+    pub(super) fn misfit(&self, lambda: f64) -> f64 {
+        let (z, g, mu) = (self.white(lambda), &self.g, &self.mu);
+        let explained = (0..z.len()).map(|i| z[i] * (2.0 * g[i] - mu[i] * z[i]));
+        let left = self.square - explained.sum::<f64>();
+        (left.max(0.0) / self.square).sqrt()
+    }
+
+    /// S(λ), not below what rounding leaves.
+    fn left(&self, lambda: f64) -> f64 {
+        let explained = |(g, mu): (&f64, &f64)| g * g / (mu + lambda);
+        let s = self.square - self.g.iter().zip(&self.mu).map(explained).sum::<f64>();
+        s.max(ROUNDING * self.square)
+    }
+
+    fn log_likelihood(&self, lambda: f64) -> f64 {
+        let occam: f64 = self.mu.iter().map(|mu| libm::log1p(mu / lambda)).sum();
+        -0.5 * (self.count * libm::log(self.left(lambda)) + occam)
+    }
+}
+
+/// ln(μ₁/λ) that are tried.
+pub(super) fn log_ratios() -> impl Iterator<Item = f64> {
+    (DECADES[0] * PER_DECADE..=DECADES[1] * PER_DECADE).map(|k| f64::from(k) * step())
+}
+
+fn step() -> f64 {
+    std::f64::consts::LN_10 / f64::from(PER_DECADE)
+}
+
+/// The likelihood of photographs, ρ ~ N(0, τ²K), noise of variance ν² (of the stated one):
+///
+/// > ln p(Φ) = −n/2 · ln S(λ) − ½ Σ_i ln(1 + μ_i/λ) + constant,   S = s − Σ_i g_i²/(μ_i + λ)
+///
+/// at the largest over λ = ν²/τ² and ν² = S/n. It is the restricted likelihood (Patterson and
+/// Thompson 1971) where patterns have been eliminated.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fit {
+    /// ln p(Φ) up to a constant of the photographs.
+    pub log_likelihood: f64,
+    /// ‖what is not explained‖/‖what other light leaves‖, weighted.
+    pub misfit: f64,
+    /// ν, in units of the stated standard errors.
+    pub noise: f64,
+}
+
+impl Fit {
+    /// The fit to `all` photographs with K^½ = `root`; none where there is no light.
+    ///
+    /// # Errors
+    /// [`LinalgError`].
+    pub(super) fn new(all: &Frame, root: &Matrix) -> Result<Option<Self>, LinalgError> {
+        let Some(found) = Spectrum::new(all, root)? else {
+            return Ok(None);
+        };
+        let at = |log_ratio: f64| found.log_likelihood(found.lambda(log_ratio));
+        let best = log_ratios().max_by(|a, b| at(*a).total_cmp(&at(*b)));
+        let best = best.map_or(0.0, |k| largest_within(&at, [k - step(), k + step()]));
+        let lambda = found.lambda(best);
+        Ok(Some(Self {
+            log_likelihood: at(best),
+            misfit: found.misfit(lambda),
+            noise: (found.left(lambda) / all.count).sqrt(),
+        }))
+    }
+}
+
+/// Where f is largest between two ends, by golden sections.
+fn largest_within(f: &impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> f64 {
+    let golden = 0.5 * (5f64.sqrt() - 1.0);
+    for _ in 0..GOLDEN_STEPS {
+        let reach = golden * (high - low);
+        if f(high - reach) < f(low + reach) {
+            low = high - reach;
+        } else {
+            high = low + reach;
+        }
+    }
+    0.5 * (low + high)
+}

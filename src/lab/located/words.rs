@@ -1,0 +1,238 @@
+//! What is said of where a hidden surface is.
+
+use super::{Grid, Located, Order};
+use crate::lab::finding::{
+    Axis, Cell, Column, Curve, Describe, Figure, Finding, Gallery, Mark, Picture, Place, Plot,
+    Shades, Table, Tone,
+};
+use crate::num::digits::figure;
+
+/// Probability of an order by chance below which the stated one counts as found.
+pub(super) const SIGNIFICANCE: f64 = 1e-3;
+
+/// A standard error that is less than this part of the others is rounding.
+const FLAT: f64 = 1e-9;
+
+impl Order {
+    /// Whether random orders explain the photographs too often; none where too few were tried to
+    /// tell.
+    pub fn is_by_chance(&self) -> Option<bool> {
+        if self.as_likely > 0 {
+            return Some(self.p > SIGNIFICANCE);
+        }
+        (self.p <= SIGNIFICANCE).then_some(false)
+    }
+
+    fn sentence(&self) -> String {
+        let Self {
+            tried,
+            as_likely,
+            p,
+            misfit,
+            least_misfit,
+        } = *self;
+        let told = match self.is_by_chance() {
+            Some(false) => "The photographs belong to their spots",
+            Some(true) => {
+                "Nothing says that the photographs belong to their spots: the order is wrong, or the \
+                 hidden surface is nowhere near, or the noise hides it"
+            }
+            None => {
+                "Too few orders were tried to say whether the photographs belong to their spots"
+            }
+        };
+        format!(
+            "{told}. Of {tried} random orders {as_likely} are as likely as the stated one (p = {}); \
+             misfit {} as stated, at least {} in the others.",
+            figure(p, 2),
+            figure(misfit, 3),
+            figure(least_misfit, 3)
+        )
+    }
+}
+
+impl Located {
+    /// Whether the largest likelihood lies within the range, and the order of the spots is not by
+    /// chance.
+    pub fn is_found(&self) -> bool {
+        let by_chance = self.order.and_then(|order| order.is_by_chance());
+        self.size.is_some() && by_chance != Some(true)
+    }
+
+    fn sentence(&self) -> String {
+        let unit = &self.unit;
+        let Some(size) = self.size else {
+            return format!(
+                "{}: the likelihood grows up to an end of what was tried. Widen the range (--from, \
+                 --to), or these photographs do not tell it.",
+                self.what
+            );
+        };
+        let error = match self.stderr() {
+            Some(stderr) => format!("± {} {unit}", figure(stderr, 2)),
+            None => format!("{unit}, its error is not known"),
+        };
+        let [x, y, z] = self.middle.map(|x| figure(x, 3));
+        format!(
+            "{}: {} {error} from where the scene has it; the middle of the hidden surface is then at \
+             ({x}, {y}, {z}).",
+            self.what,
+            figure(size, 3),
+        )
+    }
+
+    fn errors(&self) -> String {
+        let of = |error: Option<f64>| match error {
+            Some(error) => format!("{} {}", figure(error, 2), self.unit),
+            None => "not known".to_owned(),
+        };
+        format!(
+            "The stated error is the larger of two: by the curvature of the likelihood {}, which \
+             takes what is not explained for independent noise; by leaving out one of {} frames \
+             after the other {}. Neither sees what is wrong in the same way in all frames.",
+            of(self.by_curvature),
+            self.frames,
+            of(self.by_frames)
+        )
+    }
+
+    fn explained(&self) -> String {
+        let noise = if self.is_noise_known {
+            let noise = figure(self.noise, 3);
+            format!("What the likeliest reflectances leave is {noise} of the stated noise.")
+        } else {
+            "No noise is stated.".to_owned()
+        };
+        let Some(picture) = &self.picture else {
+            return format!("{noise} There is no picture of fewer than three frames.");
+        };
+        format!(
+            "The picture is as smooth as predicts each photograph best from the others, to {} of \
+             what other light leaves; it explains all of them to {}. {} of its {} directions are \
+             above what is not explained: its shape is known no finer. {noise} Reflectances are not \
+             bounded here.",
+            figure(picture.predicted, 3),
+            figure(picture.misfit, 3),
+            picture.directions,
+            self.elements,
+        )
+    }
+
+    fn brightest(&self) -> Option<String> {
+        let bright = self.picture.as_ref()?.bright?;
+        let [x, y, z] = [0, 1, 2].map(|k| {
+            let middle = figure(bright.middle[k], 3);
+            match bright.stderr {
+                // Across a flat surface that is parallel to the wall nothing varies but rounding.
+                Some(all) if all[k] > FLAT * all[0].max(all[1]).max(all[2]) => {
+                    format!("{middle} ± {}", figure(all[k], 2))
+                }
+                _ => middle,
+            }
+        });
+        let error = if bright.stderr.is_some() {
+            " (by leaving frames out, the place of the surface being given)"
+        } else {
+            "; its error is not known"
+        };
+        Some(format!(
+            "The bright part, {} elements of at least half the largest reflectance, has its middle \
+             at ({x}, {y}, {z}){error}.",
+            bright.elements
+        ))
+    }
+
+    /// The picture with its standard errors.
+    fn galleries(&self) -> Vec<Gallery> {
+        let Some(found) = &self.picture else {
+            return Vec::new();
+        };
+        let of = |title: String, grid: &Grid, values: &[f64]| Picture {
+            title,
+            size: grid.count,
+            values: values.to_vec(),
+            axes: ["u", "v"].map(str::to_owned),
+            width: 2.0,
+        };
+        let both = |grid: &Grid| {
+            let known = format!("{}: {} directions known", grid.surface, found.directions);
+            let errors = format!("{}: standard errors", grid.surface);
+            [
+                of(known, grid, &grid.values),
+                of(errors, grid, &grid.stderr),
+            ]
+        };
+        vec![Gallery {
+            title: "The reflectance there, over its largest, and its errors by leaving frames out"
+                .to_owned(),
+            shades: Shades::Values,
+            unit: String::new(),
+            pictures: found.grids.iter().flat_map(both).collect(),
+        }]
+    }
+
+    fn axis(&self) -> Axis {
+        let ends = |k: usize| self.curve.get(k).map_or(0.0, |at| at.size);
+        let title = format!("{}, {}", self.what, self.unit);
+        Axis::linear(title, [ends(0), ends(self.curve.len().saturating_sub(1))])
+    }
+}
+
+impl Describe for Located {
+    fn describe(&self) -> Finding {
+        let title = format!("Where it is: {}, {}", self.what, self.scene);
+        let mut notes = vec![self.errors(), self.explained()];
+        notes.extend(self.brightest());
+        notes.push(self.order.map_or_else(
+            || "Whether the photographs belong to their spots was not asked.".to_owned(),
+            |order| order.sentence(),
+        ));
+        let points = |of: fn(&super::Likelihood) -> f64| -> Vec<[f64; 2]> {
+            self.curve.iter().map(|at| [at.size, of(at)]).collect()
+        };
+        let plot = |title: &str, points: Vec<[f64; 2]>| {
+            let low = points.iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
+            let high = points
+                .iter()
+                .map(|p| p[1])
+                .fold(f64::NEG_INFINITY, f64::max);
+            let axes = [self.axis(), Axis::linear(title, [low, high])];
+            Plot::new("", axes, vec![Curve::new(title, Mark::Line, points)])
+        };
+        let plots = vec![
+            plot("log likelihood", points(|at| at.log_likelihood)),
+            plot("misfit", points(|at| at.misfit)),
+        ];
+        let table = Table {
+            file: Some("locate.csv".to_owned()),
+            place: Place::Page,
+            ..Table::new(
+                "Sizes that were tried",
+                vec![
+                    Column::number("size", "size", &self.unit, 4),
+                    Column::number("log likelihood", "log_likelihood", "", 6),
+                    Column::number("misfit", "misfit", "", 4),
+                ],
+                self.curve.iter().map(|at| {
+                    [at.size, at.log_likelihood, at.misfit]
+                        .map(Cell::from)
+                        .to_vec()
+                }),
+            )
+        };
+        Finding {
+            title,
+            tone: if self.is_found() {
+                Tone::Good
+            } else {
+                Tone::Bad
+            },
+            sentence: self.sentence(),
+            notes,
+            tables: vec![table],
+            figures: vec![Figure::new("locate.svg", "Likelihood and misfit", plots)],
+            galleries: self.galleries(),
+            ..Finding::default()
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! `phicam locate`: where the hidden surface is.
+
+use phicam::matrix::{Matrix, npy};
+
+use crate::workspace::Workspace;
+
+/// The small bench, rendered.
+fn rendered() -> Workspace {
+    let w = Workspace::with_scenes();
+    w.phicam("render small.toml -o run --samples 256 -q")
+        .exits(0);
+    w
+}
+
+#[test]
+fn a_rendered_surface_is_where_the_scene_has_it() {
+    let w = rendered();
+    let line = "locate run --elements 4x4 --steps 5 --orders 999 --range -0.6,0.6";
+    let told = w.phicam(line).exits(0);
+    for words in [
+        "S2 along its normal",
+        "by leaving out one of 24 frames",
+        "belong to their spots",
+    ] {
+        assert!(told.stdout.contains(words), "{}", told.account());
+    }
+    let found = w.json("run/located/locate.json");
+    let number = |key: &str| found[key].as_f64().unwrap();
+    let error = number("by_curvature").max(number("by_frames"));
+    assert!(
+        number("size").abs() < 4.0 * error && error < 0.2,
+        "{found:#}"
+    );
+    assert_eq!(found["order"]["as_likely"], 0);
+    for file in ["locate.csv", "locate.svg", "report.html"] {
+        assert!(w.path(&format!("run/located/{file}")).exists(), "{file}");
+    }
+    // The same numbers whatever the threads.
+    let again = w
+        .phicam(&format!("{line} --threads 1 --json -o other"))
+        .exits(0);
+    let other: serde_json::Value = serde_json::from_str(&again.stdout).unwrap();
+    assert_eq!(found, other);
+}
+
+/// Photographs whose order was changed are not believed; exit code 1.
+#[test]
+fn shuffled_photographs_are_rejected() {
+    let w = rendered();
+    let phi = w.matrix("run/phi.npy");
+    let count = phi.ncols();
+    let shuffle = |m: Matrix| Matrix::from_fn(m.nrows(), count, |p, l| m[(p, (7 * l + 5) % count)]);
+    for file in ["run/phi.npy", "run/phi.stderr.npy"] {
+        let mixed = shuffle(w.matrix(file));
+        npy::write(&w.path(file), &mixed).unwrap();
+    }
+    w.disown("run");
+    let told = w
+        .phicam("locate run --elements 4x4 --steps 3 --range -0.3,0.3")
+        .exits(1);
+    let words = "Nothing says that the photographs belong to their spots";
+    assert!(told.stdout.contains(words), "{}", told.account());
+}
+
+#[test]
+fn what_cannot_be_looked_for_is_refused() {
+    let w = Workspace::with_scenes();
+    w.refuses("locate nowhere", &["nowhere"]);
+    w.phicam("render tiny.toml -o run --samples 16 -q").exits(0);
+    w.refuses("locate run --what depth", &["normal", "angle"]);
+    w.refuses("locate run --steps 2", &["3..=1000"]);
+    w.refuses("locate run --range 1,0", &["LOW,HIGH"]);
+}
