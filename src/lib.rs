@@ -132,6 +132,8 @@
 //! * [`lab::published`](mod@lab::published): the published study computed again, and the ledger of
 //!   its contradictions.
 //! * [`cli`]: what a run leaves on disk, and the exit codes of the program.
+//! * [`cli::from_your_camera`](mod@cli::from_your_camera): photographs of a real bench, command by
+//!   command.
 //! * [`cli::many_machines`](mod@cli::many_machines): thousands of frames on a cluster, on Slurm and
 //!   other schedulers.
 

@@ -24,6 +24,7 @@
 //! | `recovered/picard.csv`, `.svg` | signal and noise in each singular direction of the laser side |
 //! | `summary.json`, `report.html` | what was found |
 //! | `left_out.npy`, `import.json`, `import.png` | of photographs from `phicam import`: why an entry is left out (0: it counts), f64, (pixels, spots); settings, files, noise and marks; the mean photograph with the view, spots and marks |
+//! | `located/` | what `phicam locate` found: `locate.json`, `locate.csv`, `locate.svg`, `report.html` |
 //! | `exposed/` | what `phicam expose` made of it: `phi.npy`, `phi.stderr.npy`, `saturated.npy`, `counts/`, `exposure.json` |
 //! | `partial/` | finished spots and blocks of an unfinished run; gone when it is complete |
 //! | `.replacement/` | a run with other settings that will take the place of this one when it is whole |
@@ -51,6 +52,7 @@ mod expose;
 mod exposed_folder;
 mod failure;
 mod findings;
+pub mod from_your_camera;
 mod import;
 mod interrupt;
 mod load_run;

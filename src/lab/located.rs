@@ -89,13 +89,13 @@ pub struct Likelihood {
     pub misfit: f64,
 }
 
-/// The middle of the bright part of a picture: of the elements of at least half the largest
-/// reflectance, weighted by it.
+/// The middle of the bright part of a picture: of the elements above twice their standard error
+/// those of at least half the largest reflectance, weighted by it.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Bright {
     /// Its place, in the scene's unit.
     pub middle: [f64; 3],
-    /// Its standard error, by leaving frames out; none of fewer than 3.
+    /// Its standard error, by leaving frames out; which elements are above their errors is given.
     pub stderr: Option<[f64; 3]>,
     /// The elements.
     pub elements: usize,
@@ -114,7 +114,8 @@ pub struct Grid {
     pub stderr: Vec<f64>,
 }
 
-/// The picture at the likeliest size tried, as smooth as predicts each frame best from the others.
+/// The picture at the likeliest size tried, as smooth as it can be and still predict each frame from
+/// the others as well as any.
 #[derive(Clone, Debug, Serialize)]
 pub struct Picture {
     /// The reflectances.

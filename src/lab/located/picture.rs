@@ -9,13 +9,16 @@ use super::place::jackknifed;
 use crate::matrix::Matrix;
 use crate::num::linalg::LinalgError;
 
-/// Posterior mean of the reflectances, the prior's λ and length being those by which each frame is
-/// best predicted from the others:
+/// Posterior mean of the reflectances. The prior's λ and length are chosen by how well each frame is
+/// predicted from the others:
 ///
-/// > Σ_l ‖√w (Φ_l − C diag(d_l) ρ_(l))‖² = least,   ρ_(l) from all frames but l.
+/// > e_l = ‖√w (Φ_l − C diag(d_l) ρ_(l))‖²,   ρ_(l) from all frames but l.
 ///
-/// Where the model lacks something, neighbouring pixels err alike; a likelihood that takes them for
-/// independent would keep directions of the picture that no other frame confirms.
+/// At the length of the least Σ e_l, the largest λ that is worse by less than one standard error of
+/// that difference, Σ (e_l − e_l,least) ≤ √m s (Breiman et al., Classification and Regression Trees
+/// (1984), 3.4.3, in pairs). Where the model lacks something, neighbouring pixels err alike; a
+/// likelihood that takes them for independent would keep directions of the picture that no other
+/// frame confirms.
 pub(super) struct Pictured {
     /// ρ.
     pub rho: DVector<f64>,
@@ -39,7 +42,7 @@ impl Pictured {
             return Ok(None);
         }
         let all = Frame::sum(frames.iter(), elements);
-        let mut best: Option<Self> = None;
+        let mut best: Option<(Vec<Trial>, f64)> = None;
         for root in roots {
             let Some(whole) = Spectrum::new(&all, root)? else {
                 return Ok(None);
@@ -49,25 +52,35 @@ impl Pictured {
             let Some(parts) = parts else {
                 return Ok(None);
             };
-            for lambda in log_ratios().map(|k| whole.lambda(k)) {
+            let trial = |log_ratio: f64| {
+                let lambda = whole.lambda(log_ratio);
                 let without: Vec<_> = parts.iter().map(|part| part.rho(lambda)).collect();
                 let left = frames
                     .iter()
                     .zip(&without)
                     .map(|(frame, rho)| frame.left(rho));
-                let predicted = (left.sum::<f64>().max(0.0) / all.square).sqrt();
-                if best.as_ref().is_none_or(|b| predicted < b.predicted) {
-                    best = Some(Self {
+                Trial {
+                    errors: left.collect(),
+                    found: Self {
                         rho: whole.rho(lambda),
-                        without,
                         directions: whole.mu.iter().filter(|mu| **mu > lambda).count(),
                         misfit: whole.misfit(lambda),
-                        predicted,
-                    });
+                        predicted: 0.0,
+                        without,
+                    },
                 }
+            };
+            let trials: Vec<Trial> = log_ratios().map(trial).collect();
+            let least = trials.iter().map(Trial::sum).fold(f64::INFINITY, f64::min);
+            if best.as_ref().is_none_or(|(_, other)| least < *other) {
+                best = Some((trials, least));
             }
         }
-        Ok(best)
+        let chosen = best.and_then(|(trials, _)| smoothest(trials));
+        Ok(chosen.map(|trial| Self {
+            predicted: (trial.sum().max(0.0) / all.square).sqrt(),
+            ..trial.found
+        }))
     }
 
     /// Standard error of each ρ, by leaving frames out.
@@ -79,11 +92,17 @@ impl Pictured {
         (0..self.rho.len()).map(of).collect()
     }
 
-    /// The bright part of the picture of elements at `places`.
+    /// The bright part of the picture of elements at `places`: of those that are above twice their
+    /// standard error, those of at least half the largest reflectance. None where there are none.
     pub(super) fn bright(&self, places: &[[f64; 3]]) -> Option<Bright> {
-        let (own, elements) = middle(&self.rho, places)?;
-        let without = self.without.iter().map(|rho| Some(middle(rho, places)?.0));
-        let without: Option<Vec<[f64; 3]>> = without.collect();
+        let stderr = self.stderr();
+        let is_seen = |j: &usize| self.rho[*j] > 2.0 * stderr[*j];
+        let seen: Vec<usize> = (0..places.len()).filter(is_seen).collect();
+        let (own, elements) = middle(&self.rho, places, &seen)?;
+        let without = self.without.iter();
+        let without: Option<Vec<[f64; 3]>> = without
+            .map(|rho| middle(rho, places, &seen).map(|(middle, _)| middle))
+            .collect();
         let spread = |k: usize| {
             let values: Vec<f64> = without.as_ref()?.iter().map(|m| m[k]).collect();
             jackknifed(&values)
@@ -100,15 +119,44 @@ impl Pictured {
     }
 }
 
-/// The mean place of the elements of at least half the largest reflectance, weighted by it, and
-/// their number.
-fn middle(rho: &DVector<f64>, places: &[[f64; 3]]) -> Option<([f64; 3], usize)> {
-    let largest = rho.max();
+/// The mean place of the elements of `seen` with at least half the largest reflectance of those,
+/// weighted by it, and their number; none where none is above 0.
+fn middle(rho: &DVector<f64>, places: &[[f64; 3]], seen: &[usize]) -> Option<([f64; 3], usize)> {
+    let largest = seen.iter().map(|j| rho[*j]).fold(0.0, f64::max);
     let bright = || {
-        let all = rho.iter().zip(places);
-        all.filter(|(rho, _)| **rho >= 0.5 * largest)
+        seen.iter()
+            .filter(|j| largest > 0.0 && rho[**j] >= 0.5 * largest)
     };
-    let sum: f64 = bright().map(|(rho, _)| rho).sum();
-    let mean = |k: usize| bright().map(|(rho, place)| rho * place[k]).sum::<f64>() / sum;
-    (largest > 0.0).then(|| ([0, 1, 2].map(mean), bright().count()))
+    let sum: f64 = bright().map(|j| rho[*j]).sum();
+    let mean = |k: usize| bright().map(|j| rho[*j] * places[*j][k]).sum::<f64>() / sum;
+    (sum > 0.0).then(|| ([0, 1, 2].map(mean), bright().count()))
+}
+
+/// One λ.
+struct Trial {
+    /// e_l.
+    errors: Vec<f64>,
+    found: Pictured,
+}
+
+impl Trial {
+    fn sum(&self) -> f64 {
+        self.errors.iter().sum()
+    }
+}
+
+/// Of `trials` by falling λ the first that is not worse than the best by more than one standard
+/// error of the difference.
+fn smoothest(mut trials: Vec<Trial>) -> Option<Trial> {
+    let least = trials.iter().min_by(|a, b| a.sum().total_cmp(&b.sum()))?;
+    let best = least.errors.clone();
+    let m = best.len() as f64;
+    let is_as_good = |trial: &Trial| {
+        let worse = trial.errors.iter().zip(&best).map(|(a, b)| a - b);
+        let (sum, squares) = worse.fold((0.0, 0.0), |(s, q), d| (s + d, q + d * d));
+        let variance = (squares - sum * sum / m) / (m - 1.0);
+        sum <= (m * variance.max(0.0)).sqrt()
+    };
+    let k = trials.iter().position(is_as_good)?;
+    Some(trials.swap_remove(k))
 }

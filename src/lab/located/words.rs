@@ -107,10 +107,10 @@ impl Located {
             return format!("{noise} There is no picture of fewer than three frames.");
         };
         format!(
-            "The picture is as smooth as predicts each photograph best from the others, to {} of \
-             what other light leaves; it explains all of them to {}. {} of its {} directions are \
-             above what is not explained: its shape is known no finer. {noise} Reflectances are not \
-             bounded here.",
+            "The picture is as smooth as it can be and still predict each photograph from the \
+             others as well as any, to {} of what other light leaves; it explains all of them to \
+             {}. {} of its {} directions are above what is not explained: its shape is known no \
+             finer. {noise} Reflectances are not bounded here.",
             figure(picture.predicted, 3),
             figure(picture.misfit, 3),
             picture.directions,
@@ -119,7 +119,10 @@ impl Located {
     }
 
     fn brightest(&self) -> Option<String> {
-        let bright = self.picture.as_ref()?.bright?;
+        let Some(bright) = self.picture.as_ref()?.bright else {
+            let words = "No element of the picture is above twice its error.";
+            return Some(words.to_owned());
+        };
         let [x, y, z] = [0, 1, 2].map(|k| {
             let middle = figure(bright.middle[k], 3);
             match bright.stderr {
@@ -136,8 +139,8 @@ impl Located {
             "; its error is not known"
         };
         Some(format!(
-            "The bright part, {} elements of at least half the largest reflectance, has its middle \
-             at ({x}, {y}, {z}){error}.",
+            "The bright part, {} elements of at least half the largest reflectance and above twice \
+             their error, has its middle at ({x}, {y}, {z}){error}.",
             bright.elements
         ))
     }
