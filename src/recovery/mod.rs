@@ -95,6 +95,7 @@
 
 mod bands;
 mod error;
+mod factors;
 mod joint;
 mod method;
 mod nuisance;
@@ -106,10 +107,12 @@ mod pixelwise;
 mod problem;
 mod rule;
 mod shared;
+mod soft;
 mod spectrum;
 
 pub use bands::{BandKind, Bands};
 pub use error::RecoveryError;
+pub use factors::{Factors, Gains};
 pub use joint::{CramerRao, Determined, cramer_rao, determined, picard_joint};
 pub use method::{Method, UnknownMethod};
 pub use nuisance::{Estimated, Nuisance};
@@ -136,14 +139,31 @@ pub fn recover(
     if problem.nuisance.is_some() && !method.is_joint() {
         return Err(RecoveryError::NotForMethod {
             method,
-            what: "takes every entry as light of the surface, and estimates nothing else: no frame constants or patterns, background, glare or scale, no entries left out",
+            what: "takes every entry as light of the surface, and estimates nothing else: no frame constants or patterns, background, glare, gain or scale, no entries left out",
             cure: "use a joint method, or subtract what else is there first",
         });
     }
     if let Some(confidence) = options.bands {
         bands::allowed(method, confidence)?;
     }
-    let mut found = match method {
+    let mut found = if problem.nuisance.has_gains() {
+        joint::gauss_newton::recover(method, problem, options, by)
+    } else {
+        by(method, problem, options)
+    }?;
+    if let (Some(confidence), None, None) = (options.bands, &found.bands, found.no_bands) {
+        found.add_gaussian_bands(confidence)?;
+    }
+    Ok(found)
+}
+
+/// The same without factors that are known only roughly, or about estimates of them.
+fn by(
+    method: Method,
+    problem: &Problem<'_>,
+    options: &Options,
+) -> Result<Recovered, RecoveryError> {
+    match method {
         Method::Pinv
         | Method::LeftInverse
         | Method::RightInverse
@@ -157,11 +177,7 @@ pub fn recover(
         Method::JointGp => joint::gaussian_process::recover(problem, options),
         Method::JointTv => joint::total_variation::recover(problem, options),
         Method::JointTwoValued => joint::two_valued::recover(problem, options),
-    }?;
-    if let (Some(confidence), None, None) = (options.bands, &found.bands, found.no_bands) {
-        found.add_gaussian_bands(confidence)?;
     }
-    Ok(found)
 }
 
 #[cfg(test)]

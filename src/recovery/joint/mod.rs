@@ -2,12 +2,14 @@
 
 pub(super) mod bounded;
 mod branch;
+mod conditional;
 mod coordinates;
 mod cramer_rao;
 mod determined;
 mod elimination;
 mod enumerated;
 mod exponential;
+pub(super) mod gauss_newton;
 pub(super) mod gaussian_process;
 mod gram;
 mod ground;
