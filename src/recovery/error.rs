@@ -51,7 +51,9 @@ pub enum RecoveryError {
         found_columns: usize,
     },
     /// A relative standard deviation without meaning.
-    #[error("{name} known to {value} has no meaning; give a standard deviation relative to 1, above 0 and at most 1, e.g. 0.05")]
+    #[error(
+        "{name} known to {value} has no meaning; give a standard deviation relative to 1, above 0 and at most 1, e.g. 0.05"
+    )]
     RelativeDeviation {
         /// Of which factor.
         name: &'static str,
@@ -59,7 +61,9 @@ pub enum RecoveryError {
         value: f64,
     },
     /// A scale both known roughly and free.
-    #[error("a scale that is free is not known to any error; leave out the scale's error, or the free scale")]
+    #[error(
+        "a scale that is free is not known to any error; leave out the scale's error, or the free scale"
+    )]
     ScaleTwice,
     /// No entry counts.
     #[error("every entry of phi is left out; leave some in")]

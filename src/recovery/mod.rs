@@ -95,7 +95,7 @@
 
 mod bands;
 mod error;
-mod factors;
+mod gains;
 mod joint;
 mod method;
 mod nuisance;
@@ -112,7 +112,7 @@ mod spectrum;
 
 pub use bands::{BandKind, Bands};
 pub use error::RecoveryError;
-pub use factors::{Factors, Gains};
+pub use gains::{Deviations, Gains};
 pub use joint::{CramerRao, Determined, cramer_rao, determined, picard_joint};
 pub use method::{Method, UnknownMethod};
 pub use nuisance::{Estimated, Nuisance};

@@ -21,10 +21,11 @@
 //! Π (1 + σ²⟨m, m⟩)^(−½), m in units of the noise and without what other terms take, so that factors
 //! that nothing asks for lower it.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use super::bounded;
 use super::khatri_rao::operator;
+use super::linear::{Estimates, Linear};
 use crate::recovery::soft::Soft;
 use crate::recovery::{
     Gains, Method, Options, Problem, Recovered, RecoveryError, Shared, WeightRule,
@@ -34,60 +35,6 @@ use crate::recovery::{
 const MOST_STEPS: usize = 30;
 /// The factors have settled where none changes by more than this fraction of its σ.
 const SETTLED: f64 = 1e-4;
-/// Least factor about which the problem is made linear.
-const LEAST: f64 = 0.05;
-
-/// Estimates about which the problem is linear.
-struct Estimates {
-    x: DVector<f64>,
-    frames: DVector<f64>,
-    whole: f64,
-    /// 1 where the noise is known, else its standard deviation, W.
-    noise: f64,
-}
-
-/// The linear problem.
-struct Linear {
-    phi: DMatrix<f64>,
-    d: DMatrix<f64>,
-    soft: Soft,
-}
-
-impl Linear {
-    /// Of `problem`, whose nuisance names the standard deviations.
-    fn about(problem: &Problem<'_>, at: &Estimates) -> Self {
-        let (_, d, _) = problem.sides();
-        let light = problem.light(&at.x);
-        let factor = |x: f64| (1.0 + x).max(LEAST);
-        let whole = factor(at.whole);
-        let by_frame = |m: &DMatrix<f64>, of: &dyn Fn(f64) -> f64| {
-            let mut own = m.clone();
-            for (mut column, frame) in own.column_iter_mut().zip(at.frames.iter()) {
-                column *= of(factor(*frame));
-            }
-            own
-        };
-        // What the linear terms in ε hold at the estimates.
-        let shift = by_frame(&light, &|frame| {
-            (frame - 1.0) * whole + (whole - 1.0) * frame
-        });
-        let nuisance = &problem.nuisance;
-        Self {
-            phi: problem.phi + shift,
-            d: by_frame(d, &|frame| frame * whole),
-            soft: Soft {
-                frames: nuisance.frame_gain.map(|known| (&light * whole, known)),
-                whole: nuisance.scale_error.map(|known| (&at.x / whole, known)),
-                noise: at.noise,
-            },
-        }
-    }
-
-    fn problem<'b>(&'b self, base: &Problem<'b>) -> Problem<'b> {
-        base.about(&self.phi, &self.d, &self.soft)
-    }
-}
-
 /// Recovers by `by`, a method on a problem that is linear in the factors.
 pub(in crate::recovery) fn recover(
     method: Method,
@@ -154,25 +101,6 @@ pub(in crate::recovery) fn recover(
     let whole = problem.counted(problem.phi.clone()).norm();
     found.relative_residual = found.residual / whole;
     Ok(found)
-}
-
-impl Estimates {
-    /// Takes what was found; the largest change of a factor in units of its σ.
-    fn take(&mut self, found: &Recovered) -> f64 {
-        self.x = found.seen();
-        let mut change = 0.0f64;
-        if let Some(gains) = found.nuisance.as_ref().and_then(|n| n.gains.as_ref()) {
-            if let Some(frames) = &gains.frames {
-                change = (&frames.size - &self.frames).amax() / frames.known_to;
-                self.frames.copy_from(&frames.size);
-            }
-            if let Some(whole) = &gains.whole {
-                change = change.max((whole.size[0] - self.whole).abs() / whole.known_to);
-                self.whole = whole.size[0];
-            }
-        }
-        change
-    }
 }
 
 /// The evidence of the linear problem over the density of the numbers that fit best without factors:

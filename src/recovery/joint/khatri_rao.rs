@@ -20,8 +20,8 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::{DMatrix, DVector};
 
-use super::elimination::{directions, estimate, unit, without_left, without_right};
 use super::conditional::Conditional;
+use super::elimination::{directions, estimate, unit, without_left, without_right};
 use super::gram;
 use super::stacked::{Coupled, Stacked, stack};
 use super::weights::{self, Weights};
@@ -29,7 +29,9 @@ use crate::num::linalg::{
     LeastSquares, Route, Svd, Tolerance, Triangle, columns_over, least_squares, normal_triangle,
     pivoted_triangle, product, rows_times, svd_of_range, svd_to, tr_product, triangle,
 };
-use crate::recovery::{Estimated, Factors, Gains, Options, Problem, RecoveryError, WeightRule, Weighting};
+use crate::recovery::{
+    Deviations, Estimated, Gains, Options, Problem, RecoveryError, WeightRule, Weighting,
+};
 
 /// Elements whose Gram matrix (and its few copies) is still formed: 512 MiB each.
 const MOST_ELEMENTS: usize = 8192;
@@ -92,7 +94,7 @@ enum Form {
     },
 }
 
-/// Factors that are known roughly, given x.
+/// Deviations that are known roughly, given x.
 #[derive(Debug, Default)]
 struct Conditionals {
     frames: Option<Conditional>,
@@ -333,7 +335,7 @@ impl Operator {
         if let Some(soft) = problem.soft {
             let factors = |size: Option<DVector<f64>>, known_to: Option<f64>| {
                 let (size, known_to) = (size?, known_to?);
-                Some(Factors {
+                Some(Deviations {
                     standard_error: DVector::zeros(size.len()),
                     size,
                     known_to,

@@ -15,6 +15,7 @@ mod gram;
 mod ground;
 mod khatri_rao;
 mod levels;
+mod linear;
 mod neighbours;
 mod pattern_search;
 mod picard;

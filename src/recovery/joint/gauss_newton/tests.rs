@@ -2,7 +2,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::*;
 use crate::recovery::bench::{Bench, normal_stream};
-use crate::recovery::{Factors, Nuisance, recover};
+use crate::recovery::{Deviations, Nuisance, recover};
 
 /// A small bench: 4 elements between 0.2 and 0.7, 16 pixels, every tenth spot, errors of 2 %.
 struct Small {
@@ -60,10 +60,7 @@ impl Small {
         let (pixels, spots) = phi.shape();
         let n = self.rho.len();
         let (k, a) = (patterns.ncols(), if background { pixels } else { 0 });
-        let [gains, whole] = [
-            n,
-            n + if gain.is_some() { spots } else { 0 },
-        ];
+        let [gains, whole] = [n, n + if gain.is_some() { spots } else { 0 }];
         let others = whole + usize::from(scale.is_some());
         let all = others + k * spots + a;
         let mut u = DVector::zeros(all);
@@ -157,22 +154,42 @@ fn it_is_the_minimum_over_picture_and_factors_written_out() {
         let free = recover(Method::JointUnbounded, &problem, &Options::default()).unwrap();
         let bounded = recover(Method::Joint, &problem, &Options::default()).unwrap();
         let (u, covariance) = small.brute(&phi, patterns, background, [frame_gain, scale_error]);
-        let case = format!("{frame_gain:?} {scale_error:?} {} {background}", patterns.ncols());
+        let case = format!(
+            "{frame_gain:?} {scale_error:?} {} {background}",
+            patterns.ncols()
+        );
         assert!(gains(&free).settled, "{case}: {:?}", gains(&free));
         let stderr = free.standard_error.as_ref().unwrap();
         for j in 0..4 {
             let expected = covariance[(j, j)].sqrt();
-            assert!((free.reflectance[j] - u[j]).abs() < 1e-3 * expected, "{case}");
-            assert!((bounded.reflectance[j] - u[j]).abs() < 1e-3 * expected, "{case}");
-            assert!(near(stderr[j], expected, 1e-4), "{case}: {} {expected}", stderr[j]);
+            assert!(
+                (free.reflectance[j] - u[j]).abs() < 1e-3 * expected,
+                "{case}"
+            );
+            assert!(
+                (bounded.reflectance[j] - u[j]).abs() < 1e-3 * expected,
+                "{case}"
+            );
+            assert!(
+                near(stderr[j], expected, 1e-4),
+                "{case}: {} {expected}",
+                stderr[j]
+            );
             let own = free.covariance.as_ref().unwrap()[(0, j)];
             assert!((own - covariance[(0, j)]).abs() < 1e-4 * expected * expected.max(stderr[0]));
         }
         let mut at = 4;
-        for of in [&gains(&free).frames, &gains(&free).whole].into_iter().flatten() {
+        for of in [&gains(&free).frames, &gains(&free).whole]
+            .into_iter()
+            .flatten()
+        {
             for (size, error) in of.size.iter().zip(of.standard_error.iter()) {
                 let expected = covariance[(at, at)].sqrt();
-                assert!((size - u[at]).abs() < 1e-3 * expected, "{case}: {size} {}", u[at]);
+                assert!(
+                    (size - u[at]).abs() < 1e-3 * expected,
+                    "{case}: {size} {}",
+                    u[at]
+                );
                 assert!(near(*error, expected, 1e-4), "{case}: {error} {expected}");
                 assert!(*error <= of.known_to * (1.0 + 1e-9) && !of.picture_given);
                 at += 1;
@@ -200,7 +217,9 @@ fn entries_left_out_have_no_factor() {
     let problem = small.problem(&phi, nuisance);
     let found = recover(Method::JointUnbounded, &problem, &Options::default()).unwrap();
     let found = found.reflectance;
-    small.stderr.zip_apply(&flags, |s, flag| *s *= 1.0 + 1e9 * flag);
+    small
+        .stderr
+        .zip_apply(&flags, |s, flag| *s *= 1.0 + 1e9 * flag);
     let (u, covariance) = small.brute(&phi, &DMatrix::zeros(16, 0), false, [Some(0.1), None]);
     for j in 0..4 {
         assert!((found[j] - u[j]).abs() < 1e-3 * covariance[(j, j)].sqrt());
@@ -240,7 +259,7 @@ fn bars_cover_with_the_option_and_not_without() {
             let errors = found.standard_error.as_ref().unwrap();
             *sum += share(&found.reflectance, errors, small.rho.as_slice()) / draws as f64;
         }
-        let Factors {
+        let Deviations {
             size,
             standard_error,
             ..
@@ -306,7 +325,11 @@ fn wide_priors_eliminate_and_narrow_ones_do_nothing() {
             ..Nuisance::default()
         },
     );
-    for method in [Method::JointUnbounded, Method::JointGp, Method::JointTwoValued] {
+    for method in [
+        Method::JointUnbounded,
+        Method::JointGp,
+        Method::JointTwoValued,
+    ] {
         let [a, b] = [narrow, plain].map(|p| recover(method, &p, &options).unwrap());
         assert!((a.reflectance - b.reflectance).amax() < 1e-6, "{method}");
         if let (Some(a), Some(b)) = (a.log_evidence, b.log_evidence) {
@@ -332,15 +355,29 @@ fn a_scale_known_to_five_percent_leaves_five_percent() {
     let problem = problem.with_nuisance(nuisance).unwrap();
     let of_mean = |found: &Recovered| found.covariance.as_ref().unwrap().mean().sqrt() / 0.6;
     let free = recover(Method::JointUnbounded, &problem, &Options::default()).unwrap();
-    assert!(free.standard_error.as_ref().unwrap().iter().all(|s| *s >= 0.05 * 0.6));
-    assert!((0.05..0.0505).contains(&of_mean(&free)), "{}", of_mean(&free));
+    assert!(
+        free.standard_error
+            .as_ref()
+            .unwrap()
+            .iter()
+            .all(|s| *s >= 0.05 * 0.6)
+    );
+    assert!(
+        (0.05..0.0505).contains(&of_mean(&free)),
+        "{}",
+        of_mean(&free)
+    );
     let of = gains(&free);
     assert!(of.widened.unwrap() > 1.0, "{of:?}");
     let whole = of.whole.as_ref().unwrap();
     assert!(near(whole.standard_error[0], 0.05, 1e-6) && whole.size[0].abs() < 1e-6);
     // What is known of pictures beforehand, ½ ± ½ throughout, tells a little of the scale.
     let smooth = recover(Method::JointGp, &problem, &Options::default()).unwrap();
-    assert!((0.048..0.0505).contains(&of_mean(&smooth)), "{}", of_mean(&smooth));
+    assert!(
+        (0.048..0.0505).contains(&of_mean(&smooth)),
+        "{}",
+        of_mean(&smooth)
+    );
     let levels = recover(Method::JointTwoValued, &problem, &Options::default()).unwrap();
     assert!(gains(&levels).settled, "{:?}", gains(&levels));
 }
@@ -365,7 +402,10 @@ fn the_evidence_punishes_factors_that_nothing_asks_for() {
             let phi = small.drawn(gain, 0.0, 8);
             evidence(&phi, nuisance, method) - evidence(&phi, Nuisance::default(), method)
         });
-        assert!(drifting > 20.0 && steady < -5.0, "{method}: {drifting} {steady}");
+        assert!(
+            drifting > 20.0 && steady < -5.0,
+            "{method}: {drifting} {steady}"
+        );
     }
     // Of joint-gp the density of the data with the factors linear about x̂, all written out: x is
     // normal with each pair of its lattice, so that a mixture of normals is the density. It is compared
@@ -403,7 +443,12 @@ fn the_evidence_punishes_factors_that_nothing_asks_for() {
             own + f64::from(u8::from(a == b))
         });
         let root = covariance.cholesky().unwrap();
-        let log_det: f64 = root.l().diagonal().iter().map(|x| 2.0 * libm::log(*x)).sum();
+        let log_det: f64 = root
+            .l()
+            .diagonal()
+            .iter()
+            .map(|x| 2.0 * libm::log(*x))
+            .sum();
         let inverse = root.inverse();
         let normal = k.transpose() * &inverse * &k;
         let x = normal.pseudo_inverse(1e-14).unwrap() * k.transpose() * &inverse * &y;
@@ -411,7 +456,10 @@ fn the_evidence_punishes_factors_that_nothing_asks_for() {
         log_det + left.dot(&(&inverse * &left))
     };
     let expected = 0.5 * (deviance(&phi, &small.d, 0.0) - deviance(&linear.phi, &linear.d, 0.1));
-    assert!((own - expected).abs() < 1e-4 * expected.abs(), "{own} {expected}");
+    assert!(
+        (own - expected).abs() < 1e-4 * expected.abs(),
+        "{own} {expected}"
+    );
 }
 
 /// Methods with bounds, with levels, with a free scale and of unknown noise find the factors of the
@@ -459,8 +507,15 @@ fn every_method_finds_the_factors() {
             let off = off.add_scalar(-off.mean());
             assert!(own.settled, "{case}: {own:?}");
             assert!(off.amax() < 0.025, "{case}: {off}");
-            assert!(frames.size.mean().abs() < 0.1 * 3.0 / 12f64.sqrt(), "{case}");
-            assert!(found.relative_residual < 0.03, "{case}: {}", found.relative_residual);
+            assert!(
+                frames.size.mean().abs() < 0.1 * 3.0 / 12f64.sqrt(),
+                "{case}"
+            );
+            assert!(
+                found.relative_residual < 0.03,
+                "{case}: {}",
+                found.relative_residual
+            );
         }
     }
 }
@@ -489,7 +544,10 @@ fn deviations_without_meaning_are_refused() {
         free_scale: true,
         ..Nuisance::default()
     };
-    assert_eq!(problem.with_nuisance(twice).unwrap_err(), RecoveryError::ScaleTwice);
+    assert_eq!(
+        problem.with_nuisance(twice).unwrap_err(),
+        RecoveryError::ScaleTwice
+    );
     let gain = Nuisance {
         frame_gain: Some(0.1),
         ..Nuisance::default()

@@ -1,4 +1,4 @@
-//! Factors of the light that are known only roughly, as they were estimated.
+//! Deviations of the light that are known only roughly, as they were estimated.
 //!
 //! > Φ\[p,l\] = (1 + ε)(1 + ε_l) s Σ_j C\[p,j\] ρ_j D\[j,l\] + …,   ε_l ~ N(0, σ_g²),   ε ~ N(0, σ_s²)
 
@@ -8,7 +8,7 @@ use crate::num::statistics::chi_square_sf;
 
 /// Relative deviations of one kind.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Factors {
+pub struct Deviations {
     /// ε̂: of each frame, or the one of all.
     pub size: DVector<f64>,
     /// Their standard errors, at most `known_to`.
@@ -20,7 +20,7 @@ pub struct Factors {
     pub picture_given: bool,
 }
 
-impl Factors {
+impl Deviations {
     /// Largest |ε̂|/σ.
     pub fn largest(&self) -> f64 {
         self.size.amax() / self.known_to
@@ -46,9 +46,9 @@ impl Factors {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Gains {
     /// ε_l of each frame.
-    pub frames: Option<Factors>,
+    pub frames: Option<Deviations>,
     /// ε, one for all photographs.
-    pub whole: Option<Factors>,
+    pub whole: Option<Deviations>,
     /// Linear problems that were solved until the factors no longer changed.
     pub steps: usize,
     /// Whether they no longer changed: by no more than 1e-4 of σ.
@@ -62,7 +62,7 @@ impl Gains {
     /// Degrees of freedom that they use up.
     pub(super) fn freedom(&self) -> f64 {
         let both = [&self.frames, &self.whole];
-        both.into_iter().flatten().map(Factors::freedom).sum()
+        both.into_iter().flatten().map(Deviations::freedom).sum()
     }
 
     /// Light with these factors, pixels × spots.
@@ -83,7 +83,7 @@ mod tests {
     /// Of three known to 0.1, errors 0.1, 0.06 and 0: 0, 0.64 and 1 are determined.
     #[test]
     fn what_is_determined_by_hand() {
-        let factors = Factors {
+        let factors = Deviations {
             size: DVector::from_column_slice(&[0.0, 0.05, -0.12]),
             standard_error: DVector::from_column_slice(&[0.1, 0.06, 0.0]),
             known_to: 0.1,
@@ -91,7 +91,7 @@ mod tests {
         };
         assert!((factors.freedom() - 1.64).abs() < 1e-12);
         assert!((factors.largest() - 1.2).abs() < 1e-12);
-        let two = Factors {
+        let two = Deviations {
             standard_error: DVector::from_column_slice(&[0.1, 0.0, 0.0]),
             ..factors
         };
