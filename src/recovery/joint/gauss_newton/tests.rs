@@ -129,7 +129,6 @@ fn gains(found: &Recovered) -> &Gains {
 #[test]
 fn it_is_the_minimum_over_picture_and_factors_written_out() {
     let small = Small::new();
-    let phi = small.drawn(0.1, 0.05, 3);
     let none = DMatrix::zeros(16, 0);
     let constant = DMatrix::from_element(16, 1, 1.0);
     let slope = DMatrix::from_fn(16, 2, |p, k| if k == 0 { 1.0 } else { (p % 4) as f64 });
@@ -143,6 +142,8 @@ fn it_is_the_minimum_over_picture_and_factors_written_out() {
         (Some(0.1), Some(0.05), &constant, true),
     ];
     for (frame_gain, scale_error, patterns, background) in cases {
+        let drawn = [frame_gain, scale_error].map(|known| known.unwrap_or(0.0));
+        let phi = small.drawn(drawn[0], drawn[1], 3);
         let nuisance = Nuisance {
             frame_gain,
             scale_error,
@@ -304,6 +305,8 @@ fn wide_priors_eliminate_and_narrow_ones_do_nothing() {
             let base = plain.with_nuisance(none).unwrap();
             let own = base.about(&phi, &small.d, &soft);
             let other = plain.with_nuisance(nuisance).unwrap();
+            // By rows, each of its own weight, as the other.
+            let other = other.about(&phi, &small.d, &Soft::NONE);
             let [own, other] =
                 [own, other].map(|p| operator(&p, &options).unwrap().directions().unwrap());
             // With one strength in each frame unknown the picture's scale is lost.
@@ -313,7 +316,8 @@ fn wide_priors_eliminate_and_narrow_ones_do_nothing() {
                 assert!((own.1[i].abs() - other.1[i].abs()).abs() < 1e-4 * other.1.amax());
             }
             if rank == 3 {
-                assert!(own.0.sigma[3] < 1e-3 * own.0.sigma[2]);
+                let lost = own.0.sigma.get(3);
+                assert!(lost.is_none_or(|s| *s < 1e-3 * own.0.sigma[2]));
             }
         }
     }
@@ -387,7 +391,9 @@ fn a_scale_known_to_five_percent_leaves_five_percent() {
 /// falls where there are none.
 #[test]
 fn the_evidence_punishes_factors_that_nothing_asks_for() {
-    let small = Small::new();
+    let mut small = Small::new();
+    small.rho = DVector::from_column_slice(&[0.25, 0.7, 0.7, 0.25]);
+    let small = small;
     let nuisance = Nuisance {
         frame_gain: Some(0.1),
         ..Nuisance::default()
@@ -403,7 +409,7 @@ fn the_evidence_punishes_factors_that_nothing_asks_for() {
             evidence(&phi, nuisance, method) - evidence(&phi, Nuisance::default(), method)
         });
         assert!(
-            drifting > 20.0 && steady < -5.0,
+            drifting > 100.0 && steady < -10.0,
             "{method}: {drifting} {steady}"
         );
     }
