@@ -41,7 +41,8 @@
 //! | 3, 2 × 2, 0.01 | 0.918 | 0.994 | 0.994 | 1.000 |
 //! | 3, 4 × 4, 1e-4 | 0.559 | 0.752 | 0.375 | 0.846 |
 //!
-//! The joint methods can estimate other light of known form with the reflectances ([`Nuisance`]).
+//! The joint methods can estimate other light of known form with the reflectances, and factors of the
+//! light that are known only roughly ([`Nuisance`]).
 //! [`cramer_rao`] says what no unbiased estimate can undercut; [`determined`](determined()) how much of
 //! each element the photographs determine by any method; [`Bands`] what a recovery knows of
 //! itself.
