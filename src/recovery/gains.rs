@@ -53,8 +53,9 @@ pub struct Gains {
     pub steps: usize,
     /// Whether they no longer changed: by no more than 1e-4 of σ.
     pub settled: bool,
-    /// Mean standard error of the reflectances over what it would be with these factors known;
-    /// absent of methods without standard errors.
+    /// Mean standard error of the reflectances over what it would be with these factors known; absent
+    /// of methods without standard errors. Of `joint-gp`, which then averages over other spreads and
+    /// lengths, it can be below 1.
     pub widened: Option<f64>,
 }
 
