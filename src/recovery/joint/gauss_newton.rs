@@ -11,7 +11,7 @@
 //! ([`super::conditional`]) gives every method rows of unit noise for x alone, whose normal matrix is
 //! H_xx − H_xε H_εε⁻¹ H_εx, so that errors, bands, probabilities and bounds are those of x with ε
 //! unknown. The estimates are then set to what was found and all is done again, until the factors no
-//! longer change (Gauss–Newton). Where that ends, (x̂, ε̂) is where Σ z² + Σ ε_l²/σ_g² + ε²/σ_s² with
+//! longer change (Gauss–Newton, by half steps where whole ones do not settle). Where that ends, (x̂, ε̂) is where Σ z² + Σ ε_l²/σ_g² + ε²/σ_s² with
 //! the method's own terms is stationary.
 //!
 //! Patterns of two values are weighed against each other with the factors linear about the best of
@@ -32,7 +32,9 @@ use crate::recovery::{
 };
 
 /// Linear problems that are solved at most.
-const MOST_STEPS: usize = 30;
+const MOST_STEPS: usize = 40;
+/// How many of them go all the way.
+const WHOLE_STEPS: usize = 8;
 /// The factors have settled where none changes by more than this fraction of its σ.
 const SETTLED: f64 = 1e-4;
 /// Recovers by `by`, a method on a problem that is linear in the factors.
@@ -71,14 +73,16 @@ pub(in crate::recovery) fn recover(
         let found = by(method, &linear.problem(&base), &quick)?;
         let noise = noise(&found);
         settled = (noise / at.noise - 1.0).abs() < SETTLED;
-        settled &= at.take(&found) < SETTLED;
-        at.noise = noise;
+        // Where whole steps go back and forth, half of them do not.
+        let share = if steps > WHOLE_STEPS { 0.5 } else { 1.0 };
+        settled &= at.take(&found, share) < SETTLED;
+        at.noise *= libm::pow(noise / at.noise, share);
     }
     let linear = Linear::about(problem, &at);
     let shared = Shared::default();
     let about = linear.problem(&base).sharing(&shared);
     let mut found = by(method, &about, options)?;
-    settled &= at.take(&found) < SETTLED;
+    settled &= at.take(&found, 1.0) < SETTLED;
     let evidence = match (found.log_evidence, weighted) {
         (Some(evidence), true) => punished(evidence, &base, &about, options)?,
         _ => None,

@@ -18,18 +18,19 @@ pub(super) struct Estimates {
 }
 
 impl Estimates {
-    /// Takes what was found; the largest change of a factor in units of its σ.
-    pub(super) fn take(&mut self, found: &Recovered) -> f64 {
-        self.x = found.seen();
+    /// Goes this share of the way to what was found; by how much a factor differs from that at most, in
+    /// units of its σ.
+    pub(super) fn take(&mut self, found: &Recovered, share: f64) -> f64 {
+        self.x = &self.x * (1.0 - share) + found.seen() * share;
         let mut change = 0.0f64;
         if let Some(gains) = found.nuisance.as_ref().and_then(|n| n.gains.as_ref()) {
             if let Some(frames) = &gains.frames {
                 change = (&frames.size - &self.frames).amax() / frames.known_to;
-                self.frames.copy_from(&frames.size);
+                self.frames = &self.frames * (1.0 - share) + &frames.size * share;
             }
             if let Some(whole) = &gains.whole {
                 change = change.max((whole.size[0] - self.whole).abs() / whole.known_to);
-                self.whole = whole.size[0];
+                self.whole += share * (whole.size[0] - self.whole);
             }
         }
         change
