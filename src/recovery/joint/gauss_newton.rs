@@ -11,8 +11,8 @@
 //! ([`super::conditional`]) gives every method rows of unit noise for x alone, whose normal matrix is
 //! H_xx − H_xε H_εε⁻¹ H_εx, so that errors, bands, probabilities and bounds are those of x with ε
 //! unknown. The estimates are then set to what was found and all is done again, until the factors no
-//! longer change (Gauss–Newton, by half steps where whole ones do not settle). Where that ends, (x̂, ε̂) is where Σ z² + Σ ε_l²/σ_g² + ε²/σ_s² with
-//! the method's own terms is stationary.
+//! longer change (Gauss–Newton, by half steps where whole ones do not settle). Where that ends,
+//! (x̂, ε̂) is where Σ z² + Σ ε_l²/σ_g² + ε²/σ_s² with the method's own terms is stationary.
 //!
 //! Patterns of two values are weighed against each other with the factors linear about the best of
 //! them: of another one ε multiplies this one's light, an error of the second order.
