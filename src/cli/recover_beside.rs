@@ -82,6 +82,8 @@ impl Beside {
             background: args.joint.background,
             glare: self.glare.as_ref(),
             free_scale: args.joint.free_scale,
+            frame_gain: args.joint.frame_gain,
+            scale_error: args.joint.scale_error,
             left_out: self.left_out.as_ref(),
         }
     }

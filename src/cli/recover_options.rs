@@ -47,6 +47,10 @@ pub(super) fn checked(args: &RecoverArgs, methods: &[Method]) -> Result<Options,
         |x| x > 0.0 && x < 1.0,
         "above 0 and below 1: a probability, e.g. 0.95",
     )?;
+    let deviation = |x: f64| x > 0.0 && x <= 1.0;
+    let range = "above 0 and at most 1: a standard deviation relative to 1, e.g. 0.05";
+    within("--frame-gain", args.joint.frame_gain, deviation, range)?;
+    within("--scale-error", args.joint.scale_error, deviation, range)?;
     within("--memory", args.memory, positive, "positive: GiB, e.g. 4")?;
     used(args, methods)?;
     let mut options = Options {
@@ -103,7 +107,7 @@ fn used(args: &RecoverArgs, methods: &[Method]) -> Result<(), Failure> {
         Method::JointUnbounded,
     ];
     let bounded = &all_joint[..5];
-    let needs: [(&str, bool, &[Method]); 14] = [
+    let needs: [(&str, bool, &[Method]); 16] = [
         ("--rank", args.rank.is_some(), &[Method::Tsvd]),
         ("--damping", args.damping.is_some(), &damped),
         ("--tolerance", args.tolerance.is_some(), &cutting),
@@ -132,6 +136,8 @@ fn used(args: &RecoverArgs, methods: &[Method]) -> Result<(), Failure> {
         ("--left-out", args.left_out.is_some(), &all_joint),
         ("--background", joint.background, &all_joint),
         ("--free-scale", joint.free_scale, &all_joint),
+        ("--frame-gain", joint.frame_gain.is_some(), &all_joint),
+        ("--scale-error", joint.scale_error.is_some(), &all_joint),
         ("--occluder-light", joint.occluder_light, bounded),
         ("--glare-pattern", joint.glare_pattern.is_some(), &all_joint),
     ];

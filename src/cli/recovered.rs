@@ -68,7 +68,8 @@ pub(super) fn tell(objects: &[RecoveredObject], json: bool) -> Result<Outcome, F
 /// METHOD.covariance.npy and METHOD.resolution.npy (own elements × elements of all surfaces),
 /// METHOD.bias.npy (nv × nu), METHOD.lower.npy and METHOD.upper.npy where bands were asked for;
 /// what was chosen and found beside it in METHOD.choice.json, METHOD.frame_constant.npy and
-/// METHOD.glare.npy (1 × spots) and METHOD.background.npy (pixels × 1);
+/// METHOD.glare.npy (1 × spots), METHOD.frame_gain.npy (2 × spots: ε, its standard errors) and
+/// METHOD.background.npy (pixels × 1);
 /// NAME.csv and NAME.svg of each of `picards`, and no others. Where several surfaces are hidden the
 /// names are METHOD-0, METHOD-1, … in file order.
 pub(super) fn write(
@@ -190,8 +191,9 @@ fn uncertainties(object: &RecoveredObject) -> [(&'static str, Option<Matrix>); 7
 }
 
 /// What was estimated beside the reflectances of `object`, by the names of its files: b, f and g of a
-/// frame as a row, a of a pixel as a column, as they add to Φcam.
-fn beside(object: &RecoveredObject) -> [(&'static str, Option<Matrix>); 4] {
+/// frame as a row, a of a pixel as a column, as they add to Φcam; ε_l of a frame, whose light has the factor
+/// 1 + ε_l, above its standard error.
+fn beside(object: &RecoveredObject) -> [(&'static str, Option<Matrix>); 5] {
     let found = object.estimated.as_ref();
     let of = |values: fn(&Beside) -> &Option<Vec<f64>>| found.and_then(|b| values(b).as_deref());
     let row = |v: &[f64]| Matrix::from_row_slice(1, v.len(), v);
@@ -199,10 +201,14 @@ fn beside(object: &RecoveredObject) -> [(&'static str, Option<Matrix>); 4] {
     let patterns = found.and_then(|b| b.frame_patterns.as_ref());
     let patterns = patterns.filter(|v| !v.is_empty()).map(rows);
     let column = |v: &[f64]| Matrix::from_row_slice(v.len(), 1, v);
+    let gains = found.and_then(|b| b.gains.as_ref()?.frames.as_ref());
+    let gains =
+        gains.map(|g| Matrix::from_fn(2, g.size.len(), |k, l| [&g.size, &g.standard_error][k][l]));
     [
         ("frame_constant", of(|b| &b.frame_constant).map(row)),
         ("frame_patterns", patterns),
         ("background", of(|b| &b.background).map(column)),
         ("glare", of(|b| &b.glare).map(row)),
+        ("frame_gain", gains),
     ]
 }

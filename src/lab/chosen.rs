@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::gains::{self, Gains};
 use crate::recovery::{Choice, Estimated, Method, Parameter, Patterns, Recovered, Sum};
 
 /// A parameter, why it is this one, and what a run needs to take the same again.
@@ -52,6 +53,9 @@ pub struct Beside {
     pub background: Option<Vec<f64>>,
     /// g_l, W per unit of the pattern, of each frame.
     pub glare: Option<Vec<f64>>,
+    /// Factors that were said to be known roughly.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gains: Option<Gains>,
 }
 
 /// What is known of a pattern of two levels.
@@ -200,6 +204,7 @@ impl Beside {
                 .map(|m| m.row_iter().map(|r| r.iter().copied().collect()).collect()),
             background: n.background.as_ref().map(|v| v.as_slice().to_vec()),
             glare: n.glare.as_ref().map(|v| v.as_slice().to_vec()),
+            gains: n.gains.as_ref().map(Gains::of),
         })
     }
 }
@@ -311,5 +316,5 @@ fn estimated(nuisance: &Estimated) -> String {
     if let Some(scale) = nuisance.scale {
         words += &format!("; scale {}", sized(scale, 4));
     }
-    words
+    words + &nuisance.gains.as_ref().map_or(String::new(), gains::words)
 }

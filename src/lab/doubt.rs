@@ -1,6 +1,7 @@
 //! What speaks against believing a recovered picture, in words, each with its cure.
 
 use super::fit::{Attainable, Fit, Judged};
+use super::gains::drifting;
 use crate::num::digits::{figure, significant};
 use crate::recovery::{Method, Recovered, Sum, Weighting};
 
@@ -24,6 +25,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         noise(found),
         on_bounds(found),
         unfinished(found, judged),
+        drifting(found),
         without_bands(found),
         unsampled(found),
     ];

@@ -159,6 +159,7 @@ mod experiment;
 mod exposure;
 pub mod finding;
 mod fit;
+mod gains;
 mod gallery;
 mod indicator;
 mod inversion;
@@ -207,6 +208,7 @@ pub use evidence::{Errors, Evidence, Test};
 pub use experiment::{Experiment, ExperimentPlan, ExperimentTasks, Reading, Setting, Threshold};
 pub use exposure::describe_exposure;
 pub use fit::{Attainable, Certainty, FIT_LEVEL, Fit, Judged, Residuals};
+pub use gains::{Deviations, Gains};
 pub use gallery::{
     Automatic, GalleryPicture, GalleryPlan, GallerySurface, GalleryTasks, RunGallery, Series,
 };

@@ -50,6 +50,21 @@ pub enum RecoveryError {
         /// Columns given.
         found_columns: usize,
     },
+    /// A relative standard deviation without meaning.
+    #[error(
+        "{name} known to {value} has no meaning; give a standard deviation relative to 1, above 0 and at most 1, e.g. 0.05"
+    )]
+    RelativeDeviation {
+        /// Of which factor.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// A scale both known roughly and free.
+    #[error(
+        "a scale that is free is not known to any error; leave out the scale's error, or the free scale"
+    )]
+    ScaleTwice,
     /// No entry counts.
     #[error("every entry of phi is left out; leave some in")]
     NothingCounts,

@@ -41,7 +41,8 @@
 //! | 3, 2 × 2, 0.01 | 0.918 | 0.994 | 0.994 | 1.000 |
 //! | 3, 4 × 4, 1e-4 | 0.559 | 0.752 | 0.375 | 0.846 |
 //!
-//! The joint methods can estimate other light of known form with the reflectances ([`Nuisance`]).
+//! The joint methods can estimate other light of known form with the reflectances, and factors of the
+//! light that are known only roughly ([`Nuisance`]).
 //! [`cramer_rao`] says what no unbiased estimate can undercut; [`determined`](determined()) how much of
 //! each element the photographs determine by any method; [`Bands`] what a recovery knows of
 //! itself.
@@ -95,6 +96,7 @@
 
 mod bands;
 mod error;
+mod gains;
 mod joint;
 mod method;
 mod nuisance;
@@ -106,10 +108,12 @@ mod pixelwise;
 mod problem;
 mod rule;
 mod shared;
+mod soft;
 mod spectrum;
 
 pub use bands::{BandKind, Bands};
 pub use error::RecoveryError;
+pub use gains::{Deviations, Gains};
 pub use joint::{CramerRao, Determined, cramer_rao, determined, picard_joint};
 pub use method::{Method, UnknownMethod};
 pub use nuisance::{Estimated, Nuisance};
@@ -136,14 +140,31 @@ pub fn recover(
     if problem.nuisance.is_some() && !method.is_joint() {
         return Err(RecoveryError::NotForMethod {
             method,
-            what: "takes every entry as light of the surface, and estimates nothing else: no frame constants or patterns, background, glare or scale, no entries left out",
+            what: "takes every entry as light of the surface, and estimates nothing else: no frame constants or patterns, background, glare, gain or scale, no entries left out",
             cure: "use a joint method, or subtract what else is there first",
         });
     }
     if let Some(confidence) = options.bands {
         bands::allowed(method, confidence)?;
     }
-    let mut found = match method {
+    let mut found = if problem.nuisance.has_gains() {
+        joint::gauss_newton::recover(method, problem, options, by)
+    } else {
+        by(method, problem, options)
+    }?;
+    if let (Some(confidence), None, None) = (options.bands, &found.bands, found.no_bands) {
+        found.add_gaussian_bands(confidence)?;
+    }
+    Ok(found)
+}
+
+/// The same without factors that are known only roughly, or about estimates of them.
+fn by(
+    method: Method,
+    problem: &Problem<'_>,
+    options: &Options,
+) -> Result<Recovered, RecoveryError> {
+    match method {
         Method::Pinv
         | Method::LeftInverse
         | Method::RightInverse
@@ -157,11 +178,7 @@ pub fn recover(
         Method::JointGp => joint::gaussian_process::recover(problem, options),
         Method::JointTv => joint::total_variation::recover(problem, options),
         Method::JointTwoValued => joint::two_valued::recover(problem, options),
-    }?;
-    if let (Some(confidence), None, None) = (options.bands, &found.bands, found.no_bands) {
-        found.add_gaussian_bands(confidence)?;
     }
-    Ok(found)
 }
 
 #[cfg(test)]

@@ -1,8 +1,11 @@
 //! What photographs hold beside the light of the hidden surface, of known form and unknown size.
 //!
-//! > Φ\[p,l\] = s Σ_j C\[p,j\] ρ_j D\[j,l\] + b_l + Σ_k f_kl F\[p,k\] + a_p + g_l P\[p,l\] + noise
+//! > Φ\[p,l\] = (1 + ε)(1 + ε_l) s Σ_j C\[p,j\] ρ_j D\[j,l\]
+//! >          + b_l + Σ_k f_kl F\[p,k\] + a_p + g_l P\[p,l\] + noise
 
 use nalgebra::{DMatrix, DVector};
+
+use super::Gains;
 
 /// What is estimated with the reflectances, by every joint method. Nothing unless asked for.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -22,6 +25,12 @@ pub struct Nuisance<'a> {
     /// element has ρ = 1**; a surface without a white element is recovered relative to its
     /// brightest. Bounds from above mean nothing then: `joint` keeps ρ ≥ 0 alone.
     pub free_scale: bool,
+    /// σ_g: the light of each frame has a factor 1 + ε_l of its own, ε_l ~ N(0, σ_g²), as of a laser
+    /// whose power drifts; above 0, at most 1.
+    pub frame_gain: Option<f64>,
+    /// σ_s: the light of all frames has one factor 1 + ε, ε ~ N(0, σ_s²), as of a calibration that is
+    /// known to so much; above 0, at most 1. Not with `free_scale`.
+    pub scale_error: Option<f64>,
     /// Entries that do not count, pixels × spots: those that are not 0. Each holds an unknown light
     /// of its own, so that its value says nothing; it must be finite.
     pub left_out: Option<&'a DMatrix<f64>>,
@@ -36,6 +45,11 @@ impl Nuisance<'_> {
     /// Whether an entry counts.
     pub(super) fn counts(&self, p: usize, l: usize) -> bool {
         self.left_out.is_none_or(|flags| flags[(p, l)] == 0.0)
+    }
+
+    /// Whether a factor is known only roughly.
+    pub(super) fn has_gains(&self) -> bool {
+        self.frame_gain.is_some() || self.scale_error.is_some()
     }
 
     /// The patterns whose strength in each frame is unknown, pixels × patterns: 1 for a constant,
@@ -75,7 +89,9 @@ pub struct Estimated {
     pub glare: Option<DVector<f64>>,
     /// s.
     pub scale: Option<f64>,
-    /// Directions of Φ that all these take up, but for s: less than their numbers where some are the
+    /// ε_l and ε.
+    pub gains: Option<Gains>,
+    /// Directions of Φ that all these take up, but for s and the factors 1 + ε: less than their numbers where some are the
     /// same, and where nothing counts.
     pub freedom: usize,
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Bands, Estimated, Method, Patterns, Problem, RecoveryError, bands};
+use super::{Bands, Estimated, Gains, Method, Patterns, Problem, RecoveryError, bands};
 
 /// A regularisation parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -163,7 +163,10 @@ pub struct Recovered {
     pub nuisance: Option<Estimated>,
     /// ln of the probability density that the method's assumption gives the photographs, over that of
     /// the numbers that fit them best: at most 0, and comparable among methods. Of `joint-gp` and
-    /// `joint-two-valued`.
+    /// `joint-two-valued`. With factors that are known only roughly over that of the numbers that
+    /// fit best without them, by Laplace's method for the factors, so that it also says (by the
+    /// difference from the evidence without) whether the photographs ask for them; none then where the
+    /// noise is unknown.
     pub log_evidence: Option<f64>,
     /// What is known of the pattern, of `joint-two-valued` where the scale is known.
     pub patterns: Option<Patterns>,
@@ -194,7 +197,12 @@ impl Recovered {
         };
         let seen = &self.reflectance * found.scale.unwrap_or(1.0);
         let (pixels, spots) = problem.phi.shape();
-        problem.light(&seen) + found.light(&problem.nuisance, pixels, spots)
+        let light = problem.light(&seen);
+        let light = match &found.gains {
+            Some(gains) => gains.times(light),
+            None => light,
+        };
+        light + found.light(&problem.nuisance, pixels, spots)
     }
 
     /// Degrees of freedom ν that the recovery uses up, nuisance terms included: the trace of the
@@ -224,7 +232,8 @@ impl Recovered {
             .nuisance
             .as_ref()
             .map_or(0, |n| n.freedom + usize::from(n.scale.is_some()));
-        own + terms as f64
+        let gains = self.nuisance.as_ref().and_then(|n| n.gains.as_ref());
+        own + terms as f64 + gains.map_or(0.0, Gains::freedom)
     }
 
     /// Elements that a bound of the method holds; none of a method without bounds.
@@ -243,6 +252,12 @@ impl Recovered {
             Method::Joint | Method::JointTv => x <= 0.0 || x >= 1.0,
             _ => false,
         }
+    }
+
+    /// x = s ρ.
+    pub(super) fn seen(&self) -> DVector<f64> {
+        let scale = self.nuisance.as_ref().and_then(|n| n.scale);
+        &self.reflectance * scale.unwrap_or(1.0)
     }
 
     fn has_free_scale(&self) -> bool {

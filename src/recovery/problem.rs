@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::soft::Soft;
 use super::{Nuisance, RecoveryError, Shared};
 use crate::num::linalg::{
     Range, Svd, Tolerance, columns_times, product, range, rows_times, subtract_product, svd_to,
@@ -30,6 +31,8 @@ pub struct Problem<'a> {
     pub(super) places: Option<&'a [[f64; 3]]>,
     pub(super) nuisance: Nuisance<'a>,
     terms: Option<Terms<'a>>,
+    /// Factors about estimates of them, where the problem is linear in both.
+    pub(super) soft: Option<&'a Soft>,
     pub(super) shared: Option<&'a Shared>,
 }
 
@@ -94,6 +97,7 @@ impl<'a> Problem<'a> {
             places: None,
             nuisance: Nuisance::default(),
             terms: None,
+            soft: None,
             shared: None,
         })
     }
@@ -154,6 +158,42 @@ impl<'a> Problem<'a> {
         }
     }
 
+    /// The same without factors that are known only roughly.
+    pub(super) fn without_gains(&self) -> Self {
+        let nuisance = Nuisance {
+            frame_gain: None,
+            scale_error: None,
+            ..self.nuisance
+        };
+        Problem {
+            nuisance,
+            shared: None,
+            ..*self
+        }
+    }
+
+    /// The same with other photographs and another right side of the operator, and with factors about
+    /// estimates of them.
+    pub(super) fn about<'b>(
+        &self,
+        phi: &'b DMatrix<f64>,
+        d: &'b DMatrix<f64>,
+        soft: &'b Soft,
+    ) -> Problem<'b>
+    where
+        'a: 'b,
+    {
+        let own: Problem<'b> = *self;
+        Problem {
+            phi,
+            d: if own.terms.is_some() { own.d } else { d },
+            terms: own.terms.map(|terms| Terms { d, ..terms }),
+            soft: Some(soft),
+            shared: None,
+            ..own
+        }
+    }
+
     /// The same with the element grids known, \[nu, nv\] of each hidden surface in the order of the
     /// elements; element iu + iv·nu within each. Methods that compare neighbouring elements need
     /// them.
@@ -203,7 +243,8 @@ impl<'a> Problem<'a> {
     ///
     /// # Errors
     /// [`RecoveryError::Shape`], [`RecoveryError::NotFinite`] or [`RecoveryError::OutOfScale`] of a
-    /// glare pattern.
+    /// glare pattern; [`RecoveryError::RelativeDeviation`] and [`RecoveryError::ScaleTwice`] of factors
+    /// that are known only roughly.
     pub fn with_nuisance(self, nuisance: Nuisance<'a>) -> Result<Self, RecoveryError> {
         let (pixels, spots) = self.phi.shape();
         let fits = |name, matrix: Option<&DMatrix<f64>>, columns| match matrix {
@@ -234,6 +275,18 @@ impl<'a> Problem<'a> {
             .is_some_and(|flags| flags.iter().all(|x| *x != 0.0))
         {
             return Err(RecoveryError::NothingCounts);
+        }
+        let roughly = [
+            ("the gain of a frame", nuisance.frame_gain),
+            ("the scale", nuisance.scale_error),
+        ];
+        for (name, known_to) in roughly {
+            if let Some(value) = known_to.filter(|x| !(*x > 0.0 && *x <= 1.0)) {
+                return Err(RecoveryError::RelativeDeviation { name, value });
+            }
+        }
+        if nuisance.free_scale && nuisance.scale_error.is_some() {
+            return Err(RecoveryError::ScaleTwice);
         }
         Ok(Problem {
             nuisance,

@@ -516,6 +516,71 @@ fn a_run_can_be_repeated_at_its_own_choice() {
     );
 }
 
+/// Frames of a laser whose power drifts: their gains come with the picture, in numbers, in a file and
+/// in words; gains that are larger than was said are warned of. Deviations without meaning, a scale
+/// both free and known roughly, and methods that take no gains are refused.
+#[test]
+fn gains_of_frames_are_estimated_with_the_object() {
+    let workspace = with_run();
+    let model = workspace.matrix("done/model/phi.npy");
+    let gain = |l: usize| 0.1 * (2.399 * l as f64).sin();
+    let drifting = model.map_with_location(|_, l, x| (1.0 + gain(l)) * x);
+    npy::write(&workspace.path("drifting.npy"), &drifting).unwrap();
+    let line = "recover done --phi drifting.npy --noise 0.001 --integration centres --json -o own";
+    let found = objects(workspace.phicam(&format!(
+        "{line} --method joint-unbounded,joint-gp --frame-gain 0.1 --scale-error 0.05"
+    )));
+    for object in &found {
+        let gains = &object["estimated"]["gains"];
+        let numbers = |of: &serde_json::Value| -> Vec<f64> {
+            of.as_array()
+                .unwrap()
+                .iter()
+                .map(|x| x.as_f64().unwrap())
+                .collect()
+        };
+        let sizes = numbers(&gains["frames"]["size"]);
+        let mean = sizes.iter().sum::<f64>() / sizes.len() as f64;
+        let off = sizes
+            .iter()
+            .enumerate()
+            .map(|(l, x)| (x - mean - gain(l)).abs());
+        assert!(off.fold(0.0, f64::max) < 0.02, "{object}");
+        assert_eq!(gains["settled"], true);
+        assert!(gains["widened"].as_f64().unwrap() > 1.0, "{gains}");
+        let method = object["method"].as_str().unwrap();
+        let file = workspace.matrix(&format!("own/{method}.frame_gain.npy"));
+        assert_eq!(file.row(0).iter().copied().collect::<Vec<_>>(), sizes);
+        let errors = numbers(&gains["frames"]["standard_error"]);
+        assert_eq!(file.row(1).iter().copied().collect::<Vec<_>>(), errors);
+        let words = object["parameter"].as_str().unwrap();
+        assert!(
+            words.contains("gain of a frame off 1")
+                && words.contains("times those of known factors"),
+            "{words}"
+        );
+        let warned = object["warnings"].to_string();
+        assert!(!warned.contains("--frame-gain"), "{warned}");
+    }
+    let small = format!("{line} --method joint-unbounded --frame-gain 0.01");
+    let warned = objects(workspace.phicam(&small))[0]["warnings"].to_string();
+    assert!(warned.contains("larger than was said"), "{warned}");
+    for (given, words) in [
+        ("--frame-gain 0", ["--frame-gain 0", "above 0"]),
+        ("--frame-gain -0.1", ["--frame-gain -0.1", "above 0"]),
+        ("--frame-gain nan", ["--frame-gain NaN", "above 0"]),
+        ("--scale-error 1.5", ["--scale-error 1.5", "at most 1"]),
+        ("--scale-error inf", ["--scale-error inf", "at most 1"]),
+        (
+            "--scale-error 0.1 --free-scale",
+            ["--scale-error", "--free-scale"],
+        ),
+        ("--frame-gain 0.1 --method pinv", ["--frame-gain", "joint"]),
+    ] {
+        workspace.refuses(&format!("recover done {given}"), &words);
+    }
+}
+
 /// An object of which nothing is known is recovered, and nothing is told of a truth; its light is
 /// not made up either.
 #[test]

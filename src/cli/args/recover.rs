@@ -134,6 +134,19 @@ pub(in crate::cli) struct JointArgs {
     /// Estimate one factor of all photographs; the brightest element is the unit then
     #[arg(long)]
     pub free_scale: bool,
+    /// Estimate one factor of each frame, 1 within this standard deviation (0 to 1): a laser whose power
+    /// drifts
+    #[arg(long, value_name = "DEVIATION", allow_negative_numbers = true)]
+    pub frame_gain: Option<f64>,
+    /// The scale of all photographs is known to this relative standard deviation alone (0 to 1): the
+    /// error of a calibration
+    #[arg(
+        long,
+        value_name = "DEVIATION",
+        allow_negative_numbers = true,
+        conflicts_with = "free_scale"
+    )]
+    pub scale_error: Option<f64>,
     /// Estimate the light that occluders reflect, with one albedo for each of their sides
     #[arg(long, conflicts_with_all = ["no_occlusion", "free_scale"])]
     pub occluder_light: bool,

@@ -50,7 +50,13 @@ impl Coordinates {
             None => {
                 let (free, sigma) = (Method::JointUnbounded, solved.sigma.clone());
                 let x = solved.solution.clone();
-                let left = finish(free, problem, options, &operator, x, sigma, rank)?;
+                let mut left = finish(free, problem, options, &operator, x, sigma, rank)?;
+                if let (Some(soft), Some(found)) = (problem.soft, &mut left.nuisance)
+                    && let Some(gains) = &mut found.gains
+                {
+                    let of_x = solved.covariance() * (soft.noise * soft.noise);
+                    operator.add_errors(problem, gains, Some(&of_x));
+                }
                 let freedom = problem.entries() as f64 - left.freedom_used();
                 if freedom < 1.0 {
                     return Err(bands::without_noise(method));
@@ -86,6 +92,19 @@ impl Coordinates {
         let y = DMatrix::from_column_slice(self.y.len(), 1, self.y.as_slice());
         let d = self.factor.forward(y).column(0).into_owned();
         (self.factor.forward(self.v.clone()), d)
+    }
+
+    /// Adds the standard errors of factors that are known roughly to a recovery whose x has this
+    /// covariance.
+    pub(super) fn add_errors(
+        &self,
+        problem: &Problem<'_>,
+        found: &mut Recovered,
+        of_x: Option<&DMatrix<f64>>,
+    ) {
+        if let Some(gains) = found.nuisance.as_mut().and_then(|n| n.gains.as_mut()) {
+            self.operator.add_errors(problem, gains, of_x);
+        }
     }
 
     /// The recovery from x.

@@ -2,9 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::linear::about_grey;
 use super::{stacked, weights};
 use crate::num::linalg::{Tolerance, rows_over, svd};
-use crate::recovery::{Method, Problem, RecoveryError};
+use crate::recovery::{Method, Options, Problem, RecoveryError};
 
 /// Directions below this fraction of the strongest are lost: QR without pivoting has an error of
 /// about 4e-14 (measured).
@@ -33,7 +34,8 @@ pub struct CramerRao {
 /// cost what they cost (Schur complement, by QR: no Gram matrix is formed, and never more than a
 /// block of rows). A free scale asks about s ρ, and is counted nothing. Entries whose σ is zero get
 /// that of the separable fit. The bound does not depend on ρ or Φ, except through the standard
-/// errors.
+/// errors, and of factors that are known only roughly: these cost what they cost about the grey
+/// surface that fits Φ best.
 ///
 /// # Errors
 /// [`RecoveryError::NotForMethod`] without a noise model, [`RecoveryError::RankZero`], or a failed
@@ -45,8 +47,9 @@ pub fn cramer_rao(problem: &Problem<'_>) -> Result<CramerRao, RecoveryError> {
         cure: "give the standard error of phi (phi.stderr.npy)",
     })?;
     let fitted = weights::fit(Some(stderr), stderr.nrows(), stderr.ncols());
-    let reduced =
-        stacked::stack(problem, |p, l| fitted.root(problem, Some(stderr), p, l))?.triangle;
+    let root = |p: usize, l: usize| fitted.root(problem, Some(stderr), p, l);
+    let linear = |problem: &Problem<'_>| stacked::stack(problem, root);
+    let reduced = about_grey(problem, &Options::default(), linear)?.triangle;
     let decomposed = svd(&reduced.r)?;
     let elements = problem.c.ncols();
     let (rank, _) = decomposed.cut(Tolerance::Relative(LOST))?;

@@ -3,6 +3,7 @@
 use nalgebra::DVector;
 
 use super::khatri_rao::operator;
+use super::linear::about_grey;
 use crate::recovery::{Options, Problem, RecoveryError, WeightRule};
 
 /// Standard deviation of what is known of a reflectance beforehand: half of the range from 0 to 1.
@@ -26,7 +27,8 @@ pub struct Determined {
 /// > R_jj = Σ_i V_ij² s_i² τ²/(1 + s_i² τ²) = 1 − var(ρ_j | Φ)/τ²,   τ = ½.
 ///
 /// Where τ s_i is the signal of a direction, this counts the directions that rise above the noise in
-/// a Picard plot. It depends on geometry and noise, not on Φ.
+/// a Picard plot. It depends on geometry and noise, not on Φ; with factors that are known only roughly
+/// on how bright Φ is.
 ///
 /// # Errors
 /// [`RecoveryError::NotForMethod`] without a noise model, [`RecoveryError::TooManyElements`], a
@@ -43,7 +45,8 @@ pub fn determined(problem: &Problem<'_>) -> Result<Determined, RecoveryError> {
         weighting: WeightRule::Noise,
         ..Options::default()
     };
-    let found = operator(problem, &options)?.directions()?;
+    let found = about_grey(problem, &options, |problem| operator(problem, &options))?;
+    let found = found.directions()?;
     let (directions, _) = &*found;
     let mut shares = DVector::zeros(problem.c.ncols());
     for (s, v) in directions.sigma.iter().zip(directions.vt.row_iter()) {

@@ -13,7 +13,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::stacked::Coupled;
 use crate::num::linalg::{Tolerance, columns_over, least_squares};
 use crate::recovery::{Estimated, Nuisance, RecoveryError};
 
@@ -60,12 +59,12 @@ pub(super) fn without_right(m: &mut DMatrix<f64>, v: &DVector<f64>) {
 
 /// The sizes that fit best, in the weighted sum of squares, what the surface's light leaves over
 /// (`left`, pixels × spots). `root`(p, l) is the square root of the weight; `coupled` the solution
-/// of the terms of single frames where a background ties them together.
+/// of the terms of single frames, kind by kind, where a background ties them together.
 pub(super) fn estimate(
     nuisance: &Nuisance<'_>,
     left: &DMatrix<f64>,
     root: impl Fn(usize, usize) -> f64,
-    coupled: Option<(&Coupled, &DVector<f64>)>,
+    coupled: Option<&DVector<f64>>,
 ) -> Result<Estimated, RecoveryError> {
     let (pixels, spots) = left.shape();
     let weight = |p: usize, l: usize| root(p, l) * root(p, l);
@@ -74,8 +73,7 @@ pub(super) fn estimate(
     let kinds = of_frames + usize::from(nuisance.glare.is_some());
     // Of each kind in each frame.
     let mut sizes = DMatrix::zeros(kinds, spots);
-    if let Some((coupled, rho)) = coupled {
-        let found = coupled.solve(rho);
+    if let Some(found) = coupled {
         sizes = DMatrix::from_fn(kinds, spots, |k, l| found[k * spots + l]);
     } else if kinds == 1 && nuisance.frame_constant {
         for l in 0..spots {
@@ -105,6 +103,7 @@ pub(super) fn estimate(
         background: None,
         glare: nuisance.glare.map(|_| row(of_frames)),
         scale: None,
+        gains: None,
         freedom: freedom(nuisance, &patterns, spots, &root),
     };
     if nuisance.background {

@@ -87,6 +87,7 @@ pub(in crate::recovery) fn recover(
     let best = &pairs[0];
     let mut recovered =
         coordinates.finish(Method::JointGp, problem, options, found.mean.clone())?;
+    coordinates.add_errors(problem, &mut recovered, found.covariance.as_ref());
     if problem.nuisance.free_scale {
         found.relative(&recovered.reflectance, options.bands);
     }

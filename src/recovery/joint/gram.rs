@@ -3,8 +3,10 @@
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
+use super::conditional::{Conditional, One, soften, soften_whole};
 use super::elimination::{directions, without_left};
-use crate::num::linalg::{Triangle, gram_product, pivoted_triangle};
+use super::stacked::Stacked;
+use crate::num::linalg::{gram_product, pivoted_triangle};
 use crate::recovery::{Problem, RecoveryError};
 
 /// Multiplications that the Gram matrix may take.
@@ -26,7 +28,7 @@ pub(super) const LOST: f64 = 1e-6;
 pub(super) fn reduced(
     problem: &Problem<'_>,
     root: impl Fn(usize, usize) -> f64 + Sync,
-) -> Result<Option<Triangle>, RecoveryError> {
+) -> Result<Option<Stacked>, RecoveryError> {
     let (pixels, spots) = problem.phi.shape();
     let n = problem.elements();
     let work = (pixels * spots) as f64 * (n as f64) * (n as f64);
@@ -46,36 +48,56 @@ pub(super) fn reduced(
                 .enumerate()
                 .for_each(|(p, x)| *x *= root(p, l));
         }
-        without_frame(problem, &root, l, &mut rows);
-        rows
+        let gain = without_frame(problem, &root, l, &mut rows);
+        (rows, gain)
     };
     let part = |k: usize| {
         let mut sum = DMatrix::zeros(n + 1, n + 1);
-        (k * spots / PARTS..(k + 1) * spots / PARTS)
-            .for_each(|l| gram_product(&mut sum, &frame(l)));
-        sum
+        let mut gains: Vec<One> = Vec::new();
+        for l in k * spots / PARTS..(k + 1) * spots / PARTS {
+            let (rows, gain) = frame(l);
+            gram_product(&mut sum, &rows);
+            gains.extend(gain);
+        }
+        (sum, gains)
     };
-    let parts: Vec<DMatrix<f64>> = (0..PARTS).into_par_iter().map(part).collect();
-    let all = parts
-        .iter()
+    let parts: Vec<(DMatrix<f64>, Vec<One>)> = (0..PARTS).into_par_iter().map(part).collect();
+    let sums = parts.iter().map(|(sum, _)| sum);
+    let all = sums
         .skip(1)
-        .fold(parts[0].clone(), |sum, part| sum + part);
+        .fold(parts[0].0.clone(), |sum, part| sum + part);
+    let gains: Vec<One> = parts.into_iter().flat_map(|(_, gains)| gains).collect();
     let gram = all.view((0, 0), (n, n)).into_owned();
     let moment = all.column(n).rows(0, n).into_owned();
-    Ok(pivoted_triangle(&gram, &moment, all[(n, n)], LOST)?)
+    let Some(mut triangle) = pivoted_triangle(&gram, &moment, all[(n, n)], LOST)? else {
+        return Ok(None);
+    };
+    let whole = soften_whole(&mut triangle, problem.soft);
+    Ok(Some(Stacked {
+        triangle,
+        coupled: None,
+        frames: (!gains.is_empty()).then(|| Conditional::of(&gains)),
+        whole,
+    }))
 }
 
-/// Takes out of the weighted rows of frame l what its patterns and its glare could be.
+/// Takes out of the weighted rows of frame l what its patterns and its glare could be, and softly its
+/// factor.
 fn without_frame(
     problem: &Problem<'_>,
     root: &impl Fn(usize, usize) -> f64,
     l: usize,
     rows: &mut DMatrix<f64>,
-) {
+) -> Option<One> {
     let nuisance = &problem.nuisance;
     let patterns = nuisance.of_frame(&nuisance.of_frames(rows.nrows()), l);
     let taken = directions(&patterns, |p| root(p, l));
     taken.iter().for_each(|u| without_left(rows, u));
+    let soft = problem.soft?;
+    let (pattern, known_to) = soft.frames.as_ref()?;
+    let mut own = DMatrix::from_fn(rows.nrows(), 1, |p, _| root(p, l) * pattern[(p, l)]);
+    taken.iter().for_each(|u| without_left(&mut own, u));
+    Some(soften(rows, &own.column(0), known_to / soft.noise))
 }
 
 #[cfg(test)]
@@ -84,6 +106,7 @@ mod tests {
 
     use super::super::stacked::stack;
     use super::*;
+    use crate::num::linalg::Triangle;
     use crate::recovery::Nuisance;
     use crate::recovery::bench::{Bench, normal_stream};
 
@@ -114,7 +137,7 @@ mod tests {
             let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
             let problem = problem.with_nuisance(nuisance).unwrap();
             let root = |p: usize, l: usize| 1.0 / stderr[(p, l)];
-            let found = reduced(&problem, root).unwrap().unwrap();
+            let found = reduced(&problem, root).unwrap().unwrap().triangle;
             let whole = stack(&problem, root).unwrap().triangle;
             assert!(
                 found.r.nrows() < 36 && whole.r.nrows() == 36,

@@ -20,15 +20,18 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::{DMatrix, DVector};
 
+use super::conditional::Conditional;
 use super::elimination::{directions, estimate, unit, without_left, without_right};
 use super::gram;
-use super::stacked::{Coupled, stack};
+use super::stacked::{Coupled, Stacked, stack};
 use super::weights::{self, Weights};
 use crate::num::linalg::{
     LeastSquares, Route, Svd, Tolerance, Triangle, columns_over, least_squares, normal_triangle,
     pivoted_triangle, product, rows_times, svd_of_range, svd_to, tr_product, triangle,
 };
-use crate::recovery::{Estimated, Options, Problem, RecoveryError, WeightRule, Weighting};
+use crate::recovery::{
+    Deviations, Estimated, Gains, Options, Problem, RecoveryError, WeightRule, Weighting,
+};
 
 /// Elements whose Gram matrix (and its few copies) is still formed: 512 MiB each.
 const MOST_ELEMENTS: usize = 8192;
@@ -45,6 +48,7 @@ pub(super) struct Operator {
     /// The element of each term of the sides.
     element: Vec<usize>,
     weights: Weights,
+    gains: Conditionals,
     sides: Option<Sides>,
     pub(super) weighting: Weighting,
     /// Kept from the first time they are asked for.
@@ -88,6 +92,13 @@ enum Form {
         coupled: Option<Coupled>,
         rows: usize,
     },
+}
+
+/// Deviations that are known roughly, given x.
+#[derive(Debug, Default)]
+struct Conditionals {
+    frames: Option<Conditional>,
+    whole: Option<Conditional>,
 }
 
 /// U_k, Σ_k V_kᵀ of a side, cut at its rounding; `before` is its norm before anything was projected
@@ -175,7 +186,7 @@ impl Operator {
         let known = known(problem, options);
         let weights = weights::fit(known, pixels, spots);
         let by_entry = elements > FEW || options.weighting == WeightRule::Entries;
-        let holed = problem.nuisance.left_out.is_some();
+        let holed = problem.nuisance.left_out.is_some() || problem.soft.is_some();
         let by_entry = known.is_some() && (by_entry || holed);
         let root = |p: usize, l: usize| weights.root(problem, known, p, l);
         let reduced = if by_entry {
@@ -184,24 +195,26 @@ impl Operator {
             None
         };
         let by_rows = match reduced {
-            Some(triangle) => Some(Form::Stacked {
-                rows: triangle.r.nrows(),
-                triangle,
-                coupled: None,
-            }),
+            Some(stacked) => Some((stacked.triangle.r.nrows(), stacked)),
             None if problem.nuisance.glare.is_some() || holed => {
-                let stacked = stack(problem, root)?;
-                Some(Form::Stacked {
-                    triangle: stacked.triangle,
-                    coupled: stacked.coupled,
-                    rows: pixels * spots,
-                })
+                Some((pixels * spots, stack(problem, root)?))
             }
             None => None,
         };
-        if let Some(form) = by_rows {
+        if let Some((rows, stacked)) = by_rows {
+            let Stacked {
+                triangle,
+                coupled,
+                frames,
+                whole,
+            } = stacked;
             return Ok(Operator {
-                form,
+                form: Form::Stacked {
+                    triangle,
+                    coupled,
+                    rows,
+                },
+                gains: Conditionals { frames, whole },
                 elements,
                 element,
                 sides: None,
@@ -275,33 +288,115 @@ impl Operator {
             element,
             weighting: weights.weighting,
             weights,
+            gains: Conditionals::default(),
             sides: Some(Sides { u, t, s, v }),
             directions: OnceLock::new(),
             solved: OnceLock::new(),
         })
     }
 
-    /// The nuisance terms that go with `seen` = s ρ.
+    /// The nuisance terms that go with `seen` = s ρ, and what they and its light leave over,
+    /// pixels × spots, W.
     pub(super) fn nuisances(
         &self,
         problem: &Problem<'_>,
         options: &Options,
         seen: &DVector<f64>,
-    ) -> Result<Estimated, RecoveryError> {
-        let left = problem.phi - problem.light(seen);
-        let known = known(problem, options);
-        match &self.form {
-            Form::Stacked { coupled, .. } => estimate(
-                &problem.nuisance,
-                &left,
-                |p, l| self.weights.root(problem, known, p, l),
-                coupled.as_ref().map(|c| (c, seen)),
-            ),
-            _ => {
-                let root = |p: usize, l: usize| self.weights.pixels[p] * self.weights.spots[l];
-                estimate(&problem.nuisance, &left, root, None)
+    ) -> Result<(Estimated, DMatrix<f64>), RecoveryError> {
+        let (seen, whole) = match (&self.gains.whole, self.direction(problem)) {
+            (Some(of), Some(z)) => {
+                let whole = of.given(seen);
+                (seen + z * whole[0], Some(whole))
+            }
+            _ => (seen.clone(), None),
+        };
+        let frames = self.gains.frames.as_ref().map(|of| of.given(&seen));
+        let mut left = problem.phi - problem.light(&seen);
+        let pattern = problem.soft.and_then(|soft| soft.frames.as_ref());
+        if let (Some((pattern, _)), Some(gains)) = (pattern, &frames) {
+            for (l, gain) in gains.iter().enumerate() {
+                left.column_mut(l).axpy(-gain, &pattern.column(l), 1.0);
             }
         }
+        let known = known(problem, options);
+        let mut found = match &self.form {
+            Form::Stacked { coupled, .. } => {
+                let coupled = coupled.as_ref().map(|c| c.solve(&seen, frames.as_ref()));
+                let root = |p: usize, l: usize| self.weights.root(problem, known, p, l);
+                estimate(&problem.nuisance, &left, root, coupled.as_ref())?
+            }
+            _ => {
+                let root = |p: usize, l: usize| self.weights.pixels[p] * self.weights.spots[l];
+                estimate(&problem.nuisance, &left, root, None)?
+            }
+        };
+        let (pixels, spots) = left.shape();
+        left -= found.light(&problem.nuisance, pixels, spots);
+        if let Some(soft) = problem.soft {
+            let factors = |size: Option<DVector<f64>>, known_to: Option<f64>| {
+                let (size, known_to) = (size?, known_to?);
+                Some(Deviations {
+                    standard_error: DVector::zeros(size.len()),
+                    size,
+                    known_to,
+                    picture_given: true,
+                })
+            };
+            let mut gains = Gains {
+                frames: factors(frames, soft.frames.as_ref().map(|of| of.1)),
+                whole: factors(whole, soft.whole.as_ref().map(|of| of.1)),
+                ..Gains::default()
+            };
+            self.add_errors(problem, &mut gains, None);
+            found.gains = Some(gains);
+        }
+        Ok((found, left))
+    }
+
+    /// z: the common factor's ε multiplies the light of these numbers.
+    fn direction<'a>(&self, problem: &Problem<'a>) -> Option<&'a DVector<f64>> {
+        let (z, _) = problem.soft?.whole.as_ref()?;
+        Some(z)
+    }
+
+    /// The standard errors of the factors where x has the covariance `of_x`; where none is known,
+    /// given x. With x and ε uncertain x + ε z has the covariance
+    ///
+    /// > (1 − z qᵀ) Cov(x) (1 − q zᵀ) + v z zᵀ,   ε | x ~ N(… − qᵀx, v).
+    pub(super) fn add_errors(
+        &self,
+        problem: &Problem<'_>,
+        gains: &mut Gains,
+        of_x: Option<&DMatrix<f64>>,
+    ) {
+        let Some(soft) = problem.soft else { return };
+        let n = self.elements;
+        let mut of_seen = of_x.cloned().unwrap_or_else(|| DMatrix::zeros(n, n));
+        if let (Some(of), Some(z)) = (&self.gains.whole, self.direction(problem)) {
+            if let Some(whole) = &mut gains.whole {
+                whole.standard_error = of.errors(&of_seen, soft.noise);
+                whole.picture_given = of_x.is_none();
+            }
+            let turn = DMatrix::identity(n, n) - z * of.slope.row(0);
+            of_seen = product(&product(&turn, &of_seen), &turn.transpose());
+            of_seen.ger(of.variance[0] * soft.noise * soft.noise, z, z, 1.0);
+        }
+        if let (Some(of), Some(frames)) = (&self.gains.frames, &mut gains.frames) {
+            frames.standard_error = of.errors(&of_seen, soft.noise);
+            frames.picture_given = of_x.is_none();
+        }
+    }
+
+    /// −2 ln of the density of the data at the x that fits best, but for a constant that holds for all
+    /// factors: what is left of χ², and ln det of what the factors add to the covariance. None of an
+    /// operator that is not in rows.
+    pub(super) fn deviance(&self) -> Option<f64> {
+        let Form::Stacked { triangle, .. } = &self.form else {
+            return None;
+        };
+        let Conditionals { frames, whole } = &self.gains;
+        let of = [frames, whole].into_iter().flatten().map(|of| of.log_det);
+        Some(triangle.rest * triangle.rest + of.sum::<f64>())
     }
 
     /// Covariance of the solution as the standard errors make it, whether or not the weights are

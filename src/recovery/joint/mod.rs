@@ -2,17 +2,20 @@
 
 pub(super) mod bounded;
 mod branch;
+mod conditional;
 mod coordinates;
 mod cramer_rao;
 mod determined;
 mod elimination;
 mod enumerated;
 mod exponential;
+pub(super) mod gauss_newton;
 pub(super) mod gaussian_process;
 mod gram;
 mod ground;
 mod khatri_rao;
 mod levels;
+mod linear;
 mod neighbours;
 mod pattern_search;
 mod picard;

@@ -3,19 +3,24 @@
 use nalgebra::DVector;
 
 use super::khatri_rao::operator;
+use super::linear::about_grey;
 use crate::recovery::{Directions, Options, Picard, Problem, RecoveryError, Weighting};
 
 /// The Picard data of all pixels and spots at once: of √W K = U S Vᵀ, K the Khatri–Rao product of C
 /// and D without what the nuisance terms take, the singular values s_i, the data |⟨u_i, √W Φ⟩|
 /// along each direction, and what noise alone makes of them, √(Σ_pl u_i\[p,l\]² w\[p,l\]
 /// σ²\[p,l\]): 1 in all directions where the weights are 1/σ². Directions below the rounding of K
-/// are left out.
+/// are left out. Factors that are known only roughly are taken out softly, about a grey surface.
 ///
 /// # Errors
 /// [`RecoveryError::Dark`], [`RecoveryError::TooManyElements`], [`RecoveryError::RankZero`], a
 /// decomposition that failed.
 pub fn picard_joint(problem: &Problem<'_>, options: &Options) -> Result<Picard, RecoveryError> {
     problem.refuse_darkness()?;
+    about_grey(problem, options, |problem| of_linear(problem, options))
+}
+
+fn of_linear(problem: &Problem<'_>, options: &Options) -> Result<Picard, RecoveryError> {
     let operator = operator(problem, options)?;
     let solved = operator.solve(crate::num::linalg::Tolerance::Auto)?;
     // The solution holds the data along direction i over s_i.

@@ -139,12 +139,10 @@ pub(super) fn finish(
     let nuisance = &problem.nuisance;
     let mut found = Recovered::plain(method, problem, x.clone(), sigma, rank)?;
     found.weighting = operator.weighting;
-    if !nuisance.is_some() {
+    if !nuisance.is_some() && problem.soft.is_none() {
         return Ok(found);
     }
-    let mut estimated = operator.nuisances(problem, options, &x)?;
-    let (pixels, spots) = problem.phi.shape();
-    let left = problem.phi - problem.light(&x) - estimated.light(nuisance, pixels, spots);
+    let (mut estimated, left) = operator.nuisances(problem, options, &x)?;
     found.residual = problem.counted(left).norm();
     let whole = problem.counted(problem.phi.clone()).norm();
     found.relative_residual = if whole > 0.0 {

@@ -11,11 +11,14 @@
 //!
 //! Without a background the blocks are frames, whose constant and glare concern that frame alone.
 //! With one the blocks are pixels, whose background concerns that pixel alone; the terms of all
-//! frames are then carried along and eliminated from the last triangle. Memory: one block and two
+//! frames are then carried along and eliminated from the last triangle. Factors of the frames that
+//! are known to a standard deviation w are eliminated after all others, softly
+//! ([`super::conditional`]); beside a background as columns with one more row each, 0 = ε_l/w. Memory: one block and two
 //! triangles of elements (and, with a background, of the terms of all frames).
 
 use nalgebra::{DMatrix, DVector};
 
+use super::conditional::{Conditional, One, soften, soften_whole};
 use crate::num::linalg::{Triangle, columns_over, svd, triangle};
 use crate::recovery::{Problem, RecoveryError};
 
@@ -28,6 +31,10 @@ pub(super) struct Stacked {
     pub(super) triangle: Triangle,
     /// Present where a background ties the terms of all frames together.
     pub(super) coupled: Option<Coupled>,
+    /// The frames' factors as they follow from x, where they are known roughly,
+    pub(super) frames: Option<Conditional>,
+    /// and the one of all.
+    pub(super) whole: Option<Conditional>,
 }
 
 /// The terms of the frames as they follow from ρ.
@@ -36,13 +43,19 @@ pub(super) struct Coupled {
     /// Their pseudo-inverse, in their own unit, times the rows they were eliminated with.
     inverse: DMatrix<f64>,
     along: DMatrix<f64>,
+    /// The same of the frames' factors, where there are any.
+    along_gains: DMatrix<f64>,
     data: DVector<f64>,
 }
 
 impl Coupled {
-    /// b_l (if estimated), then g_l (if estimated).
-    pub(super) fn solve(&self, rho: &DVector<f64>) -> DVector<f64> {
-        &self.inverse * (&self.data - &self.along * rho)
+    /// b_l (if estimated), then g_l (if estimated), given ρ and the factors of the frames.
+    pub(super) fn solve(&self, rho: &DVector<f64>, gains: Option<&DVector<f64>>) -> DVector<f64> {
+        let mut left = &self.data - &self.along * rho;
+        if let Some(gains) = gains {
+            left -= &self.along_gains * gains;
+        }
+        &self.inverse * left
     }
 }
 
@@ -89,36 +102,60 @@ pub(super) fn stack(
         })
         .collect();
     let kinds = own.len();
+    let soft = problem.soft.and_then(|soft| {
+        let (pattern, known_to) = soft.frames.as_ref()?;
+        Some((pattern, known_to / soft.noise))
+    });
     if !nuisance.background {
         let mut rows = Rows::new(elements + 1);
         let frame = |l: usize| {
-            DMatrix::from_fn(pixels, kinds + elements + 1, |p, k| match own.get(k) {
-                Some(value) => value(p, l) / lengths[k][l],
-                None => data(p, l, k - kinds),
+            let gain = usize::from(soft.is_some());
+            DMatrix::from_fn(pixels, kinds + gain + elements + 1, |p, k| {
+                match (own.get(k), soft) {
+                    (Some(value), _) => value(p, l) / lengths[k][l],
+                    (None, Some((pattern, _))) if k == kinds => root(p, l) * pattern[(p, l)],
+                    (None, _) => data(p, l, k - kinds - gain),
+                }
             })
         };
+        let mut gains: Vec<One> = Vec::new();
         for block in (0..spots).map(frame) {
-            rows.push(eliminate(&reduce(&block)?.joined(), kinds)?.remaining)?;
+            let mut left = eliminate(&reduce(&block)?.joined(), kinds)?.remaining;
+            if let Some((_, width)) = soft {
+                let pattern = left.column(0).into_owned();
+                left = left.remove_column(0);
+                gains.push(soften(&mut left, &pattern.as_view(), width));
+            }
+            rows.push(left)?;
         }
+        let mut triangle = rows.finish()?;
         return Ok(Stacked {
-            triangle: rows.finish()?,
+            whole: soften_whole(&mut triangle, problem.soft),
+            triangle,
             coupled: None,
+            frames: soft.map(|_| Conditional::of(&gains)),
         });
     }
     let own_terms = kinds * spots;
-    let mut rows = Rows::new(own_terms + elements + 1);
+    let gains = if soft.is_some() { spots } else { 0 };
+    let mut rows = Rows::new(own_terms + gains + elements + 1);
     for p in 0..pixels {
         let length = (0..spots).map(|l| root(p, l).powi(2)).sum::<f64>().sqrt();
         if length == 0.0 {
             continue;
         }
-        let block = DMatrix::from_fn(spots, 1 + own_terms + elements + 1, |l, k| match k {
+        let all = 1 + own_terms + gains + elements + 1;
+        let block = DMatrix::from_fn(spots, all, |l, k| match k {
             0 => root(p, l) / length,
             k if k <= own_terms => match ((k - 1) / spots, (k - 1) % spots) {
                 (kind, of) if of == l => own[kind](p, l) / lengths[kind][l],
                 _ => 0.0,
             },
-            k => data(p, l, k - 1 - own_terms),
+            k if k <= own_terms + gains => match soft {
+                Some((pattern, _)) if k - 1 - own_terms == l => root(p, l) * pattern[(p, l)],
+                _ => 0.0,
+            },
+            k => data(p, l, k - 1 - own_terms - gains),
         });
         rows.push(eliminate(&reduce(&block)?.joined(), 1)?.remaining)?;
     }
@@ -127,18 +164,29 @@ pub(super) fn stack(
         inverse,
         top,
     } = eliminate(&rows.finish()?.joined(), own_terms)?;
+    let (remaining, frames) = match soft {
+        Some((_, width)) => {
+            let (remaining, frames) = eliminate_softly(remaining, spots, width)?;
+            (remaining, Some(frames))
+        }
+        None => (remaining, None),
+    };
     let mut last = Rows::new(elements + 1);
     last.push(remaining)?;
     let coupled = (own_terms > 0).then(|| Coupled {
         inverse: DMatrix::from_fn(own_terms, inverse.ncols(), |k, i| {
             inverse[(k, i)] / lengths[k / spots][k % spots]
         }),
-        along: top.columns(0, elements).into_owned(),
-        data: top.column(elements).into_owned(),
+        along: top.columns(gains, elements).into_owned(),
+        along_gains: top.columns(0, gains).into_owned(),
+        data: top.column(gains + elements).into_owned(),
     });
+    let mut triangle = last.finish()?;
     Ok(Stacked {
-        triangle: last.finish()?,
+        whole: soften_whole(&mut triangle, problem.soft),
+        triangle,
         coupled,
+        frames,
     })
 }
 
@@ -232,4 +280,44 @@ fn eliminate(rows: &DMatrix<f64>, lead: usize) -> Result<Eliminated, RecoveryErr
         inverse: columns_over(corner.vt.rows(0, rank).transpose(), &corner.sigma),
         top: turned.rows(0, rank).into_owned(),
     })
+}
+
+/// Takes the first `lead` columns out, whose sizes are known to be N(0, width²): with a row
+/// 0 = ε/width of each. What remains, and the sizes given the others.
+fn eliminate_softly(
+    rows: DMatrix<f64>,
+    lead: usize,
+    width: f64,
+) -> Result<(DMatrix<f64>, Conditional), RecoveryError> {
+    let (seen, columns) = rows.shape();
+    let lengths: Vec<f64> = (0..lead)
+        .map(|l| (rows.column(l).norm_squared() + 1.0 / (width * width)).sqrt())
+        .collect();
+    let all = DMatrix::from_fn(seen + lead, columns, |i, k| {
+        let own = match i.checked_sub(seen) {
+            None => rows[(i, k)],
+            Some(l) if l == k => 1.0 / width,
+            Some(_) => 0.0,
+        };
+        own / lengths.get(k).unwrap_or(&1.0)
+    });
+    let whole = reduce(&all)?.joined();
+    let corner = svd(&whole.view((0, 0), (lead, lead)).into_owned())?;
+    let logs = corner.sigma.iter().map(|s| 2.0 * libm::log(*s));
+    let of_lengths = lengths.iter().map(|x| 2.0 * libm::log(x * width));
+    let log_det = logs.sum::<f64>() + of_lengths.sum::<f64>();
+    let Eliminated {
+        remaining,
+        inverse,
+        top,
+    } = eliminate(&whole, lead)?;
+    let inverse = DMatrix::from_fn(lead, inverse.ncols(), |l, i| inverse[(l, i)] / lengths[l]);
+    let n = columns - lead - 1;
+    let frames = Conditional {
+        at_zero: &inverse * top.column(n),
+        slope: &inverse * top.columns(0, n),
+        variance: DVector::from_fn(lead, |l, _| inverse.row(l).norm_squared()),
+        log_det,
+    };
+    Ok((remaining, frames))
 }

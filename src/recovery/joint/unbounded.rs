@@ -17,9 +17,6 @@ pub(in crate::recovery) fn recover(
     let solved = operator.solve(options.tolerance)?;
     let elements = problem.c.ncols();
     let mut covariance = operator.covariance(problem, &solved);
-    if let (true, Some(of_x)) = (problem.nuisance.free_scale, covariance.as_mut()) {
-        *of_x = over_brightest(of_x, &solved.solution);
-    }
     let resolution = tr_product(&solved.vt, &solved.vt);
     let mut found = finish(
         Method::JointUnbounded,
@@ -30,6 +27,12 @@ pub(in crate::recovery) fn recover(
         solved.sigma.clone(),
         solved.rank,
     )?;
+    if let Some(gains) = found.nuisance.as_mut().and_then(|n| n.gains.as_mut()) {
+        operator.add_errors(problem, gains, covariance.as_ref());
+    }
+    if let (true, Some(of_x)) = (problem.nuisance.free_scale, covariance.as_mut()) {
+        *of_x = over_brightest(of_x, &solved.solution);
+    }
     (found.parameter, found.choice) = match options.tolerance {
         Tolerance::Rank(rank) => (Parameter::Rank(rank), Choice::Given),
         _ if solved.rank < elements => (

@@ -1,0 +1,144 @@
+//! Recovery with factors of the light that are known only roughly.
+//!
+//! > Φ\[p,l\] = (1 + ε)(1 + ε_l) (A x)\[p,l\] + …,   ε_l ~ N(0, σ_g²),   ε ~ N(0, σ_s²)
+//!
+//! is linear in x and the ε together about estimates (x₀, ε₀), with m = A x₀:
+//!
+//! > Φ + ε₀_l (1 + ε₀) m + ε₀ (1 + ε₀_l) m ≈ (1 + ε₀)(1 + ε₀_l) A x
+//! >                                          + ε_l (1 + ε₀) m + ε (1 + ε₀_l) m + …
+//!
+//! So a factor is one more pattern, of a size that is known beforehand: its elimination
+//! ([`super::conditional`]) gives every method rows of unit noise for x alone, whose normal matrix is
+//! H_xx − H_xε H_εε⁻¹ H_εx, so that errors, bands, probabilities and bounds are those of x with ε
+//! unknown. The estimates are then set to what was found and all is done again, until the factors no
+//! longer change (Gauss–Newton, by half steps where whole ones do not settle). Where that ends,
+//! (x̂, ε̂) is where Σ z² + Σ ε_l²/σ_g² + ε²/σ_s² with the method's own terms is stationary.
+//!
+//! Patterns of two values are weighed against each other with the factors linear about the best of
+//! them: of another one ε multiplies this one's light, an error of the second order.
+//!
+//! Evidence: ∫ p(Φ|x, ε) p(ε) dε by Laplace's method is that of the linear problem times
+//! Π (1 + σ²⟨m, m⟩)^(−½), m in units of the noise and without what other terms take, so that factors
+//! that nothing asks for lower it.
+
+use nalgebra::DVector;
+
+use super::bounded;
+use super::khatri_rao::operator;
+use super::linear::{Estimates, Linear};
+use crate::recovery::soft::Soft;
+use crate::recovery::{
+    Gains, Method, Options, Problem, Recovered, RecoveryError, Shared, WeightRule,
+};
+
+/// Linear problems that are solved at most.
+const MOST_STEPS: usize = 40;
+/// How many of them go all the way.
+const WHOLE_STEPS: usize = 8;
+/// The factors have settled where none changes by more than this fraction of its σ.
+const SETTLED: f64 = 1e-4;
+/// Recovers by `by`, a method on a problem that is linear in the factors.
+pub(in crate::recovery) fn recover(
+    method: Method,
+    problem: &Problem<'_>,
+    options: &Options,
+    by: impl Fn(Method, &Problem<'_>, &Options) -> Result<Recovered, RecoveryError>,
+) -> Result<Recovered, RecoveryError> {
+    let base = problem.without_gains();
+    let weighted = options.weighting != WeightRule::Unweighted && problem.noise().is_some();
+    let noise = |found: &Recovered| {
+        if weighted {
+            return 1.0;
+        }
+        let freedom = (problem.entries() as f64 - found.freedom_used()).max(1.0);
+        let floor = f64::EPSILON * problem.counted(problem.phi.clone()).norm();
+        found.residual.max(floor) / freedom.sqrt()
+    };
+    let quick = Options {
+        bands: None,
+        probabilities: false,
+        ..*options
+    };
+    let start = bounded::recover(Method::Nnls, &base, &quick)?;
+    let mut at = Estimates {
+        x: start.seen(),
+        frames: DVector::zeros(problem.phi.ncols()),
+        whole: 0.0,
+        noise: noise(&start),
+    };
+    let (mut steps, mut settled) = (0, false);
+    while steps < MOST_STEPS && !settled {
+        steps += 1;
+        let linear = Linear::about(problem, &at);
+        let found = by(method, &linear.problem(&base), &quick)?;
+        let noise = noise(&found);
+        settled = (noise / at.noise - 1.0).abs() < SETTLED;
+        // Where whole steps go back and forth, half of them do not.
+        let share = if steps > WHOLE_STEPS { 0.5 } else { 1.0 };
+        settled &= at.take(&found, share) < SETTLED;
+        at.noise *= libm::pow(noise / at.noise, share);
+    }
+    let linear = Linear::about(problem, &at);
+    let shared = Shared::default();
+    let about = linear.problem(&base).sharing(&shared);
+    let mut found = by(method, &about, options)?;
+    settled &= at.take(&found, 1.0) < SETTLED;
+    let evidence = match (found.log_evidence, weighted) {
+        (Some(evidence), true) => punished(evidence, &base, &about, options)?,
+        _ => None,
+    };
+    found.log_evidence = evidence;
+    let widened = widened(&found, || {
+        let known = base.about(&linear.phi, &linear.d, &Soft::NONE);
+        by(method, &known, &quick)
+    })?;
+    if let Some(gains) = found.nuisance.as_mut().and_then(|n| n.gains.as_mut()) {
+        *gains = Gains {
+            steps,
+            settled,
+            widened,
+            ..gains.clone()
+        };
+    }
+    let left = problem.phi - found.photographs(problem);
+    found.residual = problem.counted(left).norm();
+    let whole = problem.counted(problem.phi.clone()).norm();
+    found.relative_residual = found.residual / whole;
+    Ok(found)
+}
+
+/// The evidence of the linear problem over the density of the numbers that fit best without factors:
+/// by what the deviance of each one's best fit differs.
+fn punished(
+    evidence: f64,
+    base: &Problem<'_>,
+    about: &Problem<'_>,
+    options: &Options,
+) -> Result<Option<f64>, RecoveryError> {
+    let by_entry = Options {
+        weighting: WeightRule::Entries,
+        ..*options
+    };
+    let with = operator(about, &by_entry)?.deviance();
+    let (_, d, _) = base.sides();
+    let plain = base.about(base.phi, d, &Soft::NONE);
+    let without = operator(&plain, &by_entry)?.deviance();
+    let gained = without.zip(with).map(|(a, b)| 0.5 * (a - b));
+    Ok(gained.map(|gained| evidence + gained))
+}
+
+/// Mean standard error over what it is with the factors known.
+fn widened(
+    found: &Recovered,
+    with_known: impl Fn() -> Result<Recovered, RecoveryError>,
+) -> Result<Option<f64>, RecoveryError> {
+    let Some(own) = &found.standard_error else {
+        return Ok(None);
+    };
+    let known = with_known()?.standard_error;
+    let ratio = known.map(|known| own.mean() / known.mean());
+    Ok(ratio.filter(|ratio| ratio.is_finite()))
+}
+
+#[cfg(test)]
+mod tests;
