@@ -91,7 +91,7 @@
 //! // The bench with 8 spots in place of 120.
 //! let mut file = SceneFile::default();
 //! file.name = "toy".to_owned();
-//! file.laser.spots.per_side = Some(2);
+//! file.laser.as_mut().expect("the bench has a laser").spots.per_side = Some(2);
 //! let scene = Scene::new(&file, None)?;
 //!
 //! // 64 paths for each pixel and spot.

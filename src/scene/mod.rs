@@ -150,6 +150,7 @@ pub mod mesh;
 mod parse;
 mod quantity;
 mod sensor;
+mod shining;
 pub mod spots;
 mod surface;
 mod surface_tables;
@@ -262,7 +263,7 @@ impl Scene {
     /// let mut file = SceneFile::builtin("bench").unwrap();
     /// file.name = "coarse".to_owned();
     /// file.camera.pixels = [8, 8];
-    /// file.laser.spots.per_side = Some(5);
+    /// file.laser.as_mut().expect("the bench has a laser").spots.per_side = Some(5);
     /// let scene = Scene::new(&file, None)?;
     /// assert_eq!((scene.camera.pixels(), scene.laser.spots.len()), (64, 20));
     /// # Ok::<(), phicam::scene::SceneError>(())
@@ -306,11 +307,19 @@ impl Scene {
             ));
         }
         let mut found = Vec::new();
-        let wavelength = file.laser.wavelength;
-        let surfaces =
+        let wavelength = shining::wavelength(file);
+        let mut surfaces =
             surface_tables::from_tables(&file.surface, &mut files, wavelength, &mut found)?;
         let bvh = surface::bvh(&surfaces)?;
-        let laser = Laser::from_table(&file.laser, &surfaces)?;
+        let laser = match (Laser::of_shining(file, &mut surfaces)?, &file.laser) {
+            (Some(shining), _) => shining,
+            (None, Some(table)) => Laser::from_table(table, &surfaces)?,
+            (None, None) => {
+                let cause = "nothing gives light: there is no [laser] table, and no surface shines";
+                let cure = "add [laser], or let a hidden surface shine: `material = { shining = … }`";
+                return Err(Fault::new(keys![], cause, cure));
+            }
+        };
         let camera = Camera::from_table(&file.camera, &surfaces)?;
         let known = Known::from_tables(
             &file.known,
