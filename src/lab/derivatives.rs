@@ -52,11 +52,16 @@ impl<'a> SceneDerivatives<'a> {
         phi: &'a Matrix,
         visible: Option<&'a Matrix>,
     ) -> Self {
+        let power = if scene.laser.is_shining() {
+            "exitance"
+        } else {
+            "laser power"
+        };
         let scale = Parameter {
             name: "overall scale".to_owned(),
             unit: "%".to_owned(),
             same: vec![
-                ("laser power".to_owned(), 1.0),
+                (power.to_owned(), 1.0),
                 ("aperture".to_owned(), 1.0),
             ],
             each_spot: None,
@@ -150,7 +155,7 @@ fn factor(d: &Matrix, phi: &Matrix) -> Option<f64> {
 
 /// Step of a length.
 fn step(scene: &Scene) -> f64 {
-    let spots = scene.laser.spots.iter().map(|s| s.target.position);
+    let spots = scene.laser.beams().iter().map(|s| s.target.position);
     let view = scene.camera.view.corners();
     let mut nearest = f64::INFINITY;
     let mut middle = f64::INFINITY;

@@ -32,6 +32,11 @@ impl Laser {
         matches!(self.profile, Profile::Shining { .. })
     }
 
+    /// The spots that a laser lights; none where a surface shines.
+    pub fn beams(&self) -> &[Spot] {
+        if self.is_shining() { &[] } else { &self.spots }
+    }
+
     /// Corner and width, in the parameters of the surface that shines, of what shines in column
     /// `spot`; `None` of a laser.
     pub fn part(&self, spot: usize) -> Option<[[f64; 2]; 2]> {

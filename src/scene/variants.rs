@@ -102,8 +102,14 @@ impl Scene {
     /// matrix model needs to estimate the light that they reflect.
     ///
     /// # Errors
-    /// [`SceneError`] where nothing is an occluder.
+    /// [`SceneError`] where nothing is an occluder, or the hidden surface shines: what occluders
+    /// reflect of its picture is no term of the model.
     pub fn with_occluders_as_elements(&self) -> Result<Self, SceneError> {
+        if self.laser.is_shining() {
+            let cause = "the hidden surface shines, and the model has no light of occluders then";
+            let cure = "trace it: render with `light = \"elements\"`, and give its phi.npy as --camera-side";
+            return Err(self.locate(Fault::new(keys!["surface"], cause, cure)));
+        }
         if !self.surfaces.iter().any(|s| s.role == Role::Occluder) {
             let cause = "no surface has the role `occluder`, whose light could be estimated";
             let cure = "leave --occluder-light out, or say in the scene what stands there";
