@@ -60,10 +60,7 @@ impl<'a> SceneDerivatives<'a> {
         let scale = Parameter {
             name: "overall scale".to_owned(),
             unit: "%".to_owned(),
-            same: vec![
-                (power.to_owned(), 1.0),
-                ("aperture".to_owned(), 1.0),
-            ],
+            same: vec![(power.to_owned(), 1.0), ("aperture".to_owned(), 1.0)],
             each_spot: None,
         };
         let mut found = Self {

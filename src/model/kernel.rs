@@ -63,7 +63,9 @@ impl Kernel {
                 (0.5 * (r - hidden.u_axis * r.dot(hidden.u_axis)).length_squared()).sqrt()
             }
         };
-        let falls = hidden.fall_off.map_or(1.0, |f| f.towards(hidden.normal, -r));
+        let falls = hidden
+            .fall_off
+            .map_or(1.0, |f| f.towards(hidden.normal, -r));
         at_wall * at_hidden * falls / (r2 * r2)
     }
 }

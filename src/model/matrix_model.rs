@@ -182,8 +182,10 @@ impl MatrixModel {
         let (g12, laser_side) = match (scene.shining(), &grids[..]) {
             (Some((_, surface)), [grid]) => {
                 let exitance = surface.shining().map_or(0.0, |s| s.exitance);
-                let g12 = Matrix::from_fn(count, spots, |j, l| scene.laser.share(l, (j, grid.count)));
-                let laser_side = Matrix::from_fn(count, spots, |j, l| exitance * areas[j] * g12[(j, l)]);
+                let g12 =
+                    Matrix::from_fn(count, spots, |j, l| scene.laser.share(l, (j, grid.count)));
+                let laser_side =
+                    Matrix::from_fn(count, spots, |j, l| exitance * areas[j] * g12[(j, l)]);
                 (g12, laser_side)
             }
             _ => {

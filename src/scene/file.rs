@@ -399,7 +399,9 @@ mod tests {
                 own.hash
             );
 
-            let Some(laser) = &mut file.laser else { continue };
+            let Some(laser) = &mut file.laser else {
+                continue;
+            };
             laser.power *= 2.0;
             assert_ne!(Scene::new(&file, None).unwrap().hash, own.hash);
         }

@@ -316,7 +316,8 @@ impl Scene {
             (None, Some(table)) => Laser::from_table(table, &surfaces)?,
             (None, None) => {
                 let cause = "nothing gives light: there is no [laser] table, and no surface shines";
-                let cure = "add [laser], or let a hidden surface shine: `material = { shining = … }`";
+                let cure =
+                    "add [laser], or let a hidden surface shine: `material = { shining = … }`";
                 return Err(Fault::new(keys![], cause, cure));
             }
         };

@@ -34,7 +34,9 @@ impl<'a> Beams<'a> {
         let mut beams = Self {
             scene,
             ideal: Vec::new(),
-            bright: scene.shining().map(|(id, _)| AreaSampler::new(scene, &[id])),
+            bright: scene
+                .shining()
+                .map(|(id, _)| AreaSampler::new(scene, &[id])),
         };
         if !beams.has_width() {
             let spots = 0..scene.laser.spots.len();
@@ -58,7 +60,10 @@ impl<'a> Beams<'a> {
             (Profile::Gaussian { radius }, Reach::Density) => 19.4 * radius,
             (Profile::Gaussian { radius }, Reach::Samples) => 4.3 * radius,
             (Profile::Gaussian { radius }, Reach::Expected) => 3.0 * radius,
-            (Profile::Shining { .. }, _) => self.scene.shining().map_or(0.0, |(_, s)| s.shape.circumsphere().1),
+            (Profile::Shining { .. }, _) => self
+                .scene
+                .shining()
+                .map_or(0.0, |(_, s)| s.shape.circumsphere().1),
         }
     }
 

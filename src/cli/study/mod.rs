@@ -24,7 +24,10 @@ fn refuse_shining(scene: &Scene) -> Result<(), Failure> {
     match scene.shining() {
         None => Ok(()),
         Some((_, surface)) => Err(Failure::new(
-            format!("studies need a scene with a laser, and here `{}` shines", surface.name),
+            format!(
+                "studies need a scene with a laser, and here `{}` shines",
+                surface.name
+            ),
             "use `phicam run`, `validate` and `recover` for this scene",
         )),
     }

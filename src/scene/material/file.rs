@@ -5,11 +5,9 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::merl::Channel;
-use super::variants::{LEAST_ALPHA, MOST_ALPHA, MOST_INDEX, MOST_SIGMA};
 use super::shining::MOST_FALLOFF;
-use super::{
-    Coated, Conductor, Material, Measured, OrenNayar, Part, SecondFacet, Shining, Shown,
-};
+use super::variants::{LEAST_ALPHA, MOST_ALPHA, MOST_INDEX, MOST_SIGMA};
+use super::{Coated, Conductor, Material, Measured, OrenNayar, Part, SecondFacet, Shining, Shown};
 use crate::scene::error::{Fault, keys};
 use crate::scene::texture::{AlbedoTable, Texture};
 
@@ -95,8 +93,7 @@ pub struct PartTable {
 /// Reads a file that the scene names, by the path written there; an error says why not.
 pub(in crate::scene) type Files<'a> = &'a mut dyn FnMut(&str) -> Result<Vec<u8>, String>;
 
-const KINDS: &str =
-    "`lambertian`, `oren_nayar`, `paint`, `coated`, `conductor`, `measured`, `mixture` and `shining`";
+const KINDS: &str = "`lambertian`, `oren_nayar`, `paint`, `coated`, `conductor`, `measured`, `mixture` and `shining`";
 /// Index of refraction where the coat's is not stated: acrylic and polyurethane paint.
 const COAT: f64 = 1.5;
 /// Parts of a mixture.

@@ -90,7 +90,10 @@ mod tests {
             ([0.3, 0.2, -1.0], 0.0),
         ] {
             let got = f(direction);
-            assert!((got - want).abs() < 1e-14 * want, "{direction:?}: {got} for {want}");
+            assert!(
+                (got - want).abs() < 1e-14 * want,
+                "{direction:?}: {got} for {want}"
+            );
         }
     }
 }
