@@ -74,7 +74,7 @@ fn ways(samples: u64) -> [Way; 4] {
 /// M·R²/(R² + h²): M times the configuration factor.
 #[test]
 fn a_disc_shines_by_its_configuration_factor() {
-    for (radius, height) in [(0.5f64, 1.0f64), (1.1, 0.4)] {
+    for (radius, height) in [(0.5f64, 1.0f64), (0.3, 0.4)] {
         let at = [0.2, -0.1];
         let disc = format!(
             "disc = {{ centre = [{}, {}, {height}], normal = [0, 0, -1], radius = {radius} }}",
@@ -144,7 +144,7 @@ fn light_falls_off_along_u_and_along_v() {
 
 /// The built-in scene with few pixels, and other changes.
 fn small(changes: &[(&str, &str)]) -> Scene {
-    let few = [("pixels = [24, 24]", "pixels = [6, 6]")];
+    let few = [("pixels = [24, 24]", "pixels = [3, 3]")];
     builtin("screen", &[&few, changes].concat())
 }
 
@@ -174,14 +174,18 @@ fn agrees(scene: &Scene, traced: &Traced, way: Way, occlusion: Occlusion) -> boo
 /// Past a plate, with a picture and a fall-off; without the plate they must not agree.
 #[test]
 fn tracer_and_model_agree_past_an_occluder() {
-    let scene = small(&[]);
-    let way = Way(Independent, Sampling::Pcg, 7, 1 << 13);
+    let scene = replaced(
+        &small(&[]).text,
+        PICTURE_START,
+        "shining = { checkerboard = [2, 2], dark = 0.1, light = 1.0 } }",
+    );
+    let way = Way(Independent, Sampling::Pcg, 7, 1 << 12);
     let traced = trace(&scene, way);
     assert!(agrees(&scene, &traced, way, Occlusion::Considered));
     assert!(!agrees(&scene, &traced, way, Occlusion::Ignored));
 }
 
-/// What the plate reflects is traced from three bounces on, by every estimator alike, and does not
+/// What the plate reflects is traced with the fourth bounce, by every estimator alike, and does not
 /// change the light of two.
 #[test]
 fn more_bounces_add_to_the_light_of_two() {
@@ -190,16 +194,16 @@ fn more_bounces_add_to_the_light_of_two() {
         "material = { lambertian = 0.9 }",
     );
     let deep = small(&[bright, ("max_bounces = 2", "max_bounces = 4")]);
-    let two = trace(&small(&[]), Way(Independent, Sampling::Pcg, 1, 4096));
-    let each = ways(4096).map(|way| (way, trace(&deep, way)));
+    let two = trace(&small(&[]), Way(Independent, Sampling::Pcg, 1, 1024));
+    let each = ways(1024).map(|way| (way, trace(&deep, way)));
     for (way, traced) in &each {
         assert_same(&each[0].1, traced, &format!("{way:?}"));
         let off = relative(&traced.bounces[1], &two.flux);
         assert!(off < 0.05, "{way:?}: {off}");
-        assert!(
-            traced.bounces[2].sum() > 0.0,
-            "{way:?}: no light by the plate"
-        );
+        // The plate's front looks away from the wall: what it sends there has met the wall before.
+        assert_eq!(traced.bounces[2].amax(), 0.0, "{way:?}");
+        let by_plate = traced.bounces[3].sum();
+        assert!(by_plate > 0.0, "{way:?}: no light by the plate");
     }
 }
 
@@ -207,24 +211,24 @@ fn more_bounces_add_to_the_light_of_two() {
 /// picture's, and a picture of 0 and 1 to the sum of those where it is 1.
 #[test]
 fn columns_of_elements_add_up() {
-    let (from, to) = (PICTURE_START, "shining = 1.0, light = \"elements\" }");
-    let each = replaced(&small(&[]).text, from, to);
-    let white = replaced(&small(&[]).text, from, "shining = 1.0 }");
-    let way = Way(Independent, Sampling::Sobol, 2, 2048);
+    let coarse = small(&[("elements = [8, 8]", "elements = [4, 4]")]).text;
+    let scene = |shining: &str| replaced(&coarse, PICTURE_START, shining);
+    let each = scene("shining = 1.0, light = \"elements\" }");
+    let (white, board) = (
+        scene("shining = 1.0 }"),
+        scene("shining = { checkerboard = [4, 4], dark = 0.0, light = 1.0 } }"),
+    );
+    let way = Way(Independent, Sampling::Sobol, 2, 1024);
     let (each, white) = (trace(&each, way), trace(&white, way));
-    assert_eq!(each.flux.shape(), (36, 64));
+    assert_eq!(each.flux.shape(), (9, 16));
     let sum = Traced {
-        flux: Matrix::from_fn(36, 1, |p, _| each.flux.row(p).sum()),
-        stderr: Matrix::from_fn(36, 1, |p, _| each.stderr.row(p).norm()),
+        flux: Matrix::from_fn(9, 1, |p, _| each.flux.row(p).sum()),
+        stderr: Matrix::from_fn(9, 1, |p, _| each.stderr.row(p).norm()),
         ..white.clone()
     };
     assert_same(&sum, &white, "sum of elements");
-    let scene = small(&[]);
-    let picture = trace(&scene, way);
-    let x = MatrixModel::new(&scene, Kernel::Physical, None)
-        .unwrap()
-        .albedo;
-    let x = Matrix::from_column_slice(64, 1, &x);
+    let picture = trace(&board, way);
+    let x = Matrix::from_fn(16, 1, |j, _| f64::from(u8::from((j + j / 4) % 2 == 1)));
     let off = relative(&(&each.flux * x), &picture.flux);
     assert!(off < 0.02, "{off}");
 }
@@ -241,34 +245,40 @@ fn replaced(text: &str, from: &str, to: &str) -> Scene {
     Scene::from_toml("screen", &text).unwrap_or_else(|e| panic!("{e}\n{text}"))
 }
 
-/// One photograph of traced light, by the traced transport: the letter comes back.
+/// One photograph of traced light, by the traced transport: an L comes back. With the plate gone
+/// what is recovered is another picture, for nothing tells the elements apart.
 #[test]
 fn a_letter_comes_back_from_one_photograph() {
-    let scene = small(&[("pixels = [6, 6]", "pixels = [16, 16]")]);
-    let way = |seed| Way(Independent, Sampling::Sobol, seed, 8192);
-    let photograph = trace(&scene, way(11));
-    let transport = replaced(
-        &scene.text,
-        PICTURE_START,
-        "shining = 1.0, light = \"elements\" }",
-    );
-    let transport = trace(&transport, way(12));
-    let ones = Matrix::from_element(64, 1, 1.0);
-    let problem = Problem::new(
-        &photograph.flux,
-        &transport.flux,
-        &ones,
-        Some(&photograph.stderr),
-    )
-    .unwrap();
-    let found = recover(Method::Joint, &problem, &Options::default()).unwrap();
-    let truth = MatrixModel::new(&scene, Kernel::Physical, None)
-        .unwrap()
-        .albedo;
-    let wrong = found
-        .reflectance
-        .iter()
-        .zip(&truth)
-        .filter(|(x, t)| (*x - *t).abs() > 0.25);
-    assert_eq!(wrong.count(), 0, "{:?}", found.reflectance);
+    let letter: [f64; 16] = [
+        0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+    ];
+    let rows: Vec<String> = letter.chunks(4).map(|row| format!("{row:?}")).collect();
+    let picture = format!("shining = {{ cells = [{}] }} }}", rows.join(", "));
+    let changes = [
+        ("elements = [8, 8]", "elements = [4, 4]"),
+        ("pixels = [3, 3]", "pixels = [8, 8]"),
+    ];
+    let text = small(&changes).text;
+    let bare = text.replace("corner = [0.41, 0.26, 0.5]", "corner = [-0.41, 0.26, 0.5]");
+    let wrong = |text: &str| {
+        let photograph = replaced(text, PICTURE_START, &picture);
+        let transport = "shining = 1.0, light = \"elements\" }";
+        let transport = replaced(text, PICTURE_START, transport);
+        let way = |seed| Way(Shared, Sampling::Sobol, seed, 2048);
+        let (photograph, transport) = (trace(&photograph, way(11)), trace(&transport, way(12)));
+        let ones = Matrix::from_element(16, 1, 1.0);
+        let (phi, stderr) = (&photograph.flux, Some(&photograph.stderr));
+        let problem = Problem::new(phi, &transport.flux, &ones, stderr).unwrap();
+        let found = recover(Method::JointUnbounded, &problem, &Options::default()).unwrap();
+        let off = found
+            .reflectance
+            .iter()
+            .zip(&letter)
+            .map(|(x, t)| (x - t).abs());
+        off.fold(0.0, f64::max)
+    };
+    let off = wrong(&text);
+    assert!(off < 0.3, "{off}");
+    let off = wrong(&bare);
+    assert!(off > 0.5, "{off} without the plate");
 }
