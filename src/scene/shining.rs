@@ -412,7 +412,7 @@ mod tests {
         assert_eq!(unknown.unknown().as_deref(), Some("`monitor`"));
         let error = unknown.known().unwrap_err().to_string();
         assert!(
-            error.contains("own:") && error.contains("`monitor`"),
+            error.contains("screen:32:") && error.contains("`monitor`"),
             "{error}"
         );
     }

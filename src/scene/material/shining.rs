@@ -91,7 +91,7 @@ mod tests {
         ] {
             let got = f(direction);
             assert!(
-                (got - want).abs() < 1e-14 * want,
+                (got - want).abs() <= 1e-14 * want,
                 "{direction:?}: {got} for {want}"
             );
         }
