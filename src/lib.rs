@@ -27,6 +27,11 @@
 //! knowing that model, writes the frames that the camera would store, stacks them, tests with
 //! statistics whether model and transport agree, and recovers the hidden reflectance.
 //!
+//! A hidden surface may shine by itself (a monitor, a lamp) in place of the laser. Then one
+//! photograph of the wall is taken, past an occluder whose shadows tell the elements apart. The light
+//! meets S2 and S3 alone: D\[j\] = M·A_j takes the place of the laser's side, M the exitance of a
+//! white element, and what is recovered is the picture x ∈ \[0, 1\] in the place of ρ2.
+//!
 //! | symbol | meaning | shape, unit |
 //! | --- | --- | --- |
 //! | p, r, l | camera pixels, resolution elements on S2, laser spots | counts |
@@ -91,7 +96,7 @@
 //! // The bench with 8 spots in place of 120.
 //! let mut file = SceneFile::default();
 //! file.name = "toy".to_owned();
-//! file.laser.spots.per_side = Some(2);
+//! file.laser.as_mut().expect("the bench has a laser").spots.per_side = Some(2);
 //! let scene = Scene::new(&file, None)?;
 //!
 //! // 64 paths for each pixel and spot.

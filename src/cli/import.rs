@@ -191,7 +191,7 @@ fn picture(imported: &Imported, scene: &Scene) -> Result<Vec<u8>, Failure> {
     });
     let spots = scene
         .laser
-        .spots
+        .beams()
         .iter()
         .map(|s| view.coordinates(s.target.position));
     let drawn = report::Marked {

@@ -111,15 +111,25 @@ fn suspicious(scene: &Scene) -> Result<Vec<String>, Failure> {
     Ok(found)
 }
 
+/// What lights the scene.
+fn light(scene: &Scene) -> String {
+    let columns = scene.laser.spots.len();
+    match scene.shining() {
+        None => format!("{columns} spots"),
+        Some((_, surface)) if columns == 1 => format!("`{}` shines", surface.name),
+        Some((_, surface)) => format!("the {columns} elements of `{}` shine in turn", surface.name),
+    }
+}
+
 fn check(scene: &Scene) -> Result<String, Failure> {
     let count = |role| scene.surfaces.iter().filter(|s| s.role == role).count();
     let mut text = format!(
-        "{}: {} relay, {} hidden, {} occluding surfaces; {} spots; {} × {} pixels; up to {} bounces; lengths in {}\n",
+        "{}: {} relay, {} hidden, {} occluding surfaces; {}; {} × {} pixels; up to {} bounces; lengths in {}\n",
         scene.name,
         count(Role::Relay),
         count(Role::Hidden),
         count(Role::Occluder),
-        scene.laser.spots.len(),
+        light(scene),
         scene.camera.columns,
         scene.camera.rows,
         scene.max_bounces,

@@ -52,13 +52,15 @@ impl<'a> SceneDerivatives<'a> {
         phi: &'a Matrix,
         visible: Option<&'a Matrix>,
     ) -> Self {
+        let power = if scene.laser.is_shining() {
+            "exitance"
+        } else {
+            "laser power"
+        };
         let scale = Parameter {
             name: "overall scale".to_owned(),
             unit: "%".to_owned(),
-            same: vec![
-                ("laser power".to_owned(), 1.0),
-                ("aperture".to_owned(), 1.0),
-            ],
+            same: vec![(power.to_owned(), 1.0), ("aperture".to_owned(), 1.0)],
             each_spot: None,
         };
         let mut found = Self {
@@ -150,7 +152,7 @@ fn factor(d: &Matrix, phi: &Matrix) -> Option<f64> {
 
 /// Step of a length.
 fn step(scene: &Scene) -> f64 {
-    let spots = scene.laser.spots.iter().map(|s| s.target.position);
+    let spots = scene.laser.beams().iter().map(|s| s.target.position);
     let view = scene.camera.view.corners();
     let mut nearest = f64::INFINITY;
     let mut middle = f64::INFINITY;

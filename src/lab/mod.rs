@@ -76,7 +76,7 @@
 //!     }
 //!     fn context(&self, _: Control<'_>) -> Result<SceneFile, Error> {
 //!         let mut file = SceneFile::default();
-//!         file.laser.spots.per_side = Some(2);
+//!         file.laser.as_mut().expect("the bench has a laser").spots.per_side = Some(2);
 //!         Ok(file)
 //!     }
 //!     fn task(&self, file: &SceneFile, index: usize, control: Control<'_>) -> Result<Point, Error> {

@@ -19,15 +19,15 @@ pub(super) struct HiddenCell {
 impl HiddenCell {
     /// `None` without area.
     pub(super) fn new(
+        (id, surface): (ShapeId, &Surface),
         element: &Element,
-        surface: ShapeId,
         corners: Option<Polygon>,
     ) -> Option<Self> {
         (element.area > 0.0).then(|| Self {
-            point: HiddenPoint::from(element),
+            point: HiddenPoint::new(surface, element),
             area: element.area * std::f64::consts::FRAC_1_PI,
             albedo: element.albedo,
-            surface,
+            surface: id,
             corners,
         })
     }
@@ -44,7 +44,7 @@ pub(super) fn cells_of_elements(
     let id = id as ShapeId;
     let of_place = |place: &Place| {
         let (element, corners) = place.cell(&surface)?;
-        HiddenCell::new(&element, id, corners)
+        HiddenCell::new((id, &surface), &element, corners)
     };
     let mut found = Vec::new();
     if let (Shape::Instance(body), Division::Faces | Division::Whole) =
@@ -70,7 +70,7 @@ pub(super) fn cells_of_elements(
         |cell: usize| ((cell % fine[0]) >> halvings) + ((cell / fine[0]) >> halvings) * nu;
     if let Shape::Instance(_) = surface.shape {
         for (k, e) in surface.divided(fine).iter().enumerate() {
-            found[element(k)].extend(HiddenCell::new(e, id, None));
+            found[element(k)].extend(HiddenCell::new((id, &surface), e, None));
         }
     } else {
         for (k, place) in grid(fine).enumerate() {

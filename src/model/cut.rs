@@ -6,10 +6,10 @@ use super::extent::{Extent, Take};
 use super::kernel::{HiddenPoint, Kernel};
 use super::parts::{Ball, FootprintPart, HiddenParts, footprint_parts};
 use super::wall_point::{self, WallPoint};
-use crate::geometry::Basis;
+use crate::geometry::{Basis, DVec3};
 use crate::matrix::Matrix;
 use crate::num::quadrature::Rule;
-use crate::scene::{Profile, Scene};
+use crate::scene::{Profile, Scene, Surface};
 
 /// Nodes, and pixels, handled at once.
 pub(super) const CHUNK: usize = 4096;
@@ -20,10 +20,18 @@ const GAUSSIAN_REACH: f64 = 4.0;
 /// How far from its target a spot lights the wall.
 pub(super) fn reach(profile: Profile) -> f64 {
     match profile {
-        Profile::Ideal => 0.0,
+        Profile::Ideal | Profile::Shining { .. } => 0.0,
         Profile::Disc { radius } => radius,
         Profile::Gaussian { radius } => GAUSSIAN_REACH * radius,
     }
+}
+
+/// M at a point of the surface that shines, W length⁻²: 0 where it is dark in that column. `None`
+/// where a laser lights the scene.
+pub(super) fn exitance(scene: &Scene, column: usize, at: DVec3) -> Option<f64> {
+    let (_, surface) = scene.shining()?;
+    let uv = surface.shape.at_position(at).uv;
+    Some(scene.laser.exitance(surface, column, uv))
 }
 
 /// A scene cut into parts on which the rules converge.
@@ -86,8 +94,11 @@ impl<'a> Cut<'a> {
         (0..self.footprints.len()).map(seen).collect()
     }
 
-    /// The wall as each spot lights it, at `level`.
+    /// The wall as each spot lights it, at `level`; nothing where a surface shines.
     pub(super) fn lit(&self, scene: &Scene, level: usize) -> Vec<Vec<WallPoint>> {
+        if scene.laser.is_shining() {
+            return vec![Vec::new(); self.spots];
+        }
         let offsets = profile_nodes(self.profile, 2 + 2 * level);
         let lit = |l: usize| {
             let basis = Basis::around(scene.laser.spots[l].target.normal);
@@ -116,7 +127,9 @@ impl<'a> Cut<'a> {
         let mut phi = Matrix::zeros(seen.len(), lit.len());
         for chunk in hidden.chunks(CHUNK) {
             let laser = Matrix::from_fn(chunk.len(), lit.len(), |q, l| {
-                chunk[q].1 * side(&lit[l], &chunk[q].0)
+                let (point, share) = &chunk[q];
+                let shines = exitance(scene, l, point.position);
+                share * shines.unwrap_or_else(|| side(&lit[l], point))
             });
             for (strip, seen) in seen.chunks(CHUNK).enumerate() {
                 let camera =
@@ -130,11 +143,12 @@ impl<'a> Cut<'a> {
 }
 
 /// The middles of the scene's elements with area · albedo/π.
-fn elements(scene: &Scene) -> Vec<(HiddenPoint, f64)> {
-    let all = scene.hidden().flat_map(|(_, s)| s.divided(s.elements));
-    let light = all.filter(|e| e.albedo > 0.0 && e.area > 0.0);
+fn elements<'a>(scene: &'a Scene) -> Vec<(HiddenPoint, f64)> {
+    let divided = |s: &'a Surface| s.divided(s.elements).into_iter().map(move |e| (s, e));
+    let all = scene.hidden().flat_map(|(_, s)| divided(s));
+    let light = all.filter(|(_, e)| e.albedo > 0.0 && e.area > 0.0);
     light
-        .map(|e| (HiddenPoint::from(&e), e.area * e.albedo * FRAC_1_PI))
+        .map(|(s, e)| (HiddenPoint::new(s, &e), e.area * e.albedo * FRAC_1_PI))
         .collect()
 }
 
@@ -142,7 +156,7 @@ fn elements(scene: &Scene) -> Vec<(HiddenPoint, f64)> {
 /// e^−32).
 fn profile_nodes(profile: Profile, n: usize) -> Vec<([f64; 2], f64)> {
     let (reach, gaussian) = match profile {
-        Profile::Ideal => return vec![([0.0, 0.0], 1.0)],
+        Profile::Ideal | Profile::Shining { .. } => return vec![([0.0, 0.0], 1.0)],
         Profile::Disc { radius } => (radius, None),
         Profile::Gaussian { radius } => (GAUSSIAN_REACH * radius, Some(radius)),
     };

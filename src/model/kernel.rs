@@ -1,7 +1,8 @@
 //! The two kernels of G12 and G23.
 
 use crate::geometry::DVec3;
-use crate::scene::Element;
+use crate::scene::material::FallOff;
+use crate::scene::{Element, Surface};
 
 /// Which cosine is taken at S2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,11 +23,14 @@ pub(super) struct HiddenPoint {
     pub normal: DVec3,
     /// Unit vector along u.
     pub u_axis: DVec3,
+    /// Of a surface whose light falls off with direction.
+    pub fall_off: Option<FallOff>,
 }
 
-impl From<&Element> for HiddenPoint {
-    fn from(element: &Element) -> Self {
+impl HiddenPoint {
+    pub(super) fn new(surface: &Surface, element: &Element) -> Self {
         Self {
+            fall_off: surface.fall_off(),
             position: element.position,
             normal: element.normal,
             u_axis: element.u_axis,
@@ -44,7 +48,7 @@ impl Kernel {
     }
 
     /// G between a wall point with its normal and a hidden point, length⁻²; 0 where one sees only
-    /// the other's back.
+    /// the other's back. Where the hidden surface shines, times its fall-off f in that direction.
     pub(super) fn between(self, wall: DVec3, normal: DVec3, hidden: &HiddenPoint) -> f64 {
         let r = hidden.position - wall;
         let r2 = r.length_squared();
@@ -59,7 +63,10 @@ impl Kernel {
                 (0.5 * (r - hidden.u_axis * r.dot(hidden.u_axis)).length_squared()).sqrt()
             }
         };
-        at_wall * at_hidden / (r2 * r2)
+        let falls = hidden
+            .fall_off
+            .map_or(1.0, |f| f.towards(hidden.normal, -r));
+        at_wall * at_hidden * falls / (r2 * r2)
     }
 }
 
@@ -83,6 +90,7 @@ mod tests {
                 position: DVec3::new(x2, y2, z2),
                 normal: DVec3::new(0.0, -h, -h),
                 u_axis: DVec3::X,
+                fall_off: None,
             };
             let wall = DVec3::new(x, y, 0.0);
             let physical = Kernel::Physical.between(wall, DVec3::Z, &hidden);
@@ -106,6 +114,7 @@ mod tests {
             position: DVec3::Z,
             normal: DVec3::Z,
             u_axis: DVec3::X,
+            fall_off: None,
         };
         assert_eq!(
             Kernel::Physical.between(DVec3::ZERO, DVec3::Z, &hidden),

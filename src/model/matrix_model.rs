@@ -20,7 +20,8 @@ pub struct MatrixModel {
     pub kernel: Kernel,
     /// Hidden surfaces in file order.
     pub grids: Vec<ElementGrid>,
-    /// Elements × spots, length⁻².
+    /// Elements × spots, length⁻². Where a surface shines the share of each element that shines in
+    /// each column, a number.
     pub g12: Matrix,
     /// Pixels × elements, length⁻².
     pub g23: Matrix,
@@ -34,7 +35,7 @@ pub struct MatrixModel {
     /// C, pixels × elements: E_p·(ρ3/π)·G23/π.
     pub camera_side: Matrix,
     /// D, elements × spots, W: Φlaser·(ρ1/π)·A_j·G12, so that Φcam\[p,l\] = Σ_j
-    /// C\[p,j\]·ρ2_j·D\[j,l\].
+    /// C\[p,j\]·ρ2_j·D\[j,l\]. Where a surface shines M·A_j times that share, and ρ2 its picture.
     pub laser_side: Matrix,
     /// The terms of each element, where something stands in the way: C and D then hold the visible
     /// share of each entry, and their product is an approximation ([`MatrixModel::product_error`]).
@@ -165,7 +166,7 @@ impl MatrixModel {
         let mut albedo = Vec::with_capacity(count);
         for ((_, surface), grid) in scene.hidden().zip(&grids) {
             for element in surface.divided(grid.count) {
-                points.push(HiddenPoint::from(&element));
+                points.push(HiddenPoint::new(surface, &element));
                 areas.push(element.area);
                 albedo.push(element.albedo);
             }
@@ -173,18 +174,31 @@ impl MatrixModel {
         let seen: Vec<WallPoint> = (0..pixels)
             .map(|p| wall_point::seen(scene, p, [0.5, 0.5], 1.0))
             .collect();
-        let lit: Vec<WallPoint> = (0..spots)
-            .map(|l| wall_point::lit(scene, l, DVec3::ZERO, 1.0))
-            .collect();
         let g = |wall: &WallPoint, j: usize| kernel.between(wall.position, wall.normal, &points[j]);
         let g23 = Matrix::from_fn(pixels, count, |p, j| g(&seen[p], j));
-        let g12 = Matrix::from_fn(count, spots, |j, l| g(&lit[l], j));
         let camera_side = Matrix::from_fn(pixels, count, |p, j| {
             seen[p].reflected(scene, points[j].position) * g23[(p, j)] * FRAC_1_PI
         });
-        let laser_side = Matrix::from_fn(count, spots, |j, l| {
-            lit[l].reflected(scene, points[j].position) * areas[j] * g12[(j, l)]
-        });
+        let (g12, laser_side) = match (scene.shining(), &grids[..]) {
+            (Some((_, surface)), [grid]) => {
+                let exitance = surface.shining().map_or(0.0, |s| s.exitance);
+                let g12 =
+                    Matrix::from_fn(count, spots, |j, l| scene.laser.share(l, (j, grid.count)));
+                let laser_side =
+                    Matrix::from_fn(count, spots, |j, l| exitance * areas[j] * g12[(j, l)]);
+                (g12, laser_side)
+            }
+            _ => {
+                let lit: Vec<WallPoint> = (0..spots)
+                    .map(|l| wall_point::lit(scene, l, DVec3::ZERO, 1.0))
+                    .collect();
+                let g12 = Matrix::from_fn(count, spots, |j, l| g(&lit[l], j));
+                let laser_side = Matrix::from_fn(count, spots, |j, l| {
+                    lit[l].reflected(scene, points[j].position) * areas[j] * g12[(j, l)]
+                });
+                (g12, laser_side)
+            }
+        };
         Ok(Self {
             kernel,
             grids,

@@ -7,6 +7,8 @@
 //! centres ([`MatrixModel`]), or everything is integrated until it no longer changes
 //! ([`converged`]). What stands in the way takes its share of each entry, by areas
 //! ([`visible`](fn@visible), [`Factors`]), unless it is to be left out ([`Occlusion::Ignored`]).
+//! Where a hidden surface shines, Φlaser·(ρ1/π)·G12\[j,l\] is its exitance M, ρ2 its picture x, and
+//! G23 has its fall-off with direction as a factor.
 //! Three surfaces and a Lambertian object: what light does beyond that is for `transport` to show,
 //! which this floor never sees.
 

@@ -46,7 +46,8 @@ pub(super) fn obstacles(scene: &Scene) -> Vec<ShapeId> {
             walls.iter().any(to)
         };
         let laser = scene.laser.position;
-        any(&seen, scene.camera.position) || any(&together, laser) && any(&lit, laser)
+        let lights = || !scene.laser.is_shining() && any(&together, laser) && any(&lit, laser);
+        any(&seen, scene.camera.position) || lights()
     };
     (0..shapes.len() as ShapeId).filter(may).collect()
 }

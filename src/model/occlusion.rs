@@ -3,11 +3,14 @@
 //! > c_p(x) = ∫_p f_r3 G(x, w) V(x, w) dE(w),   d_l(x) = ∫_l f_r1 G(x, w) V(x, w) dΦ(w),
 //! > Φ\[p,l\] = ∫ c_p(x) (ρ(x)/π) d_l(x) dA
 //!
+//! Where a surface shines, d_l(x) is its exitance M, or 0 where it is dark.
+//!
 //! Of a flat wall what the camera sees of a pixel's footprint, and of that what x sees, are convex
 //! pieces, found exactly ([`Shadow`]); each is taken at its centroid. So is what a lit point sees
 //! of a flat cell of the hidden surface. Other walls, cells and large meshes are asked ray by ray.
 
 use super::cells::HiddenCell;
+use super::cut::exitance;
 use super::kernel::{HiddenPoint, Kernel};
 use super::obstacles::hull;
 use super::parts::footprint_parts;
@@ -248,6 +251,11 @@ impl<'a> Obstructed<'a> {
 
     /// What arrives of spot `spot` on each of the cells: d_l times the cell's area/π.
     pub(super) fn laser(&self, spot: usize, cells: &[HiddenCell]) -> Vec<Both> {
+        if self.scene.laser.is_shining() {
+            let shines = |c: &HiddenCell| exitance(self.scene, spot, c.point.position);
+            let light = |c: &HiddenCell| [shines(c).unwrap_or(0.0) * c.area; 2];
+            return cells.iter().map(light).collect();
+        }
         let mut found = vec![[0.0; 2]; cells.len()];
         let mut pieces = Pieces::default();
         for (wall, free) in &self.lit[spot] {

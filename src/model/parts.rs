@@ -172,14 +172,14 @@ impl<'a> HiddenParts<'a> {
         let cell = |index: usize, place: &Place| {
             let surface = &*self.surfaces[index];
             let (element, corners) = place.cell(surface)?;
-            HiddenCell::new(&element, self.ids[index], corners)
+            HiddenCell::new((self.ids[index], surface), &element, corners)
         };
         let parts = self.parts.iter();
         let parts = parts.filter_map(|(index, place, _)| cell(*index, place));
         let coarse = self.coarse.iter().flat_map(|index| {
             let surface = &self.surfaces[*index];
             let elements = surface.divided([self.coarse_side; 2]).into_iter();
-            elements.filter_map(|e| HiddenCell::new(&e, self.ids[*index], None))
+            elements.filter_map(|e| HiddenCell::new((self.ids[*index], surface), &e, None))
         });
         parts.chain(coarse).collect()
     }
@@ -199,10 +199,10 @@ impl<'a> HiddenParts<'a> {
     pub(super) fn nodes(&self, level: usize) -> Vec<(HiddenPoint, f64)> {
         let mut found = Vec::with_capacity(self.count(level));
         let mut rules: Vec<Option<Vec<_>>> = Vec::new();
-        let mut add = |element: &Element| {
+        let mut add = |surface: &Surface, element: &Element| {
             if element.albedo > 0.0 && element.area > 0.0 {
                 let weight = element.area * element.albedo * std::f64::consts::FRAC_1_PI;
-                found.push((HiddenPoint::from(element), weight));
+                found.push((HiddenPoint::new(surface, element), weight));
             }
         };
         for (index, place, distance) in &self.parts {
@@ -215,7 +215,8 @@ impl<'a> HiddenParts<'a> {
             match (place, &surface.shape) {
                 (Place::Triangle { id, corners }, Shape::Instance(body)) => {
                     for (weights, share) in folded(n, square) {
-                        add(&on_triangle(surface, body, *id, corners, weights, share));
+                        let element = on_triangle(surface, body, *id, corners, weights, share);
+                        add(surface, &element);
                     }
                 }
                 (Place::Triangle { .. }, _) => {}
@@ -224,10 +225,8 @@ impl<'a> HiddenParts<'a> {
                     for ([a, b], w) in square {
                         let uv = [from[0] + a * size[0], from[1] + b * size[1]];
                         let point = surface.element_at(uv);
-                        add(&Element {
-                            area: w * area,
-                            ..point
-                        });
+                        let area = w * area;
+                        add(surface, &Element { area, ..point });
                     }
                 }
             }
@@ -235,7 +234,7 @@ impl<'a> HiddenParts<'a> {
         for index in &self.coarse {
             let surface = &self.surfaces[*index];
             let elements = surface.divided([self.coarse_side << level; 2]);
-            elements.iter().for_each(&mut add);
+            elements.iter().for_each(|e| add(surface, e));
         }
         found
     }

@@ -45,6 +45,12 @@ pub fn import(
     folder: &Path,
     channel: Option<ChannelName>,
 ) -> Result<Imported, PhotographError> {
+    if set.halo.is_some() && scene.laser.is_shining() {
+        return Err(refused(
+            "a halo about the laser's spot, and the scene has no laser: its hidden surface shines",
+            "remove `halo`",
+        ));
+    }
     let mut reader = Reader::new(folder, set.variable.as_deref(), set.axes);
     let listed = tables(set, &mut reader, folder)?;
     let spots = scene.laser.spots.len();

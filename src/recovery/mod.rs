@@ -68,7 +68,7 @@
 //!
 //! // The geometry: the bench with 24 spots, and 2 × 2 elements on the hidden surface.
 //! let mut file = SceneFile::default();
-//! file.laser.spots.per_side = Some(6);
+//! file.laser.as_mut().expect("the bench has a laser").spots.per_side = Some(6);
 //! let scene = Scene::new(&file, None)?;
 //! let model = MatrixModel::new(&scene, Kernel::Physical, Some([2, 2]))?;
 //!

@@ -38,7 +38,7 @@ fn every_built_in_scene_is_drawn() {
         // Each spot is drawn twice (halo and dot) in each of two views.
         assert_eq!(
             svg.matches("h.01").count(),
-            4 * scene.laser.spots.len(),
+            4 * scene.laser.beams().len(),
             "{}",
             scene.name
         );

@@ -35,7 +35,7 @@ pub(super) fn entries(scene: &Scene) -> Vec<(String, String)> {
             entries.push((ticked(colour(role)), text.to_owned()));
         }
     }
-    let spots = scene.laser.spots.len();
+    let spots = scene.laser.beams().len();
     let step = spots.div_ceil(MOST_SPOTS).max(1);
     let thinned = if step > 1 {
         format!(", 1 in {step} drawn")
@@ -48,11 +48,13 @@ pub(super) fn entries(scene: &Scene) -> Vec<(String, String)> {
     } else {
         "laser spots"
     };
-    entries.push((dot, format!("{spots} {noun}{thinned}")));
-    entries.push((
-        line(&stroke(ink::VERMILLION, 1.2)),
-        "some laser beams".to_owned(),
-    ));
+    if spots > 0 {
+        entries.push((dot, format!("{spots} {noun}{thinned}")));
+        entries.push((
+            line(&stroke(ink::VERMILLION, 1.2)),
+            "some laser beams".to_owned(),
+        ));
+    }
     let c = &scene.camera;
     let square = drawn(&|svg| svg.rect([4.0, -6.0], [16.0, 12.0], &stroke(ink::GREEN, 1.8)));
     entries.push((

@@ -162,7 +162,7 @@ pub(super) fn view(svg: &mut Svg, scene: &Scene, p: &Projection) {
 
 /// A few beams, the edges of the camera's sight, and one way of the light around the corner.
 pub(super) fn lines(svg: &mut Svg, scene: &Scene, p: &Projection) {
-    let spots = &scene.laser.spots;
+    let spots = scene.laser.beams();
     let beam = stroke(ink::VERMILLION, 0.9) + " stroke-opacity=\"0.6\"";
     for spot in spots.iter().step_by(spots.len().div_ceil(6).max(1)) {
         svg.line(
@@ -176,20 +176,20 @@ pub(super) fn lines(svg: &mut Svg, scene: &Scene, p: &Projection) {
         svg.line(p.at(scene.camera.position), p.at(corner), &sight);
     }
     let centre = scene.camera.view.at([0.5, 0.5]).position;
-    if let (Some(spot), Some((_, hidden))) = (spots.first(), scene.hidden().next()) {
-        let way = [
-            spot.target.position,
-            hidden.shape.at([0.5, 0.5]).position,
-            centre,
-        ]
-        .map(|q| p.at(q));
+    if let Some((_, hidden)) = scene.hidden().next() {
+        let start = spots.first().map(|spot| spot.target.position);
+        let rest = [hidden.shape.at([0.5, 0.5]).position, centre];
+        let way: Vec<[f64; 2]> = start.into_iter().chain(rest).map(|q| p.at(q)).collect();
         svg.path(&way, Close::No, &stroke(ink::BLUE, 1.6));
     }
 }
 
 /// All spots, as one path of dots.
 pub(super) fn spots(svg: &mut Svg, scene: &Scene, p: &Projection, labels: &mut Labels) {
-    let spots = &scene.laser.spots;
+    let spots = scene.laser.beams();
+    if spots.is_empty() {
+        return;
+    }
     let mut d = String::new();
     for spot in spots
         .iter()
@@ -212,7 +212,9 @@ pub(super) fn spots(svg: &mut Svg, scene: &Scene, p: &Projection, labels: &mut L
 pub(super) fn names(svg: &mut Svg, scene: &Scene, p: &Projection, labels: &mut Labels) {
     let [laser, camera] = [scene.laser.position, scene.camera.position];
     let place = |q: DVec3| format!("({}, {}, {})", tick(q.x), tick(q.y), tick(q.z));
-    let devices = if laser == camera {
+    let devices = if scene.laser.is_shining() {
+        vec![(camera, format!("camera {}", place(camera)), ink::GREEN)]
+    } else if laser == camera {
         vec![(
             laser,
             format!("laser and camera {}", place(laser)),
@@ -265,7 +267,7 @@ pub(super) fn names(svg: &mut Svg, scene: &Scene, p: &Projection, labels: &mut L
     for (anchor, ink, text) in anchors {
         labels.place(svg, anchor, ink, &text);
     }
-    if let Some(spot) = scene.laser.spots.first() {
+    if let Some(spot) = scene.laser.beams().first() {
         labels.place(svg, p.at(spot.target.position), ink::VERMILLION, "spot 0");
     }
     for s in &scene.surfaces {

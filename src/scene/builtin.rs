@@ -40,6 +40,7 @@ pub fn builtins() -> &'static [Builtin] {
         "satin": "the bench with a wall in satin paint: its BRDF enters the model",
         "shelf": "the bench with a shelf between wall and object",
         "periscope": "a plate between object and wall: the edge of its shadow is a lens",
+        "screen": "a monitor that faces a wall, a plate between: one photograph without a laser",
         "mask": "the same with a half-open mask: its shadow is another for each element",
         "corner": "a letter chart around a corner: the relay wall is seen past another wall",
         "room": "a furnished room with a bust of a million triangles in it",

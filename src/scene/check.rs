@@ -77,7 +77,7 @@ pub(super) fn warnings(scene: &Scene) -> Vec<Warning> {
     if beyond(laser.wavelength, WAVELENGTHS) {
         found.push(Warning::Wavelength(laser.wavelength));
     }
-    if beyond(laser.power, POWERS) {
+    if beyond(laser.power, POWERS) && !laser.is_shining() {
         found.push(Warning::Power(laser.power));
     }
     let entries = scene.camera.pixels() * laser.spots.len();
@@ -98,6 +98,7 @@ fn spots(scene: &Scene, found: &mut Vec<Warning>) {
     let reach = match laser.profile {
         Profile::Ideal => 0.0,
         Profile::Disc { radius } | Profile::Gaussian { radius } => radius,
+        Profile::Shining { .. } => return view_behind(scene, found),
     };
     let mut in_view = Vec::new();
     let mut shadowed = Vec::new();
@@ -154,19 +155,32 @@ fn spots(scene: &Scene, found: &mut Vec<Warning>) {
         found.push(Warning::SpotsShadowed(shadowed));
     }
     for (_, surface) in scene.hidden() {
-        // A body has fronts to all sides: no plane has it all behind.
-        let outline = match &surface.shape {
-            Shape::Instance(_) | Shape::Sphere(_) => continue,
-            flat => flat.outline(),
-        };
-        let faces = |q: DVec3| outline.iter().any(|p| (q - p.position).dot(p.normal) > 0.0);
         let behind: Vec<usize> = (0..laser.spots.len())
-            .filter(|i| !faces(laser.spots[*i].target.position))
+            .filter(|i| !is_faced(surface, laser.spots[*i].target.position))
             .collect();
         if !behind.is_empty() {
             found.push(Warning::SpotsBehind(behind, surface.name.clone()));
         }
-        if !scene.camera.view.corners().into_iter().all(faces) {
+    }
+    view_behind(scene, found);
+}
+
+/// Whether a point lies in front of some of a surface. Every point does of a body, which has fronts
+/// to all sides.
+fn is_faced(surface: &Surface, q: DVec3) -> bool {
+    match &surface.shape {
+        Shape::Instance(_) | Shape::Sphere(_) => true,
+        flat => {
+            let outline = flat.outline();
+            outline.iter().any(|p| (q - p.position).dot(p.normal) > 0.0)
+        }
+    }
+}
+
+fn view_behind(scene: &Scene, found: &mut Vec<Warning>) {
+    for (_, surface) in scene.hidden() {
+        let corners = scene.camera.view.corners();
+        if !corners.into_iter().all(|q| is_faced(surface, q)) {
             found.push(Warning::ViewBehind(surface.name.clone()));
         }
     }

@@ -60,8 +60,9 @@ pub struct SceneFile {
     pub unit: Unit,
     /// Largest number of surfaces met between laser and camera (3: S1, S2, S3).
     pub max_bounces: u32,
-    /// Laser and spots.
-    pub laser: LaserTable,
+    /// Laser and spots; none where a hidden surface shines.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub laser: Option<LaserTable>,
     /// Camera and view.
     pub camera: CameraTable,
     /// Surfaces, in the order of their shape ids.
@@ -398,7 +399,10 @@ mod tests {
                 own.hash
             );
 
-            file.laser.power *= 2.0;
+            let Some(laser) = &mut file.laser else {
+                continue;
+            };
+            laser.power *= 2.0;
             assert_ne!(Scene::new(&file, None).unwrap().hash, own.hash);
         }
     }
@@ -407,7 +411,7 @@ mod tests {
     #[test]
     fn what_is_wrong_is_found_in_the_written_text() {
         let mut file = SceneFile::default();
-        file.laser.power = -1.0;
+        file.laser.as_mut().unwrap().power = -1.0;
         let error = Scene::new(&file, None).unwrap_err();
         assert_eq!(error.place.unwrap().text, "power = -1.0");
         assert!(error.cause.contains("-1 W"));

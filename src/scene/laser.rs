@@ -1,4 +1,4 @@
-//! The laser and its spots.
+//! The light: a laser and its spots, or a surface that shines.
 
 use super::device;
 use super::error::{Fault, keys};
@@ -27,21 +27,29 @@ pub enum Profile {
         /// w: where the irradiance has fallen to 1/e².
         radius: f64,
     },
+    /// No laser: each spot stands for a part of a hidden surface that shines, one of so many along
+    /// u and v.
+    Shining {
+        /// Parts along u and v; \[1, 1\] is the whole surface.
+        columns: [usize; 2],
+    },
 }
 
-/// One laser spot.
+/// One laser spot; where a surface shines, what of it shines in one column of Φcam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spot {
-    /// The point of the wall that the beam is aimed at.
+    /// The point of the wall that the beam is aimed at; the middle of what shines.
     pub target: Interaction,
-    /// The relay surface it lies on.
+    /// The relay surface it lies on, or the surface that shines.
     pub surface: ShapeId,
 }
 
-/// The laser: one beam at a time, from `position` to each spot in turn.
+/// The light: a laser, one beam at a time, from `position` to each spot in turn; or a surface that
+/// shines ([`Profile::Shining`]), which is a laser whose light has landed there: its power is what a
+/// Lambertian white picture emits, and its `position` the surface's middle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Laser {
-    /// Power that lands at a spot, W.
+    /// Power that lands at a spot, W; of what shines in a column M times its area.
     pub power: f64,
     /// Wavelength, m.
     pub wavelength: f64,

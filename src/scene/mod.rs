@@ -1,4 +1,4 @@
-//! Floor 2: the scene. Laser and spots, camera and view, surfaces with role, shape and albedo; the
+//! Floor 2: the scene. Laser and spots, or a hidden surface that shines, camera and view, surfaces with role, shape and albedo; the
 //! TOML file that describes them, and the scenes that are built in.
 //!
 //! A [`Scene`] that exists is consistent: its spots and its view lie on relay surfaces, nothing has
@@ -17,7 +17,8 @@
 //! | --- | --- |
 //! | `name` | name of the scene |
 //! | `unit` | length unit of every number in the file: `m`, `cm`, `mm`, `in` |
-//! | `max_bounces` | largest number of surfaces met between laser and camera, 1 to 1000 |
+//! | `max_bounces` | largest number of surfaces met between laser and camera, 1 to 1000; a surface that shines counts as one |
+//! | `laser` | `[laser]`; absent where a hidden surface shines |
 //! | `laser.power` | power that lands at the spot, W |
 //! | `laser.wavelength` | m, whatever the unit |
 //! | `laser.position` | where the beams start |
@@ -42,6 +43,18 @@
 //! | `sensor` | `[sensor]`, optional: how the frames are photographed, below |
 //!
 //! Surfaces reflect from their front; their back is black; both sides are opaque.
+//!
+//! A hidden rectangle or disc may shine in place of a laser: `surface.material = { shining = x, … }`.
+//! There is no `[laser]` then, no other hidden surface, and Φcam has one column. The surface reflects
+//! nothing.
+//!
+//! | `surface.material` | meaning |
+//! | --- | --- |
+//! | `shining` | the picture x in \[0, 1\]: a number, an albedo table below, or `"unknown"` |
+//! | `exitance` | M, W/unit²: π times the radiance of x = 1 along the normal, which is the exitance of a Lambertian surface of that radiance; default 1 |
+//! | `falloff` | `[nu, nv]`: the radiance is x·M/π·cosⁿᵘ(θ_u)·cosⁿᵛ(θ_v), θ_u and θ_v the angles between the normal and the direction's projections on the planes of normal and u, normal and v; default `[0, 0]`, Lambertian; rectangles only |
+//! | `wavelength` | m; default 550e-9 |
+//! | `light` | `"picture"` (default); `"elements"`: each element shines alone at 1, a column of Φcam each, which is the transport matrix for `recover --camera-side`; with `shining = 1.0` |
 //!
 //! Numbers that would leave the range of what is computed from them are refused: coordinates beyond
 //! 10¹⁵, extents below 10⁻¹⁵ that are not 0, areas beyond the squares of these, powers outside
@@ -150,6 +163,7 @@ pub mod mesh;
 mod parse;
 mod quantity;
 mod sensor;
+mod shining;
 pub mod spots;
 mod surface;
 mod surface_tables;
@@ -262,7 +276,7 @@ impl Scene {
     /// let mut file = SceneFile::builtin("bench").unwrap();
     /// file.name = "coarse".to_owned();
     /// file.camera.pixels = [8, 8];
-    /// file.laser.spots.per_side = Some(5);
+    /// file.laser.as_mut().expect("the bench has a laser").spots.per_side = Some(5);
     /// let scene = Scene::new(&file, None)?;
     /// assert_eq!((scene.camera.pixels(), scene.laser.spots.len()), (64, 20));
     /// # Ok::<(), phicam::scene::SceneError>(())
@@ -306,11 +320,20 @@ impl Scene {
             ));
         }
         let mut found = Vec::new();
-        let wavelength = file.laser.wavelength;
-        let surfaces =
+        let wavelength = shining::wavelength(file);
+        let mut surfaces =
             surface_tables::from_tables(&file.surface, &mut files, wavelength, &mut found)?;
         let bvh = surface::bvh(&surfaces)?;
-        let laser = Laser::from_table(&file.laser, &surfaces)?;
+        let laser = match (Laser::of_shining(file, &mut surfaces)?, &file.laser) {
+            (Some(shining), _) => shining,
+            (None, Some(table)) => Laser::from_table(table, &surfaces)?,
+            (None, None) => {
+                let cause = "nothing gives light: there is no [laser] table, and no surface shines";
+                let cure =
+                    "add [laser], or let a hidden surface shine: `material = { shining = … }`";
+                return Err(Fault::new(keys![], cause, cure));
+            }
+        };
         let camera = Camera::from_table(&file.camera, &surfaces)?;
         let known = Known::from_tables(
             &file.known,

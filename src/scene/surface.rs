@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::error::{Fault, keys};
-use super::material::Material;
+use super::material::{FallOff, Material, Shining};
 use super::texture::Texture;
 use crate::geometry::{Basis, Bvh, DVec3, Interaction, Shape, ShapeId};
 
@@ -70,12 +70,32 @@ impl Surface {
         self.material.is_lambertian()
     }
 
+    /// How it shines, if it does.
+    pub fn shining(&self) -> Option<&Shining> {
+        match &self.material {
+            Material::Shining(shining) => Some(shining),
+            _ => None,
+        }
+    }
+
+    /// By how much its light falls off with direction; `None` if it does not shine, or evenly.
+    pub fn fall_off(&self) -> Option<FallOff> {
+        let shining = self.shining().filter(|s| !s.is_lambertian())?;
+        let Shape::Parallelogram(plane) = &self.shape else {
+            return None;
+        };
+        Some(FallOff {
+            axes: [plane.u(), plane.v()].map(DVec3::normalize_or_zero),
+            exponents: shining.falloff,
+        })
+    }
+
     /// The Lambertian surface in its place that reflects as much of light that comes evenly from
     /// everywhere: its albedo is the material's white-sky albedo at each value of the texture
     /// (between the texels of a bilinear picture, and along a ramp, interpolated). What the matrix
-    /// model takes for the hidden surface.
+    /// model takes for the hidden surface. One that shines is its own.
     pub fn lambertian_equivalent(&self) -> Cow<'_, Self> {
-        if self.is_lambertian() {
+        if self.is_lambertian() || self.shining().is_some() {
             return Cow::Borrowed(self);
         }
         // A quadrature each, so every value once.
@@ -105,8 +125,8 @@ impl Surface {
         }
     }
 
-    /// About how much of the light cell iu + iv·nu of [`Surface::smooth_cells`] reflects: 0 where,
-    /// and only where, it is black.
+    /// About how much of the light cell iu + iv·nu of [`Surface::smooth_cells`] reflects, or how
+    /// brightly it shines: 0 where, and only where, it is black.
     pub fn cell_weight(&self, cell: usize) -> f64 {
         /// What is sampled of a surface that reflects though its texture is black there.
         const LEAST: f64 = 0.05;
@@ -114,7 +134,7 @@ impl Surface {
             Shape::Instance(_) => self.albedo.largest(),
             _ => self.albedo.cell_mean(cell),
         };
-        if self.material.is_lambertian() {
+        if self.is_lambertian() || self.shining().is_some() {
             return mean;
         }
         if self.material.is_black(mean) {

@@ -162,10 +162,13 @@ impl Surface {
         let files = &mut *sources.files;
         let mut read = |path: &str| files.bytes_or_words(path, LARGEST_PICTURE);
         let is_known = role != Role::Hidden
-            || !matches!(table.material.lambertian, Some(AlbedoTable::Unknown(_)));
+            || ![&table.material.lambertian, &table.material.shining]
+                .iter()
+                .any(|albedo| matches!(albedo, Some(AlbedoTable::Unknown(_))));
         let mut painted = table.material.clone();
-        if !is_known {
-            painted.lambertian = Some(STAND_IN.into());
+        let stated = [&mut painted.lambertian, &mut painted.shining];
+        for albedo in stated.into_iter().flatten().filter(|_| !is_known) {
+            *albedo = STAND_IN.into();
         }
         let (material, albedo) = Material::from_table(&painted, wavelength, &mut read)
             .map_err(|f| f.within(keys!["material"]))?;

@@ -15,7 +15,7 @@ impl Scene {
     /// The same scene with every spot moved by (dx, dy) on the wall.
     ///
     /// # Errors
-    /// [`SceneError`] if a spot leaves the wall.
+    /// [`SceneError`] if a spot leaves the wall, or there is no laser.
     pub fn with_shifted_spots(&self, [dx, dy]: [f64; 2]) -> Result<Self, SceneError> {
         let shift = |s: &laser::Spot| [s.target.position.x + dx, s.target.position.y + dy];
         self.with_spots_at(&self.laser.spots.iter().map(shift).collect::<Vec<_>>())
@@ -24,8 +24,13 @@ impl Scene {
     /// The same scene with spots at the given (x, y).
     ///
     /// # Errors
-    /// [`SceneError`] if a spot is not on the wall.
+    /// [`SceneError`] if a spot is not on the wall, or there is no laser.
     pub fn with_spots_at(&self, places: &[[f64; 2]]) -> Result<Self, SceneError> {
+        if self.laser.is_shining() {
+            let cause = "the scene has no laser: its hidden surface shines";
+            let cure = "use a scene with a [laser] table where spots are to be placed";
+            return Err(self.locate(Fault::new(keys!["surface"], cause, cure)));
+        }
         let mut scene = self.clone();
         scene.laser.spots = laser::place(places, self.laser.position, &self.surfaces)
             .map_err(|fault| self.locate(fault))?;
@@ -39,11 +44,13 @@ impl Scene {
     /// [`SceneError`] if a spot is not on the wall.
     pub fn with_listed_spots(&self, places: &[[f64; 2]]) -> Result<Self, SceneError> {
         let mut file: SceneFile = parse::parse(&self.name, &self.text)?;
-        file.laser.spots = SpotsTable {
-            layout: Layout::List,
-            points: Some(places.to_vec()),
-            ..SpotsTable::default()
-        };
+        if let Some(laser) = &mut file.laser {
+            laser.spots = SpotsTable {
+                layout: Layout::List,
+                points: Some(places.to_vec()),
+                ..SpotsTable::default()
+            };
+        }
         file.known.clear();
         let scene = self.with_spots_at(places)?;
         Ok(Self {
@@ -95,8 +102,14 @@ impl Scene {
     /// matrix model needs to estimate the light that they reflect.
     ///
     /// # Errors
-    /// [`SceneError`] where nothing is an occluder.
+    /// [`SceneError`] where nothing is an occluder, or the hidden surface shines: what occluders
+    /// reflect of its picture is no term of the model.
     pub fn with_occluders_as_elements(&self) -> Result<Self, SceneError> {
+        if self.laser.is_shining() {
+            let cause = "the hidden surface shines, and the model has no light of occluders then";
+            let cure = "trace it: render with `light = \"elements\"`, and give its phi.npy as --camera-side";
+            return Err(self.locate(Fault::new(keys!["surface"], cause, cure)));
+        }
         if !self.surfaces.iter().any(|s| s.role == Role::Occluder) {
             let cause = "no surface has the role `occluder`, whose light could be estimated";
             let cure = "leave --occluder-light out, or say in the scene what stands there";
@@ -143,7 +156,11 @@ impl Scene {
                 let name = &self.surfaces[i].name;
                 let cause = format!("the albedo of `{name}` is unknown, so its light is too");
                 let cure = "give it a number or a picture; `model` and `recover --phi` do without";
-                let at = keys!["surface", i, "material", "lambertian"];
+                let key = match self.surfaces[i].shining() {
+                    Some(_) => "shining",
+                    None => "lambertian",
+                };
+                let at = keys!["surface", i, "material", key];
                 Err(self.locate(Fault::new(at, cause, cure)))
             }
         }
@@ -232,6 +249,9 @@ impl Scene {
             let centre = p.at([0.5, 0.5]).position + p.normal() * radius;
             Sphere::new(centre, radius, Facing::Inside).map(Shape::Sphere)
         })?;
+        if bent.laser.is_shining() {
+            return Ok(bent);
+        }
         bent.with_shifted_spots([0.0, 0.0])
     }
 
@@ -261,6 +281,7 @@ impl Scene {
 
     fn rebuilt(mut self) -> Result<Self, SceneError> {
         self.bvh = surface::bvh(&self.surfaces).map_err(|fault| self.locate(fault))?;
+        self.laser.follow(&self.surfaces);
         Ok(self)
     }
 

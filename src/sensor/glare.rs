@@ -13,7 +13,8 @@ type Lit = (DVec3, DVec3, f64, ShapeId);
 /// > Φ_lens\[l\] = Φlaser · (ρ1/π) · cosθ_spot · cosθ_lens · A_lens / R²
 ///
 /// R between the spot and the pinhole, θ_lens against the view's normal. A wide spot is taken at
-/// its centre. 0 where something stands between, where the beam meets a back, or where the lens
+/// its centre. 0 where a hidden surface shines, which the lens does not see, where something stands
+/// between, where the beam meets a back, or where the lens
 /// looks away.
 pub fn entering_lens(scene: &Scene) -> Vec<f64> {
     (0..scene.laser.spots.len())
@@ -76,6 +77,9 @@ fn weights(scene: &Scene, spot: DVec3, spread: Spread) -> Vec<f64> {
 /// Where the beam of a spot lands: on its target, or on what stands in its way.
 fn lit(scene: &Scene, spot: usize) -> Option<Lit> {
     let laser = &scene.laser;
+    if laser.is_shining() {
+        return None;
+    }
     let target = &laser.spots[spot].target;
     let ray = Ray::between(laser.position, target.position)?;
     let own = laser.spots[spot].surface;

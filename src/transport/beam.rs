@@ -1,9 +1,10 @@
-//! Where the laser's light lands.
+//! Where the laser's light lands, or a surface shines.
 
 use crate::geometry::{Basis, DVec3, Parallelogram, Ray, Region, Shape, ShapeId};
 use crate::num::warp;
 use crate::scene::{Profile, Scene};
 
+use super::area::AreaSampler;
 use super::vertex::{Oriented, Vertex};
 use super::visibility::known_or_all;
 
@@ -13,6 +14,8 @@ pub(super) struct Beams<'a> {
     pub scene: &'a Scene,
     /// By spot, if beams have no width: where its light lands.
     pub ideal: Vec<Option<Vertex>>,
+    /// Points of the surface that shines, by the brightness of its cells.
+    bright: Option<AreaSampler>,
 }
 
 /// Which part of a beam is meant.
@@ -31,6 +34,9 @@ impl<'a> Beams<'a> {
         let mut beams = Self {
             scene,
             ideal: Vec::new(),
+            bright: scene
+                .shining()
+                .map(|(id, _)| AreaSampler::new(scene, &[id])),
         };
         if !beams.has_width() {
             let spots = 0..scene.laser.spots.len();
@@ -46,7 +52,7 @@ impl<'a> Beams<'a> {
 
     /// Radius of a beam around its target, in the plane across the spot's normal: where its density
     /// vanishes (a Gaussian's underflows, exp(−2·19.4²) < 2⁻¹⁰⁷⁵), or where no sample falls any
-    /// more (√(½·53·ln 2) < 4.3 of its 1/e² radii).
+    /// more (√(½·53·ln 2) < 4.3 of its 1/e² radii). Of what shines, from its middle to its rim.
     fn radius(&self, reach: Reach) -> f64 {
         match (self.scene.laser.profile, reach) {
             (Profile::Ideal, _) => 0.0,
@@ -54,6 +60,10 @@ impl<'a> Beams<'a> {
             (Profile::Gaussian { radius }, Reach::Density) => 19.4 * radius,
             (Profile::Gaussian { radius }, Reach::Samples) => 4.3 * radius,
             (Profile::Gaussian { radius }, Reach::Expected) => 3.0 * radius,
+            (Profile::Shining { .. }, _) => self
+                .scene
+                .shining()
+                .map_or(0.0, |(_, s)| s.shape.circumsphere().1),
         }
     }
 
@@ -62,8 +72,19 @@ impl<'a> Beams<'a> {
         self.radius(Reach::Expected)
     }
 
-    /// The square around the target that holds that part of the beam.
+    /// The square around the target that holds that part of the beam; the part of a rectangle that
+    /// shines.
     pub(super) fn square(&self, spot: usize, reach: Reach) -> Option<Parallelogram> {
+        if let (Some((_, surface)), Some([from, size])) =
+            (self.scene.shining(), self.scene.laser.part(spot))
+        {
+            let Shape::Parallelogram(plane) = &surface.shape else {
+                return None;
+            };
+            let (u, v) = (plane.u(), plane.v());
+            let corner = plane.corner() + u * from[0] + v * from[1];
+            return Parallelogram::new(corner, u * size[0], v * size[1]);
+        }
         let radius = self.radius(reach);
         let target = &self.scene.laser.spots[spot].target;
         let basis = Basis::around(target.normal);
@@ -75,6 +96,9 @@ impl<'a> Beams<'a> {
     /// flat one that reaches as far as the beam, with nothing before it.
     fn surely_lands_on(&self, spot: usize, reach: Reach) -> Option<ShapeId> {
         let id = self.scene.laser.spots[spot].surface;
+        if self.scene.laser.is_shining() {
+            return Some(id);
+        }
         let Shape::Parallelogram(plane) = &self.scene.surfaces[id as usize].shape else {
             return None;
         };
@@ -104,8 +128,11 @@ impl<'a> Beams<'a> {
     }
 
     /// Whether a pixel may see the lit spot of a beam with width: no only where its light surely
-    /// lands beside the view.
+    /// lands beside the view, or where a hidden surface shines, which the camera does not see.
     pub(super) fn may_be_seen(&self, spot: usize) -> bool {
+        if self.scene.laser.is_shining() {
+            return false;
+        }
         let lands = self.surely_lands_on(spot, Reach::Density);
         let (Some(_), Some(square)) = (lands, self.square(spot, Reach::Density)) else {
             return true;
@@ -132,10 +159,32 @@ impl<'a> Beams<'a> {
             Profile::Ideal => return self.ideal[spot],
             Profile::Disc { radius } => (warp::disc(u), radius),
             Profile::Gaussian { radius } => (warp::gaussian_spot(u), radius),
+            Profile::Shining { .. } => return self.shining_point(spot, u),
         };
         let target = &self.scene.laser.spots[spot].target;
         let [x, y] = offset.map(|c| c * radius);
         self.land(target.position + Basis::around(target.normal).to_world([x, y, 0.0]))
+    }
+
+    /// A point of what shines in a column, by the brightness of its cells. With p the density there
+    /// per area and A the area of what shines, x/(p·A) stands in the place of x: the mean of
+    /// M·A·(x/(p·A))/π is the integral of the radiance M·x/π.
+    fn shining_point(&self, spot: usize, u: [f64; 2]) -> Option<Vertex> {
+        let (scene, bright) = (self.scene, self.bright.as_ref()?);
+        let (id, surface) = scene.shining()?;
+        let [from, size] = scene.laser.part(spot)?;
+        let vertex = |point| Vertex::new(scene, id, point, DVec3::ZERO, 1.0);
+        if size != [1.0; 2] {
+            let uv = std::array::from_fn(|d| from[d] + size[d] * u[d]);
+            return Some(vertex(&surface.shape.at(uv)));
+        }
+        if bright.is_empty() {
+            return None;
+        }
+        let (at, density) = bright.sample(scene, u);
+        let vertex = vertex(&at.point);
+        let albedo = vertex.albedo / (density * surface.shape.area());
+        Some(Vertex { albedo, ..vertex })
     }
 
     /// Irradiance (W/area, per watt of power) of the beam of a wide spot on the front of a surface:
@@ -147,7 +196,7 @@ impl<'a> Beams<'a> {
     /// if nothing stands between.
     pub(super) fn irradiance(&self, spot: usize, x: Oriented, shape: ShapeId) -> f64 {
         let (radius, density): (f64, fn([f64; 2]) -> f64) = match self.scene.laser.profile {
-            Profile::Ideal => return 0.0,
+            Profile::Ideal | Profile::Shining { .. } => return 0.0,
             Profile::Disc { radius } => (radius, warp::disc_density),
             Profile::Gaussian { radius } => (radius, warp::gaussian_spot_density),
         };

@@ -11,7 +11,7 @@ use super::path::PathSampler;
 use super::plan::Plan;
 use super::spots::LitSpots;
 use super::strata::Strata;
-use super::visibility::{any_may_be_visible, between, known_or_all};
+use super::visibility::{between, known_or_all, may_light_any};
 use crate::geometry::ShapeId;
 use crate::scene::Scene;
 
@@ -54,7 +54,7 @@ impl<'a> Context<'a> {
         };
         let path = PathSampler::new(scene, &seen, guided);
         let close = !seen.iter().all(|s| path.far_from_hidden(*s));
-        let two = |t: &ShapeId| any_may_be_visible(scene, &seen, *t);
+        let two = |t: &ShapeId| may_light_any(scene, &seen, *t);
         let strata = Strata::new(
             scene,
             &between,

@@ -14,6 +14,10 @@
 //! surfaces' area or the material's lobe, weighted against each other by the density of their
 //! mixture (the balance heuristic).
 //!
+//! A hidden surface that shines takes the place of the spots: s is a point of it, drawn by its
+//! brightness, and M·x(s)/π·f(ω) ds stands for Φlaser f_r(s) dP(s), f its fall-off with direction.
+//! Paths do not go on from it, for it reflects nothing.
+//!
 //! One file an estimator, each with its equation: `independent` (every entry from paths of its
 //! own), `shared` (the paths of a pixel serve all spots), `factored` (points between the walls
 //! serve all pixels and all spots, which makes Φcam a product of two matrices). `points` takes the

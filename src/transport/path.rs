@@ -61,7 +61,8 @@ impl<'a> PathSampler<'a> {
         seen: &[ShapeId],
         guide: impl FnOnce() -> AreaSampler,
     ) -> Self {
-        let hidden: Vec<ShapeId> = scene.hidden().map(|(id, _)| id as ShapeId).collect();
+        let hidden = scene.hidden().filter(|(_, s)| !s.is_black());
+        let hidden: Vec<ShapeId> = hidden.map(|(id, _)| id as ShapeId).collect();
         let hidden = AreaSampler::new(scene, &hidden);
         let (mut strategies, far): (Vec<_>, _) = (0..scene.surfaces.len() as ShapeId)
             .map(|s| strategy(scene, &hidden, s))

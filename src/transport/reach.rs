@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::beam::Beams;
 use super::camera::{DirectLight, PixelView, sees_nothing};
-use super::visibility::{any_may_be_visible, between, known_or_all};
+use super::visibility::{between, known_or_all, may_light_any};
 use crate::geometry::ShapeId;
 use crate::scene::Scene;
 
@@ -36,6 +36,7 @@ impl<'a> MayBeLit<'a> {
             seen
         };
         let lit = |spot: usize| match beams.ideal.get(spot) {
+            _ if scene.laser.is_shining() => vec![scene.laser.spots[spot].surface],
             Some(Some(point)) => vec![point.shape],
             Some(None) => Vec::new(),
             None => all(),
@@ -59,7 +60,7 @@ impl<'a> MayBeLit<'a> {
             return false;
         }
         let reaches = || {
-            let two = || lit.iter().any(|t| any_may_be_visible(scene, seen, *t));
+            let two = || lit.iter().any(|t| may_light_any(scene, seen, *t));
             scene.max_bounces > 1 && two()
                 || scene.max_bounces > 2 && !between(scene, seen, lit).is_empty()
         };

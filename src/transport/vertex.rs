@@ -2,8 +2,10 @@
 //!
 //! At a surface `wi` points to where the light comes from and `wo` to where it goes; both are unit
 //! vectors away from the surface. The BRDF is split into two factors, f_r = c · d(wi, wo): c = ρ/π
-//! and d = 1 on a Lambertian surface, c = 1 and d = f_r on any other. c is part of the weight of a
-//! vertex, before any direction is known; d is multiplied in for every pair of directions.
+//! and d = 1 on a Lambertian surface, c = 1 and d = f_r on any other; c = x/π and d = f on one that
+//! shines ([`Shining`](crate::scene::material::Shining)), for its power is M times its area. c is
+//! part of the weight of a vertex, before any direction is known; d is multiplied in for every pair
+//! of directions.
 
 use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
@@ -18,7 +20,7 @@ pub(super) type Oriented = (DVec3, DVec3);
 
 /// The factor c of the BRDF where the texture of `surface` has the value `albedo`.
 pub(super) fn constant_factor(surface: &Surface, albedo: f64) -> f64 {
-    if surface.is_lambertian() {
+    if surface.is_lambertian() || surface.shining().is_some() {
         albedo * FRAC_1_PI
     } else {
         1.0
@@ -98,7 +100,8 @@ impl Vertex {
         self.directional_factor(scene, || [self.towards(light), self.back])
     }
 
-    /// The factor d of the BRDF for light to the point `to`, where the laser's beam lands.
+    /// The factor d of the BRDF for light to the point `to`, where the laser's beam lands or a
+    /// surface shines.
     pub(super) fn factor_to(&self, scene: &Scene, to: DVec3) -> f64 {
         self.directional_factor(scene, || [self.back, self.towards(to)])
     }
@@ -114,7 +117,10 @@ impl Vertex {
             return 1.0;
         }
         let [wi, wo] = directions();
-        surface.brdf(self.albedo, self.normal, wi, wo)
+        match surface.fall_off() {
+            Some(fall_off) => fall_off.towards(self.normal, wo),
+            None => surface.brdf(self.albedo, self.normal, wi, wo),
+        }
     }
 
     fn towards(&self, point: DVec3) -> DVec3 {

@@ -7,10 +7,19 @@ use crate::scene::Scene;
 /// Whether light can travel between the fronts of shapes `s` and `t`: no only where one lies
 /// nowhere above the other's plane, or where `t` is black. Shapes in between are not considered.
 pub(super) fn may_be_visible(scene: &Scene, s: ShapeId, t: ShapeId) -> bool {
+    !scene.surfaces[t as usize].is_black() && may_face(scene, s, t)
+}
+
+/// Whether the light that lands on shape `t`, or with which it shines, may reach any of `from`.
+pub(super) fn may_light_any(scene: &Scene, from: &[ShapeId], t: ShapeId) -> bool {
+    let lit = &scene.surfaces[t as usize];
+    let shines = lit.shining().is_some() && lit.albedo.largest() > 0.0;
+    (shines || !lit.is_black()) && from.iter().any(|s| may_face(scene, *s, t))
+}
+
+/// Whether the fronts of two shapes may see each other.
+fn may_face(scene: &Scene, s: ShapeId, t: ShapeId) -> bool {
     let [from, to] = [s, t].map(|id| &scene.surfaces[id as usize]);
-    if to.is_black() {
-        return false;
-    }
     if s == t {
         return from.shape.may_see_itself();
     }

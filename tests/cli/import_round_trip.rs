@@ -27,7 +27,7 @@ const DARK: usize = 32;
 fn scene(pixels: usize) -> Scene {
     let mut file = SceneFile::default();
     file.camera.pixels = [pixels as u32; 2];
-    file.laser.spots.per_side = Some(6);
+    file.laser.as_mut().unwrap().spots.per_side = Some(6);
     Scene::new(&file, None).unwrap()
 }
 

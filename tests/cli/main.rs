@@ -33,6 +33,7 @@ mod serving;
 mod serving_deaf;
 mod serving_forged;
 mod serving_many;
+mod shining;
 mod small_doors;
 mod small_scene;
 mod stacking;

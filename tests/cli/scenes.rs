@@ -3,7 +3,7 @@
 use crate::small_scene::{bench, with_points_and_surface};
 use crate::workspace::Workspace;
 
-pub(crate) const BUILT_IN: [&str; 12] = [
+pub(crate) const BUILT_IN: [&str; 13] = [
     "bench",
     "thesis",
     "experiment",
@@ -12,6 +12,7 @@ pub(crate) const BUILT_IN: [&str; 12] = [
     "satin",
     "shelf",
     "periscope",
+    "screen",
     "mask",
     "corner",
     "room",
@@ -42,6 +43,7 @@ fn every_built_in_scene_is_sound() {
         "120 spots; 16 × 16 pixels",
         "120 spots; 16 × 16 pixels",
         "100 spots; 32 × 32 pixels",
+        "`monitor` shines; 24 × 24 pixels",
         "100 spots; 32 × 32 pixels",
         "144 spots; 32 × 32 pixels",
         "120 spots; 64 × 64 pixels",

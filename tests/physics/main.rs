@@ -17,6 +17,7 @@ mod occluders;
 mod random_scenes;
 mod reference;
 mod sensor;
+mod shining;
 mod studies;
 mod tails;
 mod verdict;

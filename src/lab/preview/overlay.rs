@@ -91,7 +91,7 @@ pub(super) struct Overlay {
 
 impl Overlay {
     pub(super) fn of(scene: &Scene, lens: &Lens) -> Self {
-        let spots = &scene.laser.spots;
+        let spots = scene.laser.beams();
         let camera = &scene.camera;
         let target = |i: usize| spots[i].target.position;
         let near = 1e-3 * lens.depth(camera.view.at([0.5, 0.5]).position).abs();
@@ -127,7 +127,8 @@ impl Overlay {
         for i in 0..spots.len() {
             add([target(i); 2], LASER, SPOT, 1.0);
         }
-        for (position, ink) in [(camera.position, CAMERA), (scene.laser.position, LASER)] {
+        let laser = (!scene.laser.is_shining()).then_some((scene.laser.position, LASER));
+        for (position, ink) in [(camera.position, CAMERA)].into_iter().chain(laser) {
             add([position; 2], [0xff; 3], DEVICE + 1.5, 1.0);
             add([position; 2], ink, DEVICE, 1.0);
         }

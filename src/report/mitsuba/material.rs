@@ -46,6 +46,11 @@ pub(super) fn literal(material: &Material, surface: &str) -> Result<String, Mits
                 surface: surface.to_owned(),
             });
         }
+        Material::Shining(_) => {
+            return Err(MitsubaError::Shining {
+                surface: surface.to_owned(),
+            });
+        }
         Material::Mixture(parts) => {
             let mut list = String::new();
             for part in parts.iter() {

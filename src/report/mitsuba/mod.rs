@@ -34,13 +34,22 @@ pub enum MitsubaError {
         /// Its name.
         surface: String,
     },
+    /// It shines, and the program lights scenes by their spots.
+    #[error(
+        "surface `{surface}` shines, and the Mitsuba program lights a scene by its laser: export a scene with a [laser] \
+         table, in which the surface reflects"
+    )]
+    Shining {
+        /// Its name.
+        surface: String,
+    },
 }
 
 /// A Python program that renders Φcam of `scene` with Mitsuba 3, in W, on an absolute scale; its
 /// usage stands in its first lines.
 ///
 /// # Errors
-/// [`MitsubaError`] for a material that Mitsuba cannot have.
+/// [`MitsubaError`] for a material that Mitsuba cannot have, or a surface that shines.
 pub fn mitsuba_script(scene: &Scene) -> Result<String, MitsubaError> {
     Ok(format!("{HEAD}{}{}", literals(scene)?, BODY.concat()))
 }

@@ -67,6 +67,7 @@ pub(super) fn literal(scene: &Scene, spot: &Spot) -> String {
     };
     let centre = aim([0.0, 0.0], 0.0);
     let (kind, radius, reach, map): (_, _, _, Warp) = match profile {
+        Profile::Shining { .. } => return String::new(),
         Profile::Ideal => {
             let at = centre.map_or(String::new(), |at| entry("point", &at, 1.0));
             return format!("    [{at}],\n");

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::merl::Channel;
+use super::shining::MOST_FALLOFF;
 use super::variants::{LEAST_ALPHA, MOST_ALPHA, MOST_INDEX, MOST_SIGMA};
-use super::{Coated, Conductor, Material, Measured, OrenNayar, Part, SecondFacet};
+use super::{Coated, Conductor, Material, Measured, OrenNayar, Part, SecondFacet, Shining, Shown};
 use crate::scene::error::{Fault, keys};
 use crate::scene::texture::{AlbedoTable, Texture};
 
@@ -52,6 +53,21 @@ pub struct MaterialTable {
     /// What the table is multiplied by (measured); default 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scale: Option<AlbedoTable>,
+    /// The picture with which a surface shines, in [0, 1].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shining: Option<AlbedoTable>,
+    /// M, W/unit²: exitance of a Lambertian white point (shining); default 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exitance: Option<f64>,
+    /// Exponents of the fall-off along u and v (shining); default [0, 0], Lambertian.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub falloff: Option<[f64; 2]>,
+    /// Wavelength of its light, m (shining); default 550e-9.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wavelength: Option<f64>,
+    /// What is photographed: picture (default) or elements (shining).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light: Option<Shown>,
 }
 
 /// Complex refractive index η + ik.
@@ -77,8 +93,7 @@ pub struct PartTable {
 /// Reads a file that the scene names, by the path written there; an error says why not.
 pub(in crate::scene) type Files<'a> = &'a mut dyn FnMut(&str) -> Result<Vec<u8>, String>;
 
-const KINDS: &str =
-    "`lambertian`, `oren_nayar`, `paint`, `coated`, `conductor`, `measured` and `mixture`";
+const KINDS: &str = "`lambertian`, `oren_nayar`, `paint`, `coated`, `conductor`, `measured`, `mixture` and `shining`";
 /// Index of refraction where the coat's is not stated: acrylic and polyurethane paint.
 const COAT: f64 = 1.5;
 /// Parts of a mixture.
@@ -105,6 +120,9 @@ impl Material {
         };
         if let Some(given) = &table.lambertian {
             return Ok((Self::Lambertian, albedo("lambertian", given)?));
+        }
+        if let Some(given) = &table.shining {
+            return Ok((Self::Shining(shining(table)?), albedo("shining", given)?));
         }
         if let Some(given) = &table.oren_nayar {
             let sigma = roughness(table, 0.0, MOST_SIGMA, "radians")?;
@@ -159,6 +177,7 @@ fn kind(table: &MaterialTable) -> Result<&'static str, Fault> {
         ("conductor", table.conductor.is_some()),
         ("measured", table.measured.is_some()),
         ("mixture", table.mixture.is_some()),
+        ("shining", table.shining.is_some()),
     ];
     let mut given = kinds
         .into_iter()
@@ -178,7 +197,7 @@ fn kind(table: &MaterialTable) -> Result<&'static str, Fault> {
 }
 
 fn refuse_foreign_keys(table: &MaterialTable, kind: &'static str) -> Result<(), Fault> {
-    let keys: [(&'static str, bool, &[&str]); 5] = [
+    let keys: [(&'static str, bool, &[&str]); 9] = [
         (
             "roughness",
             table.roughness.is_some(),
@@ -188,6 +207,10 @@ fn refuse_foreign_keys(table: &MaterialTable, kind: &'static str) -> Result<(), 
         ("reflectance", table.reflectance.is_some(), &["conductor"]),
         ("channel", table.channel.is_some(), &["measured"]),
         ("scale", table.scale.is_some(), &["measured"]),
+        ("exitance", table.exitance.is_some(), &["shining"]),
+        ("falloff", table.falloff.is_some(), &["shining"]),
+        ("wavelength", table.wavelength.is_some(), &["shining"]),
+        ("light", table.light.is_some(), &["shining"]),
     ];
     for (key, given, owners) in keys {
         if given && !owners.contains(&kind) {
@@ -217,6 +240,28 @@ fn roughness(table: &MaterialTable, least: f64, most: f64, what: &str) -> Result
         cause,
         format!("use {range}"),
     ))
+}
+
+fn shining(table: &MaterialTable) -> Result<Shining, Fault> {
+    let shining = Shining {
+        exitance: table.exitance.unwrap_or(1.0),
+        falloff: table.falloff.unwrap_or_default(),
+    };
+    if !(shining.exitance > 0.0 && shining.exitance.is_finite()) {
+        let cause = format!("an exitance of {}", shining.exitance);
+        let cure = "give a positive exitance in W/unit²: that of a Lambertian white point";
+        return Err(Fault::new(keys!["exitance"], cause, cure));
+    }
+    if let Some(n) = shining
+        .falloff
+        .into_iter()
+        .find(|n| !(0.0..=MOST_FALLOFF).contains(n))
+    {
+        let cause = format!("a fall-off by the cosine to the power of {n}");
+        let cure = format!("use exponents from 0 (Lambertian) to {MOST_FALLOFF}, along u and v");
+        return Err(Fault::new(keys!["falloff"], cause, cure));
+    }
+    Ok(shining)
 }
 
 fn measured(
@@ -270,6 +315,11 @@ fn mixture(tables: &[PartTable], wavelength: f64, files: Files<'_>) -> Result<Ma
             let at = keys!["mixture", i, "material"];
             let cure = "list its parts in the outer one, their weights multiplied by its own";
             return Err(Fault::new(at, "a mixture inside a mixture", cure));
+        }
+        if table.material.shining.is_some() {
+            let at = keys!["mixture", i, "material"];
+            let cure = "let the whole surface shine: `material = { shining = … }`";
+            return Err(Fault::new(at, "a part of a mixture that shines", cure));
         }
         let (material, texture) = Material::from_table(&table.material, wavelength, &mut *files)
             .map_err(|f| f.within(keys!["mixture", i, "material"]))?;

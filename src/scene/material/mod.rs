@@ -14,6 +14,7 @@
 //! | `{ conductor = { eta = 0.2, k = 3.9 }, roughness = α, reflectance = ρ }` | rough metal, [`Conductor`]; ρ is 1 if absent |
 //! | `{ measured = "paint.binary", channel = "red", scale = ρ }` | a table in a file, [`Measured`]; ρ is 1 if absent |
 //! | `{ mixture = [{ weight = 0.7, material = { … } }, …] }` | a sum of materials; weights ≥ 0 that add up to 1 at most |
+//! | `{ shining = x, exitance = 1, falloff = [nu, nv] }` | reflects nothing and shines by itself, [`Shining`]; hidden surfaces only, with the keys of the table in [`crate::scene`] |
 //!
 //! ρ is a number in [0, 1] or an albedo table; in a mixture, a number.
 
@@ -27,6 +28,7 @@ mod lobe;
 mod measured;
 mod merl;
 mod oren_nayar;
+mod shining;
 mod variants;
 
 use std::f64::consts::FRAC_1_PI;
@@ -40,6 +42,7 @@ pub use lobe::Lobe;
 pub use measured::Measured;
 pub use merl::Channel;
 pub use oren_nayar::OrenNayar;
+pub use shining::{FallOff, Shining, Shown};
 
 use crate::geometry::DVec3;
 use crate::num::quadrature::Rule;
@@ -59,6 +62,8 @@ pub enum Material {
     Measured(Arc<Measured>),
     /// A sum of materials.
     Mixture(Arc<[Part]>),
+    /// Nothing: it shines.
+    Shining(Shining),
 }
 
 /// One material of a mixture.
@@ -88,6 +93,7 @@ impl Material {
         }
         match self {
             Self::Lambertian => albedo * FRAC_1_PI,
+            Self::Shining(_) => 0.0,
             Self::OrenNayar(m) => m.brdf(albedo, wi, wo),
             Self::Coated(m) => m.brdf(albedo, wi, wo),
             Self::Conductor(m) => m.brdf(albedo, wi, wo),
@@ -99,9 +105,13 @@ impl Material {
         }
     }
 
-    /// Whether f_r is the same for all directions.
+    /// Whether f_r is the same for all directions; of what shines, its radiance.
     pub fn is_lambertian(&self) -> bool {
-        matches!(self, Self::Lambertian)
+        match self {
+            Self::Lambertian => true,
+            Self::Shining(shining) => shining.is_lambertian(),
+            _ => false,
+        }
     }
 
     /// Whether nothing is reflected where the texture's value is `albedo`.
@@ -112,6 +122,7 @@ impl Material {
             }
             // The coat reflects over a black ground too.
             Self::Coated(_) => false,
+            Self::Shining(_) => true,
             Self::Mixture(parts) => {
                 let dark = |p: &Part| p.weight <= 0.0 || p.material.is_black(p.albedo);
                 albedo <= 0.0 || parts.iter().all(dark)
@@ -123,7 +134,9 @@ impl Material {
     /// its own.
     pub fn lobe(&self, albedo: f64, wo: DVec3) -> Lobe {
         match self {
-            Self::Lambertian | Self::OrenNayar(_) | Self::Mixture(_) => Lobe::cosine(),
+            Self::Lambertian | Self::OrenNayar(_) | Self::Mixture(_) | Self::Shining(_) => {
+                Lobe::cosine()
+            }
             Self::Coated(m) => m.lobe(albedo, wo),
             Self::Conductor(m) => Lobe {
                 glossy: 1.0,
@@ -145,6 +158,7 @@ impl Material {
     pub fn white_sky_albedo(&self, albedo: f64) -> f64 {
         match self {
             Self::Lambertian => albedo,
+            Self::Shining(_) => 0.0,
             Self::OrenNayar(m) => m.white_sky_albedo(albedo),
             Self::Mixture(parts) => {
                 let part = |p: &Part| p.weight * p.material.white_sky_albedo(p.albedo);
@@ -174,6 +188,7 @@ impl Material {
         }
         match self {
             Self::Lambertian => albedo,
+            Self::Shining(_) => 0.0,
             Self::OrenNayar(m) => m.directional_albedo(albedo, wi.z),
             Self::Mixture(parts) => {
                 let part = |p: &Part| p.weight * p.material.reflected(p.albedo, wi, rule);

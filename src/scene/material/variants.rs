@@ -16,7 +16,7 @@ impl Material {
     /// Whether it, or a part of it, is stated with a roughness.
     pub fn has_roughness(&self) -> bool {
         match self {
-            Self::Lambertian | Self::Measured(_) => false,
+            Self::Lambertian | Self::Measured(_) | Self::Shining(_) => false,
             Self::OrenNayar(_) | Self::Coated(_) | Self::Conductor(_) => true,
             Self::Mixture(parts) => parts.iter().any(|p| p.material.has_roughness()),
         }
@@ -38,7 +38,7 @@ impl Material {
             (LEAST_ALPHA..=MOST_ALPHA).contains(&alpha).then_some(alpha)
         };
         match self {
-            Self::Lambertian | Self::Measured(_) => None,
+            Self::Lambertian | Self::Measured(_) | Self::Shining(_) => None,
             Self::OrenNayar(m) => {
                 let sigma = m.sigma() * factor;
                 let within = sigma > 0.0 && sigma <= MOST_SIGMA;

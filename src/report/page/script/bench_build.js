@@ -13,7 +13,7 @@
  * @typedef {{ position: Point, corner: Point, u: Point, v: Point, columns: number, rows: number }} CameraBlock
  * @typedef {{ points: Point[], spots: string, pixels: string | null }} WaysBlock
  * @typedef {{ name: string, unit: string, up: Point, near: [Point, Point], surfaces: SurfaceBlock[], meshes: MeshBlock[], spots: { count: number, step: number },
- *     laser: Point, camera: CameraBlock, ways: WaysBlock }} BenchBlock
+ *     laser: Point | null, camera: CameraBlock, ways: WaysBlock }} BenchBlock
  * @typedef {"walls" | "object" | "obstacles" | "spots" | "beams" | "camera"} Part
  * @typedef {"walls" | "object" | "obstacles" | "spots" | "camera" | "soft" | "ground"} Ink
  * @typedef {{ block: BenchBlock, place: (p: Point) => Three.Vector3, size: number, inks: Record<Ink, string>, geometries: Three.BufferGeometry[], root: Three.Scene,

@@ -96,7 +96,7 @@ function followChoice(bench) {
     }
     const ring = marks(bench, new Float32Array(3), 19, { ink: "spots", mark: { rim: "walls", shape: "ring" } }, "always");
     const eye = devicePlace(bench, block.camera.position);
-    const laser = devicePlace(bench, block.laser);
+    const laser = block.laser === null ? undefined : devicePlace(bench, block.laser);
     return (/** @type {{ spot: number, pixel: number }} */ { spot, pixel }) => {
         for (const group of Object.values(changing)) {
             group.children.forEach((child) => (child === ring ? undefined : release(child)));
@@ -110,6 +110,16 @@ function followChoice(bench) {
         changing.camera.add(new THREE.Mesh(gridGeometry([[0, 0], [1, 0], [1, 1], [0, 1]], quad, [0, 1, 2, 0, 2, 3]), material));
         changing.camera.add(lineSegments(bench, sidesOf(quad), "camera", 2, { always: true }));
         changing.beams.add(lineSegments(bench, [place(to), eye], "camera", 2, { always: true }));
+        const all = block.ways.points.length;
+        const free = (/** @type {number} */ count) => (all === 0 || !ways.pixels ? "" : ` Of ${all} ways over the object ${count === all ? "all" : count} ${count === 1 ? "is" : "are"} free.`);
+        if (laser === undefined) {
+            const seen = ways.pixels ? ways.pixels[pixel] : 0;
+            const open = block.ways.points.filter((_, k) => ((seen >> k) & 1) === 1);
+            if (open.length > 0) {
+                changing.beams.add(lineSegments(bench, open.flatMap((p) => [place(p), place(to)]), "object", 1.6, { opacity: 0.9, always: true }));
+            }
+            return `${pixelWords(block, pixel)}${free(open.length)}`;
+        }
         if (from === undefined) {
             return `Spot ${spot} is not among those drawn. ${pixelWords(block, pixel)}`;
         }
@@ -124,9 +134,7 @@ function followChoice(bench) {
         if (pairs.length > 0) {
             changing.beams.add(lineSegments(bench, pairs, "object", 1.6, { opacity: 0.9, always: true }));
         }
-        const all = block.ways.points.length;
-        const told = all === 0 || !ways.pixels ? "" : ` Of ${all} ways over the object ${open.length === all ? "all" : open.length} ${open.length === 1 ? "is" : "are"} free.`;
-        return `Spot ${spot} at ${pointWords(from, block.unit)}. ${pixelWords(block, pixel)}${told}`;
+        return `Spot ${spot} at ${pointWords(from, block.unit)}. ${pixelWords(block, pixel)}${free(open.length)}`;
     };
 }
 

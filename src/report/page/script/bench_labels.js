@@ -19,14 +19,12 @@ const SHORTEST = 28;
 function labelsOf(bench) {
     const { block } = bench;
     const { camera, laser } = block;
-    const same = laser.every((x, i) => x === camera.position[i]);
+    const same = laser !== null && laser.every((x, i) => x === camera.position[i]);
+    /** @type {Label} */
+    const own = { text: "camera", at: () => camera.position, ink: "camera", part: "camera", device: true };
     /** @type {Label[]} */
-    const devices = same
-        ? [{ text: "laser and camera", at: () => laser, ink: "spots", part: "beams", device: true }]
-        : [
-              { text: "laser", at: () => laser, ink: "spots", part: "beams", device: true },
-              { text: "camera", at: () => camera.position, ink: "camera", part: "camera", device: true },
-          ];
+    const lit = laser === null ? [] : [{ text: same ? "laser and camera" : "laser", at: () => laser, ink: "spots", part: "beams", device: true }];
+    const devices = same ? lit : [...lit, own];
     const order = { hidden: 0, relay: 1, occluder: 2 };
     const named = [...block.surfaces].sort((a, b) => order[a.role] - order[b.role] || reach(bench, b) - reach(bench, a)).slice(0, MOST_NAMES);
     return [

@@ -235,9 +235,11 @@ function addCamera(bench) {
             parts.camera.add(lineSegments(bench, grid, "camera", 0.8, { opacity: 0.35 }));
         }
     }
-    const laser = devicePlace(bench, bench.block.laser);
     /** @type {{ rim: Ink, shape: MarkShape }} */
     const mark = { rim: "ground", shape: "diamond" };
     parts.camera.add(marks(bench, Float32Array.from(eye.toArray()), 17, { ink: "camera", mark }, "always"));
-    parts.beams.add(marks(bench, Float32Array.from(laser.toArray()), 13, { ink: "spots", mark }, "always"));
+    if (bench.block.laser !== null) {
+        const laser = devicePlace(bench, bench.block.laser);
+        parts.beams.add(marks(bench, Float32Array.from(laser.toArray()), 13, { ink: "spots", mark }, "always"));
+    }
 }

@@ -27,7 +27,7 @@ function inWords({ name, unit, surfaces, spots, laser, camera }) {
     const list = (/** @type {string} */ what, /** @type {string[]} */ names) => (names.length === 0 ? "" : `${what}: ${names.slice(0, 12).join(", ")}${names.length > 12 ? " and others" : ""}. `);
     return (
         `Scene ${name}, drawn to scale. ${list("Walls", of("relay"))}${list("Hidden", of("hidden"))}${list("Obstacles", of("occluder"))}` +
-        `${spots.count} laser spots. Laser at ${pointWords(laser, unit)}. Camera at ${pointWords(camera.position, unit)}, ${camera.columns} by ${camera.rows} pixels.`
+        `${laser === null ? "The hidden surface shines." : `${spots.count} laser spots. Laser at ${pointWords(laser, unit)}.`} Camera at ${pointWords(camera.position, unit)}, ${camera.columns} by ${camera.rows} pixels.`
     );
 }
 

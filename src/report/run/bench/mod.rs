@@ -42,7 +42,8 @@ struct Bench<'a> {
     surfaces: Vec<SurfaceBlock<'a>>,
     meshes: Vec<MeshBlock>,
     spots: Spots,
-    laser: [f64; 3],
+    /// `None` where a surface shines.
+    laser: Option<[f64; 3]>,
     camera: Camera,
     ways: Ways,
 }
@@ -125,7 +126,7 @@ pub(super) fn section(page: &mut Page, scene: &Scene) {
 
 /// The packed blocks.
 fn pack(page: &mut Page, scene: &Scene, bench: &Bench, display: &[Display]) {
-    let spots = scene.laser.spots.iter().step_by(bench.spots.step);
+    let spots = scene.laser.beams().iter().step_by(bench.spots.step);
     let spots: Vec<f64> = spots.flat_map(|s| s.target.position.to_array()).collect();
     page.numbers("bench-spots", &Packed::new(&spots, Precision::Single(23)));
     if display.is_empty() {
@@ -193,7 +194,7 @@ fn bench(scene: &Scene) -> (Bench<'_>, Vec<Display>) {
             textured: d.uv.is_some(),
         }
     });
-    let (camera, spots) = (&scene.camera, scene.laser.spots.len());
+    let (camera, spots) = (&scene.camera, scene.laser.beams().len());
     let step = spots.div_ceil(MOST_SPOTS).max(1);
     let bench = Bench {
         name: &scene.name,
@@ -207,7 +208,7 @@ fn bench(scene: &Scene) -> (Bench<'_>, Vec<Display>) {
             .collect(),
         meshes: blocks.collect(),
         spots: Spots { count: spots, step },
-        laser: scene.laser.position.to_array(),
+        laser: (!scene.laser.is_shining()).then(|| scene.laser.position.to_array()),
         camera: Camera {
             position: camera.position.to_array(),
             corner: camera.view.corner().to_array(),

@@ -52,7 +52,7 @@ impl Ways {
         let camera = &scene.camera;
         let spots: Vec<Place> = scene
             .laser
-            .spots
+            .beams()
             .iter()
             .step_by(step)
             .map(|s| (s.surface, s.target))
