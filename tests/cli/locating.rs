@@ -7,7 +7,8 @@ use crate::workspace::Workspace;
 /// The small bench, rendered.
 fn rendered() -> Workspace {
     let w = Workspace::with_scenes();
-    w.phicam("render small.toml -o run --samples 256 -q")
+    let _ = w
+        .phicam("render small.toml -o run --samples 256 -q")
         .exits(0);
     w
 }
@@ -66,7 +67,7 @@ fn shuffled_photographs_are_rejected() {
 fn what_cannot_be_looked_for_is_refused() {
     let w = Workspace::with_scenes();
     w.refuses("locate nowhere", &["nowhere"]);
-    w.phicam("render tiny.toml -o run --samples 16 -q").exits(0);
+    let _ = w.phicam("render tiny.toml -o run --samples 16 -q").exits(0);
     w.refuses("locate run --what depth", &["normal", "angle"]);
     w.refuses("locate run --steps 2", &["3..=1000"]);
     w.refuses("locate run --range 1,0", &["LOW,HIGH"]);

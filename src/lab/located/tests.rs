@@ -182,7 +182,7 @@ fn the_likelihood_is_that_of_the_normal_distribution() {
 /// The bench with 12 spots, 8 × 8 pixels and 4 × 4 elements, on which two patches are bright.
 fn bench() -> Scene {
     let mut file = SceneFile::default();
-    file.laser.spots.per_side = Some(3);
+    file.laser.as_mut().unwrap().spots.per_side = Some(3);
     file.camera.pixels = [8, 8];
     Scene::new(&file, None).unwrap()
 }
