@@ -4,6 +4,15 @@ use phicam::matrix::{Matrix, npy};
 
 use crate::workspace::Workspace;
 
+/// What was told, on one line.
+fn told(ended: &crate::workspace::Ended) -> String {
+    ended
+        .stdout
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
 /// The small bench, rendered.
 fn rendered() -> Workspace {
     let w = Workspace::with_scenes();
@@ -17,13 +26,13 @@ fn rendered() -> Workspace {
 fn a_rendered_surface_is_where_the_scene_has_it() {
     let w = rendered();
     let line = "locate run --elements 4x4 --steps 5 --orders 999 --range -0.6,0.6";
-    let told = w.phicam(line).exits(0);
+    let ended = w.phicam(line).exits(0);
     for words in [
         "S2 along its normal",
         "by leaving out one of 24 frames",
         "belong to their spots",
     ] {
-        assert!(told.stdout.contains(words), "{}", told.account());
+        assert!(told(&ended).contains(words), "{}", ended.account());
     }
     let found = w.json("run/located/locate.json");
     let number = |key: &str| found[key].as_f64().unwrap();
@@ -56,11 +65,11 @@ fn shuffled_photographs_are_rejected() {
         npy::write(&w.path(file), &mixed).unwrap();
     }
     w.disown("run");
-    let told = w
+    let ended = w
         .phicam("locate run --elements 4x4 --steps 3 --range -0.3,0.3")
         .exits(1);
     let words = "Nothing says that the photographs belong to their spots";
-    assert!(told.stdout.contains(words), "{}", told.account());
+    assert!(told(&ended).contains(words), "{}", ended.account());
 }
 
 #[test]

@@ -110,11 +110,12 @@ impl Located {
             "The picture is as smooth as it can be and still predict each photograph from the \
              others as well as any, to {} of what other light leaves; it explains all of them to \
              {}. {} of its {} directions are above what is not explained: its shape is known no \
-             finer. {noise} Reflectances are not bounded here.",
+             finer. {noise} Reflectances are not bounded here. {} entries of Φcam count.",
             figure(picture.predicted, 3),
             figure(picture.misfit, 3),
             picture.directions,
             self.elements,
+            self.entries
         )
     }
 
