@@ -11,7 +11,7 @@ use crate::num::statistics::chi_square_sf;
 pub struct Deviations {
     /// ε̂: of each frame, or the one of all.
     pub size: DVector<f64>,
-    /// Their standard errors, at most `known_to`.
+    /// Their standard errors; of one picture's prior at most `known_to`.
     pub standard_error: DVector<f64>,
     /// σ, to which they are known beforehand.
     pub known_to: f64,

@@ -89,7 +89,7 @@ pub(in crate::recovery) fn recover(
     };
     found.log_evidence = evidence;
     let widened = widened(&found, || {
-        let known = base.about(&linear.phi, &linear.d, &Soft::NONE);
+        let known = base.about(problem.phi, &linear.d, &Soft::NONE);
         by(method, &known, &quick)
     })?;
     if let Some(gains) = found.nuisance.as_mut().and_then(|n| n.gains.as_mut()) {
