@@ -204,7 +204,8 @@ function fitView(bench, sight) {
     const [width, height] = [stage.clientWidth, stage.clientHeight];
     const { near, laser } = bench.block;
     const corners = Array.from({ length: 8 }, (_, k) => bench.place(/** @type {Point} */ ([0, 1, 2].map((i) => near[(k >> i) & 1][i]))));
-    const shown = sight.whole ? [...corners, devicePlace(bench, laser), devicePlace(bench, bench.block.camera.position)] : corners;
+    const devices = (laser === null ? [] : [laser]).concat([bench.block.camera.position]);
+    const shown = sight.whole ? [...corners, ...devices.map((p) => devicePlace(bench, p))] : corners;
     camera.updateMatrixWorld();
     const [right, up, back] = [0, 1, 2].map((i) => new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, i));
     const range = (/** @type {Three.Vector3} */ axis) => {
