@@ -10,6 +10,8 @@ use crate::num::digits::figure;
 /// Probability of an order by chance below which the stated one counts as found.
 pub(super) const SIGNIFICANCE: f64 = 1e-3;
 
+/// What is left over, in units of the stated noise, that is not noise alone.
+const MUCH: f64 = 1.1;
 /// A standard error that is less than this part of the others is rounding.
 const FLAT: f64 = 1e-9;
 
@@ -70,7 +72,7 @@ impl Located {
         };
         let error = match self.stderr() {
             Some(stderr) => format!("± {} {unit}", figure(stderr, 2)),
-            None => format!("{unit}, its error is not known"),
+            None => format!("{unit} (its error is not known)"),
         };
         let [x, y, z] = self.middle.map(|x| figure(x, 3));
         format!(
@@ -86,23 +88,33 @@ impl Located {
             Some(error) => format!("{} {}", figure(error, 2), self.unit),
             None => "not known".to_owned(),
         };
+        let curvature = of(self.by_curvature);
+        if self.frames < 3 {
+            return format!(
+                "By the curvature of the likelihood the error is {curvature}. That takes what is not \
+                 explained for independent noise and elements for small enough; fewer than three \
+                 frames cannot tell whether that holds."
+            );
+        }
         format!(
-            "The stated error is the larger of two: by the curvature of the likelihood {}, which \
-             takes what is not explained for independent noise; by leaving out one of {} frames \
-             after the other {}. Neither sees what is wrong in the same way in all frames.",
-            of(self.by_curvature),
+            "The stated error is the larger of two: by the curvature of the likelihood {curvature}, \
+             which takes what is not explained for independent noise; by leaving out one of {} \
+             frames after the other {}. Neither sees what is wrong in the same way in all frames.",
             self.frames,
             of(self.by_frames)
         )
     }
 
     fn explained(&self) -> String {
-        let noise = if self.is_noise_known {
-            let noise = figure(self.noise, 3);
-            format!("What the likeliest reflectances leave is {noise} of the stated noise.")
-        } else {
-            "No noise is stated.".to_owned()
-        };
+        let mut noise = "No noise is stated.".to_owned();
+        if self.is_noise_known {
+            let left = figure(self.noise, 3);
+            noise = format!("What the likeliest reflectances leave is {left} of the stated noise.");
+        }
+        if self.is_noise_known && self.noise > MUCH {
+            noise += " That is more than noise: the elements may be too coarse (--elements), or the \
+                      model lacks something, and the place be wrong by more than its error.";
+        }
         let Some(picture) = &self.picture else {
             return format!("{noise} There is no picture of fewer than three frames.");
         };
