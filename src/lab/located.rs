@@ -199,31 +199,40 @@ impl LocatedPlan {
             ));
         }
         let lengths = Lengths::of(&model.places)?;
-        let place = |size: f64| -> Result<Option<Place>, LabError> {
+        let place = |size: f64, each_out: bool| -> Result<Option<Place>, LabError> {
             control.check()?;
             let found = match (altered.apply)(scene, size) {
-                Some(scene) => Place::new(size, &self.model(&scene)?, photographs, &lengths)?,
+                Some(scene) => {
+                    Place::new(size, &self.model(&scene)?, photographs, &lengths, each_out)?
+                }
                 None => None,
             };
             (control.progress)(1);
             Ok(found)
         };
-        let places = |[from, to]: [f64; 2], steps: usize| {
+        let places = |[from, to]: [f64; 2], steps: usize, each_out: bool| {
             let size = |k: usize| from + (to - from) * k as f64 / (steps - 1) as f64;
-            let found = (0..steps).into_par_iter().map(|k| place(size(k)));
+            let found = (0..steps).into_par_iter().map(|k| place(size(k), each_out));
             let found: Vec<Option<Place>> = found.collect::<Result<_, _>>()?;
             Ok::<_, LabError>(found.into_iter().flatten().collect::<Vec<Place>>())
         };
-        let coarse = places(self.range, self.steps)?;
+        let coarse = places(self.range, self.steps, false)?;
         let first = place::best(coarse.iter().map(Place::log_likelihood)).ok_or(LabError::DARK)?;
         let step = (self.range[1] - self.range[0]) / (self.steps - 1) as f64;
         let middle = coarse[first].size;
         let around = [middle - AROUND * step, middle + AROUND * step];
         let within = around.map(|t| t.clamp(self.range[0], self.range[1]));
-        let fine = places(within, FINE)?;
+        let fine = places(within, FINE, true)?;
         let at = place::best(fine.iter().map(Place::log_likelihood)).ok_or(LabError::DARK)?;
         let best = &fine[at];
         let peak = parabola(&fine, Place::log_likelihood);
+        // Where a frame matters so much that without it the peak is far, the whole range is needed.
+        let by_frames = match place::jackknife(&fine) {
+            None if photographs.phi.ncols() > 2 => {
+                place::jackknife(&places(self.range, self.steps, true)?)
+            }
+            found => found,
+        };
         let order = self.order(scene, photographs, &lengths, control)?;
         let there = (altered.apply)(scene, best.size).unwrap_or_else(|| scene.clone());
         let mut curve: Vec<&Place> = coarse.iter().chain(&fine).collect();
@@ -240,7 +249,7 @@ impl LocatedPlan {
             unit: altered.size.unit(scene).to_owned(),
             size: peak.map(|p| p.size),
             by_curvature: peak.map(|p| p.stderr),
-            by_frames: place::jackknife(&fine).or_else(|| place::jackknife(&coarse)),
+            by_frames,
             middle: there
                 .hidden()
                 .next()

@@ -13,6 +13,8 @@ pub mod poisson;
 #[doc(hidden)]
 pub mod quadratic;
 pub mod quadrature;
+#[doc(hidden)]
+pub mod search;
 pub mod statistics;
 pub mod stream;
 #[doc(hidden)]

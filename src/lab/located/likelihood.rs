@@ -5,12 +5,11 @@ use nalgebra::DVector;
 use super::frames::Frame;
 use crate::matrix::Matrix;
 use crate::num::linalg::{LinalgError, product, svd, tr_product};
+use crate::num::search::largest;
 
-/// Signal-to-noise ratios μ₁/λ that are tried, 10⁻² to 10¹², four a decade.
+/// Signal-to-noise ratios μ₁/λ, 10⁻² to 10¹²; those that are tried by prediction, four a decade.
 const DECADES: [i32; 2] = [-2, 12];
 const PER_DECADE: i32 = 4;
-/// Steps of the search between two of them: 0.618⁴⁰ < 1e-8.
-const GOLDEN_STEPS: usize = 40;
 /// What is left of a fit by rounding, of the squares.
 const ROUNDING: f64 = 1e-13;
 
@@ -83,13 +82,10 @@ impl<'a> Spectrum<'a> {
     }
 }
 
-/// ln(μ₁/λ) that are tried.
+/// ln(μ₁/λ) that are tried by prediction.
 pub(super) fn log_ratios() -> impl Iterator<Item = f64> {
-    (DECADES[0] * PER_DECADE..=DECADES[1] * PER_DECADE).map(|k| f64::from(k) * step())
-}
-
-fn step() -> f64 {
-    std::f64::consts::LN_10 / f64::from(PER_DECADE)
+    let step = std::f64::consts::LN_10 / f64::from(PER_DECADE);
+    (DECADES[0] * PER_DECADE..=DECADES[1] * PER_DECADE).map(move |k| f64::from(k) * step)
 }
 
 /// The likelihood of photographs, ρ ~ N(0, τ²K), noise of variance ν² (of the stated one):
@@ -117,28 +113,12 @@ impl Fit {
         let Some(found) = Spectrum::new(all, root)? else {
             return Ok(None);
         };
-        let at = |log_ratio: f64| found.log_likelihood(found.lambda(log_ratio));
-        let best = log_ratios().max_by(|a, b| at(*a).total_cmp(&at(*b)));
-        let best = best.map_or(0.0, |k| largest_within(&at, [k - step(), k + step()]));
-        let lambda = found.lambda(best);
+        let ends = DECADES.map(|decade| found.lambda(f64::from(decade) * std::f64::consts::LN_10));
+        let (lambda, log_likelihood) = largest(ends[1], ends[0], |x| found.log_likelihood(x));
         Ok(Some(Self {
-            log_likelihood: at(best),
+            log_likelihood,
             misfit: found.misfit(lambda),
             noise: (found.left(lambda) / all.count).sqrt(),
         }))
     }
-}
-
-/// Where f is largest between two ends, by golden sections.
-fn largest_within(f: &impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> f64 {
-    let golden = 0.5 * (5f64.sqrt() - 1.0);
-    for _ in 0..GOLDEN_STEPS {
-        let reach = golden * (high - low);
-        if f(high - reach) < f(low + reach) {
-            low = high - reach;
-        } else {
-            high = low + reach;
-        }
-    }
-    0.5 * (low + high)
 }

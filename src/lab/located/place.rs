@@ -73,17 +73,19 @@ pub(super) struct Place {
     pub size: f64,
     /// To all frames, at the likeliest length.
     pub fit: Fit,
-    /// To all frames but one each, at that length; empty of fewer than 3.
+    /// To all frames but one each, at that length; empty unless asked for, and of fewer than 3.
     without: Vec<Fit>,
 }
 
 impl Place {
-    /// The fits of `model` to the photographs; none without light.
+    /// The fits of `model` to the photographs, `each_out` also to all frames but one; none without
+    /// light.
     pub(super) fn new(
         size: f64,
         model: &MatrixModel,
         photographs: &Unexplained<'_>,
         lengths: &Lengths,
+        each_out: bool,
     ) -> Result<Option<Self>, LinalgError> {
         let elements = model.albedo.len();
         let frames = frames_of(model, photographs)?;
@@ -104,7 +106,7 @@ impl Place {
             return Ok(None);
         };
         let mut without = Vec::new();
-        if frames.len() > 2 {
+        if each_out && frames.len() > 2 {
             for rest in Frame::all_but_one(&frames, elements) {
                 without.extend(Fit::new(&rest, root)?);
             }

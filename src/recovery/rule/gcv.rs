@@ -11,7 +11,8 @@
 //! are smaller in the weak directions than in the strong ones, as those of Monte Carlo are, it
 //! therefore keeps too many directions.
 
-use super::{Data, search};
+use super::Data;
+use crate::num::search;
 use crate::recovery::Choice;
 
 impl Data<'_> {

@@ -15,7 +15,8 @@
 
 use std::f64::consts::PI;
 
-use super::{Data, search};
+use super::Data;
+use crate::num::search;
 use crate::recovery::Choice;
 
 /// The least turn of a corner, rad.

@@ -3,7 +3,6 @@
 pub(super) mod discrepancy;
 pub(super) mod gcv;
 pub(super) mod l_curve;
-mod search;
 
 use super::{Problem, Spectrum};
 use crate::num::linalg::{product, subtract_product};

@@ -1,11 +1,11 @@
-//! The largest value of a function of the damping.
+//! The largest value of a function of a positive number.
 
-/// Values of the damping looked at in a decade, before the best of them is refined.
+/// Values of the number looked at in a decade, before the best of them is refined.
 const PER_DECADE: f64 = 20.0;
 
 /// The λ in [low, high] with the largest `value`, and that value: a logarithmic scan, then golden
 /// sections between the neighbours of the best. Values that are not numbers count as smallest.
-pub(super) fn largest(low: f64, high: f64, value: impl Fn(f64) -> f64) -> (f64, f64) {
+pub fn largest(low: f64, high: f64, value: impl Fn(f64) -> f64) -> (f64, f64) {
     let value = |x: f64| match value(x) {
         v if v.is_nan() => f64::NEG_INFINITY,
         v => v,
