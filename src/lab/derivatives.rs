@@ -1,7 +1,7 @@
 //! What may be off in a scene, and what each deviation does to the model: derivatives by central
 //! differences of the quadrature.
 
-use super::misplaced::{ALL, Misplaced, Size, hinge};
+use super::misplaced::{ALL, Misplaced, Size};
 use super::score::Parameter;
 use crate::geometry::DVec3;
 use crate::matrix::Matrix;
@@ -173,7 +173,7 @@ fn lever(scene: &Scene) -> f64 {
         return 1.0;
     };
     let middle = surface.shape.at([0.5; 2]).position;
-    match hinge(scene) {
+    match scene.hinge() {
         Some((point, axis)) => (middle - point).cross(axis).length(),
         None => 0.5 * surface.shape.area().sqrt(),
     }

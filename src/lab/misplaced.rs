@@ -125,7 +125,7 @@ fn moved(scene: &Scene, by: DVec3) -> Option<Scene> {
 
 /// The scene with its hidden surfaces turned around the hinge, by degrees.
 fn turned(scene: &Scene, size: f64) -> Option<Scene> {
-    let (point, axis) = hinge(scene)?;
+    let (point, axis) = scene.hinge()?;
     rotated(scene, point, axis, size)
 }
 
@@ -133,7 +133,7 @@ fn turned(scene: &Scene, size: f64) -> Option<Scene> {
 /// first that lies in its plane at right angles to the hinge (to u, where there is no hinge).
 fn yawed(scene: &Scene, size: f64) -> Option<Scene> {
     let middle = first_hidden(scene)?.at([0.5; 2]);
-    let along = match hinge(scene) {
+    let along = match scene.hinge() {
         Some((_, axis)) => axis,
         None => side(scene, [[0.0, 0.5], [1.0, 0.5]])?,
     };
@@ -177,22 +177,6 @@ fn bent(scene: &Scene, size: f64) -> Option<Scene> {
         .relays()
         .all(|(_, wall)| upward(&wall.shape))
         .then(|| scene.with_bent_relay(size).ok())?
-}
-
-/// A point and the direction of the line in which the planes of the first hidden surface and of the
-/// wall meet.
-pub(super) fn hinge(scene: &Scene) -> Option<(DVec3, DVec3)> {
-    let (_, hidden) = scene.hidden().next()?;
-    let (_, wall) = scene.relays().next()?;
-    let (a, b) = (hidden.shape.at([0.5, 0.5]), wall.shape.at([0.5, 0.5]));
-    let axis = a.normal.cross(b.normal);
-    let square = axis.length_squared();
-    if square < 1e-12 {
-        return None;
-    }
-    let (da, db) = (a.normal.dot(a.position), b.normal.dot(b.position));
-    let point = (b.normal.cross(axis) * da + axis.cross(a.normal) * db) / square;
-    Some((point, axis.normalize()))
 }
 
 /// Pairs of independent standard normal numbers.

@@ -6,6 +6,7 @@ use crate::geometry::{Polygon, Shape, ShapeId};
 use crate::scene::{Division, Element, Surface};
 
 /// A small part of a hidden surface, taken at its middle.
+#[derive(Debug)]
 pub(super) struct HiddenCell {
     pub point: HiddenPoint,
     /// Its area/π, length².

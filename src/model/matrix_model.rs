@@ -50,6 +50,36 @@ pub fn is_obstructed(scene: &Scene) -> bool {
     !obstacles(scene).is_empty()
 }
 
+/// How the hidden surfaces of `scene` are divided; `elements` replaces the elements a side that it
+/// gives.
+///
+/// # Errors
+/// [`ModelError::NothingHidden`].
+pub(super) fn element_grids(
+    scene: &Scene,
+    elements: Option<[usize; 2]>,
+) -> Result<Vec<ElementGrid>, ModelError> {
+    let mut grids: Vec<ElementGrid> = Vec::new();
+    let mut count = 0;
+    for (_, surface) in scene.hidden() {
+        let grid = ElementGrid {
+            surface: surface.name.clone(),
+            count: match surface.division {
+                Division::Cells => elements.unwrap_or(surface.elements),
+                Division::Faces | Division::Whole => surface.elements,
+            },
+            first: count,
+            is_known: surface.is_known,
+        };
+        count += grid.len();
+        grids.push(grid);
+    }
+    if count == 0 {
+        return Err(ModelError::NothingHidden);
+    }
+    Ok(grids)
+}
+
 impl MatrixModel {
     /// The model of `scene`, past what stands in the way; `elements` replaces the elements a side
     /// that the scene gives.
@@ -135,24 +165,8 @@ impl MatrixModel {
         elements: Option<[usize; 2]>,
         photographs: f64,
     ) -> Result<Self, ModelError> {
-        let mut grids: Vec<ElementGrid> = Vec::new();
-        let mut count = 0;
-        for (_, surface) in scene.hidden() {
-            let grid = ElementGrid {
-                surface: surface.name.clone(),
-                count: match surface.division {
-                    Division::Cells => elements.unwrap_or(surface.elements),
-                    Division::Faces | Division::Whole => surface.elements,
-                },
-                first: count,
-                is_known: surface.is_known,
-            };
-            count += grid.len();
-            grids.push(grid);
-        }
-        if count == 0 {
-            return Err(ModelError::NothingHidden);
-        }
+        let grids = element_grids(scene, elements)?;
+        let count = grids.iter().map(ElementGrid::len).sum();
         let (pixels, spots) = (scene.camera.pixels(), scene.laser.spots.len());
         let entries = 2.0 * count as f64 * (pixels + spots) as f64 + photographs;
         if entries > MOST_ENTRIES {

@@ -15,6 +15,7 @@
 mod cells;
 mod converged;
 mod cut;
+mod differential;
 mod error;
 mod extent;
 mod factors;
@@ -26,10 +27,12 @@ mod parts;
 mod patch;
 mod place;
 mod published;
+mod tangent;
 mod visible;
 mod wall_point;
 
 pub use converged::{Converged, Nodes, converged, integrated};
+pub use differential::{Differential, Terms, TermsRate};
 pub use error::ModelError;
 pub use extent::{Extent, Occlusion, Take};
 pub use factors::{ElementGrid, Factors};

@@ -202,7 +202,7 @@ impl Meshes {
 }
 
 /// The rotation by `degrees` about a unit vector: q = (axis·sin ½φ, cos ½φ).
-fn rotation(axis: DVec3, degrees: f64) -> DQuat {
+pub(super) fn rotation(axis: DVec3, degrees: f64) -> DQuat {
     let (sin, cos) = libm::sincos(0.5 * degrees.to_radians());
     let v = axis * sin;
     DQuat::from_xyzw(v.x, v.y, v.z, cos)

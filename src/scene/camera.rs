@@ -65,6 +65,20 @@ impl Camera {
         })
     }
 
+    /// The same camera with its view between these ends in x and in y.
+    pub(super) fn with_view(
+        &self,
+        [x, y]: [[f64; 2]; 2],
+        surfaces: &[Surface],
+    ) -> Result<Self, Fault> {
+        let view = on_the_wall(x, y, self.position, surfaces)
+            .map_err(|fault| fault.within(keys!["camera"]))?;
+        Ok(Self {
+            view,
+            ..self.clone()
+        })
+    }
+
     pub(super) fn from_table(table: &CameraTable, surfaces: &[Surface]) -> Result<Self, Fault> {
         let refuse = |key, cause: String, cure: &str| {
             Err(Fault::new(keys![key], cause, cure).within(keys!["camera"]))
@@ -96,22 +110,8 @@ impl Camera {
             let cause = format!("the view [{x0}, {x1}] × [{y0}, {y1}] has no area");
             return refuse("view", cause, "give x and y as [lower, upper]");
         }
-        let view = view([x0, x1], [y0, y1], position, surfaces).map_err(|e| {
-            let at = format!("the view [{x0}, {x1}] × [{y0}, {y1}]");
-            let fault = match e {
-                NoView::OffTheWall => Fault::new(
-                    keys!["view"],
-                    format!("{at} does not lie on the wall"),
-                    "keep it within a relay surface, or extend the wall",
-                ),
-                NoView::Behind => Fault::new(
-                    keys!["position"],
-                    format!("the camera stands behind the wall on which {at} lies"),
-                    "move it to the front (the side of u × v)",
-                ),
-            };
-            fault.within(keys!["camera"])
-        })?;
+        let view = on_the_wall([x0, x1], [y0, y1], position, surfaces)
+            .map_err(|fault| fault.within(keys!["camera"]))?;
         Ok(Self {
             position,
             aperture_area: table.aperture_area,
@@ -120,6 +120,30 @@ impl Camera {
             rows: rows as usize,
         })
     }
+}
+
+/// The view as a patch of the wall's plane.
+fn on_the_wall(
+    x: [f64; 2],
+    y: [f64; 2],
+    camera: DVec3,
+    surfaces: &[Surface],
+) -> Result<Parallelogram, Fault> {
+    view(x, y, camera, surfaces).map_err(|e| {
+        let at = format!("the view [{}, {}] × [{}, {}]", x[0], x[1], y[0], y[1]);
+        match e {
+            NoView::OffTheWall => Fault::new(
+                keys!["view"],
+                format!("{at} does not lie on the wall"),
+                "keep it within a relay surface, or extend the wall",
+            ),
+            NoView::Behind => Fault::new(
+                keys!["position"],
+                format!("the camera stands behind the wall on which {at} lies"),
+                "move it to the front (the side of u × v)",
+            ),
+        }
+    })
 }
 
 /// Where the lines of sight of one pixel cross the view's plane: corner + a·u + b·v.

@@ -199,7 +199,6 @@ fn lost_at(right: Option<f64>, rows: &[Misplacement]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::misplaced::hinge;
     use crate::lab::study::tests::{divides, small};
 
     #[test]
@@ -212,7 +211,7 @@ mod tests {
     /// On the bench the planes meet at y = 15.5, z = 0, along x.
     #[test]
     fn the_hinge_of_the_bench_is_where_it_is() {
-        let (point, axis) = hinge(&Scene::load("bench").unwrap()).unwrap();
+        let (point, axis) = Scene::load("bench").unwrap().hinge().unwrap();
         assert!((point.y - 15.5).abs() < 1e-12 && point.z.abs() < 1e-12);
         assert!((axis.x.abs() - 1.0).abs() < 1e-12);
     }

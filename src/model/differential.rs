@@ -1,0 +1,243 @@
+//! Elements' light as products of a camera's and a laser's side, and how it changes with the
+//! geometry.
+//!
+//! > A_j\[p,l\] = Σ_{s∈j} c\[p,s\] d\[s,l\],   ∂A_j = Σ_{s∈j} ∂c d + c ∂d
+
+use rayon::prelude::*;
+
+use super::cells::{HiddenCell, cells_of_elements};
+use super::cut::Cut;
+use super::error::ModelError;
+use super::extent::{Extent, Take};
+use super::factors::ElementGrid;
+use super::kernel::Kernel;
+use super::matrix_model::element_grids;
+use super::tangent::{self, ViewRate, WallRate};
+use super::wall_point::{self, WallPoint};
+use crate::geometry::DVec3;
+use crate::matrix::Matrix;
+use crate::scene::{Scene, Surface, Velocity};
+
+/// The light of elements with albedo 1 as products.
+#[derive(Clone, Debug)]
+pub struct Terms {
+    /// Pixels × terms.
+    pub camera: Matrix,
+    /// Terms × spots; with `camera` W.
+    pub laser: Matrix,
+    /// The element of each term, ascending.
+    pub element: Vec<usize>,
+}
+
+/// ∂ of both sides of [`Terms`] by a parameter; none where it does not move a side.
+#[derive(Clone, Debug)]
+pub struct TermsRate {
+    /// Pixels × terms.
+    pub camera: Option<Matrix>,
+    /// Terms × spots.
+    pub laser: Option<Matrix>,
+}
+
+impl Terms {
+    /// What frame `spot` shows of each element at albedo 1, pixels × elements, W.
+    pub fn frame(&self, spot: usize, elements: usize) -> Matrix {
+        summed(&self.element, elements, (&self.camera, &self.laser, spot))
+    }
+
+    /// Its rate of change.
+    pub fn frame_rate(&self, rate: &TermsRate, spot: usize, elements: usize) -> Matrix {
+        let of = |camera, laser| summed(&self.element, elements, (camera, laser, spot));
+        match (&rate.camera, &rate.laser) {
+            (Some(camera), Some(laser)) => of(camera, &self.laser) + of(&self.camera, laser),
+            (Some(camera), None) => of(camera, &self.laser),
+            (None, Some(laser)) => of(&self.camera, laser),
+            (None, None) => Matrix::zeros(self.camera.nrows(), elements),
+        }
+    }
+}
+
+/// Σ_s camera\[·,s\] laser\[s,spot\], summed into the column of each term's element.
+fn summed(
+    element: &[usize],
+    elements: usize,
+    (camera, laser, spot): (&Matrix, &Matrix, usize),
+) -> Matrix {
+    let mut all = Matrix::zeros(camera.nrows(), elements);
+    for (s, j) in element.iter().enumerate() {
+        let lit = laser[(s, spot)];
+        if lit != 0.0 {
+            all.column_mut(*j).axpy(lit, &camera.column(s), 1.0);
+        }
+    }
+    all
+}
+
+/// Halvings of an element whose light is integrated: four cells and, extrapolated, their middle.
+const HALVINGS: u32 = 1;
+/// Level of the rules on footprints and spots.
+const LEVEL: usize = 1;
+
+/// The points of a scene between which its model takes light, with nothing in the way and the
+/// physical kernel.
+#[derive(Debug)]
+pub struct Differential<'a> {
+    scene: &'a Scene,
+    /// Hidden cells with their surfaces and elements.
+    cells: Vec<(HiddenCell, usize)>,
+    /// Of each pixel.
+    seen: Vec<Vec<WallPoint>>,
+    /// Of each spot; none where a surface shines.
+    lit: Vec<Vec<WallPoint>>,
+    grids: Vec<ElementGrid>,
+}
+
+impl<'a> Differential<'a> {
+    /// Of elements, footprints and spots at their centres, or integrated over: an element's light by
+    /// its four quarters and its middle, of which the error falls as the fourth power of its size.
+    ///
+    /// # Errors
+    /// [`ModelError::NothingHidden`].
+    pub fn new(
+        scene: &'a Scene,
+        elements: Option<[usize; 2]>,
+        take: Take,
+    ) -> Result<Self, ModelError> {
+        let grids = element_grids(scene, elements)?;
+        let hidden: Vec<(usize, &Surface)> = scene.hidden().collect();
+        let by = |halvings, weight: f64| {
+            let each = hidden.iter().zip(&grids);
+            let mut of: Vec<Vec<HiddenCell>> = each
+                .flat_map(|(surface, grid)| cells_of_elements(*surface, grid.count, halvings))
+                .collect();
+            of.iter_mut().flatten().for_each(|cell| cell.area *= weight);
+            of
+        };
+        let of = match take {
+            Take::Centre => by(0, 1.0),
+            Take::Integral => {
+                let mut fine = by(HALVINGS, 4.0 / 3.0);
+                let coarse = by(HALVINGS - 1, -1.0 / 3.0);
+                fine.iter_mut().zip(coarse).for_each(|(all, own)| all.extend(own));
+                fine
+            }
+        };
+        let numbered = of.into_iter().enumerate();
+        let cells = numbered.flat_map(|(j, own)| own.into_iter().map(move |cell| (cell, j)));
+        let (seen, lit) = match take {
+            Take::Centre => {
+                let pixels = 0..scene.camera.pixels();
+                let spots = 0..scene.laser.spots.len();
+                let lit = |l| match scene.laser.is_shining() {
+                    true => Vec::new(),
+                    false => vec![wall_point::lit(scene, l, DVec3::ZERO, 1.0)],
+                };
+                (
+                    pixels
+                        .map(|p| vec![wall_point::seen(scene, p, [0.5, 0.5], 1.0)])
+                        .collect(),
+                    spots.map(lit).collect(),
+                )
+            }
+            Take::Integral => {
+                let cut = Cut::new(scene, Extent::UNOBSTRUCTED);
+                (cut.seen(scene, LEVEL), cut.lit(scene, LEVEL))
+            }
+        };
+        Ok(Self {
+            scene,
+            cells: cells.collect(),
+            seen,
+            lit,
+            grids,
+        })
+    }
+
+    /// Number of elements.
+    pub fn elements(&self) -> usize {
+        self.grids.iter().map(ElementGrid::len).sum()
+    }
+
+    /// A_j.
+    pub fn terms(&self) -> Terms {
+        let side = |walls: &[WallPoint], cell: &HiddenCell| {
+            let towards = |w: &WallPoint| w.towards(self.scene, Kernel::Physical, &cell.point);
+            walls.iter().map(towards).sum::<f64>()
+        };
+        let laser = |s: usize, l: usize| {
+            let (cell, j) = &self.cells[s];
+            cell.area
+                * match self.shining(*j, l) {
+                    Some(exitance) => exitance,
+                    None => side(&self.lit[l], cell),
+                }
+        };
+        Terms {
+            camera: by_columns(self.seen.len(), self.cells.len(), |p, s| {
+                side(&self.seen[p], &self.cells[s].0)
+            }),
+            laser: by_columns(self.cells.len(), self.lit.len(), laser),
+            element: self.cells.iter().map(|(_, j)| *j).collect(),
+        }
+    }
+
+    /// The exitance of element `j` in column `spot` of a surface that shines, W length⁻²; none of a
+    /// laser.
+    fn shining(&self, j: usize, spot: usize) -> Option<f64> {
+        let (_, surface) = self.scene.shining()?;
+        let exitance = surface.shining().map_or(0.0, |s| s.exitance);
+        let grid = self.grids.first()?;
+        Some(exitance * self.scene.laser.share(spot, (j, grid.count)))
+    }
+
+    /// ∂A_j by the parameter with which the scene moves by `velocity`.
+    pub fn rate(&self, velocity: &Velocity) -> TermsRate {
+        let moves = |id: usize| velocity.surfaces[id] != Default::default();
+        let hidden = self.scene.hidden().any(|(id, _)| moves(id));
+        let wall = self.scene.relays().any(|(id, _)| moves(id));
+        let view = velocity.view != [0.0; 2]
+            || velocity.view_growth != 0.0
+            || velocity.camera != DVec3::ZERO;
+        let spots = velocity.spots.iter().any(|s| *s != [0.0; 2]) || velocity.laser != DVec3::ZERO;
+        let side = |walls: &[WallPoint], rates: &[WallRate], cell: &HiddenCell| {
+            let twist = &velocity.surfaces[cell.surface as usize];
+            let each = walls.iter().zip(rates);
+            each.map(|(w, rate)| w.towards_rate(self.scene, rate, &cell.point, twist))
+                .sum::<f64>()
+        };
+        let camera = (hidden || wall || view).then(|| {
+            let aim = ViewRate::new(self.scene, velocity);
+            let rate = |w: &WallPoint| aim.as_ref().map_or_else(WallRate::default, |a| a.seen(w));
+            let rates: Vec<Vec<WallRate>> =
+                self.seen.iter().map(|own| own.iter().map(rate).collect()).collect();
+            by_columns(self.seen.len(), self.cells.len(), |p, s| {
+                side(&self.seen[p], &rates[p], &self.cells[s].0)
+            })
+        });
+        let lasers = !self.scene.laser.is_shining() && (hidden || wall || spots);
+        let laser = lasers.then(|| {
+            let of = |(l, own): (usize, &Vec<WallPoint>)| {
+                let rate = |w| tangent::lit(self.scene, velocity, l, w);
+                own.iter().map(rate).collect::<Vec<_>>()
+            };
+            let rates: Vec<Vec<WallRate>> = self.lit.iter().enumerate().map(of).collect();
+            by_columns(self.cells.len(), self.lit.len(), |s, l| {
+                let (cell, _) = &self.cells[s];
+                cell.area * side(&self.lit[l], &rates[l], cell)
+            })
+        });
+        TermsRate { camera, laser }
+    }
+}
+
+/// A matrix by its entries, its columns on the threads of the pool.
+fn by_columns(rows: usize, columns: usize, of: impl Fn(usize, usize) -> f64 + Sync) -> Matrix {
+    let each = (0..rows * columns).into_par_iter();
+    let entries: Vec<f64> = each
+        .with_min_len(1024)
+        .map(|k| of(k % rows, k / rows))
+        .collect();
+    Matrix::from_vec(rows, columns, entries)
+}
+
+#[cfg(test)]
+mod tests;

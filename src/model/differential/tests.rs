@@ -1,0 +1,136 @@
+//! Against finite differences of scenes that are displaced, and against the matrix model.
+
+use super::*;
+use crate::model::{MatrixModel, Occlusion};
+use crate::scene::{Parameter, file::SceneFile};
+
+fn small(name: &str) -> Scene {
+    let mut file = SceneFile::builtin(name).unwrap();
+    file.camera.pixels = [3, 2];
+    if let Some(laser) = &mut file.laser {
+        laser.spots.per_side = laser.spots.per_side.map(|_| 2);
+        laser.spot_diameter = 0.2;
+    }
+    Scene::new(&file, None).unwrap()
+}
+
+fn parameters(scene: &Scene, names: &[&str]) -> Vec<Parameter> {
+    let each = names.iter().map(|name| Parameter::named(scene, name).unwrap());
+    each.collect::<Vec<_>>().concat()
+}
+
+/// The largest difference of a rate from its central differences by Richardson's rule, over the
+/// largest rate of the same matrix.
+fn worst(base: &Scene, parameters: &[Parameter], values: &[f64], take: Take) -> Vec<f64> {
+    let extent = base.camera.view.u().length();
+    let here = base.displaced(parameters, values).unwrap();
+    let model = Differential::new(&here, Some([3, 2]), take).unwrap();
+    let of = |k: usize| {
+        let rate = model.rate(&base.velocity(parameters, values, k));
+        let at = |step: f64| {
+            let mut values = values.to_vec();
+            values[k] += step;
+            let scene = base.displaced(parameters, &values).unwrap();
+            Differential::new(&scene, Some([3, 2]), take).unwrap().terms()
+        };
+        let h = 1e-3 * extent;
+        let [a, b, c, d] = [h, -h, 2.0 * h, -2.0 * h].map(at);
+        let mut worst = 0.0f64;
+        let mut compare = |rate: &Option<Matrix>, of: fn(&Terms) -> &Matrix| {
+            let want = ((of(&a) - of(&b)) * 8.0 - (of(&c) - of(&d))) / (12.0 * h);
+            let none = Matrix::zeros(want.nrows(), want.ncols());
+            let rate = rate.as_ref().unwrap_or(&none);
+            let off = (rate - &want).amax();
+            // What does not move is there but for rounding.
+            let rounding = 1e-5 * of(&a).amax();
+            worst = worst.max(off / want.amax().max(rounding));
+        };
+        compare(&rate.camera, |t| &t.camera);
+        compare(&rate.laser, |t| &t.laser);
+        worst
+    };
+    (0..parameters.len()).map(of).collect()
+}
+
+fn all_within(scene: &Scene, names: &[&str], values: impl Fn(usize) -> f64, limit: f64) {
+    let parameters = parameters(scene, names);
+    let values: Vec<f64> = (0..parameters.len()).map(values).collect();
+    for take in [Take::Centre, Take::Integral] {
+        let found = worst(scene, &parameters, &values, take);
+        for (p, off) in parameters.iter().zip(found) {
+            assert!(off < limit, "{} {take:?}: {off:e}", p.name);
+        }
+    }
+}
+
+/// Everything at once, away from where the scene is written: the order of motions counts.
+#[test]
+fn rates_are_those_of_displaced_scenes() {
+    let names = [
+        "hinge.angle",
+        "hidden.normal",
+        "hidden.yaw",
+        "hidden.pitch",
+        "spots.shift",
+        "spots.angle",
+        "spots.scale",
+        "spots.1.x",
+        "view.shift",
+        "view.scale",
+        "camera.position",
+        "laser.position",
+    ];
+    let values = |k: usize| 0.11 * (1.0 + (k % 3) as f64) * if k % 2 == 0 { 1.0 } else { -1.0 };
+    all_within(&small("bench"), &names, values, 1e-8);
+}
+
+/// The wall itself, spots and view staying at their (x, y); the profile of a spot on it may turn.
+#[test]
+fn rates_of_the_wall_are_those_of_displaced_scenes() {
+    let names = ["wall.normal", "wall.pitch", "wall.yaw", "hidden.normal"];
+    let scene = small("bench");
+    let parameters = parameters(&scene, &names);
+    let found = worst(&scene, &parameters, &[0.05, 0.4, -0.3, 0.1], Take::Centre);
+    assert!(found.iter().all(|off| *off < 1e-8), "{found:?}");
+    let found = worst(&scene, &parameters, &[0.05, 0.4, -0.3, 0.1], Take::Integral);
+    assert!(found.iter().all(|off| *off < 1e-4), "{found:?}");
+}
+
+/// A glossy wall, a curved wall, a surface that shines with a fall-off.
+#[test]
+fn rates_of_other_surfaces_are_those_of_displaced_scenes() {
+    let values = |k: usize| 0.05 * (k as f64 - 1.0);
+    let names = ["hinge.angle", "hidden.normal", "spots.shift", "camera.position", "laser.position"];
+    // Its coat is interpolated in a table, which bends at its nodes.
+    all_within(&small("satin"), &names, values, 1e-6);
+    let curved = small("bench").with_bent_relay(0.2).unwrap();
+    let names = ["hinge.angle", "spots.shift", "wall.x", "wall.normal", "view.shift", "camera.position"];
+    all_within(&curved, &names, values, 1e-8);
+    let text = SceneFile::builtin("screen").unwrap();
+    let screen = Scene::new(&text, None).unwrap();
+    let names = ["hidden.normal", "hidden.yaw", "hidden.pitch", "view.shift", "camera.position"];
+    all_within(&screen, &names, |k| 0.002 * (k as f64 - 1.0), 1e-7);
+}
+
+/// At the centres they are the matrix model's C and D; integrated, its areas'.
+#[test]
+fn terms_are_those_of_the_matrix_model() {
+    for name in ["bench", "screen"] {
+        let scene = small(name);
+        let model =
+            MatrixModel::with(&scene, Kernel::Physical, Some([3, 2]), Occlusion::Ignored).unwrap();
+        let own = Differential::new(&scene, Some([3, 2]), Take::Centre).unwrap();
+        let phi = |terms: &Terms| {
+            let rho = nalgebra::DVector::from_column_slice(&model.albedo);
+            let frames = (0..terms.laser.ncols()).map(|l| terms.frame(l, 6) * &rho);
+            Matrix::from_columns(&frames.collect::<Vec<_>>())
+        };
+        let want = model.phi();
+        let off = (phi(&own.terms()) - &want).norm() / want.norm();
+        assert!(off < 1e-14, "{name}: {off:e}");
+        let want = model.clone().over_areas(&scene).unwrap().phi();
+        let own = Differential::new(&scene, Some([3, 2]), Take::Integral).unwrap();
+        let off = (phi(&own.terms()) - &want).norm() / want.norm();
+        assert!(off < 3e-3, "{name}: {off:e}");
+    }
+}

@@ -1,0 +1,248 @@
+//! How the points of the model move, and G between them, per unit of a geometric parameter.
+//!
+//! > x = o + t (τ − o) on the wall's surface:  ẋ = ȯ + t (τ̇ − ȯ) + ṫ (τ − o),  n·(ẋ − v(x)) = 0
+//! > G = a b/R⁴, a = r·n₁, b = −r·n₂, r = x₂ − x₁:  Ġ = (ȧ b + a ḃ)/R⁴ − 4 G r·ṙ/R²
+//!
+//! v(x) is the velocity of the surface, which gives ṫ. Where f_r or the fall-off of a surface that
+//! shines varies with direction, its rate is a central difference along these velocities, of
+//! relative error 1e-10. An albedo that varies over the wall moves with the point.
+
+use super::kernel::{HiddenPoint, Kernel};
+use super::wall_point::{Reflection, WallPoint};
+use crate::geometry::{DVec3, Facing, Shape};
+use crate::scene::material::FallOff;
+use crate::scene::{Scene, Twist, Velocity};
+
+/// Step of a central difference, relative to distances and in radians.
+const STEP: f64 = 1e-5;
+
+/// Velocities of a wall point.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct WallRate {
+    position: DVec3,
+    normal: DVec3,
+    /// Of the unit vector to the device.
+    device: DVec3,
+    /// Relative, of its weight.
+    weight: f64,
+}
+
+/// ṅ at a point of a surface that moves by `twist` and on which the point moves by `rate`.
+fn normal_rate(shape: &Shape, twist: &Twist, normal: DVec3, rate: DVec3) -> DVec3 {
+    match shape {
+        Shape::Sphere(s) => {
+            let sign = match s.facing {
+                Facing::Outside => 1.0,
+                Facing::Inside => -1.0,
+            };
+            (rate - twist.at(s.centre)) * (sign / s.radius)
+        }
+        _ => twist.angular.cross(normal),
+    }
+}
+
+/// The plane in which a device aims: its point `at`, and how both move.
+#[derive(Clone, Copy, Debug)]
+struct Aim {
+    at: DVec3,
+    at_rate: DVec3,
+    normal: DVec3,
+    normal_rate: DVec3,
+}
+
+impl Aim {
+    /// Of a point of surface `id` that stays on it while its (x, y) move.
+    fn new(
+        scene: &Scene,
+        velocity: &Velocity,
+        id: usize,
+        at: DVec3,
+        normal: DVec3,
+        [dx, dy]: [f64; 2],
+    ) -> Self {
+        let twist = &velocity.surfaces[id];
+        let dz = (normal.dot(twist.at(at)) - normal.x * dx - normal.y * dy) / normal.z;
+        let at_rate = DVec3::new(dx, dy, dz);
+        Self {
+            at,
+            at_rate,
+            normal,
+            normal_rate: normal_rate(&scene.surfaces[id].shape, twist, normal, at_rate),
+        }
+    }
+
+    /// Where the line from `device` to `x` meets the plane.
+    fn target(&self, device: DVec3, x: DVec3) -> DVec3 {
+        let along = self.normal.dot(self.at - device) / self.normal.dot(x - device);
+        device + (x - device) * along
+    }
+}
+
+/// How a wall point moves on its surface that is met from `device`, which moves by `device_rate`,
+/// towards `target`, which moves by `target_rate`.
+fn met(
+    scene: &Scene,
+    velocity: &Velocity,
+    point: &WallPoint,
+    [device, device_rate]: [DVec3; 2],
+    [target, target_rate]: [DVec3; 2],
+) -> WallRate {
+    let Some(id) = point.surface.map(|id| id as usize) else {
+        return WallRate::default();
+    };
+    let twist = &velocity.surfaces[id];
+    let line = target - device;
+    let t = (point.position - device).dot(line) / line.length_squared();
+    let carried = device_rate + (target_rate - device_rate) * t;
+    let slip = point.normal.dot(twist.at(point.position) - carried) / point.normal.dot(line);
+    let position = carried + line * slip;
+    let to_device = device - point.position;
+    let length = to_device.length();
+    let unit = to_device / length;
+    let rate = device_rate - position;
+    WallRate {
+        position,
+        normal: normal_rate(&scene.surfaces[id].shape, twist, point.normal, position),
+        device: (rate - unit * unit.dot(rate)) / length,
+        weight: 0.0,
+    }
+}
+
+/// The view as it moves.
+#[derive(Debug)]
+pub(super) struct ViewRate<'a> {
+    scene: &'a Scene,
+    velocity: &'a Velocity,
+    aim: Aim,
+}
+
+impl<'a> ViewRate<'a> {
+    /// None where no wall lies below the middle of the view.
+    pub(super) fn new(scene: &'a Scene, velocity: &'a Velocity) -> Option<Self> {
+        let view = &scene.camera.view;
+        let middle = view.at([0.5; 2]).position;
+        let wall = scene.relays().flat_map(|(id, s)| {
+            let points = s.shape.at_xy(middle.x, middle.y).into_iter();
+            points.map(move |p| (id, (p.position - middle).length_squared()))
+        });
+        let (id, _) = wall.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let normal = view.normal();
+        Some(Self {
+            aim: Aim::new(scene, velocity, id, middle, normal, velocity.view),
+            scene,
+            velocity,
+        })
+    }
+
+    /// Of a point that the camera sees: E ∝ (n·(τ − o))²/|τ − o|⁴ · area.
+    pub(super) fn seen(&self, point: &WallPoint) -> WallRate {
+        let (camera, aim) = (&self.scene.camera, &self.aim);
+        let device = [camera.position, self.velocity.camera];
+        let target = aim.target(camera.position, point.position);
+        let growth = self.velocity.view_growth;
+        let [dx, dy] = [0, 1].map(|k| aim.at_rate[k] + growth * (target[k] - aim.at[k]));
+        let away = target - aim.at;
+        let level = aim.normal.dot(aim.at_rate) - aim.normal_rate.dot(away);
+        let dz = (level - aim.normal.x * dx - aim.normal.y * dy) / aim.normal.z;
+        let target_rate = DVec3::new(dx, dy, dz);
+        let line = target - device[0];
+        let line_rate = target_rate - device[1];
+        let height = aim.normal_rate.dot(line) + aim.normal.dot(line_rate);
+        // The area of a rectangle in x and y is that over |n_z|.
+        let area = 2.0 * growth - aim.normal_rate.z / aim.normal.z;
+        WallRate {
+            weight: 2.0 * height / aim.normal.dot(line)
+                - 4.0 * line.dot(line_rate) / line.length_squared()
+                + area,
+            ..met(
+                self.scene,
+                self.velocity,
+                point,
+                device,
+                [target, target_rate],
+            )
+        }
+    }
+}
+
+/// Of a point that spot `spot` lights. Where its profile turns with the wall, it turns as little as
+/// it can, which is all that matters of a profile that is round.
+pub(super) fn lit(scene: &Scene, velocity: &Velocity, spot: usize, point: &WallPoint) -> WallRate {
+    let laser = &scene.laser;
+    let own = &laser.spots[spot];
+    let (at, normal) = (own.target.position, own.target.normal);
+    let id = own.surface as usize;
+    let aim = Aim::new(scene, velocity, id, at, normal, velocity.spots[spot]);
+    let target = aim.target(laser.position, point.position);
+    let turn = aim.normal.cross(aim.normal_rate);
+    let target_rate = aim.at_rate + turn.cross(target - aim.at);
+    let device = [laser.position, velocity.laser];
+    met(scene, velocity, point, device, [target, target_rate])
+}
+
+impl WallPoint {
+    /// d/dθ of [`WallPoint::towards`] a hidden point that moves by `twist`, with the physical kernel.
+    pub(super) fn towards_rate(
+        &self,
+        scene: &Scene,
+        rate: &WallRate,
+        hidden: &HiddenPoint,
+        twist: &Twist,
+    ) -> f64 {
+        let g = Kernel::Physical.between(self.position, self.normal, hidden);
+        if g == 0.0 {
+            return 0.0;
+        }
+        let f = self.reflected(scene, hidden.position);
+        let r = hidden.position - self.position;
+        let r_rate = twist.at(hidden.position) - rate.position;
+        let r2 = r.length_squared();
+        let (a, b) = (r.dot(self.normal), -r.dot(hidden.normal));
+        let normal_rate = twist.angular.cross(hidden.normal);
+        let a_rate = r_rate.dot(self.normal) + r.dot(rate.normal);
+        let b_rate = -r_rate.dot(hidden.normal) - r.dot(normal_rate);
+        let relative =
+            a_rate / a + b_rate / b - 4.0 * r.dot(r_rate) / r2 + rate.weight;
+        let speed = r_rate.length() / r2.sqrt()
+            + rate.normal.length()
+            + rate.device.length()
+            + twist.angular.length();
+        let step = STEP / speed;
+        let difference = |of: &dyn Fn(f64) -> f64| {
+            if speed == 0.0 {
+                0.0
+            } else {
+                (of(step) - of(-step)) / (2.0 * step)
+            }
+        };
+        let f_rate = match self.reflection {
+            Reflection::Constant(_) => 0.0,
+            Reflection::Directed {
+                surface,
+                albedo,
+                device,
+            } => {
+                let surface = &scene.surfaces[surface];
+                let at = |h: f64| {
+                    let normal = (self.normal + rate.normal * h).normalize_or_zero();
+                    let device = (device + rate.device * h).normalize_or_zero();
+                    let to = (r + r_rate * h).normalize_or_zero();
+                    surface.brdf(albedo, normal, device, to)
+                };
+                self.weight * difference(&at)
+            }
+        };
+        let fall_rate = hidden.fall_off.map_or(0.0, |fall_off| {
+            let at = |h: f64| {
+                let turned = |v: DVec3| v + twist.angular.cross(v) * h;
+                let moved = FallOff {
+                    axes: fall_off.axes.map(turned),
+                    ..fall_off
+                };
+                moved.towards(turned(hidden.normal), -(r + r_rate * h))
+            };
+            difference(&at) / fall_off.towards(hidden.normal, -r)
+        });
+        f * g * (relative + fall_rate) + f_rate * g
+    }
+}

@@ -1,0 +1,254 @@
+//! Numbers of a scene's geometry that measurements know only roughly, by their names.
+//!
+//! | name | what it is | unit |
+//! | --- | --- | --- |
+//! | `hinge.angle` | turn of all hidden surfaces about the line where the first one's plane meets the wall's | deg |
+//! | `WHAT.x`, `.y`, `.z`, `.normal`, `.u`, `.v` | shift along an axis of the scene, or of the surface | the scene's |
+//! | `WHAT.pitch`, `.yaw`, `.roll` | turn about u, v and the normal through the surface's middle | deg |
+//! | `spots.x`, `.y`, `.angle`, `.scale` | shift, turn and growth of all spots about their mean | the scene's, deg, % |
+//! | `spots.3.x`, `spots.3.y` | shift of spot 3 alone, from 0 | the scene's |
+//! | `view.x`, `.y`, `.scale` | shift and growth of what the camera sees | the scene's, % |
+//! | `camera.x`, `.y`, `.z`, `laser.x`, `.y`, `.z` | shift of the pinhole, of where the beams start | the scene's |
+//!
+//! `WHAT` is a surface, or `hidden`, `wall`, `occluders`: all of that role, moved as one body. A
+//! mesh and a sphere have the axes of the scene for u, v and normal. `spots.shift` stands for
+//! `spots.x` and `spots.y`, `spots.each` for both of every spot, `view.shift` and `WHAT.position`
+//! (also of `camera` and `laser`) for their shifts along the axes.
+
+use super::error::{Fault, keys};
+use super::parse;
+use super::surface::{Surface, of_role};
+use super::{Role, Scene, SceneError};
+use crate::geometry::{DVec3, Shape};
+
+/// A number of a scene's geometry, 0 where the scene is as it is written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Its name.
+    pub name: String,
+    /// Degrees, percent, or the scene's unit of length.
+    pub unit: String,
+    pub(super) kind: Kind,
+}
+
+/// What a parameter changes.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Kind {
+    /// A rigid motion of these surfaces together.
+    Surfaces(Vec<usize>, Motion),
+    /// A shift of all spots along x (0) or y (1).
+    SpotsShift(usize),
+    /// A turn of all spots about their mean.
+    SpotsAngle,
+    /// Growth of the layout of the spots about their mean.
+    SpotsScale,
+    /// A shift of one spot along x (0) or y (1).
+    Spot(usize, usize),
+    /// A shift of the view along x (0) or y (1).
+    ViewShift(usize),
+    /// Growth of the view about its middle.
+    ViewScale,
+    /// A shift of the pinhole.
+    Camera(DVec3),
+    /// A shift of where the beams start.
+    Laser(DVec3),
+}
+
+/// A rigid motion with one parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Motion {
+    /// By a length along a unit vector.
+    Along(DVec3),
+    /// By degrees about the axis through a point.
+    About { point: DVec3, axis: DVec3 },
+}
+
+const AXES: [(&str, DVec3); 3] = [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)];
+
+impl Parameter {
+    /// The parameters of `scene` that a name stands for.
+    ///
+    /// # Errors
+    /// [`SceneError`] where it has none of that name, or one that no light can tell: a shift or turn
+    /// of a flat hidden surface within its own plane moves the picture's coordinates, nothing else.
+    pub fn named(scene: &Scene, name: &str) -> Result<Vec<Self>, SceneError> {
+        named(scene, name).map_err(|fault| parse::locate(&scene.name, &scene.text, fault))
+    }
+
+    /// Whether it turns things: its unit is degrees.
+    pub fn is_angle(&self) -> bool {
+        self.unit == DEGREES
+    }
+
+    /// Whether its unit is percent.
+    pub fn is_percent(&self) -> bool {
+        self.unit == PERCENT
+    }
+}
+
+const DEGREES: &str = "deg";
+const PERCENT: &str = "%";
+
+fn unknown(name: &str) -> Fault {
+    let cause = format!("the geometry has no parameter `{name}`");
+    let cure = "use hinge.angle, hidden.normal, hidden.yaw, spots.shift, spots.each, view.shift, view.scale, camera.position, laser.position, or a surface's name with .x .y .z .normal .u .v .pitch .yaw .roll";
+    Fault::new(keys![], cause, cure)
+}
+
+fn named(scene: &Scene, name: &str) -> Result<Vec<Parameter>, Fault> {
+    let Some((what, which)) = name.rsplit_once('.') else {
+        return Err(unknown(name));
+    };
+    let one = |which: &str| format!("{what}.{which}");
+    let all = |each: &[&str]| -> Result<Vec<Parameter>, Fault> {
+        let each = each.iter().map(|which| named(scene, &one(which)));
+        Ok(each.collect::<Result<Vec<_>, _>>()?.concat())
+    };
+    match (what, which) {
+        ("spots" | "view", "shift") => all(&["x", "y"]),
+        ("spots", "each") => {
+            let spots = 0..scene.laser.spots.len();
+            let names = spots.flat_map(|l| ["x", "y"].map(|axis| format!("spots.{l}.{axis}")));
+            let each = names.map(|name| named(scene, &name));
+            Ok(each.collect::<Result<Vec<_>, _>>()?.concat())
+        }
+        ("spots" | "view", "position") => Err(unknown(name)),
+        (_, "position") => all(&["x", "y", "z"]),
+        _ => single(scene, what, which, name).map(|found| vec![found]),
+    }
+}
+
+/// The parameter `which` of `what`.
+fn single(scene: &Scene, what: &str, which: &str, name: &str) -> Result<Parameter, Fault> {
+    let axis = AXES.iter().position(|(axis, _)| *axis == which);
+    let direction = axis.map(|k| AXES[k].1);
+    let plane = axis.filter(|k| *k < 2);
+    let lasers = what == "laser" || what == "spots" || what.starts_with("spots.");
+    if lasers && scene.laser.is_shining() {
+        let cause = format!("there is no laser, and so no `{name}`: a hidden surface shines");
+        return Err(Fault::new(keys!["surface"], cause, "leave it out"));
+    }
+    let missing = || unknown(name);
+    let kind = match (what, which) {
+        ("hinge", "angle") => {
+            let hidden = of_role(Role::Hidden, &scene.surfaces).map(|(id, _)| id);
+            let Some((point, axis)) = scene.hinge() else {
+                let cause = "hidden surface and wall are parallel: there is no hinge";
+                let cure = "use hidden.pitch and hidden.yaw";
+                return Err(Fault::new(keys!["surface"], cause, cure));
+            };
+            Kind::Surfaces(hidden.collect(), Motion::About { point, axis })
+        }
+        ("spots", "angle") => Kind::SpotsAngle,
+        ("spots", "scale") => Kind::SpotsScale,
+        ("spots", _) => Kind::SpotsShift(plane.ok_or_else(missing)?),
+        ("view", "scale") => Kind::ViewScale,
+        ("view", _) => Kind::ViewShift(plane.ok_or_else(missing)?),
+        ("camera", _) => Kind::Camera(direction.ok_or_else(missing)?),
+        ("laser", _) => Kind::Laser(direction.ok_or_else(missing)?),
+        _ => match what.strip_prefix("spots.").map(str::parse::<usize>) {
+            Some(Ok(l)) if l < scene.laser.spots.len() => {
+                Kind::Spot(l, plane.ok_or_else(missing)?)
+            }
+            Some(_) => return Err(missing()),
+            None => of_surfaces(scene, what, which, name)?,
+        },
+    };
+    let unit = match kind {
+        Kind::SpotsAngle | Kind::Surfaces(_, Motion::About { .. }) => DEGREES,
+        Kind::SpotsScale | Kind::ViewScale => PERCENT,
+        _ => scene.unit.symbol(),
+    };
+    Ok(Parameter {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        kind,
+    })
+}
+
+/// A motion of surfaces by their name or role.
+fn of_surfaces(scene: &Scene, what: &str, which: &str, name: &str) -> Result<Kind, Fault> {
+    let role = match what {
+        "hidden" => Some(Role::Hidden),
+        "wall" => Some(Role::Relay),
+        "occluders" => Some(Role::Occluder),
+        _ => None,
+    };
+    // The two sides of a surface stay together.
+    let back = format!("{what} (back)");
+    let by_name = |s: &Surface| s.name == what || s.name == back;
+    let is_name = scene.surfaces.iter().any(by_name);
+    let concerned = |s: &Surface| {
+        if is_name {
+            by_name(s)
+        } else {
+            role == Some(s.role)
+        }
+    };
+    let all = scene.surfaces.iter().enumerate();
+    let ids: Vec<usize> = all.filter(|(_, s)| concerned(s)).map(|(id, _)| id).collect();
+    let Some(first) = ids.first().map(|id| &scene.surfaces[*id]) else {
+        return Err(unknown(name));
+    };
+    let frame = frame(&first.shape);
+    let axis = match which {
+        "x" => DVec3::X,
+        "y" => DVec3::Y,
+        "z" => DVec3::Z,
+        "u" | "pitch" => frame.u,
+        "v" | "yaw" => frame.v,
+        "normal" | "roll" => frame.normal,
+        _ => return Err(unknown(name)),
+    };
+    let motion = match which {
+        "pitch" | "yaw" | "roll" => Motion::About {
+            point: frame.middle,
+            axis,
+        },
+        _ => Motion::Along(axis),
+    };
+    let hidden = || ids.iter().map(|id| &scene.surfaces[*id]);
+    let flat = hidden().all(|s| s.role == Role::Hidden && s.shape.is_flat());
+    let normals = || hidden().map(|s| s.shape.at([0.5; 2]).normal);
+    let within = match motion {
+        Motion::Along(axis) => normals().all(|n| n.dot(axis).abs() < WITHIN),
+        Motion::About { axis, .. } => normals().all(|n| n.cross(axis).length() < WITHIN),
+    };
+    if flat && within {
+        let cause = format!(
+            "`{name}` moves the hidden surface within its own plane: that is where on it the picture lies, no matter of calibration"
+        );
+        let cure = "leave it out; free its shift along the normal and its turns instead";
+        return Err(Fault::new(keys!["surface"], cause, cure));
+    }
+    Ok(Kind::Surfaces(ids, motion))
+}
+
+/// Sine of the angle below which a motion stays within a plane.
+const WITHIN: f64 = 1e-9;
+
+/// The middle of a shape and its axes.
+struct Frame {
+    middle: DVec3,
+    u: DVec3,
+    v: DVec3,
+    normal: DVec3,
+}
+
+fn frame(shape: &Shape) -> Frame {
+    let middle = match shape {
+        Shape::Parallelogram(_) | Shape::Disc(_) => shape.at([0.5; 2]).position,
+        Shape::Sphere(_) | Shape::Instance(_) => shape.circumsphere().0,
+    };
+    let [u, normal] = match shape {
+        Shape::Parallelogram(p) => [p.u().normalize_or_zero(), p.normal()],
+        Shape::Disc(d) => [d.normal().any_orthonormal_vector(), d.normal()],
+        Shape::Sphere(_) | Shape::Instance(_) => [DVec3::X, DVec3::Z],
+    };
+    Frame {
+        middle,
+        u,
+        v: normal.cross(u),
+        normal,
+    }
+}
