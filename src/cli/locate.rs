@@ -5,12 +5,13 @@ use super::console::Console;
 use super::failure::Failure;
 use super::findings::deliver;
 use super::interrupt::SignalGuard;
-use super::load_run::{read_left_out, read_matrix, read_run, read_stderr};
+use super::load_run::read_run;
 use super::process::{pool, version};
-use super::run_folder::{LOCATED, PHI, RunFolder, STDERR};
+use super::run_folder::{LOCATED, RunFolder};
+use super::unexplained::Photographs;
 use super::{Outcome, need, progress};
 use crate::lab::finding::Describe;
-use crate::lab::{Found, LocatedPlan, Unexplained, Work, polynomials};
+use crate::lab::{Found, LocatedPlan, Work};
 use crate::report::Invocation;
 use crate::scene::Scene;
 
@@ -25,28 +26,12 @@ pub(super) fn execute(args: &LocateArgs, console: Console) -> Result<Outcome, Fa
     let (scene, record) = read_run(&args.dir, console)?;
     let plan = plan(args, &scene, console);
     need::locate(&scene, plan.elements)?;
-    let phi = read_matrix(&args.dir.join(PHI), &scene)?;
-    let file = args.dir.join(STDERR);
-    // Of imported photographs the noise may be unknown.
-    let is_unknown = record.is_imported() && !file.exists();
-    let stderr = if is_unknown {
-        None
-    } else {
-        Some(read_stderr(&file, &scene)?)
-    };
-    let left_out = match &args.left_out {
-        Some(file) => Some(read_matrix(file, &scene)?),
-        None => read_left_out(&args.dir, &scene)?,
-    };
-    let size = [scene.camera.columns, scene.camera.rows];
-    let degree = args.frame_polynomial.map(usize::from);
-    let patterns = degree.map(|degree| polynomials(size, degree));
-    let photographs = Unexplained {
-        phi: &phi,
-        stderr: stderr.as_ref(),
-        left_out: left_out.as_ref(),
-        patterns: patterns.as_ref(),
-    };
+    let photographs = Photographs::read(
+        &args.dir,
+        (&scene, &record),
+        args.left_out.as_deref(),
+        args.frame_polynomial,
+    )?;
     let output = args
         .output
         .clone()
@@ -56,7 +41,7 @@ pub(super) fn execute(args: &LocateArgs, console: Console) -> Result<Outcome, Fa
     let guard = SignalGuard::new();
     let what = format!("locate in {}", scene.name);
     let found = progress::run(console, &what, Work::Tasks(plan.work()), |control| {
-        pool.install(|| plan.locate(&scene, &photographs, control))
+        pool.install(|| plan.locate(&scene, &photographs.unexplained(), control))
     });
     drop(guard);
     let located = found.map_err(|e| Failure::of(e.into()))?;

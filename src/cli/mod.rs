@@ -25,6 +25,7 @@
 //! | `summary.json`, `report.html` | what was found |
 //! | `left_out.npy`, `import.json`, `import.png` | of photographs from `phicam import`: why an entry is left out (0: it counts), f64, (pixels, spots); settings, files, noise and marks; the mean photograph with the view, spots and marks |
 //! | `located/` | what `phicam locate` found: `locate.json`, `locate.csv`, `locate.svg`, `report.html` |
+//! | `calibrated/` | what `phicam calibrate` found: `calibration.json`, `calibration.csv`, `identifiability.csv`, `stages.csv`, `profiles.svg`, `report.html`, and the calibrated `scene.toml` |
 //! | `exposed/` | what `phicam expose` made of it: `phi.npy`, `phi.stderr.npy`, `saturated.npy`, `counts/`, `exposure.json` |
 //! | `partial/` | finished spots and blocks of an unfinished run; gone when it is complete |
 //! | `.replacement/` | a run with other settings that will take the place of this one when it is whole |
@@ -46,6 +47,7 @@
 
 mod args;
 mod batches;
+mod calibrate;
 mod cleanup;
 mod console;
 mod expose;
@@ -89,6 +91,7 @@ mod study;
 mod suspicious;
 mod target;
 mod tasks;
+mod unexplained;
 mod validate;
 mod view;
 
@@ -125,6 +128,7 @@ pub fn main() -> ExitCode {
         Command::Validate(a) => validate::execute(a, console),
         Command::Recover(a) => recover::execute(a, console),
         Command::Locate(a) => locate::execute(a, console),
+        Command::Calibrate(a) => calibrate::execute(a, console),
         Command::Expose(a) => expose::execute(a, console),
         Command::Import(a) => import::execute(a, console),
         Command::View(a) => view::execute(a, console),

@@ -35,6 +35,18 @@ pub(super) const LOCATED: &str = "located";
 /// What is in [`LOCATED`].
 pub(super) const LOCATED_FILES: [&str; 4] =
     ["locate.json", "locate.csv", "locate.svg", "report.html"];
+/// The calibrated geometry.
+pub(super) const CALIBRATED: &str = "calibrated";
+/// What is in [`CALIBRATED`].
+pub(super) const CALIBRATED_FILES: [&str; 7] = [
+    "calibration.json",
+    "calibration.csv",
+    "identifiability.csv",
+    "stages.csv",
+    "profiles.svg",
+    "report.html",
+    "scene.toml",
+];
 /// Recovered reflectances.
 pub(super) const RECOVERED: &str = "recovered";
 /// Photographs of `phicam expose`: [`PHI`], [`STDERR`] and these.

@@ -44,6 +44,8 @@ type Bytes<'a> = &'a dyn Fn(&Need) -> f64;
 /// Terms of an element past what stands in the way, and cells of it.
 const TERMS: f64 = 6.0;
 const CELLS: f64 = 1024.0;
+/// Unknowns of a calibration whose derivatives are held at once.
+const UNKNOWNS: f64 = 16.0;
 
 impl Need {
     /// Of `scene`; `elements` in place of its own for each surface that is divided by cells.
@@ -314,6 +316,18 @@ pub(super) fn locate(scene: &Scene, elements: Option<[usize; 2]>) -> Result<(), 
         3.0 * 8.0 * need.entries() + need.threads * need.model() + 8.0 * held
     };
     Need::of_model(scene, elements).refuse("the photographs and the model at each size", &bytes)
+}
+
+/// Refuses photographs that do not fit beside the model and its derivatives.
+pub(super) fn calibrate(scene: &Scene, elements: Option<[usize; 2]>) -> Result<(), Failure> {
+    let bytes = |need: &Need| {
+        let terms = TERMS * need.elements;
+        let sides = 8.0 * terms * (need.pixels + need.spots);
+        let square = need.elements * need.elements;
+        let frames = need.threads * 4.0 * need.pixels * need.elements + need.spots * square;
+        6.0 * 8.0 * need.entries() + need.model() + UNKNOWNS * sides + 8.0 * frames
+    };
+    Need::of_model(scene, elements).refuse("the photographs and the model's derivatives", &bytes)
 }
 
 /// Refuses photographs that do not fit beside the model that they are compared with.

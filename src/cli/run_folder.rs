@@ -21,8 +21,9 @@ use super::console::Console;
 use super::exposed_folder::ExposedFolder;
 use super::failure::Failure;
 pub(super) use super::names::{
-    EXPOSED, IMPORT, IMPORT_PNG, LEFT_OUT, LOCATED, LOCATED_FILES, MODEL, PHI, RECOVERED, REPORT,
-    SATURATED, SCENE, STDERR, SUMMARY, TAILS, VALIDATION, Z, is_of_model, is_of_recovered,
+    CALIBRATED, CALIBRATED_FILES, EXPOSED, IMPORT, IMPORT_PNG, LEFT_OUT, LOCATED, LOCATED_FILES,
+    MODEL, PHI, RECOVERED, REPORT, SATURATED, SCENE, STDERR, SUMMARY, TAILS, VALIDATION, Z,
+    is_of_model, is_of_recovered,
 };
 use super::names::{MODEL_FILES, is_frame};
 use super::output;
@@ -387,9 +388,14 @@ impl RunFolder {
         remove_named(&model, &MODEL_FILES)?;
         // Anything else in it is not ours, and keeps it.
         let _ = fs::remove_dir(model);
-        let located = self.path.join(LOCATED);
-        remove_named(&located, &LOCATED_FILES)?;
-        let _ = fs::remove_dir(located);
+        for (name, files) in [
+            (LOCATED, &LOCATED_FILES[..]),
+            (CALIBRATED, &CALIBRATED_FILES[..]),
+        ] {
+            let found = self.path.join(name);
+            remove_named(&found, files)?;
+            let _ = fs::remove_dir(found);
+        }
         let validation = self.path.join(VALIDATION);
         remove_named(&validation, &["p.exr", "p.png"])?;
         let _ = fs::remove_dir(validation);

@@ -60,6 +60,9 @@ pub enum LabError {
     /// There is nothing to study in this scene: cause and cure.
     #[error("{0}")]
     Unsuited(&'static str),
+    /// Unknowns that photographs do not tell: cause and cure.
+    #[error("{0}")]
+    Untold(String),
     /// A list of levels that is empty, does not grow, or leaves its range.
     #[error(
         "the values of {name} ({what}) must be finite and {range}, and grow; list at least one, each once"

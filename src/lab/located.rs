@@ -25,17 +25,18 @@ mod tests;
 use rayon::prelude::*;
 use serde::Serialize;
 
-pub use frames::Unexplained;
+pub(super) use frames::covariance_root;
 pub use order::Order;
 
 use super::error::LabError;
 use super::misplaced::{self, Misplaced};
 use super::problem::inverted;
+use super::unexplained::Unexplained;
 use super::validation::Integration;
 use crate::model::{ElementGrid, Kernel, MatrixModel, Occlusion};
 use crate::scene::Scene;
 use crate::transport::Control;
-use frames::{TermsOf, covariance_root};
+use frames::TermsOf;
 use order::Fault;
 use picture::Pictured;
 use place::{Lengths, Place, frames_of, parabola};

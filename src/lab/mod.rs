@@ -145,6 +145,7 @@ mod agreement;
 mod brdf;
 mod budget;
 mod bytes;
+mod calibrate;
 mod check;
 mod chosen;
 mod convergence;
@@ -192,6 +193,7 @@ mod tails;
 mod tolerance;
 mod traced;
 mod trust;
+mod unexplained;
 mod validation;
 mod verdict;
 
@@ -199,6 +201,9 @@ pub use agreement::{Agreement, Entry, EntryBound, agree};
 pub use brdf::{Assumption, BrdfPlan, BrdfStudy, BrdfTasks, Quality, Ratio};
 pub use budget::{BudgetPlan, BudgetTasks, Closure, ErrorBudget, Term};
 pub use bytes::{LAYOUT, TaskError, decode, encode, encoded};
+pub use calibrate::{
+    Calibrated, Calibration, CalibrationPlan, Direction, Free, Identified, Profile, Stage, Starts,
+};
 pub use chosen::{Beside, Chosen, Ended, Probable};
 pub use convergence::{Convergence, ConvergenceTasks, Curve, Step};
 pub use coverage::{Coverage, CoveragePlan, CoverageRow, CoverageTasks};
@@ -216,7 +221,7 @@ pub use indicator::{
     Coefficients, Comparison, Configuration, Indicator, IndicatorPlan, IndicatorTasks, Layout,
     NoisyOutcome, NoisyPoint, NoisySummary,
 };
-pub use located::{Bright, Grid, LOCATABLE, Likelihood, Located, LocatedPlan, Order, Unexplained};
+pub use located::{Bright, Grid, LOCATABLE, Likelihood, Located, LocatedPlan, Order};
 pub use measures::Measures;
 pub use noise::{
     AxisLabel, Best, Held, LIMITS, Lost, NamedSensor, NoiseAxis, NoiseCurve, NoisePlan, NoiseStudy,
@@ -243,4 +248,5 @@ pub use summary::{
 pub use tails::Tails;
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
 pub use trust::by_trust;
+pub use unexplained::Unexplained;
 pub use validation::{Against, Integration, Measured, Validation, ValidationError, validate};

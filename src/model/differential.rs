@@ -117,7 +117,9 @@ impl<'a> Differential<'a> {
             Take::Integral => {
                 let mut fine = by(HALVINGS, 4.0 / 3.0);
                 let coarse = by(HALVINGS - 1, -1.0 / 3.0);
-                fine.iter_mut().zip(coarse).for_each(|(all, own)| all.extend(own));
+                fine.iter_mut()
+                    .zip(coarse)
+                    .for_each(|(all, own)| all.extend(own));
                 fine
             }
         };
@@ -127,9 +129,12 @@ impl<'a> Differential<'a> {
             Take::Centre => {
                 let pixels = 0..scene.camera.pixels();
                 let spots = 0..scene.laser.spots.len();
-                let lit = |l| match scene.laser.is_shining() {
-                    true => Vec::new(),
-                    false => vec![wall_point::lit(scene, l, DVec3::ZERO, 1.0)],
+                let lit = |l| {
+                    if scene.laser.is_shining() {
+                        Vec::new()
+                    } else {
+                        vec![wall_point::lit(scene, l, DVec3::ZERO, 1.0)]
+                    }
                 };
                 (
                     pixels
@@ -207,8 +212,11 @@ impl<'a> Differential<'a> {
         let camera = (hidden || wall || view).then(|| {
             let aim = ViewRate::new(self.scene, velocity);
             let rate = |w: &WallPoint| aim.as_ref().map_or_else(WallRate::default, |a| a.seen(w));
-            let rates: Vec<Vec<WallRate>> =
-                self.seen.iter().map(|own| own.iter().map(rate).collect()).collect();
+            let rates: Vec<Vec<WallRate>> = self
+                .seen
+                .iter()
+                .map(|own| own.iter().map(rate).collect())
+                .collect();
             by_columns(self.seen.len(), self.cells.len(), |p, s| {
                 side(&self.seen[p], &rates[p], &self.cells[s].0)
             })

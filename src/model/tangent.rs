@@ -201,8 +201,7 @@ impl WallPoint {
         let normal_rate = twist.angular.cross(hidden.normal);
         let a_rate = r_rate.dot(self.normal) + r.dot(rate.normal);
         let b_rate = -r_rate.dot(hidden.normal) - r.dot(normal_rate);
-        let relative =
-            a_rate / a + b_rate / b - 4.0 * r.dot(r_rate) / r2 + rate.weight;
+        let relative = a_rate / a + b_rate / b - 4.0 * r.dot(r_rate) / r2 + rate.weight;
         let speed = r_rate.length() / r2.sqrt()
             + rate.normal.length()
             + rate.device.length()

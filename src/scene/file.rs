@@ -3,6 +3,8 @@
 //!
 //! Unknown keys are errors. The doc comment of each field is the documentation of its key.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 use super::builtin::builtins;
@@ -30,11 +32,12 @@ impl SceneFile {
         write(&self.name, self)
     }
 
-    /// What the light depends on: known answers and sensor left out.
+    /// What the light depends on: known answers, sensor and uncertainties left out.
     pub(super) fn of_the_light(&self) -> Self {
         Self {
             known: Vec::new(),
             sensor: None,
+            uncertainty: BTreeMap::new(),
             ..self.clone()
         }
     }
@@ -74,6 +77,10 @@ pub struct SceneFile {
     /// How the light is photographed. It does not change the light either.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sensor: Option<SensorSettings>,
+    /// Standard deviations of what was measured, by the names of [`Parameter`](super::Parameter)s.
+    /// They do not change the light either.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub uncertainty: BTreeMap<String, f64>,
 }
 
 /// The `[laser]` table.

@@ -41,6 +41,7 @@
 //! | `known.flux` | the exact flux into that pixel when that spot is lit, W |
 //! | `known.bounces` | only light that met exactly so many surfaces; absent: all light of up to `max_bounces` |
 //! | `sensor` | `[sensor]`, optional: how the frames are photographed, below |
+//! | `uncertainty` | `[uncertainty]`, optional: how well the geometry was measured, standard deviations by the names of [`Parameter`]s, e.g. `"hinge.angle" = 0.5`; for `phicam calibrate`. It changes neither light nor hash |
 //!
 //! Surfaces reflect from their front; their back is black; both sides are opaque.
 //!
@@ -234,6 +235,9 @@ pub struct Scene {
     pub known: Vec<Known>,
     /// The sensor and its exposure, where the scene states them.
     pub sensor: Option<SensorSettings>,
+    /// Standard deviations of what was measured: names of [`Parameter`]s with degrees, percents or
+    /// lengths.
+    pub uncertainty: Vec<(String, f64)>,
     /// The text that the scene was read from.
     pub text: String,
     /// The files that it names.
@@ -351,7 +355,7 @@ impl Scene {
             .map(SensorSettings::checked)
             .transpose()?;
         let hash = content_hash(file, &files.read)?;
-        let scene = Self {
+        let mut scene = Self {
             name: file.name.clone(),
             unit: file.unit,
             max_bounces: file.max_bounces,
@@ -360,6 +364,7 @@ impl Scene {
             surfaces,
             known,
             sensor,
+            uncertainty: Vec::new(),
             text: text.to_owned(),
             files: files.read,
             hash,
@@ -367,6 +372,7 @@ impl Scene {
             found,
         };
         check::refuse_visible_hidden_face(&scene)?;
+        scene.uncertainty = parameter::uncertainty(&scene, &file.uncertainty)?;
         Ok(scene)
     }
 

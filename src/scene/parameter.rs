@@ -15,6 +15,8 @@
 //! `spots.x` and `spots.y`, `spots.each` for both of every spot, `view.shift` and `WHAT.position`
 //! (also of `camera` and `laser`) for their shifts along the axes.
 
+use std::collections::BTreeMap;
+
 use super::error::{Fault, keys};
 use super::parse;
 use super::surface::{Surface, of_role};
@@ -86,6 +88,25 @@ impl Parameter {
     }
 }
 
+/// The table of uncertainties, checked.
+pub(super) fn uncertainty(
+    scene: &Scene,
+    table: &BTreeMap<String, f64>,
+) -> Result<Vec<(String, f64)>, Fault> {
+    for (name, sigma) in table {
+        named(scene, name).map_err(|fault| Fault {
+            path: keys!["uncertainty"].to_vec(),
+            ..fault
+        })?;
+        if !(*sigma > 0.0 && sigma.is_finite()) {
+            let cause = format!("`{name}` is uncertain by {sigma}");
+            let cure = "give a standard deviation above 0, in degrees, percent or the scene's unit";
+            return Err(Fault::new(keys!["uncertainty"], cause, cure));
+        }
+    }
+    Ok(table.iter().map(|(name, s)| (name.clone(), *s)).collect())
+}
+
 const DEGREES: &str = "deg";
 const PERCENT: &str = "%";
 
@@ -147,9 +168,7 @@ fn single(scene: &Scene, what: &str, which: &str, name: &str) -> Result<Paramete
         ("camera", _) => Kind::Camera(direction.ok_or_else(missing)?),
         ("laser", _) => Kind::Laser(direction.ok_or_else(missing)?),
         _ => match what.strip_prefix("spots.").map(str::parse::<usize>) {
-            Some(Ok(l)) if l < scene.laser.spots.len() => {
-                Kind::Spot(l, plane.ok_or_else(missing)?)
-            }
+            Some(Ok(l)) if l < scene.laser.spots.len() => Kind::Spot(l, plane.ok_or_else(missing)?),
             Some(_) => return Err(missing()),
             None => of_surfaces(scene, what, which, name)?,
         },
@@ -186,7 +205,10 @@ fn of_surfaces(scene: &Scene, what: &str, which: &str, name: &str) -> Result<Kin
         }
     };
     let all = scene.surfaces.iter().enumerate();
-    let ids: Vec<usize> = all.filter(|(_, s)| concerned(s)).map(|(id, _)| id).collect();
+    let ids: Vec<usize> = all
+        .filter(|(_, s)| concerned(s))
+        .map(|(id, _)| id)
+        .collect();
     let Some(first) = ids.first().map(|id| &scene.surfaces[*id]) else {
         return Err(unknown(name));
     };

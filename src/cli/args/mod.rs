@@ -1,5 +1,6 @@
 //! Raw arguments, as clap reads them.
 
+mod calibrate;
 mod choice;
 mod expose;
 mod import;
@@ -26,6 +27,7 @@ use crate::num::stream::Sampling;
 use crate::transport::Estimator;
 use value::{elements, shift, spot_range};
 
+pub(in crate::cli) use calibrate::CalibrateArgs;
 pub(in crate::cli) use expose::{ExposeArgs, StatedBy};
 pub(in crate::cli) use import::ImportArgs;
 pub(in crate::cli) use locate::LocateArgs;
@@ -73,6 +75,9 @@ pub(in crate::cli) enum Command {
     /// Where the hidden surface is, its reflectances unknown, and whether the photographs belong to
     /// their spots: exit 0 found, 1 not, 2 error
     Locate(LocateArgs),
+    /// Estimate the geometry itself from the photographs, whatever the picture: where the hidden surface,
+    /// spots, view, camera, occluders are, with errors
+    Calibrate(Box<CalibrateArgs>),
     /// Photograph the clean flux with a sensor: shot noise, read noise, glare, converter
     Expose(ExposeArgs),
     /// Make Φcam of photographs from a real camera: PNG, TIFF, JPEG, OpenEXR, NumPy and MATLAB files

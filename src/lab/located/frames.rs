@@ -3,66 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
-use crate::num::linalg::{LinalgError, columns_times, product, svd, tr_product};
-
-/// Directions of the patterns that are weaker than this part of the strongest are none.
-const DEPENDENT: f64 = 1e-12;
-
-/// Photographs whose reflectances are unknown.
-#[derive(Clone, Copy, Debug)]
-pub struct Unexplained<'a> {
-    /// Φcam, pixels × spots, W.
-    pub phi: &'a Matrix,
-    /// Its standard errors up to a common factor, the same shape; all alike where they are unknown.
-    pub stderr: Option<&'a Matrix>,
-    /// Entries that do not count, the same shape: those that are not 0.
-    pub left_out: Option<&'a Matrix>,
-    /// Patterns of other light, pixels × patterns, each with a strength of its own in each frame.
-    pub patterns: Option<&'a Matrix>,
-}
-
-impl Unexplained<'_> {
-    /// √w of each pixel of frame l: 1/σ, 0 where the entry does not count or nothing is known of its
-    /// error.
-    fn roots(&self, l: usize) -> DVector<f64> {
-        let root = |p: usize| match self.stderr.map(|s| s[(p, l)]) {
-            _ if self.left_out.is_some_and(|flags| flags[(p, l)] != 0.0) => 0.0,
-            None => 1.0,
-            Some(sigma) if sigma > 0.0 => 1.0 / sigma,
-            Some(_) => 0.0,
-        };
-        DVector::from_fn(self.phi.nrows(), |p, _| root(p))
-    }
-
-    /// Entries that count.
-    pub(super) fn counted(&self) -> usize {
-        let of_frame = |l: usize| self.roots(l).iter().filter(|q| **q > 0.0).count();
-        (0..self.phi.ncols()).map(of_frame).sum()
-    }
-
-    /// Orthonormal directions of the weighted patterns, pixels × directions.
-    fn directions(&self, roots: &DVector<f64>) -> Result<Matrix, LinalgError> {
-        let none = Matrix::zeros(roots.len(), 0);
-        let Some(patterns) = self.patterns.filter(|f| f.ncols() > 0) else {
-            return Ok(none);
-        };
-        let lengths: Vec<f64> = patterns.column_iter().map(|f| f.amax()).collect();
-        let weighted = Matrix::from_fn(patterns.nrows(), patterns.ncols(), |p, k| {
-            roots[p] * patterns[(p, k)] / if lengths[k] > 0.0 { lengths[k] } else { 1.0 }
-        });
-        if weighted.amax() == 0.0 {
-            return Ok(none);
-        }
-        let found = svd(&weighted)?;
-        let strong = found
-            .sigma
-            .iter()
-            .take_while(|s| **s > DEPENDENT * found.sigma[0]);
-        let kept = strong.count();
-        Ok(found.u.columns(0, kept).into_owned())
-    }
-}
+use crate::num::linalg::{LinalgError, columns_times, svd, tr_product};
 
 /// What frame l says of the reflectances ρ, other light being whatever fits best:
 /// ‖√w (Φ_l − C diag(d_l) ρ)‖² = s − 2 hᵀρ + ρᵀHρ.
@@ -105,28 +48,14 @@ pub(super) struct Side {
 impl Side {
     /// Of frame l.
     fn new(of: &Unexplained<'_>, camera: &Matrix, l: usize) -> Result<Self, LinalgError> {
-        let roots = of.roots(l);
-        let directions = of.directions(&roots)?;
-        let without = |m: Matrix| {
-            let once = |m: Matrix| &m - product(&directions, &tr_product(&directions, &m));
-            if directions.ncols() == 0 {
-                m
-            } else {
-                once(once(m))
-            }
-        };
-        let seen = without(Matrix::from_fn(roots.len(), camera.ncols(), |p, s| {
-            roots[p] * camera[(p, s)]
-        }));
-        let light = without(Matrix::from_fn(roots.len(), 1, |p, _| {
-            roots[p] * of.phi[(p, l)]
-        }));
-        let counted = roots.iter().filter(|q| **q > 0.0).count();
+        let white = of.whitening(l)?;
+        let seen = white.apply(camera);
+        let light = white.apply(&of.phi.columns(l, 1).into_owned());
         Ok(Self {
             gram: tr_product(&seen, &seen),
             side: tr_product(&seen, &light).column(0).into_owned(),
             square: light.norm_squared(),
-            count: counted as f64 - directions.ncols() as f64,
+            count: white.count(),
         })
     }
 
@@ -201,7 +130,10 @@ impl Frame {
 ///
 /// # Errors
 /// [`LinalgError`].
-pub(super) fn covariance_root(places: &[[f64; 3]], length: f64) -> Result<Matrix, LinalgError> {
+pub(in crate::lab) fn covariance_root(
+    places: &[[f64; 3]],
+    length: f64,
+) -> Result<Matrix, LinalgError> {
     let n = places.len();
     let distance = |i: usize, j: usize| {
         let square = |k: usize| (places[i][k] - places[j][k]) * (places[i][k] - places[j][k]);

@@ -3,8 +3,9 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::frames::{Frame, Side, TermsOf, Unexplained};
+use super::frames::{Frame, Side, TermsOf};
 use super::likelihood::Fit;
+use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
 use crate::num::linalg::LinalgError;
 use crate::num::stream::{Key, Sampling, Stream};

@@ -1,10 +1,11 @@
 //! Photographs against the scene as it would be with one size.
 
+use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
 use crate::model::MatrixModel;
 use crate::num::linalg::LinalgError;
 
-use super::frames::{Frame, TermsOf, Unexplained, covariance_root};
+use super::frames::{Frame, TermsOf, covariance_root};
 use super::likelihood::Fit;
 
 /// Lengths ℓ of the prior, parts of the largest distance between elements.

@@ -2,11 +2,12 @@
 
 use nalgebra::DVector;
 
-use super::frames::{Frame, Side, TermsOf, Unexplained, covariance_root};
+use super::frames::{Frame, Side, TermsOf, covariance_root};
 use super::likelihood::{Fit, Spectrum};
 use super::{Located, LocatedPlan};
 use crate::lab::Integration;
 use crate::lab::misplaced::normal;
+use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
 use crate::model::{Kernel, MatrixModel, Occlusion};
 use crate::scene::{Scene, file::SceneFile};

@@ -15,7 +15,9 @@ fn small(name: &str) -> Scene {
 }
 
 fn parameters(scene: &Scene, names: &[&str]) -> Vec<Parameter> {
-    let each = names.iter().map(|name| Parameter::named(scene, name).unwrap());
+    let each = names
+        .iter()
+        .map(|name| Parameter::named(scene, name).unwrap());
     each.collect::<Vec<_>>().concat()
 }
 
@@ -31,7 +33,9 @@ fn worst(base: &Scene, parameters: &[Parameter], values: &[f64], take: Take) -> 
             let mut values = values.to_vec();
             values[k] += step;
             let scene = base.displaced(parameters, &values).unwrap();
-            Differential::new(&scene, Some([3, 2]), take).unwrap().terms()
+            Differential::new(&scene, Some([3, 2]), take)
+                .unwrap()
+                .terms()
         };
         let h = 1e-3 * extent;
         let [a, b, c, d] = [h, -h, 2.0 * h, -2.0 * h].map(at);
@@ -80,7 +84,7 @@ fn rates_are_those_of_displaced_scenes() {
         "camera.position",
         "laser.position",
     ];
-    let values = |k: usize| 0.11 * (1.0 + (k % 3) as f64) * if k % 2 == 0 { 1.0 } else { -1.0 };
+    let values = |k: usize| 0.11 * (1.0 + (k % 3) as f64) * if k.is_multiple_of(2) { 1.0 } else { -1.0 };
     all_within(&small("bench"), &names, values, 1e-8);
 }
 
@@ -100,15 +104,34 @@ fn rates_of_the_wall_are_those_of_displaced_scenes() {
 #[test]
 fn rates_of_other_surfaces_are_those_of_displaced_scenes() {
     let values = |k: usize| 0.05 * (k as f64 - 1.0);
-    let names = ["hinge.angle", "hidden.normal", "spots.shift", "camera.position", "laser.position"];
+    let names = [
+        "hinge.angle",
+        "hidden.normal",
+        "spots.shift",
+        "camera.position",
+        "laser.position",
+    ];
     // Its coat is interpolated in a table, which bends at its nodes.
     all_within(&small("satin"), &names, values, 1e-6);
     let curved = small("bench").with_bent_relay(0.2).unwrap();
-    let names = ["hinge.angle", "spots.shift", "wall.x", "wall.normal", "view.shift", "camera.position"];
+    let names = [
+        "hinge.angle",
+        "spots.shift",
+        "wall.x",
+        "wall.normal",
+        "view.shift",
+        "camera.position",
+    ];
     all_within(&curved, &names, values, 1e-8);
     let text = SceneFile::builtin("screen").unwrap();
     let screen = Scene::new(&text, None).unwrap();
-    let names = ["hidden.normal", "hidden.yaw", "hidden.pitch", "view.shift", "camera.position"];
+    let names = [
+        "hidden.normal",
+        "hidden.yaw",
+        "hidden.pitch",
+        "view.shift",
+        "camera.position",
+    ];
     all_within(&screen, &names, |k| 0.002 * (k as f64 - 1.0), 1e-7);
 }
 

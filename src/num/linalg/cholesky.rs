@@ -7,6 +7,8 @@ use faer::linalg::triangular_solve::{
 use faer::{MatMut, MatRef, Par, Side};
 use nalgebra::{DMatrix, DVector};
 
+use super::product::tr_product;
+
 /// L of A = L Lᵀ. Its errors are those of A scaled to a unit diagonal, so that a graded matrix loses
 /// nothing by its grades (Demmel 1989).
 #[derive(Debug, Clone)]
@@ -51,6 +53,13 @@ impl Cholesky {
             Par::Seq,
         );
         b
+    }
+
+    /// A⁻¹ = L⁻ᵀ L⁻¹.
+    pub fn inverse(&self) -> DMatrix<f64> {
+        let n = self.l.nrows();
+        let half = self.forward(DMatrix::identity(n, n));
+        tr_product(&half, &half)
     }
 
     /// A⁻¹ b.

@@ -1,0 +1,93 @@
+//! Arguments of `phicam calibrate`.
+
+use std::path::PathBuf;
+
+use clap::Args as Arguments;
+
+use super::value::elements;
+use super::{OcclusionArgs, choice};
+use crate::lab::{Free, Integration};
+
+#[derive(Debug, Arguments)]
+pub(in crate::cli) struct CalibrateArgs {
+    /// Folder of a run or of an import
+    pub dir: PathBuf,
+    /// Folder for the results; DIR/calibrated unless given
+    #[arg(long, short, value_name = "FOLDER")]
+    pub output: Option<PathBuf>,
+    /// What is not known: names of the geometry, e.g. hinge.angle, hidden.normal, hidden.yaw,
+    /// spots.shift, spots.each, view.shift, camera.position, occluders.x, NAME.normal; with =SIGMA how
+    /// well it was measured (degrees, percent, the scene's unit). The scene's [uncertainty] unless given
+    #[arg(long, value_name = "NAME[=SIGMA],…", value_delimiter = ',', value_parser = free)]
+    pub free: Vec<Free>,
+    /// Each frame has an unknown gain too, of this relative standard deviation, up to 1
+    #[arg(long, value_name = "SIGMA", value_parser = gain)]
+    pub frame_gain: Option<f64>,
+    /// The scale of all light is unknown
+    #[arg(long)]
+    pub free_scale: bool,
+    /// Elements along u and v; the scene's unless given, or 12x12 where those are more than 256
+    #[arg(long, value_name = "N", value_parser = elements)]
+    pub elements: Option<[usize; 2]>,
+    #[command(flatten)]
+    pub occlusion: OcclusionArgs,
+    /// How the model integrates
+    #[arg(long, value_parser = choice::integration(), default_value = "quadrature")]
+    pub integration: Integration,
+    /// Other light in each frame: a polynomial of this degree, 0 (a constant) to 8
+    #[arg(long, value_name = "DEGREE", value_parser = clap::value_parser!(u8).range(0..=8))]
+    pub frame_polynomial: Option<u8>,
+    /// Entries that do not count, pixels × spots: those that are not 0; left_out.npy or
+    /// phi.tails.npy of the run unless given
+    #[arg(long, value_name = "FILE")]
+    pub left_out: Option<PathBuf>,
+    /// Starts: the first where the scene has everything, the others at random, 1 to 1000
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub starts: u16,
+    /// How far off the other starts are, in standard deviations: those given, or 1°, 1 %, 1 % of the
+    /// distance
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = spread)]
+    pub spread: f64,
+    /// Seed of the starts
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Threads; all cores unless given. They do not change a bit of the results
+    #[arg(long, value_name = "N")]
+    pub threads: Option<usize>,
+    /// Print the results as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// "NAME" or "NAME=SIGMA".
+fn free(text: &str) -> Result<Free, String> {
+    let (name, sigma) = match text.split_once('=') {
+        None => (text, None),
+        Some((name, sigma)) => {
+            let sigma: Option<f64> = sigma.trim().parse().ok();
+            let positive = sigma.filter(|s| *s > 0.0 && s.is_finite());
+            let form = "write it as NAME or NAME=SIGMA with SIGMA above 0, e.g. hinge.angle=0.5";
+            (name, Some(positive.ok_or(form)?))
+        }
+    };
+    Ok(Free {
+        name: name.trim().to_owned(),
+        sigma,
+    })
+}
+
+/// Above 0, up to 1.
+fn gain(text: &str) -> Result<f64, String> {
+    let sigma: Option<f64> = text.parse().ok();
+    sigma
+        .filter(|s| *s > 0.0 && *s <= 1.0)
+        .ok_or_else(|| "use a number above 0, up to 1, e.g. 0.1".to_owned())
+}
+
+/// Above 0 and finite.
+fn spread(text: &str) -> Result<f64, String> {
+    let factor: Option<f64> = text.parse().ok();
+    factor
+        .filter(|s| *s > 0.0 && s.is_finite())
+        .ok_or_else(|| "use a number above 0, e.g. 1".to_owned())
+}

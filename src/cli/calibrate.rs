@@ -1,0 +1,148 @@
+//! `phicam calibrate`: the geometry, from the photographs.
+
+use super::args::CalibrateArgs;
+use super::console::Console;
+use super::failure::Failure;
+use super::findings::deliver;
+use super::interrupt::SignalGuard;
+use super::load_run::read_run;
+use super::process::{pool, version};
+use super::run_folder::{CALIBRATED, RunFolder};
+use super::unexplained::Photographs;
+use super::{Outcome, need, progress};
+use crate::lab::finding::Describe;
+use crate::lab::{CalibrationPlan, Found, Free, Work};
+use crate::report::Invocation;
+use crate::scene::Scene;
+
+/// Elements above which fewer are taken unless they are asked for, and those.
+const MANY: usize = 256;
+const FEWER: [usize; 2] = [12, 12];
+
+pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome, Failure> {
+    let (scene, record) = read_run(&args.dir, console)?;
+    let plan = plan(args, &scene, console);
+    need::calibrate(&scene, plan.elements)?;
+    let photographs = Photographs::read(
+        &args.dir,
+        (&scene, &record),
+        args.left_out.as_deref(),
+        args.frame_polynomial,
+    )?;
+    let output = args
+        .output
+        .clone()
+        .unwrap_or_else(|| args.dir.join(CALIBRATED));
+    let _lock = RunFolder::lock(&output, "phicam calibrate")?;
+    let pool = pool(args.threads)?;
+    let guard = SignalGuard::new();
+    let what = format!("calibrate {}", scene.name);
+    let found = progress::run(console, &what, Work::Tasks(plan.work()), |control| {
+        pool.install(|| plan.calibrate(&scene, &photographs.unexplained(), control))
+    });
+    drop(guard);
+    let calibration = found.map_err(|e| Failure::of(e.into()))?;
+    let found = Found {
+        json: serde_json::to_string_pretty(&calibration).map_err(|e| Failure::of(e.into()))?,
+        finding: calibration.describe(),
+        agrees: calibration.is_found(),
+    };
+    let asked = invocation(args, &plan.free, &scene);
+    deliver("calibration", &found, &output, &asked, args.json)?;
+    console.say(format!(
+        "{}: written; scene.toml there is the calibrated scene, e.g. for `phicam recover SCENE --phi PHI`",
+        output.display()
+    ));
+    Ok(if found.agrees {
+        Outcome::Done
+    } else {
+        Outcome::Disagreed
+    })
+}
+
+/// What is to be done, with what is not given.
+fn plan(args: &CalibrateArgs, scene: &Scene, console: Console) -> CalibrationPlan {
+    let each = scene.hidden().map(|(_, s)| s.elements[0] * s.elements[1]);
+    let own: usize = each.sum();
+    let fewer = args.elements.is_none() && own > MANY;
+    if fewer {
+        console.say(format!(
+            "{} × {} elements in place of {own} (--elements)",
+            FEWER[0], FEWER[1]
+        ));
+    }
+    CalibrationPlan {
+        free: free(&args.free, scene),
+        frame_gain: args.frame_gain,
+        is_scale_free: args.free_scale,
+        elements: if fewer { Some(FEWER) } else { args.elements },
+        occlusion: args.occlusion.occlusion(),
+        integration: args.integration,
+        starts: usize::from(args.starts),
+        spread: args.spread,
+        seed: args.seed,
+    }
+}
+
+/// What is free, with what the scene knows of it; all that it is uncertain of unless something is
+/// named.
+fn free(given: &[Free], scene: &Scene) -> Vec<Free> {
+    let stated = |name: &str| {
+        let own = scene.uncertainty.iter().find(|(own, _)| own == name);
+        own.map(|(_, sigma)| *sigma)
+    };
+    if given.is_empty() {
+        let all = scene.uncertainty.iter();
+        return all
+            .map(|(name, sigma)| Free {
+                name: name.clone(),
+                sigma: Some(*sigma),
+            })
+            .collect();
+    }
+    let known = |free: &Free| Free {
+        sigma: free.sigma.or_else(|| stated(&free.name)),
+        ..free.clone()
+    };
+    given.iter().map(known).collect()
+}
+
+/// How to ask for it again.
+fn invocation(args: &CalibrateArgs, free: &[Free], scene: &Scene) -> Invocation {
+    let dir = args.dir.file_name().unwrap_or(args.dir.as_os_str());
+    let of = |f: &Free| match f.sigma {
+        Some(sigma) => format!("{}={sigma}", f.name),
+        None => f.name.clone(),
+    };
+    let free: Vec<String> = free.iter().map(of).collect();
+    let mut options = vec![
+        ("--free".to_owned(), free.join(",")),
+        ("--starts".to_owned(), args.starts.to_string()),
+        ("--spread".to_owned(), args.spread.to_string()),
+        ("--seed".to_owned(), args.seed.to_string()),
+        (
+            "--integration".to_owned(),
+            args.integration.name().to_owned(),
+        ),
+    ];
+    let mut given = |name: &str, value: Option<String>| {
+        options.extend(value.map(|value| (name.to_owned(), value)));
+    };
+    given("--frame-gain", args.frame_gain.map(|x| x.to_string()));
+    given("--free-scale", args.free_scale.then(String::new));
+    given(
+        "--elements",
+        args.elements.map(|n| n.map(|x| x.to_string()).join("x")),
+    );
+    given(
+        "--frame-polynomial",
+        args.frame_polynomial.map(|n| n.to_string()),
+    );
+    Invocation {
+        command: vec!["calibrate".to_owned(), dir.to_string_lossy().into_owned()],
+        scene: scene.clone(),
+        file: "scene.toml".to_owned(),
+        options,
+        version: version().to_owned(),
+    }
+}

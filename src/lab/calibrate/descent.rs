@@ -1,0 +1,276 @@
+//! The likeliest values of the unknowns, by noise continuation.
+//!
+//! The cost is a canyon: at a small noise it is steep everywhere but along its floor. So the noise is
+//! first taken for at least 3 % of the light and then lowered by half a decade at a time; at each
+//! noise Levenberg–Marquardt steps (1963) go down with the prior of the unknowns,
+//!
+//! > (F + Λ + μ diag(F + Λ)) δ = −(slope + Λθ),   Λ = diag(1/σ_k²)
+//!
+//! Where the noise is not known the last one is what the likeliest picture leaves.
+
+use nalgebra::DVector;
+
+use super::geometry::Geometry;
+use super::picture::{Normal, Prior};
+use super::posterior::{Seen, Slope, Value};
+use crate::lab::error::LabError;
+use crate::lab::unexplained::Unexplained;
+use crate::matrix::Matrix;
+use crate::num::linalg::Cholesky;
+use crate::transport::Control;
+
+/// Noise of the first stage, over the light.
+const FIRST: f64 = 0.03;
+/// From one stage to the next.
+const STEP: f64 = 0.316_227_766_016_837_94;
+/// Steps at one noise.
+const MOST_STEPS: usize = 40;
+/// A step that is expected to gain less than this, or less than this of every error, is the last.
+const ENOUGH: f64 = 1e-4;
+/// μ at first, and where nothing goes down any more.
+const DAMPING: f64 = 1e-3;
+const MOST_DAMPING: f64 = 1e9;
+/// Change of a noise that is estimated below which it is settled.
+const SETTLED: f64 = 0.02;
+
+/// What is to be found, and from what.
+pub(super) struct Problem<'a> {
+    pub geometry: Geometry<'a>,
+    pub photographs: Unexplained<'a>,
+    /// σ_k; none where nothing is known of an unknown.
+    pub priors: Vec<Option<f64>>,
+    pub pictures: Vec<Prior>,
+    pub is_scale_free: bool,
+}
+
+/// The unknowns at some noise.
+pub(super) struct State {
+    pub values: Vec<f64>,
+    /// Noise over the stated one.
+    pub factor: f64,
+    pub normal: Normal,
+    pub prior: Prior,
+    pub value: Value,
+    pub slope: Slope,
+    /// Whether the last stage ended by itself.
+    pub is_settled: bool,
+}
+
+/// What a stage found.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Stage {
+    /// Noise over the stated one, or over 1 W where none is stated.
+    pub noise: f64,
+    /// Steps taken.
+    pub steps: usize,
+    /// χ² over degrees of freedom at this noise.
+    pub misfit: f64,
+    /// The unknowns.
+    pub values: Vec<f64>,
+}
+
+impl State {
+    /// ν² = χ²/(N − directions), over the assumed noise.
+    fn left(&self) -> f64 {
+        self.value.chi2 / (self.value.count - self.value.freedom).max(1.0)
+    }
+}
+
+impl<'a> Problem<'a> {
+    pub(super) fn seen(&self, factor: f64) -> Seen<'a> {
+        Seen {
+            photographs: self.photographs,
+            factor,
+            columns: self.geometry.scene.camera.columns,
+        }
+    }
+
+    pub(super) fn unknowns(&self) -> usize {
+        self.geometry.unknowns()
+    }
+
+    /// −ln of the prior of the unknowns.
+    fn penalty(&self, values: &[f64]) -> f64 {
+        let each = values.iter().zip(&self.priors);
+        each.filter_map(|(x, sigma)| sigma.map(|s| 0.5 * (x / s) * (x / s)))
+            .sum()
+    }
+
+    /// Everything at `values`; `prior` is looked for where it is not given.
+    pub(super) fn state(
+        &self,
+        values: &[f64],
+        factor: f64,
+        prior: Option<&Prior>,
+    ) -> Result<State, LabError> {
+        let seen = self.seen(factor);
+        let light = self.geometry.light(values, true)?;
+        let normal = seen.normal(&light)?;
+        let prior = match prior {
+            Some(prior) => prior.clone(),
+            None => Prior::likeliest(&self.pictures, &normal, self.is_scale_free)?,
+        };
+        let value = seen.value(&light, &normal, &prior)?;
+        let slope = seen.slope(&light, &normal, &prior, &value, self.unknowns())?;
+        Ok(State {
+            values: values.to_vec(),
+            factor,
+            normal,
+            prior,
+            value,
+            slope,
+            is_settled: false,
+        })
+    }
+
+    /// The cost at `values`, its prior's included; none where the scene does not allow them.
+    pub(super) fn cost(
+        &self,
+        values: &[f64],
+        factor: f64,
+        prior: &Prior,
+    ) -> Result<Option<f64>, LabError> {
+        let light = match self.geometry.light(values, false) {
+            Ok(light) => light,
+            Err(LabError::Scene(_)) => return Ok(None),
+            Err(other) => return Err(other),
+        };
+        let seen = self.seen(factor);
+        let normal = seen.normal(&light)?;
+        let value = seen.value(&light, &normal, prior)?;
+        Ok(Some(value.cost + self.penalty(values)))
+    }
+
+    /// F + Λ.
+    pub(super) fn information(&self, slope: &Slope) -> Matrix {
+        let mut all = slope.curvature.clone();
+        for (k, sigma) in self.priors.iter().enumerate() {
+            all[(k, k)] += sigma.map_or(0.0, |s| 1.0 / (s * s));
+        }
+        all
+    }
+
+    /// The noise of the first stage, over the stated one.
+    fn first(&self) -> f64 {
+        let Unexplained { phi, stderr, .. } = self.photographs;
+        let mut relative: Vec<f64> = match stderr {
+            Some(stderr) => phi
+                .iter()
+                .zip(stderr)
+                .filter(|(x, s)| **s > 0.0 && **x != 0.0)
+                .map(|(x, s)| s / x.abs())
+                .collect(),
+            None => phi
+                .iter()
+                .filter(|x| **x != 0.0)
+                .map(|x| 1.0 / x.abs())
+                .collect(),
+        };
+        relative.sort_by(f64::total_cmp);
+        let middle = relative.get(relative.len() / 2).copied();
+        middle.map_or(1.0, |noise| FIRST / noise)
+    }
+
+    /// Down from `start` through all noises.
+    pub(super) fn descend(
+        &self,
+        start: &[f64],
+        control: Control<'_>,
+    ) -> Result<(State, Vec<Stage>), LabError> {
+        let is_known = self.photographs.stderr.is_some();
+        let mut factor = if is_known {
+            self.first().max(1.0)
+        } else {
+            self.first()
+        };
+        let mut stages = Vec::new();
+        let mut values = start.to_vec();
+        loop {
+            let (state, steps) = self.stage(&values, factor, control)?;
+            stages.push(Stage {
+                noise: factor,
+                steps,
+                misfit: state.left(),
+                values: state.values.clone(),
+            });
+            let next = if is_known {
+                (factor * STEP).max(1.0)
+            } else {
+                (factor * STEP).max(factor * state.left().sqrt())
+            };
+            if (next / factor - 1.0).abs() < SETTLED || stages.len() == MOST_STEPS {
+                return Ok((state, stages));
+            }
+            values.clone_from(&state.values);
+            factor = next;
+        }
+    }
+
+    /// Down at one noise.
+    fn stage(
+        &self,
+        start: &[f64],
+        factor: f64,
+        control: Control<'_>,
+    ) -> Result<(State, usize), LabError> {
+        let mut state = self.state(start, factor, None)?;
+        let prior = state.prior.clone();
+        let mut damping = DAMPING;
+        for steps in 0..MOST_STEPS {
+            control.check()?;
+            let information = self.information(&state.slope);
+            let slope = self.whole_slope(&state);
+            let here = state.value.cost + self.penalty(&state.values);
+            let next = loop {
+                let Some(step) = damped(&information, &slope, damping) else {
+                    damping *= 10.0;
+                    if damping > MOST_DAMPING {
+                        break None;
+                    }
+                    continue;
+                };
+                let gain = -slope.dot(&step) - 0.5 * step.dot(&(&information * &step));
+                if gain < ENOUGH {
+                    break None;
+                }
+                let values: Vec<f64> = state.values.iter().zip(&step).map(|(x, d)| x + d).collect();
+                match self.cost(&values, factor, &prior)? {
+                    Some(cost) if cost < here => {
+                        damping = (0.1 * damping).max(1e-12);
+                        break Some(values);
+                    }
+                    _ => damping *= 10.0,
+                }
+                if damping > MOST_DAMPING {
+                    break None;
+                }
+            };
+            match next {
+                Some(values) => state = self.state(&values, factor, Some(&prior))?,
+                None => {
+                    state.is_settled = true;
+                    return Ok((state, steps));
+                }
+            }
+        }
+        Ok((state, MOST_STEPS))
+    }
+
+    /// Slope of the cost with the prior of the unknowns.
+    pub(super) fn whole_slope(&self, state: &State) -> DVector<f64> {
+        let mut slope = state.slope.slope.clone();
+        for (k, sigma) in self.priors.iter().enumerate() {
+            slope[k] += sigma.map_or(0.0, |s| state.values[k] / (s * s));
+        }
+        slope
+    }
+}
+
+/// The step of Levenberg and Marquardt; none where nothing changes with an unknown.
+fn damped(information: &Matrix, slope: &DVector<f64>, damping: f64) -> Option<DVector<f64>> {
+    let mut all = information.clone();
+    for k in 0..all.nrows() {
+        all[(k, k)] *= 1.0 + damping;
+    }
+    Some(-Cholesky::new(&all)?.solve(slope))
+}

@@ -1,0 +1,160 @@
+//! The light of each element at assumed values of the unknowns, and its derivatives.
+//!
+//! The unknowns are geometric parameters, then a gain of each frame where gains are unknown: frame l
+//! is (1 + g_l) times what the scene sends.
+
+use crate::lab::error::LabError;
+use crate::matrix::Matrix;
+use crate::model::{
+    Differential, Kernel, MatrixModel, Occlusion, Take, Terms, TermsRate, is_obstructed,
+};
+use crate::scene::{Parameter, Scene};
+
+/// Step of a central difference where something stands in the way: part of the distance between the
+/// middles of view and hidden surface; and of angles and percents.
+const OF_DISTANCE: f64 = 1e-3;
+const OF_TURN: f64 = 0.05;
+
+/// A scene with its unknowns.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Geometry<'a> {
+    pub scene: &'a Scene,
+    pub parameters: &'a [Parameter],
+    pub elements: Option<[usize; 2]>,
+    pub take: Take,
+    pub occlusion: Occlusion,
+    /// Frames whose gain is unknown: none or all.
+    pub gains: usize,
+}
+
+/// How the terms change with a parameter.
+enum Rate {
+    Exact(TermsRate),
+    Difference { more: Terms, less: Terms, over: f64 },
+}
+
+/// The light of each element at some values of the unknowns.
+pub(super) struct Light {
+    terms: Terms,
+    gains: Vec<f64>,
+    elements: usize,
+    rates: Vec<Rate>,
+}
+
+/// Distance between the middles of the view and of the first hidden surface.
+pub(super) fn distance(scene: &Scene) -> f64 {
+    let view = scene.camera.view.at([0.5; 2]).position;
+    let hidden = scene.hidden().next();
+    hidden.map_or(1.0, |(_, s)| {
+        (s.shape.at([0.5; 2]).position - view).length()
+    })
+}
+
+impl Geometry<'_> {
+    /// Number of unknowns.
+    pub(super) fn unknowns(&self) -> usize {
+        self.parameters.len() + self.gains
+    }
+
+    /// The scene with its parameters at `values`.
+    pub(super) fn scene_at(&self, values: &[f64]) -> Result<Scene, LabError> {
+        let own = &values[..self.parameters.len()];
+        Ok(self.scene.displaced(self.parameters, own)?)
+    }
+
+    fn is_obstructed(&self) -> bool {
+        self.occlusion == Occlusion::Considered && is_obstructed(self.scene)
+    }
+
+    fn terms(&self, scene: &Scene) -> Result<Terms, LabError> {
+        if !self.is_obstructed() {
+            return Ok(Differential::new(scene, self.elements, self.take)?.terms());
+        }
+        let model = MatrixModel::with(scene, Kernel::Physical, self.elements, self.occlusion)?;
+        Ok(match model.factors {
+            Some(factors) => Terms {
+                camera: factors.camera,
+                laser: factors.laser,
+                element: factors.element,
+            },
+            // What stood in the way does no more.
+            None => Terms {
+                element: (0..model.albedo.len()).collect(),
+                camera: model.camera_side,
+                laser: model.laser_side,
+            },
+        })
+    }
+
+    /// The light at `values`, with its derivatives where `rates` says so.
+    pub(super) fn light(&self, values: &[f64], rates: bool) -> Result<Light, LabError> {
+        let (own, gains) = values.split_at(self.parameters.len());
+        let scene = self.scene_at(values)?;
+        let terms = self.terms(&scene)?;
+        let elements = terms.element.last().map_or(0, |j| j + 1);
+        let of = |k: usize| -> Result<Rate, LabError> {
+            if !self.is_obstructed() {
+                let model = Differential::new(&scene, self.elements, self.take)?;
+                let velocity = self.scene.velocity(self.parameters, own, k);
+                return Ok(Rate::Exact(model.rate(&velocity)));
+            }
+            let p = &self.parameters[k];
+            let step = if p.is_angle() || p.is_percent() {
+                OF_TURN
+            } else {
+                OF_DISTANCE * distance(self.scene)
+            };
+            let at = |sign: f64| -> Result<Terms, LabError> {
+                let mut values = own.to_vec();
+                values[k] += sign * step;
+                self.terms(&self.scene.displaced(self.parameters, &values)?)
+            };
+            Ok(Rate::Difference {
+                more: at(1.0)?,
+                less: at(-1.0)?,
+                over: 2.0 * step,
+            })
+        };
+        let parameters = if rates { 0..own.len() } else { 0..0 };
+        Ok(Light {
+            terms,
+            gains: gains.to_vec(),
+            elements,
+            rates: parameters.map(of).collect::<Result<_, _>>()?,
+        })
+    }
+}
+
+impl Light {
+    /// Number of elements.
+    pub(super) fn elements(&self) -> usize {
+        self.elements
+    }
+
+    fn gain(&self, l: usize) -> f64 {
+        1.0 + self.gains.get(l).copied().unwrap_or(0.0)
+    }
+
+    /// What frame l shows of each element at albedo 1, pixels × elements, W.
+    pub(super) fn frame(&self, l: usize) -> Matrix {
+        self.terms.frame(l, self.elements) * self.gain(l)
+    }
+
+    /// ∂ of that by unknown k; none where it is 0.
+    pub(super) fn frame_rate(&self, l: usize, k: usize) -> Option<Matrix> {
+        let n = self.elements;
+        match self.rates.get(k) {
+            None => (k - self.rates.len() == l).then(|| self.terms.frame(l, n)),
+            Some(Rate::Exact(rate)) => {
+                let still = |laser: &Matrix| laser.column(l).iter().all(|x| *x == 0.0);
+                if rate.camera.is_none() && rate.laser.as_ref().is_none_or(still) {
+                    return None;
+                }
+                Some(self.terms.frame_rate(rate, l, n) * self.gain(l))
+            }
+            Some(Rate::Difference { more, less, over }) => {
+                Some((more.frame(l, n) - less.frame(l, n)) * (self.gain(l) / over))
+            }
+        }
+    }
+}

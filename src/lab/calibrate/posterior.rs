@@ -1,0 +1,276 @@
+//! Photographs with the picture unknown: their likelihood, its slope and its curvature.
+//!
+//! With y = A(θ) ρ + noise, whitened, and ρ = m + R z ([`Prior`]) the picture drops out:
+//!
+//! > −ln p(y|θ) = ½ min_z(‖y − Aρ‖² + ‖z‖²) + ½ ln det(1 + RᵀAᵀAR)
+//! > B_k = ∂_kA ρ̂,   X = (1 + RᵀHR)⁻¹ Rᵀ AᵀB,   B⊥ = B − A R X
+//! > slope_k = −B⊥_kᵀ(y − Aρ̂) − X_kᵀẑ + tr(P Aᵀ∂_kA),   P = R (1 + RᵀHR)⁻¹ Rᵀ
+//! > curvature F = B⊥ᵀB⊥ + XᵀX
+//!
+//! (variable projection, Golub and Pereyra 1973, in Kaufman's approximation; F is the information
+//! that the photographs have of θ with the picture unknown).
+
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+use super::geometry::Light;
+use super::picture::{Normal, Prior, white};
+use crate::lab::error::LabError;
+use crate::lab::unexplained::Unexplained;
+use crate::matrix::Matrix;
+use crate::num::linalg::{product, tr_product};
+
+/// Pixels are put in so many blocks a side, to see whether errors hang together.
+pub(super) const BLOCKS: usize = 4;
+
+/// Photographs whose standard errors are `factor` times the stated ones.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen<'a> {
+    pub photographs: Unexplained<'a>,
+    pub factor: f64,
+    /// Columns of the picture's pixels.
+    pub columns: usize,
+}
+
+/// What is left with the picture at its likeliest.
+#[derive(Clone, Debug)]
+pub(super) struct Value {
+    /// −ln p(y|θ) up to a constant.
+    pub cost: f64,
+    /// ‖y − Aρ̂‖² in units of the assumed noise.
+    pub chi2: f64,
+    /// Directions of the picture that the photographs determine.
+    pub freedom: f64,
+    pub count: f64,
+    pub rho: DVector<f64>,
+    z: DVector<f64>,
+}
+
+/// The same with slope and curvature.
+#[derive(Clone, Debug)]
+pub(super) struct Slope {
+    pub slope: DVector<f64>,
+    pub curvature: Matrix,
+    /// B_kᵀB_k: curvature if the picture were known.
+    pub known: DVector<f64>,
+    /// P.
+    pub covariance: Matrix,
+    /// R X: −∂ρ̂/∂θ, elements × unknowns.
+    pub shift: Matrix,
+    /// Σ B⊥ᵀ(y − Aρ̂) of each frame, unknowns × frames, and of each block of pixels.
+    pub by_frames: Matrix,
+    pub by_blocks: Matrix,
+}
+
+impl Seen<'_> {
+    fn frames(&self) -> usize {
+        self.photographs.phi.ncols()
+    }
+
+    /// Whitened columns of frame l.
+    fn white(&self, l: usize, columns: &[&Matrix]) -> Result<Vec<Matrix>, LabError> {
+        let white = self.photographs.whitening(l)?;
+        let each = columns.iter().map(|m| white.apply(m) / self.factor);
+        Ok(each.collect())
+    }
+
+    /// Whitened photograph and light of the elements in frame l.
+    fn frame(&self, light: &Light, l: usize) -> Result<[Matrix; 2], LabError> {
+        let photograph = self.photographs.phi.columns(l, 1).into_owned();
+        let mut both = self.white(l, &[&photograph, &light.frame(l)])?.into_iter();
+        match (both.next(), both.next()) {
+            (Some(y), Some(a)) => Ok([y, a]),
+            _ => Err(LabError::DARK),
+        }
+    }
+
+    /// The normal equations.
+    pub(super) fn normal(&self, light: &Light) -> Result<Normal, LabError> {
+        let n = light.elements();
+        let of = |l: usize| -> Result<Normal, LabError> {
+            let [y, a] = self.frame(light, l)?;
+            Ok(Normal {
+                h: tr_product(&a, &a),
+                side: tr_product(&a, &y).column(0).into_owned(),
+                square: y.norm_squared(),
+                count: self.photographs.whitening(l)?.count(),
+            })
+        };
+        let frames = (0..self.frames()).into_par_iter().map(of);
+        let frames: Vec<Normal> = frames.collect::<Result<_, _>>()?;
+        let none = Normal {
+            h: Matrix::zeros(n, n),
+            side: DVector::zeros(n),
+            square: 0.0,
+            count: 0.0,
+        };
+        Ok(frames.iter().fold(none, |mut all, frame| {
+            all.h += &frame.h;
+            all.side += &frame.side;
+            all.square += frame.square;
+            all.count += frame.count;
+            all
+        }))
+    }
+
+    /// With the picture at its likeliest.
+    pub(super) fn value(
+        &self,
+        light: &Light,
+        normal: &Normal,
+        prior: &Prior,
+    ) -> Result<Value, LabError> {
+        let mean = DVector::from_element(normal.side.len(), prior.mean);
+        let gram = tr_product(&prior.root, &product(&normal.h, &prior.root));
+        let factor = white(&gram)?;
+        let z = factor.solve(&prior.root.tr_mul(&(&normal.side - &normal.h * &mean)));
+        let rho = mean + &prior.root * &z;
+        let left = |l: usize| -> Result<f64, LabError> {
+            let [y, a] = self.frame(light, l)?;
+            Ok((y.column(0) - a * &rho).norm_squared())
+        };
+        let left: Vec<f64> = (0..self.frames())
+            .into_par_iter()
+            .map(left)
+            .collect::<Result<_, _>>()?;
+        let chi2: f64 = left.iter().sum();
+        let inverse = factor.forward(Matrix::identity(gram.nrows(), gram.nrows()));
+        Ok(Value {
+            cost: 0.5 * (chi2 + z.norm_squared() + factor.log_det()),
+            chi2,
+            freedom: gram.nrows() as f64 - inverse.norm_squared(),
+            count: normal.count,
+            rho,
+            z,
+        })
+    }
+
+    /// Slope and curvature by all `unknowns`.
+    pub(super) fn slope(
+        &self,
+        light: &Light,
+        normal: &Normal,
+        prior: &Prior,
+        value: &Value,
+        unknowns: usize,
+    ) -> Result<Slope, LabError> {
+        let gram = tr_product(&prior.root, &product(&normal.h, &prior.root));
+        let factor = white(&gram)?;
+        let half = factor.forward(prior.root.transpose());
+        let covariance = tr_product(&half, &half);
+        let first = (0..self.frames())
+            .into_par_iter()
+            .map(|l| self.columns_of(light, l, &value.rho, &covariance, unknowns));
+        let first: Vec<Columns> = first.collect::<Result<_, _>>()?;
+        let n = light.elements();
+        let mut side = Matrix::zeros(n, unknowns);
+        let (mut known, mut occam) = (DVector::zeros(unknowns), DVector::zeros(unknowns));
+        for own in &first {
+            side += &own.side;
+            known += &own.known;
+            occam += &own.occam;
+        }
+        let towards = prior.root.tr_mul(&side);
+        let mut x = Matrix::zeros(towards.nrows(), unknowns);
+        for k in 0..unknowns {
+            x.set_column(k, &factor.solve(&towards.column(k).into_owned()));
+        }
+        let shift = &prior.root * &x;
+        let second = first.par_iter().enumerate();
+        let second = second.map(|(l, own)| self.left_of(light, l, own, &value.rho, &shift));
+        let second: Vec<Left> = second.collect::<Result<_, _>>()?;
+        let mut curvature = tr_product(&x, &x);
+        let mut slope = occam - x.tr_mul(&value.z);
+        let mut by_frames = Matrix::zeros(unknowns, self.frames());
+        let mut by_blocks = Matrix::zeros(unknowns, BLOCKS * BLOCKS);
+        for (l, own) in second.iter().enumerate() {
+            curvature += &own.square;
+            let score = own.by_blocks.column_sum();
+            slope -= &score;
+            by_frames.set_column(l, &score);
+            by_blocks += &own.by_blocks;
+        }
+        Ok(Slope {
+            slope,
+            curvature,
+            known,
+            covariance,
+            shift,
+            by_frames,
+            by_blocks,
+        })
+    }
+
+    /// B of frame l, and what it gives with A.
+    fn columns_of(
+        &self,
+        light: &Light,
+        l: usize,
+        rho: &DVector<f64>,
+        covariance: &Matrix,
+        unknowns: usize,
+    ) -> Result<Columns, LabError> {
+        let [_, a] = self.frame(light, l)?;
+        let spread = product(&a, covariance);
+        let mut b = Matrix::zeros(a.nrows(), unknowns);
+        let mut occam = DVector::zeros(unknowns);
+        for k in 0..unknowns {
+            let Some(rate) = light.frame_rate(l, k) else {
+                continue;
+            };
+            for rate in self.white(l, &[&rate])? {
+                b.set_column(k, &(&rate * rho));
+                occam[k] = spread.dot(&rate);
+            }
+        }
+        let known = DVector::from_fn(unknowns, |k, _| b.column(k).norm_squared());
+        Ok(Columns {
+            side: tr_product(&a, &b),
+            known,
+            occam,
+            b,
+        })
+    }
+
+    /// What is left of B in frame l where the picture follows.
+    fn left_of(
+        &self,
+        light: &Light,
+        l: usize,
+        own: &Columns,
+        rho: &DVector<f64>,
+        shift: &Matrix,
+    ) -> Result<Left, LabError> {
+        let [y, a] = self.frame(light, l)?;
+        let left = y.column(0) - &a * rho;
+        let b = &own.b - product(&a, shift);
+        let rows = (b.nrows() / self.columns).max(1);
+        let mut by_blocks = Matrix::zeros(b.ncols(), BLOCKS * BLOCKS);
+        for p in 0..b.nrows() {
+            let [i, j] = [
+                p % self.columns * BLOCKS / self.columns,
+                (p / self.columns * BLOCKS / rows).min(BLOCKS - 1),
+            ];
+            let mut block = by_blocks.column_mut(i + j * BLOCKS);
+            block.axpy(left[p], &b.row(p).transpose(), 1.0);
+        }
+        Ok(Left {
+            square: tr_product(&b, &b),
+            by_blocks,
+        })
+    }
+}
+
+/// B of a frame: pixels × unknowns, AᵀB, ‖B_k‖², tr(P Aᵀ∂_kA).
+struct Columns {
+    b: Matrix,
+    side: Matrix,
+    known: DVector<f64>,
+    occam: DVector<f64>,
+}
+
+/// B⊥ᵀB⊥ of a frame, and B⊥ᵀ(y − Aρ̂) of each block of pixels.
+struct Left {
+    square: Matrix,
+    by_blocks: Matrix,
+}

@@ -1,0 +1,218 @@
+//! The likelihood against a dense normal distribution, its slope against differences, estimates
+//! against scenes that are displaced.
+
+use nalgebra::DVector;
+
+use super::picture::{Prior, priors};
+use super::*;
+use crate::scene::file::SceneFile;
+
+fn small(name: &str, pixels: u32) -> Scene {
+    let mut file = SceneFile::builtin(name).unwrap();
+    file.camera.pixels = [pixels; 2];
+    if let Some(laser) = &mut file.laser {
+        laser.spots.per_side = laser.spots.per_side.map(|_| 5);
+    }
+    Scene::new(&file, None).unwrap()
+}
+
+/// Photographs of `scene` with n × n elements and relative noise, and their standard errors.
+fn photographs(scene: &Scene, n: usize, level: f64, seed: u64) -> (Matrix, Matrix) {
+    let model = MatrixModel::with(scene, Kernel::Physical, Some([n; 2]), Occlusion::Considered);
+    let phi = model.unwrap().phi();
+    let stderr = &phi * level;
+    let mut random = normal(seed);
+    let noisy = phi.zip_map(&stderr, |x, s| x + s * random()[0]);
+    (noisy, stderr)
+}
+
+fn plan(free: &[&str], n: usize) -> CalibrationPlan {
+    let free = free.iter().map(|name| Free {
+        name: (*name).to_owned(),
+        sigma: None,
+    });
+    CalibrationPlan {
+        free: free.collect(),
+        frame_gain: None,
+        is_scale_free: false,
+        elements: Some([n; 2]),
+        occlusion: Occlusion::Considered,
+        integration: Integration::Centres,
+        starts: 1,
+        spread: 1.0,
+        seed: 1,
+    }
+}
+
+fn unexplained<'a>(phi: &'a Matrix, stderr: &'a Matrix) -> Unexplained<'a> {
+    Unexplained {
+        phi,
+        stderr: Some(stderr),
+        left_out: None,
+        patterns: None,
+    }
+}
+
+fn problem<'a>(
+    scene: &'a Scene,
+    parameters: &'a [Parameter],
+    photographs: Unexplained<'a>,
+    gains: usize,
+) -> Problem<'a> {
+    let model = MatrixModel::with(scene, Kernel::Physical, Some([2; 2]), Occlusion::Ignored);
+    Problem {
+        geometry: Geometry {
+            scene,
+            parameters,
+            elements: Some([2; 2]),
+            take: Take::Centre,
+            occlusion: Occlusion::Considered,
+            gains,
+        },
+        photographs,
+        priors: vec![Some(0.3); parameters.len() + gains],
+        pictures: priors(&model.unwrap().places, false).unwrap(),
+        is_scale_free: false,
+    }
+}
+
+/// y ~ N(½ A 1, 1 + A R Rᵀ Aᵀ), written out by an eigen-decomposition.
+#[test]
+fn the_cost_is_that_of_a_dense_normal_distribution() {
+    let mut file = SceneFile::builtin("bench").unwrap();
+    file.camera.pixels = [4, 3];
+    let scene = Scene::new(&file, None)
+        .unwrap()
+        .with_spots_at(&[[1.0, 2.0], [9.0, 4.0]])
+        .unwrap();
+    let (phi, stderr) = photographs(&scene, 2, 0.1, 3);
+    let parameters = Parameter::named(&scene, "hidden.normal").unwrap();
+    let problem = problem(&scene, &parameters, unexplained(&phi, &stderr), 0);
+    let light = problem.geometry.light(&[0.2], false).unwrap();
+    let frames: Vec<Matrix> = (0..2).map(|l| light.frame(l)).collect();
+    let rows = |k: usize| [k / 12, k % 12];
+    let white = |k: usize, j: usize| {
+        let [l, p] = rows(k);
+        frames[l][(p, j)] / stderr[(p, l)]
+    };
+    let a = Matrix::from_fn(24, 4, white);
+    let mean = &a * DVector::from_element(4, 0.5);
+    let y = DVector::from_fn(24, |k, _| {
+        let [l, p] = rows(k);
+        phi[(p, l)] / stderr[(p, l)]
+    });
+    let dense = |prior: &Prior| {
+        let ar = &a * &prior.root;
+        let covariance = Matrix::identity(24, 24) + &ar * ar.transpose();
+        let eigen = nalgebra::SymmetricEigen::new(covariance);
+        let left = eigen.eigenvectors.tr_mul(&(&y - &mean));
+        let each = left.iter().zip(&eigen.eigenvalues);
+        0.5 * each.map(|(x, v)| x * x / v + v.ln()).sum::<f64>()
+    };
+    for prior in [
+        &problem.pictures[0],
+        &problem.pictures[6],
+        &problem.pictures[15],
+    ] {
+        let cost = problem.cost(&[0.2], 1.0, prior).unwrap().unwrap();
+        let want = dense(prior) + 0.5 * (0.2f64 / 0.3).powi(2);
+        assert!(
+            (cost - want).abs() < 1e-8 * want.abs().max(1.0),
+            "{cost} for {want}"
+        );
+    }
+    let state = problem.state(&[0.2], 1.0, None).unwrap();
+    let best = problem
+        .pictures
+        .iter()
+        .map(dense)
+        .fold(f64::INFINITY, f64::min);
+    assert!((state.value.cost - best).abs() < 1e-8 * best.abs().max(1.0));
+}
+
+/// Slopes are those of the cost, gains among them; of an obstructed scene too.
+#[test]
+fn slopes_are_those_of_the_cost() {
+    let scene = small("bench", 4);
+    let (phi, stderr) = photographs(&scene, 2, 0.02, 4);
+    let parameters = ["hinge.angle", "hidden.normal", "spots.shift"];
+    let parameters: Vec<Parameter> = parameters
+        .iter()
+        .flat_map(|name| Parameter::named(&scene, name).unwrap())
+        .collect();
+    let frames = phi.ncols();
+    let problem = problem(&scene, &parameters, unexplained(&phi, &stderr), frames);
+    let mut values = vec![0.3, -0.05, 0.02, 0.04];
+    values.extend((0..frames).map(|l| 0.01 * (l % 3) as f64));
+    let state = problem.state(&values, 1.0, None).unwrap();
+    let slope = problem.whole_slope(&state);
+    for k in [0, 1, 2, 3, 4, 5, 4 + frames - 1] {
+        let h = 1e-4;
+        let at = |x: f64| {
+            let mut values = values.clone();
+            values[k] += x;
+            problem.cost(&values, 1.0, &state.prior).unwrap().unwrap()
+        };
+        let want = (8.0 * (at(h) - at(-h)) - (at(2.0 * h) - at(-2.0 * h))) / (12.0 * h);
+        let off = (slope[k] - want).abs() / want.abs().max(1.0);
+        assert!(off < 1e-5, "{k}: {} for {want}", slope[k]);
+    }
+}
+
+/// A hinge, a distance and a yaw that are wrong come back within three errors, which are small, and
+/// the file that is written is the scene.
+#[test]
+fn a_displaced_scene_is_found() {
+    let scene = small("bench", 8);
+    let names = ["hinge.angle", "hidden.normal", "hidden.yaw"];
+    let parameters: Vec<Parameter> = names
+        .iter()
+        .flat_map(|name| Parameter::named(&scene, name).unwrap())
+        .collect();
+    let truth = [1.0, 0.1, 1.0];
+    let there = scene.displaced(&parameters, &truth).unwrap();
+    let (phi, stderr) = photographs(&there, 4, 1e-3, 5);
+    let found = plan(&names, 4).calibrate(&scene, &unexplained(&phi, &stderr), Control::none());
+    let found = found.unwrap();
+    assert!(found.is_settled && found.p.unwrap() > 1e-3, "{:?}", found.p);
+    for (own, want) in found.found.iter().zip(truth) {
+        let off = (own.value - want) / own.stderr;
+        assert!(off.abs() < 3.0 && own.stderr < 0.15 * want, "{own:?}");
+    }
+    let written = Scene::from_toml("calibrated", &found.toml).unwrap();
+    let values: Vec<f64> = found.found.iter().map(|f| f.value).collect();
+    let own = scene.displaced(&parameters, &values).unwrap();
+    let phi = |scene: &Scene| {
+        MatrixModel::new(scene, Kernel::Physical, None)
+            .unwrap()
+            .phi()
+    };
+    let (a, b) = (phi(&own), phi(&written));
+    assert!((a - &b).norm() < 1e-12 * b.norm());
+}
+
+/// What moves together is refused with its names, and taken where one of it is known.
+#[test]
+fn what_light_does_not_tell_is_refused() {
+    let scene = small("bench", 4);
+    let (phi, stderr) = photographs(&scene, 2, 0.1, 6);
+    let photographs = unexplained(&phi, &stderr);
+    let mut together = plan(&["spots.x", "view.x", "camera.x", "laser.x"], 2);
+    let refused = together.calibrate(&scene, &photographs, Control::none());
+    let refused = refused.unwrap_err().to_string();
+    assert!(
+        refused.contains("do not tell") && refused.contains("laser.x"),
+        "{refused}"
+    );
+    together.free.iter_mut().for_each(|f| f.sigma = Some(0.1));
+    let held = together
+        .calibrate(&scene, &photographs, Control::none())
+        .unwrap();
+    assert!(!held.untold.is_empty());
+    let laser = &held.found[3];
+    assert!((laser.stderr / 0.1 - 1.0).abs() < 0.05, "{laser:?}");
+    let refused = Parameter::named(&scene, "hidden.u")
+        .unwrap_err()
+        .to_string();
+    assert!(refused.contains("own plane"), "{refused}");
+}

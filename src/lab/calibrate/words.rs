@@ -1,0 +1,338 @@
+//! What is said of a calibration.
+
+use super::{Calibrated, Calibration, Direction};
+use crate::lab::finding::{
+    Axis, Cell, Column, Curve, Describe, Figure, Finding, Gallery, Mark, Picture, Place, Plot,
+    Shades, Table, Tone, listed,
+};
+use crate::num::digits::{figure, perhaps};
+use crate::scene::Parameter;
+
+/// Below this probability of so bad a fit the model lacks something.
+const SIGNIFICANCE: f64 = super::LEVEL;
+/// An estimate farther from the scene than this, in what was known beforehand, is told.
+const FAR: f64 = 3.0;
+/// Gains that are listed one by one.
+const LISTED: usize = 12;
+/// What is left of other light's remainder where no noise is stated, above which it is told.
+const MUCH: f64 = 0.05;
+
+/// Why some combinations of unknowns cannot be estimated.
+pub(super) fn untold(directions: &[&Direction], parameters: &[Parameter]) -> String {
+    let name = |k: usize| parameters.get(k).map(|p| p.name.clone());
+    let all: Vec<String> = directions.iter().map(|d| d.names(name)).collect();
+    format!(
+        "at their noise the photographs do not tell {}; what moves with such a combination changes nothing that the picture or the rest could not. Leave one of each out, or say how well it is known (--free NAME=SIGMA, or [uncertainty] in the scene)",
+        listed(&all)
+    )
+}
+
+impl Direction {
+    fn names(&self, name: impl Fn(usize) -> Option<String>) -> String {
+        let of = |(k, part): &(usize, f64)| {
+            let sign = if *part < 0.0 { "−" } else { "+" };
+            let name = name(*k).unwrap_or_else(|| "a gain".to_owned());
+            format!("{sign}{name}")
+        };
+        let few: Vec<String> = self.parts.iter().take(LISTED).map(of).collect();
+        few.join(" ")
+    }
+}
+
+fn with_unit(x: f64, digits: usize, unit: &str) -> String {
+    format!("{} {unit}", figure(x, digits))
+        .trim_end()
+        .to_owned()
+}
+
+impl Calibration {
+    /// Whether it ended by itself.
+    pub fn is_found(&self) -> bool {
+        self.is_settled
+    }
+
+    /// Geometric parameters.
+    fn geometry(&self) -> impl Iterator<Item = &Calibrated> {
+        self.found.iter().filter(|f| !f.unit.is_empty())
+    }
+
+    fn sentence(&self) -> String {
+        let of = |f: &Calibrated| {
+            let (value, error) = (figure(f.value, 3), with_unit(f.stderr, 2, &f.unit));
+            format!("{} {value} ± {error}", f.name)
+        };
+        let few: Vec<String> = self.geometry().take(LISTED).map(of).collect();
+        let ended = if self.is_settled {
+            ""
+        } else {
+            " The search did not end: do not use it."
+        };
+        format!("From what the scene says: {}.{ended}", listed(&few))
+    }
+
+    /// Whether noise alone explains what is left.
+    fn fit(&self) -> String {
+        match self.p {
+            Some(p) if p >= SIGNIFICANCE => format!(
+                "With it the photographs fit: χ²/dof {} (p = {}). The errors are those of the noise.",
+                figure(self.misfit, 3),
+                figure(p, 2)
+            ),
+            Some(p) => format!(
+                "The photographs do NOT fit even so: χ²/dof {} (p = {}). The model lacks something, \
+                 or something is wrong that is not free. Errors are the largest of three: by the \
+                 noise, by what single frames and by what blocks of pixels say; none of them sees \
+                 what is wrong in all alike.",
+                figure(self.misfit, 3),
+                figure(p, 1)
+            ),
+            None => {
+                let much = if self.left > MUCH {
+                    " That is much: the model lacks something."
+                } else {
+                    ""
+                };
+                format!(
+                    "No noise is stated: whether noise alone is left cannot be told. What is not \
+                     explained is {} of what other light leaves.{much} Errors are the largest of \
+                     three: by that remainder as if it were noise, by what single frames and by \
+                     what blocks of pixels say; none of them sees what is wrong in all alike.",
+                    figure(self.left, 3)
+                )
+            }
+        }
+    }
+
+    fn searched(&self) -> String {
+        let starts = match self.starts.tried {
+            1 => "One start was tried: whether others end elsewhere is not known (--starts)."
+                .to_owned(),
+            n if self.starts.agree == n => format!("All {n} starts end in one place."),
+            n => format!(
+                "{} of {n} starts end where the likeliest one does; the others found less likely \
+                 places. If that is few, there may be a likelier place still (--starts).",
+                self.starts.agree
+            ),
+        };
+        let steps: usize = self.stages.iter().map(|s| s.steps).sum();
+        format!(
+            "{starts} The likeliest took {steps} steps at {} noises, from large to the stated one.",
+            self.stages.len()
+        )
+    }
+
+    fn picture(&self) -> String {
+        let scale = if self.scale == 1.0 {
+            String::new()
+        } else {
+            format!(" The scale of all light is {}.", figure(self.scale, 4))
+        };
+        let length = if self.length == 0.0 {
+            "elements that know nothing of each other".to_owned()
+        } else {
+            format!("elements alike over {}", figure(self.length, 2))
+        };
+        let truth = match (self.mtf_raw, self.correlation) {
+            (None, None) => String::new(),
+            (mtf, correlation) => format!(
+                " Against the scene's own picture: MTF raw {}, correlation {}.",
+                perhaps(mtf, 3),
+                perhaps(correlation, 3)
+            ),
+        };
+        format!(
+            "The picture is the mean of all that fit, with spread {} and {length}, not bounded; {} \
+             of its directions are determined. Its errors include those of the geometry.{truth}{scale}",
+            figure(self.spread, 2),
+            figure(self.directions, 3)
+        )
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let mut notes = vec![self.fit(), self.searched(), self.picture()];
+        let far = self.geometry().filter_map(|f| {
+            let prior = f.prior?;
+            (f.value.abs() > FAR * prior)
+                .then(|| format!("{} ({} σ)", f.name, figure(f.value.abs() / prior, 2)))
+        });
+        let far: Vec<String> = far.collect();
+        if !far.is_empty() {
+            notes.push(format!(
+                "Farther from the scene than what was known beforehand allows: {}. Either that was \
+                 stated too well, or the model lacks something.",
+                listed(&far)
+            ));
+        }
+        for direction in &self.untold {
+            let name = |k: usize| self.found.get(k).map(|f| f.name.clone());
+            notes.push(format!(
+                "The photographs do not tell {}: what was known beforehand holds it.",
+                direction.names(name)
+            ));
+        }
+        notes
+    }
+
+    fn table(&self) -> Table {
+        let rows = self
+            .geometry()
+            .chain(self.found.iter().filter(|f| f.unit.is_empty()));
+        Table {
+            caption: "From what the scene says, and its errors".to_owned(),
+            file: Some("calibration.csv".to_owned()),
+            ..Table::of(
+                rows,
+                [
+                    (Column::text("unknown", "unknown"), |f: &&Calibrated| {
+                        Cell::name(&f.name)
+                    }),
+                    (Column::text("unit", "unit"), |f| Cell::name(&f.unit)),
+                    (Column::number("known to", "prior", "", 2), |f| {
+                        f.prior.into()
+                    }),
+                    (Column::number("estimate", "estimate", "", 5), |f| {
+                        f.value.into()
+                    }),
+                    (Column::number("± error", "stderr", "", 2), |f| {
+                        f.stderr.into()
+                    }),
+                    (Column::number("by curvature", "by_curvature", "", 2), |f| {
+                        f.by_curvature.into()
+                    }),
+                    (Column::number("by frames", "by_frames", "", 2), |f| {
+                        f.by_frames.into()
+                    }),
+                    (Column::number("by blocks", "by_blocks", "", 2), |f| {
+                        f.by_blocks.into()
+                    }),
+                ],
+            )
+        }
+    }
+
+    fn told(&self) -> Table {
+        Table {
+            caption: "What the photographs could tell, before anything was fitted: standard errors"
+                .to_owned(),
+            file: Some("identifiability.csv".to_owned()),
+            ..Table::of(
+                self.geometry(),
+                [
+                    (Column::text("unknown", "unknown"), |f: &&Calibrated| {
+                        Cell::name(&f.name)
+                    }),
+                    (Column::text("unit", "unit"), |f| Cell::name(&f.unit)),
+                    (Column::number("all else known", "alone", "", 2), |f| {
+                        f.identified.alone.into()
+                    }),
+                    (
+                        Column::number("picture unknown", "picture_unknown", "", 2),
+                        |f| f.identified.picture_unknown.into(),
+                    ),
+                    (Column::number("all unknown", "by_light", "", 2), |f| {
+                        f.identified.by_light.into()
+                    }),
+                    (
+                        Column::number("with what is known", "with_prior", "", 2),
+                        |f| f.identified.with_prior.into(),
+                    ),
+                ],
+            )
+        }
+    }
+
+    /// How the likelihood falls along each parameter.
+    fn figures(&self) -> Vec<Figure> {
+        let plot = |f: &Calibrated| {
+            let profile = f.profile.as_ref()?;
+            let points: Vec<[f64; 2]> = profile.points.iter().map(|(x, y)| [*x, *y]).collect();
+            let ends = |k: usize| {
+                let each = points.iter().map(|p| p[k]);
+                [
+                    each.clone().fold(f64::INFINITY, f64::min),
+                    each.fold(f64::NEG_INFINITY, f64::max),
+                ]
+            };
+            let title = format!("{} ({})", f.name, f.unit);
+            let axes = [
+                Axis::linear(&title, ends(0)),
+                Axis::linear("log likelihood", ends(1)),
+            ];
+            let curve = Curve::new("log likelihood", Mark::Line, points);
+            Some(Plot::new("", axes, vec![curve]))
+        };
+        let plots: Vec<Plot> = self.geometry().filter_map(plot).collect();
+        if plots.is_empty() {
+            return Vec::new();
+        }
+        vec![Figure::new(
+            "profiles.svg",
+            "Likelihood along each parameter, the others following",
+            plots,
+        )]
+    }
+
+    fn gallery(&self) -> Gallery {
+        let of = |title: String, count: [usize; 2], values: &[f64]| Picture {
+            title,
+            size: count,
+            values: values.to_vec(),
+            axes: ["u", "v"].map(str::to_owned),
+            width: 2.0,
+        };
+        let both = |grid: &crate::lab::located::Grid| {
+            [
+                of(grid.surface.clone(), grid.count, &grid.values),
+                of(
+                    format!("{}: standard errors", grid.surface),
+                    grid.count,
+                    &grid.stderr,
+                ),
+            ]
+        };
+        Gallery {
+            title: "The picture with the calibrated geometry, and its errors with those of the geometry".to_owned(),
+            shades: Shades::Reflectance,
+            unit: String::new(),
+            pictures: self.grids.iter().flat_map(both).collect(),
+        }
+    }
+}
+
+impl Describe for Calibration {
+    fn describe(&self) -> Finding {
+        let stages = Table {
+            caption: "The way through the noises".to_owned(),
+            file: Some("stages.csv".to_owned()),
+            place: Place::Page,
+            ..Table::of(
+                &self.stages,
+                [
+                    (
+                        Column::number("noise", "noise", "", 3),
+                        |s: &&super::Stage| s.noise.into(),
+                    ),
+                    (Column::text("steps", "steps"), |s| (s.steps as u64).into()),
+                    (Column::number("χ²/dof", "misfit", "", 3), |s| {
+                        s.misfit.into()
+                    }),
+                ],
+            )
+        };
+        Finding {
+            title: format!("The geometry, from the photographs: {}", self.scene),
+            tone: if self.is_found() {
+                Tone::Good
+            } else {
+                Tone::Bad
+            },
+            sentence: self.sentence(),
+            notes: self.notes(),
+            tables: vec![self.table(), self.told(), stages],
+            figures: self.figures(),
+            galleries: vec![self.gallery()],
+            files: vec![("scene.toml".to_owned(), self.toml.clone())],
+            ..Finding::default()
+        }
+    }
+}

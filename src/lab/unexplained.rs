@@ -1,0 +1,106 @@
+//! Photographs whose reflectances are unknown, without other light and in units of their noise.
+
+use nalgebra::DVector;
+
+use crate::matrix::Matrix;
+use crate::num::linalg::{LinalgError, product, svd, tr_product};
+
+/// Directions of the patterns that are weaker than this part of the strongest are none.
+const DEPENDENT: f64 = 1e-12;
+
+/// Photographs whose reflectances are unknown.
+#[derive(Clone, Copy, Debug)]
+pub struct Unexplained<'a> {
+    /// Φcam, pixels × spots, W.
+    pub phi: &'a Matrix,
+    /// Its standard errors up to a common factor, the same shape; all alike where they are unknown.
+    pub stderr: Option<&'a Matrix>,
+    /// Entries that do not count, the same shape: those that are not 0.
+    pub left_out: Option<&'a Matrix>,
+    /// Patterns of other light, pixels × patterns, each with a strength of its own in each frame.
+    pub patterns: Option<&'a Matrix>,
+}
+
+impl Unexplained<'_> {
+    /// √w of each pixel of frame l: 1/σ, 0 where the entry does not count or nothing is known of its
+    /// error.
+    fn roots(&self, l: usize) -> DVector<f64> {
+        let root = |p: usize| match self.stderr.map(|s| s[(p, l)]) {
+            _ if self.left_out.is_some_and(|flags| flags[(p, l)] != 0.0) => 0.0,
+            None => 1.0,
+            Some(sigma) if sigma > 0.0 => 1.0 / sigma,
+            Some(_) => 0.0,
+        };
+        DVector::from_fn(self.phi.nrows(), |p, _| root(p))
+    }
+
+    /// Entries that count.
+    pub(super) fn counted(&self) -> usize {
+        let of_frame = |l: usize| self.roots(l).iter().filter(|q| **q > 0.0).count();
+        (0..self.phi.ncols()).map(of_frame).sum()
+    }
+
+    /// Orthonormal directions of the weighted patterns, pixels × directions.
+    fn directions(&self, roots: &DVector<f64>) -> Result<Matrix, LinalgError> {
+        let none = Matrix::zeros(roots.len(), 0);
+        let Some(patterns) = self.patterns.filter(|f| f.ncols() > 0) else {
+            return Ok(none);
+        };
+        let lengths: Vec<f64> = patterns.column_iter().map(|f| f.amax()).collect();
+        let weighted = Matrix::from_fn(patterns.nrows(), patterns.ncols(), |p, k| {
+            roots[p] * patterns[(p, k)] / if lengths[k] > 0.0 { lengths[k] } else { 1.0 }
+        });
+        if weighted.amax() == 0.0 {
+            return Ok(none);
+        }
+        let found = svd(&weighted)?;
+        let strong = found
+            .sigma
+            .iter()
+            .take_while(|s| **s > DEPENDENT * found.sigma[0]);
+        let kept = strong.count();
+        Ok(found.u.columns(0, kept).into_owned())
+    }
+
+    /// The frame's weights and other light.
+    pub(super) fn whitening(&self, l: usize) -> Result<Whitening, LinalgError> {
+        let roots = self.roots(l);
+        Ok(Whitening {
+            directions: self.directions(&roots)?,
+            roots,
+        })
+    }
+}
+
+/// Takes columns of one frame's pixels to √w times them, less what the patterns of other light
+/// could be of that.
+#[derive(Clone, Debug)]
+pub(super) struct Whitening {
+    roots: DVector<f64>,
+    /// Orthonormal, pixels × directions.
+    directions: Matrix,
+}
+
+impl Whitening {
+    /// Of each column.
+    pub(super) fn apply(&self, columns: &Matrix) -> Matrix {
+        let once = |m: Matrix| {
+            let patterns = tr_product(&self.directions, &m);
+            m - product(&self.directions, &patterns)
+        };
+        let weighted = Matrix::from_fn(columns.nrows(), columns.ncols(), |p, s| {
+            self.roots[p] * columns[(p, s)]
+        });
+        if self.directions.ncols() == 0 {
+            weighted
+        } else {
+            once(once(weighted))
+        }
+    }
+
+    /// Entries that count, less the directions of the patterns.
+    pub(super) fn count(&self) -> f64 {
+        let counted = self.roots.iter().filter(|q| **q > 0.0).count();
+        counted as f64 - self.directions.ncols() as f64
+    }
+}
