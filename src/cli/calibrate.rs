@@ -33,7 +33,7 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
         .output
         .clone()
         .unwrap_or_else(|| args.dir.join(CALIBRATED));
-    let _lock = RunFolder::lock(&output, "phicam calibrate")?;
+    let lock = RunFolder::lock(&output, "phicam calibrate")?;
     let pool = pool(args.threads)?;
     let guard = SignalGuard::new();
     let what = format!("calibrate {}", scene.name);
@@ -41,7 +41,15 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
         pool.install(|| plan.calibrate(&scene, &photographs.unexplained(), control))
     });
     drop(guard);
-    let calibration = found.map_err(|e| Failure::of(e.into()))?;
+    let calibration = match found {
+        Ok(calibration) => calibration,
+        Err(e) => {
+            drop(lock);
+            // Nothing is left where nothing was done.
+            let _ = std::fs::remove_dir(&output);
+            return Err(Failure::of(e.into()));
+        }
+    };
     let found = Found {
         json: serde_json::to_string_pretty(&calibration).map_err(|e| Failure::of(e.into()))?,
         finding: calibration.describe(),
@@ -49,9 +57,11 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
     };
     let asked = invocation(args, &plan.free, &scene);
     deliver("calibration", &found, &output, &asked, args.json)?;
+    RunFolder::write_copies(&output, &scene)?;
     console.say(format!(
-        "{}: written; scene.toml there is the calibrated scene, e.g. for `phicam recover SCENE --phi PHI`",
-        output.display()
+        "{0}: written; scene.toml there is the calibrated scene: `phicam recover {0} --phi {1}/phi.npy`",
+        output.display(),
+        args.dir.display()
     ));
     Ok(if found.agrees {
         Outcome::Done

@@ -325,7 +325,13 @@ impl RunFolder {
 
     /// Writes the scene, whole: with copies of the files that it names.
     pub(super) fn write_scene(&self, scene: &Scene) -> Result<(), Failure> {
-        let copies = self.path.join(COPIES);
+        Self::write_copies(&self.path, scene)?;
+        output::write(&self.path.join(SCENE), &scene.text)
+    }
+
+    /// Copies the files that the scene names into `folder`.
+    pub(super) fn write_copies(folder: &Path, scene: &Scene) -> Result<(), Failure> {
+        let copies = folder.join(COPIES);
         for file in &scene.files {
             ensure_writable(&copies)?;
             let to = copies.join(file.copy_name());
@@ -337,7 +343,7 @@ impl RunFolder {
                 .map_err(|(cause, cure)| Failure::new(cause, cure))?;
             output::write(&to, &bytes)?;
         }
-        output::write(&self.path.join(SCENE), &scene.text)
+        Ok(())
     }
 
     pub(super) fn frames(&self) -> PathBuf {

@@ -206,7 +206,12 @@ impl CalibrationPlan {
         };
         let sizes = sizes(scene, &parameters, gains);
         let zero = vec![0.0; problem.unknowns()];
-        let start = problem.state(&zero, 1.0, None)?;
+        // Of a noise that is not stated nothing is known yet: that of the first stage.
+        let assumed = match photographs.stderr {
+            Some(_) => 1.0,
+            None => problem.first(),
+        };
+        let start = problem.state(&zero, assumed, None)?;
         let (told, untold) = identified(&problem, &start, &sizes);
         let free: Vec<&Direction> = untold.iter().filter(|d| d.is_free()).collect();
         if !free.is_empty() {

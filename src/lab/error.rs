@@ -84,6 +84,10 @@ impl LabError {
     /// No light of the studied object arrives.
     pub(super) const DARK_OBJECT: Self =
         Self::Unsuited("no light from the object reaches the camera (see `phicam scene check`)");
+    /// A noise so small that its square is lost beside that of the light.
+    pub(super) const TOO_FINE: Self = Self::Unsuited(
+        "the stated noise is less than about 1e-7 of the light, which normal equations do not resolve (state larger standard errors)",
+    );
     /// The camera gets no stray light.
     pub(super) const NO_GLARE: Self = Self::Unsuited(
         "no light enters the lens straight from any spot, so there is no glare to study (let the camera face the wall where the spots are)",

@@ -6,6 +6,7 @@ mod bad_frames;
 mod bad_recoveries;
 mod bad_scenes;
 mod bad_settings;
+mod calibrating;
 mod digests;
 mod exposing;
 mod exposing_again;

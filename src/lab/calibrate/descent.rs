@@ -151,7 +151,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The noise of the first stage, over the stated one.
-    fn first(&self) -> f64 {
+    pub(super) fn first(&self) -> f64 {
         let Unexplained { phi, stderr, .. } = self.photographs;
         let mut relative: Vec<f64> = match stderr {
             Some(stderr) => phi

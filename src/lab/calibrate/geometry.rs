@@ -91,7 +91,7 @@ impl Geometry<'_> {
         let (own, gains) = values.split_at(self.parameters.len());
         let scene = self.scene_at(values)?;
         let terms = self.terms(&scene)?;
-        let elements = terms.element.last().map_or(0, |j| j + 1);
+        let elements = Differential::new(&scene, self.elements, Take::Centre)?.elements();
         let of = |k: usize| -> Result<Rate, LabError> {
             if !self.is_obstructed() {
                 let model = Differential::new(&scene, self.elements, self.take)?;

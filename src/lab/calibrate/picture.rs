@@ -13,8 +13,10 @@ use crate::matrix::Matrix;
 use crate::num::linalg::{Cholesky, product, svd, tr_product};
 use crate::num::search::largest;
 
-/// Standard deviations τ of a picture about its mean.
-const SPREADS: [f64; 4] = [0.5, 0.25, 0.1, 0.03];
+/// Standard deviations τ of a picture about its mean; more of one whose scale is free, for what is
+/// bright in it may be little of it.
+const SPREADS: [f64; 6] = [0.03, 0.1, 0.25, 0.5, 1.0, 2.0];
+const KNOWN: usize = 4;
 /// Lengths ℓ in distances of neighbours; 0 is a picture whose elements know nothing of each other.
 const LENGTHS: [f64; 4] = [0.0, 1.5, 6.0, 24.0];
 const HALF: f64 = 0.5;
@@ -71,7 +73,8 @@ pub(super) fn priors(places: &[[f64; 3]], is_free: bool) -> Result<Vec<Prior>, L
         } else {
             Matrix::identity(n, n)
         };
-        all.extend(SPREADS.map(|spread| Prior {
+        let spreads = &SPREADS[..if is_free { SPREADS.len() } else { KNOWN }];
+        all.extend(spreads.iter().map(|&spread| Prior {
             mean,
             root: Matrix::from_fn(n, n + 1, |i, j| {
                 if j == 0 {
@@ -142,5 +145,5 @@ impl Prior {
 pub(super) fn white(gram: &Matrix) -> Result<Cholesky, LabError> {
     let mut all = gram.clone();
     (0..all.nrows()).for_each(|i| all[(i, i)] += 1.0);
-    Cholesky::new(&all).ok_or(LabError::DARK)
+    Cholesky::new(&all).ok_or(LabError::TOO_FINE)
 }

@@ -216,3 +216,37 @@ fn what_light_does_not_tell_is_refused() {
         .to_string();
     assert!(refused.contains("own plane"), "{refused}");
 }
+
+/// A plate in the way that is not where it is thought to be, by differences of what it leaves
+/// visible.
+#[test]
+#[ignore = "slow"]
+fn a_displaced_occluder_is_found() {
+    let mut file = SceneFile::builtin("bench").unwrap();
+    file.camera.pixels = [8; 2];
+    file.laser.as_mut().unwrap().spots.per_side = Some(3);
+    let plate = r#"
+[[surface]]
+name = "plate"
+role = "occluder"
+rectangle = { corner = [4.5, 6.0, 2.0], u = [1.0, 0.0, 0.0], v = [0.0, 1.0, 0.0] }
+material = { lambertian = 0.0 }
+"#;
+    let text = file.toml().unwrap() + plate;
+    let scene = Scene::from_toml("plate", &text).unwrap();
+    let names = ["occluders.x", "occluders.y", "hidden.normal"];
+    let parameters: Vec<Parameter> = names
+        .iter()
+        .flat_map(|name| Parameter::named(&scene, name).unwrap())
+        .collect();
+    let truth = [0.08, -0.05, 0.06];
+    let there = scene.displaced(&parameters, &truth).unwrap();
+    let (phi, stderr) = photographs(&there, 4, 1e-2, 7);
+    let found = plan(&names, 4).calibrate(&scene, &unexplained(&phi, &stderr), Control::none());
+    let found = found.unwrap();
+    assert!(found.is_settled && found.p.unwrap() > 1e-3, "{:?}", found.p);
+    for (own, want) in found.found.iter().zip(truth) {
+        let off = (own.value - want) / own.stderr;
+        assert!(off.abs() < 3.5 && own.stderr < 0.5 * want.abs(), "{own:?}");
+    }
+}

@@ -212,8 +212,14 @@ impl Calibration {
 
     fn told(&self) -> Table {
         Table {
-            caption: "What the photographs could tell, before anything was fitted: standard errors"
-                .to_owned(),
+            caption: format!(
+                "What the photographs could tell, before anything was fitted: standard errors{}",
+                if self.p.is_some() {
+                    ""
+                } else {
+                    " at a noise of 3 % of the light"
+                }
+            ),
             file: Some("identifiability.csv".to_owned()),
             ..Table::of(
                 self.geometry(),

@@ -25,6 +25,12 @@ pub struct Sensitivity {
     pub unit: String,
     /// By growing size. Sizes that the scene does not allow (a spot off the wall) are left out.
     pub rows: Vec<Misplacement>,
+    /// ‖∂Φ‖/‖Φ‖ a unit by the model's derivative, and what the best scale leaves of it; absent of
+    /// what has none.
+    pub by_derivative: Option<[f64; 2]>,
+    /// The largest size with which the MTF stays at what is wished for, interpolated; absent where
+    /// every size that was tried allows it, or none.
+    pub needed: Option<f64>,
     /// The size at which the MTF falls to half of that without error; absent if it does not, or was
     /// lost before.
     pub lost_at: Option<f64>,
@@ -39,6 +45,8 @@ pub struct Tolerance {
     pub scene_hash: String,
     /// Noise of the photographs, relative to each entry.
     pub noise: f64,
+    /// Raw MTF that is wished for.
+    pub wished: f64,
     /// Raw MTF with the right geometry.
     pub mtf: Option<f64>,
     /// Each thing.

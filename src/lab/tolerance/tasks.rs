@@ -11,10 +11,10 @@ use crate::lab::registered::{Registered, prepared};
 use crate::lab::study::Study;
 use crate::matrix::Matrix;
 use crate::metrics::mtf_raw;
-use crate::model::{Extent, Kernel, MatrixModel, ModelError, converged};
+use crate::model::{Differential, Extent, Kernel, MatrixModel, ModelError, Take, converged};
 use crate::num::summation::tree_sum;
 use crate::recovery::{Method, Options, recover};
-use crate::scene::Scene;
+use crate::scene::{Parameter, Scene};
 use crate::transport::Control;
 
 /// `phicam study tolerance`.
@@ -31,10 +31,20 @@ pub(in crate::lab) const STUDY: Registered = Registered {
                 "is not a relative noise",
                 "use a number between 0 and 1, e.g. 0.01",
             ),
+        Opt::number(
+            "mtf",
+            "Raw MTF that is wished for: how well must each thing be known for it",
+        )
+        .or("0.9")
+        .rule(
+            |x| x > 0.0 && x <= 1.0,
+            "is not an MTF",
+            "use a number above 0, up to 1, e.g. 0.9",
+        ),
     ],
     prepare: |scene, values| {
-        let noise = values.one("noise")?;
-        Ok(prepared(ToleranceTasks::new(scene, noise)))
+        let [noise, wished] = [values.one("noise")?, values.one("mtf")?];
+        Ok(prepared(ToleranceTasks::new(scene, noise, wished)))
     },
 };
 
@@ -49,6 +59,7 @@ const DRAWS: u64 = 4;
 pub struct ToleranceTasks {
     scene: Scene,
     noise: f64,
+    wished: f64,
 }
 
 /// Φcam and its noisy photographs with their standard errors, pixels × spots, W.
@@ -68,11 +79,13 @@ pub enum Placed {
 }
 
 impl ToleranceTasks {
-    /// The study of a scene, of photographs whose noise relative to each entry is `noise`.
-    pub fn new(scene: &Scene, noise: f64) -> Self {
+    /// The study of a scene, of photographs whose noise relative to each entry is `noise`; `wished`
+    /// is the MTF for which everything is to be known well enough.
+    pub fn new(scene: &Scene, noise: f64, wished: f64) -> Self {
         Self {
             scene: scene.clone(),
             noise,
+            wished,
         }
     }
 
@@ -151,7 +164,9 @@ impl Study for ToleranceTasks {
             (!rows.is_empty()).then(|| Sensitivity {
                 name: what.name.to_owned(),
                 unit: unit(what, &self.scene).1.to_owned(),
-                lost_at: lost_at(right, &rows),
+                by_derivative: by_derivative(&self.scene, what.name),
+                needed: falls_through(right, &rows, self.wished),
+                lost_at: right.and_then(|m| falls_through(right, &rows, PATTERN * m)),
                 rows,
             })
         };
@@ -160,6 +175,7 @@ impl Study for ToleranceTasks {
             scene: self.scene.name.clone(),
             scene_hash: self.scene.hash.clone(),
             noise: self.noise,
+            wished: self.wished,
             mtf: right,
             parameters: things.filter_map(of).collect(),
         })
@@ -175,13 +191,51 @@ fn unit(what: &Misplaced, scene: &Scene) -> (f64, &'static str) {
     }
 }
 
+/// Parameters of the scene, by their names here.
+const PARAMETERS: [(&str, &str); 8] = [
+    ("hinge angle", "hinge.angle"),
+    ("yaw of S2", "hidden.yaw"),
+    ("S2 along its normal", "hidden.normal"),
+    ("all spots, x", "spots.x"),
+    ("all spots, y", "spots.y"),
+    ("view, x", "view.x"),
+    ("view, y", "view.y"),
+    ("scale of the view", "view.scale"),
+];
+
+/// ‖∂Φ‖/‖Φ‖ a unit, and what the best scale leaves of it, by the derivative of the model over areas
+/// with nothing in the way; none of what is no parameter.
+fn by_derivative(scene: &Scene, name: &str) -> Option<[f64; 2]> {
+    let (_, name) = PARAMETERS.iter().find(|(own, _)| *own == name)?;
+    let parameter = Parameter::named(scene, name).ok()?;
+    let model = Differential::new(scene, None, Take::Integral).ok()?;
+    let (terms, rate) = (
+        model.terms(),
+        model.rate(&scene.velocity(&parameter, &[0.0], 0)),
+    );
+    let n = model.elements();
+    let divided = scene.hidden().flat_map(|(_, s)| s.divided(s.elements));
+    let albedo: Vec<f64> = divided.map(|e| e.albedo).collect();
+    let rho = nalgebra::DVector::from_vec(albedo);
+    let [mut square, mut dot, mut change] = [0.0; 3];
+    for l in 0..scene.laser.spots.len() {
+        let light = terms.frame(l, n) * &rho;
+        let moved = terms.frame_rate(&rate, l, n) * &rho;
+        square += light.norm_squared();
+        dot += light.dot(&moved);
+        change += moved.norm_squared();
+    }
+    let left = (change - dot * dot / square).max(0.0);
+    Some([(change / square).sqrt(), (left / square).sqrt()])
+}
+
 /// Below this an MTF shows no pattern.
 const PATTERN: f64 = 0.5;
 
-/// Where the MTF first falls through half of its undisturbed value, interpolated in log size.
-fn lost_at(right: Option<f64>, rows: &[Misplacement]) -> Option<f64> {
-    let right = right.filter(|m| *m >= PATTERN)?;
-    let limit = PATTERN * right;
+/// Where the MTF first falls through `limit`, interpolated in log size; none where it is below that
+/// with the right geometry, or where that shows no pattern.
+fn falls_through(right: Option<f64>, rows: &[Misplacement], limit: f64) -> Option<f64> {
+    let right = right.filter(|m| *m >= PATTERN && *m > limit)?;
     let mut before = (rows.first()?.size * 0.1, right);
     for row in rows {
         let mtf = row.mtf?;
@@ -204,7 +258,7 @@ mod tests {
     #[test]
     #[ignore = "slow"]
     fn it_divides() {
-        let found = divides(&ToleranceTasks::new(&small("bench"), 0.01));
+        let found = divides(&ToleranceTasks::new(&small("bench"), 0.01, 0.9));
         assert_eq!(found.parameters.len(), ALL.len());
     }
 
@@ -250,8 +304,10 @@ mod tests {
             mtf: Some(mtf),
         };
         let rows = [row(0.01, 1.0), row(0.1, 0.75), row(1.0, 0.25)];
-        assert!((lost_at(Some(1.0), &rows).unwrap() / 0.1f64.sqrt() - 1.0).abs() < 1e-12);
-        assert_eq!(lost_at(Some(1.0), &rows[..2]), None);
-        assert_eq!(lost_at(Some(0.3), &rows), None);
+        assert!(
+            (falls_through(Some(1.0), &rows, 0.5).unwrap() / 0.1f64.sqrt() - 1.0).abs() < 1e-12
+        );
+        assert_eq!(falls_through(Some(1.0), &rows[..2], 0.5), None);
+        assert_eq!(falls_through(Some(0.3), &rows, 0.15), None);
     }
 }

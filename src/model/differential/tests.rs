@@ -84,7 +84,8 @@ fn rates_are_those_of_displaced_scenes() {
         "camera.position",
         "laser.position",
     ];
-    let values = |k: usize| 0.11 * (1.0 + (k % 3) as f64) * if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let values =
+        |k: usize| 0.11 * (1.0 + (k % 3) as f64) * if k.is_multiple_of(2) { 1.0 } else { -1.0 };
     all_within(&small("bench"), &names, values, 1e-8);
 }
 

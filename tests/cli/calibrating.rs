@@ -1,0 +1,88 @@
+//! `phicam calibrate`: the geometry, from the photographs.
+
+use crate::workspace::Workspace;
+
+/// Words on one line.
+fn told(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The light of the small bench with its hinge 1° farther open than the scene of the run says.
+fn misjudged() -> Workspace {
+    let w = Workspace::with_scenes();
+    let _ = w
+        .phicam("render small.toml -o run --samples 4096 --estimator factored -q")
+        .exits(0);
+    w
+}
+
+/// Of a rendered scene nothing is off by more than its errors; the written scene is one, and is
+/// what the numbers say.
+#[test]
+fn a_rendered_scene_is_as_it_is_written() {
+    let w = misjudged();
+    let line = "calibrate run --free hinge.angle=0.5,hidden.normal --elements 4x4 --starts 2";
+    let ended = w.phicam(line).exits(0);
+    let words = told(&ended.stdout);
+    for expected in ["hinge.angle", "hidden.normal", "starts", "known to"] {
+        assert!(words.contains(expected), "{}", ended.account());
+    }
+    let found = w.json("run/calibrated/calibration.json");
+    for own in found["found"].as_array().unwrap() {
+        let number = |key: &str| own[key].as_f64().unwrap();
+        assert!(number("value").abs() < 4.0 * number("stderr"), "{own:#}");
+    }
+    for file in [
+        "calibration.csv",
+        "identifiability.csv",
+        "profiles.svg",
+        "report.html",
+    ] {
+        assert!(w.path(&format!("run/calibrated/{file}")).exists(), "{file}");
+    }
+    let _ = w.phicam("scene check run/calibrated/scene.toml").exits(0);
+    let _ = w
+        .phicam("recover run/calibrated --phi run/phi.npy --stderr run/phi.stderr.npy -o there -q")
+        .exits(0);
+    // The same numbers whatever the threads.
+    let again = w
+        .phicam(&format!("{line} --threads 1 --json -o other"))
+        .exits(0);
+    let other: serde_json::Value = serde_json::from_str(&again.stdout).unwrap();
+    assert_eq!(found, other);
+}
+
+/// What the scene says of its measurements is what is free, and what it does not know is refused.
+#[test]
+fn uncertainties_stand_in_the_scene() {
+    let w = misjudged();
+    w.refuses("calibrate run", &["--free", "[uncertainty]"]);
+    w.refuses(
+        "calibrate run --free hinge.angel",
+        &["hinge.angel", "hinge.angle"],
+    );
+    w.refuses("calibrate run --free hidden.u", &["own plane"]);
+    w.refuses("calibrate run --free hinge.angle=-1", &["NAME=SIGMA"]);
+    w.refuses(
+        "calibrate run --free laser.x --elements 2x2",
+        &["do not tell", "laser.x"],
+    );
+    w.refuses("calibrate nowhere --free hinge.angle", &["nowhere"]);
+    let scene = w.text("run/scene.toml");
+    let stated = format!("{scene}\n[uncertainty]\n\"hinge.angle\" = 0.5\n");
+    w.write("run/scene.toml", &stated);
+    let ended = w
+        .phicam("calibrate run --elements 4x4 --starts 1 -q")
+        .exits(0);
+    assert!(
+        told(&ended.stdout).contains("hinge.angle"),
+        "{}",
+        ended.account()
+    );
+    let wrong = stated.replace("= 0.5", "= 0");
+    w.write("wrong.toml", &wrong);
+    w.refuses(
+        "scene check wrong.toml",
+        &["hinge.angle", "standard deviation"],
+    );
+}
