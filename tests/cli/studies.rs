@@ -314,7 +314,11 @@ fn a_layout_is_tables_a_drawing_and_a_scene() {
     let weighted = workspace.text("l/candidates.csv");
     assert_eq!(weighted.lines().count(), candidates + 1);
     assert!(workspace.text("l/layout.svg").contains("candidate"));
-    told(&workspace, "l", &["download=\"layout.toml\"", "on the grid"]);
+    told(
+        &workspace,
+        "l",
+        &["download=\"layout.toml\"", "on the grid"],
+    );
     workspace.phicam("scene check l/layout.toml").exits(0);
     let scene = workspace.text("l/layout.toml");
     assert!(scene.contains("list") && scene.contains("13.5"), "{scene}");
