@@ -319,7 +319,7 @@ fn a_layout_is_tables_a_drawing_and_a_scene() {
         "l",
         &["download=\"layout.toml\"", "on the grid"],
     );
-    workspace.phicam("scene check l/layout.toml").exits(0);
+    let _ = workspace.phicam("scene check l/layout.toml").exits(0);
     let scene = workspace.text("l/layout.toml");
     assert!(scene.contains("list") && scene.contains("13.5"), "{scene}");
     for (option, words) in [

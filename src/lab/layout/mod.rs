@@ -9,6 +9,10 @@
 //! a bound for every layout with it ([`relaxed`](relaxed::relaxed)). A layout comes of the weights by
 //! rounding and exchanges ([`exchange`]), then its spots move off the grid ([`refine`]). The noise
 //! Σ_s is that of a grey surface.
+//!
+//! For scale: with 32 × 32 pixels, relative noise of 1e-6 and a smooth prior of deviation 0.22 and
+//! length 1.25 in. the staggered squares of 100 spots leave 0.102 (3 in.) and 0.068 (6 in.) of the
+//! variance of 8 × 8 elements.
 
 mod design;
 mod exchange;
@@ -181,6 +185,6 @@ pub(super) const STUDY: Registered = Registered {
             unsure,
             wall_in_view: view == "wall",
         };
-        Ok(prepared(LayoutTasks::new(&scene, plan)))
+        Ok(prepared(LayoutTasks::new(&scene, plan)?))
     },
 };

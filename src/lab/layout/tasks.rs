@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::design::left;
+use super::exchange::rounded;
 use super::found::{Layouts, Optimum, Row};
 use super::photographs::{GREY, Photographs};
 use super::places::Places;
@@ -43,9 +44,14 @@ pub(super) struct Output {
 }
 
 impl LayoutTasks {
-    pub(super) fn new(scene: &Scene, plan: Plan) -> Self {
+    /// # Errors
+    /// [`LabError::Unsuited`] where not so many spots fit on the wall.
+    pub(super) fn new(scene: &Scene, plan: Plan) -> Result<Self, LabError> {
         let scene = scene.clone();
-        Self { scene, plan }
+        let places = Places::new(&scene, plan.margin, plan.apart);
+        let all = places.grid(plan.candidates);
+        let _ = rounded(&vec![1.0; all.len()], &all, &places, plan.count)?;
+        Ok(Self { scene, plan })
     }
 
     fn elements(&self) -> Option<[usize; 2]> {

@@ -50,13 +50,13 @@ fn plan() -> Plan {
 }
 
 fn photographs(scene: &Scene, plan: &Plan) -> Photographs {
-    let tasks = LayoutTasks::new(scene, plan.clone());
+    let tasks = LayoutTasks::new(scene, plan.clone()).unwrap();
     tasks.context(Control::none()).unwrap().photographs
 }
 
 #[test]
 fn it_divides_and_leaves_a_scene() {
-    let study = LayoutTasks::new(&scene(1.0), plan());
+    let study = LayoutTasks::new(&scene(1.0), plan()).unwrap();
     let found = divides(&study);
     let said = found.describe();
     let row = |name: &str| found.rows.iter().find(|r| r.name == name).unwrap().risk;
@@ -81,7 +81,7 @@ fn it_divides_and_leaves_a_scene() {
 /// On one thread and on two the same bytes.
 #[test]
 fn threads_change_no_bit() {
-    let study = LayoutTasks::new(&scene(0.0), plan());
+    let study = LayoutTasks::new(&scene(0.0), plan()).unwrap();
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         let pool = pool.build().unwrap();
