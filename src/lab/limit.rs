@@ -149,8 +149,8 @@ mod tests {
     use super::*;
     use crate::model::Kernel;
 
-    /// Reduced or not, photographs of one picture recover it as well, to within what the mean of 200
-    /// draws scatters.
+    /// Reduced or not, photographs of one picture recover it as well, to within what the mean of
+    /// 200 draws scatters.
     #[test]
     fn reduced_photographs_say_the_same() {
         let scene = Scene::load("thesis").unwrap();

@@ -21,9 +21,9 @@ const TOGETHER: usize = 32;
 /// the share of the picture's variance that is left. It is convex in w, since the inverse of a
 /// matrix is (Pukelsheim 1993), and its slopes are −g_s, g_s = tr (B A⁻¹ H_s A⁻¹ Bᵀ)/tr K.
 ///
-/// Information spans far more than the sixteen digits of its entries. Everything is therefore turned
-/// to the right singular vectors V of all R_s together: there H_s is graded, its rounding is that of
-/// √(H_ii H_jj), and Cholesky's factor of A loses nothing by the grades (Demmel 1989).
+/// Information spans far more than the sixteen digits of its entries. Everything is therefore
+/// turned to the right singular vectors V of all R_s together: there H_s is graded, its rounding is
+/// that of √(H_ii H_jj), and Cholesky's factor of A loses nothing by the grades (Demmel 1989).
 #[derive(Clone, Debug)]
 pub(super) struct Design {
     /// V, n × n.

@@ -44,9 +44,9 @@ pub(super) fn rounded(
     Ok(chosen)
 }
 
-/// Exchanges one spot for one candidate as long as the risk falls (Fedorov 1972): spots in the order
-/// of what the layout loses without them, and for each the candidates of the steepest fall without
-/// it. Returns the layout, in the order of the candidates, and the number of exchanges.
+/// Exchanges one spot for one candidate as long as the risk falls (Fedorov 1972): spots in the
+/// order of what the layout loses without them, and for each the candidates of the steepest fall
+/// without it. Returns the layout, in the order of the candidates, and the number of exchanges.
 ///
 /// # Errors
 /// Those of [`Design::risk`]; that it was stopped.

@@ -1,14 +1,14 @@
 //! Where should the laser spots be?
 //!
-//! Photographs of spots s at noise Σ_s, φ_s = C diag(d_s) ρ, leave of a picture ρ ~ N(½, K) the share
+//! Photographs φ_s = C diag(d_s) ρ of spots s, at noise Σ_s, leave of a picture ρ ~ N(½, K) a share
 //!
-//! > risk(w) = tr (K⁻¹ + Σ_s w_s H_s)⁻¹/tr K,   H_s = diag(d_s) Cᵀ Σ_s⁻¹ C diag(d_s),   w_s ∈ {0, 1},
+//! > risk(w) = tr (K⁻¹ + Σ_s w_s H_s)⁻¹/tr K,   H_s = diag(d_s) Cᵀ Σ_s⁻¹ C diag(d_s),   w_s = 0, 1,
 //!
-//! of its variance (Bayesian A-optimality, Chaloner and Verdinelli 1995). N of many candidates on the
-//! wall are to make it least. With weights between 0 and 1 that is convex: its minimum is found, and
-//! a bound for every layout with it ([`relaxed`](relaxed::relaxed)). A layout comes of the weights by
-//! rounding and exchanges ([`exchange`]), then its spots move off the grid ([`refine`]). The noise
-//! Σ_s is that of a grey surface.
+//! of its variance (Bayesian A-optimality, Chaloner and Verdinelli 1995). N of many candidates on
+//! the wall are to make it least. With weights between 0 and 1 that is convex: its minimum is
+//! found, and a bound for every layout with it ([`relaxed`](relaxed::relaxed)). A layout comes of
+//! the weights by rounding and exchanges ([`exchange`]), then its spots move off the grid
+//! ([`refine`]). The noise Σ_s is that of a grey surface.
 //!
 //! For scale: with 32 × 32 pixels, relative noise of 1e-6 and a smooth prior of deviation 0.22 and
 //! length 1.25 in. the staggered squares of 100 spots leave 0.102 (3 in.) and 0.068 (6 in.) of the

@@ -27,8 +27,8 @@ impl Places {
         }
     }
 
-    /// Whether a spot at (x, y) lies on the wall, on a side that faces the laser, is outside the view
-    /// by the margin, and nothing stands between it and the laser.
+    /// Whether a spot at (x, y) lies on the wall, on a side that faces the laser, is outside the
+    /// view by the margin, and nothing stands between it and the laser.
     pub(super) fn allow(&self, place: [f64; 2]) -> bool {
         let Ok(lit) = self.scene.with_spots_at(&[place]) else {
             return false;

@@ -26,8 +26,8 @@ pub(super) struct Relaxed {
 ///
 /// > risk(w) ≤ c + Σ_s g_s w°_s²/w_s,   least at   w_s = min(1, w°_s √(g_s/λ)),   Σ w_s = N
 ///
-/// (multiplicative algorithm, Yu 2010). The risk never rises. The risk is convex, so every step also
-/// has a bound by duality,
+/// (multiplicative algorithm, Yu 2010). The risk never rises. The risk is convex, so every step
+/// also has a bound by duality,
 ///
 /// > risk(v) ≥ risk(w) + Σ_s g_s w_s − (sum of the N largest g_s)   for all v,
 ///
@@ -130,8 +130,8 @@ mod tests {
         assert!(found.weights.iter().all(|w| (0.0..=1.0).contains(w)));
     }
 
-    /// The bound holds at weights that are far from the best, too: against random layouts of a larger
-    /// problem.
+    /// The bound holds at weights that are far from the best, too: against random layouts of a
+    /// larger problem.
     #[test]
     fn every_bound_by_duality_holds() {
         let all = triangles(40, (3, 6), 0.4);

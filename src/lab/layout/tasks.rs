@@ -1,4 +1,5 @@
-//! The tasks of the study: the search for the best layout, and each layout that it is compared with.
+//! The tasks of the study: the search for the best layout, and each layout that it is compared
+//! with.
 
 use serde::{Deserialize, Serialize};
 
