@@ -15,4 +15,5 @@ pub static STUDIES: &[&Registered] = &[
     &super::experiment::STUDY,
     &super::spots::STUDY,
     &super::occluder::STUDY,
+    &super::layout::STUDY,
 ];

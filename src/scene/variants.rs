@@ -4,7 +4,7 @@
 use glam::DAffine3;
 
 use super::error::{Fault, keys};
-use super::file::{Layout, SceneFile, SpotsTable};
+use super::file::{Layout, RectangleTable, SceneFile, SpotsTable};
 use super::laser;
 use super::parse;
 use super::surface::{self, Surface};
@@ -37,8 +37,8 @@ impl Scene {
         Ok(scene)
     }
 
-    /// The same scene with its spots listed at the given (x, y), in its text and its hash too; known
-    /// answers, which name spots, are gone.
+    /// The same scene with its spots listed at the given (x, y), in its text and its hash too, where
+    /// rectangles are also as large as they are; known answers, which name spots, are gone.
     ///
     /// # Errors
     /// [`SceneError`] if a spot is not on the wall.
@@ -52,6 +52,15 @@ impl Scene {
             };
         }
         file.known.clear();
+        for table in &mut file.surface {
+            let own = self.surfaces.iter().find(|s| s.name == table.name);
+            if let (Some(Shape::Parallelogram(p)), Some(rectangle)) =
+                (own.map(|s| &s.shape), &mut table.rectangle)
+            {
+                let [corner, u, v] = [p.corner(), p.u(), p.v()].map(|x| x.to_array());
+                *rectangle = RectangleTable { corner, u, v };
+            }
+        }
         let scene = self.with_spots_at(places)?;
         Ok(Self {
             text: file.toml()?,

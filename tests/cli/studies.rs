@@ -295,3 +295,42 @@ fn brdf_is_a_table_json_csv_and_a_figure() {
         workspace.refuses(&format!("study brdf satin.toml -o d {wrong}"), &[word]);
     }
 }
+
+/// A layout of 6 spots on the tiny scene: less risk than the scene's own 8, a scene file that has its
+/// spots and a wall that holds them; refusals before anything is computed, and where nothing fits.
+#[test]
+fn a_layout_is_tables_a_drawing_and_a_scene() {
+    let workspace = Workspace::with_scenes();
+    let line = "study layout tiny.toml -o l --count 6 --candidates 8 --elements 2 --level 1e-3 \
+                --boards 2 --draws 2 --wall 1 --refine 1 --hinge 0.1";
+    let ended = workspace.phicam(line).exits(0);
+    says(&ended, &["optimised", "whole wall in view", "no layout of"]);
+    let json = workspace.json("l/layout.json");
+    let optimum = &json["optimum"];
+    assert!(optimum["bound"].as_f64() <= optimum["on_grid"].as_f64());
+    assert_eq!(optimum["layout"].as_array().unwrap().len(), 6);
+    assert_eq!(workspace.text("l/places.csv").lines().count(), 7);
+    let candidates = optimum["candidates"].as_array().unwrap().len();
+    let weighted = workspace.text("l/candidates.csv");
+    assert_eq!(weighted.lines().count(), candidates + 1);
+    assert!(workspace.text("l/layout.svg").contains("candidate"));
+    told(
+        &workspace,
+        "l",
+        &["download=\"layout.toml\"", "on the grid"],
+    );
+    let _ = workspace.phicam("scene check l/layout.toml").exits(0);
+    let scene = workspace.text("l/layout.toml");
+    assert!(scene.contains("list") && scene.contains("13.5"), "{scene}");
+    for (option, words) in [
+        ("--level 0", ["--level", "cure"]),
+        ("--length 0", ["--length", "cure"]),
+        ("--margin -1", ["--margin", "cure"]),
+        ("--count 60 --candidates 4", ["--candidates", "--count"]),
+        ("--apart 9", ["--apart", "--margin"]),
+    ] {
+        let rest = "--elements 2 --boards 2 --draws 1";
+        let line = format!("study layout tiny.toml -o m {option} {rest}");
+        workspace.refuses(&line, &words);
+    }
+}

@@ -1,6 +1,6 @@
 //! The benches that an indicator is tried on.
 
-use crate::geometry::Ray;
+use crate::lab::foot::foot;
 use crate::model::Kernel;
 use crate::scene::{Scene, SceneError, spots};
 
@@ -88,22 +88,7 @@ impl Site {
     /// `None` if that normal misses the wall.
     pub(super) fn new(scene: &Scene, reach: f64) -> Result<Option<Self>, SceneError> {
         let scene = scene.with_extended_relay(reach)?;
-        let Some((_, hidden)) = scene.hidden().next() else {
-            return Ok(None);
-        };
-        let middle = hidden.shape.at([0.5, 0.5]);
-        let normal = Ray::new(middle.position, middle.normal);
-        let nearest = scene
-            .relays()
-            .filter_map(|(_, wall)| wall.shape.intersect(&normal, false))
-            .min_by(|a, b| a.t.total_cmp(&b.t));
-        Ok(nearest.map(|met| {
-            let foot = middle.position + middle.normal * met.t;
-            Self {
-                centre: [foot.x, foot.y],
-                scene,
-            }
-        }))
+        Ok(foot(&scene).map(|centre| Self { scene, centre }))
     }
 
     /// The scene with the spots of `arrangement`, less those that no hidden surface faces (on the

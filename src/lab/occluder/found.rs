@@ -4,10 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::kinds::{Kind, Place};
 use super::sight::Seen;
-use super::subject::{Recovery, Subject};
 use crate::lab::finding::{
     Axis, Cell, Column, Curve, Describe, Figure, Finding, Mark, Plot, Table, listed,
 };
+use crate::lab::subject::{Recovery, Subject};
 use crate::num::digits::figure;
 
 /// Noise levels at which directions are counted.

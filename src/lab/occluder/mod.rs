@@ -14,17 +14,17 @@ mod found;
 mod kinds;
 mod search;
 mod sight;
-mod subject;
 mod tasks;
 
 use super::options::Opt;
 use super::options::OptionError;
 use super::registered::{Registered, prepared};
+use crate::lab::noise_law::NOISE_LAWS;
+use crate::lab::subject::{PICTURES, Subject};
 use crate::scene::SensorModel;
 use kinds::{KINDS, Kind, Place};
 use sight::Camera;
-use subject::{PICTURES, Subject};
-use tasks::{NOISES, OccluderTasks, Plan};
+use tasks::{OccluderTasks, Plan};
 
 /// `phicam study occluder`.
 pub(super) const STUDY: Registered = Registered {
@@ -39,7 +39,7 @@ pub(super) const STUDY: Registered = Registered {
         Opt::whole("spots", "Numbers of spots, separated by commas, evenly among those of the scene; all unless given")
             .list()
             .within(1, 1_000_000),
-        Opt::choice("noise", "How the noise goes with the light", NOISES).or("relative"),
+        Opt::choice("noise", "How the noise goes with the light", NOISE_LAWS).or("relative"),
         Opt::number("level", "Noise for which the place is searched, relative to the light")
             .or("0.01")
             .rule(
@@ -82,7 +82,6 @@ pub(super) const STUDY: Registered = Registered {
     ],
     prepare: |scene, values| {
         let kinds: Vec<String> = values.list("kinds")?;
-        let noise: String = values.one("noise")?;
         let spots: Vec<usize> = values.list("spots")?;
         let all = scene.laser.spots.len();
         if let Some(more) = spots.iter().find(|n| **n > all) {
@@ -96,7 +95,7 @@ pub(super) const STUDY: Registered = Registered {
         let plan = Plan {
             kinds: kinds.iter().filter_map(|name| Kind::by_name(name)).collect(),
             spots,
-            noise: NOISES.iter().position(|(name, _)| *name == noise).unwrap_or(0),
+            noise: values.one("noise")?,
             level: values.one("level")?,
             start: Place {
                 height: values.one("height")?,

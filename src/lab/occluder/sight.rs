@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::subject::{Recovery, Subject, recovered};
 use crate::lab::ensemble::Photographs;
 use crate::lab::error::LabError;
+use crate::lab::subject::{Recovery, Subject, recovered};
 use crate::model::MatrixModel;
 use crate::num::stream::Sampling;
 use crate::scene::{Scene, SensorModel};

@@ -4,30 +4,18 @@ use super::found::{LEVELS, Misplaced, Occluders, Row, SEARCHED};
 use super::kinds::{Cells, Kind, Place};
 use super::search::search;
 use super::sight::Camera;
-use super::subject::{RESOLVED, Subject, recovered};
 use crate::lab::ensemble::Photographs;
 use crate::lab::error::LabError;
+use crate::lab::limit::Limit;
+use crate::lab::noise_law::NoiseLaw;
 use crate::lab::problem::problem;
 use crate::lab::study::{Sharing, Study};
-use crate::matrix::Matrix;
+use crate::lab::subject::{Subject, recovered};
 use crate::model::{Kernel, MatrixModel, ModelError};
 use crate::recovery::{Options, determined, picard_joint};
 use crate::scene::Scene;
 use crate::transport::Control;
 
-/// Kinds of noise: how the standard error goes with the light of an entry.
-pub(super) const NOISES: &[(&str, &str)] = &[
-    ("relative", "A share of each entry"),
-    (
-        "shot",
-        "The same share of the brightest entry, of others by the root of their light",
-    ),
-    ("read", "The same for all entries, a share of the brightest"),
-];
-
-/// Decades of noise, from 1 down, in which its limit is looked for, and halvings.
-const DECADES: f64 = 10.0;
-const HALVINGS: usize = 8;
 /// Standard deviation of the prior, about ½.
 const BEFORE: f64 = 0.5;
 
@@ -36,8 +24,7 @@ const BEFORE: f64 = 0.5;
 pub(super) struct Plan {
     pub kinds: Vec<Kind>,
     pub spots: Vec<usize>,
-    /// Index in [`NOISES`].
-    pub noise: usize,
+    pub noise: NoiseLaw,
     pub level: f64,
     pub start: Place,
     pub search: usize,
@@ -88,63 +75,12 @@ impl OccluderTasks {
             .map_or(own.unwrap_or_default(), |n| [n; 2])
     }
 
-    /// Standard errors of photographs `phi` at noise `level`.
-    fn stderr(&self, phi: &Matrix, level: f64) -> Matrix {
-        let top = phi.amax();
-        let of = |x: f64| match NOISES[self.plan.noise].0 {
-            "relative" => x,
-            "shot" => (x * top).sqrt(),
-            _ => top,
-        };
-        // Entries without light have the noise of a ten-thousandth of the brightest.
-        phi.map(|x| level * of(x.abs()).max(1e-4 * top))
-    }
-
     /// Share of the prior variance that photographs of a surface of mean ½ leave.
     fn risk(&self, model: &MatrixModel, level: f64) -> Result<f64, LabError> {
         let grey = model.phi_of(&vec![BEFORE; model.albedo.len()]);
-        let stderr = self.stderr(&grey, level);
+        let stderr = self.plan.noise.stderrs(&grey, level);
         let shares = determined(&problem(model, &grey, Some(&stderr))?)?;
         Ok(1.0 - shares.rank / model.albedo.len() as f64)
-    }
-
-    /// The most noise at which the picture is resolved on average over the draws; none below 1e-10.
-    fn limit(
-        &self,
-        model: &MatrixModel,
-        subject: Subject,
-        control: Control<'_>,
-    ) -> Result<Option<f64>, LabError> {
-        let truth = subject.albedo(&self.scene, model);
-        let exact = model.phi_of(&truth);
-        let resolved = |decades: f64| -> Result<bool, LabError> {
-            let mut sum = 0.0;
-            for draw in 0..self.plan.draws {
-                control.check()?;
-                let level = libm::pow(10.0, -decades);
-                let seed = self.plan.seed.wrapping_add(draw);
-                let photographs = Photographs::drawn(&exact, self.stderr(&exact, level), seed);
-                let found = recovered(model, subject, &truth, &photographs)?;
-                sum += found.likeness.unwrap_or(0.0);
-            }
-            Ok(sum >= RESOLVED * self.plan.draws as f64)
-        };
-        if resolved(0.0)? {
-            return Ok(Some(1.0));
-        }
-        let [mut lost, mut kept] = [0.0, DECADES];
-        if !resolved(kept)? {
-            return Ok(None);
-        }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (lost + kept);
-            if resolved(middle)? {
-                kept = middle;
-            } else {
-                lost = middle;
-            }
-        }
-        Ok(Some(libm::pow(10.0, -kept)))
     }
 }
 
@@ -197,9 +133,14 @@ impl Study for OccluderTasks {
         let scene = at(&place)?;
         let own = self.model(&scene)?;
         let grey = own.phi_of(&vec![BEFORE; own.albedo.len()]);
-        let stderr = self.stderr(&grey, 1.0);
+        let stderr = self.plan.noise.stderrs(&grey, 1.0);
         let sigma = picard_joint(&problem(&own, &grey, Some(&stderr))?, &Options::default())?.sigma;
         let above = |level: f64| sigma.iter().filter(|s| **s * BEFORE > level).count();
+        let limit = Limit {
+            noise: plan.noise,
+            draws: plan.draws,
+            seed: plan.seed,
+        };
         let (mut limits, mut seen) = (Vec::new(), Vec::new());
         for subject in &plan.subjects {
             let elements = subject.elements(self.elements());
@@ -209,7 +150,7 @@ impl Study for OccluderTasks {
                 Some(MatrixModel::new(&scene, Kernel::Physical, Some(elements))?)
             };
             let model = finer.as_ref().unwrap_or(&own);
-            limits.push(self.limit(model, *subject, control)?);
+            limits.push(limit.of(&self.scene, model, *subject, control)?);
             if plan.camera.samples > 0 {
                 let scene = subject.in_scene(&scene);
                 seen.push(plan.camera.see(&scene, model, *subject, control)?);
@@ -228,7 +169,7 @@ impl Study for OccluderTasks {
             let subject = plan.subjects[0];
             let truth = subject.albedo(&self.scene, &own);
             let exact = own.phi_of(&truth);
-            let stderr = self.stderr(&exact, plan.level);
+            let stderr = self.plan.noise.stderrs(&exact, plan.level);
             let photographs = Photographs::drawn(&exact, stderr, plan.seed);
             let recovery = recovered(&wrong, subject, &truth, &photographs)?;
             Ok(Misplaced { by: *by, recovery })
@@ -261,7 +202,7 @@ impl Study for OccluderTasks {
             scene_hash: self.scene.hash.clone(),
             pixels: self.scene.camera.pixels(),
             elements: nu * nv,
-            noise: NOISES[self.plan.noise].0.to_owned(),
+            noise: self.plan.noise.name().to_owned(),
             level: self.plan.level,
             subjects: self.plan.subjects.clone(),
             sensor: self.plan.camera.sensor.name(),

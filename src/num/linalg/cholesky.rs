@@ -34,6 +34,11 @@ impl Cholesky {
         l.diagonal().iter().all(|x| *x > 0.0).then_some(Self { l })
     }
 
+    /// L, n × n.
+    pub fn lower(&self) -> &DMatrix<f64> {
+        &self.l
+    }
+
     /// ln det A = 2 Σ ln L_ii.
     pub fn log_det(&self) -> f64 {
         2.0 * self.l.diagonal().iter().map(|x| libm::log(*x)).sum::<f64>()

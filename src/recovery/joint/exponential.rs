@@ -15,7 +15,8 @@ const LONGEST: f64 = 8.0;
 ///
 /// positive definite for all places x of space: a surface that is continuous and nowhere smooth, as
 /// photographs are (their spectra fall like 1/f², Field 1987).
-pub(super) struct Exponential {
+#[derive(Debug)]
+pub struct Exponential {
     /// Pairs of distances, n × n; infinite between surfaces.
     distances: DMatrix<f64>,
     nearest: f64,
@@ -25,7 +26,7 @@ pub(super) struct Exponential {
 impl Exponential {
     /// For the elements of the problem: by their places, else those of grids of unit squares, else a
     /// row of them.
-    pub(super) fn new(problem: &Problem<'_>) -> Self {
+    pub fn new(problem: &Problem<'_>) -> Self {
         let n = problem.elements();
         let whole = [[n, 1]];
         let grids = problem.grids.unwrap_or(&whole);
@@ -73,7 +74,7 @@ impl Exponential {
     }
 
     /// k, n × n.
-    pub(super) fn matrix(&self, length: f64) -> DMatrix<f64> {
+    pub fn matrix(&self, length: f64) -> DMatrix<f64> {
         let mut k = self.distances.clone();
         for j in 0..k.ncols() {
             for i in 0..j {

@@ -30,4 +30,5 @@ mod weights;
 
 pub use cramer_rao::{CramerRao, cramer_rao};
 pub use determined::{Determined, determined};
+pub use exponential::Exponential;
 pub use picard::picard_joint;

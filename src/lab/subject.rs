@@ -1,13 +1,13 @@
-//! The pictures that are recovered past an occluder.
+//! The pictures that studies of a bench recover: past an occluder, from another layout of spots.
 
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use crate::lab::ensemble::Photographs;
-use crate::lab::error::LabError;
-use crate::lab::fit::{Certainty, Residuals};
-use crate::lab::problem::problem;
+use super::ensemble::Photographs;
+use super::error::LabError;
+use super::fit::{Certainty, Residuals};
+use super::problem::problem;
 use crate::metrics::{correlation, mtf_raw};
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Options, recover};
