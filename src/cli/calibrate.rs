@@ -1,5 +1,7 @@
 //! `phicam calibrate`: the geometry, from the photographs.
 
+use std::path::PathBuf;
+
 use super::args::CalibrateArgs;
 use super::console::Console;
 use super::failure::Failure;
@@ -7,7 +9,8 @@ use super::findings::deliver;
 use super::interrupt::SignalGuard;
 use super::load_run::read_run;
 use super::process::{pool, version};
-use super::run_folder::{CALIBRATED, RunFolder};
+use super::record::Record;
+use super::run_folder::{CALIBRATED, PHI, RunFolder, SCENE};
 use super::unexplained::Photographs;
 use super::{Outcome, need, progress};
 use crate::lab::finding::Describe;
@@ -20,15 +23,26 @@ const MANY: usize = 256;
 const FEWER: [usize; 2] = [12, 12];
 
 pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome, Failure> {
-    let (scene, record) = read_run(&args.dir, console)?;
+    let (scene, record) = if args.phi.is_some() && !args.dir.join(Record::FILE).exists() {
+        let path = args.dir.join(SCENE);
+        (console.load_any_scene(&path.to_string_lossy())?, None)
+    } else {
+        let (scene, record) = read_run(&args.dir, console)?;
+        (scene, Some(record))
+    };
     let plan = plan(args, &scene, console);
     need::calibrate(&scene, plan.elements)?;
-    let photographs = Photographs::read(
-        &args.dir,
-        (&scene, &record),
-        args.left_out.as_deref(),
-        args.frame_polynomial,
-    )?;
+    let (left_out, polynomial) = (args.left_out.as_deref(), args.frame_polynomial);
+    let photographs = match (&args.phi, &record) {
+        (None, Some(record)) => {
+            Photographs::read(&args.dir, (&scene, record), left_out, polynomial)?
+        }
+        (phi, _) => {
+            let phi = phi.clone().unwrap_or_else(|| args.dir.join(PHI));
+            let beside = [args.stderr.as_deref(), left_out];
+            Photographs::of_files(&phi, beside, &scene, polynomial)?
+        }
+    };
     let output = args
         .output
         .clone()
@@ -138,6 +152,9 @@ fn invocation(args: &CalibrateArgs, free: &[Free], scene: &Scene) -> Invocation 
     let mut given = |name: &str, value: Option<String>| {
         options.extend(value.map(|value| (name.to_owned(), value)));
     };
+    let path = |p: &Option<PathBuf>| p.as_ref().map(|p| p.to_string_lossy().into_owned());
+    given("--phi", path(&args.phi));
+    given("--stderr", path(&args.stderr));
     given("--frame-gain", args.frame_gain.map(|x| x.to_string()));
     given("--free-scale", args.free_scale.then(String::new));
     given(

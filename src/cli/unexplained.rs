@@ -26,7 +26,6 @@ impl Photographs {
         left_out: Option<&Path>,
         polynomial: Option<u8>,
     ) -> Result<Self, Failure> {
-        let phi = read_matrix(&dir.join(PHI), scene)?;
         let file = dir.join(STDERR);
         // Of imported photographs the noise may be unknown.
         let is_unknown = record.is_imported() && !file.exists();
@@ -39,14 +38,39 @@ impl Photographs {
             Some(file) => Some(read_matrix(file, scene)?),
             None => read_left_out(dir, scene)?,
         };
+        let phi = read_matrix(&dir.join(PHI), scene)?;
+        Ok(Self::new(phi, stderr, left_out, (scene, polynomial)))
+    }
+
+    /// Those of files of their own; without `stderr` the noise is unknown.
+    pub(super) fn of_files(
+        phi: &Path,
+        [stderr, left_out]: [Option<&Path>; 2],
+        scene: &Scene,
+        polynomial: Option<u8>,
+    ) -> Result<Self, Failure> {
+        Ok(Self::new(
+            read_matrix(phi, scene)?,
+            stderr.map(|file| read_stderr(file, scene)).transpose()?,
+            left_out.map(|file| read_matrix(file, scene)).transpose()?,
+            (scene, polynomial),
+        ))
+    }
+
+    fn new(
+        phi: Matrix,
+        stderr: Option<Matrix>,
+        left_out: Option<Matrix>,
+        (scene, polynomial): (&Scene, Option<u8>),
+    ) -> Self {
         let size = [scene.camera.columns, scene.camera.rows];
         let patterns = polynomial.map(|degree| polynomials(size, usize::from(degree)));
-        Ok(Self {
+        Self {
             phi,
             stderr,
             left_out,
             patterns,
-        })
+        }
     }
 
     pub(super) fn unexplained(&self) -> Unexplained<'_> {

@@ -7,8 +7,8 @@ fn told(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The light of the small bench with its hinge 1° farther open than the scene of the run says.
-fn misjudged() -> Workspace {
+/// The light of the small bench.
+fn rendered() -> Workspace {
     let w = Workspace::with_scenes();
     let _ = w
         .phicam("render small.toml -o run --samples 4096 --estimator factored -q")
@@ -20,7 +20,7 @@ fn misjudged() -> Workspace {
 /// what the numbers say.
 #[test]
 fn a_rendered_scene_is_as_it_is_written() {
-    let w = misjudged();
+    let w = rendered();
     let line = "calibrate run --free hinge.angle=0.5,hidden.normal --elements 4x4 --starts 2";
     let ended = w.phicam(line).exits(0);
     let words = told(&ended.stdout);
@@ -44,6 +44,26 @@ fn a_rendered_scene_is_as_it_is_written() {
     let _ = w
         .phicam("recover run/calibrated --phi run/phi.npy --stderr run/phi.stderr.npy -o there -q")
         .exits(0);
+    // A scene that is wrong by 0.3 in. is put right, also where the errors are not stated.
+    let text = w.text("run/scene.toml");
+    let there = phicam::scene::Scene::from_toml("small", &text).unwrap();
+    let normal = phicam::scene::Parameter::named(&there, "hidden.normal").unwrap();
+    let wrong = there
+        .displaced_file(&normal, &[0.3])
+        .unwrap()
+        .toml()
+        .unwrap();
+    w.write("wrong/scene.toml", wrong);
+    let line =
+        "calibrate wrong --phi run/phi.npy --free hidden.normal --elements 4x4 --starts 1 --json";
+    let _ = w.phicam(line).exits(0);
+    let back = w.json("wrong/calibrated/calibration.json");
+    let number = |key: &str| back["found"][0][key].as_f64().unwrap();
+    let off = number("value") + 0.3;
+    assert!(
+        off.abs() < 4.0 * number("stderr") && number("stderr") < 0.1,
+        "{back:#}"
+    );
     // The same numbers whatever the threads.
     let again = w
         .phicam(&format!("{line} --threads 1 --json -o other"))
@@ -55,7 +75,7 @@ fn a_rendered_scene_is_as_it_is_written() {
 /// What the scene says of its measurements is what is free, and what it does not know is refused.
 #[test]
 fn uncertainties_stand_in_the_scene() {
-    let w = misjudged();
+    let w = rendered();
     w.refuses("calibrate run", &["--free", "[uncertainty]"]);
     w.refuses(
         "calibrate run --free hinge.angel",

@@ -10,8 +10,15 @@ use crate::lab::{Free, Integration};
 
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct CalibrateArgs {
-    /// Folder of a run or of an import
+    /// Folder of a run or of an import; with --phi a folder with a scene.toml is enough
     pub dir: PathBuf,
+    /// Φcam, pixels × spots, in place of DIR/phi.npy: photographs of which DIR/scene.toml is only thought
+    /// to be the geometry
+    #[arg(long, value_name = "FILE")]
+    pub phi: Option<PathBuf>,
+    /// Its standard errors; without them its noise is unknown
+    #[arg(long, value_name = "FILE", requires = "phi")]
+    pub stderr: Option<PathBuf>,
     /// Folder for the results; DIR/calibrated unless given
     #[arg(long, short, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
