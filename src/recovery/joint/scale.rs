@@ -93,7 +93,10 @@ mod tests {
     fn the_unit_of_the_photographs_changes_nothing_but_the_scale() {
         let bench = Bench::new(6.0, 4, 8);
         let board = bench.board(2).map(|x| 0.2 + 0.6 * x);
-        let (c, d) = (&bench.c, bench.d.columns(0, 24).into_owned());
+        let (c, d) = (
+            &bench.c,
+            DMatrix::from_fn(16, 24, |j, l| bench.d[(j, 5 * l)]),
+        );
         let (exact, errors) = relative_noise(&(c * DMatrix::from_diagonal(&board) * &d), 1e-2, 6);
         let pattern = DMatrix::from_fn(64, 24, |p, l| 1.0 / (1 + p + l) as f64);
         let factor = (2f64).powi(53);
@@ -131,7 +134,7 @@ mod tests {
             };
             for method in JOINT {
                 let case = format!("{method} {frame_gain:?} {}", glare.is_some());
-                let told = |off: f64| assert!(off < 1e-9, "{case} {off:e}");
+                let told = |off: f64| assert!(off < 1e-8, "{case} {off:e}");
                 let ((own, share, plot), (other, shares, plots)) =
                     (at(1.0, method), at(factor, method));
                 told(apart(&share.shares, &shares.shares));
