@@ -191,6 +191,7 @@ impl Job<'_> {
         let nuisance = beside.nuisance(args);
         let options = Options {
             uncertainty: uncertainty(&model, self.console),
+            frame: of.grid,
             ..self.options
         };
         let (attempts, picards) =

@@ -108,6 +108,7 @@ pub(super) fn execute(
     let beside = Beside::read(args, phi_file, &of, console)?;
     let options = Options {
         uncertainty: uncertainty(&model, console),
+        frame: of.grid,
         ..options
     };
     let nuisance = beside.nuisance(args);

@@ -43,7 +43,7 @@ pub struct Ended {
 /// What was estimated beside the reflectances; each is there if it was asked for.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Beside {
-    /// s of s C diag(ρ) D.
+    /// s of s C diag(ρ) D, in the photographs' unit per W of the model.
     pub scale: Option<f64>,
     /// b_l, W, of each frame.
     pub frame_constant: Option<Vec<f64>>,
@@ -103,7 +103,8 @@ impl Chosen {
             }
             Parameter::Levels(levels) => (Some("levels"), levels.to_vec()),
         };
-        let (rule, measures) = went_by(found.choice);
+        let (rule, mut measures) = went_by(found.choice);
+        measures.extend(found.alike.map(|pixels| ("pixels alike", pixels)));
         // The rank of the methods that only drop what is lost in rounding is no option of theirs.
         let option = match found.parameter {
             Parameter::Rank(_) => found.method == Method::Tsvd,
@@ -219,7 +220,14 @@ pub(super) fn words(found: &Recovered) -> String {
     });
     let estimated = found.nuisance.as_ref().map_or(String::new(), estimated);
     let patterns = found.patterns.as_ref().map_or(String::new(), patterns);
-    chosen_words(found.parameter, found.rank, found.choice) + &solver + &patterns + &estimated
+    let alike = found.alike.map_or(String::new(), |pixels| {
+        format!("; what is left over is taken for noise that {pixels:.0} pixels share")
+    });
+    chosen_words(found.parameter, found.rank, found.choice)
+        + &solver
+        + &patterns
+        + &alike
+        + &estimated
 }
 
 /// What is known of a pattern of two levels.
@@ -314,7 +322,10 @@ fn estimated(nuisance: &Estimated) -> String {
         words += &format!("; {} patterns in each frame", strengths.nrows());
     }
     if let Some(scale) = nuisance.scale {
-        words += &format!("; scale {}", sized(scale, 4));
+        words += &format!(
+            "; scale {} (the photographs' unit per W of the model)",
+            sized(scale, 4)
+        );
     }
     words + &nuisance.gains.as_ref().map_or(String::new(), gains::words)
 }

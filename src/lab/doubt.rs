@@ -112,10 +112,13 @@ fn contradiction(best: &Attainable) -> String {
 
 fn unjudged(found: &Recovered, judged: &Judged) -> Option<String> {
     judged.fit.is_none().then(|| {
+        let taken = found.alike.map_or("independent noise".to_owned(), |pixels| {
+            format!("noise that {pixels:.0} neighbouring pixels share")
+        });
         format!(
             "the fit CANNOT BE JUDGED: the noise of the photographs is not known, or there are not \
              more of them than unknowns. It leaves {} % of Φcam unexplained; errors that are stated \
-             take that for independent noise. Give standard errors (--stderr FILE, --noise RELATIVE)",
+             take that for {taken}. Give standard errors (--stderr FILE, --noise RELATIVE)",
             figure(100.0 * found.relative_residual, 2)
         )
     })

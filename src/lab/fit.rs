@@ -159,7 +159,7 @@ pub struct Attainable {
     /// Of all numbers: of `joint-unbounded`.
     pub any: Option<Fit>,
     /// The photographs over those of a surface that is white throughout, by least squares: at most
-    /// 1 for any surface.
+    /// 1 for any surface. 1 with a free scale.
     pub brightness: f64,
 }
 
@@ -189,10 +189,12 @@ impl Attainable {
             let searched = recover(method, problem, &options).ok()?;
             fit(problem, noise, &searched)
         };
+        let scale = |f: &&Recovered| f.nuisance.as_ref().and_then(|n| n.scale);
+        let free = found.iter().any(|f| scale(f).is_some());
         Some(Self {
             possible: by(Method::Joint)?,
             any: by(Method::JointUnbounded),
-            brightness: problem.brightness(),
+            brightness: if free { 1.0 } else { problem.brightness() },
         })
     }
 }

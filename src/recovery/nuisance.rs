@@ -87,7 +87,7 @@ pub struct Estimated {
     pub background: Option<DVector<f64>>,
     /// g_l, W per unit of the pattern; zero for a frame whose pattern the other terms contain.
     pub glare: Option<DVector<f64>>,
-    /// s.
+    /// s, the unit of Φ per W.
     pub scale: Option<f64>,
     /// ε_l and ε.
     pub gains: Option<Gains>,

@@ -95,6 +95,10 @@ pub struct Options {
     /// Confidence level, in (0, 1), of the bands to be computed ([`Bands`](super::Bands)); none
     /// where not given.
     pub bands: Option<f64>,
+    /// Columns and rows of a photograph, pixel column + row·columns. Where the noise is unknown `joint-gp`
+    /// takes what it leaves over for noise: with these of neighbours that err alike, without of pixels that
+    /// err independently.
+    pub frame: Option<[usize; 2]>,
 }
 
 impl Default for Options {
@@ -111,6 +115,7 @@ impl Default for Options {
             levels: None,
             probabilities: true,
             bands: None,
+            frame: None,
         }
     }
 }

@@ -174,6 +174,10 @@ pub struct Recovered {
     pub bands: Option<Bands>,
     /// Why there are none, where they were asked for.
     pub no_bands: Option<&'static str>,
+    /// κ, the pixels over which what is left over hangs together: of `joint-gp` where the noise is unknown
+    /// and [`Options::frame`](super::Options::frame) is not. Its errors are those of noise of κ times the
+    /// variance then.
+    pub alike: Option<f64>,
 }
 
 impl Recovered {
@@ -319,6 +323,7 @@ impl Recovered {
             patterns: None,
             bands: None,
             no_bands: None,
+            alike: None,
         }
     }
 }

@@ -16,7 +16,8 @@ const UNKNOWN: f64 = 100.0;
 ///
 /// for the unbounded least-squares estimate x̂ along k directions V (k × n) of the joint operator,
 /// whose errors have the covariance that the noise makes of them. Of unknown noise, the same in all
-/// entries, the variance is what least squares leaves over.
+/// entries, the variance is what least squares leaves over, times the pixels that it hangs together over
+/// ([`super::correlated`]) where those are known.
 pub(super) struct Coordinates {
     pub(super) v: DMatrix<f64>,
     pub(super) y: DVector<f64>,
@@ -28,12 +29,13 @@ pub(super) struct Coordinates {
 }
 
 impl Coordinates {
-    /// `unit` is the size of the largest x.
+    /// `unit` is the size of the largest x; `alike`, how many pixels unknown noise hangs together over.
     pub(super) fn new(
         method: Method,
         problem: &Problem<'_>,
         options: &Options,
         unit: f64,
+        alike: f64,
     ) -> Result<Self, RecoveryError> {
         let by_entry = Options {
             weighting: match options.weighting {
@@ -63,7 +65,7 @@ impl Coordinates {
                 }
                 let floor = f64::EPSILON * problem.counted(problem.phi.clone()).norm();
                 let variance = left.residual.max(floor).powi(2) / freedom;
-                DMatrix::identity(rank, rank) * variance
+                DMatrix::identity(rank, rank) * (variance * alike)
             }
         };
         let sigma = &solved.sigma;

@@ -4,6 +4,7 @@ use nalgebra::DVector;
 
 use super::khatri_rao::operator;
 use super::linear::about_grey;
+use super::scale;
 use crate::recovery::{Options, Problem, RecoveryError, WeightRule};
 
 /// Standard deviation of what is known of a reflectance beforehand: half of the range from 0 to 1.
@@ -26,9 +27,10 @@ pub struct Determined {
 ///
 /// > R_jj = Σ_i V_ij² s_i² τ²/(1 + s_i² τ²) = 1 − var(ρ_j | Φ)/τ²,   τ = ½.
 ///
+/// With a free scale the same of s ρ, τ half of what a grey surface says of s.
 /// Where τ s_i is the signal of a direction, this counts the directions that rise above the noise in
 /// a Picard plot. It depends on geometry and noise, not on Φ; with factors that are known only roughly
-/// on how bright Φ is.
+/// or a free scale on how bright Φ is.
 ///
 /// # Errors
 /// [`RecoveryError::NotForMethod`] without a noise model, [`RecoveryError::TooManyElements`], a
@@ -48,9 +50,10 @@ pub fn determined(problem: &Problem<'_>) -> Result<Determined, RecoveryError> {
     let found = about_grey(problem, &options, |problem| operator(problem, &options))?;
     let found = found.directions()?;
     let (directions, _) = &*found;
+    let before = BEFORE * scale::unit(problem)?;
     let mut shares = DVector::zeros(problem.c.ncols());
     for (s, v) in directions.sigma.iter().zip(directions.vt.row_iter()) {
-        let signal = (s * BEFORE) * (s * BEFORE);
+        let signal = (s * before) * (s * before);
         let share = signal / (1.0 + signal);
         for (sum, v) in shares.iter_mut().zip(v.iter()) {
             *sum += v * v * share;

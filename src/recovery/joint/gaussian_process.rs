@@ -3,6 +3,7 @@
 //!
 //! > ρ_j = m + f_j,   m ~ N(½, ½²),   cov(f_i, f_j) = τ² exp(−|x_i − x_j|/ℓ) on one surface
 //!
+//! (with a free scale x/s₀ in place of ρ, see [`scale`]).
 //! The photographs know ρ by the coordinates y = V ρ + errors of covariance E ([`Coordinates`]). So
 //! with K = ¼ 11ᵀ + τ² k(ℓ), all is closed (Rasmussen and Williams 2006):
 //!
@@ -21,6 +22,7 @@ use nalgebra::{DMatrix, DVector};
 use super::coordinates::Coordinates;
 use super::exponential::Exponential;
 use super::reduced::over_brightest;
+use super::{correlated, scale};
 use crate::num::linalg::{Cholesky, gram_product, product, tr_product};
 use crate::recovery::{
     BandKind, Bands, Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, bands,
@@ -38,6 +40,9 @@ const STEPS: [i32; 2] = [-9, 9];
 const FLAT: f64 = 0.02;
 /// What is less likely than the likeliest pair by more than e to this counts for nothing.
 const NEGLIGIBLE: f64 = 6.0;
+/// How often it is done again with what hangs together, and a change of that which makes no difference.
+const MOST_AGAIN: usize = 3;
+const SETTLED: f64 = 0.2;
 /// Elements up to which the covariance matrix is made.
 const MOST_COVARIANCE: usize = 2048;
 
@@ -48,7 +53,7 @@ struct Seen {
     errors: DMatrix<f64>,
     /// ln det of the errors.
     log_errors: f64,
-    /// The unit of the reflectances: 1, or with a free scale what the photographs say of s.
+    /// The unit of the reflectances, s₀: 1 unless the scale is free.
     unit: f64,
 }
 
@@ -67,19 +72,42 @@ struct Pair {
     weight: f64,
 }
 
+/// Where the noise is unknown and the pixels' places are known, what is left over says over how many
+/// pixels it hangs together, and all is done again with that.
 pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
-    let unit = if problem.nuisance.free_scale {
-        problem.brightness().abs()
-    } else {
-        1.0
+    let mut found = with_alike(problem, options, 1.0)?;
+    let unknown = problem.noise().is_none() && problem.soft.is_none();
+    let Some(frame) = options.frame.filter(|_| unknown) else {
+        return Ok(found);
     };
-    if unit == 0.0 {
-        return Err(RecoveryError::NO_DIRECTION);
+    let mut alike = 1.0;
+    for _ in 0..MOST_AGAIN {
+        let left = problem.counted(problem.phi - found.photographs(problem));
+        let now = correlated::pixels(&left, frame)?;
+        if (now / alike - 1.0).abs() < SETTLED {
+            break;
+        }
+        alike = now;
+        found = with_alike(problem, options, alike)?;
     }
-    let coordinates = Coordinates::new(Method::JointGp, problem, options, unit)?;
+    found.alike = Some(alike);
+    // Of pixels that err alike the others' methods know nothing: no evidence that compares.
+    if alike > 1.0 {
+        found.log_evidence = None;
+    }
+    Ok(found)
+}
+
+fn with_alike(
+    problem: &Problem<'_>,
+    options: &Options,
+    alike: f64,
+) -> Result<Recovered, RecoveryError> {
+    let unit = scale::unit(problem)?;
+    let coordinates = Coordinates::new(Method::JointGp, problem, options, unit, alike)?;
     let seen = Seen::new(&coordinates, unit);
     let prior = Exponential::new(problem);
     let (lengths, pairs, evidence) = seen.lattice(&prior)?;
@@ -92,8 +120,9 @@ pub(in crate::recovery) fn recover(
         found.relative(&recovered.reflectance, options.bands);
     }
     recovered.effective_rank = found.freedom;
+    let scale = recovered.nuisance.as_ref().and_then(|n| n.scale);
     recovered.parameter = Parameter::GaussianProcess {
-        spread: best.spread * unit,
+        spread: best.spread * (unit / scale.unwrap_or(1.0)),
         length: lengths[best.length].length,
     };
     recovered.choice = Choice::Averaged;

@@ -1,6 +1,6 @@
 //! The normal equations of many elements, each entry of Φ with its own weight.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::conditional::{Conditional, One, soften, soften_whole};
@@ -15,7 +15,32 @@ const MOST_WORK: f64 = 2e12;
 const PARTS: usize = 4;
 /// The trace of the Gram matrix, in units of the noise, that may be left out: of n reflectances up to
 /// 1 the light of what is lost is at most √(n·1e-6) standard deviations in all of Φ together.
-pub(super) const LOST: f64 = 1e-6;
+const LOST: f64 = 1e-6;
+/// A grey picture.
+pub(super) const GREY: f64 = 0.5;
+
+/// ⟨Φ, M⟩/⟨M, M⟩ from ⟨Φ, M⟩, ⟨M, M⟩ and ⟨Φ, Φ⟩, or ‖Φ‖/‖M‖ where that is not positive; none where
+/// neither is.
+pub(super) fn grey_factor(along: f64, grey: f64, square: f64) -> Option<f64> {
+    let possible = |size: &f64| *size > 0.0 && size.is_finite();
+    let best = Some(along / grey).filter(possible);
+    best.or(Some((square / grey).sqrt()).filter(possible))
+}
+
+/// What of the trace of the Gram matrix may be left out: with a free scale of s ρ, by the scale of a grey
+/// surface.
+pub(super) fn lost(
+    problem: &Problem<'_>,
+    gram: &DMatrix<f64>,
+    moment: &DVector<f64>,
+    square: f64,
+) -> f64 {
+    let factor = || grey_factor(GREY * moment.sum(), GREY * GREY * gram.sum(), square);
+    match problem.nuisance.free_scale.then(factor).flatten() {
+        Some(scale) => LOST / (scale * scale),
+        None => LOST,
+    }
+}
 
 /// ‖√W (Φ − Σ_j ρ_j A_j)‖² without what constants and glare of the frames take, as ‖R ρ − d‖² +
 /// rest², from
@@ -69,7 +94,9 @@ pub(super) fn reduced(
     let gains: Vec<One> = parts.into_iter().flat_map(|(_, gains)| gains).collect();
     let gram = all.view((0, 0), (n, n)).into_owned();
     let moment = all.column(n).rows(0, n).into_owned();
-    let Some(mut triangle) = pivoted_triangle(&gram, &moment, all[(n, n)], LOST)? else {
+    let square = all[(n, n)];
+    let lost = lost(problem, &gram, &moment, square);
+    let Some(mut triangle) = pivoted_triangle(&gram, &moment, square, lost)? else {
         return Ok(None);
     };
     let whole = soften_whole(&mut triangle, problem.soft);
@@ -102,8 +129,6 @@ fn without_frame(
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::DVector;
-
     use super::super::stacked::stack;
     use super::*;
     use crate::num::linalg::Triangle;

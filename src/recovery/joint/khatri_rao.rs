@@ -273,7 +273,8 @@ impl Operator {
             let along = gathered(&tr_product(&c, &phi).component_mul(&d));
             let (moment, square) = (along.column_sum(), phi.norm_squared());
             let fewer = if by_entry {
-                pivoted_triangle(&whole, &moment, square, gram::LOST)?
+                let lost = gram::lost(problem, &whole, &moment, square);
+                pivoted_triangle(&whole, &moment, square, lost)?
             } else {
                 None
             };

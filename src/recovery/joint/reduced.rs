@@ -6,6 +6,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::khatri_rao::{Operator, operator};
+use super::scale;
 use crate::num::linalg::{Svd, Tolerance, cut, product, rows_times};
 use crate::num::quadratic::{Bounds, BoxSolution};
 use crate::recovery::{
@@ -13,13 +14,15 @@ use crate::recovery::{
     Weighting,
 };
 
-/// ½‖R x − d‖² is the objective but for a constant, x = s ρ.
+/// ½‖R x/s₀ − d‖² is the objective but for a constant, x = s ρ and s₀ that of [`scale`].
 pub(super) struct Reduced {
     operator: Arc<Operator>,
     pub(super) r: DMatrix<f64>,
     pub(super) d: DVector<f64>,
     pub(super) sigma: DVector<f64>,
     pub(super) rank: usize,
+    /// s₀.
+    pub(super) unit: f64,
     cutoff: f64,
 }
 
@@ -38,20 +41,22 @@ impl Reduced {
         if rank == 0 {
             return Err(RecoveryError::NO_DIRECTION);
         }
+        let unit = scale::unit(problem)?;
         // Directions below one rounding of the strongest carry nothing: k rows Σ_k V_kᵀ stand for
         // R.
         let (rows, _) = cut(sigma.as_slice(), 1, 1, Tolerance::Relative(f64::EPSILON))?;
         Ok(Reduced {
             operator,
-            r: rows_times(vt.rows(0, rows).into_owned(), sigma),
+            r: rows_times(vt.rows(0, rows) * unit, sigma),
             d: data.rows(0, rows).into_owned(),
             sigma: sigma.clone(),
             rank,
+            unit,
             cutoff,
         })
     }
 
-    /// What s ρ can be: 0 to 1, or from 0 on where the scale is free.
+    /// What x/s₀ can be: 0 to 1, or from 0 on where the scale is free.
     pub(super) fn bounds(&self, problem: &Problem<'_>) -> Bounds {
         let upper = if problem.nuisance.free_scale {
             f64::INFINITY
@@ -87,20 +92,20 @@ impl Reduced {
         }
     }
 
-    /// The recovery from x = s ρ, a rank cut recorded.
+    /// The recovery from x/s₀, a rank cut recorded.
     pub(super) fn finish(
         &self,
         method: Method,
         problem: &Problem<'_>,
         options: &Options,
-        x: DVector<f64>,
+        seen: DVector<f64>,
     ) -> Result<Recovered, RecoveryError> {
         let mut found = finish(
             method,
             problem,
             options,
             &self.operator,
-            x,
+            seen * self.unit,
             self.sigma.clone(),
             self.rank,
         )?;

@@ -4,7 +4,7 @@
 //!
 //! TV is the anisotropic total variation, Σ |ρ_a − ρ_b| over all pairs of neighbours along u and
 //! along v of each grid: edges along the rows and columns of elements cost their length. With a
-//! free scale the penalty is on s ρ, and only s ρ ≥ 0 is asked.
+//! free scale the penalty is on s ρ/s₀ ([`super::scale`]), and only s ρ ≥ 0 is asked.
 //!
 //! λ is given as a fraction of σ₁², σ₁ the largest singular value of the weighted operator, or it
 //! is the one at which the photographs are likeliest if the penalty is a prior, p(ρ|λ) ∝ exp(−λ TV)
@@ -54,7 +54,7 @@ pub(in crate::recovery) fn recover(
     let search = Search {
         pairs: neighbours(grids),
         bounds: reduced.bounds(problem),
-        unit: reduced.sigma[0] * reduced.sigma[0],
+        unit: (reduced.unit * reduced.sigma[0]).powi(2),
         start: box_least_squares(&reduced.r, &reduced.d, &reduced.bounds(problem))?.solution,
         reduced: &reduced,
     };
@@ -96,7 +96,7 @@ struct Search<'a> {
     reduced: &'a Reduced,
     bounds: Bounds,
     pairs: Vec<[usize; 2]>,
-    /// σ₁².
+    /// (s₀ σ₁)².
     unit: f64,
     /// The solution without penalty.
     start: nalgebra::DVector<f64>,

@@ -12,7 +12,7 @@
 use super::coordinates::Coordinates;
 use super::ground::Ground;
 use super::pattern_search::{Found, Levels, Search};
-use super::{enumerated, neighbours, tempered};
+use super::{enumerated, neighbours, scale, tempered};
 use crate::recovery::{
     Choice, Method, Options, Parameter, Patterns, Problem, Recovered, RecoveryError, Solver, Sum,
 };
@@ -36,13 +36,10 @@ pub(in crate::recovery) fn recover(
         });
     }
     let free = problem.nuisance.free_scale;
-    let unit = if free {
-        problem.brightness().abs()
-    } else {
-        1.0
-    };
-    let coordinates = Coordinates::new(method, problem, options, unit)?;
-    let (r, d) = coordinates.whitened();
+    let unit = scale::unit(problem)?;
+    let coordinates = Coordinates::new(method, problem, options, unit, 1.0)?;
+    let (mut r, d) = coordinates.whitened();
+    r *= unit;
     let given = options.levels.filter(|_| !free);
     let levels = match (options.levels, free) {
         (Some(levels), false) => Levels::Given(levels),
@@ -77,7 +74,7 @@ pub(in crate::recovery) fn recover(
     if given.is_some() && summed.as_ref().is_some_and(|s| s.sum == Sum::Exhaustive) {
         bound = objective;
     }
-    let mut recovered = coordinates.finish(method, problem, options, best.values())?;
+    let mut recovered = coordinates.finish(method, problem, options, best.values() * unit)?;
     // The pattern alone is no more than all of them.
     let own = ground.log_weight(&best.light).unwrap_or(f64::NEG_INFINITY);
     let own = own - n as f64 * std::f64::consts::LN_2;

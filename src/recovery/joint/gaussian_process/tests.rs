@@ -180,3 +180,51 @@ fn nothing_to_tell_the_noise_from() {
         "{error}"
     );
 }
+
+/// Noise of unknown size that neighbouring pixels share, each the sum of 2 × 2 independent ones: where the
+/// pixels' places are known, the errors are those of four times the variance, z² is 1 in the mean and not 4.
+/// 40 photographs of 4 elements; five standard errors of the scatter among photographs, and a tenth for what
+/// is taken from the noise to tell its size.
+#[test]
+fn pixels_that_err_alike_are_not_counted_as_many() {
+    let bench = Bench::new(6.0, 2, 16);
+    let truth = DVector::from_row_slice(&[0.45, 0.5, 0.55, 0.5]);
+    let d = bench.d.columns(0, 8).into_owned();
+    let exact = bench.phi(&truth).columns(0, 8).into_owned();
+    let mut normal = normal_stream(12);
+    let mut squares = [Vec::new(), Vec::new()];
+    for _ in 0..40 {
+        let white = DMatrix::from_fn(17 * 17, 8, |_, _| normal());
+        let phi = DMatrix::from_fn(256, 8, |p, l| {
+            let at = p % 16 + p / 16 * 17;
+            let around = [at, at + 1, at + 17, at + 18].map(|q| white[(q, l)]);
+            exact[(p, l)] + 1e-4 * exact.mean() * around.iter().sum::<f64>()
+        });
+        let problem = Problem::new(&phi, &bench.c, &d, None).unwrap();
+        let problem = problem.with_grids(&[[2, 2]]).unwrap();
+        for (frame, squares) in [None, Some([16, 16])].into_iter().zip(&mut squares) {
+            let options = Options {
+                frame,
+                ..Options::default()
+            };
+            let found = gp(&problem, &options);
+            let z = (found.reflectance - &truth).component_div(&found.standard_error.unwrap());
+            squares.push(z.norm_squared() / 4.0);
+            match frame {
+                None => assert!(found.alike.is_none() && found.log_evidence.is_some()),
+                Some(_) => {
+                    let alike = found.alike.unwrap();
+                    assert!((2.5..5.5).contains(&alike), "{alike}");
+                    assert!(found.log_evidence.is_none());
+                }
+            }
+        }
+    }
+    let [alone, alike] = squares.map(|values| {
+        let values = DVector::from_vec(values);
+        (values.mean(), (values.variance() / 40.0).sqrt())
+    });
+    assert!(alone.0 > 2.0, "{alone:?}");
+    assert!((alike.0 - 1.0).abs() < 5.0 * alike.1 + 0.1, "{alike:?}");
+    assert!(alike.0 < 1.6, "{alike:?}");
+}

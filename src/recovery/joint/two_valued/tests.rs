@@ -112,7 +112,8 @@ fn probabilities_are_those_of_all_patterns() {
         (patterns.log_evidence - evidence).abs() < 1e-4,
         "{evidence}"
     );
-    let coordinates = Coordinates::new(Method::JointTwoValued, &problem, &options, 1.0).unwrap();
+    let coordinates =
+        Coordinates::new(Method::JointTwoValued, &problem, &options, 1.0, 1.0).unwrap();
     let (r, d) = coordinates.whitened();
     let ground = Ground::new(&r, &d, Some([0.3, 0.7]));
     let sampled = tempered::sample(&ground, &[false; 9])
@@ -144,7 +145,7 @@ fn sampled_levels_are_those_of_the_sum() {
         let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
         let options = Options::default();
         let coordinates =
-            Coordinates::new(Method::JointTwoValued, &problem, &options, 1.0).unwrap();
+            Coordinates::new(Method::JointTwoValued, &problem, &options, 1.0, 1.0).unwrap();
         let (r, d) = coordinates.whitened();
         let ground = Ground::new(&r, &d, None);
         let all = enumerated::sum(&ground);
