@@ -53,6 +53,7 @@ fn a_rendered_scene_is_as_it_is_written() {
         .unwrap()
         .toml()
         .unwrap();
+    std::fs::create_dir(w.path("wrong")).unwrap();
     w.write("wrong/scene.toml", wrong);
     let line =
         "calibrate wrong --phi run/phi.npy --free hidden.normal --elements 4x4 --starts 1 --json";
