@@ -76,7 +76,7 @@ pub(in crate::cli) enum Command {
     /// their spots: exit 0 found, 1 not, 2 error
     Locate(LocateArgs),
     /// Estimate the geometry itself from the photographs, whatever the picture: where the hidden surface,
-    /// spots, view, camera, occluders are, with errors
+    /// spots, view, camera, occluders are, with errors: exit 0 found, 1 the photographs refute it, 2 error
     Calibrate(Box<CalibrateArgs>),
     /// Photograph the clean flux with a sensor: shot noise, read noise, glare, converter
     Expose(ExposeArgs),

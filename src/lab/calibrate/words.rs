@@ -46,9 +46,14 @@ fn with_unit(x: f64, digits: usize, unit: &str) -> String {
 }
 
 impl Calibration {
-    /// Whether it ended by itself.
+    /// Whether the search ended, and the photographs do not refute what it found.
     pub fn is_found(&self) -> bool {
-        self.is_settled
+        self.is_settled && self.p.is_none_or(|p| p >= SIGNIFICANCE)
+    }
+
+    /// Whether more than noise may be left.
+    fn is_more_than_noise(&self) -> bool {
+        self.p.is_none_or(|p| p < SIGNIFICANCE)
     }
 
     /// Geometric parameters.
@@ -132,6 +137,12 @@ impl Calibration {
         } else {
             format!("elements alike over {}", figure(self.length, 2))
         };
+        let taken = if self.is_more_than_noise() {
+            ", if what is left over were independent noise: it need not be, and then the picture and its \
+             errors claim too much (`phicam locate` draws one that the photographs bear out)"
+        } else {
+            ""
+        };
         let truth = match (self.mtf_raw, self.correlation) {
             (None, None) => String::new(),
             (mtf, correlation) => format!(
@@ -142,7 +153,7 @@ impl Calibration {
         };
         format!(
             "The picture is the mean of all that fit, with spread {} and {length}, not bounded; {} \
-             of its directions are determined. Its errors include those of the geometry.{truth}{scale}",
+             of its directions are determined{taken}. Its errors include those of the geometry.{truth}{scale}",
             figure(self.spread, 2),
             figure(self.directions, 3)
         )
