@@ -5,14 +5,17 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use phicam::model::{Differential, Take};
+use phicam::model::{Differential, Fineness};
 use phicam::scene::{Parameter, Scene};
 
 fn derivatives(c: &mut Criterion) {
     let scene = Scene::load("bench").expect("a built-in scene");
-    for (name, take) in [("centres", Take::Centre), ("integrated", Take::Integral)] {
+    for (name, fineness) in [
+        ("centres", Fineness::Centres),
+        ("integrated", Fineness::Areas),
+    ] {
         let mut group = c.benchmark_group(format!("derivatives, {name}"));
-        let model = Differential::new(&scene, None, take).expect("a model");
+        let model = Differential::new(&scene, None, fineness).expect("a model");
         group.bench_function("the model", |b| b.iter(|| black_box(&model).terms()));
         for name in [
             "hinge.angle",

@@ -30,7 +30,12 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
         let (scene, record) = read_run(&args.dir, console)?;
         (scene, Some(record))
     };
-    let plan = plan(args, &scene, console);
+    // Of a run's own errors it is known from how many blocks they were estimated.
+    let own = record.as_ref().filter(|_| args.phi.is_none());
+    let replicates = own
+        .and_then(|r| r.origin.plan())
+        .map(|plan| plan.budget.blocks);
+    let plan = plan(args, (&scene, replicates), console);
     need::calibrate(&scene, plan.elements)?;
     let (left_out, polynomial) = (args.left_out.as_deref(), args.frame_polynomial);
     let photographs = match (&args.phi, &record) {
@@ -85,7 +90,11 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
 }
 
 /// What is to be done, with what is not given.
-fn plan(args: &CalibrateArgs, scene: &Scene, console: Console) -> CalibrationPlan {
+fn plan(
+    args: &CalibrateArgs,
+    (scene, replicates): (&Scene, Option<u32>),
+    console: Console,
+) -> CalibrationPlan {
     let each = scene.hidden().map(|(_, s)| s.elements[0] * s.elements[1]);
     let own: usize = each.sum();
     let fewer = args.elements.is_none() && own > MANY;
@@ -99,6 +108,7 @@ fn plan(args: &CalibrateArgs, scene: &Scene, console: Console) -> CalibrationPla
         free: free(&args.free, scene),
         frame_gain: args.frame_gain,
         is_scale_free: args.free_scale,
+        replicates,
         elements: if fewer { Some(FEWER) } else { args.elements },
         occlusion: args.occlusion.occlusion(),
         integration: args.integration,

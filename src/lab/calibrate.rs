@@ -34,7 +34,7 @@ use super::unexplained::Unexplained;
 use super::validation::Integration;
 use crate::matrix::Matrix;
 use crate::metrics::{correlation, mtf_raw};
-use crate::model::{Kernel, MatrixModel, Occlusion, Take};
+use crate::model::{Fineness, Kernel, MatrixModel, Occlusion};
 use crate::num::linalg::Cholesky;
 use crate::num::statistics::chi_square_sf;
 use crate::scene::{Parameter, Scene};
@@ -68,6 +68,8 @@ pub struct CalibrationPlan {
     pub frame_gain: Option<f64>,
     /// Whether the scale of all light is unknown.
     pub is_scale_free: bool,
+    /// Replicates from which the standard errors were estimated; none where they are known.
+    pub replicates: Option<u32>,
     /// Elements in place of the scene's.
     pub elements: Option<[usize; 2]>,
     /// Whether things in the way are considered.
@@ -101,6 +103,9 @@ pub struct Calibrated {
     pub by_frames: Option<f64>,
     /// By those of blocks of pixels.
     pub by_blocks: Option<f64>,
+    /// How far a finer rule of integration would move it: a part of the error where light is
+    /// integrated, told where it is taken by centres; absent where something stands in the way.
+    pub by_rule: Option<f64>,
     /// What the photographs tell of it at the start.
     pub identified: Identified,
     /// Its profile; absent of gains and of more than twelve parameters.
@@ -186,16 +191,16 @@ impl CalibrationPlan {
         let gains = if self.frame_gain.is_some() { frames } else { 0 };
         priors.extend(std::iter::repeat_n(self.frame_gain, gains));
         let model = MatrixModel::with(scene, Kernel::Physical, self.elements, Occlusion::Ignored)?;
-        let take = match self.integration {
-            Integration::Centres => Take::Centre,
-            Integration::Quadrature => Take::Integral,
+        let fineness = match self.integration {
+            Integration::Centres => Fineness::Centres,
+            Integration::Quadrature => Fineness::Areas,
         };
         let problem = Problem {
             geometry: Geometry {
                 scene,
                 parameters: &parameters,
                 elements: self.elements,
-                take,
+                fineness,
                 occlusion: self.occlusion,
                 gains,
             },
@@ -281,7 +286,7 @@ impl CalibrationPlan {
         let is_noise_known = problem.photographs.stderr.is_some();
         let unknowns = problem.unknowns() as f64;
         let dof = (best.value.count - best.value.freedom - unknowns).max(1.0);
-        let p = is_noise_known.then(|| chi_square_sf(best.value.chi2, dof));
+        let p = is_noise_known.then(|| self.by_noise(best.value.chi2, dof));
         let more_than_noise = p.is_none_or(|p| p < LEVEL);
         let robust = |scores: &Matrix| {
             let moved = &covariance * scores;
@@ -291,6 +296,7 @@ impl CalibrationPlan {
         let enough_frames = problem.photographs.phi.ncols() > 2;
         let scene = problem.geometry.scene;
         let names = self.names(problem);
+        let finer = problem.finer(best, &covariance)?;
         let mut found: Vec<Calibrated> = Vec::new();
         let mut whole = covariance.clone();
         for (k, identified) in told.into_iter().enumerate() {
@@ -301,9 +307,13 @@ impl CalibrationPlan {
             let profile = profile::profile(problem, best, &covariance, k)?;
             let by_profile = profile.as_ref().map_or(0.0, Profile::stderr);
             let others = [by_frames, by_blocks].map(|x| x.unwrap_or(0.0));
-            let stderr = others
+            let by_rule = finer.as_ref().map(|moved| moved[k].abs());
+            let rule = by_rule.filter(|_| self.integration == Integration::Quadrature);
+            let noise = others
                 .into_iter()
                 .fold(by_curvature.max(by_profile), f64::max);
+            let rule = rule.unwrap_or(0.0);
+            let stderr = (noise * noise + rule * rule).sqrt();
             let more = stderr / by_curvature;
             (0..whole.nrows()).for_each(|j| {
                 whole[(k, j)] *= more;
@@ -319,6 +329,7 @@ impl CalibrationPlan {
                 by_curvature,
                 by_frames,
                 by_blocks,
+                by_rule,
                 identified,
                 profile,
             });
@@ -373,6 +384,19 @@ impl CalibrationPlan {
             toml: file.toml()?,
             found,
         })
+    }
+
+    /// Probability of as large a χ² by noise alone. Of errors estimated from K = ν + 1 replicates each
+    /// term is the square of Student's t, of mean ν/(ν − 2) and variance 2 (ν − 1)/(ν − 4) times the
+    /// square of that: χ² is compared as one of that mean and variance.
+    fn by_noise(&self, chi2: f64, dof: f64) -> f64 {
+        match self.replicates.map(|k| f64::from(k) - 1.0) {
+            Some(nu) if nu > 4.0 => {
+                let fewer = dof * (nu - 4.0) / (nu - 1.0);
+                chi_square_sf(chi2 / dof * (nu - 2.0) / nu * fewer, fewer)
+            }
+            _ => chi_square_sf(chi2, dof),
+        }
     }
 
     /// Name and unit of each unknown.

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::cells::{HiddenCell, cells_of_elements};
 use super::cut::Cut;
 use super::error::ModelError;
-use super::extent::{Extent, Take};
+use super::extent::Extent;
 use super::factors::ElementGrid;
 use super::kernel::Kernel;
 use super::matrix_model::element_grids;
@@ -72,10 +72,38 @@ fn summed(
     all
 }
 
-/// Halvings of an element whose light is integrated: four cells and, extrapolated, their middle.
-const HALVINGS: u32 = 1;
-/// Level of the rules on footprints and spots.
-const LEVEL: usize = 1;
+/// What a model takes its light by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fineness {
+    /// Elements, footprints and spots at their centres.
+    Centres,
+    /// Integrated over them: an element by its four quarters and its middle, of which the error falls
+    /// as the fourth power of its size.
+    Areas,
+    /// The same by sixteen parts and four, and a finer rule on footprints and spots: what that
+    /// changes is what [`Self::Areas`] leaves out.
+    Finer,
+}
+
+impl Fineness {
+    /// The next one, if there is one.
+    pub fn next(self) -> Option<Self> {
+        match self {
+            Self::Centres => Some(Self::Areas),
+            Self::Areas => Some(Self::Finer),
+            Self::Finer => None,
+        }
+    }
+
+    /// Halvings of an element, and the level of the rules on footprints and spots.
+    fn rule(self) -> Option<(u32, usize)> {
+        match self {
+            Self::Centres => None,
+            Self::Areas => Some((1, 1)),
+            Self::Finer => Some((2, 2)),
+        }
+    }
+}
 
 /// The points of a scene between which its model takes light, with nothing in the way and the
 /// physical kernel.
@@ -92,15 +120,14 @@ pub struct Differential<'a> {
 }
 
 impl<'a> Differential<'a> {
-    /// Of elements, footprints and spots at their centres, or integrated over: an element's light by
-    /// its four quarters and its middle, of which the error falls as the fourth power of its size.
+    /// The points of `scene`; `elements` replaces the elements a side that it gives.
     ///
     /// # Errors
     /// [`ModelError::NothingHidden`].
     pub fn new(
         scene: &'a Scene,
         elements: Option<[usize; 2]>,
-        take: Take,
+        fineness: Fineness,
     ) -> Result<Self, ModelError> {
         let grids = element_grids(scene, elements)?;
         let hidden: Vec<(usize, &Surface)> = scene.hidden().collect();
@@ -112,11 +139,11 @@ impl<'a> Differential<'a> {
             of.iter_mut().flatten().for_each(|cell| cell.area *= weight);
             of
         };
-        let of = match take {
-            Take::Centre => by(0, 1.0),
-            Take::Integral => {
-                let mut fine = by(HALVINGS, 4.0 / 3.0);
-                let coarse = by(HALVINGS - 1, -1.0 / 3.0);
+        let of = match fineness.rule() {
+            None => by(0, 1.0),
+            Some((halvings, _)) => {
+                let mut fine = by(halvings, 4.0 / 3.0);
+                let coarse = by(halvings - 1, -1.0 / 3.0);
                 fine.iter_mut()
                     .zip(coarse)
                     .for_each(|(all, own)| all.extend(own));
@@ -125,8 +152,8 @@ impl<'a> Differential<'a> {
         };
         let numbered = of.into_iter().enumerate();
         let cells = numbered.flat_map(|(j, own)| own.into_iter().map(move |cell| (cell, j)));
-        let (seen, lit) = match take {
-            Take::Centre => {
+        let (seen, lit) = match fineness.rule() {
+            None => {
                 let pixels = 0..scene.camera.pixels();
                 let spots = 0..scene.laser.spots.len();
                 let lit = |l| {
@@ -143,9 +170,9 @@ impl<'a> Differential<'a> {
                     spots.map(lit).collect(),
                 )
             }
-            Take::Integral => {
+            Some((_, level)) => {
                 let cut = Cut::new(scene, Extent::UNOBSTRUCTED);
-                (cut.seen(scene, LEVEL), cut.lit(scene, LEVEL))
+                (cut.seen(scene, level), cut.lit(scene, level))
             }
         };
         Ok(Self {

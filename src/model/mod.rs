@@ -32,7 +32,7 @@ mod visible;
 mod wall_point;
 
 pub use converged::{Converged, Nodes, converged, integrated};
-pub use differential::{Differential, Terms, TermsRate};
+pub use differential::{Differential, Fineness, Terms, TermsRate};
 pub use error::ModelError;
 pub use extent::{Extent, Occlusion, Take};
 pub use factors::{ElementGrid, Factors};

@@ -11,7 +11,7 @@ fn told(text: &str) -> String {
 fn rendered() -> Workspace {
     let w = Workspace::with_scenes();
     let _ = w
-        .phicam("render small.toml -o run --samples 4096 --estimator factored -q")
+        .phicam("render small.toml -o run --samples 1024 -q")
         .exits(0);
     w
 }
@@ -42,7 +42,7 @@ fn a_rendered_scene_is_as_it_is_written() {
     }
     let _ = w.phicam("scene check run/calibrated/scene.toml").exits(0);
     let _ = w
-        .phicam("recover run/calibrated --phi run/phi.npy --stderr run/phi.stderr.npy -o there -q")
+        .phicam("recover run/calibrated --phi run/phi.npy --noise 0.05 --method joint --elements 4x4 -o there -q")
         .exits(0);
     // A scene that is wrong by 0.3 in. is put right, also where the errors are not stated.
     let text = w.text("run/scene.toml");

@@ -72,7 +72,7 @@ fn tolerance_is_a_table_a_figure_and_json() {
     told(
         &workspace,
         "t",
-        &["tolerance small.toml --noise 0.01<", "<metadata>"],
+        &["tolerance small.toml --noise 0.01 --mtf 0.9<", "<metadata>"],
     );
     assert!(workspace.text("t/tolerance.csv").lines().count() > 60);
     workspace.refuses(

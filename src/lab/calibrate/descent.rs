@@ -256,6 +256,34 @@ impl<'a> Problem<'a> {
         Ok((state, MOST_STEPS))
     }
 
+    /// How far a finer rule of integration moves the unknowns, by one Newton step; none where there is
+    /// no finer one.
+    pub(super) fn finer(
+        &self,
+        best: &State,
+        covariance: &Matrix,
+    ) -> Result<Option<DVector<f64>>, LabError> {
+        let Some(fineness) = self.geometry.fineness.next() else {
+            return Ok(None);
+        };
+        if self.geometry.is_obstructed() {
+            return Ok(None);
+        }
+        let finer = Problem {
+            geometry: Geometry {
+                fineness,
+                ..self.geometry
+            },
+            photographs: self.photographs,
+            priors: self.priors.clone(),
+            pictures: Vec::new(),
+            is_scale_free: self.is_scale_free,
+        };
+        let state = finer.state(&best.values, best.factor, Some(&best.prior))?;
+        let slopes = self.whole_slope(best) - self.whole_slope(&state);
+        Ok(Some(covariance * slopes))
+    }
+
     /// Slope of the cost with the prior of the unknowns.
     pub(super) fn whole_slope(&self, state: &State) -> DVector<f64> {
         let mut slope = state.slope.slope.clone();

@@ -6,7 +6,7 @@
 use crate::lab::error::LabError;
 use crate::matrix::Matrix;
 use crate::model::{
-    Differential, Kernel, MatrixModel, Occlusion, Take, Terms, TermsRate, is_obstructed,
+    Differential, Fineness, Kernel, MatrixModel, Occlusion, Terms, TermsRate, is_obstructed,
 };
 use crate::scene::{Parameter, Scene};
 
@@ -21,7 +21,7 @@ pub(super) struct Geometry<'a> {
     pub scene: &'a Scene,
     pub parameters: &'a [Parameter],
     pub elements: Option<[usize; 2]>,
-    pub take: Take,
+    pub fineness: Fineness,
     pub occlusion: Occlusion,
     /// Frames whose gain is unknown: none or all.
     pub gains: usize,
@@ -62,13 +62,14 @@ impl Geometry<'_> {
         Ok(self.scene.displaced(self.parameters, own)?)
     }
 
-    fn is_obstructed(&self) -> bool {
+    /// Whether light is integrated past something in the way, by rules of its own.
+    pub(super) fn is_obstructed(&self) -> bool {
         self.occlusion == Occlusion::Considered && is_obstructed(self.scene)
     }
 
     fn terms(&self, scene: &Scene) -> Result<Terms, LabError> {
         if !self.is_obstructed() {
-            return Ok(Differential::new(scene, self.elements, self.take)?.terms());
+            return Ok(Differential::new(scene, self.elements, self.fineness)?.terms());
         }
         let model = MatrixModel::with(scene, Kernel::Physical, self.elements, self.occlusion)?;
         Ok(match model.factors {
@@ -91,10 +92,10 @@ impl Geometry<'_> {
         let (own, gains) = values.split_at(self.parameters.len());
         let scene = self.scene_at(values)?;
         let terms = self.terms(&scene)?;
-        let elements = Differential::new(&scene, self.elements, Take::Centre)?.elements();
+        let elements = Differential::new(&scene, self.elements, Fineness::Centres)?.elements();
         let of = |k: usize| -> Result<Rate, LabError> {
             if !self.is_obstructed() {
-                let model = Differential::new(&scene, self.elements, self.take)?;
+                let model = Differential::new(&scene, self.elements, self.fineness)?;
                 let velocity = self.scene.velocity(self.parameters, own, k);
                 return Ok(Rate::Exact(model.rate(&velocity)));
             }

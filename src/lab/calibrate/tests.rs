@@ -35,6 +35,7 @@ fn plan(free: &[&str], n: usize) -> CalibrationPlan {
         free: free.collect(),
         frame_gain: None,
         is_scale_free: false,
+        replicates: None,
         elements: Some([n; 2]),
         occlusion: Occlusion::Considered,
         integration: Integration::Centres,
@@ -65,7 +66,7 @@ fn problem<'a>(
             scene,
             parameters,
             elements: Some([2; 2]),
-            take: Take::Centre,
+            fineness: Fineness::Centres,
             occlusion: Occlusion::Considered,
             gains,
         },
@@ -249,4 +250,30 @@ material = { lambertian = 0.0 }
         let off = (own.value - want) / own.stderr;
         assert!(off.abs() < 3.5 && own.stderr < 0.5 * want.abs(), "{own:?}");
     }
+}
+
+/// χ² of errors from 8 replicates, by draws of Student's t of 7 degrees of freedom as ratios of
+/// normal numbers: one in a hundred is below p = 0.01, within the binomial error of 2000.
+#[test]
+fn estimated_errors_are_expected_to_scatter() {
+    let mut random = normal(11);
+    let estimated = CalibrationPlan {
+        replicates: Some(8),
+        ..plan(&["hinge.angle"], 2)
+    };
+    let mut t2 = || {
+        let own = random()[0];
+        let squares: f64 = (0..7).map(|_| random()[0]).map(|x| x * x).sum();
+        own * own * 7.0 / squares
+    };
+    let draws = 1000;
+    let few = |level: f64, all: &[f64]| all.iter().filter(|p| **p < level).count();
+    let all: Vec<f64> = (0..draws)
+        .map(|_| estimated.by_noise((0..400).map(|_| t2()).sum(), 400.0))
+        .collect();
+    // Tails heavier than those of χ²: up to twice as many as stated, and no fewer than half.
+    let below = few(0.05, &all);
+    assert!((25..=100).contains(&below), "{below}");
+    let known = plan(&["hinge.angle"], 2);
+    assert!(known.by_noise(1.4 * 400.0, 400.0) < 1e-6);
 }

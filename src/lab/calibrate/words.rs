@@ -12,6 +12,8 @@ use crate::scene::Parameter;
 const SIGNIFICANCE: f64 = super::LEVEL;
 /// An estimate farther from the scene than this, in what was known beforehand, is told.
 const FAR: f64 = 3.0;
+/// What a finer rule moves is told from this part of the error on.
+const NOTABLE: f64 = 0.5;
 /// Gains that are listed one by one.
 const LISTED: usize = 12;
 /// What is left of other light's remainder where no noise is stated, above which it is told.
@@ -174,6 +176,17 @@ impl Calibration {
                 listed(&far)
             ));
         }
+        let by_rule = self.geometry().filter_map(|f| {
+            let moved = f.by_rule.filter(|moved| *moved > NOTABLE * f.stderr)?;
+            Some(format!("{} by {}", f.name, with_unit(moved, 2, &f.unit)))
+        });
+        let by_rule: Vec<String> = by_rule.collect();
+        if !by_rule.is_empty() {
+            notes.push(format!(
+                "A finer rule of integration would move {}: more elements, or --integration quadrature.",
+                listed(&by_rule)
+            ));
+        }
         for direction in &self.untold {
             let name = |k: usize| self.found.get(k).map(|f| f.name.clone());
             notes.push(format!(
@@ -215,6 +228,9 @@ impl Calibration {
                     }),
                     (Column::number("by blocks", "by_blocks", "", 2), |f| {
                         f.by_blocks.into()
+                    }),
+                    (Column::number("by finer rule", "by_rule", "", 2), |f| {
+                        f.by_rule.into()
                     }),
                 ],
             )

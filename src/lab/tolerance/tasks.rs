@@ -11,7 +11,7 @@ use crate::lab::registered::{Registered, prepared};
 use crate::lab::study::Study;
 use crate::matrix::Matrix;
 use crate::metrics::mtf_raw;
-use crate::model::{Differential, Extent, Kernel, MatrixModel, ModelError, Take, converged};
+use crate::model::{Differential, Extent, Fineness, Kernel, MatrixModel, ModelError, converged};
 use crate::num::summation::tree_sum;
 use crate::recovery::{Method, Options, recover};
 use crate::scene::{Parameter, Scene};
@@ -208,7 +208,7 @@ const PARAMETERS: [(&str, &str); 8] = [
 fn by_derivative(scene: &Scene, name: &str) -> Option<[f64; 2]> {
     let (_, name) = PARAMETERS.iter().find(|(own, _)| *own == name)?;
     let parameter = Parameter::named(scene, name).ok()?;
-    let model = Differential::new(scene, None, Take::Integral).ok()?;
+    let model = Differential::new(scene, None, Fineness::Areas).ok()?;
     let (terms, rate) = (
         model.terms(),
         model.rate(&scene.velocity(&parameter, &[0.0], 0)),

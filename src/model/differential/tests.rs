@@ -23,7 +23,7 @@ fn parameters(scene: &Scene, names: &[&str]) -> Vec<Parameter> {
 
 /// The largest difference of a rate from its central differences by Richardson's rule, over the
 /// largest rate of the same matrix.
-fn worst(base: &Scene, parameters: &[Parameter], values: &[f64], take: Take) -> Vec<f64> {
+fn worst(base: &Scene, parameters: &[Parameter], values: &[f64], take: Fineness) -> Vec<f64> {
     let extent = base.camera.view.u().length();
     let here = base.displaced(parameters, values).unwrap();
     let model = Differential::new(&here, Some([3, 2]), take).unwrap();
@@ -59,7 +59,7 @@ fn worst(base: &Scene, parameters: &[Parameter], values: &[f64], take: Take) -> 
 fn all_within(scene: &Scene, names: &[&str], values: impl Fn(usize) -> f64, limit: f64) {
     let parameters = parameters(scene, names);
     let values: Vec<f64> = (0..parameters.len()).map(values).collect();
-    for take in [Take::Centre, Take::Integral] {
+    for take in [Fineness::Centres, Fineness::Areas] {
         let found = worst(scene, &parameters, &values, take);
         for (p, off) in parameters.iter().zip(found) {
             assert!(off < limit, "{} {take:?}: {off:e}", p.name);
@@ -95,9 +95,19 @@ fn rates_of_the_wall_are_those_of_displaced_scenes() {
     let names = ["wall.normal", "wall.pitch", "wall.yaw", "hidden.normal"];
     let scene = small("bench");
     let parameters = parameters(&scene, &names);
-    let found = worst(&scene, &parameters, &[0.05, 0.4, -0.3, 0.1], Take::Centre);
+    let found = worst(
+        &scene,
+        &parameters,
+        &[0.05, 0.4, -0.3, 0.1],
+        Fineness::Centres,
+    );
     assert!(found.iter().all(|off| *off < 1e-8), "{found:?}");
-    let found = worst(&scene, &parameters, &[0.05, 0.4, -0.3, 0.1], Take::Integral);
+    let found = worst(
+        &scene,
+        &parameters,
+        &[0.05, 0.4, -0.3, 0.1],
+        Fineness::Areas,
+    );
     assert!(found.iter().all(|off| *off < 1e-4), "{found:?}");
 }
 
@@ -143,7 +153,7 @@ fn terms_are_those_of_the_matrix_model() {
         let scene = small(name);
         let model =
             MatrixModel::with(&scene, Kernel::Physical, Some([3, 2]), Occlusion::Ignored).unwrap();
-        let own = Differential::new(&scene, Some([3, 2]), Take::Centre).unwrap();
+        let own = Differential::new(&scene, Some([3, 2]), Fineness::Centres).unwrap();
         let phi = |terms: &Terms| {
             let rho = nalgebra::DVector::from_column_slice(&model.albedo);
             let frames = (0..terms.laser.ncols()).map(|l| terms.frame(l, 6) * &rho);
@@ -153,7 +163,7 @@ fn terms_are_those_of_the_matrix_model() {
         let off = (phi(&own.terms()) - &want).norm() / want.norm();
         assert!(off < 1e-14, "{name}: {off:e}");
         let want = model.clone().over_areas(&scene).unwrap().phi();
-        let own = Differential::new(&scene, Some([3, 2]), Take::Integral).unwrap();
+        let own = Differential::new(&scene, Some([3, 2]), Fineness::Areas).unwrap();
         let off = (phi(&own.terms()) - &want).norm() / want.norm();
         assert!(off < 3e-3, "{name}: {off:e}");
     }
