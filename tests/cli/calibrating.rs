@@ -55,9 +55,9 @@ fn a_rendered_scene_is_as_it_is_written() {
         .unwrap();
     std::fs::create_dir(w.path("wrong")).unwrap();
     w.write("wrong/scene.toml", wrong);
-    let line =
+    let beside =
         "calibrate wrong --phi run/phi.npy --free hidden.normal --elements 4x4 --starts 1 --json";
-    let _ = w.phicam(line).exits(0);
+    let _ = w.phicam(beside).exits(0);
     let back = w.json("wrong/calibrated/calibration.json");
     let number = |key: &str| back["found"][0][key].as_f64().unwrap();
     let off = number("value") + 0.3;
