@@ -11,16 +11,12 @@ use super::load_run::read_run;
 use super::process::{pool, version};
 use super::record::Record;
 use super::run_folder::{CALIBRATED, PHI, RunFolder, SCENE};
-use super::unexplained::Photographs;
+use super::unexplained::{Photographs, elements};
 use super::{Outcome, need, progress};
 use crate::lab::finding::Describe;
 use crate::lab::{CalibrationPlan, Found, Free, Work};
 use crate::report::Invocation;
 use crate::scene::Scene;
-
-/// Elements above which fewer are taken unless they are asked for, and those.
-const MANY: usize = 256;
-const FEWER: [usize; 2] = [12, 12];
 
 pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome, Failure> {
     let (scene, record) = if args.phi.is_some() && !args.dir.join(Record::FILE).exists() {
@@ -95,21 +91,12 @@ fn plan(
     (scene, replicates): (&Scene, Option<u32>),
     console: Console,
 ) -> CalibrationPlan {
-    let each = scene.hidden().map(|(_, s)| s.elements[0] * s.elements[1]);
-    let own: usize = each.sum();
-    let fewer = args.elements.is_none() && own > MANY;
-    if fewer {
-        console.say(format!(
-            "{} × {} elements in place of {own} (--elements)",
-            FEWER[0], FEWER[1]
-        ));
-    }
     CalibrationPlan {
         free: free(&args.free, scene),
         frame_gain: args.frame_gain,
         is_scale_free: args.free_scale,
         replicates,
-        elements: if fewer { Some(FEWER) } else { args.elements },
+        elements: elements(args.elements, scene, console),
         occlusion: args.occlusion.occlusion(),
         integration: args.integration,
         starts: usize::from(args.starts),

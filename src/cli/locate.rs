@@ -8,16 +8,13 @@ use super::interrupt::SignalGuard;
 use super::load_run::read_run;
 use super::process::{pool, version};
 use super::run_folder::{LOCATED, RunFolder};
-use super::unexplained::Photographs;
+use super::unexplained::{Photographs, elements};
 use super::{Outcome, need, progress};
 use crate::lab::finding::Describe;
 use crate::lab::{Found, LocatedPlan, Work};
 use crate::report::Invocation;
 use crate::scene::Scene;
 
-/// Elements above which fewer are taken unless they are asked for, and those.
-const MANY: usize = 256;
-const FEWER: [usize; 2] = [12, 12];
 /// The range unless given: part of the distance to the view, and degrees.
 const PART: f64 = 0.3;
 const DEGREES: f64 = 15.0;
@@ -67,17 +64,6 @@ pub(super) fn execute(args: &LocateArgs, console: Console) -> Result<Outcome, Fa
 
 /// What is to be done, with what is not given.
 fn plan(args: &LocateArgs, scene: &Scene, console: Console) -> LocatedPlan {
-    let own: usize = scene
-        .hidden()
-        .map(|(_, s)| s.elements[0] * s.elements[1])
-        .sum();
-    let fewer = args.elements.is_none() && own > MANY;
-    if fewer {
-        console.say(format!(
-            "{} × {} elements in place of {own} (--elements)",
-            FEWER[0], FEWER[1]
-        ));
-    }
     let far = if ["angle", "yaw"].contains(&args.what) {
         DEGREES
     } else {
@@ -90,7 +76,7 @@ fn plan(args: &LocateArgs, scene: &Scene, console: Console) -> LocatedPlan {
         what: args.what,
         range: args.range.unwrap_or([-far, far]),
         steps: usize::from(args.steps),
-        elements: if fewer { Some(FEWER) } else { args.elements },
+        elements: elements(args.elements, scene, console),
         occlusion: args.occlusion.occlusion(),
         integration: args.integration,
         orders: u64::from(args.orders),

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_left_out, read_matrix, read_stderr};
 use super::record::Record;
@@ -9,6 +10,28 @@ use super::run_folder::{PHI, STDERR};
 use crate::lab::{Unexplained, polynomials};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
+
+/// Elements above which fewer are taken unless they are asked for, and those.
+const MANY: usize = 256;
+const FEWER: [usize; 2] = [12, 12];
+
+/// The elements in place of the scene's: those `asked` for, else fewer where it has many.
+pub(super) fn elements(
+    asked: Option<[usize; 2]>,
+    scene: &Scene,
+    console: Console,
+) -> Option<[usize; 2]> {
+    let each = scene.hidden().map(|(_, s)| s.elements[0] * s.elements[1]);
+    let own: usize = each.sum();
+    if asked.is_some() || own <= MANY {
+        return asked;
+    }
+    console.say(format!(
+        "{} × {} elements in place of {own} (--elements)",
+        FEWER[0], FEWER[1]
+    ));
+    Some(FEWER)
+}
 
 /// The matrices of [`Unexplained`].
 pub(super) struct Photographs {

@@ -111,7 +111,7 @@ impl<'a> Problem<'a> {
             None => Prior::likeliest(&self.pictures, &normal, self.is_scale_free)?,
         };
         let value = seen.value(&light, &normal, &prior)?;
-        let slope = seen.slope(&light, &normal, &prior, &value, self.unknowns())?;
+        let slope = seen.slope(&light, &prior, &value, self.unknowns())?;
         Ok(State {
             values: values.to_vec(),
             factor,

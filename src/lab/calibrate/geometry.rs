@@ -67,12 +67,11 @@ impl Geometry<'_> {
         self.occlusion == Occlusion::Considered && is_obstructed(self.scene)
     }
 
-    fn terms(&self, scene: &Scene) -> Result<Terms, LabError> {
-        if !self.is_obstructed() {
-            return Ok(Differential::new(scene, self.elements, self.fineness)?.terms());
-        }
+    /// The terms of `scene` past what stands in the way, and its number of elements.
+    fn past(&self, scene: &Scene) -> Result<(Terms, usize), LabError> {
         let model = MatrixModel::with(scene, Kernel::Physical, self.elements, self.occlusion)?;
-        Ok(match model.factors {
+        let elements = model.albedo.len();
+        let terms = match model.factors {
             Some(factors) => Terms {
                 camera: factors.camera,
                 laser: factors.laser,
@@ -80,48 +79,56 @@ impl Geometry<'_> {
             },
             // What stood in the way does no more.
             None => Terms {
-                element: (0..model.albedo.len()).collect(),
+                element: (0..elements).collect(),
                 camera: model.camera_side,
                 laser: model.laser_side,
             },
-        })
+        };
+        Ok((terms, elements))
     }
 
     /// The light at `values`, with its derivatives where `rates` says so.
     pub(super) fn light(&self, values: &[f64], rates: bool) -> Result<Light, LabError> {
         let (own, gains) = values.split_at(self.parameters.len());
         let scene = self.scene_at(values)?;
-        let terms = self.terms(&scene)?;
-        let elements = Differential::new(&scene, self.elements, Fineness::Centres)?.elements();
-        let of = |k: usize| -> Result<Rate, LabError> {
-            if !self.is_obstructed() {
-                let model = Differential::new(&scene, self.elements, self.fineness)?;
-                let velocity = self.scene.velocity(self.parameters, own, k);
-                return Ok(Rate::Exact(model.rate(&velocity)));
-            }
-            let p = &self.parameters[k];
-            let step = if p.is_angle() || p.is_percent() {
-                OF_TURN
-            } else {
-                OF_DISTANCE * distance(self.scene)
-            };
-            let at = |sign: f64| -> Result<Terms, LabError> {
-                let mut values = own.to_vec();
-                values[k] += sign * step;
-                self.terms(&self.scene.displaced(self.parameters, &values)?)
-            };
-            Ok(Rate::Difference {
-                more: at(1.0)?,
-                less: at(-1.0)?,
-                over: 2.0 * step,
-            })
-        };
         let parameters = if rates { 0..own.len() } else { 0..0 };
+        let (terms, elements, rates) = if self.is_obstructed() {
+            let (terms, elements) = self.past(&scene)?;
+            let rates = parameters.map(|k| self.difference(own, k));
+            (terms, elements, rates.collect::<Result<_, LabError>>()?)
+        } else {
+            let model = Differential::new(&scene, self.elements, self.fineness)?;
+            let velocity = |k| self.scene.velocity(self.parameters, own, k);
+            let rates = parameters.map(|k| Rate::Exact(model.rate(&velocity(k))));
+            (model.terms(), model.elements(), rates.collect())
+        };
         Ok(Light {
             terms,
             gains: gains.to_vec(),
             elements,
-            rates: parameters.map(of).collect::<Result<_, _>>()?,
+            rates,
+        })
+    }
+
+    /// The central difference by parameter `k` about the values `own`.
+    fn difference(&self, own: &[f64], k: usize) -> Result<Rate, LabError> {
+        let p = &self.parameters[k];
+        let step = if p.is_angle() || p.is_percent() {
+            OF_TURN
+        } else {
+            OF_DISTANCE * distance(self.scene)
+        };
+        let at = |sign: f64| -> Result<Terms, LabError> {
+            let mut values = own.to_vec();
+            values[k] += sign * step;
+            Ok(self
+                .past(&self.scene.displaced(self.parameters, &values)?)?
+                .0)
+        };
+        Ok(Rate::Difference {
+            more: at(1.0)?,
+            less: at(-1.0)?,
+            over: 2.0 * step,
         })
     }
 }

@@ -18,7 +18,7 @@ use super::picture::{Normal, Prior, white};
 use crate::lab::error::LabError;
 use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
-use crate::num::linalg::{product, tr_product};
+use crate::num::linalg::{Cholesky, product, tr_product};
 
 /// Pixels are put in so many blocks a side, to see whether errors hang together.
 pub(super) const BLOCKS: usize = 4;
@@ -44,6 +44,8 @@ pub(super) struct Value {
     pub count: f64,
     pub rho: DVector<f64>,
     z: DVector<f64>,
+    /// Of 1 + RᵀHR.
+    factor: Cholesky,
 }
 
 /// The same with slope and curvature.
@@ -142,6 +144,7 @@ impl Seen<'_> {
             count: normal.count,
             rho,
             z,
+            factor,
         })
     }
 
@@ -149,13 +152,11 @@ impl Seen<'_> {
     pub(super) fn slope(
         &self,
         light: &Light,
-        normal: &Normal,
         prior: &Prior,
         value: &Value,
         unknowns: usize,
     ) -> Result<Slope, LabError> {
-        let gram = tr_product(&prior.root, &product(&normal.h, &prior.root));
-        let factor = white(&gram)?;
+        let factor = &value.factor;
         let half = factor.forward(prior.root.transpose());
         let covariance = tr_product(&half, &half);
         let first = (0..self.frames())
