@@ -51,6 +51,7 @@
 //!    9  main.rs                      parse → run → exit code
 //!    8  cli/         arguments, checked settings, progress, one file per subcommand; the only floor that prints
 //!    7  report/      results → json, svg, png, html: results in, bytes out; page/script: what makes a page answer, in JavaScript
+//!       folder/      what a run leaves on disk: its record, its frames, its matrices
 //!       jobs/        long work in numbered blocks: results of blocks on disk, shards of a plan, going on after a stop
 //!    6  lab/         experiments that compose the floors below: validation, recovered objects, budget, tolerance, power, noise,
 //!                    indicators, coverage, wall BRDFs, the laboratory experiment, the published study
@@ -142,8 +143,11 @@
 //! * [`cli::many_machines`](mod@cli::many_machines): thousands of frames on a cluster, on Slurm and
 //!   other schedulers.
 
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod film;
+#[doc(hidden)]
+pub mod folder;
 pub mod geometry;
 #[doc(hidden)]
 pub mod image;

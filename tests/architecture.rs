@@ -13,7 +13,7 @@ const FLOORS: [&[&str]; 9] = [
     &["transport", "model", "sensor", "photographs"],
     &["recovery", "metrics"],
     &["lab"],
-    &["report", "jobs"],
+    &["report", "folder", "jobs"],
     &["cli"],
 ];
 

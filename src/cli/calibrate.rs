@@ -9,10 +9,10 @@ use super::findings::deliver;
 use super::interrupt::SignalGuard;
 use super::load_run::read_run;
 use super::process::{pool, version};
-use super::record::Record;
 use super::run_folder::{CALIBRATED, PHI, RunFolder, SCENE};
 use super::unexplained::{Photographs, elements};
 use super::{Outcome, need, progress};
+use crate::folder::{Record, write_copies};
 use crate::lab::finding::Describe;
 use crate::lab::{CalibrationPlan, Found, Free, Work};
 use crate::report::Invocation;
@@ -72,7 +72,7 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
     };
     let asked = invocation(args, &plan.free, &scene);
     deliver("calibration", &found, &output, &asked, args.json)?;
-    RunFolder::write_copies(&output, &scene)?;
+    write_copies(&output, &scene)?;
     console.say(format!(
         "{0}: written; scene.toml there is the calibrated scene: `phicam recover {0} --phi {1}/phi.npy`",
         output.display(),

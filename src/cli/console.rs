@@ -3,8 +3,8 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use crate::report::harmless;
 use crate::scene::{Scene, SceneError};
+use crate::store::harmless;
 
 /// What the options of every command ask for.
 #[derive(Clone, Copy, Debug)]

@@ -13,11 +13,11 @@ use std::path::{Path, PathBuf};
 
 use super::cleanup::{remove_abandoned, remove_named, remove_numbered};
 use super::failure::Failure;
-use super::names::{COUNTS, EXPOSED, EXPOSURE, PHI, SATURATED, STDERR, is_frame};
 use super::output;
-use super::record::Record;
 use super::replacement::{move_in, remove_folder};
 use crate::film::{self, Channel, Frame, frame_name};
+use crate::folder::Record;
+use crate::folder::names::{COUNTS, EXPOSED, EXPOSURE, PHI, SATURATED, STDERR, is_frame};
 use crate::matrix::{Matrix, npy};
 use crate::report;
 use crate::scene::Scene;
@@ -134,7 +134,7 @@ impl ExposedFolder {
         };
         record.vouch_all(dir, EXPOSED, |name| FILES.contains(&name))?;
         record.vouch_all(dir, &format!("{EXPOSED}/{COUNTS}"), count)?;
-        record.write(dir)
+        Ok(record.write(dir)?)
     }
 
     /// Removes the old photographs and moves the new ones to their place. A process that ends midway

@@ -5,7 +5,8 @@ use std::path::Path;
 use super::failure::Failure;
 use super::output;
 use crate::lab::Found;
-use crate::report::{Invocation, finding_files, finding_html, finding_text, harmless_json};
+use crate::report::{Invocation, finding_files, finding_html, finding_text};
+use crate::store::harmless_json;
 use crate::store::write_whole;
 
 /// Writes the result `name` into `folder`: `NAME.json`, the tables that have a file,

@@ -10,13 +10,13 @@ use super::Outcome;
 use super::args::ImportArgs;
 use super::console::Console;
 use super::failure::Failure;
-use super::names::{IMPORT, IMPORT_PNG, LEFT_OUT, PHI, STDERR};
 use super::need;
-use super::origin::{Origin, Photographs};
 use super::output;
 use super::process::version;
-use super::record::Record;
 use super::run_folder::RunFolder;
+use crate::folder::Record;
+use crate::folder::names::{IMPORT, IMPORT_PNG, LEFT_OUT, PHI, STDERR};
+use crate::folder::{Origin, Photographs};
 use crate::matrix::npy;
 use crate::photographs::set::{ChannelName, DarkTable, Files, Set};
 use crate::photographs::{ImportAccount, Imported, import, scene_of};
@@ -170,7 +170,7 @@ fn one(
             output::write(&path(IMPORT), &json)?;
             output::write(&path(IMPORT_PNG), &picture)?;
             record.vouch_for_import(staged, scene)?;
-            record.write(staged)
+            Ok(record.write(staged)?)
         })?;
     }
     Ok(if args.json {

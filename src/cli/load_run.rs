@@ -5,8 +5,8 @@ use std::path::Path;
 use super::console::Console;
 use super::failure::Failure;
 use super::need;
-use super::record::Record;
-use super::run_folder::{LEFT_OUT, PHI, SCENE, TAILS};
+use super::run_folder::{LEFT_OUT, SCENE, TAILS};
+use crate::folder::Record;
 use crate::matrix::{Matrix, npy};
 use crate::scene::{COPIES, Scene};
 
@@ -38,29 +38,7 @@ pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), 
             path.display()
         ));
     }
-    if scene.hash != record.scene_hash {
-        let cause = format!(
-            "{} is not the scene that {} was rendered from",
-            path.display(),
-            dir.display()
-        );
-        return Err(Failure::new(
-            cause,
-            "restore it, or render the changed scene into another folder",
-        ));
-    }
-    if !record.is_complete() && !dir.join(PHI).exists() {
-        let cause = format!(
-            "{} holds {} of {} spots",
-            dir.display(),
-            record.finished,
-            record.spots
-        );
-        return Err(Failure::new(
-            cause,
-            "finish it with the same command that began it",
-        ));
-    }
+    record.check_scene(dir, &scene)?;
     Ok((scene, record))
 }
 
@@ -72,7 +50,7 @@ pub(super) fn refuse_damaged(path: &Path) -> Result<(), Failure> {
         let name = full.strip_prefix(dir).ok().and_then(Path::to_str);
         // A run.json that cannot be read may be another program's.
         if let (Some(name), Ok(Some(record))) = (name, Record::read(dir)) {
-            return record.check(dir, &name.replace('\\', "/"));
+            return Ok(record.check(dir, &name.replace('\\', "/"))?);
         }
     }
     Ok(())

@@ -63,15 +63,12 @@ mod many;
 pub mod many_machines;
 mod memory;
 mod model;
-mod names;
 mod need;
-mod origin;
 mod output;
 mod partial;
 mod preview;
 mod process;
 mod progress;
-mod record;
 mod recover;
 mod recover_beside;
 mod recover_memory;
@@ -103,7 +100,7 @@ use args::{Args, Command};
 use console::{Console, complain};
 use failure::{Codes, Failure, Outcome};
 
-use crate::report::harmless;
+use crate::store::harmless;
 
 /// Parses the arguments, runs the command and returns its exit code.
 pub fn main() -> ExitCode {

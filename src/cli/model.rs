@@ -11,8 +11,8 @@ use super::console::Console;
 use super::failure::Failure;
 use super::need;
 use super::output;
-use super::record::Record;
 use super::run_folder::{MODEL, RunFolder, Z, is_of_model};
+use crate::folder::{Record, write_scene};
 use crate::lab::Integration;
 use crate::matrix::{Matrix, npy};
 use crate::model::{Extent, MatrixModel, converged};
@@ -49,7 +49,7 @@ pub(super) fn execute(args: &ModelArgs, console: Console) -> Result<Outcome, Fai
     };
     // Which scene the matrices are of: nothing else in the folder says so if nothing is rendered
     // into it.
-    folder.write_scene(&scene)?;
+    write_scene(&args.output, &scene)?;
     write(&args.output, &model, phi.as_ref(), None)?;
     Record::vouch_anew(&args.output, MODEL, is_of_model)?;
     let place = args.output.join(MODEL);

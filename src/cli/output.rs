@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::failure::Failure;
-use crate::report::{harmless, harmless_json};
 use crate::store::{self, StoreError, write_whole};
+use crate::store::{harmless, harmless_json};
 
 /// A result on standard output, for people: names in it may be anyone's, and what a terminal would
 /// obey in them is spelled out.

@@ -8,7 +8,6 @@ use std::path::{Path, PathBuf};
 use super::cleanup::remove_files;
 use super::failure::Failure;
 use crate::jobs::{self, BlockFile, Identity, Spots};
-use crate::matrix::Matrix;
 use crate::scene::Scene;
 use crate::store::ensure_writable;
 use crate::transport::{Plan, Traced};
@@ -112,14 +111,4 @@ pub(super) fn together<'a>(scene: &'a Scene, plan: &'a Plan, spots: &Range<usize
 /// What the finished blocks of `spots` depend on.
 pub(super) fn identity(scene: &Scene, plan: &Plan, spots: &Range<usize>) -> Identity {
     Spots::identity(scene, plan).with("spots", format!("{}..{}", spots.start, spots.end))
-}
-
-/// What is kept of each spot: one column per bounce count, then the standard error and its code.
-pub(super) fn columns(traced: &Traced) -> impl Iterator<Item = Matrix> {
-    (0..traced.flux.ncols()).map(|column| {
-        let kept = traced.bounces.iter();
-        let kept = kept.chain([&traced.stderr, &traced.tails]);
-        let kept: Vec<_> = kept.map(|m| m.column(column).into_owned()).collect();
-        Matrix::from_columns(&kept)
-    })
 }

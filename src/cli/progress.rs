@@ -12,7 +12,7 @@ use super::interrupt::stop_flag;
 use crate::lab::Work;
 use crate::matrix::Matrix;
 use crate::num::digits::significant;
-use crate::report::harmless;
+use crate::store::harmless;
 use crate::transport::{Control, Tally};
 
 /// Characters of what is done that are shown.

@@ -6,13 +6,13 @@ use super::args::RecoverArgs;
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_matrix, read_run, read_stderr};
-use super::record::Record;
 use super::recover_beside::{Beside, Photographs, mask};
 use super::recover_memory::{self, Errors, Held, Strips};
 use super::recover_options::{self, uncertainty};
 use super::recovered::{collect, tell, write};
 use super::run_folder::{PHI, RECOVERED, RunFolder, SATURATED, SCENE, STDERR, is_of_recovered};
 use super::{Outcome, recover_own};
+use crate::folder::Record;
 use crate::lab::{
     Attempt, Certainty, Noise, RecoveredObject, by_trust, inverted, recover_with_picards,
 };

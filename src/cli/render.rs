@@ -12,12 +12,12 @@ use super::failure::Failure;
 use super::interrupt::SignalGuard;
 use super::load_run::read_matrix;
 use super::output;
-use super::partial::{Kept, columns};
+use super::partial::Kept;
 use super::process::pool;
-use super::record::Record;
-use super::run_folder::{Claim, PHI, RunFolder, STDERR, TAILS, frame_max};
+use super::run_folder::{Claim, PHI, RunFolder, STDERR, TAILS};
 use super::{Outcome, need, settings, suspicious};
 use crate::film;
+use crate::folder::{Record, columns, frame_max};
 use crate::lab::describe_render;
 use crate::matrix::Matrix;
 use crate::report;
@@ -184,7 +184,8 @@ pub(super) fn into_folder(
         }
         record.finished = kept.iter().flatten().count();
         if !matches!(stopped, Ok(None)) || record.finished < total {
-            return record.write(&folder.path).map(|()| None);
+            record.write(&folder.path)?;
+            return Ok(None);
         }
         let mut others: Vec<bool> = vec![true; total];
         todo.iter().for_each(|s| others[*s] = false);

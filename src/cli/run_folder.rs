@@ -1,14 +1,6 @@
-//! The folder of a run: what may be written into it, and what is read back from it.
-//!
-//! | file | content |
-//! | --- | --- |
-//! | scene.toml, run.json | the scene, whole; what was rendered and how |
-//! | files/ | copies of the meshes, pictures and materials that the scene names |
-//! | frames/spot-NNNN.exr | one frame a spot |
-//! | phi.npy, phi.stderr.npy | Φcam and its standard error, pixels × spots, W |
-//! | phi.tails.npy | how far that is to be trusted: [`tails`](crate::transport::tails), pixels × spots |
-//! | left_out.npy, import.json, import.png | of imported photographs: what is left out and why, how they were made, where things are in them |
-//! | partial/ | what is finished of an unfinished run: see [`super::partial`] |
+//! The folder of a run: what may be written into it, and what is read back from it;
+//! its files are those of [`folder`](crate::folder), and `partial/`, what is finished of an unfinished
+//! run ([`super::partial`]).
 
 use std::fs;
 use std::ops::Range;
@@ -20,19 +12,18 @@ use super::cleanup::{remove_abandoned, remove_files, remove_named, remove_number
 use super::console::Console;
 use super::exposed_folder::ExposedFolder;
 use super::failure::Failure;
-pub(super) use super::names::{
+use super::output;
+use super::partial::{PARTIAL, Partial};
+use super::replacement::{move_in, remove_folder};
+use crate::film::{self, frame_name};
+use crate::folder::names::MODEL_FILES;
+pub(super) use crate::folder::names::{
     CALIBRATED, CALIBRATED_FILES, EXPOSED, IMPORT, IMPORT_PNG, LEFT_OUT, LOCATED, LOCATED_FILES,
     MODEL, PHI, RECOVERED, REPORT, SATURATED, SCENE, STDERR, SUMMARY, TAILS, VALIDATION, Z,
     is_of_model, is_of_recovered,
 };
-use super::names::{MODEL_FILES, is_frame};
-use super::output;
-use super::partial::{PARTIAL, Partial, columns};
-use super::record::Record;
-use super::replacement::{move_in, remove_folder};
-use crate::film::{self, Channel, Frame, frame_name};
-use crate::lab::Tails;
-use crate::matrix::{Matrix, npy};
+use crate::folder::{Record, columns, finish, frame, frame_max, refuse_beyond_f32, write_scene};
+use crate::matrix::Matrix;
 use crate::scene::{COPIES, Scene};
 use crate::store::{FolderLock, ensure_writable, flush};
 use crate::transport::Traced;
@@ -175,7 +166,7 @@ impl RunFolder {
         if there {
             Ok(())
         } else {
-            self.write_scene(scene)
+            Ok(write_scene(&self.path, scene)?)
         }
     }
 
@@ -222,7 +213,7 @@ impl RunFolder {
         let staged = Self::at(&self.path.join(REPLACEMENT));
         remove_folder(&staged.path)?;
         ensure_writable(&staged.path)?;
-        staged.write_scene(scene)?;
+        write_scene(&staged.path, scene)?;
         fill(&staged.path)?;
         flush(&staged.path)?;
         self.replace()
@@ -319,29 +310,6 @@ impl RunFolder {
                 Record::FILE
             );
             return Err(Failure::new(cause, cure));
-        }
-        Ok(())
-    }
-
-    /// Writes the scene, whole: with copies of the files that it names.
-    pub(super) fn write_scene(&self, scene: &Scene) -> Result<(), Failure> {
-        Self::write_copies(&self.path, scene)?;
-        output::write(&self.path.join(SCENE), &scene.text)
-    }
-
-    /// Copies the files that the scene names into `folder`.
-    pub(super) fn write_copies(folder: &Path, scene: &Scene) -> Result<(), Failure> {
-        let copies = folder.join(COPIES);
-        for file in &scene.files {
-            ensure_writable(&copies)?;
-            let to = copies.join(file.copy_name());
-            if to.canonicalize().is_ok_and(|to| to == file.path) {
-                continue;
-            }
-            let bytes = file
-                .again()
-                .map_err(|(cause, cure)| Failure::new(cause, cure))?;
-            output::write(&to, &bytes)?;
         }
         Ok(())
     }
@@ -445,20 +413,7 @@ impl RunFolder {
         record: &mut Record,
         [phi, stderr, tails]: [&Matrix; 3],
     ) -> Result<(), Failure> {
-        record.tails = Some(Tails::of(tails));
-        npy::write(&self.path.join(TAILS), tails)?;
-        npy::write(&self.path.join(STDERR), stderr)?;
-        npy::write(&self.path.join(PHI), phi)?;
-        flush(&self.frames())?;
-        let spots = record.spots;
-        record.finished = spots;
-        record.files.clear();
-        record.vouch(&self.path, [SCENE, PHI, STDERR, TAILS])?;
-        record.vouch_all(&self.path, "frames", |name| is_frame(name, spots))?;
-        record.vouch_all(&self.path, COPIES, |name| {
-            scene.files.iter().any(|file| file.copy_name() == name)
-        })?;
-        record.write(&self.path)?;
+        finish(&self.path, scene, record, [phi, stderr, tails])?;
         self.partial().remove()
     }
 }
@@ -492,46 +447,6 @@ fn other_run(path: &Path, there: &Record, scene: &Scene) -> Failure {
     };
     let cure = "give the same settings, choose another folder (-o), or replace it (--replace)";
     Failure::new(cause, cure)
-}
-
-/// The frame of a spot, from what is kept of it: one column per bounce count, then the standard
-/// error and its code.
-fn frame(scene: &Scene, record: &Record, spot: usize, kept: &Matrix) -> Frame {
-    let orders = kept.ncols() - 2;
-    let channel = |name: String, values: Vec<f64>| Channel {
-        name,
-        values: values.into_iter().map(|x| x as f32).collect(),
-    };
-    let column = |n: usize| kept.column(n).iter().copied().collect();
-    // The same order of additions as in the tracer, so that the bits are the same.
-    let flux = kept.row_iter().map(|row| row.iter().take(orders).sum());
-    let mut channels = vec![
-        channel(film::frame::FLUX.into(), flux.collect()),
-        channel(film::frame::FLUX_STDERR.into(), column(orders)),
-    ];
-    channels.extend((0..orders).map(|n| channel(film::frame::bounce_channel(n + 1), column(n))));
-    Frame {
-        columns: scene.camera.columns,
-        rows: scene.camera.rows,
-        channels,
-        meta: record.meta(scene, spot),
-    }
-}
-
-/// Frames hold f32: a flux beyond its range would be stored as infinity.
-fn refuse_beyond_f32(traced: &Traced) -> Result<(), Failure> {
-    let most = traced.flux.amax().max(traced.stderr.amax());
-    if most <= f64::from(f32::MAX) {
-        return Ok(());
-    }
-    let cause = format!("a flux of {most:.1e} W is more than the f32 of a frame can hold");
-    Err(Failure::new(cause, "lower the laser's power in the scene"))
-}
-
-/// Bytes that the file of a frame of `scene` has at most.
-pub(super) fn frame_max(scene: &Scene) -> u64 {
-    let size = [scene.camera.columns, scene.camera.rows];
-    film::exr::file_max(size, scene.max_bounces as usize + 2)
 }
 
 /// Removes what [`is_of_recovered`] from `dir`, and `dir` if that empties it.

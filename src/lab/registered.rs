@@ -44,7 +44,7 @@ pub struct Found {
 }
 
 /// A study of any kind, ready to run.
-pub trait AnyStudy: Sync {
+pub trait AnyStudy: Send + Sync {
     /// How many tasks there are.
     fn tasks(&self) -> usize;
 
@@ -82,7 +82,7 @@ struct Prepared<S: Study> {
 }
 
 /// `study`, ready to run.
-pub fn prepared<S: Study<Result: Describe> + 'static>(study: S) -> Box<dyn AnyStudy> {
+pub fn prepared<S: Study<Result: Describe> + Send + 'static>(study: S) -> Box<dyn AnyStudy> {
     Box::new(Prepared {
         study,
         context: OnceLock::new(),
@@ -100,7 +100,7 @@ impl<S: Study> Prepared<S> {
     }
 }
 
-impl<S: Study<Result: Describe>> AnyStudy for Prepared<S> {
+impl<S: Study<Result: Describe> + Send> AnyStudy for Prepared<S> {
     fn tasks(&self) -> usize {
         self.study.tasks()
     }

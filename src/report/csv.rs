@@ -1,7 +1,7 @@
 //! A table of a finding as comma-separated values.
 
-use super::harmless::harmless;
 use crate::lab::finding::{Cell, Column, Table};
+use crate::store::harmless;
 
 /// A header line of the columns' keys, then a line a row. Numbers have all their digits; what is
 /// not defined is empty. Text is in quotes, its own quotes are single ones. A column without a key

@@ -6,8 +6,9 @@ use super::label::Labels;
 use super::legend::samples;
 use super::mark::{lines, names, spots, surface, view};
 use super::projection::{Frame, Projection, View};
-use super::raster::FAMILIES;
-use super::svg::{Close, END, MIDDLE, Svg, escape, ink, lettering, number, shortened, stroke};
+use super::svg::{
+    Close, END, FAMILIES, MIDDLE, Svg, escape, ink, lettering, number, shortened, stroke,
+};
 use crate::scene::{Role, Scene};
 
 /// Width of the paper, px.

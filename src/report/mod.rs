@@ -7,7 +7,10 @@
 //! and [`run_html`] shows a run on one self-contained page each, below 10 MB: of Φcam lies in the
 //! page what fits, first with fewer bits, then with fewer spots, and the page says so;
 //! `phicam serve` reads every entry from the files. A page is put together in `page`, whose script
-//! makes it answer. Pictures clip at the ends of their scale and say so; numbers are never clipped.
+//! makes it answer; pages and PNGs of figures belong to the feature `cli`. Pictures clip at the ends of their scale and say so; numbers are never clipped.
+
+// What pages alone use is dead without them.
+#![cfg_attr(not(feature = "cli"), allow(dead_code))]
 
 mod axis;
 mod cells;
@@ -18,11 +21,13 @@ mod encode;
 mod exposure;
 mod figure;
 mod files;
+#[cfg(feature = "cli")]
 mod gallery;
 mod gallery_svg;
-mod harmless;
+#[cfg(feature = "cli")]
 mod html;
 mod hull;
+#[cfg(feature = "cli")]
 mod invocation;
 mod key;
 mod label;
@@ -30,6 +35,7 @@ mod legend;
 mod look;
 mod mark;
 mod mitsuba;
+#[cfg(feature = "cli")]
 mod page;
 mod panel;
 mod photograph;
@@ -38,10 +44,14 @@ mod plot;
 mod plotted;
 mod preview;
 mod projection;
+#[cfg(feature = "cli")]
 mod raster;
 mod relief;
+#[cfg(feature = "cli")]
 mod reproduce;
+#[cfg(feature = "cli")]
 mod run;
+#[cfg(feature = "cli")]
 mod shown;
 mod summary;
 mod svg;
@@ -56,20 +66,25 @@ pub use encode::PictureError;
 pub use exposure::counts_png;
 pub use files::finding_files;
 pub use gallery_svg::gallery_svg;
-pub use harmless::{harmless, harmless_json};
+#[cfg(feature = "cli")]
 pub use html::finding_html;
+#[cfg(feature = "cli")]
 pub use invocation::Invocation;
 pub use mitsuba::{MitsubaError, mitsuba_script};
 pub use panel::{Panel, ScaleBar};
 pub use photograph::{Marked, photograph_png};
+#[cfg(feature = "cli")]
 pub use picture::{colour_png, grey_png};
 pub use plot::figure_svg;
 pub use preview::preview_png;
 pub use relief::{recovered_ply, texture_png};
+#[cfg(feature = "cli")]
 pub use reproduce::{
     ReproductionSettings, reproduction_files, reproduction_html, reproduction_markdown,
 };
+#[cfg(feature = "cli")]
 pub use run::{run_html, served_html};
+#[cfg(feature = "cli")]
 pub use shown::Shown;
 pub use summary::summary_json;
 pub use target::target_png;

@@ -4,8 +4,9 @@ use super::colour::{Rgb, Scale};
 use super::encode::PictureError;
 use super::legend::{colour_bar, outside};
 use super::panel::{Panel, ScaleBar};
-use super::raster::{self, DPI, FAMILIES};
-use super::svg::{Close, END, MIDDLE, Svg, escape};
+#[cfg(feature = "cli")]
+use super::raster;
+use super::svg::{Close, DPI, END, FAMILIES, MIDDLE, Svg, escape};
 use crate::num::digits::scientific;
 
 /// Width of a sheet where no matrix needs more: 180 mm, two columns of a journal, px at 300 an inch
@@ -37,6 +38,7 @@ const THIN: &str = "fill=\"none\" stroke=\"#222222\" stroke-width=\"2\"";
 ///
 /// # Errors
 /// [`PictureError`] if the picture would be absurdly large.
+#[cfg(feature = "cli")]
 pub fn grey_png(title: &str, panels: &[Panel]) -> Result<Vec<u8>, PictureError> {
     colour_png(title, panels, &Scale::reflectance(), "reflectance")
 }
@@ -46,6 +48,7 @@ pub fn grey_png(title: &str, panels: &[Panel]) -> Result<Vec<u8>, PictureError> 
 ///
 /// # Errors
 /// [`PictureError`] if the picture would be absurdly large.
+#[cfg(feature = "cli")]
 pub fn colour_png(
     title: &str,
     panels: &[Panel],

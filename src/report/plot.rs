@@ -8,8 +8,7 @@ use super::legend::samples;
 use super::look::Look;
 use super::picture::{lettered, wrapped};
 use super::plotted::{Direction, Kind, Plotted, Series};
-use super::raster::FAMILIES;
-use super::svg::{Close, END, MIDDLE, Svg, escape, fill, ink, stroke};
+use super::svg::{Close, END, FAMILIES, MIDDLE, Svg, escape, fill, ink, stroke};
 use crate::lab::finding::{Curve, Figure, Mark, Plot};
 
 /// Plots a row, and the width that each has.

@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 
-use super::harmless::shown_json;
+use crate::store::shown_json;
 
 /// How a series is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -11,17 +11,12 @@ use std::sync::{Arc, OnceLock};
 use resvg::{tiny_skia, usvg};
 
 use super::encode::{PictureError, checked, rgb};
+use super::svg::DPI;
 
-/// Families of the type for the attribute `font-family`, the first the one that is drawn here.
-pub(super) const FAMILIES: &str = "DejaVu Sans, Verdana, sans-serif";
-
-/// Pixels an inch.
-pub(super) const DPI: f64 = 300.0;
-
-/// 300 an inch.
+/// [`DPI`] in metres.
 const PIXELS_PER_METRE: u32 = 11_811;
 
-/// The two weights that figures use, as [`FAMILIES`] names them first.
+/// The two weights that figures use, as [`FAMILIES`](super::svg::FAMILIES) names them first.
 fn fonts() -> Arc<usvg::fontdb::Database> {
     static FONTS: OnceLock<Arc<usvg::fontdb::Database>> = OnceLock::new();
     let load = || {
@@ -71,6 +66,7 @@ pub(super) fn png(svg: &str) -> Result<Vec<u8>, PictureError> {
 #[cfg(test)]
 mod tests {
     use super::super::encode::decoded;
+    use super::super::svg::FAMILIES;
     use super::*;
 
     fn sheet(content: &str) -> String {

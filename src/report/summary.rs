@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::harmless::harmless_json;
 use crate::lab::{RecoveredObject, RunResults, Tails};
+use crate::store::harmless_json;
 
 /// What a run found, without any matrix, as indented JSON. What is absent or not a finite number is
 /// `null`. Fluxes in W, times in s.

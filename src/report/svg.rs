@@ -2,7 +2,13 @@
 
 use std::fmt::Write;
 
-use super::harmless::harmless;
+use crate::store::harmless;
+
+/// Families of the type for the attribute `font-family`, the first the one that PNGs are drawn with.
+pub(super) const FAMILIES: &str = "DejaVu Sans, Verdana, sans-serif";
+
+/// Pixels an inch.
+pub(super) const DPI: f64 = 300.0;
 
 /// Okabe and Ito's colours, told apart by every kind of colour vision.
 pub(super) mod ink {

@@ -70,23 +70,33 @@ fn copy_name(name: &str) -> String {
     format!("{}-{last}", &hex(&Sha256::digest(name))[..12])
 }
 
+/// Where a scene may read files.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Folders {
+    /// The scene's folder; none for a scene that is only text.
+    own: Option<PathBuf>,
+    /// Further folders, named by whoever started the program.
+    also: Vec<PathBuf>,
+}
+
 /// What a scene may read, and has read.
 #[derive(Debug, Default)]
 pub(super) struct Files {
-    /// The scene's folder; none for a scene that is only text.
-    folder: Option<PathBuf>,
-    /// Further folders, named by whoever started the program.
-    also: Vec<PathBuf>,
+    pub folders: Folders,
     pub read: Vec<Referenced>,
+}
+
+impl From<Folders> for Files {
+    fn from(folders: Folders) -> Self {
+        let read = Vec::new();
+        Self { folders, read }
+    }
 }
 
 impl Files {
     pub(super) fn of(folder: &Path, also: &[PathBuf]) -> Self {
-        Self {
-            folder: Some(folder.to_owned()),
-            also: also.to_vec(),
-            read: Vec::new(),
-        }
+        let (own, also) = (Some(folder.to_owned()), also.to_vec());
+        Self::from(Folders { own, also })
     }
 
     /// The bytes of the file that the scene calls `name`, at most `most` of them; or what is wrong,
@@ -130,7 +140,7 @@ impl Files {
 
     /// Where that file is.
     fn find(&self, name: &str) -> Result<PathBuf, (String, String)> {
-        let Some(folder) = &self.folder else {
+        let Some(folder) = &self.folders.own else {
             let cause = format!("`{name}` is named by a scene that is no file and has no folder");
             return Err((cause, "read the scene from a file beside it".to_owned()));
         };
@@ -145,7 +155,11 @@ impl Files {
         // The file itself comes before a copy of it, which may be older.
         let candidates = [(folder.join(name), folder.clone()), (copy, folder.clone())];
         let own = candidates.into_iter().skip(if inside { 0 } else { 1 });
-        let also = self.also.iter().map(|a| (folder.join(name), a.clone()));
+        let also = self
+            .folders
+            .also
+            .iter()
+            .map(|a| (folder.join(name), a.clone()));
         let mut found_outside = !inside;
         for (path, root) in own.chain(also) {
             let (Ok(path), Ok(root)) = (path.canonicalize(), root.canonicalize()) else {

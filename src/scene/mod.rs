@@ -165,6 +165,7 @@ pub mod mesh;
 mod parameter;
 mod parse;
 mod quantity;
+mod replaced;
 mod sensor;
 mod shining;
 pub mod spots;
@@ -204,7 +205,7 @@ pub use warning::Warning;
 use crate::geometry::Bvh;
 use error::{Fault, keys};
 use file::SceneFile;
-use files::Files;
+use files::{Files, Folders};
 
 /// Largest number of surfaces that a path may meet.
 pub const MOST_BOUNCES: u32 = 1000;
@@ -247,6 +248,8 @@ pub struct Scene {
     bvh: Bvh,
     /// What was suspicious in the files.
     found: Vec<Warning>,
+    /// Where they are read.
+    folders: Folders,
 }
 
 impl Scene {
@@ -370,6 +373,7 @@ impl Scene {
             hash,
             bvh,
             found,
+            folders: files.folders,
         };
         check::refuse_visible_hidden_face(&scene)?;
         scene.uncertainty = parameter::uncertainty(&scene, &file.uncertainty)?;

@@ -8,8 +8,9 @@ use crate::cli::args::PlanArgs;
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::output;
-use crate::cli::run_folder::{RunFolder, SCENE};
+use crate::cli::run_folder::SCENE;
 use crate::cli::{Outcome, settings};
+use crate::folder::write_scene;
 use crate::jobs::{PlanFile, Settings};
 use crate::store::{self, ensure_writable};
 
@@ -47,7 +48,7 @@ pub(in crate::cli) fn execute(args: &PlanArgs, console: Console) -> Result<Outco
     ensure_writable(dir)?;
     work.warn(console)?;
     if let Some(scene) = work.scene() {
-        RunFolder::at(dir).write_scene(scene)?;
+        write_scene(dir, scene)?;
     }
     file.write(&dir.join(PlanFile::NAME))?;
     ensure_writable(&dir.join("shards"))?;

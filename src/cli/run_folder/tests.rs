@@ -1,5 +1,5 @@
-use super::super::origin::{Origin, Photographs};
 use super::*;
+use crate::folder::{Origin, Photographs};
 
 const QUIET: Console<'static> = Console {
     quiet: true,

@@ -9,8 +9,8 @@ use super::answer::Refusal;
 use super::folder::Served;
 use super::run;
 use super::tiles::MODELLED;
-use crate::cli::record::Record;
 use crate::cli::run_folder::SCENE;
+use crate::folder::Record;
 use crate::report::served_html;
 use crate::scene::Scene;
 

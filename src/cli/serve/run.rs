@@ -4,7 +4,7 @@ use std::io::Read;
 
 use super::answer::Refusal;
 use super::folder::Served;
-use crate::cli::record::Record;
+use crate::folder::Record;
 
 /// Its bytes.
 pub(super) fn bytes(folder: &Served) -> Result<Vec<u8>, Refusal> {

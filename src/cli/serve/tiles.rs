@@ -11,8 +11,8 @@ use super::body::PIECE;
 use super::folder::Served;
 use super::query::Query;
 use super::run::record;
-use crate::cli::record::Record;
 use crate::cli::run_folder::{PHI, STDERR, TAILS};
+use crate::folder::Record;
 use crate::matrix::npy::{Entries, NpyError};
 
 /// Φcam of the model.

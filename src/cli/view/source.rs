@@ -7,15 +7,16 @@ use super::super::console::Console;
 use super::super::failure::Failure;
 use super::super::load_run::refuse_damaged;
 use super::super::memory;
-use super::super::record::Record;
 use super::super::run_folder;
 use crate::film;
 use crate::film::exr::FrameError;
 use crate::film::frame::{COUNTS, FLUX};
+use crate::folder::Record;
 use crate::image::{self, Channel, Image};
 use crate::matrix::npy;
-use crate::report::{Panel, harmless};
+use crate::report::Panel;
 use crate::store;
+use crate::store::harmless;
 
 /// Pictures of more bytes than this are not read, nor matrices that would take more: 1 GiB.
 const LARGEST: u64 = 1 << 30;

@@ -81,6 +81,7 @@ pub(super) fn exr_size(bytes: &[u8]) -> Option<[usize; 2]> {
 
 /// Pixels of a file of `length` bytes by its first ones, and bytes of all of them in memory; no more
 /// than the file can hold. `None` if its header is not whole in `start`.
+#[cfg(feature = "cli")]
 pub(crate) fn claimed(start: &[u8], length: u64) -> Option<[f64; 2]> {
     envelope::check_list(start).ok()?;
     let metadata = MetaData::read_from_buffered(start, true).ok()?;

@@ -17,9 +17,9 @@ use serde::Serialize;
 
 use super::colour::Map;
 use super::encode::base64;
-use super::harmless::shown_json;
 use super::look::looks;
 use super::svg::escape;
+use crate::store::shown_json;
 
 pub(super) use crate::lab::finding::Tone;
 pub(super) use embed::Room;

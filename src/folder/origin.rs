@@ -9,14 +9,19 @@ use crate::transport::Plan;
 /// Rendered or imported. A record holds the keys of a plan, or the key `imported`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
-pub(super) enum Origin {
+pub enum Origin {
+    /// Traced by this plan.
     Rendered(Plan),
-    Imported { imported: Photographs },
+    /// Photographs.
+    Imported {
+        /// What they are.
+        imported: Photographs,
+    },
 }
 
 /// The photographs of a real camera.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub(super) struct Photographs {
+pub struct Photographs {
     /// SHA-256 of all settings as JSON, hex.
     pub settings: String,
     /// The unit of Φcam: W, counts/s or counts.
@@ -27,7 +32,7 @@ pub(super) struct Photographs {
 
 impl Origin {
     /// The plan of a render.
-    pub(super) fn plan(&self) -> Option<&Plan> {
+    pub fn plan(&self) -> Option<&Plan> {
         match self {
             Self::Rendered(plan) => Some(plan),
             Self::Imported { .. } => None,

@@ -6,29 +6,35 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::failure::Failure;
+use super::error::FolderError;
 use super::names::{IMPORT, IMPORT_PNG, LEFT_OUT, PHI, SCENE, STDERR};
 use super::origin::Origin;
-use super::output;
-use super::process::version;
 use crate::film::{FrameMeta, RunMeta};
 use crate::lab::Tails;
 use crate::scene::{COPIES, Scene};
-use crate::store::{self, ReadError, hex};
+use crate::store::{self, ReadError, harmless_json, hex, write_whole};
 
 /// The record of a run.
 #[derive(Clone, Debug, Deserialize, Serialize)]
-pub(super) struct Record {
+pub struct Record {
+    /// Version of the program.
     pub version: String,
+    /// Name of the scene.
     pub scene: String,
+    /// Its hash.
     pub scene_hash: String,
+    /// Its length unit.
     pub unit: String,
+    /// Where Φcam comes from.
     #[serde(flatten)]
     pub origin: Origin,
+    /// Columns and rows of a frame.
     pub pixels: [usize; 2],
+    /// Spots of the scene.
     pub spots: usize,
     /// Spots rendered so far; equal to `spots` when the run is complete.
     pub finished: usize,
+    /// Threads that rendered.
     pub threads: usize,
     /// Wall time of rendering, s.
     pub seconds: f64,
@@ -46,7 +52,7 @@ pub(super) struct Record {
 
 /// A file as it was written.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub(super) struct Written {
+pub struct Written {
     bytes: u64,
     sha256: String,
 }
@@ -67,11 +73,13 @@ impl Written {
 }
 
 impl Record {
-    pub(super) const FILE: &'static str = "run.json";
+    /// Name of its file.
+    pub const FILE: &'static str = "run.json";
     /// Most bytes that it may have: a hundred for each frame.
-    pub(super) const LARGEST: u64 = 64 << 20;
+    pub const LARGEST: u64 = 64 << 20;
 
-    pub(super) fn new(
+    /// The record of a run of `scene`.
+    pub fn new(
         scene: &Scene,
         origin: impl Into<Origin>,
         finished: usize,
@@ -79,7 +87,7 @@ impl Record {
         seconds: f64,
     ) -> Self {
         Self {
-            version: version().to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
             scene: scene.name.clone(),
             scene_hash: scene.hash.clone(),
             unit: scene.unit.symbol().to_owned(),
@@ -96,18 +104,21 @@ impl Record {
     }
 
     /// Whether every spot is finished.
-    pub(super) fn is_complete(&self) -> bool {
+    pub fn is_complete(&self) -> bool {
         self.finished == self.spots
     }
 
     /// A line on its standard errors; none of an unfinished run.
-    pub(super) fn error_bars(&self) -> String {
+    pub fn error_bars(&self) -> String {
         let line = |tails: &Tails| format!("error bars: {}\n", tails.sentence());
         self.tails.as_ref().map_or_else(String::new, line)
     }
 
     /// The record in `dir`, if there is one.
-    pub(super) fn read(dir: &Path) -> Result<Option<Self>, Failure> {
+    ///
+    /// # Errors
+    /// [`FolderError`] where it is damaged or cannot be read.
+    pub fn read(dir: &Path) -> Result<Option<Self>, FolderError> {
         let path = dir.join(Self::FILE);
         let bytes = match store::read(&path, Self::LARGEST) {
             // Neither a folder that is not there nor a file in its place holds a run.
@@ -116,12 +127,15 @@ impl Record {
         };
         Self::parse(&bytes).map(Some).map_err(|what| {
             let cause = format!("{} is damaged: {what}", path.display());
-            Failure::new(cause, "render again into another folder")
+            FolderError::new(cause, "render again into another folder")
         })
     }
 
     /// The record in the bytes of a run.json, or what is wrong with them.
-    pub(super) fn parse(bytes: &[u8]) -> Result<Self, String> {
+    ///
+    /// # Errors
+    /// What is wrong, in words.
+    pub fn parse(bytes: &[u8]) -> Result<Self, String> {
         let record: Self = serde_json::from_slice(bytes).map_err(|e| e.to_string())?;
         let own = record.sealed().map_err(|e| e.to_string())?;
         if record.digest.is_none() || own.digest == record.digest {
@@ -142,20 +156,34 @@ impl Record {
     }
 
     /// The text of its file.
-    pub(super) fn json(&self) -> Result<String, Failure> {
-        output::json(&self.sealed()?)
+    ///
+    /// # Errors
+    /// [`FolderError`].
+    pub fn json(&self) -> Result<String, FolderError> {
+        let json = serde_json::to_string_pretty(&self.sealed()?)?;
+        Ok(harmless_json(&json) + "\n")
     }
 
-    pub(super) fn write(&self, dir: &Path) -> Result<(), Failure> {
-        output::write(&dir.join(Self::FILE), self.json()?)
+    /// Writes it into `dir`, whole or not at all.
+    ///
+    /// # Errors
+    /// [`FolderError`] where it cannot be written.
+    pub fn write(&self, dir: &Path) -> Result<(), FolderError> {
+        let json = self.json()?;
+        Ok(write_whole(&dir.join(Self::FILE), |file| {
+            file.write_all(json.as_bytes())
+        })?)
     }
 
     /// Vouches for the files `names` of `dir` as they are; those that are not there it forgets.
-    pub(super) fn vouch<'n>(
+    ///
+    /// # Errors
+    /// [`FolderError`] where one cannot be read.
+    pub fn vouch<'n>(
         &mut self,
         dir: &Path,
         names: impl IntoIterator<Item = &'n str>,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), FolderError> {
         for name in names {
             match Written::of(&dir.join(name)) {
                 Err(e) if e.is_missing() => self.files.remove(name),
@@ -167,12 +195,15 @@ impl Record {
 
     /// The same for the files in the folder `folder` of `dir` whose names are `ours`; what else lies
     /// there is read by nobody.
-    pub(super) fn vouch_all(
+    ///
+    /// # Errors
+    /// [`FolderError`] where one cannot be read.
+    pub fn vouch_all(
         &mut self,
         dir: &Path,
         folder: &str,
         ours: impl Fn(&str) -> bool,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), FolderError> {
         let inside = format!("{folder}/");
         self.files.retain(|name, _| !name.starts_with(&inside));
         let Ok(entries) = std::fs::read_dir(dir.join(folder)) else {
@@ -190,11 +221,14 @@ impl Record {
 
     /// Lets the run in `dir`, if there is one, vouch for the files whose names are `ours` in its
     /// folder `folder`.
-    pub(super) fn vouch_anew(
+    ///
+    /// # Errors
+    /// [`FolderError`] where a file cannot be read or the record not be written.
+    pub fn vouch_anew(
         dir: &Path,
         folder: &str,
         ours: impl Fn(&str) -> bool,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), FolderError> {
         if let Some(mut record) = Self::read(dir)? {
             record.vouch_all(dir, folder, ours)?;
             record.write(dir)?;
@@ -203,7 +237,10 @@ impl Record {
     }
 
     /// Refuses the file `name` of `dir` if it is vouched for and not what was written.
-    pub(super) fn check(&self, dir: &Path, name: &str) -> Result<(), Failure> {
+    ///
+    /// # Errors
+    /// [`FolderError`].
+    pub fn check(&self, dir: &Path, name: &str) -> Result<(), FolderError> {
         let Some(written) = self.files.get(name) else {
             return Ok(());
         };
@@ -216,7 +253,10 @@ impl Record {
 
     /// Refuses the files in the folder `folder` of `dir` that are vouched for and of another length:
     /// before they are read.
-    pub(super) fn check_lengths(&self, dir: &Path, folder: &str) -> Result<(), Failure> {
+    ///
+    /// # Errors
+    /// [`FolderError`].
+    pub fn check_lengths(&self, dir: &Path, folder: &str) -> Result<(), FolderError> {
         for (name, written) in &self.files {
             let path = dir.join(name);
             if Path::new(name).starts_with(folder)
@@ -231,14 +271,44 @@ impl Record {
 
     /// Refuses the files of `dir` that are vouched for, but for `except`, if one is there and not what
     /// was written.
-    pub(super) fn check_all(&self, dir: &Path, except: &str) -> Result<(), Failure> {
+    ///
+    /// # Errors
+    /// [`FolderError`].
+    pub fn check_all(&self, dir: &Path, except: &str) -> Result<(), FolderError> {
         let there = self.files.keys().filter(|name| dir.join(name).exists());
         let mut light = there.filter(|name| *name != except);
         light.try_for_each(|name| self.check(dir, name))
     }
 
+    /// Refuses a `scene` that is not that of the run in `dir`, and a run of which spots are missing.
+    ///
+    /// # Errors
+    /// [`FolderError`].
+    pub fn check_scene(&self, dir: &Path, scene: &Scene) -> Result<(), FolderError> {
+        let place = dir.display();
+        if scene.hash != self.scene_hash {
+            let path = dir.join(SCENE);
+            let cause = format!(
+                "{} is not the scene that {place} was rendered from",
+                path.display()
+            );
+            return Err(FolderError::new(
+                cause,
+                "restore it, or render the changed scene into another folder",
+            ));
+        }
+        if !self.is_complete() && !dir.join(PHI).exists() {
+            let cause = format!("{place} holds {} of {} spots", self.finished, self.spots);
+            return Err(FolderError::new(
+                cause,
+                "finish it with the same command that began it",
+            ));
+        }
+        Ok(())
+    }
+
     /// What the frame of `spot` says of its origin.
-    pub(super) fn meta(&self, scene: &Scene, spot: usize) -> FrameMeta {
+    pub fn meta(&self, scene: &Scene, spot: usize) -> FrameMeta {
         let plan = self.origin.plan();
         FrameMeta {
             run: RunMeta {
@@ -258,12 +328,15 @@ impl Record {
     }
 
     /// Whether its photographs were imported.
-    pub(super) fn is_imported(&self) -> bool {
+    pub fn is_imported(&self) -> bool {
         self.origin.plan().is_none()
     }
 
     /// Vouches for the files of an import in `dir`.
-    pub(super) fn vouch_for_import(&mut self, dir: &Path, scene: &Scene) -> Result<(), Failure> {
+    ///
+    /// # Errors
+    /// [`FolderError`] where one cannot be read.
+    pub fn vouch_for_import(&mut self, dir: &Path, scene: &Scene) -> Result<(), FolderError> {
         self.files.clear();
         self.vouch(dir, [SCENE, PHI, STDERR, LEFT_OUT, IMPORT, IMPORT_PNG])?;
         self.vouch_all(dir, COPIES, |name| {
@@ -273,7 +346,7 @@ impl Record {
 
     /// Whether the same scene was rendered by the same plan and program, or the same files were
     /// imported by the same settings.
-    pub(super) fn same_settings(&self, other: &Self) -> bool {
+    pub fn same_settings(&self, other: &Self) -> bool {
         let key = |r: &'_ Self| (r.scene_hash.clone(), r.version.clone(), r.origin.clone());
         key(self) == key(other)
     }
@@ -283,13 +356,13 @@ impl Record {
 const IMPORTED: &str = "imported";
 
 /// That a file is not what was written, by what of it.
-fn changed(path: &Path, what: &str) -> Failure {
+fn changed(path: &Path, what: &str) -> FolderError {
     let cause = format!(
         "{} is not what phicam wrote: its {what} is not that in {}",
         path.display(),
         Record::FILE
     );
-    Failure::new(
+    FolderError::new(
         cause,
         "restore it, or give data of your own with --phi; the same render into the same folder makes it again",
     )

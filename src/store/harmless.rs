@@ -29,7 +29,7 @@ pub fn harmless_json(json: &str) -> String {
 }
 
 /// JSON for a page, where a string is shown: what would be obeyed there is shown spelled out.
-pub(super) fn shown_json(json: &str) -> String {
+pub fn shown_json(json: &str) -> String {
     spelled(json, |c| format!("\\\\u{{{:x}}}", u32::from(c)))
 }
 

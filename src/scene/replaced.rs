@@ -1,0 +1,185 @@
+//! A scene with other values of some keys.
+
+use toml::{Table, Value};
+
+use super::Scene;
+use super::error::SceneError;
+use super::files::Files;
+
+impl Scene {
+    /// The same scene with other values of some keys: (key, value as TOML). Keys are names parted by
+    /// dots; a table of a list is named by its `name` or by its number from 0.
+    ///
+    /// ```
+    /// use phicam::scene::Scene;
+    ///
+    /// let bench = Scene::load("bench")?;
+    /// let other = bench.with(&[("camera.pixels", "[8, 4]"), ("surface.wall.material.lambertian", "0.5")])?;
+    /// assert_eq!(other.camera.pixels(), 32);
+    /// # Ok::<(), phicam::scene::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SceneError`]: no such table, no such value in TOML, or what the scene then has wrong; its line
+    /// is that of the new text.
+    pub fn with(&self, changes: &[(&str, &str)]) -> Result<Self, SceneError> {
+        let mut document: Value =
+            super::read_toml(&self.name, &self.text, "export the scene again")?;
+        for (key, value) in changes {
+            let fault = |cause, cure| SceneError {
+                source: self.name.clone(),
+                place: None,
+                cause,
+                cure,
+            };
+            let value = parsed(value).ok_or_else(|| {
+                let cause = format!("`{value}` for `{key}` is no value in TOML");
+                fault(
+                    cause,
+                    "write text in quotes: \"matt\"; lists in brackets: [32, 32]".to_owned(),
+                )
+            })?;
+            set(&mut document, key, value).map_err(|(cause, cure)| fault(cause, cure))?;
+        }
+        let text = super::parse::write(&self.name, &document)?;
+        Self::read(&self.name, &text, Files::from(self.folders.clone()))
+    }
+
+    /// The scene of another text, which reads its files where this one does.
+    ///
+    /// # Errors
+    /// [`SceneError`] with line, cause and cure.
+    pub fn remade(&self, text: &str) -> Result<Self, SceneError> {
+        Self::read(&self.name, text, Files::from(self.folders.clone()))
+    }
+}
+
+/// The value that TOML text stands for.
+fn parsed(text: &str) -> Option<Value> {
+    let line: Table = toml::from_str(&format!("value = {text}")).ok()?;
+    // More than one line would be more than one key.
+    (line.len() == 1)
+        .then(|| line.into_iter().next())
+        .flatten()
+        .map(|(_, value)| value)
+}
+
+/// Puts `value` in the place below `at` that `key` names; what is wrong, and the cure.
+fn set(at: &mut Value, key: &str, value: Value) -> Result<(), (String, String)> {
+    let (step, rest) = key
+        .split_once('.')
+        .map_or((key, None), |(s, r)| (s, Some(r)));
+    if step.is_empty() {
+        let cure = "write keys as in camera.pixels or surface.wall.material";
+        return Err((
+            "a key has no name between its dots".to_owned(),
+            cure.to_owned(),
+        ));
+    }
+    let inner = match at {
+        Value::Table(table) => {
+            let none = || Value::Table(Table::new());
+            table.entry(step).or_insert_with(none)
+        }
+        Value::Array(list) => entry(list, step)?,
+        other => {
+            let cause = format!("`{step}` is looked for in `{other}`, which has no keys");
+            return Err((
+                cause,
+                "name the whole table: its key without the rest".to_owned(),
+            ));
+        }
+    };
+    match rest {
+        Some(rest) => set(inner, rest, value),
+        None => {
+            *inner = value;
+            Ok(())
+        }
+    }
+}
+
+/// The entry of a list that has the name or the number `step`.
+fn entry<'a>(list: &'a mut [Value], step: &str) -> Result<&'a mut Value, (String, String)> {
+    let name = |value: &Value| value.get("name").and_then(Value::as_str).map(str::to_owned);
+    let names: Vec<String> = list.iter().filter_map(name).collect();
+    let named = list
+        .iter()
+        .position(|value| name(value).as_deref() == Some(step));
+    let found = named.or_else(|| step.parse().ok().filter(|i| *i < list.len()));
+    let cause = || format!("no entry of the list is called `{step}`");
+    let cure = || match names.is_empty() {
+        true => format!("use a number below {}", list.len()),
+        false => format!(
+            "use one of {}, or a number below {}",
+            names.join(", "),
+            list.len()
+        ),
+    };
+    let (cause, cure) = (cause(), cure());
+    found.and_then(|i| list.get_mut(i)).ok_or((cause, cure))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bench() -> Scene {
+        Scene::load("bench").unwrap()
+    }
+
+    /// The file's own keys, written by hand, make the same scene.
+    #[test]
+    fn a_replaced_key_is_that_of_a_file() {
+        let text = bench().text.replace("pixels = [32, 32]", "pixels = [8, 4]");
+        let by_hand = Scene::from_toml("bench", &text).unwrap();
+        let replaced = bench().with(&[("camera.pixels", "[8, 4]")]).unwrap();
+        assert_ne!(by_hand.hash, bench().hash);
+        assert_eq!(replaced.hash, by_hand.hash);
+    }
+
+    #[test]
+    fn entries_of_lists_have_names_and_numbers() {
+        let by = |key| bench().with(&[(key, "0.25")]).unwrap().hash;
+        let named = by("surface.wall.material.lambertian");
+        assert_eq!(named, by("surface.0.material.lambertian"));
+        assert_ne!(named, bench().hash);
+    }
+
+    #[test]
+    fn what_cannot_be_is_told_with_a_cure() {
+        for (key, value, cause, cure) in [
+            ("camera.pixels", "[8, ", "no value in TOML", "brackets"),
+            (
+                "camera.pixels",
+                "1\nname = 2",
+                "no value in TOML",
+                "brackets",
+            ),
+            ("camera.pixel", "[8, 8]", "unknown field `pixel`", "pixels"),
+            ("surface.door.material", "1", "called `door`", "wall"),
+            ("unit.of.length", "1", "has no keys", "whole table"),
+            ("camera..pixels", "1", "no name", "camera.pixels"),
+            ("camera.pixels", "[0, 8]", "pixel", "1"),
+        ] {
+            let error = bench().with(&[(key, value)]).unwrap_err();
+            assert!(error.cause.contains(cause), "{key}: {}", error.cause);
+            assert!(error.cure.contains(cure), "{key}: {}", error.cure);
+        }
+    }
+
+    #[test]
+    fn files_are_read_where_they_were() {
+        let dir = tempfile::tempdir().unwrap();
+        let text = bench().text;
+        std::fs::write(dir.path().join("own.toml"), text).unwrap();
+        let path = dir.path().join("own.toml");
+        let scene = Scene::load(&path.to_string_lossy()).unwrap();
+        let picture = [(
+            "surface.object.material.lambertian",
+            "{ image = \"absent.png\" }",
+        )];
+        let error = scene.with(&picture).unwrap_err();
+        assert!(error.to_string().contains("absent.png"), "{error}");
+    }
+}
