@@ -1,0 +1,103 @@
+"""Arrays as they come from users."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import InputError
+
+Floats = NDArray[np.float64]
+
+
+def matrix(value: ArrayLike, name: str) -> NDArray[Any]:
+    """`value` as an array of two dimensions of float64 or float32, without a copy where it is one. One of one dimension
+    is one column: a single photograph."""
+    if isinstance(value, np.ma.MaskedArray):
+        raise InputError(f"{name} is a masked array\n  cure: give its data, and its mask as left_out=")
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError, RuntimeError) as error:
+        raise InputError(f"{name} is no array: {error}\n  cure: give numbers in rows of one length") from error
+    if array.dtype.kind not in "fiub":
+        raise InputError(f"{name} holds {array.dtype}\n  cure: give real numbers")
+    if array.ndim == 1:
+        array = array[:, np.newaxis]
+    if array.ndim != 2:
+        cure = "reshape it to pixels × spots, pixel = column + row · columns"
+        raise InputError(f"{name} has {array.ndim} dimensions\n  cure: {cure}")
+    if array.size == 0:
+        raise InputError(f"{name} is empty: {array.shape}\n  cure: give at least one entry")
+    if array.dtype not in (np.dtype("=f8"), np.dtype("=f4")) or not array.flags.aligned:
+        array = array.astype(np.float64)
+    return array
+
+
+def maybe(value: ArrayLike | None, name: str) -> NDArray[Any] | None:
+    """The same where there may be none."""
+    return None if value is None else matrix(value, name)
+
+
+def shaped(array: NDArray[Any], shape: tuple[int, int], name: str) -> NDArray[Any]:
+    """`array` if it has this shape."""
+    if array.shape == shape:
+        return array
+    rows, columns = array.shape
+    raise InputError(
+        f"{name} is {rows} × {columns}, and {shape[0]} × {shape[1]} are expected\n  cure: give pixels × spots"
+    )
+
+
+def vector(value: ArrayLike, name: str) -> Floats:
+    """Finite numbers in one row."""
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError, RuntimeError) as error:
+        raise InputError(f"{name} is no array: {error}\n  cure: give numbers") from error
+    if array.dtype.kind not in "fiub":
+        raise InputError(f"{name} holds {array.dtype}\n  cure: give real numbers")
+    flat = np.ascontiguousarray(array, dtype=np.float64).reshape(-1)
+    if not np.isfinite(flat).all():
+        raise InputError(f"{name} has an entry that is not finite\n  cure: give finite numbers")
+    return flat
+
+
+def pair(value: Any, name: str) -> tuple[int, int] | None:
+    """Two whole numbers from 1 on, or None; one number stands for both."""
+    if value is None:
+        return None
+    try:
+        given: list[Any] = [value, value] if np.ndim(value) == 0 else list(value)
+        first, second = (int(x) for x in given)
+        exact = given == [first, second] and not any(isinstance(x, (bool, np.bool_)) for x in given)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{name} is {value!r}\n  cure: give two whole numbers, e.g. (8, 8)") from error
+    if not exact or first < 1 or second < 1:
+        raise InputError(f"{name} is {value!r}\n  cure: give two whole numbers from 1 on, e.g. (8, 8)")
+    return first, second
+
+
+def whole(value: Any, name: str, least: int = 0, most: int = 2**64 - 1) -> int:
+    """A whole number in a range."""
+    try:
+        number = int(value)
+        exact = not isinstance(value, bool) and number == value
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InputError(f"{name} is {value!r}\n  cure: give a whole number") from error
+    if not exact or not least <= number <= most:
+        raise InputError(f"{name} is {value!r}\n  cure: give a whole number, {least} to {most}")
+    return number
+
+
+def number(value: Any, name: str, fine: str, holds: Callable[[float], bool]) -> float:
+    """A finite number for which `holds`; `fine` says in words which."""
+    try:
+        found = float(value)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{name} is {value!r}\n  cure: give a number {fine}") from error
+    if not np.isfinite(found) or not holds(found):
+        raise InputError(f"{name} is {value!r}\n  cure: give a number {fine}")
+    return found

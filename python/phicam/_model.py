@@ -1,0 +1,181 @@
+"""The matrix model: Φcam = C · diag(ρ) · D."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _native
+from ._arrays import Floats, matrix, pair, vector
+from ._scene import Scene
+from .errors import InputError
+
+Kernel = Literal["physical", "published"]
+Integration = Literal["centres", "quadrature"]
+
+
+class Model:
+    """G12, G23 and Φcam of a scene, or of two matrices.
+
+    Φcam[p, l] = Φlaser · E_p · (ρ3/π) · (ρ1/π) · Σ_j G23[p, j] · (ρ2_j/π) · A_j · G12[j, l]
+
+    Made by :func:`model` and :func:`model_of`. Arrays are computed at first use, and copies.
+    """
+
+    def __init__(self, native: _native.Model, made_of: tuple[Any, ...]) -> None:
+        self._core, self._made_of = native, made_of
+
+    @property
+    def scene(self) -> Scene | None:
+        """The scene that it is of; None of matrices."""
+        return self._made_of[0] if isinstance(self._made_of[0], Scene) else None
+
+    @property
+    def kernel(self) -> str:
+        """Its kernel."""
+        return str(self._made_of[1]) if self.scene is not None else "physical"
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Pixels, elements, spots."""
+        return self._core.shape
+
+    @property
+    def grids(self) -> dict[str, tuple[int, int]]:
+        """Each surface with its elements along u and v; element iu + iv · nu, surfaces one after the other."""
+        return dict(self._core.grids)
+
+    @cached_property
+    def g12(self) -> Floats:
+        """cosθ · cosθ / R² between spots and elements: elements × spots, length⁻²."""
+        return self._core.g12
+
+    @cached_property
+    def g23(self) -> Floats:
+        """cosθ · cosθ / R² between elements and what pixels see: pixels × elements, length⁻²."""
+        return self._core.g23
+
+    @cached_property
+    def camera_side(self) -> Floats:
+        """C: from elements to pixels, pixels × elements; Φcam = C · diag(ρ) · D."""
+        return self._core.camera_side
+
+    @cached_property
+    def laser_side(self) -> Floats:
+        """D: from spots to elements, elements × spots, W."""
+        return self._core.laser_side
+
+    @cached_property
+    def albedo(self) -> Floats:
+        """The scene's own reflectance of each element; ½ of matrices."""
+        return np.array(self._core.albedo)
+
+    @cached_property
+    def places(self) -> Floats:
+        """Middles of the elements, elements × 3, in the scene's unit; none of matrices."""
+        return self._core.places
+
+    def phi(self, rho: ArrayLike | None = None) -> Floats:
+        """Φcam of these reflectances (the scene's own unless given), pixels × spots, W.
+
+        >>> import phicam
+        >>> model = phicam.model(phicam.Scene("bench"))
+        >>> dark = model.phi([0.0] * model.shape[1])
+        >>> dark.shape, float(dark.max())
+        ((256, 120), 0.0)
+        """
+        albedo = self.albedo if rho is None else vector(rho, "rho")
+        return self._core.phi(albedo.tolist())
+
+    def converged(self) -> tuple[Floats, Floats]:
+        """Φcam of the scene's own reflectances, integrated over elements, footprints and spots until it no longer
+        changes, W, and a bound of what is left of each entry."""
+        return self._core.converged()
+
+    def derivatives(self, name: str, rho: ArrayLike | None = None) -> dict[str, Floats]:
+        """∂Φcam/∂θ, pixels × spots, W per degree, percent or length, of each parameter of the geometry that `name` names
+        (:meth:`Scene.parameters`), by centres and without what stands in the way.
+
+        >>> import phicam
+        >>> slope = phicam.model(phicam.Scene("bench")).derivatives("hinge.angle")
+        >>> slope["hinge.angle"].shape
+        (256, 120)
+        """
+        albedo = self.albedo if rho is None else vector(rho, "rho")
+        if len(albedo) != self.shape[1]:
+            raise InputError(f"rho has {len(albedo)} numbers\n  cure: give one for each of {self.shape[1]} elements")
+        return dict(self._core.derivatives(name, albedo.tolist()))
+
+    def __repr__(self) -> str:
+        pixels, elements, spots = self.shape
+        of = f" of {self.scene.name!r}" if self.scene is not None else ""
+        return f"Model({pixels} pixels, {elements} elements, {spots} spots{of})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_of_scene if self.scene is not None else model_of), self._made_of
+
+
+def _of_scene(
+    scene: Scene, kernel: Kernel, elements: tuple[int, int] | None, occlusion: bool, integration: Integration
+) -> Model:
+    native = _native.Model.of_scene(scene._core, kernel, elements, bool(occlusion), integration)
+    return Model(native, (scene, kernel, elements, occlusion, integration))
+
+
+def model(
+    scene: Scene,
+    *,
+    kernel: Kernel = "physical",
+    elements: tuple[int, int] | int | None = None,
+    occlusion: bool = True,
+    integration: Integration = "centres",
+) -> Model:
+    """The matrix model of a scene: the same numbers as ``phicam model``.
+
+    Parameters
+    ----------
+    kernel : str
+        ``physical``, or ``published`` for reproducing the published curves.
+    elements : (int, int), optional
+        Elements along u and v in place of the scene's.
+    occlusion : bool
+        Whether what stands in the way takes its share of each entry.
+    integration : str
+        ``centres`` of elements, pixels and spots; ``quadrature`` integrates the light of each of up to 1024 elements over
+        its area, footprints and spots.
+
+    >>> import phicam
+    >>> phicam.model(phicam.Scene("bench"), elements=(4, 4))
+    Model(256 pixels, 16 elements, 120 spots of 'bench')
+    """
+    return _of_scene(scene, kernel, pair(elements, "elements"), occlusion, integration)
+
+
+def model_of(
+    camera_side: ArrayLike,
+    laser_side: ArrayLike | None = None,
+    elements: tuple[int, int] | None = None,
+) -> Model:
+    """The model Φ = C · diag(x) · D of matrices that were measured or computed elsewhere.
+
+    Parameters
+    ----------
+    camera_side : array, pixels × elements
+        C.
+    laser_side : array, elements × spots, optional
+        D; one column of ones unless given: a single photograph Φ = C · x.
+    elements : (int, int), optional
+        How the elements lie, along u and v; needed by methods that compare neighbours.
+
+    >>> import phicam, numpy
+    >>> phicam.model_of(numpy.eye(3))
+    Model(3 pixels, 3 elements, 1 spots)
+    """
+    camera = matrix(camera_side, "camera_side")
+    count = camera.shape[1]
+    laser = np.ones((count, 1)) if laser_side is None else matrix(laser_side, "laser_side")
+    native = _native.Model.of_sides(camera, laser, pair(elements, "elements") or (count, 1))
+    return Model(native, (camera, None if laser_side is None else laser, elements))

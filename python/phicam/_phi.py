@@ -1,0 +1,288 @@
+"""Φcam: one photograph for each laser spot."""
+
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _html, _native
+from ._arrays import Floats, matrix, maybe, shaped, whole
+from ._progress import Progress, told
+from ._scene import Scene
+from .errors import InputError, Suspicious
+
+Estimator = Literal["independent", "shared", "factored"]
+Sampler = Literal["sobol", "pcg"]
+
+#: How the errors of the entries hang together, by estimator.
+ERRORS = {"independent": "independent", "shared": "pixel", "factored": "all"}
+
+
+class Phi:
+    """Φcam with its standard errors, pixels × spots, W (of photographs whose scale is unknown in counts).
+
+    Made by :func:`render`, :func:`load` and :func:`import_photographs`, or of arrays: ``Phi(scene, flux, stderr)``.
+
+    Attributes
+    ----------
+    scene : Scene
+        Where it is from.
+    flux : ndarray, pixels × spots
+        Φcam, W; pixel p = column + row · columns.
+    stderr : ndarray, pixels × spots, or None
+        Standard error of each entry; None where nothing is known of the noise.
+    left_out : ndarray, pixels × spots, or None
+        Not 0 where an entry does not count: of a render where its standard error is not to be trusted (``tails``), of
+        photographs why it is left out.
+    by_bounces : tuple of ndarrays, or None
+        Light that met exactly 1, 2, … surfaces; its sum is `flux`. None where it was not traced here.
+    settings : dict
+        Estimator, sampler, seed, samples, blocks, seconds of a render.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        flux: ArrayLike,
+        stderr: ArrayLike | None = None,
+        *,
+        left_out: ArrayLike | None = None,
+        by_bounces: Iterable[ArrayLike] | None = None,
+        settings: Mapping[str, Any] | None = None,
+        account: Mapping[str, Any] | None = None,
+    ) -> None:
+        def whole_of(array: Any, name: str) -> Any:
+            return None if array is None else shaped(array, scene.shape, name)
+
+        self.scene = scene
+        self.flux: Any = whole_of(matrix(flux, "flux"), "flux")
+        self.stderr: Any = whole_of(maybe(stderr, "stderr"), "stderr")
+        self.left_out: Any = whole_of(maybe(left_out, "left_out"), "left_out")
+        parts = None if by_bounces is None else tuple(matrix(part, "by_bounces") for part in by_bounces)
+        self.by_bounces: tuple[Any, ...] | None = parts
+        self.settings: dict[str, Any] = dict(settings or {})
+        #: Of :func:`phicam.expose`: 1 where an entry is saturated, −1 where it was cut off below, 0.5 near the upper end.
+        self.clipped: Any = None
+        #: How photographs were imported; empty of a render.
+        self.account: dict[str, Any] = dict(account or {})
+
+    @property
+    def is_rendered(self) -> bool:
+        """Whether its standard errors are those of a render, estimated from so many blocks."""
+        return "blocks" in self.settings
+
+    @property
+    def replicates(self) -> int | None:
+        """Blocks that the standard errors were estimated from; None where they are taken as known."""
+        return self.settings.get("blocks")
+
+    @property
+    def errors(self) -> str:
+        """How the errors of the entries hang together: independent, pixel (those of one pixel), all."""
+        return ERRORS.get(self.settings.get("estimator", ""), "independent")
+
+    def frame(self, spot: int) -> Floats:
+        """The photograph of a spot, rows × columns, W; row 0 is the lowest: ``imshow(…, origin="lower")``.
+
+        >>> import phicam
+        >>> phicam.render(phicam.Scene("bench").replace({"laser.spots.per_side": 2}), samples=32).frame(0).shape
+        (16, 16)
+        """
+        if not -self.flux.shape[1] <= spot < self.flux.shape[1]:
+            raise InputError(f"spot is {spot}\n  cure: there are spots 0 to {self.flux.shape[1] - 1}")
+        columns, rows = self.scene.pixels
+        found: Floats = self.flux[:, spot].reshape(rows, columns)
+        return found
+
+    def to_xarray(self) -> Any:
+        """An ``xarray.Dataset`` of flux and stderr over (row, column, spot), with positions and units.
+
+        >>> import phicam
+        >>> phicam.render(phicam.Scene("bench").replace({"laser.spots.per_side": 2}), samples=32).to_xarray().flux.dims
+        ('row', 'column', 'spot')
+        """
+        import xarray
+
+        columns, rows = self.scene.pixels
+        shape = (rows, columns, self.flux.shape[1])
+        unit = {"units": self.account.get("unit", "W")}
+        data: dict[str, Any] = {"flux": (("row", "column", "spot"), self.flux.reshape(shape), unit)}
+        if self.stderr is not None:
+            data["stderr"] = (("row", "column", "spot"), self.stderr.reshape(shape), unit)
+        if self.left_out is not None:
+            data["left_out"] = (("row", "column", "spot"), self.left_out.reshape(shape), {})
+        places, spots = self.scene.footprints.reshape(rows, columns, 3), self.scene.spots
+        length = {"units": self.scene.unit}
+        coords: dict[str, Any] = {f"pixel_{name}": (("row", "column"), places[..., k], length) for k, name in enumerate("xyz")}
+        coords |= {f"spot_{name}": (("spot",), spots[:, k], length) for k, name in enumerate("xyz")}
+        return xarray.Dataset(data, coords, {"scene": self.scene.name, "hash": self.scene.hash, **self.settings})
+
+    def save(self, folder: str | os.PathLike[str]) -> None:
+        """Writes a render into `folder`, which is made, or is empty, as ``phicam render`` does: every command reads it.
+
+        Raises FileError where the folder holds anything, and InputError of what was not rendered here whole.
+
+        >>> import phicam, tempfile
+        >>> folder = tempfile.mkdtemp()
+        >>> phi = phicam.render(phicam.Scene("bench").replace({"laser.spots.per_side": 2}), samples=32)
+        >>> phi.save(folder)
+        >>> bool((phicam.load(folder).flux == phi.flux).all())
+        True
+        """
+        if self.by_bounces is None or self.stderr is None or not self.is_rendered:
+            raise InputError(
+                "only a whole render can be written as a run\n  cure: numpy.save(…, phi.flux), and phi.stderr beside it"
+            )
+        own = self.settings
+        _native.write_run(
+            Path(folder),
+            self.scene._core,
+            self.flux,
+            self.stderr,
+            np.zeros_like(self.flux) if self.left_out is None else self.left_out,
+            list(self.by_bounces),
+            estimator=own["estimator"],
+            sampler=own["sampler"],
+            seed=own["seed"],
+            samples=own["samples"],
+            seconds=own["seconds"],
+            threads=own["threads"],
+        )
+
+    def refuse_clipped(self) -> None:
+        """Raises InputError where entries are saturated or cut off: neither they nor their standard errors mean
+        anything."""
+        marked = 0 if self.clipped is None else int((np.abs(self.clipped) >= 1).sum())
+        if marked:
+            raise InputError(
+                f"{marked} of {self.flux.size} entries are saturated or cut off: neither their values nor their standard "
+                "errors mean anything\n  cure: expose for a shorter time or in brackets; left_out=phi.clipped leaves them "
+                "out of the joint methods"
+            )
+
+    def __repr__(self) -> str:
+        pixels, spots = self.flux.shape
+        own = ", ".join(f"{key} {self.settings[key]}" for key in ("estimator", "samples", "seed") if key in self.settings)
+        return f"Phi({pixels} pixels × {spots} spots of {self.scene.name!r}{': ' + own if own else ''})"
+
+    def _repr_html_(self) -> str:
+        columns, rows = self.scene.pixels
+        axes, width = ("x", "y"), 2.0
+        panels = [("mean of all spots", self.flux.mean(axis=1), axes), ("spot 0", self.flux[:, 0], axes)]
+        if self.stderr is not None:
+            panels.append(("its standard error", self.stderr[:, 0], axes))
+        drawn = [(name, np.asarray(v, dtype=float).reshape(rows, columns), a, width) for name, v, a in panels]
+        unit = str(self.account.get("unit", "W"))
+        return _html.sentence(repr(self)) + _html.gallery("", unit, drawn)
+
+
+def render(
+    scene: Scene,
+    *,
+    samples: int = 512,
+    estimator: Estimator = "independent",
+    sampler: Sampler = "sobol",
+    seed: int = 1,
+    threads: int | None = None,
+    progress: Progress = False,
+) -> Phi:
+    """Traces Φcam of every spot: the same bytes as ``phicam render``.
+
+    Parameters
+    ----------
+    scene : Scene
+    samples : int
+        Paths per pixel and spot (``independent``), paths per pixel (``shared``) or points between the walls
+        (``factored``), rounded up to whole blocks.
+    estimator : str
+        What paths have in common: ``independent`` errors are independent; ``shared`` paths of a pixel serve all spots;
+        ``factored`` points serve all pixels and spots. All are unbiased.
+    sampler : str
+        ``sobol``: Owen-scrambled Sobol' points; ``pcg``: independent random numbers.
+    seed : int
+        The same seed gives the same bytes, whatever the threads.
+    threads : int, optional
+        All cores unless given.
+    progress : bool or function of (done, of)
+        A line on standard error, or a call from the calling thread.
+
+    Returns
+    -------
+    Phi
+        W, absolute.
+
+    Examples
+    --------
+    >>> import phicam
+    >>> scene = phicam.Scene("bench").replace({"laser.spots.per_side": 2})
+    >>> phi = phicam.render(scene, samples=64, estimator="shared")
+    >>> phi
+    Phi(256 pixels × 8 spots of 'bench': estimator shared, samples 64, seed 1)
+    >>> bool((phi.stderr < 0.2 * phi.flux.max()).all())
+    True
+    """
+    count, spots = whole(samples, "samples", 1, 2**32), scene.shape[1]
+    paths = count if estimator == "factored" else count * scene.shape[0]
+    total = paths * (spots if estimator == "independent" else 1)
+    for text in scene.warnings:
+        warnings.warn(text, Suspicious, stacklevel=2)
+    found = _native.render(
+        scene._core,
+        estimator=estimator,
+        sampler=sampler,
+        seed=whole(seed, "seed"),
+        samples=count,
+        spots=(0, spots),
+        threads=threads,
+        progress=told(f"render {scene.name}", progress, total),
+    )
+    settings = {
+        "estimator": estimator,
+        "sampler": sampler,
+        "seed": int(seed),
+        "samples": found["samples"],
+        "blocks": found["blocks"],
+        "seconds": found["seconds"],
+        "threads": threads or os.cpu_count() or 1,
+    }
+    return Phi(
+        scene,
+        found["flux"],
+        found["stderr"],
+        left_out=found["tails"],
+        by_bounces=found["bounces"],
+        settings=settings,
+    )
+
+
+def load(folder: str | os.PathLike[str], *, also_read: Iterable[str | os.PathLike[str]] = ()) -> Phi:
+    """The run or import in `folder`, as ``phicam render``, ``run``, ``import`` or :meth:`Phi.save` wrote it.
+
+    Raises FileError where it is no run, unfinished, or not what was written.
+
+    >>> import phicam
+    >>> try:
+    ...     phicam.load("nowhere")
+    ... except phicam.FileError as error:
+    ...     error.cause
+    'nowhere is not the folder of a run: it has no run.json'
+    """
+    native, found = _native.read_run(Path(folder), [Path(p) for p in also_read])
+    record = json.loads(found["record"])
+    keys = ("estimator", "sampler", "seed", "samples", "blocks", "seconds", "threads")
+    rendered = "estimator" in record
+    return Phi(
+        Scene._of(native),
+        found["flux"],
+        found["stderr"],
+        left_out=found["left_out"],
+        settings={key: record[key] for key in keys} if rendered else {},
+        account={} if rendered else {"unit": record["imported"]["flux_unit"], **record["imported"]},
+    )

@@ -1,0 +1,427 @@
+"""From the photographs back to the hidden reflectance."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from html import escape
+from typing import Any, Literal, TypedDict
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _html, _native
+from ._arrays import Floats, matrix, maybe, number, pair, shaped, vector, whole
+from ._model import Integration, Kernel, Model, model, model_of
+from ._phi import Phi
+from ._scene import Scene
+from ._verdict import Errors
+from .errors import InputError
+
+#: Methods that work on all pixels and spots at once.
+JOINT = ("joint-unbounded", "joint", "nnls", "joint-gp", "joint-tv", "joint-two-valued")
+#: Methods that compare neighbouring elements.
+NEIGHBOURS = ("joint-gp", "joint-tv", "tikhonov-gradient")
+#: Methods that each setting means something to.
+TAKEN_BY: dict[str, tuple[str, ...]] = {
+    "rank": ("tsvd",),
+    "damping": ("tikhonov", "tikhonov-gradient"),
+    "tolerance": ("pinv", "left-inverse", "right-inverse", "rdivide", "rdivide-min-norm", "joint-unbounded"),
+    "tv": ("joint-tv",),
+    "levels": ("joint-two-valued",),
+    **dict.fromkeys(
+        (
+            "weighting frame_constant frame_polynomial frame_patterns background glare_pattern free_scale "
+            "frame_gain scale_error left_out"
+        ).split(),
+        JOINT,
+    ),
+}
+
+
+class Surface:
+    """What was recovered of one hidden surface.
+
+    Arrays are elements in the order iu + iv · nu, or None where they are not known.
+
+    Attributes
+    ----------
+    reflectance, stderr : ndarray, elements
+        The reflectances, and their standard errors.
+    lower, upper : ndarray
+        Bands, where they were asked for.
+    bias : ndarray
+        What the method makes of the truth, less the truth, where it is linear and the truth known.
+    light : ndarray
+        Probability to be light (``joint-two-valued``).
+    determined : ndarray
+        How much of each element the photographs determine by any method, 0 to 1.
+    truth : ndarray
+        The true albedos.
+    covariance, resolution : ndarray
+        Elements × elements of all surfaces.
+    values : dict
+        All else: fit, choice of parameters, scores, warnings.
+    """
+
+    def __init__(self, found: dict[str, Any]) -> None:
+        self.values: dict[str, Any] = json.loads(found["json"])
+        self.name: str = self.values["surface"]
+        self.elements: tuple[int, int] = tuple(self.values["elements"])
+        self.reflectance: Floats = found["reflectance"]
+        self.stderr: Floats | None = found["stderr"]
+        self.lower: Floats | None = found["lower"]
+        self.upper: Floats | None = found["upper"]
+        self.bias: Floats | None = found["bias"]
+        self.light: Floats | None = found["light"]
+        self.determined: Floats | None = found["determined"]
+        self.truth: Floats | None = found["truth"]
+        self.covariance: Floats | None = found["covariance"]
+        self.resolution: Floats | None = found["resolution"]
+        self._text: str = found["text"]
+
+    def picture(self, values: ArrayLike | None = None) -> Floats:
+        """`values` of the elements (the reflectances unless given) as a picture: nv × nu, row 0 the lowest."""
+        nu, nv = self.elements
+        flat = self.reflectance if values is None else vector(values, "values")
+        if flat.size != nu * nv:
+            raise InputError(f"values has {flat.size} numbers\n  cure: give {nu * nv}, one for each element")
+        return flat.reshape(nv, nu)
+
+
+class Recovery:
+    """What one method recovered, with how sure it is.
+
+    Attributes
+    ----------
+    method : str
+    surfaces : tuple of Surface
+        The hidden surfaces in the order of the scene's file.
+    others : tuple of Recovery
+        What other methods recovered that were tried, the more trusted first.
+    failed : dict
+        Methods that could not work, and why.
+    """
+
+    def __init__(self, surfaces: Sequence[Surface]) -> None:
+        self.surfaces = tuple(surfaces)
+        self.method: str = self.surfaces[0].values["method"]
+        self.others: tuple[Recovery, ...] = ()
+        self.failed: dict[str, str] = {}
+
+    def _all(self, name: str) -> Floats | None:
+        parts = [getattr(surface, name) for surface in self.surfaces]
+        return None if any(part is None for part in parts) else np.concatenate(parts)
+
+    @property
+    def reflectance(self) -> Floats:
+        """The reflectances of all elements, surfaces one after the other."""
+        return np.concatenate([surface.reflectance for surface in self.surfaces])
+
+    @property
+    def stderr(self) -> Floats | None:
+        """Their standard errors."""
+        return self._all("stderr")
+
+    @property
+    def lower(self) -> Floats | None:
+        """Lower ends of their bands."""
+        return self._all("lower")
+
+    @property
+    def upper(self) -> Floats | None:
+        """Upper ends of their bands."""
+        return self._all("upper")
+
+    @property
+    def truth(self) -> Floats | None:
+        """Their true values, where the scene knows them."""
+        return self._all("truth")
+
+    @property
+    def covariance(self) -> Floats | None:
+        """Covariance of the reflectances, elements × elements, of methods that are linear in Φcam."""
+        return _stacked([surface.covariance for surface in self.surfaces])
+
+    @property
+    def resolution(self) -> Floats | None:
+        """What the method makes of the truth: reflectance = resolution · truth on average; elements × elements."""
+        return _stacked([surface.resolution for surface in self.surfaces])
+
+    def picture(self, surface: int = 0) -> Floats:
+        """The reflectances of a surface as a picture, nv × nu, row 0 the lowest: ``imshow(…, origin="lower")``."""
+        return self.surfaces[surface].picture()
+
+    @property
+    def fit(self) -> dict[str, Any] | None:
+        """How well it explains the photographs: chi2_per_dof, dof, p, fits; None where nothing is known of the noise."""
+        found: dict[str, Any] | None = self.surfaces[0].values["fit"]
+        return found
+
+    @property
+    def is_refuted(self) -> bool:
+        """Whether no reflectances between 0 and 1 explain the photographs: then the model is wrong."""
+        best = self.surfaces[0].values["best_fit"]
+        return best is not None and not best["fits"]
+
+    @property
+    def warnings(self) -> list[str]:
+        """What to know before this picture is trusted."""
+        return [text for surface in self.surfaces for text in surface.values["warnings"]]
+
+    def __str__(self) -> str:
+        return "\n".join(surface._text for surface in self.surfaces)
+
+    def __repr__(self) -> str:
+        count = self.reflectance.size
+        fit = "" if self.fit is None else f", χ²/dof {self.fit['chi2_per_dof']:.3g}"
+        told = ", REFUTED" if self.is_refuted else ""
+        return f"Recovery({self.method!r}, {count} elements{fit}{told})"
+
+    def _repr_html_(self) -> str:
+        parts = [_html.sentence(repr(self), "Bad" if self.is_refuted else "Plain")]
+        for surface in self.surfaces:
+            named = [("recovered", surface.reflectance), ("standard error", surface.stderr), ("truth", surface.truth)]
+            drawn: list[_html.Panel] = [
+                (name, surface.picture(values), ("u", "v"), 2.0) for name, values in named if values is not None
+            ]
+            parts.append(_html.gallery(surface.name, "reflectance", drawn, reflectance=True))
+        parts += [f"<p>{escape(text)}</p>" for text in self.warnings]
+        return "\n".join(parts)
+
+
+def _stacked(parts: list[Floats | None]) -> Floats | None:
+    found = [part for part in parts if part is not None]
+    return np.concatenate(found) if len(found) == len(parts) else None
+
+
+class _Settings(TypedDict):
+    rank: int | None
+    damping: float | None
+    rule: str | None
+    tolerance: float | None
+    tv: float | None
+    levels: tuple[float, float] | None
+    weighting: str | None
+    bands: float | None
+    frame_constant: bool
+    frame_polynomial: int | None
+    background: bool
+    free_scale: bool
+    frame_gain: float | None
+    scale_error: float | None
+    pixels: tuple[int, int] | None
+
+
+def recover(
+    phi: Phi | ArrayLike,
+    model: Scene | Model | ArrayLike | tuple[ArrayLike, ArrayLike] | None = None,
+    method: str | Sequence[str] | None = None,
+    *,
+    stderr: ArrayLike | None = None,
+    noise: float | None = None,
+    left_out: ArrayLike | None = None,
+    elements: tuple[int, int] | int | None = None,
+    kernel: Kernel = "physical",
+    integration: Integration = "quadrature",
+    occlusion: bool = True,
+    rank: int | None = None,
+    damping: float | None = None,
+    rule: Literal["discrepancy", "gcv", "l-curve"] | None = None,
+    tolerance: float | None = None,
+    tv: float | None = None,
+    levels: tuple[float, float] | None = None,
+    weighting: Literal["noise", "entries", "none"] | None = None,
+    bands: float | None = None,
+    frame_constant: bool = False,
+    frame_polynomial: int | None = None,
+    frame_patterns: ArrayLike | None = None,
+    background: bool = False,
+    glare_pattern: ArrayLike | None = None,
+    free_scale: bool = False,
+    frame_gain: float | None = None,
+    scale_error: float | None = None,
+    errors: Errors | None = None,
+    replicates: int | None = None,
+    pixels: tuple[int, int] | None = None,
+    threads: int | None = None,
+) -> Recovery:
+    """Recovers what was hidden, as ``phicam recover`` does.
+
+    Parameters
+    ----------
+    phi : Phi, or array
+        Photographs, pixels × spots; one photograph may be a vector.
+    model : Scene, Model, array A, or pair (C, D)
+        What they are inverted by: the scene of `phi` unless given; a matrix of one's own, φ = A · x, pixels × elements;
+        or the two sides of Φ = C · diag(x) · D.
+    method : str or several, optional
+        One of :func:`methods`. Unless given the usual ones are tried, and the most trusted is returned with the others as
+        ``others``.
+    stderr, noise : array or float
+        Standard errors, in place of those of `phi`; or relative to each entry. Without either, of an array nothing is
+        known of the noise.
+    left_out : array
+        Not 0 where an entry does not count (joint methods); of photographs their own unless given.
+    elements : (int, int)
+        Elements along u and v in place of the scene's; of matrices how they lie.
+    kernel, integration, occlusion
+        As in :func:`phicam.model`, where a scene is given.
+    rank, damping, rule, tolerance, tv, levels, weighting
+        Parameters of methods; by their own rule unless given.
+    bands : float
+        Confidence of bands, e.g. 0.95.
+    frame_constant, frame_polynomial, frame_patterns, background, glare_pattern, free_scale, frame_gain, scale_error
+        What else the photographs hold, estimated with the reflectances (joint methods): a constant, a polynomial of that
+        degree, or patterns (pixels × patterns) in each frame; a background of all frames; strength of glare (pixels ×
+        spots); a free scale of all light; gains of the frames, or the scale, known to that standard deviation.
+    errors, replicates
+        As in :func:`phicam.validate`.
+    pixels : (int, int)
+        Columns and rows of a photograph, where `phi` is an array.
+
+    Raises
+    ------
+    InputError
+        What a method lacks, with how to supply it; matrices that do not fit.
+
+    Examples
+    --------
+    >>> import numpy, phicam
+    >>> A = numpy.random.default_rng(1).random((40, 6))
+    >>> x = numpy.array([0.1, 0.9, 0.4, 0.6, 0.2, 0.8])
+    >>> found = phicam.recover(A @ x, A, "joint", noise=1e-3)
+    >>> bool(numpy.abs(found.reflectance - x).max() < 1e-2)
+    True
+    """
+    if isinstance(phi, Phi):
+        flux = phi.flux
+        if left_out is None:
+            phi.refuse_clipped()
+        own = stderr is None and noise is None
+        if own:
+            stderr = phi.stderr
+            errors = errors or phi.errors  # type: ignore[assignment]
+            replicates = phi.replicates if replicates is None else replicates
+        if left_out is None and not phi.is_rendered:
+            left_out = phi.left_out
+        model = phi.scene if model is None else model
+        pixels = phi.scene.pixels
+    else:
+        flux = matrix(phi, "phi")
+    inverse = _inverse(model, (kernel, integration, occlusion), elements)
+    count = inverse.shape
+    flux = shaped(flux, (count[0], count[2]), "phi")
+    if inverse.scene is not None:
+        pixels = inverse.scene.pixels
+    pixels = pair(pixels, "pixels")
+    if pixels is not None and pixels[0] * pixels[1] != count[0]:
+        raise InputError(f"pixels is {pixels}\n  cure: give columns and rows of {count[0]} pixels")
+    if noise is not None:
+        if stderr is not None:
+            raise InputError("stderr and noise are both given\n  cure: give one of them")
+        factor = number(noise, "noise", "above 0: relative to each entry, e.g. 0.01", lambda x: x > 0)
+        stderr = np.abs(np.asarray(flux, dtype=np.float64)) * factor
+    named = None if method is None else [method] if isinstance(method, str) else list(method)
+    if named is not None and (not named or len(set(named)) < len(named)):
+        raise InputError(f"method is {method!r}\n  cure: name one or several methods, each once")
+    lies = inverse.scene is not None or inverse._made_of[2] is not None
+    tried = named if named is not None else None if lies else _alone(count[1])
+    if not lies and named is not None and any(name in NEIGHBOURS for name in named):
+        raise InputError(
+            f"{', '.join(named)} compares neighbours, and nothing says how the elements lie\n  cure: give elements=(nu, nv)"
+        )
+    settings = _Settings(
+        rank=None if rank is None else whole(rank, "rank", 1),
+        damping=_within(damping, "damping", "0 or more: a fraction of σ1", lambda x: x >= 0),
+        rule=rule,
+        tolerance=_within(tolerance, "tolerance", "0 or more and below 1: a fraction of σ1", lambda x: 0 <= x < 1),
+        tv=_within(tv, "tv", "0 or more: a fraction of σ1²", lambda x: x >= 0),
+        levels=None if levels is None else (float(levels[0]), float(levels[1])),
+        weighting=weighting,
+        bands=_within(bands, "bands", "between 0 and 1: a probability, e.g. 0.95", lambda x: 0 < x < 1),
+        frame_constant=bool(frame_constant),
+        frame_polynomial=None if frame_polynomial is None else whole(frame_polynomial, "frame_polynomial", 0, 8),
+        background=bool(background),
+        free_scale=bool(free_scale),
+        frame_gain=_within(frame_gain, "frame_gain", "above 0 and at most 1", lambda x: 0 < x <= 1),
+        scale_error=_within(scale_error, "scale_error", "above 0 and at most 1", lambda x: 0 < x <= 1),
+        pixels=pixels,
+    )
+    flags, patterns = maybe(left_out, "left_out"), maybe(frame_patterns, "frame_patterns")
+    glare = maybe(glare_pattern, "glare_pattern")
+    given = {**settings, "left_out": flags, "frame_patterns": patterns, "glare_pattern": glare}
+    _used(given, named)
+    found, failed = _native.recover(
+        inverse._core,
+        flux,
+        None if stderr is None else shaped(matrix(stderr, "stderr"), flux.shape, "stderr"),
+        None if flags is None else shaped(flags, flux.shape, "left_out"),
+        None if glare is None else shaped(glare, flux.shape, "glare_pattern"),
+        patterns,
+        methods=tried,
+        settings=settings,
+        replicates=None if replicates is None else whole(replicates, "replicates", 2, 2**32 - 1),
+        errors_name=errors or "independent",
+        trusted=named is None,
+        threads=threads,
+    )
+    if not found:
+        why = "\n  ".join(f"{name}: {reason}" for name, reason in failed)
+        raise InputError(f"no method could recover anything\n  {why}\n  cure: see the reason of each, or name a method")
+    groups: dict[str, list[Surface]] = {}
+    for surface in map(Surface, found):
+        groups.setdefault(surface.values["method"], []).append(surface)
+    first, *others = (Recovery(surfaces) for surfaces in groups.values())
+    first.others, first.failed = tuple(others), dict(failed)
+    return first
+
+
+def _inverse(given: Any, how: tuple[Kernel, Integration, bool], elements: Any) -> Model:
+    """The model that photographs are inverted by."""
+    kernel, integration, occlusion = how
+    if given is None:
+        cure = "give model=: a Scene, a Model, a matrix A, or the pair (C, D)"
+        raise InputError(f"nothing says what the photographs are inverted by\n  cure: {cure}")
+    if isinstance(given, Scene):
+        return model(given, kernel=kernel, elements=elements, occlusion=occlusion, integration=integration)
+    if isinstance(given, Model):
+        if elements is not None:
+            raise InputError("elements is given with a Model\n  cure: make the model of as many elements")
+        return given
+    if isinstance(given, tuple):
+        sides: tuple[Any, ...] = given  # pyright: ignore[reportUnknownVariableType]
+        if len(sides) != 2:
+            raise InputError(f"model is a tuple of {len(sides)}\n  cure: give the pair (C, D)")
+        return model_of(sides[0], sides[1], pair(elements, "elements"))
+    return model_of(given, None, pair(elements, "elements"))
+
+
+def _alone(elements: int) -> list[str]:
+    """The usual methods but for those that compare neighbours."""
+    few = ["joint-two-valued"] if elements <= 100 else []
+    return ["pinv", "tsvd", "tikhonov", "joint-unbounded", "joint", *few]
+
+
+def _within(value: Any, name: str, fine: str, holds: Callable[[float], bool]) -> float | None:
+    return None if value is None else number(value, name, fine, holds)
+
+
+def _used(settings: dict[str, Any], methods: Sequence[str] | None) -> None:
+    """Refuses settings that none of the methods takes."""
+    for name, takers in TAKEN_BY.items():
+        value = settings.get(name)
+        if value is None or value is False or methods is None or any(method in takers for method in methods):
+            continue
+        cure = f"ask for one that takes it ({', '.join(takers)}), or leave it out"
+        raise InputError(f"{name} means nothing to {', '.join(methods)}\n  cure: {cure}")
+
+
+def methods() -> list[str]:
+    """The names of the methods.
+
+    >>> import phicam
+    >>> "joint-gp" in phicam.methods()
+    True
+    """
+    return list(_native.methods())

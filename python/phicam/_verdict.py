@@ -1,0 +1,144 @@
+"""Traced or measured against modelled."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from numpy.typing import ArrayLike
+
+from . import _native
+from ._arrays import Floats, matrix, maybe, number, shaped, whole
+from ._finding import Finding
+from ._model import Integration, Kernel, Model
+from ._phi import Phi
+from ._scene import Scene
+from .errors import InputError
+
+Errors = Literal["independent", "pixel", "all"]
+
+
+class Verdict(Finding):
+    """Whether Φcam agrees with a model, within its standard errors.
+
+    Attributes
+    ----------
+    z : ndarray, pixels × spots
+        (traced − modelled) over its error, of every entry; nan where it does not count.
+    model : ndarray, pixels × spots
+        The model that was tested, W.
+    """
+
+    def __init__(self, found: dict[str, Any], z: Floats, model: Floats) -> None:
+        super().__init__(found)
+        self.z, self.model = z, model
+
+    @property
+    def agrees(self) -> bool:
+        """Whether no test rejects the model; False too where there is no evidence."""
+        return bool(self.values["agrees"])
+
+    @property
+    def evidence(self) -> bool:
+        """Whether anything that counts was lit."""
+        return bool(self.values["evidence"])
+
+    @property
+    def chi2_per_dof(self) -> float:
+        """χ² over its degrees of freedom: 1 on average of a right model."""
+        return float(self.values["chi2_per_dof"])
+
+    @property
+    def best_scale(self) -> tuple[float, float]:
+        """Factor on the model that fits best, and its standard error."""
+        return float(self.values["best_scale"]), float(self.values["best_scale_stderr"])
+
+    def __bool__(self) -> bool:
+        return self.agrees
+
+    def __repr__(self) -> str:
+        word = "agrees" if self.agrees else "no evidence" if not self.evidence else "DISAGREES"
+        return f"Verdict({word}, χ²/dof {self.values['chi2_per_dof']})"
+
+
+def validate(
+    phi: Phi | ArrayLike,
+    model: Scene | Model | None = None,
+    *,
+    stderr: ArrayLike | None = None,
+    left_out: ArrayLike | None = None,
+    integration: Integration = "quadrature",
+    kernel: Kernel | None = None,
+    occlusion: bool = True,
+    significance: float = 1e-3,
+    errors: Errors | None = None,
+    replicates: int | None = None,
+    threads: int | None = None,
+) -> Verdict:
+    """Tests Φcam against the matrix model of a scene, as ``phicam validate`` does.
+
+    Parameters
+    ----------
+    phi : Phi, or array of pixels × spots, W
+        An array needs `stderr` and `model`.
+    model : Scene or Model, optional
+        What it is tested against: the scene of `phi` unless given.
+    stderr : array, pixels × spots
+        Standard errors in place of those of `phi`.
+    left_out : array, pixels × spots
+        Not 0 where an entry does not count; those of `phi` unless given.
+    integration : str
+        ``quadrature`` until nothing changes, or by ``centres``, whose distance from the integral is then allowed for.
+    significance : float
+        Probability of rejecting a right model.
+    errors : str
+        How errors hang together: ``independent``, ``pixel`` (those of one pixel), ``all``; that of `phi` unless given.
+    replicates : int
+        From how many replicates each standard error was estimated; that of `phi`, else as many as one likes.
+
+    >>> import phicam
+    >>> scene = phicam.Scene("bench").replace({"laser.spots.per_side": 2, "camera.pixels": (4, 4)})
+    >>> phi = phicam.render(scene, samples=64)
+    >>> phicam.validate(phi).agrees
+    True
+    >>> wrong = scene.displaced({"hinge.angle": 2.0})
+    >>> phicam.validate(phi, wrong).agrees
+    False
+    """
+    if isinstance(phi, Phi):
+        scene, flux = phi.scene, phi.flux
+        own = stderr is None
+        stderr = phi.stderr if own else stderr
+        left_out = phi.left_out if left_out is None else left_out
+        errors = errors or (phi.errors if own else "independent")  # type: ignore[assignment]
+        replicates = phi.replicates if own and replicates is None else replicates
+    elif model is None:
+        raise InputError("nothing says of which scene the array is\n  cure: give model=, a Scene or a Model")
+    else:
+        scene, flux = None, matrix(phi, "phi")
+    if isinstance(model, Model):
+        if model.scene is None:
+            raise InputError("a model of matrices has no scene\n  cure: give phicam.model(scene), or recover by it")
+        kernel = kernel or model.kernel  # type: ignore[assignment]
+        model = model.scene
+    against = model or scene
+    assert against is not None
+    if stderr is None:
+        cure = "give stderr=; of photographs import several of each spot, or state the camera's noise"
+        raise InputError(f"nothing is known of the noise\n  cure: {cure}")
+    flux = shaped(flux, against.shape, "phi")
+    noise = shaped(matrix(stderr, "stderr"), against.shape, "stderr")
+    flags = maybe(left_out, "left_out")
+    found, z, modelled = _native.validate(
+        against._core,
+        flux,
+        noise,
+        None if flags is None else shaped(flags, against.shape, "left_out"),
+        kernel_name=kernel or "physical",
+        integration_name=integration,
+        considered=bool(occlusion),
+        significance=number(significance, "significance", "between 0 and 1, e.g. 0.001", lambda x: 0 < x < 1),
+        replicates=None if replicates is None else whole(replicates, "replicates", 2, 2**32 - 1),
+        errors_name=errors or "independent",
+        threads=threads,
+    )
+    return Verdict(found, z, modelled)

@@ -1,0 +1,54 @@
+//! The crate phicam as a Python module: arrays in, arrays out. What Python's users see is written in
+//! `phicam/*.py`; here is what those files call.
+//!
+//! Every computation runs on a thread pool of its own with the interpreter unlocked ([`work::run`]),
+//! so that Ctrl-C ends it, and that a forked process does not wait for threads that it has not.
+
+mod arrays;
+mod calibrate;
+mod errors;
+mod expose;
+mod findings;
+mod folder;
+mod import;
+mod model;
+mod recover;
+mod render;
+mod scene;
+mod study;
+mod validate;
+mod work;
+
+use pyo3::pymodule;
+
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use crate::calibrate::{calibrate, locatable, locate};
+    #[pymodule_export]
+    use crate::expose::{expose, sensors};
+    #[pymodule_export]
+    use crate::findings::gallery_svg;
+    #[pymodule_export]
+    use crate::folder::{read_run, write_run};
+    #[pymodule_export]
+    use crate::import::{import_photographs, scene_named};
+    #[pymodule_export]
+    use crate::model::Model;
+    #[pymodule_export]
+    use crate::recover::{methods, recover};
+    #[pymodule_export]
+    use crate::render::render;
+    #[pymodule_export]
+    use crate::scene::{Scene, builtins};
+    #[pymodule_export]
+    use crate::study::{studies, study};
+    #[pymodule_export]
+    use crate::validate::validate;
+
+    #[pymodule_init]
+    fn init(module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {
+        use pyo3::types::PyModuleMethods;
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,235 @@
+//! The hidden reflectance.
+
+use std::sync::Arc;
+
+use phicam::lab::{
+    Certainty, Noise, RecoveredObject, by_trust, describe_recovery, polynomials, recover_objects,
+};
+use phicam::matrix::Matrix;
+use phicam::num::linalg::Tolerance;
+use phicam::recovery::{Method, Nuisance, Options, Rule, Uncertainty, WeightRule};
+use phicam::report::finding_text;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{array, errors, matrix, maybe, vector};
+use crate::errors::{Raise, input};
+use crate::model::Model;
+use crate::validate::errors as ways;
+use crate::work::run;
+
+/// Elements whose covariance and resolution are still given: 32 MiB each.
+const MOST_CORRELATED: usize = 2048;
+
+/// The methods.
+#[pyfunction]
+pub fn methods() -> Vec<&'static str> {
+    Method::names().to_vec()
+}
+
+/// How to recover, as keywords.
+#[derive(FromPyObject)]
+pub struct Settings {
+    #[pyo3(item)]
+    rank: Option<usize>,
+    #[pyo3(item)]
+    damping: Option<f64>,
+    #[pyo3(item)]
+    rule: Option<String>,
+    #[pyo3(item)]
+    tolerance: Option<f64>,
+    #[pyo3(item)]
+    tv: Option<f64>,
+    #[pyo3(item)]
+    levels: Option<(f64, f64)>,
+    #[pyo3(item)]
+    weighting: Option<String>,
+    #[pyo3(item)]
+    bands: Option<f64>,
+    #[pyo3(item)]
+    frame_constant: bool,
+    #[pyo3(item)]
+    frame_polynomial: Option<u8>,
+    #[pyo3(item)]
+    background: bool,
+    #[pyo3(item)]
+    free_scale: bool,
+    #[pyo3(item)]
+    frame_gain: Option<f64>,
+    #[pyo3(item)]
+    scale_error: Option<f64>,
+    #[pyo3(item)]
+    pixels: Option<(usize, usize)>,
+}
+
+impl Settings {
+    fn options(&self, elements: usize) -> PyResult<Options> {
+        let rule = match &self.rule {
+            None => Rule::default(),
+            Some(name) => {
+                let found = Rule::ALL.into_iter().find(|r| r.name() == name);
+                found.ok_or_else(|| {
+                    let names = Rule::ALL.map(Rule::name).join(", ");
+                    input(format!("no rule `{name}`"), &format!("use one of {names}"))
+                })?
+            }
+        };
+        let weighting = match self.weighting.as_deref() {
+            None | Some("noise") => WeightRule::Noise,
+            Some("entries") => WeightRule::Entries,
+            Some("none") => WeightRule::Unweighted,
+            Some(other) => {
+                let cause = format!("no weighting `{other}`");
+                return Err(input(cause, "use noise, entries or none"));
+            }
+        };
+        let usual = Options::default();
+        Ok(Options {
+            rank: self.rank,
+            damping: self.damping,
+            rule,
+            tolerance: self.tolerance.map_or(usual.tolerance, Tolerance::Relative),
+            total_variation: self.tv,
+            levels: self.levels.map(Into::into),
+            bands: self.bands,
+            weighting,
+            frame: self.pixels.map(Into::into),
+            uncertainty: if elements <= MOST_CORRELATED {
+                Uncertainty::Full
+            } else {
+                Uncertainty::StandardError
+            },
+            ..usual
+        })
+    }
+}
+
+/// Recovers by each of the methods; `trusted` orders what was found by how far it can be trusted.
+#[pyfunction]
+#[pyo3(signature = (model, phi, stderr, left_out, glare, patterns, *, methods, settings, replicates,
+                    errors_name, trusted, threads))]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "one for each keyword of Python's function"
+)]
+pub fn recover<'py>(
+    py: Python<'py>,
+    model: &Model,
+    phi: &Bound<'py, PyAny>,
+    stderr: Option<&Bound<'py, PyAny>>,
+    left_out: Option<&Bound<'py, PyAny>>,
+    glare: Option<&Bound<'py, PyAny>>,
+    patterns: Option<&Bound<'py, PyAny>>,
+    methods: Option<Vec<String>>,
+    settings: Settings,
+    replicates: Option<u32>,
+    errors_name: &str,
+    trusted: bool,
+    threads: Option<usize>,
+) -> PyResult<(Vec<Bound<'py, PyDict>>, Vec<(String, String)>)> {
+    let own = Arc::clone(&model.inner);
+    let elements = own.albedo.len();
+    let named: Result<Vec<Method>, _> = methods.iter().flatten().map(|m| m.parse()).collect();
+    let named = named.raise()?;
+    let methods = match methods {
+        None => Method::tried(elements),
+        Some(_) => named,
+    };
+    let options = settings.options(elements)?;
+    let (phi, stderr) = (matrix(phi, "phi")?, errors(stderr, "stderr")?);
+    let (left_out, glare) = (maybe(left_out, "left_out")?, maybe(glare, "glare")?);
+    let patterns = joined(
+        settings.frame_polynomial,
+        settings.pixels,
+        maybe(patterns, "frame_patterns")?,
+    )?;
+    let certainty = Certainty {
+        errors: ways(errors_name)?,
+        replicates,
+    };
+    let attempts = run(py, threads, None, move |_| {
+        let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
+            Noise::StandardError(stderr, certainty)
+        });
+        let nuisance = Nuisance {
+            frame_constant: settings.frame_constant,
+            frame_patterns: patterns.as_ref(),
+            background: settings.background,
+            glare: glare.as_ref(),
+            free_scale: settings.free_scale,
+            frame_gain: settings.frame_gain,
+            scale_error: settings.scale_error,
+            left_out: left_out.as_ref(),
+        };
+        recover_objects(&own, &phi, noise, nuisance, &methods, &options)
+    })?;
+    let alone = attempts.len() == 1;
+    let (mut objects, mut failed) = (Vec::new(), Vec::new());
+    for attempt in attempts {
+        match attempt.outcome {
+            Ok(found) => objects.extend(found),
+            Err(error) if alone => return Err(crate::errors::raised(&error)),
+            Err(error) => failed.push((attempt.method.name().to_owned(), error.to_string())),
+        }
+    }
+    if trusted {
+        by_trust(&mut objects);
+    }
+    let objects: PyResult<Vec<_>> = objects.into_iter().map(|object| dict(py, object)).collect();
+    Ok((objects?, failed))
+}
+
+/// The polynomials of a degree over the photograph, and what else is given of patterns.
+fn joined(
+    degree: Option<u8>,
+    pixels: Option<(usize, usize)>,
+    own: Option<Matrix>,
+) -> PyResult<Option<Matrix>> {
+    let smooth = match (degree, pixels) {
+        (None, _) => return Ok(own),
+        (Some(degree), Some((columns, rows))) => polynomials([columns, rows], usize::from(degree)),
+        (Some(_), None) => {
+            let cause = "nothing says how the pixels lie in the photograph";
+            return Err(input(cause, "give pixels=(columns, rows)"));
+        }
+    };
+    let Some(own) = own else {
+        return Ok(Some(smooth));
+    };
+    if own.nrows() != smooth.nrows() {
+        let cause = format!(
+            "frame_patterns has {} rows, and there are {} pixels",
+            own.nrows(),
+            smooth.nrows()
+        );
+        return Err(input(cause, "give pixels × patterns"));
+    }
+    let all: Vec<_> = smooth.column_iter().chain(own.column_iter()).collect();
+    Ok(Some(Matrix::from_columns(&all)))
+}
+
+/// What was found of a surface: its arrays, and all else as JSON.
+fn dict(py: Python<'_>, mut object: RecoveredObject) -> PyResult<Bound<'_, PyDict>> {
+    let found = PyDict::new(py);
+    let text = finding_text(&describe_recovery(std::slice::from_ref(&object)));
+    found.set_item("text", text)?;
+    let whole = |m: Option<Matrix>| m.map(|m| array(py, m)).transpose();
+    found.set_item("covariance", whole(object.covariance.take())?)?;
+    found.set_item("resolution", whole(object.resolution.take())?)?;
+    found.set_item("json", serde_json::to_string(&object).raise()?)?;
+    let numbers = |values: Option<Vec<f64>>| values.map(|values| vector(py, values));
+    let (lower, upper) = object.bands.map(|b| (b.lower, b.upper)).unzip();
+    for (name, values) in [
+        ("reflectance", Some(object.reflectance)),
+        ("truth", object.truth),
+        ("stderr", object.standard_error),
+        ("bias", object.bias),
+        ("light", object.light),
+        ("determined", object.determined_share),
+        ("lower", lower),
+        ("upper", upper),
+    ] {
+        found.set_item(name, numbers(values))?;
+    }
+    Ok(found)
+}

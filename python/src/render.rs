@@ -1,0 +1,67 @@
+//! Φcam, traced.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use numpy::PyArray2;
+use phicam::transport::{Plan, Traced, render as traced_render};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::array;
+use crate::errors::{Raise, input};
+use crate::scene::Scene;
+use crate::work::run;
+
+/// The plan of these settings.
+pub fn plan(estimator: &str, sampler: &str, seed: u64, samples: u64) -> PyResult<Plan> {
+    let refused = |e: String| input(e, "see the function's documentation");
+    let (estimator, sampling) = (
+        estimator.parse().map_err(refused)?,
+        sampler.parse().map_err(refused)?,
+    );
+    Plan::new(estimator, sampling, seed, samples).raise()
+}
+
+/// Traces the spots `first..last`; `progress` is called with the paths that are done.
+#[pyfunction]
+#[pyo3(signature = (scene, *, estimator, sampler, seed, samples, spots, threads, progress))]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "one for each keyword of Python's function"
+)]
+pub fn render<'py>(
+    py: Python<'py>,
+    scene: &Scene,
+    estimator: &str,
+    sampler: &str,
+    seed: u64,
+    samples: u64,
+    spots: (usize, usize),
+    threads: Option<usize>,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let plan = plan(estimator, sampler, seed, samples)?;
+    let scene = Arc::clone(&scene.inner);
+    let begun = Instant::now();
+    let traced = run(py, threads, progress, move |control| {
+        traced_render(&scene, &plan, spots.0..spots.1, control)
+    })?;
+    let Traced {
+        bounces,
+        flux,
+        stderr,
+        tails,
+    } = traced.raise()?;
+    let bounces: PyResult<Vec<Bound<'py, PyArray2<f64>>>> =
+        bounces.into_iter().map(|m| array(py, m)).collect();
+    let found = PyDict::new(py);
+    found.set_item("flux", array(py, flux)?)?;
+    found.set_item("stderr", array(py, stderr)?)?;
+    found.set_item("tails", array(py, tails)?)?;
+    found.set_item("bounces", bounces?)?;
+    found.set_item("seconds", begun.elapsed().as_secs_f64())?;
+    found.set_item("samples", plan.budget.samples())?;
+    found.set_item("blocks", plan.budget.blocks)?;
+    Ok(found)
+}

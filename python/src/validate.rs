@@ -1,0 +1,86 @@
+//! Traced or measured against modelled.
+
+use std::sync::Arc;
+
+use numpy::PyArray2;
+use phicam::lab::finding::Describe;
+use phicam::lab::{Against, Errors, Measured, Test, validate as validated};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{array, matrix, maybe};
+use crate::errors::{Raise, input};
+use crate::findings::found;
+use crate::model::{integration, kernel, occlusion};
+use crate::scene::Scene;
+use crate::work::run;
+
+/// How errors hang together, by its name.
+pub fn errors(name: &str) -> PyResult<Errors> {
+    match name {
+        "independent" => Ok(Errors::Independent),
+        "pixel" => Ok(Errors::WithinRows),
+        "all" => Ok(Errors::Everywhere),
+        _ => {
+            let cause = format!("no way of errors to hang together is called `{name}`");
+            Err(input(cause, "use independent, pixel or all"))
+        }
+    }
+}
+
+/// What was found, z of every entry, the model.
+type Verdict<'py> = (
+    Bound<'py, PyDict>,
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray2<f64>>,
+);
+
+/// The verdict on Φcam.
+#[pyfunction]
+#[pyo3(signature = (scene, phi, stderr, left_out, *, kernel_name, integration_name, considered,
+                    significance, replicates, errors_name, threads))]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "one for each keyword of Python's function"
+)]
+pub fn validate<'py>(
+    py: Python<'py>,
+    scene: &Scene,
+    phi: &Bound<'py, PyAny>,
+    stderr: &Bound<'py, PyAny>,
+    left_out: Option<&Bound<'py, PyAny>>,
+    kernel_name: &str,
+    integration_name: &str,
+    considered: bool,
+    significance: f64,
+    replicates: Option<u32>,
+    errors_name: &str,
+    threads: Option<usize>,
+) -> PyResult<Verdict<'py>> {
+    let against = Against {
+        kernel: kernel(kernel_name)?,
+        integration: integration(integration_name)?,
+        occlusion: occlusion(considered),
+    };
+    let test = Test {
+        significance,
+        replicates: replicates.unwrap_or(u32::MAX),
+        errors: errors(errors_name)?,
+    };
+    let phi = matrix(phi, "phi")?;
+    let stderr = crate::arrays::errors(Some(stderr), "stderr")?.unwrap_or_default();
+    let left_out = maybe(left_out, "left_out")?;
+    let scene = Arc::clone(&scene.inner);
+    let verdict = run(py, threads, None, move |_| {
+        let measured = Measured {
+            phi: &phi,
+            stderr: &stderr,
+            left_out: left_out.as_ref(),
+        };
+        validated(&scene, measured, against, test)
+    })?;
+    let verdict = verdict.raise()?;
+    let json = serde_json::to_string(&verdict.agreement).raise()?;
+    let words = found(py, &verdict.agreement.describe(), &json)?;
+    Ok((words, array(py, verdict.z)?, array(py, verdict.model)?))
+}

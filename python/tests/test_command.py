@@ -1,0 +1,138 @@
+"""The same bytes as the command's files."""
+
+import json
+
+import numpy as np
+import pytest
+
+import phicam
+
+
+@pytest.fixture(scope="module")
+def run(command, scene, tmp_path_factory):
+    """A run that the command rendered."""
+    folder = tmp_path_factory.mktemp("command")
+    (folder / "scene.toml").write_text(scene.text)
+    command("render", folder / "scene.toml", "-o", folder / "run", "--samples", 64)
+    return folder / "run"
+
+
+def same(array, path):
+    """Whether the array is that of the file, to the bit."""
+    there = np.load(path)
+    return array.shape == there.shape and np.ascontiguousarray(array).tobytes() == np.ascontiguousarray(there).tobytes()
+
+
+def test_render(run, phi):
+    assert same(phi.flux, run / "phi.npy")
+    assert same(phi.stderr, run / "phi.stderr.npy")
+    assert same(phi.left_out, run / "phi.tails.npy")
+
+
+@pytest.mark.parametrize("estimator", ["shared", "factored"])
+def test_estimators(command, run, scene, tmp_path, estimator):
+    source = run.parent / "scene.toml"
+    command("render", source, "-o", tmp_path, "--samples", 32, "--estimator", estimator, "--sampler", "pcg", "--seed", 7)
+    phi = phicam.render(scene, samples=32, estimator=estimator, sampler="pcg", seed=7, threads=1)
+    assert same(phi.flux, tmp_path / "phi.npy")
+
+
+def test_model(command, run, scene, tmp_path):
+    command("model", run.parent / "scene.toml", "-o", tmp_path)
+    model = phicam.model(scene)
+    folder = tmp_path / "model"
+    assert same(model.g12, folder / "g12.npy")
+    assert same(model.g23, folder / "g23.npy")
+    assert same(model.camera_side, folder / "camera_side.npy")
+    assert same(model.laser_side, folder / "laser_side.npy")
+    assert same(model.phi(), folder / "phi.npy")
+
+
+def test_model_by_quadrature(command, run, scene, tmp_path):
+    command("model", run.parent / "scene.toml", "-o", tmp_path, "--integration", "quadrature")
+    assert same(phicam.model(scene).converged()[0], tmp_path / "model" / "phi.npy")
+
+
+def test_validate(command, run, phi):
+    said = json.loads(command("validate", run, "--json"))
+    verdict = phicam.validate(phi)
+    assert verdict.values == said
+
+
+def test_recover(command, run, phi):
+    methods = ["pinv", "tsvd", "joint", "joint-gp"]
+    command("recover", run, *(word for method in methods for word in ("--method", method)))
+    found = phicam.recover(phi, method=methods)
+    for each in (found, *found.others):
+        nu, nv = each.surfaces[0].elements
+        assert same(each.picture(), run / "recovered" / f"{each.method}.npy"), each.method
+        if each.stderr is not None:
+            assert same(each.stderr.reshape(nv, nu), run / "recovered" / f"{each.method}.stderr.npy"), each.method
+        if each.covariance is not None:
+            assert same(each.covariance, run / "recovered" / f"{each.method}.covariance.npy"), each.method
+
+
+def test_recover_of_matrices(command, phi, tmp_path):
+    model = phicam.model(phi.scene, elements=(4, 4))
+    for name, array in (("c", model.camera_side), ("d", model.laser_side), ("phi", phi.flux)):
+        np.save(tmp_path / f"{name}.npy", array)
+    files = [tmp_path / f"{name}.npy" for name in ("phi", "c", "d")]
+    command(
+        "recover", "--phi", files[0], "--camera-side", files[1], "--laser-side", files[2], "--noise", 0.1,
+        "--method", "joint", "-o", tmp_path / "out",
+    )  # fmt: skip
+    found = phicam.recover(phi.flux, (model.camera_side, model.laser_side), "joint", noise=0.1)
+    assert same(found.picture(), tmp_path / "out" / "joint.npy")
+
+
+def test_expose(command, run, phi, tmp_path):
+    command("expose", run, "--sensor", "machine-vision", "--exposure", 0.01, "-o", tmp_path, "--seed", 3)
+    exposed = phicam.expose(phi, "machine-vision", exposure=0.01, seed=3)
+    assert same(exposed.flux, tmp_path / "phi.npy")
+    assert same(exposed.stderr, tmp_path / "phi.stderr.npy")
+    assert same(exposed.clipped, tmp_path / "saturated.npy")
+
+
+def test_a_saved_run_is_the_commands(command, run, phi, tmp_path):
+    folder = tmp_path / "saved"
+    phi.save(folder)
+    assert (folder / "phi.npy").read_bytes() == (run / "phi.npy").read_bytes()
+    frames = sorted(path.name for path in (run / "frames").iterdir())
+    assert frames == sorted(path.name for path in (folder / "frames").iterdir())
+    for name in frames:
+        assert (folder / "frames" / name).read_bytes() == (run / "frames" / name).read_bytes()
+    said = json.loads(command("validate", folder, "--json"))
+    assert said == json.loads(command("validate", run, "--json"))
+    # The same render into it has nothing left to do.
+    command("render", run.parent / "scene.toml", "-o", folder, "--samples", 64)
+    command("stack", folder)
+
+
+def test_a_commands_run_is_loaded(run, phi):
+    loaded = phicam.load(run)
+    assert loaded.scene == phi.scene
+    assert loaded.settings | {"seconds": 0, "threads": 0} == phi.settings | {"seconds": 0, "threads": 0}
+    assert (loaded.flux == phi.flux).all() and (loaded.stderr == phi.stderr).all()
+
+
+def test_study(command, run, scene, tmp_path):
+    arguments = ["--samples", "64,256"]
+    command("study", "convergence", run.parent / "scene.toml", "-o", tmp_path, *arguments)
+    found = phicam.study("convergence", scene, samples=[64, 256])
+    written = json.loads((tmp_path / "convergence.json").read_text())
+    assert found.values == written
+    assert found.files["convergence.svg"] == (tmp_path / "convergence.svg").read_text()
+
+
+def test_locate(command, run, phi, tmp_path):
+    command("locate", run, "--what", "angle", "--range=-5,5", "--steps", 7, "--elements", "2x2", "--orders", 0,
+            "-o", tmp_path, code=0)  # fmt: skip
+    found = phicam.locate(phi, "angle", (-5, 5), steps=7, elements=(2, 2), orders=0)
+    assert found.values == json.loads((tmp_path / "locate.json").read_text())
+
+
+def test_calibrate(command, run, phi, tmp_path):
+    command("calibrate", run, "--free", "hinge.angle", "--elements", "2x2", "--starts", 1, "-o", tmp_path)
+    found = phicam.calibrate(phi, ["hinge.angle"], elements=(2, 2), starts=1)
+    assert found.values == json.loads((tmp_path / "calibration.json").read_text())
+    assert found.scene == phicam.Scene(tmp_path / "scene.toml")
