@@ -396,7 +396,7 @@ BREAKS = [
     ),
     Break(
         "A changed file of a finished run is found",
-        "src/cli/record.rs",
+        "src/folder/record.rs",
         "if written.is_at(&path)? {",
         "if written.is_at(&path).is_ok() {",
         "cli",

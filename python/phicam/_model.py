@@ -50,12 +50,12 @@ class Model:
 
     @cached_property
     def g12(self) -> Floats:
-        """cosθ · cosθ / R² between spots and elements: elements × spots, length⁻²."""
+        """cosθ · cosθ / R² between spots and elements: elements × spots, length⁻²; empty of matrices."""
         return self._core.g12
 
     @cached_property
     def g23(self) -> Floats:
-        """cosθ · cosθ / R² between elements and what pixels see: pixels × elements, length⁻²."""
+        """cosθ · cosθ / R² between elements and what pixels see: pixels × elements, length⁻²; empty of matrices."""
         return self._core.g23
 
     @cached_property

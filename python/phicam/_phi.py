@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import warnings
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, Literal
@@ -16,7 +15,7 @@ from . import _html, _native
 from ._arrays import Floats, matrix, maybe, shaped, whole
 from ._progress import Progress, told
 from ._scene import Scene
-from .errors import InputError, Suspicious
+from .errors import InputError
 
 Estimator = Literal["independent", "shared", "factored"]
 Sampler = Literal["sobol", "pcg"]
@@ -231,8 +230,7 @@ def render(
     count, spots = whole(samples, "samples", 1, 2**32), scene.shape[1]
     paths = count if estimator == "factored" else count * scene.shape[0]
     total = paths * (spots if estimator == "independent" else 1)
-    for text in scene.warnings:
-        warnings.warn(text, Suspicious, stacklevel=2)
+    scene._warn()
     found = _native.render(
         scene._core,
         estimator=estimator,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 import types
+import warnings
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ import numpy as np
 from . import _native
 from ._arrays import Floats, number, whole
 from ._toml import toml
-from .errors import InputError
+from .errors import InputError, Suspicious
 
 
 class Scene:
@@ -43,16 +44,18 @@ class Scene:
     (120, 3)
     """
 
-    __slots__ = ("_core",)
+    __slots__ = ("_core", "_warned")
     _core: _native.Scene
+    _warned: bool
 
     def __init__(self, name: str | os.PathLike[str], *, also_read: Iterable[str | os.PathLike[str]] = ()) -> None:
         self._core = _native.Scene.load(os.fspath(name), [Path(p) for p in also_read])
+        self._warned = False
 
     @classmethod
     def _of(cls, native: _native.Scene) -> Scene:
         scene = cls.__new__(cls)
-        scene._core = native
+        scene._core, scene._warned = native, False
         return scene
 
     @classmethod
@@ -175,6 +178,13 @@ class Scene:
     def warnings(self) -> list[str]:
         """What is suspicious though not wrong."""
         return self._core.warnings()
+
+    def _warn(self) -> None:
+        """Tells once what is suspicious."""
+        if not self._warned:
+            self._warned = True
+            for text in self.warnings:
+                warnings.warn(text, Suspicious, stacklevel=3)
 
     def preview(self, size: tuple[int, int] = (640, 400), *, samples: int = 16) -> Floats:
         """A picture of the scene in ordinary light, for people: rows × columns × 3, from the top, 0 to about 1.

@@ -96,7 +96,7 @@ impl MatrixModel {
 
     /// A model of matrices that were measured or computed elsewhere, without a scene: C pixels ×
     /// elements, D elements × spots, `count` elements along u and v of one surface of unknown
-    /// reflectance. G23 = π C and G12 = D, those of unit light.
+    /// reflectance. Its G12 and G23 are empty: nothing is known of the light and the walls within C and D.
     ///
     /// # Errors
     /// [`ModelError::Sides`] where they do not belong together.
@@ -122,8 +122,8 @@ impl MatrixModel {
         Ok(Self {
             kernel: Kernel::Physical,
             grids: vec![grid],
-            g12: laser_side.clone(),
-            g23: &camera_side * std::f64::consts::PI,
+            g12: Matrix::zeros(0, 0),
+            g23: Matrix::zeros(0, 0),
             albedo: vec![0.5; elements],
             places: Vec::new(),
             camera_side,

@@ -107,16 +107,13 @@ fn entry<'a>(list: &'a mut [Value], step: &str) -> Result<&'a mut Value, (String
         .iter()
         .position(|value| name(value).as_deref() == Some(step));
     let found = named.or_else(|| step.parse().ok().filter(|i| *i < list.len()));
-    let cause = || format!("no entry of the list is called `{step}`");
-    let cure = || match names.is_empty() {
-        true => format!("use a number below {}", list.len()),
-        false => format!(
-            "use one of {}, or a number below {}",
-            names.join(", "),
-            list.len()
-        ),
+    let count = list.len();
+    let cause = format!("no entry of the list is called `{step}`");
+    let cure = if names.is_empty() {
+        format!("use a number below {count}")
+    } else {
+        format!("use one of {}, or a number below {count}", names.join(", "))
     };
-    let (cause, cure) = (cause(), cure());
     found.and_then(|i| list.get_mut(i)).ok_or((cause, cure))
 }
 
@@ -131,7 +128,7 @@ mod tests {
     /// The file's own keys, written by hand, make the same scene.
     #[test]
     fn a_replaced_key_is_that_of_a_file() {
-        let text = bench().text.replace("pixels = [32, 32]", "pixels = [8, 4]");
+        let text = bench().text.replace("pixels = [16, 16]", "pixels = [8, 4]");
         let by_hand = Scene::from_toml("bench", &text).unwrap();
         let replaced = bench().with(&[("camera.pixels", "[8, 4]")]).unwrap();
         assert_ne!(by_hand.hash, bench().hash);
