@@ -17,6 +17,7 @@ use sha2::{Digest, Sha256};
 
 mod harmless;
 mod lock;
+pub mod memory;
 mod reading;
 mod room;
 

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use phicam::jobs::need;
 use phicam::lab::finding::Describe;
 use phicam::lab::{CalibrationPlan, Free, LOCATABLE, LocatedPlan, Unexplained, polynomials};
 use phicam::matrix::Matrix;
@@ -14,7 +15,7 @@ use crate::errors::{Raise, input};
 use crate::findings::found;
 use crate::model::{integration, occlusion};
 use crate::scene::Scene;
-use crate::work::run;
+use crate::work::{fits, run};
 
 /// What may be looked for, each with what it is.
 #[pyfunction]
@@ -115,6 +116,10 @@ pub fn calibrate<'py>(
         spread,
         seed,
     };
+    let elements = plan.elements;
+    fits(py, &scene.inner, move |scene| {
+        need::calibrate(scene, elements)
+    })?;
     let photographs = Photographs::read(&scene.inner, phi, stderr, left_out, frame_polynomial)?;
     let own = Arc::clone(&scene.inner);
     let done = run(py, threads, progress, move |control| {
@@ -169,6 +174,8 @@ pub fn locate<'py>(
         orders,
         seed,
     };
+    let elements = plan.elements;
+    fits(py, &scene.inner, move |scene| need::locate(scene, elements))?;
     let photographs = Photographs::read(&scene.inner, phi, stderr, left_out, frame_polynomial)?;
     let own = Arc::clone(&scene.inner);
     let done = run(py, threads, progress, move |control| {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use phicam::jobs::need;
 use phicam::lab::describe_exposure;
 use phicam::matrix::Matrix;
 use phicam::scene::SensorModel;
@@ -15,7 +16,10 @@ use crate::arrays::{array, matrix};
 use crate::errors::{Raise, input};
 use crate::findings::found;
 use crate::scene::Scene;
-use crate::work::run;
+use crate::work::{fits, run};
+
+/// Matrices of Φcam's size that are held at once, beside one for each exposure.
+const EXPOSING: f64 = 12.0;
 
 /// The built-in sensors, each with what it is.
 #[pyfunction]
@@ -45,6 +49,11 @@ pub fn expose<'py>(
         let cause = format!("scene `{}` has no [sensor] table", scene.inner.name);
         return Err(input(cause, "name a built-in sensor: sensor=\"ideal\""));
     };
+    let exposures = settings.brackets.as_ref().map_or(1, Vec::len);
+    let matrices = EXPOSING + exposures as f64;
+    fits(py, &scene.inner, move |scene| {
+        need::photographs(scene, matrices)
+    })?;
     let (phi, render_error) = (matrix(phi, "phi")?, matrix(render_error, "stderr")?);
     if phi.max() <= 0.0 {
         let cure = "render a scene whose light reaches the camera";

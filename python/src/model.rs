@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use numpy::PyArray2;
+use phicam::jobs::need;
 use phicam::lab::{Integration, inverted};
 use phicam::model::{
     Differential, Extent, Fineness, Kernel, MatrixModel, ModelError, Occlusion, converged,
@@ -13,7 +14,7 @@ use pyo3::prelude::*;
 use crate::arrays::{array, matrix, points};
 use crate::errors::{Raise, input};
 use crate::scene::Scene;
-use crate::work::run;
+use crate::work::{fits, run};
 
 /// The kernel of that name.
 pub fn kernel(name: &str) -> PyResult<Kernel> {
@@ -66,6 +67,7 @@ impl Model {
         let (kernel, integration) = (kernel(kernel_name)?, integration(integration_name)?);
         let (own, occlusion) = (Arc::clone(&scene.inner), occlusion(considered));
         let elements = elements.map(Into::into);
+        fits(py, &own, move |scene| need::model(scene, elements, false))?;
         let made = run(py, None, None, move |_| {
             inverted(&own, kernel, elements, occlusion, integration)
         })?;
@@ -157,6 +159,7 @@ impl Model {
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>)> {
         let (scene, occlusion) = self.own_scene()?;
+        fits(py, &scene, |scene| need::model(scene, None, true))?;
         let kernel = self.inner.kernel;
         let found = run(py, None, None, move |_| {
             let extent = Extent {

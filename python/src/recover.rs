@@ -9,6 +9,8 @@ use phicam::matrix::Matrix;
 use phicam::num::linalg::Tolerance;
 use phicam::recovery::{Method, Nuisance, Options, Rule, Uncertainty, WeightRule};
 use phicam::report::finding_text;
+use phicam::store::memory;
+use phicam::transport::Control;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -20,6 +22,9 @@ use crate::work::run;
 
 /// Elements whose covariance and resolution are still given: 32 MiB each.
 const MOST_CORRELATED: usize = 2048;
+
+/// Copies of all matrices that are held at once.
+const HELD: f64 = 6.0;
 
 /// The methods.
 #[pyfunction]
@@ -136,6 +141,10 @@ pub fn recover<'py>(
         Some(_) => named,
     };
     let options = settings.options(elements)?;
+    let (rows, columns) = (own.camera_side.nrows(), own.laser_side.ncols());
+    let entries = (rows * columns + elements * (rows + columns)) as f64;
+    let refuse = move |_: Control<'_>| memory::refuse("these matrices", HELD * 8.0 * entries, &[]);
+    run(py, None, None, refuse)?.raise()?;
     let (phi, stderr) = (matrix(phi, "phi")?, errors(stderr, "stderr")?);
     let (left_out, glare) = (maybe(left_out, "left_out")?, maybe(glare, "glare")?);
     let patterns = joined(

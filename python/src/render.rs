@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use numpy::PyArray2;
+use phicam::jobs::need;
 use phicam::transport::{Plan, Traced, render as traced_render};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -11,7 +12,7 @@ use pyo3::types::PyDict;
 use crate::arrays::array;
 use crate::errors::{Raise, input};
 use crate::scene::Scene;
-use crate::work::run;
+use crate::work::{fits, run};
 
 /// The plan of these settings.
 pub fn plan(estimator: &str, sampler: &str, seed: u64, samples: u64) -> PyResult<Plan> {
@@ -42,6 +43,7 @@ pub fn render<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let plan = plan(estimator, sampler, seed, samples)?;
+    fits(py, &scene.inner, move |scene| need::render(scene, &plan))?;
     let scene = Arc::clone(&scene.inner);
     let begun = Instant::now();
     let traced = run(py, threads, progress, move |control| {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use phicam::jobs::need;
 use phicam::lab::options::{Kind, Values};
 use phicam::lab::{Found, STUDIES, StudyError, Work};
 use pyo3::prelude::*;
@@ -10,7 +11,7 @@ use pyo3::types::PyDict;
 use crate::errors::{input, raised};
 use crate::findings::found;
 use crate::scene::Scene;
-use crate::work::run;
+use crate::work::{fits, run};
 
 /// An option: name, help, kind, default, whether it takes several.
 type Described = (
@@ -72,6 +73,7 @@ pub fn study<'py>(
         );
         return Err(input(cause, "use validate and recover for this scene"));
     }
+    fits(py, &scene.inner, need::study)?;
     let mut values = Values::defaults(registered.options);
     for (option, given) in options {
         values = values.with(&option, given).map_err(|e| raised(&e))?;

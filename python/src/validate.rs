@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use numpy::PyArray2;
+use phicam::jobs::need;
 use phicam::lab::finding::Describe;
 use phicam::lab::{Against, Errors, Measured, Test, validate as validated};
 use pyo3::prelude::*;
@@ -13,7 +14,7 @@ use crate::errors::{Raise, input};
 use crate::findings::found;
 use crate::model::{integration, kernel, occlusion};
 use crate::scene::Scene;
-use crate::work::run;
+use crate::work::{fits, run};
 
 /// How errors hang together, by its name.
 pub fn errors(name: &str) -> PyResult<Errors> {
@@ -67,6 +68,7 @@ pub fn validate<'py>(
         replicates: replicates.unwrap_or(u32::MAX),
         errors: errors(errors_name)?,
     };
+    fits(py, &scene.inner, need::verdict)?;
     let phi = matrix(phi, "phi")?;
     let stderr = crate::arrays::errors(Some(stderr), "stderr")?.unwrap_or_default();
     let left_out = maybe(left_out, "left_out")?;

@@ -6,17 +6,32 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use phicam::scene::Scene;
+use phicam::store::memory::NoRoom;
 use phicam::transport::Control;
 use pyo3::prelude::*;
 use rayon::ThreadPoolBuilder;
 
-use crate::errors::{input, internal};
+use crate::errors::{Raise, input, internal};
 
 /// How often signals are looked for.
 const LOOK: Duration = Duration::from_millis(50);
 /// How long a stopped computation may take to end before it is left to itself.
 const PATIENCE: Duration = Duration::from_millis(500);
 const MOST_THREADS: usize = 1024;
+
+/// Refuses what does not fit into memory, by what `check` finds.
+///
+/// # Errors
+/// `InputError`.
+pub fn fits(
+    py: Python<'_>,
+    scene: &Arc<Scene>,
+    check: impl FnOnce(&Scene) -> Result<(), NoRoom> + Send + 'static,
+) -> PyResult<()> {
+    let scene = Arc::clone(scene);
+    run(py, None, None, move |_| check(&scene))?.raise()
+}
 
 /// Runs `compute` on `threads` threads (all cores unless given) without the interpreter's lock.
 /// `progress` is called with how much is done. Ctrl-C stops it; one that does not look at its

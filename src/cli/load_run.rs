@@ -4,9 +4,9 @@ use std::path::Path;
 
 use super::console::Console;
 use super::failure::Failure;
-use super::need;
 use super::run_folder::{LEFT_OUT, SCENE, TAILS};
 use crate::folder::Record;
+use crate::jobs::need;
 use crate::matrix::{Matrix, npy};
 use crate::scene::{COPIES, Scene};
 

@@ -7,13 +7,19 @@ use rayon::ThreadPool;
 
 use super::failure::Failure;
 use super::interrupt::warned;
-use super::memory::available_threads;
 use crate::jobs::Process;
 use crate::store::threads_that_fit;
 
 /// The version of the program.
 pub(super) fn version() -> &'static str {
     env!("CARGO_PKG_VERSION")
+}
+
+/// Threads of a pool that nobody gave a number; the environment may, as to every program of rayon.
+pub(super) fn available_threads() -> usize {
+    let given = std::env::var("RAYON_NUM_THREADS").ok();
+    let given = given.and_then(|n| n.parse().ok()).filter(|n| *n > 0);
+    given.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
 }
 
 /// The threads to work with.

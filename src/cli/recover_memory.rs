@@ -6,12 +6,12 @@ use super::args::RecoverArgs;
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{refuse_damaged, refuse_shape};
-use super::memory::{GIB, room};
 use crate::lab::{Attempt, Certainty, Judged, MOST_INTEGRATED, Residuals, measured};
 use crate::matrix::npy::Rows;
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Options, Problem, Recovered, Strip, recover_strips};
 use crate::scene::Scene;
+use crate::store::memory::{GIB, room};
 
 /// What the program takes besides.
 const BASE: f64 = 64.0 * 1024.0 * 1024.0;

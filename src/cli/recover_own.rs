@@ -7,7 +7,6 @@ use super::args::RecoverArgs;
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_undamaged, refuse_negative};
-use super::memory;
 use super::recover_beside::{Beside, Photographs, mask};
 use super::recover_options::{self, uncertainty};
 use super::recovered::{collect, tell, write};
@@ -16,6 +15,7 @@ use crate::lab::{Certainty, Noise, by_trust, recover_with_picards};
 use crate::matrix::{Matrix, npy};
 use crate::model::MatrixModel;
 use crate::recovery::{Method, Options};
+use crate::store::memory;
 
 /// Methods that compare neighbouring elements.
 const NEIGHBOURS: [Method; 3] = [Method::JointGp, Method::JointTv, Method::TikhonovGradient];

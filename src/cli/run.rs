@@ -15,9 +15,10 @@ use super::render::{self, Rendered};
 use super::run_folder::{
     Claim, MODEL, PHI, RECOVERED, REPORT, STDERR, SUMMARY, TAILS, is_of_model, is_of_recovered,
 };
-use super::{Outcome, model, need, recover_options, recovered, settings, validate};
+use super::{Outcome, model, recover_options, recovered, settings, validate};
 use crate::film::{self, Stack};
 use crate::folder::frame_max;
+use crate::jobs::need;
 use crate::lab::finding::Describe;
 use crate::lab::{
     self, Against, Certainty, GalleryPlan, GalleryTasks, Measured, Noise, RunGallery, RunResults,

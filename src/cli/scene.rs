@@ -8,10 +8,10 @@ use super::Outcome;
 use super::args::{SceneArgs, SceneCommand};
 use super::console::{Console, concise};
 use super::failure::Failure;
-use super::need;
 use super::output;
 use super::preview;
 use super::suspicious::dark;
+use crate::jobs::need;
 use crate::report;
 use crate::scene::{Builtin, Role, Scene, builtins};
 
@@ -30,7 +30,7 @@ pub(super) fn execute(args: &SceneArgs, console: Console) -> Result<Outcome, Fai
         }
         SceneCommand::Check { scene, json: true } => {
             let loaded = console.load_any_scene(scene).map_err(Failure::from);
-            let loaded = loaded.and_then(|scene| need::frames(&scene).map(|()| scene));
+            let loaded = loaded.and_then(|scene| Ok(need::frames(&scene).map(|()| scene)?));
             output::print(&match &loaded {
                 Ok(loaded) => checked(scene, loaded)?,
                 Err(failure) => output::json(&json!({

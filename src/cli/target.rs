@@ -7,12 +7,12 @@ use super::Outcome;
 use super::args::TargetArgs;
 use super::console::Console;
 use super::failure::Failure;
-use super::memory;
 use super::output;
 use crate::image::Transfer;
 use crate::report;
 use crate::scene::mesh::{FaceValues, Generator, Triangles, to_ply};
 use crate::scene::target::Target;
+use crate::store::memory;
 
 pub(super) fn execute(args: &TargetArgs, console: Console) -> Result<Outcome, Failure> {
     let Some(name) = &args.name else {

@@ -37,6 +37,7 @@ mod error;
 mod folder;
 mod identity;
 mod indices;
+pub mod need;
 mod plan;
 mod shards;
 pub mod slurm;

@@ -10,8 +10,9 @@ use crate::cli::output;
 use crate::cli::progress::Tracing;
 use crate::cli::render::complete;
 use crate::cli::run_folder::{Claim, RunFolder};
-use crate::cli::{Outcome, need, settings, suspicious};
+use crate::cli::{Outcome, settings, suspicious};
 use crate::folder::Record;
+use crate::jobs::need;
 use crate::jobs::{Checkpoint, Identity, Parts, Shards, Spots, end};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
@@ -45,10 +46,7 @@ impl Work for Render {
         console.warn(scene);
         let needs = [need::shard(scene, plan), need::merge(scene, plan)];
         for refused in needs.iter().filter_map(|need| need.as_ref().err()) {
-            console.say(format!(
-                "warning: not on this machine: {}",
-                refused.message()
-            ));
+            console.say(format!("warning: not on this machine: {refused}"));
         }
         suspicious::warn(scene, plan, console)
     }

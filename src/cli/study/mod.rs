@@ -6,8 +6,8 @@ use super::Outcome;
 use super::args::StudyArgs;
 use super::console::Console;
 use super::failure::Failure;
-use super::need;
 use super::tasks::Tasks;
+use crate::jobs::need;
 use crate::scene::Scene;
 use job::Job;
 

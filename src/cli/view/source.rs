@@ -6,7 +6,6 @@ use super::super::args::ViewArgs;
 use super::super::console::Console;
 use super::super::failure::Failure;
 use super::super::load_run::refuse_damaged;
-use super::super::memory;
 use super::super::run_folder;
 use crate::film;
 use crate::film::exr::FrameError;
@@ -17,6 +16,7 @@ use crate::matrix::npy;
 use crate::report::Panel;
 use crate::store;
 use crate::store::harmless;
+use crate::store::memory;
 
 /// Pictures of more bytes than this are not read, nor matrices that would take more: 1 GiB.
 const LARGEST: u64 = 1 << 30;
@@ -131,7 +131,8 @@ fn refuse_unseen(path: &Path) -> Result<(), Failure> {
     let [pixels, bytes] = claimed.unwrap_or_default();
     let bytes = bytes.min(film::exr::PIXEL_BYTES_MAX as f64);
     let need = length as f64 + HELD * (bytes + 8.0 * pixels.min(bytes));
-    memory::refuse(&format!("{name} and its picture"), need, &[])
+    let what = format!("{name} and its picture");
+    Ok(memory::refuse(&what, need, &[])?)
 }
 
 /// A picture of another program; its first row is the top one.

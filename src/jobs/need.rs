@@ -1,13 +1,12 @@
 //! How much memory a scene takes, command by command: upper bounds by the numbers that are held at
 //! once, refused before they are taken.
 
-use super::failure::Failure;
-use super::memory;
+use super::spots::Spots;
 use crate::film::exr::PIXEL_BYTES_MAX;
 use crate::geometry::Shape;
-use crate::jobs::Spots;
 use crate::model::is_obstructed;
 use crate::scene::{Profile, Scene};
+use crate::store::memory::{self, NoRoom};
 use crate::transport::{Estimator, Plan};
 
 /// What the program takes besides, bytes.
@@ -24,7 +23,7 @@ const WALL: f64 = 16.0 * 128.0;
 
 /// The numbers of a scene.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Need {
+pub struct Need {
     pixels: f64,
     spots: f64,
     elements: f64,
@@ -49,7 +48,7 @@ const UNKNOWNS: f64 = 16.0;
 
 impl Need {
     /// Of `scene`; `elements` in place of its own for each surface that is divided by cells.
-    pub(super) fn of(scene: &Scene, elements: Option<[usize; 2]>) -> Self {
+    pub fn of(scene: &Scene, elements: Option<[usize; 2]>) -> Self {
         let count = |surface: [usize; 2]| {
             let [nu, nv] = elements.unwrap_or(surface);
             nu as f64 * nv as f64
@@ -71,7 +70,7 @@ impl Need {
             cells: cells.sum(),
             wide: scene.laser.profile != Profile::Ideal,
             obstructed: false,
-            threads: memory::available_threads() as f64,
+            threads: rayon::current_num_threads() as f64,
         }
     }
 
@@ -84,7 +83,7 @@ impl Need {
     }
 
     /// Refuses what needs more than there is. `what` is what is to be done.
-    fn refuse(&self, what: &str, bytes: Bytes<'_>) -> Result<(), Failure> {
+    fn refuse(&self, what: &str, bytes: Bytes<'_>) -> Result<(), NoRoom> {
         let with = |change: fn(&mut Self, f64)| {
             move |n: f64| {
                 let mut other = *self;
@@ -215,7 +214,10 @@ fn most_pixels(channels: f64) -> f64 {
 }
 
 /// Refuses frames that no file holds: whatever the machine, the scene cannot be rendered.
-pub(super) fn frames(scene: &Scene) -> Result<(), Failure> {
+///
+/// # Errors
+/// [`NoRoom`].
+pub fn frames(scene: &Scene) -> Result<(), NoRoom> {
     let (pixels, channels) = (
         scene.camera.pixels() as f64,
         f64::from(scene.max_bounces) + 2.0,
@@ -229,15 +231,16 @@ pub(super) fn frames(scene: &Scene) -> Result<(), Failure> {
         scene.max_bounces,
         memory::size(4.0 * pixels * channels)
     );
-    Err(Failure::new(
-        cause,
-        format!("use at most {most} pixels, or fewer max_bounces"),
-    ))
+    let cure = format!("use at most {most} pixels, or fewer max_bounces");
+    Err(NoRoom::new(&cause, &cure))
 }
 
 /// Refuses a scene whose program for Mitsuba does not fit: numbers as text, held up to five times
 /// while it grows.
-pub(super) fn mitsuba(scene: &Scene) -> Result<(), Failure> {
+///
+/// # Errors
+/// [`NoRoom`].
+pub fn mitsuba(scene: &Scene) -> Result<(), NoRoom> {
     const NUMBER: f64 = 5.0 * 25.0;
     const FACE: f64 = 5.0 * 80.0;
     let need = scene.surfaces.iter().map(|s| {
@@ -252,20 +255,29 @@ pub(super) fn mitsuba(scene: &Scene) -> Result<(), Failure> {
 }
 
 /// Refuses what cannot be rendered in the memory there is.
-pub(super) fn render(scene: &Scene, plan: &Plan) -> Result<(), Failure> {
+///
+/// # Errors
+/// [`NoRoom`].
+pub fn render(scene: &Scene, plan: &Plan) -> Result<(), NoRoom> {
     frames(scene)?;
     let bytes = |need: &Need| need.render(plan, together(need, plan));
     Need::of(scene, None).refuse(&format!("the frames by {plan}"), &bytes)
 }
 
 /// Refuses a shard that does not fit: one group of spots.
-pub(super) fn shard(scene: &Scene, plan: &Plan) -> Result<(), Failure> {
+///
+/// # Errors
+/// [`NoRoom`].
+pub fn shard(scene: &Scene, plan: &Plan) -> Result<(), NoRoom> {
     let bytes = |need: &Need| need.tracing(plan, together(need, plan)) + BASE;
     Need::of(scene, None).refuse("the blocks of a shard", &bytes)
 }
 
 /// Refuses a merge that does not fit: three matrices of Φcam's size, and one group of spots.
-pub(super) fn merge(scene: &Scene, plan: &Plan) -> Result<(), Failure> {
+///
+/// # Errors
+/// [`NoRoom`].
+pub fn merge(scene: &Scene, plan: &Plan) -> Result<(), NoRoom> {
     let bytes = |need: &Need| {
         let n = together(need, plan);
         BASE + 3.0 * 8.0 * need.entries() + Need::parts(plan) * need.part(n) + need.writing(n)
@@ -281,7 +293,10 @@ fn together(need: &Need, plan: &Plan) -> f64 {
 }
 
 /// Refuses what cannot be rendered, compared and recovered.
-pub(super) fn run(scene: &Scene, plan: &Plan) -> Result<(), Failure> {
+///
+/// # Errors
+/// [`NoRoom`].
+pub fn run(scene: &Scene, plan: &Plan) -> Result<(), NoRoom> {
     render(scene, plan)?;
     if scene.hidden().next().is_none() {
         return Ok(());
@@ -294,11 +309,10 @@ pub(super) fn run(scene: &Scene, plan: &Plan) -> Result<(), Failure> {
 }
 
 /// Refuses a model that does not fit; `quadrature` where that is asked for besides.
-pub(super) fn model(
-    scene: &Scene,
-    elements: Option<[usize; 2]>,
-    quadrature: bool,
-) -> Result<(), Failure> {
+///
+/// # Errors
+/// [`NoRoom`].
+pub fn model(scene: &Scene, elements: Option<[usize; 2]>, quadrature: bool) -> Result<(), NoRoom> {
     let bytes = |need: &Need| {
         let more = if quadrature { need.quadrature() } else { 0.0 };
         need.model() + more
@@ -308,7 +322,10 @@ pub(super) fn model(
 
 /// Refuses what is too large to be looked for: the products of the elements' terms with each other,
 /// those of every frame and, while they are formed, of each thread.
-pub(super) fn locate(scene: &Scene, elements: Option<[usize; 2]>) -> Result<(), Failure> {
+///
+/// # Errors
+/// [`NoRoom`].
+pub fn locate(scene: &Scene, elements: Option<[usize; 2]>) -> Result<(), NoRoom> {
     let bytes = |need: &Need| {
         let (square, terms) = (need.elements * need.elements, 0.5 * TERMS * need.elements);
         let formed = terms * (terms + 2.0 * need.pixels);
@@ -319,7 +336,10 @@ pub(super) fn locate(scene: &Scene, elements: Option<[usize; 2]>) -> Result<(), 
 }
 
 /// Refuses photographs that do not fit beside the model and its derivatives.
-pub(super) fn calibrate(scene: &Scene, elements: Option<[usize; 2]>) -> Result<(), Failure> {
+///
+/// # Errors
+/// [`NoRoom`].
+pub fn calibrate(scene: &Scene, elements: Option<[usize; 2]>) -> Result<(), NoRoom> {
     let bytes = |need: &Need| {
         let terms = TERMS * need.elements;
         let sides = 8.0 * terms * (need.pixels + need.spots);
@@ -331,20 +351,29 @@ pub(super) fn calibrate(scene: &Scene, elements: Option<[usize; 2]>) -> Result<(
 }
 
 /// Refuses photographs that do not fit beside the model that they are compared with.
-pub(super) fn verdict(scene: &Scene) -> Result<(), Failure> {
+///
+/// # Errors
+/// [`NoRoom`].
+pub fn verdict(scene: &Scene) -> Result<(), NoRoom> {
     let bytes = |need: &Need| 4.0 * 8.0 * need.entries() + need.model() + need.verdict();
     Need::of_model(scene, None).refuse("the photographs and the model", &bytes)
 }
 
 /// Refuses `matrices` of Φcam's size that do not fit.
-pub(super) fn photographs(scene: &Scene, matrices: f64) -> Result<(), Failure> {
+///
+/// # Errors
+/// [`NoRoom`].
+pub fn photographs(scene: &Scene, matrices: f64) -> Result<(), NoRoom> {
     let bytes = |need: &Need| BASE + matrices * 8.0 * need.entries() + 64.0 * need.pixels;
     Need::of(scene, None).refuse("the photographs", &bytes)
 }
 
 /// Refuses a scene that no study can trace and model: all its spots at once, on every thread what
 /// one trial of it takes.
-pub(super) fn study(scene: &Scene) -> Result<(), Failure> {
+///
+/// # Errors
+/// [`NoRoom`].
+pub fn study(scene: &Scene) -> Result<(), NoRoom> {
     let bytes = |need: &Need| {
         let traced = 7.0 * need.part(need.spots) + PIXEL * need.pixels;
         let trials = need.threads * 8.0 * 8.0 * need.entries();

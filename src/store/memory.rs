@@ -1,27 +1,36 @@
 //! Memory is refused before it is taken: what does not fit into the [`Room`] there is.
 
-use super::failure::Failure;
-use crate::store::Room;
+use super::room::Room;
 
-pub(super) const GIB: f64 = (1u64 << 30) as f64;
+/// Bytes of a GiB.
+pub const GIB: f64 = (1u64 << 30) as f64;
 
-/// The memory that may be taken beside the threads of this process.
-pub(super) fn room() -> Option<Room> {
-    Room::now(available_threads())
+/// What does not fit, and what would: cause and cure.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct NoRoom(String);
+
+impl NoRoom {
+    /// By cause and cure.
+    pub(crate) fn new(cause: &str, cure: &str) -> Self {
+        Self(format!("{cause}\n  cure: {cure}"))
+    }
 }
 
-/// Threads of a pool that nobody gave a number; the environment may, as to every program of rayon.
-pub(super) fn available_threads() -> usize {
-    let given = std::env::var("RAYON_NUM_THREADS").ok();
-    let given = given.and_then(|n| n.parse().ok()).filter(|n| *n > 0);
-    given.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
+/// The memory that may be taken beside the threads of this process, of which each pool has as many as
+/// the one that asks.
+pub fn room() -> Option<Room> {
+    Room::now(rayon::current_num_threads())
 }
 
 /// A number by its name, its value, and the need as a function of it: the largest that fits is told.
-pub(super) type Cure<'a> = (&'a str, u64, &'a dyn Fn(f64) -> f64);
+pub type Cure<'a> = (&'a str, u64, &'a dyn Fn(f64) -> f64);
 
 /// Refuses what needs more memory than there is, and tells of each cure how much would fit.
-pub(super) fn refuse(what: &str, need: f64, cures: &[Cure<'_>]) -> Result<(), Failure> {
+///
+/// # Errors
+/// [`NoRoom`].
+pub fn refuse(what: &str, need: f64, cures: &[Cure<'_>]) -> Result<(), NoRoom> {
     let Some(room) = room().filter(|room| need > room.bytes) else {
         return Ok(());
     };
@@ -44,7 +53,7 @@ pub(super) fn refuse(what: &str, need: f64, cures: &[Cure<'_>]) -> Result<(), Fa
         size(room.bytes),
         room.by
     );
-    Err(Failure::new(cause, cure))
+    Err(NoRoom::new(&cause, &cure))
 }
 
 /// The largest number from 1 to `most` that `fits`; what fits for a number does for smaller ones.
@@ -62,7 +71,7 @@ fn largest(most: u64, fits: impl Fn(f64) -> bool) -> Option<u64> {
 }
 
 /// GiB with two digits behind the point, which is what one compares by.
-pub(super) fn size(bytes: f64) -> String {
+pub fn size(bytes: f64) -> String {
     format!("{:.2} GiB", bytes / GIB)
 }
 
