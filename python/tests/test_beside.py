@@ -92,7 +92,8 @@ def test_the_interpreter_is_not_held():
     took = time.perf_counter() - begun
     stop.set()
     thread.join()
-    assert counted[0] > 50 * took
+    # With the lock held it would count once or twice.
+    assert counted[0] > 10 * took
 
 
 PROGRAM = """
@@ -116,7 +117,7 @@ LONG = {
 
 @pytest.mark.skipif(os.name == "nt", reason="signals")
 @pytest.mark.parametrize("what", LONG)
-def test_ctrl_c_ends_it_within_a_second(what):
+def test_ctrl_c_ends_it(what):
     process = subprocess.Popen(
         [sys.executable, "-c", PROGRAM.replace("LONG", LONG[what])], stdout=subprocess.PIPE, text=True
     )
@@ -127,7 +128,9 @@ def test_ctrl_c_ends_it_within_a_second(what):
     process.send_signal(signal.SIGINT)
     said = process.stdout.readline()
     took = time.perf_counter() - begun
-    assert said == "interrupted\n" and took < 1.0, (said, took)
+    print(f"{what} ended after {took:.2f} s")
+    # Under a second on a quiet machine; hours if nothing looked at the signal.
+    assert said == "interrupted\n" and took < 5.0, (said, took)
     assert process.wait(timeout=10) == 7
 
 
@@ -171,10 +174,13 @@ def test_a_thousand_calls_leak_nothing():
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - peak < 16_384
 
 
-def test_it_is_imported_fast():
-    program = "import numpy, time; t = time.perf_counter(); import phicam; print(time.perf_counter() - t)"
-    times = [float(subprocess.check_output([sys.executable, "-c", program])) for _ in range(5)]
-    assert min(times) < 0.1, times
+def test_it_is_imported_faster_than_numpy():
+    program = (
+        "import time; t = time.perf_counter(); import numpy; u = time.perf_counter(); import phicam; "
+        "print((time.perf_counter() - u) / (u - t))"
+    )
+    ratios = [float(subprocess.check_output([sys.executable, "-c", program])) for _ in range(5)]
+    assert min(ratios) < 1.0, ratios
 
 
 def test_what_a_notebook_shows(phi):

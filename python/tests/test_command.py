@@ -86,8 +86,8 @@ def test_recover_of_matrices(command, phi, tmp_path):
 
 
 def test_expose(command, run, phi, tmp_path):
-    command("expose", run, "--sensor", "machine-vision", "--exposure", 0.01, "-o", tmp_path, "--seed", 3)
-    exposed = phicam.expose(phi, "machine-vision", exposure=0.01, seed=3)
+    command("expose", run, "--sensor", "machine-vision", "--exposure", 0.005, "-o", tmp_path, "--seed", 3)
+    exposed = phicam.expose(phi, "machine-vision", exposure=0.005, seed=3)
     assert same(exposed.flux, tmp_path / "phi.npy")
     assert same(exposed.stderr, tmp_path / "phi.stderr.npy")
     assert same(exposed.clipped, tmp_path / "saturated.npy")

@@ -53,7 +53,7 @@ MISUSES = [
     ("a negative number of threads", (Input, OverflowError), lambda s, p, t: phicam.render(s, threads=-1), ""),
     ("a scene by its name", (TypeError, AttributeError), lambda s, p, t: phicam.render("bench"), ""),
     ("no such spot", Input, lambda s, p, t: p.frame(99), "0 to 7"),
-    ("more than the memory", Input, lambda s, p, t: phicam.render(s.replace({"camera.pixels": (9999, 9999)})), "GiB"),
+    ("more than the memory", Input, lambda s, p, t: phicam.render(s.replace({"camera.pixels": (8000, 8000)})), "GiB"),
     ("a model of more than the memory", Input, lambda s, p, t: phicam.model(s, elements=(9999, 9999)), "cure"),
     # Models.
     ("no such kernel", Input, lambda s, p, t: phicam.model(s, kernel="soft"), "physical"),
