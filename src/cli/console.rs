@@ -14,6 +14,8 @@ pub(super) struct Console<'a> {
     /// Folders in which scenes may read meshes, pictures and materials, besides the folder of their
     /// file.
     pub also_read: &'a [PathBuf],
+    /// Other values of keys of the scene that the arguments name.
+    pub define: &'a [(String, String)],
 }
 
 impl Console<'_> {
@@ -28,7 +30,18 @@ impl Console<'_> {
 
     /// The same whose albedos may be unknown: for what needs none of them.
     pub(super) fn load_any_scene(self, name_or_path: &str) -> Result<Scene, SceneError> {
-        Scene::load_with(name_or_path, self.also_read)
+        let scene = Scene::load_with(name_or_path, self.also_read)?;
+        if self.define.is_empty() {
+            return Ok(scene);
+        }
+        let changes = self.define.iter().map(|(k, v)| (k.as_str(), v.as_str()));
+        scene.with(&changes.collect::<Vec<_>>())
+    }
+
+    /// The same for scenes that lie in folders of the program's own, as they are there.
+    pub(super) fn of_folders(self) -> Self {
+        let define = &[];
+        Self { define, ..self }
     }
 
     /// A remark on standard error.

@@ -28,9 +28,9 @@ pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), 
     let name = path.to_string_lossy();
     // Photographs need no albedo.
     let scene = if record.is_imported() {
-        console.load_any_scene(&name)?
+        console.of_folders().load_any_scene(&name)?
     } else {
-        console.load_scene(&name)?
+        console.of_folders().load_scene(&name)?
     };
     if record.check(dir, SCENE).is_err() {
         console.say(format!(

@@ -110,7 +110,15 @@ pub fn main() -> ExitCode {
     let console = Console {
         quiet: args.quiet,
         also_read: &args.also_read,
+        define: &args.define,
     };
+    if let (Some((key, _)), false) = (args.define.first(), args.command.takes_scene()) {
+        let cause = format!("-D {key} changes a scene, and nothing here names one");
+        let cure = "the scene of a run is that of its render: render it with -D into another folder; `validate` takes one by --against";
+        let failure = Failure::usage(cause, cure);
+        failure.report();
+        return ExitCode::from(failure.code(args.command.codes()));
+    }
     if let Err(failure) = process::start_threads() {
         failure.report();
         return ExitCode::from(failure.code(args.command.codes()));

@@ -150,6 +150,7 @@ impl RunFolder {
         let there = own.exists();
         let same = || {
             console
+                .of_folders()
                 .load_any_scene(&own.to_string_lossy())
                 .is_ok_and(|s| s.hash == scene.hash)
         };
@@ -293,6 +294,7 @@ impl RunFolder {
         if own.exists() {
             // What cannot be read as a scene is not this one either.
             if !console
+                .of_folders()
                 .load_any_scene(&own.to_string_lossy())
                 .is_ok_and(|s| s.hash == scene.hash)
             {

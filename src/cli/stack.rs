@@ -23,7 +23,10 @@ pub(super) fn execute(args: &StackArgs, console: Console) -> Result<Outcome, Fai
         record.check_lengths(&args.dir, COPIES)?;
     }
     // Of frames without a scene only the frames themselves say how large they are.
-    let stack = match console.load_any_scene(&args.dir.join(SCENE).to_string_lossy()) {
+    let stack = match console
+        .of_folders()
+        .load_any_scene(&args.dir.join(SCENE).to_string_lossy())
+    {
         Ok(scene) => {
             need::photographs(&scene, f64::from(scene.max_bounces) + 3.0)?;
             film::stack_within(&args.dir, frame_max(&scene))?

@@ -7,6 +7,7 @@ mod bad_recoveries;
 mod bad_scenes;
 mod bad_settings;
 mod calibrating;
+mod defining;
 mod digests;
 mod exposing;
 mod exposing_again;

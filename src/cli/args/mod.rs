@@ -25,7 +25,7 @@ use crate::lab::{Errors, Integration};
 use crate::model::Kernel;
 use crate::num::stream::Sampling;
 use crate::transport::Estimator;
-use value::{elements, shift, spot_range};
+use value::{definition, elements, shift, spot_range};
 
 pub(in crate::cli) use calibrate::CalibrateArgs;
 pub(in crate::cli) use expose::{ExposeArgs, StatedBy};
@@ -54,6 +54,10 @@ pub(in crate::cli) struct Args {
     /// file; may be given several times
     #[arg(long, value_name = "DIR", global = true)]
     pub also_read: Vec<PathBuf>,
+    /// Another value of a key of the scene, e.g. camera.pixels=[32,32] or surface.wall.material.lambertian=0.5;
+    /// may be given several times
+    #[arg(short = 'D', long = "define", value_name = "KEY=VALUE", global = true, value_parser = definition)]
+    pub define: Vec<(String, String)>,
     #[command(subcommand)]
     pub command: Command,
 }
@@ -113,6 +117,29 @@ impl Command {
     /// Those that schedulers call.
     pub(in crate::cli) const SCHEDULED: [&str; 6] =
         ["plan", "shard", "status", "merge", "slurm", "clean"];
+
+    /// Whether it reads a scene that is named in its arguments.
+    pub(in crate::cli) fn takes_scene(&self) -> bool {
+        match self {
+            Self::Validate(args) => args.against.is_some(),
+            Self::Recover(_)
+            | Self::Calibrate(_)
+            | Self::View(_)
+            | Self::Stack(_)
+            | Self::Locate(_)
+            | Self::Expose(_)
+            | Self::Serve(_)
+            | Self::Target(_)
+            | Self::Shard(_)
+            | Self::Status(_)
+            | Self::Merge(_)
+            | Self::Slurm(_)
+            | Self::Clean(_)
+            | Self::Reproduce(_) => false,
+            Self::Scene(args) => !matches!(args.command, SceneCommand::List { .. }),
+            _ => true,
+        }
+    }
 
     /// Which exit codes its failures have.
     pub(in crate::cli) fn codes(&self) -> Codes {

@@ -13,6 +13,23 @@ pub(super) fn spot_range(text: &str) -> Result<Range<usize>, String> {
     }
 }
 
+/// "KEY=VALUE", the value as TOML or a word.
+pub(super) fn definition(text: &str) -> Result<(String, String), String> {
+    let (key, value) = text
+        .split_once('=')
+        .ok_or("write it as KEY=VALUE, e.g. camera.pixels=[32,32]")?;
+    let (key, value) = (key.trim(), value.trim());
+    let is_of_a_word = |c: char| c.is_alphabetic() || "_-".contains(c);
+    let is_word = !value.is_empty() && value.chars().all(is_of_a_word);
+    let known = ["true", "false", "nan", "inf", "-inf"].contains(&value);
+    let value = if is_word && !known {
+        format!("\"{value}\"")
+    } else {
+        value.to_owned()
+    };
+    Ok((key.to_owned(), value))
+}
+
 /// "N" or "NxM", both from 1 to 1024.
 pub(super) fn elements(text: &str) -> Result<[usize; 2], String> {
     let (a, b) = text.split_once('x').unwrap_or((text, text));

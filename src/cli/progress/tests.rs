@@ -117,6 +117,7 @@ fn the_error_of_finished_columns_is_that_of_all_of_them_together() {
         Console {
             quiet: false,
             also_read: &[],
+            define: &[],
         },
         "test",
         10,

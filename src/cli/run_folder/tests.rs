@@ -4,6 +4,7 @@ use crate::folder::{Origin, Photographs};
 const QUIET: Console<'static> = Console {
     quiet: true,
     also_read: &[],
+    define: &[],
 };
 
 fn scene(name: &str) -> Scene {

@@ -8,6 +8,7 @@ use crate::transport::Control;
 const CONSOLE: Console<'static> = Console {
     quiet: true,
     also_read: &[],
+    define: &[],
 };
 
 fn words(line: &str) -> Vec<String> {
