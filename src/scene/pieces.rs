@@ -370,7 +370,7 @@ mod tests {
             }
         }
         let checks = |cell: usize| {
-            if (cell % 7 + cell / 7) % 2 == 0 {
+            if (cell % 7 + cell / 7).is_multiple_of(2) {
                 0.1
             } else {
                 0.5

@@ -651,7 +651,7 @@ fn a_textured_sphere_is_integrated_within_its_bound() {
             let took = start.elapsed().as_secs_f64();
             let traced = trace(
                 &scene,
-                Way(Estimator::Factored, Sampling::Sobol, 1, 1 << 15),
+                Way(Estimator::Factored, Sampling::Sobol, 1, 1 << 17),
             );
             let error = relative(&traced.flux, &found.phi);
             let noise = traced.stderr.norm() / traced.flux.norm();

@@ -168,9 +168,12 @@ impl Mesh {
     /// of the triangles.
     pub fn cut(&self, facets: Vec<Facet>) -> Facets {
         let areas: Vec<f64> = (0..self.triangles.len() as u32)
-            .map(|t| match is_proper(self.corners(t)) {
-                true => self.triangle_area(t),
-                false => 0.0,
+            .map(|t| {
+                if is_proper(self.corners(t)) {
+                    self.triangle_area(t)
+                } else {
+                    0.0
+                }
             })
             .collect();
         let (low, high) = self.bounds;

@@ -80,9 +80,9 @@ fn texture_coordinates_of_a_sphere_are_its_angles() {
     for (t, uv) in mesh.triangles.iter().zip(mesh.uv.as_ref().unwrap()) {
         for (c, [u, v]) in t.iter().zip(uv) {
             let p = mesh.positions[*c as usize];
-            assert!((p.z + (PI * f64::from(*v)).cos()).abs() < 1e-6);
+            assert!((p.z + (PI * v).cos()).abs() < 1e-6);
             if p.z.abs() < 0.999_999 {
-                let angle = 2.0 * PI * f64::from(*u);
+                let angle = 2.0 * PI * u;
                 let direction = DVec3::new(angle.sin(), -angle.cos(), 0.0);
                 let flat = DVec3::new(p.x, p.y, 0.0).normalize();
                 assert!(flat.distance(direction) < 1e-5, "{p} {u}");
