@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DAffine3;
 
-use super::{Contact, DVec3, Interaction, Mesh, Ray};
+use super::{Contact, DVec3, Facet, Facets, Interaction, Mesh, Patch, Ray};
 
 /// A mesh, placed by a similarity (rotation, uniform scale, translation): several bodies may share
 /// one mesh. Rays are taken into the mesh's own space, so that a million triangles exist, and their
@@ -17,6 +17,8 @@ pub struct Instance {
     scale: f64,
     side: Side,
     bounds: (DVec3, DVec3),
+    /// What the equal-area map takes in place of the triangles.
+    facets: Option<Arc<Facets>>,
 }
 
 /// Which side of a mesh's triangles is the front.
@@ -71,7 +73,51 @@ impl Instance {
             scale,
             side,
             bounds,
+            facets: None,
         })
+    }
+
+    /// The same body whose equal-area map takes facets of the triangles, cell after cell, in place
+    /// of the triangles: they make up each triangle once, in the order of the triangles. `None`:
+    /// the triangles again.
+    pub fn in_facets(self, facets: Option<Vec<Facet>>) -> Self {
+        Self {
+            facets: facets.map(|all| Arc::new(self.mesh.cut(all))),
+            ..self
+        }
+    }
+
+    /// Whether it is a parallelogram in its texture coordinates, to 1e-6 of its size: these are then
+    /// the parameters of its equal-area map, and the area element is its mean to 2e-6.
+    pub fn is_patch(&self) -> bool {
+        self.mesh.patch().is_some()
+    }
+
+    /// The same to rounding.
+    pub fn is_exact_patch(&self) -> bool {
+        self.mesh.patch().is_some_and(Patch::is_exact)
+    }
+
+    /// The facets of its triangles, if it is cut.
+    pub fn facets(&self) -> Option<&Facets> {
+        self.facets.as_deref()
+    }
+
+    /// Corners of a facet in the scene.
+    pub fn facet_corners(&self, facet: &Facet) -> [DVec3; 3] {
+        let place = |w| self.mesh.place(facet.triangle, w);
+        facet
+            .corners
+            .map(|w| self.to_world.transform_point3(place(w)))
+    }
+
+    /// Edges along u that divide the body into about `parts` parts, none of which has to do with
+    /// two cells of its facets: the larger triangles of a mesh of few, many together of one of many.
+    pub fn edges(&self, parts: usize) -> Vec<f64> {
+        match &self.facets {
+            Some(facets) => self.mesh.edges_in(facets, parts),
+            None => self.mesh.edges(parts),
+        }
     }
 
     /// The mesh, in its own space.
@@ -102,7 +148,11 @@ impl Instance {
 
     /// The body after a rigid motion.
     pub fn moved(&self, motion: &DAffine3) -> Option<Self> {
-        Self::new(self.mesh.clone(), *motion * self.to_world, self.side)
+        let moved = Self::new(self.mesh.clone(), *motion * self.to_world, self.side)?;
+        Some(Self {
+            facets: self.facets.clone(),
+            ..moved
+        })
     }
 
     /// Smallest axis-aligned box around the vertices.
@@ -113,6 +163,20 @@ impl Instance {
     /// Area, length².
     pub fn area(&self) -> f64 {
         self.mesh.area() * self.scale * self.scale
+    }
+
+    /// Whether a point lies in front of the plane of some triangle with an area.
+    pub fn faces(&self, q: DVec3) -> bool {
+        let local = self.to_mesh.transform_point3(q);
+        let in_front = |t: &u32| {
+            let [a, b, c] = self.mesh.corners(*t);
+            let height = (b - a).cross(c - a).dot(local - a);
+            match self.side {
+                Side::Outer => height > 0.0,
+                Side::Inner => height < 0.0,
+            }
+        };
+        (0..self.mesh.triangles().len() as u32).any(|t| in_front(&t))
     }
 
     /// Area of a triangle, length².
@@ -197,16 +261,34 @@ impl Instance {
 
     /// The point that the equal-area map of the square to the mesh gives to `u`.
     pub fn at(&self, u: [f64; 2]) -> Interaction {
-        self.to_scene(self.mesh.at(u))
+        self.to_scene(match (self.mesh.patch(), &self.facets) {
+            (Some(patch), _) if patch.is_exact() => patch.plane.at(u),
+            // On the mesh itself, from which no ray may start by a hair.
+            (Some(patch), _) => self.mesh.at_position(patch.plane.at(u).position).1,
+            (None, Some(facets)) => self.mesh.at_facet(facets, u),
+            (None, None) => self.mesh.at(u),
+        })
     }
 
     /// The box around what [`Instance::at`] gives between `low` and `high`: its lower and its upper
     /// corner.
     pub fn bounds_between(&self, low: [f64; 2], high: [f64; 2]) -> (DVec3, DVec3) {
-        let points = self.mesh.hull(low, high);
-        let placed = points.map(|p| self.to_world.transform_point3(p));
         let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        placed.fold(empty, |(low, high), p| (low.min(p), high.max(p)))
+        let around = |(low, high): (DVec3, DVec3), p: DVec3| {
+            let p = self.to_world.transform_point3(p);
+            (low.min(p), high.max(p))
+        };
+        match (self.mesh.patch(), &self.facets) {
+            (Some(patch), _) => {
+                let rim = [low, [low[0], high[1]], high, [high[0], low[1]]];
+                let rim = rim.map(|uv| patch.plane.at(uv).position);
+                let (low, high) = rim.into_iter().fold(empty, around);
+                let off = DVec3::splat(2.0 * patch.off * self.scale);
+                (low - off, high + off)
+            }
+            (None, Some(facets)) => self.mesh.hull_in(facets, low, high).fold(empty, around),
+            (None, None) => self.mesh.hull(low, high).fold(empty, around),
+        }
     }
 
     /// The parameters for which [`Instance::at`] gives the point of a triangle that is nearest to
@@ -215,8 +297,15 @@ impl Instance {
     /// # Panics
     /// If there is no such triangle.
     pub fn parameters(&self, triangle: u32, p: DVec3) -> [f64; 2] {
-        self.mesh
-            .parameters(triangle, self.to_mesh.transform_point3(p))
+        let local = self.to_mesh.transform_point3(p);
+        match (self.mesh.patch(), &self.facets) {
+            (Some(patch), _) if patch.is_exact() => {
+                patch.plane.coordinates(local).map(|x| x.clamp(0.0, 1.0))
+            }
+            (Some(_), _) => self.mesh.on_triangle(triangle, local).uv,
+            (None, Some(facets)) => self.mesh.parameters_in(facets, triangle, local),
+            (None, None) => self.mesh.parameters(triangle, local),
+        }
     }
 
     /// The points straight above or below (x, y) along z, by growing z.

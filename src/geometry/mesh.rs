@@ -1,15 +1,19 @@
 //! Triangle meshes.
 
 mod area_map;
+mod facets;
 mod group;
 mod nearest;
+mod patch;
 mod query;
 
 use super::tree::WideTree;
 use super::{Contact, DVec3, Interaction, Ray};
 use crate::num::lanes::widest;
 use area_map::AreaMap;
+pub use facets::{Facet, Facets};
 use group::{GROUP, Group};
+pub use patch::Patch;
 use query::{Any, Closest};
 
 /// Coordinates beyond this (in scene units) are refused.
@@ -73,8 +77,10 @@ pub struct Mesh {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     /// By triangle and corner.
-    uv: Option<Vec<[[f32; 2]; 3]>>,
+    uv: Option<Vec<[[f64; 2]; 3]>>,
     bounds: (DVec3, DVec3),
+    /// What it is in its texture coordinates, if that is a parallelogram.
+    patch: Option<Patch>,
     area_map: AreaMap,
     tree: WideTree,
     groups: Vec<Group>,
@@ -164,6 +170,7 @@ impl Mesh {
             triangles,
             uv: None,
             bounds,
+            patch: None,
             area_map,
             tree,
             groups,
@@ -175,21 +182,29 @@ impl Mesh {
     ///
     /// # Errors
     /// [`MeshError::Coordinates`] if there are not as many as triangles.
-    pub fn with_uv(self, uv: Vec<[[f32; 2]; 3]>) -> Result<Self, MeshError> {
+    pub fn with_uv(self, uv: Vec<[[f64; 2]; 3]>) -> Result<Self, MeshError> {
         if uv.len() != self.triangles.len() {
             return Err(MeshError::Coordinates {
                 given: uv.len(),
                 triangles: self.triangles.len(),
             });
         }
-        Ok(Self {
+        let textured = Self {
             uv: Some(uv),
             ..self
-        })
+        };
+        let patch = patch::of(&textured);
+        Ok(Self { patch, ..textured })
+    }
+
+    /// The patch corner + u·a + v·b that the mesh is, (u, v) its texture coordinates, if it is one
+    /// to 1e-6 of its size.
+    pub fn patch(&self) -> Option<&Patch> {
+        self.patch.as_ref()
     }
 
     /// Texture coordinates by triangle and corner, if the mesh has any.
-    pub fn uv(&self) -> Option<&[[[f32; 2]; 3]]> {
+    pub fn uv(&self) -> Option<&[[[f64; 2]; 3]]> {
         self.uv.as_deref()
     }
 
@@ -234,7 +249,7 @@ impl Mesh {
     fn point(&self, triangle: u32, [v, w]: [f64; 2]) -> Interaction {
         let [a, b, c] = self.corners(triangle);
         let uv = self.uv.as_ref().map_or([0.0; 2], |uv| {
-            let [p, q, r] = uv[triangle as usize].map(|c| c.map(f64::from));
+            let [p, q, r] = uv[triangle as usize];
             [0, 1].map(|d| p[d] + (q[d] - p[d]) * v + (r[d] - p[d]) * w)
         });
         Interaction {
@@ -287,6 +302,12 @@ impl Mesh {
     pub fn parameters(&self, triangle: u32, p: DVec3) -> [f64; 2] {
         let (_, weights) = nearest::on_triangle(self.corners(triangle), p);
         self.area_map.inverse(triangle, weights)
+    }
+
+    /// The place of a triangle with the given weights of the second and the third corner.
+    pub fn place(&self, triangle: u32, [v, w]: [f64; 2]) -> DVec3 {
+        let [a, b, c] = self.corners(triangle);
+        a + (b - a) * v + (c - a) * w
     }
 
     /// The point of the mesh nearest to `p`, and its triangle; of triangles equally near the first.

@@ -26,7 +26,7 @@ pub use disc::Disc;
 pub use glam::{DAffine3, DQuat, DVec3};
 pub use instance::{Instance, Side};
 pub(crate) use mesh::is_proper;
-pub use mesh::{Mesh, MeshError};
+pub use mesh::{Facet, Facets, Mesh, MeshError, Patch};
 pub use parallelogram::Parallelogram;
 pub use ray::{Contact, Interaction, Ray};
 pub use shadow::{Hidden, Opaque, Pieces, Polygon, Shadow, area_and_middle};

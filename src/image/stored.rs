@@ -1,5 +1,6 @@
 //! Photographs from the bytes of their files, as they are stored.
 
+use super::exr::{envelope, is_whole};
 use super::orientation::Orientation;
 use super::samples::{MOST_SAMPLED, MOST_SAMPLES, Samples, TOO_MANY, unknown_turn, upright};
 use super::tiff::read_tiff;
@@ -36,6 +37,10 @@ fn of_image(name: &str, bytes: &[u8]) -> Result<Samples, ImageError> {
         [0xff, 0xd8, 0xff, ..] => Some(255.0),
         _ => None,
     };
+    if full_scale.is_none() && envelope::check_list(bytes).is_ok() && !is_whole(bytes) {
+        let reason = "its data window is not its display window: no light was measured outside it; save the frame whole, or crop its display window";
+        return Err(unsupported(name, reason));
+    }
     let image = decode_within(name, bytes, MOST_SAMPLED)?;
     if image.values.len() > MOST_SAMPLES {
         return Err(unsupported(name, TOO_MANY));

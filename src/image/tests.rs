@@ -91,6 +91,44 @@ fn floating_point_values_are_those_that_were_saved() {
     assert_eq!(image.values, [0.5, 0.25, 0.125, 0.125, 0.0625, 0.03125]);
 }
 
+/// An OpenEXR file whose display window goes from `low` to `high`; its data stay at (0, 0)–(2, 1).
+fn shown(low: [i32; 2], high: [i32; 2]) -> Vec<u8> {
+    let mut exr = bytes::EXR_GREY.to_vec();
+    let name = b"displayWindow\0box2i\0";
+    let at = exr.windows(name.len()).position(|w| w == name).unwrap() + name.len() + 4;
+    for (k, corner) in [low, high].as_flattened().iter().enumerate() {
+        exr[at + 4 * k..][..4].copy_from_slice(&corner.to_le_bytes());
+    }
+    exr
+}
+
+/// The data of an OpenEXR file lie where they are in its display window; outside it is black. A
+/// photograph has to be whole.
+#[test]
+fn a_picture_is_its_display_window() {
+    let wide = read(&shown([-1, -2], [3, 1]));
+    assert_eq!((wide.width, wide.height), (5, 4));
+    let rows: [[f32; 5]; 4] = [
+        [0.0; 5],
+        [0.0; 5],
+        [0.0, 0.0, 0.25, 1.0, 0.0],
+        [0.0, 0.5, 2.0, -1.0, 0.0],
+    ];
+    assert_eq!(wide.values, rows.as_flattened());
+    assert_eq!(size(&shown([-1, -2], [3, 1])), Some([5, 4]));
+    let narrow = read(&shown([1, 0], [2, 0]));
+    assert_eq!((narrow.width, narrow.height), (2, 1));
+    assert_eq!(narrow.values, [0.25, 1.0]);
+    assert_eq!(read(&shown([9, 9], [9, 9])).values, [0.0]);
+    let error = samples("p.exr", &shown([-1, -2], [3, 1]))
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("data window"), "{error}");
+    assert!(samples("p.exr", &shown([0, 0], [2, 1])).is_ok());
+    let huge = decode("h.exr", &shown([0, 0], [1 << 20, 1 << 20])).unwrap_err();
+    assert!(matches!(huge, ImageError::Size { .. }), "{huge}");
+}
+
 #[test]
 fn what_is_encoded_is_decoded() {
     let pixels: Vec<u8> = (0..18).collect();
@@ -119,6 +157,18 @@ fn what_is_no_picture_of_ours_is_refused_with_a_cure() {
             error.contains(words) && error.contains("`card.gif`"),
             "{error}"
         );
+    }
+    // The flags of an OpenEXR file's version are its second and third byte.
+    for (flag, words) in [
+        (0x02, "it is tiled"),
+        (0x08, "deep"),
+        (0x10, "more than one part"),
+    ] {
+        let mut exr = bytes::EXR_GREY.to_vec();
+        exr[5] |= flag;
+        let error = decode("card.exr", &exr).unwrap_err();
+        assert!(matches!(error, ImageError::Unsupported { .. }), "{error}");
+        assert!(error.to_string().contains(words), "{error}");
     }
 }
 

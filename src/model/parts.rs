@@ -4,8 +4,7 @@
 //! product rule of n nodes a side on a part of radius r converges like ρ^(−2n), ρ = y + √(1 + y²),
 //! y the distance in units of r: parts that light or sight come closer to than their own diameter
 //! are cut in four until none is left, ever smaller towards the near end; and the farther a part
-//! is for its size, the fewer nodes it gets. Triangles that an edge of their texture runs through are
-//! cut towards it.
+//! is for its size, the fewer nodes it gets. Triangles are cut along the edges of their texture.
 
 use std::borrow::Cow;
 
@@ -21,9 +20,6 @@ const FAR: f64 = 2.0;
 /// Cuts of one cell of a texture, and of one footprint.
 const MOST_CUTS: u32 = 40;
 const MOST_FOOTPRINT_CUTS: u32 = 5;
-/// Cuts of a triangle over which its texture varies, and the parts that stay free for near ends.
-const MOST_TEXTURE_CUTS: u32 = 5;
-const ROOM_FOR_NEAR: usize = 2_000;
 /// Parts that cutting may add to all hidden surfaces together, and to one footprint.
 const MOST_ADDED: usize = 6_000;
 const MOST_FOOTPRINT_PARTS: usize = 64;
@@ -120,7 +116,9 @@ impl<'a> HiddenParts<'a> {
                 _ if surface.division == Division::Cells && cells(surface) > most => {
                     found.coarse.push(index);
                 }
-                Shape::Instance(body) => whole.extend(triangles(body).map(|place| (index, place))),
+                Shape::Instance(body) if !body.is_exact_patch() => {
+                    whole.extend(triangles(body).into_iter().map(|place| (index, place)));
+                }
                 _ => {
                     let cells = grid(surface.albedo.smooth_cells());
                     whole.extend(cells.map(|place| (index, place)));
@@ -136,11 +134,7 @@ impl<'a> HiddenParts<'a> {
                 let (middle, radius) = place.ball(&found.surfaces[index]);
                 let distance = near.distance(middle, radius);
                 let close = distance < FAR && room >= 3 && generation < MOST_CUTS;
-                let varied = !close
-                    && room >= ROOM_FOR_NEAR
-                    && generation < MOST_TEXTURE_CUTS
-                    && place.has_edge(&found.surfaces[index]);
-                if close || varied {
+                if close {
                     room -= 3;
                     next.extend(place.quarters().map(|quarter| (index, quarter)));
                 } else {
@@ -325,7 +319,10 @@ fn folded(n: usize, square: &[([f64; 2], f64)]) -> Vec<([f64; 3], f64)> {
 /// Cells of a hidden surface within which it is smooth: of its texture, or the triangles.
 fn cells(surface: &Surface) -> usize {
     match &surface.shape {
-        Shape::Instance(body) => body.mesh().triangles().len(),
+        Shape::Instance(body) if !body.is_exact_patch() => {
+            let triangles = body.mesh().triangles().len();
+            body.facets().map_or(triangles, |f| f.all().len())
+        }
         _ => surface.albedo.smooth_cells().iter().product(),
     }
 }

@@ -11,14 +11,21 @@ pub(super) enum Place {
     Triangle { id: u32, corners: [DVec3; 3] },
 }
 
-/// The triangles of a mesh that have an area.
-pub(super) fn triangles(body: &Instance) -> impl Iterator<Item = Place> {
-    let ids = 0..body.mesh().triangles().len() as u32;
-    ids.filter(|t| body.triangle_area(*t) > 0.0)
-        .map(|id| Place::Triangle {
-            id,
-            corners: body.corners(id),
-        })
+/// The triangles of a mesh that have an area, or the facets into which its texture cuts them.
+pub(super) fn triangles(body: &Instance) -> Vec<Place> {
+    let triangle = |(id, corners)| Place::Triangle { id, corners };
+    let lit = |id: &u32| body.triangle_area(*id) > 0.0;
+    match body.facets() {
+        Some(facets) => {
+            let all = facets.all().iter().filter(|f| lit(&f.triangle));
+            let all = all.map(|f| (f.triangle, body.facet_corners(f)));
+            all.map(triangle).collect()
+        }
+        None => {
+            let all = (0..body.mesh().triangles().len() as u32).filter(lit);
+            all.map(|id| (id, body.corners(id))).map(triangle).collect()
+        }
+    }
 }
 
 /// Cells of equal size, iu + iv·nu.
@@ -46,8 +53,12 @@ impl Place {
                     ..surface.element_at(at([0.5; 2]))
                 };
                 let rim = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-                let corners = matches!(shape, Shape::Parallelogram(_))
-                    .then(|| rim.map(|ab| shape.at(at(ab)).position).to_vec());
+                let is_flat = match shape {
+                    Shape::Parallelogram(_) => true,
+                    Shape::Instance(body) => body.is_exact_patch(),
+                    _ => false,
+                };
+                let corners = is_flat.then(|| rim.map(|ab| shape.at(at(ab)).position).to_vec());
                 Some((element, corners))
             }
         }
@@ -73,24 +84,6 @@ impl Place {
                 furthest(at([0.5; 2]), &[rim, sides].concat())
             }
         }
-    }
-
-    /// Whether the texture of a mesh differs between corners, middles of sides and middle of a
-    /// triangle: an edge of it may run through, and no rule converges fast over that.
-    pub(super) fn has_edge(&self, surface: &Surface) -> bool {
-        let (Self::Triangle { id, corners }, Shape::Instance(body)) = (self, &surface.shape) else {
-            return false;
-        };
-        let [a, b, c] = *corners;
-        let inside = |p: DVec3| {
-            let middle = (a + b + c) / 3.0;
-            let uv = body.on_triangle(*id, middle + (p - middle) * 0.999).uv;
-            surface.albedo.albedo(uv)
-        };
-        let sides = [(a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5];
-        let first = inside(a);
-        let mut others = [b, c].into_iter().chain(sides);
-        others.any(|p| inside(p) != first)
     }
 
     pub(super) fn quarters(&self) -> [Self; 4] {

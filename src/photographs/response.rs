@@ -59,6 +59,7 @@ impl ResponseTable {
 pub(super) fn response_table(name: &str, bytes: &[u8]) -> Result<ResponseTable, PhotographError> {
     let text = String::from_utf8_lossy(bytes);
     let mut pairs = Vec::new();
+    let text = text.trim_start_matches('\u{feff}');
     for (k, line) in text.lines().enumerate() {
         let cells: Vec<Option<f64>> = line.split(',').map(|c| c.trim().parse().ok()).collect();
         match cells[..] {
@@ -119,6 +120,13 @@ impl Response {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The first pair counts too where a spreadsheet put a byte-order mark before it.
+    #[test]
+    fn a_byte_order_mark_is_read_over() {
+        let table = response_table("r.csv", "\u{feff}0,1\r\n10,2\r\n20,6\r\n".as_bytes());
+        assert_eq!(Response::Table(table.unwrap()).light(5.0), [1.5, 0.1]);
+    }
 
     #[test]
     fn light_is_the_power_and_the_line() {

@@ -30,6 +30,7 @@ pub fn recovered_ply(surface: &Surface, elements: [usize; 2], values: &[f64]) ->
                 positions: body.mesh().positions().iter().map(place).collect(),
                 triangles: body.mesh().triangles().to_vec(),
                 uv: body.mesh().uv().map(<[_]>::to_vec),
+                bare: None,
             };
             (mesh, surface.elements_of_triangles(elements))
         }
@@ -62,7 +63,7 @@ fn net(surface: &Surface, [nu, nv]: [usize; 2]) -> (Triangles, Vec<usize>) {
             let corners = corners.map(|k: usize| square[k]);
             let vertices = corners.map(|(i, j)| (j * (nu + 1) + i) as u32);
             mesh.triangles.push(vertices);
-            uvs.push(corners.map(|(i, j)| corner(i, j).map(|x| x as f32)));
+            uvs.push(corners.map(|(i, j)| corner(i, j)));
             cells.push(cell);
         }
     }

@@ -18,15 +18,20 @@ const MOST_FACES: u64 = 20_000_000;
 /// What meshes share: two surfaces that name one mesh at one stretch use one copy, and one tree.
 #[derive(Debug, Default)]
 pub(super) struct Meshes {
-    made: HashMap<String, (Arc<Mesh>, Defects)>,
+    made: HashMap<String, Made>,
     /// Triangles that phicam was asked to make.
     faces: u64,
 }
 
-/// A placed mesh and what was wrong with it.
+/// A mesh, what was wrong with it, and its first face without texture coordinates where others have
+/// them.
+type Made = (Arc<Mesh>, Defects, Option<String>);
+
+/// A placed mesh.
 pub(super) struct Placed {
     pub body: Instance,
     pub defects: Defects,
+    pub bare: Option<String>,
 }
 
 impl Meshes {
@@ -52,7 +57,7 @@ impl Meshes {
         } else {
             (1.0, Some(DVec3::from_array(scale)))
         };
-        let (mesh, defects) = self.mesh(table, stretch, files)?;
+        let (mesh, defects, bare) = self.mesh(table, stretch, files)?;
         let mut turned = DAffine3::from_scale(DVec3::splat(uniform));
         for (i, r) in table.rotate.iter().flatten().enumerate() {
             let axis = DVec3::from_array(r.axis).try_normalize();
@@ -65,11 +70,20 @@ impl Meshes {
         }
         let shift = self.shift(table, &mesh, &turned, earlier)?;
         let placement = DAffine3::from_translation(shift) * turned;
-        let body = Instance::new(mesh, placement, Side::Outer).ok_or_else(|| {
+        let (side, defects) = if table.flip == Some(true) {
+            (Side::Inner, defects.turned())
+        } else {
+            (Side::Outer, defects)
+        };
+        let body = Instance::new(mesh, placement, side).ok_or_else(|| {
             let cure = "use finite factors, angles and places";
             Fault::new(keys![], "the mesh has no proper place", cure)
         })?;
-        Ok(Placed { body, defects })
+        Ok(Placed {
+            body,
+            defects,
+            bare,
+        })
     }
 
     /// Where the turned mesh goes.
@@ -126,13 +140,13 @@ impl Meshes {
         table: &MeshTable,
         stretch: Option<DVec3>,
         files: &mut Files,
-    ) -> Result<(Arc<Mesh>, Defects), Fault> {
+    ) -> Result<Made, Fault> {
         let key = format!(
             "{:?} {:?} {:?} {:?} {stretch:?}",
             table.file, table.generate, table.mask, table.faces
         );
-        if let Some((mesh, defects)) = self.made.get(&key) {
-            return Ok((mesh.clone(), *defects));
+        if let Some(made) = self.made.get(&key) {
+            return Ok(made.clone());
         }
         let (at, mut triangles): (Step, Triangles) = match (
             &table.file,
@@ -167,7 +181,8 @@ impl Meshes {
         for p in &mut triangles.positions {
             *p *= stretch.unwrap_or(DVec3::ONE);
         }
-        let (triangles, defects) = triangles.mended();
+        let (mut triangles, defects) = triangles.mended();
+        let bare = triangles.bare.take();
         let fault = |e: crate::geometry::MeshError| {
             Fault::new([at.clone()], e.to_string(), "mend the mesh, or use another")
         };
@@ -175,9 +190,9 @@ impl Meshes {
         if let Some(uv) = triangles.uv {
             mesh = mesh.with_uv(uv).map_err(&fault)?;
         }
-        let mesh = Arc::new(mesh);
-        self.made.insert(key, (mesh.clone(), defects));
-        Ok((mesh, defects))
+        let made = (Arc::new(mesh), defects, bare);
+        self.made.insert(key, made.clone());
+        Ok(made)
     }
 
     fn generate(&mut self, generator: Generator, faces: Option<u64>) -> Result<Triangles, Fault> {

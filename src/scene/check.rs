@@ -1,10 +1,10 @@
 //! What is wrong or suspicious in how the parts of a scene stand to each other.
 
+use super::Scene;
 use super::error::{Fault, keys};
 use super::laser::{Profile, Spot};
 use super::surface::{Role, Surface, is_off_the_wall};
 use super::warning::Warning;
-use super::{Scene, Texture};
 use crate::geometry::{Basis, DVec3, Interaction, Ray, Shape, ShapeId};
 
 /// Points of a hidden surface at which visibility is tested: the centres of an n × n grid.
@@ -39,7 +39,14 @@ pub(super) fn refuse_visible_hidden_face(scene: &Scene) -> Result<(), Fault> {
                     "the camera sees the front of hidden surface `{}`",
                     surface.name
                 ),
-                "move the camera behind it or out of sight, turn the surface (front: u × v), or put an occluder between",
+                match surface.shape {
+                    Shape::Instance(_) => {
+                        "move the camera behind it or out of sight, turn the mesh (`flip = true` exchanges front and back), or put an occluder between"
+                    }
+                    _ => {
+                        "move the camera behind it or out of sight, turn the surface (front: u × v), or put an occluder between"
+                    }
+                },
             ));
         }
     }
@@ -64,11 +71,7 @@ pub(super) fn warnings(scene: &Scene) -> Vec<Warning> {
             let angle = libm::acos(p.skew()).to_degrees();
             found.push(Warning::Skewed(surface.name.clone(), angle));
         }
-        let [cu, cv] = surface.albedo.smooth_cells();
-        let [nu, nv] = surface.elements;
-        let aligned =
-            matches!(surface.albedo, Texture::Constant(_)) || (nu % cu == 0 && nv % cv == 0);
-        if surface.role == Role::Hidden && !aligned {
+        if surface.role == Role::Hidden && !surface.is_aligned() {
             found.push(Warning::ElementsAcrossCells(surface.name.clone()));
         }
     }
@@ -165,11 +168,12 @@ fn spots(scene: &Scene, found: &mut Vec<Warning>) {
     view_behind(scene, found);
 }
 
-/// Whether a point lies in front of some of a surface. Every point does of a body, which has fronts
-/// to all sides.
+/// Whether a point lies in front of some of a surface. Every point does of a sphere, and of a mesh
+/// that is closed and wound outwards: one of its faces is found soon.
 fn is_faced(surface: &Surface, q: DVec3) -> bool {
     match &surface.shape {
-        Shape::Instance(_) | Shape::Sphere(_) => true,
+        Shape::Sphere(_) => true,
+        Shape::Instance(body) => body.faces(q),
         flat => {
             let outline = flat.outline();
             outline.iter().any(|p| (q - p.position).dot(p.normal) > 0.0)

@@ -1,5 +1,6 @@
 //! Division of hidden surfaces into resolution elements.
 
+use super::pieces::{self, Grid};
 use super::surface::{Division, Surface};
 use super::texture::Texture;
 use crate::geometry::{DVec3, Instance, Shape};
@@ -16,8 +17,8 @@ pub struct Element {
     /// Unit vector along u, in the surface.
     pub u_axis: DVec3,
     /// Its mean albedo, of a surface that is not Lambertian that of
-    /// [`Surface::lambertian_equivalent`]; of a cell of a mesh's texture coordinates that at its
-    /// middle; of a single point ([`Surface::element_at`]) the texture's value.
+    /// [`Surface::lambertian_equivalent`]; of a single point ([`Surface::element_at`]) the texture's
+    /// value.
     pub albedo: f64,
 }
 
@@ -26,12 +27,15 @@ impl Surface {
     /// parameters, taken at their middle. Of a mesh the triangles, at their centroids; or the cells
     /// of its texture coordinates: each has the area of what the coordinates put there (the
     /// triangles clipped), the direction of that part's vector area as its normal, and the point of
-    /// the mesh nearest to its centroid.
+    /// the mesh nearest to its centroid. Coordinates outside \[0, 1\] are taken as the texture takes
+    /// them, repeated or held to the border. Albedos are means over the area, exact.
     pub fn divided(&self, [nu, nv]: [usize; 2]) -> Vec<Element> {
         let matt = self.lambertian_equivalent();
         match (&matt.shape, matt.division) {
             (Shape::Instance(body), Division::Faces) => faces(body, &matt.albedo),
-            (Shape::Instance(body), Division::Cells) => cells(body, &matt.albedo, [nu, nv]),
+            (Shape::Instance(body), Division::Cells) => {
+                cells(body, &matt.albedo, matt.grid([nu, nv]))
+            }
             (Shape::Instance(body), Division::Whole) => {
                 vec![together(body, &faces(body, &matt.albedo))]
             }
@@ -53,6 +57,14 @@ impl Surface {
         }
     }
 
+    /// The cells of a mesh's texture coordinates that are its elements.
+    pub(super) fn grid(&self, count: [usize; 2]) -> Grid {
+        Grid {
+            count,
+            wrap: self.albedo.wrap(),
+        }
+    }
+
     /// By triangle of a mesh: the element that most of it belongs to. Empty for other shapes.
     pub fn elements_of_triangles(&self, count: [usize; 2]) -> Vec<usize> {
         let Shape::Instance(body) = &self.shape else {
@@ -63,9 +75,11 @@ impl Surface {
             Division::Cells => body.mesh().uv().unwrap_or_default(),
             Division::Whole => return vec![0; body.mesh().triangles().len()],
         };
-        let largest = |uv: &[[f32; 2]; 3]| {
-            let parts = shares(uv.map(|c| c.map(f64::from)), count);
-            let most = parts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
+        let grid = self.grid(count);
+        let largest = |uv: &[[f64; 2]; 3]| {
+            let parts = grid.cut(pieces::whole(*uv)).into_iter();
+            let parts = parts.map(|p| (p.cell, pieces::share_and_moment(&p.corners).0));
+            let most = parts.max_by(|a, b| a.1.total_cmp(&b.1));
             most.map_or(0, |part| part.0)
         };
         uv.iter().map(largest).collect()
@@ -91,8 +105,10 @@ impl Surface {
 }
 
 fn faces(body: &Instance, albedo: &Texture) -> Vec<Element> {
-    (0..body.mesh().triangles().len() as u32)
-        .map(|t| {
+    let uv = body.mesh().uv();
+    (0..body.mesh().triangles().len())
+        .map(|k| {
+            let t = k as u32;
             let [a, b, c] = body.corners(t);
             let area = body.triangle_area(t);
             let point = body.on_triangle(t, (a + b + c) / 3.0);
@@ -102,7 +118,9 @@ fn faces(body: &Instance, albedo: &Texture) -> Vec<Element> {
                     normal: point.normal,
                     area,
                     u_axis: (b - a).normalize_or(DVec3::X),
-                    albedo: albedo.albedo(point.uv),
+                    albedo: uv.map_or(albedo.albedo(point.uv), |uv| {
+                        pieces::albedo(albedo, pieces::whole(uv[k]))
+                    }),
                 }
             } else {
                 NOTHING
@@ -140,28 +158,27 @@ struct Part {
     area: f64,
     moment: DVec3,
     vector: DVec3,
+    /// ∫ρ dA.
+    light: f64,
 }
 
-/// A corner of a polygon in texture coordinates (in cells), and its weights in the triangle.
-type Corner = ([f64; 2], DVec3);
-
-fn cells(body: &Instance, albedo: &Texture, [nu, nv]: [usize; 2]) -> Vec<Element> {
-    let mut parts = vec![Part::default(); nu * nv];
+fn cells(body: &Instance, albedo: &Texture, grid: Grid) -> Vec<Element> {
+    let mut parts = vec![Part::default(); grid.count[0] * grid.count[1]];
     let uv = body.mesh().uv().unwrap_or_default();
     for (t, uv) in uv.iter().enumerate() {
-        let corners = body.corners(t as u32);
-        let [a, b, c] = corners;
-        let vector = (b - a).cross(c - a) * 0.5;
-        let area = vector.length();
+        let [a, b, c] = body.corners(t as u32);
+        let area = body.triangle_area(t as u32);
         if area <= 0.0 {
             continue;
         }
-        let place = |weights: DVec3| a * weights.x + b * weights.y + c * weights.z;
-        for (cell, share, middle) in shares(uv.map(|c| c.map(f64::from)), [nu, nv]) {
-            let part = &mut parts[cell];
+        let normal = body.on_triangle(t as u32, a).normal;
+        for piece in grid.cut(pieces::whole(*uv)) {
+            let (share, moment) = pieces::share_and_moment(&piece.corners);
+            let part = &mut parts[piece.cell];
             part.area += area * share;
-            part.moment += place(middle) * (area * share);
-            part.vector += body.on_triangle(t as u32, a).normal * (area * share);
+            part.moment += (a * moment.x + b * moment.y + c * moment.z) * area;
+            part.vector += normal * (area * share);
+            part.light += area * pieces::albedo(albedo, piece.corners);
         }
     }
     parts
@@ -177,135 +194,8 @@ fn cells(body: &Instance, albedo: &Texture, [nu, nv]: [usize; 2]) -> Vec<Element
                 normal,
                 area: part.area,
                 u_axis: DVec3::X,
-                albedo: albedo.albedo(point.uv),
+                albedo: part.light / part.area,
             }
         })
         .collect()
-}
-
-/// The cells that a triangle with these texture coordinates covers: cell, share of the triangle's
-/// area, and the weights of the three corners at the middle of that share. Coordinates beyond \[0,
-/// 1\] are taken modulo 1, a triangle as a whole.
-fn shares(uv: [[f64; 2]; 3], [nu, nv]: [usize; 2]) -> Vec<(usize, f64, DVec3)> {
-    let count = [nu, nv];
-    let mut corners = uv;
-    for d in 0..2 {
-        let whole = ((uv[0][d] + uv[1][d] + uv[2][d]) / 3.0).floor();
-        let shift = if whole == 1.0 && uv.iter().all(|c| c[d] <= 1.0) {
-            0.0
-        } else {
-            whole
-        };
-        for c in &mut corners {
-            c[d] = ((c[d] - shift) * count[d] as f64).clamp(0.0, count[d] as f64);
-        }
-    }
-    let range = |d: usize| {
-        let low = corners.iter().map(|c| c[d]).fold(f64::INFINITY, f64::min);
-        let high = corners.iter().map(|c| c[d]).fold(0.0, f64::max);
-        let first = (low as usize).min(count[d] - 1);
-        first..=(high as usize).min(count[d] - 1)
-    };
-    let weights = [DVec3::X, DVec3::Y, DVec3::Z];
-    let whole: Vec<Corner> = corners.into_iter().zip(weights).collect();
-    let total = area_and_middle(&whole).0;
-    let [columns, rows] = [range(0), range(1)];
-    // A triangle within one cell, or without extent in the picture, counts whole where its middle
-    // is.
-    if total <= 0.0 || (columns.start() == columns.end() && rows.start() == rows.end()) {
-        let at = |d: usize| {
-            let middle = (corners[0][d] + corners[1][d] + corners[2][d]) / 3.0;
-            (middle as usize).min(count[d] - 1)
-        };
-        return vec![(at(0) + at(1) * nu, 1.0, DVec3::splat(1.0 / 3.0))];
-    }
-    let mut found = Vec::new();
-    for row in rows {
-        let strip = clip(
-            clip(whole.clone(), 1, row as f64, 1.0),
-            1,
-            row as f64 + 1.0,
-            -1.0,
-        );
-        for column in columns.clone() {
-            let x = column as f64;
-            let inside = clip(clip(strip.clone(), 0, x, 1.0), 0, x + 1.0, -1.0);
-            let (area, middle) = area_and_middle(&inside);
-            if area > 0.0 {
-                found.push((column + row * nu, area / total, middle));
-            }
-        }
-    }
-    found
-}
-
-/// The part of a convex polygon where sign·(x_d − at) ≥ 0 (Sutherland and Hodgman, 1974).
-fn clip(polygon: Vec<Corner>, d: usize, at: f64, sign: f64) -> Vec<Corner> {
-    let height = |c: &Corner| sign * (c.0[d] - at);
-    let mut kept = Vec::with_capacity(polygon.len() + 1);
-    for (i, from) in polygon.iter().enumerate() {
-        let to = &polygon[(i + 1) % polygon.len()];
-        let (a, b) = (height(from), height(to));
-        if a >= 0.0 {
-            kept.push(*from);
-        }
-        if (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0) {
-            let t = a / (a - b);
-            let mid = [0, 1].map(|k| from.0[k] + (to.0[k] - from.0[k]) * t);
-            kept.push((mid, from.1 + (to.1 - from.1) * t));
-        }
-    }
-    kept
-}
-
-/// Area of a convex polygon in the picture, and the weights at its centroid.
-fn area_and_middle(polygon: &[Corner]) -> (f64, DVec3) {
-    let Some((origin, _)) = polygon.first() else {
-        return (0.0, DVec3::ZERO);
-    };
-    let (mut area, mut moment) = (0.0, DVec3::ZERO);
-    for pair in polygon[1..].windows(2) {
-        let [p, q] = [pair[0].0, pair[1].0].map(|c| [c[0] - origin[0], c[1] - origin[1]]);
-        let part = 0.5 * (p[0] * q[1] - p[1] * q[0]).abs();
-        area += part;
-        moment += (polygon[0].1 + pair[0].1 + pair[1].1) * (part / 3.0);
-    }
-    if area > 0.0 {
-        (area, moment / area)
-    } else {
-        (0.0, DVec3::ZERO)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Shares add up to 1 and their middles to the triangle's; a right triangle over a 2 × 2 grid
-    /// covers two cells of it by half a cell, one whole, one not at all.
-    #[test]
-    fn shares_of_a_triangle_are_its_parts() {
-        let half = shares([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], [2, 2]);
-        let share = |cell| half.iter().find(|s| s.0 == cell).map_or(0.0, |s| s.1);
-        for (cell, part) in [(0, 0.5), (1, 0.25), (2, 0.25), (3, 0.0)] {
-            assert!(
-                (share(cell) - part).abs() < 1e-15,
-                "{cell}: {}",
-                share(cell)
-            );
-        }
-        for grid in [[1, 1], [3, 2], [7, 5], [64, 64]] {
-            for uv in [
-                [[0.1, 0.2], [0.9, 0.3], [0.4, 0.95]],
-                [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0]],
-                [[1.2, 3.1], [1.7, 3.4], [1.3, 3.9]],
-            ] {
-                let parts = shares(uv, grid);
-                let total: f64 = parts.iter().map(|p| p.1).sum();
-                let middle: DVec3 = parts.iter().map(|p| p.2 * p.1).sum();
-                assert!((total - 1.0).abs() < 1e-12, "{grid:?} {uv:?}: {total}");
-                assert!((middle - DVec3::splat(1.0 / 3.0)).length() < 1e-12);
-            }
-        }
-    }
 }

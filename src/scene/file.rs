@@ -311,6 +311,9 @@ pub struct MeshTable {
     /// Puts the mesh, as it is turned, down on another surface.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub on: Option<OnTable>,
+    /// true: the front is where the corners of a triangle run clockwise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flip: Option<bool>,
     /// true: the mesh is meant to be closed, so that open edges are a defect.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub closed: Option<bool>,

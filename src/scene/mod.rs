@@ -72,10 +72,14 @@
 //! | `rotate` | `[{ axis, angle }, …]`: turns about axes through the origin, degrees, in this order |
 //! | `translate` | shift, last |
 //! | `on` | `{ surface, at = [u, v] }`: put down, as it is turned, on that place of a rectangle, disc or sphere that comes earlier in the file: its lowest point along the normal there touches, its middle is above the place |
+//! | `flip` | `true`: the front of a triangle is where its corners run clockwise |
 //! | `closed` | `true`: meant to be a closed body, so that open edges are told |
 //!
 //! Faces that are degenerate, doubled or not finite are left out, and told by `phicam scene check`
-//! with what else is odd. Surfaces that name one file share one mesh and one tree, wherever they
+//! with what else is odd; of a face and its reverse the first counts. Faces with more than three
+//! corners must be flat, and their sides must not cross. Texture coordinates may lie outside \[0, 1\]:
+//! the texture's `wrap` says what is there, and elements are taken in the same way, but no element
+//! may lie in several places. Surfaces that name one file share one mesh and one tree, wherever they
 //! stand (unless they are stretched). A scene reads files in its own folder and below, and in
 //! folders named with `--also-read`; a run keeps copies of them in `files/`.
 //!
@@ -115,7 +119,7 @@
 //!
 //! | picture | meaning |
 //! | --- | --- |
-//! | `image` | PNG, JPEG or OpenEXR file below the scene's folder, 4096 pixels a side at most; opaque. A camera's note of orientation (EXIF) is not applied |
+//! | `image` | PNG, JPEG or OpenEXR file below the scene's folder, 4096 pixels a side at most; opaque. Of OpenEXR the display window, 0 where it has no data. A camera's note of orientation (EXIF) is not applied |
 //! | `target` | built-in picture of [`target`]: `card`, `letters`, `siemens`, `edge`, `usaf`, `ramp` |
 //! | `size` | `[columns, rows]` of the target; its own by default |
 //! | `transfer` | `"srgb"` or `"linear"`: what the stored values of a PNG or JPEG mean; must be given, for the file does not say. OpenEXR is linear |
@@ -152,6 +156,7 @@ mod body;
 mod builtin;
 mod camera;
 mod check;
+mod coordinates;
 mod device;
 mod displaced;
 mod element;
@@ -164,6 +169,7 @@ pub mod material;
 pub mod mesh;
 mod parameter;
 mod parse;
+mod pieces;
 mod quantity;
 mod replaced;
 mod sensor;

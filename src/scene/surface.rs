@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::error::{Fault, keys};
 use super::material::{FallOff, Material, Shining};
-use super::texture::Texture;
+use super::pieces;
+use super::texture::{Texture, Wrap};
 use crate::geometry::{Basis, Bvh, DVec3, Interaction, Shape, ShapeId};
 
 /// What a surface is there for.
@@ -116,12 +117,61 @@ impl Surface {
         self.material.is_black(self.albedo.largest())
     }
 
-    /// Cells along u and v within which the albedo is smooth; a mesh, whose texture knows nothing
-    /// of the equal-area map, is one.
+    /// Cells along u and v within which the albedo is smooth: those of the texture; of a mesh that
+    /// is no patch those that its facets lie in, one after the other along u, or one where it is not cut.
     pub fn smooth_cells(&self) -> [usize; 2] {
-        match self.shape {
-            Shape::Instance(_) => [1, 1],
+        match &self.shape {
+            Shape::Instance(body) if !body.is_patch() => {
+                [body.facets().map_or(1, |f| f.cells().len()), 1]
+            }
             _ => self.albedo.smooth_cells(),
+        }
+    }
+
+    /// The same surface, its mesh cut into facets along the edges of its texture, if it has any.
+    pub(super) fn in_facets(mut self) -> Self {
+        if let Shape::Instance(body) = self.shape {
+            let facets = pieces::facets(&body, &self.albedo);
+            self.shape = Shape::Instance(body.in_facets(facets));
+        }
+        self
+    }
+
+    /// The same surface with another albedo. A mesh takes cells in the way in which it takes its
+    /// own albedo outside \[0, 1\].
+    pub(super) fn painted(&self, albedo: Texture) -> Self {
+        let albedo = match (albedo, &self.shape, self.albedo.wrap()) {
+            (Texture::Cells(cells), Shape::Instance(_), Wrap::Repeat) => Texture::Tiles(cells),
+            (albedo, ..) => albedo,
+        };
+        let own = Self {
+            albedo,
+            ..self.clone()
+        };
+        own.in_facets()
+    }
+
+    /// Whether no element has to do with two cells of its texture.
+    pub(super) fn is_aligned(&self) -> bool {
+        if matches!(self.albedo, Texture::Constant(_)) {
+            return true;
+        }
+        if let (Shape::Instance(body), Division::Faces) = (&self.shape, self.division) {
+            return pieces::are_whole(body, &self.albedo);
+        }
+        let ([cu, cv], [nu, nv]) = (self.albedo.smooth_cells(), self.elements);
+        nu % cu == 0 && nv % cv == 0
+    }
+
+    /// The mean albedo over its area.
+    pub(super) fn mean_albedo(&self) -> f64 {
+        match &self.shape {
+            Shape::Instance(body) => pieces::mean_albedo(body, &self.albedo),
+            _ => {
+                let cells: usize = self.albedo.smooth_cells().iter().product();
+                let sum: f64 = (0..cells).map(|c| self.albedo.cell_mean(c)).sum();
+                sum / cells as f64
+            }
         }
     }
 
@@ -130,8 +180,11 @@ impl Surface {
     pub fn cell_weight(&self, cell: usize) -> f64 {
         /// What is sampled of a surface that reflects though its texture is black there.
         const LEAST: f64 = 0.05;
-        let mean = match self.shape {
-            Shape::Instance(_) => self.albedo.largest(),
+        let mean = match &self.shape {
+            Shape::Instance(body) if !body.is_patch() => match body.facets() {
+                Some(facets) => self.albedo.cell_mean(facets.cells()[cell] as usize),
+                None => self.albedo.largest(),
+            },
             _ => self.albedo.cell_mean(cell),
         };
         if self.is_lambertian() || self.shining().is_some() {

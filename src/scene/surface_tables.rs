@@ -1,12 +1,13 @@
 //! Surfaces from their tables.
 
 use super::body::{Meshes, Placed};
+use super::coordinates;
 use super::error::{Fault, keys};
 use super::file::{ElementsTable, Sides, SurfaceTable};
 use super::files::Files;
 use super::material::Material;
 use super::surface::{Division, Role, Surface};
-use super::texture::{AlbedoTable, Texture};
+use super::texture::AlbedoTable;
 use super::warning::Warning;
 use super::{FARTHEST, FINEST};
 use crate::geometry::{DVec3, Disc, Parallelogram, Shape, Sphere};
@@ -38,6 +39,7 @@ pub(super) fn from_tables(
             files: &mut *files,
             wavelength,
             found: &mut *found,
+            bare: None,
         };
         let surface = Surface::from_table(table, &surfaces, &mut sources)
             .map_err(|f| f.within(keys!["surface", i]))?;
@@ -85,6 +87,8 @@ struct Sources<'a> {
     files: &'a mut Files,
     wavelength: f64,
     found: &'a mut Vec<Warning>,
+    /// The first face of the mesh without texture coordinates, where others have them.
+    bare: Option<String>,
 }
 
 /// Two surfaces in one place that face the same way: it would be up to rounding which of them the
@@ -212,29 +216,7 @@ impl Surface {
             Some(ElementsTable::Faces(_)) => Division::Faces,
             _ => Division::Cells,
         };
-        if let Shape::Instance(body) = &shape
-            && body.mesh().uv().is_none()
-        {
-            let cause = |what: &str| {
-                format!(
-                    "the mesh of `{}` has no texture coordinates for {what}",
-                    table.name
-                )
-            };
-            if role == Role::Hidden && division == Division::Cells {
-                let cure = "write `elements = \"faces\"`, or use a mesh with texture coordinates";
-                return Err(Fault::new(keys!["elements"], cause("cells of them"), cure));
-            }
-            if !matches!(albedo, Texture::Constant(_)) {
-                let cure = "use a constant albedo, or a mesh with texture coordinates";
-                return Err(Fault::new(
-                    keys!["material"],
-                    cause("an albedo that varies"),
-                    cure,
-                ));
-            }
-        }
-        Ok(Self {
+        let surface = Self {
             name: table.name.clone(),
             role,
             shape,
@@ -243,7 +225,9 @@ impl Surface {
             is_known,
             elements,
             division,
-        })
+        };
+        coordinates::refuse_unfit(&surface, sources.bare.as_deref())?;
+        Ok(surface.in_facets())
     }
 }
 
@@ -299,10 +283,15 @@ fn shape(
                 Fault::new(keys!["disc"], cause, cure)
             }),
         (None, None, None, Some(m)) => {
-            let Placed { body, defects } = sources
+            let Placed {
+                body,
+                defects,
+                bare,
+            } = sources
                 .meshes
                 .place(m, earlier, sources.files)
                 .map_err(|f| f.within(keys!["mesh"]))?;
+            sources.bare = bare;
             let open = m.closed == Some(true) && !defects.is_closed();
             if open || !defects.is_empty() {
                 let name = table.name.clone();

@@ -82,7 +82,7 @@ impl Scene {
     pub fn with_black_occluders(&self) -> Self {
         self.with_each(Role::Occluder, |surface| {
             surface.material = Material::Lambertian;
-            surface.albedo = Texture::Constant(0.0);
+            *surface = surface.painted(Texture::Constant(0.0));
         })
     }
 
@@ -133,7 +133,9 @@ impl Scene {
 
     /// The same scene with each hidden surface's albedo replaced by its mean over the area.
     pub fn with_mean_albedo(&self) -> Self {
-        self.with_each(Role::Hidden, |s| s.albedo = mean_albedo(&s.albedo))
+        self.with_each(Role::Hidden, |s| {
+            *s = s.painted(Texture::Constant(s.mean_albedo()));
+        })
     }
 
     /// The same scene with each hidden surface a checkerboard of `checks` × `checks` checks of
@@ -149,7 +151,7 @@ impl Scene {
     /// The same scene with each hidden surface painted like this.
     pub fn with_cells(&self, cells: &Cells) -> Self {
         self.with_each(Role::Hidden, |surface| {
-            surface.albedo = Texture::Cells(cells.clone());
+            *surface = surface.painted(Texture::Cells(cells.clone()));
             surface.is_known = true;
         })
     }
@@ -282,7 +284,7 @@ impl Scene {
         for surface in &mut scene.surfaces {
             if let (Role::Relay, Shape::Parallelogram(p)) = (surface.role, &surface.shape) {
                 surface.shape = reshaped(p).ok_or_else(|| self.locate(no_shape()))?;
-                surface.albedo = mean_albedo(&surface.albedo);
+                surface.albedo = Texture::Constant(surface.mean_albedo());
             }
         }
         scene.rebuilt()
@@ -297,13 +299,6 @@ impl Scene {
     fn locate(&self, fault: Fault) -> SceneError {
         parse::locate(&self.name, &self.text, fault)
     }
-}
-
-/// The mean of an albedo over its surface.
-fn mean_albedo(albedo: &Texture) -> Texture {
-    let cells: usize = albedo.smooth_cells().iter().product();
-    let sum: f64 = (0..cells).map(|c| albedo.cell_mean(c)).sum();
-    Texture::Constant(sum / cells as f64)
 }
 
 fn no_shape() -> Fault {

@@ -15,9 +15,9 @@ pub enum Warning {
     BeamBlocked(Vec<usize>, String),
     /// Pixels whose line of sight to the wall is blocked, how many, and the surface that does it.
     PixelsBlocked(usize, String),
-    /// Spots from which no element of the hidden surface can be lit: they lie behind its plane.
+    /// Spots from which no element of the hidden surface can be lit: they lie behind it.
     SpotsBehind(Vec<usize>, String),
-    /// Part of the view lies behind the hidden surface's plane and sees nothing of it.
+    /// Part of the view lies behind the hidden surface and sees nothing of it.
     ViewBehind(String),
     /// Edges that are not perpendicular: (surface, angle in degrees).
     Skewed(String, f64),
@@ -84,12 +84,12 @@ impl fmt::Display for Warning {
                 let spots = Spots(spots);
                 write!(
                     f,
-                    "{spots} behind the plane of `{hidden}` and cannot light it"
+                    "{spots} behind `{hidden}`, on the side of its back, and cannot light it"
                 )
             }
             Self::ViewBehind(hidden) => write!(
                 f,
-                "part of the view lies behind the plane of `{hidden}` and receives nothing from it"
+                "part of the view lies behind `{hidden}`, on the side of its back, and receives nothing from it"
             ),
             Self::Skewed(name, angle) => write!(
                 f,

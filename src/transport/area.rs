@@ -5,10 +5,10 @@ use std::sync::Arc;
 use super::parts::{Divided, Parts};
 use super::steps::{cell_at, invert};
 use super::vertex::Oriented;
-use crate::geometry::{Hit, Interaction, Ray, Shape, ShapeId};
+use crate::geometry::{Facets, Hit, Interaction, Ray, Shape, ShapeId};
 use crate::scene::Scene;
 
-/// Density proportional to the mean albedo of each smooth texture cell (a mesh is one cell),
+/// Density proportional to the mean albedo of each smooth texture cell (of a mesh its facets there),
 /// uniform in area within it. Dark cells are never sampled, which is exact; light ones are
 /// stratified by their edges. Guided, each part of a surface has a density in proportion to its
 /// albedo times an importance, besides a tenth of that by albedo alone.
@@ -52,8 +52,17 @@ impl SurfacePoint {
         }
     }
 
-    /// Which of count\[0\] × count\[1\] cells of its shape it lies in, in rows.
-    pub(super) fn cell(&self, count: [usize; 2]) -> usize {
+    /// Which of the smooth cells of its surface it lies in, in rows.
+    pub(super) fn cell(&self, scene: &Scene) -> usize {
+        let surface = &scene.surfaces[self.shape as usize];
+        if let Shape::Instance(body) = &surface.shape
+            && !body.is_patch()
+        {
+            let edges = body.facets().map_or(&[0.0, 1.0][..], Facets::edges);
+            let inner = &edges[1..edges.len() - 1];
+            return inner.partition_point(|edge| *edge <= self.parameters[0]);
+        }
+        let count = surface.smooth_cells();
         let [i, j] = cell_at(count, self.parameters);
         i + j * count[0]
     }

@@ -62,20 +62,22 @@ pub(super) const FAR: f64 = 1.25;
 impl Parts {
     /// Each surface is one part.
     pub(super) fn whole(scene: &Scene, shapes: &[ShapeId]) -> Self {
-        Self::new(scene, shapes, |surface| {
-            (surface.smooth_cells().map(even), [1, 1])
-        })
+        Self::new(scene, shapes, |surface| (smooth_edges(surface), [1, 1]))
     }
 
     /// Each surface in about `side`² parts.
     pub(super) fn divided(scene: &Scene, shapes: &[ShapeId], side: usize) -> Self {
         Self::new(scene, shapes, |surface| match &surface.shape {
-            Shape::Instance(body) => {
-                let mesh = body.mesh();
+            Shape::Instance(body) if !body.is_patch() => {
+                let triangles = body.mesh().triangles().len();
+                let count = body.facets().map_or(triangles, |f| f.all().len());
                 // Large triangles are divided along v too.
-                let few = mesh.triangles().len() < side * side / ACROSS;
-                let across = if few { ACROSS } else { 1 };
-                let edges = [mesh.edges(side * side / across), even(across)];
+                let across = if count < side * side / ACROSS {
+                    ACROSS
+                } else {
+                    1
+                };
+                let edges = [body.edges(side * side / across), even(across)];
                 let grid = edges.each_ref().map(|e| e.len() - 1);
                 (edges, grid)
             }
@@ -158,6 +160,17 @@ impl Parts {
     }
 }
 
+/// Edges along u and v of the cells within which a surface's albedo is smooth.
+fn smooth_edges(surface: &Surface) -> [Vec<f64>; 2] {
+    match &surface.shape {
+        Shape::Instance(body) if !body.is_patch() => {
+            let along = body.facets().map_or(even(1), |f| f.edges().to_vec());
+            [along, even(1)]
+        }
+        _ => surface.smooth_cells().map(even),
+    }
+}
+
 impl Part {
     /// G of each of its points, what stands between left out; G·(its area) is at most 1.
     fn clear_from(&self, end: &Vertex) -> [f64; POINTS] {
@@ -178,14 +191,18 @@ impl Divided {
     ) -> Self {
         let surface = &scene.surfaces[shape as usize];
         let [nu, nv] = edges.each_ref().map(|e| e.len() - 1);
-        let smooth = surface.smooth_cells();
-        let parent = |i: usize, n: usize, smooth: usize| i * smooth / n;
+        let smooth = smooth_edges(surface);
+        let parent = |d: usize, i: usize| {
+            let middle = 0.5 * (edges[d][i] + edges[d][i + 1]);
+            let inner = &smooth[d][1..smooth[d].len() - 1];
+            inner.partition_point(|edge| *edge <= middle)
+        };
         let mut along = Vec::with_capacity((nu + 1) * nv);
         for j in 0..nv {
             let mut before = 0.0;
             along.push(before);
             for i in 0..nu {
-                let cell = parent(i, nu, smooth[0]) + parent(j, nv, smooth[1]) * smooth[0];
+                let cell = parent(0, i) + parent(1, j) * (smooth[0].len() - 1);
                 before += surface.cell_weight(cell) * (edges[0][i + 1] - edges[0][i]);
                 along.push(before);
             }

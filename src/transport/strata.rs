@@ -4,10 +4,10 @@ use std::f64::consts::FRAC_1_PI;
 
 use super::area::{AreaSampler, SurfacePoint};
 use super::vertex::{Oriented, geometry_term};
-use crate::geometry::{Basis, Interaction, Ray, ShapeId};
+use crate::geometry::{Basis, Facets, Interaction, Ray, Shape, ShapeId};
 use crate::num::stream::{Key, Sampling, Stream};
 use crate::num::warp;
-use crate::scene::Scene;
+use crate::scene::{Scene, Surface};
 
 /// A point drawn from its stratum.
 #[derive(Clone, Copy, Debug)]
@@ -47,9 +47,8 @@ pub(super) struct Strata<'a> {
 enum Division {
     Cells {
         cells: Vec<Cell>,
-        /// By shape: its cells along u and v, and the points per area of each; none where none are
-        /// drawn.
-        density: Vec<([usize; 2], Vec<f64>)>,
+        /// By shape: the points per area of each of its cells; none where none are drawn.
+        density: Vec<Vec<f64>>,
     },
     Distribution {
         area: AreaSampler,
@@ -60,9 +59,11 @@ enum Division {
 #[derive(Debug)]
 struct Cell {
     shape: ShapeId,
-    /// Cells of the shape along u and v, and which of them this is.
-    count: [usize; 2],
+    /// Which of the smooth cells of its surface it is.
     index: usize,
+    /// Its corner and its width in the parameters of the shape.
+    corner: [f64; 2],
+    width: [f64; 2],
     area: f64,
     points: u32,
 }
@@ -72,14 +73,30 @@ impl Cell {
         f64::from(self.points) / self.area
     }
 
-    /// Its corner and its width in the parameters of the shape.
-    fn corner_and_width(&self) -> [[f64; 2]; 2] {
-        let [nu, nv] = self.count;
-        let at = |i: usize, n: usize| i as f64 / n as f64;
-        [
-            [at(self.index % nu, nu), at(self.index / nu, nv)],
-            [at(1, nu), at(1, nv)],
-        ]
+    /// A cell of a surface, no points in it yet.
+    fn new(shape: ShapeId, surface: &Surface, index: usize) -> Self {
+        let (corner, width, area) = match &surface.shape {
+            Shape::Instance(body) if !body.is_patch() => {
+                let edges = body.facets().map_or(&[0.0, 1.0][..], Facets::edges);
+                let along = edges[index + 1] - edges[index];
+                ([edges[index], 0.0], [along, 1.0], body.area() * along)
+            }
+            shape => {
+                let [nu, nv] = surface.smooth_cells();
+                let at = |i: usize, n: usize| i as f64 / n as f64;
+                let corner = [at(index % nu, nu), at(index / nu, nv)];
+                let area = shape.area() / (nu * nv) as f64;
+                (corner, [at(1, nu), at(1, nv)], area)
+            }
+        };
+        Self {
+            shape,
+            index,
+            corner,
+            width,
+            area,
+            points: 0,
+        }
     }
 }
 
@@ -138,18 +155,10 @@ fn cells(scene: &Scene, shapes: &[ShapeId]) -> Option<Vec<(Cell, f64)>> {
     }
     let mut cells = Vec::new();
     for (shape, surface) in surfaces() {
-        let count = surface.smooth_cells();
-        let [nu, nv] = count;
-        let area = surface.shape.area() / (nu * nv) as f64;
+        let [nu, nv] = surface.smooth_cells();
         cells.extend((0..nu * nv).filter_map(|index| {
-            let weight = surface.cell_weight(index) * area;
-            let cell = Cell {
-                shape,
-                count,
-                index,
-                area,
-                points: 0,
-            };
+            let cell = Cell::new(shape, surface, index);
+            let weight = surface.cell_weight(index) * cell.area;
             (weight > 0.0).then_some((cell, weight))
         }));
     }
@@ -185,8 +194,9 @@ impl<'a> Strata<'a> {
             let area = scene.surfaces[0].shape.area();
             let cell = Cell {
                 shape: 0,
-                count: [1, 1],
                 index: 0,
+                corner: [0.0; 2],
+                width: [1.0; 2],
                 area,
                 points: 0,
             };
@@ -201,14 +211,14 @@ impl<'a> Strata<'a> {
             },
             Some(cells) => {
                 let total: f64 = cells.iter().map(|(_, w)| w).sum();
-                let mut density = vec![([0; 2], Vec::new()); scene.surfaces.len()];
+                let mut density = vec![Vec::new(); scene.surfaces.len()];
                 let with_points = cells.into_iter().map(|(mut cell, w)| {
                     // A share of exactly a power of two must not become the next by rounding.
                     let share = f64::from(size) * w / total * (1.0 - 1e-9);
                     cell.points = round(share);
-                    let (count, grid) = &mut density[cell.shape as usize];
-                    *count = cell.count;
-                    grid.resize(count[0] * count[1], 0.0);
+                    let grid = &mut density[cell.shape as usize];
+                    let [nu, nv] = scene.surfaces[cell.shape as usize].smooth_cells();
+                    grid.resize(nu * nv, 0.0);
                     grid[cell.index] = cell.density();
                     cell
                 });
@@ -229,8 +239,8 @@ impl<'a> Strata<'a> {
         match &self.division {
             Division::Distribution { area, points } => f64::from(*points) * area.density(at),
             Division::Cells { density, .. } => match &density[at.shape as usize] {
-                (_, grid) if grid.is_empty() => 0.0,
-                (count, grid) => grid[at.cell(*count)],
+                grid if grid.is_empty() => 0.0,
+                grid => grid[at.cell(self.scene)],
             },
         }
     }
@@ -298,7 +308,7 @@ impl<'a> Strata<'a> {
         match &self.division {
             Division::Cells { cells, .. } => {
                 for (stratum, cell) in (0..).zip(cells) {
-                    let [corner, width] = cell.corner_and_width();
+                    let (corner, width) = (cell.corner, cell.width);
                     draw(stratum, cell.points, &|u| {
                         let uv = std::array::from_fn(|d| corner[d] + width[d] * u[d]);
                         self.by_area(

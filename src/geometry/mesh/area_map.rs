@@ -3,29 +3,36 @@
 use crate::geometry::DVec3;
 use crate::num::warp;
 
-/// Triangles one after the other along u, each as wide as its share of the area, ordered so that
+/// Triangles, or pieces of them, one after the other along u, each as wide as its share of the area, ordered so that
 /// those near each other in u are near each other in space: by the Morton code of their middles
 /// (Morton 1966), 21 bits a coordinate.
 #[derive(Clone, Debug)]
 pub(super) struct AreaMap {
     /// Triangles in order.
-    order: Vec<u32>,
+    pub(super) order: Vec<u32>,
     /// By triangle: its place in the order.
     place: Vec<u32>,
     /// By place: the area of all up to there, itself included.
-    sums: Vec<f64>,
+    pub(super) sums: Vec<f64>,
 }
 
 impl AreaMap {
     /// For triangles of given area, and thrice their middles less the lower corner of the box
     /// around them, over its largest side.
     pub(super) fn new(areas: &[f64], middle: impl Fn(u32) -> DVec3) -> Self {
+        Self::in_cells(areas, |i| (0, middle(i)))
+    }
+
+    /// The same, cell after cell: `place` gives the cell of each, and where it is.
+    pub(super) fn in_cells(areas: &[f64], place: impl Fn(u32) -> (u32, DVec3)) -> Self {
         let code = |i: u32| {
-            let grid = (middle(i) * (f64::from(1 << 21) / 3.0)).as_u64vec3();
+            let (cell, middle) = place(i);
+            let grid = (middle * (f64::from(1 << 21) / 3.0)).as_u64vec3();
             let [x, y, z] = grid.to_array().map(|c| spread(c.min((1 << 21) - 1)));
-            x | y << 1 | z << 2
+            (cell, x | y << 1 | z << 2)
         };
-        let mut coded: Vec<(u64, u32)> = (0..areas.len() as u32).map(|i| (code(i), i)).collect();
+        let mut coded: Vec<((u32, u64), u32)> =
+            (0..areas.len() as u32).map(|i| (code(i), i)).collect();
         coded.sort_unstable();
         let mut map = Self {
             order: Vec::with_capacity(areas.len()),
@@ -47,7 +54,7 @@ impl AreaMap {
         self.sums[self.sums.len() - 1]
     }
 
-    fn before(&self, place: usize) -> f64 {
+    pub(super) fn before(&self, place: usize) -> f64 {
         place.checked_sub(1).map_or(0.0, |k| self.sums[k])
     }
 

@@ -58,6 +58,23 @@ fn attributes(file: &[u8]) -> Result<(Vec<Attribute<'_>>, usize), Fault> {
     Ok((list, file.len() - rest.len() + 1))
 }
 
+/// What an OpenEXR file of version 2 is beyond one part of scan lines, and how to save it instead.
+pub(super) fn other_kind(file: &[u8]) -> Option<&'static str> {
+    let version = file
+        .get(4..LIST_START)
+        .filter(|_| file.starts_with(&MAGIC))?;
+    let version = u32::from_le_bytes(version.try_into().ok()?);
+    let kinds = [
+        (1 << 12, "it has more than one part; save the first alone"),
+        (1 << 11, "it has deep pixels; save one value a pixel"),
+        (1 << 9, "it is tiled; save it in scan lines"),
+    ];
+    let known = LONG_NAMES | kinds.iter().fold(0, |all, kind| all | kind.0);
+    let is_ours = version & !known == VERSION;
+    let found = kinds.iter().find(|kind| version & kind.0 != 0);
+    found.filter(|_| is_ours).map(|kind| kind.1)
+}
+
 /// Checks that the attribute list lies within the file and names nothing twice; returns the
 /// position after it, where the table of blocks begins.
 pub(crate) fn check_list(file: &[u8]) -> Result<usize, Fault> {

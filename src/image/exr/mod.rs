@@ -2,14 +2,16 @@
 //! `film/exr`, which shares [`envelope`] with this one; these two are the doors of the crate `exr`.
 //!
 //! Single-part scan lines of any compression that the crate reads; R, G, B, or Y, each with or
-//! without A, at every pixel. Other channels are passed over.
+//! without A, at every pixel. Other channels are passed over. The picture is the display window:
+//! what of it lies outside the data window is 0, black and transparent, and data outside it are
+//! left out (*Technical Introduction to OpenEXR*, ILM).
 
 pub(crate) mod envelope;
 
 use std::io::Cursor;
 
 use exr::meta::MetaData;
-use exr::prelude::{AnyChannel, FlatSamples, ReadChannels, ReadLayers, Vec2};
+use exr::prelude::{AnyChannel, FlatSamples, IntegerBounds, ReadChannels, ReadLayers, Vec2};
 
 use super::{
     Channel, DEFLATE_RATIO_MAX, Encoding, Image, ImageError, checked_size, damaged, unsupported,
@@ -28,6 +30,9 @@ const NAMES: [(&str, Channel); 5] = [
 ];
 
 pub(super) fn read_exr(name: &str, bytes: &[u8], most: usize) -> Result<Image, ImageError> {
+    if let Some(kind) = envelope::other_kind(bytes) {
+        return Err(unsupported(name, kind));
+    }
     let table = envelope::check_list(bytes).map_err(|e| {
         damaged(
             name,
@@ -49,6 +54,8 @@ pub(super) fn read_exr(name: &str, bytes: &[u8], most: usize) -> Result<Image, I
         .sum();
     let held = bytes.len().saturating_mul(8 * DEFLATE_RATIO_MAX) / bits.max(1);
     checked_size(name, [width, height], held, most)?;
+    let display = header.shared_attributes.display_window;
+    checked_size(name, [display.size.0, display.size.1], usize::MAX, most)?;
     if header.deep || list.iter().any(|c| c.sampling != Vec2(1, 1)) {
         return Err(unsupported(
             name,
@@ -68,15 +75,59 @@ pub(super) fn read_exr(name: &str, bytes: &[u8], most: usize) -> Result<Image, I
     let first = header.data_window().position.y();
     envelope::check_blocks(bytes, table, [height, lines], first).map_err(|e| damaged(name, e))?;
     let found = planes(bytes).map_err(|e| damaged(name, e))?;
-    interleaved(name, [width, height], found)
+    let image = interleaved(name, [width, height], found)?;
+    Ok(displayed(image, header.data_window(), display))
 }
 
-/// Columns and rows.
+/// The data window's pixels in their places on the display window.
+fn displayed(image: Image, data: IntegerBounds, display: IntegerBounds) -> Image {
+    if data == display {
+        return image;
+    }
+    let n = image.channels.len();
+    let Vec2(width, height) = display.size;
+    let mut values = vec![0.0; width * height * n];
+    let shift = |d: IntegerBounds, s: IntegerBounds| {
+        let [d, s] = [d, s].map(|b| b.position);
+        [d.0, d.1]
+            .into_iter()
+            .zip([s.0, s.1])
+            .map(|(d, s)| i64::from(d) - i64::from(s))
+    };
+    let shift: Vec<i64> = shift(data, display).collect();
+    let inside = |at: usize, by: i64, most: usize| {
+        let at = usize::try_from(at as i64 + by).ok()?;
+        (at < most).then_some(at)
+    };
+    for (i, pixel) in image.values.chunks_exact(n).enumerate() {
+        let column = inside(i % image.width, shift[0], width);
+        let row = inside(i / image.width, shift[1], height);
+        if let (Some(column), Some(row)) = (column, row) {
+            let at = (column + row * width) * n;
+            values[at..at + n].copy_from_slice(pixel);
+        }
+    }
+    Image {
+        width,
+        height,
+        values,
+        ..image
+    }
+}
+
+/// Columns and rows of the display window.
 pub(super) fn exr_size(bytes: &[u8]) -> Option<[usize; 2]> {
     envelope::check_list(bytes).ok()?;
     let metadata = MetaData::read_from_buffered(bytes, true).ok()?;
-    let Vec2(width, height) = metadata.headers.first()?.layer_size;
-    Some([width, height])
+    let display = metadata.headers.first()?.shared_attributes.display_window;
+    Some([display.size.0, display.size.1])
+}
+
+/// Whether its header says that the data fill the display window.
+pub(super) fn is_whole(bytes: &[u8]) -> bool {
+    let metadata = MetaData::read_from_buffered(bytes, true);
+    let header = metadata.ok().and_then(|m| m.headers.into_iter().next());
+    header.is_none_or(|h| h.data_window() == h.shared_attributes.display_window)
 }
 
 /// Pixels of a file of `length` bytes by its first ones, and bytes of all of them in memory; no more

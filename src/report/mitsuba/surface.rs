@@ -104,7 +104,7 @@ fn shape(shape: &Shape) -> String {
 }
 
 /// One entry of MESHES, with texture coordinates if they are given.
-fn mesh(mesh: &Mesh, uv: Option<&[[[f32; 2]; 3]]>) -> String {
+fn mesh(mesh: &Mesh, uv: Option<&[[[f64; 2]; 3]]>) -> String {
     let encode = |bytes: Vec<u8>| base64(&bytes);
     let positions = mesh.positions().iter().flat_map(|p| p.to_array());
     let positions = encode(positions.flat_map(f64::to_le_bytes).collect());
@@ -112,7 +112,7 @@ fn mesh(mesh: &Mesh, uv: Option<&[[[f32; 2]; 3]]>) -> String {
     let triangles = encode(triangles.flat_map(|k| k.to_le_bytes()).collect());
     let uv = uv.map_or(String::new(), |uv| {
         let uv = uv.iter().flatten().flatten();
-        let uv = encode(uv.flat_map(|c| c.to_le_bytes()).collect());
+        let uv = encode(uv.flat_map(|c| (*c as f32).to_le_bytes()).collect());
         format!(", \"uv\": \"{uv}\"")
     });
     format!("    {{\"positions\": \"{positions}\", \"triangles\": \"{triangles}\"{uv}}},\n")

@@ -268,9 +268,9 @@ fn meshes_are_written_once_and_whole() {
         .iter()
         .map(|c| u32::from_le_bytes(word(c)))
         .collect();
-    let uv: Vec<f32> = chunks("uv")
+    let uv: Vec<f64> = chunks("uv")
         .iter()
-        .map(|c| f32::from_le_bytes(word(c)))
+        .map(|c| f64::from(f32::from_le_bytes(word(c))))
         .collect();
     for name in ["ball", "larger", "larger (back)"] {
         let at = scene.surfaces.iter().position(|s| s.name == name).unwrap();
@@ -292,6 +292,7 @@ fn meshes_are_written_once_and_whole() {
                 assert!((DVec3::from_slice(&placed) - *corner).length() < 1e-14);
             }
             let want = body.mesh().uv().unwrap()[t].as_flattened();
+            let want: Vec<f64> = want.iter().map(|x| f64::from(*x as f32)).collect();
             assert_eq!(&uv[6 * t..][..6], want);
         }
     }

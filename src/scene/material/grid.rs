@@ -86,7 +86,7 @@ impl Grid {
             let cause = format!("the table is not text: byte {}", e.valid_up_to());
             refusal(cause, "save it as UTF-8")
         })?;
-        let lines = lines(text)?;
+        let lines = lines(text.trim_start_matches('\u{feff}'))?;
         let axis = |which: &[usize]| {
             let mut all: Vec<f64> = lines
                 .iter()

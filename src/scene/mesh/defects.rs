@@ -14,9 +14,11 @@ pub struct Defects {
     pub not_finite: usize,
     /// Faces without area: |e₁ × e₂| up to 1e-12·|e₁||e₂|.
     pub degenerate: usize,
-    /// Faces between the same three vertices as an earlier one, in any order. They are in none of
-    /// the numbers below.
+    /// Faces between the same three vertices as an earlier one, running the same way around. They
+    /// are in none of the numbers below.
     pub duplicate: usize,
+    /// The same where they run the other way: the backs of earlier faces.
+    pub reverse: usize,
     /// Edges of one face only.
     pub open_edges: usize,
     /// Edges that their two faces run along in the same direction: one of them shows its back where
@@ -36,6 +38,7 @@ enum Fate {
     NotFinite,
     Degenerate,
     Duplicate,
+    Reverse,
 }
 
 /// A position with the bits that sort it, and its vertex.
@@ -61,8 +64,16 @@ impl Defects {
 
     /// Whether none was found; an open surface is none, a body inside out is one.
     pub fn is_empty(&self) -> bool {
-        let dropped = self.not_finite + self.degenerate + self.duplicate;
+        let dropped = self.not_finite + self.degenerate + self.duplicate + self.reverse;
         dropped + self.turned_edges + self.crowded_edges == 0 && !self.is_inside_out()
+    }
+
+    /// Those of the surface with front and back exchanged.
+    pub fn turned(self) -> Self {
+        Self {
+            signed_volume: -self.signed_volume,
+            ..self
+        }
     }
 
     fn judge(mesh: &Triangles) -> (Self, Vec<Fate>) {
@@ -70,7 +81,7 @@ impl Defects {
         let finite: Vec<bool> = mesh.positions.iter().map(|p| p.is_finite()).collect();
         let sound = |t: &[u32; 3]| t.iter().all(|c| finite.get(*c as usize) == Some(&true));
         // A texture coordinate beyond 2²⁴ has no digits left for a place in the picture.
-        let places = |uv: &[[f32; 2]; 3]| uv.as_flattened().iter().all(|x| x.abs() < 1.7e7);
+        let places = |uv: &[[f64; 2]; 3]| uv.as_flattened().iter().all(|x| x.abs() < 1.7e7);
         let painted = |i: usize| {
             mesh.uv
                 .as_ref()
@@ -89,8 +100,12 @@ impl Defects {
         let vertex = |c: u32| welded.get(c as usize).copied().unwrap_or(u32::MAX);
         let corners = |i: usize| mesh.triangles[i].map(vertex);
         let vertices = mesh.positions.len();
-        for later in twins(vertices, &fates, corners) {
-            fates[later as usize] = Fate::Duplicate;
+        for (later, is_reverse) in twins(vertices, &fates, corners) {
+            fates[later as usize] = if is_reverse {
+                Fate::Reverse
+            } else {
+                Fate::Duplicate
+            };
         }
         let count = |fate| fates.iter().filter(|f| **f == fate).count();
         let mut found = Self {
@@ -98,6 +113,7 @@ impl Defects {
             not_finite: count(Fate::NotFinite),
             degenerate: count(Fate::Degenerate),
             duplicate: count(Fate::Duplicate),
+            reverse: count(Fate::Reverse),
             signed_volume: volume(mesh, &fates),
             ..Self::default()
         };
@@ -178,6 +194,12 @@ impl fmt::Display for Defects {
         );
         say(self.degenerate, face, faces, "without area left out");
         say(self.duplicate, face, faces, "given before left out");
+        say(
+            self.reverse,
+            face,
+            faces,
+            "left out, the back of one given before, which alone is the front (`flip = true` exchanges front and back, `sides = \"two\"` gives an occluder or a wall both)",
+        );
         let (edge, edges) = ("edge", "edges");
         say(
             self.open_edges,
@@ -194,7 +216,7 @@ impl fmt::Display for Defects {
         say(self.crowded_edges, edge, edges, "with more than two faces");
         if self.is_inside_out() {
             sentences.push(String::from(
-                "The closed body shows its back outwards: turn its faces around.",
+                "The closed body shows its back outwards: turn its faces around (`flip`).",
             ));
         }
         f.write_str(&sentences.join(" "))
@@ -216,8 +238,9 @@ fn weld(positions: &[DVec3]) -> Vec<u32> {
     first
 }
 
-/// The faces between the same three vertices as an earlier one.
-fn twins(vertices: usize, fates: &[Fate], corners: impl Fn(usize) -> [u32; 3]) -> Vec<u32> {
+/// The faces between the same three vertices as an earlier one, and whether they run around them
+/// the other way.
+fn twins(vertices: usize, fates: &[Fate], corners: impl Fn(usize) -> [u32; 3]) -> Vec<(u32, bool)> {
     let faces = || {
         let kept = (0..fates.len()).filter(|i| has_edges(fates[*i], corners(*i)));
         kept.map(|i| {
@@ -229,10 +252,17 @@ fn twins(vertices: usize, fates: &[Fate], corners: impl Fn(usize) -> [u32; 3]) -
     let mut later = Vec::new();
     each_bucket(vertices, faces, |bucket| {
         for twins in bucket.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-            later.extend(twins[1..].iter().map(|t| t.2));
+            let first = is_odd(corners(twins[0].2 as usize));
+            let reverse = |t: u32| is_odd(corners(t as usize)) != first;
+            later.extend(twins[1..].iter().map(|t| (t.2, reverse(t.2))));
         }
     });
     later
+}
+
+/// Whether its vertices come in order only after an odd number of exchanges.
+fn is_odd([a, b, c]: [u32; 3]) -> bool {
+    (u8::from(a > b) + u8::from(b > c) + u8::from(a > c)) % 2 == 1
 }
 
 /// Whether a face takes part in the surface's connections.
@@ -240,7 +270,7 @@ fn has_edges(fate: Fate, [a, b, c]: [u32; 3]) -> bool {
     match fate {
         Fate::Kept => true,
         Fate::Degenerate => a != b && b != c && c != a,
-        Fate::NotFinite | Fate::Duplicate => false,
+        Fate::NotFinite | Fate::Duplicate | Fate::Reverse => false,
     }
 }
 

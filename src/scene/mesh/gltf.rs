@@ -104,7 +104,7 @@ struct Body<'a> {
     visited: usize,
     made: Triangles,
     /// By triangle and corner; shorter than the triangles if some came without.
-    uvs: Vec<[[f32; 2]; 3]>,
+    uvs: Vec<[[f64; 2]; 3]>,
 }
 
 impl<'a> Body<'a> {
@@ -199,7 +199,7 @@ impl<'a> Body<'a> {
             if let Some(uv) = &uv {
                 self.uvs.push(triangle.map(|c| {
                     let [u, v] = uv.vector(c as usize);
-                    [u as f32, (1.0 - v) as f32]
+                    [u, 1.0 - v]
                 }));
             }
         }

@@ -36,7 +36,7 @@ pub fn rectangle(nu: u32, nv: u32) -> Triangles {
             for corners in [[0, 1, 2], [0, 2, 3]] {
                 let triangle = corners.map(|k| cell[k]);
                 made.triangles.push(triangle.map(|(i, j)| j * (nu + 1) + i));
-                uvs.push(triangle.map(|(i, j)| at(i, j).map(|x| x as f32)));
+                uvs.push(triangle.map(|(i, j)| at(i, j)));
             }
         }
     }
@@ -66,7 +66,7 @@ pub fn cube() -> Triangles {
             }
             for corners in [[0, 1, 2], [0, 2, 3]] {
                 made.triangles.push(corners.map(|c| first + c as u32));
-                uvs.push(corners.map(|c: usize| square[c].map(|x| x as f32)));
+                uvs.push(corners.map(|c: usize| square[c]));
             }
         }
     }
@@ -90,7 +90,7 @@ pub(super) fn closed(faces: usize, surface: impl Fn(f64, f64) -> (DVec3, f64)) -
     let mut put = |u: f64, v: f64| {
         let (point, height) = surface(u, v);
         made.positions.push(point);
-        heights.push(height as f32);
+        heights.push(height);
     };
     let latitude = |ring: u32| f64::from(ring) / f64::from(rings + 1);
     put(0.0, 0.0);
@@ -106,7 +106,7 @@ pub(super) fn closed(faces: usize, surface: impl Fn(f64, f64) -> (DVec3, f64)) -
         made.triangles.push(corners.map(|c| c.0));
         uvs.push(corners.map(|(vertex, column)| {
             let u = column / f64::from(columns);
-            [u as f32, heights[vertex as usize]]
+            [u, heights[vertex as usize]]
         }));
     };
     for column in 0..columns {

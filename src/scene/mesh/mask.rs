@@ -52,7 +52,7 @@ pub fn mask(rows: &[String]) -> Result<Triangles, (String, &'static str)> {
             made.positions.extend(place);
             for triangle in [[0, 1, 2], [0, 2, 3]] {
                 made.triangles.push(triangle.map(|k| first + k));
-                uvs.push(triangle.map(|k| corners[k as usize].map(|x| x as f32)));
+                uvs.push(triangle.map(|k| corners[k as usize]));
             }
         }
     }

@@ -16,6 +16,7 @@ mod grid;
 mod mask;
 mod obj;
 mod ply;
+mod polygon;
 mod write;
 
 pub use bust::bust;
@@ -36,7 +37,9 @@ pub struct Triangles {
     pub triangles: Vec<[u32; 3]>,
     /// By triangle and corner, u and v with v growing upwards; only where the file gives them for
     /// every corner.
-    pub uv: Option<Vec<[[f32; 2]; 3]>>,
+    pub uv: Option<Vec<[[f64; 2]; 3]>>,
+    /// The first face without them, where others have some.
+    pub bare: Option<String>,
 }
 
 /// Why a file gives no triangles.
@@ -133,9 +136,9 @@ pub enum MeshFileError {
 
 /// The triangles of a mesh file. The end of `name` decides the format; `beside` reads a file that
 /// the mesh names relative to its own folder (buffers of a `.gltf`) and is never asked for anything
-/// that leads out of it by its name. Faces with more than three corners are divided into the fan of
-/// their first corner, which is right for convex ones. Materials, images, normals and colours are
-/// not read.
+/// that leads out of it by its name. Faces with more than three corners are divided into triangles,
+/// concave ones too; those that are not flat (to a thousandth of their size) or whose sides cross
+/// are refused. Materials, images, normals and colours are not read.
 ///
 /// # Errors
 /// [`MeshFileError`] with cause and cure.
@@ -198,9 +201,16 @@ fn unsupported(what: String) -> MeshFileError {
     MeshFileError::Unsupported { what }
 }
 
-/// The fan of a polygon with `corners` corners: three of its corners for each triangle.
-fn fan(corners: usize) -> impl Iterator<Item = [usize; 3]> {
-    (2..corners).map(|k| [0, k - 1, k])
+/// The fan of a face with `corners` corners: right where it is convex, and what stands in for it
+/// until its vertices are known.
+fn fan(corners: usize) -> Vec<[usize; 3]> {
+    (2..corners).map(|k| [0, k - 1, k]).collect()
+}
+
+/// The corners of a face by its fan.
+fn corners_of_fan<T: Copy>(fan: &[[T; 3]]) -> Vec<T> {
+    let first = fan.iter().take(1).flat_map(|t| [t[0], t[1]]);
+    first.chain(fan.iter().map(|t| t[2])).collect()
 }
 
 #[cfg(test)]

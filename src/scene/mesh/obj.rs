@@ -4,7 +4,7 @@
 //! checks it (an overflow that panics or wraps around), gives a corner without texture coordinate
 //! the one of the corner before it, and names no lines.
 
-use super::{MeshFileError, Triangles, fan};
+use super::{MeshFileError, Triangles, corners_of_fan, fan, polygon};
 use crate::geometry::DVec3;
 use std::str::FromStr;
 
@@ -44,7 +44,7 @@ enum Kind {
 #[derive(Default)]
 struct Body {
     positions: Vec<DVec3>,
-    uvs: Vec<[f32; 2]>,
+    uvs: Vec<[f64; 2]>,
     triangles: Vec<[u32; 3]>,
     /// By triangle and corner; shorter than `triangles` if a face came without.
     triangle_uvs: Vec<[u32; 3]>,
@@ -52,6 +52,11 @@ struct Body {
     corners: Vec<(u32, Option<u32>)>,
     /// Largest index of each kind that was named ahead of its definition, and its line.
     ahead: [Option<(u32, usize)>; 2],
+    /// Faces of more than three corners that stand before their vertices, as fans: the first
+    /// triangle, their number, and the line.
+    early: Vec<(usize, usize, usize)>,
+    /// Line of the first face without texture coordinates.
+    bare: Option<usize>,
 }
 
 impl Body {
@@ -70,7 +75,7 @@ impl Body {
                 // A texture along a line has no v.
                 let list: Vec<&[u8]> = words.collect();
                 let uv = match list.len() {
-                    1 => [numbers::<f32, 1>(at, list.into_iter(), "vt u")?[0], 0.0],
+                    1 => [numbers::<f64, 1>(at, list.into_iter(), "vt u")?[0], 0.0],
                     _ => numbers(at, list.into_iter(), "vt u v")?,
                 };
                 self.uvs.push(uv);
@@ -101,13 +106,50 @@ impl Body {
         if count < 3 {
             return Err(malformed(at, format!("{count} corners are no face")));
         }
-        for triangle in fan(count) {
+        if corners.iter().any(|c| c.1.is_none()) {
+            self.bare = self.bare.or(Some(at));
+        }
+        let places = corners.iter().map(|c| self.positions.get(c.0 as usize));
+        let places: Option<Vec<DVec3>> = places.map(Option::<&DVec3>::copied).collect();
+        let triangles = match places {
+            Some(places) => polygon::triangles(&places, || line(at))?,
+            None => {
+                self.early.push((self.triangles.len(), count - 2, at));
+                fan(count)
+            }
+        };
+        for triangle in triangles {
             self.triangles.push(triangle.map(|k| corners[k].0));
             if let [Some(a), Some(b), Some(c)] = triangle.map(|k| corners[k].1) {
                 self.triangle_uvs.push([a, b, c]);
             }
         }
         self.corners = corners;
+        Ok(())
+    }
+
+    /// Divides the faces that stood before their vertices.
+    fn divide_early(&mut self) -> Result<(), MeshFileError> {
+        for (first, count, at) in std::mem::take(&mut self.early) {
+            let corners = corners_of_fan(&self.triangles[first..first + count]);
+            let places: Vec<DVec3> = corners
+                .iter()
+                .map(|c| self.positions[*c as usize])
+                .collect();
+            let divided = polygon::triangles(&places, || line(at))?;
+            let own = &mut self.triangles[first..];
+            own.iter_mut()
+                .zip(&divided)
+                .for_each(|(t, by)| *t = by.map(|k| corners[k]));
+            // Where any face has none the others are not used.
+            if self.bare.is_none() {
+                let own = &mut self.triangle_uvs[first..];
+                let corners = corners_of_fan(&own[..count]);
+                own.iter_mut()
+                    .zip(&divided)
+                    .for_each(|(t, by)| *t = by.map(|k| corners[k]));
+            }
+        }
         Ok(())
     }
 
@@ -140,7 +182,7 @@ impl Body {
         }
     }
 
-    fn finish(self) -> Result<Triangles, MeshFileError> {
+    fn finish(mut self) -> Result<Triangles, MeshFileError> {
         for kind in [Kind::Position, Kind::Uv] {
             let count = self.count(kind);
             match self.ahead[kind as usize] {
@@ -150,14 +192,20 @@ impl Body {
                 _ => {}
             }
         }
-        let whole = self.triangle_uvs.len() == self.triangles.len();
+        self.divide_early()?;
+        let whole = self.bare.is_none();
         let uv = |t: &[u32; 3]| t.map(|c| self.uvs[c as usize]);
         Ok(Triangles {
             uv: whole.then(|| self.triangle_uvs.iter().map(uv).collect()),
             positions: self.positions,
             triangles: self.triangles,
+            bare: self.bare.filter(|_| !self.uvs.is_empty()).map(line),
         })
     }
+}
+
+fn line(at: usize) -> String {
+    format!("line {at}")
 }
 
 fn parse<T: FromStr>(word: &[u8]) -> Option<T> {
@@ -189,7 +237,7 @@ fn quoted(word: &[u8]) -> String {
 
 fn malformed(at: usize, cause: String) -> MeshFileError {
     MeshFileError::Malformed {
-        place: format!("line {at}"),
+        place: line(at),
         cause,
         cure: CURE,
     }
@@ -197,7 +245,7 @@ fn malformed(at: usize, cause: String) -> MeshFileError {
 
 fn no_vertex(at: usize, kind: Kind, index: i64, count: usize) -> MeshFileError {
     MeshFileError::NoVertex {
-        place: format!("line {at}"),
+        place: line(at),
         what: match kind {
             Kind::Position => "vertex",
             Kind::Uv => "texture coordinate",

@@ -7,7 +7,7 @@
 
 mod element;
 
-use super::{MeshFileError, Triangles, fan, malformed};
+use super::{MeshFileError, Triangles, corners_of_fan, fan, malformed, polygon, unsupported};
 use crate::geometry::DVec3;
 use element::{Face, Skipped, Vertex};
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
@@ -34,6 +34,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, MeshFileError> {
                 each::<Vertex>(&mut reader, element, &header, |_, v| body.vertex(&v))?;
             }
             "face" => each::<Face>(&mut reader, element, &header, |i, f| body.face(i, f))?,
+            "tristrips" | "trifans" if element.count > 0 => {
+                let what = format!(
+                    "a surface in strips or fans of triangles (`{}`)",
+                    element.name
+                );
+                return Err(unsupported(what));
+            }
             _ => each::<Skipped>(&mut reader, element, &header, |_, _| Ok(()))?,
         }
     }
@@ -137,11 +144,16 @@ fn unreadable(place: String, error: &ParseError) -> MeshFileError {
 #[derive(Default)]
 struct Body {
     positions: Vec<DVec3>,
-    by_vertex: Vec<[f32; 2]>,
+    by_vertex: Vec<[f64; 2]>,
     triangles: Vec<[u32; 3]>,
-    by_corner: Vec<[[f32; 2]; 3]>,
+    by_corner: Vec<[[f64; 2]; 3]>,
     /// The largest vertex that a face names, and that face.
     largest: Option<(i64, usize)>,
+    /// Faces of more than three corners that stand before their vertices, as fans: the first
+    /// triangle, their number, and the face.
+    early: Vec<(usize, usize, usize)>,
+    /// The first face without texture coordinates, where there are any.
+    bare: Option<usize>,
 }
 
 impl Body {
@@ -154,7 +166,7 @@ impl Body {
     }
 
     fn face(&mut self, at: usize, face: Face) -> Result<(), MeshFileError> {
-        let refuse = |cause: String| Err(malformed(format!("face {at} (counted from 0)"), cause));
+        let refuse = |cause: String| Err(malformed(face_at(at), cause));
         let Some(corners) = face.corners else {
             return refuse(String::from(
                 "there is no list `vertex_indices` of integers",
@@ -178,7 +190,19 @@ impl Body {
                 return Err(self.no_vertex(corner, at));
             }
         }
-        for [a, b, c] in fan(count) {
+        if face.uv.is_empty() {
+            self.bare = self.bare.or(Some(at));
+        }
+        let places = corners.iter().map(|c| self.positions.get(*c as usize));
+        let places: Option<Vec<DVec3>> = places.map(Option::<&DVec3>::copied).collect();
+        let triangles = match places {
+            Some(places) => polygon::triangles(&places, || face_at(at))?,
+            None => {
+                self.early.push((self.triangles.len(), count - 2, at));
+                fan(count)
+            }
+        };
+        for [a, b, c] in triangles {
             self.triangles
                 .push([corners[a] as u32, corners[b] as u32, corners[c] as u32]);
             if !face.uv.is_empty() {
@@ -189,22 +213,49 @@ impl Body {
         Ok(())
     }
 
+    /// Divides the faces that stood before their vertices.
+    fn divide_early(&mut self) -> Result<(), MeshFileError> {
+        for (first, count, at) in std::mem::take(&mut self.early) {
+            let corners = corners_of_fan(&self.triangles[first..first + count]);
+            let places: Vec<DVec3> = corners
+                .iter()
+                .map(|c| self.positions[*c as usize])
+                .collect();
+            let divided = polygon::triangles(&places, || face_at(at))?;
+            let own = &mut self.triangles[first..];
+            own.iter_mut()
+                .zip(&divided)
+                .for_each(|(t, by)| *t = by.map(|k| corners[k]));
+            // Where any face has none the others are not used.
+            if self.bare.is_none() {
+                let own = &mut self.by_corner[first..];
+                let corners = corners_of_fan(&own[..count]);
+                own.iter_mut()
+                    .zip(&divided)
+                    .for_each(|(t, by)| *t = by.map(|k| corners[k]));
+            }
+        }
+        Ok(())
+    }
+
     fn no_vertex(&self, index: i64, face: usize) -> MeshFileError {
         MeshFileError::NoVertex {
-            place: format!("face {face} (counted from 0)"),
+            place: face_at(face),
             what: "vertex",
             index,
             count: self.positions.len(),
         }
     }
 
-    fn finish(self) -> Result<Triangles, MeshFileError> {
+    fn finish(mut self) -> Result<Triangles, MeshFileError> {
         if let Some((largest, face)) = self.largest
             && largest >= self.positions.len() as i64
         {
             return Err(self.no_vertex(largest, face));
         }
-        let uv = if !self.by_corner.is_empty() && self.by_corner.len() == self.triangles.len() {
+        self.divide_early()?;
+        let partly = !self.by_corner.is_empty();
+        let uv = if partly && self.bare.is_none() {
             Some(self.by_corner)
         } else if !self.by_vertex.is_empty() && self.by_vertex.len() == self.positions.len() {
             let corners = |t: &[u32; 3]| t.map(|c| self.by_vertex[c as usize]);
@@ -215,7 +266,12 @@ impl Body {
         Ok(Triangles {
             positions: self.positions,
             triangles: self.triangles,
+            bare: self.bare.filter(|_| partly && uv.is_none()).map(face_at),
             uv,
         })
     }
+}
+
+fn face_at(face: usize) -> String {
+    format!("face {face} (counted from 0)")
 }

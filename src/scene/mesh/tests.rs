@@ -30,6 +30,7 @@ fn cube() -> Triangles {
         positions: corners(),
         triangles: QUADS.into_iter().flat_map(halves).collect(),
         uv: None,
+        bare: None,
     }
 }
 

@@ -13,7 +13,8 @@ pub struct FaceValues<'a> {
 
 /// A binary little-endian PLY file: positions as `double`, and by face the vertices as `uint`,
 /// texture coordinates by corner in the list `texcoord` as MeshLab reads them, and the values
-/// given. [`read`](super::read) gives back the same mesh.
+/// given. [`read`](super::read) gives back the same mesh, but for the rounding of texture
+/// coordinates to f32.
 ///
 /// # Panics
 /// If there are values and not one for each triangle.
@@ -51,7 +52,12 @@ pub fn to_ply(mesh: &Triangles, values: FaceValues<'_>) -> Vec<u8> {
         bytes.extend(triangle.iter().flat_map(|c| c.to_le_bytes()));
         if let Some(uv) = &mesh.uv {
             bytes.push(6);
-            bytes.extend(uv[i].iter().flatten().flat_map(|x| x.to_le_bytes()));
+            bytes.extend(
+                uv[i]
+                    .iter()
+                    .flatten()
+                    .flat_map(|x| (*x as f32).to_le_bytes()),
+            );
         }
         if let Some(colours) = values.colours {
             bytes.extend(colours[i]);

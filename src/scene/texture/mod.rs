@@ -57,6 +57,19 @@ fn overlaps([a, b]: [f64; 2], n: usize) -> Vec<(usize, f64)> {
     }
 }
 
+/// The middles of the parts into which the edges of n equal cells divide an interval, each with its
+/// share of it.
+fn middles([a, b]: [f64; 2], n: usize) -> Vec<(f64, f64)> {
+    let shares = overlaps([a, b], n).into_iter();
+    let mut from = a;
+    let part = |(_, share): (usize, f64)| {
+        let middle = from + 0.5 * share * (b - a);
+        from += share * (b - a);
+        (middle, share)
+    };
+    shares.map(part).collect()
+}
+
 impl Texture {
     /// Albedo at (u, v). On an edge between cells the higher cell counts; u, v are held to [0, 1]
     /// unless the texture repeats.
@@ -67,6 +80,15 @@ impl Texture {
             Self::Ramp([a, b]) => a + (b - a) * u.clamp(0.0, 1.0),
             Self::Tiles(cells) => cells.at([u - u.floor(), v - v.floor()]),
             Self::Bilinear(texels) => texels.at([u, v]),
+        }
+    }
+
+    /// What lies outside \[0, 1\].
+    pub fn wrap(&self) -> Wrap {
+        match self {
+            Self::Constant(_) | Self::Tiles(_) => Wrap::Repeat,
+            Self::Cells(_) | Self::Ramp(_) => Wrap::Clamp,
+            Self::Bilinear(texels) => texels.wrap,
         }
     }
 
@@ -98,8 +120,7 @@ impl Texture {
         }
     }
 
-    /// Mean albedo over a rectangle of parameters within \[0, 1\]: exact, but between the texels of
-    /// a bilinear picture, where it is that of 16 × 16 points.
+    /// Mean albedo over a rectangle of parameters within \[0, 1\]: exact.
     pub fn mean(&self, [u0, u1]: [f64; 2], [v0, v1]: [f64; 2]) -> f64 {
         match self {
             Self::Constant(rho) => *rho,
@@ -113,14 +134,15 @@ impl Texture {
                 };
                 up.iter().map(|(j, w)| w * row(*j)).sum()
             }
-            Self::Bilinear(_) => {
-                const POINTS: usize = 16;
-                let at = |k: usize| (k as f64 + 0.5) / POINTS as f64;
-                let point = |k: usize| {
-                    let [s, t] = [at(k % POINTS), at(k / POINTS)];
-                    self.albedo([u0 + (u1 - u0) * s, v0 + (v1 - v0) * t])
+            // Linear along u and along v within each part: the mean is the value in its middle.
+            Self::Bilinear(texels) => {
+                let [nu, nv] = texels.smooth_cells();
+                let (across, up) = (middles([u0, u1], nu), middles([v0, v1], nv));
+                let row = |v: f64| -> f64 {
+                    let along = across.iter();
+                    along.map(|(u, w)| w * texels.at([*u, v])).sum()
                 };
-                (0..POINTS * POINTS).map(point).sum::<f64>() / (POINTS * POINTS) as f64
+                up.iter().map(|(v, w)| w * row(*v)).sum()
             }
         }
     }

@@ -21,7 +21,7 @@ pub(super) struct Display {
     /// Three vertices each.
     pub triangles: Vec<[u32; 3]>,
     /// Texture coordinates by triangle and corner, those of the triangle that is shown.
-    pub uv: Option<Vec<[[f32; 2]; 3]>>,
+    pub uv: Option<Vec<[[f64; 2]; 3]>>,
     /// How many triangles the mesh itself has.
     pub whole: usize,
 }
@@ -195,7 +195,7 @@ mod tests {
     fn texture_coordinates_stay_with_their_triangles() {
         let mesh = ball(60);
         let triangles = mesh.triangles().len();
-        let uv = (0..triangles).map(|t| [[t as f32, 0.0], [t as f32, 1.0], [t as f32, 2.0]]);
+        let uv = (0..triangles).map(|t| [0.0, 1.0, 2.0].map(|v| [t as f64, v]));
         let plain = Display::of(&mesh, 500);
         let shown = Display::of(&mesh.with_uv(uv.collect()).unwrap(), 500);
         let kept = shown.uv.unwrap();

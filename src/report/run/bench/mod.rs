@@ -151,7 +151,7 @@ fn pack(page: &mut Page, scene: &Scene, bench: &Bench, display: &[Display]) {
         .iter()
         .filter_map(|d| d.uv.as_deref())
         .flat_map(|uv| uv.as_flattened().as_flattened())
-        .map(|x| f64::from(*x))
+        .copied()
         .collect();
     page.numbers(
         "bench-vertices",

@@ -21,6 +21,18 @@ pub(in crate::scene::material) fn written(
 const THETA: [f64; 7] = [0.0, 11.0, 25.0, 45.0, 60.0, 80.0, 90.0];
 const PHI: [f64; 5] = [0.0, 30.0, 90.0, 145.0, 180.0];
 
+/// A spreadsheet begins its CSV files with a byte-order mark.
+#[test]
+fn a_byte_order_mark_is_read_over() {
+    let text = written(&THETA, &PHI, |i, o, _| 0.1 + 0.01 * (i + o));
+    let text = text.strip_prefix("# made for a test\n").unwrap();
+    let marked = format!("\u{feff}{text}");
+    assert_eq!(
+        Grid::read(marked.as_bytes()).unwrap(),
+        Grid::read(text.as_bytes()).unwrap()
+    );
+}
+
 /// A function linear in each angle is its own multilinear interpolation.
 #[test]
 fn a_multilinear_function_is_given_back() {

@@ -15,7 +15,7 @@ impl PropertyAccess for Skipped {
 #[derive(Default)]
 pub(super) struct Vertex {
     pub position: [f64; 3],
-    pub uv: [Option<f32>; 2],
+    pub uv: [Option<f64>; 2],
 }
 
 impl PropertyAccess for Vertex {
@@ -42,8 +42,8 @@ impl PropertyAccess for Vertex {
             "x" => self.position[0] = value,
             "y" => self.position[1] = value,
             "z" => self.position[2] = value,
-            "s" | "u" | "texture_u" => self.uv[0] = Some(value as f32),
-            "t" | "v" | "texture_v" => self.uv[1] = Some(value as f32),
+            "s" | "u" | "texture_u" => self.uv[0] = Some(value),
+            "t" | "v" | "texture_v" => self.uv[1] = Some(value),
             _ => return PropertyAccessResult::Ignored,
         }
         PropertyAccessResult::Set
@@ -55,7 +55,7 @@ impl PropertyAccess for Vertex {
 pub(super) struct Face {
     pub corners: Option<Vec<i64>>,
     /// u and v by corner, or nothing.
-    pub uv: Vec<f32>,
+    pub uv: Vec<f64>,
 }
 
 impl PropertyAccess for Face {
@@ -69,10 +69,10 @@ impl PropertyAccess for Face {
                 Some(corners) => self.corners = Some(corners),
                 None => return PropertyAccessResult::UnsupportedType,
             },
-            ("texcoord", Property::ListFloat(list)) => self.uv = list,
-            ("texcoord", Property::ListDouble(list)) => {
-                self.uv = list.into_iter().map(|v| v as f32).collect();
+            ("texcoord", Property::ListFloat(list)) => {
+                self.uv = list.into_iter().map(f64::from).collect();
             }
+            ("texcoord", Property::ListDouble(list)) => self.uv = list,
             _ => return PropertyAccessResult::Ignored,
         }
         PropertyAccessResult::Set

@@ -11,14 +11,14 @@ fn is_sound(mesh: &Triangles, faces: usize) -> Defects {
     assert!(found.is_empty(), "{found}");
     let uv = mesh.uv.as_ref().unwrap();
     assert_eq!(uv.len(), count);
-    let inside = |x: &f32| (0.0..=1.0).contains(x);
+    let inside = |x: &f64| (0.0..=1.0).contains(x);
     assert!(uv.iter().flatten().flatten().all(inside));
     // No triangle reaches over the seam.
-    let width = |t: &[[f32; 2]; 3]| {
+    let width = |t: &[[f64; 2]; 3]| {
         let u = t.map(|c| c[0]);
-        u.iter().copied().fold(0.0, f32::max) - u.iter().copied().fold(1.0, f32::min)
+        u.iter().copied().fold(0.0, f64::max) - u.iter().copied().fold(1.0, f64::min)
     };
-    assert!(uv.iter().map(width).fold(0.0, f32::max) < 0.4);
+    assert!(uv.iter().map(width).fold(0.0, f64::max) < 0.4);
     found
 }
 
@@ -80,9 +80,9 @@ fn texture_coordinates_of_a_sphere_are_its_angles() {
     for (t, uv) in mesh.triangles.iter().zip(mesh.uv.as_ref().unwrap()) {
         for (c, [u, v]) in t.iter().zip(uv) {
             let p = mesh.positions[*c as usize];
-            assert!((p.z + (PI * f64::from(*v)).cos()).abs() < 1e-6);
+            assert!((p.z + (PI * v).cos()).abs() < 1e-6);
             if p.z.abs() < 0.999_999 {
-                let angle = 2.0 * PI * f64::from(*u);
+                let angle = 2.0 * PI * u;
                 let direction = DVec3::new(angle.sin(), -angle.cos(), 0.0);
                 let flat = DVec3::new(p.x, p.y, 0.0).normalize();
                 assert!(flat.distance(direction) < 1e-5, "{p} {u}");
@@ -104,6 +104,6 @@ fn a_rectangle_is_the_unit_square() {
     for (t, uv) in mesh.triangles.iter().zip(mesh.uv.as_ref().unwrap()) {
         let [a, b, c] = t.map(|c| mesh.positions[c as usize]);
         assert!((b - a).cross(c - a).z > 0.0);
-        assert_eq!(uv[2], [c.x as f32, c.y as f32]);
+        assert_eq!(uv[2], [c.x, c.y]);
     }
 }

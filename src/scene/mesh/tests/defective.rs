@@ -5,6 +5,7 @@ fn of(triangles: &[[u32; 3]]) -> Defects {
         positions: corners(),
         triangles: triangles.to_vec(),
         uv: None,
+        bare: None,
     })
 }
 
@@ -63,9 +64,14 @@ fn faces_given_twice_are_dropped_once() {
     let mut mesh = cube();
     let [a, b, c] = mesh.triangles[2];
     mesh.triangles.extend([[b, c, a], [b, a, c]]);
-    mesh.uv = Some((0..14).map(|i| [[i as f32; 2]; 3]).collect());
+    mesh.uv = Some((0..14).map(|i| [[f64::from(i); 2]; 3]).collect());
     let (mended, found) = mesh.mended();
-    assert_eq!((found.faces, found.duplicate), (14, 2));
+    assert_eq!((found.faces, found.duplicate, found.reverse), (14, 1, 1));
+    let words = found.to_string();
+    assert!(
+        words.contains("1 face given before") && words.contains("the back of one"),
+        "{words}"
+    );
     assert!(found.is_closed());
     assert_eq!(mended.triangles, cube().triangles);
     assert_eq!(mended.uv.unwrap()[11], [[11.0; 2]; 3]);
@@ -127,7 +133,7 @@ fn faces_with_no_vertex_are_survived() {
 
 #[test]
 fn texture_coordinates_that_are_no_numbers() {
-    for wrong in [f32::NAN, f32::INFINITY, 1e38] {
+    for wrong in [f64::NAN, f64::INFINITY, 1e38] {
         let mut mesh = crate::scene::mesh::cube();
         if let Some(uv) = &mut mesh.uv {
             uv[5][1][0] = wrong;

@@ -24,6 +24,10 @@ fn obj_corners_carry_their_texture_coordinates() {
     // One corner without: none is made up.
     let partly = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.5 0.5\nf 1/1 2 3\n";
     assert_eq!(alone("t.obj", partly.as_bytes()).unwrap().uv, None);
+    let two =
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n\nf 2 4 3\n";
+    let mesh = alone("t.obj", two.as_bytes()).unwrap();
+    assert_eq!((mesh.uv, mesh.bare.as_deref()), (None, Some("line 10")));
 }
 
 #[test]
@@ -35,6 +39,65 @@ fn obj_faces_may_stand_before_their_vertices() {
     assert_eq!(
         error.to_string(),
         "line 2 names vertex 4 of 3: export the mesh again"
+    );
+}
+
+/// An M, its corners counted from each in turn, and before its vertices: the same area.
+#[test]
+fn concave_faces_have_their_area_whatever_their_first_corner() {
+    let corners = [[0, 0], [1, 0], [2, 2], [3, 0], [4, 0], [4, 4], [0, 4]];
+    let vertices = |head: &str| -> String {
+        let lines = corners.iter().map(|[x, y]| format!("{head}{x} {y} 3\n"));
+        lines.collect()
+    };
+    for first in 0..7 {
+        let list = |from: usize| -> String {
+            let corners = (0..7).map(|k| ((first + k) % 7 + from).to_string());
+            corners.collect::<Vec<_>>().join(" ")
+        };
+        let obj = [
+            format!("{}f {}\n", vertices("v "), list(1)),
+            format!("f {}\n{}", list(1), vertices("v ")),
+        ];
+        let ply = |elements: [String; 2]| {
+            let [a, b] = elements;
+            let [v, f] = [
+                "element vertex 7\nproperty float x\nproperty float y\nproperty float z\n",
+                "element face 1\nproperty list uchar int vertex_indices\n",
+            ];
+            let is_early = a.starts_with('7');
+            let head = if is_early { [f, v] } else { [v, f] }.concat();
+            format!("ply\nformat ascii 1.0\n{head}end_header\n{a}{b}")
+        };
+        let face = format!("7 {}\n", list(0));
+        let ply = [ply([vertices(""), face.clone()]), ply([face, vertices("")])];
+        let files = obj
+            .iter()
+            .map(|t| ("m.obj", t))
+            .chain(ply.iter().map(|t| ("m.ply", t)));
+        for (name, text) in files {
+            let mesh = alone(name, text.as_bytes()).unwrap_or_else(|e| panic!("{e}: {text}"));
+            // 4 × 4 less a triangle of base 2 and height 2.
+            assert!(
+                (area(&mesh) - 14.0).abs() < 1e-12,
+                "{name} {first}: {}",
+                area(&mesh)
+            );
+            assert_eq!(mesh.triangles.len(), 5);
+        }
+    }
+    let crossed = "v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 3 0\n\nf 1 2 3 4\n";
+    let error = alone("m.obj", crossed.as_bytes()).unwrap_err().to_string();
+    assert!(
+        error.starts_with("line 6: the sides of the face cross"),
+        "{error}"
+    );
+    let strips = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+        element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    let error = alone("m.ply", strips.as_bytes()).unwrap_err().to_string();
+    assert!(
+        error.contains("strips") && error.contains("is not supported"),
+        "{error}"
     );
 }
 
@@ -63,6 +126,9 @@ fn what_is_written_is_read_back() {
         colours: Some(&colours),
         reflectances: Some(&reflectances),
     };
+    for corner in mesh.uv.iter_mut().flatten().flatten() {
+        *corner = corner.map(|x| f64::from(x as f32));
+    }
     for values in [FaceValues::default(), full] {
         assert_eq!(alone("t.ply", &to_ply(&mesh, values)).unwrap(), mesh);
     }

@@ -1,0 +1,384 @@
+//! Triangles cut into pieces along a grid in their texture coordinates.
+//!
+//! Texture coordinates are affine over a triangle, so that an edge of the grid cuts it along a
+//! straight line, and a piece's share of the area is the same in the picture and in space.
+
+use super::texture::{Texture, Wrap};
+use crate::geometry::{DVec3, Facet, Instance};
+
+/// A corner of a piece: its place in the picture, and its weights in the triangle.
+pub(super) type Corner = ([f64; 2], DVec3);
+
+/// What a triangle has in one cell of a grid: a convex polygon.
+pub(super) struct Piece {
+    /// Cell iu + iv·nu.
+    pub cell: usize,
+    /// How often the picture was repeated up to there, along u and v; 0 where it does not repeat.
+    pub tile: [i64; 2],
+    pub corners: Vec<Corner>,
+}
+
+/// A grid of cells on \[0, 1\]², and what lies outside: its repetition, or its border's cells.
+#[derive(Clone, Copy)]
+pub(super) struct Grid {
+    pub count: [usize; 2],
+    pub wrap: Wrap,
+}
+
+impl Grid {
+    /// The cells within which a texture is smooth.
+    pub(super) fn of_texture(texture: &Texture) -> Self {
+        Self {
+            count: texture.smooth_cells(),
+            wrap: texture.wrap(),
+        }
+    }
+
+    /// Columns (0) or rows (1) that numbers from `low` to `high` cover. Without repetition −1 and n
+    /// are what lies outside. On an edge the higher one counts.
+    fn covered(&self, d: usize, low: f64, high: f64) -> [i64; 2] {
+        let n = self.count[d] as f64;
+        let (first, last) = ((low * n).floor(), (high * n).ceil() - 1.0);
+        let (first, last) = match self.wrap {
+            Wrap::Repeat => (first, last),
+            Wrap::Clamp => (first.clamp(-1.0, n), last.clamp(-1.0, n)),
+        };
+        [first as i64, last.max(first) as i64]
+    }
+
+    /// About how many pieces a polygon of these places is cut into, at most.
+    pub(super) fn pieces(&self, places: &[[f64; 2]]) -> f64 {
+        let count = |d: usize| {
+            let [first, last] = self.range(d, places.iter().copied());
+            (last - first + 1) as f64
+        };
+        count(0) * count(1)
+    }
+
+    fn range(&self, d: usize, places: impl Iterator<Item = [f64; 2]>) -> [i64; 2] {
+        let ends = (f64::INFINITY, f64::NEG_INFINITY);
+        let (low, high) = places.fold(ends, |(l, h), p| (l.min(p[d]), h.max(p[d])));
+        self.covered(d, low, high)
+    }
+
+    /// A convex polygon in pieces, row by row.
+    pub(super) fn cut(&self, polygon: Vec<Corner>) -> Vec<Piece> {
+        let mut found = Vec::new();
+        for (row, strip) in self.strips(1, polygon) {
+            for (column, corners) in self.strips(0, strip) {
+                let ([i, s], [j, t]) = (self.place(0, column), self.place(1, row));
+                let cell = i as usize + j as usize * self.count[0];
+                let tile = [s, t];
+                found.push(Piece {
+                    cell,
+                    tile,
+                    corners,
+                });
+            }
+        }
+        found
+    }
+
+    /// A polygon divided into columns (0) or rows (1).
+    fn strips(&self, d: usize, mut rest: Vec<Corner>) -> Vec<(i64, Vec<Corner>)> {
+        let [first, last] = self.range(d, rest.iter().map(|c| c.0));
+        let mut found = Vec::new();
+        for k in first..last {
+            let (below, above) = split(&rest, d, (k + 1) as f64 / self.count[d] as f64);
+            found.push((k, below));
+            rest = above;
+        }
+        found.push((last, rest));
+        found.retain(|(_, strip)| strip.len() > 2);
+        found
+    }
+
+    /// The cell of a column or a row, and its tile.
+    fn place(&self, d: usize, k: i64) -> [i64; 2] {
+        let n = self.count[d] as i64;
+        match self.wrap {
+            Wrap::Repeat => [k.rem_euclid(n), k.div_euclid(n)],
+            Wrap::Clamp => [k.clamp(0, n - 1), 0],
+        }
+    }
+}
+
+/// All of a triangle with these texture coordinates.
+pub(super) fn whole(uv: [[f64; 2]; 3]) -> Vec<Corner> {
+    let weights = [DVec3::X, DVec3::Y, DVec3::Z];
+    uv.into_iter().zip(weights).collect()
+}
+
+/// The parts of a convex polygon where x_d ≤ at and where x_d ≥ at (Sutherland and Hodgman, 1974).
+fn split(polygon: &[Corner], d: usize, at: f64) -> (Vec<Corner>, Vec<Corner>) {
+    let (mut below, mut above) = (Vec::new(), Vec::new());
+    for (i, from) in polygon.iter().enumerate() {
+        let to = &polygon[(i + 1) % polygon.len()];
+        let (a, b) = (from.0[d] - at, to.0[d] - at);
+        if a <= 0.0 {
+            below.push(*from);
+        }
+        if a >= 0.0 {
+            above.push(*from);
+        }
+        if (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0) {
+            let t = a / (a - b);
+            let mut place = [0, 1].map(|k| from.0[k] + (to.0[k] - from.0[k]) * t);
+            place[d] = at;
+            let corner = (place, from.1 + (to.1 - from.1) * t);
+            below.push(corner);
+            above.push(corner);
+        }
+    }
+    (below, above)
+}
+
+/// The triangles of a convex polygon, from its first corner.
+pub(super) fn fan(polygon: &[Corner]) -> impl Iterator<Item = [Corner; 3]> {
+    let pairs = polygon.get(1..).unwrap_or_default().windows(2);
+    pairs.map(|pair| [polygon[0], pair[0], pair[1]])
+}
+
+/// Which share of its triangle's area three corners enclose: twice the area of their weights.
+pub(super) fn share([a, b, c]: &[Corner; 3]) -> f64 {
+    let [p, q] = [b.1 - a.1, c.1 - a.1];
+    (p.y * q.z - p.z * q.y).abs()
+}
+
+/// A polygon's share of its triangle's area, and the weights of its centroid times that.
+pub(super) fn share_and_moment(polygon: &[Corner]) -> (f64, DVec3) {
+    fan(polygon).fold((0.0, DVec3::ZERO), |(all, moment), part| {
+        let share = share(&part);
+        let middle = (part[0].1 + part[1].1 + part[2].1) / 3.0;
+        (all + share, moment + middle * share)
+    })
+}
+
+/// A polygon's area in the picture.
+pub(super) fn extent(polygon: &[Corner]) -> f64 {
+    let area = |[a, b, c]: [Corner; 3]| {
+        let [p, q] = [b, c].map(|x| [x.0[0] - a.0[0], x.0[1] - a.0[1]]);
+        0.5 * (p[0] * q[1] - p[1] * q[0]).abs()
+    };
+    fan(polygon).map(area).sum()
+}
+
+/// ∫ρ over a polygon, in units of its triangle's area: exact. In each smooth cell ρ is constant or
+/// of second order at most, for which the middles of the sides of a triangle are enough.
+pub(super) fn albedo(texture: &Texture, polygon: Vec<Corner>) -> f64 {
+    if let Texture::Constant(rho) = texture {
+        return rho * share_and_moment(&polygon).0;
+    }
+    let pieces = Grid::of_texture(texture).cut(polygon);
+    pieces.iter().map(|piece| of_piece(texture, piece)).sum()
+}
+
+fn of_piece(texture: &Texture, piece: &Piece) -> f64 {
+    match texture {
+        Texture::Constant(_) | Texture::Cells(_) | Texture::Tiles(_) => {
+            texture.cell_mean(piece.cell) * share_and_moment(&piece.corners).0
+        }
+        Texture::Ramp(_) | Texture::Bilinear(_) => {
+            let middle =
+                |p: Corner, q: Corner| texture.albedo([0, 1].map(|k| 0.5 * (p.0[k] + q.0[k])));
+            let parts = fan(&piece.corners);
+            let parts = parts.map(|part| {
+                let [a, b, c] = part;
+                share(&part) * (middle(a, b) + middle(b, c) + middle(c, a)) / 3.0
+            });
+            parts.sum()
+        }
+    }
+}
+
+/// Facets of one mesh; one that would have more is not cut.
+const MOST_FACETS: usize = 1 << 20;
+
+/// A mesh's triangles cut along the edges of its texture, so that each part is smooth; `None` where
+/// nothing is cut and all is one cell, where the mesh is a patch with cells of its own, or where
+/// there would be too many.
+pub(super) fn facets(body: &Instance, texture: &Texture) -> Option<Vec<Facet>> {
+    let uv = body.mesh().uv()?;
+    let is_smooth = matches!(texture, Texture::Constant(_));
+    if is_smooth || body.is_exact_patch() || uv.len() > MOST_FACETS {
+        return None;
+    }
+    let grid = Grid::of_texture(texture);
+    let mut found = Vec::with_capacity(uv.len());
+    for (t, uv) in uv.iter().enumerate() {
+        if found.len() as f64 + grid.pieces(uv) > 2.0 * MOST_FACETS as f64 {
+            return None;
+        }
+        for piece in grid.cut(whole(*uv)) {
+            let parts = fan(&piece.corners).filter(|part| share(part) > 0.0);
+            found.extend(parts.map(|part| Facet {
+                triangle: t as u32,
+                corners: part.map(|(_, weights)| [weights.y, weights.z]),
+                cell: piece.cell as u32,
+            }));
+        }
+        if found.len() > MOST_FACETS {
+            return None;
+        }
+    }
+    let is_one = found.len() == uv.len() && found.iter().all(|f| f.cell == found[0].cell);
+    (!is_one).then_some(found)
+}
+
+/// Whether each triangle of a mesh lies in one cell of its texture.
+pub(super) fn are_whole(body: &Instance, texture: &Texture) -> bool {
+    let grid = Grid::of_texture(texture);
+    let uv = body.mesh().uv().unwrap_or_default();
+    uv.iter().all(|uv| grid.pieces(uv) <= 1.0)
+}
+
+/// The mean albedo over the area of a mesh.
+pub(super) fn mean_albedo(body: &Instance, texture: &Texture) -> f64 {
+    let Some(uv) = body.mesh().uv() else {
+        return texture.albedo([0.0; 2]);
+    };
+    let light = |(t, uv): (usize, &[[f64; 2]; 3])| {
+        body.triangle_area(t as u32) * albedo(texture, whole(*uv))
+    };
+    uv.iter().enumerate().map(light).sum::<f64>() / body.area()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Shares add up to 1 and their middles to the triangle's; a right triangle over a 2 × 2 grid
+    /// covers two cells of it by half a cell, one whole, one not at all.
+    #[test]
+    fn shares_of_a_triangle_are_its_parts() {
+        let shares =
+            |uv: [[f64; 2]; 3], count: [usize; 2], wrap: Wrap| -> Vec<(usize, f64, DVec3)> {
+                let pieces = Grid { count, wrap }.cut(whole(uv)).into_iter();
+                let each = pieces.map(|p| (p.cell, share_and_moment(&p.corners)));
+                each.map(|(cell, (share, moment))| (cell, share, moment))
+                    .collect()
+            };
+        let half = shares([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], [2, 2], Wrap::Clamp);
+        let share = |cell| half.iter().find(|s| s.0 == cell).map_or(0.0, |s| s.1);
+        for (cell, part) in [(0, 0.5), (1, 0.25), (2, 0.25), (3, 0.0)] {
+            assert!(
+                (share(cell) - part).abs() < 1e-15,
+                "{cell}: {}",
+                share(cell)
+            );
+        }
+        for grid in [[1, 1], [3, 2], [7, 5], [64, 64]] {
+            for wrap in [Wrap::Clamp, Wrap::Repeat] {
+                for uv in [
+                    [[0.1, 0.2], [0.9, 0.3], [0.4, 0.95]],
+                    [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0]],
+                    [[1.2, 3.1], [1.7, 3.4], [1.3, 3.9]],
+                    [[-0.7, -2.1], [1.7, 0.4], [0.3, 1.9]],
+                    // Along a line, and in one point.
+                    [[0.1, 0.2], [0.3, 0.6], [0.4, 0.8]],
+                    [[0.5, 0.5]; 3],
+                ] {
+                    let parts = shares(uv, grid, wrap);
+                    let total: f64 = parts.iter().map(|p| p.1).sum();
+                    let middle: DVec3 = parts.iter().map(|p| p.2).sum();
+                    assert!((total - 1.0).abs() < 1e-12, "{grid:?} {uv:?}: {total}");
+                    assert!((middle - DVec3::splat(1.0 / 3.0)).length() < 1e-12);
+                    assert!(parts.iter().all(|p| p.0 < grid[0] * grid[1]));
+                }
+            }
+        }
+    }
+
+    /// A row of three tiles, the middle of the last at u = 2.5: the half of it above ⅔ belongs to
+    /// cell 2 of 3; held to the border everything beyond 1 belongs to the last.
+    #[test]
+    fn cells_beyond_the_picture_repeat_or_are_the_border() {
+        let uv = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0]];
+        let grid = |wrap| Grid {
+            count: [3, 1],
+            wrap,
+        };
+        let sums = |wrap| {
+            let mut sums = [0.0; 3];
+            for piece in grid(wrap).cut(whole(uv)) {
+                sums[piece.cell] += share_and_moment(&piece.corners).0;
+            }
+            sums
+        };
+        // Up to u the triangle has (u/3)² of its area.
+        let upto = |u: f64| u * u / 9.0;
+        let between = |a: f64, b: f64| upto(b) - upto(a);
+        let third =
+            |k: f64| [0.0, 1.0, 2.0].map(|tile| between(tile + k / 3.0, tile + (k + 1.0) / 3.0));
+        for (cell, sum) in sums(Wrap::Repeat).into_iter().enumerate() {
+            let expected: f64 = third(cell as f64).iter().sum();
+            assert!((sum - expected).abs() < 1e-14, "{cell}: {sum}, {expected}");
+        }
+        let [a, b, c] = sums(Wrap::Clamp);
+        let expected = [
+            upto(1.0 / 3.0),
+            between(1.0 / 3.0, 2.0 / 3.0),
+            between(2.0 / 3.0, 3.0),
+        ];
+        for (sum, expected) in [a, b, c].into_iter().zip(expected) {
+            assert!((sum - expected).abs() < 1e-14, "{sum}, {expected}");
+        }
+    }
+
+    /// A box shows the whole picture on each of its six sides: every cell has its share of the area,
+    /// the equal-area map takes the cells one after the other, and every point returns.
+    #[test]
+    fn facets_of_a_box_lie_in_their_cells() {
+        let bench = crate::scene::Scene::load("bench").unwrap().text;
+        let own = "[[surface]]\nname = \"box\"\nrole = \"occluder\"\n\
+            material = { lambertian = { checkerboard = [7, 6], dark = 0.1, light = 0.5 } }\n\
+            mesh = { generate = \"box\", scale = 2, translate = [20, 3, 1] }\n";
+        let scene = crate::scene::Scene::from_toml("box", &(bench + own)).unwrap();
+        let surface = &scene.surfaces[2];
+        let crate::geometry::Shape::Instance(body) = &surface.shape else {
+            panic!("a box is a mesh")
+        };
+        let facets = body.facets().unwrap();
+        let edges = facets.edges();
+        assert_eq!((facets.cells().len(), edges.len()), (42, 43));
+        let share: f64 = facets
+            .all()
+            .iter()
+            .map(|f| {
+                let [a, b, c] = body.facet_corners(f);
+                0.5 * (b - a).cross(c - a).length()
+            })
+            .sum();
+        assert!((share - 24.0).abs() < 1e-12, "{share}");
+        for (k, pair) in edges.windows(2).enumerate() {
+            assert!((pair[1] - pair[0] - 1.0 / 42.0).abs() < 1e-14);
+            for i in 0..40 {
+                let at = |step: f64| (0.4637 + f64::from(i) * step).fract();
+                let place = [pair[0] + (pair[1] - pair[0]) * at(0.618_034), at(0.754_878)];
+                let point = body.at(place);
+                let cell = [7.0, 6.0]
+                    .iter()
+                    .zip(point.uv)
+                    .map(|(n, x)| (n * x) as usize);
+                let cell: Vec<usize> = cell.collect();
+                assert_eq!(cell[0] + 7 * cell[1], facets.cells()[k] as usize);
+                let ray = crate::geometry::Ray::new(point.position + point.normal, -point.normal);
+                let hit = body.intersect(&ray).unwrap();
+                let back = body.parameters(hit.triangle, point.position);
+                let apart = [0, 1].map(|d| (back[d] - place[d]).abs());
+                assert!(apart[0].max(apart[1]) < 1e-9, "{place:?}, {back:?}");
+            }
+        }
+        let checks = |cell: usize| {
+            if (cell % 7 + cell / 7).is_multiple_of(2) {
+                0.1
+            } else {
+                0.5
+            }
+        };
+        for k in 0..42 {
+            assert_eq!(surface.cell_weight(k), checks(facets.cells()[k] as usize));
+        }
+        assert!((surface.mean_albedo() - 0.3).abs() < 1e-14);
+    }
+}
