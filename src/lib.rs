@@ -127,6 +127,7 @@
 //!
 //! # Where to read on
 //!
+//! * [`cli::guide`](mod@cli::guide): the guide, from a tutorial to how to add a method.
 //! * [`scene`]: what a scene is, and its file format key by key.
 //! * [`transport`]: the integral that is estimated, and how.
 //! * [`model`]: the matrices, and what they leave out.

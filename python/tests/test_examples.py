@@ -42,8 +42,9 @@ def test_every_public_method_is_documented():
     assert bare == []
 
 
-def test_readme():
-    text = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+@pytest.mark.parametrize("folder", [1, 2], ids=["python", "phicam"])
+def test_readme(folder):
+    text = (Path(__file__).parents[folder] / "README.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     assert blocks
     for block in blocks:

@@ -55,6 +55,7 @@ mod exposed_folder;
 mod failure;
 mod findings;
 pub mod from_your_camera;
+pub mod guide;
 mod import;
 mod interrupt;
 mod load_run;

@@ -1,8 +1,8 @@
-"""Runs the lines that README.md shows for NumPy, xarray, Octave and MATLAB as they stand there, on the folder of a run of `bench`.
+"""Runs the lines that the guide (src/cli/guide/files.md) shows for NumPy, xarray, Octave and MATLAB as they stand there, on the folder of a run of `bench`.
 
 usage: python readme_lines.py DIR
 
-DIR must be called `out`, as in the README. Needs NumPy and xarray, and octave on the path. What the lines leave in their variables is held against the files.
+DIR must be called `out`, as in the guide. Needs NumPy and xarray, and octave on the path. What the lines leave in their variables is held against the files.
 """
 
 import re
@@ -13,16 +13,16 @@ from pathlib import Path
 import numpy as np
 
 run = Path(sys.argv[1]).resolve()
-assert run.name == "out", "the README's lines read the folder `out`"
-readme = (Path(__file__).parents[2] / "README.md").read_text()
-blocks = {language: re.findall(rf"^```{language}\n(.*?)^```", readme, re.M | re.S) for language in ("python", "matlab")}
+assert run.name == "out", "the lines of the guide read the folder `out`"
+chapter = (Path(__file__).parents[2] / "src/cli/guide/files.md").read_text(encoding="utf-8")
+blocks = {language: re.findall(rf"^```{language}\n(.*?)^```", chapter, re.M | re.S) for language in ("python", "matlab")}
 phi = np.load(run / "phi.npy")
 
 
 def python(block):
     program = f"import os; os.chdir({str(run.parent)!r})\n" + block
     variables = {}
-    exec(compile(program, "README.md", "exec"), variables)
+    exec(compile(program, "files.md", "exec"), variables)
     return variables
 
 
@@ -50,4 +50,4 @@ lines += "printf('%d %d', size(phi)); printf(' %.17g', phi(1, 1), phi(60, 8), ph
 said = subprocess.run(["octave", "--no-gui", "--quiet", "--no-history", "--eval", lines], cwd=run.parent, capture_output=True, text=True, check=True).stdout.split()
 assert [int(n) for n in said[:2]] == list(phi.shape), said
 assert [float(x) for x in said[2:]] == [phi[0, 0], phi[59, 7], phi[255, 119]], said
-print(f"the README's lines for NumPy ({len(blocks['python'])} blocks) and Octave read what is in {run.name}/")
+print(f"the lines of the guide for NumPy ({len(blocks['python'])} blocks) and Octave read what is in {run.name}/")
