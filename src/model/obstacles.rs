@@ -1,8 +1,13 @@
 //! Which surfaces of a scene may stand in the way.
 
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
 use super::cut::reach;
 use super::wall_point;
-use crate::geometry::{DVec3, Region, Shape, ShapeId};
+use crate::geometry::{DVec3, Region, Shape, ShapeId, Side};
 use crate::scene::{Scene, Spot};
 
 /// Shapes that may stand between what the camera sees of the wall, or a spot, and a hidden surface
@@ -53,22 +58,53 @@ pub(super) fn obstacles(scene: &Scene) -> Vec<ShapeId> {
 }
 
 /// Whether it is a mesh with no vertex in front of any of its triangles, so that it hides nothing
-/// of its own front; large meshes are taken not to be.
+/// of its own front; very large meshes are taken not to be. Vertices are asked box by box: of most
+/// boxes no corner is in front.
 fn is_convex(shape: &Shape) -> bool {
-    const MOST: usize = 10_000_000;
+    const MOST: usize = 1_000_000;
+    /// Boxes along each axis.
+    const SIDE: f64 = 16.0;
     let Shape::Instance(body) = shape else {
         return false;
     };
-    let (count, vertices) = (body.mesh().triangles().len(), body.mesh().positions().len());
+    let count = body.mesh().triangles().len();
+    if count > MOST {
+        return false;
+    }
     let (low, high) = body.bounds();
     let slack = 1e-9 * (high - low).length();
-    count * vertices <= MOST
-        && (0..count as u32).all(|t| {
-            let [a, b, c] = body.corners(t);
-            let normal = (b - a).cross(c - a).normalize_or_zero();
-            let mut all = (0..count as u32).flat_map(|t| body.corners(t));
-            all.all(|p| normal.dot(p - a) <= slack)
+    let size = (high - low).max(DVec3::splat(slack)) / SIDE;
+    let mut boxes: BTreeMap<[i64; 3], Vec<DVec3>> = BTreeMap::new();
+    for p in (0..count as u32).flat_map(|t| body.corners(t)) {
+        let place = ((p - low) / size).floor().to_array().map(|x| x as i64);
+        boxes.entry(place).or_default().push(p);
+    }
+    // A corner of one triangle is mostly one of its neighbours' too.
+    let boxes = boxes.into_values().map(|mut held| {
+        held.sort_by(|p, q| {
+            p.to_array()
+                .partial_cmp(&q.to_array())
+                .unwrap_or(Ordering::Equal)
+        });
+        held.dedup();
+        let ends = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (low, high) = held.iter().fold(ends, |(l, h), p| (l.min(*p), h.max(*p)));
+        (0.5 * (low + high), 0.5 * (high - low), held)
+    });
+    let boxes: Vec<(DVec3, DVec3, Vec<DVec3>)> = boxes.collect();
+    let is_behind = |t: u32| {
+        let [a, b, c] = body.corners(t);
+        let outer = (b - a).cross(c - a).normalize_or_zero();
+        let normal = match body.side() {
+            Side::Outer => outer,
+            Side::Inner => -outer,
+        };
+        boxes.iter().all(|(middle, half, held)| {
+            normal.dot(*middle - a) + normal.abs().dot(*half) <= slack
+                || held.iter().all(|p| normal.dot(*p - a) <= slack)
         })
+    };
+    (0..count as u32).into_par_iter().all(is_behind)
 }
 
 /// A region of a surface, or a device.
