@@ -51,3 +51,10 @@ def test_readme(folder):
         names: dict = {}
         exec(block, names)
         assert names["verdict"].agrees
+
+
+def test_one_version():
+    root = Path(__file__).parents[2]
+    stated = re.search(r'(?m)^version = "(.*)"$', (root / "Cargo.toml").read_text(encoding="utf-8"))[1]
+    assert phicam.__version__ == stated
+    assert f"version: {stated}" in (root / "CITATION.cff").read_text(encoding="utf-8")

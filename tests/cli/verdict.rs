@@ -175,10 +175,12 @@ fn a_matrix_of_ones_own_is_judged() {
     let _ = run()
         .phicam(&format!("validate --against grey.toml {done}"))
         .exits(1);
-    run().refuses(
-        &format!("validate --against tiny.toml {done}"),
-        &["64 × 24", "6 pixels", "8 spots"],
-    );
+    // Other tests write into the run's folder meanwhile, so its bytes are not compared.
+    let line = format!("validate --against tiny.toml {done}");
+    let ended = run().phicam(&line).exits(2);
+    for word in ["64 × 24", "6 pixels", "8 spots"] {
+        assert!(ended.stderr.contains(word), "{}", ended.account());
+    }
     for line in [
         format!("validate {done}"),
         "validate done --phi done/phi.npy".to_owned(),
