@@ -127,6 +127,12 @@ fn a_picture_is_its_display_window() {
     assert!(samples("p.exr", &shown([0, 0], [2, 1])).is_ok());
     let huge = decode("h.exr", &shown([0, 0], [1 << 20, 1 << 20])).unwrap_err();
     assert!(matches!(huge, ImageError::Size { .. }), "{huge}");
+    // Few bytes stand for few pixels, whatever the display window.
+    let sparse = decode("s.exr", &shown([0, 0], [4095, 4095])).unwrap_err();
+    assert!(
+        sparse.to_string().contains("crop the display window"),
+        "{sparse}"
+    );
 }
 
 #[test]

@@ -56,6 +56,12 @@ pub(super) fn read_exr(name: &str, bytes: &[u8], most: usize) -> Result<Image, I
     checked_size(name, [width, height], held, most)?;
     let display = header.shared_attributes.display_window;
     checked_size(name, [display.size.0, display.size.1], usize::MAX, most)?;
+    // What lies outside the data takes memory too, and no bytes of the file.
+    if display.size.area() > held {
+        let reason =
+            "its data window is a small part of its display window; crop the display window to it";
+        return Err(unsupported(name, reason));
+    }
     if header.deep || list.iter().any(|c| c.sampling != Vec2(1, 1)) {
         return Err(unsupported(
             name,
