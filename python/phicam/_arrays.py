@@ -13,17 +13,23 @@ from .errors import InputError
 Floats = NDArray[np.float64]
 
 
-def matrix(value: ArrayLike, name: str) -> NDArray[Any]:
-    """`value` as an array of two dimensions of float64 or float32, without a copy where it is one. One of one dimension
-    is one column: a single photograph."""
-    if isinstance(value, np.ma.MaskedArray):
-        raise InputError(f"{name} is a masked array\n  cure: give its data, and its mask as left_out=")
+def _real(value: ArrayLike, name: str) -> NDArray[Any]:
+    """`value` as an array of real numbers, without a copy where it is one."""
     try:
         array = np.asarray(value)
     except (TypeError, ValueError, RuntimeError) as error:
         raise InputError(f"{name} is no array: {error}\n  cure: give numbers in rows of one length") from error
     if array.dtype.kind not in "fiub":
         raise InputError(f"{name} holds {array.dtype}\n  cure: give real numbers")
+    return array
+
+
+def matrix(value: ArrayLike, name: str) -> NDArray[Any]:
+    """`value` as an array of two dimensions of float64 or float32, without a copy where it is one. One of one dimension
+    is one column: a single photograph."""
+    if isinstance(value, np.ma.MaskedArray):
+        raise InputError(f"{name} is a masked array\n  cure: give its data, and its mask as left_out=")
+    array = _real(value, name)
     if array.ndim == 1:
         array = array[:, np.newaxis]
     if array.ndim != 2:
@@ -53,13 +59,7 @@ def shaped(array: NDArray[Any], shape: tuple[int, int], name: str) -> NDArray[An
 
 def vector(value: ArrayLike, name: str) -> Floats:
     """Finite numbers in one row."""
-    try:
-        array = np.asarray(value)
-    except (TypeError, ValueError, RuntimeError) as error:
-        raise InputError(f"{name} is no array: {error}\n  cure: give numbers") from error
-    if array.dtype.kind not in "fiub":
-        raise InputError(f"{name} holds {array.dtype}\n  cure: give real numbers")
-    flat = np.ascontiguousarray(array, dtype=np.float64).reshape(-1)
+    flat = np.ascontiguousarray(_real(value, name), dtype=np.float64).reshape(-1)
     if not np.isfinite(flat).all():
         raise InputError(f"{name} has an entry that is not finite\n  cure: give finite numbers")
     return flat

@@ -207,11 +207,5 @@ fn fan(corners: usize) -> Vec<[usize; 3]> {
     (2..corners).map(|k| [0, k - 1, k]).collect()
 }
 
-/// The corners of a face by its fan.
-fn corners_of_fan<T: Copy>(fan: &[[T; 3]]) -> Vec<T> {
-    let first = fan.iter().take(1).flat_map(|t| [t[0], t[1]]);
-    first.chain(fan.iter().map(|t| t[2])).collect()
-}
-
 #[cfg(test)]
 mod tests;

@@ -4,7 +4,8 @@
 //! checks it (an overflow that panics or wraps around), gives a corner without texture coordinate
 //! the one of the corner before it, and names no lines.
 
-use super::{MeshFileError, Triangles, corners_of_fan, fan, polygon};
+use super::polygon::{self, Early};
+use super::{MeshFileError, Triangles, fan};
 use crate::geometry::DVec3;
 use std::str::FromStr;
 
@@ -52,9 +53,8 @@ struct Body {
     corners: Vec<(u32, Option<u32>)>,
     /// Largest index of each kind that was named ahead of its definition, and its line.
     ahead: [Option<(u32, usize)>; 2],
-    /// Faces of more than three corners that stand before their vertices, as fans: the first
-    /// triangle, their number, and the line.
-    early: Vec<(usize, usize, usize)>,
+    /// Faces that stand before their vertices.
+    early: Early,
     /// Line of the first face without texture coordinates.
     bare: Option<usize>,
 }
@@ -130,27 +130,13 @@ impl Body {
 
     /// Divides the faces that stood before their vertices.
     fn divide_early(&mut self) -> Result<(), MeshFileError> {
-        for (first, count, at) in std::mem::take(&mut self.early) {
-            let corners = corners_of_fan(&self.triangles[first..first + count]);
-            let places: Vec<DVec3> = corners
-                .iter()
-                .map(|c| self.positions[*c as usize])
-                .collect();
-            let divided = polygon::triangles(&places, || line(at))?;
-            let own = &mut self.triangles[first..];
-            own.iter_mut()
-                .zip(&divided)
-                .for_each(|(t, by)| *t = by.map(|k| corners[k]));
-            // Where any face has none the others are not used.
-            if self.bare.is_none() {
-                let own = &mut self.triangle_uvs[first..];
-                let corners = corners_of_fan(&own[..count]);
-                own.iter_mut()
-                    .zip(&divided)
-                    .for_each(|(t, by)| *t = by.map(|k| corners[k]));
-            }
-        }
-        Ok(())
+        let (early, faces) = (&self.early, &mut self.triangles);
+        // Where any face has none the coordinates of the others are not used.
+        let uvs = self
+            .bare
+            .is_none()
+            .then_some(self.triangle_uvs.as_mut_slice());
+        polygon::divide_early(early, &self.positions, faces, uvs, line)
     }
 
     fn count(&self, kind: Kind) -> usize {

@@ -7,7 +7,8 @@
 
 mod element;
 
-use super::{MeshFileError, Triangles, corners_of_fan, fan, malformed, polygon, unsupported};
+use super::polygon::{self, Early};
+use super::{MeshFileError, Triangles, fan, malformed, unsupported};
 use crate::geometry::DVec3;
 use element::{Face, Skipped, Vertex};
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
@@ -149,9 +150,8 @@ struct Body {
     by_corner: Vec<[[f64; 2]; 3]>,
     /// The largest vertex that a face names, and that face.
     largest: Option<(i64, usize)>,
-    /// Faces of more than three corners that stand before their vertices, as fans: the first
-    /// triangle, their number, and the face.
-    early: Vec<(usize, usize, usize)>,
+    /// Faces that stand before their vertices.
+    early: Early,
     /// The first face without texture coordinates, where there are any.
     bare: Option<usize>,
 }
@@ -215,27 +215,10 @@ impl Body {
 
     /// Divides the faces that stood before their vertices.
     fn divide_early(&mut self) -> Result<(), MeshFileError> {
-        for (first, count, at) in std::mem::take(&mut self.early) {
-            let corners = corners_of_fan(&self.triangles[first..first + count]);
-            let places: Vec<DVec3> = corners
-                .iter()
-                .map(|c| self.positions[*c as usize])
-                .collect();
-            let divided = polygon::triangles(&places, || face_at(at))?;
-            let own = &mut self.triangles[first..];
-            own.iter_mut()
-                .zip(&divided)
-                .for_each(|(t, by)| *t = by.map(|k| corners[k]));
-            // Where any face has none the others are not used.
-            if self.bare.is_none() {
-                let own = &mut self.by_corner[first..];
-                let corners = corners_of_fan(&own[..count]);
-                own.iter_mut()
-                    .zip(&divided)
-                    .for_each(|(t, by)| *t = by.map(|k| corners[k]));
-            }
-        }
-        Ok(())
+        let (early, faces) = (&self.early, &mut self.triangles);
+        // Where any face has none the coordinates of the others are not used.
+        let uvs = self.bare.is_none().then_some(self.by_corner.as_mut_slice());
+        polygon::divide_early(early, &self.positions, faces, uvs, face_at)
     }
 
     fn no_vertex(&self, index: i64, face: usize) -> MeshFileError {

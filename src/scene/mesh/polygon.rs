@@ -16,6 +16,48 @@ const CURE: &str = "divide the face into triangles before the export";
 
 type Point = [f64; 2];
 
+/// Faces of more than three corners that stand before their vertices, as fans: the first triangle,
+/// their number, and where the face stands in the file.
+pub(super) type Early = Vec<(usize, usize, usize)>;
+
+/// Divides `early` faces, whose vertices are known by now, and what their corners have `beside`.
+///
+/// # Errors
+/// Those of [`triangles`].
+pub(super) fn divide_early<T: Copy>(
+    early: &Early,
+    positions: &[DVec3],
+    faces: &mut [[u32; 3]],
+    mut beside: Option<&mut [[T; 3]]>,
+    place: impl Fn(usize) -> String,
+) -> Result<(), MeshFileError> {
+    for &(first, count, at) in early {
+        let own = first..first + count;
+        let corners = corners_of_fan(&faces[own.clone()]);
+        let places = corners.iter().map(|c| positions[*c as usize]);
+        let divided = triangles(&places.collect::<Vec<_>>(), || place(at))?;
+        put(&mut faces[own.clone()], &divided);
+        if let Some(beside) = beside.as_deref_mut() {
+            put(&mut beside[own], &divided);
+        }
+    }
+    Ok(())
+}
+
+/// Puts other triangles between the corners of a fan in its place.
+fn put<T: Copy>(fan: &mut [[T; 3]], divided: &[[usize; 3]]) {
+    let corners = corners_of_fan(fan);
+    for (triangle, by) in fan.iter_mut().zip(divided) {
+        *triangle = by.map(|k| corners[k]);
+    }
+}
+
+/// The corners of a face by its fan.
+fn corners_of_fan<T: Copy>(fan: &[[T; 3]]) -> Vec<T> {
+    let first = fan.iter().take(1).flat_map(|t| [t[0], t[1]]);
+    first.chain(fan.iter().map(|t| t[2])).collect()
+}
+
 /// n − 2 triangles between the given corners, by their numbers: the fan of the first corner where
 /// the polygon is convex.
 ///
