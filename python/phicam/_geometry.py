@@ -18,9 +18,6 @@ from ._progress import Progress, told
 from ._scene import Scene
 from .errors import InputError
 
-#: Elements from which on fewer are taken unless some are asked for, and those.
-MANY, FEWER = 256, (12, 12)
-
 
 class Location(Finding):
     """Where something is: see :func:`locate`."""
@@ -77,11 +74,6 @@ def _photographs(phi: Phi, scene: Scene | None, left_out: ArrayLike | None) -> t
         phi.refuse_clipped()
     flags = phi.left_out if left_out is None else maybe(left_out, "left_out")
     return (phi.scene if scene is None else scene), (phi.flux, phi.stderr, flags)
-
-
-def _elements(asked: Any, scene: Scene) -> tuple[int, int] | None:
-    own = sum(nu * nv for nu, nv in scene.hidden.values())
-    return FEWER if asked is None and own > MANY else pair(asked, "elements")
 
 
 def calibrate(
@@ -160,7 +152,7 @@ def calibrate(
         frame_gain=None if frame_gain is None else number(frame_gain, "frame_gain", "in (0, 1]", lambda x: 0 < x <= 1),
         free_scale=bool(free_scale),
         replicates=phi.replicates,
-        elements=_elements(elements, own),
+        elements=pair(elements, "elements"),
         considered=bool(occlusion),
         integration_name=integration,
         frame_polynomial=None if frame_polynomial is None else whole(frame_polynomial, "frame_polynomial", 0, 8),
@@ -236,7 +228,7 @@ def locate(
         what=what,
         range=(low, high),
         steps=count,
-        elements=_elements(elements, own),
+        elements=pair(elements, "elements"),
         considered=bool(occlusion),
         integration_name=integration,
         frame_polynomial=None if frame_polynomial is None else whole(frame_polynomial, "frame_polynomial", 0, 8),

@@ -139,6 +139,7 @@ def recover(
     patterns: NDArray[Any] | None,
     *,
     methods: list[str] | None,
+    is_grid: bool,
     settings: Any,
     replicates: int | None,
     errors_name: str,

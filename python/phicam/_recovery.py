@@ -20,8 +20,6 @@ from .errors import InputError
 
 #: Methods that work on all pixels and spots at once.
 JOINT = ("joint-unbounded", "joint", "nnls", "joint-gp", "joint-tv", "joint-two-valued")
-#: Methods that compare neighbouring elements.
-NEIGHBOURS = ("joint-gp", "joint-tv", "tikhonov-gradient")
 #: Methods that each setting means something to.
 TAKEN_BY: dict[str, tuple[str, ...]] = {
     "rank": ("tsvd",),
@@ -325,12 +323,7 @@ def recover(
     named = None if method is None else [method] if isinstance(method, str) else list(method)
     if named is not None and (not named or len(set(named)) < len(named)):
         raise InputError(f"method is {method!r}\n  cure: name one or several methods, each once")
-    lies = inverse.scene is not None or inverse._made_of[2] is not None
-    tried = named if named is not None else None if lies else _alone(count[1])
-    if not lies and named is not None and any(name in NEIGHBOURS for name in named):
-        raise InputError(
-            f"{', '.join(named)} compares neighbours, and nothing says how the elements lie\n  cure: give elements=(nu, nv)"
-        )
+    is_grid = inverse.scene is not None or inverse._made_of[2] is not None
     settings = _Settings(
         rank=None if rank is None else whole(rank, "rank", 1),
         damping=_within(damping, "damping", "0 or more: a fraction of σ1", lambda x: x >= 0),
@@ -359,7 +352,8 @@ def recover(
         None if flags is None else shaped(flags, flux.shape, "left_out"),
         None if glare is None else shaped(glare, flux.shape, "glare_pattern"),
         patterns,
-        methods=tried,
+        methods=named,
+        is_grid=is_grid,
         settings=settings,
         replicates=None if replicates is None else whole(replicates, "replicates", 2, 2**32 - 1),
         errors_name=errors or "independent",
@@ -395,12 +389,6 @@ def _inverse(given: Any, how: tuple[Kernel, Integration, bool], elements: Any) -
             raise InputError(f"model is a tuple of {len(sides)}\n  cure: give the pair (C, D)")
         return model_of(sides[0], sides[1], pair(elements, "elements"))
     return model_of(given, None, pair(elements, "elements"))
-
-
-def _alone(elements: int) -> list[str]:
-    """The usual methods but for those that compare neighbours."""
-    few = ["joint-two-valued"] if elements <= 100 else []
-    return ["pinv", "tsvd", "tikhonov", "joint-unbounded", "joint", *few]
 
 
 def _within(value: Any, name: str, fine: str, holds: Callable[[float], bool]) -> float | None:

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use phicam::jobs::need;
 use phicam::lab::finding::Describe;
-use phicam::lab::{CalibrationPlan, Free, LOCATABLE, LocatedPlan, Unexplained, polynomials};
+use phicam::lab::{CalibrationPlan, Free, LOCATABLE, LocatedPlan, Unexplained, fewer, polynomials};
 use phicam::matrix::Matrix;
 use phicam::scene;
 use pyo3::prelude::*;
@@ -73,6 +73,12 @@ impl Photographs {
     }
 }
 
+/// The elements that are asked for, else fewer where the scene has many.
+fn thinned(asked: Option<(usize, usize)>, scene: &scene::Scene) -> Option<[usize; 2]> {
+    let fewer = || fewer(scene).map(|(fewer, _)| fewer);
+    asked.map(Into::into).or_else(fewer)
+}
+
 /// The geometry, estimated; the text of the calibrated scene beside it.
 #[pyfunction]
 #[pyo3(signature = (scene, phi, stderr, left_out, *, free, frame_gain, free_scale, replicates, elements,
@@ -109,7 +115,7 @@ pub fn calibrate<'py>(
         frame_gain,
         is_scale_free: free_scale,
         replicates,
-        elements: elements.map(Into::into),
+        elements: thinned(elements, &scene.inner),
         occlusion: occlusion(considered),
         integration: integration(integration_name)?,
         starts,
@@ -168,7 +174,7 @@ pub fn locate<'py>(
         what,
         range: range.into(),
         steps,
-        elements: elements.map(Into::into),
+        elements: thinned(elements, &scene.inner),
         occlusion: occlusion(considered),
         integration: integration(integration_name)?,
         orders,

@@ -20,9 +20,6 @@ use crate::model::Model;
 use crate::validate::errors as ways;
 use crate::work::run;
 
-/// Elements whose covariance and resolution are still given: 32 MiB each.
-const MOST_CORRELATED: usize = 2048;
-
 /// Copies of all matrices that are held at once.
 const HELD: f64 = 6.0;
 
@@ -99,19 +96,15 @@ impl Settings {
             bands: self.bands,
             weighting,
             frame: self.pixels.map(Into::into),
-            uncertainty: if elements <= MOST_CORRELATED {
-                Uncertainty::Full
-            } else {
-                Uncertainty::StandardError
-            },
+            uncertainty: Uncertainty::of(elements),
             ..usual
         })
     }
 }
 
-/// Recovers by each of the methods; `trusted` orders what was found by how far it can be trusted.
+/// Recovers by each of the methods; without `is_grid` nothing says how the elements lie; `trusted` orders what was found by how far it can be trusted.
 #[pyfunction]
-#[pyo3(signature = (model, phi, stderr, left_out, glare, patterns, *, methods, settings, replicates,
+#[pyo3(signature = (model, phi, stderr, left_out, glare, patterns, *, methods, is_grid, settings, replicates,
                     errors_name, trusted, threads))]
 #[expect(
     clippy::too_many_arguments,
@@ -126,6 +119,7 @@ pub fn recover<'py>(
     glare: Option<&Bound<'py, PyAny>>,
     patterns: Option<&Bound<'py, PyAny>>,
     methods: Option<Vec<String>>,
+    is_grid: bool,
     settings: Settings,
     replicates: Option<u32>,
     errors_name: &str,
@@ -136,10 +130,15 @@ pub fn recover<'py>(
     let elements = own.albedo.len();
     let named: Result<Vec<Method>, _> = methods.iter().flatten().map(|m| m.parse()).collect();
     let named = named.raise()?;
+    let alone = |method: &Method| is_grid || !method.compares_neighbours();
     let methods = match methods {
-        None => Method::tried(elements),
+        None => Method::tried(elements).into_iter().filter(alone).collect(),
         Some(_) => named,
     };
+    if let Some(method) = methods.iter().find(|method| !alone(method)) {
+        let cause = format!("{method} compares neighbours, and nothing says how the elements lie");
+        return Err(input(cause, "give elements=(nu, nv)"));
+    }
     let options = settings.options(elements)?;
     let (rows, columns) = (own.camera_side.nrows(), own.laser_side.ncols());
     let entries = (rows * columns + elements * (rows + columns)) as f64;

@@ -9,9 +9,6 @@ use crate::model::MatrixModel;
 use crate::num::linalg::Tolerance;
 use crate::recovery::{Method, Options, Uncertainty, WeightRule};
 
-/// Elements whose covariance and resolution are still written: 32 MiB each.
-const MOST_CORRELATED: usize = 2048;
-
 /// The options that the arguments describe, for `methods`.
 pub(super) fn checked(args: &RecoverArgs, methods: &[Method]) -> Result<Options, Failure> {
     let positive = |x: f64| x > 0.0 && x.is_finite();
@@ -158,11 +155,12 @@ fn used(args: &RecoverArgs, methods: &[Method]) -> Result<(), Failure> {
 
 /// How much of the uncertainty fits the elements of the model.
 pub(super) fn uncertainty(model: &MatrixModel, console: Console) -> Uncertainty {
-    if model.laser_side.nrows() <= MOST_CORRELATED {
-        return Uncertainty::Full;
+    let found = Uncertainty::of(model.laser_side.nrows());
+    if found == Uncertainty::StandardError {
+        console.say(format!(
+            "more than {} elements: no covariance and no resolution of the methods that work pixel by pixel",
+            Uncertainty::MOST_CORRELATED
+        ));
     }
-    console.say(format!(
-        "more than {MOST_CORRELATED} elements: no covariance and no resolution of the methods that work pixel by pixel"
-    ));
-    Uncertainty::StandardError
+    found
 }

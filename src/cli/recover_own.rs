@@ -17,8 +17,6 @@ use crate::model::MatrixModel;
 use crate::recovery::{Method, Options};
 use crate::store::memory;
 
-/// Methods that compare neighbouring elements.
-const NEIGHBOURS: [Method; 3] = [Method::JointGp, Method::JointTv, Method::TikhonovGradient];
 /// Copies of all matrices that are held at once.
 const HELD: f64 = 6.0;
 
@@ -55,7 +53,7 @@ pub(super) fn execute(
     let count = args.elements.unwrap_or([elements, 1]);
     let model = MatrixModel::of_sides(camera, laser, count)?;
     // Without a grid nobody knows which elements are neighbours.
-    let alone = |method: &Method| args.elements.is_some() || !NEIGHBOURS.contains(method);
+    let alone = |method: &Method| args.elements.is_some() || !method.compares_neighbours();
     let methods: Vec<Method> = if named.is_empty() {
         Method::tried(elements).into_iter().filter(alone).collect()
     } else {

@@ -7,13 +7,9 @@ use super::failure::Failure;
 use super::load_run::{read_left_out, read_matrix, read_stderr};
 use super::run_folder::{PHI, STDERR};
 use crate::folder::Record;
-use crate::lab::{Unexplained, polynomials};
+use crate::lab::{Unexplained, fewer, polynomials};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
-
-/// Elements above which fewer are taken unless they are asked for, and those.
-const MANY: usize = 256;
-const FEWER: [usize; 2] = [12, 12];
 
 /// The elements in place of the scene's: those `asked` for, else fewer where it has many.
 pub(super) fn elements(
@@ -21,16 +17,14 @@ pub(super) fn elements(
     scene: &Scene,
     console: Console,
 ) -> Option<[usize; 2]> {
-    let each = scene.hidden().map(|(_, s)| s.elements[0] * s.elements[1]);
-    let own: usize = each.sum();
-    if asked.is_some() || own <= MANY {
+    let found = fewer(scene).filter(|_| asked.is_none());
+    let Some(([nu, nv], own)) = found else {
         return asked;
-    }
+    };
     console.say(format!(
-        "{} × {} elements in place of {own} (--elements)",
-        FEWER[0], FEWER[1]
+        "{nu} × {nv} elements in place of {own} (--elements)"
     ));
-    Some(FEWER)
+    Some([nu, nv])
 }
 
 /// The matrices of [`Unexplained`].

@@ -254,5 +254,5 @@ pub use summary::{
 pub use tails::Tails;
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
 pub use trust::by_trust;
-pub use unexplained::Unexplained;
+pub use unexplained::{Unexplained, fewer};
 pub use validation::{Against, Integration, Measured, Validation, ValidationError, validate};

@@ -4,9 +4,21 @@ use nalgebra::DVector;
 
 use crate::matrix::Matrix;
 use crate::num::linalg::{LinalgError, product, svd, tr_product};
+use crate::scene::Scene;
 
 /// Directions of the patterns that are weaker than this part of the strongest are none.
 const DEPENDENT: f64 = 1e-12;
+
+/// Elements above which fewer are taken unless they are asked for, and those.
+const MANY: usize = 256;
+const FEWER: [usize; 2] = [12, 12];
+
+/// The elements in place of the scene's where it has many, and how many it has.
+pub fn fewer(scene: &Scene) -> Option<([usize; 2], usize)> {
+    let each = scene.hidden().map(|(_, s)| s.elements[0] * s.elements[1]);
+    let own = each.sum();
+    (own > MANY).then_some((FEWER, own))
+}
 
 /// Photographs whose reflectances are unknown.
 #[derive(Clone, Copy, Debug)]

@@ -112,6 +112,11 @@ impl Method {
             Method::JointTwoValued => "joint-two-valued",
         }
     }
+
+    /// Whether it compares neighbouring elements, and needs to know how they lie.
+    pub fn compares_neighbours(self) -> bool {
+        [Method::JointGp, Method::JointTv, Method::TikhonovGradient].contains(&self)
+    }
 }
 
 impl fmt::Display for Method {

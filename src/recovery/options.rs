@@ -63,6 +63,20 @@ pub enum Uncertainty {
     StandardError,
 }
 
+impl Uncertainty {
+    /// Elements whose covariance and resolution are still told: 32 MiB each.
+    pub const MOST_CORRELATED: usize = 2048;
+
+    /// How much of it fits so many elements.
+    pub fn of(elements: usize) -> Self {
+        if elements <= Self::MOST_CORRELATED {
+            Self::Full
+        } else {
+            Self::StandardError
+        }
+    }
+}
+
 /// Choices of the methods; the default leaves each to its own rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
