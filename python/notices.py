@@ -1,4 +1,5 @@
-"""Writes THIRD-PARTY.txt: the licences of all crates that are linked into the module; with --check fails where it is stale.
+"""Writes the licences of all crates that are linked into the module (THIRD-PARTY.txt) and into the command
+(../src/cli/third_party.txt, which `phicam notices` prints); with --check fails where one is stale.
 
 usage: python notices.py [--check]
 """
@@ -11,17 +12,21 @@ from collections import defaultdict
 from pathlib import Path
 
 HERE = Path(__file__).parent
-MANIFEST = ["--manifest-path", str(HERE / "Cargo.toml"), "--locked"]
-OUTPUT = HERE / "THIRD-PARTY.txt"
+#: What is linked, the manifest of that package, the file of its notices.
+OUTPUTS = [
+    ("phicam's Python module", HERE / "Cargo.toml", HERE / "THIRD-PARTY.txt"),
+    ("The command phicam", HERE.parent / "Cargo.toml", HERE.parent / "src/cli/third_party.txt"),
+]
 
 
-def cargo(*arguments):
-    return subprocess.run(["cargo", *arguments, *MANIFEST], capture_output=True, text=True, check=True).stdout
+def cargo(manifest, *arguments):
+    command = ["cargo", *arguments, "--manifest-path", str(manifest), "--locked"]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
 
 
-def linked():
+def linked(manifest):
     """Name and version of every crate that is compiled in on this platform."""
-    tree = cargo("tree", "--prefix", "none", "-e", "normal,no-proc-macro", "-f", "{p}")
+    tree = cargo(manifest, "tree", "--prefix", "none", "-e", "normal,no-proc-macro", "-f", "{p}")
     return {tuple(line.replace(" v", " ").split()[:2]) for line in tree.splitlines() if line.strip()}
 
 
@@ -35,11 +40,11 @@ def texts(package):
     return [f.read_text(encoding="utf-8", errors="replace").strip().replace("\r\n", "\n") for f in files]
 
 
-def notices():
-    wanted = linked()
-    packages = json.loads(cargo("metadata", "--format-version", "1"))["packages"]
+def notices(what, manifest):
+    wanted = linked(manifest)
+    packages = json.loads(cargo(manifest, "metadata", "--format-version", "1"))["packages"]
     found = sorted((p["name"], p["version"], p) for p in packages if (p["name"], p["version"]) in wanted and p["source"])
-    users, lines = defaultdict(list), ["phicam's Python module is linked with these crates:", ""]
+    users, lines = defaultdict(list), [f"{what} is linked with these crates:", ""]
     for name, version, package in found:
         authors = ", ".join(package["authors"]) or "its authors"
         lines.append(f"{name} {version}: {package['license']}; {authors}")
@@ -51,9 +56,9 @@ def notices():
 
 
 if __name__ == "__main__":
-    text = notices()
-    if "--check" in sys.argv[1:]:
-        if OUTPUT.read_text(encoding="utf-8") != text:
-            sys.exit(f"{OUTPUT} is stale\n  cure: python {Path(__file__).name}")
-    else:
-        OUTPUT.write_text(text, encoding="utf-8")
+    for what, manifest, output in OUTPUTS:
+        text = notices(what, manifest)
+        if "--check" not in sys.argv[1:]:
+            output.write_text(text, encoding="utf-8")
+        elif output.read_text(encoding="utf-8") != text:
+            sys.exit(f"{output} is stale\n  cure: python {Path(__file__).name}")

@@ -23,7 +23,7 @@ const BESIDE: [(&str, &str); 1] = [("film", "matrix")];
 /// Foreign crates and the one place that may name them. `exr` has two: frames are written and read
 /// with all their attributes, pictures of other programs are read without any; what both must know
 /// of a file's bytes stands in `image/exr/envelope`.
-const DOORS: [(&str, &[&str]); 30] = [
+const DOORS: [(&str, &[&str]); 29] = [
     ("obvhs", &["geometry/tree"]),
     ("exr", &["film/exr", "image/exr"]),
     ("faer", &["num/linalg"]),
@@ -34,7 +34,6 @@ const DOORS: [(&str, &[&str]); 30] = [
     ("rand", &["num/stream"]),
     ("rand_pcg", &["num/stream"]),
     ("sobol_burley", &["num/stream"]),
-    ("npyz", &["matrix/npy"]),
     ("png", &["image/png"]),
     ("zune_jpeg", &["image/jpeg"]),
     ("tiff", &["image/tiff"]),

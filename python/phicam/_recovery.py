@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from html import escape
 from typing import Any, Literal, TypedDict
 
@@ -17,25 +17,6 @@ from ._phi import Phi
 from ._scene import Scene
 from ._verdict import Errors
 from .errors import InputError
-
-#: Methods that work on all pixels and spots at once.
-JOINT = ("joint-unbounded", "joint", "nnls", "joint-gp", "joint-tv", "joint-two-valued")
-#: Methods that each setting means something to.
-TAKEN_BY: dict[str, tuple[str, ...]] = {
-    "rank": ("tsvd",),
-    "damping": ("tikhonov", "tikhonov-gradient"),
-    "tolerance": ("pinv", "left-inverse", "right-inverse", "rdivide", "rdivide-min-norm", "joint-unbounded"),
-    "tv": ("joint-tv",),
-    "levels": ("joint-two-valued",),
-    **dict.fromkeys(
-        (
-            "weighting frame_constant frame_polynomial frame_patterns background glare_pattern free_scale "
-            "frame_gain scale_error left_out"
-        ).split(),
-        JOINT,
-    ),
-}
-
 
 class Surface:
     """What was recovered of one hidden surface.
@@ -318,7 +299,7 @@ def recover(
     if noise is not None:
         if stderr is not None:
             raise InputError("stderr and noise are both given\n  cure: give one of them")
-        factor = number(noise, "noise", "above 0: relative to each entry, e.g. 0.01", lambda x: x > 0)
+        factor = _within(noise, "noise")
         stderr = np.abs(np.asarray(flux, dtype=np.float64)) * factor
     named = None if method is None else [method] if isinstance(method, str) else list(method)
     if named is not None and (not named or len(set(named)) < len(named)):
@@ -326,19 +307,19 @@ def recover(
     is_grid = inverse.scene is not None or inverse._made_of[2] is not None
     settings = _Settings(
         rank=None if rank is None else whole(rank, "rank", 1),
-        damping=_within(damping, "damping", "0 or more: a fraction of σ1", lambda x: x >= 0),
+        damping=_within(damping, "damping"),
         rule=rule,
-        tolerance=_within(tolerance, "tolerance", "0 or more and below 1: a fraction of σ1", lambda x: 0 <= x < 1),
-        tv=_within(tv, "tv", "0 or more: a fraction of σ1²", lambda x: x >= 0),
+        tolerance=_within(tolerance, "tolerance"),
+        tv=_within(tv, "tv"),
         levels=None if levels is None else (float(levels[0]), float(levels[1])),
         weighting=weighting,
-        bands=_within(bands, "bands", "between 0 and 1: a probability, e.g. 0.95", lambda x: 0 < x < 1),
+        bands=_within(bands, "bands"),
         frame_constant=bool(frame_constant),
         frame_polynomial=None if frame_polynomial is None else whole(frame_polynomial, "frame_polynomial", 0, 8),
         background=bool(background),
         free_scale=bool(free_scale),
-        frame_gain=_within(frame_gain, "frame_gain", "above 0 and at most 1", lambda x: 0 < x <= 1),
-        scale_error=_within(scale_error, "scale_error", "above 0 and at most 1", lambda x: 0 < x <= 1),
+        frame_gain=_within(frame_gain, "frame_gain"),
+        scale_error=_within(scale_error, "scale_error"),
         pixels=pixels,
     )
     flags, patterns = maybe(left_out, "left_out"), maybe(frame_patterns, "frame_patterns")
@@ -391,18 +372,21 @@ def _inverse(given: Any, how: tuple[Kernel, Integration, bool], elements: Any) -
     return model_of(given, None, pair(elements, "elements"))
 
 
-def _within(value: Any, name: str, fine: str, holds: Callable[[float], bool]) -> float | None:
-    return None if value is None else number(value, name, fine, holds)
+def _within(value: Any, name: str) -> float | None:
+    if value is None:
+        return None
+    return number(value, name, _native.setting_range(name), lambda x: _native.setting_allows(name, x))
 
 
 def _used(settings: dict[str, Any], methods: Sequence[str] | None) -> None:
     """Refuses settings that none of the methods takes."""
-    for name, takers in TAKEN_BY.items():
-        value = settings.get(name)
-        if value is None or value is False or methods is None or any(method in takers for method in methods):
+    for name, value in settings.items():
+        if value is None or value is False or methods is None or name in ("pixels", "rule"):
             continue
-        cure = f"ask for one that takes it ({', '.join(takers)}), or leave it out"
-        raise InputError(f"{name} means nothing to {', '.join(methods)}\n  cure: {cure}")
+        takers = _native.setting_methods(name)
+        if not any(method in takers for method in methods):
+            cure = f"ask for one that takes it ({', '.join(takers)}), or leave it out"
+            raise InputError(f"{name} means nothing to {', '.join(methods)}\n  cure: {cure}")
 
 
 def methods() -> list[str]:

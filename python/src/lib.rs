@@ -36,7 +36,7 @@ mod _native {
     #[pymodule_export]
     use crate::model::Model;
     #[pymodule_export]
-    use crate::recover::{methods, recover};
+    use crate::recover::{methods, recover, setting_allows, setting_methods, setting_range};
     #[pymodule_export]
     use crate::render::render;
     #[pymodule_export]

@@ -7,7 +7,7 @@ use phicam::lab::{
 };
 use phicam::matrix::Matrix;
 use phicam::num::linalg::Tolerance;
-use phicam::recovery::{Method, Nuisance, Options, Rule, Uncertainty, WeightRule};
+use phicam::recovery::{Method, Nuisance, Options, Rule, Setting, Uncertainty, WeightRule};
 use phicam::report::finding_text;
 use phicam::store::memory;
 use phicam::transport::Control;
@@ -27,6 +27,30 @@ const HELD: f64 = 6.0;
 #[pyfunction]
 pub fn methods() -> Vec<&'static str> {
     Method::names().to_vec()
+}
+
+/// A setting by its keyword.
+fn setting(name: &str) -> PyResult<Setting> {
+    let found = Setting::ALL.into_iter().find(|s| s.name().replace('-', "_") == name);
+    found.ok_or_else(|| input(format!("no setting `{name}`"), "see help(phicam.recover)"))
+}
+
+/// The methods that do something with a setting.
+#[pyfunction]
+pub fn setting_methods(name: &str) -> PyResult<Vec<&'static str>> {
+    Ok(setting(name)?.methods().iter().map(|m| m.name()).collect())
+}
+
+/// Which numbers a setting can be, in words.
+#[pyfunction]
+pub fn setting_range(name: &str) -> PyResult<&'static str> {
+    Ok(setting(name)?.range().unwrap_or_default())
+}
+
+/// Whether a setting can have this value.
+#[pyfunction]
+pub fn setting_allows(name: &str, value: f64) -> PyResult<bool> {
+    Ok(setting(name)?.allows(value))
 }
 
 /// How to recover, as keywords.

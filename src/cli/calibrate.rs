@@ -1,6 +1,6 @@
 //! `phicam calibrate`: the geometry, from the photographs.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::args::CalibrateArgs;
 use super::console::Console;
@@ -9,7 +9,7 @@ use super::findings::deliver;
 use super::interrupt::SignalGuard;
 use super::load_run::read_run;
 use super::process::{pool, version};
-use super::run_folder::{CALIBRATED, PHI, RunFolder, SCENE};
+use super::run_folder::{CALIBRATED, PHI, RunFolder, SCENE, STDERR};
 use super::unexplained::{Photographs, elements};
 use super::{Outcome, progress};
 use crate::folder::{Record, write_copies};
@@ -75,15 +75,44 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
     deliver("calibration", &found, &output, &asked, args.json)?;
     write_copies(&output, &scene)?;
     console.say(format!(
-        "{0}: written; scene.toml there is the calibrated scene: `phicam recover {0} --phi {1}/phi.npy`",
+        "{}: written; scene.toml there is the calibrated scene: `{}`",
         output.display(),
-        args.dir.display()
+        recovering(args, &output)
     ));
     Ok(if found.agrees {
         Outcome::Done
     } else {
         Outcome::Disagreed
     })
+}
+
+/// The command that recovers by the calibrated scene from the same photographs.
+fn recovering(args: &CalibrateArgs, calibrated: &Path) -> String {
+    let own = |name: &str| Some(args.dir.join(name)).filter(|file| file.exists());
+    let (phi, stderr) = match &args.phi {
+        Some(phi) => (phi.clone(), args.stderr.clone()),
+        None => (args.dir.join(PHI), own(STDERR)),
+    };
+    let mut command = format!(
+        "phicam recover {} --phi {}",
+        calibrated.display(),
+        phi.display()
+    );
+    for (option, file) in [("--stderr", stderr), ("--left-out", args.left_out.clone())] {
+        if let Some(file) = file {
+            command += &format!(" {option} {}", file.display());
+        }
+    }
+    if let Some(degree) = args.frame_polynomial {
+        command += &format!(" --frame-polynomial {degree}");
+    }
+    if args.free_scale {
+        command += " --free-scale";
+    }
+    if let Some(gain) = args.frame_gain {
+        command += &format!(" --frame-gain {gain}");
+    }
+    command
 }
 
 /// What is to be done, with what is not given.

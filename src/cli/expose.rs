@@ -235,19 +235,21 @@ fn remark_dark(result: &Summary, exposed: &Exposed, console: Console) {
     }
 }
 
-/// What of the render's own error a recovery has to know.
+/// What of the render's own error a recovery has to know. Where entries share it, it adds up over them.
 fn remark_render(result: &Summary, estimator: Estimator, console: Console) {
-    if result.render <= 0.1 {
+    let shared = Errors::of(estimator).shared();
+    if result.render <= shared.map_or(0.1, |_| 1e-3) {
         return;
     }
-    let shared = match Errors::of(estimator) {
-        Errors::Independent => "",
-        Errors::WithinRows => ", which spots of a pixel share",
-        Errors::Everywhere => ", which all entries share",
-    };
+    let words = shared.map_or(String::new(), |which| {
+        format!(
+            "; {which}, so that it does not average out, and recover takes entries as independent: its errors come out too small"
+        )
+    });
     console.say(format!(
-        "warning: {:.2} % of the variance is that of the render itself{shared}; render with more --samples",
-        100.0 * result.render
+        "warning: {:.2} % of the variance is that of the render itself{words}; render with more --samples{}",
+        100.0 * result.render,
+        if shared.is_some() { ", or by --estimator independent" } else { "" }
     ));
 }
 

@@ -12,7 +12,7 @@ use super::recover_options::{self, uncertainty};
 use super::recovered::{collect, tell, write};
 use super::run_folder::{PHI, RECOVERED, RunFolder, SATURATED, SCENE, STDERR, is_of_recovered};
 use super::{Outcome, recover_own};
-use crate::folder::Record;
+use crate::folder::{Origin, Record};
 use crate::lab::{
     Attempt, Certainty, Noise, RecoveredObject, by_trust, inverted, recover_with_picards,
 };
@@ -55,6 +55,12 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
         let (scene, record) = read_run(dir, console)?;
         (scene, Some(record))
     };
+    if let Some(record) = record
+        .as_ref()
+        .filter(|_| is_own(args.phi.as_deref(), dir, PHI))
+    {
+        refuse_unscaled(args, record, &methods(0), console)?;
+    }
     let lock = |folder| RunFolder::lock(folder, "phicam recover");
     let _run = args.output.is_none().then(|| lock(dir)).transpose()?;
     let modelled = if args.joint.occluder_light {
@@ -73,12 +79,10 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
         options,
         // Of the run's own errors more is known than of those that are given.
         certainty: match &record {
-            Some(record) if args.phi.is_none() && args.stderr.is_none() && args.noise.is_none() => {
-                record
-                    .origin
-                    .plan()
-                    .map_or(Certainty::STATED, Certainty::of)
-            }
+            Some(record) if has_own_errors(args, dir) => record
+                .origin
+                .plan()
+                .map_or(Certainty::STATED, Certainty::of),
             _ => Certainty::STATED,
         },
         is_imported: record.as_ref().is_some_and(Record::is_imported),
@@ -120,8 +124,8 @@ enum Place {
 /// after it and its bytes, so that what lies in the run's belongs together.
 fn results(args: &RecoverArgs, dir: &Path, of_run: bool) -> Result<(PathBuf, Place), Failure> {
     let usual = dir.join(RECOVERED);
-    let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
-    let other = args.phi.as_ref().filter(|phi| !same(phi, &dir.join(PHI)));
+    let other = args.phi.as_ref();
+    let other = other.filter(|phi| !is_same_file(phi, &dir.join(PHI)));
     Ok(match (&args.output, other) {
         (Some(output), _) => (output.clone(), Place::Other),
         (None, Some(phi)) if of_run => {
@@ -136,6 +140,22 @@ fn results(args: &RecoverArgs, dir: &Path, of_run: bool) -> Result<(PathBuf, Pla
         (None, Some(_)) => (usual, Place::Other),
         (None, None) => (usual, Place::Run),
     })
+}
+
+/// Whether Φcam and its errors are those of the run, named or not.
+fn has_own_errors(args: &RecoverArgs, dir: &Path) -> bool {
+    is_own(args.phi.as_deref(), dir, PHI)
+        && is_own(args.stderr.as_deref(), dir, STDERR)
+        && args.noise.is_none()
+}
+
+/// Whether a file that may have been named is the one of that name in the folder of the run.
+fn is_own(given: Option<&Path>, dir: &Path, name: &str) -> bool {
+    given.is_none_or(|file| is_same_file(file, &dir.join(name)))
+}
+
+fn is_same_file(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
 /// A recovery that was asked for.
@@ -236,7 +256,7 @@ impl Job<'_> {
         match (&self.args.stderr, self.args.noise) {
             (_, Some(noise)) => Errors::Relative(noise),
             (Some(file), None) => Errors::File(file.clone()),
-            (None, None) if self.args.phi.is_none() => {
+            (None, None) if is_own(self.args.phi.as_deref(), self.dir, PHI) => {
                 let file = self.dir.join(STDERR);
                 if self.is_imported && !file.exists() {
                     return Errors::Unknown;
@@ -278,6 +298,37 @@ impl Job<'_> {
             ),
         ))
     }
+}
+
+/// Refuses photographs in counts whose scale is taken for that of W.
+fn refuse_unscaled(
+    args: &RecoverArgs,
+    record: &Record,
+    methods: &[Method],
+    console: Console,
+) -> Result<(), Failure> {
+    let Origin::Imported { imported } = &record.origin else {
+        return Ok(());
+    };
+    let joint = methods.iter().any(|method| method.is_joint());
+    if args.joint.free_scale || !joint {
+        return Ok(());
+    }
+    if imported.is_in_watts() {
+        if args.joint.scale_error.is_none() {
+            console.say(
+                "the scale of these photographs in W is taken as exact; --scale-error RELATIVE says how well it is known",
+            );
+        }
+        return Ok(());
+    }
+    Err(Failure::new(
+        format!(
+            "the photographs are in {}, not in W, so their size says nothing of reflectances",
+            imported.flux_unit
+        ),
+        "add --free-scale, or import them with `watts`, what one of these is in W",
+    ))
 }
 
 fn refuse_repetition(methods: &[Method]) -> Result<(), Failure> {

@@ -208,6 +208,7 @@ impl Strips<'_> {
             fit: residuals.fit(found.freedom_used(), self.certainty.errors),
             best: None,
             determined: None,
+            errors: Some(self.certainty.errors),
         })
     }
 

@@ -10,7 +10,7 @@ use super::output;
 use super::run_folder::{PHI, STDERR, VALIDATION};
 use super::{Outcome, settings};
 use crate::film::{self, Channel, Frame};
-use crate::folder::Record;
+use crate::folder::{Origin, Record};
 use crate::jobs::need;
 use crate::lab::finding::Describe;
 use crate::lab::{Against, Agreement, Errors, Measured, Test, validate};
@@ -87,24 +87,43 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
                 scene,
             })
         }
-        (_, _, Some((dir, (scene, record)))) => Ok(Given {
-            phi: read_matrix(&dir.join(PHI), &scene)?,
-            stderr: read_stderr(&known_noise(dir, &record)?, &scene)?,
-            left_out: left_out(args, read_left_out(dir, &scene)?, &scene)?,
-            test: match record.origin.plan() {
-                Some(plan) => settings::test(&args.test, plan, console)?,
-                None => settings::test_of_matrix(&args.test, Errors::Independent, None)?,
-            },
-            scene: match other {
-                Some(other) => other,
-                None => scene.known()?,
-            },
-            run: Some((dir.clone(), record)),
-        }),
+        (_, _, Some((dir, (scene, record)))) => {
+            let noise = known_noise(dir, &record)?;
+            refuse_unscaled(dir, &record)?;
+            Ok(Given {
+                phi: read_matrix(&dir.join(PHI), &scene)?,
+                stderr: read_stderr(&noise, &scene)?,
+                left_out: left_out(args, read_left_out(dir, &scene)?, &scene)?,
+                test: match record.origin.plan() {
+                    Some(plan) => settings::test(&args.test, plan, console)?,
+                    None => settings::test_of_matrix(&args.test, Errors::Independent, None)?,
+                },
+                scene: match other {
+                    Some(other) => other,
+                    None => scene.known()?,
+                },
+                run: Some((dir.clone(), record)),
+            })
+        }
         (_, _, None) => {
             let cure = "give the folder of a run, or --phi FILE --stderr FILE --against SCENE";
             Err(Failure::usage("there is nothing to validate", cure))
         }
+    }
+}
+
+/// Refuses photographs whose size is not that of light.
+fn refuse_unscaled(dir: &Path, record: &Record) -> Result<(), Failure> {
+    match &record.origin {
+        Origin::Imported { imported } if !imported.is_in_watts() => Err(Failure::new(
+            format!(
+                "the photographs of {} are in {}, and the model is in W",
+                dir.display(),
+                imported.flux_unit
+            ),
+            "import them with `watts`, what one of these is in W",
+        )),
+        _ => Ok(()),
     }
 }
 

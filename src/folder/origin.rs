@@ -30,6 +30,13 @@ pub struct Photographs {
     pub sources: Vec<SourceFile>,
 }
 
+impl Photographs {
+    /// Whether their size is known: otherwise it says nothing of reflectances.
+    pub fn is_in_watts(&self) -> bool {
+        self.flux_unit == "W"
+    }
+}
+
 impl Origin {
     /// The plan of a render.
     pub fn plan(&self) -> Option<&Plan> {

@@ -210,8 +210,9 @@ impl Beside {
     }
 }
 
-/// The regularisation used and why, in words.
-pub(super) fn words(found: &Recovered) -> String {
+/// The regularisation used and why, in words. How likely a pattern is among patterns means nothing
+/// where it does not explain the photographs, so `explains` says whether that is told.
+pub(super) fn words(found: &Recovered, explains: bool) -> String {
     let solver = found.solver.as_ref().map_or(String::new(), |s| {
         format!(
             "; {} after {} iterations, gap {:.1e}",
@@ -219,7 +220,11 @@ pub(super) fn words(found: &Recovered) -> String {
         )
     });
     let estimated = found.nuisance.as_ref().map_or(String::new(), estimated);
-    let patterns = found.patterns.as_ref().map_or(String::new(), patterns);
+    let patterns = match &found.patterns {
+        Some(known) if explains => patterns(known),
+        Some(_) => "; without a probability, since it does not explain the photographs".to_owned(),
+        None => String::new(),
+    };
     let alike = found.alike.map_or(String::new(), |pixels| {
         format!("; what is left over is taken for noise that {pixels:.0} pixels share")
     });
@@ -241,8 +246,8 @@ fn patterns(of: &Patterns) -> String {
     };
     let undecided = of.light.iter().filter(|p| (0.05..=0.95).contains(*p));
     format!(
-        "; this pattern has probability {:.3}, {} elements are undecided, levels {:.3} ± {:.3} and \
-         {:.3} ± {:.3} ({how})",
+        "; if there are two reflectances and no more, and the scale is right, this pattern has \
+         probability {:.3}, {} elements are undecided, levels {:.3} ± {:.3} and {:.3} ± {:.3} ({how})",
         of.pattern,
         undecided.count(),
         of.levels[0],

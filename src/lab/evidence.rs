@@ -23,6 +23,15 @@ impl Errors {
             Estimator::Factored => Self::Everywhere,
         }
     }
+
+    /// Which entries share their errors, in words: a recovery adds up entries as if none did.
+    pub fn shared(self) -> Option<&'static str> {
+        match self {
+            Self::Independent => None,
+            Self::WithinRows => Some("all spots of a pixel share theirs"),
+            Self::Everywhere => Some("all entries share theirs"),
+        }
+    }
 }
 
 /// What is compared.

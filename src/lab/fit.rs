@@ -208,9 +208,16 @@ pub struct Judged {
     pub best: Option<Attainable>,
     /// What the photographs determine of each element, where it is known.
     pub determined: Option<Determined>,
+    /// How the errors of the photographs hang together; none where they are not known.
+    pub errors: Option<Errors>,
 }
 
 impl Judged {
+    /// Which entries share their errors, in words.
+    pub(super) fn shared(&self) -> Option<&'static str> {
+        self.errors.and_then(Errors::shared)
+    }
+
     /// What holds for every method: the best of all that was `found` and can be found, and what the
     /// photographs determine.
     pub(super) fn any(
@@ -226,6 +233,7 @@ impl Judged {
                 .filter(|_| !found.is_empty())
                 .and_then(|noise| Attainable::of(problem, noise, found, options)),
             determined: few.then(|| determined(problem).ok()).flatten(),
+            errors: noise.map(|(_, certainty)| certainty.errors),
         }
     }
 
@@ -244,131 +252,4 @@ impl Judged {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::lab::ensemble::Photographs;
-    use crate::lab::problem::problem;
-    use crate::lab::study::tests::small;
-    use crate::model::{Kernel, MatrixModel};
-
-    /// One element, C = D = 1, σ = 0.5: ρ̂ is the mean 0.4 of 0.2, 0.3, 0.4, 0.7, so that χ² =
-    /// (0.04 + 0.01 + 0 + 0.09)/0.25 = 0.56 with 3 degrees of freedom; a fifth entry has no error.
-    /// `joint` held at 1 by photographs of 2 ± 0.5 has χ² = 4·4 with 4.
-    #[test]
-    fn a_fit_by_hand() {
-        let one = |rows, columns| Matrix::from_element(rows, columns, 1.0);
-        let (c, d) = (one(1, 1), one(1, 5));
-        let stderr = Matrix::from_row_slice(1, 5, &[0.5, 0.5, 0.5, 0.5, 0.0]);
-        let phi = Matrix::from_row_slice(1, 5, &[0.2, 0.3, 0.4, 0.7, 0.4]);
-        let problem = Problem::new(&phi, &c, &d, Some(&stderr)).unwrap();
-        let fitted = |problem: &Problem<'_>, method| {
-            let found = recover(method, problem, &Options::default()).unwrap();
-            fit(problem, (&stderr, Certainty::STATED), &found).unwrap()
-        };
-        let free = fitted(&problem, Method::JointUnbounded);
-        assert!((free.chi2_per_dof - 0.56 / 3.0).abs() < 1e-12, "{free:?}");
-        assert_eq!((free.dof, free.entries, free.left_out), (3.0, 4, 1));
-        // P(χ²₃ > x) = erfc(√(x/2)) + √(2x/π) e^(−x/2).
-        let x: f64 = 0.56;
-        let tail = libm::erfc((0.5 * x).sqrt())
-            + (2.0 * x / std::f64::consts::PI).sqrt() * libm::exp(-0.5 * x);
-        assert!((free.p - tail).abs() < 1e-9 && free.fits, "{free:?} {tail}");
-        let bright = Matrix::from_element(1, 5, 2.0);
-        let problem = Problem::new(&bright, &c, &d, Some(&stderr)).unwrap();
-        let held = fitted(&problem, Method::Joint);
-        assert!(
-            (held.chi2_per_dof - 4.0).abs() < 1e-9 && held.dof == 4.0,
-            "{held:?}"
-        );
-        assert!((problem.brightness() - 2.0).abs() < 1e-12);
-    }
-
-    /// A right model is called refuted at the rate of the level: 400 seeds at 10 %, within the
-    /// binomial 99.9 %. Photographs by the model on its own elements, levels away from the bounds
-    /// and at them; where they are at them `joint` keeps to the right side.
-    #[test]
-    fn p_values_of_a_right_model_are_uniform() {
-        let mut model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([2, 2])).unwrap();
-        let certainty = Certainty::STATED;
-        for (levels, methods) in [
-            (
-                [0.3, 0.7],
-                vec![Method::JointUnbounded, Method::Joint, Method::Nnls],
-            ),
-            ([0.0, 1.0], vec![Method::JointUnbounded, Method::Joint]),
-        ] {
-            model.albedo = vec![levels[0], levels[1], levels[1], levels[0]];
-            let exact = model.phi();
-            for method in methods {
-                let alarms = (0..400).filter(|seed| {
-                    let shot = Photographs::relative(&exact, 0.05, *seed);
-                    let problem = problem(&model, &shot.phi, Some(&shot.stderr)).unwrap();
-                    let found = recover(method, &problem, &Options::default()).unwrap();
-                    fit(&problem, (&shot.stderr, certainty), &found).unwrap().p < 0.1
-                });
-                let alarms = alarms.count();
-                assert!((21..=61).contains(&alarms), "{method} {levels:?}: {alarms}");
-            }
-        }
-    }
-
-    /// Errors that a pixel's entries share have the degrees of freedom of the pixels, and those that
-    /// all share count as one: 400 draws at 10 % give between 21 and 61 alarms; where one deviate
-    /// makes all of χ², P is that of one degree exactly.
-    #[test]
-    fn shared_errors_count_once() {
-        let stderr = Matrix::from_element(40, 30, 2.0);
-        let none = Matrix::zeros(40, 30);
-        for errors in [Errors::WithinRows, Errors::Everywhere] {
-            let alarms = (0..400).filter(|seed| {
-                let deviates = crate::lab::deviate::normal_deviates(*seed, 40, 30);
-                let phi = Matrix::from_fn(40, 30, |p, _| match errors {
-                    Errors::Everywhere => 2.0 * deviates[(0, 0)],
-                    _ => 2.0 * deviates[(p, 0)],
-                });
-                let certainty = Certainty {
-                    errors,
-                    replicates: None,
-                };
-                let mut residuals = Residuals::default();
-                residuals.add(&phi, &none, &stderr, certainty);
-                residuals.fit(0.0, errors).unwrap().p < 0.1
-            });
-            let alarms = alarms.count();
-            assert!((21..=61).contains(&alarms), "{errors:?}: {alarms}");
-        }
-    }
-
-    /// Standard errors of 8 replicates: z = t would be 7/5 in the mean of squares.
-    #[test]
-    fn errors_from_few_replicates_are_students() {
-        let certainty = Certainty {
-            errors: Errors::Independent,
-            replicates: Some(8),
-        };
-        let (rows, columns) = (100, 60);
-        let draws: Vec<Matrix> = (0..8)
-            .map(|seed| crate::lab::deviate::normal_deviates(seed, rows, columns))
-            .collect();
-        let at = |p, l| -> Vec<f64> { draws.iter().map(|d| d[(p, l)]).collect() };
-        let mean = |values: &[f64]| crate::num::summation::mean_and_stderr(values);
-        let phi = Matrix::from_fn(rows, columns, |p, l| mean(&at(p, l)).0);
-        let stderr = Matrix::from_fn(rows, columns, |p, l| mean(&at(p, l)).1);
-        let mut residuals = Residuals::default();
-        residuals.add(&phi, &Matrix::zeros(rows, columns), &stderr, certainty);
-        let fit = residuals.fit(0.0, Errors::Independent).unwrap();
-        // 6000 squares of variance 2: standard error 0.018.
-        assert!((fit.chi2_per_dof - 1.0).abs() < 0.09, "{fit:?}");
-    }
-
-    #[test]
-    fn nothing_left_to_judge_by() {
-        let mut residuals = Residuals::default();
-        let m = |x| Matrix::from_element(2, 2, x);
-        residuals.add(&m(1.0), &m(1.0), &m(0.0), Certainty::STATED);
-        assert_eq!(residuals.fit(0.0, Errors::Independent), None);
-        residuals.add(&m(1.0), &m(1.0), &m(1.0), Certainty::STATED);
-        assert_eq!(residuals.fit(4.0, Errors::Independent), None);
-        assert_eq!(residuals.fit(3.0, Errors::Independent).unwrap().left_out, 4);
-    }
-}
+mod tests;

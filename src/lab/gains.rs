@@ -74,9 +74,13 @@ pub(super) fn words(of: &recovery::Gains) -> String {
     }
     if let Some(whole) = &of.whole {
         words += &format!(
-            "; common factor {} ± {}",
+            "; common factor {}{}",
             significant(1.0 + whole.size[0], 5),
-            figure(whole.standard_error[0], 2)
+            if of.settled {
+                format!(" ± {}", figure(whole.standard_error[0], 2))
+            } else {
+                ", not settled".to_owned()
+            }
         );
     }
     if let Some(widened) = of.widened {

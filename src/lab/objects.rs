@@ -225,11 +225,12 @@ fn attempts(
         .map(|method| recover(*method, problem, options))
         .collect();
     let known = noise.known();
+    let shared = known.is_some_and(|(_, certainty)| certainty.errors.shared().is_some());
     let all: Vec<&Recovered> = found.iter().flatten().collect();
     let any = Judged::any(problem, known, &all, options);
     // Photographs that nothing explains are likeliest by no assumption.
     let explained = any.best.as_ref().is_none_or(|best| best.possible.fits);
-    let first = likelier(&all).filter(|_| explained);
+    let first = likelier(&all).filter(|_| explained && !shared);
     let judged = |found: Recovered| {
         let mut objects = measured(model, &found, &any.of(problem, known, &found));
         let own = first.as_ref().filter(|(method, _)| *method == found.method);
@@ -267,10 +268,13 @@ fn picards(
 /// What was recovered, surface by surface, measured against the true albedo at the element centres,
 /// and what the photographs say of it.
 pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<RecoveredObject> {
+    let alone = judged.shared().map(|_| found.clone().without_errors());
+    let found = alone.as_ref().unwrap_or(found);
     // The bias of one element is of the truth of all.
     let known = model.grids.iter().all(|grid| grid.is_known);
     let bias = found.bias(&model.albedo).filter(|_| known);
     let warnings = doubts(found, judged);
+    let explains = judged.fit.as_ref().is_none_or(|fit| fit.fits);
     let cut = |grid: &crate::model::ElementGrid| {
         let range = grid.first..grid.first + grid.len();
         let reflectance = found.reflectance.as_slice()[range.clone()].to_vec();
@@ -285,7 +289,7 @@ pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<
             mtf_normalized: scores.and_then(|s| s.mtf_normalized),
             correlation: scores.and_then(|s| s.correlation),
             rmse: scores.and_then(|s| s.rmse),
-            parameter: words(found),
+            parameter: words(found, explains),
             choice: Chosen::of(found),
             solver: Ended::of(found),
             estimated: Beside::of(found),

@@ -1,39 +1,28 @@
-//! `.npy`, NumPy's file of one array: the only door of the crate `npyz`.
+//! `.npy`, NumPy's file of one array.
 //!
 //! Layout (NumPy format 1.0): `\x93NUMPY`, version (2 bytes), length of the header (u16), the
 //! header as a Python dict `{'descr': '<f8', 'fortran_order': False, 'shape': (p, l), }` padded
 //! with spaces and ended by a newline, then the numbers. C order means row after row.
 //!
-//! The header comes from outside and `npyz` trusts it: it multiplies the shape without a check,
-//! allocates the length a header claims and parses nested brackets by recursion. So a header is
-//! looked at before `npyz` sees it, which then gets the bytes that were looked at: its length, its
-//! brackets and its digits are bounded (a product of integers is less than ten to the number of all
-//! their digits, so 19 digits cannot overflow an u64), and its claim is held against the length of
-//! the file before anything is allocated.
+//! The claim of a header is held against the length of the file before anything is allocated.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-use npyz::{NpyHeader, Order, TypeChar, WriterBuilder};
-
 mod array;
 mod entries;
+mod header;
 mod rows;
 
 pub use array::read_array;
 pub use entries::Entries;
+use header::Header;
 pub use rows::Rows;
 
 use super::Matrix;
 use crate::store::{self, ReadError, StoreError};
 
-/// Longest header accepted, bytes: NumPy's own for two dimensions has 118.
-const HEADER_MAX: usize = 1024;
-/// Most brackets in a header: the dict and the shape need four.
-const BRACKETS_MAX: usize = 8;
-/// Most digits in a header, such that no product of its integers leaves an u64.
-const DIGITS_MAX: usize = 19;
 /// Rows in C order that are held before they are put into their columns.
 const BAND: usize = 32;
 
@@ -98,30 +87,55 @@ pub enum NpyError {
 /// [`StoreError`] if the file cannot be written.
 pub fn write(path: &Path, matrix: &Matrix) -> Result<(), StoreError> {
     store::write_whole(path, |file| {
-        let f64_little_endian = "<f8".parse().map_err(io::Error::other)?;
-        let mut writer = npyz::WriteOptions::new()
-            .dtype(npyz::DType::Plain(f64_little_endian))
-            .shape(&[matrix.nrows() as u64, matrix.ncols() as u64])
-            .order(Order::C)
-            .writer(file)
-            .begin_nd()?;
+        file.write_all(&Header::of_f64(&[
+            matrix.nrows() as u64,
+            matrix.ncols() as u64,
+        ]))?;
         for row in 0..matrix.nrows() {
             for column in 0..matrix.ncols() {
-                writer.push(&matrix[(row, column)])?;
+                file.write_all(&matrix[(row, column)].to_le_bytes())?;
             }
         }
-        writer.finish()
+        Ok(())
     })
 }
 
 /// A file whose header makes sense, and whose length is what the header claims.
 struct Opened {
+    /// Behind its header.
     file: BufReader<File>,
-    header: NpyHeader,
+    layout: Layout,
     rows: usize,
     columns: usize,
+}
+
+/// How numbers lie in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Layout {
+    /// Where the first one stands.
+    start: u64,
+    /// Whether the first index runs fastest.
+    fortran: bool,
     /// Bytes of a number, 4 or 8.
-    bytes: u64,
+    bytes: usize,
+    /// Whether its most significant byte comes first.
+    big_endian: bool,
+}
+
+impl Layout {
+    /// The next number of a file, as f64.
+    fn next(self, file: &mut impl Read) -> io::Result<f64> {
+        let mut bytes = [0; 8];
+        let bytes = &mut bytes[..self.bytes];
+        file.read_exact(bytes)?;
+        if self.big_endian {
+            bytes.reverse();
+        }
+        Ok(match *bytes {
+            [a, b, c, d] => f64::from(f32::from_le_bytes([a, b, c, d])),
+            _ => f64::from_le_bytes(std::array::from_fn(|i| bytes[i])),
+        })
+    }
 }
 
 fn open(path: &Path) -> Result<Opened, NpyError> {
@@ -133,39 +147,40 @@ fn examine(path: &Path, file: File) -> Result<Opened, NpyError> {
     let unreadable = |source| unreadable(path, source);
     let length = file.metadata().map_err(unreadable)?.len();
     let mut file = BufReader::new(file);
-    let checked = checked_header(&mut file)
+    let header = Header::read(&mut file)
         .map_err(unreadable)?
         .map_err(|r| not_npy(path, &r))?;
-    // Of the bytes that were checked: those on disk may have become others.
-    let header = NpyHeader::from_reader(&checked[..]).map_err(|e| not_npy(path, &e.to_string()))?;
-    let start = checked.len() as u64;
+    // The header that was looked at counts, whatever the file has become.
+    let start = header.length as u64;
     file.seek(SeekFrom::Start(start)).map_err(unreadable)?;
 
-    let dtype = header.dtype();
-    let bytes = match &dtype {
-        npyz::DType::Plain(t)
-            if t.type_char() == TypeChar::Float && [4, 8].contains(&t.size_field()) =>
-        {
-            t.size_field()
-        }
-        other => {
+    let plain = header.plain();
+    let plain = plain.filter(|p| p.kind == 'f' && [4, 8].contains(&p.bytes));
+    let layout = match plain {
+        Some(plain) => Layout {
+            start,
+            fortran: header.fortran,
+            bytes: plain.bytes,
+            big_endian: plain.big_endian,
+        },
+        None => {
             return Err(NpyError::Type {
                 path: path.into(),
-                dtype: one_line(&other.descr()),
+                dtype: one_line(&header.descr),
             });
         }
     };
-    let (rows, columns) = match *header.shape() {
+    let (rows, columns) = match header.shape[..] {
         [rows] if rows > 0 => (rows, 1),
         [rows, columns] if rows > 0 && columns > 0 => (rows, columns),
         _ => {
             return Err(NpyError::Shape {
                 path: path.into(),
-                shape: header.shape().into(),
+                shape: header.shape,
             });
         }
     };
-    let promised = u128::from(rows) * u128::from(columns) * u128::from(bytes);
+    let promised = u128::from(rows) * u128::from(columns) * layout.bytes as u128;
     let found = length.saturating_sub(start);
     if promised != u128::from(found) {
         return Err(NpyError::Length {
@@ -182,8 +197,7 @@ fn examine(path: &Path, file: File) -> Result<Opened, NpyError> {
         rows: usize::try_from(rows).map_err(too_large)?,
         columns: usize::try_from(columns).map_err(too_large)?,
         file,
-        header,
-        bytes,
+        layout,
     })
 }
 
@@ -206,23 +220,12 @@ pub fn shape(path: &Path) -> Result<(usize, usize), NpyError> {
 /// length than it claims.
 pub fn read(path: &Path) -> Result<Matrix, NpyError> {
     let Opened {
-        file,
-        header,
+        mut file,
+        layout,
         rows,
         columns,
-        bytes,
     } = open(path)?;
-    let order = header.order();
-    let npy = npyz::NpyFile::with_header(header, file);
-    let values = if bytes == 8 {
-        npy.data::<f64>().map(|v| fill(rows, columns, order, v))
-    } else {
-        npy.data::<f32>()
-            .map(|v| fill(rows, columns, order, v.map(|x| x.map(f64::from))))
-    };
-    values
-        .map_err(|e| not_npy(path, &e.to_string()))?
-        .map_err(|source| unreadable(path, source))
+    fill(rows, columns, &mut file, layout).map_err(|source| unreadable(path, source))
 }
 
 /// [`read`], and only finite values.
@@ -273,62 +276,12 @@ fn one_line(words: &str) -> String {
     parts.join(" ")
 }
 
-/// Reads the file up to the end of its header without trusting it; the inner error says why it is
-/// refused.
-fn checked_header(file: &mut impl Read) -> io::Result<Result<Vec<u8>, String>> {
-    let mut start = Vec::new();
-    file.take(12 + HEADER_MAX as u64).read_to_end(&mut start)?;
-    Ok((|| {
-        let rest = start
-            .strip_prefix(b"\x93NUMPY")
-            .ok_or("its first bytes are not those of .npy")?;
-        let (text, length) = match *rest {
-            [1, 0, a, b, ref text @ ..] => (text, usize::from(u16::from_le_bytes([a, b]))),
-            [2 | 3, 0, a, b, c, d, ref text @ ..] => {
-                (text, u32::from_le_bytes([a, b, c, d]) as usize)
-            }
-            _ => return Err("its format version is unknown or its header is cut short".to_owned()),
-        };
-        if length > HEADER_MAX {
-            return Err(format!(
-                "its header claims {length} bytes, more than {HEADER_MAX}"
-            ));
-        }
-        let (text, after) = text
-            .split_at_checked(length)
-            .map(|(text, after)| (text, after.len()))
-            .ok_or("its header is cut short")?;
-        let brackets = text.iter().filter(|b| b"([{".contains(b)).count();
-        let digits = text.iter().filter(|b| b.is_ascii_digit()).count();
-        let radix = text
-            .windows(2)
-            .any(|w| w[0] == b'0' && b"xXoObB".contains(&w[1]));
-        if brackets > BRACKETS_MAX || digits > DIGITS_MAX || radix {
-            return Err(
-                "its header describes more than one plain array, or one too large".to_owned(),
-            );
-        }
-        let end = start.len() - after;
-        Ok(start[..end].to_vec())
-    })())
-}
-
-fn fill(
-    rows: usize,
-    columns: usize,
-    order: Order,
-    values: impl Iterator<Item = io::Result<f64>>,
-) -> io::Result<Matrix> {
+/// The matrix of the next numbers of a file.
+fn fill(rows: usize, columns: usize, file: &mut impl Read, layout: Layout) -> io::Result<Matrix> {
     let mut matrix = Matrix::zeros(rows, columns);
-    let mut values = values;
-    let mut next = || {
-        values
-            .next()
-            .unwrap_or(Err(io::ErrorKind::UnexpectedEof.into()))
-    };
-    if order == Order::Fortran {
+    if layout.fortran {
         for value in matrix.iter_mut() {
-            *value = next()?;
+            *value = layout.next(file)?;
         }
         return Ok(matrix);
     }
@@ -337,7 +290,7 @@ fn fill(
     for first in (0..rows).step_by(BAND) {
         let count = BAND.min(rows - first);
         for value in &mut band[..count * columns] {
-            *value = next()?;
+            *value = layout.next(file)?;
         }
         for column in 0..columns {
             for row in 0..count {

@@ -89,11 +89,11 @@ fn matching(folder: &Path, name: &str) -> Result<Vec<PathBuf>, PhotographError> 
         if a == b {
             return Err(refused(
                 format!(
-                    "{} and {} have the same number",
+                    "{} and {} have the same number: the last one in a name orders the files",
                     first.display(),
                     second.display()
                 ),
-                "give a narrower pattern, or a list of files",
+                "number all files on, repeats of a spot one after the other, or give a list of files ([[frame]])",
             ));
         }
         if b != a + 1 {

@@ -107,6 +107,7 @@ mod picard;
 mod pixelwise;
 mod problem;
 mod rule;
+mod setting;
 mod shared;
 mod soft;
 mod spectrum;
@@ -124,6 +125,7 @@ pub use picard::{Directions, Picard, picard};
 pub use pixelwise::laser_side::{LaserSide, Parts};
 pub use pixelwise::strips::{Strip, recover_strips};
 pub use problem::{Problem, Terms};
+pub use setting::Setting;
 pub use shared::Shared;
 use spectrum::Spectrum;
 

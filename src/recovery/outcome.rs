@@ -181,6 +181,24 @@ pub struct Recovered {
 }
 
 impl Recovered {
+    /// The same without what supposes that each entry has an error of its own: standard errors,
+    /// covariance, bands, probabilities and evidence.
+    #[must_use]
+    pub fn without_errors(self) -> Self {
+        let asked = self.bands.is_some();
+        Self {
+            standard_error: None,
+            covariance: None,
+            log_evidence: None,
+            patterns: None,
+            bands: None,
+            no_bands: self
+                .no_bands
+                .or(asked.then_some("has none where entries share their errors")),
+            ..self
+        }
+    }
+
     /// The bias (R − 1) ρ that regularisation gives an estimate of the reflectances `truth`; none
     /// without a resolution matrix, with a free scale, or for another number of elements. Of
     /// dropped directions ρ̂ itself knows nothing: put it in place of the truth, and the bias of

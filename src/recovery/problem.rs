@@ -172,6 +172,19 @@ impl<'a> Problem<'a> {
         }
     }
 
+    /// The same with a free scale of all light.
+    pub(super) fn with_free_scale(&self) -> Self {
+        let nuisance = Nuisance {
+            free_scale: true,
+            ..self.nuisance
+        };
+        Problem {
+            nuisance,
+            shared: None,
+            ..*self
+        }
+    }
+
     /// The same with other photographs and another right side of the operator, and with factors about
     /// estimates of them.
     pub(super) fn about<'b>(

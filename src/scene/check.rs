@@ -56,7 +56,7 @@ pub(super) fn refuse_visible_hidden_face(scene: &Scene) -> Result<(), Fault> {
 /// A decade beyond the wavelengths of lasers, F₂ at 157 nm to CO₂ at 10.6 µm, m; and three beyond
 /// their continuous powers, 1 µW to 100 kW, W.
 const WAVELENGTHS: [f64; 2] = [1.6e-8, 1.1e-4];
-const POWERS: [f64; 2] = [1e-9, 1e8];
+const POWERS: [f64; 2] = [1e-6, 1.0];
 
 /// Collects what is suspicious.
 pub(super) fn warnings(scene: &Scene) -> Vec<Warning> {

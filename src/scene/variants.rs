@@ -166,7 +166,7 @@ impl Scene {
             Some(i) => {
                 let name = &self.surfaces[i].name;
                 let cause = format!("the albedo of `{name}` is unknown, so its light is too");
-                let cure = "give it a number or a picture; `model` and `recover --phi` do without";
+                let cure = "give it a number or a picture, of photographs in a scene for `validate --against`; `model` and `recover` do without";
                 let key = match self.surfaces[i].shining() {
                     Some(_) => "shining",
                     None => "lambertian",

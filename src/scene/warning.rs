@@ -55,7 +55,7 @@ impl fmt::Display for Warning {
             ),
             Self::Power(watts) => write!(
                 f,
-                "a laser of {watts:e} W: lasers have 1e-6 to 1e5 W (`power` is in watts)"
+                "a laser of {watts:e} W: those of a bench have 1e-6 to 1 W (`power` is in watts: 5 mW are 5e-3)"
             ),
             Self::FewPhotographs { entries, elements } => write!(
                 f,

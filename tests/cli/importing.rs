@@ -72,6 +72,7 @@ fn photographs_become_a_run_that_is_recovered() {
     assert!(
         recovered.stderr.contains("no noise model") || w.path("out/recovered/pinv.npy").exists()
     );
+    w.refuses("recover out", &["counts", "not in W", "--free-scale"]);
     w.refuses("validate out", &["noise", "cure: ", "repeats"]);
     w.refuses("expose out --sensor ccd", &["real camera"]);
     let of_scene = "validate out --phi out/phi.npy --stderr out/phi.npy";

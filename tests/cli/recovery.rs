@@ -631,3 +631,20 @@ fn an_unknown_albedo_has_no_truth_and_no_scores() {
     assert_eq!(known[0]["reflectance"], found[1]["reflectance"]);
     assert!(known[0]["rmse"].is_f64());
 }
+
+/// The run's own photographs are its own under their name, too: the same pictures, errors and fit.
+#[test]
+fn photographs_of_the_run_are_its_own_by_name() {
+    let workspace = with_run();
+    let of = |more: &str| {
+        let line = format!("recover done --method joint,pinv --json {more}");
+        objects(workspace.phicam(&line))
+    };
+    let own = of("");
+    assert_eq!(of("--phi done/phi.npy"), own);
+    assert_eq!(of("--phi done/phi.npy --stderr done/phi.stderr.npy"), own);
+    let copy = workspace.read("done/phi.stderr.npy");
+    workspace.write("copy.npy", &copy);
+    // Of other errors it is not known from how many blocks they are.
+    assert_ne!(of("--phi done/phi.npy --stderr copy.npy"), own);
+}

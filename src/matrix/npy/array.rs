@@ -1,11 +1,10 @@
 //! `.npy` arrays of any dimension and plain number, from bytes.
 
-use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
-
 use super::super::array::{
     Array, ArrayError, MOST_ENTRIES, Number, damaged, from_fortran, unsupported,
 };
-use super::{checked_header, one_line};
+use super::header::{Header, Plain};
+use super::one_line;
 
 /// The array in the bytes of a `.npy` file: integers of 8 to 64 bits, booleans, or floating point of
 /// 32 or 64 bits, of either byte order, in C or Fortran order. `name` is only for messages. Takes at
@@ -16,29 +15,24 @@ use super::{checked_header, one_line};
 /// array, and numbers that are not finite or not exact as f64.
 pub fn read_array(name: &str, bytes: &[u8]) -> Result<Array, ArrayError> {
     let mut start = bytes;
-    let checked = checked_header(&mut start)
+    let header = Header::read(&mut start)
         .map_err(|e| damaged(name, e))?
         .map_err(|reason| damaged(name, one_line(&reason)))?;
-    let header = NpyHeader::from_reader(&checked[..])
-        .map_err(|e| damaged(name, one_line(&e.to_string())))?;
-    let (number, big) = number(&header.dtype()).ok_or_else(|| {
+    let (number, big) = header.plain().and_then(number).ok_or_else(|| {
         let reason = format!(
             "it holds {}, not plain integers or floating-point numbers; convert it with a.astype('<f8') before numpy.save",
-            one_line(&header.dtype().descr())
+            one_line(&header.descr)
         );
         unsupported(name, reason)
     })?;
-    let count = header
-        .shape()
-        .iter()
-        .try_fold(1u64, |n, l| n.checked_mul(*l));
+    let count = header.shape.iter().try_fold(1u64, |n, l| n.checked_mul(*l));
     let count = count.filter(|n| (1..=MOST_ENTRIES as u64).contains(n));
     let count = count.ok_or_else(|| {
-        let shape = header.shape();
+        let shape = &header.shape;
         let reason = format!("its shape is {shape:?}; use 1 to 2²⁷ entries: save it in parts");
         unsupported(name, reason)
     })? as usize;
-    let content = &bytes[checked.len()..];
+    let content = &bytes[header.length..];
     if content.len() != count * number.bytes() {
         let reason = format!(
             "it holds {} bytes of numbers where its header promises {}",
@@ -48,11 +42,12 @@ pub fn read_array(name: &str, bytes: &[u8]) -> Result<Array, ArrayError> {
         return Err(damaged(name, reason));
     }
     let values = number.all(name, content, big)?;
-    let shape: Vec<usize> = header.shape().iter().map(|l| *l as usize).collect();
+    let shape: Vec<usize> = header.shape.iter().map(|l| *l as usize).collect();
     Ok(Array {
-        values: match header.order() {
-            Order::C => values,
-            Order::Fortran => from_fortran(&shape, &values),
+        values: if header.fortran {
+            from_fortran(&shape, &values)
+        } else {
+            values
         },
         full_scale: number.full_scale(),
         shape,
@@ -60,17 +55,13 @@ pub fn read_array(name: &str, bytes: &[u8]) -> Result<Array, ArrayError> {
 }
 
 /// The type of plain numbers, and whether their most significant byte comes first.
-fn number(dtype: &DType) -> Option<(Number, bool)> {
-    let DType::Plain(plain) = dtype else {
-        return None;
-    };
-    let bytes = usize::try_from(plain.size_field()).ok()?;
-    let number = match plain.type_char() {
-        TypeChar::Bool if bytes == 1 => Number::Unsigned(1),
-        TypeChar::Uint if [1, 2, 4, 8].contains(&bytes) => Number::Unsigned(bytes),
-        TypeChar::Int if [1, 2, 4, 8].contains(&bytes) => Number::Signed(bytes),
-        TypeChar::Float if [4, 8].contains(&bytes) => Number::Float(bytes),
+fn number(plain: Plain) -> Option<(Number, bool)> {
+    let number = match (plain.kind, plain.bytes) {
+        ('b', 1) => Number::Unsigned(1),
+        ('u', bytes @ (1 | 2 | 4 | 8)) => Number::Unsigned(bytes),
+        ('i', bytes @ (1 | 2 | 4 | 8)) => Number::Signed(bytes),
+        ('f', bytes @ (4 | 8)) => Number::Float(bytes),
         _ => return None,
     };
-    Some((number, plain.endianness() == Endianness::Big))
+    Some((number, plain.big_endian))
 }

@@ -1,10 +1,8 @@
 //! Single entries of a matrix that stays on disk.
 
 use std::fs::File;
-use std::io::{self, Seek};
+use std::io;
 use std::path::{Path, PathBuf};
-
-use npyz::{DType, Endianness, Order};
 
 use super::{NpyError, Opened, examine, not_npy, unreadable};
 
@@ -34,28 +32,21 @@ impl Entries {
     /// numbers.
     pub fn of(file: File, path: &Path) -> Result<Self, NpyError> {
         let Opened {
-            mut file,
-            header,
+            file,
+            layout,
             rows,
             columns,
-            ..
         } = examine(path, file)?;
-        let plain = match header.dtype() {
-            DType::Plain(t) => t.size_field() == BYTES && t.endianness() == Endianness::Little,
-            _ => false,
-        };
-        if !plain || (header.order() == Order::Fortran && columns > 1) {
+        let plain = layout.bytes as u64 == BYTES && !layout.big_endian;
+        if !plain || (layout.fortran && columns > 1) {
             let reason =
                 "it is not of little-endian f64 in C order (a = numpy.ascontiguousarray(a, '<f8'))";
             return Err(not_npy(path, reason));
         }
-        let start = file
-            .stream_position()
-            .map_err(|source| unreadable(path, source))?;
         Ok(Self {
             path: path.into(),
             file: file.into_inner(),
-            start,
+            start: layout.start,
             shape: (rows, columns),
         })
     }
@@ -137,7 +128,7 @@ fn read_at(file: &mut File, at: u64, bytes: &mut [u8]) -> io::Result<()> {
 
 #[cfg(not(unix))]
 fn read_at(file: &mut File, at: u64, bytes: &mut [u8]) -> io::Result<()> {
-    use std::io::{Read, SeekFrom};
+    use std::io::{Read, Seek, SeekFrom};
     file.seek(SeekFrom::Start(at))?;
     file.read_exact(bytes)
 }

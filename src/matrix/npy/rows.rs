@@ -1,24 +1,18 @@
 //! Some rows of a matrix at a time.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-use npyz::{NpyFile, NpyReader, Order};
-
-use super::{NpyError, Opened, fill, finite, not_npy, open, unreadable};
+use super::{Layout, NpyError, Opened, fill, finite, not_npy, open, unreadable};
 use crate::matrix::Matrix;
 
 /// An open file of a matrix in C order, whose rows can be read where they are wanted.
 pub struct Rows {
     path: PathBuf,
     shape: (usize, usize),
-    values: Values,
-}
-
-enum Values {
-    F64(NpyReader<f64, BufReader<File>>),
-    F32(NpyReader<f32, BufReader<File>>),
+    file: BufReader<File>,
+    layout: Layout,
 }
 
 impl Rows {
@@ -30,24 +24,20 @@ impl Rows {
     pub fn open(path: &Path) -> Result<Self, NpyError> {
         let Opened {
             file,
-            header,
+            mut layout,
             rows,
             columns,
-            bytes,
         } = open(path)?;
-        if header.order() == Order::Fortran && columns > 1 {
+        if layout.fortran && columns > 1 {
             let reason = "it is in Fortran order, so that its rows cannot be read one by one (a = numpy.ascontiguousarray(a))";
             return Err(not_npy(path, reason));
         }
-        let npy = NpyFile::with_header(header, file);
-        let values = match bytes {
-            8 => npy.data().map(Values::F64),
-            _ => npy.data().map(Values::F32),
-        };
+        layout.fortran = false;
         Ok(Rows {
             path: path.into(),
             shape: (rows, columns),
-            values: values.map_err(|e| not_npy(path, &e.to_string()))?,
+            file,
+            layout,
         })
     }
 
@@ -67,16 +57,13 @@ impl Rows {
         if count == 0 {
             return Ok(Matrix::zeros(0, columns));
         }
-        let at = first as u64 * columns as u64;
-        let matrix = match &mut self.values {
-            Values::F64(values) => values
-                .seek_to(at)
-                .and_then(|()| fill(count, columns, Order::C, values)),
-            Values::F32(values) => values
-                .seek_to(at)
-                .and_then(|()| fill(count, columns, Order::C, values.map(|x| x.map(f64::from)))),
-        };
-        let matrix = matrix.map_err(|source| unreadable(&self.path, source))?;
+        // No further than the file is long, which was held against the shape.
+        let at = self.layout.start + (first * columns * self.layout.bytes) as u64;
+        let matrix = self
+            .file
+            .seek(SeekFrom::Start(at))
+            .and_then(|_| fill(count, columns, &mut self.file, self.layout))
+            .map_err(|source| unreadable(&self.path, source))?;
         finite(&self.path, first, matrix)
     }
 }

@@ -59,11 +59,24 @@ pub(in crate::recovery) fn recover(
         probabilities: false,
         ..*options
     };
-    let start = bounded::recover(Method::Nnls, &base, &quick)?;
+    // A pattern is found by its levels, of which only the ratio is known with the scale.
+    let by_ratio = method == Method::JointTwoValued && problem.nuisance.scale_error.is_some();
+    let (start, whole) = if by_ratio {
+        let wide = Options {
+            probabilities: options.probabilities,
+            ..quick
+        };
+        let found = by(method, &base.with_free_scale(), &wide)?;
+        let scale = found.seen().amax();
+        let light = options.levels.map_or(scale.min(1.0), |[_, light]| light);
+        (found, scale / light - 1.0)
+    } else {
+        (bounded::recover(Method::Nnls, &base, &quick)?, 0.0)
+    };
     let mut at = Estimates {
-        x: start.seen(),
+        x: start.seen() / (1.0 + whole),
         frames: DVector::zeros(problem.phi.ncols()),
-        whole: 0.0,
+        whole,
         noise: noise(&start),
     };
     let (mut steps, mut settled) = (0, false);

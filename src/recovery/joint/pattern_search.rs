@@ -22,6 +22,10 @@ use crate::recovery::RecoveryError;
 const STARTS: usize = 12;
 /// Steps of the lattice of levels.
 const LEVELS: usize = 10;
+/// Levels of that lattice where the scale is free, in units of which a grey of ½ fits best: one lies
+/// below ½ then and one above.
+const DARK: [f64; 5] = [0.0, 0.1, 0.2, 0.3, 0.4];
+const LIGHT: [f64; 10] = [0.55, 0.625, 0.7, 0.8, 0.9, 1.0, 1.25, 1.5, 2.0, 3.0];
 /// Above this many elements pairs are not tried.
 const MOST_PAIRED: usize = 2048;
 /// Searches by branch and bound, each with the levels of a good pattern.
@@ -114,7 +118,7 @@ impl<'a> Search<'a> {
             None => Bounds::all(n, 0.0, top),
         };
         let relaxed = box_least_squares(self.r, self.d, &bounds)?;
-        let starts = self.starts(&relaxed.solution, given, top)?;
+        let starts = self.starts(&relaxed.solution)?;
         let descents: Result<Vec<(Pattern, usize)>, RecoveryError> = starts
             .into_par_iter()
             .map(|start| {
@@ -216,33 +220,45 @@ impl<'a> Search<'a> {
     /// Patterns to descend from: those of the relaxation to all values, and, where the levels are not
     /// given, of the relaxations between the pairs of levels of a lattice. Near the true levels a
     /// relaxation between them is nearly the pattern; between others it is not.
-    fn starts(
-        &self,
-        relaxed: &DVector<f64>,
-        given: Option<[f64; 2]>,
-        top: f64,
-    ) -> Result<Vec<Vec<bool>>, RecoveryError> {
+    fn starts(&self, relaxed: &DVector<f64>) -> Result<Vec<Vec<bool>>, RecoveryError> {
         let mut starts = thresholds(relaxed);
-        if given.is_some() || top > 1.0 || !self.wide {
+        if !self.wide {
             return Ok(starts);
         }
-        let level = |k: usize| k as f64 / LEVELS as f64;
-        let pairs: Vec<[f64; 2]> = (0..LEVELS)
-            .flat_map(|a| (a + 1..=LEVELS).map(move |b| [level(a), level(b)]))
-            .collect();
         let between = |[dark, light]: &[f64; 2]| -> Result<Vec<bool>, RecoveryError> {
             let bounds = Bounds::all(self.r.ncols(), *dark, *light);
             let found = box_least_squares_from(self.r, self.d, &bounds, relaxed)?.solution;
             let middle = 0.5 * (dark + light);
             Ok(found.iter().map(|x| *x > middle).collect())
         };
-        let found: Result<Vec<Vec<bool>>, RecoveryError> = pairs.par_iter().map(between).collect();
+        let found: Result<Vec<Vec<bool>>, RecoveryError> =
+            self.pairs().par_iter().map(between).collect();
         for start in found? {
             if !starts.contains(&start) {
                 starts.push(start);
             }
         }
         Ok(starts)
+    }
+
+    /// Pairs of levels to search between; none where they are given.
+    fn pairs(&self) -> Vec<[f64; 2]> {
+        match self.levels {
+            Levels::Given(_) => Vec::new(),
+            Levels::Within(top) if top.is_finite() => {
+                let level = |k: usize| top * k as f64 / LEVELS as f64;
+                let above = |a: usize| (a + 1..=LEVELS).map(move |b| [level(a), level(b)]);
+                (0..LEVELS).flat_map(above).collect()
+            }
+            Levels::Within(_) => {
+                let above = |dark: f64| LIGHT.map(|light| [dark, light]);
+                DARK.into_iter().flat_map(above).collect()
+            }
+            Levels::Ratio([dark, light]) => {
+                let pairs = LIGHT.map(|own| [own * dark / light, own]);
+                pairs.into_iter().filter(|[dark, _]| *dark < 0.5).collect()
+            }
+        }
     }
 
     /// Changes and levels in turn until neither lowers the misfit.

@@ -95,7 +95,7 @@ pub(in crate::recovery) fn recover(
     recovered.standard_error = known.map(|p| p.deviation.clone());
     let levels = [recovered.reflectance.min(), recovered.reflectance.max()];
     recovered.parameter = Parameter::Levels(given.unwrap_or(levels));
-    recovered.choice = match given {
+    recovered.choice = match options.levels {
         Some(_) => Choice::Given,
         None => Choice::Estimated,
     };

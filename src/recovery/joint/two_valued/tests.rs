@@ -2,7 +2,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::*;
 use crate::recovery::bench::{Bench, normal_stream};
-use crate::recovery::recover;
+use crate::recovery::{Nuisance, recover};
 
 fn noisy(bench: &Bench, truth: &DVector<f64>, noise: f64, seed: u64) -> [DMatrix<f64>; 2] {
     let exact = bench.phi(truth);
@@ -242,6 +242,97 @@ fn the_search_reaches_what_made_the_photographs() {
                 own <= made + 1e-3,
                 "{levels:?} {noise} {seed}: {own} {made}"
             );
+        }
+    }
+}
+
+/// A board of levels a and b at this noise.
+fn two_levels(bench: &Bench, [dark, light]: [f64; 2]) -> DVector<f64> {
+    bench.board(4).map(|x| dark + (light - dark) * x)
+}
+
+/// Photographs in an unknown unit, of a surface of exactly two reflectances: the pattern, the ratio of
+/// its levels and a fit within the noise, as where the scale is known. Levels that are given are a
+/// ratio.
+#[test]
+fn a_pattern_is_found_whatever_the_unit() {
+    let bench = Bench::new(6.0, 4, 8);
+    for (levels, noise, seed) in [
+        ([0.05, 0.9], 1e-3, 1),
+        ([0.05, 0.9], 1e-4, 2),
+        ([0.3, 0.7], 1e-4, 3),
+        ([0.6, 0.8], 1e-5, 4),
+    ] {
+        let truth = two_levels(&bench, levels);
+        let [phi, stderr] = noisy(&bench, &truth, noise, seed);
+        let (phi, stderr) = (phi * 3.7e9, stderr * 3.7e9);
+        let nuisance = Nuisance {
+            free_scale: true,
+            ..Nuisance::default()
+        };
+        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+        let problem = problem.with_nuisance(nuisance).unwrap();
+        for given in [None, Some(levels)] {
+            let options = Options {
+                levels: given,
+                ..Options::default()
+            };
+            let found = recover(Method::JointTwoValued, &problem, &options).unwrap();
+            let expected = &truth / levels[1];
+            let off = (&found.reflectance - &expected).amax();
+            assert!(off < 0.05, "{levels:?} {given:?}: {off}");
+            // 16 residuals of unit variance.
+            let chi2 = 2.0 * found.solver.unwrap().objective;
+            assert!(chi2 < 16.0 + 5.0 * 32f64.sqrt(), "{levels:?}: {chi2}");
+            assert_eq!(found.choice == Choice::Given, given.is_some());
+        }
+    }
+}
+
+/// Photographs in W whose scale is stated to be known to `known`, and is `factor`: the pattern is found
+/// however large the stated error is.
+#[test]
+fn a_larger_error_of_the_scale_loses_no_pattern() {
+    let bench = Bench::new(6.0, 4, 8);
+    let levels = [0.05, 0.9];
+    let truth = two_levels(&bench, levels);
+    let [phi, stderr] = noisy(&bench, &truth, 1e-4, 5);
+    for (known, factor) in [(0.03, 1.0), (0.2, 1.0), (1.0, 1.0), (0.2, 1.3), (0.2, 0.8)] {
+        let (phi, stderr) = (&phi * factor, &stderr * factor);
+        let nuisance = Nuisance {
+            scale_error: Some(known),
+            ..Nuisance::default()
+        };
+        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+        let problem = problem.with_nuisance(nuisance).unwrap();
+        for given in [None, Some(levels)] {
+            let options = Options {
+                levels: given,
+                ..Options::default()
+            };
+            let found = recover(Method::JointTwoValued, &problem, &options).unwrap();
+            let of = found
+                .nuisance
+                .as_ref()
+                .and_then(|n| n.gains.as_ref())
+                .unwrap();
+            assert!(of.settled, "{known} {factor} {given:?}");
+            let x = &found.reflectance;
+            let (low, high) = (x.min(), x.max());
+            let pattern = truth
+                .iter()
+                .zip(x)
+                .all(|(t, x)| (*t > 0.5) == (*x > 0.5 * (low + high)));
+            assert!(pattern, "{known} {factor} {given:?}: {x}");
+            let ratio = low / high - levels[0] / levels[1];
+            assert!(ratio.abs() < 0.02, "{known} {factor} {given:?}: {ratio}");
+            if given.is_some() {
+                let whole = of.whole.as_ref().unwrap().size[0];
+                assert!(
+                    (1.0 + whole - factor).abs() < 0.01,
+                    "{known} {factor}: {whole}"
+                );
+            }
         }
     }
 }

@@ -1,0 +1,57 @@
+use super::*;
+use crate::lab::study::tests::{divides, refuses, small};
+use crate::model::Kernel;
+
+#[test]
+fn bands_that_cover_too_little_are_named() {
+    let row = |method: &str, covered: Option<f64>| CoverageRow {
+        method: method.to_owned(),
+        bands: None,
+        failed: 0,
+        covered,
+        stderr: Some(0.01),
+        least: None,
+        together: None,
+        bias: None,
+        width: None,
+        reason: None,
+    };
+    let found = Coverage {
+        scene: "bench".to_owned(),
+        scene_hash: String::new(),
+        noise: 0.01,
+        confidence: 0.95,
+        seeds: 10,
+        elements: 4,
+        rows: vec![
+            row("joint", Some(0.93)),
+            row("tsvd", Some(0.6)),
+            row("none", None),
+        ],
+    };
+    let found = found.describe();
+    assert_eq!(found.tone, Tone::Bad);
+    for words in [
+        "at least as often as stated: joint 93.0 % ± 1.0;",
+        "standard errors: tsvd 60.0 % ± 1.0. 1 of the methods gave no bands.",
+    ] {
+        assert!(found.sentence.contains(words), "{}", found.sentence);
+    }
+}
+
+/// Twelve seeds are a full task and a rest.
+#[test]
+fn it_divides() {
+    let scene = small("bench");
+    let model = MatrixModel::new(&scene, Kernel::Physical, Some([2, 2])).unwrap();
+    let plan = CoveragePlan {
+        noise: 0.01,
+        confidence: 0.95,
+        methods: vec![Method::Pinv, Method::Joint],
+        seeds: 12,
+        first_seed: 5,
+    };
+    let tasks = CoverageTasks::new(("name", "hash"), model, plan);
+    assert_eq!(divides(&tasks).rows.len(), 2);
+    refuses(&tasks, 1, &(0..3).map(|_| Err(String::new())).collect());
+}

@@ -1,0 +1,113 @@
+use super::*;
+use crate::lab::ensemble::Photographs;
+use crate::lab::study::tests::small;
+use crate::lab::{Certainty, Noise, RecoveredObject, recover_objects};
+use crate::matrix::Matrix;
+use crate::model::{Kernel, MatrixModel};
+use crate::recovery::{Nuisance, Options};
+
+/// Every method that 16 elements and 14 spots allow, with what it makes of the photographs: a
+/// refusal, or its first surface.
+fn by_every_method(
+    model: &MatrixModel,
+    phi: &Matrix,
+    stderr: Option<&Matrix>,
+) -> Vec<(Method, Result<RecoveredObject, String>)> {
+    let noise = stderr.map_or(Noise::Unknown, |s| {
+        Noise::StandardError(s, Certainty::STATED)
+    });
+    let options = Options::default();
+    let nuisance = Nuisance::default();
+    recover_objects(model, phi, noise, nuisance, &Method::ALL, &options)
+        .into_iter()
+        .map(|a| {
+            let outcome = a.outcome.map(|mut all| all.remove(0));
+            (a.method, outcome.map_err(|e| e.to_string()))
+        })
+        .collect()
+}
+
+fn loud(object: &RecoveredObject) -> bool {
+    let told = object.warnings.iter().any(|w| w.contains("DOES NOT FIT"));
+    assert!(!object.parameter.contains("Solved"), "{}", object.parameter);
+    told
+}
+
+/// Frames upside down, spots in another order, counts given as W, spots elsewhere by half an
+/// inch, the published kernel: each is warned of by every method, or refused by it.
+#[test]
+fn every_method_warns_of_photographs_that_are_not_of_this_scene() {
+    let scene = small("bench");
+    let model = MatrixModel::new(&scene, Kernel::Physical, Some([4, 4])).unwrap();
+    let right = Photographs::relative(&model.phi(), 1e-3, 1);
+    let both = |f: &dyn Fn(&Matrix) -> Matrix| (f(&right.phi), f(&right.stderr));
+    let (columns, rows) = (scene.camera.columns, scene.camera.rows);
+    let upside_down = both(&|m| {
+        Matrix::from_fn(m.nrows(), m.ncols(), |p, l| {
+            m[((rows - 1 - p / columns) * columns + p % columns, l)]
+        })
+    });
+    let permuted = both(&|m| {
+        let n = m.ncols();
+        Matrix::from_fn(m.nrows(), n, |p, l| m[(p, (l + 1) % n)])
+    });
+    let counts = both(&|m| m * 1e15);
+    let shifted = scene.with_shifted_spots([0.5, 0.0]).unwrap();
+    let elsewhere = MatrixModel::new(&shifted, Kernel::Physical, Some([4, 4])).unwrap();
+    let published = MatrixModel::new(&scene, Kernel::Published, Some([4, 4])).unwrap();
+    let own = (right.phi.clone(), right.stderr.clone());
+    for (fault, model, (phi, stderr)) in [
+        ("upside down", &model, &upside_down),
+        ("permuted", &model, &permuted),
+        ("counts", &model, &counts),
+        ("elsewhere", &elsewhere, &own),
+        ("published", &published, &own),
+    ] {
+        let mut told = 0;
+        for (method, outcome) in by_every_method(model, phi, Some(stderr)) {
+            let Ok(object) = outcome else { continue };
+            assert!(
+                loud(&object) && object.contradicted(),
+                "{fault} {method}: {object:?}"
+            );
+            told += 1;
+        }
+        assert!(told >= 8, "{fault}: {told} recovered");
+    }
+    // Of counts no noise is needed to see it, unless bounds or levels hide it.
+    for (method, outcome) in by_every_method(&model, &counts.0, None) {
+        let Ok(object) = outcome else { continue };
+        let first = &object.warnings[0];
+        assert!(
+            first.contains("CANNOT BE JUDGED") && object.fit.is_none(),
+            "{method}"
+        );
+        let second = object.warnings.iter().skip(1);
+        let second: Vec<&String> = second
+            .filter(|w| w.contains("on a bound") || w.contains("beyond 0 to 1"))
+            .collect();
+        assert!(
+            !second.is_empty() || method == Method::JointTwoValued,
+            "{method}"
+        );
+    }
+}
+
+/// Right photographs: nothing contradicts, and `joint` fits.
+#[test]
+fn right_photographs_are_not_warned_of() {
+    let model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([4, 4])).unwrap();
+    for seed in 1..6 {
+        let right = Photographs::relative(&model.phi(), 1e-3, seed);
+        for (method, outcome) in by_every_method(&model, &right.phi, Some(&right.stderr)) {
+            let Ok(object) = outcome else { continue };
+            assert!(!object.contradicted(), "{method}: {object:?}");
+            assert!(object.fit.is_some());
+            let joint = [Method::Joint, Method::JointUnbounded, Method::Nnls];
+            assert!(
+                !joint.contains(&method) || !loud(&object),
+                "{method}: {object:?}"
+            );
+        }
+    }
+}

@@ -1,0 +1,68 @@
+use super::*;
+
+#[test]
+fn numbers_are_said_with_two_digits_and_a_prefix() {
+    for (x, unit, said) in [
+        (0.02, "s", "20 ms"),
+        (1.26, "s", "1.3 s"),
+        (3.2e-14, "W", "32 fW"),
+        (4.04e-7, "W", "404 nW"),
+    ] {
+        assert_eq!(prefixed(x, unit), said);
+    }
+}
+
+fn setting(glare: f64, mean: f64) -> Setting {
+    let reading = |analysis: &str, mean| Reading {
+        analysis: analysis.to_owned(),
+        mtf: None,
+        mtf_normalized: Spread::of(&[mean]),
+        correlation: None,
+        failed: 0,
+        reason: None,
+    };
+    Setting {
+        spread: "even".to_owned(),
+        glare,
+        fraction: 0.1,
+        exposure: 0.02,
+        electrons: 900.0,
+        saturated: 0,
+        noise: 0.1,
+        readings: vec![reading("published", mean), reading("joint", 0.9)],
+    }
+}
+
+/// The strength of the glare and what the published analysis finds under it come first; every
+/// reading has a line in the file.
+#[test]
+fn the_findings_are_told_in_words() {
+    let by_glare = vec![setting(0.0, 0.4), setting(1.0, -0.1)];
+    let mut found = Experiment {
+        scene: "bench".to_owned(),
+        scene_hash: String::new(),
+        sensor: "ccd".to_owned(),
+        seeds: 1,
+        signal: 3e-14,
+        direct_over_signal: 50.0,
+        thresholds: super::super::limits::thresholds(&by_glare, &by_glare),
+        by_exposure: by_glare.clone(),
+        by_glare,
+        words: Vec::new(),
+    };
+    found.words = words(&found, "`board`");
+    assert_eq!(found.words.len(), 4);
+    assert!(found.words[0].contains("gets 30 fW from `board`; 50 times"));
+    assert!(found.words[1].ends_with("modulation of −0.10, `joint` 0.90."));
+    assert!(found.words[2].ends_with("0.40: glare is not the only cause of its failure."));
+    assert!(
+        found.words[3].contains("1.0 times the signal, by `joint`; at no glare by `published`;")
+    );
+    let said = found.describe();
+    assert!(said.sentence.ends_with("0.90.") && said.notes.len() == 2);
+    let file = said.tables.iter().find(|t| t.file.is_some()).unwrap();
+    assert_eq!(
+        (file.rows.len(), file.rows[0].len()),
+        (8, file.columns.len())
+    );
+}

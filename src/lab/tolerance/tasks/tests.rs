@@ -1,0 +1,56 @@
+use super::*;
+use crate::lab::study::tests::{divides, small};
+
+#[test]
+#[ignore = "slow"]
+fn it_divides() {
+    let found = divides(&ToleranceTasks::new(&small("bench"), 0.01, 0.9));
+    assert_eq!(found.parameters.len(), ALL.len());
+}
+
+/// On the bench the planes meet at y = 15.5, z = 0, along x.
+#[test]
+fn the_hinge_of_the_bench_is_where_it_is() {
+    let (point, axis) = Scene::load("bench").unwrap().hinge().unwrap();
+    assert!((point.y - 15.5).abs() < 1e-12 && point.z.abs() < 1e-12);
+    assert!((axis.x.abs() - 1.0).abs() < 1e-12);
+}
+
+/// Every misplacement changes Φcam in proportion to its size where it is small.
+#[test]
+fn small_misplacements_act_in_proportion() {
+    let scene = Scene::load("bench").unwrap();
+    let truth = converged(&scene, Kernel::Physical, Extent::FULL)
+        .unwrap()
+        .phi;
+    for what in ALL {
+        let change = |size: f64| {
+            let wrong = (what.apply)(&scene, size).unwrap();
+            let phi = converged(&wrong, Kernel::Physical, Extent::FULL)
+                .unwrap()
+                .phi;
+            (phi - &truth).norm() / truth.norm()
+        };
+        let (small, twice) = (change(1e-3), change(2e-3));
+        assert!(small > 1e-7, "{}: {small:e}", what.name);
+        assert!(
+            (twice / small - 2.0).abs() < 0.01,
+            "{}: {small:e}, {twice:e}",
+            what.name
+        );
+    }
+}
+
+#[test]
+fn the_limit_is_interpolated_in_log_size() {
+    let row = |size, mtf| Misplacement {
+        size,
+        change: 0.0,
+        after_scale: 0.0,
+        mtf: Some(mtf),
+    };
+    let rows = [row(0.01, 1.0), row(0.1, 0.75), row(1.0, 0.25)];
+    assert!((falls_through(Some(1.0), &rows, 0.5).unwrap() / 0.1f64.sqrt() - 1.0).abs() < 1e-12);
+    assert_eq!(falls_through(Some(1.0), &rows[..2], 0.5), None);
+    assert_eq!(falls_through(Some(0.3), &rows, 0.15), None);
+}

@@ -1,0 +1,191 @@
+//! The settings of a recovery: to which methods each means something, and which values it takes.
+
+use super::method::Method;
+
+/// A setting, by the name it has in the command line and, with underscores, in Python.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Setting {
+    /// Standard errors relative to each entry.
+    Noise,
+    /// Singular values that are kept.
+    Rank,
+    /// Damping of small singular values, a fraction of σ1.
+    Damping,
+    /// Where singular values count as 0, a fraction of σ1.
+    Tolerance,
+    /// Weight of differences between neighbours, a fraction of σ1².
+    Tv,
+    /// The two values of reflectances.
+    Levels,
+    /// Confidence of bands.
+    Bands,
+    /// How entries are weighted.
+    Weighting,
+    /// A constant in each photograph.
+    FrameConstant,
+    /// A polynomial of this degree in each photograph.
+    FramePolynomial,
+    /// Given patterns in each photograph.
+    FramePatterns,
+    /// A background that all photographs share.
+    Background,
+    /// Glare of this shape in each photograph.
+    GlarePattern,
+    /// A free scale of all light.
+    FreeScale,
+    /// Gains of the photographs, known to this standard deviation.
+    FrameGain,
+    /// The scale of all light, known to this standard deviation.
+    ScaleError,
+    /// Entries that do not count.
+    LeftOut,
+    /// Occluders that reflect, recovered like the hidden surfaces.
+    OccluderLight,
+}
+
+impl Setting {
+    /// Every setting.
+    pub const ALL: [Setting; 18] = [
+        Setting::Noise,
+        Setting::Rank,
+        Setting::Damping,
+        Setting::Tolerance,
+        Setting::Tv,
+        Setting::Levels,
+        Setting::Bands,
+        Setting::Weighting,
+        Setting::FrameConstant,
+        Setting::FramePolynomial,
+        Setting::FramePatterns,
+        Setting::Background,
+        Setting::GlarePattern,
+        Setting::FreeScale,
+        Setting::FrameGain,
+        Setting::ScaleError,
+        Setting::LeftOut,
+        Setting::OccluderLight,
+    ];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Setting::Noise => "noise",
+            Setting::Rank => "rank",
+            Setting::Damping => "damping",
+            Setting::Tolerance => "tolerance",
+            Setting::Tv => "tv",
+            Setting::Levels => "levels",
+            Setting::Bands => "bands",
+            Setting::Weighting => "weighting",
+            Setting::FrameConstant => "frame-constant",
+            Setting::FramePolynomial => "frame-polynomial",
+            Setting::FramePatterns => "frame-patterns",
+            Setting::Background => "background",
+            Setting::GlarePattern => "glare-pattern",
+            Setting::FreeScale => "free-scale",
+            Setting::FrameGain => "frame-gain",
+            Setting::ScaleError => "scale-error",
+            Setting::LeftOut => "left-out",
+            Setting::OccluderLight => "occluder-light",
+        }
+    }
+
+    /// Whether the method does anything with it.
+    pub fn means_something_to(self, method: Method) -> bool {
+        match self {
+            Setting::Noise | Setting::Bands => true,
+            Setting::Rank => method == Method::Tsvd,
+            Setting::Damping => [Method::Tikhonov, Method::TikhonovGradient].contains(&method),
+            Setting::Tolerance => [
+                Method::Pinv,
+                Method::LeftInverse,
+                Method::RightInverse,
+                Method::Rdivide,
+                Method::RdivideMinNorm,
+                Method::JointUnbounded,
+            ]
+            .contains(&method),
+            Setting::Tv => method == Method::JointTv,
+            Setting::Levels => method == Method::JointTwoValued,
+            Setting::OccluderLight => method.is_joint() && method != Method::JointTwoValued,
+            Setting::Weighting
+            | Setting::FrameConstant
+            | Setting::FramePolynomial
+            | Setting::FramePatterns
+            | Setting::Background
+            | Setting::GlarePattern
+            | Setting::FreeScale
+            | Setting::FrameGain
+            | Setting::ScaleError
+            | Setting::LeftOut => method.is_joint(),
+        }
+    }
+
+    /// The methods that do something with it, in the order of [`Method::ALL`].
+    pub fn methods(self) -> Vec<Method> {
+        let takes = |method: &Method| self.means_something_to(*method);
+        Method::ALL.into_iter().filter(takes).collect()
+    }
+
+    /// Which numbers it can be, in words; none where it is no number of its own range.
+    pub fn range(self) -> Option<&'static str> {
+        Some(match self {
+            Setting::Noise => "above 0: relative to each entry, e.g. 0.01",
+            Setting::Rank => "at least 1",
+            Setting::Damping => "0 or more: a fraction of σ1",
+            Setting::Tolerance => "0 or more and below 1: a fraction of σ1",
+            Setting::Tv => "0 or more: a fraction of σ1²",
+            Setting::Bands => "above 0 and below 1: a probability, e.g. 0.95",
+            Setting::FrameGain | Setting::ScaleError => {
+                "above 0 and at most 1: a standard deviation relative to 1, e.g. 0.05"
+            }
+            _ => return None,
+        })
+    }
+
+    /// Whether it can have this value.
+    pub fn allows(self, value: f64) -> bool {
+        match self {
+            Setting::Noise => value > 0.0 && value.is_finite(),
+            Setting::Rank => value >= 1.0,
+            Setting::Damping | Setting::Tv => value >= 0.0 && value.is_finite(),
+            Setting::Tolerance => (0.0..1.0).contains(&value),
+            Setting::Bands => value > 0.0 && value < 1.0,
+            Setting::FrameGain | Setting::ScaleError => value > 0.0 && value <= 1.0,
+            _ => true,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_is_what_is_allowed() {
+        // What the words of a range exclude, and what they include.
+        for setting in Setting::ALL {
+            let Some(words) = setting.range() else {
+                continue;
+            };
+            assert_eq!(setting.allows(0.0), words.starts_with("0 or more"));
+            assert!(
+                !setting.allows(-0.5) && !setting.allows(f64::NAN),
+                "{words}"
+            );
+            assert!(setting.allows(0.5) || words.starts_with("at least 1"));
+            assert_eq!(setting.allows(1.0), !words.contains("below 1"));
+            let bounded = words.contains("below 1") || words.contains("at most 1");
+            assert_eq!(setting.allows(2.0), !bounded, "{words}");
+        }
+    }
+
+    #[test]
+    fn every_setting_has_a_name_of_its_own_and_a_method() {
+        for setting in Setting::ALL {
+            let same = Setting::ALL.iter().filter(|s| s.name() == setting.name());
+            assert_eq!(same.count(), 1, "{}", setting.name());
+            assert!(!setting.methods().is_empty(), "{}", setting.name());
+        }
+    }
+}
