@@ -60,7 +60,9 @@ pub(super) fn deviations(results: &RunResults) -> String {
         let [_, shown] = scale.range();
         html.push_str(&format!(
             "<p>z: the difference of every entry in units of its standard error. If the \
-             model is right it is noise, without pattern, and stays within ±{}.</p>\n<div class=\"row\">\n{}</div>\n{}{}",
+             model is right it is noise, without pattern, and stays within ±{}. \
+             It is 0 where the entry is left out, as its standard error is in doubt, and where the difference is no \
+             more than the model's stated bound, which is taken off first.</p>\n<div class=\"row\">\n{}</div>\n{}{}",
             significant(shown, 2),
             figure(&panel, ends(z), Entries::Stretched, &scale, ""),
             legend(&scale, "standard errors", &[panel]),
