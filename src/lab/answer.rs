@@ -223,7 +223,7 @@ fn error(pictures: &[&RecoveredObject]) -> String {
             .iter()
             .filter(|p| **p > DECIDED || **p < 1.0 - DECIDED);
         told.push(format!(
-            "{} of {} elements light or dark with more than {} % probability",
+            "{} of {} elements light or dark with more than {}\u{a0}% probability",
             decided.count(),
             light.len(),
             100.0 * DECIDED

@@ -79,7 +79,7 @@ fn errors_of_elements_are_told_with_their_largest() {
     assert_eq!(
         error(&[&object]),
         "Standard error 0.35 an element (root mean square), 0.40 at most; 1 of 2 elements light or \
-         dark with more than 95 % probability. "
+         dark with more than 95\u{a0}% probability. "
     );
 }
 

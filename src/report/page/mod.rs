@@ -189,7 +189,7 @@ impl Page {
             self.data,
             script(&format!(
                 "(() => {{\n\"use strict\";\n{}}})();\n",
-                SCRIPT.concat()
+                SCRIPT.map(without_comments).concat()
             )),
         )
     }
@@ -221,6 +221,20 @@ fn class(tone: Tone) -> &'static str {
         Tone::Bad => " disagree",
         Tone::Plain => "",
     }
+}
+
+/// A script without the lines that are comments, and nothing else: a fifth of it.
+fn without_comments(script: &str) -> String {
+    let mut inside = false;
+    let is_code = |line: &&str| {
+        let line = line.trim();
+        let starts = line.starts_with("/**");
+        let comment = inside || line.starts_with("//") || (starts && line.ends_with("*/"));
+        inside = (inside || starts) && !line.contains("*/");
+        !(comment || inside)
+    };
+    let lines = script.lines().filter(is_code);
+    lines.flat_map(|line| [line, "\n"]).collect()
 }
 
 /// A script inside of a page.

@@ -10,6 +10,8 @@ use crate::num::digits::figure;
 
 /// Pictures of more hidden surfaces than this are left to the section on what was recovered.
 const MOST_SURFACES: usize = 3;
+/// Standard errors from this share of the largest up look alike.
+const SAME: f64 = 0.95;
 /// Most entries a side of a picture, which is shown at 240 px or less.
 const MOST: usize = 128;
 
@@ -63,9 +65,12 @@ fn surface(r: &RecoveredObject, named: bool) -> String {
     };
     let caption = format!("recovered by {}", r.method);
     let found = picture("what was recovered", &r.reflectance, &grey, &caption);
-    let sure = match (&r.standard_error, &r.determined_share) {
+    let errors = r.standard_error.as_ref();
+    let most = errors.map_or(0.0, |all| all.iter().copied().fold(0.0, f64::max));
+    // An error that all elements share is a number, told beside the picture.
+    let differ = |all: &&Vec<f64>| all.iter().any(|x| *x < SAME * most);
+    let sure = match (errors.filter(differ), &r.determined_share) {
         (Some(errors), _) => {
-            let most = errors.iter().copied().fold(0.0, f64::max);
             let scale = Scale::between(Map::Viridis, Law::Linear, [0.0, most]);
             let caption = format!("standard error, dark 0, bright {}", figure(most, 2));
             picture("standard error", errors, &scale.unwrap_or(grey), &caption)

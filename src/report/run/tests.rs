@@ -95,6 +95,11 @@ fn bad_news_are_on_the_first_screen() {
     ] {
         assert!(html.contains(&format!("{bad}{claim}")), "{claim}");
     }
+    // The error of an element is drawn where it differs from another's.
+    results.recovered[0].standard_error = Some(vec![0.2; 64]);
+    assert!(!run_html(&results).contains("standard error of object"));
+    results.recovered[0].standard_error.as_mut().unwrap()[5] = 0.1;
+    assert!(run_html(&results).contains("standard error of object"));
     // Where the truth is not known, the page says that.
     results.recovered[0].truth = None;
     let html = run_html(&results);
