@@ -168,7 +168,7 @@ impl Page {
             String::new()
         } else {
             format!(
-                "<details class=\"licences\"><summary>Libraries in this page, and their licences</summary>\n<pre tabindex=\"0\">{}</pre>\n</details>\n",
+                "<details class=\"licences\"><summary>Libraries in this page, and their licences</summary>\n<pre>{}</pre>\n</details>\n",
                 escape(LICENCES)
             )
         };
