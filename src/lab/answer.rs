@@ -230,7 +230,7 @@ fn error(pictures: &[&RecoveredObject]) -> String {
         ));
     }
     if told.is_empty() {
-        return "Under its bounds it states no error for an element. ".to_owned();
+        return "It states no error for an element. ".to_owned();
     }
     let told = told.join("; ");
     let mut letters = told.chars();
