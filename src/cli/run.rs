@@ -99,11 +99,12 @@ pub(super) fn execute(args: &RunArgs, console: Console) -> Result<Outcome, Failu
     let text = if args.json {
         summary
     } else {
-        report::finding_text(&results.describe())
-            + &format!(
-                "\n  everything is in {}, the report in report.html\n",
-                args.output.display()
-            )
+        format!(
+            "{}\n{}\n  everything is in {}, the report in report.html\n",
+            report::finding_text(&results.answer().describe()),
+            report::finding_text(&results.describe()),
+            args.output.display()
+        )
     };
     output::print(&text)?;
     Ok(results

@@ -142,6 +142,7 @@
 //! ```
 
 mod agreement;
+mod answer;
 mod brdf;
 mod budget;
 mod bytes;
@@ -204,6 +205,7 @@ mod validation;
 mod verdict;
 
 pub use agreement::{Agreement, Entry, EntryBound, agree};
+pub use answer::{Answer, Claim};
 pub use brdf::{Assumption, BrdfPlan, BrdfStudy, BrdfTasks, Quality, Ratio};
 pub use budget::{BudgetPlan, BudgetTasks, Closure, ErrorBudget, Term};
 pub use bytes::{LAYOUT, TaskError, decode, encode, encoded};

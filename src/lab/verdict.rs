@@ -51,7 +51,7 @@ impl Agreement {
         }
     }
 
-    /// How far off, by what causes, the test, and what it could not have seen.
+    /// How far off, by what causes, and the test.
     pub(super) fn facts(&self) -> Vec<(&'static str, String)> {
         let bound = |b: EntryBound| {
             format!(
@@ -97,13 +97,17 @@ impl Agreement {
                 ));
             }
         }
-        if let Some(score) = &self.score {
-            if !self.agrees {
-                told.push(("most likely", score.cause()));
-            }
-            told.push(("detects", score.reach()));
-        }
         told
+    }
+
+    /// The most likely cause of a disagreement, and from which size deviations are seen.
+    fn limits(&self) -> Vec<(&'static str, String)> {
+        let Some(score) = &self.score else {
+            return Vec::new();
+        };
+        let cause = (!self.agrees).then(|| ("most likely", score.cause()));
+        let detects = format!("95 times in 100 from: {}", score.detectable());
+        cause.into_iter().chain([("detects", detects)]).collect()
     }
 
     /// The entries with the largest |z|.
@@ -180,7 +184,7 @@ impl Describe for Agreement {
             title: "Traced against modelled".to_owned(),
             tone: self.tone(),
             sentence: self.verdict(),
-            tables: std::iter::once(facts(self.facts()))
+            tables: std::iter::once(facts(self.facts().into_iter().chain(self.limits())))
                 .chain(worst)
                 .chain(self.parameters())
                 .collect(),
@@ -191,7 +195,7 @@ impl Describe for Agreement {
 
 impl Score {
     /// The most likely cause, and what explains the difference as well.
-    fn cause(&self) -> String {
+    pub(super) fn cause(&self) -> String {
         let Some((first, rest)) = self.likely.split_first() else {
             return "no single parameter of the scene explains it".to_owned();
         };
@@ -224,8 +228,9 @@ impl Score {
         )
     }
 
-    /// From which size deviations are seen.
-    fn reach(&self) -> String {
+    /// Sizes from which deviations are seen 95 times in 100, those of the scene and the least seen
+    /// of single spots.
+    pub(super) fn detectable(&self) -> String {
         let told =
             |d: &Deviation| format!("{} {}\u{a0}{}", d.name, figure(d.detectable, 2), d.unit);
         let wanted = [
@@ -244,7 +249,7 @@ impl Score {
             .iter()
             .reduce(|a, b| if b.detectable > a.detectable { b } else { a });
         let all: Vec<String> = of_scene.chain(least_seen).map(told).collect();
-        format!("95 times in 100 from: {}", listed(&all))
+        listed(&all)
     }
 }
 

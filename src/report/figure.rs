@@ -117,12 +117,7 @@ pub(super) fn figure(
             );
         }
     };
-    let [nu, nv] = panel.size.map(|n| n.max(1) as f64);
-    // A strip of a picture is widened until it can be seen; its entries are then no squares.
-    let [w, h] = match entries {
-        Entries::Square => [nu, nv].map(|n| (SIDE * n / nu.max(nv)).max(40.0)),
-        Entries::Stretched => [SIDE; 2],
-    };
+    let [w, h] = sides(panel, entries);
     let (left, top) = (42.0, 6.0);
     let mut svg = Svg::default();
     svg.raw(&opening(
@@ -151,6 +146,34 @@ pub(super) fn figure(
     )
 }
 
+/// A picture without axes, as small as its room; `caption` is HTML.
+pub(super) fn shot(panel: &Panel, scale: &Scale, caption: &str) -> String {
+    let name = escape(&panel.title);
+    let uri = match panel.data_uri(scale) {
+        Ok(uri) => uri,
+        Err(e) => return format!("<p>{name}: {}</p>\n", escape(&e.to_string())),
+    };
+    let [w, h] = sides(panel, Entries::Square);
+    let mut svg = Svg::default();
+    svg.image([0.0; 2], [w, h], &uri);
+    let [width, height] = [w, h].map(number);
+    format!(
+        "<figure class=\"shot\"><svg viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" \
+         aria-label=\"{name}\">\n{}</svg><figcaption>{caption}</figcaption></figure>\n",
+        svg.text
+    )
+}
+
+/// Width and height of a picture, px. A strip is widened until it can be seen; its entries are then
+/// no squares.
+fn sides(panel: &Panel, entries: Entries) -> [f64; 2] {
+    let [nu, nv] = panel.size.map(|n| n.max(1) as f64);
+    match entries {
+        Entries::Square => [nu, nv].map(|n| (SIDE * n / nu.max(nv)).max(40.0)),
+        Entries::Stretched => [SIDE; 2],
+    }
+}
+
 /// The tag that opens a drawing of the page, in the page's ink.
 fn opening(class: &str, name: &str, size: [f64; 2]) -> String {
     let [w, h] = size.map(number);
@@ -163,8 +186,8 @@ fn opening(class: &str, name: &str, size: [f64; 2]) -> String {
 /// The colours of `scale` with ticks in `unit`, and what the colours outside it mean in `panels`.
 pub(super) fn legend(scale: &Scale, unit: &str, panels: &[Panel]) -> String {
     let mut svg = Svg::default();
-    svg.raw(&opening("class=\"legend\" ", "colour scale", [480.0, 40.0]));
-    if colour_bar(&mut svg, [42.0, 2.0], [300.0, 14.0], TYPE, scale, unit).is_err() {
+    svg.raw(&opening("class=\"legend\" ", "colour scale", [372.0, 40.0]));
+    if colour_bar(&mut svg, [42.0, 2.0], [216.0, 14.0], TYPE, scale, unit).is_err() {
         return String::new();
     }
     svg.raw("</svg>");

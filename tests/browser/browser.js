@@ -53,7 +53,9 @@ export async function openPage(path, { width = 1280, height = 800, colorScheme =
     }
     const start = performance.now();
     await page.goto(address, { waitUntil: "load" });
-    await page.waitForFunction(() => document.documentElement.dataset.ready === "yes");
+    if (device.javaScriptEnabled !== false) {
+        await page.waitForFunction(() => document.documentElement.dataset.ready === "yes");
+    }
     return { page, browser, errors, seconds: (performance.now() - start) / 1000 };
 }
 

@@ -54,7 +54,7 @@ describe("the report of a run", () => {
 
     test("opens from disk without an error and asks for nothing else", async () => {
         assert.deepEqual(errors, []);
-        assert.match(await page.textContent(".verdict"), /agree/i);
+        assert.match(await page.textContent("#answer"), /agree/i);
     });
 
     test("20 random entries are those of the matrices on disk", async () => {
@@ -81,6 +81,22 @@ describe("the report of a run", () => {
             }
             assert.equal(shown.residual.value, matrices.traced.at(pixel, spot) - matrices.modelled.at(pixel, spot));
         }
+    });
+
+    test("a z of 0 beside a difference is explained", async () => {
+        const matrices = ["phi", "model/phi", "model/z", "phi.tails"].map((name) => npy(join(run, `${name}.npy`)));
+        const entries = Array.from({ length: about.spots * about.columns * about.rows }, (_, i) => [i % about.spots, Math.floor(i / about.spots)]);
+        const [spot, pixel] = entries.find(([l, p]) => matrices[2].at(p, l) === 0 && matrices[0].at(p, l) !== matrices[1].at(p, l));
+        assert.notEqual(matrices[3].at(pixel, spot), 0, "left out by its code");
+        await slide(page, "#explorer-spot", spot);
+        await slide(page, "#explorer-column", pixel % about.columns);
+        await slide(page, "#explorer-row", Math.floor(pixel / about.columns));
+        assert.equal((await readout(page, spot, pixel)).z.value, 0);
+        const line = () => page.textContent(".readout tr:last-child td");
+        assert.match(await line(), /not counted, as its standard error is in doubt/);
+        await slide(page, "#explorer-spot", spot === 0 ? 1 : 0);
+        await readout(page, spot === 0 ? 1 : 0, pixel);
+        assert.match(await line(), /standard errors$/);
     });
 
     test("sliders change the pictures, and the brightest pixel is where the matrix has it", async () => {

@@ -41,7 +41,10 @@ impl Describe for NoiseStudy {
         Finding {
             title: self.title(),
             sentence: self.sentence(),
-            notes: self.curves.iter().filter_map(failures).collect(),
+            notes: self
+                .unstudied()
+                .chain(self.curves.iter().filter_map(failures))
+                .collect(),
             tables,
             figures: MEASURES.map(|measure| self.figure(measure)).to_vec(),
             files: vec![("noise.csv".to_owned(), self.ledger.clone())],
@@ -58,9 +61,19 @@ impl NoiseStudy {
         format!("How much noise each recovery bears: {}{sensor}", self.scene)
     }
 
-    /// Which method bears how much noise.
+    /// That the scene's own picture was left out, if it was.
+    fn unstudied(&self) -> impl Iterator<Item = String> {
+        let left_out = self.own.is_none();
+        let words = "The scene's own picture is not among these: it is a board of other checks, which --boards names.";
+        left_out.then(|| words.to_owned()).into_iter()
+    }
+
+    /// Which method bears how much noise, the scene's own object first.
     fn sentence(&self) -> String {
-        let named = self.best.iter().take(MOST_NAMED).map(|b| self.winner(b));
+        let is_own = |b: &&Best| self.own == Some((b.picture, b.elements));
+        let own = self.best.iter().filter(is_own);
+        let others = self.best.iter().filter(|b| !is_own(b));
+        let named = own.chain(others).take(MOST_NAMED).map(|b| self.winner(b));
         let named: Vec<String> = named.collect();
         let more = match self.best.len() {
             n if n > MOST_NAMED => format!(" ({} further objects in the table)", n - MOST_NAMED),
@@ -92,7 +105,10 @@ impl NoiseStudy {
             };
             format!(" (the published {PUBLISHED}: {level})")
         });
-        let object = object((b.picture, b.elements), " on ");
+        let mut object = object((b.picture, b.elements), " on ");
+        if self.own == Some((b.picture, b.elements)) && b.picture != Picture::Own {
+            object = format!("the scene's own picture, {object}");
+        }
         match (&b.method, b.level) {
             (Some(method), Some(level)) => {
                 let sign = match (b.reach, self.axis.falls()) {

@@ -24,18 +24,22 @@ impl Picture {
         }
     }
 
-    /// The scene's own, where it is none of the boards.
-    pub(super) fn own(scene: &Scene) -> Option<Self> {
+    /// What the scene's hidden surfaces are painted with; none where there are none.
+    pub(super) fn of(scene: &Scene) -> Option<Self> {
         let hidden = |scene: &Scene| scene.hidden().map(|h| h.1.albedo.clone()).collect();
         let own: Vec<Texture> = hidden(scene);
-        let is_board = match own.first() {
-            Some(Texture::Cells(cells)) => {
-                let boards: Vec<Texture> = hidden(&scene.with_checkerboard(cells.count[0]));
-                boards == own
+        match own.first()? {
+            Texture::Cells(cells) => {
+                let checks = cells.count[0];
+                let board: Vec<Texture> = hidden(&scene.with_checkerboard(checks));
+                Some(if board == own {
+                    Self::Board(checks)
+                } else {
+                    Self::Own
+                })
             }
-            first => first.is_none(),
-        };
-        (!is_board).then_some(Self::Own)
+            _ => Some(Self::Own),
+        }
     }
 }
 

@@ -96,11 +96,21 @@ impl NoisePlan {
         }
     }
 
+    /// Of the objects the scene's own, at its own elements or else at the most; none where it is not
+    /// among them.
+    pub(super) fn own(scene: &Scene, objects: &[(Picture, usize)]) -> Option<(Picture, usize)> {
+        let picture = Picture::of(scene)?;
+        let own = objects.iter().copied().filter(|(p, _)| *p == picture);
+        let elements = scene.hidden().next().map(|(_, s)| s.elements);
+        own.max_by_key(|(_, e)| (elements == Some([*e; 2]), *e))
+    }
+
     /// Objects with the elements that they are recovered at: the scene's own picture, where it is
     /// no board, and the boards.
     pub(super) fn objects(&self, scene: &Scene) -> Vec<(Picture, usize)> {
         let boards = self.boards.iter().map(|b| Picture::Board(*b));
-        let pictures = Picture::own(scene).into_iter().chain(boards);
+        let own = Picture::of(scene).filter(|own| *own == Picture::Own);
+        let pictures = own.into_iter().chain(boards);
         let at = |picture| self.elements.iter().map(move |e| (picture, *e));
         let divides = |(picture, e): &(Picture, usize)| match picture {
             Picture::Own => true,

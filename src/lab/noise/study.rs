@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::axis::NoiseAxis;
 use super::best::Best;
 use super::curve::NoiseCurve;
+use super::picture::Picture;
 use super::render::RenderNoise;
 
 /// The study of a scene.
@@ -27,6 +28,9 @@ pub struct NoiseStudy {
     pub curves: Vec<NoiseCurve>,
     /// The best method for each object and elements.
     pub best: Vec<Best>,
+    /// Which object and elements are the scene's own; none where it was not studied.
+    #[serde(skip)]
+    pub own: Option<(Picture, usize)>,
     /// Where the noise of renders lies on the axis, if it was measured.
     pub render_noise: Vec<RenderNoise>,
     /// Every trial as text.

@@ -138,6 +138,7 @@ impl NoiseTasks {
             first_seed: plan.first_seed,
             curves,
             best: winners,
+            own: NoisePlan::own(&self.scene, &self.objects),
             render_noise,
             ledger: write_ledger(&self.plan.study(&self.scene), &trials),
         }

@@ -336,6 +336,20 @@ fn the_finding_holds_the_whole_study() {
         };
         assert_eq!(lines, 9 + 3 * 2 + bounds, "{}", figure.file);
     }
+    // The scene's own comes first: the bench is a board of 2 × 2 checks on 8 × 8 elements, or else on the most.
+    let own = found.own.unwrap();
+    assert_eq!(own.0, Picture::Board(2));
+    let first = format!(
+        ": the scene's own picture, 2 × 2 checks on {0} × {0}",
+        own.1
+    );
+    assert!(finding.sentence.contains(&first), "{}", finding.sentence);
+    assert!(finding.notes.iter().all(|note| !note.contains("--boards")));
+    let left_out = NoiseStudy {
+        own: None,
+        ..found.clone()
+    };
+    assert!(left_out.describe().notes[0].contains("--boards"));
     for best in &found.best {
         let object = format!("{0} × {0} checks on {1} × {1}", best.picture, best.elements);
         assert!(finding.sentence.contains(&object), "{}", finding.sentence);

@@ -49,7 +49,7 @@ pub(super) fn recoveries(results: &RunResults) -> String {
             let (panel, _) = picture("determined by the photographs", shares);
             let more = format!(
                 "<br>1 white: wholly, 0 black: not at all. {}",
-                determined(&group)
+                determined(&group[..1])
             );
             figures.push_str(&figure(&panel, last, Entries::Square, &scale, &more));
         }

@@ -49,7 +49,7 @@ impl Library {
 const LICENCES: &str = include_str!("vendor/LICENSES.txt");
 
 /// The page's own script, in the order in which it runs.
-const SCRIPT: [&str; 21] = [
+const SCRIPT: [&str; 22] = [
     include_str!("script/page.js"),
     include_str!("script/axes.js"),
     include_str!("script/bench.js"),
@@ -69,6 +69,7 @@ const SCRIPT: [&str; 21] = [
     include_str!("script/read.js"),
     include_str!("script/row.js"),
     include_str!("script/slides.js"),
+    include_str!("script/scroll.js"),
     include_str!("script/source.js"),
     include_str!("script/thin.js"),
 ];
@@ -83,7 +84,7 @@ const ICON: &str = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 16 1
 /// A page that grows section by section.
 pub(super) struct Page {
     title: String,
-    verdict: String,
+    answer: String,
     contents: String,
     body: String,
     data: String,
@@ -95,7 +96,7 @@ impl Page {
     pub(super) fn new(title: &str) -> Self {
         Self {
             title: escape(title),
-            verdict: String::new(),
+            answer: String::new(),
             contents: String::new(),
             body: String::new(),
             data: String::new(),
@@ -105,12 +106,13 @@ impl Page {
 
     /// What was found, in a sentence (text), on top of the page.
     pub(super) fn verdict(&mut self, tone: Tone, sentence: &str) {
-        let class = match tone {
-            Tone::Good => "verdict agree",
-            Tone::Bad => "verdict disagree",
-            Tone::Plain => "verdict",
-        };
-        self.verdict += &format!("<p class=\"{class}\">{}</p>\n", explained(sentence));
+        let class = class(tone);
+        self.answer += &format!("<p class=\"verdict{class}\">{}</p>\n", explained(sentence));
+    }
+
+    /// What was found, as HTML, on top of the page.
+    pub(super) fn answer(&mut self, html: &str) {
+        self.answer += html;
     }
 
     /// A section: its name in the address, its heading (text) and its HTML. Without HTML there is
@@ -149,7 +151,7 @@ impl Page {
     /// Bytes of the page as it is now, without the colour maps and the markup around its parts: a
     /// few kB.
     pub(super) fn len(&self) -> usize {
-        let parts = [&self.verdict, &self.contents, &self.body, &self.data];
+        let parts = [&self.answer, &self.contents, &self.body, &self.data];
         let own: usize = SCRIPT.iter().chain(&STYLE).map(|text| text.len()).sum();
         let libraries: usize = self.libraries.iter().map(|l| l.text().len()).sum();
         // Every `<` of the licences is written with four characters.
@@ -166,7 +168,7 @@ impl Page {
             String::new()
         } else {
             format!(
-                "<details class=\"licences\"><summary>Libraries in this page</summary>\n<pre>{}</pre>\n</details>\n",
+                "<details class=\"licences\"><summary>Libraries in this page, and their licences</summary>\n<pre>{}</pre>\n</details>\n",
                 escape(LICENCES)
             )
         };
@@ -174,23 +176,65 @@ impl Page {
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
              <meta name=\"generator\" content=\"phicam {}\">\n<link rel=\"icon\" href=\"data:image/svg+xml;base64,{}\">\n<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n\
-             <a class=\"skip\" href=\"#main\">To the content</a>\n<header>\n<h1>{}</h1>\n{}<nav aria-label=\"Contents\"><ul>\n{}</ul></nav>\n</header>\n\
-             <main id=\"main\">\n{}</main>\n<footer>\n{licences}</footer>\n{}{libraries}{}</body>\n</html>\n",
+             <a class=\"skip\" href=\"#main\">To the content</a>\n<header>\n<h1>{}</h1>\n</header>\n\
+             <main id=\"main\">\n{}<nav aria-label=\"Contents\"><ul>\n{}</ul></nav>\n{}</main>\n<footer>\n{licences}</footer>\n{}{libraries}{}</body>\n</html>\n",
             env!("CARGO_PKG_VERSION"),
             base64(ICON.as_bytes()),
             self.title,
             STYLE.concat(),
             self.title,
-            self.verdict,
+            self.answer,
             self.contents,
             self.body,
             self.data,
             script(&format!(
                 "(() => {{\n\"use strict\";\n{}}})();\n",
-                SCRIPT.concat()
+                SCRIPT.map(without_comments).concat()
             )),
         )
     }
+}
+
+/// A claim (text) under what it is about, for [`Page::answer`]; of a judgement what stands before
+/// its numbers stands out.
+pub(super) fn claim(tone: Tone, about: &str, sentence: &str) -> String {
+    let (head, rest) = match sentence.split_once(':') {
+        Some((head, rest)) if tone != Tone::Plain => (head, rest),
+        _ => ("", sentence),
+    };
+    let head = match head {
+        "" => String::new(),
+        head => format!("<strong>{}:</strong>", escape(head)),
+    };
+    format!(
+        "<p class=\"claim{}\"><b>{}:</b> {head}{}.</p>\n",
+        class(tone),
+        escape(about),
+        explained(rest)
+    )
+}
+
+/// The class of what sounds so.
+fn class(tone: Tone) -> &'static str {
+    match tone {
+        Tone::Good => " agree",
+        Tone::Bad => " disagree",
+        Tone::Plain => "",
+    }
+}
+
+/// A script without the lines that are comments, and nothing else: a fifth of it.
+fn without_comments(script: &str) -> String {
+    let mut inside = false;
+    let is_code = |line: &&str| {
+        let line = line.trim();
+        let starts = line.starts_with("/**");
+        let comment = inside || line.starts_with("//") || (starts && line.ends_with("*/"));
+        inside = (inside || starts) && !line.contains("*/");
+        !(comment || inside)
+    };
+    let lines = script.lines().filter(is_code);
+    lines.flat_map(|line| [line, "\n"]).collect()
 }
 
 /// A script inside of a page.

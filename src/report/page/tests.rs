@@ -48,3 +48,22 @@ fn libraries_are_there_once_where_they_are_used_with_their_licences() {
         assert!(!library.text().to_lowercase().contains("</script"));
     }
 }
+
+/// Lines of comments go, whatever else is on a line stays.
+#[test]
+fn scripts_lose_their_comments_alone() {
+    let script = "// A file.\n\n/** One line. */\nconst a = 1; // stays\n/**\n * Many.\n * @param {x} y\n */\n    \
+                  /** @type {any} */ (b).c = \"/** stays\";\n    // gone\nconst d = `//`;\n";
+    let left =
+        "\nconst a = 1; // stays\n    /** @type {any} */ (b).c = \"/** stays\";\nconst d = `//`;\n";
+    assert_eq!(without_comments(script), left);
+    for script in SCRIPT {
+        assert!(without_comments(script).len() < script.len());
+        // No template spans lines, so no line of one is taken for a comment.
+        assert!(
+            script
+                .lines()
+                .all(|line| line.matches('`').count() % 2 == 0)
+        );
+    }
+}

@@ -2,9 +2,9 @@
 
 use super::super::colour::Scale;
 use super::super::figure::{Entries, MOST, Reduction, figure, legend, note, reduced};
-use super::super::page::bare;
+use super::super::page::{bare, table};
 use super::super::panel::Panel;
-use crate::lab::RunResults;
+use crate::lab::{Agreement, RunResults};
 use crate::matrix::Matrix;
 use crate::num::digits::significant;
 
@@ -50,7 +50,7 @@ pub(super) fn matrices(results: &RunResults) -> String {
     )
 }
 
-/// z of every entry, and the entries that stand out most.
+/// z of every entry, the entries that stand out most, and the parameters of the scene fitted alone.
 pub(super) fn deviations(results: &RunResults) -> String {
     let mut html = String::new();
     let limit = results.agreement.as_ref().map_or(4.0, |a| a.z_limit);
@@ -60,17 +60,27 @@ pub(super) fn deviations(results: &RunResults) -> String {
         let [_, shown] = scale.range();
         html.push_str(&format!(
             "<p>z: the difference of every entry in units of its standard error. If the \
-             model is right it is noise, without pattern, and stays within ±{}.</p>\n<div class=\"row\">\n{}</div>\n{}{}",
+             model is right it is noise, without pattern, and stays within ±{}. \
+             It is 0 where the entry is left out, as its standard error is in doubt, and where the difference is no \
+             more than the model's stated bound, which is taken off first.</p>\n<div class=\"beside\">\n<div>\n{}{}{}</div>\n{}</div>\n",
             significant(shown, 2),
             figure(&panel, ends(z), Entries::Stretched, &scale, ""),
             legend(&scale, "standard errors", &[panel]),
-            note(said)
+            note(said),
+            worst(results)
         ));
     }
-    if let Some(agreement) = results.agreement.as_ref().filter(|a| !a.worst.is_empty()) {
-        html += "<p>The entries that differ most:</p>\n";
-        html += &bare(&agreement.worst_entries());
-        html.extend(agreement.parameters().iter().map(bare));
-    }
-    html
+    let parameters = results.agreement.as_ref().and_then(Agreement::parameters);
+    html + &parameters.as_ref().map_or(String::new(), table)
+}
+
+/// The entries that stand out most.
+fn worst(results: &RunResults) -> String {
+    let agreement = results.agreement.as_ref().filter(|a| !a.worst.is_empty());
+    agreement.map_or(String::new(), |agreement| {
+        format!(
+            "<div>\n<p>The entries that differ most:</p>\n{}</div>\n",
+            bare(&agreement.worst_entries())
+        )
+    })
 }

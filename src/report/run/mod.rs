@@ -1,12 +1,12 @@
 //! The page of a run.
 
+mod answer;
 mod bench;
 mod explorer;
 mod frames;
 mod matrices;
 mod settings;
 
-use super::figure::capital;
 use super::gallery::{recoveries, slides};
 use super::page::{Page, Room, Tone, bare, explained};
 use super::plot::figure_svg;
@@ -21,23 +21,24 @@ use matrices::{deviations, matrices};
 pub(super) use settings::{is_builtin, scene_text};
 use settings::{scene_file, settings};
 
-/// The whole report as one HTML page that needs no network and no other file: verdict, drawing of
-/// the scene, frames, Φcam traced and modelled, z, recoveries beside the truth, light by bounce
-/// count, settings, times and the commands that repeat the run. What a run does not have is left
-/// out. Pictures larger than 256 (Φcam: 512) entries a side are averaged or thinned for display,
+/// The whole report as one HTML page that needs no network and no other file: first the answer
+/// (truth, what was recovered, how sure, whether the light agrees); then how it was done (drawing of
+/// the scene, commands that repeat the run, settings, times, scene file); then what there is to
+/// explore (recoveries, frames, Φcam traced and modelled, z, light by bounce count). What a run does
+/// not have is left out. Pictures larger than 256 (Φcam: 512) entries a side are averaged or thinned for display,
 /// and the page says so.
 pub fn run_html(results: &RunResults) -> String {
     let mut page = Page::new(&format!("phicam: {}", results.scene.name));
-    let verdict = capital(&results.verdict());
-    page.verdict(results.tone(), &format!("{verdict}."));
+    page.answer(&answer::answer(results));
     bench::section(&mut page, &results.scene);
+    page.section("settings", "How it was run", &settings(results));
+    let recovered = slides(&mut page, results) + &recoveries(results);
+    page.section("recovered", "Recovered", &recovered);
     let fallback = frames(results);
     let explorer = explorer(&mut page, results, &fallback);
     page.section("explorer", "Φcam, entry by entry", &explorer);
     page.section("phi", "The matrix Φcam", &matrices(results));
     page.section("z", "Traced minus modelled", &deviations(results));
-    let recovered = slides(&mut page, results) + &recoveries(results);
-    page.section("recovered", "Recovered", &recovered);
     page.section(
         "picard",
         "What noise leaves of the signal",
@@ -45,7 +46,6 @@ pub fn run_html(results: &RunResults) -> String {
     );
     page.section("difference", "Error budget", &difference(results));
     page.section("bounces", "Light by bounce count", &bounces(results));
-    page.section("settings", "What was run", &settings(results));
     embed(&mut page, results);
     page.html()
 }

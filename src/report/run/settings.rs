@@ -10,7 +10,7 @@ const MOST_TEXT: usize = 200_000;
 /// The significance of a test for which none is given.
 const USUAL_SIGNIFICANCE: f64 = 1e-3;
 
-/// Settings, times, commands, and the scene file.
+/// Commands, settings, times, and the scene file.
 pub(super) fn settings(results: &RunResults) -> String {
     let (plan, scene) = (&results.plan, &results.scene);
     let mut facts = results.facts();
@@ -20,7 +20,6 @@ pub(super) fn settings(results: &RunResults) -> String {
     ];
     let more = version.map(|(key, text)| vec![key.into(), text.into()]);
     facts.rows.extend(more);
-    let mut html = bare(&facts) + "<h3>To repeat it</h3>\n";
     let file = scene_file(scene);
     let traced = format!(
         "{file} -o out --estimator {} --sampler {} --samples {} --seed {}",
@@ -37,8 +36,12 @@ pub(super) fn settings(results: &RunResults) -> String {
     if results.model.is_some() {
         commands += &format!("phicam validate out{test}\nphicam recover out\n");
     }
-    html.push_str(&format!("<pre>{}</pre>\n", escape(&commands)));
-    html + &scene_text(scene)
+    format!(
+        "<h3>To repeat it</h3>\n<pre>{}</pre>\n{}{}",
+        escape(&commands),
+        bare(&facts),
+        scene_text(scene)
+    )
 }
 
 /// The options of a test that are not the usual ones.

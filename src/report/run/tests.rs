@@ -36,7 +36,11 @@ fn a_whole_run_makes_a_whole_page() {
     well_formed(&html).unwrap();
     needs_no_network(&html);
     for text in [
-        "Traced and physical model agree",
+        "<b>Agreement:</b> <strong>traced and physical model agree:</strong>",
+        "<b>How sure:</b> <strong>it fits the photographs:</strong>",
+        "aria-label=\"truth of object\"",
+        "aria-label=\"what was recovered of object\"",
+        "aria-label=\"what the photographs determine of object\"",
         "spot 119 at",
         "Φcam, modelled",
         "<h3>object</h3>",
@@ -54,12 +58,69 @@ fn a_whole_run_makes_a_whole_page() {
     assert!(shown(&html).len() < 1_000_000 && html.len() < 10_000_000);
 }
 
+/// First the answer, then how it was done, then what there is to explore.
+#[test]
+fn the_answer_comes_first() {
+    let html = run_html(&run("bench"));
+    let order = [
+        "truth of object",
+        "what was recovered of object",
+        "<b>Hidden:</b>",
+        "<b>Recovered:</b>",
+        "<b>How sure:</b>",
+        "<b>Agreement:</b>",
+        "<nav",
+        "id=\"scene\"",
+        "id=\"settings\"",
+        "id=\"recovered\"",
+        "id=\"explorer\"",
+        "id=\"phi\"",
+        "id=\"difference\"",
+    ];
+    let at = order.map(|part| html.find(part).unwrap_or_else(|| panic!("no {part}")));
+    assert!(at.is_sorted(), "{at:?}");
+}
+
+/// A picture that does not fit, and light that disagrees, have the colour of bad news.
+#[test]
+fn bad_news_are_on_the_first_screen() {
+    let mut results = run("bench");
+    results.recovered[0].fit.as_mut().unwrap().fits = false;
+    results.agreement.as_mut().unwrap().agrees = false;
+    let html = run_html(&results);
+    let bad = "<p class=\"claim disagree\">";
+    for claim in [
+        "<b>How sure:</b> <strong>it DOES NOT FIT the photographs:</strong>",
+        "<b>Agreement:</b> <strong>traced and physical model DISAGREE:</strong>",
+    ] {
+        assert!(html.contains(&format!("{bad}{claim}")), "{claim}");
+    }
+    // The error of an element is drawn where it differs from another's.
+    results.recovered[0].standard_error = Some(vec![0.2; 64]);
+    assert!(!run_html(&results).contains("standard error of object"));
+    results.recovered[0].standard_error.as_mut().unwrap()[5] = 0.1;
+    assert!(run_html(&results).contains("standard error of object"));
+    // Where the truth is not known, the page says that.
+    results.recovered[0].truth = None;
+    let html = run_html(&results);
+    assert!(html.contains("<div class=\"unknown\">not known</div>"));
+    // Of many surfaces the first three.
+    for surface in ["b", "c", "d", "e"] {
+        let mut other = results.recovered[0].clone();
+        other.surface = surface.to_owned();
+        results.recovered.push(other);
+    }
+    let html = run_html(&results);
+    assert_eq!(html.matches("<div class=\"three\">").count(), 3);
+    assert!(html.contains("2 further surfaces"));
+}
+
 #[test]
 fn a_run_without_model_makes_a_page_too() {
     let html = run_html(&bare("furnace"));
     well_formed(&html).unwrap();
     needs_no_network(&html);
-    assert!(html.contains("No model to compare with"));
+    assert!(html.contains("no model to compare with"));
     let shown = shown(&html);
     assert!(!shown.contains("modelled") && !shown.contains("Recovered"));
 }

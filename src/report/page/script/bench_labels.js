@@ -139,6 +139,12 @@ function placeLabels(bench, sight, layer, labels) {
     const [width, height] = [sight.stage.clientWidth, sight.stage.clientHeight];
     // Kept free: the scale bar.
     const taken = [[0, height - 30, 270, height]];
+    const { near: [low, high] } = bench.block;
+    /** Points of the axes, of which names keep off. */
+    const dots = [0, 1, 2].flatMap((i) => Array.from({ length: 61 }, (_, k) => {
+        const p = low.map((l, j) => (j === i ? l + (k / 60) * (high[i] + 0.05 * bench.size - l) : l));
+        return { axis: i, x: projectOn(across, p), y: projectOn(down, p) };
+    }));
     for (const label of labels) {
         const [alongX, alongY] = label.axis === undefined ? [sight.camera.zoom / bench.size, 0] : [across[label.axis], down[label.axis]];
         const short = label.reach !== undefined && label.reach * Math.hypot(alongX, alongY) < SHORTEST;
@@ -168,9 +174,11 @@ function placeLabels(bench, sight, layer, labels) {
         // The numbers of an axis stand below or left of it, its name goes on where it ends.
         const tick = label.axis !== undefined && !label.text.includes("/");
         const tried = !tick ? sides : Math.abs(alongX) > Math.abs(alongY) ? [below, ...sides] : [left, ...sides];
-        const free = tried.find(
+        const fits = tried.filter(
             ([a, b]) => a >= 2 && b >= 2 && a + w <= width - 2 && b + h <= height - 2 && !taken.some((t) => a < t[2] && a + w > t[0] && b < t[3] && b + h > t[1]),
         );
+        const clear = (/** @type {number[]} */ [a, b]) => label.axis === undefined || !dots.some((d) => d.axis !== label.axis && d.x > a - 2 && d.x < a + w + 2 && d.y > b && d.y < b + h);
+        const free = fits.find(clear) ?? fits[0];
         element.hidden = free === undefined;
         if (free !== undefined) {
             const [a, b] = free;

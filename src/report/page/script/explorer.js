@@ -176,12 +176,13 @@ upgrade(".explorer", async (root) => {
         }
         const line = (/** @type {string} */ name, /** @type {number} */ value, /** @type {string} */ unit) =>
             make("tr", {}, make("th", { scope: "row" }, name), make("td", { class: "n" }, make("data", { value, "data-of": name }, significant(value)), ` ${unit}`));
+        const nought = z !== 0 || traced === modelled ? "" : code > 0 ? ": not counted, as its standard error is in doubt" : code !== 0 ? "" : ": no more than the model's stated bound, which is taken off first";
         const doubts = about.tails.filter(([bit]) => (code & bit) !== 0).map(([, what]) => what);
         readout.replaceChildren(
             line("traced", traced, "W"),
             line("standard error", stderr, "W"),
             ...(source.has("tails") ? [line("doubt", code, doubts.join(", ") || "none: the standard error can be trusted")] : []),
-            ...(about.model ? [line("modelled", modelled, "W"), line("residual", traced - modelled, "W"), line("z", z, "standard errors")] : []),
+            ...(about.model ? [line("modelled", modelled, "W"), line("residual", traced - modelled, "W"), line("z", z, `standard errors${nought}`)] : []),
         );
         readout.dataset.spot = String(spot);
         readout.dataset.pixel = String(pixel);
