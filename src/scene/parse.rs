@@ -7,14 +7,46 @@ use serde::de::DeserializeOwned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{Fault, Place, SceneError, Step};
+use super::{reference, units};
 
-/// Parses the text of a scene file; `source` names it in errors.
-pub(super) fn parse<T: DeserializeOwned>(source: &str, text: &str) -> Result<T, SceneError> {
-    read_toml(
-        source,
-        text,
-        "`phicam scene export bench` shows a whole scene",
-    )
+/// Reads the text of a scene file, and returns with it the text in which values with units are
+/// numbers; `source` names it in errors.
+pub(super) fn parse<T: DeserializeOwned>(
+    source: &str,
+    text: &str,
+) -> Result<(T, String), SceneError> {
+    let converted = units::convert(source, text)?;
+    match toml::from_str(&converted.text) {
+        Ok(file) => Ok((file, converted.text)),
+        Err(e) => {
+            let message = message(&e);
+            let path = DeTable::parse(&converted.text).ok().map(|document| {
+                let at = e.span().map_or(0, |span| span.start);
+                path_at(document.get_ref(), at)
+            });
+            let example = "`phicam scene export bench` shows a whole scene";
+            let cure = path.map_or_else(
+                || cure(&message, example),
+                |path| cure_of_key(&message, &path),
+            );
+            let given = |at: usize| converted.given(at);
+            let span = e.span().map(|span| given(span.start)..given(span.end));
+            Err(SceneError {
+                source: source.to_owned(),
+                place: span.map(|span| Place::new(text, &span)),
+                cause: message,
+                cure,
+            })
+        }
+    }
+}
+
+/// What the TOML reader says is wrong, on one line.
+fn message(error: &toml::de::Error) -> String {
+    let message = error.message().trim().replace('\n', "; ");
+    let words = [("expected f64", "expected a number"), ("expected u32", "expected a whole number")];
+    let words = words.into_iter().chain([("expected u64", "expected a whole number")]);
+    words.fold(message, |message, (old, new)| message.replace(old, new))
 }
 
 /// Parses TOML text; `source` names it in errors, and `example` says where a right one is shown.
@@ -27,7 +59,7 @@ pub fn read_toml<T: DeserializeOwned>(
     example: &str,
 ) -> Result<T, SceneError> {
     toml::from_str(text).map_err(|e| {
-        let message = e.message().trim().replace('\n', "; ");
+        let message = message(&e);
         SceneError {
             source: source.to_owned(),
             place: e.span().map(|span| Place::new(text, &span)),
@@ -35,6 +67,67 @@ pub fn read_toml<T: DeserializeOwned>(
             cause: message,
         }
     })
+}
+
+/// The keys that lead to byte `at` of a document's text, parted by dots; those of lists' entries
+/// left out.
+fn path_at(document: &DeTable<'_>, at: usize) -> String {
+    fn search(table: &DeTable<'_>, at: usize, path: &str, found: &mut String) {
+        for (key, value) in table {
+            let path = format!("{path}.{}", key.get_ref());
+            if key.span().contains(&at) || value.span().contains(&at) {
+                found.clone_from(&path);
+            }
+            within(value.get_ref(), at, &path, found);
+        }
+    }
+    fn within(value: &DeValue<'_>, at: usize, path: &str, found: &mut String) {
+        match value {
+            DeValue::Table(table) => search(table, at, path, found),
+            DeValue::Array(list) => {
+                for entry in list {
+                    if entry.span().contains(&at) {
+                        path.clone_into(found);
+                    }
+                    within(entry.get_ref(), at, path, found);
+                }
+            }
+            _ => {}
+        }
+    }
+    let mut found = String::new();
+    search(document, at, "", &mut found);
+    found.trim_start_matches('.').to_owned()
+}
+
+/// What to do about a message of the reader that blames the key at `path`.
+fn cure_of_key(message: &str, path: &str) -> String {
+    let parent = path.rsplit_once('.').map_or("", |(parent, _)| parent);
+    let below = |table: &str, key: &str| format!("{table}.{key}").trim_start_matches('.').to_owned();
+    let see = |path: &str| {
+        let command = reference::command(path);
+        command.unwrap_or_else(|| "`phicam help scene`".to_owned())
+    };
+    match Remark::of(message) {
+        Remark::UnknownKey(word, known) => match nearest(word, &known) {
+            Some(key) => format!("did you mean `{key}`? {}", see(&below(parent, key))),
+            None => format!("{}; {}", instead(word, &known), see(parent)),
+        },
+        Remark::UnknownValue(word, known) => match nearest(word, &known) {
+            Some(value) => format!("did you mean `{value}`? {}", see(path)),
+            None => format!("use one of {}; {}", known.join(", "), see(path)),
+        },
+        Remark::Missing(word) => {
+            format!("add `{word} = …` here; {}", see(&below(path, word)))
+        }
+        Remark::Other => match reference::find(path) {
+            Some((shown, key)) => {
+                let value = key.value;
+                format!("write `{shown}` as {value}; `phicam help scene {shown}`")
+            }
+            None => format!("write it as the reference says; {}", see(path)),
+        },
+    }
 }
 
 /// The text of a scene file; `source` names it in errors.
@@ -53,11 +146,20 @@ pub(super) fn locate(source: &str, text: &str, fault: Fault) -> SceneError {
         let root = DeValue::Table(document.into_inner());
         span(&root, &fault.path).map(|s| Place::new(text, &s))
     });
+    let keys = fault.path.iter().filter_map(|step| match step {
+        Step::Key(key) => Some(*key),
+        Step::Index(_) => None,
+    });
+    let path = keys.collect::<Vec<_>>().join(".");
+    let command = reference::command(&path);
     SceneError {
         source: source.to_owned(),
         place,
         cause: fault.cause,
-        cure: fault.cure,
+        cure: match command {
+            Some(command) => format!("{}; {command}", fault.cure),
+            None => fault.cure,
+        },
     }
 }
 
@@ -71,33 +173,68 @@ fn span(value: &DeValue<'_>, path: &[Step]) -> Option<Range<usize>> {
     span(inner.get_ref(), rest).or_else(|| Some(inner.span()))
 }
 
+/// What a message of the TOML reader says.
+enum Remark<'a> {
+    /// A key, and those that are known.
+    UnknownKey(&'a str, Vec<&'a str>),
+    /// A value, and those that are known.
+    UnknownValue(&'a str, Vec<&'a str>),
+    /// A key that has to be there.
+    Missing(&'a str),
+    /// Anything else.
+    Other,
+}
+
+impl<'a> Remark<'a> {
+    fn of(message: &'a str) -> Self {
+        let mut quoted = message.split('`').skip(1).step_by(2);
+        let Some(first) = quoted.next() else {
+            return Self::Other;
+        };
+        if message.starts_with("unknown field") {
+            Self::UnknownKey(first, quoted.collect())
+        } else if message.starts_with("unknown variant") {
+            Self::UnknownValue(first, quoted.collect())
+        } else if message.starts_with("missing field") {
+            Self::Missing(first)
+        } else {
+            Self::Other
+        }
+    }
+}
+
+/// The word of `known` that is near to `word`, if one is.
+fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    let near = known
+        .iter()
+        // A word of a megabyte is near to none of them.
+        .filter(|k| word.len() <= 2 * k.len())
+        .map(|k| (strsim::damerau_levenshtein(word, k), *k))
+        .min_by_key(|(distance, _)| *distance);
+    near.filter(|(distance, k)| *distance <= word.len().max(k.len()) / 2)
+        .map(|(_, k)| k)
+}
+
+/// What to do about a key that is not known nor near to one that is.
+fn instead(word: &str, known: &[&str]) -> String {
+    if known.is_empty() {
+        format!("remove `{word}`")
+    } else {
+        format!("remove it, or use one of {}", known.join(", "))
+    }
+}
+
 /// What to do about a message of the TOML reader.
 fn cure(message: &str, example: &str) -> String {
-    let mut quoted = message.split('`').skip(1).step_by(2);
-    let unknown = message.starts_with("unknown field") || message.starts_with("unknown variant");
-    let missing = message.starts_with("missing field");
-    let first = quoted.next();
-    let known: Vec<&str> = quoted.collect();
-    match first {
-        Some(word) if unknown => {
-            let nearest = known
-                .iter()
-                // A word of a megabyte is near to none of them.
-                .filter(|k| word.len() <= 2 * k.len())
-                .map(|k| (strsim::damerau_levenshtein(word, k), *k))
-                .min_by_key(|(distance, _)| *distance);
-            match nearest {
-                Some((distance, k)) if distance <= word.len().max(k.len()) / 2 => {
-                    format!("did you mean `{k}`? ({example})")
-                }
-                _ if known.is_empty() => format!("remove `{word}`"),
-                _ => format!("remove it, or use one of {}", known.join(", ")),
+    match Remark::of(message) {
+        Remark::UnknownKey(word, known) | Remark::UnknownValue(word, known) => {
+            match nearest(word, &known) {
+                Some(k) => format!("did you mean `{k}`? ({example})"),
+                None => instead(word, &known),
             }
         }
-        Some(word) if missing => {
-            format!("add `{word} = …` here ({example})")
-        }
-        _ => format!("write it as in one that works: {example}"),
+        Remark::Missing(word) => format!("add `{word} = …` here ({example})"),
+        Remark::Other => format!("write it as in one that works: {example}"),
     }
 }
 
@@ -146,7 +283,7 @@ mod tests {
     #[test]
     fn wrong_types_and_missing_keys_have_their_line() {
         for (old, new) in [
-            ("power = 5.0e-3", "power = \"5 mW\""),
+            ("power = 5.0e-3", "power = \"much\""),
             ("pixels = [16, 16]", "pixels = 16"),
         ] {
             let text = BENCH.replacen(old, new, 1);

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args as Arguments;
 
 use super::choice;
-use super::value::{elements, levels};
+use super::value::{count, elements, levels};
 use crate::lab::Integration;
 use crate::model::Kernel;
 use crate::recovery::{Rule, WeightRule};
@@ -78,7 +78,7 @@ pub(in crate::cli) struct RecoverArgs {
     #[arg(long, value_parser = choice::rule(), default_value = "discrepancy")]
     pub rule: Rule,
     /// Singular directions that tsvd keeps, in place of the rule's choice
-    #[arg(long, value_name = "K", allow_negative_numbers = true)]
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count)]
     pub rank: Option<usize>,
     /// Damping of tikhonov and tikhonov-gradient relative to σ1, in place of the rule's choice
     #[arg(long, value_name = "LAMBDA", allow_negative_numbers = true)]
