@@ -270,3 +270,6 @@ fn squared(name: &str) -> Option<&'static Scale> {
     let side = ["²", "^2", "2"].iter().find_map(|end| name.strip_suffix(end))?;
     named(&LENGTHS, side)
 }
+
+#[cfg(test)]
+mod tests;

@@ -164,3 +164,6 @@ pub(super) fn command(path: &str) -> Option<String> {
         path = path.rsplit_once('.')?.0;
     }
 }
+
+#[cfg(test)]
+mod tests;

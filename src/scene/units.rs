@@ -144,3 +144,6 @@ fn refused(
     let cure = format!("use {units}, or a number without quotes{bare}; {command}");
     (cause, cure)
 }
+
+#[cfg(test)]
+mod tests;

@@ -12,6 +12,7 @@ mod reproduce;
 mod serve;
 mod study;
 mod target;
+mod terms;
 mod value;
 mod view;
 
@@ -26,6 +27,7 @@ use crate::lab::{Errors, Integration};
 use crate::model::Kernel;
 use crate::num::stream::Sampling;
 use crate::transport::Estimator;
+use terms::explained;
 use value::{count, definition, elements, shift, spot_range, whole};
 
 pub(in crate::cli) use calibrate::CalibrateArgs;
@@ -198,6 +200,7 @@ pub(in crate::cli) struct TraceArgs {
 }
 
 #[derive(Debug, Arguments)]
+#[command(after_long_help = explained(&["traced", "modelled", "entry", "z", "χ²/dof", "degrees of freedom", "best scale", "determined", "MTF raw", "MTF normalized", "RMSE"]))]
 pub(in crate::cli) struct RunArgs {
     /// Built-in scene or path of a scene file
     #[arg(default_value = "bench")]
@@ -255,6 +258,7 @@ pub(in crate::cli) struct StackArgs {
 }
 
 #[derive(Debug, Arguments)]
+#[command(after_long_help = explained(&["G12", "G23", "Φcam", "modelled", "by centres"]))]
 pub(in crate::cli) struct ModelArgs {
     /// Built-in scene or path of a scene file
     pub scene: String,
@@ -313,6 +317,7 @@ pub(in crate::cli) struct TestArgs {
 }
 
 #[derive(Debug, Arguments)]
+#[command(after_long_help = explained(&["traced", "modelled", "entry", "z", "χ²/dof", "degrees of freedom", "best scale", "by centres", "Šidák"]))]
 pub(in crate::cli) struct ValidateArgs {
     /// Folder of a run; with --phi it may be left out, if --against says of which scene
     #[arg(required_unless_present_all = ["phi", "against"])]

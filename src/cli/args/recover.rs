@@ -6,12 +6,14 @@ use std::path::PathBuf;
 use clap::Args as Arguments;
 
 use super::choice;
+use super::terms::explained;
 use super::value::{count, elements, levels};
 use crate::lab::Integration;
 use crate::model::Kernel;
 use crate::recovery::{Rule, WeightRule};
 
 #[derive(Debug, Arguments)]
+#[command(after_long_help = explained(&["G12", "determined", "by centres", "degrees of freedom", "MTF raw", "MTF normalized", "RMSE", "singular values"]))]
 pub(in crate::cli) struct RecoverArgs {
     /// Folder of a run; with --phi a folder with a scene.toml is enough, with --camera-side none is
     /// needed
