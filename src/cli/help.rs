@@ -69,7 +69,10 @@ fn of_key(path: &str) -> Result<String, Failure> {
         let cure = match &near[..] {
             [] => "`phicam help scene` lists all keys".to_owned(),
             near => {
-                let near: Vec<String> = near.iter().map(|n| format!("`phicam help scene {n}`")).collect();
+                let near: Vec<String> = near
+                    .iter()
+                    .map(|n| format!("`phicam help scene {n}`"))
+                    .collect();
                 format!("did you mean {}?", near.join(" or "))
             }
         };
@@ -122,7 +125,10 @@ fn reference_text() -> String {
         } else if let Some(cells) = line.strip_prefix("| `") {
             let cells = cells.trim_end_matches(" |").replacen('`', "", 1);
             let (first, rest) = cells.split_once(" | ").unwrap_or((&cells, ""));
-            text += &format!("{first}\n{}", wrapped(&plain(&rest.replace(" | ", ": ")), 4));
+            text += &format!(
+                "{first}\n{}",
+                wrapped(&plain(&rest.replace(" | ", ": ")), 4)
+            );
         } else if line.is_empty() && text.ends_with("\n") && !text.ends_with("\n\n") {
             text += "\n";
         }

@@ -15,7 +15,10 @@ pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), 
     let record = Record::read(dir)?.ok_or_else(|| {
         let shown = dir.display();
         let cause = if dir.exists() {
-            format!("{shown} is not the folder of a run: it has no {}", Record::FILE)
+            format!(
+                "{shown} is not the folder of a run: it has no {}",
+                Record::FILE
+            )
         } else {
             format!("{shown} is not the folder of a run: it is not there")
         };
@@ -43,7 +46,10 @@ pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), 
 /// What to give where `given` is not the folder of a run.
 fn folder_meant(given: &Path) -> String {
     let name = given.to_string_lossy();
-    let of_file = given.ancestors().skip(1).find(|dir| dir.join(Record::FILE).is_file());
+    let of_file = given
+        .ancestors()
+        .skip(1)
+        .find(|dir| dir.join(Record::FILE).is_file());
     match of_file {
         Some(dir) if given.is_file() && !dir.as_os_str().is_empty() => {
             format!("give its folder: `{}`", dir.display())

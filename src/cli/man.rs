@@ -27,14 +27,23 @@ pub(super) fn execute(args: &ManArgs, console: Console) -> Result<Outcome, Failu
         output::write_new(&dir.join(name), text, args.force)?;
     }
     let (count, dir) = (pages.len(), dir.display());
-    console.say(format!("{dir}: {count} pages; `man -l {dir}/phicam.1` shows the first"));
+    console.say(format!(
+        "{dir}: {count} pages; `man -l {dir}/phicam.1` shows the first"
+    ));
     Ok(Outcome::Done)
 }
 
 /// The pages of a command and of its subcommands, by file name; `before` is what leads to it.
-fn collect(command: Command, before: &str, pages: &mut Vec<(String, String)>) -> Result<(), Failure> {
+fn collect(
+    command: Command,
+    before: &str,
+    pages: &mut Vec<(String, String)>,
+) -> Result<(), Failure> {
     let name = format!("{before}{}", command.get_name());
-    for inner in command.get_subcommands().filter(|inner| !inner.is_hide_set()) {
+    for inner in command
+        .get_subcommands()
+        .filter(|inner| !inner.is_hide_set())
+    {
         collect(inner.clone(), &format!("{name}-"), pages)?;
     }
     let called = command.display_name(name.clone());

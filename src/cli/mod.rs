@@ -184,14 +184,13 @@ fn refuse(error: &clap::Error) -> ExitCode {
         .map(|word| word.to_string_lossy().into_owned())
         .collect();
     let plain = error.render().to_string();
-    if harmless(&plain) == plain {
+    if let Some(told) = hints::told(error, &words) {
+        complain(&told);
+    } else if harmless(&plain) == plain {
         // That nobody reads it is no reason for another code.
         let _ = error.print();
     } else {
         complain(plain.trim_end());
-    }
-    if let Some(cure) = hints::hint(error, &words) {
-        complain(&format!("  cure: {cure}"));
     }
     // The first word that is a command, whatever options stand before it.
     let commands = Args::command();

@@ -61,11 +61,14 @@ fn builtin(name: &str) -> Result<&'static Builtin, Failure> {
 
 /// The text of a scene file with another name in its line `name = "…"`.
 fn renamed(text: &str, name: &str) -> String {
-    let quoted: String = name.chars().flat_map(|c| match c {
-        '"' | '\\' => vec!['\\', c],
-        c if c.is_control() => format!("\\u{:04x}", u32::from(c)).chars().collect(),
-        c => vec![c],
-    }).collect();
+    let quoted: String = name
+        .chars()
+        .flat_map(|c| match c {
+            '"' | '\\' => vec!['\\', c],
+            c if c.is_control() => format!("\\u{:04x}", u32::from(c)).chars().collect(),
+            c => vec![c],
+        })
+        .collect();
     let line = |line: &str| {
         if line.starts_with("name = ") {
             format!("name = \"{quoted}\"\n")

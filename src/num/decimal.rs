@@ -150,7 +150,9 @@ mod tests {
         }
         assert!(number("-0").nearest().is_sign_negative());
         assert_eq!(number("1e999999").nearest(), f64::INFINITY);
-        for text in ["", ".", "-", "e5", "1e", "1e5.5", "1,5", "1_0", "inf", "0x1", "1.2.3", "--1"] {
+        for text in [
+            "", ".", "-", "e5", "1e", "1e5.5", "1,5", "1_0", "inf", "0x1", "1.2.3", "--1",
+        ] {
             assert_eq!(Decimal::parse(text), None, "{text}");
         }
     }
@@ -167,7 +169,14 @@ mod tests {
         ] {
             assert_eq!(number(text).whole(), Some(n), "{text}");
         }
-        for text in ["1.5", "-1", "18446744073709551616", "1e20", "1e-1", "1e999999"] {
+        for text in [
+            "1.5",
+            "-1",
+            "18446744073709551616",
+            "1e20",
+            "1e-1",
+            "1e999999",
+        ] {
             assert_eq!(number(text).whole(), None, "{text}");
         }
     }

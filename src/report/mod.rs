@@ -71,9 +71,9 @@ pub use gallery_svg::gallery_svg;
 pub use html::finding_html;
 #[cfg(feature = "cli")]
 pub use invocation::Invocation;
+pub use mitsuba::{MitsubaError, mitsuba_script};
 #[cfg(feature = "cli")]
 pub use page::meaning;
-pub use mitsuba::{MitsubaError, mitsuba_script};
 pub use panel::{Panel, ScaleBar};
 pub use photograph::{Marked, photograph_png};
 #[cfg(feature = "cli")]

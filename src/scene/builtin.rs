@@ -82,6 +82,9 @@ fn meant(path: &str, is_missing: bool) -> Option<String> {
     }
     let name = path.strip_suffix(".toml").unwrap_or(path);
     let near = |b: &&Builtin| strsim::damerau_levenshtein(b.name, name) <= 2;
-    let near = builtins().iter().filter(|b| b.name.len() >= name.len() / 2).find(near)?;
+    let near = builtins()
+        .iter()
+        .filter(|b| b.name.len() >= name.len() / 2)
+        .find(near)?;
     Some(format!("did you mean the built-in scene `{}`?", near.name))
 }

@@ -230,7 +230,9 @@ impl Dimension {
         if let Some(factor) = self.factor(name, unit) {
             return Ok(factor.of_value(&value));
         }
-        let other = Self::ALL.into_iter().find(|d| d.factor(name, unit).is_some());
+        let other = Self::ALL
+            .into_iter()
+            .find(|d| d.factor(name, unit).is_some());
         Err(NoNumber::Unit(name.to_owned(), other))
     }
 }
@@ -267,7 +269,9 @@ fn named<'a>(scales: &'a [Scale], name: &str) -> Option<&'a Scale> {
 
 /// The unit of length whose square `name` is.
 fn squared(name: &str) -> Option<&'static Scale> {
-    let side = ["²", "^2", "2"].iter().find_map(|end| name.strip_suffix(end))?;
+    let side = ["²", "^2", "2"]
+        .iter()
+        .find_map(|end| name.strip_suffix(end))?;
     named(&LENGTHS, side)
 }
 

@@ -16,6 +16,7 @@ mod builtin;
 mod camera;
 mod check;
 mod coordinates;
+mod cure;
 mod device;
 mod dimension;
 mod displaced;

@@ -26,7 +26,11 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| TEXT.lines().filter_map(row).
 
 /// The key that a row of a table documents; `None` for any other line.
 pub fn row(line: &'static str) -> Option<Key> {
-    let cells: Vec<&str> = line.strip_prefix("| `")?.strip_suffix(" |")?.split(" | ").collect();
+    let cells: Vec<&str> = line
+        .strip_prefix("| `")?
+        .strip_suffix(" |")?
+        .split(" | ")
+        .collect();
     let [path, value, default, meaning] = cells[..] else {
         return None;
     };
@@ -137,19 +141,31 @@ pub fn nearest(path: &str) -> Vec<String> {
     let last = |path: &str| path.rsplit('.').next().unwrap_or(path).to_owned();
     let asked = last(path);
     // A word of a megabyte is near to none of them.
-    let asked = if asked.len() > 100 { String::new() } else { asked };
+    let asked = if asked.len() > 100 {
+        String::new()
+    } else {
+        asked
+    };
     let apart = |a: &str, b: &str| strsim::damerau_levenshtein(a, b);
     let mut near: Vec<(usize, usize, String)> = keys()
         .iter()
         .map(|key| {
             let whole: String = path.chars().take(100).collect();
             let own = last(key.path);
-            (apart(&own, &asked), apart(&example(key.path), &whole), example(key.path))
+            (
+                apart(&own, &asked),
+                apart(&example(key.path), &whole),
+                example(key.path),
+            )
         })
         .collect();
     near.sort();
     let best = near[0].0;
-    let limit = if best == 0 { 0 } else { best.max(asked.len() / 3) };
+    let limit = if best == 0 {
+        0
+    } else {
+        (asked.len() / 3).max(1)
+    };
     let near = near.into_iter().filter(|(distance, ..)| *distance <= limit);
     near.map(|(.., path)| path).take(3).collect()
 }

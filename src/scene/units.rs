@@ -130,16 +130,24 @@ fn refused(
     why: &NoNumber,
     unit: Option<Unit>,
 ) -> (String, String) {
-    let path = path.replacen("material.", "surface.material.", usize::from(path.starts_with("material.")));
+    let path = path.replacen(
+        "material.",
+        "surface.material.",
+        usize::from(path.starts_with("material.")),
+    );
     let (name, units) = (dimension.name(), dimension.units());
     let cause = match why {
         NoNumber::Bare | NoNumber::Text => format!("\"{text}\" has no unit"),
         NoNumber::Unit(_, Some(other)) => {
             format!("\"{text}\" is {}, and `{path}` is {name}", other.name())
         }
-        NoNumber::Unit(given, None) => format!("there is no unit `{given}`, and `{path}` is {name}"),
+        NoNumber::Unit(given, None) => {
+            format!("there is no unit `{given}`, and `{path}` is {name}")
+        }
     };
-    let bare = unit.map_or_else(String::new, |unit| format!(" (then in {})", dimension.bare(unit)));
+    let bare = unit.map_or_else(String::new, |unit| {
+        format!(" (then in {})", dimension.bare(unit))
+    });
     let command = reference::command(&path).unwrap_or_default();
     let cure = format!("use {units}, or a number without quotes{bare}; {command}");
     (cause, cure)

@@ -17,7 +17,10 @@ fn the_whole_reference_follows_the_help_of_the_command() {
     assert!(all.lines().all(|line| line.chars().count() <= 100));
     // Commands keep their help.
     let command = workspace.phicam("help scene check").exits(0).stdout;
-    assert_eq!(command, workspace.phicam("scene check --help").exits(0).stdout);
+    assert_eq!(
+        command,
+        workspace.phicam("scene check --help").exits(0).stdout
+    );
     assert_eq!(
         workspace.phicam("help run").exits(0).stdout,
         workspace.phicam("run --help").exits(0).stdout
@@ -30,15 +33,27 @@ fn a_key_has_its_type_unit_default_and_what_stands_below_it() {
     for (keys, words) in [
         (
             "camera.view",
-            &["camera.view  (table, required)", "camera.view.x  (2 numbers, length, required)"][..],
+            &[
+                "camera.view  (table, required)",
+                "camera.view.x  (2 numbers, length, required)",
+            ][..],
         ),
-        ("laser.spots.per_side", &["(whole number, required)", "each side"]),
+        (
+            "laser.spots.per_side",
+            &["(whole number, required)", "each side"],
+        ),
         ("laser.power", &["number, W, required", "units: W, kW, mW"]),
         (
             "surface.material",
-            &["surface.material.roughness  (number, rad", "surface.material.conductor.eta"],
+            &[
+                "surface.material.roughness  (number, rad",
+                "surface.material.conductor.eta",
+            ],
         ),
-        ("surface.wall.material.lambertian", &["surface.material.lambertian.checkerboard"]),
+        (
+            "surface.wall.material.lambertian",
+            &["surface.material.lambertian.checkerboard"],
+        ),
         ("sensor.exposure", &["default 1", "min"]),
         ("[laser]", &["laser.wavelength"]),
         ("material", &["material.paint"]),
@@ -47,7 +62,11 @@ fn a_key_has_its_type_unit_default_and_what_stands_below_it() {
         let line = format!("help scene {keys}");
         let ended = workspace.phicam(&line).exits(0);
         for word in words {
-            assert!(ended.stdout.contains(word), "no `{word}` in {}", ended.account());
+            assert!(
+                ended.stdout.contains(word),
+                "no `{word}` in {}",
+                ended.account()
+            );
         }
     }
 }
@@ -58,24 +77,43 @@ fn a_new_scene_is_checked_and_computed() {
     let workspace = Workspace::new();
     let _ = workspace.phicam("new corner").exits(0);
     let text = workspace.text("corner.toml");
-    assert!(text.contains("name = \"corner\"") && text.contains("# "), "{text}");
+    assert!(
+        text.contains("name = \"corner\"") && text.contains("# "),
+        "{text}"
+    );
     let check = workspace.phicam("scene check corner.toml").exits(0).stdout;
-    assert!(check.contains("corner: ") && check.contains("nothing suspicious"), "{check}");
+    assert!(
+        check.contains("corner: ") && check.contains("nothing suspicious"),
+        "{check}"
+    );
     let run = workspace.phicam("run corner.toml -o out").exits(0);
     assert!(run.stdout.contains("AGREE"), "{}", run.account());
     // A run keeps numbers.
     let kept = workspace.text("out/scene.toml");
-    assert!(kept.contains("power = 0.005") && !kept.contains("mW"), "{kept}");
+    assert!(
+        kept.contains("power = 0.005") && !kept.contains("mW"),
+        "{kept}"
+    );
     let _ = workspace.phicam("expose out").exits(0);
     workspace.refuses("new corner", &["corner.toml is there already", "--force"]);
-    let _ = workspace.phicam("new corner.toml --from card --force").exits(0);
+    let _ = workspace
+        .phicam("new corner.toml --from card --force")
+        .exits(0);
     let copy = workspace.text("corner.toml");
     let card = workspace.phicam("scene export card").exits(0).stdout;
-    assert_eq!(copy, card.replacen("name = \"card\"", "name = \"corner\"", 1));
-    for builtin in phicam::scene::builtins().iter().filter(|b| b.name != "room") {
+    assert_eq!(
+        copy,
+        card.replacen("name = \"card\"", "name = \"corner\"", 1)
+    );
+    for builtin in phicam::scene::builtins()
+        .iter()
+        .filter(|b| b.name != "room")
+    {
         let line = format!("new copy --force --from {}", builtin.name);
         let _ = workspace.phicam(&line).exits(0);
-        let _ = workspace.phicam("scene show copy.toml -o copy.svg --force").exits(0);
+        let _ = workspace
+            .phicam("scene show copy.toml -o copy.svg --force")
+            .exits(0);
     }
 }
 
@@ -122,7 +160,10 @@ fn bash_completes_scenes_methods_and_options() {
             .output()
             .expect("bash runs");
         let reply = String::from_utf8_lossy(&done.stdout).into_owned();
-        assert!(reply.split_whitespace().any(|w| w == wanted), "{words}: {reply} {done:?}");
+        assert!(
+            reply.split_whitespace().any(|w| w == wanted),
+            "{words}: {reply} {done:?}"
+        );
     }
 }
 
@@ -133,7 +174,12 @@ fn every_command_has_a_manual_page() {
     assert!(main.contains(".TH") && main.contains("phicam"), "{main}");
     let _ = workspace.phicam("man pages").exits(0);
     let pages = workspace.contents("pages");
-    for name in ["phicam.1", "phicam-run.1", "phicam-scene-check.1", "phicam-study-noise.1"] {
+    for name in [
+        "phicam.1",
+        "phicam-run.1",
+        "phicam-scene-check.1",
+        "phicam-study-noise.1",
+    ] {
         let text = String::from_utf8_lossy(&pages[name]);
         assert!(text.contains(".SH SYNOPSIS"), "{name}: {text}");
     }

@@ -12,7 +12,10 @@ const TERMS: [(&str, &str); 8] = [
         "modelled",
         "Φcam as the matrix model computes it: by quadrature, without random errors",
     ),
-    ("entry", "one number of Φcam: one pixel under one laser spot"),
+    (
+        "entry",
+        "one number of Φcam: one pixel under one laser spot",
+    ),
     (
         "z",
         "traced minus modelled flux of an entry, in units of its standard error",
@@ -38,10 +41,15 @@ const TERMS: [(&str, &str); 8] = [
 /// The paragraph that explains `words`.
 pub(super) fn explained(words: &[&str]) -> String {
     let meaning = |word: &str| {
-        let own = TERMS.iter().find(|(of, _)| *of == word).map(|(_, meaning)| *meaning);
+        let own = TERMS
+            .iter()
+            .find(|(of, _)| *of == word)
+            .map(|(_, meaning)| *meaning);
         own.or_else(|| report::meaning(word)).unwrap_or_default()
     };
-    let lines = words.iter().map(|word| format!("\n  {word}: {}", meaning(word)));
+    let lines = words
+        .iter()
+        .map(|word| format!("\n  {word}: {}", meaning(word)));
     format!("Terms:{}", lines.collect::<String>())
 }
 

@@ -37,10 +37,12 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
 /// Whether `text` is a number and a unit, as 5 mW.
 fn has_unit(text: &str) -> bool {
     let is_of_a_number = |c: char| c.is_ascii_digit() || "+-.".contains(c);
-    let rest = text.trim_start_matches(|c| is_of_a_number(c));
+    let rest = text.trim_start_matches(is_of_a_number);
     let digits = &text[..text.len() - rest.len()];
     // Of a number with an exponent the unit follows that.
-    let exponent = rest.strip_prefix(['e', 'E']).map(|r| (r, r.trim_start_matches(is_of_a_number)));
+    let exponent = rest
+        .strip_prefix(['e', 'E'])
+        .map(|r| (r, r.trim_start_matches(is_of_a_number)));
     let unit = match exponent {
         Some((whole, after)) if whole.len() > after.len() => after,
         _ => rest,
@@ -48,7 +50,9 @@ fn has_unit(text: &str) -> bool {
     let unit = unit.trim();
     let starts_a_unit = |c: char| c.is_alphabetic() || "°%".contains(c);
     let is_of_a_base = digits == "0" && unit.starts_with(['x', 'o', 'b']);
-    digits.contains(|c: char| c.is_ascii_digit()) && unit.starts_with(starts_a_unit) && !is_of_a_base
+    digits.contains(|c: char| c.is_ascii_digit())
+        && unit.starts_with(starts_a_unit)
+        && !is_of_a_base
 }
 
 /// A value as TOML: words, and numbers with units, need no quotes.
@@ -68,10 +72,26 @@ pub(super) fn spot_range(text: &str) -> Result<Range<usize>, String> {
     let parts = text
         .split_once("..")
         .and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
-    match parts {
-        Some((a, b)) if a < b => Ok(a..b),
-        _ => Err("write it as A..B with A < B, spots A to B − 1, e.g. 0..30 for the first thirty".to_owned()),
+    match (parts, last_included(text)) {
+        (Some((a, b)), _) if a < b => Ok(a..b),
+        (_, Some([a, b])) => {
+            let end = b + 1;
+            Err(format!(
+                "spots {a} to {b} are {a}..{end}: A..B is A to B − 1"
+            ))
+        }
+        _ => Err(
+            "write it as A..B with A < B, spots A to B − 1, e.g. 0..30 for the first thirty"
+                .to_owned(),
+        ),
     }
+}
+
+/// The ends of "A-B", as other programs write a range.
+fn last_included(text: &str) -> Option<[usize; 2]> {
+    let (a, b) = text.split_once('-')?;
+    let ends = [a.parse().ok()?, b.parse().ok()?];
+    (ends[0] <= ends[1] && ends[1] < usize::MAX).then_some(ends)
 }
 
 /// "KEY=VALUE", the value as TOML, a word, a number with a unit, or a list of these.
@@ -173,7 +193,10 @@ mod tests {
             assert_eq!(seconds(text), Ok(time), "{text}");
         }
         for bad in ["5 mW", "fast", "", "1:30"] {
-            assert!(seconds(bad).is_err_and(|why| why.contains("100ms")), "{bad}");
+            assert!(
+                seconds(bad).is_err_and(|why| why.contains("100ms")),
+                "{bad}"
+            );
         }
     }
 
@@ -197,7 +220,11 @@ mod tests {
             ("{ x = 1 }", "{ x = 1 }"),
         ] {
             let text = format!("a.b = {given}");
-            assert_eq!(definition(&text), Ok(("a.b".to_owned(), value.to_owned())), "{given}");
+            assert_eq!(
+                definition(&text),
+                Ok(("a.b".to_owned(), value.to_owned())),
+                "{given}"
+            );
         }
         for bad in ["a.b", "=5", "a.b="] {
             assert!(definition(bad).is_err(), "{bad}");

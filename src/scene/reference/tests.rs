@@ -105,8 +105,15 @@ fn every_key_that_a_reader_takes_stands_in_the_reference_and_no_other() {
     let missing: Vec<_> = read.difference(&documented).collect();
     let unknown: Vec<_> = documented.difference(&read).collect();
     assert!(missing.is_empty(), "not in reference.md: {missing:?}");
-    assert!(unknown.is_empty(), "in reference.md, but read by nothing: {unknown:?}");
-    assert_eq!(keys().len(), documented.len(), "a key stands in the reference twice");
+    assert!(
+        unknown.is_empty(),
+        "in reference.md, but read by nothing: {unknown:?}"
+    );
+    assert_eq!(
+        keys().len(),
+        documented.len(),
+        "a key stands in the reference twice"
+    );
 }
 
 /// The sources of the tables: a table that the list above does not have would go unseen.
@@ -118,7 +125,10 @@ fn every_strict_table_of_the_sources_is_looked_at() {
         include_str!("../sensor.rs"),
         include_str!("../texture/file.rs"),
     ];
-    let strict: usize = sources.iter().map(|s| s.matches("deny_unknown_fields").count()).sum();
+    let strict: usize = sources
+        .iter()
+        .map(|s| s.matches("deny_unknown_fields").count())
+        .sum();
     assert_eq!(tables().len(), strict);
 }
 
@@ -135,7 +145,13 @@ fn what_is_called_a_table_has_keys() {
 /// Every unit of the reference is one of a dimension, or one of those that numbers only count in.
 #[test]
 fn units_are_known() {
-    let counts = ["electrons", "electrons/s", "electrons/count", "counts", "% or length"];
+    let counts = [
+        "electrons",
+        "electrons/s",
+        "electrons/count",
+        "counts",
+        "% or length",
+    ];
     for key in keys().iter().filter(|key| key.value.contains("number")) {
         if let Some((_, unit)) = key.value.rsplit_once(", ") {
             let unit = unit.split(" (").next().unwrap();
@@ -152,18 +168,35 @@ fn keys_are_found_as_files_and_definitions_name_them() {
         ("camera.view", "camera.view"),
         ("laser.spots.per_side", "laser.spots.per_side"),
         ("surface.material", "surface.material"),
-        ("surface.wall.material.lambertian", "surface.material.lambertian"),
+        (
+            "surface.wall.material.lambertian",
+            "surface.material.lambertian",
+        ),
         ("surface.0", "surface"),
-        ("surface.0.material.paint.ramp", "surface.material.paint.ramp"),
+        (
+            "surface.0.material.paint.ramp",
+            "surface.material.paint.ramp",
+        ),
         (
             "surface.a.material.mixture.1.material.ior",
             "surface.material.mixture.material.ior",
         ),
         ("uncertainty.hinge", "uncertainty.NAME"),
     ] {
-        assert_eq!(find(asked).map(|(path, _)| path).as_deref(), Some(shown), "{asked}");
+        assert_eq!(
+            find(asked).map(|(path, _)| path).as_deref(),
+            Some(shown),
+            "{asked}"
+        );
     }
-    for unknown in ["", "camera.vew", "camera.view.z", "laser.0.power", "surface.a.b.c", "x.y"] {
+    for unknown in [
+        "",
+        "camera.vew",
+        "camera.view.z",
+        "laser.0.power",
+        "surface.a.b.c",
+        "x.y",
+    ] {
         assert_eq!(find(unknown), None, "{unknown}");
     }
 }
@@ -177,7 +210,11 @@ fn the_nearest_keys_are_named() {
         ("lambertain", "surface.material.lambertian"),
         ("checkerbord", "surface.material.lambertian.checkerboard"),
     ] {
-        assert_eq!(nearest(asked).first().map(String::as_str), Some(near), "{asked}");
+        assert_eq!(
+            nearest(asked).first().map(String::as_str),
+            Some(near),
+            "{asked}"
+        );
     }
     assert!(nearest("zzzzzzzzzzzz").is_empty());
     assert!(nearest(&"laser".repeat(1 << 20)).is_empty());

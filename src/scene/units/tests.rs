@@ -64,7 +64,11 @@ fn values_with_units_are_the_scene_of_the_numbers() {
     assert_eq!(with.hash, bare.hash);
     assert_eq!(with.sensor, bare.sensor);
     assert_eq!(with.uncertainty, bare.uncertainty);
-    assert!(!with.text.contains(" mW") && with.text.contains("power = 0.005"), "{}", with.text);
+    assert!(
+        !with.text.contains(" mW") && with.text.contains("power = 0.005"),
+        "{}",
+        with.text
+    );
     let again = Scene::from_toml("again", &with.text).unwrap();
     assert_eq!(again.hash, bare.hash);
 }
@@ -85,18 +89,46 @@ fn what_has_no_dimension_keeps_its_text() {
 fn a_unit_that_does_not_fit_is_refused_with_those_that_do() {
     let text = scene(|bare, _| bare);
     for (old, new, words) in [
-        ("power = 5.0e-3", "power = \"5 mm\"", &["a length", "a power", "mW", "then in W"][..]),
-        ("power = 5.0e-3", "power = \"5 MW\"", &["no unit `MW`", "kW"]),
-        ("diameter = 0.1", "diameter = \"3 ms\"", &["a time", "a length", "then in in"]),
-        ("diameter = 0.1", "diameter = \"3\"", &["has no unit", "without quotes"]),
-        ("area = 0.05", "area = \"3 mm\"", &["a length", "an area", "mm²"]),
-        ("roughness = 0.3", "roughness = \"3 mm\"", &["an angle", "then in rad"]),
+        (
+            "power = 5.0e-3",
+            "power = \"5 mm\"",
+            &["a length", "a power", "mW", "then in W"][..],
+        ),
+        (
+            "power = 5.0e-3",
+            "power = \"5 MW\"",
+            &["no unit `MW`", "kW"],
+        ),
+        (
+            "diameter = 0.1",
+            "diameter = \"3 ms\"",
+            &["a time", "a length", "then in in"],
+        ),
+        (
+            "diameter = 0.1",
+            "diameter = \"3\"",
+            &["has no unit", "without quotes"],
+        ),
+        (
+            "area = 0.05",
+            "area = \"3 mm\"",
+            &["a length", "an area", "mm²"],
+        ),
+        (
+            "roughness = 0.3",
+            "roughness = \"3 mm\"",
+            &["an angle", "then in rad"],
+        ),
     ] {
         assert!(text.contains(old), "{old}");
         let text = text.replace(old, new);
         let error = Scene::from_toml("s", &text).unwrap_err();
         let place = error.place.clone().unwrap();
-        assert_eq!(place.text, text.lines().find(|l| l.contains(new)).unwrap(), "{error}");
+        assert_eq!(
+            place.text,
+            text.lines().find(|l| l.contains(new)).unwrap(),
+            "{error}"
+        );
         for word in words {
             assert!(error.to_string().contains(word), "no `{word}` in {error}");
         }
@@ -107,7 +139,10 @@ fn a_unit_that_does_not_fit_is_refused_with_those_that_do() {
 /// The roughness of paint is no angle.
 #[test]
 fn a_number_without_dimension_takes_no_unit() {
-    let text = scene(|bare, _| bare).replace("oren_nayar = 0.8, roughness = 0.3", "paint = 0.8, roughness = \"20 deg\"");
+    let text = scene(|bare, _| bare).replace(
+        "oren_nayar = 0.8, roughness = 0.3",
+        "paint = 0.8, roughness = \"20 deg\"",
+    );
     let error = Scene::from_toml("s", &text).unwrap_err();
     assert!(error.cause.contains("expected a number"), "{error}");
 }
@@ -119,7 +154,11 @@ fn places_are_those_of_the_given_text() {
     let error = Scene::from_toml("s", &text).unwrap_err();
     let place = error.place.unwrap();
     assert_eq!(place.text, text.lines().nth(place.line - 1).unwrap());
-    assert_eq!(place.text.chars().nth(place.column - 1), Some('z'), "{place:?}");
+    assert_eq!(
+        place.text.chars().nth(place.column - 1),
+        Some('z'),
+        "{place:?}"
+    );
     let text = scene(|_, unit| unit).replace("count = 3", "count = 3.5");
     let place = Scene::from_toml("s", &text).unwrap_err().place.unwrap();
     let rest: String = place.text.chars().skip(place.column - 1).collect();
