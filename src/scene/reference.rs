@@ -141,11 +141,9 @@ pub fn nearest(path: &str) -> Vec<String> {
     let last = |path: &str| path.rsplit('.').next().unwrap_or(path).to_owned();
     let asked = last(path);
     // A word of a megabyte is near to none of them.
-    let asked = if asked.len() > 100 {
-        String::new()
-    } else {
-        asked
-    };
+    if asked.is_empty() || asked.len() > 100 {
+        return Vec::new();
+    }
     let apart = |a: &str, b: &str| strsim::damerau_levenshtein(a, b);
     let mut near: Vec<(usize, usize, String)> = keys()
         .iter()

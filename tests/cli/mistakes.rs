@@ -126,7 +126,7 @@ const MISTAKES: &[(&str, &[&str])] = &[
     // Numbers.
     (
         "render tiny.toml -o new --spots 5-10",
-        &["5-10", "A..B", "0..30"],
+        &["5-10", "5..11", "A..B"],
     ),
     ("render tiny.toml -o new --spots 5..2", &["5..2", "A < B"]),
     (

@@ -161,6 +161,7 @@ fn places_are_those_of_the_given_text() {
     );
     let text = scene(|_, unit| unit).replace("count = 3", "count = 3.5");
     let place = Scene::from_toml("s", &text).unwrap_err().place.unwrap();
-    let rest: String = place.text.chars().skip(place.column - 1).collect();
+    let line = text.lines().nth(place.line - 1).unwrap();
+    let rest: String = line.chars().skip(place.column - 1).collect();
     assert!(rest.starts_with("3.5"), "{place:?}");
 }
