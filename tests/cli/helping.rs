@@ -87,7 +87,11 @@ fn a_new_scene_is_checked_and_computed() {
         "{check}"
     );
     let run = workspace.phicam("run corner.toml -o out").exits(0);
-    assert!(run.stdout.contains("AGREE"), "{}", run.account());
+    assert!(
+        run.stdout.contains("traced and physical model agree"),
+        "{}",
+        run.account()
+    );
     // A run keeps numbers.
     let kept = workspace.text("out/scene.toml");
     assert!(

@@ -87,7 +87,10 @@ const MISTAKES: &[(&str, &[&str])] = &[
         "recover done/phi.npy",
         &["done/phi.npy", "give its folder: `done`"],
     ),
-    ("stack nowhere", &["nowhere", "not there"]),
+    (
+        "stack nowhere",
+        &["nowhere", "give the output folder of a run"],
+    ),
     ("expose tiny.toml", &["that is a scene", "phicam run"]),
     ("locate bench", &["that is a scene", "phicam run"]),
     (
