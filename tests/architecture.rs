@@ -23,7 +23,7 @@ const BESIDE: [(&str, &str); 1] = [("film", "matrix")];
 /// Foreign crates and the one place that may name them. `exr` has two: frames are written and read
 /// with all their attributes, pictures of other programs are read without any; what both must know
 /// of a file's bytes stands in `image/exr/envelope`.
-const DOORS: [(&str, &[&str]); 29] = [
+const DOORS: [(&str, &[&str]); 31] = [
     ("obvhs", &["geometry/tree"]),
     ("exr", &["film/exr", "image/exr"]),
     ("faer", &["num/linalg"]),
@@ -46,6 +46,8 @@ const DOORS: [(&str, &[&str]); 29] = [
     ("postcard", &["lab/bytes"]),
     ("rustix", &["store"]),
     ("clap", &["cli"]),
+    ("clap_complete", &["cli/args/new", "cli/completions"]),
+    ("clap_mangen", &["cli/man"]),
     ("indicatif", &["cli"]),
     ("terminal_size", &["cli/view/terminal"]),
     ("cap_std", &["cli/serve/folder"]),

@@ -8,20 +8,21 @@ use super::run_folder::{LEFT_OUT, SCENE, TAILS};
 use crate::folder::Record;
 use crate::jobs::need;
 use crate::matrix::{Matrix, npy};
-use crate::scene::{COPIES, Scene};
+use crate::scene::{COPIES, Scene, builtins};
 
 /// The scene and the record of a finished run.
 pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), Failure> {
     let record = Record::read(dir)?.ok_or_else(|| {
-        let cause = format!(
-            "{} is not the folder of a run: it has no {}",
-            dir.display(),
-            Record::FILE
-        );
-        Failure::new(
-            cause,
-            "give a folder that `phicam run` or `phicam render` has written",
-        )
+        let shown = dir.display();
+        let cause = if dir.exists() {
+            format!(
+                "{shown} is not the folder of a run: it has no {}",
+                Record::FILE
+            )
+        } else {
+            format!("{shown} is not the folder of a run: it is not there")
+        };
+        Failure::new(cause, folder_meant(dir))
     })?;
     record.check_lengths(dir, COPIES)?;
     let path = dir.join(SCENE);
@@ -40,6 +41,24 @@ pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), 
     }
     record.check_scene(dir, &scene)?;
     Ok((scene, record))
+}
+
+/// What to give where `given` is not the folder of a run.
+fn folder_meant(given: &Path) -> String {
+    let name = given.to_string_lossy();
+    let of_file = given
+        .ancestors()
+        .skip(1)
+        .find(|dir| dir.join(Record::FILE).is_file());
+    match of_file {
+        Some(dir) if given.is_file() && !dir.as_os_str().is_empty() => {
+            format!("give its folder: `{}`", dir.display())
+        }
+        _ if name.ends_with(".toml") || builtins().iter().any(|b| b.name == name) => format!(
+            "that is a scene: compute it first, `phicam run {name} -o out`, then give the folder `out`"
+        ),
+        _ => "give a folder that `phicam run` or `phicam render` has written".to_owned(),
+    }
 }
 
 /// Refuses a file that the run vouches for to which it belongs (that of its folder, or of the two

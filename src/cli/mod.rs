@@ -49,6 +49,7 @@ mod args;
 mod batches;
 mod calibrate;
 mod cleanup;
+mod completions;
 mod console;
 mod expose;
 mod exposed_folder;
@@ -56,13 +57,17 @@ mod failure;
 mod findings;
 pub mod from_your_camera;
 pub mod guide;
+mod help;
+mod hints;
 mod import;
 mod interrupt;
 mod load_run;
 mod locate;
+mod man;
 mod many;
 pub mod many_machines;
 mod model;
+mod new;
 mod output;
 mod partial;
 mod preview;
@@ -104,6 +109,9 @@ use crate::store::harmless;
 /// Parses the arguments, runs the command and returns its exit code.
 pub fn main() -> ExitCode {
     interrupt::outlive_size_limits();
+    if let Some(code) = help::answer() {
+        return ExitCode::from(code);
+    }
     let args = match Args::try_parse() {
         Ok(args) => args,
         Err(error) => return refuse(&error),
@@ -147,6 +155,9 @@ pub fn main() -> ExitCode {
         Command::Clean(a) => many::clean::execute(a, console),
         Command::Study(a) => study::execute(a, console),
         Command::Reproduce(a) => reproduce::execute(a, console),
+        Command::New(a) => new::execute(a, console),
+        Command::Completions(a) => completions::execute(a),
+        Command::Man(a) => man::execute(a, console),
     };
     match result {
         Ok(outcome) => ExitCode::from(outcome as u8),
@@ -168,8 +179,14 @@ fn refuse(error: &clap::Error) -> ExitCode {
             _ => ExitCode::SUCCESS,
         };
     }
+    let words: Vec<String> = std::env::args_os()
+        .skip(1)
+        .map(|word| word.to_string_lossy().into_owned())
+        .collect();
     let plain = error.render().to_string();
-    if harmless(&plain) == plain {
+    if let Some(told) = hints::told(error, &words) {
+        complain(&told);
+    } else if harmless(&plain) == plain {
         // That nobody reads it is no reason for another code.
         let _ = error.print();
     } else {
@@ -177,9 +194,7 @@ fn refuse(error: &clap::Error) -> ExitCode {
     }
     // The first word that is a command, whatever options stand before it.
     let commands = Args::command();
-    let mut words = std::env::args_os()
-        .skip(1)
-        .filter_map(|word| word.into_string().ok());
+    let mut words = words.iter();
     let command = words.find(|word| commands.find_subcommand(word).is_some());
     let codes = match command {
         Some(name) if Command::SCHEDULED.contains(&name.as_str()) => Codes::Scheduler,

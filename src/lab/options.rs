@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
+use crate::num::decimal::Decimal;
 use crate::recovery::Method;
 
 /// What a value is.
@@ -66,6 +67,11 @@ pub const SAMPLERS: &[(&str, &str)] = &[
     ("pcg", "Independent random numbers"),
     ("sobol", "Owen-scrambled Sobol' points"),
 ];
+
+/// The whole number that `text` is, as 10000 or 1e4.
+fn whole(text: &str) -> Option<u64> {
+    Decimal::parse(text)?.whole()
+}
 
 impl Opt {
     const fn new(name: &'static str, help: &'static str, kind: Kind) -> Self {
@@ -190,13 +196,28 @@ impl Opt {
     /// What is wrong with it.
     pub fn parses(&self, text: &str) -> Result<(), String> {
         match &self.kind {
-            Kind::Whole(_) => text.parse::<u64>().map(drop).map_err(|e| e.to_string()),
-            Kind::Number => text.parse::<f64>().map(drop).map_err(|e| e.to_string()),
+            Kind::Whole(_) => match whole(text) {
+                Some(_) => Ok(()),
+                None => Err(self.form("a whole number, 0 or more, as 512 or 1e4", "8,16,32")),
+            },
+            Kind::Number => match text.parse::<f64>() {
+                Ok(_) => Ok(()),
+                Err(_) => Err(self.form("a number, as 0.01 or 1e-2", "0.01,0.03,0.1")),
+            },
             Kind::Name(names) if !names.iter().any(|(name, _)| *name == text) => {
                 let names: Vec<&str> = names.iter().map(|n| n.0).collect();
                 Err(format!("it is none of {}", names.join(", ")))
             }
             Kind::Name(_) | Kind::Text => Ok(()),
+        }
+    }
+
+    /// How values are written: `one` of them, and as an example `several`.
+    fn form(&self, one: &str, several: &str) -> String {
+        if self.list {
+            format!("write {one}, several separated by commas, as {several}")
+        } else {
+            format!("write {one}")
         }
     }
 
@@ -206,7 +227,7 @@ impl Opt {
         self.parses(text).map_err(|why| {
             OptionError::new(format!("--{name} {text} has no meaning: {why}"), self.help)
         })?;
-        if let (Kind::Whole(range), Ok(n)) = (&self.kind, text.parse())
+        if let (Kind::Whole(range), Some(n)) = (&self.kind, whole(text))
             && !range.contains(&n)
         {
             let (least, most) = (range.start(), range.end());
@@ -269,7 +290,12 @@ impl Values {
             return Err(OptionError::new(cause, "leave it out"));
         };
         values.iter().try_for_each(|value| option.check(value))?;
-        *own = values;
+        // 1e4 is 10000 for whoever reads it as a whole number.
+        let digits = |value: String| match option.kind {
+            Kind::Whole(_) => whole(&value).map_or(value, |n| n.to_string()),
+            _ => value,
+        };
+        *own = values.into_iter().map(digits).collect();
         Ok(self)
     }
 

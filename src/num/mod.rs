@@ -2,6 +2,8 @@
 //! linear algebra, arithmetic beyond double precision, wide arithmetic.
 
 #[doc(hidden)]
+pub mod decimal;
+#[doc(hidden)]
 pub mod digits;
 #[doc(hidden)]
 pub mod lanes;

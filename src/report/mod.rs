@@ -72,6 +72,8 @@ pub use html::finding_html;
 #[cfg(feature = "cli")]
 pub use invocation::Invocation;
 pub use mitsuba::{MitsubaError, mitsuba_script};
+#[cfg(feature = "cli")]
+pub use page::meaning;
 pub use panel::{Panel, ScaleBar};
 pub use photograph::{Marked, photograph_png};
 #[cfg(feature = "cli")]

@@ -60,14 +60,31 @@ pub(super) fn read(path: &str) -> Result<String, SceneError> {
     let known = names.clone().collect::<Vec<_>>().join(", ");
     let cure = || format!("give the path of a TOML scene file, or a built-in scene: {known}");
     let bytes = store::read(Path::new(path), LARGEST_FILE).map_err(|e| {
-        let near = names
-            .clone()
-            .find(|n| e.is_missing() && strsim::damerau_levenshtein(n, path) <= 2);
-        let cure = match near {
-            Some(n) => format!("did you mean the built-in scene `{n}`?"),
-            None => cure(),
-        };
+        let cure = meant(path, e.is_missing()).unwrap_or_else(cure);
         error(format!("cannot read this scene: {}", e.fault), cure)
     })?;
     String::from_utf8(bytes).map_err(|_| error("the file is not UTF-8 text".into(), cure()))
+}
+
+/// What somebody meant who called `path` a scene; `None` if nothing is near.
+fn meant(path: &str, is_missing: bool) -> Option<String> {
+    let scene_of_run = Path::new(path).join("scene.toml");
+    if scene_of_run.is_file() {
+        let scene_of_run = scene_of_run.display();
+        return Some(format!("that is a folder; its scene is `{scene_of_run}`"));
+    }
+    if !is_missing {
+        return None;
+    }
+    let with_ending = format!("{path}.toml");
+    if Path::new(&with_ending).is_file() {
+        return Some(format!("did you mean the file `{with_ending}`?"));
+    }
+    let name = path.strip_suffix(".toml").unwrap_or(path);
+    let near = |b: &&Builtin| strsim::damerau_levenshtein(b.name, name) <= 2;
+    let near = builtins()
+        .iter()
+        .filter(|b| b.name.len() >= name.len() / 2)
+        .find(near)?;
+    Some(format!("did you mean the built-in scene `{}`?", near.name))
 }

@@ -184,7 +184,7 @@ impl Scene {
         values: &[f64],
     ) -> Result<SceneFile, SceneError> {
         let to = self.displacement(parameters, values);
-        let mut file: SceneFile = parse::parse(&self.name, &self.text)?;
+        let (mut file, _): (SceneFile, _) = parse::parse(&self.name, &self.text)?;
         file.known.clear();
         let each = file.surface.iter_mut().zip(&self.surfaces);
         for ((table, surface), motion) in each.zip(&to.surfaces) {

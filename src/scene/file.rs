@@ -1,7 +1,7 @@
 //! The scene file as written: TOML tables, strict, unchecked. [`Scene`](super::Scene) is what they
 //! mean.
 //!
-//! Unknown keys are errors. The doc comment of each field is the documentation of its key.
+//! Unknown keys are errors. [`scene`](crate::scene) has the reference of the keys.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ impl SceneFile {
     /// A built-in scene to change, by name; `None` if there is none of that name.
     pub fn builtin(name: &str) -> Option<Self> {
         let builtin = builtins().iter().find(|b| b.name == name)?;
-        parse(name, builtin.text).ok()
+        Some(parse(name, builtin.text).ok()?.0)
     }
 
     /// The text of the scene file.

@@ -176,8 +176,8 @@ mod tests {
                 "raise",
             ),
             (
-                "pixel = 0\nspot = 0\nflux = \"1 W\"",
-                "flux = \"1 W\"",
+                "pixel = 0\nspot = 0\nflux = \"much\"",
+                "flux = \"much\"",
                 "invalid type",
                 "",
             ),

@@ -9,155 +9,16 @@
 //! All lengths are in the scene's [`Unit`]. Transport does not depend on it: étendue (length²) and
 //! form factors (length⁻²) cancel, and fluxes are in W.
 //!
-//! # The scene file
-//!
-//! TOML; unknown keys are errors. `phicam scene export bench` writes one out as a start.
-//!
-//! | key | meaning |
-//! | --- | --- |
-//! | `name` | name of the scene |
-//! | `unit` | length unit of every number in the file: `m`, `cm`, `mm`, `in` |
-//! | `max_bounces` | largest number of surfaces met between laser and camera, 1 to 1000; a surface that shines counts as one |
-//! | `laser` | `[laser]`; absent where a hidden surface shines |
-//! | `laser.power` | power that lands at the spot, W |
-//! | `laser.wavelength` | m, whatever the unit |
-//! | `laser.position` | where the beams start |
-//! | `laser.spot_diameter` | diameter of the spot on the wall; 0 (default) is an ideal spot |
-//! | `laser.profile` | `disc` (default): uniform irradiance; `gaussian`: the diameter is 1/e² |
-//! | `laser.spots` | the layout, below |
-//! | `camera.position` | the pinhole |
-//! | `camera.aperture_area` | unit²; aperture and image plane are parallel to the wall |
-//! | `camera.view` | `{ x = [a, b], y = [c, d] }`: rectangle on the wall that the pixel grid covers exactly |
-//! | `camera.pixels` | columns (x) and rows (y) |
-//! | `surface.name`, `surface.role` | `relay` (S1 and S3), `hidden` (S2, recovered), `occluder` |
-//! | `surface.rectangle` | `{ corner, u, v }`; the front is the side of u × v |
-//! | `surface.disc` | `{ centre, normal, radius }` |
-//! | `surface.sphere` | `{ centre, radius, face = "outside" or "inside" }` |
-//! | `surface.mesh` | triangles from a file or made by phicam, below |
-//! | `surface.sides` | `"one"` (default): the back is black; `"two"`: it reflects as the front does (not of spheres and hidden surfaces) |
-//! | `surface.material` | `{ lambertian = ρ }` with ρ a number, one of the tables below, or (hidden surfaces only) `"unknown"`: then nothing is rendered, and what is recovered has no truth; [`material`] has the others |
-//! | `surface.elements` | elements along u and v (hidden surfaces only); of a mesh in its texture coordinates, or `"faces"`: one for each triangle |
-//! | `known.pixel`, `known.spot` | `[[known]]`, optional, any number: an entry of Φcam whose exact value is known |
-//! | `known.flux` | the exact flux into that pixel when that spot is lit, W |
-//! | `known.bounces` | only light that met exactly so many surfaces; absent: all light of up to `max_bounces` |
-//! | `sensor` | `[sensor]`, optional: how the frames are photographed, below |
-//! | `uncertainty` | `[uncertainty]`, optional: how well the geometry was measured, standard deviations by the names of [`Parameter`]s, e.g. `"hinge.angle" = 0.5`; for `phicam calibrate`. It changes neither light nor hash |
-//!
-//! Surfaces reflect from their front; their back is black; both sides are opaque.
-//!
-//! A hidden rectangle or disc may shine in place of a laser: `surface.material = { shining = x, … }`.
-//! There is no `[laser]` then, no other hidden surface, and Φcam has one column. The surface reflects
-//! nothing.
-//!
-//! | `surface.material` | meaning |
-//! | --- | --- |
-//! | `shining` | the picture x in \[0, 1\]: a number, an albedo table below, or `"unknown"` |
-//! | `exitance` | M, W/unit²: π times the radiance of x = 1 along the normal, which is the exitance of a Lambertian surface of that radiance; default 1 |
-//! | `falloff` | `[nu, nv]`: the radiance is x·M/π·cosⁿᵘ(θ_u)·cosⁿᵛ(θ_v), θ_u and θ_v the angles between the normal and the direction's projections on the planes of normal and u, normal and v; default `[0, 0]`, Lambertian; rectangles only |
-//! | `wavelength` | m; default 550e-9 |
-//! | `light` | `"picture"` (default); `"elements"`: each element shines alone at 1, a column of Φcam each, which is the transport matrix for `recover --camera-side`; with `shining = 1.0` |
-//!
-//! Numbers that would leave the range of what is computed from them are refused: coordinates beyond
-//! 10¹⁵, extents below 10⁻¹⁵ that are not 0, areas beyond the squares of these, powers outside
-//! 10⁻⁶⁰ to 10⁶⁰ W, albedos below 10⁻³⁰ that are not 0. The textures of a scene have 2²⁶ cells at
-//! most together, and the meshes that it has phicam make 20 million triangles.
-//!
-//! | `surface.mesh` | meaning |
-//! | --- | --- |
-//! | `file` | PLY (ASCII or binary), OBJ, glTF or GLB, relative to the scene file; [`mesh`] says what is read of each. The front of a triangle is where its corners run counterclockwise; normals in the file are not used |
-//! | `generate` | in place of a file: `"bust"`, `"sphere"`, `"rectangle"` (the unit square) or `"box"` (the unit cube), as `phicam target` writes them |
-//! | `mask` | in place of a file: rows of `#` (opaque) and `.` (open) on the unit square, the first at y = 1 |
-//! | `faces` | at least so many triangles (`generate`); default 20 000 |
-//! | `scale` | a factor, or one for each axis; first |
-//! | `rotate` | `[{ axis, angle }, …]`: turns about axes through the origin, degrees, in this order |
-//! | `translate` | shift, last |
-//! | `on` | `{ surface, at = [u, v] }`: put down, as it is turned, on that place of a rectangle, disc or sphere that comes earlier in the file: its lowest point along the normal there touches, its middle is above the place |
-//! | `flip` | `true`: the front of a triangle is where its corners run clockwise |
-//! | `closed` | `true`: meant to be a closed body, so that open edges are told |
-//!
-//! Faces that are degenerate, doubled or not finite are left out, and told by `phicam scene check`
-//! with what else is odd; of a face and its reverse the first counts. Faces with more than three
-//! corners must be flat, and their sides must not cross. Texture coordinates may lie outside \[0, 1\]:
-//! the texture's `wrap` says what is there, and elements are taken in the same way, but no element
-//! may lie in several places. Surfaces that name one file share one mesh and one tree, wherever they
-//! stand (unless they are stretched). A scene reads files in its own folder and below, and in
-//! folders named with `--also-read`; a run keeps copies of them in `files/`.
-//!
-//! Known answers are for tests and for checks of one's own; they change neither the light nor the
-//! scene's hash. The scenes below `scenes/known/` of the repository state theirs, with the
-//! derivation in their headers.
-//!
-//! The sensor is for `phicam expose`; it does not change the hash either, so it may be edited in
-//! the folder of a finished run. Every key is optional; without `model` the others change the ideal
-//! sensor, which then has shot noise.
-//!
-//! | `[sensor]` | meaning |
-//! | --- | --- |
-//! | `model` | built-in sensor: `ideal`, `ccd`, `dslr`, `machine-vision`; their figures are in [`crate::sensor`] |
-//! | `quantum_efficiency` | electrons per photon of the laser's wavelength, above 0 and up to 1 |
-//! | `dark_current` | electrons per second and pixel |
-//! | `full_well` | electrons that a pixel holds; `inf` for no limit |
-//! | `read_noise` | electrons, root mean square, per frame |
-//! | `gain` | electrons per count |
-//! | `bits` | bits of the converter, 1 to 24; 0 for none: counts are then neither rounded nor limited |
-//! | `offset` | counts of a pixel without electrons; below 0 counts a converter cuts off |
-//! | `shot_noise` | `true`, or `false` for exactly the mean number of electrons |
-//! | `relative_noise` | each finished entry is multiplied by 1 + σ·N(0, 1): the published percent error |
-//! | `exposure` | time of a frame, s; default 1 |
-//! | `frames` | frames averaged; default 1 |
-//! | `dark_frames` | frames of the same time without laser, averaged and subtracted; default 0: only the offset is |
-//! | `brackets` | exposure times of a series in place of `exposure`, up to 16, s: of each entry the longest counts that a metering frame shows to be safe from saturation |
-//! | `ambient` | ambient light, W into each pixel |
-//! | `glare` | `{ fraction, spread }`: the part of the spot's light entering the lens that is scattered over the image, `"uniform"` or `{ falloff = d0 }` ∝ 1/(1 + (d/d0)²) at the distance d from the spot on the view's plane |
-//!
-//! Albedo tables: `{ checkerboard = [nu, nv], dark = …, light = … }` with cell (0, 0), at the
-//! corner, dark; `{ cells = [[…], …] }` with rows along v, each along u; `{ ramp = [start, end] }`
-//! along u; `{ image = "FILE", … }` and `{ target = "NAME", … }`, pictures. A picture's lower left
-//! corner is at (u, v) = (0, 0), so it stands upright where u runs to the right and v upwards. Its
-//! linear value x becomes the albedo `dark` + (`light` − `dark`)·x; values outside \[0, 1\] are
-//! refused.
-//!
-//! | picture | meaning |
-//! | --- | --- |
-//! | `image` | PNG, JPEG or OpenEXR file below the scene's folder, 4096 pixels a side at most; opaque. Of OpenEXR the display window, 0 where it has no data. A camera's note of orientation (EXIF) is not applied |
-//! | `target` | built-in picture of [`target`]: `card`, `letters`, `siemens`, `edge`, `usaf`, `ramp` |
-//! | `size` | `[columns, rows]` of the target; its own by default |
-//! | `transfer` | `"srgb"` or `"linear"`: what the stored values of a PNG or JPEG mean; must be given, for the file does not say. OpenEXR is linear |
-//! | `channel` | `"red"`, `"green"`, `"blue"`; `"luminance"`: 0.2126·R + 0.7152·G + 0.0722·B (ITU-R BT.709), linear; `"wavelength"`: of the laser, below; `"grey"` for the only one of a grey picture, the default there |
-//! | `filter` | `"nearest"` (default): every pixel is a cell of one albedo; `"bilinear"` between the centres of pixels, level beyond the outermost |
-//! | `wrap` | what lies outside \[0, 1\]: `"clamp"` (default), the nearest border, or `"repeat"`, the picture again |
-//! | `dark`, `light` | albedo for 0 and 1; default 0 and 1 |
-//!
-//! `channel = "wavelength"` interpolates between red, green and blue linearly in the laser's
-//! wavelength, from 464.2 nm (blue alone) over 549.1 nm (green alone) to 611.4 nm (red alone) and
-//! level beyond: the dominant wavelengths of the sRGB primaries seen from its white D65, where the
-//! lines from white through the primaries meet the spectral locus of CIE 1931. It is a rule, not a
-//! measurement: three numbers do not say how much a pigment reflects at one wavelength.
-//!
-//! Layouts, in the order in which they list their spots:
-//!
-//! | `layout` | keys | spots |
-//! | --- | --- | --- |
-//! | `square` | `centre`, `half_width`, `per_side`, `stagger` | bottom side by growing x, right by growing y, top by falling x, left by falling y; `per_side` each, corners repeated; stagger entry k mod m offsets bottom and top in y, left and right in x |
-//! | `grid` | `centre`, `half_width`, `per_side` | rows along +y, each along +x |
-//! | `ring` | `centre`, `radius`, `count`, `start_angle` | counter-clockwise from `start_angle` degrees off +x |
-//! | `lines` | `lines = [{ from, to, count }, …]`, `stagger` | line after line, ends included; stagger moves to the left of the line |
-//! | `random` | `centre`, `half_width`, `count`, `seed` | uniform in the square |
-//! | `list` | `points = [[x, y], …]` | as listed |
-//!
-//! A spot or view given by (x, y) lies on the relay surface straight above or below it along z: of
-//! several that show their front the spot takes the one nearest to the laser, the view the one
-//! nearest to the camera (inside a cavity, the lower point). Of a wide spot what falls beside the
-//! wall is lost. The view's plane is that relay's plane; of a curved relay it is the tangent plane
-//! at the view's centre. Pixel index = column + row·columns, columns along +x and rows along +y of
-//! the view.
+#![doc = include_str!("reference.md")]
 
 mod body;
 mod builtin;
 mod camera;
 mod check;
 mod coordinates;
+mod cure;
 mod device;
+mod dimension;
 mod displaced;
 mod element;
 mod error;
@@ -171,6 +32,7 @@ mod parameter;
 mod parse;
 mod pieces;
 mod quantity;
+pub mod reference;
 mod replaced;
 mod sensor;
 mod shining;
@@ -180,6 +42,7 @@ mod surface_tables;
 pub mod target;
 mod texture;
 mod unit;
+mod units;
 mod variants;
 mod walls;
 mod warning;
@@ -190,6 +53,7 @@ use sha2::{Digest, Sha256};
 
 pub use builtin::{Builtin, builtins};
 pub use camera::Camera;
+pub use dimension::{Dimension, NoNumber};
 pub use displaced::{Twist, Velocity};
 pub use element::Element;
 pub use error::{Place, SceneError};
@@ -245,7 +109,7 @@ pub struct Scene {
     /// Standard deviations of what was measured: names of [`Parameter`]s with degrees, percents or
     /// lengths.
     pub uncertainty: Vec<(String, f64)>,
-    /// The text that the scene was read from.
+    /// The text that the scene was read from, with numbers in the place of values with units.
     pub text: String,
     /// The files that it names.
     pub files: Vec<Referenced>,
@@ -317,8 +181,8 @@ impl Scene {
     }
 
     fn read(source: &str, text: &str, files: Files) -> Result<Self, SceneError> {
-        let file = parse::parse(source, text)?;
-        Self::assemble(&file, text, files).map_err(|fault| parse::locate(source, text, fault))
+        let (file, plain) = parse::parse(source, text)?;
+        Self::assemble(&file, &plain, files).map_err(|fault| parse::locate(source, text, fault))
     }
 
     fn assemble(file: &SceneFile, text: &str, mut files: Files) -> Result<Self, Fault> {

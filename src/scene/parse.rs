@@ -6,15 +6,53 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::de::{DeTable, DeValue};
 
+use super::cure::{cure, cure_of_key};
 use super::error::{Fault, Place, SceneError, Step};
+use super::{reference, units};
 
-/// Parses the text of a scene file; `source` names it in errors.
-pub(super) fn parse<T: DeserializeOwned>(source: &str, text: &str) -> Result<T, SceneError> {
-    read_toml(
-        source,
-        text,
-        "`phicam scene export bench` shows a whole scene",
-    )
+/// Reads the text of a scene file, and returns with it the text in which values with units are
+/// numbers; `source` names it in errors.
+pub(super) fn parse<T: DeserializeOwned>(
+    source: &str,
+    text: &str,
+) -> Result<(T, String), SceneError> {
+    let converted = units::convert(source, text)?;
+    match toml::from_str(&converted.text) {
+        Ok(file) => Ok((file, converted.text)),
+        Err(e) => {
+            let message = message(&e);
+            let path = DeTable::parse(&converted.text).ok().map(|document| {
+                let at = e.span().map_or(0, |span| span.start);
+                path_at(document.get_ref(), at)
+            });
+            let example = "`phicam scene export bench` shows a whole scene";
+            let cure = path.map_or_else(
+                || cure(&message, example),
+                |path| cure_of_key(&message, &path),
+            );
+            let given = |at: usize| converted.given(at);
+            let span = e.span().map(|span| given(span.start)..given(span.end));
+            Err(SceneError {
+                source: source.to_owned(),
+                place: span.map(|span| Place::new(text, &span)),
+                cause: message,
+                cure,
+            })
+        }
+    }
+}
+
+/// What the TOML reader says is wrong, on one line.
+fn message(error: &toml::de::Error) -> String {
+    let message = error.message().trim().replace('\n', "; ");
+    let words = [
+        ("expected f64", "expected a number"),
+        ("expected u32", "expected a whole number"),
+    ];
+    let words = words
+        .into_iter()
+        .chain([("expected u64", "expected a whole number")]);
+    words.fold(message, |message, (old, new)| message.replace(old, new))
 }
 
 /// Parses TOML text; `source` names it in errors, and `example` says where a right one is shown.
@@ -27,7 +65,7 @@ pub fn read_toml<T: DeserializeOwned>(
     example: &str,
 ) -> Result<T, SceneError> {
     toml::from_str(text).map_err(|e| {
-        let message = e.message().trim().replace('\n', "; ");
+        let message = message(&e);
         SceneError {
             source: source.to_owned(),
             place: e.span().map(|span| Place::new(text, &span)),
@@ -35,6 +73,37 @@ pub fn read_toml<T: DeserializeOwned>(
             cause: message,
         }
     })
+}
+
+/// The keys that lead to byte `at` of a document's text, parted by dots; those of lists' entries
+/// left out.
+fn path_at(document: &DeTable<'_>, at: usize) -> String {
+    fn search(table: &DeTable<'_>, at: usize, path: &str, found: &mut String) {
+        for (key, value) in table {
+            let path = format!("{path}.{}", key.get_ref());
+            if key.span().contains(&at) || value.span().contains(&at) {
+                found.clone_from(&path);
+            }
+            within(value.get_ref(), at, &path, found);
+        }
+    }
+    fn within(value: &DeValue<'_>, at: usize, path: &str, found: &mut String) {
+        match value {
+            DeValue::Table(table) => search(table, at, path, found),
+            DeValue::Array(list) => {
+                for entry in list {
+                    if entry.span().contains(&at) {
+                        path.clone_into(found);
+                    }
+                    within(entry.get_ref(), at, path, found);
+                }
+            }
+            _ => {}
+        }
+    }
+    let mut found = String::new();
+    search(document, at, "", &mut found);
+    found.trim_start_matches('.').to_owned()
 }
 
 /// The text of a scene file; `source` names it in errors.
@@ -53,11 +122,20 @@ pub(super) fn locate(source: &str, text: &str, fault: Fault) -> SceneError {
         let root = DeValue::Table(document.into_inner());
         span(&root, &fault.path).map(|s| Place::new(text, &s))
     });
+    let keys = fault.path.iter().filter_map(|step| match step {
+        Step::Key(key) => Some(*key),
+        Step::Index(_) => None,
+    });
+    let path = keys.collect::<Vec<_>>().join(".");
+    let command = reference::command(&path);
     SceneError {
         source: source.to_owned(),
         place,
         cause: fault.cause,
-        cure: fault.cure,
+        cure: match command {
+            Some(command) => format!("{}; {command}", fault.cure),
+            None => fault.cure,
+        },
     }
 }
 
@@ -69,36 +147,6 @@ fn span(value: &DeValue<'_>, path: &[Step]) -> Option<Range<usize>> {
         _ => return None,
     };
     span(inner.get_ref(), rest).or_else(|| Some(inner.span()))
-}
-
-/// What to do about a message of the TOML reader.
-fn cure(message: &str, example: &str) -> String {
-    let mut quoted = message.split('`').skip(1).step_by(2);
-    let unknown = message.starts_with("unknown field") || message.starts_with("unknown variant");
-    let missing = message.starts_with("missing field");
-    let first = quoted.next();
-    let known: Vec<&str> = quoted.collect();
-    match first {
-        Some(word) if unknown => {
-            let nearest = known
-                .iter()
-                // A word of a megabyte is near to none of them.
-                .filter(|k| word.len() <= 2 * k.len())
-                .map(|k| (strsim::damerau_levenshtein(word, k), *k))
-                .min_by_key(|(distance, _)| *distance);
-            match nearest {
-                Some((distance, k)) if distance <= word.len().max(k.len()) / 2 => {
-                    format!("did you mean `{k}`? ({example})")
-                }
-                _ if known.is_empty() => format!("remove `{word}`"),
-                _ => format!("remove it, or use one of {}", known.join(", ")),
-            }
-        }
-        Some(word) if missing => {
-            format!("add `{word} = …` here ({example})")
-        }
-        _ => format!("write it as in one that works: {example}"),
-    }
 }
 
 #[cfg(test)]
@@ -146,7 +194,7 @@ mod tests {
     #[test]
     fn wrong_types_and_missing_keys_have_their_line() {
         for (old, new) in [
-            ("power = 5.0e-3", "power = \"5 mW\""),
+            ("power = 5.0e-3", "power = \"much\""),
             ("pixels = [16, 16]", "pixels = 16"),
         ] {
             let text = BENCH.replacen(old, new, 1);

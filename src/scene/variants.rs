@@ -43,7 +43,7 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] if a spot is not on the wall.
     pub fn with_listed_spots(&self, places: &[[f64; 2]]) -> Result<Self, SceneError> {
-        let mut file: SceneFile = parse::parse(&self.name, &self.text)?;
+        let (mut file, _): (SceneFile, _) = parse::parse(&self.name, &self.text)?;
         if let Some(laser) = &mut file.laser {
             laser.spots = SpotsTable {
                 layout: Layout::List,

@@ -48,8 +48,14 @@ fn an_unknown_key_has_its_line_and_the_nearest_key() {
 
 #[test]
 fn a_wrong_type_has_its_line() {
-    let words = ["string \"5 mW\"", "expected f64"];
-    refuses_altered("power = 5.0e-3", "power = \"5 mW\"", "power =", &words);
+    let words = [
+        "string \"much\"",
+        "expected a number",
+        "phicam help scene laser.power",
+    ];
+    refuses_altered("power = 5.0e-3", "power = \"much\"", "power =", &words);
+    let words = ["a length", "a power", "mW", "phicam help scene laser.power"];
+    refuses_altered("power = 5.0e-3", "power = \"5 mm\"", "power =", &words);
 }
 
 #[test]

@@ -14,6 +14,7 @@ mod exposing_again;
 mod foreign_files;
 #[cfg(unix)]
 mod forged_kinds;
+mod helping;
 mod import_round_trip;
 mod importing;
 mod interruption;
@@ -24,6 +25,7 @@ mod machine_readable;
 mod main_job;
 mod many;
 mod memory;
+mod mistakes;
 mod recovery;
 mod recovery_own;
 mod replacing;

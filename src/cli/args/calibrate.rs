@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args as Arguments;
 
-use super::value::elements;
+use super::value::{count, elements, whole};
 use super::{OcclusionArgs, choice};
 use crate::lab::{Free, Integration};
 
@@ -56,10 +56,10 @@ pub(in crate::cli) struct CalibrateArgs {
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = spread)]
     pub spread: f64,
     /// Seed of the starts
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = whole)]
     pub seed: u64,
     /// Threads; all cores unless given. They do not change a bit of the results
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count)]
     pub threads: Option<usize>,
     /// Print the results as JSON
     #[arg(long)]

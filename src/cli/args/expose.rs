@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::{Args as Arguments, ValueEnum};
 use serde::Serialize;
 
+use super::value::{seconds, small, whole};
+
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct ExposeArgs {
     /// Folder of a finished run
@@ -16,20 +18,21 @@ pub(in crate::cli) struct ExposeArgs {
     /// Built-in sensor in place of the scene's figures: ideal, ccd, dslr, machine-vision
     #[arg(long, value_name = "NAME")]
     pub sensor: Option<String>,
-    /// Exposure time of a frame, s
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    /// Exposure time of a frame, s, or with its unit: 100ms
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
     pub exposure: Option<f64>,
     /// Frames averaged
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = small)]
     pub frames: Option<u32>,
     /// Frames without laser, averaged and subtracted
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = small)]
     pub dark_frames: Option<u32>,
     /// Exposure times of a series, separated by commas, s
     #[arg(
         long,
         value_name = "S,…",
         value_delimiter = ',',
+        value_parser = seconds,
         conflicts_with = "exposure",
         allow_negative_numbers = true
     )]
@@ -45,7 +48,7 @@ pub(in crate::cli) struct ExposeArgs {
     #[arg(long, value_name = "W", allow_negative_numbers = true)]
     pub ambient: Option<f64>,
     /// Seed: the same seed gives the same bytes
-    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole)]
     pub seed: u64,
     /// Where phi.stderr.npy comes from; the render's own standard error is added to both
     #[arg(long, value_enum, default_value_t = StatedBy::Counts)]

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args as Arguments;
 
 use super::choice;
+use super::value::{seconds, small};
 use crate::photographs::set::ChannelName;
 
 #[derive(Debug, Arguments)]
@@ -33,7 +34,7 @@ pub(in crate::cli) struct ImportArgs {
     #[arg(long, value_name = "SCENE")]
     pub scene: Option<String>,
     /// Photographs of each spot, one after the other
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = small)]
     pub repeats: Option<u32>,
     /// Photographs without the laser
     #[arg(long, value_name = "PATTERN")]
@@ -47,8 +48,8 @@ pub(in crate::cli) struct ImportArgs {
     /// light = S·(stored/S)^GAMMA with the full scale S; 1 unless given
     #[arg(long, value_name = "GAMMA", allow_negative_numbers = true)]
     pub gamma: Option<f64>,
-    /// Exposure time of every photograph, s
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    /// Exposure time of every photograph, s, or with its unit: 100ms
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
     pub exposure: Option<f64>,
     /// Radius about each spot within which pixels are left out, scene's unit
     #[arg(long, value_name = "RADIUS", allow_negative_numbers = true)]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args as Arguments;
 use clap::builder::TypedValueParser;
 
-use super::value::{elements, range};
+use super::value::{count, elements, range, whole};
 use super::{OcclusionArgs, choice};
 use crate::lab::{Integration, LOCATABLE};
 
@@ -46,10 +46,10 @@ pub(in crate::cli) struct LocateArgs {
     #[arg(long, value_name = "N", default_value_t = 999, value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
     pub orders: u32,
     /// Seed of these orders
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = whole)]
     pub seed: u64,
     /// Threads; all cores unless given. They do not change a bit of the results
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count)]
     pub threads: Option<usize>,
     /// Print the results as JSON
     #[arg(long)]

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args as Arguments;
 
 use super::PathArgs;
+use super::value::{count, whole};
 
 #[derive(Debug, Arguments)]
 #[command(after_help = CODES)]
@@ -18,7 +19,7 @@ pub(in crate::cli) struct PlanArgs {
     pub paths: PathArgs,
     /// Into how many shards the work is divided, 32 unless there are fewer blocks; does not change
     /// a byte of the result
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = whole)]
     pub shards: Option<u64>,
     /// Print plan.json
     #[arg(long)]
@@ -40,10 +41,10 @@ pub(in crate::cli) struct ShardArgs {
     /// Folder of a plan
     pub dir: PathBuf,
     /// Which shard, from 0
-    #[arg(long, value_name = "K")]
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = whole)]
     pub index: u64,
     /// Threads; all cores unless given. Does not change a byte of the result
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = count)]
     pub threads: Option<usize>,
     /// Print the shard's blocks and the files computed as JSON
     #[arg(long)]

@@ -6,11 +6,13 @@ mod expose;
 mod import;
 mod locate;
 mod many;
+mod new;
 mod recover;
 mod reproduce;
 mod serve;
 mod study;
 mod target;
+mod terms;
 mod value;
 mod view;
 
@@ -25,13 +27,15 @@ use crate::lab::{Errors, Integration};
 use crate::model::Kernel;
 use crate::num::stream::Sampling;
 use crate::transport::Estimator;
-use value::{definition, elements, shift, spot_range};
+use terms::explained;
+use value::{count, definition, elements, shift, spot_range, whole};
 
 pub(in crate::cli) use calibrate::CalibrateArgs;
 pub(in crate::cli) use expose::{ExposeArgs, StatedBy};
 pub(in crate::cli) use import::ImportArgs;
 pub(in crate::cli) use locate::LocateArgs;
 pub(in crate::cli) use many::{CleanArgs, MergeArgs, PlanArgs, ShardArgs, SlurmArgs, StatusArgs};
+pub(in crate::cli) use new::{CompletionsArgs, ManArgs, NewArgs};
 pub(in crate::cli) use recover::RecoverArgs;
 pub(in crate::cli) use reproduce::ReproduceArgs;
 pub(in crate::cli) use serve::ServeArgs;
@@ -54,8 +58,8 @@ pub(in crate::cli) struct Args {
     /// file; may be given several times
     #[arg(long, value_name = "DIR", global = true)]
     pub also_read: Vec<PathBuf>,
-    /// Another value of a key of the scene, e.g. camera.pixels=[32,32] or surface.wall.material.lambertian=0.5;
-    /// may be given several times
+    /// Another value of a key of the scene, e.g. camera.pixels=[32,32], laser.power=5mW or
+    /// surface.wall.material.lambertian=0.5; may be given several times
     #[arg(short = 'D', long = "define", value_name = "KEY=VALUE", global = true, value_parser = definition)]
     pub define: Vec<(String, String)>,
     #[command(subcommand)]
@@ -92,7 +96,12 @@ pub(in crate::cli) enum Command {
     /// page
     Serve(ServeArgs),
     /// List, check, draw, look at or export scenes
+    #[command(
+        after_help = "The keys of a scene file: `phicam help scene`; one of them, e.g.: `phicam help scene camera.view`."
+    )]
     Scene(SceneArgs),
+    /// Write a commented scene to start from
+    New(NewArgs),
     /// Write a target picture, or list them: card, letters, star, edge, bars, ramp
     Target(TargetArgs),
     /// Divide a render or a study into shards for many machines
@@ -111,6 +120,10 @@ pub(in crate::cli) enum Command {
     Study(StudyArgs),
     /// The published tables and figures, computed again
     Reproduce(ReproduceArgs),
+    /// Print a script that makes a shell complete commands, options and values
+    Completions(CompletionsArgs),
+    /// Print the manual page, or write those of all commands into a folder
+    Man(ManArgs),
 }
 
 impl Command {
@@ -135,6 +148,9 @@ impl Command {
             | Self::Merge(_)
             | Self::Slurm(_)
             | Self::Clean(_)
+            | Self::New(_)
+            | Self::Completions(_)
+            | Self::Man(_)
             | Self::Reproduce(_) => false,
             Self::Scene(args) => !matches!(args.command, SceneCommand::List { .. }),
             _ => true,
@@ -166,10 +182,10 @@ pub(in crate::cli) struct PathArgs {
     pub sampler: Sampling,
     /// Paths per pixel and spot (independent) or per pixel (shared), points on the hidden surface
     /// (factored); rounded up to whole blocks
-    #[arg(long, default_value_t = 512, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 512, allow_negative_numbers = true, value_parser = whole)]
     pub samples: u64,
     /// Seed: the same seed gives the same bytes
-    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole)]
     pub seed: u64,
 }
 
@@ -179,11 +195,12 @@ pub(in crate::cli) struct TraceArgs {
     #[command(flatten)]
     pub paths: PathArgs,
     /// Threads; all cores unless given. Does not change a byte of the result
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = count)]
     pub threads: Option<usize>,
 }
 
 #[derive(Debug, Arguments)]
+#[command(after_long_help = explained(&["traced", "modelled", "entry", "z", "χ²/dof", "degrees of freedom", "best scale", "determined", "MTF raw", "MTF normalized", "RMSE"]))]
 pub(in crate::cli) struct RunArgs {
     /// Built-in scene or path of a scene file
     #[arg(default_value = "bench")]
@@ -241,6 +258,7 @@ pub(in crate::cli) struct StackArgs {
 }
 
 #[derive(Debug, Arguments)]
+#[command(after_long_help = explained(&["G12", "G23", "Φcam", "modelled", "by centres"]))]
 pub(in crate::cli) struct ModelArgs {
     /// Built-in scene or path of a scene file
     pub scene: String,
@@ -299,6 +317,7 @@ pub(in crate::cli) struct TestArgs {
 }
 
 #[derive(Debug, Arguments)]
+#[command(after_long_help = explained(&["traced", "modelled", "entry", "z", "χ²/dof", "degrees of freedom", "best scale", "by centres", "Šidák"]))]
 pub(in crate::cli) struct ValidateArgs {
     /// Folder of a run; with --phi it may be left out, if --against says of which scene
     #[arg(required_unless_present_all = ["phi", "against"])]
@@ -396,7 +415,17 @@ mod tests {
 
     /// Commands whose result is a picture, a program or a text to be kept as it is, or that speak
     /// to Slurm or to a browser.
-    const NO_JSON: [&str; 6] = ["view", "target", "slurm", "serve", "show", "export"];
+    const NO_JSON: [&str; 9] = [
+        "view",
+        "target",
+        "slurm",
+        "serve",
+        "show",
+        "export",
+        "new",
+        "completions",
+        "man",
+    ];
 
     #[test]
     fn every_result_that_a_program_would_read_can_be_had_as_json() {

@@ -6,12 +6,14 @@ use std::path::PathBuf;
 use clap::Args as Arguments;
 
 use super::choice;
-use super::value::{elements, levels};
+use super::terms::explained;
+use super::value::{count, elements, levels};
 use crate::lab::Integration;
 use crate::model::Kernel;
 use crate::recovery::{Rule, WeightRule};
 
 #[derive(Debug, Arguments)]
+#[command(after_long_help = explained(&["G12", "determined", "by centres", "degrees of freedom", "MTF raw", "MTF normalized", "RMSE", "singular values"]))]
 pub(in crate::cli) struct RecoverArgs {
     /// Folder of a run; with --phi a folder with a scene.toml is enough, with --camera-side none is
     /// needed
@@ -78,7 +80,7 @@ pub(in crate::cli) struct RecoverArgs {
     #[arg(long, value_parser = choice::rule(), default_value = "discrepancy")]
     pub rule: Rule,
     /// Singular directions that tsvd keeps, in place of the rule's choice
-    #[arg(long, value_name = "K", allow_negative_numbers = true)]
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count)]
     pub rank: Option<usize>,
     /// Damping of tikhonov and tikhonov-gradient relative to σ1, in place of the rule's choice
     #[arg(long, value_name = "LAMBDA", allow_negative_numbers = true)]

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args as Arguments;
 
+use super::value::{count, whole};
+
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct ReproduceArgs {
     /// Tables and figures: table1, table2, …, fig12, …, precision, dual, moving-view; all unless
@@ -21,10 +23,10 @@ pub(in crate::cli) struct ReproduceArgs {
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(2..=100_000))]
     pub seeds: u64,
     /// First seed
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = whole)]
     pub seed: u64,
     /// Threads; all cores unless given. Does not change a byte of the result
-    #[arg(long)]
+    #[arg(long, value_parser = count)]
     pub threads: Option<usize>,
     /// Replace finished items with other settings
     #[arg(long)]

@@ -7,6 +7,7 @@ use clap::error::{Error, ErrorKind};
 use clap::{Arg, ArgAction, ArgMatches, Args as Arguments, Command, FromArgMatches, value_parser};
 
 use super::choice::possible;
+use super::value::count;
 use crate::lab::options::{Kind, Opt, OptionError, Values};
 use crate::lab::{Registered, STUDIES};
 
@@ -71,7 +72,7 @@ fn command(study: &'static Registered) -> Command {
                 .long("threads")
                 .value_name("THREADS")
                 .help("Threads; all cores unless given")
-                .value_parser(value_parser!(usize)),
+                .value_parser(count),
         )
         .arg(
             Arg::new("replace")

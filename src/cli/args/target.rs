@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args as Arguments;
 
-use super::value::size;
+use super::value::{size, whole};
 
 #[derive(Debug, Arguments)]
 #[command(
@@ -27,6 +27,6 @@ pub(in crate::cli) struct TargetArgs {
     #[arg(long, requires = "name")]
     pub linear: bool,
     /// At least so many triangles (mesh, sphere, rectangle); a million unless given
-    #[arg(long, requires = "name")]
+    #[arg(long, requires = "name", value_parser = whole)]
     pub faces: Option<u64>,
 }

@@ -2,30 +2,119 @@
 
 use std::ops::Range;
 
+use crate::num::decimal::Decimal;
+use crate::scene::{Dimension, Unit};
+
+/// A whole number, 0 or more, as 10000 or 1e4.
+pub(super) fn whole(text: &str) -> Result<u64, String> {
+    let number = Decimal::parse(text).and_then(|n| n.whole());
+    number.ok_or_else(|| "write a whole number, 0 or more, as 512 or 1e4".to_owned())
+}
+
+/// The same of the machine's word.
+pub(super) fn count(text: &str) -> Result<usize, String> {
+    let number = whole(text)?;
+    usize::try_from(number).map_err(|_| "write a smaller number".to_owned())
+}
+
+/// The same below 2³².
+pub(super) fn small(text: &str) -> Result<u32, String> {
+    let number = whole(text)?;
+    u32::try_from(number).map_err(|_| "write a number below 2³²".to_owned())
+}
+
+/// A time in s: a bare number, or one with its unit.
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
+    text.trim()
+        .parse()
+        .or_else(|_| Dimension::Time.number(text, Unit::Metre))
+        .map_err(|_| {
+            let units = Dimension::Time.units();
+            format!("write a number of seconds or one with a unit ({units}), as 0.1 or 100ms")
+        })
+}
+
+/// Whether `text` is a number and a unit, as 5 mW.
+fn has_unit(text: &str) -> bool {
+    let is_of_a_number = |c: char| c.is_ascii_digit() || "+-.".contains(c);
+    let rest = text.trim_start_matches(is_of_a_number);
+    let digits = &text[..text.len() - rest.len()];
+    // Of a number with an exponent the unit follows that.
+    let exponent = rest
+        .strip_prefix(['e', 'E'])
+        .map(|r| (r, r.trim_start_matches(is_of_a_number)));
+    let unit = match exponent {
+        Some((whole, after)) if whole.len() > after.len() => after,
+        _ => rest,
+    };
+    let unit = unit.trim();
+    let starts_a_unit = |c: char| c.is_alphabetic() || "°%".contains(c);
+    let is_of_a_base = digits == "0" && unit.starts_with(['x', 'o', 'b']);
+    digits.contains(|c: char| c.is_ascii_digit())
+        && unit.starts_with(starts_a_unit)
+        && !is_of_a_base
+}
+
+/// A value as TOML: words, and numbers with units, need no quotes.
+fn quoted(value: &str) -> String {
+    let is_of_a_word = |c: char| c.is_alphabetic() || "_-".contains(c);
+    let is_word = !value.is_empty() && value.chars().all(is_of_a_word);
+    let known = ["true", "false", "nan", "inf", "-inf"].contains(&value);
+    if (is_word && !known) || has_unit(value) {
+        format!("\"{value}\"")
+    } else {
+        value.to_owned()
+    }
+}
+
 /// "A..B" with A < B.
 pub(super) fn spot_range(text: &str) -> Result<Range<usize>, String> {
     let parts = text
         .split_once("..")
         .and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
-    match parts {
-        Some((a, b)) if a < b => Ok(a..b),
-        _ => Err("write it as A..B with A < B, e.g. 0..30 for the first thirty".to_owned()),
+    match (parts, last_included(text)) {
+        (Some((a, b)), _) if a < b => Ok(a..b),
+        (_, Some([a, b])) => {
+            let end = b + 1;
+            Err(format!(
+                "spots {a} to {b} are {a}..{end}: A..B is A to B − 1"
+            ))
+        }
+        _ => Err(
+            "write it as A..B with A < B, spots A to B − 1, e.g. 0..30 for the first thirty"
+                .to_owned(),
+        ),
     }
 }
 
-/// "KEY=VALUE", the value as TOML or a word.
+/// The ends of "A-B", as other programs write a range.
+fn last_included(text: &str) -> Option<[usize; 2]> {
+    let (a, b) = text.split_once('-')?;
+    let ends = [a.parse().ok()?, b.parse().ok()?];
+    (ends[0] <= ends[1] && ends[1] < usize::MAX).then_some(ends)
+}
+
+/// "KEY=VALUE", the value as TOML, a word, a number with a unit, or a list of these.
 pub(super) fn definition(text: &str) -> Result<(String, String), String> {
     let (key, value) = text
         .split_once('=')
         .ok_or("write it as KEY=VALUE, e.g. camera.pixels=[32,32]")?;
     let (key, value) = (key.trim(), value.trim());
-    let is_of_a_word = |c: char| c.is_alphabetic() || "_-".contains(c);
-    let is_word = !value.is_empty() && value.chars().all(is_of_a_word);
-    let known = ["true", "false", "nan", "inf", "-inf"].contains(&value);
-    let value = if is_word && !known {
-        format!("\"{value}\"")
+    if key.is_empty() || value.is_empty() {
+        return Err("write it as KEY=VALUE, e.g. laser.power=5mW".to_owned());
+    }
+    let is_plain_list = value.starts_with('[') && !value.contains(['"', '\'', '{']);
+    let value = if is_plain_list {
+        let entry = |part: &str| {
+            let inner = part.trim_end_matches([',', ']']);
+            let (inner, end) = part.split_at(inner.len());
+            let start = inner.len() - inner.trim_start_matches(['[', ' ']).len();
+            let (start, inner) = inner.split_at(start);
+            format!("{start}{}{end}", quoted(inner.trim_end()))
+        };
+        value.split_inclusive([',', ']']).map(entry).collect()
     } else {
-        value.to_owned()
+        quoted(value)
     };
     Ok((key.to_owned(), value))
 }
@@ -58,9 +147,9 @@ pub(super) fn shift(text: &str) -> Result<[f64; 2], String> {
     numbers(text).ok_or_else(|| "write it as DX,DY, e.g. 0.05,0".to_owned())
 }
 
-/// "LOW,HIGH", finite, LOW < HIGH.
+/// "LOW,HIGH" or "LOW..HIGH", finite, LOW < HIGH.
 pub(super) fn range(text: &str) -> Result<[f64; 2], String> {
-    numbers(text)
+    numbers(&text.replacen("..", ",", 1))
         .filter(|[low, high]| low < high)
         .ok_or_else(|| "write it as LOW,HIGH with LOW below HIGH, e.g. 0,2e-12".to_owned())
 }
@@ -89,6 +178,60 @@ mod tests {
     use super::*;
 
     #[test]
+    fn whole_numbers_may_have_an_exponent() {
+        assert_eq!(whole("1e4"), Ok(10_000));
+        assert_eq!(whole("1.5e3"), Ok(1_500));
+        for bad in ["1.5", "-5", "", "abc", "1e-1", "1e30", "0x10"] {
+            assert!(whole(bad).is_err_and(|why| why.contains("1e4")), "{bad}");
+        }
+        assert!(small("4294967296").is_err());
+    }
+
+    #[test]
+    fn times_may_have_a_unit() {
+        for (text, time) in [("100ms", 0.1), ("2 s", 2.0), ("0.5", 0.5), ("1.5min", 90.0)] {
+            assert_eq!(seconds(text), Ok(time), "{text}");
+        }
+        for bad in ["5 mW", "fast", "", "1:30"] {
+            assert!(
+                seconds(bad).is_err_and(|why| why.contains("100ms")),
+                "{bad}"
+            );
+        }
+    }
+
+    #[test]
+    fn words_and_units_of_definitions_need_no_quotes() {
+        for (given, value) in [
+            ("5 mW", "\"5 mW\""),
+            ("632.8nm", "\"632.8nm\""),
+            ("1e-3 W", "\"1e-3 W\""),
+            ("-45°", "\"-45°\""),
+            ("[1 m, -20cm,0]", "[\"1 m\", \"-20cm\",0]"),
+            ("[[1 m, 2],[3, 4 in]]", "[[\"1 m\", 2],[3, \"4 in\"]]"),
+            ("[\"1 m\", 0]", "[\"1 m\", 0]"),
+            ("matt", "\"matt\""),
+            ("5", "5"),
+            ("1e-3", "1e-3"),
+            ("0x1f", "0x1f"),
+            ("inf", "inf"),
+            ("true", "true"),
+            ("[32,32]", "[32,32]"),
+            ("{ x = 1 }", "{ x = 1 }"),
+        ] {
+            let text = format!("a.b = {given}");
+            assert_eq!(
+                definition(&text),
+                Ok(("a.b".to_owned(), value.to_owned())),
+                "{given}"
+            );
+        }
+        for bad in ["a.b", "=5", "a.b="] {
+            assert!(definition(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
     fn ranges_elements_and_shifts_are_strict() {
         assert_eq!(spot_range("3..7"), Ok(3..7));
         assert_eq!(elements("8"), Ok([8, 8]));
@@ -108,6 +251,7 @@ mod tests {
             assert!(shift(bad).is_err(), "{bad}");
         }
         assert_eq!(range("-1e-9, 2"), Ok([-1e-9, 2.0]));
+        assert_eq!(range("0.01..0.1"), Ok([0.01, 0.1]));
         for bad in ["1,1", "2,1", "0,inf", "nan,1", "1", ""] {
             assert!(range(bad).is_err(), "{bad}");
         }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args as Arguments;
 
 use super::choice::{self, one_of};
-use super::value::{point, range, size};
+use super::value::{count, point, range, size};
 use crate::report::{Law, Map};
 
 #[derive(Debug, Arguments)]
@@ -73,7 +73,7 @@ pub(in crate::cli) struct ViewArgs {
     #[arg(long)]
     pub channel: Option<String>,
     /// Column of a matrix pixels × spots, shown as the camera's photograph
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count)]
     pub spot: Option<usize>,
     /// Scale from 0 to the largest value over 2^EV
     #[arg(

@@ -18,6 +18,11 @@ use source::Source;
 const DECADES: i32 = 4;
 
 pub(super) fn execute(args: &ViewArgs, console: Console) -> Result<Outcome, Failure> {
+    if args.file.is_dir() {
+        let dir = args.file.display();
+        let cure = format!("name a frame or a matrix in it, as {dir}/phi.npy");
+        return Err(Failure::new(format!("{dir} is a folder"), cure));
+    }
     let source = Source::read(args, console)?;
     let scale = scale(args, &source)?;
     let shown = Shown::new(source.panel, scale, source.unit);

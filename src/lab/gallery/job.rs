@@ -79,7 +79,7 @@ impl<'s> Outcome<'s> {
             ..Options::default()
         };
         match problem(model, phi, Some(stderr)).and_then(|p| recover(method, &p, &options)) {
-            Ok(found) => Self::Whole(found.reflectance.as_slice().to_vec(), words(&found)),
+            Ok(found) => Self::Whole(found.reflectance.as_slice().to_vec(), words(&found, true)),
             Err(e) => Self::Nothing(e.to_string()),
         }
     }

@@ -25,7 +25,8 @@ pub(super) use crate::lab::finding::Tone;
 pub(super) use embed::Room;
 pub(super) use packed::{Packed, Precision};
 pub(super) use table::{bare, framed, table};
-pub(super) use term::{explained, meaning, term};
+pub use term::meaning;
+pub(super) use term::{explained, term};
 
 /// A library that a page may use; each is one script, with its licence beside it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

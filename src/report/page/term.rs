@@ -122,7 +122,7 @@ pub(in super::super) fn explained(text: &str) -> String {
 }
 
 /// What a word of the field means.
-pub(in super::super) fn meaning(word: &str) -> Option<&'static str> {
+pub fn meaning(word: &str) -> Option<&'static str> {
     let found = TERMS.iter().find(|(of, _)| *of == word);
     found.map(|(_, meaning)| *meaning)
 }

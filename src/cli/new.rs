@@ -1,0 +1,82 @@
+//! `phicam new`: a scene file to start from.
+
+use std::path::{Path, PathBuf};
+
+use super::Outcome;
+use super::args::NewArgs;
+use super::console::Console;
+use super::failure::Failure;
+use super::output;
+use crate::scene::{Builtin, builtins};
+
+/// The commented scene.
+const START: &str = include_str!("new.toml");
+
+pub(super) fn execute(args: &NewArgs, console: Console) -> Result<Outcome, Failure> {
+    let path = file(&args.name)?;
+    let name = scene_name(&path);
+    let text = match &args.from {
+        None => renamed(START, &name),
+        Some(from) => renamed(builtin(from)?.text, &name),
+    };
+    output::write_new(&path, text, args.force)?;
+    let path = path.display();
+    console.say(format!(
+        "{path}: a scene to start from; `phicam scene check {path}`, then `phicam run {path} -o {name}`"
+    ));
+    Ok(Outcome::Done)
+}
+
+/// The file of a scene that is called `name`.
+fn file(name: &Path) -> Result<PathBuf, Failure> {
+    let last = name.file_name().and_then(|last| last.to_str());
+    let last = last.filter(|last| !last.starts_with('-') && last.trim() == *last);
+    let Some(last) = last else {
+        let cause = format!("`{}` is no name of a scene", name.display());
+        return Err(Failure::usage(cause, "write it as in `phicam new corner`"));
+    };
+    Ok(match last.strip_suffix(".toml") {
+        Some(_) => name.to_owned(),
+        None => name.with_file_name(format!("{last}.toml")),
+    })
+}
+
+/// What a scene in the file `path` is called.
+fn scene_name(path: &Path) -> String {
+    path.file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned()
+}
+
+fn builtin(name: &str) -> Result<&'static Builtin, Failure> {
+    builtins().iter().find(|b| b.name == name).ok_or_else(|| {
+        let names: Vec<&str> = builtins().iter().map(|b| b.name).collect();
+        Failure::usage(
+            format!("there is no built-in scene `{name}`"),
+            format!("use one of {}", names.join(", ")),
+        )
+    })
+}
+
+/// The text of a scene file with another name in its line `name = "…"`.
+fn renamed(text: &str, name: &str) -> String {
+    let quoted: String = name
+        .chars()
+        .flat_map(|c| match c {
+            '"' | '\\' => vec!['\\', c],
+            c if c.is_control() => format!("\\u{:04x}", u32::from(c)).chars().collect(),
+            c => vec![c],
+        })
+        .collect();
+    let line = |line: &str| {
+        if line.starts_with("name = ") {
+            format!("name = \"{quoted}\"\n")
+        } else {
+            format!("{line}\n")
+        }
+    };
+    // Names of surfaces stand below the first table.
+    let (head, tables) = text.split_at(text.find("\n[").unwrap_or(text.len()));
+    head.lines().map(line).collect::<String>() + tables.strip_prefix('\n').unwrap_or(tables)
+}
