@@ -34,7 +34,8 @@ class Surface:
     light : ndarray
         Probability to be light (``joint-two-valued``).
     determined : ndarray
-        How much of each element the photographs determine by any method, 0 to 1.
+        What the photographs determine of each element by any method, 0 to 1: 1 − (σ/0.5)², σ its standard error after
+        them where 0.5 ± 0.5 is known before.
     truth : ndarray
         The true albedos.
     covariance, resolution : ndarray

@@ -68,6 +68,7 @@ mod many;
 pub mod many_machines;
 mod model;
 mod new;
+mod notices;
 mod output;
 mod partial;
 mod preview;
@@ -158,6 +159,7 @@ pub fn main() -> ExitCode {
         Command::New(a) => new::execute(a, console),
         Command::Completions(a) => completions::execute(a),
         Command::Man(a) => man::execute(a, console),
+        Command::Notices => notices::execute(),
     };
     match result {
         Ok(outcome) => ExitCode::from(outcome as u8),

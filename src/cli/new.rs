@@ -73,10 +73,10 @@ fn renamed(text: &str, name: &str) -> String {
         if line.starts_with("name = ") {
             format!("name = \"{quoted}\"\n")
         } else {
-            format!("{line}\n")
+            line.to_owned()
         }
     };
     // Names of surfaces stand below the first table.
-    let (head, tables) = text.split_at(text.find("\n[").unwrap_or(text.len()));
-    head.lines().map(line).collect::<String>() + tables.strip_prefix('\n').unwrap_or(tables)
+    let (head, tables) = text.split_at(text.find("\n[").map_or(text.len(), |at| at + 1));
+    head.split_inclusive('\n').map(line).collect::<String>() + tables
 }

@@ -303,12 +303,18 @@ pub fn determined(surfaces: &[&RecoveredObject]) -> String {
     match (first.determined, shares.collect::<Option<Vec<_>>>()) {
         (Some(rank), Some(shares)) => {
             let shares = shares.concat();
-            let well = shares.iter().filter(|s| **s > 0.5).count();
+            let mut errors: Vec<f64> = shares.iter().map(|s| 0.5 * (1.0 - s).sqrt()).collect();
+            errors.sort_by(f64::total_cmp);
+            let error = |k: usize| errors.get(k).map_or(String::new(), |e| figure(*e, 2));
+            let last = errors.len().saturating_sub(1);
             format!(
-                "At their noise the photographs determine {} of {all} elements, by any method; here \
-                 {well} of {} by more than half. The rest of a picture is what its method assumes.",
+                "At their noise the photographs determine {} of {all} directions of the picture, by any \
+                 method: an element of which 0.5 ± 0.5 is known beforehand is known to ± {} afterwards \
+                 (median; {} to {}). The rest of a picture is what its method assumes.",
                 significant(rank, 3),
-                shares.len()
+                error(last / 2),
+                error(0),
+                error(last),
             )
         }
         _ => format!("It is not known how many of {all} elements the photographs determine."),
@@ -476,7 +482,7 @@ mod tests {
         assert_eq!(told[1], "tsvd: another.");
         let table = &results.describe().tables[1];
         assert_eq!(table.rows[0][1], "yes".into());
-        let words = "determine 4.50 of 64 elements, by any method; here 0 of 64";
+        let words = "determine 4.50 of 64 directions of the picture, by any method";
         assert!(table.note.contains(words), "{}", table.note);
         let judged = results.recovered[0].fit.as_mut().unwrap();
         judged.fits = false;

@@ -130,7 +130,7 @@ impl Setting {
     /// Which numbers it can be, in words; none where it is no number of its own range.
     pub fn range(self) -> Option<&'static str> {
         Some(match self {
-            Setting::Noise => "above 0: relative to each entry, e.g. 0.01",
+            Setting::Noise => "positive: relative to each entry, e.g. 0.01",
             Setting::Rank => "at least 1",
             Setting::Damping => "0 or more: a fraction of σ1",
             Setting::Tolerance => "0 or more and below 1: a fraction of σ1",

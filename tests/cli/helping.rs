@@ -28,6 +28,21 @@ fn the_whole_reference_follows_the_help_of_the_command() {
 }
 
 #[test]
+fn the_licences_of_all_that_is_linked_are_told() {
+    let told = Workspace::new().phicam("notices").exits(0).stdout;
+    // Crates of the command alone and of the library, and a library of the pages, each with its text.
+    for words in [
+        "clap 4",
+        "faer 0",
+        "three",
+        "Permission is hereby granted",
+        "Redistribution and use",
+    ] {
+        assert!(told.contains(words), "{words}");
+    }
+}
+
+#[test]
 fn a_key_has_its_type_unit_default_and_what_stands_below_it() {
     let workspace = Workspace::new();
     for (keys, words) in [

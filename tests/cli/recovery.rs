@@ -260,7 +260,7 @@ fn other_light_is_estimated_with_the_object() {
     );
     workspace.refuses(
         "recover done --weighting none --method pinv",
-        &["--weighting none"],
+        &["--weighting means nothing"],
     );
     workspace.refuses(
         "recover done --method joint --glare-pattern no.npy",

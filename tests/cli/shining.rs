@@ -90,7 +90,7 @@ fn one_photograph_is_imported_without_spots() {
     let off = (workspace.matrix("in/phi.npy") - &phi).amax();
     assert!(off < 1e-9 * phi.amax(), "{off}");
     let _ = workspace
-        .phicam("recover in --noise 0.001 --method joint")
+        .phicam("recover in --noise 0.001 --method joint --free-scale")
         .exits(0);
     let found = workspace.matrix("in/recovered/joint.npy");
     for (x, truth) in found.transpose().iter().zip([0.2, 1.0, 0.7, 0.0]) {

@@ -124,6 +124,8 @@ pub(in crate::cli) enum Command {
     Completions(CompletionsArgs),
     /// Print the manual page, or write those of all commands into a folder
     Man(ManArgs),
+    /// Print the licences of phicam and of what it is linked with
+    Notices,
 }
 
 impl Command {
@@ -151,6 +153,7 @@ impl Command {
             | Self::New(_)
             | Self::Completions(_)
             | Self::Man(_)
+            | Self::Notices
             | Self::Reproduce(_) => false,
             Self::Scene(args) => !matches!(args.command, SceneCommand::List { .. }),
             _ => true,

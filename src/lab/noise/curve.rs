@@ -7,10 +7,11 @@ use super::axis::NoiseAxis;
 use super::picture::Picture;
 use super::plan::NoisePlan;
 use super::trial::Trial;
+use crate::lab::Measures;
 use crate::lab::ensemble::{Draws, MOST_SPREAD, Spread};
 use crate::recovery::Method;
 
-/// The modulations whose loss is reported.
+/// The modulations whose loss is reported, relative to those of the picture itself.
 pub const LIMITS: [f64; 2] = [0.9, 0.5];
 /// Standard error above which a mean MTF is not held against a limit: a mean that strays has not
 /// fallen.
@@ -130,12 +131,16 @@ pub struct NoiseCurve {
     pub method: String,
     /// From quiet to loud.
     pub points: Vec<Point>,
+    /// Raw and normalized MTF of the picture itself, which a perfect recovery has: 1 of a board of
+    /// albedo 0 and 1; [`LIMITS`] are relative to them.
+    pub mtf_of_truth: [f64; 2],
     /// Where the mean raw MTF falls to each of [`LIMITS`].
     pub lost_raw: [Lost; 2],
     /// The same of the normalized MTF.
     pub lost_normalized: [Lost; 2],
     /// Up to which level the mean raw MTF stays at or above the first of [`LIMITS`], m, and not
-    /// above 2 − m, where dark would come out below 0; none where it is not there at the quietest.
+    /// above 2 − m, relative to the picture's own; there dark would come out too dark. None where it
+    /// is not there at the quietest.
     pub held: Option<Held>,
 }
 
@@ -147,6 +152,7 @@ impl NoiseCurve {
         (picture, elements): (Picture, usize),
         method: Method,
         (trials, bounds): (&[Trial], &[Option<f64>]),
+        truth: &[f64],
     ) -> Self {
         let asked = |t: &&Trial| {
             (t.picture, t.elements, t.method) == (picture, elements, method)
@@ -158,17 +164,23 @@ impl NoiseCurve {
             Point::of(*level, &here.copied().collect::<Vec<_>>(), *bound)
         };
         let points: Vec<Point> = plan.levels.iter().zip(bounds).map(point).collect();
+        let truth = Measures::of(truth, truth);
+        let own = |mtf: Option<f64>| mtf.filter(|m| *m > 0.0).unwrap_or(1.0);
+        let full = [truth.mtf_raw, truth.mtf_normalized].map(own);
         // A mean is known where every draw has the measure and its standard error is small.
-        let known = |p: &Point, s: Option<Spread>| {
+        let known = |p: &Point, s: Option<Spread>, full: f64| {
             let s = s.filter(|s| s.draws == p.draws && s.stderr.is_none_or(|e| e <= MOST_STDERR));
-            (p.level, s.map(|s| s.mean))
+            (p.level, s.map(|s| s.mean / full))
         };
         let narrow = |p: &Point| p.denominator_spread.is_none_or(|s| s <= MOST_SPREAD);
         let raw = points
             .iter()
-            .map(|p| known(p, p.mtf_raw.filter(|_| narrow(p))));
+            .map(|p| known(p, p.mtf_raw.filter(|_| narrow(p)), full[0]));
         let raw: Vec<_> = raw.collect();
-        let normalized: Vec<_> = points.iter().map(|p| known(p, p.mtf_normalized)).collect();
+        let normalized: Vec<_> = points
+            .iter()
+            .map(|p| known(p, p.mtf_normalized, full[1]))
+            .collect();
         let lost = |means: &[_]| LIMITS.map(|limit| lost(means, limit, &plan.axis));
         Self {
             picture,
@@ -177,6 +189,7 @@ impl NoiseCurve {
             lost_raw: lost(&raw),
             lost_normalized: lost(&normalized),
             held: held(&raw, LIMITS[0], &plan.axis),
+            mtf_of_truth: full,
             points,
         }
     }

@@ -80,7 +80,7 @@ impl NoiseStudy {
             _ => String::new(),
         };
         format!(
-            "The mean raw MTF stays at {} or more {} to this level ({}): {}{more}.",
+            "The mean raw MTF stays at {} of the picture's own or more {} to this level ({}): {}{more}.",
             LIMITS[0],
             if self.axis.falls() { "down" } else { "up" },
             self.axis.label().title,
@@ -101,7 +101,7 @@ impl NoiseStudy {
                 Lost::Between(levels) => between(levels),
                 Lost::Before => "not even the quietest".to_owned(),
                 Lost::Never => "the loudest studied".to_owned(),
-                Lost::Unknown => "undefined".to_owned(),
+                Lost::Unknown => "unknown".to_owned(),
             };
             format!(" (the published {PUBLISHED}: {level})")
         });
@@ -138,20 +138,20 @@ impl NoiseStudy {
             let levels = levels.map(|lost| match lost {
                 Lost::At(level) => Cell::from(*level),
                 Lost::Between(levels) => between(*levels).into(),
-                Lost::Before => "always".into(),
-                Lost::Never => "never".into(),
-                Lost::Unknown => "undefined".into(),
+                Lost::Before => "lost".into(),
+                Lost::Never => "kept".into(),
+                Lost::Unknown => "unknown".into(),
             });
             key((c.picture, c.elements), &c.method)
                 .chain(levels)
                 .collect()
         };
         let caption = format!(
-            "{} at which the mean MTF over {} draws falls to {high} and to {low} ({} kernel)",
+            "{} at which the mean MTF over {} draws falls to {high} and to {low} of the picture's own ({} kernel)",
             label.title, self.seeds, self.kernel
         );
         Table::new(caption, columns, self.curves.iter().map(row)).noted(format!(
-            "{} Always: below at the quietest level already; never: not below at any; undefined: before that some \
+            "{} lost: below at the quietest level already; kept: at no level below; unknown: before that some \
              draw gave nothing, or no mean is known. `a to b`: between these two levels, more than a decade \
              (3 bits) apart; study more levels between them (--noise).",
             label.procedure
@@ -174,7 +174,7 @@ impl NoiseStudy {
             key((b.picture, b.elements), method).chain(found).collect()
         };
         let caption = format!(
-            "The best method: mean raw MTF of {} or more up to the loudest noise, of equals the least RMSE",
+            "The best method: mean raw MTF of {} of the picture's own or more up to the loudest noise, of equals the least RMSE",
             LIMITS[0]
         );
         Table::new(caption, columns, self.best.iter().map(row)).noted(

@@ -125,7 +125,7 @@ impl NoiseTasks {
         let (mut curves, mut winners) = (Vec::new(), Vec::new());
         for (&object, Object { model, stage }) in self.objects.iter().zip(objects) {
             let bounds = bounds(stage, model, &plan.levels);
-            let curve = |m: &_| NoiseCurve::of(plan, object, *m, (&trials, &bounds));
+            let curve = |m: &_| NoiseCurve::of(plan, object, *m, (&trials, &bounds), &model.albedo);
             curves.extend(plan.methods.iter().map(curve));
             winners.push(best(&plan.axis, object, &curves));
         }

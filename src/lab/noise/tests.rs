@@ -223,7 +223,7 @@ fn a_mean_that_strays_has_not_fallen() {
             rmse: None,
         }),
     };
-    let curve = |loud: [f64; 4]| {
+    let of = |loud: [f64; 4], truth: &[f64]| {
         let quiet = (0..4).map(|k| trial(0.1, plan.first_seed + k, 1.0));
         let loud = (0..4).map(|k| trial(1.0, plan.first_seed + k, loud[k as usize]));
         NoiseCurve::of(
@@ -231,10 +231,23 @@ fn a_mean_that_strays_has_not_fallen() {
             (Picture::Board(2), 4),
             Method::JointUnbounded,
             (&quiet.chain(loud).collect::<Vec<_>>(), &[None, None]),
+            truth,
         )
     };
+    let curve = |loud| of(loud, &[0.0, 1.0]);
     assert_eq!(curve([9.0, -9.0, 5.0, -4.2]).lost_raw, [Lost::Unknown; 2]);
     let fallen = curve([0.25, 0.15, 0.2, 0.2]);
+    // A picture of albedo 0.25 and 0.75 has a raw MTF of ½: relative to that from 2 to 0.4, of which
+    // 0.9 lies 1.1/1.6 of the way.
+    let grey = of([0.25, 0.15, 0.2, 0.2], &[0.25, 0.75]);
+    assert_eq!(grey.mtf_of_truth, [0.5, 1.0]);
+    let Lost::At(level) = grey.lost_raw[0] else {
+        panic!("{grey:?}")
+    };
+    assert!(
+        (libm::log10(level / 0.1) - 1.1 / 1.6).abs() < 1e-12,
+        "{level}"
+    );
     // From 1 to 0.2 over a decade: 0.9 lies an eighth of the way.
     let Lost::At(level) = fallen.lost_raw[0] else {
         panic!("{fallen:?}")
@@ -281,6 +294,7 @@ fn more_photons_are_less_noise() {
         (Picture::Board(2), 4),
         Method::Joint,
         (&trials, &[None; 5]),
+        &[0.0, 1.0],
     );
     let [Lost::At(high), Lost::At(low)] = found.lost_raw else {
         panic!("{found:?}")

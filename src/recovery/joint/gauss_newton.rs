@@ -54,19 +54,16 @@ pub(in crate::recovery) fn recover(
         let floor = f64::EPSILON * problem.counted(problem.phi.clone()).norm();
         found.residual.max(floor) / freedom.sqrt()
     };
+    // A pattern is found by its levels, of which only the ratio is known with the scale, and by a wide
+    // search: along the scale many patterns fit nearly as well.
+    let by_ratio = method == Method::JointTwoValued && problem.nuisance.scale_error.is_some();
     let quick = Options {
         bands: None,
-        probabilities: false,
+        probabilities: by_ratio && options.probabilities,
         ..*options
     };
-    // A pattern is found by its levels, of which only the ratio is known with the scale.
-    let by_ratio = method == Method::JointTwoValued && problem.nuisance.scale_error.is_some();
     let (start, whole) = if by_ratio {
-        let wide = Options {
-            probabilities: options.probabilities,
-            ..quick
-        };
-        let found = by(method, &base.with_free_scale(), &wide)?;
+        let found = by(method, &base.with_free_scale(), &quick)?;
         let scale = found.seen().amax();
         let light = options.levels.map_or(scale.min(1.0), |[_, light]| light);
         (found, scale / light - 1.0)

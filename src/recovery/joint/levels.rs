@@ -14,7 +14,7 @@ const REACH: f64 = 9.0;
 /// in standard deviations: a parabola about its minimum.
 pub(super) struct LevelFit {
     /// \[a, b\] of the minimum over the plane.
-    best: [f64; 2],
+    pub(super) best: [f64; 2],
     /// ½ ∂²χ²: uᵀu, uᵀw, wᵀw.
     curvature: [f64; 3],
     /// The minimum.

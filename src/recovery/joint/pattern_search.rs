@@ -14,6 +14,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::branch;
+use super::levels::LevelFit;
 use crate::num::linalg::gram_product;
 use crate::num::quadratic::{Bounds, box_least_squares, box_least_squares_from};
 use crate::recovery::RecoveryError;
@@ -119,14 +120,13 @@ impl<'a> Search<'a> {
         };
         let relaxed = box_least_squares(self.r, self.d, &bounds)?;
         let starts = self.starts(&relaxed.solution)?;
-        let descents: Result<Vec<(Pattern, usize)>, RecoveryError> = starts
+        let mut descents: Vec<(Pattern, usize)> = starts
             .into_par_iter()
             .map(|start| {
                 let mut changes = 0;
-                Ok((self.descend(start, &mut changes)?, changes))
+                (self.descend(start, &mut changes), changes)
             })
             .collect();
-        let mut descents = descents?;
         let mut changes = descents.iter().map(|(_, changes)| changes).sum();
         descents.sort_by(|(a, _), (b, _)| a.misfit.total_cmp(&b.misfit));
         let Some((mut best, _)) = descents.first().cloned() else {
@@ -171,7 +171,7 @@ impl<'a> Search<'a> {
             let Some(light) = searched.light else {
                 continue;
             };
-            let found = self.descend(light, &mut changes)?;
+            let found = self.descend(light, &mut changes);
             if found.misfit < best.misfit * (1.0 - WORTH) {
                 best = found;
                 trials.push(ascending(best.levels));
@@ -186,7 +186,7 @@ impl<'a> Search<'a> {
     }
 
     /// The pattern with its best levels.
-    fn fit(&self, light: Vec<bool>) -> Result<Pattern, RecoveryError> {
+    fn fit(&self, light: Vec<bool>) -> Pattern {
         let of = |which: bool| {
             let set = DVector::from_fn(light.len(), |j, _| f64::from(u8::from(light[j] == which)));
             self.r * set
@@ -199,22 +199,14 @@ impl<'a> Search<'a> {
                 let factor = (one.dot(self.d) / one.norm_squared()).max(0.0);
                 [factor * a, factor * b]
             }
-            Levels::Within(top) => {
-                let x = box_least_squares(
-                    &DMatrix::from_columns(&columns),
-                    self.d,
-                    &Bounds::all(2, 0.0, top),
-                )?
-                .solution;
-                [x[0], x[1]]
-            }
+            Levels::Within(top) => within(self.d, &columns, top),
         };
         let misfit = (&columns[0] * levels[0] + &columns[1] * levels[1] - self.d).norm_squared();
-        Ok(Pattern {
+        Pattern {
             light,
             levels,
             misfit,
-        })
+        }
     }
 
     /// Patterns to descend from: those of the relaxation to all values, and, where the levels are not
@@ -262,21 +254,17 @@ impl<'a> Search<'a> {
     }
 
     /// Changes and levels in turn until neither lowers the misfit.
-    pub(super) fn descend(
-        &self,
-        start: Vec<bool>,
-        changes: &mut usize,
-    ) -> Result<Pattern, RecoveryError> {
-        let mut best = self.fit(start)?;
+    pub(super) fn descend(&self, start: Vec<bool>, changes: &mut usize) -> Pattern {
+        let mut best = self.fit(start);
         loop {
             let before = best.misfit;
             let mut light = best.light.clone();
             *changes += self.change(&mut light, best.levels);
-            let found = self.fit(light)?;
+            let found = self.fit(light);
             if found.misfit < before * (1.0 - WORTH) {
                 best = found;
             } else {
-                return Ok(best);
+                return best;
             }
         }
     }
@@ -330,6 +318,36 @@ impl<'a> Search<'a> {
             made += 1;
         }
     }
+}
+
+/// The levels a, b from 0 to `top` of the least ‖d − a u − b w‖: that of the plane, or on one of the
+/// sides. Not by iteration, whose tolerance is wide along the scale where that is nearly free.
+fn within(d: &DVector<f64>, [u, w]: &[DVector<f64>; 2], top: f64) -> [f64; 2] {
+    let inside = |x: &f64| (0.0..=top).contains(x);
+    if let Some(best) = LevelFit::new(d, u, w).map(|fit| fit.best)
+        && best.iter().all(inside)
+    {
+        return best;
+    }
+    // The best of one level at the other.
+    let other = |own: &DVector<f64>, left: &DVector<f64>| {
+        let square = own.norm_squared();
+        if square > 0.0 {
+            (own.dot(left) / square).clamp(0.0, top)
+        } else {
+            0.0
+        }
+    };
+    let ends = [0.0, top].into_iter().filter(|end| end.is_finite());
+    let sides = ends.flat_map(|end| {
+        [
+            [end, other(w, &(d - u * end))],
+            [other(u, &(d - w * end)), end],
+        ]
+    });
+    let misfit = |[a, b]: &[f64; 2]| (u * *a + w * *b - d).norm_squared();
+    let least = sides.min_by(|x, y| misfit(x).total_cmp(&misfit(y)));
+    least.unwrap_or([0.0; 2])
 }
 
 /// The lesser first.

@@ -65,7 +65,7 @@ pub(in crate::recovery) fn recover(
         Some(tempered::sample(&ground, &best.light)?)
     };
     if let Some(summed) = &summed {
-        let found = search.descend(summed.best.clone(), &mut changes)?;
+        let found = search.descend(summed.best.clone(), &mut changes);
         if found.misfit < best.misfit {
             best = found;
         }
