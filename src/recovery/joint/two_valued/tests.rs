@@ -334,7 +334,9 @@ fn a_larger_error_of_the_scale_loses_no_pattern() {
                 Some(_) => factor,
                 None => (factor * levels[1]).max(1.0),
             };
-            assert!((1.0 + whole - due).abs() < 0.02, "{told}");
+            // Where levels and factor are free along each other ε is known to σ and no better.
+            let off = (1.0 + whole - due).abs();
+            assert!(off < given.map_or(0.3 * known, |_| 0.02), "{told}");
         }
     }
 }
