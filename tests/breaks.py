@@ -457,6 +457,33 @@ BREAKS = [
         "matrix::mat::tests::variables_are_those_that_scipy_saved",
         4,
     ),
+    Break(
+        "A pattern of two values is found in any unit",
+        "src/recovery/joint/pattern_search.rs",
+        "                DARK.into_iter().flat_map(above).collect()",
+        "                DARK.into_iter().take(0).flat_map(above).collect()",
+        "lib",
+        "recovery::joint::two_valued::tests::a_pattern_is_found_whatever_the_unit",
+        6,
+    ),
+    Break(
+        "Where entries share their errors no error of the picture is given",
+        "src/lab/objects.rs",
+        "judged.shared().map(|_|",
+        "judged.shared().filter(|_| false).map(|_|",
+        "cli",
+        "recovery::shared_errors_give_no_errors_of_the_picture",
+        6,
+    ),
+    Break(
+        "A modulation is lost relative to that of the picture itself",
+        "src/lab/noise/curve.rs",
+        "let own = |mtf: Option<f64>| mtf.filter(|m| *m > 0.0).unwrap_or(1.0);",
+        "let own = |_: Option<f64>| 1.0;",
+        "lib",
+        "lab::noise::tests::a_mean_that_strays_has_not_fallen",
+        6,
+    ),
 ]
 
 

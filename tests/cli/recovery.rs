@@ -648,3 +648,30 @@ fn photographs_of_the_run_are_its_own_by_name() {
     // Of other errors it is not known from how many blocks they are.
     assert_ne!(of("--phi done/phi.npy --stderr copy.npy"), own);
 }
+
+/// Of photographs whose entries share their errors a picture and no error of it, with the reason; of
+/// those with errors of their own both.
+#[test]
+fn shared_errors_give_no_errors_of_the_picture() {
+    let workspace = Workspace::with_scenes();
+    for (estimator, words) in [
+        ("independent", None),
+        ("shared", Some("all spots of a pixel share theirs")),
+        ("factored", Some("all entries share theirs")),
+    ] {
+        let line = format!("render small.toml -o {estimator} --estimator {estimator}");
+        let _ = workspace.phicam(&line).exits(0);
+        let line =
+            format!("recover {estimator} --method joint-gp,joint-two-valued --elements 4 --json");
+        for object in objects(workspace.phicam(&line)) {
+            let method = &object["method"];
+            for key in ["standard_error", "log_evidence"] {
+                let is_there = !object[key].is_null();
+                assert_eq!(is_there, words.is_none(), "{estimator} {method} {key}");
+            }
+            let told = object["warnings"].to_string();
+            assert_eq!(told.contains("hang together"), words.is_some(), "{told}");
+            assert!(words.is_none_or(|words| told.contains(words)), "{told}");
+        }
+    }
+}
