@@ -7,7 +7,7 @@ reflectances ρ.
 
 >>> import phicam
 >>> scene = phicam.Scene("bench").replace({"camera.pixels": (8, 8), "laser.spots.per_side": 6})
->>> phi = phicam.render(scene, samples=64, estimator="shared")
+>>> phi = phicam.render(scene, samples=512)
 >>> bool(phicam.validate(phi))
 True
 >>> phicam.recover(phi, method="joint", elements=(2, 2)).picture().round(1).tolist()
