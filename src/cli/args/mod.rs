@@ -418,7 +418,7 @@ mod tests {
 
     /// Commands whose result is a picture, a program or a text to be kept as it is, or that speak
     /// to Slurm or to a browser.
-    const NO_JSON: [&str; 9] = [
+    const NO_JSON: [&str; 10] = [
         "view",
         "target",
         "slurm",
@@ -428,6 +428,7 @@ mod tests {
         "new",
         "completions",
         "man",
+        "notices",
     ];
 
     #[test]
