@@ -31,7 +31,9 @@ pub fn methods() -> Vec<&'static str> {
 
 /// A setting by its keyword.
 fn setting(name: &str) -> PyResult<Setting> {
-    let found = Setting::ALL.into_iter().find(|s| s.name().replace('-', "_") == name);
+    let found = Setting::ALL
+        .into_iter()
+        .find(|s| s.name().replace('-', "_") == name);
     found.ok_or_else(|| input(format!("no setting `{name}`"), "see help(phicam.recover)"))
 }
 
