@@ -185,16 +185,13 @@ impl Recovered {
     /// covariance, bands, probabilities and evidence.
     #[must_use]
     pub fn without_errors(self) -> Self {
-        let asked = self.bands.is_some();
         Self {
             standard_error: None,
             covariance: None,
             log_evidence: None,
             patterns: None,
             bands: None,
-            no_bands: self
-                .no_bands
-                .or(asked.then_some("has none where entries share their errors")),
+            no_bands: None,
             ..self
         }
     }
