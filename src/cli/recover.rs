@@ -12,7 +12,7 @@ use super::recover_options::{self, uncertainty};
 use super::recovered::{collect, tell, write};
 use super::run_folder::{PHI, RECOVERED, RunFolder, SATURATED, SCENE, STDERR, is_of_recovered};
 use super::{Outcome, recover_own};
-use crate::folder::{Origin, Record};
+use crate::folder::Record;
 use crate::lab::{
     Attempt, Certainty, Noise, RecoveredObject, by_trust, inverted, recover_with_picards,
 };
@@ -307,25 +307,21 @@ fn refuse_unscaled(
     methods: &[Method],
     console: Console,
 ) -> Result<(), Failure> {
-    let Origin::Imported { imported } = &record.origin else {
-        return Ok(());
-    };
     let joint = methods.iter().any(|method| method.is_joint());
-    if args.joint.free_scale || !joint {
+    if !record.is_imported() || args.joint.free_scale || !joint {
         return Ok(());
     }
-    if imported.is_in_watts() {
+    let Some(unit) = record.origin.unscaled() else {
         if args.joint.scale_error.is_none() {
             console.say(
                 "the scale of these photographs in W is taken as exact; --scale-error RELATIVE says how well it is known",
             );
         }
         return Ok(());
-    }
+    };
     Err(Failure::new(
         format!(
-            "the photographs are in {}, not in W, so their size says nothing of reflectances",
-            imported.flux_unit
+            "the photographs are in {unit}, not in W, so their size says nothing of reflectances"
         ),
         "add --free-scale, or import them with `watts`, what one of these is in W",
     ))

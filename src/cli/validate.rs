@@ -10,7 +10,7 @@ use super::output;
 use super::run_folder::{PHI, STDERR, VALIDATION};
 use super::{Outcome, settings};
 use crate::film::{self, Channel, Frame};
-use crate::folder::{Origin, Record};
+use crate::folder::Record;
 use crate::jobs::need;
 use crate::lab::finding::Describe;
 use crate::lab::{Against, Agreement, Errors, Measured, Test, validate};
@@ -114,16 +114,15 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
 
 /// Refuses photographs whose size is not that of light.
 fn refuse_unscaled(dir: &Path, record: &Record) -> Result<(), Failure> {
-    match &record.origin {
-        Origin::Imported { imported } if !imported.is_in_watts() => Err(Failure::new(
+    match record.origin.unscaled() {
+        None => Ok(()),
+        Some(unit) => Err(Failure::new(
             format!(
-                "the photographs of {} are in {}, and the model is in W",
-                dir.display(),
-                imported.flux_unit
+                "the photographs of {} are in {unit}, and the model is in W",
+                dir.display()
             ),
             "import them with `watts`, what one of these is in W",
         )),
-        _ => Ok(()),
     }
 }
 

@@ -30,19 +30,21 @@ pub struct Photographs {
     pub sources: Vec<SourceFile>,
 }
 
-impl Photographs {
-    /// Whether their size is known: otherwise it says nothing of reflectances.
-    pub fn is_in_watts(&self) -> bool {
-        self.flux_unit == "W"
-    }
-}
-
 impl Origin {
     /// The plan of a render.
     pub fn plan(&self) -> Option<&Plan> {
         match self {
             Self::Rendered(plan) => Some(plan),
             Self::Imported { .. } => None,
+        }
+    }
+
+    /// The unit of photographs whose size is not that of light, so that it says nothing of
+    /// reflectances; `None` of those in W.
+    pub fn unscaled(&self) -> Option<&str> {
+        match self {
+            Self::Imported { imported } if imported.flux_unit != "W" => Some(&imported.flux_unit),
+            _ => None,
         }
     }
 }

@@ -225,12 +225,11 @@ fn attempts(
         .map(|method| recover(*method, problem, options))
         .collect();
     let known = noise.known();
-    let shared = known.is_some_and(|(_, certainty)| certainty.errors.shared().is_some());
     let all: Vec<&Recovered> = found.iter().flatten().collect();
     let any = Judged::any(problem, known, &all, options);
     // Photographs that nothing explains are likeliest by no assumption.
     let explained = any.best.as_ref().is_none_or(|best| best.possible.fits);
-    let first = likelier(&all).filter(|_| explained && !shared);
+    let first = likelier(&all).filter(|_| explained && any.shared().is_none());
     let judged = |found: Recovered| {
         let mut objects = measured(model, &found, &any.of(problem, known, &found));
         let own = first.as_ref().filter(|(method, _)| *method == found.method);

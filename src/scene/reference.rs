@@ -127,7 +127,7 @@ pub fn below(prefix: &str) -> impl Iterator<Item = &'static Key> {
 }
 
 /// Where a key of materials or albedos stands in a file, as an example; the path of any other.
-fn example(path: &str) -> String {
+pub(super) fn example(path: &str) -> String {
     match path.split_once('.') {
         Some(("material", rest)) => format!("surface.material.{rest}"),
         Some(("albedo", rest)) => format!("surface.material.lambertian.{rest}"),

@@ -130,11 +130,7 @@ fn refused(
     why: &NoNumber,
     unit: Option<Unit>,
 ) -> (String, String) {
-    let path = path.replacen(
-        "material.",
-        "surface.material.",
-        usize::from(path.starts_with("material.")),
-    );
+    let path = reference::example(path);
     let (name, units) = (dimension.name(), dimension.units());
     let cause = match why {
         NoNumber::Bare | NoNumber::Text => format!("\"{text}\" has no unit"),
