@@ -1,10 +1,11 @@
 //! The three-bounce integral itself, by quadrature over spots, hidden surfaces and footprints.
 
-use super::cut::Cut;
+use super::cut::{Cut, Level};
 use super::error::ModelError;
 use super::extent::{Extent, Occlusion};
 use super::kernel::Kernel;
-use super::parts::{LAST_LEVEL, MOST_CONNECTIONS};
+use super::parts::{LAST_LEVEL, MOST_APART, MOST_CONNECTIONS};
+use super::series::Series;
 use super::visible::{Visible, visible};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
@@ -44,6 +45,47 @@ impl Converged {
 }
 
 impl Converged {
+    /// Refines the hidden surfaces and what the wall is taken at one without the other, each under
+    /// the roughest rule of the other, where finer rules of both together have too many
+    /// connections: Φ(h, w) ≈ Φ(l, l) + \[Φ(h, 0) − Φ(l, 0)\] + \[Φ(0, w) − Φ(0, l)\], l the last
+    /// level of both. What that leaves out is about a·b/Φ, a and b all that each changes.
+    fn apart(
+        &mut self,
+        first: &Matrix,
+        level: usize,
+        integrate: impl Fn(Level) -> Matrix,
+        finer: impl Fn(Level) -> bool,
+    ) {
+        let along = |at: fn(usize) -> Level| {
+            let from = level.saturating_sub(1);
+            let mut series = Series::at(from, integrate(at(from)));
+            let mut joined = series.phi.clone();
+            loop {
+                series.refine(integrate(at(series.level + 1)));
+                if series.level == level {
+                    joined.clone_from(&series.phi);
+                }
+                let settled = series.is_settled(ENOUGH, ENOUGH)
+                    || series.level == LAST_LEVEL
+                    || !finer(at(series.level + 1));
+                if series.level >= level && settled {
+                    return (series, joined);
+                }
+            }
+        };
+        let (hidden, hidden_joined) = along(Level::hidden);
+        let (walls, walls_joined) = along(Level::walls);
+        let all_changed = |series: &Series| (&series.phi - first).abs();
+        let both = all_changed(&hidden).component_mul(&all_changed(&walls));
+        let phi = &self.phi + (&hidden.phi - hidden_joined) + (&walls.phi - walls_joined);
+        let left_out = both.zip_map(&phi, |ab, x| if x > 0.0 { ab / x } else { 0.0 });
+        let bound = hidden.bound() + walls.bound() + left_out;
+        if bound.norm() < self.bound.norm() {
+            (self.phi, self.bound) = (phi, bound);
+            self.change = hidden.change() + walls.change();
+        }
+    }
+
     /// |Φ s − Φ′ s′| ≤ b_Φ s + Φ b_s.
     fn past(mut self, visible: Option<Visible>) -> Self {
         if let Some(Visible { share, bound, .. }) = &visible {
@@ -58,6 +100,9 @@ impl Converged {
 /// Refinement stops below this relative change of the whole, and of each entry.
 const TARGET: f64 = 1e-10;
 const ENTRY_TARGET: f64 = 1e-7;
+/// Bound of each entry, relative, beyond which hidden surfaces and walls are refined apart, and
+/// last change below which they no longer are.
+const ENOUGH: f64 = 1e-5;
 /// Relative change below which the rule before is good enough for derivatives.
 const ROUGH: f64 = 1e-4;
 
@@ -76,44 +121,50 @@ pub fn converged(scene: &Scene, kernel: Kernel, extent: Extent) -> Result<Conver
     if scene.hidden().next().is_none() {
         return Err(ModelError::NothingHidden);
     }
+    let free = unobstructed(scene, kernel, extent, [MOST_CONNECTIONS, MOST_APART]);
+    Ok(match extent.occlusion {
+        Occlusion::Ignored => free,
+        Occlusion::Considered => free.past(visible(scene, kernel)?),
+    })
+}
+
+/// The same with nothing in the way, of at most so many connections in a rule refined together, and
+/// apart.
+fn unobstructed(
+    scene: &Scene,
+    kernel: Kernel,
+    extent: Extent,
+    [together, apart]: [f64; 2],
+) -> Converged {
     let cut = Cut::new(scene, extent);
-    let mut phi = cut.integrate(scene, kernel, 0);
-    let mut before: Option<Matrix> = None;
-    let mut rough = None;
-    let mut level = 0;
-    loop {
-        level += 1;
-        let next = cut.integrate(scene, kernel, level);
-        let changed = (&next - &phi).abs();
-        let change = changed.norm() / next.norm().max(f64::MIN_POSITIVE);
-        let settled = |(e, x): (&f64, &f64)| *e <= ENTRY_TARGET * x.abs();
-        if change < ROUGH {
-            rough = rough.or(Some(level - 1));
+    let integrate = |level: Level| cut.integrate(scene, kernel, level);
+    let finer = |level: Level, most| cut.connections(level) <= most;
+    let first = integrate(Level::both(0));
+    let (mut series, mut rough) = (Series::at(0, first.clone()), None);
+    while !series.is_settled(TARGET, ENTRY_TARGET)
+        && series.level < LAST_LEVEL
+        && finer(Level::both(series.level + 1), together)
+    {
+        series.refine(integrate(Level::both(series.level + 1)));
+        if series.change() < ROUGH {
+            rough = rough.or(Some(series.level - 1));
         }
-        let done = change < TARGET && changed.iter().zip(&next).all(settled);
-        let exhausted = level == LAST_LEVEL || cut.connections(level + 1) > MOST_CONNECTIONS;
-        if done || exhausted {
-            let bound = match before {
-                None => changed,
-                Some(before) => changed.zip_map(&before, remainder),
-            };
-            let cheap = |l: &usize| cut.connections(*l) <= 0.1 * MOST_CONNECTIONS;
-            let level = rough.filter(cheap).unwrap_or(0);
-            let rough = Nodes { extent, level };
-            let free = Converged {
-                phi: next,
-                bound,
-                change,
-                rough,
-                visible: None,
-            };
-            return Ok(match extent.occlusion {
-                Occlusion::Ignored => free,
-                Occlusion::Considered => free.past(visible(scene, kernel)?),
-            });
-        }
-        (phi, before) = (next, Some(changed));
     }
+    let cheap = |l: &usize| finer(Level::both(*l), 0.1 * together);
+    let level = rough.filter(cheap).unwrap_or(0);
+    let mut free = Converged {
+        bound: series.bound(),
+        change: series.change(),
+        rough: Nodes { extent, level },
+        visible: None,
+        phi: series.phi,
+    };
+    let enough = |(e, x): (&f64, &f64)| *e <= ENOUGH * x.abs();
+    if series.level < LAST_LEVEL && !free.bound.iter().zip(&free.phi).all(enough) {
+        let level = series.level;
+        free.apart(&first, level, integrate, |level| cut.cost(level) <= apart);
+    }
+    free
 }
 
 /// Φcam with nothing in the way, pixels × spots, W, by the rules `nodes` as they stand, without a
@@ -125,17 +176,7 @@ pub fn integrated(scene: &Scene, kernel: Kernel, nodes: Nodes) -> Result<Matrix,
     if scene.hidden().next().is_none() {
         return Err(ModelError::NothingHidden);
     }
-    Ok(Cut::new(scene, nodes.extent).integrate(scene, kernel, nodes.level))
-}
-
-/// What the changes of an entry, the last and the one before, leave to come.
-fn remainder(last: f64, before: f64) -> f64 {
-    let ratio = if before > 0.0 {
-        (last / before).min(0.9)
-    } else {
-        0.9
-    };
-    last * (ratio / (1.0 - ratio)).max(1.0)
+    Ok(Cut::new(scene, nodes.extent).integrate(scene, kernel, Level::both(nodes.level)))
 }
 
 /// What is integrated over, and the level of refinement.
@@ -143,4 +184,40 @@ fn remainder(last: f64, before: f64) -> f64 {
 pub struct Nodes {
     extent: Extent,
     level: usize,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Refined apart, each under the roughest rule of the other, a textured ball has the light that
+    /// it has refined together, within the bounds of both.
+    #[test]
+    fn apart_is_together() {
+        let ball =
+            "mesh = { generate = \"sphere\", faces = 320, scale = 1.2, translate = [9, 9, 3] }";
+        let rectangle = "rectangle = { corner = [3, 11.350951966438567, 4.149048033561433], u = [4, 0, 0], v = [0, -2.82842712474619, 2.82842712474619] }";
+        let plate = "\n[[surface]]\nname = \"plate\"\nrole = \"occluder\"\nmaterial = { lambertian = 0.0 }\n\
+            rectangle = { corner = [2, 5, 4], u = [0, 8, 0], v = [0, 0, 4.5] }\n";
+        let text = Scene::load("bench").unwrap().text + plate;
+        let text = text
+            .replacen("pixels = [16, 16]", "pixels = [3, 3]", 1)
+            .replacen("per_side = 30", "per_side = 2", 1)
+            .replacen(rectangle, ball, 1);
+        assert!(text.contains(ball));
+        let scene = Scene::from_toml("ball", &text).unwrap();
+        let found = |most| unobstructed(&scene, Kernel::Physical, Extent::UNOBSTRUCTED, most);
+        let (together, apart) = (found([1e9, 0.0]), found([0.0, 1e9]));
+        assert!(together.worst().unwrap().1 < 1e-5, "{:?}", together.worst());
+        assert!(apart.worst().unwrap().1 < 1e-4, "{:?}", apart.worst());
+        // One was not the other.
+        assert!(apart.phi != together.phi);
+        for k in 0..apart.phi.len() {
+            let (error, bound) = (
+                apart.phi[k] - together.phi[k],
+                apart.bound[k] + together.bound[k],
+            );
+            assert!(error.abs() <= bound, "{k}: {error:e} beyond {bound:e}");
+        }
+    }
 }

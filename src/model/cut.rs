@@ -2,8 +2,10 @@
 
 use std::f64::consts::FRAC_1_PI;
 
+use rayon::prelude::*;
+
 use super::extent::{Extent, Take};
-use super::kernel::{HiddenPoint, Kernel};
+use super::kernel::{HiddenPoint, HiddenPoints, Kernel};
 use super::parts::{Ball, FootprintPart, HiddenParts, footprint_parts};
 use super::wall_point::{self, WallPoint};
 use crate::geometry::{Basis, DVec3};
@@ -13,6 +15,9 @@ use crate::scene::{Profile, Scene, Surface};
 
 /// Nodes, and pixels, handled at once.
 pub(super) const CHUNK: usize = 4096;
+const STRIP: usize = 64;
+/// Multiplications of a product in the time of a connection.
+const PRODUCTS: f64 = 8.0;
 /// The Gaussian profile is cut at this many of its 1/e² radii, beyond which lies e^−32 of the
 /// power.
 const GAUSSIAN_REACH: f64 = 4.0;
@@ -32,6 +37,38 @@ pub(super) fn exitance(scene: &Scene, column: usize, at: DVec3) -> Option<f64> {
     let (_, surface) = scene.shining()?;
     let uv = surface.shape.at_position(at).uv;
     Some(scene.laser.exitance(surface, column, uv))
+}
+
+/// Levels of refinement of the hidden surfaces, and of footprints and spots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Level {
+    pub hidden: usize,
+    pub walls: usize,
+}
+
+impl Level {
+    pub(super) fn both(level: usize) -> Self {
+        Self {
+            hidden: level,
+            walls: level,
+        }
+    }
+
+    /// The hidden surfaces alone.
+    pub(super) fn hidden(level: usize) -> Self {
+        Self {
+            hidden: level,
+            walls: 0,
+        }
+    }
+
+    /// Footprints and spots alone.
+    pub(super) fn walls(level: usize) -> Self {
+        Self {
+            hidden: 0,
+            walls: level,
+        }
+    }
 }
 
 /// A scene cut into parts on which the rules converge.
@@ -76,11 +113,17 @@ impl<'a> Cut<'a> {
     }
 
     /// Connections between wall points and hidden points at `level`.
-    pub(super) fn connections(&self, level: usize) -> f64 {
+    pub(super) fn connections(&self, level: Level) -> f64 {
         let seen = self.footprints.iter().flatten();
-        let seen: usize = seen.map(|part| part.nodes(level).count()).sum();
-        let lit = self.spots * profile_nodes(self.profile, 2 + 2 * level).len();
-        self.hidden.count(level) as f64 * (seen + lit) as f64
+        let seen: usize = seen.map(|part| part.nodes(level.walls).count()).sum();
+        let lit = self.spots * profile_nodes(self.profile, 2 + 2 * level.walls).len();
+        self.hidden.count(level.hidden) as f64 * (seen + lit) as f64
+    }
+
+    /// What an integration at `level` costs, in connections.
+    pub(super) fn cost(&self, level: Level) -> f64 {
+        let products = (self.footprints.len() * self.spots) as f64;
+        self.connections(level) + self.hidden.count(level.hidden) as f64 * products / PRODUCTS
     }
 
     /// The wall as each pixel sees it, at `level`.
@@ -112,33 +155,45 @@ impl<'a> Cut<'a> {
 
     /// One quadrature: Φ = Σ_q C\[p,q\]·D\[q,l\] over the nodes q of the hidden surfaces, in
     /// chunks.
-    pub(super) fn integrate(&self, scene: &Scene, kernel: Kernel, level: usize) -> Matrix {
-        let (seen, lit) = (self.seen(scene, level), self.lit(scene, level));
-        let side = |walls: &[WallPoint], point| {
-            walls
-                .iter()
-                .map(|w| w.towards(scene, kernel, point))
-                .sum::<f64>()
-        };
+    pub(super) fn integrate(&self, scene: &Scene, kernel: Kernel, level: Level) -> Matrix {
+        let (seen, lit) = (self.seen(scene, level.walls), self.lit(scene, level.walls));
         let hidden = match self.elements {
             Take::Centre => elements(scene),
-            Take::Integral => self.hidden.nodes(level),
+            Take::Integral => self.hidden.nodes(level.hidden),
         };
-        let mut phi = Matrix::zeros(seen.len(), lit.len());
+        // Its transpose, spots × pixels, so that the photographs of some pixels lie side by side.
+        let mut phi = Matrix::zeros(lit.len(), seen.len());
         for chunk in hidden.chunks(CHUNK) {
-            let laser = Matrix::from_fn(chunk.len(), lit.len(), |q, l| {
-                let (point, share) = &chunk[q];
-                let shines = exitance(scene, l, point.position);
-                share * shines.unwrap_or_else(|| side(&lit[l], point))
-            });
-            for (strip, seen) in seen.chunks(CHUNK).enumerate() {
-                let camera =
-                    Matrix::from_fn(seen.len(), chunk.len(), |p, q| side(&seen[p], &chunk[q].0));
-                let mut rows = phi.rows_mut(strip * CHUNK, seen.len());
-                rows.gemm(1.0, &camera, &laser, 1.0);
+            let points = HiddenPoints::new(chunk);
+            let sides = |walls: &[Vec<WallPoint>]| {
+                let mut sums = Matrix::zeros(chunk.len(), walls.len());
+                for (sums, walls) in sums.as_mut_slice().chunks_mut(chunk.len()).zip(walls) {
+                    for wall in walls {
+                        wall.add_towards(scene, kernel, &points, sums);
+                    }
+                }
+                sums
+            };
+            let mut laser = if scene.laser.is_shining() {
+                Matrix::from_fn(chunk.len(), lit.len(), |q, l| {
+                    exitance(scene, l, chunk[q].0.position).unwrap_or(0.0)
+                })
+            } else {
+                sides(&lit)
+            };
+            for (mut row, (_, share)) in laser.row_iter_mut().zip(chunk) {
+                row *= *share;
             }
+            let laser = laser.transpose();
+            let strips = phi.as_mut_slice().par_chunks_mut(STRIP * lit.len());
+            strips.zip(seen.par_chunks(STRIP)).for_each(|(phi, seen)| {
+                let more = &laser * sides(seen);
+                for (sum, more) in phi.iter_mut().zip(&more) {
+                    *sum += more;
+                }
+            });
         }
-        phi
+        phi.transpose()
     }
 }
 

@@ -1,6 +1,7 @@
 //! The two kernels of G12 and G23.
 
 use crate::geometry::DVec3;
+use crate::num::lanes::widest;
 use crate::scene::material::FallOff;
 use crate::scene::{Element, Surface};
 
@@ -35,6 +36,57 @@ impl HiddenPoint {
             normal: element.normal,
             u_axis: element.u_axis,
         }
+    }
+}
+
+/// Hidden points, coordinate by coordinate, so that a wall point meets many of them at once.
+pub(super) struct HiddenPoints<'a> {
+    /// Each with its share of area · albedo/π.
+    pub all: &'a [(HiddenPoint, f64)],
+    position: [Vec<f64>; 3],
+    normal: [Vec<f64>; 3],
+    /// Whether the light of any falls off with direction.
+    falls_off: bool,
+}
+
+impl<'a> HiddenPoints<'a> {
+    pub(super) fn new(all: &'a [(HiddenPoint, f64)]) -> Self {
+        let by_axis = |of: fn(&HiddenPoint) -> DVec3| {
+            std::array::from_fn(|axis| all.iter().map(|(point, _)| of(point)[axis]).collect())
+        };
+        Self {
+            all,
+            position: by_axis(|point| point.position),
+            normal: by_axis(|point| point.normal),
+            falls_off: all.iter().any(|(point, _)| point.fall_off.is_some()),
+        }
+    }
+
+    /// Whether [`HiddenPoints::add_geometry`] holds for them.
+    pub(super) fn are_plain(&self, kernel: Kernel) -> bool {
+        kernel == Kernel::Physical && !self.falls_off
+    }
+
+    /// Adds `factor` · G to the sum of each point, G as [`Kernel::between`] has it for points of
+    /// the physical kernel without a fall-off, to the bit.
+    pub(super) fn add_geometry(&self, wall: DVec3, facing: DVec3, factor: f64, sums: &mut [f64]) {
+        let ([x, y, z], [nx, ny, nz]) = (&self.position, &self.normal);
+        widest(
+            #[inline(always)]
+            || {
+                let n = sums.len();
+                let (x, y, z) = (&x[..n], &y[..n], &z[..n]);
+                let (nx, ny, nz) = (&nx[..n], &ny[..n], &nz[..n]);
+                for j in 0..n {
+                    let (rx, ry, rz) = (x[j] - wall.x, y[j] - wall.y, z[j] - wall.z);
+                    let r2 = rx * rx + ry * ry + rz * rz;
+                    let at_wall = (rx * facing.x + ry * facing.y + rz * facing.z).max(0.0);
+                    let at_hidden = (-(rx * nx[j] + ry * ny[j] + rz * nz[j])).max(0.0);
+                    let g = at_wall * at_hidden / (r2 * r2);
+                    sums[j] += if r2 > 0.0 { factor * g } else { 0.0 };
+                }
+            },
+        );
     }
 }
 

@@ -27,6 +27,7 @@ mod parts;
 mod patch;
 mod place;
 mod published;
+mod series;
 mod tangent;
 mod visible;
 mod wall_point;

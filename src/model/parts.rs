@@ -25,6 +25,9 @@ const MOST_ADDED: usize = 6_000;
 const MOST_FOOTPRINT_PARTS: usize = 64;
 /// Connections between wall points and hidden points beyond which no finer rule is tried.
 pub(super) const MOST_CONNECTIONS: f64 = 2e8;
+/// What an integration may cost, in connections, where the hidden surfaces and the walls are refined
+/// apart.
+pub(super) const MOST_APART: f64 = 4e9;
 
 /// Nodes a side of a part that is [`FAR`] by level of refinement, and the last level.
 const NODES: [f64; 8] = [2.0, 4.0, 7.0, 10.0, 14.0, 19.0, 26.0, 34.0];
@@ -108,8 +111,8 @@ impl<'a> HiddenParts<'a> {
             coarse: Vec::new(),
             coarse_side: ((0.25 * MOST_CONNECTIONS / walls).sqrt() as usize).clamp(8, 256),
         };
-        // Four nodes a part and as many a footprint, at level 1, must be few enough.
-        let most = (0.25 * MOST_CONNECTIONS / walls) as usize;
+        // Four nodes a part and as many a footprint must be few enough.
+        let most = (0.25 * MOST_APART / walls) as usize;
         let mut whole = Vec::new();
         for (index, surface) in found.surfaces.iter().enumerate() {
             match &surface.shape {

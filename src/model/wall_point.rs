@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_1_PI;
 
-use super::kernel::{HiddenPoint, Kernel};
+use super::kernel::{HiddenPoint, HiddenPoints, Kernel};
 use crate::geometry::{Contact, DVec3, Interaction, Ray, ShapeId};
 use crate::scene::Scene;
 
@@ -57,6 +57,26 @@ impl WallPoint {
         match kernel.between(self.position, self.normal, hidden) {
             0.0 => 0.0,
             g => self.reflected(scene, hidden.position) * g,
+        }
+    }
+
+    /// Adds that of each hidden point to its sum.
+    pub(super) fn add_towards(
+        &self,
+        scene: &Scene,
+        kernel: Kernel,
+        hidden: &HiddenPoints<'_>,
+        sums: &mut [f64],
+    ) {
+        match self.reflection {
+            Reflection::Constant(f) if hidden.are_plain(kernel) => {
+                hidden.add_geometry(self.position, self.normal, self.weight * f, sums);
+            }
+            _ => {
+                for (sum, (point, _)) in sums.iter_mut().zip(hidden.all) {
+                    *sum += self.towards(scene, kernel, point);
+                }
+            }
         }
     }
 
