@@ -28,9 +28,9 @@ use crate::transport::Estimator;
 /// Matrices of Φcam's size that are held at once, beside one for each exposure.
 const EXPOSING: f64 = 12.0;
 
-/// exposure.json.
+/// What photographs are exposed with.
 #[derive(Debug, Serialize)]
-struct Account {
+struct ExposedWith {
     version: String,
     scene: String,
     scene_hash: String,
@@ -48,6 +48,13 @@ struct Account {
     glare_to_signal: f64,
     /// Where the standard deviation comes from.
     stderr: StatedBy,
+}
+
+/// exposure.json.
+#[derive(Debug, Serialize)]
+struct Account {
+    #[serde(flatten)]
+    with: ExposedWith,
     /// What the sensor's calibration found, where it was used.
     photon_transfer: Option<PhotonTransfer>,
     result: Summary,
@@ -93,17 +100,7 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
     folder.refuse_obstacles()?;
     let lock = |folder| RunFolder::lock(folder, "phicam expose");
     let _run = args.output.is_none().then(|| lock(dir)).transpose()?;
-    let photon_transfer = match args.stderr {
-        StatedBy::Counts => Some(sensor.photon_transfer(args.seed)),
-        StatedBy::Oracle => None,
-    };
-    let stated = photon_transfer.map_or(Stated::Oracle, Stated::Counts);
-    let exposed = sensor.expose(&light, &exposure, stated, args.seed)?;
-    let result = Summary::new(&sensor, &light, &exposure, &exposed);
-    remark(&result, args.strict, console)?;
-    remark_dark(&result, &exposed, console);
-    remark_render(&result, plan.estimator, console);
-    let account = Account {
+    let with = ExposedWith {
         version: version().to_owned(),
         scene: scene.name.clone(),
         scene_hash: scene.hash.clone(),
@@ -117,6 +114,22 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
         glare_fraction: settings.glare.map_or(0.0, |g| g.fraction),
         glare_to_signal: glare_to_signal(&scattered, &phi),
         stderr: args.stderr,
+    };
+    if !args.replace {
+        folder.refuse_other_settings(&with)?;
+    }
+    let photon_transfer = match args.stderr {
+        StatedBy::Counts => Some(sensor.photon_transfer(args.seed)),
+        StatedBy::Oracle => None,
+    };
+    let stated = photon_transfer.map_or(Stated::Oracle, Stated::Counts);
+    let exposed = sensor.expose(&light, &exposure, stated, args.seed)?;
+    let result = Summary::new(&sensor, &light, &exposure, &exposed);
+    remark(&result, args.strict, console)?;
+    remark_dark(&result, &exposed, console);
+    remark_render(&result, plan.estimator, console);
+    let account = Account {
+        with,
         photon_transfer,
         result,
     };
@@ -137,7 +150,7 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
     output::print(&if args.json {
         json
     } else {
-        report::finding_text(&describe_exposure(&account.result, &account.times))
+        report::finding_text(&describe_exposure(&account.result, &account.with.times))
     })?;
     Ok(Outcome::Done)
 }

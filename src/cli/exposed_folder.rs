@@ -11,6 +11,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+use serde_json::Value;
+
 use super::cleanup::{remove_abandoned, remove_named, remove_numbered};
 use super::failure::Failure;
 use super::output;
@@ -26,6 +29,12 @@ use crate::store::{self, ensure_writable, flush};
 
 /// Its files; the last says that all are there.
 const FILES: [&str; 4] = [SATURATED, STDERR, PHI, EXPOSURE];
+
+/// Bytes that an account may have.
+const MOST_ACCOUNT: u64 = 1 << 20;
+
+const OTHER_CURE: &str =
+    "give the same settings, choose another folder (-o), or replace them (--replace)";
 
 /// Photographs that take the place of others, until they are whole.
 const REPLACEMENT: &str = ".exposed-new";
@@ -56,6 +65,26 @@ impl ExposedFolder {
         output::refuse_obstacles(&self.path, &[COUNTS], &FILES)
     }
 
+    /// Refuses, before anything is computed, to replace photographs whose account differs from `with`
+    /// in what they were exposed with; says in what.
+    pub(super) fn refuse_other_settings(&self, with: &impl Serialize) -> Result<(), Failure> {
+        let account = store::read(&self.path.join(EXPOSURE), MOST_ACCOUNT);
+        let there: Option<Value> = account.ok().and_then(|b| serde_json::from_slice(&b).ok());
+        let (Some(Value::Object(there)), Value::Object(with)) =
+            (there, serde_json::from_str(&output::json(with)?)?)
+        else {
+            return Ok(());
+        };
+        let differs = |(key, ours): &(&String, &Value)| there.get(*key) != Some(*ours);
+        let keys: Vec<&str> = with.iter().filter(differs).map(|(key, _)| &**key).collect();
+        if keys.is_empty() {
+            return Ok(());
+        }
+        let (path, keys) = (self.path.display(), keys.join(", "));
+        let cause = format!("{path} holds photographs with other settings ({EXPOSURE}: {keys})");
+        Err(Failure::new(cause, OTHER_CURE))
+    }
+
     /// Refuses to replace photographs of other settings, of other light or of unknown origin: those
     /// that are there have to have the account `json`.
     pub(super) fn refuse_other(&self, json: &str) -> Result<(), Failure> {
@@ -69,9 +98,7 @@ impl ExposedFolder {
             [.., true] => format!("{path} holds photographs with other settings ({EXPOSURE})"),
             _ => format!("{path} holds photographs, but no {EXPOSURE} that says which"),
         };
-        let cure =
-            "give the same settings, choose another folder (-o), or replace them (--replace)";
-        Err(Failure::new(cause, cure))
+        Err(Failure::new(cause, OTHER_CURE))
     }
 
     /// Goes on where a process was ended while it put new photographs in the place of others, and

@@ -29,7 +29,8 @@ fn other_settings_are_refused_unless_they_are_to_replace() {
         workspace.refuses(&format!("{SEED_1} {rest}"), &words);
     }
     let _ = workspace.phicam(&format!("{SEED_1} -o seen")).exits(0);
-    workspace.refuses(&format!("{SEED_2} -o seen"), &["seen", "--replace"]);
+    let words = ["seen", "(exposure.json: seed)", "--replace"];
+    workspace.refuses(&format!("{SEED_2} -o seen"), &words);
     let _ = workspace.phicam(&format!("{SEED_2} -o fresh")).exits(0);
     let _ = workspace.phicam(&format!("{SEED_2} --replace")).exits(0);
     let [done, fresh] = ["done/exposed", "fresh"].map(|f| workspace.contents(f));
