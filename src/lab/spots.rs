@@ -3,10 +3,11 @@
 //! Φcam = C·diag(ρ)·D has p rows (pixels), one column for each of the l spots, and between them r
 //! elements of the hidden surface, of which r₊ reflect. So rank Φcam ≤ min(p, r₊, l): the number of
 //! independent things that the photographs say of the object. What of them is above noise is the
-//! numerical rank: the singular values σ_k(l) of the first l columns above τ·σ₁(L), with L all
-//! spots of the scene and τ the norm of the noise over that of Φcam. The floor is the same for
-//! every l, so that a further spot never lowers the rank: σ_k(l) ≤ σ_k(l + 1) (Cauchy's
-//! interlacing).
+//! numerical rank: the singular values σ_k(l) of l columns above τ·σ₁(L), with L all spots of the
+//! scene and τ the norm of the noise over that of Φcam. The l spots are spread over all of them:
+//! each is as far from those before it as any. The floor is the same for every l, so that a further
+//! spot never lowers the rank: σ_k(l) ≤ σ_k(l + 1) (Cauchy's interlacing). Past what stands in the
+//! way an element is a sum of several products, and r₊ counts those.
 
 use std::ops::Range;
 
@@ -19,6 +20,7 @@ use super::finding::{
 use super::options::{Opt, OptionError};
 use super::registered::{Registered, prepared};
 use super::study::Study;
+use crate::geometry::DVec3;
 use crate::matrix::Matrix;
 use crate::model::{Kernel, MatrixModel};
 use crate::num::digits::figure;
@@ -35,7 +37,7 @@ pub(super) const STUDY: Registered = Registered {
     options: &[
         Opt::whole(
             "spots",
-            "Numbers of spots, separated by commas, each the first so many of the scene; unless given 1, 2, 4, … and all",
+            "Numbers of spots, separated by commas, each so many of the scene's, spread over them; unless given 1, 2, 4, … and all",
         )
         .list()
         .within(1, 1_000_000),
@@ -96,7 +98,7 @@ pub(super) struct Photographs {
 /// The rank with some of the spots.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct RankOfSpots {
-    /// How many spots: the first of the scene.
+    /// How many spots, spread over those of the scene.
     pub spots: usize,
     /// min(p, r₊, l), which the rank cannot exceed.
     pub bound: usize,
@@ -118,8 +120,10 @@ pub(super) struct SpotRanks {
     pub pixels: usize,
     /// Elements of the hidden surfaces, r.
     pub elements: usize,
-    /// Those that reflect, r₊.
+    /// Those that reflect, r₊; past what stands in the way their terms.
     pub reflecting: usize,
+    /// Whether something stands in the way.
+    pub obstructed: bool,
     /// Spots of the scene, L.
     pub all_spots: usize,
     /// Singular values up to this times σ₁(L) count as zero.
@@ -130,12 +134,44 @@ pub(super) struct SpotRanks {
 
 impl SpotsStudy {
     fn reflecting(&self) -> usize {
-        self.model.albedo.iter().filter(|a| **a > 0.0).count()
+        let reflects = |element: usize| self.model.albedo[element] > 0.0;
+        match &self.model.factors {
+            Some(terms) => terms.element.iter().filter(|j| reflects(**j)).count(),
+            None => (0..self.model.albedo.len())
+                .filter(|j| reflects(*j))
+                .count(),
+        }
     }
 
     fn bound(&self, spots: usize) -> usize {
         self.model.g23.nrows().min(self.reflecting()).min(spots)
     }
+}
+
+/// The numbers of `places`, each as far from those before it as any, the first the one nearest to
+/// their mean; of equals the first.
+fn spread(places: &[DVec3]) -> Vec<usize> {
+    let mean = places.iter().sum::<DVec3>() / places.len().max(1) as f64;
+    let mut apart: Vec<f64> = places
+        .iter()
+        .map(|p| 1.0 / p.distance_squared(mean))
+        .collect();
+    let mut order = Vec::with_capacity(places.len());
+    for _ in places {
+        let farther = |far: usize, i: usize| if apart[i] > apart[far] { i } else { far };
+        let Some(next) = (0..places.len()).reduce(farther) else {
+            break;
+        };
+        if order.is_empty() {
+            apart.fill(f64::INFINITY);
+        }
+        for (apart, place) in apart.iter_mut().zip(places) {
+            *apart = apart.min(place.distance_squared(places[next]));
+        }
+        apart[next] = -1.0;
+        order.push(next);
+    }
+    order
 }
 
 /// The rank of the first columns of Φcam; `bound` is what it cannot exceed.
@@ -170,7 +206,9 @@ impl Study for SpotsStudy {
     }
 
     fn context(&self, _: Control<'_>) -> Result<Photographs, LabError> {
-        let phi = self.model.phi();
+        let spots = self.scene.laser.spots.iter();
+        let places: Vec<DVec3> = spots.map(|s| s.target.position).collect();
+        let phi = self.model.phi().select_columns(&spread(&places));
         let largest = svd(&phi)?.sigma.max();
         if largest > 0.0 {
             Ok(Photographs { phi, largest })
@@ -200,6 +238,7 @@ impl Study for SpotsStudy {
             pixels: self.model.g23.nrows(),
             elements: self.model.albedo.len(),
             reflecting: self.reflecting(),
+            obstructed: self.model.factors.is_some(),
             all_spots: self.scene.laser.spots.len(),
             tolerances: self.tolerances.clone(),
             steps,
@@ -251,8 +290,15 @@ impl SpotRanks {
         };
         Table {
             caption: format!(
-                "Rank of Φcam: p = {} pixels, r = {} elements, r₊ = {} of which reflect",
-                self.pixels, self.elements, self.reflecting
+                "Rank of Φcam: p = {} pixels, r = {} elements, r₊ = {} {}",
+                self.pixels,
+                self.elements,
+                self.reflecting,
+                if self.obstructed {
+                    "terms of those that reflect"
+                } else {
+                    "of which reflect"
+                }
             ),
             file: Some("spots.csv".to_owned()),
             columns,
@@ -299,12 +345,20 @@ impl Describe for SpotRanks {
                      the largest singular value with all {} spots. Directions below it are lost.",
                     self.all_spots
                 ),
-                "Φcam is that of the matrix model: light of three bounces, without occlusion, \
-                 with pixels, elements and spots taken at their centres. Structure finer than the \
-                 elements, light of more bounces and the extent of the spots may add directions."
-                    .to_owned(),
-                "The spots are the first of the scene, in its order; other choices of as many \
-                 spots may have another rank, within the same bound."
+                if self.obstructed {
+                    "Φcam is that of the matrix model past what stands in the way: light of three \
+                     bounces, integrated over elements, footprints and spots. Light of more \
+                     bounces may add directions."
+                } else {
+                    "Φcam is that of the matrix model: light of three bounces, with pixels, \
+                     elements and spots taken at their centres. Structure finer than the \
+                     elements, light of more bounces and the extent of the spots may add \
+                     directions."
+                }
+                .to_owned(),
+                "The spots are spread over those of the scene: each is as far from those before \
+                 it as any. Other choices of as many spots may have another rank, within the same \
+                 bound (`phicam study layout` looks for the best)."
                     .to_owned(),
             ],
             tables: vec![self.table()],

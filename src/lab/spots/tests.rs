@@ -86,3 +86,15 @@ fn the_rank_stays_below_its_bound_and_grows_by_one_at_most() {
         assert_eq!(said.tables[0].rows.len(), found.steps.len());
     }
 }
+
+/// Of five places on a line the middle one is first, then the two ends, then what is between; of
+/// equals the first.
+#[test]
+fn spots_are_spread() {
+    let line: Vec<DVec3> = [0.0, 1.0, 2.0, 3.0, 4.0].map(|x| DVec3::X * x).to_vec();
+    assert_eq!(spread(&line), [2, 0, 4, 1, 3]);
+    let crowded: Vec<DVec3> = [0.0, 0.1, 0.2, 9.0, 3.0].map(|x| DVec3::X * x).to_vec();
+    assert_eq!(spread(&crowded), [4, 3, 0, 2, 1]);
+    assert_eq!(spread(&[DVec3::X; 3]), [0, 1, 2]);
+    assert!(spread(&[]).is_empty());
+}
