@@ -55,7 +55,8 @@ pub(in crate::lab) const STUDY: Registered = Registered {
         Opt::seed("Seed of the tracer and first one of the sensor"),
     ],
     prepare: |scene, values| {
-        let NamedSensor { name, sensor } = NamedSensor::studied(values.maybe("sensor")?, scene)?;
+        let NamedSensor { name, sensor, .. } =
+            NamedSensor::studied(values.maybe("sensor")?, scene)?;
         let plan = ExperimentPlan {
             sensor,
             sensor_name: name,

@@ -8,32 +8,51 @@ use crate::lab::finding::Axis;
 use crate::scene::{Scene, SensorModel, Spread as GlareSpread};
 use crate::sensor::{Sensor, SensorError};
 
-/// A sensor with its name.
+/// A sensor with its name, and how many frames it takes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedSensor {
     /// Its name.
     pub name: String,
     /// The sensor.
     pub sensor: Sensor,
+    /// Frames that are averaged.
+    pub frames: u32,
+    /// Frames without laser that are averaged and subtracted.
+    pub dark_frames: u32,
 }
 
 impl NamedSensor {
-    /// The built-in sensor of this kind, or else that of the scene, or else the CCD.
+    /// A built-in sensor that takes one frame, and one dark frame.
+    pub(crate) fn builtin(model: SensorModel) -> Self {
+        Self {
+            name: model.name().to_owned(),
+            sensor: Sensor::builtin(model),
+            frames: 1,
+            dark_frames: 1,
+        }
+    }
+
+    /// The built-in sensor of this kind, or else that of the scene with its frames, or else the CCD.
     ///
     /// # Errors
     /// [`SensorError`], where the scene's has no meaning.
     pub fn studied(model: Option<SensorModel>, scene: &Scene) -> Result<Self, SensorError> {
         if let (None, Some(own)) = (model, &scene.sensor) {
+            let (frames, dark_frames) = (own.frames.unwrap_or(1), own.dark_frames.unwrap_or(0));
             return Ok(Self {
-                name: format!("of {}", scene.name),
+                name: match (frames, dark_frames) {
+                    (1, 1) => format!("of {}", scene.name),
+                    _ => format!(
+                        "of {}, frames {frames}, dark frames {dark_frames}",
+                        scene.name
+                    ),
+                },
                 sensor: Sensor::from_settings(own)?,
+                frames,
+                dark_frames,
             });
         }
-        let model = model.unwrap_or(SensorModel::Ccd);
-        Ok(Self {
-            name: model.name().to_owned(),
-            sensor: Sensor::builtin(model),
-        })
+        Ok(Self::builtin(model.unwrap_or(SensorModel::Ccd)))
     }
 }
 
@@ -46,12 +65,12 @@ pub enum NoiseAxis {
     /// Mean photons that the signal sends to a pixel in the one frame: shot noise alone, of an
     /// electron for every photon, without read noise and converter.
     Photons,
-    /// Seconds that a sensor's frame takes; one frame for each spot and one dark frame, which is
-    /// subtracted. It serves all spots, so that the errors of a row are correlated; the recovery
+    /// Seconds that a sensor's frame takes; its frames for each spot, averaged, less the mean of its
+    /// dark frames. These serve all spots, so that the errors of a row are correlated; the recovery
     /// takes them as independent.
     Exposure(NamedSensor),
     /// Glare over signal, ΣΦ_glare/ΣΦ: light of the laser that the lens scatters, photographed by a
-    /// sensor in one frame (and one dark frame) that fills the brightest pixel to half. Nothing
+    /// sensor in its frames (and dark frames), which fill the brightest pixel to half. Nothing
     /// takes the glare away and the recovery is not told of it: a bias, beside the sensor's noise.
     Glare(NamedSensor, GlareSpread),
     /// Bits of a converter whose gain K puts the brightest entry at 80 % of its range; nothing else
@@ -116,8 +135,8 @@ impl NoiseAxis {
                 "exposure",
                 "exposure of a frame / s",
                 "exposure_s",
-                "One frame for each spot, one dark frame subtracted, no glare. The recovery is told the sensor's \
-                 standard errors.",
+                "The sensor's frames for each spot are averaged, its dark frames subtracted (one and one where the sensor \
+                 is a built-in one), no glare. The recovery is told the sensor's standard errors.",
             ),
             Self::Glare(_, spread) => (
                 "glare",
@@ -126,7 +145,8 @@ impl NoiseAxis {
                     GlareSpread::Falloff(_) => "glare over signal, falling off",
                 },
                 "glare_over_signal",
-                "One frame and one dark frame that fill the brightest pixel to half. The glare is left in and the \
+                "The sensor's frames and dark frames (one and one where it is a built-in one) fill the brightest pixel \
+                 to half. The glare is left in and the \
                  recovery is told the sensor's standard errors alone: the glare is a bias, and the Cramér–Rao bound \
                  is of the sensor's noise.",
             ),
@@ -152,6 +172,14 @@ impl NoiseAxis {
                 Self::Relative | Self::Photons | Self::Bits => None,
                 Self::Exposure(camera) | Self::Glare(camera, _) => Some(&camera.name),
             },
+        }
+    }
+
+    /// How many frames, and how many dark frames, are averaged.
+    pub(super) fn frames(&self) -> [u32; 2] {
+        match self {
+            Self::Relative | Self::Photons | Self::Bits => [1, 0],
+            Self::Exposure(camera) | Self::Glare(camera, _) => [camera.frames, camera.dark_frames],
         }
     }
 

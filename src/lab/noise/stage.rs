@@ -133,9 +133,8 @@ impl Stage {
                 (camera.sensor, time, glare)
             }
         };
-        // A real sensor takes a dark frame too, which is subtracted.
-        let dark = u32::from(self.axis.label().sensor.is_some());
-        let exposure = Exposure::new(&[time], 1, dark)?;
+        let [frames, dark] = self.axis.frames();
+        let exposure = Exposure::new(&[time], frames, dark)?;
         Ok(Shot {
             sensor,
             exposure,
@@ -230,10 +229,7 @@ mod tests {
         let scene = Scene::load("bench").unwrap();
         let spots = scene.laser.spots.len();
         let exact = Matrix::from_element(scene.camera.pixels(), spots, 2e-15);
-        let sensor = |model: SensorModel| NamedSensor {
-            name: model.name().to_owned(),
-            sensor: Sensor::builtin(model),
-        };
+        let sensor = NamedSensor::builtin;
         for spread in [Spread::Uniform, Spread::Falloff(1.0)] {
             let axis = NoiseAxis::Glare(sensor(SensorModel::Ideal), spread);
             let stage = stage(&axis, &exact);
@@ -254,6 +250,25 @@ mod tests {
             (relative * 35_000f64.sqrt() - 1.0).abs() < 0.02,
             "{relative}"
         );
+    }
+
+    /// The frames that a scene gives its sensor are averaged: a hundred have a tenth of the error of
+    /// one, a hundred dark frames that of one.
+    #[test]
+    fn the_scenes_frames_are_taken() {
+        let exact = Matrix::from_element(12, 36, 2e-15);
+        let error = |frames: u32| {
+            let sensor = format!(
+                "\n[sensor]\nmodel = \"ccd\"\nexposure = 0.1\nframes = {frames}\ndark_frames = {frames}\n"
+            );
+            let text = Scene::load("bench").unwrap().text + &sensor;
+            let scene = Scene::from_toml("own", &text).unwrap();
+            let axis = NoiseAxis::Exposure(NamedSensor::studied(None, &scene).unwrap());
+            assert!(frames == 1 || axis.label().sensor.unwrap().contains("frames 100"));
+            stage(&axis, &exact).stderr(0.1).unwrap().mean()
+        };
+        let ratio = error(1) / error(100);
+        assert!((ratio - 10.0).abs() < 1e-6, "{ratio}");
     }
 
     /// What the size of the standard errors is said to be on an axis it is, of every entry.

@@ -48,10 +48,7 @@ fn trials_do_not_depend_on_threads(plan: &NoisePlan) {
 }
 
 fn ccd() -> NamedSensor {
-    NamedSensor {
-        name: "ccd".to_owned(),
-        sensor: Sensor::builtin(SensorModel::Ccd),
-    }
+    NamedSensor::builtin(SensorModel::Ccd)
 }
 
 #[test]
