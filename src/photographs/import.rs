@@ -14,11 +14,13 @@ use super::read::Reader;
 use super::set::{ChannelName, Set};
 use super::shots::Shots;
 use super::takes::Take;
-
+use crate::num::digits::figure;
 use crate::scene::Scene;
 
 /// Probability of the photon transfer line below which it is said not to fit.
 const FITS: f64 = 1e-3;
+/// How far from square the pixels of a view without marks may be.
+const STRETCH: f64 = 0.02;
 
 /// The scene with the spots whose positions the set lists, if it does.
 ///
@@ -65,6 +67,12 @@ pub fn import(
     let noise = given.or(line.map(|l| l.noise));
     let columns = Columns::of(set, scene, (&shots, &placing), noise, &mut reader)?;
     let mut warnings = unsaid(set, &placing);
+    let view = &scene.camera.view;
+    if placing.fitted.is_none() {
+        let extent = set.crop.map(|c| [c.width, c.height]);
+        let extent = extent.unwrap_or(shots.size.map(|n| n as f64));
+        warnings.extend(stretched(extent, [view.u().length(), view.v().length()]));
+    }
     warnings.extend(line.and_then(|line| bent(&line)));
     if noise.is_some_and(|n| n.has_offset) {
         warnings.push("without dark frames the repeats do not tell the read noise: the photon transfer line is over light with the camera's offset in it, and its value at 0 is σ² − g·offset; give `dark`".to_owned());
@@ -166,6 +174,17 @@ fn unsaid(set: &Set, placing: &Placing) -> Vec<String> {
     said.map(|(_, words)| words.to_owned()).collect()
 }
 
+/// That a view of these sides fills a rectangle of `extent`, px, of another shape.
+fn stretched([columns, rows]: [f64; 2], [u, v]: [f64; 2]) -> Option<String> {
+    let ratio = (u / columns) / (v / rows);
+    (libm::log(ratio).abs() > libm::log(1.0 + STRETCH)).then(|| {
+        format!(
+            "without marks the scene's view, {u} wide and {v} high, fills {columns} × {rows} px: its pixels are {} times as wide as high; if the camera's are square, mend camera.view or give `crop` or marks",
+            figure(ratio, 3)
+        )
+    })
+}
+
 /// That the variance of repeats is no line.
 fn bent(line: &PhotonTransferFit) -> Option<String> {
     let why = if line.noise.has_offset {
@@ -187,6 +206,14 @@ mod tests {
     use std::slice::from_ref;
 
     use super::*;
+
+    /// Pixels of a view of 3 × 2 that fills 300 × 200 px are square, of 4 × 2 a third wider.
+    #[test]
+    fn a_stretched_view_is_told() {
+        assert_eq!(stretched([300.0, 200.0], [3.0, 2.0]), None);
+        let told = stretched([300.0, 200.0], [4.0, 2.0]).unwrap();
+        assert!(told.contains("1.33 times as wide as high"), "{told}");
+    }
 
     #[test]
     fn watts_need_seconds() {
