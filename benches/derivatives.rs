@@ -1,6 +1,7 @@
 //! Derivatives of the model beside the model itself: the cost of a parameter in models.
 //!
-//! The published geometry with 120 spots, 16 × 16 pixels, 8 × 8 elements, by centres and integrated.
+//! The published geometry with 120 spots, 16 × 16 pixels, 8 × 8 elements, by centres and
+//! integrated.
 
 use std::hint::black_box;
 

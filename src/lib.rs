@@ -28,9 +28,9 @@
 //! statistics whether model and transport agree, and recovers the hidden reflectance.
 //!
 //! A hidden surface may shine by itself (a monitor, a lamp) in place of the laser. Then one
-//! photograph of the wall is taken, past an occluder whose shadows tell the elements apart. The light
-//! meets S2 and S3 alone: D\[j\] = M·A_j takes the place of the laser's side, M the exitance of a
-//! white element, and what is recovered is the picture x ∈ \[0, 1\] in the place of ρ2.
+//! photograph of the wall is taken, past an occluder whose shadows tell the elements apart. The
+//! light meets S2 and S3 alone: D\[j\] = M·A_j takes the place of the laser's side, M the exitance
+//! of a white element, and what is recovered is the picture x ∈ \[0, 1\] in the place of ρ2.
 //!
 //! | symbol | meaning | shape, unit |
 //! | --- | --- | --- |
@@ -73,9 +73,9 @@
 //! 2. **Blind recovery.** [`recovery`] imports [`num`] and [`matrix`] only; it never learns what
 //!    scene it inverts.
 //! 3. **One door per foreign crate**: obvhs only in `geometry/tree`, exr only in `film/exr` and
-//!    `image/exr` (frames and pictures), png only in `image/png`, tiff only in `image/tiff`, matrix decompositions only in
-//!    `num::linalg`, random generators only in [`num::stream`], the argument parser only in
-//!    [`cli`]. And one door for files: only [`store`] opens them for reading.
+//!    `image/exr` (frames and pictures), png only in `image/png`, tiff only in `image/tiff`, matrix
+//!    decompositions only in `num::linalg`, random generators only in [`num::stream`], the argument
+//!    parser only in [`cli`]. And one door for files: only [`store`] opens them for reading.
 //! 4. **A random number is a function of (seed, spot, pixel, sample block)**, never of the thread
 //!    or the order. The same seed gives the same bytes. Blocks are added along one fixed binary
 //!    tree (`num::tree`), so that any part of a computation can be done elsewhere or later, and

@@ -176,8 +176,8 @@ pub fn is_abandoned(path: &Path) -> bool {
     modified.is_ok_and(|m| m.elapsed().is_ok_and(|age| age > FORSAKEN))
 }
 
-/// Whether the process lives whose temporary file or lock has this name; `None` if it did not run on
-/// this machine, or nobody knows.
+/// Whether the process lives whose temporary file or lock has this name; `None` if it did not run
+/// on this machine, or nobody knows.
 fn process_lives(name: &str) -> Option<bool> {
     let mut words = name.strip_prefix(PREFIX)?.split('-');
     let here = words.next().filter(|h| !h.is_empty() && *h == machine());

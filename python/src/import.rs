@@ -13,7 +13,8 @@ use crate::errors::{Raise, input};
 use crate::scene::Scene;
 use crate::work::run;
 
-/// Φcam of the photographs that `text`, a list in TOML, names in `folder`; `channel` of those in colour.
+/// Φcam of the photographs that `text`, a list in TOML, names in `folder`; `channel` of those in
+/// colour.
 #[pyfunction]
 #[pyo3(signature = (scene, text, folder, channel, *, threads))]
 pub fn import_photographs<'py>(

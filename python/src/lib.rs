@@ -1,8 +1,9 @@
-//! The crate phicam as a Python module: arrays in, arrays out. What Python's users see is written in
-//! `phicam/*.py`; here is what those files call.
+//! The crate phicam as a Python module: arrays in, arrays out. What Python's users see is written
+//! in `phicam/*.py`; here is what those files call.
 //!
-//! Every computation runs on a thread pool of its own with the interpreter unlocked ([`work::run`]),
-//! so that Ctrl-C ends it, and that a forked process does not wait for threads that it has not.
+//! Every computation runs on a thread pool of its own with the interpreter unlocked
+//! ([`work::run`]), so that Ctrl-C ends it, and that a forked process does not wait for threads
+//! that it has not.
 
 mod arrays;
 mod calibrate;

@@ -128,7 +128,8 @@ impl Settings {
     }
 }
 
-/// Recovers by each of the methods; without `is_grid` nothing says how the elements lie; `trusted` orders what was found by how far it can be trusted.
+/// Recovers by each of the methods; without `is_grid` nothing says how the elements lie; `trusted`
+/// orders what was found by how far it can be trusted.
 #[pyfunction]
 #[pyo3(signature = (model, phi, stderr, left_out, glare, patterns, *, methods, is_grid, settings, replicates,
                     errors_name, trusted, threads))]

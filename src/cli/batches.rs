@@ -26,8 +26,8 @@ pub(super) struct Batches<'a> {
 
 impl Batches<'_> {
     /// Traces the spots of `todo`, beginning with those of which an earlier process has left blocks
-    /// (`begun`); what is finished of a batch is put on disk while it is traced, and its frames when
-    /// it is whole. If it was stopped, so many blocks of the next spots are finished as well.
+    /// (`begun`); what is finished of a batch is put on disk while it is traced, and its frames
+    /// when it is whole. If it was stopped, so many blocks of the next spots are finished as well.
     pub(super) fn trace(
         &self,
         todo: &[usize],
@@ -102,9 +102,9 @@ impl Batches<'_> {
         Ok(tally)
     }
 
-    /// Runs of neighbouring spots to be traced together: as many as [`Spots::at_a_time`] says. Where
-    /// an earlier process has left blocks of some of them, these stay together, with those of them
-    /// that are finished: to write these again costs less than to trace the others anew.
+    /// Runs of neighbouring spots to be traced together: as many as [`Spots::at_a_time`] says.
+    /// Where an earlier process has left blocks of some of them, these stay together, with those of
+    /// them that are finished: to write these again costs less than to trace the others anew.
     fn ranges(&self, todo: &[usize], begun: &[Kept], kept: &[Option<Matrix>]) -> Vec<Range<usize>> {
         let most = Spots::at_a_time(self.scene, self.plan.estimator);
         let mut free: Vec<bool> = vec![false; kept.len()];

@@ -248,7 +248,8 @@ fn remark_dark(result: &Summary, exposed: &Exposed, console: Console) {
     }
 }
 
-/// What of the render's own error a recovery has to know. Where entries share it, it adds up over them.
+/// What of the render's own error a recovery has to know. Where entries share it, it adds up over
+/// them.
 fn remark_render(result: &Summary, estimator: Estimator, console: Console) {
     let shared = Errors::of(estimator).shared();
     if result.render <= shared.map_or(0.1, |_| 1e-3) {

@@ -65,8 +65,8 @@ impl ExposedFolder {
         output::refuse_obstacles(&self.path, &[COUNTS], &FILES)
     }
 
-    /// Refuses, before anything is computed, to replace photographs whose account differs from `with`
-    /// in what they were exposed with; says in what.
+    /// Refuses, before anything is computed, to replace photographs whose account differs from
+    /// `with` in what they were exposed with; says in what.
     pub(super) fn refuse_other_settings(&self, with: &impl Serialize) -> Result<(), Failure> {
         let account = store::read(&self.path.join(EXPOSURE), MOST_ACCOUNT);
         let there: Option<Value> = account.ok().and_then(|b| serde_json::from_slice(&b).ok());
@@ -164,8 +164,8 @@ impl ExposedFolder {
         Ok(record.write(dir)?)
     }
 
-    /// Removes the old photographs and moves the new ones to their place. A process that ends midway
-    /// leaves what [`Self::finish_replacement`] goes on with.
+    /// Removes the old photographs and moves the new ones to their place. A process that ends
+    /// midway leaves what [`Self::finish_replacement`] goes on with.
     fn replace(&self) -> Result<(), Failure> {
         self.remove_files()?;
         fs::rename(self.path.join(REPLACEMENT), self.path.join(INCOMING))?;

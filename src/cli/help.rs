@@ -1,5 +1,5 @@
-//! `phicam help scene`: the help of the command `scene` and the reference of the scene file, or with a
-//! key what the reference says of it.
+//! `phicam help scene`: the help of the command `scene` and the reference of the scene file, or
+//! with a key what the reference says of it.
 
 use clap::{CommandFactory, Parser};
 

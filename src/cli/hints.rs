@@ -8,8 +8,8 @@ use crate::lab::STUDIES;
 use crate::recovery::Method;
 use crate::scene::builtins;
 
-/// What is said of `error`, of a command line with these `words`: what the parser says, and the cure in
-/// the place of its guesses. `None` where there is nothing to add to that.
+/// What is said of `error`, of a command line with these `words`: what the parser says, and the
+/// cure in the place of its guesses. `None` where there is nothing to add to that.
 pub(super) fn told(error: &Error, words: &[String]) -> Option<String> {
     let said = error.render().to_string();
     let plain = said

@@ -146,8 +146,8 @@ pub(super) fn refuse_negative(path: &Path, matrix: &Matrix) -> Result<(), Failur
     ))
 }
 
-/// Which entries of a run do not count: of a render those whose standard error is not to be trusted,
-/// of photographs those that are left out; `None` if nothing says so.
+/// Which entries of a run do not count: of a render those whose standard error is not to be
+/// trusted, of photographs those that are left out; `None` if nothing says so.
 pub(super) fn read_left_out(dir: &Path, scene: &Scene) -> Result<Option<Matrix>, Failure> {
     let paths = [TAILS, LEFT_OUT].map(|name| dir.join(name));
     let there = paths.iter().find(|path| path.exists());

@@ -35,15 +35,15 @@
 //! A study keeps its finished tasks in `NAME.phs` beside its files until it is complete, and `study
 //! noise` for good: the same command goes on from them.
 //!
-//! Exit codes: 0 done (and agreed), 1 traced and modelled disagree (`validate`, `run`) or photographs
-//! and model contradict each other (`recover`: no reflectances between 0 and 1 explain the photographs
-//! within their errors; what was recovered is written nevertheless), 2 error, 4 nothing to
-//! compare (`validate`, `run`: no evidence), 75 stopped by SIGTERM
-//! and 130 by Ctrl-C with what is finished kept. The commands for many machines (`plan`, `shard`,
-//! `status`, `merge`, `slurm`, `clean`) tell schedulers more: 3 not complete (`status`), 64 wrong
-//! usage, 65 refused data, 66 missing blocks, 74 the system cannot read or write. What lies in
-//! `shards/` is judged alike by `status`, `slurm` and `merge`: a damaged shard of the plan counts as
-//! missing (3, 66); a file `.phs` that is none of the plan, or contradicts another, is refused (65).
+//! Exit codes: 0 done (and agreed), 1 traced and modelled disagree (`validate`, `run`) or
+//! photographs and model contradict each other (`recover`: no reflectances between 0 and 1 explain
+//! the photographs within their errors; what was recovered is written nevertheless), 2 error, 4
+//! nothing to compare (`validate`, `run`: no evidence), 75 stopped by SIGTERM and 130 by Ctrl-C
+//! with what is finished kept. The commands for many machines (`plan`, `shard`, `status`, `merge`,
+//! `slurm`, `clean`) tell schedulers more: 3 not complete (`status`), 64 wrong usage, 65 refused
+//! data, 66 missing blocks, 74 the system cannot read or write. What lies in `shards/` is judged
+//! alike by `status`, `slurm` and `merge`: a damaged shard of the plan counts as missing (3, 66); a
+//! file `.phs` that is none of the plan, or contradicts another, is refused (65).
 
 mod args;
 mod batches;

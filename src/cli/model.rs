@@ -88,9 +88,9 @@ pub(super) fn execute(args: &ModelArgs, console: Console) -> Result<Outcome, Fai
     Ok(Outcome::Done)
 }
 
-/// Writes DIR/model/g12.npy, g23.npy and, where it is known, phi.npy; and with the walls' BRDFs and the scale of the
-/// light, entry by entry, laser_side.npy (D, W) and camera_side.npy (C): Φcam = C·diag(ρ)·D. Then
-/// z.npy, the deviate of every traced entry from that model, where it is known.
+/// Writes DIR/model/g12.npy, g23.npy and, where it is known, phi.npy; and with the walls' BRDFs and
+/// the scale of the light, entry by entry, laser_side.npy (D, W) and camera_side.npy (C): Φcam =
+/// C·diag(ρ)·D. Then z.npy, the deviate of every traced entry from that model, where it is known.
 pub(super) fn write(
     dir: &Path,
     model: &MatrixModel,

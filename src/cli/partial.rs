@@ -1,5 +1,6 @@
 //! What is finished of an unfinished run, in the folder `partial` of the run: spots-NNNN-MMMM.phs
-//! has the finished blocks, or all of them, of the spots NNNN to MMMM − 1, which are traced together.
+//! has the finished blocks, or all of them, of the spots NNNN to MMMM − 1, which are traced
+//! together.
 
 use std::fs;
 use std::ops::Range;

@@ -1,5 +1,5 @@
-//! What takes the place of a finished result: written in a folder beside it, moved to its place once
-//! it is whole.
+//! What takes the place of a finished result: written in a folder beside it, moved to its place
+//! once it is whole.
 
 use std::fs;
 use std::path::Path;

@@ -1,6 +1,6 @@
-//! The folder of a run: what may be written into it, and what is read back from it;
-//! its files are those of [`folder`](crate::folder), and `partial/`, what is finished of an unfinished
-//! run ([`super::partial`]).
+//! The folder of a run: what may be written into it, and what is read back from it; its files are
+//! those of [`folder`](crate::folder), and `partial/`, what is finished of an unfinished run
+//! ([`super::partial`]).
 
 use std::fs;
 use std::ops::Range;
@@ -127,7 +127,8 @@ impl RunFolder {
             self.path.display(),
             there.origin
         ));
-        // Begun with yet other settings: nobody will go on with it. One that cannot be read is none.
+        // Begun with yet other settings: nobody will go on with it. One that cannot be read is
+        // none.
         if !matches!(Record::read(&path), Ok(Some(begun)) if begun.same_settings(record)) {
             remove_folder(&path)?;
         }
@@ -176,8 +177,8 @@ impl RunFolder {
         output::refuse_obstacles(path, &OWN_FOLDERS, &OWN_FILES)
     }
 
-    /// Whether the import that `record` describes is in the folder, whole. Another import is refused
-    /// unless it is to be replaced; a render is not replaced by photographs.
+    /// Whether the import that `record` describes is in the folder, whole. Another import is
+    /// refused unless it is to be replaced; a render is not replaced by photographs.
     pub(super) fn holds_import(&self, record: &Record, replace: bool) -> Result<bool, Failure> {
         let Some(there) = Record::read(&self.path)? else {
             return Ok(false);
@@ -199,7 +200,8 @@ impl RunFolder {
     }
 
     /// Puts an import that `fill` writes into the place of what the folder holds, once it is whole.
-    /// Another import gives way if `replace` says so; anything else that is not of `scene` is refused.
+    /// Another import gives way if `replace` says so; anything else that is not of `scene` is
+    /// refused.
     pub(super) fn put(
         &self,
         scene: &Scene,
@@ -352,8 +354,8 @@ impl RunFolder {
         remove_abandoned(&self.frames())
     }
 
-    /// Removes what was rendered, and what was found from it; the record first, so that nobody takes
-    /// what is left for a run.
+    /// Removes what was rendered, and what was found from it; the record first, so that nobody
+    /// takes what is left for a run.
     fn remove_run(&self) -> Result<(), Failure> {
         remove_named(&self.path, &[Record::FILE])?;
         self.partial().remove()?;
@@ -379,8 +381,8 @@ impl RunFolder {
         remove_named(&self.path, &[SUMMARY, REPORT, IMPORT, IMPORT_PNG])
     }
 
-    /// Writes the frames of `spots` from the columns of `traced`, on the threads of the pool. Returns
-    /// what is kept of each: see [`columns`].
+    /// Writes the frames of `spots` from the columns of `traced`, on the threads of the pool.
+    /// Returns what is kept of each: see [`columns`].
     pub(super) fn write_frames(
         &self,
         scene: &Scene,

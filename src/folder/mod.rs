@@ -9,8 +9,8 @@
 //! | phi.tails.npy | how far that is to be trusted: [`tails`](crate::transport::tails), pixels × spots |
 //! | left_out.npy, import.json, import.png | of imported photographs: what is left out and why, how they were made, where things are in them |
 //!
-//! [`write_run`] writes a whole run at once, [`read_run`] reads one back; the commands write the same
-//! files spot by spot.
+//! [`write_run`] writes a whole run at once, [`read_run`] reads one back; the commands write the
+//! same files spot by spot.
 
 mod error;
 mod frames;

@@ -44,8 +44,8 @@ pub struct Record {
     /// What was written of a complete run, by the names of the files in its folder.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub files: BTreeMap<String, Written>,
-    /// SHA-256 of all above as JSON, so that no setting can be changed unnoticed. Nothing vouches for
-    /// a record without.
+    /// SHA-256 of all above as JSON, so that no setting can be changed unnoticed. Nothing vouches
+    /// for a record without.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     digest: Option<String>,
 }
@@ -193,8 +193,8 @@ impl Record {
         Ok(())
     }
 
-    /// The same for the files in the folder `folder` of `dir` whose names are `ours`; what else lies
-    /// there is read by nobody.
+    /// The same for the files in the folder `folder` of `dir` whose names are `ours`; what else
+    /// lies there is read by nobody.
     ///
     /// # Errors
     /// [`FolderError`] where one cannot be read.
@@ -251,8 +251,8 @@ impl Record {
         Err(changed(&path, "SHA-256"))
     }
 
-    /// Refuses the files in the folder `folder` of `dir` that are vouched for and of another length:
-    /// before they are read.
+    /// Refuses the files in the folder `folder` of `dir` that are vouched for and of another
+    /// length: before they are read.
     ///
     /// # Errors
     /// [`FolderError`].
@@ -269,8 +269,8 @@ impl Record {
         Ok(())
     }
 
-    /// Refuses the files of `dir` that are vouched for, but for `except`, if one is there and not what
-    /// was written.
+    /// Refuses the files of `dir` that are vouched for, but for `except`, if one is there and not
+    /// what was written.
     ///
     /// # Errors
     /// [`FolderError`].
@@ -280,7 +280,8 @@ impl Record {
         light.try_for_each(|name| self.check(dir, name))
     }
 
-    /// Refuses a `scene` that is not that of the run in `dir`, and a run of which spots are missing.
+    /// Refuses a `scene` that is not that of the run in `dir`, and a run of which spots are
+    /// missing.
     ///
     /// # Errors
     /// [`FolderError`].

@@ -130,8 +130,8 @@ pub fn write_run(
     finish(folder, scene, &mut record, matrices)
 }
 
-/// Reads the run in `folder`, each file as its record vouches for it; its scene may read files in the
-/// folders `also` too.
+/// Reads the run in `folder`, each file as its record vouches for it; its scene may read files in
+/// the folders `also` too.
 ///
 /// # Errors
 /// [`FolderError`]: no run, an unfinished one, or one that is not what was written.

@@ -87,8 +87,8 @@ impl Instance {
         }
     }
 
-    /// Whether it is a parallelogram in its texture coordinates, to 1e-6 of its size: these are then
-    /// the parameters of its equal-area map, and the area element is its mean to 2e-6.
+    /// Whether it is a parallelogram in its texture coordinates, to 1e-6 of its size: these are
+    /// then the parameters of its equal-area map, and the area element is its mean to 2e-6.
     pub fn is_patch(&self) -> bool {
         self.mesh.patch().is_some()
     }
@@ -112,7 +112,8 @@ impl Instance {
     }
 
     /// Edges along u that divide the body into about `parts` parts, none of which has to do with
-    /// two cells of its facets: the larger triangles of a mesh of few, many together of one of many.
+    /// two cells of its facets: the larger triangles of a mesh of few, many together of one of
+    /// many.
     pub fn edges(&self, parts: usize) -> Vec<f64> {
         match &self.facets {
             Some(facets) => self.mesh.edges_in(facets, parts),

@@ -3,8 +3,8 @@
 //!
 //! A decoded [`Image`] has the values that the file stores, without any transfer function: what
 //! they mean is for the one who knows where the picture came from, and [`Transfer`] is how to say
-//! it. Profiles and gamma chunks within a file are not read. Photographs are read by [`fn@samples`], as
-//! the integers that they are.
+//! it. Profiles and gamma chunks within a file are not read. Photographs are read by
+//! [`fn@samples`], as the integers that they are.
 //!
 //! A file is believed nothing. Width and height are read from its header and held against
 //! [`MOST_PIXELS`] and against the file's length before memory is taken for pixels: deflate (PNG,

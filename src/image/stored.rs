@@ -11,7 +11,8 @@ use super::{Encoding, ImageError, damaged, decode_within, unsupported};
 ///
 /// PNG and TIFF: grey or colour of 8, 16 or (TIFF) 32 bits, floating point of 32 or 64 bits (TIFF);
 /// JPEG: 8 bits; OpenEXR: R, G and B, or Y. Each page of a TIFF is a frame. Takes at most 24 bytes
-/// of memory for each sample, which are at most [`MOST_SAMPLES`] and at most what the file can hold.
+/// of memory for each sample, which are at most [`MOST_SAMPLES`] and at most what the file can
+/// hold.
 ///
 /// # Errors
 /// [`ImageError`] for another format, a palette, fewer bits, transparency, samples that are not

@@ -386,9 +386,9 @@ impl CalibrationPlan {
         })
     }
 
-    /// Probability of as large a χ² by noise alone. Of errors estimated from K = ν + 1 replicates each
-    /// term is the square of Student's t, of mean ν/(ν − 2) and variance 2 (ν − 1)/(ν − 4) times the
-    /// square of that: χ² is compared as one of that mean and variance.
+    /// Probability of as large a χ² by noise alone. Of errors estimated from K = ν + 1 replicates
+    /// each term is the square of Student's t, of mean ν/(ν − 2) and variance 2 (ν − 1)/(ν − 4)
+    /// times the square of that: χ² is compared as one of that mean and variance.
     fn by_noise(&self, chi2: f64, dof: f64) -> f64 {
         match self.replicates.map(|k| f64::from(k) - 1.0) {
             Some(nu) if nu > 4.0 => {

@@ -11,12 +11,13 @@ use crate::recovery::{Choice, Estimated, Method, Parameter, Patterns, Recovered,
 /// A parameter, why it is this one, and what a run needs to take the same again.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chosen {
-    /// `rank`, `damping`, `tv`, `spread and length` or `levels`; absent for a method without parameter.
+    /// `rank`, `damping`, `tv`, `spread and length` or `levels`; absent for a method without
+    /// parameter.
     pub parameter: Option<&'static str>,
     /// Its value or values, as the option of this name takes them.
     pub value: Vec<f64>,
-    /// What chose it: `given`, `discrepancy`, `evidence`, `averaged`, `estimated`, `gcv`, `l-curve` or
-    /// `tolerance`; absent where nothing was chosen.
+    /// What chose it: `given`, `discrepancy`, `evidence`, `averaged`, `estimated`, `gcv`, `l-curve`
+    /// or `tolerance`; absent where nothing was chosen.
     pub rule: Option<&'static str>,
     /// What the rule went by, each by its name; see [`Choice`].
     pub measures: BTreeMap<&'static str, f64>,

@@ -232,8 +232,8 @@ fn unfinished(found: &Recovered, judged: &Judged) -> Option<String> {
         }
     };
     let above = 2.0 * solver.gap / unit;
-    // The gap of a pattern is to the best of all numbers; what other patterns could do is known from
-    // their probabilities.
+    // The gap of a pattern is to the best of all numbers; what other patterns could do is known
+    // from their probabilities.
     let known = found.patterns.as_ref().is_some_and(|p| p.sum.converged());
     (above > GAP && !known).then(|| {
         let cure = match found.method {

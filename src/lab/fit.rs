@@ -9,8 +9,8 @@
 //! > χ² = Σ z²,   z = (Φ − Φ̂)/σ   over the N entries whose standard error σ is not zero,
 //!
 //! has the mean N − ν if the picture is right, ν the degrees of freedom that it used up
-//! ([`Recovered::freedom_used`]). Where σ was estimated from K replicates z is the normal deviate of
-//! the same tail probability as Student's t of K − 1 degrees of freedom.
+//! ([`Recovered::freedom_used`]). Where σ was estimated from K replicates z is the normal deviate
+//! of the same tail probability as Student's t of K − 1 degrees of freedom.
 //!
 //! χ²/(N − ν) is compared with χ² of N − ν degrees of freedom where entries are independent, of
 //! fewer where those of a row are not, of one where all hang together ([`Errors`]).

@@ -1,5 +1,5 @@
-//! Factors of the light that are known only roughly: what a recovery found of them, in numbers and in
-//! words.
+//! Factors of the light that are known only roughly: what a recovery found of them, in numbers and
+//! in words.
 
 use serde::Serialize;
 

@@ -115,8 +115,8 @@ pub struct Grid {
     pub stderr: Vec<f64>,
 }
 
-/// The picture at the likeliest size tried, as smooth as it can be and still predict each frame from
-/// the others as well as any.
+/// The picture at the likeliest size tried, as smooth as it can be and still predict each frame
+/// from the others as well as any.
 #[derive(Clone, Debug, Serialize)]
 pub struct Picture {
     /// The reflectances.

@@ -1,8 +1,8 @@
 //! Floor 6: studies. Experiments that compose the floors below and return plain results.
 //!
 //! * [`agree`]: traced against modelled Φcam, a verdict by test statistics.
-//! * [`validate`]: the same for a scene, the model computed on the way; which parameter of it is off
-//!   ([`Score`]).
+//! * [`validate`]: the same for a scene, the model computed on the way; which parameter of it is
+//!   off ([`Score`]).
 //! * [`BudgetTasks`]: the difference between frames and model taken apart into its causes.
 //! * [`ConvergenceTasks`]: how fast the error of each estimator falls.
 //! * [`PowerTasks`]: what [`validate`] detects, and how often it errs.

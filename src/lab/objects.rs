@@ -28,8 +28,8 @@ pub struct RecoveredObject {
     pub elements: [usize; 2],
     /// Recovered reflectance of element iu + iv·nu.
     pub reflectance: Vec<f64>,
-    /// True albedo of the elements; absent, as all that is measured against it, where the scene does
-    /// not know it.
+    /// True albedo of the elements; absent, as all that is measured against it, where the scene
+    /// does not know it.
     pub truth: Option<Vec<f64>>,
     /// (White − Black)/(White + Black); absent if the truth has no contrast.
     pub mtf_raw: Option<f64>,
@@ -47,12 +47,12 @@ pub struct RecoveredObject {
     pub solver: Option<Ended>,
     /// What was estimated beside the reflectances; absent where nothing was asked for.
     pub estimated: Option<Beside>,
-    /// Where its method's assumption makes the photographs the likeliest, by how much; absent of the
-    /// other methods.
+    /// Where its method's assumption makes the photographs the likeliest, by how much; absent of
+    /// the other methods.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub likelier: Option<String>,
-    /// ln of how likely its method's assumption makes the photographs, over the numbers that fit them
-    /// best; absent for methods that do not know.
+    /// ln of how likely its method's assumption makes the photographs, over the numbers that fit
+    /// them best; absent for methods that do not know.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub log_evidence: Option<f64>,
     /// Probability of each element to be light, of `joint-two-valued`.
@@ -75,7 +75,8 @@ pub struct RecoveredObject {
     /// How many of the elements of all surfaces the photographs determine at their noise, whatever
     /// the method; absent where the noise is not known.
     pub determined: Option<f64>,
-    /// Share of each element that they determine, 0 to 1 ([`recovery::determined`]); absent likewise.
+    /// Share of each element that they determine, 0 to 1 ([`recovery::determined`]); absent
+    /// likewise.
     pub determined_share: Option<Vec<f64>>,
     /// Elements of all surfaces.
     pub unknowns: usize,
@@ -159,9 +160,9 @@ pub fn recover_objects(
     attempts(model, &problem, noise, methods, options)
 }
 
-/// The same with Φ in the singular directions of the model's laser side, and, where one of `methods`
-/// works on all pixels and spots at once, in those of the joint operator: see [`recovery::picard`]
-/// and [`recovery::picard_joint`].
+/// The same with Φ in the singular directions of the model's laser side, and, where one of
+/// `methods` works on all pixels and spots at once, in those of the joint operator: see
+/// [`recovery::picard`] and [`recovery::picard_joint`].
 ///
 /// # Errors
 /// Of the directions those of both, but not where there are too many elements for a joint method:

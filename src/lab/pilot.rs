@@ -58,9 +58,9 @@ pub enum PilotError {
 }
 
 /// Traces at most 8 × 8 pixels that cover the view and 8 of the spots with 64 samples; where these
-/// foretell more than 10 % of error, by ‖σ‖/‖Φ‖ ∝ 1/√N, with 1024 of them, for nets fall faster than
-/// that. Nothing is traced where the render itself takes less than 32 times as many paths. The bits
-/// of the render do not depend on it.
+/// foretell more than 10 % of error, by ‖σ‖/‖Φ‖ ∝ 1/√N, with 1024 of them, for nets fall faster
+/// than that. Nothing is traced where the render itself takes less than 32 times as many paths. The
+/// bits of the render do not depend on it.
 ///
 /// # Errors
 /// [`PilotError`].

@@ -6,8 +6,8 @@ use crate::model::{Kernel, MatrixModel, ModelError, Occlusion};
 use crate::recovery::{Problem, RecoveryError, Terms};
 use crate::scene::Scene;
 
-/// Elements whose light is integrated: of more, each is so small that its centre does, and its terms
-/// would take four times the memory.
+/// Elements whose light is integrated: of more, each is so small that its centre does, and its
+/// terms would take four times the memory.
 pub const MOST_INTEGRATED: usize = 1024;
 
 /// The model by which photographs of `scene` are inverted. By quadrature the light of each of up to

@@ -144,7 +144,8 @@ impl RunResults {
 }
 
 impl Describe for RunResults {
-    /// What stands below the [answer](Self::answer): warnings, every recovery, then how it was done.
+    /// What stands below the [answer](Self::answer): warnings, every recovery, then how it was
+    /// done.
     fn describe(&self) -> Finding {
         Finding {
             tone: self.tone(),
@@ -293,7 +294,8 @@ fn likelier(group: &[&RecoveredObject]) -> String {
     words.map_or(String::new(), |words| format!("{words} "))
 }
 
-/// How much of some surfaces, each recovered by the same method, the photographs determine, in words.
+/// How much of some surfaces, each recovered by the same method, the photographs determine, in
+/// words.
 pub fn determined(surfaces: &[&RecoveredObject]) -> String {
     let Some(first) = surfaces.first() else {
         return String::new();

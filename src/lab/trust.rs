@@ -9,8 +9,8 @@ const IMPOSSIBLE: f64 = 1.0;
 
 /// Puts first what can be vouched for: methods that explain the photographs before others; of those
 /// the ones that know how likely their assumption makes the photographs, the likeliest first; then
-/// those that a surface can be, and those with the fewest warnings. What is equal stays in its order,
-/// and so do the surfaces of one method, which stand together.
+/// those that a surface can be, and those with the fewest warnings. What is equal stays in its
+/// order, and so do the surfaces of one method, which stand together.
 pub fn by_trust(objects: &mut [RecoveredObject]) {
     let mut ranks: BTreeMap<String, Rank> = BTreeMap::new();
     for (first, object) in objects.iter().enumerate() {

@@ -77,8 +77,8 @@ fn summed(
 pub enum Fineness {
     /// Elements, footprints and spots at their centres.
     Centres,
-    /// Integrated over them: an element by its four quarters and its middle, of which the error falls
-    /// as the fourth power of its size.
+    /// Integrated over them: an element by its four quarters and its middle, of which the error
+    /// falls as the fourth power of its size.
     Areas,
     /// The same by sixteen parts and four, and a finer rule on footprints and spots: what that
     /// changes is what [`Self::Areas`] leaves out.

@@ -18,9 +18,9 @@ use crate::scene::{Scene, Surface};
 ///
 /// > A_j\[p,l\] = ∫_j c_p(x) d_l(x) dA/π = Σ_s camera\[p,s\] laser\[s,l\],   s over the terms of j.
 ///
-/// One term alone is C\[p,j\] D\[j,l\] of the element's centre; where nothing stands in the way c and
-/// d vary little over an element, past an edge both jump, and the mean of the product is not the
-/// product of the means.
+/// One term alone is C\[p,j\] D\[j,l\] of the element's centre; where nothing stands in the way c
+/// and d vary little over an element, past an edge both jump, and the mean of the product is not
+/// the product of the means.
 #[derive(Clone, Debug)]
 pub struct Factors {
     /// Pixels × terms.
@@ -77,8 +77,8 @@ const LEVEL: usize = 1;
 
 /// The factors of the elements, cells of them cut in four until all A_j together change by less
 /// than 1e-3, or there are 1e8 pairs of cells with pixels and spots. With nothing in the way the
-/// error falls as the square of the cells' size h and is extrapolated, A ≈ (4 A(h) − A(2h))/3, until
-/// that changes by less than 1e-4.
+/// error falls as the square of the cells' size h and is extrapolated, A ≈ (4 A(h) − A(2h))/3,
+/// until that changes by less than 1e-4.
 ///
 /// # Errors
 /// [`ModelError::Linalg`].

@@ -96,7 +96,8 @@ impl MatrixModel {
 
     /// A model of matrices that were measured or computed elsewhere, without a scene: C pixels ×
     /// elements, D elements × spots, `count` elements along u and v of one surface of unknown
-    /// reflectance. Its G12 and G23 are empty: nothing is known of the light and the walls within C and D.
+    /// reflectance. Its G12 and G23 are empty: nothing is known of the light and the walls within C
+    /// and D.
     ///
     /// # Errors
     /// [`ModelError::Sides`] where they do not belong together.

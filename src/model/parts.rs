@@ -25,8 +25,8 @@ const MOST_ADDED: usize = 6_000;
 const MOST_FOOTPRINT_PARTS: usize = 64;
 /// Connections between wall points and hidden points beyond which no finer rule is tried.
 pub(super) const MOST_CONNECTIONS: f64 = 2e8;
-/// What an integration may cost, in connections, where the hidden surfaces and the walls are refined
-/// apart.
+/// What an integration may cost, in connections, where the hidden surfaces and the walls are
+/// refined apart.
 pub(super) const MOST_APART: f64 = 4e9;
 
 /// Nodes a side of a part that is [`FAR`] by level of refinement, and the last level.
@@ -190,8 +190,8 @@ impl<'a> HiddenParts<'a> {
             + self.coarse.len() * (self.coarse_side << level).pow(2)
     }
 
-    /// Nodes of a rule over all of it: n × n a part, a triangle's folded onto it from the square
-    /// by (u, v) → (1 − u, u·(1 − v), u·v), whose area element is twice the triangle's area times u;
+    /// Nodes of a rule over all of it: n × n a part, a triangle's folded onto it from the square by
+    /// (u, v) → (1 − u, u·(1 − v), u·v), whose area element is twice the triangle's area times u;
     /// with one node its centroid. Each with its share of the area · albedo/π, length².
     pub(super) fn nodes(&self, level: usize) -> Vec<(HiddenPoint, f64)> {
         let mut found = Vec::with_capacity(self.count(level));

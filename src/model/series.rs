@@ -42,8 +42,8 @@ impl Series {
         self.change() < whole && self.changed.as_ref().is_some_and(each)
     }
 
-    /// How far each entry may be off: the last change e, times r/(1 − r) where that is more, r ≤ 0.9
-    /// the last change over the one before; all of it where there was no change.
+    /// How far each entry may be off: the last change e, times r/(1 − r) where that is more, r ≤
+    /// 0.9 the last change over the one before; all of it where there was no change.
     pub(super) fn bound(&self) -> Matrix {
         match (&self.changed, &self.before) {
             (None, _) => self.phi.abs(),

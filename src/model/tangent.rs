@@ -181,7 +181,8 @@ pub(super) fn lit(scene: &Scene, velocity: &Velocity, spot: usize, point: &WallP
 }
 
 impl WallPoint {
-    /// d/dθ of [`WallPoint::towards`] a hidden point that moves by `twist`, with the physical kernel.
+    /// d/dθ of [`WallPoint::towards`] a hidden point that moves by `twist`, with the physical
+    /// kernel.
     pub(super) fn towards_rate(
         &self,
         scene: &Scene,

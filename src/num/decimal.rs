@@ -18,8 +18,8 @@ pub struct Decimal {
 }
 
 impl Decimal {
-    /// Reads `-12.5e-3` and the like: a sign, digits with at most one point, an exponent. `None` for
-    /// any other text.
+    /// Reads `-12.5e-3` and the like: a sign, digits with at most one point, an exponent. `None`
+    /// for any other text.
     pub fn parse(text: &str) -> Option<Self> {
         let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
         let (mantissa, exponent) = match unsigned.split_once(['e', 'E']) {

@@ -85,8 +85,8 @@ impl Flat {
 }
 
 impl Correction<'_> {
-    /// Φ = (s − d)/(F·t) of an averaged photograph, with its variance: that of its own mean, that of
-    /// the dark frames' mean, and F's. `name` is for messages. Pixels that the flat field cannot
+    /// Φ = (s − d)/(F·t) of an averaged photograph, with its variance: that of its own mean, that
+    /// of the dark frames' mean, and F's. `name` is for messages. Pixels that the flat field cannot
     /// serve are 0.
     ///
     /// # Errors

@@ -3,17 +3,17 @@
 //! A pixel q of the photograph collects y_q = κ·∫_q L(x)·e′ du counts: L the radiance of the wall,
 //! e′ the étendue of the photograph's camera for each area u of the picture. The scene's camera
 //! collects Φ_p = ∫_p L(x)·e dA over its footprint on the wall, with e = A_lens·h²/r⁴ the étendue
-//! for each area of the wall, h and r the camera's distances from the wall's plane and from x. With L
-//! even within q,
+//! for each area of the wall, h and r the camera's distances from the wall's plane and from x. With
+//! L even within q,
 //!
 //! > Φ_p = (1/κ)·Σ_q a_pq·y_q·ρ_pq,   ρ = e·|∂A/∂u|/e′
 //!
 //! a_pq the fraction of q's area that lies in the footprint of p, seen in the photograph, and ρ the
 //! ratio of the étendues at its centroid. A photograph without marks is that of the scene's own
 //! camera: ρ = 1, and Φ is a sum of pixels. Else ρ is known up to a factor (as the aperture of a
-//! camera is), such that of a wall of even radiance the sum of Φ is that of the photograph's pixels in
-//! the view: Σ a·e′·ρ = Σ a·e′. e′ is even after a flat field of even radiance; with a camera matrix
-//! it is [`Lens::etendue`](super::Lens::etendue); else it is taken as even.
+//! camera is), such that of a wall of even radiance the sum of Φ is that of the photograph's pixels
+//! in the view: Σ a·e′·ρ = Σ a·e′. e′ is even after a flat field of even radiance; with a camera
+//! matrix it is [`Lens::etendue`](super::Lens::etendue); else it is taken as even.
 //!
 //! The footprint is a polygon in the photograph, cut exactly at the borders of pixels. With a lens
 //! each of its edges is drawn by eight chords: an edge of n pixels whose curve leaves the chord by
@@ -221,8 +221,8 @@ fn ratio(camera: &Camera, mapping: &Mapping, evenness: Evenness, at: [f64; 2]) -
     Some([area / (r2 * r2) / own, own])
 }
 
-/// The part of a polygon between two values of coordinate `axis` (Sutherland and Hodgman, *CACM* 17,
-/// 1974).
+/// The part of a polygon between two values of coordinate `axis` (Sutherland and Hodgman, *CACM*
+/// 17, 1974).
 fn between(polygon: &[[f64; 2]], axis: usize, [low, high]: [f64; 2]) -> Vec<[f64; 2]> {
     let above = cut(polygon, axis, low, 1.0);
     cut(&above, axis, high, -1.0)

@@ -103,7 +103,8 @@ impl Lens {
     }
 
     /// Étendue of a pixel relative to one on the axis: cos⁴θ of its direction, times the normalised
-    /// area of an undistorted pixel in it, relative to 1/(fx·fy). `None` as for [`Self::undistorted`].
+    /// area of an undistorted pixel in it, relative to 1/(fx·fy). `None` as for
+    /// [`Self::undistorted`].
     pub fn etendue(&self, pixel: [f64; 2]) -> Option<f64> {
         let at = self.undistorted(self.normalised(pixel))?;
         let (_, [a, b, c, d]) = self.distorted(at);
@@ -128,8 +129,8 @@ mod tests {
         k3: -0.01,
     };
 
-    /// cv2.projectPoints of (0.31, −0.22, 1) with the camera matrix and distortion above, worked out
-    /// by hand: r² = 0.1445, radial = 0.9706688..., and the tangential terms.
+    /// cv2.projectPoints of (0.31, −0.22, 1) with the camera matrix and distortion above, worked
+    /// out by hand: r² = 0.1445, radial = 0.9706688..., and the tangential terms.
     #[test]
     fn distortion_is_that_of_the_definition() {
         let (x, y) = (0.31, -0.22);

@@ -1,8 +1,8 @@
 //! Where a point of the wall stands in the photograph.
 //!
-//! A pinhole maps a plane by a homography: with view coordinates (a, b) of the scene, each from 0 to
-//! 1 across its view, (u, v) = (w₁/w₃, w₂/w₃), w = H·(a, b, 1)ᵀ. Then the lens distorts. Pixels are
-//! OpenCV's: (0, 0) is the centre of the first, u runs to the right and v down.
+//! A pinhole maps a plane by a homography: with view coordinates (a, b) of the scene, each from 0
+//! to 1 across its view, (u, v) = (w₁/w₃, w₂/w₃), w = H·(a, b, 1)ᵀ. Then the lens distorts. Pixels
+//! are OpenCV's: (0, 0) is the centre of the first, u runs to the right and v down.
 
 mod normalised;
 
@@ -54,8 +54,8 @@ const DEGENERATE: f64 = 1e-4;
 const STEPS: usize = 100;
 
 impl Mapping {
-    /// The scene's view is an upright rectangle of the photograph: its left and upper border and its
-    /// extent, px, counted from the photograph's border.
+    /// The scene's view is an upright rectangle of the photograph: its left and upper border and
+    /// its extent, px, counted from the photograph's border.
     pub fn upright([left, top]: [f64; 2], [width, height]: [f64; 2]) -> Self {
         let h = [
             [width, 0.0, left - 0.5],
@@ -66,8 +66,8 @@ impl Mapping {
     }
 
     /// The mapping of the least squared distance of the marks, in the photograph: a direct linear
-    /// transform in normalised coordinates (Hartley, *IEEE TPAMI* 19, 1997) after undistortion, then
-    /// Gauss–Newton steps on the distances of the distorted marks.
+    /// transform in normalised coordinates (Hartley, *IEEE TPAMI* 19, 1997) after undistortion,
+    /// then Gauss–Newton steps on the distances of the distorted marks.
     ///
     /// # Errors
     /// [`PhotographError`] for fewer than four marks, marks that determine no mapping, and a lens

@@ -4,17 +4,18 @@
 //!
 //! > y = (R⁻¹(s) − d)/(F·t·g)
 //!
-//! with the response R ([`Response`]), the dark frames' mean light d of the same exposure time t, the
-//! flat field F of mean 1, and the gain g of the photograph ([`Correction`]). The pixels of the
-//! scene's camera gather what falls into their footprints, with the ratio of the two cameras' étendues
-//! ([`Footprints`]); where the wall is in the photograph is known from marked points
+//! with the response R ([`Response`]), the dark frames' mean light d of the same exposure time t,
+//! the flat field F of mean 1, and the gain g of the photograph ([`Correction`]). The pixels of the
+//! scene's camera gather what falls into their footprints, with the ratio of the two cameras'
+//! étendues ([`Footprints`]); where the wall is in the photograph is known from marked points
 //! ([`Mapping`]) or a crop.
 //!
 //! Noise is given, or found from repeats by the photon transfer line ([`noise`]); errors of dark
 //! frames and flat field are added to each entry, where those of all spots of a pixel are in truth
-//! one. The error of a gain is added as a part of the flux. Where nothing is known of the noise there
-//! is no standard error. The error of the mapping is no part of it: n marks that are off by σ along each
-//! axis leave the photograph off by 2σ/√n px on average (eight numbers from 2n), at all spots alike.
+//! one. The error of a gain is added as a part of the flux. Where nothing is known of the noise
+//! there is no standard error. The error of the mapping is no part of it: n marks that are off by σ
+//! along each axis leave the photograph off by 2σ/√n px on average (eight numbers from 2n), at all
+//! spots alike.
 //!
 //! Entries that mean nothing are left out, with codes that add up ([`left_out`]): their flux and
 //! standard error are 0.

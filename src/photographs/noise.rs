@@ -2,13 +2,14 @@
 //!
 //! > var = g·(s − d) + σ² + LSB²/12
 //!
-//! in counts²: the photon transfer line (Janesick, *Photon Transfer*, 2007; EMVA 1288) with the gain
-//! g (counts per electron), the light above the dark frames s − d, the read noise σ with the dark
-//! current's, and the rounding to integers. Without dark frames the line is over s, and its value at 0
-//! is σ² − g·o with the unknown offset o. The mean of n channels has the n-th part of the variance. Averaging F frames divides all but what rounding leaves
-//! where other noise is too small to move values from one integer to the next: with the variance v
-//! before rounding that is LSB²·B(v/LSB²), by the Fourier series of a rounding error (Widrow and
-//! Kollár, *Quantization Noise*, 2008)
+//! in counts²: the photon transfer line (Janesick, *Photon Transfer*, 2007; EMVA 1288) with the
+//! gain g (counts per electron), the light above the dark frames s − d, the read noise σ with the
+//! dark current's, and the rounding to integers. Without dark frames the line is over s, and its
+//! value at 0 is σ² − g·o with the unknown offset o. The mean of n channels has the n-th part of
+//! the variance. Averaging F frames divides all but what rounding leaves where other noise is too
+//! small to move values from one integer to the next: with the variance v before rounding that is
+//! LSB²·B(v/LSB²), by the Fourier series of a rounding error (Widrow and Kollár, *Quantization
+//! Noise*, 2008)
 //!
 //! > B(x) = Σ_n exp(−4π²n²x)/(2π²n²),   B(0) = 1/12
 
@@ -24,8 +25,8 @@ use crate::num::statistics::chi_square_sf;
 pub struct CameraNoise {
     /// g: variance per count of light, counts; 0 or more.
     pub gain: f64,
-    /// σ², counts²; 0 or more. With `has_offset` σ² − g·o instead, of any sign: the variance is then
-    /// g·s + σ² − g·o over the stored light s with the camera's offset o.
+    /// σ², counts²; 0 or more. With `has_offset` σ² − g·o instead, of any sign: the variance is
+    /// then g·s + σ² − g·o over the stored light s with the camera's offset o.
     pub read_variance: f64,
     /// Whether the line is over light with the camera's offset in it, for want of dark frames.
     pub has_offset: bool,
@@ -53,8 +54,8 @@ impl CameraNoise {
         })
     }
 
-    /// Variance of the mean of `frames` photographs of the light `stored`, `dark` of which is that of
-    /// dark frames. Each is the mean of 1/`share` channels, and its rounding has the variance
+    /// Variance of the mean of `frames` photographs of the light `stored`, `dark` of which is that
+    /// of dark frames. Each is the mean of 1/`share` channels, and its rounding has the variance
     /// `rounding` (LSB²/12 of one channel, over their number), counts².
     pub fn of_mean(
         &self,
@@ -144,8 +145,8 @@ const LEAST: f64 = 1e-6;
 
 /// Fits the line to the variances of `repeats`, in groups of like light; each group's variance is
 /// known to the fraction √(2/freedom). Pixels whose variance is below twice that of rounding alone
-/// say nothing of other noise; groups of such are left out. `has_offset` says that the camera's offset
-/// is in their light: σ² − g·o may then be negative, and is not held at 0.
+/// say nothing of other noise; groups of such are left out. `has_offset` says that the camera's
+/// offset is in their light: σ² − g·o may then be negative, and is not held at 0.
 ///
 /// # Errors
 /// [`PhotographError::Refused`] if fewer than three groups are left, or no line fits them.
@@ -225,8 +226,8 @@ fn group(pixels: &[Repeated]) -> Repeated {
 }
 
 /// The weighted line, with weights 1/variance of each group's variance by the line `before`; a
-/// negative gain or read noise becomes 0, but for an offset's. Returns it with the standard errors of
-/// both.
+/// negative gain or read noise becomes 0, but for an offset's. Returns it with the standard errors
+/// of both.
 fn line(groups: &[Repeated], before: CameraNoise, least: f64) -> (CameraNoise, [f64; 2]) {
     let [mut w, mut x, mut y, mut xx, mut xy] = [0.0; 5];
     for g in groups {

@@ -26,8 +26,8 @@ pub struct Plane {
     pub rounding: Vec<f64>,
     /// Whether a stored value has reached saturation.
     pub saturated: Vec<bool>,
-    /// 1/n where `light` is the mean of n channels: their noise is independent, so that its variance
-    /// is that of one channel over n.
+    /// 1/n where `light` is the mean of n channels: their noise is independent, so that its
+    /// variance is that of one channel over n.
     pub share: f64,
     /// Stored values that are 0, in any of the channels: cut off below.
     pub zeros: usize,

@@ -110,9 +110,9 @@ impl<'a> Reader<'a> {
 }
 
 /// The photographs in an array of `matlab` or NumPy: (rows, columns); (rows, columns, 3) in colour;
-/// (frames, rows, columns) of NumPy and (rows, columns, frames) of MATLAB; in colour
-/// (frames, rows, columns, 3), and of MATLAB (rows, columns, 3, frames) too. Where two of these fit,
-/// `axes` has to say which.
+/// (frames, rows, columns) of NumPy and (rows, columns, frames) of MATLAB; in colour (frames, rows,
+/// columns, 3), and of MATLAB (rows, columns, 3, frames) too. Where two of these fit, `axes` has to
+/// say which.
 fn of_array(
     name: &str,
     array: Array,
@@ -223,7 +223,8 @@ mod tests {
                 .to_string()
                 .contains("axes")
         );
-        // (rows, columns, 3, frames), as MATLAB stacks colour; row-major, the frame is the last index.
+        // (rows, columns, 3, frames), as MATLAB stacks colour; row-major, the frame is the last
+        // index.
         let stack = of(&[4, 5, 3, 2], None, true).unwrap();
         assert_eq!((stack.len(), stack[1].height, stack[1].width), (2, 4, 5));
         assert_eq!(stack[1].values[..4], [1.0, 3.0, 5.0, 7.0]);

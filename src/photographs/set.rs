@@ -20,13 +20,13 @@ pub struct Set {
     /// where light falls. Empty where an argument says it.
     #[serde(default)]
     pub scene: String,
-    /// The photographs: a pattern (`*` and `?` in the file's name), ordered by the last number in the
-    /// name, which may not skip any; or a list of files in order. Each file is a spot, each page of a
-    /// file a photograph.
+    /// The photographs: a pattern (`*` and `?` in the file's name), ordered by the last number in
+    /// the name, which may not skip any; or a list of files in order. Each file is a spot, each
+    /// page of a file a photograph.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frames: Option<Files>,
-    /// In place of `frames`: a CSV file whose first line names its columns, of `file`, `spot` or `x`
-    /// and `y`, `exposure`, `gain`, `gain_error`.
+    /// In place of `frames`: a CSV file whose first line names its columns, of `file`, `spot` or
+    /// `x` and `y`, `exposure`, `gain`, `gain_error`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub list: Option<String>,
     /// In place of `frames`: one table for each photograph.
@@ -71,8 +71,8 @@ pub struct Set {
     /// Stored value from which on a pixel is saturated; `full_scale` unless given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub saturation: Option<f64>,
-    /// Dead pixels: `[[column, row], …]` from the upper left one, (0, 0); or a picture that is not 0
-    /// there.
+    /// Dead pixels: `[[column, row], …]` from the upper left one, (0, 0); or a picture that is not
+    /// 0 there.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dead: Option<DeadTable>,
     /// Radius on the wall about each spot within which pixels are left out, scene's unit.
@@ -136,14 +136,15 @@ pub struct FrameTable {
     /// The number of its spot in the scene, from 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spot: Option<usize>,
-    /// In place of `spot`: where the spot was, x and y on the wall (z may follow, and is the wall's).
-    /// The positions of all photographs then replace the scene's spots.
+    /// In place of `spot`: where the spot was, x and y on the wall (z may follow, and is the
+    /// wall's). The positions of all photographs then replace the scene's spots.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub position: Option<Vec<f64>>,
     /// Exposure time, s, in place of that of all.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exposure: Option<f64>,
-    /// The laser's power or the camera's gain relative to the others: the photograph is divided by it.
+    /// The laser's power or the camera's gain relative to the others: the photograph is divided by
+    /// it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gain: Option<f64>,
     /// Standard error of `gain`.
@@ -228,8 +229,8 @@ pub struct MarkTable {
 }
 
 impl Set {
-    /// Reads the text of a list; `source` names it in errors. It need not be whole: arguments may take
-    /// the place of what it says before it is [`Set::checked`].
+    /// Reads the text of a list; `source` names it in errors. It need not be whole: arguments may
+    /// take the place of what it says before it is [`Set::checked`].
     ///
     /// # Errors
     /// [`PhotographError`] with line, cause and cure.

@@ -224,7 +224,8 @@ impl<'a> Shots<'a> {
         each_spot(reader, (&self.takes, repeats), self.spots, &plane, visit)
     }
 
-    /// The photon transfer line of one channel, from all repeated photographs; `None` where none are.
+    /// The photon transfer line of one channel, from all repeated photographs; `None` where none
+    /// are.
     pub(super) fn photon_transfer(
         &self,
         reader: &mut Reader<'_>,

@@ -27,8 +27,8 @@ pub(super) struct Take {
 /// The files of a set in the order of their spots.
 ///
 /// # Errors
-/// [`PhotographError::Refused`] for gains without meaning, for gains and exposures within a spot that
-/// differ, and where only some photographs have a spot's number.
+/// [`PhotographError::Refused`] for gains without meaning, for gains and exposures within a spot
+/// that differ, and where only some photographs have a spot's number.
 pub(super) fn takes(
     set: &Set,
     tables: &[FrameTable],

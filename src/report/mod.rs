@@ -7,8 +7,8 @@
 //! and [`run_html`] shows a run on one self-contained page each, below 10 MB: of Φcam lies in the
 //! page what fits, first with fewer bits, then with fewer spots, and the page says so;
 //! `phicam serve` reads every entry from the files. A page is put together in `page`, whose script
-//! makes it answer. Pages and PNGs of figures belong to the feature `cli`. Pictures clip at the ends
-//! of their scale and say so; numbers are never clipped.
+//! makes it answer. Pages and PNGs of figures belong to the feature `cli`. Pictures clip at the
+//! ends of their scale and say so; numbers are never clipped.
 
 // What pages alone use is dead without them.
 #![cfg_attr(not(feature = "cli"), allow(dead_code))]

@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use crate::store::harmless;
 
-/// Families of the type for the attribute `font-family`, the first the one that PNGs are drawn with.
+/// Families of the type for the attribute `font-family`, the first the one that PNGs are drawn
+/// with.
 pub(super) const FAMILIES: &str = "DejaVu Sans, Verdana, sans-serif";
 
 /// Pixels an inch.

@@ -1,5 +1,5 @@
-//! Numbers with units: which units fit a key of the scene file, and the number that a value with one
-//! stands for.
+//! Numbers with units: which units fit a key of the scene file, and the number that a value with
+//! one stands for.
 
 use super::unit::Unit;
 use crate::num::decimal::Decimal;
@@ -251,7 +251,8 @@ pub enum NoNumber {
 /// A number and what follows it.
 fn parts(text: &str) -> Option<(Decimal, &str)> {
     let text = text.trim();
-    // The longest start that is a number: the e of an exponent belongs to it, that of a unit does not.
+    // The longest start that is a number: the e of an exponent belongs to it, that of a unit does
+    // not.
     let ends = text.char_indices().map(|(i, c)| i + c.len_utf8());
     let ends: Vec<usize> = ends.take(LONGEST).collect();
     ends.into_iter().rev().find_map(|end| {

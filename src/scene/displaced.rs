@@ -1,5 +1,5 @@
-//! Scenes whose geometry differs from that of a given one by some [`Parameter`]s, and how everything
-//! moves with each of them.
+//! Scenes whose geometry differs from that of a given one by some [`Parameter`]s, and how
+//! everything moves with each of them.
 //!
 //! Surfaces that several parameters move go through all motions, the last one first: x → M₁M₂…x. So
 //! per unit of θ_k they move by the twist of M_k, carried along by M₁…M_{k−1}: ẋ = v + ω × x. Spots
@@ -137,8 +137,8 @@ impl Scene {
         Some((point, axis.normalize()))
     }
 
-    /// The same scene with these parameters at `values`, in the order of [`Parameter::unit`]'s units;
-    /// text and hash stay the original's.
+    /// The same scene with these parameters at `values`, in the order of [`Parameter::unit`]'s
+    /// units; text and hash stay the original's.
     ///
     /// # Errors
     /// [`SceneError`] where a surface has no proper shape then, or a spot or the view leaves the

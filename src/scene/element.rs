@@ -17,8 +17,8 @@ pub struct Element {
     /// Unit vector along u, in the surface.
     pub u_axis: DVec3,
     /// Its mean albedo, of a surface that is not Lambertian that of
-    /// [`Surface::lambertian_equivalent`]; of a single point ([`Surface::element_at`]) the texture's
-    /// value.
+    /// [`Surface::lambertian_equivalent`]; of a single point ([`Surface::element_at`]) the
+    /// texture's value.
     pub albedo: f64,
 }
 
@@ -27,8 +27,8 @@ impl Surface {
     /// parameters, taken at their middle. Of a mesh the triangles, at their centroids; or the cells
     /// of its texture coordinates: each has the area of what the coordinates put there (the
     /// triangles clipped), the direction of that part's vector area as its normal, and the point of
-    /// the mesh nearest to its centroid. Coordinates outside \[0, 1\] are taken as the texture takes
-    /// them, repeated or held to the border. Albedos are means over the area, exact.
+    /// the mesh nearest to its centroid. Coordinates outside \[0, 1\] are taken as the texture
+    /// takes them, repeated or held to the border. Albedos are means over the area, exact.
     pub fn divided(&self, [nu, nv]: [usize; 2]) -> Vec<Element> {
         let matt = self.lambertian_equivalent();
         match (&matt.shape, matt.division) {
@@ -129,8 +129,8 @@ fn faces(body: &Instance, albedo: &Texture) -> Vec<Element> {
         .collect()
 }
 
-/// Faces as one element: their area, mean albedo, direction of the vector area, and the point of the
-/// mesh nearest to the centroid.
+/// Faces as one element: their area, mean albedo, direction of the vector area, and the point of
+/// the mesh nearest to the centroid.
 fn together(body: &Instance, faces: &[Element]) -> Element {
     let area: f64 = faces.iter().map(|e| e.area).sum();
     let vector: DVec3 = faces.iter().map(|e| e.normal * e.area).sum();

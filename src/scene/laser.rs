@@ -45,8 +45,8 @@ pub struct Spot {
 }
 
 /// The light: a laser, one beam at a time, from `position` to each spot in turn; or a surface that
-/// shines ([`Profile::Shining`]), which is a laser whose light has landed there: its power is what a
-/// Lambertian white picture emits, and its `position` the surface's middle.
+/// shines ([`Profile::Shining`]), which is a laser whose light has landed there: its power is what
+/// a Lambertian white picture emits, and its `position` the surface's middle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Laser {
     /// Power that lands at a spot, W; of what shines in a column M times its area.

@@ -1,5 +1,6 @@
-//! Floor 2: the scene. Laser and spots, or a hidden surface that shines, camera and view, surfaces with role, shape and albedo; the
-//! TOML file that describes them, and the scenes that are built in.
+//! Floor 2: the scene. Laser and spots, or a hidden surface that shines, camera and view, surfaces
+//! with role, shape and albedo; the TOML file that describes them, and the scenes that are built
+//! in.
 //!
 //! A [`Scene`] that exists is consistent: its spots and its view lie on relay surfaces, nothing has
 //! zero area, albedos are in \[0, 1\], no two surfaces lie in one place facing the same way, and
@@ -260,8 +261,8 @@ impl Scene {
         surface::of_role(Role::Hidden, &self.surfaces)
     }
 
-    /// The hidden surfaces of unknown albedo, by name, in quotes and separated by commas; none where
-    /// every albedo is known.
+    /// The hidden surfaces of unknown albedo, by name, in quotes and separated by commas; none
+    /// where every albedo is known.
     pub fn unknown(&self) -> Option<String> {
         let names = self.hidden().filter(|(_, s)| !s.is_known);
         let names: Vec<String> = names.map(|(_, s)| format!("`{}`", s.name)).collect();

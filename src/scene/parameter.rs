@@ -71,8 +71,9 @@ impl Parameter {
     /// The parameters of `scene` that a name stands for.
     ///
     /// # Errors
-    /// [`SceneError`] where it has none of that name, or one that no light can tell: a shift or turn
-    /// of a flat hidden surface within its own plane moves the picture's coordinates, nothing else.
+    /// [`SceneError`] where it has none of that name, or one that no light can tell: a shift or
+    /// turn of a flat hidden surface within its own plane moves the picture's coordinates, nothing
+    /// else.
     pub fn named(scene: &Scene, name: &str) -> Result<Vec<Self>, SceneError> {
         named(scene, name).map_err(|fault| parse::locate(&scene.name, &scene.text, fault))
     }

@@ -325,8 +325,8 @@ mod tests {
         }
     }
 
-    /// A box shows the whole picture on each of its six sides: every cell has its share of the area,
-    /// the equal-area map takes the cells one after the other, and every point returns.
+    /// A box shows the whole picture on each of its six sides: every cell has its share of the
+    /// area, the equal-area map takes the cells one after the other, and every point returns.
     #[test]
     fn facets_of_a_box_lie_in_their_cells() {
         let bench = crate::scene::Scene::load("bench").unwrap().text;

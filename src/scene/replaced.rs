@@ -7,8 +7,8 @@ use super::error::SceneError;
 use super::files::Files;
 
 impl Scene {
-    /// The same scene with other values of some keys: (key, value as TOML). Keys are names parted by
-    /// dots; a table of a list is named by its `name` or by its number from 0.
+    /// The same scene with other values of some keys: (key, value as TOML). Keys are names parted
+    /// by dots; a table of a list is named by its `name` or by its number from 0.
     ///
     /// ```
     /// use phicam::scene::Scene;

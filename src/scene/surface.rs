@@ -118,7 +118,8 @@ impl Surface {
     }
 
     /// Cells along u and v within which the albedo is smooth: those of the texture; of a mesh that
-    /// is no patch those that its facets lie in, one after the other along u, or one where it is not cut.
+    /// is no patch those that its facets lie in, one after the other along u, or one where it is
+    /// not cut.
     pub fn smooth_cells(&self) -> [usize; 2] {
         match &self.shape {
             Shape::Instance(body) if !body.is_patch() => {

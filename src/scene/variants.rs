@@ -37,8 +37,8 @@ impl Scene {
         Ok(scene)
     }
 
-    /// The same scene with its spots listed at the given (x, y), in its text and its hash too, where
-    /// rectangles are also as large as they are; known answers, which name spots, are gone.
+    /// The same scene with its spots listed at the given (x, y), in its text and its hash too,
+    /// where rectangles are also as large as they are; known answers, which name spots, are gone.
     ///
     /// # Errors
     /// [`SceneError`] if a spot is not on the wall.
@@ -325,8 +325,8 @@ mod tests {
         assert_ne!(albedo(&bench), albedo(&own));
     }
 
-    /// An unknown albedo is the hidden surface's alone, is written as it was read, and is refused at
-    /// its line by what needs it; painted over it is known.
+    /// An unknown albedo is the hidden surface's alone, is written as it was read, and is refused
+    /// at its line by what needs it; painted over it is known.
     #[test]
     fn an_unknown_albedo_is_known_to_be_so() {
         let board = "{ checkerboard = [2, 2], dark = 0.0, light = 1.0 }";

@@ -67,8 +67,8 @@ mod tests {
 
     /// Its only surface that is not Lambertian is the wall. Below a smooth coat of index 1.5 a
     /// ground of ρ = 0.8 reflects R_e + (1 − R_e)(1 − R_i) ρ/(1 − ρ R_i) of light from everywhere,
-    /// 0.653 with R_e = 0.0918 and R_i = 0.5963 = 1 − (1 − R_e)/η². A rough coat reflects less by its
-    /// first facets, so that the sum lies between that and its value for R_e = 0, 0.640.
+    /// 0.653 with R_e = 0.0918 and R_i = 0.5963 = 1 − (1 − R_e)/η². A rough coat reflects less by
+    /// its first facets, so that the sum lies between that and its value for R_e = 0, 0.640.
     #[test]
     fn a_lambertian_wall_reflects_as_much() {
         let satin = satin();

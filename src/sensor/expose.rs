@@ -77,8 +77,8 @@ impl Sensor {
     /// Photographs `light`. The same seed gives the same bits, whatever the threads.
     ///
     /// A metering frame of each exposure time goes before the frames of each entry. It chooses the
-    /// exposure time and, with [`Stated::Counts`], the standard deviation; being no part of the mean,
-    /// it leaves that without bias.
+    /// exposure time and, with [`Stated::Counts`], the standard deviation; being no part of the
+    /// mean, it leaves that without bias.
     ///
     /// Each frame of each entry has random numbers of its own; the frames without laser are taken
     /// once for each pixel and serve all spots, so that their error is common to a row.

@@ -46,9 +46,9 @@ impl<'a> Light<'a> {
         })
     }
 
-    /// With the standard error of the signal (pixels × spots, W, 0 or more) as the render has it from
-    /// `replicates`: the stated standard deviations then hold against the light itself, not against
-    /// this render of it.
+    /// With the standard error of the signal (pixels × spots, W, 0 or more) as the render has it
+    /// from `replicates`: the stated standard deviations then hold against the light itself, not
+    /// against this render of it.
     ///
     /// # Errors
     /// [`SensorError::Shape`], [`SensorError::Flux`].

@@ -22,9 +22,9 @@ pub struct Expected {
 
 impl Sensor {
     /// Mean and standard deviation of every entry (pixels × spots) if each is taken from the
-    /// longest exposure whose mean stays below the end with the margin of metering; where none does,
-    /// the shortest as if it did. Of the sensor alone, without the render's own error. Entry (pixel,
-    /// spot) of `bracket` stands at pixel + spot·pixels.
+    /// longest exposure whose mean stays below the end with the margin of metering; where none
+    /// does, the shortest as if it did. Of the sensor alone, without the render's own error. Entry
+    /// (pixel, spot) of `bracket` stands at pixel + spot·pixels.
     pub fn expected(&self, light: &Light<'_>, exposure: &Exposure) -> Expected {
         let laws = Law::of(self.figures(), light, exposure);
         let (pixels, spots) = light.shape();

@@ -15,14 +15,14 @@
 //! current and ambient light go, and glare, which is light of the laser, stays. Without dark frames
 //! d̄ is the offset alone, and dark current and ambient light stay in the result.
 //!
-//! Before the F frames of a spot one more is taken at each exposure time, the *metering frame*. Each
-//! entry is taken from the longest exposure in which this frame stays eight of its standard
-//! deviations below full well and highest count. It is no part of n̄: what chooses the exposure, and
-//! what the standard deviation is estimated from, has no error in common with the value. (Chosen by
-//! n̄ itself, entries that saturate about every other time are low by up to 0.4 standard deviations;
-//! weighted by a σ from n̄ itself, a mean is low by an electron.) An entry that even the shortest
-//! exposure brings nearer to the end is marked ([`Range::Near`]). A saturated entry keeps the value
-//! at which it is cut off, and is marked ([`Range::Saturated`]).
+//! Before the F frames of a spot one more is taken at each exposure time, the *metering frame*.
+//! Each entry is taken from the longest exposure in which this frame stays eight of its standard
+//! deviations below full well and highest count. It is no part of n̄: what chooses the exposure,
+//! and what the standard deviation is estimated from, has no error in common with the value.
+//! (Chosen by n̄ itself, entries that saturate about every other time are low by up to 0.4 standard
+//! deviations; weighted by a σ from n̄ itself, a mean is low by an electron.) An entry that even
+//! the shortest exposure brings nearer to the end is marked ([`Range::Near`]). A saturated entry
+//! keeps the value at which it is cut off, and is marked ([`Range::Saturated`]).
 //!
 //! Last, each finished entry is multiplied by 1 + ρ·N(0, 1): the relative noise of the published
 //! simulation, which is no stage of a sensor.
@@ -43,17 +43,17 @@
 //! * once, pairs of frames of even light at eight levels, and without light, give the offset, the
 //!   variance v_b of a frame without light and the slope 1/K of variance over counts
 //!   ([`PhotonTransfer`]);
-//! * the variance of a frame is then v_b + (n − offset)/K, in counts², n that of the metering frame;
-//!   that of a dark frame the same of the mean dark count over all pixels (an average over pixels
-//!   that are equal here). They take the place of s² + K²/12 and s_d² + K²/12 above; K, η and t still
-//!   turn counts into W.
+//! * the variance of a frame is then v_b + (n − offset)/K, in counts², n that of the metering
+//!   frame; that of a dark frame the same of the mean dark count over all pixels (an average over
+//!   pixels that are equal here). They take the place of s² + K²/12 and s_d² + K²/12 above; K, η
+//!   and t still turn counts into W.
 //!
 //! Data are weighted by 1/σ², so that σ² is made to have the right mean there: σ² = V̂ + Var V̂/V̂.
 //! Of one frame that adds one electron². Then χ²/dof is 1 within 0.02 down to no light at all with
-//! every built-in sensor (tests). What remains: without read noise the mean of 1/σ² is (1 − e^−μ)/μ,
-//! so that χ²/dof is 1 − e^−μ where μ is an electron or two; a sensor whose noise is below 0.3 counts
-//! shows in v_b only what its offset lets through the rounding; and pixels are equal, as no real ones
-//! are.
+//! every built-in sensor (tests). What remains: without read noise the mean of 1/σ² is (1 −
+//! e^−μ)/μ, so that χ²/dof is 1 − e^−μ where μ is an electron or two; a sensor whose noise is below
+//! 0.3 counts shows in v_b only what its offset lets through the rounding; and pixels are equal, as
+//! no real ones are.
 //!
 //! The render's own standard error is added in quadrature where it is given
 //! ([`Light::with_render_error`]); of n replicates its variance is known to 2/(n − 1), which enters

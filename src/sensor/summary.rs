@@ -19,7 +19,8 @@ pub struct Summary {
     pub electrons_max: f64,
     /// Entries whose full well or converter was at its end in every exposure.
     pub saturated: usize,
-    /// Entries that no frame saturates, but that every exposure brings within their noise of the end.
+    /// Entries that no frame saturates, but that every exposure brings within their noise of the
+    /// end.
     pub near: usize,
     /// Entries whose counts the converter cut off below 0.
     pub floored: usize,

@@ -2,8 +2,8 @@
 //!
 //! A writer holds `.phicam-MACHINE-PROCESS-FROM-TO.lock` in the folder under an advisory lock of
 //! the operating system (`flock`), which ends with its process, however that ends. FROM to TO are
-//! the parts of the folder that it writes (spots of a render); disjoint parts may be written side by
-//! side. Who looks for others, or changes what all of them share, does so alone, under a lock on
+//! the parts of the folder that it writes (spots of a render); disjoint parts may be written side
+//! by side. Who looks for others, or changes what all of them share, does so alone, under a lock on
 //! `.phicam.lock`. Where a file system knows no locks, a writer counts as gone when its process on
 //! this machine is; of one on another machine the user has to tell.
 
@@ -132,7 +132,8 @@ impl Gate {
         for _ in 0..TRIES {
             let file = open(&path).map_err(|e| StoreError::new(&path, e))?;
             let mine = held(file.try_lock()).map_err(|e| StoreError::new(&path, e))?;
-            // Who held it before has removed it: the lock on a file without a name keeps nobody out.
+            // Who held it before has removed it: the lock on a file without a name keeps nobody
+            // out.
             if mine && is_at(&file, &path) {
                 return Ok(Self { path, _held: file });
             }

@@ -17,13 +17,14 @@ impl NoRoom {
     }
 }
 
-/// The memory that may be taken beside the threads of this process, of which each pool has as many as
-/// the one that asks.
+/// The memory that may be taken beside the threads of this process, of which each pool has as many
+/// as the one that asks.
 pub fn room() -> Option<Room> {
     Room::now(rayon::current_num_threads())
 }
 
-/// A number by its name, its value, and the need as a function of it: the largest that fits is told.
+/// A number by its name, its value, and the need as a function of it: the largest that fits is
+/// told.
 pub type Cure<'a> = (&'a str, u64, &'a dyn Fn(f64) -> f64);
 
 /// Refuses what needs more memory than there is, and tells of each cure how much would fit.

@@ -13,8 +13,8 @@ const MIB: f64 = (1u64 << 20) as f64;
 
 /// Of what others may take meanwhile as well.
 const SHARE: f64 = 0.75;
-/// Address space of a thread: its stack, and the arena of 64 MiB that glibc reserves for it, aligned
-/// by as much again.
+/// Address space of a thread: its stack, and the arena of 64 MiB that glibc reserves for it,
+/// aligned by as much again.
 const THREAD: f64 = 132.0 * MIB;
 /// What of that counts as data: the stack, and what the arena begins with.
 const THREAD_DATA: f64 = 4.0 * MIB;

@@ -8,8 +8,8 @@ use super::vertex::Oriented;
 use crate::geometry::{Facets, Hit, Interaction, Ray, Shape, ShapeId};
 use crate::scene::Scene;
 
-/// Density proportional to the mean albedo of each smooth texture cell (of a mesh its facets there),
-/// uniform in area within it. Dark cells are never sampled, which is exact; light ones are
+/// Density proportional to the mean albedo of each smooth texture cell (of a mesh its facets
+/// there), uniform in area within it. Dark cells are never sampled, which is exact; light ones are
 /// stratified by their edges. Guided, each part of a surface has a density in proportion to its
 /// albedo times an importance, besides a tenth of that by albedo alone.
 #[derive(Clone, Debug)]

@@ -11,8 +11,8 @@
 //! Beside n points of density p each contribution f/(n·p) becomes f/(n·p + m·p_s), whichever way y
 //! was found (balance heuristic: Veach, Guibas, *Optimally combining sampling techniques for Monte
 //! Carlo rendering*, SIGGRAPH 1995). Unbiased because the sum is positive wherever f is. f has the
-//! factor G(y, s), so f/(m·p_s) is bounded by the BRDFs; and where f ≠ 0, V = 1: the weight needs no
-//! ray.
+//! factor G(y, s), so f/(m·p_s) is bounded by the BRDFs; and where f ≠ 0, V = 1: the weight needs
+//! no ray.
 
 use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;

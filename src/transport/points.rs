@@ -5,9 +5,9 @@
 //! Φ̂₃[p, l] = Σ_k C(x_k, y_k) · (ρ/π)(y_k)/density_k · G(y_k, s_l) · V · f_r(s_l) · Φlaser
 //! ```
 //!
-//! x_k is what the camera sees, y_k a point of [`Strata`](super::strata::Strata), or of a light path
-//! where surfaces come close to a spot ([`light_path`](super::light_path)). The points of a block
-//! are evaluated together, and no ray is cast where nothing can stand in the way.
+//! x_k is what the camera sees, y_k a point of [`Strata`](super::strata::Strata), or of a light
+//! path where surfaces come close to a spot ([`light_path`](super::light_path)). The points of a
+//! block are evaluated together, and no ray is cast where nothing can stand in the way.
 
 use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;

@@ -101,8 +101,8 @@ fn the_ideal_sensor_gives_the_clean_flux_back() {
     for (x, y) in exposed.iter().zip(&clean) {
         assert!((x - y).abs() <= 1e-14 * y.abs(), "{x} {y}");
     }
-    // The render's own error is all there is, or beside the published percent error: its variance is
-    // known to 2/(blocks − 1), and σ² = V + Var V/V.
+    // The render's own error is all there is, or beside the published percent error: its variance
+    // is known to 2/(blocks − 1), and σ² = V + Var V/V.
     let render = workspace.matrix("done/phi.stderr.npy");
     let blocks = workspace.json("done/run.json")["blocks"].as_f64().unwrap();
     for (noise, rest) in [(0.0, ""), (0.01, " --noise 0.01")] {

@@ -1,5 +1,5 @@
-//! What has the name of a file and is none, or one of 3 GB: in a run's folder and in a plan's. Every
-//! command answers, at once and in little memory, and says what is wrong with what.
+//! What has the name of a file and is none, or one of 3 GB: in a run's folder and in a plan's.
+//! Every command answers, at once and in little memory, and says what is wrong with what.
 
 use std::fs::{self, File};
 use std::os::unix::fs::symlink;

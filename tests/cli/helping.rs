@@ -30,7 +30,8 @@ fn the_whole_reference_follows_the_help_of_the_command() {
 #[test]
 fn the_licences_of_all_that_is_linked_are_told() {
     let told = Workspace::new().phicam("notices").exits(0).stdout;
-    // Crates of the command alone and of the library, and a library of the pages, each with its text.
+    // Crates of the command alone and of the library, and a library of the pages, each with its
+    // text.
     for words in [
         "clap 4",
         "faer 0",

@@ -1,8 +1,8 @@
 //! A modelled scene through a synthetic camera into files, and back by `phicam import`.
 //!
 //! The camera is made here, from its definition: rays from its eye through sub-pixels, whose
-//! distortion is undone by fixed-point steps, meet the wall's plane; the solid angle of a sub-pixel is
-//! that of its corners' directions. Nothing of it comes from `phicam::photographs`.
+//! distortion is undone by fixed-point steps, meet the wall's plane; the solid angle of a sub-pixel
+//! is that of its corners' directions. Nothing of it comes from `phicam::photographs`.
 
 use phicam::image::{grey16_png, rgb_png};
 use phicam::matrix::Matrix;
@@ -380,7 +380,8 @@ fn a_modelled_scene_comes_back_from_the_files_of_a_camera() {
                 format.file(&values),
             );
         }
-        // What an evenly bright view puts into the scene's camera, for each count in the photograph.
+        // What an evenly bright view puts into the scene's camera, for each count in the
+        // photograph.
         let watts = etendues(&fine).iter().sum::<f64>() / even / electrons / format.gain;
         for (error, folder) in [(0.3, "off"), (0.0, "exact")] {
             let set = format!(

@@ -151,8 +151,8 @@ fn a_list_says_what_the_photographs_are() {
         let gain = if spot == 2 { 2.0 } else { 1.0 };
         let [u, v] = [2 * (p % 3), 2 * (1 - p / 3)];
         let (mut flux, mut variance) = (0.0, 0.0);
-        // The flat field has 1000 and 3000 counts, so 0.5 and 1.5; what it leaves is radiance, of which
-        // the scene's camera takes 1/r⁴ of each part of the wall, relative to the mean.
+        // The flat field has 1000 and 3000 counts, so 0.5 and 1.5; what it leaves is radiance, of
+        // which the scene's camera takes 1/r⁴ of each part of the wall, relative to the mean.
         for [i, j] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
             let level: f64 = if u + i < 3 { 0.5 } else { 1.5 };
             let signal = f64::from(stored(k, u + i, v + j)) - 50.0;

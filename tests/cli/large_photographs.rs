@@ -27,8 +27,8 @@ fn by_rows_it_is_what_it_is_at_once() {
         ("tsvd", "--rank 6 --noise 0.01 --bands 0.9", 0),
     ] {
         let line = format!("recover done --method {method} {more}");
-        // Sixteen elements are too coarse to explain the photographs, but under noise of 1 %; by rows
-        // that is not judged.
+        // Sixteen elements are too coarse to explain the photographs, but under noise of 1 %; by
+        // rows that is not judged.
         let _ = workspace
             .phicam(&format!("{line} --elements 4 --integration centres"))
             .exits(code);

@@ -28,8 +28,8 @@ fn one_spot(pixels: &str) -> String {
     ])
 }
 
-/// Frames beyond 1 GiB are refused by whoever would show, trace or study them, whatever the machine,
-/// and at once; a moment ago `scene check` looked at 67 million pixels.
+/// Frames beyond 1 GiB are refused by whoever would show, trace or study them, whatever the
+/// machine, and at once; a moment ago `scene check` looked at 67 million pixels.
 #[test]
 fn frames_that_no_file_holds_are_refused_at_once() {
     let workspace = Workspace::new();
@@ -115,7 +115,8 @@ fn meshes_and_pictures_are_refused_before_they_are_taken() {
     workspace.refuses_within(ONE_GIB, line, &["as text", "GiB may be taken"]);
 }
 
-/// What would fit, does: the number of pixels that the refusal names is rendered in the same memory.
+/// What would fit, does: the number of pixels that the refusal names is rendered in the same
+/// memory.
 #[test]
 fn what_is_said_to_fit_fits() {
     let workspace = Workspace::new();

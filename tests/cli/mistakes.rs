@@ -2,8 +2,8 @@
 
 use crate::workspace::Workspace;
 
-/// Command line, and what must stand in the message: the cause, and the cure. `tiny.toml` is a scene,
-/// `done` a finished run of it, `plain.txt` an empty file.
+/// Command line, and what must stand in the message: the cause, and the cure. `tiny.toml` is a
+/// scene, `done` a finished run of it, `plain.txt` an empty file.
 const MISTAKES: &[(&str, &[&str])] = &[
     // Words in the wrong place.
     (

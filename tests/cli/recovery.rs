@@ -82,7 +82,8 @@ fn fewer_elements() {
     let workspace = with_run();
     let line = "recover done --method joint --elements 4x4";
     let _ = workspace.phicam(line).exits(0);
-    // Elements taken at their centres are off by more than the error of the render here: exit code 1.
+    // Elements taken at their centres are off by more than the error of the render here: exit code
+    // 1.
     let ended = workspace
         .phicam(&format!("{line} --integration centres"))
         .exits(1);
@@ -107,7 +108,8 @@ fn the_model_s_own_matrix_gives_the_truth_back() {
 }
 
 /// Light integrated over elements, footprints and spots by another quadrature than that of the
-/// operator: what is left of it comes back as an error of the reflectance, from centres a larger one.
+/// operator: what is left of it comes back as an error of the reflectance, from centres a larger
+/// one.
 #[test]
 fn integrated_light_is_inverted_by_integrated_elements() {
     let workspace = with_run();
@@ -516,9 +518,9 @@ fn a_run_can_be_repeated_at_its_own_choice() {
     );
 }
 
-/// Frames of a laser whose power drifts: their gains come with the picture, in numbers, in a file and
-/// in words; gains that are larger than was said are warned of. Deviations without meaning, a scale
-/// both free and known roughly, and methods that take no gains are refused.
+/// Frames of a laser whose power drifts: their gains come with the picture, in numbers, in a file
+/// and in words; gains that are larger than was said are warned of. Deviations without meaning, a
+/// scale both free and known roughly, and methods that take no gains are refused.
 #[test]
 fn gains_of_frames_are_estimated_with_the_object() {
     let workspace = with_run();
@@ -649,8 +651,8 @@ fn photographs_of_the_run_are_its_own_by_name() {
     assert_ne!(of("--phi done/phi.npy --stderr copy.npy"), own);
 }
 
-/// Of photographs whose entries share their errors a picture and no error of it, with the reason; of
-/// those with errors of their own both.
+/// Of photographs whose entries share their errors a picture and no error of it, with the reason;
+/// of those with errors of their own both.
 #[test]
 fn shared_errors_give_no_errors_of_the_picture() {
     let workspace = Workspace::with_scenes();

@@ -18,8 +18,8 @@ fn scene(workspace: &Workspace, file: &str, shining: &str) {
 
 const BOARD: &str = "shining = { cells = [[0.2, 1.0], [0.7, 0.0]] }";
 
-/// The main job from the scene to the report: traced and modelled light agree, and the picture comes
-/// back. The drawings show no laser.
+/// The main job from the scene to the report: traced and modelled light agree, and the picture
+/// comes back. The drawings show no laser.
 #[test]
 fn the_main_job_of_a_surface_that_shines() {
     let workspace = Workspace::new();

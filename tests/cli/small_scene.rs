@@ -47,7 +47,8 @@ pub(crate) fn altered<'a>(pairs: impl IntoIterator<Item = &'a (&'a str, &'a str)
         })
 }
 
-/// The tiny scene with 2 × 2 elements and its spots at `points`, and `surface` (a table's lines) added.
+/// The tiny scene with 2 × 2 elements and its spots at `points`, and `surface` (a table's lines)
+/// added.
 pub(crate) fn with_points_and_surface(points: &str, surface: &str) -> String {
     let list = format!("layout = \"list\"\npoints = {points}");
     let coarse = ("elements = [8, 8]", "elements = [2, 2]");

@@ -296,8 +296,9 @@ fn brdf_is_a_table_json_csv_and_a_figure() {
     }
 }
 
-/// A layout of 6 spots on the tiny scene: less risk than the scene's own 8, a scene file that has its
-/// spots and a wall that holds them; refusals before anything is computed, and where nothing fits.
+/// A layout of 6 spots on the tiny scene: less risk than the scene's own 8, a scene file that has
+/// its spots and a wall that holds them; refusals before anything is computed, and where nothing
+/// fits.
 #[test]
 fn a_layout_is_tables_a_drawing_and_a_scene() {
     let workspace = Workspace::with_scenes();

@@ -56,8 +56,8 @@ fn a_dark_scene_is_told() {
 }
 
 /// A sphere that nearly touches the wall in view, by few samples: what is foretold of the overall
-/// standard error is what the render then states, within a factor of two; without the sphere nothing
-/// is.
+/// standard error is what the render then states, within a factor of two; without the sphere
+/// nothing is.
 #[test]
 fn a_coarse_result_is_foretold() {
     let workspace = Workspace::new();

@@ -115,8 +115,8 @@ pub const PICTURE: Reader = Reader {
     memory: |length| 48 * MOST_PIXELS.min(8 * DEFLATE_RATIO_MAX * length) + MIB,
 };
 
-/// A photograph, or several in a file, as a camera stored them. LZW makes at most 1400 bytes of one;
-/// the samples are held twice while they are turned upright, each up to 24 bytes.
+/// A photograph, or several in a file, as a camera stored them. LZW makes at most 1400 bytes of
+/// one; the samples are held twice while they are turned upright, each up to 24 bytes.
 pub const PHOTOGRAPH: Reader = Reader {
     name: "photograph",
     read: |bytes| {

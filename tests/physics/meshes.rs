@@ -569,7 +569,8 @@ fn a_flipped_mesh_is_the_mesh_wound_the_other_way() {
     );
 }
 
-/// A closed ball that reflects inwards only is dark: its shell stands in the way, for the model too.
+/// A closed ball that reflects inwards only is dark: its shell stands in the way, for the model
+/// too.
 #[test]
 fn a_ball_turned_inside_out_is_dark() {
     let ball = |flip: bool| {

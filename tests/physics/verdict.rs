@@ -181,9 +181,9 @@ const SEEDS: u64 = 20;
 
 /// Every deviation, injected alone at twice the size that the verdict says it detects, is rejected,
 /// and named first or among those that are not told from it, in 19 of 20 seeds; the fitted value is
-/// within 3 standard errors of the injected one. A score test is one of small deviations: asked where
-/// the light is linear in it to a tenth. Twice what `factored` detects of the camera across its
-/// sight is 2.8 in., bent by 16 %, and named in 13 of 20 only.
+/// within 3 standard errors of the injected one. A score test is one of small deviations: asked
+/// where the light is linear in it to a tenth. Twice what `factored` detects of the camera across
+/// its sight is 2.8 in., bent by 16 %, and named in 13 of 20 only.
 #[test]
 #[ignore = "slow"]
 fn every_deviation_is_found_by_name() {

@@ -12,8 +12,8 @@ use crate::lab::{Free, Integration};
 pub(in crate::cli) struct CalibrateArgs {
     /// Folder of a run or of an import; with --phi a folder with a scene.toml is enough
     pub dir: PathBuf,
-    /// Φcam, pixels × spots, in place of DIR/phi.npy: photographs of which DIR/scene.toml is only thought
-    /// to be the geometry
+    /// Φcam, pixels × spots, in place of DIR/phi.npy: photographs of which DIR/scene.toml is only
+    /// thought to be the geometry
     #[arg(long, value_name = "FILE")]
     pub phi: Option<PathBuf>,
     /// Its standard errors; without them its noise is unknown
@@ -23,8 +23,9 @@ pub(in crate::cli) struct CalibrateArgs {
     #[arg(long, short, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
     /// What is not known: names of the geometry, e.g. hinge.angle, hidden.normal, hidden.yaw,
-    /// spots.shift, spots.each, view.shift, camera.position, occluders.x, NAME.normal; with =SIGMA how
-    /// well it was measured (degrees, percent, the scene's unit). The scene's [uncertainty] unless given
+    /// spots.shift, spots.each, view.shift, camera.position, occluders.x, NAME.normal; with =SIGMA
+    /// how well it was measured (degrees, percent, the scene's unit). The scene's [uncertainty]
+    /// unless given
     #[arg(long, value_name = "NAME[=SIGMA],…", value_delimiter = ',', value_parser = free)]
     pub free: Vec<Free>,
     /// Each frame has an unknown gain too, of this relative standard deviation, up to 1
@@ -51,8 +52,8 @@ pub(in crate::cli) struct CalibrateArgs {
     /// Starts: the first where the scene has everything, the others at random, 1 to 1000
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub starts: u16,
-    /// How far off the other starts are, in standard deviations: those given, or 1°, 1 %, 1 % of the
-    /// distance
+    /// How far off the other starts are, in standard deviations: those given, or 1°, 1 %, 1 % of
+    /// the distance
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = spread)]
     pub spread: f64,
     /// Seed of the starts

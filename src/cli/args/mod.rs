@@ -76,19 +76,22 @@ pub(in crate::cli) enum Command {
     Stack(StackArgs),
     /// Write the matrices of the model: G12, G23 and Φcam
     Model(ModelArgs),
-    /// Test traced or measured against modelled Φcam: exit 0 agree, 1 disagree, 2 error, 4 no evidence
+    /// Test traced or measured against modelled Φcam: exit 0 agree, 1 disagree, 2 error, 4 no
+    /// evidence
     Validate(ValidateArgs),
     /// Recover the hidden reflectance from Φcam: exit 0 done, 1 no reflectances explain it, 2 error
     Recover(Box<RecoverArgs>),
     /// Where the hidden surface is, its reflectances unknown, and whether the photographs belong to
     /// their spots: exit 0 found, 1 not, 2 error
     Locate(LocateArgs),
-    /// Estimate the geometry itself from the photographs, whatever the picture: where the hidden surface,
-    /// spots, view, camera, occluders are, with errors: exit 0 found, 1 the photographs refute it, 2 error
+    /// Estimate the geometry itself from the photographs, whatever the picture: where the hidden
+    /// surface, spots, view, camera, occluders are, with errors: exit 0 found, 1 the photographs
+    /// refute it, 2 error
     Calibrate(Box<CalibrateArgs>),
     /// Photograph the clean flux with a sensor: shot noise, read noise, glare, converter
     Expose(ExposeArgs),
-    /// Make Φcam of photographs from a real camera: PNG, TIFF, JPEG, OpenEXR, NumPy and MATLAB files
+    /// Make Φcam of photographs from a real camera: PNG, TIFF, JPEG, OpenEXR, NumPy and MATLAB
+    /// files
     Import(Box<ImportArgs>),
     /// Look at a frame or a matrix in false colour, as PNG or in the terminal
     View(ViewArgs),

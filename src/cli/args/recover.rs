@@ -91,8 +91,8 @@ pub(in crate::cli) struct RecoverArgs {
     pub tolerance: Option<f64>,
     #[command(flatten)]
     pub joint: JointArgs,
-    /// Bands that cover with this probability, each element alone (linear methods without bias) or all
-    /// together (joint, nnls): METHOD.lower.npy and METHOD.upper.npy
+    /// Bands that cover with this probability, each element alone (linear methods without bias) or
+    /// all together (joint, nnls): METHOD.lower.npy and METHOD.upper.npy
     #[arg(long, value_name = "LEVEL", allow_negative_numbers = true)]
     pub bands: Option<f64>,
     /// Memory that may be taken, GiB: where Φcam is larger it is read by rows, by the methods that
@@ -110,7 +110,8 @@ pub(in crate::cli) struct JointArgs {
     /// By what the joint methods weigh the entries of Φcam
     #[arg(long, value_parser = choice::weighting(), default_value = "noise")]
     pub weighting: WeightRule,
-    /// Weight of joint-tv's total variation relative to σ1², in place of the one of the largest evidence
+    /// Weight of joint-tv's total variation relative to σ1², in place of the one of the largest
+    /// evidence
     #[arg(long, value_name = "LAMBDA", allow_negative_numbers = true)]
     pub tv: Option<f64>,
     /// The two reflectances of joint-two-valued, estimated unless given: DARK,LIGHT
@@ -136,12 +137,12 @@ pub(in crate::cli) struct JointArgs {
     /// Estimate one factor of all photographs; the brightest element is the unit then
     #[arg(long)]
     pub free_scale: bool,
-    /// Estimate one factor of each frame, 1 within this standard deviation (0 to 1): a laser whose power
-    /// drifts
+    /// Estimate one factor of each frame, 1 within this standard deviation (0 to 1): a laser whose
+    /// power drifts
     #[arg(long, value_name = "DEVIATION", allow_negative_numbers = true)]
     pub frame_gain: Option<f64>,
-    /// The scale of all photographs is known to this relative standard deviation alone (0 to 1): the
-    /// error of a calibration
+    /// The scale of all photographs is known to this relative standard deviation alone (0 to 1):
+    /// the error of a calibration
     #[arg(
         long,
         value_name = "DEVIATION",

@@ -57,8 +57,8 @@ fn refuse_unreadable(dir: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The work of these settings, with the scene `scene`: a name or a path; a command may name its own.
-/// It is to print JSON if `json`.
+/// The work of these settings, with the scene `scene`: a name or a path; a command may name its
+/// own. It is to print JSON if `json`.
 pub(super) fn work(
     settings: &Settings,
     scene: Option<&str>,

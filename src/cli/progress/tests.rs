@@ -128,8 +128,8 @@ fn the_error_of_finished_columns_is_that_of_all_of_them_together() {
     };
     let target = ProgressDrawTarget::term_like(Box::new(paper));
     tracing.bar.set_draw_target(target);
-    // Two pixels, light of two orders, then the standard error and its code: Φ = 3, 4 and 12, 0; σ = 0.3, 0.4
-    // and 0, 1.2.
+    // Two pixels, light of two orders, then the standard error and its code: Φ = 3, 4 and 12, 0; σ
+    // = 0.3, 0.4 and 0, 1.2.
     tracing.finished(&Matrix::from_row_slice(
         2,
         4,

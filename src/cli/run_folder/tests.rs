@@ -60,8 +60,8 @@ fn what_is_no_import_is_not_replaced_by_one() {
     assert_eq!(fs::read(at(PHI)).unwrap(), b"new");
 }
 
-/// A process that ended after the old import's record was removed, and one that ended while it moved
-/// the new one in: who takes the lock next goes on.
+/// A process that ended after the old import's record was removed, and one that ended while it
+/// moved the new one in: who takes the lock next goes on.
 #[test]
 fn an_interrupted_replacement_is_finished_under_the_lock() {
     let bench = scene("bench");

@@ -14,8 +14,9 @@
 //! | `/api/row?matrix=M&pixel=P` | what pixel P sees of all spots, at most 10⁶ numbers |
 //!
 //! Matrices are `traced` (phi.npy), `stderr` (phi.stderr.npy), `modelled` (model/phi.npy), in W,
-//! `z` (model/z.npy) and `tails` (phi.tails.npy), pixels × spots. Numbers are f64, little-endian, bit by bit those of the
-//! file, a frame row by row from Y upwards. A request has every key once and no other.
+//! `z` (model/z.npy) and `tails` (phi.tails.npy), pixels × spots. Numbers are f64, little-endian,
+//! bit by bit those of the file, a frame row by row from Y upwards. A request has every key once
+//! and no other.
 //!
 //! # Guarantees
 //!

@@ -73,7 +73,8 @@ pub enum FrameError {
 }
 
 /// Writes `frame` to `path`, whole or not at all; it is safe from a power cut after the next
-/// [`flush`](store::flush) of its folder. Every bit of every value is kept, of NaN and infinity too.
+/// [`flush`](store::flush) of its folder. Every bit of every value is kept, of NaN and infinity
+/// too.
 ///
 /// # Errors
 /// [`FrameError::Malformed`] if a channel has not columns·rows values, if names are empty, double,

@@ -3,9 +3,9 @@
 use crate::geometry::DVec3;
 use crate::num::warp;
 
-/// Triangles, or pieces of them, one after the other along u, each as wide as its share of the area, ordered so that
-/// those near each other in u are near each other in space: by the Morton code of their middles
-/// (Morton 1966), 21 bits a coordinate.
+/// Triangles, or pieces of them, one after the other along u, each as wide as its share of the
+/// area, ordered so that those near each other in u are near each other in space: by the Morton
+/// code of their middles (Morton 1966), 21 bits a coordinate.
 #[derive(Clone, Debug)]
 pub(super) struct AreaMap {
     /// Triangles in order.

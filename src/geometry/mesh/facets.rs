@@ -164,8 +164,8 @@ impl Facets {
 }
 
 impl Mesh {
-    /// The mesh's triangles cut into facets, which make up each triangle once and stand in the order
-    /// of the triangles.
+    /// The mesh's triangles cut into facets, which make up each triangle once and stand in the
+    /// order of the triangles.
     pub fn cut(&self, facets: Vec<Facet>) -> Facets {
         let areas: Vec<f64> = (0..self.triangles.len() as u32)
             .map(|t| {

@@ -30,10 +30,10 @@ impl Patch {
 /// A place in the picture by its bits, so that it can be sorted.
 type Key = [u64; 2];
 
-/// The patch corner + u·a + v·b that a mesh is, (u, v) its texture coordinates, if it is one:
-/// every vertex is at its place to 1e-6 of the shorter side, every triangle has its share of the
-/// area to 2e-6, none is turned over, and what is left of the triangles' sides after those shared by
-/// two is the rim of \[0, 1\]². Then the triangles cover the patch once.
+/// The patch corner + u·a + v·b that a mesh is, (u, v) its texture coordinates, if it is one: every
+/// vertex is at its place to 1e-6 of the shorter side, every triangle has its share of the area to
+/// 2e-6, none is turned over, and what is left of the triangles' sides after those shared by two is
+/// the rim of \[0, 1\]². Then the triangles cover the patch once.
 pub(super) fn of(mesh: &Mesh) -> Option<Patch> {
     let uv = mesh.uv()?;
     if uv.len() > MOST {

@@ -136,8 +136,8 @@ pub(super) fn is_whole(bytes: &[u8]) -> bool {
     header.is_none_or(|h| h.data_window() == h.shared_attributes.display_window)
 }
 
-/// Pixels of a file of `length` bytes by its first ones, and bytes of all of them in memory; no more
-/// than the file can hold. `None` if its header is not whole in `start`.
+/// Pixels of a file of `length` bytes by its first ones, and bytes of all of them in memory; no
+/// more than the file can hold. `None` if its header is not whole in `start`.
 #[cfg(feature = "cli")]
 pub(crate) fn claimed(start: &[u8], length: u64) -> Option<[f64; 2]> {
     envelope::check_list(start).ok()?;

@@ -123,7 +123,8 @@ fn the_noted_orientation_is_applied() {
         let saved = if k < 64 { 200.0 } else { 40.0 };
         assert!((value - saved).abs() <= 1.0, "{k}: {value}");
     }
-    // A number that means nothing is refused: big-endian, the value of the note ends at its tenth byte.
+    // A number that means nothing is refused: big-endian, the value of the note ends at its tenth
+    // byte.
     let mut odd = TURNED[5].to_vec();
     let at = odd.windows(4).position(|w| w == b"eXIf").unwrap() + 4;
     let note = at + odd[at..].windows(2).position(|w| w == [1, 0x12]).unwrap() + 9;
@@ -174,7 +175,8 @@ fn cut_and_forged_files_are_refused() {
     for length in 4..whole.len() {
         let _ = samples("a", &whole[..length]);
     }
-    // Tags 256 to 278, width, height and rows of a strip, in the directory: type LONG or SHORT, big-endian.
+    // Tags 256 to 278, width, height and rows of a strip, in the directory: type LONG or SHORT,
+    // big-endian.
     let mut forged = whole.to_vec();
     for tag in [256u16, 257, 278] {
         let head = [&tag.to_be_bytes()[..], &[0]].concat();

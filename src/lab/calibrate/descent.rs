@@ -1,8 +1,8 @@
 //! The likeliest values of the unknowns, by noise continuation.
 //!
-//! The cost is a canyon: at a small noise it is steep everywhere but along its floor. So the noise is
-//! first taken for at least 3 % of the light and then lowered by half a decade at a time; at each
-//! noise Levenberg–Marquardt steps (1963) go down with the prior of the unknowns,
+//! The cost is a canyon: at a small noise it is steep everywhere but along its floor. So the noise
+//! is first taken for at least 3 % of the light and then lowered by half a decade at a time; at
+//! each noise Levenberg–Marquardt steps (1963) go down with the prior of the unknowns,
 //!
 //! > (F + Λ + μ diag(F + Λ)) δ = −(slope + Λθ),   Λ = diag(1/σ_k²)
 //!
@@ -256,8 +256,8 @@ impl<'a> Problem<'a> {
         Ok((state, MOST_STEPS))
     }
 
-    /// How far a finer rule of integration moves the unknowns, by one Newton step; none where there is
-    /// no finer one.
+    /// How far a finer rule of integration moves the unknowns, by one Newton step; none where there
+    /// is no finer one.
     pub(super) fn finer(
         &self,
         best: &State,

@@ -1,7 +1,7 @@
 //! The light of each element at assumed values of the unknowns, and its derivatives.
 //!
-//! The unknowns are geometric parameters, then a gain of each frame where gains are unknown: frame l
-//! is (1 + g_l) times what the scene sends.
+//! The unknowns are geometric parameters, then a gain of each frame where gains are unknown: frame
+//! l is (1 + g_l) times what the scene sends.
 
 use crate::lab::error::LabError;
 use crate::matrix::Matrix;

@@ -2,8 +2,8 @@
 //!
 //! > ρ = m·1 + R z,  z ~ N(0, 1),   R Rᵀ = s² (σ² 11ᵀ + τ² k),   k_ij = exp(−|x_i − x_j|/ℓ)
 //!
-//! m = σ = ½ where the scale is known; where it is free m = 0, σ² = ½ (the mean square of a mean of ½
-//! ± ½) and s is the likeliest. τ and ℓ are the likeliest pair of a few.
+//! m = σ = ½ where the scale is known; where it is free m = 0, σ² = ½ (the mean square of a mean of
+//! ½ ± ½) and s is the likeliest. τ and ℓ are the likeliest pair of a few.
 
 use nalgebra::DVector;
 

@@ -9,8 +9,8 @@ use super::place::jackknifed;
 use crate::matrix::Matrix;
 use crate::num::linalg::LinalgError;
 
-/// Posterior mean of the reflectances. The prior's λ and length are chosen by how well each frame is
-/// predicted from the others:
+/// Posterior mean of the reflectances. The prior's λ and length are chosen by how well each frame
+/// is predicted from the others:
 ///
 /// > e_l = ‖√w (Φ_l − C diag(d_l) ρ_(l))‖²,   ρ_(l) from all frames but l.
 ///

@@ -32,7 +32,8 @@ impl NamedSensor {
         }
     }
 
-    /// The built-in sensor of this kind, or else that of the scene with its frames, or else the CCD.
+    /// The built-in sensor of this kind, or else that of the scene with its frames, or else the
+    /// CCD.
     ///
     /// # Errors
     /// [`SensorError`], where the scene's has no meaning.
@@ -65,9 +66,9 @@ pub enum NoiseAxis {
     /// Mean photons that the signal sends to a pixel in the one frame: shot noise alone, of an
     /// electron for every photon, without read noise and converter.
     Photons,
-    /// Seconds that a sensor's frame takes; its frames for each spot, averaged, less the mean of its
-    /// dark frames. These serve all spots, so that the errors of a row are correlated; the recovery
-    /// takes them as independent.
+    /// Seconds that a sensor's frame takes; its frames for each spot, averaged, less the mean of
+    /// its dark frames. These serve all spots, so that the errors of a row are correlated; the
+    /// recovery takes them as independent.
     Exposure(NamedSensor),
     /// Glare over signal, ΣΦ_glare/ΣΦ: light of the laser that the lens scatters, photographed by a
     /// sensor in its frames (and dark frames), which fill the brightest pixel to half. Nothing

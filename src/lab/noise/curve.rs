@@ -139,8 +139,8 @@ pub struct NoiseCurve {
     /// The same of the normalized MTF.
     pub lost_normalized: [Lost; 2],
     /// Up to which level the mean raw MTF stays at or above the first of [`LIMITS`], m, and not
-    /// above 2 − m, relative to the picture's own; there dark would come out too dark. None where it
-    /// is not there at the quietest.
+    /// above 2 − m, relative to the picture's own; there dark would come out too dark. None where
+    /// it is not there at the quietest.
     pub held: Option<Held>,
 }
 

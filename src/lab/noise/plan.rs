@@ -96,8 +96,8 @@ impl NoisePlan {
         }
     }
 
-    /// Of the objects the scene's own, at its own elements or else at the most; none where it is not
-    /// among them.
+    /// Of the objects the scene's own, at its own elements or else at the most; none where it is
+    /// not among them.
     pub(super) fn own(scene: &Scene, objects: &[(Picture, usize)]) -> Option<(Picture, usize)> {
         let picture = Picture::of(scene)?;
         let own = objects.iter().copied().filter(|(p, _)| *p == picture);

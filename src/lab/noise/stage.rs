@@ -252,8 +252,8 @@ mod tests {
         );
     }
 
-    /// The frames that a scene gives its sensor are averaged: a hundred have a tenth of the error of
-    /// one, a hundred dark frames that of one.
+    /// The frames that a scene gives its sensor are averaged: a hundred have a tenth of the error
+    /// of one, a hundred dark frames that of one.
     #[test]
     fn the_scenes_frames_are_taken() {
         let exact = Matrix::from_element(12, 36, 2e-15);

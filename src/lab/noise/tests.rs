@@ -234,8 +234,8 @@ fn a_mean_that_strays_has_not_fallen() {
     let curve = |loud| of(loud, &[0.0, 1.0]);
     assert_eq!(curve([9.0, -9.0, 5.0, -4.2]).lost_raw, [Lost::Unknown; 2]);
     let fallen = curve([0.25, 0.15, 0.2, 0.2]);
-    // A picture of albedo 0.25 and 0.75 has a raw MTF of ½: relative to that from 2 to 0.4, of which
-    // 0.9 lies 1.1/1.6 of the way.
+    // A picture of albedo 0.25 and 0.75 has a raw MTF of ½: relative to that from 2 to 0.4, of
+    // which 0.9 lies 1.1/1.6 of the way.
     let grey = of([0.25, 0.15, 0.2, 0.2], &[0.25, 0.75]);
     assert_eq!(grey.mtf_of_truth, [0.5, 1.0]);
     let Lost::At(level) = grey.lost_raw[0] else {
@@ -347,7 +347,8 @@ fn the_finding_holds_the_whole_study() {
         };
         assert_eq!(lines, 9 + 3 * 2 + bounds, "{}", figure.file);
     }
-    // The scene's own comes first: the bench is a board of 2 × 2 checks on 8 × 8 elements, or else on the most.
+    // The scene's own comes first: the bench is a board of 2 × 2 checks on 8 × 8 elements, or else
+    // on the most.
     let own = found.own.unwrap();
     assert_eq!(own.0, Picture::Board(2));
     let first = format!(

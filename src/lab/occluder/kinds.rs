@@ -170,8 +170,8 @@ fn mura() -> Cells {
     (0..MURA).map(row).collect()
 }
 
-/// Whether cell (i, j) of the 7 × 7 MURA is open: A(0, j) = 0, A(i, 0) = 1 for i > 0, else whether i and
-/// j are both squares modulo 7, or neither is.
+/// Whether cell (i, j) of the 7 × 7 MURA is open: A(0, j) = 0, A(i, 0) = 1 for i > 0, else whether
+/// i and j are both squares modulo 7, or neither is.
 fn is_open(i: usize, j: usize) -> bool {
     let square = |x: usize| matches!(x, 1 | 2 | 4);
     i != 0 && (j == 0 || square(i) == square(j))

@@ -48,8 +48,8 @@ impl Tolerance {
         )
     }
 
-    /// What has to be measured how well for the MTF that is wished for: section 5.4 of the published
-    /// study.
+    /// What has to be measured how well for the MTF that is wished for: section 5.4 of the
+    /// published study.
     fn needed(&self) -> String {
         let wished = figure(self.wished, 2);
         if self.mtf.is_none_or(|mtf| mtf <= self.wished) {

@@ -6,9 +6,9 @@ use super::super::array::{
 use super::header::{Header, Plain};
 use super::one_line;
 
-/// The array in the bytes of a `.npy` file: integers of 8 to 64 bits, booleans, or floating point of
-/// 32 or 64 bits, of either byte order, in C or Fortran order. `name` is only for messages. Takes at
-/// most 16 bytes of memory for each entry, and there are at most [`MOST_ENTRIES`].
+/// The array in the bytes of a `.npy` file: integers of 8 to 64 bits, booleans, or floating point
+/// of 32 or 64 bits, of either byte order, in C or Fortran order. `name` is only for messages.
+/// Takes at most 16 bytes of memory for each entry, and there are at most [`MOST_ENTRIES`].
 ///
 /// # Errors
 /// [`ArrayError`] for another type, a length other than the header's claim, an empty or too large

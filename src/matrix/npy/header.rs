@@ -21,8 +21,9 @@ const ALIGNED: usize = 64;
 /// What the header of an array says.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Header {
-    /// The type of the numbers, as NumPy writes it: `<f8` has its byte order (`<`, `>`, `|` none, `=`
-    /// this machine's), its kind and its bytes. What is no such string stands here as it is written.
+    /// The type of the numbers, as NumPy writes it: `<f8` has its byte order (`<`, `>`, `|` none,
+    /// `=` this machine's), its kind and its bytes. What is no such string stands here as it is
+    /// written.
     pub descr: String,
     /// Whether the first index runs fastest.
     pub fortran: bool,

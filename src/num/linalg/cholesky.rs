@@ -9,8 +9,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::product::tr_product;
 
-/// L of A = L Lᵀ. Its errors are those of A scaled to a unit diagonal, so that a graded matrix loses
-/// nothing by its grades (Demmel 1989).
+/// L of A = L Lᵀ. Its errors are those of A scaled to a unit diagonal, so that a graded matrix
+/// loses nothing by its grades (Demmel 1989).
 #[derive(Debug, Clone)]
 pub struct Cholesky {
     l: DMatrix<f64>,
@@ -87,8 +87,8 @@ impl Cholesky {
 mod tests {
     use super::*;
 
-    /// min(i, j) = Σ_k [k ≤ i][k ≤ j]: the factor is the triangle of ones, its determinant 1. Grades
-    /// of 1e±100 on both sides scale the factor and nothing else.
+    /// min(i, j) = Σ_k [k ≤ i][k ≤ j]: the factor is the triangle of ones, its determinant 1.
+    /// Grades of 1e±100 on both sides scale the factor and nothing else.
     #[test]
     fn the_factor_of_least_indices_is_a_triangle_of_ones() {
         let least = DMatrix::from_fn(7, 7, |i, j| (i.min(j) + 1) as f64);

@@ -32,8 +32,9 @@ pub fn chi_square_sf(x: f64, dof: f64) -> f64 {
     tail.clamp(0.0, 1.0)
 }
 
-/// The x that χ² with `dof` > 0 degrees of freedom does not exceed with probability `p`, by bisection
-/// to the last bit of [`chi_square_sf`]. NaN where p is not in (0, 1) or dof not positive and finite.
+/// The x that χ² with `dof` > 0 degrees of freedom does not exceed with probability `p`, by
+/// bisection to the last bit of [`chi_square_sf`]. NaN where p is not in (0, 1) or dof not positive
+/// and finite.
 pub fn chi_square_quantile(p: f64, dof: f64) -> f64 {
     if !(p > 0.0 && p < 1.0 && dof > 0.0 && dof.is_finite()) {
         return f64::NAN;

@@ -59,8 +59,8 @@ fn what_reaches_beyond_the_photograph_is_outside() {
 }
 
 /// An evenly glowing wall, photographed by a camera that stands elsewhere, with distortion: its
-/// pixels have the étendue cos⁴θ·(area of the undistorted pixel), and what is imported is that of the
-/// scene's camera, ∫ h²/r⁴ dA by quadrature, to one factor.
+/// pixels have the étendue cos⁴θ·(area of the undistorted pixel), and what is imported is that of
+/// the scene's camera, ∫ h²/r⁴ dA by quadrature, to one factor.
 #[test]
 fn the_ratio_of_etendues_is_that_of_the_cameras() {
     let camera = camera();

@@ -75,8 +75,8 @@ fn exact_marks_give_the_camera() {
     }
 }
 
-/// Marks that are off by 0.3 px along each axis: that error comes back from their residuals, and the
-/// mapping is off by less than a mark.
+/// Marks that are off by 0.3 px along each axis: that error comes back from their residuals, and
+/// the mapping is off by less than a mark.
 #[test]
 fn the_error_of_marks_is_found() {
     let key = Key {

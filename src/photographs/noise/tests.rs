@@ -63,8 +63,8 @@ fn gain_and_read_noise_come_back() {
     assert!(photon_transfer(still.collect(), false).is_err());
 }
 
-/// An offset of 100 counts in the light, for want of dark frames: 4 − 0.5·100 at light 0. The gain is
-/// 0.5 still, the line fits, and the variance of a photograph is the same as with dark frames.
+/// An offset of 100 counts in the light, for want of dark frames: 4 − 0.5·100 at light 0. The gain
+/// is 0.5 still, the line fits, and the variance of a photograph is the same as with dark frames.
 #[test]
 fn an_offset_moves_the_line_and_leaves_the_gain() {
     const OFFSET: f64 = 100.0;
@@ -101,8 +101,8 @@ fn an_offset_moves_the_line_and_leaves_the_gain() {
     assert!(fit.noise.of_mean([10.0, 0.0], rounding, 1) > 0.0);
 }
 
-/// Floating-point photographs: 32 groups, no rounding; four see no light and hardly vary. The others
-/// vary by 0.5·s − 0.1, so that the line without bounds is below 0 where there is no light.
+/// Floating-point photographs: 32 groups, no rounding; four see no light and hardly vary. The
+/// others vary by 0.5·s − 0.1, so that the line without bounds is below 0 where there is no light.
 #[test]
 fn groups_without_light_leave_the_line_finite() {
     let of = |variance: fn(f64) -> f64| -> Vec<Repeated> {

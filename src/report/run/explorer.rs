@@ -20,8 +20,9 @@ const MOST_PLACES: usize = 20_000;
 /// Bytes that an entry takes at the very least, as the start of a search.
 const LEAST_EACH: f64 = 5.0;
 
-/// How exactly traced and modelled flux, standard error, z and the codes of the error bars are kept;
-/// the first set that fits. Codes are below 2⁵: with four bits after the first they are exact.
+/// How exactly traced and modelled flux, standard error, z and the codes of the error bars are
+/// kept; the first set that fits. Codes are below 2⁵: with four bits after the first they are
+/// exact.
 const PRECISIONS: [[Precision; MATRICES]; 5] = {
     use Precision::{Exact, Single};
     const CODES: Precision = Single(4);

@@ -22,11 +22,11 @@ pub(super) use settings::{is_builtin, scene_text};
 use settings::{scene_file, settings};
 
 /// The whole report as one HTML page that needs no network and no other file: first the answer
-/// (truth, what was recovered, how sure, whether the light agrees); then how it was done (drawing of
-/// the scene, commands that repeat the run, settings, times, scene file); then what there is to
-/// explore (recoveries, frames, Φcam traced and modelled, z, light by bounce count). What a run does
-/// not have is left out. Pictures larger than 256 (Φcam: 512) entries a side are averaged or thinned for display,
-/// and the page says so.
+/// (truth, what was recovered, how sure, whether the light agrees); then how it was done (drawing
+/// of the scene, commands that repeat the run, settings, times, scene file); then what there is to
+/// explore (recoveries, frames, Φcam traced and modelled, z, light by bounce count). What a run
+/// does not have is left out. Pictures larger than 256 (Φcam: 512) entries a side are averaged or
+/// thinned for display, and the page says so.
 pub fn run_html(results: &RunResults) -> String {
     let mut page = Page::new(&format!("phicam: {}", results.scene.name));
     page.answer(&answer::answer(results));

@@ -1,7 +1,7 @@
 use super::*;
 
-/// Expected bits: Python's `float` of the product in `fractions.Fraction`, with 1 in = 254/10000 m and
-/// π to 120 digits.
+/// Expected bits: Python's `float` of the product in `fractions.Fraction`, with 1 in = 254/10000 m
+/// and π to 120 digits.
 #[test]
 fn conversions_are_the_doubles_nearest_to_the_exact_products() {
     for (dimension, text, unit, bits) in [

@@ -32,20 +32,21 @@ pub enum SecondFacet {
 /// > T(θ) = 1 − E(θ),   E(θ) = ∫ D_θ(h) R(ω·h) G₁(ω_r) dh,   R̄ = 1 − 2/η² ∫₀¹ μ T(μ) dμ
 ///
 /// The second line is reciprocity: inside radiance is η² times that outside. At ρ = 1 this reflects
-/// E + T·(2/η² ∫ μ T dμ)/(1 − R̄) = 1 at every angle, as a loss-free white must; tests find 1 within
-/// 3e-4, most at normal incidence and a high index, and 2e-4 for paint (η = 1.5). At η = 1 it is ρ/π. What is assumed: light masked after its first facet goes through the
-/// second one, where a few hundredths would be reflected once more; it then has the colour of the
-/// ground, not that of the coat. Between the facets, that is all of E that single scattering leaves
-/// out (Heitz and others, *Multiple-scattering microfacet BSDFs with the Smith model*, 2016).
+/// E + T·(2/η² ∫ μ T dμ)/(1 − R̄) = 1 at every angle, as a loss-free white must; tests find 1
+/// within 3e-4, most at normal incidence and a high index, and 2e-4 for paint (η = 1.5). At η = 1
+/// it is ρ/π. What is assumed: light masked after its first facet goes through the second one,
+/// where a few hundredths would be reflected once more; it then has the colour of the ground, not
+/// that of the coat. Between the facets, that is all of E that single scattering leaves out (Heitz
+/// and others, *Multiple-scattering microfacet BSDFs with the Smith model*, 2016).
 ///
 /// **Coated** ([`SecondFacet::Absorbs`]) takes single scattering alone, of light that meets one
 /// facet,
 ///
 /// > T(θ) = ∫ D_θ(h) (1 − R(ω·h)) G₁(ω_t) dh,   R̄ = 2 ∫₀¹ μ ∫ D_μ(h) R′(ω·h) G₁(ω_r) dh dμ
 ///
-/// and what meets a second one is lost: at ρ = 1 and η = 1.5 of all light 0.075 to 0.13 for α = 0.1,
-/// 0.30 to 0.39 for α = 0.3, 0.66 to 0.85 for α = 1, from normal to grazing incidence. These are the
-/// equations of Mitsuba 3's `roughplastic` with `nonlinear = true`.
+/// and what meets a second one is lost: at ρ = 1 and η = 1.5 of all light 0.075 to 0.13 for α =
+/// 0.1, 0.30 to 0.39 for α = 0.3, 0.66 to 0.85 for α = 1, from normal to grazing incidence. These
+/// are the equations of Mitsuba 3's `roughplastic` with `nonlinear = true`.
 ///
 /// T is tabulated at 513 values of √cosθ by product quadrature and interpolated by cubics; beside a
 /// quadrature of 128 × 128 nodes at any angle it is good to 1e-5 (paint: 3e-4), and R̄ to 1e-4
@@ -64,8 +65,8 @@ pub struct Coated {
 }
 
 const INTERVALS: usize = 512;
-/// Nodes a side over the visible normals, for T (more for paint, where reflection ends at the horizon
-/// with a kink) and for R̄, and over the angle, for R̄.
+/// Nodes a side over the visible normals, for T (more for paint, where reflection ends at the
+/// horizon with a kink) and for R̄, and over the angle, for R̄.
 const NODES: usize = 32;
 const PAINT_NODES: usize = 64;
 const INTERNAL_NODES: usize = 96;
@@ -156,8 +157,8 @@ impl Coated {
         albedo / (self.eta * self.eta * (1.0 - albedo * self.internal))
     }
 
-    /// What paint reflects of light from the cosine `mu`, E + T·g = 1 − T·(1 − g), g what comes back of
-    /// the light below: 1 over a ground of ρ = 1. `None` where light is lost.
+    /// What paint reflects of light from the cosine `mu`, E + T·g = 1 − T·(1 − g), g what comes
+    /// back of the light below: 1 over a ground of ρ = 1. `None` where light is lost.
     pub(super) fn directional_albedo(&self, albedo: f64, mu: f64) -> Option<f64> {
         self.reflects(albedo, self.transmittance(mu))
     }

@@ -52,7 +52,8 @@ pub struct FallOff {
 
 impl FallOff {
     /// f = cosⁿʰ(θ_h) · cosⁿᵛ(θ_v) in a direction of any length that is above the surface; 0 below.
-    /// With a the direction's part along the normal and h that along the axis, cosθ_h = a/√(a² + h²).
+    /// With a the direction's part along the normal and h that along the axis, cosθ_h = a/√(a² +
+    /// h²).
     pub fn towards(&self, normal: DVec3, direction: DVec3) -> f64 {
         let a = direction.dot(normal);
         if a <= 0.0 {

@@ -165,8 +165,8 @@ fn rough_matt_white_is_white() {
 
 /// The white furnace: over a ground that loses nothing, paint reflects all light at every angle, by
 /// a quadrature that knows of it the BRDF alone. Below a coat that is nearly smooth a ground of ρ =
-/// 0.5 reflects what Saunderson's equation says, R_e + (1 − R_e)(1 − R_i) ρ/(1 − ρ R_i) = 0.353 with
-/// R_e = 0.0918 and R_i = 0.5963.
+/// 0.5 reflects what Saunderson's equation says, R_e + (1 − R_e)(1 − R_i) ρ/(1 − ρ R_i) = 0.353
+/// with R_e = 0.0918 and R_i = 0.5963.
 #[test]
 fn white_paint_is_white() {
     let rule = Rule::gauss_legendre(160);

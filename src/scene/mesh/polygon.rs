@@ -2,8 +2,8 @@
 //!
 //! By cutting ears (Meisters, *Polygons have ears*, 1975): a corner whose neighbours see each other
 //! within the polygon goes with them as a triangle. Signed areas add up to the polygon's winding
-//! numbers whatever the diagonals; of an outline that does not cross itself these are 1 inside and 0
-//! outside, so that triangles which all turn its way cover it once.
+//! numbers whatever the diagonals; of an outline that does not cross itself these are 1 inside and
+//! 0 outside, so that triangles which all turn its way cover it once.
 
 use super::{MeshFileError, fan};
 use crate::geometry::DVec3;

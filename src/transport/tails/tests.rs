@@ -125,9 +125,9 @@ fn normal_blocks_are_trusted() {
     assert!(found.own < 0.01 && found.flagged < 0.01, "{found:?}");
 }
 
-/// Whatever the blocks are drawn from: of the entries that are trusted at most 6 % lie outside their
-/// 95 % and 0.3 % outside their 99.9 %, or hardly any is trusted. What is too heavy for 32 blocks is
-/// flagged to the last entry.
+/// Whatever the blocks are drawn from: of the entries that are trusted at most 6 % lie outside
+/// their 95 % and 0.3 % outside their 99.9 %, or hardly any is trusted. What is too heavy for 32
+/// blocks is flagged to the last entry.
 #[test]
 fn trusted_entries_keep_their_promise() {
     let rare = |expected: f64| expected / BLOCKS as f64;

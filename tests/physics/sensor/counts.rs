@@ -1,5 +1,5 @@
-//! Standard deviations from counts alone, and exposure times chosen by counts, against the flux that
-//! was photographed.
+//! Standard deviations from counts alone, and exposure times chosen by counts, against the flux
+//! that was photographed.
 
 use phicam::matrix::Matrix;
 use phicam::model::{Extent, Kernel, converged};
