@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable
 from typing import Any
 
@@ -90,6 +91,26 @@ def whole(value: Any, name: str, least: int = 0, most: int = 2**64 - 1) -> int:
     if not exact or not least <= number <= most:
         raise InputError(f"{name} is {value!r}\n  cure: give a whole number, {least} to {most}")
     return number
+
+
+def chosen(value: Any, name: str, count: int) -> list[tuple[int, int]]:
+    """Which of `count` things an index, a slice or indices name, as runs first..end of neighbours."""
+    all_of = range(count)
+    try:
+        if isinstance(value, slice):
+            found = list(all_of[value])
+        elif np.ndim(value) == 0:
+            found = [all_of[operator.index(value)]]
+        else:
+            found = sorted({all_of[operator.index(k)] for k in value})
+    except (TypeError, ValueError, IndexError) as error:
+        raise InputError(f"{name} is {value!r}\n  cure: give an index, a slice or indices of 0 to {count - 1}") from error
+    if not found:
+        raise InputError(f"{name} is {value!r}, which names none\n  cure: give an index, a slice or indices of 0 to {count - 1}")
+    found.sort()
+    starts = [k for k in found if k - 1 not in found]
+    ends = [k + 1 for k in found if k + 1 not in found]
+    return list(zip(starts, ends))
 
 
 def number(value: Any, name: str, fine: str, holds: Callable[[float], bool]) -> float:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _html, _native
-from ._arrays import Floats, matrix, maybe, shaped, whole
+from ._arrays import Floats, chosen, matrix, maybe, shaped, whole
 from ._progress import Progress, told
 from ._scene import Scene
 from .errors import InputError
@@ -87,6 +87,11 @@ class Phi:
         """How the errors of the entries hang together: independent, pixel (those of one pixel), all."""
         return ERRORS.get(self.settings.get("estimator", ""), "independent")
 
+    @property
+    def unit(self) -> str:
+        """Of `flux` and `stderr`: W, or counts (or counts/s) of photographs whose scale is unknown."""
+        return str(self.account.get("unit", "W"))
+
     def frame(self, spot: int) -> Floats:
         """The photograph of a spot, rows × columns, W; row 0 is the lowest: ``imshow(…, origin="lower")``.
 
@@ -111,7 +116,7 @@ class Phi:
 
         columns, rows = self.scene.pixels
         shape = (rows, columns, self.flux.shape[1])
-        unit = {"units": self.account.get("unit", "W")}
+        unit = {"units": self.unit}
         data: dict[str, Any] = {"flux": (("row", "column", "spot"), self.flux.reshape(shape), unit)}
         if self.stderr is not None:
             data["stderr"] = (("row", "column", "spot"), self.stderr.reshape(shape), unit)
@@ -135,7 +140,7 @@ class Phi:
         >>> bool((phicam.load(folder).flux == phi.flux).all())
         True
         """
-        if self.by_bounces is None or self.stderr is None or not self.is_rendered:
+        if self.by_bounces is None or self.stderr is None or not self.is_rendered or "spots" in self.settings:
             raise InputError(
                 "only a whole render can be written as a run\n  cure: numpy.save(…, phi.flux), and phi.stderr beside it"
             )
@@ -154,6 +159,14 @@ class Phi:
             seconds=own["seconds"],
             threads=own["threads"],
         )
+
+    def refuse_unscaled(self, cure: str) -> None:
+        """Raises InputError of photographs in counts where those in W are asked for."""
+        if self.unit != "W":
+            raise InputError(
+                f"the photographs are in {self.unit}, not in W, so their size says nothing of reflectances\n  cure: {cure} "
+                "import them with `watts`, what one of these is in W"
+            )
 
     def refuse_clipped(self) -> None:
         """Raises InputError where entries are saturated or cut off: neither they nor their standard errors mean
@@ -178,8 +191,7 @@ class Phi:
         if self.stderr is not None:
             panels.append(("its standard error", self.stderr[:, 0], axes))
         drawn = [(name, np.asarray(v, dtype=float).reshape(rows, columns), a, width) for name, v, a in panels]
-        unit = str(self.account.get("unit", "W"))
-        return _html.sentence(repr(self)) + _html.gallery("", unit, drawn)
+        return _html.sentence(repr(self)) + _html.gallery("", self.unit, drawn)
 
 
 def render(
@@ -189,10 +201,11 @@ def render(
     estimator: Estimator = "independent",
     sampler: Sampler = "sobol",
     seed: int = 1,
+    spots: int | slice | Iterable[int] | None = None,
     threads: int | None = None,
     progress: Progress = False,
 ) -> Phi:
-    """Traces Φcam of every spot: the same bytes as ``phicam render``.
+    """Traces Φcam of every spot, or of some: the same bytes as ``phicam render``.
 
     Parameters
     ----------
@@ -207,6 +220,9 @@ def render(
         ``sobol``: Owen-scrambled Sobol' points; ``pcg``: independent random numbers.
     seed : int
         The same seed gives the same bytes, whatever the threads.
+    spots : int, slice or iterable of int, optional
+        The spots that are traced; all unless given. The columns of the others are 0 and in `left_out`, so that
+        :func:`validate` and :func:`recover` pass over them. Each column is the one that it has with all spots.
     threads : int, optional
         All cores unless given.
     progress : bool or function of (done, of)
@@ -221,42 +237,60 @@ def render(
     --------
     >>> import phicam
     >>> scene = phicam.Scene("bench").replace({"laser.spots.per_side": 2})
+    >>> some = phicam.render(scene, samples=64, spots=[0, 5])
+    >>> some.left_out.all(axis=0).tolist()
+    [False, True, True, True, True, False, True, True]
     >>> phi = phicam.render(scene, samples=64, estimator="shared")
     >>> phi
     Phi(256 pixels × 8 spots of 'bench': estimator shared, samples 64, seed 1)
     >>> bool((phi.stderr < 0.2 * phi.flux.max()).all())
     True
     """
-    count, spots = whole(samples, "samples", 1, 2**32), scene.shape[1]
+    count, all_spots = whole(samples, "samples", 1, 2**32), scene.shape[1]
+    runs = [(0, all_spots)] if spots is None else chosen(spots, "spots", all_spots)
     paths = count if estimator == "factored" else count * scene.shape[0]
-    total = paths * (spots if estimator == "independent" else 1)
+    each = [paths * (end - first if estimator == "independent" else 1) for first, end in runs]
     scene._warn()
-    found = _native.render(
-        scene._core,
-        estimator=estimator,
-        sampler=sampler,
-        seed=whole(seed, "seed"),
-        samples=count,
-        spots=(0, spots),
-        threads=threads,
-        progress=told(f"render {scene.name}", progress, total),
-    )
+    tells, parts = told(f"render {scene.name}", progress, sum(each)), []
+    for run, done in zip(runs, each):
+        part = _native.render(
+            scene._core,
+            estimator=estimator,
+            sampler=sampler,
+            seed=whole(seed, "seed"),
+            samples=count,
+            spots=run,
+            threads=threads,
+            progress=tells,
+        )
+        parts.append(part)
+        if tells:
+            tells.before += done
     settings = {
         "estimator": estimator,
         "sampler": sampler,
         "seed": int(seed),
-        "samples": found["samples"],
-        "blocks": found["blocks"],
-        "seconds": found["seconds"],
+        "samples": parts[0]["samples"],
+        "blocks": parts[0]["blocks"],
+        "seconds": sum(part["seconds"] for part in parts),
         "threads": threads or os.cpu_count() or 1,
     }
+
+    def whole_of(arrays: list[Any], rest: float = 0.0) -> Any:
+        if runs == [(0, all_spots)]:
+            return arrays[0]
+        found = np.full(scene.shape, rest, order="F")
+        for (first, end), columns in zip(runs, arrays):
+            found[:, first:end] = columns
+        return found
+
     return Phi(
         scene,
-        found["flux"],
-        found["stderr"],
-        left_out=found["tails"],
-        by_bounces=found["bounces"],
-        settings=settings,
+        whole_of([part["flux"] for part in parts]),
+        whole_of([part["stderr"] for part in parts]),
+        left_out=whole_of([part["tails"] for part in parts], 1.0),
+        by_bounces=[whole_of(list(bounce)) for bounce in zip(*(part["bounces"] for part in parts))],
+        settings=settings if spots is None else {**settings, "spots": [k for run in runs for k in range(*run)]},
     )
 
 

@@ -15,12 +15,15 @@ class Told:
 
     def __init__(self, what: str, progress: Progress, total: int = 0) -> None:
         self.what, self.progress, self.total, self.shown = what, progress, total, 0.0
+        #: Done before the computation that tells.
+        self.before = 0
 
     def of(self, total: int) -> None:
         """How much there is to do."""
         self.total = total
 
     def __call__(self, done: int) -> None:
+        done += self.before
         if callable(self.progress):
             self.progress(min(done, self.total), self.total)
         elif self.progress and (time.monotonic() - self.shown > 0.2 or done >= self.total):

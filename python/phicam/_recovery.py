@@ -283,7 +283,10 @@ def recover(
             stderr = phi.stderr
             errors = errors or phi.errors  # type: ignore[assignment]
             replicates = phi.replicates if replicates is None else replicates
-        if left_out is None and not phi.is_rendered:
+        if left_out is None and "spots" in phi.settings:
+            left_out = np.ones(flux.shape)
+            left_out[:, phi.settings["spots"]] = 0.0
+        elif left_out is None and not phi.is_rendered:
             left_out = phi.left_out
         model = phi.scene if model is None else model
         pixels = phi.scene.pixels
@@ -305,6 +308,9 @@ def recover(
     named = None if method is None else [method] if isinstance(method, str) else list(method)
     if named is not None and (not named or len(set(named)) < len(named)):
         raise InputError(f"method is {method!r}\n  cure: name one or several methods, each once")
+    takers = _native.setting_methods("free_scale")
+    if isinstance(phi, Phi) and not free_scale and any(name in takers for name in named or takers):
+        phi.refuse_unscaled("give free_scale=True, or")
     is_grid = inverse.scene is not None or inverse._made_of[2] is not None
     settings = _Settings(
         rank=None if rank is None else whole(rank, "rank", 1),

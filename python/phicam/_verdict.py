@@ -105,6 +105,7 @@ def validate(
     False
     """
     if isinstance(phi, Phi):
+        phi.refuse_unscaled("the model is in W:")
         scene, flux = phi.scene, phi.flux
         own = stderr is None
         stderr = phi.stderr if own else stderr

@@ -37,6 +37,37 @@ def test_estimators(command, run, scene, tmp_path, estimator):
     assert same(phi.flux, tmp_path / "phi.npy")
 
 
+@pytest.mark.parametrize("estimator", ["independent", "shared", "factored"])
+@pytest.mark.parametrize("spots", [3, slice(2, None, 3), [5, 0, 1, -1], range(4)])
+def test_some_spots(scene, estimator, spots):
+    whole = phicam.render(scene, samples=32, estimator=estimator)
+    some = phicam.render(scene, samples=32, estimator=estimator, spots=spots)
+    count = scene.shape[1]
+    chosen = np.zeros(count, dtype=bool)
+    chosen[spots if not isinstance(spots, range) else list(spots)] = True
+    for name in ("flux", "stderr", "left_out"):
+        assert (getattr(some, name)[:, chosen] == getattr(whole, name)[:, chosen]).all(), name
+    assert (some.flux[:, ~chosen] == 0).all() and (some.left_out[:, ~chosen] == 1).all()
+    assert all((a[:, chosen] == b[:, chosen]).all() for a, b in zip(some.by_bounces, whole.by_bounces, strict=True))
+    assert some.settings["spots"] == np.flatnonzero(chosen).tolist()
+
+
+def test_some_spots_are_recovered(scene):
+    some = phicam.render(scene, samples=256, spots=slice(0, None, 2))
+    found = phicam.recover(some, method="joint", elements=(2, 2))
+    halved = np.zeros(scene.shape)
+    halved[:, 1::2] = 1
+    whole = phicam.render(scene, samples=256)
+    assert (found.reflectance == phicam.recover(whole, method="joint", elements=(2, 2), left_out=halved).reflectance).all()
+    assert phicam.validate(some).agrees
+
+
+def test_some_spots_tell_of_all(scene):
+    told = []
+    phicam.render(scene, samples=32, spots=[0, 2, 3], progress=lambda done, of: told.append((done, of)))
+    assert told[-1] == (told[-1][1], 3 * 32 * scene.shape[0]) and told == sorted(told)
+
+
 def test_model(command, run, scene, tmp_path):
     command("model", run.parent / "scene.toml", "-o", tmp_path)
     model = phicam.model(scene)

@@ -16,6 +16,7 @@ def small():
 
 
 FLUX = np.full((12, 8), 1e-12)
+COUNTS = {"unit": "counts"}
 A = np.random.default_rng(1).random((12, 4))
 
 
@@ -49,6 +50,10 @@ MISUSES = [
     ("a negative seed", Input, lambda s, p, t: phicam.render(s, seed=-1), "seed"),
     ("no such estimator", Input, lambda s, p, t: phicam.render(s, estimator="fast"), "independent"),
     ("no such sampler", Input, lambda s, p, t: phicam.render(s, sampler="halton"), "sobol"),
+    ("a spot beyond the last", Input, lambda s, p, t: phicam.render(s, spots=10**6), "spots is 1000000"),
+    ("half a spot", Input, lambda s, p, t: phicam.render(s, spots=[0.5]), "an index, a slice"),
+    ("no spots", Input, lambda s, p, t: phicam.render(s, spots=[]), "names none"),
+    ("some spots as a run", Input, lambda s, p, t: phicam.render(s, samples=32, spots=0).save(t), "whole render"),
     ("no threads", Input, lambda s, p, t: phicam.render(s, threads=0), "threads"),
     ("a negative number of threads", (Input, OverflowError), lambda s, p, t: phicam.render(s, threads=-1), ""),
     ("a scene by its name", (TypeError, AttributeError), lambda s, p, t: phicam.render("bench"), ""),
@@ -107,6 +112,9 @@ MISUSES = [
     ("no folder", File, lambda s, p, t: phicam.load(t / "nowhere"), "run.json"),
     ("a folder with something in it", File, lambda s, p, t: (t.joinpath("x").touch(), p.save(t)), "empty"),
     ("a file for a folder", File, lambda s, p, t: (t.joinpath("x").touch(), p.save(t / "x")), "x"),
+    ("counts taken for W", Input, lambda s, p, t: phicam.recover(phicam.Phi(s, FLUX, FLUX, account=COUNTS)), "free_scale=True"),
+    ("counts by joint", Input, lambda s, p, t: phicam.recover(phicam.Phi(s, FLUX, FLUX, account=COUNTS), method="joint"), "counts"),
+    ("counts against a model", Input, lambda s, p, t: phicam.validate(phicam.Phi(s, FLUX, FLUX, account=COUNTS)), "watts"),
     ("photographs as a run", Input, lambda s, p, t: phicam.Phi(s, FLUX, FLUX).save(t), "whole render"),
 ]
 
