@@ -17,7 +17,8 @@ pub struct Converged {
     pub phi: Matrix,
     /// How far each entry may be off, W: what the last refinement changed in it, e, times
     /// r/(1 − r) where that is more, r ≤ 0.9 the last change over the one before. It covers what is
-    /// left of a geometric sequence, and ten times the last change at most.
+    /// left of a geometric sequence, and ten times the last change at most. Where hidden surfaces
+    /// and walls were refined apart the sum of both, and what mixes them.
     pub bound: Matrix,
     /// Relative Frobenius norm of the last change.
     pub change: f64,
@@ -109,7 +110,8 @@ const ROUGH: f64 = 1e-4;
 /// The matrix model's integral: Gauss–Legendre over each smooth texture cell of each hidden
 /// surface, over each footprint and over each spot's profile, as far as `extent` asks for it,
 /// refined together until Φcam changes by less than 1e-10, and every entry by less than 1e-7, or
-/// the rules are as large as they may be. Cells and footprints that come close to each other or to
+/// the rules are as large as they may be; where the bound of an entry is then above 1e-5 of it, the
+/// hidden surfaces and the walls are refined further, each by itself. Cells and footprints that come close to each other or to
 /// a spot are cut into smaller ones there. What stands in the way takes its share of each entry
 /// ([`visible`](fn@visible)) where `extent` says so. As in the matrix model light meets three
 /// surfaces, and the hidden ones are Lambertian: one that is not is taken for
