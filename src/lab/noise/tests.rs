@@ -7,7 +7,6 @@ use crate::lab::study::{self, tests::divides};
 use crate::model::Kernel;
 use crate::recovery::Method;
 use crate::scene::{Scene, SensorModel, Spread};
-use crate::sensor::Sensor;
 use crate::transport::Control;
 
 fn small() -> (Scene, NoisePlan) {
