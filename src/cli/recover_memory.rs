@@ -205,6 +205,7 @@ impl Strips<'_> {
             }
         }
         Ok(Judged {
+            left_over: None,
             fit: residuals.fit(found.freedom_used(), self.certainty.errors),
             best: None,
             determined: None,

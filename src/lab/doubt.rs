@@ -52,6 +52,15 @@ fn misfit(found: &Recovered, judged: &Judged) -> Option<String> {
         return Some(contradiction(best));
     }
     let fit = judged.fit.as_ref().filter(|fit| !fit.fits)?;
+    if judged.left_over.is_some() {
+        return Some(format!(
+            "DOES NOT FIT: it leaves more of the photographs over than noise of one size could, of which \
+             any reflectances leave {} times less (P {}). {}",
+            significant(fit.chi2_per_dof, 3),
+            figure(fit.p, 2),
+            cure(found.method)
+        ));
+    }
     let own = format!(
         "DOES NOT FIT: what this picture would photograph differs from the photographs by more than \
          their noise ({})",

@@ -12,6 +12,9 @@
 //! ([`Recovered::freedom_used`]). Where σ was estimated from K replicates z is the normal deviate
 //! of the same tail probability as Student's t of K − 1 degrees of freedom.
 //!
+//! Where no σ is known, two levels alone are held against it: what they leave over against what any
+//! numbers leave over ([`LeftOver`]).
+//!
 //! χ²/(N − ν) is compared with χ² of N − ν degrees of freedom where entries are independent, of
 //! fewer where those of a row are not, of one where all hang together ([`Errors`]).
 
@@ -20,7 +23,7 @@ use serde::Serialize;
 use super::agreement::freedom_of_rows;
 use super::evidence::{Errors, freedom};
 use crate::matrix::Matrix;
-use crate::num::statistics::{chi_square_sf, student_to_normal};
+use crate::num::statistics::{chi_square_sf, fisher_sf, student_to_normal};
 use crate::recovery::{
     Determined, Method, Options, Problem, Recovered, WeightRule, determined, recover,
 };
@@ -199,11 +202,81 @@ impl Attainable {
     }
 }
 
+/// What any numbers leave over of photographs whose noise is not known: of `joint-unbounded`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeftOver {
+    /// Σ (Φ − Φ̂)², W².
+    sum: f64,
+    /// ν.
+    used: f64,
+    /// Over how many pixels it hangs together.
+    alike: f64,
+}
+
+/// What is left over of Φcam below which it is rounding.
+const ROUNDING: f64 = 1e-9;
+
+impl LeftOver {
+    /// Of what was `found` already, or is looked for.
+    fn of(problem: &Problem<'_>, found: &[&Recovered], options: &Options) -> Option<Self> {
+        let searched = || recover(Method::JointUnbounded, problem, options).ok();
+        let known = found.iter().find(|f| f.method == Method::JointUnbounded);
+        let any = match known {
+            Some(known) => (*known).clone(),
+            None if problem.elements() <= MOST_ELEMENTS => searched()?,
+            None => return None,
+        };
+        Some(Self {
+            sum: squares(problem, &any).sums.iter().sum(),
+            used: any.freedom_used(),
+            alike: found.iter().find_map(|f| f.alike).unwrap_or(1.0),
+        })
+    }
+
+    /// The fit of a picture that is one of them, where it is refuted: with N entries the quotient
+    ///
+    /// > F = (S − S₀)/(ν₀ − ν) · (N − ν₀)/S₀
+    ///
+    /// of what it leaves over, S, and they leave over, S₀, follows the law of that name if the picture
+    /// is right and the noise alike in all entries. Noise that a pixels share is counted a times.
+    fn refutes(&self, problem: &Problem<'_>, found: &Recovered) -> Option<Fit> {
+        let own = squares(problem, found);
+        let (sum, used) = (own.sums.iter().sum::<f64>(), found.freedom_used());
+        let entries = own.entries as f64;
+        let (over, under) = (self.used - used, entries / self.alike - self.used);
+        if over < 0.5 || under < 0.5 || found.relative_residual < ROUNDING {
+            return None;
+        }
+        let noise = self.sum / (entries - self.used);
+        let p = fisher_sf((sum - self.sum) / over / noise / self.alike, over, under);
+        (p < FIT_LEVEL).then(|| Fit {
+            chi2_per_dof: sum / (entries - used) / noise,
+            dof: entries - used,
+            p,
+            entries: own.entries,
+            left_out: own.left_out,
+            level: FIT_LEVEL,
+            fits: false,
+        })
+    }
+}
+
+/// (Φ − Φ̂)² of the entries that count.
+fn squares(problem: &Problem<'_>, found: &Recovered) -> Residuals {
+    let mut residuals = Residuals::default();
+    let phi = problem.photographed();
+    let ones = problem.counted(Matrix::from_element(phi.nrows(), phi.ncols(), 1.0));
+    residuals.add(phi, &found.photographs(problem), &ones, Certainty::STATED);
+    residuals
+}
+
 /// How far a recovery is to be believed, as the photographs themselves say.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Judged {
     /// Its fit; none where it cannot be judged.
     pub fit: Option<Fit>,
+    /// What any numbers leave over, where the noise is not known and two levels were tried.
+    pub left_over: Option<LeftOver>,
     /// That of the best picture of all, where it is known.
     pub best: Option<Attainable>,
     /// What the photographs determine of each element, where it is known.
@@ -227,8 +300,13 @@ impl Judged {
         options: &Options,
     ) -> Self {
         let few = problem.elements() <= MOST_DECOMPOSED && !found.is_empty();
+        let two_valued = found.iter().any(|f| f.method == Method::JointTwoValued);
         Self {
             fit: None,
+            left_over: match noise {
+                None if two_valued => LeftOver::of(problem, found, options),
+                _ => None,
+            },
             best: noise
                 .filter(|_| !found.is_empty())
                 .and_then(|noise| Attainable::of(problem, noise, found, options)),
@@ -244,8 +322,13 @@ impl Judged {
         noise: Option<(&Matrix, Certainty)>,
         found: &Recovered,
     ) -> Self {
+        let two_valued = found.method == Method::JointTwoValued;
+        let left_over = self.left_over.filter(|_| two_valued);
         Self {
-            fit: noise.and_then(|noise| fit(problem, noise, found)),
+            fit: match noise {
+                Some(noise) => fit(problem, noise, found),
+                None => left_over.and_then(|any| any.refutes(problem, found)),
+            },
             ..self.clone()
         }
     }

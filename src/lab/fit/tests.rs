@@ -124,3 +124,35 @@ fn nothing_left_to_judge_by() {
     assert_eq!(residuals.fit(4.0, Errors::Independent), None);
     assert_eq!(residuals.fit(3.0, Errors::Independent).unwrap().left_out, 4);
 }
+
+/// Where the noise is not known a picture of two values is refuted by what nine greys leave over,
+/// and a right one is not: 60 pixels, one photograph, 1 % noise, 20 seeds.
+#[test]
+fn two_levels_are_held_against_any_where_the_noise_is_not_known() {
+    let mut state = 1u64;
+    let mut next = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let (c, d) = (
+        Matrix::from_fn(60, 9, |_, _| next()),
+        Matrix::from_element(9, 1, 1.0),
+    );
+    let greys = Matrix::from_fn(9, 1, |j, _| 0.1 + 0.1 * j as f64);
+    let board = Matrix::from_fn(9, 1, |j, _| if j % 2 == 0 { 0.8 } else { 0.3 });
+    for (picture, refuted) in [(greys, true), (board, false)] {
+        for seed in 0..20 {
+            let exact = &c * &picture;
+            let noise = Matrix::from_fn(60, 1, |_, _| 0.04 * (next() + next() + next() - 1.5));
+            let phi = &exact + noise;
+            let problem = Problem::new(&phi, &c, &d, None).unwrap();
+            let options = Options::default();
+            let found = recover(Method::JointTwoValued, &problem, &options).unwrap();
+            let judged = Judged::any(&problem, None, &[&found], &options);
+            let fit = judged.of(&problem, None, &found).fit;
+            assert_eq!(fit.is_some_and(|fit| !fit.fits), refuted, "seed {seed}");
+        }
+    }
+}

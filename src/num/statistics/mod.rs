@@ -5,6 +5,7 @@ mod binomial;
 mod chi_square;
 mod correlation;
 mod family;
+mod fisher;
 mod normal;
 mod student;
 
@@ -13,5 +14,6 @@ pub(super) use chi_square::excess;
 pub use chi_square::{chi_square_quantile, chi_square_sf};
 pub use correlation::correlation_two_sided;
 pub use family::{sidak_p, sidak_threshold};
+pub use fisher::fisher_sf;
 pub use normal::normal_two_sided;
 pub use student::{student_threshold, student_to_normal};
