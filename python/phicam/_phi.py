@@ -251,7 +251,8 @@ def render(
     paths = count if estimator == "factored" else count * scene.shape[0]
     each = [paths * (end - first if estimator == "independent" else 1) for first, end in runs]
     scene._warn()
-    tells, parts = told(f"render {scene.name}", progress, sum(each)), []
+    tells = told(f"render {scene.name}", progress, sum(each))
+    parts: list[dict[str, Any]] = []
     for run, done in zip(runs, each):
         part = _native.render(
             scene._core,
@@ -266,7 +267,7 @@ def render(
         parts.append(part)
         if tells:
             tells.before += done
-    settings = {
+    settings: dict[str, Any] = {
         "estimator": estimator,
         "sampler": sampler,
         "seed": int(seed),
@@ -289,7 +290,9 @@ def render(
         whole_of([part["flux"] for part in parts]),
         whole_of([part["stderr"] for part in parts]),
         left_out=whole_of([part["tails"] for part in parts], 1.0),
-        by_bounces=[whole_of(list(bounce)) for bounce in zip(*(part["bounces"] for part in parts))],
+        by_bounces=[
+            whole_of([part["bounces"][k] for part in parts]) for k in range(len(parts[0]["bounces"]))
+        ],
         settings=settings if spots is None else {**settings, "spots": [k for run in runs for k in range(*run)]},
     )
 

@@ -114,6 +114,16 @@ class Recovery:
         return self._all("upper")
 
     @property
+    def determined(self) -> Floats | None:
+        """What the photographs determine of each by any method, 0 to 1."""
+        return self._all("determined")
+
+    @property
+    def light(self) -> Floats | None:
+        """Their probability to be light (``joint-two-valued``)."""
+        return self._all("light")
+
+    @property
     def truth(self) -> Floats | None:
         """Their true values, where the scene knows them."""
         return self._all("truth")
@@ -134,7 +144,8 @@ class Recovery:
 
     @property
     def fit(self) -> dict[str, Any] | None:
-        """How well it explains the photographs: chi2_per_dof, dof, p, fits; None where nothing is known of the noise."""
+        """How well it explains the photographs: chi2_per_dof, dof, p, fits; None where nothing is known of the noise,
+        unless it is of two levels and leaves over more than any noise of one size."""
         found: dict[str, Any] | None = self.surfaces[0].values["fit"]
         return found
 
@@ -143,6 +154,11 @@ class Recovery:
         """Whether no reflectances between 0 and 1 explain the photographs: then the model is wrong."""
         best = self.surfaces[0].values["best_fit"]
         return best is not None and not best["fits"]
+
+    @property
+    def fits(self) -> bool | None:
+        """Whether this picture explains the photographs; None where that cannot be judged."""
+        return None if self.fit is None else bool(self.fit["fits"])
 
     @property
     def warnings(self) -> list[str]:
@@ -155,11 +171,11 @@ class Recovery:
     def __repr__(self) -> str:
         count = self.reflectance.size
         fit = "" if self.fit is None else f", χ²/dof {self.fit['chi2_per_dof']:.3g}"
-        told = ", REFUTED" if self.is_refuted else ""
+        told = ", REFUTED" if self.is_refuted else ", DOES NOT FIT" if self.fits is False else ""
         return f"Recovery({self.method!r}, {count} elements{fit}{told})"
 
     def _repr_html_(self) -> str:
-        parts = [_html.sentence(repr(self), "Bad" if self.is_refuted else "Plain")]
+        parts = [_html.sentence(repr(self), "Bad" if self.is_refuted or self.fits is False else "Plain")]
         for surface in self.surfaces:
             named = [("recovered", surface.reflectance), ("standard error", surface.stderr), ("truth", surface.truth)]
             drawn: list[_html.Panel] = [

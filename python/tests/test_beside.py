@@ -189,3 +189,15 @@ def test_what_a_notebook_shows(phi):
         assert "<svg" in shown._repr_html_() or "<table" in shown._repr_html_()
     assert repr(phi).startswith("Phi(48 pixels × 16 spots of 'bench'")
     assert "agrees" in repr(verdict) and "joint" in repr(found)
+
+
+def test_a_picture_that_does_not_fit_says_so():
+    """One photograph has one direction for the published inversion, of nine."""
+    matrix = np.random.default_rng(3).random((60, 9))
+    photo, error = matrix @ np.linspace(0.1, 0.9, 9), np.full(60, 0.02)
+    published = phicam.recover(photo, matrix, "pinv", stderr=error)
+    assert published.fits is False and "DOES NOT FIT" in repr(published) and not published.is_refuted
+    right = phicam.recover(photo, matrix, "joint-unbounded", stderr=error)
+    assert right.fits is True and "FIT" not in repr(right)
+    assert right.determined.shape == (9,) and right.light is None
+    assert phicam.recover(photo, matrix, "joint").fits is None
