@@ -106,6 +106,8 @@ def validate(
     """
     if isinstance(phi, Phi):
         phi.refuse_unscaled("the model is in W:")
+        if left_out is None:
+            phi.refuse_clipped()
         scene, flux = phi.scene, phi.flux
         own = stderr is None
         stderr = phi.stderr if own else stderr

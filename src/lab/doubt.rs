@@ -19,6 +19,9 @@ const SELDOM: f64 = 1e-6;
 /// of one direction.
 const GAP: f64 = 0.1;
 
+/// A share of an element below which the photographs do not determine it.
+const DETERMINED: f64 = 0.9;
+
 /// All that speaks against `found`, gravest first; nothing where nothing does.
 pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
     let every = [
@@ -27,6 +30,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         shared(judged),
         overstated(judged),
         impossible(found),
+        undetermined(found, judged),
         noise(found),
         on_bounds(found),
         unfinished(found, judged),
@@ -158,6 +162,27 @@ fn overstated(judged: &Judged) -> Option<String> {
              share them, and then the errors of the picture are too small. Of an exposed render take \
              more --samples",
             significant(fit.chi2_per_dof, 3)
+        )
+    })
+}
+
+/// Standard errors of a shortest solution that are less than half of what any method can know: they
+/// are those of the directions that the photographs show, and the others are taken for 0.
+fn undetermined(found: &Recovered, judged: &Judged) -> Option<String> {
+    let shortest = matches!(found.method, Method::JointUnbounded | Method::Pinv);
+    let known = judged.determined.as_ref().filter(|_| shortest)?;
+    let stated = found.standard_error.as_ref()?;
+    let shares = known.shares.iter().zip(stated.iter());
+    let hidden = shares.filter(|(share, error)| {
+        **share < DETERMINED && **error < 0.5 * HALF * (1.0 - **share).sqrt()
+    });
+    let count = hidden.count();
+    (count > 0).then(|| {
+        format!(
+            "the photographs do not determine {count} of {} elements, of which this is the smallest picture \
+             that explains them: the standard errors leave out what cannot be seen. Use joint-gp, fewer \
+             --elements, or more photographs",
+            stated.len()
         )
     })
 }

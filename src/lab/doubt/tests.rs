@@ -111,3 +111,30 @@ fn right_photographs_are_not_warned_of() {
         }
     }
 }
+
+/// Two elements of equal columns are known by their sum alone: the shortest solution gives each a half
+/// of it with an error that does not know that, and says so; without the second nothing is said.
+#[test]
+fn elements_that_cannot_be_told_apart_are_told() {
+    let camera = |alike: bool| {
+        Matrix::from_fn(20, 4, |p, j| {
+            let j = if alike && j == 3 { 2 } else { j };
+            1.0 + libm::sin((p * (j + 2)) as f64)
+        })
+    };
+    for alike in [true, false] {
+        let model =
+            MatrixModel::of_sides(camera(alike), Matrix::from_element(4, 1, 1.0), [4, 1]).unwrap();
+        let exact = &model.camera_side * Matrix::from_row_slice(4, 1, &[0.3, 0.7, 0.6, 0.0]);
+        let stderr = exact.map(|_| 0.01);
+        let noise = Noise::StandardError(&stderr, Certainty::STATED);
+        let methods = [Method::JointUnbounded];
+        let (nuisance, options) = (Nuisance::default(), Options::default());
+        let found = recover_objects(&model, &exact, noise, nuisance, &methods, &options);
+        let warnings = &found[0].outcome.as_ref().unwrap()[0].warnings;
+        let told = warnings
+            .iter()
+            .any(|w| w.contains("do not determine 2 of 4"));
+        assert_eq!(told, alike, "{warnings:?}");
+    }
+}
