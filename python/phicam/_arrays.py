@@ -93,6 +93,26 @@ def whole(value: Any, name: str, least: int = 0, most: int = 2**64 - 1) -> int:
     return number
 
 
+def threads_of(value: Any) -> int | None:
+    """How many threads work; None: all cores."""
+    return None if value is None else whole(value, "threads", 1, 4096)
+
+
+def spread(value: ArrayLike, shape: tuple[int, int], name: str) -> NDArray[Any]:
+    """`value` as an array of this shape; one number stands for every entry."""
+    if np.ndim(value) == 0:
+        value = np.full(shape, number(value, name, "from 0 on", lambda x: x >= 0))
+    return shaped(matrix(value, name), shape, name)
+
+
+def without(array: NDArray[Any], flags: NDArray[Any] | None) -> NDArray[Any]:
+    """`array` with 0 where `flags` say that it does not count, so that NaN is no matter there."""
+    if flags is None or flags.shape != array.shape or np.isfinite(array).all():
+        return array
+    found: NDArray[Any] = np.where(flags != 0, 0.0, array)
+    return found
+
+
 def chosen(value: Any, name: str, count: int) -> list[tuple[int, int]]:
     """Which of `count` things an index, a slice or indices name, as runs first..end of neighbours."""
     all_of = range(count)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from . import _native
-from ._arrays import Floats, whole
+from ._arrays import Floats, threads_of, whole
 from ._finding import Finding
 from ._phi import Phi
 from ._scene import Scene
@@ -31,6 +31,11 @@ class Photographs(Phi):
 
     counts: tuple[Floats, ...]
     summary: Finding
+
+    @property
+    def common(self) -> float:
+        """The part of the variance that is that of the dark frames, which all spots of a pixel share."""
+        return float(self.summary.values["common"])
 
 
 def expose(
@@ -110,7 +115,7 @@ def expose(
         blocks=phi.replicates or 32,
         seed=whole(seed, "seed"),
         by_counts=not oracle,
-        threads=threads,
+        threads=threads_of(threads),
     )
     made = Photographs(settled, found["flux"], found["stderr"])
     made.clipped, made.counts, made.summary = found["clipped"], tuple(found["counts"]), Finding(found)
@@ -124,6 +129,18 @@ def expose(
         warnings.warn(text, Suspicious, stacklevel=2)
     if result["snr_max"] is not None and result["snr_max"] < 1:
         text = "no entry rises above its noise; expose longer or average more frames"
+        warnings.warn(text, Suspicious, stacklevel=2)
+    if made.errors == "pixel":
+        text = (
+            f"{result['common']:.1%} of the variance is that of the dark frames, which all spots of a pixel share: recover "
+            "states no errors unless background=True takes their part; take more dark_frames"
+        )
+        warnings.warn(text, Suspicious, stacklevel=2)
+    shared = phi.errors != "independent"
+    if result["render"] > (1e-3 if shared else 0.1):
+        text = f"{result['render']:.1%} of the variance is that of the render itself; render with more samples" + (
+            f", or by estimator=\"independent\": those of {phi.settings['estimator']} do not average out" if shared else ""
+        )
         warnings.warn(text, Suspicious, stacklevel=2)
     if result["pedestal"] > 0.1 * float(made.stderr.mean()):
         text = (

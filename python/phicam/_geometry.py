@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._arrays import Floats, maybe, number, pair, whole
+from ._arrays import Floats, maybe, number, pair, threads_of, whole
 from ._finding import Finding
 from ._model import Integration
 from ._phi import Phi
@@ -159,7 +159,7 @@ def calibrate(
         starts=count,
         spread=number(spread, "spread", "above 0", lambda x: x > 0),
         seed=whole(seed, "seed"),
-        threads=threads,
+        threads=threads_of(threads),
         progress=told(f"calibrate {own.name}", progress, count + 1),
     )
     return Calibration(found, is_found, Scene._of(calibrated))
@@ -234,7 +234,7 @@ def locate(
         frame_polynomial=None if frame_polynomial is None else whole(frame_polynomial, "frame_polynomial", 0, 8),
         orders=tried,
         seed=whole(seed, "seed"),
-        threads=threads,
+        threads=threads_of(threads),
         progress=told(f"locate in {own.name}", progress, count + 9 + tried),
     )
     return Location(found, is_found)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from collections.abc import Callable
 from typing import Any, Literal
 
 import numpy as np
@@ -10,11 +10,30 @@ from numpy.typing import ArrayLike
 
 from . import _native
 from ._arrays import Floats, matrix, pair, vector
-from ._scene import Scene
+from ._scene import Scene, scene_at
 from .errors import InputError
 
 Kernel = Literal["physical", "published"]
 Integration = Literal["centres", "quadrature"]
+
+
+class _once:
+    """An array that is computed at first use, and can be neither changed nor replaced: a model would not know."""
+
+    def __init__(self, compute: Callable[[Any], Floats]) -> None:
+        self._compute, self.__doc__, self._name = compute, compute.__doc__, compute.__name__
+
+    def __get__(self, model: Any, _: Any = None) -> Any:
+        if model is None:
+            return self
+        if self._name not in model.__dict__:
+            found = self._compute(model)
+            found.flags.writeable = False
+            model.__dict__[self._name] = found
+        return model.__dict__[self._name]
+
+    def __set__(self, model: Any, _: Any) -> None:
+        raise InputError(f"{self._name} follows from the model\n  cure: phicam.model_of(C, D) makes one of other matrices")
 
 
 class Model:
@@ -22,7 +41,7 @@ class Model:
 
     Φcam[p, l] = Φlaser · E_p · (ρ3/π) · (ρ1/π) · Σ_j G23[p, j] · (ρ2_j/π) · A_j · G12[j, l]
 
-    Made by :func:`model` and :func:`model_of`. Arrays are computed at first use, and copies.
+    Made by :func:`model` and :func:`model_of`. Arrays are computed at first use, and read-only; their copies are not.
     """
 
     def __init__(self, native: _native.Model, made_of: tuple[Any, ...]) -> None:
@@ -32,6 +51,21 @@ class Model:
     def scene(self) -> Scene | None:
         """The scene that it is of; None of matrices."""
         return self._made_of[0] if isinstance(self._made_of[0], Scene) else None
+
+    @property
+    def integration(self) -> str | None:
+        """``centres`` or ``quadrature``; None of matrices."""
+        return str(self._made_of[4]) if self.scene is not None else None
+
+    @property
+    def occlusion(self) -> bool:
+        """Whether what stands in the way takes its share."""
+        return self.scene is None or bool(self._made_of[3])
+
+    @property
+    def has_own_elements(self) -> bool:
+        """Whether its elements are others than its scene's."""
+        return self.scene is not None and self._made_of[2] is not None
 
     @property
     def kernel(self) -> str:
@@ -48,32 +82,36 @@ class Model:
         """Each surface with its elements along u and v; element iu + iv · nu, surfaces one after the other."""
         return dict(self._core.grids)
 
-    @cached_property
+    @_once
     def g12(self) -> Floats:
         """cosθ · cosθ / R² between spots and elements: elements × spots, length⁻²; empty of matrices."""
         return self._core.g12
 
-    @cached_property
+    @_once
     def g23(self) -> Floats:
         """cosθ · cosθ / R² between elements and what pixels see: pixels × elements, length⁻²; empty of matrices."""
         return self._core.g23
 
-    @cached_property
+    @_once
     def camera_side(self) -> Floats:
-        """C: from elements to pixels, pixels × elements; Φcam = C · diag(ρ) · D."""
+        """C: from elements to pixels, pixels × elements; Φcam = C · diag(ρ) · D.
+
+        By centres, whatever the integration: light that is integrated over areas is a sum of several such products, which
+        :meth:`phi` and ``recover(phi, model)`` take.
+        """
         return self._core.camera_side
 
-    @cached_property
+    @_once
     def laser_side(self) -> Floats:
-        """D: from spots to elements, elements × spots, W."""
+        """D: from spots to elements, elements × spots, W; by centres, as C."""
         return self._core.laser_side
 
-    @cached_property
+    @_once
     def albedo(self) -> Floats:
         """The scene's own reflectance of each element; ½ of matrices."""
         return np.array(self._core.albedo)
 
-    @cached_property
+    @_once
     def places(self) -> Floats:
         """Middles of the elements, elements × 3, in the scene's unit; none of matrices."""
         return self._core.places
@@ -135,6 +173,9 @@ def model(
 ) -> Model:
     """The matrix model of a scene: the same numbers as ``phicam model``.
 
+    It is by centres unless told; :func:`recover` and :func:`validate` of a Scene integrate. A recovery by a model of
+    centres does not fit where elements are large for their distance.
+
     Parameters
     ----------
     kernel : str
@@ -151,7 +192,7 @@ def model(
     >>> phicam.model(phicam.Scene("bench"), elements=(4, 4))
     Model(256 pixels, 16 elements, 120 spots of 'bench')
     """
-    return _of_scene(scene, kernel, pair(elements, "elements"), occlusion, integration)
+    return _of_scene(scene_at(scene), kernel, pair(elements, "elements"), occlusion, integration)
 
 
 def model_of(

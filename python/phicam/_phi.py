@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 from collections.abc import Iterable, Mapping
@@ -12,9 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _html, _native
-from ._arrays import Floats, chosen, matrix, maybe, shaped, whole
+from ._arrays import Floats, chosen, matrix, maybe, shaped, threads_of, whole
 from ._progress import Progress, told
-from ._scene import Scene
+from ._scene import Scene, scene_at
 from .errors import InputError
 
 Estimator = Literal["independent", "shared", "factored"]
@@ -60,6 +61,7 @@ class Phi:
         def whole_of(array: Any, name: str) -> Any:
             return None if array is None else shaped(array, scene.shape, name)
 
+        scene_at(scene)
         self.scene = scene
         self.flux: Any = whole_of(matrix(flux, "flux"), "flux")
         self.stderr: Any = whole_of(maybe(stderr, "stderr"), "stderr")
@@ -67,6 +69,8 @@ class Phi:
         parts = None if by_bounces is None else tuple(matrix(part, "by_bounces") for part in by_bounces)
         self.by_bounces: tuple[Any, ...] | None = parts
         self.settings: dict[str, Any] = dict(settings or {})
+        # What was rendered, so that nothing else is written as a render.
+        self._rendered: str | None = self._digest() if self.is_rendered else None
         #: Of :func:`phicam.expose`: 1 where an entry is saturated, −1 where it was cut off below, 0.5 near the upper end.
         self.clipped: Any = None
         #: How photographs were imported; empty of a render.
@@ -78,13 +82,37 @@ class Phi:
         return "blocks" in self.settings
 
     @property
+    def shape(self) -> tuple[int, int]:
+        """Pixels and spots."""
+        return self.flux.shape  # type: ignore[no-any-return]
+
+    @property
+    def common(self) -> float:
+        """Of photographs: the part of the variance that is that of the dark frames, which all spots of a pixel share."""
+        return float(self.account.get("common") or 0.0)
+
+    def _digest(self) -> str:
+        """Of flux and errors."""
+        digest = hashlib.blake2b(digest_size=16)
+        for array in (self.flux, self.stderr):
+            if array is not None:
+                digest.update(array.T.tobytes())
+        return digest.hexdigest()
+
+    @property
     def replicates(self) -> int | None:
         """Blocks that the standard errors were estimated from; None where they are taken as known."""
         return self.settings.get("blocks")
 
     @property
     def errors(self) -> str:
-        """How the errors of the entries hang together: independent, pixel (those of one pixel), all."""
+        """How the errors of the entries hang together: independent, pixel (those of one pixel), all.
+
+        Those of photographs whose dark frames serve every spot hang together by pixel.
+        """
+        shared = self.account.get("shares_by_pixel") or _native.shares_by_pixel(self.common, self.flux.shape[1])
+        if shared and not self.is_rendered:
+            return "pixel"
         return ERRORS.get(self.settings.get("estimator", ""), "independent")
 
     @property
@@ -143,6 +171,11 @@ class Phi:
         if self.by_bounces is None or self.stderr is None or not self.is_rendered or "spots" in self.settings:
             raise InputError(
                 "only a whole render can be written as a run\n  cure: numpy.save(…, phi.flux), and phi.stderr beside it"
+            )
+        if self._digest() != self._rendered:
+            raise InputError(
+                "flux or stderr is not what was rendered any more, and would be taken for it\n  cure: numpy.save(…, phi.flux); "
+                "Phi(scene, flux, stderr) holds arrays of one's own"
             )
         own = self.settings
         _native.write_run(
@@ -246,7 +279,7 @@ def render(
     >>> bool((phi.stderr < 0.2 * phi.flux.max()).all())
     True
     """
-    count, all_spots = whole(samples, "samples", 1, 2**32), scene.shape[1]
+    count, all_spots = whole(samples, "samples", 1, 2**32), scene_at(scene).shape[1]
     runs = [(0, all_spots)] if spots is None else chosen(spots, "spots", all_spots)
     paths = count if estimator == "factored" else count * scene.shape[0]
     each = [paths * (end - first if estimator == "independent" else 1) for first, end in runs]
@@ -261,7 +294,7 @@ def render(
             seed=whole(seed, "seed"),
             samples=count,
             spots=run,
-            threads=threads,
+            threads=threads_of(threads),
             progress=tells,
         )
         parts.append(part)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from . import _native
+from ._arrays import threads_of
 from ._phi import Phi
 from ._scene import Scene
 from ._toml import toml
@@ -70,7 +71,7 @@ def import_photographs(
         own = beside / named
         scene = Scene(own if own.exists() else named)
     where = beside if folder is None else Path(folder)
-    found, used = _native.import_photographs(scene._core, text, where, channel, threads=threads)
+    found, used = _native.import_photographs(scene._core, text, where, channel, threads=threads_of(threads))
     return Phi(
         Scene._of(used),
         found["flux"],

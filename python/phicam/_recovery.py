@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Sequence
+from functools import partial
 from html import escape
 from typing import Any, Literal, TypedDict
 
@@ -11,12 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _html, _native
-from ._arrays import Floats, matrix, maybe, number, pair, shaped, vector, whole
+from ._arrays import Floats, matrix, maybe, number, pair, shaped, spread, threads_of, vector, whole, without
 from ._model import Integration, Kernel, Model, model, model_of
 from ._phi import Phi
 from ._scene import Scene
 from ._verdict import Errors
-from .errors import InputError
+from .errors import InputError, Suspicious, in_python
+
 
 class Surface:
     """What was recovered of one hidden surface.
@@ -26,7 +29,10 @@ class Surface:
     Attributes
     ----------
     reflectance, stderr : ndarray, elements
-        The reflectances, and their standard errors.
+        The reflectances, and their standard errors: how far the estimate would scatter (linear methods), or how far the
+        truth is expected off (``joint-gp``, ``joint-two-valued``). What a linear method drops or damps is not in them: see
+        `resolution`, `bias` and `determined`. None under bounds (``joint``, ``nnls``, ``joint-tv``: ask for bands), and
+        where errors hang together, as those of ``shared`` and ``factored`` renders do.
     lower, upper : ndarray
         Bands, where they were asked for.
     bias : ndarray
@@ -46,6 +52,7 @@ class Surface:
 
     def __init__(self, found: dict[str, Any]) -> None:
         self.values: dict[str, Any] = json.loads(found["json"])
+        self.values["warnings"] = [in_python(text) for text in self.values["warnings"]]
         self.name: str = self.values["surface"]
         self.elements: tuple[int, int] = tuple(self.values["elements"])
         self.reflectance: Floats = found["reflectance"]
@@ -253,7 +260,10 @@ def recover(
         or the two sides of Φ = C · diag(x) · D.
     method : str or several, optional
         One of :func:`methods`. Unless given the usual ones are tried, and the most trusted is returned with the others as
-        ``others``.
+        ``others``. ``joint-…`` work on all pixels and spots at once: ``joint-unbounded`` least squares, ``joint`` with
+        0 ≤ x ≤ 1, ``nnls`` with 0 ≤ x, ``joint-gp`` where neighbours resemble one another, ``joint-tv`` where they are mostly
+        equal, ``joint-two-valued`` where there are two reflectances. The others invert the laser side D alone, pixel by
+        pixel, and need as many spots that differ as elements: they are not for a single photograph A · x.
     stderr, noise : array or float
         Standard errors, in place of those of `phi`; or relative to each entry. Without either, of an array nothing is
         known of the noise.
@@ -270,7 +280,8 @@ def recover(
     frame_constant, frame_polynomial, frame_patterns, background, glare_pattern, free_scale, frame_gain, scale_error
         What else the photographs hold, estimated with the reflectances (joint methods): a constant, a polynomial of that
         degree, or patterns (pixels × patterns) in each frame; a background of all frames; strength of glare (pixels ×
-        spots); a free scale of all light; gains of the frames, or the scale, known to that standard deviation.
+        spots); a free scale of all light, of which the brightest element is then the unit: 1 ± 0, the others relative to
+        it; gains of the frames, or the scale, known to that standard deviation.
     errors, replicates
         As in :func:`phicam.validate`.
     pixels : (int, int)
@@ -297,7 +308,9 @@ def recover(
         own = stderr is None and noise is None
         if own:
             stderr = phi.stderr
-            errors = errors or phi.errors  # type: ignore[assignment]
+            # A background takes what all spots of a pixel of photographs share.
+            absorbed = background and not phi.is_rendered
+            errors = errors or ("independent" if absorbed else phi.errors)  # type: ignore[assignment]
             replicates = phi.replicates if replicates is None else replicates
         if left_out is None and "spots" in phi.settings:
             left_out = np.ones(flux.shape)
@@ -346,13 +359,15 @@ def recover(
         pixels=pixels,
     )
     flags, patterns = maybe(left_out, "left_out"), maybe(frame_patterns, "frame_patterns")
+    flux = without(flux, flags)
     glare = maybe(glare_pattern, "glare_pattern")
     given = {**settings, "left_out": flags, "frame_patterns": patterns, "glare_pattern": glare}
     _used(given, named)
-    found, failed = _native.recover(
+    recovered = partial(
+        _native.recover,
         inverse._core,
         flux,
-        None if stderr is None else shaped(matrix(stderr, "stderr"), flux.shape, "stderr"),
+        None if stderr is None else without(spread(stderr, flux.shape, "stderr"), flags),
         None if flags is None else shaped(flags, flux.shape, "left_out"),
         None if glare is None else shaped(glare, flux.shape, "glare_pattern"),
         patterns,
@@ -362,16 +377,24 @@ def recover(
         replicates=None if replicates is None else whole(replicates, "replicates", 2, 2**32 - 1),
         errors_name=errors or "independent",
         trusted=named is None,
-        threads=threads,
+        threads=threads_of(threads),
     )
+    try:
+        found, failed = recovered()
+    except InputError as error:
+        raise InputError(in_python(str(error))) from None
     if not found:
-        why = "\n  ".join(f"{name}: {reason}" for name, reason in failed)
+        why = "\n  ".join(f"{name}: {in_python(reason)}" for name, reason in failed)
         raise InputError(f"no method could recover anything\n  {why}\n  cure: see the reason of each, or name a method")
     groups: dict[str, list[Surface]] = {}
     for surface in map(Surface, found):
         groups.setdefault(surface.values["method"], []).append(surface)
     first, *others = (Recovery(surfaces) for surfaces in groups.values())
-    first.others, first.failed = tuple(others), dict(failed)
+    first.others, first.failed = tuple(others), {name: in_python(reason) for name, reason in failed}
+    if first.fits is False and first.warnings:
+        own = inverse.scene is not None and inverse.integration == "centres" and isinstance(model, Model)
+        words = "; the model is by centres: phicam.model(scene, integration=\"quadrature\") integrates" if own else ""
+        warnings.warn(f"{first.method}: {first.warnings[0]}{words}", Suspicious, stacklevel=2)
     return first
 
 
@@ -413,7 +436,7 @@ def _used(settings: dict[str, Any], methods: Sequence[str] | None) -> None:
 
 
 def methods() -> list[str]:
-    """The names of the methods.
+    """The names of the methods; :func:`recover` says what they assume.
 
     >>> import phicam
     >>> "joint-gp" in phicam.methods()

@@ -18,6 +18,14 @@ from ._toml import toml
 from .errors import InputError, Suspicious
 
 
+def scene_at(value: Any) -> Scene:
+    """`value` if it is a Scene."""
+    if isinstance(value, Scene):
+        return value
+    cure = f"phicam.Scene({value!r})" if isinstance(value, (str, os.PathLike)) else "a phicam.Scene"
+    raise InputError(f"{value!r} is no Scene\n  cure: give {cure}")
+
+
 class Scene:
     """A laser, its spots, walls, a hidden surface and a camera.
 

@@ -8,6 +8,7 @@ from typing import Any, cast
 import numpy as np
 
 from . import _native
+from ._arrays import threads_of
 from ._finding import Finding
 from ._progress import Progress, told
 from ._scene import Scene
@@ -66,7 +67,7 @@ def study(
         given.append((option, values))
     subject = scene if scene is not None else Scene(default or "bench")
     report = told(f"study {name}", progress)
-    found, agrees = _native.study(name, subject._core, given, threads=threads, progress=report)
+    found, agrees = _native.study(name, subject._core, given, threads=threads_of(threads), progress=report)
     return Study(found, agrees)
 
 

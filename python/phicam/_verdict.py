@@ -7,11 +7,11 @@ from typing import Any, Literal
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._arrays import Floats, matrix, maybe, number, shaped, whole
+from ._arrays import Floats, matrix, maybe, number, shaped, spread, threads_of, whole, without
 from ._finding import Finding
 from ._model import Integration, Kernel, Model
 from ._phi import Phi
-from ._scene import Scene
+from ._scene import Scene, scene_at
 from .errors import InputError
 
 Errors = Literal["independent", "pixel", "all"]
@@ -68,7 +68,7 @@ def validate(
     left_out: ArrayLike | None = None,
     integration: Integration = "quadrature",
     kernel: Kernel | None = None,
-    occlusion: bool = True,
+    occlusion: bool | None = None,
     significance: float = 1e-3,
     errors: Errors | None = None,
     replicates: int | None = None,
@@ -81,7 +81,8 @@ def validate(
     phi : Phi, or array of pixels × spots, W
         An array needs `stderr` and `model`.
     model : Scene or Model, optional
-        What it is tested against: the scene of `phi` unless given.
+        What it is tested against: the scene of `phi` unless given. A Model stands for its scene, kernel and occlusion: the
+        scene's light is integrated over its surfaces, unless `integration` is ``centres``.
     stderr : array, pixels × spots
         Standard errors in place of those of `phi`.
     left_out : array, pixels × spots
@@ -118,19 +119,28 @@ def validate(
         raise InputError("nothing says of which scene the array is\n  cure: give model=, a Scene or a Model")
     else:
         scene, flux = None, matrix(phi, "phi")
+    if model is not None and not isinstance(model, Model):
+        scene_at(model)
     if isinstance(model, Model):
         if model.scene is None:
             raise InputError("a model of matrices has no scene\n  cure: give phicam.model(scene), or recover by it")
         kernel = kernel or model.kernel  # type: ignore[assignment]
+        occlusion = model.occlusion if occlusion is None else occlusion
+        if model.has_own_elements:
+            cure = "give the model of the scene's own elements, or the scene; recover takes a model of any"
+            raise InputError(
+                "what is tested is the scene's light, integrated over its surfaces whatever their elements, and this model has "
+                f"elements of its own\n  cure: {cure}"
+            )
         model = model.scene
     against = model or scene
     assert against is not None
     if stderr is None:
         cure = "give stderr=; of photographs import several of each spot, or state the camera's noise"
         raise InputError(f"nothing is known of the noise\n  cure: {cure}")
-    flux = shaped(flux, against.shape, "phi")
-    noise = shaped(matrix(stderr, "stderr"), against.shape, "stderr")
     flags = maybe(left_out, "left_out")
+    flux = without(shaped(flux, against.shape, "phi"), flags)
+    noise = without(spread(stderr, against.shape, "stderr"), flags)
     found, z, modelled = _native.validate(
         against._core,
         flux,
@@ -138,10 +148,10 @@ def validate(
         None if flags is None else shaped(flags, against.shape, "left_out"),
         kernel_name=kernel or "physical",
         integration_name=integration,
-        considered=bool(occlusion),
+        considered=occlusion is None or bool(occlusion),
         significance=number(significance, "significance", "between 0 and 1, e.g. 0.001", lambda x: 0 < x < 1),
         replicates=None if replicates is None else whole(replicates, "replicates", 2, 2**32 - 1),
         errors_name=errors or "independent",
-        threads=threads,
+        threads=threads_of(threads),
     )
     return Verdict(found, z, modelled)

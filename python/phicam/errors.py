@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import re
+
+_OPTION = re.compile(r"--([a-z]+(?:-[a-z]+)*)(?: (?:FILE|RELATIVE|COLUMNSxROWS|DIR|NUMBER)\b)?")
+
 __all__ = ["Error", "FileError", "InputError", "InternalError", "SceneError", "Stopped", "Suspicious"]
 
 
@@ -49,3 +53,8 @@ class InternalError(Error, RuntimeError):
 
 class Suspicious(UserWarning):
     """Something that is no error, and that a result may suffer from."""
+
+
+def in_python(text: str) -> str:
+    """A message of the command with its options as the keywords that they are here: `--free-scale` is `free_scale`."""
+    return _OPTION.sub(lambda found: found.group(1).replace("-", "_"), text)

@@ -45,7 +45,7 @@ mod _native {
     #[pymodule_export]
     use crate::study::{studies, study};
     #[pymodule_export]
-    use crate::validate::validate;
+    use crate::validate::{shares_by_pixel, validate};
 
     #[pymodule_init]
     fn init(module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {

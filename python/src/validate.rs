@@ -29,6 +29,12 @@ pub fn errors(name: &str) -> PyResult<Errors> {
     }
 }
 
+/// Whether errors that all spots of a pixel have in common, a part `common` of the variance, matter.
+#[pyfunction]
+pub fn shares_by_pixel(common: f64, spots: usize) -> bool {
+    Errors::of_common(common, spots) != Errors::Independent
+}
+
 /// What was found, z of every entry, the model.
 type Verdict<'py> = (
     Bound<'py, PyDict>,

@@ -192,11 +192,15 @@ def test_what_a_notebook_shows(phi):
 
 
 def test_a_picture_that_does_not_fit_says_so():
-    """One photograph has one direction for the published inversion, of nine."""
-    matrix = np.random.default_rng(3).random((60, 9))
-    photo, error = matrix @ np.linspace(0.1, 0.9, 9), np.full(60, 0.02)
-    published = phicam.recover(photo, matrix, "pinv", stderr=error)
+    """Three spots have three directions for the published inversion, of nine."""
+    random = np.random.default_rng(3)
+    matrix, laser = random.random((60, 9)), random.random((9, 3))
+    photos = matrix @ np.diag(np.linspace(0.1, 0.9, 9)) @ laser
+    with pytest.warns(phicam.Suspicious, match="DOES NOT FIT"):
+        published = phicam.recover(photos, (matrix, laser), "pinv", stderr=0.02)
     assert published.fits is False and "DOES NOT FIT" in repr(published) and not published.is_refuted
+    assert any("3 directions of 9" in text for text in published.warnings)
+    photo, error = matrix @ np.linspace(0.1, 0.9, 9), np.full(60, 0.02)
     right = phicam.recover(photo, matrix, "joint-unbounded", stderr=error)
     assert right.fits is True and "FIT" not in repr(right)
     assert right.determined.shape == (9,) and right.light is None

@@ -26,6 +26,12 @@ def broken(array, value):
     return copy
 
 
+def changed(phi):
+    copy = pickle.loads(pickle.dumps(phi))
+    copy.flux *= 3.0
+    return copy
+
+
 def saturated(phi):
     with pytest.warns(phicam.Suspicious, match="saturated"):
         return phicam.expose(phi, "machine-vision", exposure=1e3)
@@ -55,8 +61,15 @@ MISUSES = [
     ("no spots", Input, lambda s, p, t: phicam.render(s, spots=[]), "names none"),
     ("some spots as a run", Input, lambda s, p, t: phicam.render(s, samples=32, spots=0).save(t), "whole render"),
     ("no threads", Input, lambda s, p, t: phicam.render(s, threads=0), "threads"),
-    ("a negative number of threads", (Input, OverflowError), lambda s, p, t: phicam.render(s, threads=-1), ""),
-    ("a scene by its name", (TypeError, AttributeError), lambda s, p, t: phicam.render("bench"), ""),
+    ("a negative number of threads", Input, lambda s, p, t: phicam.render(s, threads=-1), "threads is -1"),
+    ("a scene by its name", Input, lambda s, p, t: phicam.render("bench"), "phicam.Scene('bench')"),
+    ("a model of a name", Input, lambda s, p, t: phicam.model("bench"), "phicam.Scene('bench')"),
+    ("validated against a name", Input, lambda s, p, t: phicam.validate(p, "bench"), "phicam.Scene('bench')"),
+    ("a render that was changed", Input, lambda s, p, t: changed(p).save(t), "not what was rendered"),
+    ("a side in place of a model's", Input, lambda s, p, t: setattr(phicam.model(s), "laser_side", A), "model_of"),
+    ("a side that is changed", ValueError, lambda s, p, t: phicam.model(s).camera_side.fill(1.0), "read-only"),
+    ("one photograph by its laser side", Input, lambda s, p, t: phicam.recover(A[:, 0], A, "pinv"), "joint-unbounded"),
+    ("options as keywords", Input, lambda s, p, t: phicam.recover(p, method="joint", elements=(99, 99)), "(elements)"),
     ("no such spot", Input, lambda s, p, t: p.frame(99), "0 to 7"),
     ("more than the memory", Input, lambda s, p, t: phicam.render(s.replace({"camera.pixels": (8000, 8000)})), "GiB"),
     ("a model of more than the memory", Input, lambda s, p, t: phicam.model(s, elements=(9999, 9999)), "cure"),
@@ -80,6 +93,7 @@ MISUSES = [
     ("nothing in it", Input, lambda s, p, t: phicam.recover(np.zeros((0, 8)), s), "empty"),
     ("no standard errors", Input, lambda s, p, t: phicam.validate(FLUX, s), "stderr"),
     ("no scene", Input, lambda s, p, t: phicam.validate(FLUX, stderr=FLUX), "model="),
+    ("a model of other elements", Input, lambda s, p, t: phicam.validate(p, phicam.model(s, elements=(1, 1))), "elements of its own"),
     ("a model of matrices", Input, lambda s, p, t: phicam.validate(p, phicam.model_of(A)), "scene"),
     ("a probability of 2", Input, lambda s, p, t: phicam.validate(p, significance=2), "significance"),
     # Recoveries.
@@ -166,3 +180,46 @@ def test_inputs_are_not_changed_and_any_layout_is_taken(own):
     single = phicam.recover(flux.astype(np.float32), scene, "joint", stderr=phi.stderr, elements=2).reflectance
     assert np.abs(single - plain).max() < 1e-2
     assert (flux == phi.flux).all()
+
+
+def test_what_is_left_out_may_be_anything(own):
+    """Entries that do not count may be NaN, and change nothing."""
+    scene, phi = own
+    flags = np.zeros((12, 8))
+    flags[3, 2] = 1
+    for value in (np.nan, np.inf, 1.0):
+        flux, stderr = broken(phi.flux, value), broken(phi.stderr, value)
+        found = phicam.recover(flux, scene, "joint", stderr=stderr, left_out=flags, elements=(2, 2))
+        verdict = phicam.validate(flux, scene, stderr=stderr, left_out=flags)
+        if np.isnan(value):
+            first = found.reflectance, verdict.chi2_per_dof
+        assert (found.reflectance == first[0]).all() and verdict.chi2_per_dof == first[1]
+
+
+def test_one_number_is_the_error_of_every_entry(own):
+    scene, phi = own
+    every = float(phi.stderr.max())
+    one, all_of = (phicam.recover(phi, method="joint", elements=(2, 2), stderr=s) for s in (every, np.full((12, 8), every)))
+    assert (one.reflectance == all_of.reflectance).all() and one.fit == all_of.fit
+    assert phicam.validate(phi, stderr=every).chi2_per_dof == phicam.validate(phi, stderr=np.full((12, 8), every)).chi2_per_dof
+
+
+def test_a_model_that_does_not_fit_warns(own):
+    """Of one element the board is a grey."""
+    scene = own[0].replace({"camera.pixels": (8, 8), "laser.spots.per_side": 4})
+    phi = phicam.render(scene, samples=1024)
+    assert phicam.validate(phi, phicam.model(scene))
+    with pytest.warns(phicam.Suspicious, match="by centres"):
+        assert phicam.recover(phi, phicam.model(scene, elements=(1, 1)), "joint").fits is False
+
+
+def test_dark_frames_serve_every_spot():
+    """Their error does not average out over the spots: no errors are stated unless a background takes it."""
+    scene = phicam.Scene("bench").replace({"surface.object.elements": (2, 2), "camera.pixels": (8, 8)})
+    phi = phicam.render(scene, samples=4096)
+    with pytest.warns(phicam.Suspicious, match="dark frames"):
+        few = phicam.expose(phi, "ccd", exposure=0.02, frames=64, dark_frames=4)
+    assert few.errors == "pixel" and pickle.loads(pickle.dumps(few)).errors == "pixel"
+    assert phicam.recover(few, method="joint-unbounded").stderr is None
+    assert phicam.recover(few, method="joint-unbounded", background=True).stderr is not None
+    assert phicam.expose(phi, "ccd", exposure=0.02, dark_frames=0).errors == "independent"

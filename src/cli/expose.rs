@@ -239,7 +239,7 @@ fn remark_dark(result: &Summary, exposed: &Exposed, console: Console) {
             result.pedestal
         ));
     }
-    if result.common * exposed.flux.ncols() as f64 > 0.1 {
+    if Errors::of_common(result.common, exposed.flux.ncols()) != Errors::Independent {
         console.say(format!(
             "warning: {:.2} % of the variance is that of the dark frames, which all spots of a pixel share, and recover takes entries as independent; \
              take more --dark-frames, or recover with --background",

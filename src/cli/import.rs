@@ -17,6 +17,7 @@ use crate::folder::Record;
 use crate::folder::names::{IMPORT, IMPORT_PNG, LEFT_OUT, PHI, STDERR};
 use crate::folder::{Origin, Photographs};
 use crate::jobs::need;
+use crate::lab::Errors;
 use crate::matrix::npy;
 use crate::photographs::set::{ChannelName, DarkTable, Files, Set};
 use crate::photographs::{ImportAccount, Imported, import, scene_of};
@@ -143,6 +144,15 @@ fn one(
         console.say(format!("warning: {warning}"));
     }
     let account = &imported.account;
+    let errors = Errors::of_common(account.common, scene.laser.spots.len());
+    if errors != Errors::Independent {
+        console.say(format!(
+            "warning: {:.2} % of the variance is that of the dark frames, which all spots of a pixel \
+             share, so that recover states no errors; take more dark frames, or recover with \
+             --background",
+            100.0 * account.common
+        ));
+    }
     let json = output::json(&Written {
         version: version(),
         account,
@@ -150,6 +160,7 @@ fn one(
     let photographs = Photographs {
         settings: hex(&Sha256::digest(serde_json::to_vec(&(set, channel))?)),
         flux_unit: account.unit.to_owned(),
+        shares_by_pixel: errors != Errors::Independent,
         sources: account.files.clone(),
     };
     let origin = Origin::Imported {

@@ -79,10 +79,18 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
         options,
         // Of the run's own errors more is known than of those that are given.
         certainty: match &record {
-            Some(record) if has_own_errors(args, dir) => record
-                .origin
-                .plan()
-                .map_or(Certainty::STATED, Certainty::of),
+            Some(record) if has_own_errors(args, dir) => match record.origin.plan() {
+                Some(plan) => Certainty::of(plan),
+                // A background takes what all spots of a pixel share.
+                None => {
+                    let shared = record.origin.shares_by_pixel() && !args.joint.background;
+                    let errors = crate::lab::Errors::of_photographs(shared);
+                    Certainty {
+                        errors,
+                        ..Certainty::STATED
+                    }
+                }
+            },
             _ => Certainty::STATED,
         },
         is_imported: record.as_ref().is_some_and(Record::is_imported),

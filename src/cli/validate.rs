@@ -96,7 +96,11 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
                 left_out: left_out(args, read_left_out(dir, &scene)?, &scene)?,
                 test: match record.origin.plan() {
                     Some(plan) => settings::test(&args.test, plan, console)?,
-                    None => settings::test_of_matrix(&args.test, Errors::Independent, None)?,
+                    None => settings::test_of_matrix(
+                        &args.test,
+                        Errors::of_photographs(record.origin.shares_by_pixel()),
+                        None,
+                    )?,
                 },
                 scene: match other {
                     Some(other) => other,

@@ -26,6 +26,9 @@ pub struct Photographs {
     pub settings: String,
     /// The unit of Φcam: W, counts/s or counts.
     pub flux_unit: String,
+    /// Whether all spots of a pixel share an error that matters: that of their dark frames.
+    #[serde(default)]
+    pub shares_by_pixel: bool,
     /// The files that they were read from.
     pub sources: Vec<SourceFile>,
 }
@@ -37,6 +40,11 @@ impl Origin {
             Self::Rendered(plan) => Some(plan),
             Self::Imported { .. } => None,
         }
+    }
+
+    /// Whether all spots of a pixel share an error of photographs.
+    pub fn shares_by_pixel(&self) -> bool {
+        matches!(self, Self::Imported { imported } if imported.shares_by_pixel)
     }
 
     /// The unit of photographs whose size is not that of light, so that it says nothing of

@@ -62,8 +62,12 @@ pub struct Beside {
 /// What is known of a pattern of two levels.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Probable {
-    /// Probability of the pattern that was recovered.
+    /// Probability of the pattern that was recovered, its levels exact.
     pub pattern: f64,
+    /// Probability that the elements do not differ from their levels; 1 where these were given.
+    pub exact: f64,
+    /// The likeliest standard deviation by which they do, if they do.
+    pub spread: f64,
     /// Means of dark and light level.
     pub levels: [f64; 2],
     /// Their standard deviations.
@@ -80,6 +84,8 @@ impl Probable {
     pub fn of(found: &Recovered) -> Option<Self> {
         found.patterns.as_ref().map(|p| Self {
             pattern: p.pattern,
+            exact: p.exact,
+            spread: p.spread,
             levels: p.levels,
             level_errors: p.level_errors,
             disagreement: match p.sum {
@@ -246,9 +252,18 @@ fn patterns(of: &Patterns) -> String {
         } => format!("by {sweeps} sweeps of two ladders that differ by {disagreement:.2}"),
     };
     let undecided = of.light.iter().filter(|p| (0.05..=0.95).contains(*p));
+    // Levels that were given are taken for the surface's.
+    let exact = if of.spread > 0.0 {
+        format!(
+            "; exactly two reflectances have probability {:.3}",
+            of.exact
+        )
+    } else {
+        "; if there are two reflectances and no more".to_owned()
+    };
     format!(
-        "; if there are two reflectances and no more, and the scale is right, this pattern has \
-         probability {:.3}, {} elements are undecided, levels {:.3} ± {:.3} and {:.3} ± {:.3} ({how})",
+        "{exact}, and if the scale is right, this pattern has probability {:.3}, {} elements are \
+         undecided, levels {:.3} ± {:.3} and {:.3} ± {:.3} ({how})",
         of.pattern,
         undecided.count(),
         of.levels[0],

@@ -19,6 +19,8 @@ const SELDOM: f64 = 1e-6;
 /// of one direction.
 const GAP: f64 = 0.1;
 
+/// A probability below which exactly two reflectances are not to be taken for granted.
+const UNLIKELY: f64 = 0.5;
 /// A share of an element below which the photographs do not determine it.
 const DETERMINED: f64 = 0.9;
 
@@ -31,12 +33,14 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         overstated(judged),
         impossible(found),
         undetermined(found, judged),
+        few_directions(found),
         noise(found),
         on_bounds(found),
         unfinished(found, judged),
         drifting(found),
         without_bands(found),
         unsampled(found),
+        spread(found),
     ];
     every.into_iter().flatten().collect()
 }
@@ -147,9 +151,10 @@ fn unjudged(found: &Recovered, judged: &Judged) -> Option<String> {
 fn shared(judged: &Judged) -> Option<String> {
     let which = judged.shared()?;
     Some(format!(
-        "the errors of this render hang together: {which}, and they do not average out. So there are no \
-         standard errors, bands and probabilities, and less is determined than is said. Render by \
-         --estimator independent for them"
+        "the errors of these photographs hang together: {which}, and they do not average out. So there \
+         are no standard errors, bands and probabilities, and less is determined than is said. Render \
+         by --estimator independent for them; of dark frames that all spots share take more, or \
+         estimate their part (--background)"
     ))
 }
 
@@ -252,6 +257,32 @@ fn unsampled(found: &Recovered) -> Option<String> {
             significant(disagreement, 2)
         )
     })
+}
+
+/// An inverse of the laser side that lacks directions of the picture.
+fn few_directions(found: &Recovered) -> Option<String> {
+    let whole = matches!(
+        found.method,
+        Method::Pinv | Method::LeftInverse | Method::Rdivide | Method::RdivideMinNorm
+    );
+    let (rank, all) = (found.rank, found.reflectance.len());
+    (whole && (rank as f64) < DETERMINED * all as f64).then(|| {
+        format!(
+            "the laser side tells {rank} directions of {all} elements apart: of the others this \
+             picture shows nothing, and takes it for 0. Use joint, more spots or fewer --elements"
+        )
+    })
+}
+
+/// Two levels where elements that differ from theirs explain the photographs at least as well.
+fn spread(found: &Recovered) -> Option<String> {
+    let of = found.patterns.as_ref().filter(|p| p.exact < UNLIKELY)?;
+    Some(format!(
+        "exactly two reflectances have probability {}: elements that differ from theirs by about {} \
+         explain the photographs better. Believe the standard errors, not the pattern, or joint-gp",
+        figure(of.exact, 2),
+        of.spread
+    ))
 }
 
 /// An iteration that ended away from its minimum by what can be seen in the picture.

@@ -14,6 +14,10 @@ pub enum Errors {
     Everywhere,
 }
 
+/// A part that is common, times the spots, above which errors are no longer independent: 5 % of the
+/// error of their mean.
+const NOTICED: f64 = 0.1;
+
 impl Errors {
     /// Those of an estimator.
     pub fn of(estimator: Estimator) -> Self {
@@ -21,6 +25,21 @@ impl Errors {
             Estimator::Independent => Self::Independent,
             Estimator::Shared => Self::WithinRows,
             Estimator::Factored => Self::Everywhere,
+        }
+    }
+
+    /// Those of photographs of `spots` spots, a part `common` of whose variance all spots of a pixel
+    /// have in common: the error of their mean is √(1 + c (l − 1)) times that of independent ones.
+    pub fn of_common(common: f64, spots: usize) -> Self {
+        Self::of_photographs(common * spots as f64 > NOTICED)
+    }
+
+    /// Those of photographs, all spots of a pixel of which share some or not.
+    pub fn of_photographs(shares_by_pixel: bool) -> Self {
+        if shares_by_pixel {
+            Self::WithinRows
+        } else {
+            Self::Independent
         }
     }
 

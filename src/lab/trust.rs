@@ -6,6 +6,8 @@ use super::objects::RecoveredObject;
 
 /// No surface's reflectance is as far from ½ as this.
 const IMPOSSIBLE: f64 = 1.0;
+/// Below this probability of exact levels a picture of two is taken for refuted.
+const EXACT: f64 = 0.05;
 
 /// Puts first what can be vouched for: methods that explain the photographs before others; of those
 /// the ones that know how likely their assumption makes the photographs, the likeliest first; then
@@ -20,6 +22,7 @@ pub fn by_trust(objects: &mut [RecoveredObject]) {
             ..Rank::default()
         });
         rank.refuted |= object.fit.as_ref().is_some_and(|fit| !fit.fits);
+        rank.refuted |= object.patterns.as_ref().is_some_and(|p| p.exact < EXACT);
         rank.impossible |= is_impossible(object);
         rank.warnings = rank.warnings.max(object.warnings.len());
     }

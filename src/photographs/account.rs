@@ -56,6 +56,9 @@ pub struct ImportAccount {
     pub mark_error: Option<f64>,
     /// The gain of each spot that has one other than 1, with its standard error.
     pub gains: Vec<(usize, f64, f64)>,
+    /// Part of the variance that is that of the dark frames, which all spots of a pixel share, mean
+    /// over the entries.
+    pub common: f64,
     /// Entries that are left out.
     pub left_out: LeftOut,
     /// What a user has to know.

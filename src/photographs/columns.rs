@@ -23,6 +23,8 @@ pub(super) struct Columns {
     pub gains: Vec<(usize, f64, f64)>,
     pub photographs: usize,
     pub zeros: f64,
+    /// Part of the variance that all spots of a pixel have in common, mean over the entries.
+    pub common: f64,
 }
 
 impl Columns {
@@ -53,6 +55,7 @@ impl Columns {
             gains: Vec::new(),
             photographs: 0,
             zeros: 0.0,
+            common: 0.0,
         };
         let code = Codes {
             set,
@@ -72,6 +75,7 @@ impl Columns {
             let corrected = correction.apply(&name, &mean)?;
             found.photographs += mean.frames;
             found.zeros += mean.cut_off();
+            found.common += corrected.common;
             seen += 1;
             for (mean, flux) in found.mean.iter_mut().zip(&corrected.flux) {
                 *mean += flux;
@@ -103,6 +107,7 @@ impl Columns {
         };
         shots.each_spot(reader, visit)?;
         found.mean.iter_mut().for_each(|x| *x /= seen.max(1) as f64);
+        found.common /= seen.max(1) as f64;
         if found.phi.iter().any(|x| !x.is_finite()) {
             return Err(refused(
                 "a flux comes out as infinite",

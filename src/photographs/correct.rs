@@ -36,6 +36,9 @@ pub struct Corrected {
     pub flux: Vec<f64>,
     /// Its variance, (counts/s)²; `None` where the noise is not known.
     pub variance: Option<Vec<f64>>,
+    /// Part of the variance that is that of the dark frames, mean over the pixels: an error that all
+    /// photographs have in common.
+    pub common: f64,
 }
 
 /// Part of the mean below which a pixel of a flat field counts as dead.
@@ -57,7 +60,7 @@ impl Flat {
             noise,
             exposure: 1.0,
         };
-        let Corrected { flux, variance } = correction.apply("the flat field", shot)?;
+        let Corrected { flux, variance, .. } = correction.apply("the flat field", shot)?;
         let good = |k: &usize| !shot.saturated[*k];
         let lit: Vec<usize> = (0..flux.len()).filter(good).collect();
         let mean = lit.iter().map(|k| flux[*k]).sum::<f64>() / lit.len().max(1) as f64;
@@ -107,6 +110,7 @@ impl Correction<'_> {
         let pixels = shot.light.len();
         let mut flux = vec![0.0; pixels];
         let mut variance = self.noise.map(|_| vec![0.0; pixels]);
+        let (mut common, mut known) = (0.0, 0u32);
         for k in 0..pixels {
             let (level, level_variance) = match self.flat {
                 Some(flat) if flat.unusable[k] => continue,
@@ -123,9 +127,17 @@ impl Correction<'_> {
                 let own = of(shot, shot.light[k] - signal);
                 let dark = self.dark.map_or(0.0, |d| of(d, d.light[k]));
                 variance[k] = (own + dark) * scale * scale + level_variance * flux[k] * flux[k];
+                if variance[k] > 0.0 {
+                    common += dark * scale * scale / variance[k];
+                    known += 1;
+                }
             }
         }
-        Ok(Corrected { flux, variance })
+        Ok(Corrected {
+            flux,
+            variance,
+            common: common / f64::from(known.max(1)),
+        })
     }
 }
 

@@ -107,6 +107,7 @@ pub fn import(
         mark_error: fitted.as_ref().and_then(|f| f.mark_error),
         mark_residuals: fitted.map_or(Vec::new(), |f| f.residuals),
         gains: columns.gains,
+        common: columns.common,
         left_out: LeftOut::of(&columns.left_out),
         warnings,
         files: reader.sources(),

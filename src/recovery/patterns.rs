@@ -30,12 +30,13 @@ impl Sum {
 }
 
 /// What the photographs say of a picture of two levels, every pattern being equally likely
-/// beforehand, and so every pair of levels 0 ≤ dark < light ≤ 1 where they are not given.
+/// beforehand, and so every pair of levels 0 ≤ dark < light ≤ 1 where they are not given; then
+/// elements may also differ from their level, by a normal deviate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Patterns {
     /// Probability of each element to be light.
     pub light: DVector<f64>,
-    /// Mean reflectance of each element over all patterns and levels.
+    /// Mean of each element's level over all patterns and levels.
     pub mean: DVector<f64>,
     /// Standard deviation of each about it.
     pub deviation: DVector<f64>,
@@ -43,10 +44,15 @@ pub struct Patterns {
     pub levels: [f64; 2],
     /// Their standard deviations; 0 where they were given.
     pub level_errors: [f64; 2],
-    /// Probability of the pattern that was recovered, by all.
+    /// Probability of the pattern that was recovered, its levels exact, by all.
     pub pattern: f64,
-    /// ln of the probability density of the photographs, over that of the numbers that fit them
-    /// best.
+    /// Probability that the elements do not differ from their levels, ½ beforehand; 1 where the
+    /// levels were given.
+    pub exact: f64,
+    /// The likeliest standard deviation by which they do, if they do; 0 where the levels were given.
+    pub spread: f64,
+    /// ln of the probability density of the photographs if the levels are exact, over that of the
+    /// numbers that fit them best.
     pub log_evidence: f64,
     /// How it was found.
     pub sum: Sum,

@@ -15,6 +15,7 @@ fn imported(scene: &Scene) -> Record {
     let photographs = Photographs {
         settings: "all".to_owned(),
         flux_unit: "counts".to_owned(),
+        shares_by_pixel: false,
         sources: Vec::new(),
     };
     let origin = Origin::Imported {

@@ -138,3 +138,70 @@ fn elements_that_cannot_be_told_apart_are_told() {
         assert_eq!(told, alike, "{warnings:?}");
     }
 }
+
+/// Elements about two levels, and on them: at the same noise the first are told from two reflectances
+/// and have errors that hold all the same, the second are taken for two.
+#[test]
+fn greys_about_two_levels_are_told_from_two_levels() {
+    let model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([4, 4])).unwrap();
+    let level = |j: usize| if j % 4 == j / 4 || j < 4 { 0.8 } else { 0.2 };
+    let off = |j: usize| 0.12 * libm::sin(7.0 * j as f64);
+    for grey in [true, false] {
+        let truth: Vec<f64> = (0..16)
+            .map(|j| level(j) + if grey { off(j) } else { 0.0 })
+            .collect();
+        let of = MatrixModel {
+            albedo: truth.clone(),
+            ..model.clone()
+        };
+        for seed in 1..4 {
+            let right = Photographs::relative(&of.phi(), 1e-3, seed);
+            let noise = Noise::StandardError(&right.stderr, Certainty::STATED);
+            let (nuisance, options) = (Nuisance::default(), Options::default());
+            let two = [Method::JointTwoValued];
+            let found = recover_objects(&of, &right.phi, noise, nuisance, &two, &options);
+            let found = &found[0].outcome.as_ref().unwrap()[0];
+            let exact = found.patterns.as_ref().unwrap().exact;
+            let told = found
+                .warnings
+                .iter()
+                .any(|w| w.contains("exactly two reflectances"));
+            assert!(told == grey && (exact < 0.5) == grey, "{seed}: {exact}");
+            let errors = found.standard_error.as_ref().unwrap();
+            for (j, error) in errors.iter().enumerate() {
+                let z = (found.reflectance[j] - truth[j]) / error;
+                assert!(z.abs() < 4.0, "{grey} {seed} {j}: {z}");
+            }
+        }
+    }
+}
+
+/// Three spots tell three directions of nine elements apart, and one spot none: the inverse of the
+/// laser side says the first, and refuses the second.
+#[test]
+fn an_inverse_of_few_spots_says_so() {
+    let camera = Matrix::from_fn(20, 9, |p, j| 1.5 + libm::sin((p * (j + 2)) as f64));
+    for spots in [12, 3, 1] {
+        let laser = Matrix::from_fn(9, spots, |j, l| 1.5 + libm::cos((j * (l + 2)) as f64));
+        let model = MatrixModel::of_sides(camera.clone(), laser, [3, 3]).unwrap();
+        let phi = model.phi();
+        let stderr = phi.map(|x| 1e-3 * x);
+        let noise = Noise::StandardError(&stderr, Certainty::STATED);
+        let (nuisance, options) = (Nuisance::default(), Options::default());
+        let methods = [Method::Pinv];
+        let found = recover_objects(&model, &phi, noise, nuisance, &methods, &options);
+        match &found[0].outcome {
+            Err(error) => assert!(
+                spots == 1 && error.to_string().contains("one spot"),
+                "{error}"
+            ),
+            Ok(found) => {
+                let told = found[0]
+                    .warnings
+                    .iter()
+                    .any(|w| w.contains("3 directions of 9"));
+                assert_eq!(told, spots == 3, "{spots}: {:?}", found[0].warnings);
+            }
+        }
+    }
+}

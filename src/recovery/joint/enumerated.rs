@@ -83,6 +83,7 @@ pub(super) fn sum(ground: &Ground<'_>) -> Summed {
         weights: shares,
         sum: Sum::Exhaustive,
         best: pattern(best.0),
+        drawn: Vec::new(),
     }
 }
 

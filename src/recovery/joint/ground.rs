@@ -59,6 +59,8 @@ pub(super) struct Summed {
     pub(super) sum: Sum,
     /// The best that was met.
     pub(super) best: Vec<bool>,
+    /// Some that were met, with their weights and levels; none where all were summed.
+    pub(super) drawn: Vec<(f64, Vec<bool>, [f64; 2])>,
 }
 
 impl Summed {
@@ -138,8 +140,16 @@ impl Moments {
         &self.light / self.weight
     }
 
+    /// E (ℓ_j − x_j)² of the elements' levels ℓ.
+    pub(super) fn square_about(&self, x: &DVector<f64>) -> DVector<f64> {
+        let [mean, square] = [&self.mean, &self.square].map(|sum| sum / self.weight);
+        DVector::from_fn(x.len(), |j, _| {
+            (square[j] - 2.0 * x[j] * mean[j] + x[j] * x[j]).max(0.0)
+        })
+    }
+
     /// The whole, a pattern's share of it and the evidence known.
-    fn finish(&self, pattern: f64, log_evidence: f64, sum: Sum) -> Patterns {
+    pub(super) fn finish(&self, pattern: f64, log_evidence: f64, sum: Sum) -> Patterns {
         let mean = &self.mean / self.weight;
         let square = &self.square / self.weight;
         let spread = |first: f64, second: f64| (second - first * first).max(0.0).sqrt();
@@ -152,6 +162,8 @@ impl Moments {
             levels: levels.map(|[first, _]| first),
             level_errors: levels.map(|[first, second]| spread(first, second)),
             pattern,
+            exact: 1.0,
+            spread: 0.0,
             log_evidence,
             sum,
         }

@@ -22,6 +22,7 @@ mod pattern_search;
 mod picard;
 mod reduced;
 mod scale;
+mod spread;
 mod stacked;
 mod tempered;
 pub(super) mod total_variation;

@@ -22,16 +22,18 @@ use crate::num::linalg::{LinalgError, svd};
 use crate::num::stream::{Key, Sampling, Stream};
 use crate::recovery::Sum;
 
-/// Multiplications that one ladder may take.
-const MOST_WORK: f64 = 6e8;
+/// Multiplications that one ladder may take for what is shown.
+pub(super) const MOST_WORK: f64 = 6e8;
 /// Fewest and most sweeps.
-const SWEEPS: [usize; 2] = [60, 20_000];
+const SWEEPS: [usize; 2] = [60, 8_000];
 /// Most copies in a ladder.
 const MOST_COPIES: usize = 72;
 /// Evidences that differ by less, ln, tell nothing of which is larger.
 const CLEAR: f64 = 5.0;
 /// Patterns of chance from which the hottest step is taken.
 const CHANCE: usize = 64;
+/// Patterns with their levels that are kept of a ladder.
+const DRAWN: usize = 200;
 
 /// What one ladder has found.
 struct Ladder {
@@ -40,6 +42,8 @@ struct Ladder {
     best: (f64, Vec<bool>),
     /// How often each pattern was met, in an order of their own, so that sums have the same bits.
     patterns: BTreeMap<Vec<bool>, f64>,
+    /// Some of them with their levels, evenly over the sweeps.
+    drawn: Vec<(Vec<bool>, [f64; 2])>,
 }
 
 fn ladder(
@@ -62,8 +66,9 @@ fn ladder(
     let mut best = (f64::INFINITY, copies[0].light.clone());
     let mut halves = [Moments::new(n), Moments::new(n)];
     let mut steps = vec![Vec::with_capacity(sweeps); betas.len() - 1];
-    let mut patterns = BTreeMap::new();
+    let (mut patterns, mut drawn) = (BTreeMap::new(), Vec::with_capacity(DRAWN));
     let first = sweeps / 5;
+    let every = ((sweeps - first) / DRAWN).max(1);
     for sweep in 0..sweeps {
         for (copy, &beta) in copies.iter_mut().zip(betas) {
             if beta == 0.0 {
@@ -91,12 +96,16 @@ fn ladder(
         let own = &copies[0];
         halves[half].add(&own.light, 1.0, own.levels.map(|x| [x, x * x]));
         *patterns.entry(own.light.clone()).or_insert(0.0) += 1.0;
+        if (sweep - first).is_multiple_of(every) {
+            drawn.push((own.light.clone(), own.levels));
+        }
     }
     Ladder {
         halves,
         log_evidence: steps.iter().map(|logs| log_mean(logs)).sum(),
         best,
         patterns,
+        drawn,
     }
 }
 
@@ -141,14 +150,18 @@ fn key(ladder: u32) -> Key {
 }
 
 /// Probabilities by sampling, from the best pattern known, and the pattern of the least χ² that was
-/// met.
-pub(super) fn sample(ground: &Ground<'_>, start: &[bool]) -> Result<Summed, LinalgError> {
+/// met; each ladder takes so many multiplications.
+pub(super) fn sample(
+    ground: &Ground<'_>,
+    start: &[bool],
+    multiplications: f64,
+) -> Result<Summed, LinalgError> {
     let land = &Land::new(ground);
     let betas = temperatures(land)?;
     let n = ground.r.ncols();
     let work = betas.len() as f64 * (2 * n * (ground.d.len() + n)) as f64;
     let [fewest, most] = SWEEPS;
-    let sweeps = ((MOST_WORK / work) as usize).clamp(fewest, most);
+    let sweeps = ((multiplications / work) as usize).clamp(fewest, most);
     let ladders: Vec<Ladder> = [Some(start), None]
         .into_par_iter()
         .enumerate()
@@ -203,6 +216,12 @@ pub(super) fn sample(ground: &Ground<'_>, start: &[bool]) -> Result<Summed, Lina
             *weights.entry(pattern.clone()).or_insert(0.0) += count * share / whole.weight;
         }
     }
+    let mut drawn = Vec::with_capacity(2 * DRAWN);
+    for (ladder, share) in ladders.iter().zip(shares) {
+        let each = share / ladder.drawn.len() as f64;
+        let with_share = |(light, levels): &(Vec<bool>, _)| (each, light.clone(), *levels);
+        drawn.extend(ladder.drawn.iter().map(with_share));
+    }
     let parts: Vec<Moments> = whole
         .iter()
         .zip(shares)
@@ -217,5 +236,6 @@ pub(super) fn sample(ground: &Ground<'_>, start: &[bool]) -> Result<Summed, Lina
             disagreement,
         },
         best,
+        drawn,
     })
 }

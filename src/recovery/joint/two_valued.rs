@@ -6,13 +6,14 @@
 //! above what branch and bound left open (zero: proved best), with estimated ones above the minimum
 //! over all 0 ≤ ρ ≤ 1. The probabilities are sums over all patterns of few elements
 //! ([`super::enumerated`]), of more by sampling ([`super::tempered`]), every pattern as likely
-//! beforehand. How likely the photographs are by two levels, against what other methods assume, takes
+//! beforehand. Where the levels are not given, they and the standard errors allow for elements that
+//! differ from their level, as far as the photographs do ([`super::spread`]). How likely the photographs are by two levels, against what other methods assume, takes
 //! neighbours to be alike by an unknown degree ([`super::neighbours`]).
 
 use super::coordinates::Coordinates;
 use super::ground::Ground;
 use super::pattern_search::{Found, Levels, Search};
-use super::{enumerated, neighbours, scale, tempered};
+use super::{enumerated, neighbours, scale, spread, tempered};
 use crate::recovery::{
     Choice, Method, Options, Parameter, Patterns, Problem, Recovered, RecoveryError, Solver, Sum,
 };
@@ -62,7 +63,7 @@ pub(in crate::recovery) fn recover(
     } else if enumerated::can(&ground) {
         Some(enumerated::sum(&ground))
     } else {
-        Some(tempered::sample(&ground, &best.light)?)
+        Some(tempered::sample(&ground, &best.light, tempered::MOST_WORK)?)
     };
     if let Some(summed) = &summed {
         let found = search.descend(summed.best.clone(), &mut changes);
@@ -74,7 +75,12 @@ pub(in crate::recovery) fn recover(
     if given.is_some() && summed.as_ref().is_some_and(|s| s.sum == Sum::Exhaustive) {
         bound = objective;
     }
-    let mut recovered = coordinates.finish(method, problem, options, best.values() * unit)?;
+    let shown = best.values();
+    let spread = match &summed {
+        Some(exact) if given.is_none() => Some(spread::sum(&ground, exact, &shown)?),
+        _ => None,
+    };
+    let mut recovered = coordinates.finish(method, problem, options, &shown * unit)?;
     // The pattern alone is no more than all of them.
     let own = ground.log_weight(&best.light).unwrap_or(f64::NEG_INFINITY);
     let own = own - n as f64 * std::f64::consts::LN_2;
@@ -82,17 +88,23 @@ pub(in crate::recovery) fn recover(
     let gained = summed
         .as_ref()
         .and_then(|summed| neighbours::gained(grids, &summed.weights));
+    let converged = summed.as_ref().filter(|exact| exact.sum.converged());
+    recovered.standard_error = converged.map(|exact| match &spread {
+        Some(spread) => spread.error.clone(),
+        None => exact.moments.square_about(&shown).map(f64::sqrt),
+    });
     recovered.patterns = summed.map(|summed| {
         let of = summed.finish(&best.light);
         Patterns {
             log_evidence: of.log_evidence.max(own),
-            ..of
+            ..match spread {
+                Some(spread) => spread.finish(of),
+                None => of,
+            }
         }
     });
     let of_patterns = recovered.patterns.as_ref().map(|p| p.log_evidence);
     recovered.log_evidence = gained.and_then(|gained| Some(of_patterns? + gained));
-    let known = recovered.patterns.as_ref().filter(|p| p.sum.converged());
-    recovered.standard_error = known.map(|p| p.deviation.clone());
     let levels = [recovered.reflectance.min(), recovered.reflectance.max()];
     recovered.parameter = Parameter::Levels(given.unwrap_or(levels));
     recovered.choice = match options.levels {

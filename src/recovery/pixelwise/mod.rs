@@ -33,7 +33,22 @@ fn decompose(
     tolerance: Tolerance,
 ) -> Result<Svd, RecoveryError> {
     refuse_unseen(method, problem)?;
+    refuse_one_spot(method, problem)?;
     problem.laser(tolerance)
+}
+
+/// Refuses a single photograph: these methods tell elements apart by how the spots light them, and of
+/// one spot D⁺ = Dᵀ/‖D‖² is no inverse.
+fn refuse_one_spot(method: Method, problem: &Problem<'_>) -> Result<(), RecoveryError> {
+    let (elements, spots) = problem.d.shape();
+    if spots > 1 || elements == 1 {
+        return Ok(());
+    }
+    Err(RecoveryError::NotForMethod {
+        method,
+        what: "tells elements apart by the spots that light them, and there is one spot",
+        cure: "use joint-unbounded, which inverts the camera side, or another joint method",
+    })
 }
 
 /// Refuses an element that a pixel does not see: its C cannot be divided by.

@@ -116,7 +116,7 @@ fn probabilities_are_those_of_all_patterns() {
         Coordinates::new(Method::JointTwoValued, &problem, &options, 1.0, 1.0).unwrap();
     let (r, d) = coordinates.whitened();
     let ground = Ground::new(&r, &d, Some([0.3, 0.7]));
-    let sampled = tempered::sample(&ground, &[false; 9])
+    let sampled = tempered::sample(&ground, &[false; 9], tempered::MOST_WORK)
         .unwrap()
         .finish(&[false; 9]);
     assert!(sampled.sum.converged(), "{:?}", sampled.sum);
@@ -150,8 +150,11 @@ fn sampled_levels_are_those_of_the_sum() {
         let ground = Ground::new(&r, &d, None);
         let all = enumerated::sum(&ground);
         let best = all.best.clone();
-        let [all, sampled] =
-            [all, tempered::sample(&ground, &best).unwrap()].map(|s| s.finish(&best));
+        let [all, sampled] = [
+            all,
+            tempered::sample(&ground, &best, tempered::MOST_WORK).unwrap(),
+        ]
+        .map(|s| s.finish(&best));
         assert!(sampled.sum.converged(), "{:?}", sampled.sum);
         assert!((&sampled.light - &all.light).amax() < 0.03, "{}", all.light);
         assert!((&sampled.mean - &all.mean).amax() < 0.02, "{}", all.mean);

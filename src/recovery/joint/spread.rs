@@ -1,0 +1,154 @@
+//! Two levels that the elements keep to within a spread.
+//!
+//! That a picture has two reflectances and no more makes its standard errors small, and where it is
+//! not so they are wrong. So the photographs are asked whether each element may differ from its level,
+//!
+//! > x = ℓ + τ n,   n ~ N(0, 1),   d ~ N(R ℓ, L Lᵀ),   L Lᵀ = 1 + τ² R Rᵀ,
+//!
+//! ℓ the levels of a pattern. L⁻¹R and L⁻¹d are again those of two levels, the evidence is less by
+//! ln det L, and given ℓ
+//!
+//! > x ~ N(M (ℓ + τ² Rᵀd), τ² M),   M = (1 + τ² RᵀR)⁻¹.
+//!
+//! Beforehand τ = 0 is as likely as all other τ together, of which each up to the largest of
+//! [`SPREADS`] is as likely (Gelman 2006); one of these stands for those that are nearer to it than
+//! to others by their ratio.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::ground::{Ground, Moments, Summed};
+use super::tempered;
+use crate::num::linalg::{Cholesky, LinalgError, gram_product};
+use crate::recovery::Patterns;
+
+/// Spreads τ that are tried, from hardly any to no levels at all.
+const SPREADS: [f64; 5] = [0.003, 0.01, 0.03, 0.1, 0.3];
+/// Multiplications that a ladder may take for one of them.
+const WORK: f64 = 3e7;
+
+/// How likely each of [`SPREADS`] is beforehand, together 1.
+pub(super) fn beforehand() -> [f64; SPREADS.len()] {
+    let last = SPREADS.len() - 1;
+    let edge = |k: usize| (SPREADS[k] * SPREADS[k + 1]).sqrt();
+    std::array::from_fn(|k| {
+        let lower = if k == 0 { 0.0 } else { edge(k - 1) };
+        let upper = if k == last { SPREADS[last] } else { edge(k) };
+        (upper - lower) / SPREADS[last]
+    })
+}
+
+/// What the photographs say of patterns whose levels are exact or spread.
+pub(super) struct Spread {
+    /// Sums over patterns and levels, exact and spread together.
+    pub(super) moments: Moments,
+    /// Probability that the levels are exact.
+    pub(super) exact: f64,
+    /// The likeliest of [`SPREADS`].
+    pub(super) likeliest: f64,
+    /// √E (x_j − shown_j)² of each element.
+    pub(super) error: DVector<f64>,
+}
+
+impl Spread {
+    /// What is known of a pattern, its levels spread or exact, from where they are exact.
+    pub(super) fn finish(&self, exact: Patterns) -> Patterns {
+        let pattern = exact.pattern * self.exact;
+        Patterns {
+            exact: self.exact,
+            spread: self.likeliest,
+            ..self.moments.finish(pattern, exact.log_evidence, exact.sum)
+        }
+    }
+}
+
+/// One spread's share.
+struct Part {
+    summed: Summed,
+    log_evidence: f64,
+    /// E (x_j − shown_j)².
+    square: DVector<f64>,
+}
+
+/// Of a picture `shown` of two levels that are not given; `exact` are the sums where they are exact.
+pub(super) fn sum(
+    ground: &Ground<'_>,
+    exact: &Summed,
+    shown: &DVector<f64>,
+) -> Result<Spread, LinalgError> {
+    let mut gram = DMatrix::zeros(ground.r.ncols(), ground.r.ncols());
+    gram_product(&mut gram, ground.r);
+    let own = ground.r * ground.r.transpose();
+    let parts: Result<Vec<Option<Part>>, LinalgError> = SPREADS
+        .par_iter()
+        .map(|tau| part(ground, [&own, &gram], *tau, exact, shown))
+        .collect();
+    let parts: Vec<(f64, f64, Part)> = SPREADS
+        .into_iter()
+        .zip(beforehand())
+        .zip(parts?)
+        .filter_map(|((tau, before), part)| Some((tau, before, part?)))
+        .collect();
+    // ln of each share: half of all that is believed beforehand is for exact levels.
+    let logs = parts
+        .iter()
+        .map(|(_, before, part)| part.log_evidence + libm::log(*before));
+    let top = logs.clone().fold(exact.log_evidence, f64::max);
+    let weights: Vec<f64> = logs.map(|log| libm::exp(log - top)).collect();
+    let own = libm::exp(exact.log_evidence - top);
+    let all = own + weights.iter().sum::<f64>();
+    let mut sums = vec![exact.moments.scaled(own / all / exact.moments.weight)];
+    let mut square = exact.moments.square_about(shown) * (own / all);
+    for ((_, _, part), weight) in parts.iter().zip(&weights) {
+        let of = &part.summed.moments;
+        sums.push(of.scaled(weight / all / of.weight));
+        square += &part.square * (weight / all);
+    }
+    let largest = parts.iter().zip(&weights);
+    let largest = largest.max_by(|a, b| a.1.total_cmp(b.1));
+    Ok(Spread {
+        moments: Moments::together(&sums),
+        exact: own / all,
+        likeliest: largest.map_or(0.0, |((tau, _, _), _)| *tau),
+        error: square.map(f64::sqrt),
+    })
+}
+
+/// The sums at one spread; none where its covariance is beyond arithmetic. `[R Rᵀ, RᵀR]` are given.
+fn part(
+    ground: &Ground<'_>,
+    [own, gram]: [&DMatrix<f64>; 2],
+    tau: f64,
+    exact: &Summed,
+    shown: &DVector<f64>,
+) -> Result<Option<Part>, LinalgError> {
+    let with_one = |of: &DMatrix<f64>| {
+        let mut sum = of * (tau * tau);
+        (0..sum.nrows()).for_each(|i| sum[(i, i)] += 1.0);
+        Cholesky::new(&sum)
+    };
+    let (Some(factor), Some(inverse)) = (with_one(own), with_one(gram)) else {
+        return Ok(None);
+    };
+    let r = factor.forward(ground.r.clone());
+    let d = DMatrix::from_column_slice(ground.d.len(), 1, ground.d.as_slice());
+    let d = factor.forward(d).column(0).into_owned();
+    let summed = tempered::sample(&Ground::new(&r, &d, None), &exact.best, WORK)?;
+    let m = inverse.inverse();
+    let toward = ground.r.tr_mul(ground.d) * (tau * tau);
+    let mut square = m.diagonal() * (tau * tau);
+    let all: f64 = summed.drawn.iter().map(|drawn| drawn.0).sum();
+    for (weight, light, levels) in &summed.drawn {
+        let level = |j: usize| levels[usize::from(light[j])];
+        let mean = &m * DVector::from_fn(toward.len(), |j, _| level(j) + toward[j]);
+        square += (mean - shown).map(|off| off * off * (weight / all));
+    }
+    Ok(Some(Part {
+        log_evidence: summed.log_evidence - 0.5 * factor.log_det(),
+        summed,
+        square,
+    }))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,75 @@
+use super::*;
+use crate::num::quadrature::Rule;
+use crate::recovery::bench::normal_stream;
+
+/// By hand: (0, √(0.003·0.01)], … of 0.3.
+const BEFOREHAND: [f64; 5] = [0.018_257, 0.039_478, 0.124_839, 0.394_776, 0.422_650];
+const SHOWN: [f64; 4] = [0.2, 0.8, 0.2, 0.8];
+
+/// ln of 2 ∫∫ N(d; R ℓ, 1 + τ² R Rᵀ) da db/2⁴ over all patterns, but for (2π)⁻²; and E (x − shown)²,
+/// by Gauss–Legendre on 60 × 60 levels and inverses of whole matrices.
+fn by_hand(r: &DMatrix<f64>, d: &DVector<f64>, tau: f64) -> (f64, DVector<f64>) {
+    let one = DMatrix::<f64>::identity(4, 4);
+    let covariance = &one + r * r.transpose() * (tau * tau);
+    let det = covariance.determinant();
+    let inverse = covariance.try_inverse().unwrap();
+    let gain = r.transpose() * &inverse * (tau * tau);
+    let variance = (&one - &gain * r) * (tau * tau);
+    let rule = Rule::gauss_legendre(60);
+    let (mut sum, mut square) = (0.0, DVector::zeros(4));
+    for pattern in 0..16usize {
+        for (a, wa) in rule.on(0.0, 1.0) {
+            for (b, wb) in rule.on(a, 1.0) {
+                let level = DVector::from_fn(4, |j, _| if pattern >> j & 1 == 1 { b } else { a });
+                let left = d - r * &level;
+                let log = -0.5 * left.dot(&(&inverse * &left)) - 0.5 * libm::log(det);
+                let weight = 2.0 * wa * wb / 16.0 * libm::exp(log);
+                let x = &level + &gain * &left;
+                sum += weight;
+                let off = |j: usize| (x[j] - SHOWN[j]).powi(2) + variance[(j, j)];
+                square += DVector::from_fn(4, |j, _| off(j)) * weight;
+            }
+        }
+    }
+    (libm::log(sum), square / sum)
+}
+
+/// Elements exactly on two levels and elements that are not: the probability of exact levels and the
+/// errors are those of the whole sums.
+#[test]
+fn errors_are_those_of_all_patterns_levels_and_spreads() {
+    let mut normal = normal_stream(3);
+    let mixing = DMatrix::from_fn(4, 4, |_, _| normal());
+    for (truth, noise) in [
+        ([0.2, 0.8, 0.2, 0.8], 0.05),
+        ([0.1, 0.7, 0.3, 0.9], 0.05),
+        ([0.2, 0.8, 0.2, 0.8], 0.5),
+    ] {
+        let r = &mixing / noise;
+        let d = &r * DVector::from_row_slice(&truth) + DVector::from_fn(4, |_, _| normal());
+        let shown = DVector::from_row_slice(&SHOWN);
+        let ground = Ground::new(&r, &d, None);
+        let exact = tempered::sample(&ground, &[false, true, false, true], tempered::MOST_WORK);
+        let found = sum(&ground, &exact.unwrap(), &shown).unwrap();
+        let parts = SPREADS.map(|tau| by_hand(&r, &d, tau));
+        let own = by_hand(&r, &d, 0.0);
+        let others: Vec<f64> = parts
+            .iter()
+            .zip(BEFOREHAND)
+            .map(|((log, _), before)| before * libm::exp(log - own.0))
+            .collect();
+        let all = 1.0 + others.iter().sum::<f64>();
+        let mut square = own.1 / all;
+        for ((_, of), weight) in parts.iter().zip(&others) {
+            square += of * (weight / all);
+        }
+        let told = format!("{truth:?} {noise}: {} {}", found.exact, all.recip());
+        assert!((found.exact - all.recip()).abs() < 0.03, "{told}");
+        for (own, expected) in found.error.iter().zip(square.iter()) {
+            assert!(
+                (own / expected.sqrt() - 1.0).abs() < 0.1,
+                "{told} {own} {expected}"
+            );
+        }
+    }
+}
