@@ -10,6 +10,8 @@ fn percent(x: f64) -> String {
     format!("{}\u{a0}%", figure(100.0 * x, 3))
 }
 
+/// A parameter that leaves more than this part of the excess of χ² over its mean is no cause of it.
+const UNEXPLAINED: f64 = 0.1;
 /// Causes that are named beside the most likely one.
 const NAMED: usize = 3;
 
@@ -105,7 +107,7 @@ impl Agreement {
         let Some(score) = &self.score else {
             return Vec::new();
         };
-        let cause = (!self.agrees).then(|| ("most likely", score.cause()));
+        let cause = (!self.agrees).then(|| ("most likely", score.cause(self.chi2_per_dof)));
         let detects = format!("95 times in 100 from: {}", score.detectable());
         cause.into_iter().chain([("detects", detects)]).collect()
     }
@@ -194,11 +196,21 @@ impl Describe for Agreement {
 }
 
 impl Score {
-    /// The most likely cause, and what explains the difference as well.
-    pub(super) fn cause(&self) -> String {
+    /// The most likely cause of a χ²/dof, and what explains the difference as well.
+    pub(super) fn cause(&self, chi2_per_dof: f64) -> String {
         let Some((first, rest)) = self.likely.split_first() else {
             return "no single parameter of the scene explains it".to_owned();
         };
+        let left = first.chi2_per_dof - 1.0;
+        if left > 1.0 && left > UNEXPLAINED * (chi2_per_dof - 1.0) {
+            return format!(
+                "no single parameter of the scene explains it: the best, {}, leaves χ²/dof {}. Several at \
+                 once may, or another order, orientation or unit of the photographs (`phicam locate` \
+                 tests the order)",
+                first.label(),
+                significant(first.chi2_per_dof, 4)
+            );
+        }
         let same: Vec<String> = first
             .same
             .iter()
@@ -279,4 +291,41 @@ fn signed(x: f64, digits: usize, unit: &str) -> String {
     let sign = if x < 0.0 { "−" } else { "+" };
     let space = if unit.is_empty() { "" } else { "\u{a0}" };
     format!("{sign}{}{space}{unit}", figure(x.abs(), digits))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A parameter that takes the excess of χ² is the cause; one that leaves it is none, however large
+    /// its fit is against its error.
+    #[test]
+    fn what_leaves_the_difference_is_no_cause() {
+        let deviation = |chi2_per_dof: f64| Deviation {
+            name: "hinge angle".to_owned(),
+            unit: "deg".to_owned(),
+            value: 6.4,
+            stderr: 3e-4,
+            bias: 0.0,
+            z: 2e4,
+            p: 0.0,
+            detectable: 1e-3,
+            chi2_per_dof,
+            same: Vec::new(),
+            spot: None,
+        };
+        let cause = |left: f64, whole: f64| {
+            let likely = vec![deviation(left)];
+            let score = Score {
+                likely,
+                ..Score::default()
+            };
+            score.cause(whole)
+        };
+        for (left, whole, named) in [(3e5, 4e5, false), (1.05, 40.0, true), (90.0, 1e4, true)] {
+            let told = cause(left, whole);
+            assert_eq!(!told.starts_with("no single parameter"), named, "{told}");
+            assert!(told.contains("hinge angle"), "{told}");
+        }
+    }
 }
