@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _html, _native
-from ._arrays import Floats, chosen, matrix, maybe, shaped, threads_of, whole
+from ._arrays import Floats, chosen, matrix, shaped, threads_of, whole
 from ._progress import Progress, told
 from ._scene import Scene, scene_at
 from .errors import InputError
@@ -28,7 +28,8 @@ ERRORS = {"independent": "independent", "shared": "pixel", "factored": "all"}
 class Phi:
     """Φcam with its standard errors, pixels × spots, W (of photographs whose scale is unknown in counts).
 
-    Made by :func:`render`, :func:`load` and :func:`import_photographs`, or of arrays: ``Phi(scene, flux, stderr)``.
+    Made by :func:`render`, :func:`load` and :func:`import_photographs`, or of arrays: ``Phi(scene, flux, stderr)``, pixels ×
+    spots or rows × columns × spots, as :meth:`to_xarray` gives them.
 
     Attributes
     ----------
@@ -58,14 +59,22 @@ class Phi:
         settings: Mapping[str, Any] | None = None,
         account: Mapping[str, Any] | None = None,
     ) -> None:
+        scene_at(scene)
+
         def whole_of(array: Any, name: str) -> Any:
             return None if array is None else shaped(array, scene.shape, name)
 
-        scene_at(scene)
+        def stacked(array: ArrayLike) -> ArrayLike:
+            columns, rows = scene.pixels
+            if np.shape(array) != (rows, columns, scene.shape[1]):
+                return array
+            found: ArrayLike = np.asarray(array).reshape(scene.shape)
+            return found
+
         self.scene = scene
-        self.flux: Any = whole_of(matrix(flux, "flux"), "flux")
-        self.stderr: Any = whole_of(maybe(stderr, "stderr"), "stderr")
-        self.left_out: Any = whole_of(maybe(left_out, "left_out"), "left_out")
+        self.flux: Any = whole_of(matrix(stacked(flux), "flux"), "flux")
+        self.stderr: Any = whole_of(None if stderr is None else matrix(stacked(stderr), "stderr"), "stderr")
+        self.left_out: Any = whole_of(None if left_out is None else matrix(stacked(left_out), "left_out"), "left_out")
         parts = None if by_bounces is None else tuple(matrix(part, "by_bounces") for part in by_bounces)
         self.by_bounces: tuple[Any, ...] | None = parts
         self.settings: dict[str, Any] = dict(settings or {})

@@ -223,3 +223,11 @@ def test_dark_frames_serve_every_spot():
     assert phicam.recover(few, method="joint-unbounded").stderr is None
     assert phicam.recover(few, method="joint-unbounded", background=True).stderr is not None
     assert phicam.expose(phi, "ccd", exposure=0.02, dark_frames=0).errors == "independent"
+
+
+def test_photographs_come_back_from_xarray(own):
+    scene, phi = own
+    data = phi.to_xarray()
+    again = phicam.Phi(scene, data.flux, data.stderr.values, left_out=data.left_out)
+    assert (again.flux == phi.flux).all() and (again.stderr == phi.stderr).all() and again.shape == phi.shape == (12, 8)
+    assert (phicam.Phi(scene, np.stack([phi.frame(k) for k in range(8)], axis=-1)).flux == phi.flux).all()

@@ -106,6 +106,8 @@ pub struct Options {
     /// Whether `joint-two-valued` sums over patterns, and searches widely for the best one; seconds in
     /// place of tenths of them.
     pub probabilities: bool,
+    /// Whether these sums allow for elements that differ from their level, where levels are not given.
+    pub spreads: bool,
     /// Confidence level, in (0, 1), of the bands to be computed ([`Bands`](super::Bands)); none
     /// where not given.
     pub bands: Option<f64>,
@@ -128,6 +130,7 @@ impl Default for Options {
             total_variation: None,
             levels: None,
             probabilities: true,
+            spreads: true,
             bands: None,
             frame: None,
         }

@@ -60,6 +60,7 @@ pub(in crate::recovery) fn recover(
     let quick = Options {
         bands: None,
         probabilities: by_ratio && options.probabilities,
+        spreads: false,
         ..*options
     };
     let (start, whole) = if by_ratio {
@@ -100,6 +101,10 @@ pub(in crate::recovery) fn recover(
     found.log_evidence = evidence;
     let widened = widened(&found, || {
         let known = base.about(problem.phi, &linear.d, &Soft::NONE);
+        let quick = Options {
+            spreads: options.spreads,
+            ..quick
+        };
         by(method, &known, &quick)
     })?;
     if let Some(gains) = found.nuisance.as_mut().and_then(|n| n.gains.as_mut()) {

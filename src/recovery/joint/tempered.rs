@@ -17,7 +17,7 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::ground::{Ground, Moments, Summed};
-use super::walker::{Land, Walker, log_uniform};
+use super::walker::{Land, Walker, accepted};
 use crate::num::linalg::{LinalgError, svd};
 use crate::num::stream::{Key, Sampling, Stream};
 use crate::recovery::Sum;
@@ -82,7 +82,7 @@ fn ladder(
         }
         for k in (sweep % 2..betas.len() - 1).step_by(2) {
             let gain = 0.5 * (betas[k] - betas[k + 1]) * (copies[k].chi2 - copies[k + 1].chi2);
-            if log_uniform(random) < gain {
+            if accepted(gain, random) {
                 copies.swap(k, k + 1);
             }
         }

@@ -77,7 +77,9 @@ pub(in crate::recovery) fn recover(
     }
     let shown = best.values();
     let spread = match &summed {
-        Some(exact) if given.is_none() => Some(spread::sum(&ground, exact, &shown)?),
+        Some(exact) if given.is_none() && options.spreads => {
+            Some(spread::sum(&ground, exact, &shown)?)
+        }
         _ => None,
     };
     let mut recovered = coordinates.finish(method, problem, options, &shown * unit)?;

@@ -47,9 +47,17 @@ impl<'a> Land<'a> {
     }
 }
 
-/// ln of a uniform number.
-pub(super) fn log_uniform(random: &mut Stream) -> f64 {
-    libm::log(random.uniform().max(f64::MIN_POSITIVE))
+/// ln of the least uniform number above 0, and less.
+const LEAST: f64 = -40.0;
+
+/// Whether a change of ln probability by `gain` is made: with probability min(1, e^gain). Most gains
+/// tell without a logarithm.
+pub(super) fn accepted(gain: f64, random: &mut Stream) -> bool {
+    let x = random.uniform();
+    if gain >= 0.0 || (gain < LEAST && x > 0.0) {
+        return gain >= 0.0;
+    }
+    libm::log(x.max(f64::MIN_POSITIVE)) < gain
 }
 
 /// One pattern with its levels.
@@ -237,7 +245,7 @@ impl Walker {
     /// Changes elements, their levels held.
     fn change(&mut self, land: &Land<'_>, beta: f64, which: &[usize], random: &mut Stream) {
         let after = self.after(land, which);
-        if log_uniform(random) < -0.5 * beta * (after - self.chi2) {
+        if accepted(-0.5 * beta * (after - self.chi2), random) {
             self.make(land, which, after);
         }
     }
@@ -295,7 +303,7 @@ impl Walker {
             return;
         };
         let gain = after.log_plane(beta) - before.log_plane(beta);
-        if log_uniform(random) >= gain {
+        if !accepted(gain, random) {
             return;
         }
         let levels = after.draw(beta, [random.normal(), random.normal()]);
@@ -318,7 +326,7 @@ impl Walker {
         let [a, b] = [random.uniform(), random.uniform()];
         let mut other = self.clone();
         other.move_levels(land, [a.min(b), a.max(b)]);
-        if possible(other.levels) && log_uniform(random) < -0.5 * beta * (other.chi2 - self.chi2) {
+        if possible(other.levels) && accepted(-0.5 * beta * (other.chi2 - self.chi2), random) {
             *self = other;
         }
     }
