@@ -97,7 +97,9 @@ def test_the_interpreter_is_not_held():
 
 
 PROGRAM = """
-import sys, time, phicam
+import signal, sys, time, phicam
+# A shell that starts this in the background has it ignored.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 scene = phicam.Scene("bench").replace({"camera.pixels": (64, 64)})
 print("ready", flush=True)
 try:

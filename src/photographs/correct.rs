@@ -181,6 +181,15 @@ mod tests {
         let of_flat = (0.5 * 100.0 + 9.0 + lsb + 9.0 + lsb) / 1e4;
         let due = (own + 9.0 + lsb) / 2.25 + of_flat * 1600.0;
         assert!((found.variance.unwrap()[0] / due - 1.0).abs() < 1e-9);
+        // The part of the dark frame, mean over the two pixels that the flat field serves.
+        let of_flat = (0.5 * 300.0 + 9.0 + lsb + 9.0 + lsb) / 9e4;
+        let other = (0.5 * 90.0 + 9.0 + lsb + 9.0 + lsb) / 20.25 + of_flat * 400.0;
+        let common = 0.5 * (9.0 + lsb) * (1.0 / 2.25 / due + 1.0 / 20.25 / other);
+        assert!(
+            (found.common / common - 1.0).abs() < 1e-9,
+            "{}",
+            found.common
+        );
     }
 
     /// Var (a + b + c)/3 = (Var a + Var b + Var c)/9: by hand from 30, 60 and 90 counts of gain 0.5

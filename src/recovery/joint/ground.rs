@@ -64,6 +64,17 @@ pub(super) struct Summed {
 }
 
 impl Summed {
+    /// The same with no less evidence than a pattern alone has, of the weight e^`log`: all patterns have
+    /// no less, though sampling may not have met it.
+    pub(super) fn with_known(self, log: Option<f64>) -> Self {
+        let all = self.best.len() as f64 * std::f64::consts::LN_2;
+        let known = log.unwrap_or(f64::NEG_INFINITY) - all;
+        Self {
+            log_evidence: self.log_evidence.max(known),
+            ..self
+        }
+    }
+
     /// The probabilities, with that of the pattern that is recovered.
     pub(super) fn finish(&self, recovered: &[bool]) -> Patterns {
         let own = self.weights.get(recovered).copied().unwrap_or(0.0);

@@ -70,18 +70,19 @@ struct Part {
     square: DVector<f64>,
 }
 
-/// Of a picture `shown` of two levels that are not given; `exact` are the sums where they are exact.
+/// Of a picture of two levels that are not given, its pattern and its values; `exact` are the sums
+/// where the levels are exact.
 pub(super) fn sum(
     ground: &Ground<'_>,
     exact: &Summed,
-    shown: &DVector<f64>,
+    (light, shown): (&[bool], &DVector<f64>),
 ) -> Result<Spread, LinalgError> {
     let mut gram = DMatrix::zeros(ground.r.ncols(), ground.r.ncols());
     gram_product(&mut gram, ground.r);
     let own = ground.r * ground.r.transpose();
     let parts: Result<Vec<Option<Part>>, LinalgError> = SPREADS
         .par_iter()
-        .map(|tau| part(ground, [&own, &gram], *tau, exact, shown))
+        .map(|tau| part(ground, [&own, &gram], *tau, (light, shown)))
         .collect();
     let parts: Vec<(f64, f64, Part)> = SPREADS
         .into_iter()
@@ -119,8 +120,7 @@ fn part(
     ground: &Ground<'_>,
     [own, gram]: [&DMatrix<f64>; 2],
     tau: f64,
-    exact: &Summed,
-    shown: &DVector<f64>,
+    (light, shown): (&[bool], &DVector<f64>),
 ) -> Result<Option<Part>, LinalgError> {
     let with_one = |of: &DMatrix<f64>| {
         let mut sum = of * (tau * tau);
@@ -133,7 +133,9 @@ fn part(
     let r = factor.forward(ground.r.clone());
     let d = DMatrix::from_column_slice(ground.d.len(), 1, ground.d.as_slice());
     let d = factor.forward(d).column(0).into_owned();
-    let summed = tempered::sample(&Ground::new(&r, &d, None), &exact.best, WORK)?;
+    let own = Ground::new(&r, &d, None);
+    let summed = tempered::sample(&own, light, WORK)?;
+    let summed = summed.with_known(own.log_weight(light));
     let m = inverse.inverse();
     let toward = ground.r.tr_mul(ground.d) * (tau * tau);
     let mut square = m.diagonal() * (tau * tau);

@@ -15,7 +15,7 @@ use super::ground::Ground;
 use super::pattern_search::{Found, Levels, Search};
 use super::{enumerated, neighbours, scale, spread, tempered};
 use crate::recovery::{
-    Choice, Method, Options, Parameter, Patterns, Problem, Recovered, RecoveryError, Solver, Sum,
+    Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, Solver, Sum,
 };
 
 /// Above this many elements patterns are not sampled.
@@ -76,16 +76,14 @@ pub(in crate::recovery) fn recover(
         bound = objective;
     }
     let shown = best.values();
+    let summed = summed.map(|all| all.with_known(ground.log_weight(&best.light)));
     let spread = match &summed {
         Some(exact) if given.is_none() && options.spreads => {
-            Some(spread::sum(&ground, exact, &shown)?)
+            Some(spread::sum(&ground, exact, (&best.light, &shown))?)
         }
         _ => None,
     };
     let mut recovered = coordinates.finish(method, problem, options, &shown * unit)?;
-    // The pattern alone is no more than all of them.
-    let own = ground.log_weight(&best.light).unwrap_or(f64::NEG_INFINITY);
-    let own = own - n as f64 * std::f64::consts::LN_2;
     let grids = problem.grids.unwrap_or(&[]);
     let gained = summed
         .as_ref()
@@ -97,12 +95,9 @@ pub(in crate::recovery) fn recover(
     });
     recovered.patterns = summed.map(|summed| {
         let of = summed.finish(&best.light);
-        Patterns {
-            log_evidence: of.log_evidence.max(own),
-            ..match spread {
-                Some(spread) => spread.finish(of),
-                None => of,
-            }
+        match spread {
+            Some(spread) => spread.finish(of),
+            None => of,
         }
     });
     let of_patterns = recovered.patterns.as_ref().map(|p| p.log_evidence);

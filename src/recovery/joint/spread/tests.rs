@@ -49,8 +49,9 @@ fn errors_are_those_of_all_patterns_levels_and_spreads() {
         let d = &r * DVector::from_row_slice(&truth) + DVector::from_fn(4, |_, _| normal());
         let shown = DVector::from_row_slice(&SHOWN);
         let ground = Ground::new(&r, &d, None);
-        let exact = tempered::sample(&ground, &[false, true, false, true], tempered::MOST_WORK);
-        let found = sum(&ground, &exact.unwrap(), &shown).unwrap();
+        let light = [false, true, false, true];
+        let exact = tempered::sample(&ground, &light, tempered::MOST_WORK).unwrap();
+        let found = sum(&ground, &exact, (&light, &shown)).unwrap();
         let parts = SPREADS.map(|tau| by_hand(&r, &d, tau));
         let own = by_hand(&r, &d, 0.0);
         let others: Vec<f64> = parts

@@ -29,6 +29,9 @@ fn a_fine_board_is_recovered_whole() {
             "{solver:?}"
         );
         assert!(solver.gap <= solver.objective);
+        // No element differs from its level.
+        let patterns = found.patterns.unwrap();
+        assert!(patterns.exact > 0.9, "{}", patterns.exact);
     }
 }
 
