@@ -182,7 +182,7 @@ pub fn recover<'py>(
         errors: ways(errors_name)?,
         replicates,
     };
-    let attempts = run(py, threads, None, move |_| {
+    let attempts = run(py, threads, None, move |control| {
         let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
             Noise::StandardError(stderr, certainty)
         });
@@ -196,7 +196,7 @@ pub fn recover<'py>(
             scale_error: settings.scale_error,
             left_out: left_out.as_ref(),
         };
-        recover_objects(&own, &phi, noise, nuisance, &methods, &options)
+        recover_objects(&own, &phi, noise, nuisance, &methods, &options, control)
     })?;
     let alone = attempts.len() == 1;
     let (mut objects, mut failed) = (Vec::new(), Vec::new());

@@ -11,6 +11,7 @@ use crate::transport::Control;
 static STOP: AtomicBool = AtomicBool::new(false);
 static WARNED: AtomicBool = AtomicBool::new(false);
 static GUARDED: AtomicBool = AtomicBool::new(false);
+static KEEPING: AtomicBool = AtomicBool::new(false);
 
 /// The flag that ends the work at once: Ctrl-C sets it, and SIGTERM where nothing can be finished
 /// first. A second Ctrl-C ends the process. What is finished is on disk by then.
@@ -48,6 +49,24 @@ impl Drop for SignalGuard {
         if warned() {
             STOP.store(true, Ordering::Relaxed);
         }
+    }
+}
+
+/// While it lives a step at work is waited for, so that what was found before it is not lost.
+#[derive(Debug)]
+pub(super) struct StepGuard;
+
+impl StepGuard {
+    /// From now on.
+    pub(super) fn new() -> Self {
+        KEEPING.store(true, Ordering::Relaxed);
+        Self
+    }
+}
+
+impl Drop for StepGuard {
+    fn drop(&mut self) {
+        KEEPING.store(false, Ordering::Relaxed);
     }
 }
 
@@ -92,12 +111,24 @@ fn listen() {}
 const ORDERLY: Duration = Duration::from_millis(1500);
 #[cfg(unix)]
 const WRITING: Duration = Duration::from_secs(20);
+/// Time that a step has, where what was found before it is only in memory.
+#[cfg(unix)]
+const STEP: Duration = Duration::from_secs(60);
 
 /// Ends the process where the work has not looked at the flag: it is in the midst of a step that
 /// nothing divides. Files appear whole or not at all, so that what is finished is on disk.
 #[cfg(unix)]
 fn end_soon() {
     std::thread::sleep(ORDERLY);
+    let start = Instant::now();
+    if KEEPING.load(Ordering::Relaxed) {
+        complain(
+            "the step at work is finished first, and what was found before it is written; Ctrl-C again ends at once",
+        );
+    }
+    while KEEPING.load(Ordering::Relaxed) && start.elapsed() < STEP {
+        std::thread::sleep(Duration::from_millis(10));
+    }
     let start = Instant::now();
     while !is_at_rest() && start.elapsed() < WRITING {
         std::thread::sleep(Duration::from_millis(1));

@@ -49,6 +49,10 @@ pub(super) fn start(console: Console, what: &str, work: Work) -> ProgressBar {
         Work::Samples(total) => bar(console, what, total, |state, w| {
             let _ = w.write_str(&per_second(state.per_sec()));
         }),
+        Work::Methods(count) => bar(console, what, count * Work::EACH_METHOD, move |state, w| {
+            let done = state.pos() / Work::EACH_METHOD;
+            let _ = write!(w, "{done} of {count} methods");
+        }),
         Work::Tasks(total) => bar(console, what, total, |state, w| {
             let _ = write!(w, "{} of {}", state.pos(), state.len().unwrap_or(0));
             let _ = match state.per_sec() {

@@ -9,7 +9,7 @@ use super::load_run::{read_matrix, read_run, read_stderr};
 use super::recover_beside::{Beside, Photographs, mask};
 use super::recover_memory::{self, Errors, Held, Strips};
 use super::recover_options::{self, uncertainty};
-use super::recovered::{collect, tell, write};
+use super::recovered::{collect, recovering, tell, write};
 use super::run_folder::{PHI, RECOVERED, RunFolder, SATURATED, SCENE, STDERR, is_of_recovered};
 use super::{Outcome, recover_own};
 use crate::folder::Record;
@@ -222,8 +222,18 @@ impl Job<'_> {
             frame: of.grid,
             ..self.options
         };
-        let (attempts, picards) =
-            recover_with_picards(&model, &phi, noise, nuisance, self.methods, &options);
+        let what = format!("recover {}", scene.name);
+        let (attempts, picards) = recovering(self.console, &what, self.methods, |control| {
+            recover_with_picards(
+                &model,
+                &phi,
+                noise,
+                nuisance,
+                self.methods,
+                &options,
+                control,
+            )
+        });
         Ok((attempts, picards?))
     }
 

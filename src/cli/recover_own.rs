@@ -9,7 +9,7 @@ use super::failure::Failure;
 use super::load_run::{read_undamaged, refuse_negative};
 use super::recover_beside::{Beside, Photographs, mask};
 use super::recover_options::{self, uncertainty};
-use super::recovered::{collect, tell, write};
+use super::recovered::{collect, recovering, tell, write};
 use super::run_folder::{RunFolder, SATURATED};
 use crate::lab::{Certainty, Noise, by_trust, recover_with_picards};
 use crate::matrix::{Matrix, npy};
@@ -110,8 +110,9 @@ pub(super) fn execute(
         ..options
     };
     let nuisance = beside.nuisance(args);
-    let (attempts, picards) =
-        recover_with_picards(&model, &phi, noise, nuisance, &methods, &options);
+    let (attempts, picards) = recovering(console, "recover", &methods, |control| {
+        recover_with_picards(&model, &phi, noise, nuisance, &methods, &options, control)
+    });
     let mut objects = collect(attempts, methods.len() == 1, console)?;
     if named.is_empty() {
         by_trust(&mut objects);

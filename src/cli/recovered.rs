@@ -1,6 +1,7 @@
 //! The files of a recovery.
 
 use std::path::Path;
+use std::sync::atomic::Ordering;
 
 use serde_json::json;
 
@@ -8,14 +9,16 @@ use super::Outcome;
 use super::cleanup::{remove_abandoned, remove_named};
 use super::console::Console;
 use super::failure::Failure;
-use super::output;
+use super::interrupt::{StepGuard, stop_flag};
+use super::{output, progress};
 use crate::lab::finding::Describe;
-use crate::lab::{Attempt, Beside, RecoveredObject, describe_recovery};
+use crate::lab::{Attempt, Beside, RecoveredObject, Work, describe_recovery};
 use crate::matrix::{Matrix, npy};
-use crate::recovery::Picard;
+use crate::recovery::{Method, Picard, RecoveryError};
 use crate::report::{self, Panel};
 use crate::scene::{Division, Scene};
 use crate::store::ensure_writable;
+use crate::transport::Control;
 
 /// The objects that were recovered. A method that cannot work is reported; if none can, or the only
 /// one asked for, that is the command's failure.
@@ -29,6 +32,10 @@ pub(super) fn collect(
     for attempt in attempts {
         match attempt.outcome {
             Ok(found) => objects.extend(found),
+            Err(e @ RecoveryError::Stopped(_)) if objects.is_empty() => {
+                let kept = format!("{} was not finished: nothing is written", attempt.method);
+                return Err(Failure::from(e).if_stopped(kept));
+            }
             Err(e) if strict => return Err(e.into()),
             Err(e) => reasons.push(format!("{}: {e}", attempt.method)),
         }
@@ -49,11 +56,29 @@ pub(super) fn collect(
     Ok(objects)
 }
 
-/// Prints the objects; the exit code is that of photographs which no picture explains, or 0.
+/// Recovers by `methods` under a bar. At Ctrl-C the step at hand is finished, so that the methods
+/// that are done are not lost.
+pub(super) fn recovering<T>(
+    console: Console,
+    what: &str,
+    methods: &[Method],
+    act: impl FnOnce(Control<'_>) -> T,
+) -> T {
+    let _guard = StepGuard::new();
+    let work = Work::Methods(methods.len() as u64);
+    progress::run(console, what, work, act)
+}
+
+/// Prints the objects; the exit code is that of photographs which no picture explains, of a
+/// recovery that was stopped, or 0.
 pub(super) fn tell(objects: &[RecoveredObject], json: bool) -> Result<Outcome, Failure> {
     output::result(json, &objects, || {
         report::finding_text(&describe_recovery(objects))
     })?;
+    if stop_flag().load(Ordering::Relaxed) {
+        let kept = "what was found until then is written";
+        return Err(Failure::Stopped(kept.to_owned()));
+    }
     if objects.iter().any(RecoveredObject::contradicted) {
         return Ok(Outcome::Disagreed);
     }

@@ -160,14 +160,19 @@ fn compare_and_recover(
         uncertainty: recover_options::uncertainty(&matrices, console),
         ..Options::default()
     };
-    let (attempts, picards) = lab::recover_with_picards(
-        &matrices,
-        &results.phi,
-        noise,
-        Nuisance::default(),
-        &Method::tried(matrices.albedo.len()),
-        &options,
-    );
+    let methods = Method::tried(matrices.albedo.len());
+    let what = format!("recover {}", results.scene.name);
+    let (attempts, picards) = recovered::recovering(console, &what, &methods, |control| {
+        lab::recover_with_picards(
+            &matrices,
+            &results.phi,
+            noise,
+            Nuisance::default(),
+            &methods,
+            &options,
+            control,
+        )
+    });
     results.recovered = recovered::collect(attempts, false, console)?;
     lab::by_trust(&mut results.recovered);
     results.picards = picards?;

@@ -36,6 +36,7 @@ pub(super) fn doubts(found: &Recovered, judged: &Judged) -> Vec<String> {
         few_directions(found),
         noise(found),
         on_bounds(found),
+        stopped(found),
         unfinished(found, judged),
         drifting(found),
         without_bands(found),
@@ -84,6 +85,14 @@ fn misfit(found: &Recovered, judged: &Judged) -> Option<String> {
         "{own}, and others explain them ({}): the method is at fault, not the photographs. {}",
         told(&best.possible),
         cure(found.method)
+    ))
+}
+
+/// A search that was stopped.
+fn stopped(found: &Recovered) -> Option<String> {
+    let left = found.unfinished?;
+    Some(format!(
+        "NOT FINISHED: {left}. Recover again for the whole search"
     ))
 }
 

@@ -10,8 +10,10 @@ use super::fit::{Certainty, Fit, Judged};
 use super::likelier::likelier;
 use super::measures::Measures;
 use super::problem::problem;
+use super::study::Work;
 use crate::matrix::Matrix;
 use crate::model::MatrixModel;
+use crate::num::control::{Control, share_of};
 use crate::recovery::{
     self, BandKind, Bands, Method, Nuisance, Options, Picard, Problem, Recovered, RecoveryError,
     Shared, recover,
@@ -146,7 +148,8 @@ pub struct Attempt {
 
 /// Recovers the hidden reflectance from `phi` (pixels × spots, W) by each of `methods`, and
 /// measures it against the true albedo at the element centres. `nuisance` is what else the
-/// photographs hold.
+/// photographs hold. Methods that are not finished when `control` stops it are
+/// [`RecoveryError::Stopped`].
 pub fn recover_objects(
     model: &MatrixModel,
     phi: &Matrix,
@@ -154,10 +157,11 @@ pub fn recover_objects(
     nuisance: Nuisance<'_>,
     methods: &[Method],
     options: &Options,
+    control: Control<'_>,
 ) -> Vec<Attempt> {
     let (grids, shared) = (counts(model), Shared::default());
     let problem = ready(model, phi, noise, nuisance, &grids, &shared);
-    attempts(model, &problem, noise, methods, options)
+    attempts(model, &problem, noise, methods, options, control)
 }
 
 /// The same with Φ in the singular directions of the model's laser side, and, where one of
@@ -174,11 +178,17 @@ pub fn recover_with_picards(
     nuisance: Nuisance<'_>,
     methods: &[Method],
     options: &Options,
+    control: Control<'_>,
 ) -> (Vec<Attempt>, Result<Vec<Picard>, RecoveryError>) {
     let (grids, shared) = (counts(model), Shared::default());
     let problem = ready(model, phi, noise, nuisance, &grids, &shared);
-    let attempts = attempts(model, &problem, noise, methods, options);
-    let picards = problem.and_then(|problem| picards(&problem, methods, options));
+    let attempts = attempts(model, &problem, noise, methods, options, control);
+    // What has not been decomposed by then takes as long as a method.
+    let picards = if control.stopped() {
+        Ok(Vec::new())
+    } else {
+        problem.and_then(|problem| picards(&problem, methods, options))
+    };
     (attempts, picards)
 }
 
@@ -210,6 +220,7 @@ fn attempts(
     noise: Noise<'_>,
     methods: &[Method],
     options: &Options,
+    control: Control<'_>,
 ) -> Vec<Attempt> {
     let problem = match problem {
         Ok(problem) => problem,
@@ -223,7 +234,11 @@ fn attempts(
     };
     let found: Vec<Result<Recovered, RecoveryError>> = methods
         .iter()
-        .map(|method| recover(*method, problem, options))
+        .map(|method| {
+            share_of(control, Work::EACH_METHOD, |own| {
+                recover(*method, &problem.under(own), options)
+            })
+        })
         .collect();
     let known = noise.known();
     let all: Vec<&Recovered> = found.iter().flatten().collect();

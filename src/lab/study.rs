@@ -31,9 +31,14 @@ pub enum Work {
     Tasks(u64),
     /// So many paths.
     Samples(u64),
+    /// So many methods of recovery.
+    Methods(u64),
 }
 
 impl Work {
+    /// Units of a method of recovery.
+    pub const EACH_METHOD: u64 = 100;
+
     /// The paths that a scene needs: `shared` of them per pixel and `independent` ones per pixel
     /// and spot. A number too large to count is as good as any other for a progress bar.
     pub fn samples(scene: &Scene, shared: u64, independent: u64) -> Self {
@@ -50,6 +55,7 @@ impl Work {
         match self {
             Self::Tasks(n) => Self::Tasks(of(n)),
             Self::Samples(n) => Self::Samples(of(n)),
+            Self::Methods(n) => Self::Methods(of(n)),
         }
     }
 }
@@ -172,7 +178,7 @@ pub fn run<S: Study>(study: &S, control: Control<'_>) -> Result<S::Result, S::Er
 fn within<'a, S: Study>(study: &S, control: Control<'a>) -> Control<'a> {
     match study.work() {
         Work::Samples(_) => control,
-        Work::Tasks(_) => Control {
+        Work::Tasks(_) | Work::Methods(_) => Control {
             progress: &|_| (),
             stop: control.stop,
         },

@@ -59,6 +59,7 @@ mod tests {
     use crate::lab::study::tests::small;
     use crate::lab::{Certainty, Noise, recover_objects};
     use crate::model::{Kernel, MatrixModel};
+    use crate::num::control::Control;
     use crate::recovery::{Method, Nuisance, Options};
 
     /// Of a board of two levels the pattern comes first, then what fits, the possible before the
@@ -74,7 +75,15 @@ mod tests {
         let noise = Noise::StandardError(&stderr, Certainty::STATED);
         let tried = Method::tried(16);
         let (nuisance, options) = (Nuisance::default(), Options::default());
-        let found = recover_objects(&model, &phi, noise, nuisance, &tried, &options);
+        let found = recover_objects(
+            &model,
+            &phi,
+            noise,
+            nuisance,
+            &tried,
+            &options,
+            Control::none(),
+        );
         let mut objects: Vec<_> = found.into_iter().flat_map(|a| a.outcome.unwrap()).collect();
         by_trust(&mut objects);
         assert_eq!(objects[0].method, "joint-two-valued");

@@ -1,6 +1,7 @@
 //! Floor 0: numbers. Constants, random and low-discrepancy streams, warps, quadrature, statistics,
 //! linear algebra, arithmetic beyond double precision, wide arithmetic.
 
+pub mod control;
 #[doc(hidden)]
 pub mod decimal;
 #[doc(hidden)]

@@ -20,8 +20,9 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{Method, Options, Problem, RecoveryError, WeightRule};
+use crate::num::control::{Control, Steps};
 use crate::num::linalg::{rows_times, svd};
-use crate::num::quadratic::{Bounds, box_least_squares, extent};
+use crate::num::quadratic::{Bounds, Extents, box_least_squares};
 use crate::num::statistics::{chi_square_quantile, sidak_threshold};
 
 /// What a band is, and so what it promises of each element taken alone.
@@ -142,6 +143,8 @@ pub(super) fn simultaneous_allowed<'a>(
 /// Why photographs that nothing explains have no bands.
 const REFUTED: &str =
     "has no bands: no reflectances within its bounds explain the photographs at this confidence";
+/// Why a computation that was stopped has none.
+const STOPPED: &str = "has no bands: it was stopped before they were found";
 /// Why a biased estimate has none.
 pub(super) const BIASED: &str = "has no bands: regularisation, dropped directions or a free scale bias the picture \
                                  by an amount that the photographs do not tell";
@@ -153,6 +156,7 @@ pub(super) fn simultaneous(
     d: &DVector<f64>,
     bounds: &Bounds,
     confidence: f64,
+    control: Control<'_>,
 ) -> Result<Result<Bands, &'static str>, RecoveryError> {
     let decomposed = svd(r)?;
     let rows = rows_times(decomposed.vt, &decomposed.sigma);
@@ -171,11 +175,17 @@ pub(super) fn simultaneous(
         if room < 0.0 {
             return Ok(Err(REFUTED));
         }
-        let of = |j| extent(&rows, &data, bounds, &best.solution, room, j);
-        (0..r.ncols())
-            .into_par_iter()
-            .map(of)
-            .collect::<Result<_, _>>()?
+        let extents = Extents::new(&rows, &data, bounds, &best.solution, room)?;
+        let steps = Steps::new(control, 90, r.ncols());
+        let each = (0..r.ncols()).into_par_iter();
+        let of = |j| {
+            let goes_on = steps.done().is_ok();
+            goes_on.then(|| extents.of(j)).transpose()
+        };
+        match each.map(of).collect::<Result<Option<_>, _>>()? {
+            Some(intervals) => intervals,
+            None => return Ok(Err(STOPPED)),
+        }
     };
     Ok(Ok(Bands {
         confidence,

@@ -1,6 +1,7 @@
 //! What can be wrong with a recovery.
 
 use super::{Method, Rule};
+use crate::num::control::Stopped;
 use crate::num::linalg::LinalgError;
 use crate::num::quadratic::QuadraticError;
 
@@ -281,6 +282,9 @@ pub enum RecoveryError {
         /// The largest estimate of s ρ.
         largest: f64,
     },
+    /// It was stopped from outside before it was finished.
+    #[error("{0}")]
+    Stopped(#[from] Stopped),
     /// A decomposition failed.
     #[error(transparent)]
     Linalg(#[from] LinalgError),

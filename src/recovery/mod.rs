@@ -166,6 +166,7 @@ fn by(
     problem: &Problem<'_>,
     options: &Options,
 ) -> Result<Recovered, RecoveryError> {
+    problem.control.check()?;
     match method {
         Method::Pinv
         | Method::LeftInverse

@@ -178,6 +178,8 @@ pub struct Recovered {
     /// and [`Options::frame`](super::Options::frame) is not. Its errors are those of noise of κ times the
     /// variance then.
     pub alike: Option<f64>,
+    /// What was left undone, where it was stopped and this is the best till then.
+    pub unfinished: Option<&'static str>,
 }
 
 impl Recovered {
@@ -339,6 +341,7 @@ impl Recovered {
             bands: None,
             no_bands: None,
             alike: None,
+            unfinished: None,
         }
     }
 }

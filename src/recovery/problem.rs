@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::soft::Soft;
 use super::{Nuisance, RecoveryError, Shared};
+use crate::num::control::Control;
 use crate::num::linalg::{
     Range, Svd, Tolerance, columns_times, product, range, rows_times, subtract_product, svd_to,
 };
@@ -34,6 +35,7 @@ pub struct Problem<'a> {
     /// Factors about estimates of them, where the problem is linear in both.
     pub(super) soft: Option<&'a Soft>,
     pub(super) shared: Option<&'a Shared>,
+    pub(super) control: Control<'a>,
 }
 
 impl<'a> Problem<'a> {
@@ -99,7 +101,13 @@ impl<'a> Problem<'a> {
             terms: None,
             soft: None,
             shared: None,
+            control: Control::none(),
         })
+    }
+
+    /// The same, recovered until it is told to stop. Each method is 100 units of the work.
+    pub fn under(self, control: Control<'a>) -> Self {
+        Problem { control, ..self }
     }
 
     /// The same, its operators shared among all copies of it: to be asked for last, for a problem

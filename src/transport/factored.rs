@@ -25,11 +25,11 @@ use super::camera::camera_terms;
 use super::context::Context;
 use super::light_path::light_end;
 use super::light_points::LightPoints;
-use super::plan::Control;
 use super::spots::LitPoints;
 use super::tally::{Moments, Tally};
 use super::vertex::{Batch, Vertex};
 use crate::geometry::{Blockers, DVec3};
+use crate::num::control::Control;
 use crate::num::lanes::{add_product, padded};
 use crate::num::stream::Key;
 

@@ -60,7 +60,8 @@ mod tally;
 mod vertex;
 mod visibility;
 
+pub use crate::num::control::{Control, Stopped};
 pub use crate::num::stream::Sampling;
-pub use plan::{Budget, Control, Estimator, Plan, RenderError, SamplesError, Stopped, Traced};
+pub use plan::{Budget, Estimator, Plan, RenderError, SamplesError, Traced};
 pub use render::{NUMERICS, block_size, render, trace, unsupported_surface};
 pub use tally::{Moments, Tally, TallyError};

@@ -1,14 +1,13 @@
-//! Settings and results of the tracer, and how a long computation reports progress and is
-//! stopped.
+//! Settings and results of the tracer.
 
 use std::ops::Range;
 use std::str::FromStr;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
 
 use super::tails::flag_neighbours;
 use crate::matrix::Matrix;
+use crate::num::control::Stopped;
 use crate::num::stream::{LARGEST_NET, Sampling};
 
 /// What paths have in common. All are unbiased.
@@ -195,49 +194,6 @@ impl TryFrom<Stored> for Plan {
     }
 }
 
-/// How a long computation reports progress and is stopped.
-#[derive(Clone, Copy)]
-pub struct Control<'a> {
-    /// Called from any thread with how much was just finished, in the unit of the work: paths, or
-    /// tasks.
-    pub progress: &'a (dyn Fn(u64) + Sync),
-    /// Set from outside to stop the render.
-    pub stop: &'a AtomicBool,
-}
-
-/// Never set.
-static NEVER: AtomicBool = AtomicBool::new(false);
-
-impl Control<'static> {
-    /// Reports to nobody and is never stopped.
-    pub fn none() -> Self {
-        Self {
-            progress: &|_| (),
-            stop: &NEVER,
-        }
-    }
-}
-
-impl Control<'_> {
-    /// Whether the computation is to end.
-    pub fn stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
-    }
-
-    /// Goes on, or is [`Stopped`].
-    ///
-    /// # Errors
-    /// [`Stopped`].
-    pub fn check(&self) -> Result<(), Stopped> {
-        if self.stopped() { Err(Stopped) } else { Ok(()) }
-    }
-}
-
-/// A computation was stopped from outside before it was finished.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("stopped before it was finished; run the same command again to go on")]
-pub struct Stopped;
-
 /// Why columns of Φcam were not traced.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RenderError {
@@ -263,14 +219,6 @@ pub enum RenderError {
     /// The tally to go on from was made for another scene, plan or number of spots.
     #[error("the tally belongs to another scene, plan or number of spots; begin a new one")]
     ForeignTally,
-}
-
-impl std::fmt::Debug for Control<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Control")
-            .field("stop", &self.stop)
-            .finish_non_exhaustive()
-    }
 }
 
 /// Traced columns of Φcam.

@@ -6,11 +6,12 @@ use rayon::prelude::*;
 
 use super::context::Context;
 use super::factored::Factored;
-use super::plan::{Control, Estimator, Plan, RenderError, Stopped, Traced};
+use super::plan::{Estimator, Plan, RenderError, Traced};
 use super::points::PixelPoints;
 use super::shared::PixelRow;
 use super::tally::{Moments, Tally};
 use super::{independent, shared};
+use crate::num::control::{Control, Stopped};
 
 use crate::num::tree::Tree;
 use crate::scene::{Scene, Surface};

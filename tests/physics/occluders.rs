@@ -9,7 +9,7 @@ use phicam::model::{Extent, Kernel, MatrixModel, Occlusion, converged};
 use phicam::num::stream::Sampling;
 use phicam::recovery::{Method, Nuisance, Options};
 use phicam::scene::Scene;
-use phicam::transport::Estimator;
+use phicam::transport::{Control, Estimator};
 
 /// The scene `periscope` with other occluders in place of its plate.
 fn past(occluders: &str) -> Scene {
@@ -117,6 +117,7 @@ fn an_occluders_light_is_estimated_with_the_picture() {
                 Nuisance::default(),
                 &methods,
                 &Options::default(),
+                Control::none(),
             );
             found.into_iter().next().unwrap().outcome.unwrap()
         };

@@ -1,9 +1,12 @@
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
 use super::*;
 use crate::lab::ensemble::Photographs;
 use crate::lab::study::tests::small;
-use crate::lab::{Certainty, Noise, RecoveredObject, recover_objects};
+use crate::lab::{Certainty, Noise, RecoveredObject, Work, recover_objects};
 use crate::matrix::Matrix;
 use crate::model::{Kernel, MatrixModel};
+use crate::num::control::Control;
 use crate::recovery::{Nuisance, Options};
 
 /// Every method that 16 elements and 14 spots allow, with what it makes of the photographs: a
@@ -18,13 +21,21 @@ fn by_every_method(
     });
     let options = Options::default();
     let nuisance = Nuisance::default();
-    recover_objects(model, phi, noise, nuisance, &Method::ALL, &options)
-        .into_iter()
-        .map(|a| {
-            let outcome = a.outcome.map(|mut all| all.remove(0));
-            (a.method, outcome.map_err(|e| e.to_string()))
-        })
-        .collect()
+    recover_objects(
+        model,
+        phi,
+        noise,
+        nuisance,
+        &Method::ALL,
+        &options,
+        Control::none(),
+    )
+    .into_iter()
+    .map(|a| {
+        let outcome = a.outcome.map(|mut all| all.remove(0));
+        (a.method, outcome.map_err(|e| e.to_string()))
+    })
+    .collect()
 }
 
 fn loud(object: &RecoveredObject) -> bool {
@@ -130,7 +141,15 @@ fn elements_that_cannot_be_told_apart_are_told() {
         let noise = Noise::StandardError(&stderr, Certainty::STATED);
         let methods = [Method::JointUnbounded];
         let (nuisance, options) = (Nuisance::default(), Options::default());
-        let found = recover_objects(&model, &exact, noise, nuisance, &methods, &options);
+        let found = recover_objects(
+            &model,
+            &exact,
+            noise,
+            nuisance,
+            &methods,
+            &options,
+            Control::none(),
+        );
         let warnings = &found[0].outcome.as_ref().unwrap()[0].warnings;
         let told = warnings
             .iter()
@@ -159,7 +178,15 @@ fn greys_about_two_levels_are_told_from_two_levels() {
             let noise = Noise::StandardError(&right.stderr, Certainty::STATED);
             let (nuisance, options) = (Nuisance::default(), Options::default());
             let two = [Method::JointTwoValued];
-            let found = recover_objects(&of, &right.phi, noise, nuisance, &two, &options);
+            let found = recover_objects(
+                &of,
+                &right.phi,
+                noise,
+                nuisance,
+                &two,
+                &options,
+                Control::none(),
+            );
             let found = &found[0].outcome.as_ref().unwrap()[0];
             let exact = found.patterns.as_ref().unwrap().exact;
             let told = found
@@ -189,7 +216,15 @@ fn an_inverse_of_few_spots_says_so() {
         let noise = Noise::StandardError(&stderr, Certainty::STATED);
         let (nuisance, options) = (Nuisance::default(), Options::default());
         let methods = [Method::Pinv];
-        let found = recover_objects(&model, &phi, noise, nuisance, &methods, &options);
+        let found = recover_objects(
+            &model,
+            &phi,
+            noise,
+            nuisance,
+            &methods,
+            &options,
+            Control::none(),
+        );
         match &found[0].outcome {
             Err(error) => assert!(
                 spots == 1 && error.to_string().contains("one spot"),
@@ -204,4 +239,32 @@ fn an_inverse_of_few_spots_says_so() {
             }
         }
     }
+}
+
+/// What is finished before it is stopped is kept; the others say that they were stopped, and their
+/// share of the work is told all the same.
+#[test]
+fn methods_that_are_finished_are_kept() {
+    let (stop, told) = (AtomicBool::new(false), AtomicU64::new(0));
+    let progress = |units: u64| {
+        let all = told.fetch_add(units, Ordering::Relaxed) + units;
+        stop.store(all >= 2 * Work::EACH_METHOD, Ordering::Relaxed);
+    };
+    let control = Control {
+        progress: &progress,
+        stop: &stop,
+    };
+    let camera = Matrix::from_fn(20, 4, |p, j| 1.0 + libm::sin((p * (j + 2)) as f64));
+    let model = MatrixModel::of_sides(camera, Matrix::from_element(4, 1, 1.0), [4, 1]).unwrap();
+    let exact = &model.camera_side * Matrix::from_row_slice(4, 1, &[0.3, 0.7, 0.6, 0.0]);
+    let stderr = exact.map(|_| 0.01);
+    let noise = Noise::StandardError(&stderr, Certainty::STATED);
+    let methods = [Method::JointUnbounded, Method::Joint, Method::JointGp];
+    let (nuisance, options) = (Nuisance::default(), Options::default());
+    let found = recover_objects(&model, &exact, noise, nuisance, &methods, &options, control);
+    let finished: Vec<bool> = found.iter().map(|a| a.outcome.is_ok()).collect();
+    assert_eq!(finished, [true, true, false]);
+    let last = found[2].outcome.as_ref().unwrap_err();
+    assert!(last.to_string().contains("stopped"), "{last}");
+    assert_eq!(told.load(Ordering::Relaxed), 3 * Work::EACH_METHOD);
 }

@@ -4,6 +4,7 @@ use std::sync::atomic::AtomicBool;
 use super::*;
 use crate::lab::{Certainty, Noise, recover_objects};
 use crate::model::Kernel;
+use crate::num::control::Control;
 use crate::recovery::{Nuisance, Options};
 use crate::scene::Scene;
 
@@ -61,6 +62,7 @@ impl Bench {
             Nuisance::default(),
             &[method],
             options,
+            Control::none(),
         );
         attempts.into_iter().next().unwrap().outcome.unwrap()
     }

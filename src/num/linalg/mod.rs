@@ -41,7 +41,7 @@ pub use product::{gram_product, product, subtract_product, tr_product};
 pub use range::{Range, range};
 pub use solution::{LeastSquares, Route};
 pub use svd::{Svd, svd, svd_of_range, svd_to};
-pub use triangle::{Triangle, normal_triangle, pivoted_triangle, triangle};
+pub use triangle::{Gram, Triangle, normal_triangle, pivoted_triangle, triangle};
 
 use nalgebra::DMatrix;
 

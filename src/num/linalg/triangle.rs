@@ -136,35 +136,60 @@ pub fn normal_triangle(
     })
 }
 
-/// The same of as few rows as leave at most `lost` of the trace of the Gram matrix, by Cholesky
-/// with pivots (Harbrecht, Peters and Schneider 2012): G − RᵀR is positive semidefinite and of
-/// trace ≤ `lost`, so that for every x
+/// A symmetric positive semidefinite matrix by its diagonal and what computes a column.
+pub struct Gram<F> {
+    /// The diagonal.
+    pub diagonal: DVector<f64>,
+    /// Column j; none where it is not to be gone on.
+    pub column: F,
+    /// The columns that may be asked for.
+    pub most: usize,
+}
+
+/// The same reduction of as few rows as leave at most `lost` of the trace of the Gram matrix, by
+/// Cholesky with pivots (Harbrecht, Peters and Schneider 2012): G − RᵀR is positive semidefinite and
+/// of trace ≤ `lost`, so that for every x
 ///
 /// > 0 ≤ ‖A x‖² − ‖R x‖² ≤ lost·‖x‖².
 ///
-/// `None` where that is less than the rounding of G lets be told.
+/// One column of G is asked for each row of R. `None` where `lost` is less than the rounding of G
+/// lets be told, or takes more columns than there may be.
 ///
 /// # Errors
-/// Those of [`normal_triangle`].
+/// [`LinalgError`] where the sides do not fit.
 pub fn pivoted_triangle(
-    gram: &DMatrix<f64>,
+    gram: Gram<impl Fn(usize) -> Option<DVector<f64>>>,
     moment: &DVector<f64>,
     square: f64,
     lost: f64,
 ) -> Result<Option<Triangle>, LinalgError> {
-    let n = unknowns(gram, moment)?;
-    let mut left = gram.diagonal();
+    let Gram {
+        diagonal: mut left,
+        column,
+        most,
+    } = gram;
+    let n = left.len();
+    same_length(
+        "entries of Aᵀb against rows of the Gram matrix",
+        n,
+        moment.len(),
+    )?;
     let trace = left.sum();
     if !trace.is_finite() || 10.0 * f64::EPSILON * trace > lost {
         return Ok(None);
     }
-    // Columns of L, G ≈ L Lᵀ, and the pivots of each.
+    // Columns of L, G ≈ L Lᵀ, and what they leave of the data.
     let mut l: Vec<DVector<f64>> = Vec::new();
     let mut d: Vec<f64> = Vec::new();
     while left.sum() > lost && l.len() < n {
-        let (pivot, most) = left.argmax();
-        let root = most.sqrt();
-        let mut column = gram.column(pivot).into_owned();
+        if l.len() == most {
+            return Ok(None);
+        }
+        let (pivot, largest) = left.argmax();
+        let root = largest.sqrt();
+        let Some(mut column) = column(pivot) else {
+            return Ok(None);
+        };
         let mut own = moment[pivot];
         for (before, d) in l.iter().zip(&d) {
             column.axpy(-before[pivot], before, 1.0);

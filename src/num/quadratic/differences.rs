@@ -5,7 +5,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::dense_differences::{self, Penalised};
 use super::program::{Program, half_square};
-use super::{Bounds, BoxSolution, GAP_ALLOWED, QuadraticError, certificate, not_solved};
+use super::{
+    Bounds, BoxSolution, GAP_ALLOWED, QuadraticError, box_least_squares_from, certificate,
+    not_solved,
+};
 use crate::num::linalg::{Tolerance, least_squares};
 
 /// Values nearer than this fraction of the solution's size count as one, and as their bound, before
@@ -56,9 +59,13 @@ pub fn fused_least_squares(
         pairs,
         lambda,
     };
-    let interior = match problem.dense() {
-        Some(found) => found,
-        None => problem.interior(start)?,
+    let interior = if lambda == 0.0 {
+        problem.unpenalised(start)?
+    } else {
+        match problem.dense() {
+            Some(found) => found,
+            None => problem.interior(start)?,
+        }
     };
     let mut x = interior.x;
     let (polished, sigma) = problem.polish(&x)?;
@@ -140,6 +147,18 @@ impl Problem<'_> {
     fn objective(&self, x: &DVector<f64>) -> f64 {
         let penalty: f64 = self.pairs.iter().map(|&[a, b]| (x[a] - x[b]).abs()).sum();
         0.5 * (self.r * x - self.d).norm_squared() + self.lambda * penalty
+    }
+
+    /// Without a penalty, from near its minimum.
+    fn unpenalised(&self, start: &DVector<f64>) -> Result<Interior, QuadraticError> {
+        let found = box_least_squares_from(self.r, self.d, self.bounds, start)?;
+        Ok(Interior {
+            y: self.r * &found.solution - self.d,
+            x: found.solution,
+            w: DVector::zeros(self.pairs.len()),
+            status: found.status,
+            iterations: found.iterations,
+        })
     }
 
     /// By dense matrices, where there are many variables.

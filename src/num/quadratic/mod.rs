@@ -8,9 +8,10 @@ mod differences;
 mod extent;
 mod interior_point;
 mod program;
+mod region;
 
 pub use differences::{Fused, fused_least_squares};
-pub use extent::extent;
+pub use extent::Extents;
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,3 +1,5 @@
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::*;
 use crate::recovery::bench::{Bench, normal_stream};
 use crate::recovery::recover;
@@ -160,4 +162,29 @@ fn what_has_no_bands_says_why() {
             "{method} {error}"
         );
     }
+}
+
+/// Stopped at the first of the ends, the picture is kept, and it is said why it has no bands; stopped
+/// before, nothing is.
+#[test]
+fn a_picture_that_was_stopped_is_kept_without_its_bands() {
+    let bench = Bench::new(6.0, 4, 8);
+    let exact = bench.phi(&bench.board(2));
+    let stderr = &exact * 1e-2;
+    let problem = Problem::new(&exact, &bench.c, &bench.d, Some(&stderr)).unwrap();
+    let options = Options {
+        bands: Some(0.95),
+        ..Options::default()
+    };
+    let whole = recover(Method::Joint, &problem, &options).unwrap();
+    let stop = AtomicBool::new(false);
+    let control = Control {
+        progress: &|_| stop.store(true, Ordering::Relaxed),
+        stop: &stop,
+    };
+    let cut = recover(Method::Joint, &problem.under(control), &options).unwrap();
+    assert_eq!((cut.bands, cut.no_bands), (None, Some(STOPPED)));
+    assert!(whole.bands.is_some() && cut.reflectance == whole.reflectance);
+    let refused = recover(Method::Joint, &problem.under(control), &options);
+    assert!(matches!(refused, Err(RecoveryError::Stopped(_))));
 }

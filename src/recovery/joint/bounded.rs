@@ -26,7 +26,8 @@ pub(in crate::recovery) fn recover(
             let (pixels, spots) = problem.phi.shape();
             let fitted = weights::fit(Some(stderr), pixels, spots);
             let exact = stack(problem, |p, l| fitted.root(problem, Some(stderr), p, l))?.triangle;
-            let found = bands::simultaneous(&exact.r, &exact.d, &bounds, confidence)?;
+            let found =
+                bands::simultaneous(&exact.r, &exact.d, &bounds, confidence, problem.control)?;
             Some(found)
         }
         None => None,

@@ -64,21 +64,47 @@ pub(super) struct One {
     log_det: f64,
 }
 
+impl One {
+    /// `along` is mᵀ(A | y).
+    pub(super) fn new(along: DVector<f64>, of: &Softening) -> Self {
+        One {
+            along: along * of.variance,
+            variance: of.variance,
+            log_det: of.log_det,
+        }
+    }
+}
+
+/// (1 + w² m mᵀ)^(−½) = 1 − taken·m mᵀ, and what goes with it.
+#[derive(Debug, Clone)]
+pub(super) struct Softening {
+    pub(super) taken: f64,
+    variance: f64,
+    log_det: f64,
+}
+
+impl Softening {
+    /// From |m|² and w.
+    pub(super) fn new(square: f64, width: f64) -> Self {
+        let seen = width * width * square;
+        Softening {
+            taken: if seen > 0.0 {
+                (1.0 - 1.0 / (1.0 + seen).sqrt()) / square
+            } else {
+                0.0
+            },
+            variance: width * width / (1.0 + seen),
+            log_det: libm::log1p(seen),
+        }
+    }
+}
+
 /// Makes `rows`, (A | y) of unit noise, those of a problem without the pattern m of size N(0, w²).
 pub(super) fn soften(rows: &mut DMatrix<f64>, m: &DVectorView<'_, f64>, width: f64) -> One {
-    let square = m.norm_squared();
-    let seen = width * width * square;
+    let of = Softening::new(m.norm_squared(), width);
     let along = rows.tr_mul(m);
-    if seen > 0.0 {
-        let taken = (1.0 - 1.0 / (1.0 + seen).sqrt()) / square;
-        rows.ger(-taken, m, &along, 1.0);
-    }
-    let variance = width * width / (1.0 + seen);
-    One {
-        along: along * variance,
-        variance,
-        log_det: libm::log1p(seen),
-    }
+    rows.ger(-of.taken, m, &along, 1.0);
+    One::new(along, &of)
 }
 
 /// The same of the one factor of all photographs, in the reduced problem.

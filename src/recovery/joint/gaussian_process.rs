@@ -23,6 +23,7 @@ use super::coordinates::Coordinates;
 use super::exponential::Exponential;
 use super::reduced::over_brightest;
 use super::{correlated, scale};
+use crate::num::control::{Control, Steps};
 use crate::num::linalg::{Cholesky, gram_product, product, tr_product};
 use crate::recovery::{
     BandKind, Bands, Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, bands,
@@ -110,7 +111,7 @@ fn with_alike(
     let coordinates = Coordinates::new(Method::JointGp, problem, options, unit, alike)?;
     let seen = Seen::new(&coordinates, unit);
     let prior = Exponential::new(problem);
-    let (lengths, pairs, evidence) = seen.lattice(&prior)?;
+    let (lengths, pairs, evidence) = seen.lattice(&prior, problem.control)?;
     let mut found = seen.mixture(&prior, &lengths, &pairs, options.bands)?;
     let best = &pairs[0];
     let mut recovered =
@@ -200,7 +201,11 @@ impl Seen {
 
     /// The pairs that count, likeliest first, with weights that sum to 1, and ln of p(y) over that
     /// of a picture that fits y exactly.
-    fn lattice(&self, prior: &Exponential) -> Result<(Vec<Length>, Vec<Pair>, f64), RecoveryError> {
+    fn lattice(
+        &self,
+        prior: &Exponential,
+        control: Control<'_>,
+    ) -> Result<(Vec<Length>, Vec<Pair>, f64), RecoveryError> {
         let left = self.left();
         let spread = |step: i32| libm::exp(LN_SPREAD[0] + STEP * f64::from(step));
         let [least, most] = STEPS;
@@ -208,7 +213,9 @@ impl Seen {
         let mut start = 0;
         let tried = prior.lengths();
         let count = tried.len();
+        let steps = Steps::new(control, 60, count);
         for length in tried {
+            steps.done()?;
             let vk = product(&self.v, &prior.matrix(length));
             let vkv = product(&vk, &self.v.transpose());
             let of = Length { length, vk, vkv };

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use nalgebra::{DMatrix, DVector};
 
 use super::levels::{LevelFit, rule};
+use crate::num::control::Control;
 use crate::recovery::{Patterns, Sum};
 
 /// χ² = ‖R x − d‖², x_j one of two levels, given or not.
@@ -14,12 +15,19 @@ pub(super) struct Ground<'a> {
     /// The light of elements that are all 1.
     pub(super) all: DVector<f64>,
     pub(super) given: Option<[f64; 2]>,
+    pub(super) control: Control<'a>,
 }
 
 impl<'a> Ground<'a> {
     pub(super) fn new(r: &'a DMatrix<f64>, d: &'a DVector<f64>, given: Option<[f64; 2]>) -> Self {
         let all = r.column_sum();
-        Self { r, d, all, given }
+        Self {
+            r,
+            d,
+            all,
+            given,
+            control: Control::none(),
+        }
     }
 
     /// The light of the light elements.

@@ -23,11 +23,13 @@ use nalgebra::{DMatrix, DVector};
 use super::conditional::Conditional;
 use super::elimination::{directions, estimate, unit, without_left, without_right};
 use super::gram;
+use super::sides::Sides;
 use super::stacked::{Coupled, Stacked, stack};
 use super::weights::{self, Weights};
 use crate::num::linalg::{
-    LeastSquares, Route, Svd, Tolerance, Triangle, columns_over, least_squares, normal_triangle,
-    pivoted_triangle, product, rows_times, svd_of_range, svd_to, tr_product, triangle,
+    Gram, LeastSquares, Route, Svd, Tolerance, Triangle, columns_over, least_squares,
+    normal_triangle, pivoted_triangle, product, rows_times, svd_of_range, svd_to, tr_product,
+    triangle,
 };
 use crate::recovery::{
     Deviations, Estimated, Gains, Options, Problem, RecoveryError, WeightRule, Weighting,
@@ -54,15 +56,6 @@ pub(super) struct Operator {
     /// Kept from the first time they are asked for.
     directions: OnceLock<Arc<(Svd, DVector<f64>)>>,
     solved: OnceLock<Arc<LeastSquares>>,
-}
-
-/// Weighted and projected sides: C̃ = U T and D̃ = S V, U and Vᵀ with few orthonormal columns.
-#[derive(Debug)]
-struct Sides {
-    u: DMatrix<f64>,
-    t: DMatrix<f64>,
-    s: DMatrix<f64>,
-    v: DMatrix<f64>,
 }
 
 /// The noise by which entries are weighted.
@@ -99,33 +92,6 @@ enum Form {
 struct Conditionals {
     frames: Option<Conditional>,
     whole: Option<Conditional>,
-}
-
-/// U_k, Σ_k V_kᵀ of a side, cut at its rounding; `before` is its norm before anything was projected
-/// out of it.
-fn compress(
-    side: &DMatrix<f64>,
-    before: f64,
-    name: &'static str,
-) -> Result<(Svd, usize), RecoveryError> {
-    let decomposed = svd_to(side, Tolerance::Auto)?;
-    let (rank, _) = decomposed.cut(Tolerance::Auto)?;
-    let rounding = side.nrows().max(side.ncols()) as f64 * f64::EPSILON * before;
-    let rank = if side.norm() < 0.999 * before {
-        decomposed
-            .sigma
-            .iter()
-            .take(rank)
-            .filter(|&&s| s > rounding)
-            .count()
-    } else {
-        rank
-    };
-    if rank == 0 {
-        Err(RecoveryError::RankZero { side: name })
-    } else {
-        Ok((decomposed, rank))
-    }
 }
 
 /// The pairs (a, b) of rows of T and columns of S whose rows T\[a,j\] S\[j,b\] of the product carry
@@ -245,13 +211,7 @@ impl Operator {
             without_right(&mut d, &v);
             without_right(&mut phi, &v);
         }
-        let (camera, rc) = compress(&c, before.0, "camera side C")?;
-        let (laser, rd) = compress(&d, before.1, "laser side D")?;
-        let terms = element.len();
-        let t = DMatrix::from_fn(rc, terms, |a, j| camera.sigma[a] * camera.vt[(a, j)]);
-        let s = DMatrix::from_fn(terms, rd, |j, b| laser.u[(j, b)] * laser.sigma[b]);
-        let u = camera.u.columns(0, rc).into_owned();
-        let v = laser.vt.rows(0, rd).into_owned();
+        let Sides { u, t, s, v } = Sides::new([&c, &d], [before.0, before.1])?;
         let pairs = pairs(&t, &s, options.budget);
         let form = if pairs.len().saturating_mul(elements) <= options.budget {
             let mut a = DMatrix::zeros(pairs.len(), elements);
@@ -264,7 +224,7 @@ impl Operator {
             Form::Small {
                 a,
                 b: DVector::from_fn(pairs.len(), |row, _| f[(pairs[row][0], pairs[row][1])]),
-                rows: rc * rd,
+                rows: t.nrows() * s.ncols(),
             }
         } else {
             let gathered = |m: &DMatrix<f64>| gathered(&element, m, elements);
@@ -273,8 +233,14 @@ impl Operator {
             let along = gathered(&tr_product(&c, &phi).component_mul(&d));
             let (moment, square) = (along.column_sum(), phi.norm_squared());
             let fewer = if by_entry {
-                let lost = gram::lost(problem, &whole, &moment, square);
-                pivoted_triangle(&whole, &moment, square, lost)?
+                let (along, grey) = (gram::GREY * moment.sum(), gram::GREY.powi(2) * whole.sum());
+                let lost = gram::lost(problem, along, grey, square);
+                let gram = Gram {
+                    diagonal: whole.diagonal(),
+                    column: |j| Some(whole.column(j).into_owned()),
+                    most: elements,
+                };
+                pivoted_triangle(gram, &moment, square, lost)?
             } else {
                 None
             };

@@ -22,6 +22,7 @@ mod pattern_search;
 mod picard;
 mod reduced;
 mod scale;
+mod sides;
 mod spread;
 mod stacked;
 mod tempered;

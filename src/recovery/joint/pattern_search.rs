@@ -15,6 +15,7 @@ use rayon::prelude::*;
 
 use super::branch;
 use super::levels::LevelFit;
+use crate::num::control::Control;
 use crate::num::linalg::gram_product;
 use crate::num::quadratic::{Bounds, box_least_squares, box_least_squares_from};
 use crate::recovery::RecoveryError;
@@ -77,6 +78,7 @@ pub(super) struct Search<'a> {
     levels: Levels,
     /// Whether to start from between pairs of levels too, and to search with more of them.
     wide: bool,
+    control: Control<'a>,
 }
 
 /// What a search has found.
@@ -103,7 +105,13 @@ impl<'a> Search<'a> {
             gram,
             levels,
             wide,
+            control: Control::none(),
         }
+    }
+
+    /// The same until it is told to stop.
+    pub(super) fn under(self, control: Control<'a>) -> Self {
+        Self { control, ..self }
     }
 
     /// The best pattern that is found.
@@ -151,6 +159,7 @@ impl<'a> Search<'a> {
         let mut tried: Vec<[f64; 2]> = Vec::new();
         let rounds = if self.wide { ROUNDS } else { ROUNDS / 2 };
         for _ in 0..rounds {
+            self.control.check()?;
             let Some(levels) = trials.pop() else { break };
             let near = |old: &[f64; 2]| {
                 (old[0] - levels[0]).abs() + (old[1] - levels[1]).abs() < SAME * levels[1]
@@ -218,6 +227,7 @@ impl<'a> Search<'a> {
             return Ok(starts);
         }
         let between = |[dark, light]: &[f64; 2]| -> Result<Vec<bool>, RecoveryError> {
+            self.control.check()?;
             let bounds = Bounds::all(self.r.ncols(), *dark, *light);
             let found = box_least_squares_from(self.r, self.d, &bounds, relaxed)?.solution;
             let middle = 0.5 * (dark + light);

@@ -19,8 +19,9 @@ use rayon::prelude::*;
 
 use super::ground::{Ground, Moments, Summed};
 use super::tempered;
-use crate::num::linalg::{Cholesky, LinalgError, gram_product};
+use crate::num::linalg::{Cholesky, gram_product};
 use crate::recovery::Patterns;
+use crate::recovery::RecoveryError;
 
 /// Spreads τ that are tried, from hardly any to no levels at all.
 const SPREADS: [f64; 5] = [0.003, 0.01, 0.03, 0.1, 0.3];
@@ -76,11 +77,11 @@ pub(super) fn sum(
     ground: &Ground<'_>,
     exact: &Summed,
     (light, shown): (&[bool], &DVector<f64>),
-) -> Result<Spread, LinalgError> {
+) -> Result<Spread, RecoveryError> {
     let mut gram = DMatrix::zeros(ground.r.ncols(), ground.r.ncols());
     gram_product(&mut gram, ground.r);
     let own = ground.r * ground.r.transpose();
-    let parts: Result<Vec<Option<Part>>, LinalgError> = SPREADS
+    let parts: Result<Vec<Option<Part>>, RecoveryError> = SPREADS
         .par_iter()
         .map(|tau| part(ground, [&own, &gram], *tau, (light, shown)))
         .collect();
@@ -121,7 +122,7 @@ fn part(
     [own, gram]: [&DMatrix<f64>; 2],
     tau: f64,
     (light, shown): (&[bool], &DVector<f64>),
-) -> Result<Option<Part>, LinalgError> {
+) -> Result<Option<Part>, RecoveryError> {
     let with_one = |of: &DMatrix<f64>| {
         let mut sum = of * (tau * tau);
         (0..sum.nrows()).for_each(|i| sum[(i, i)] += 1.0);

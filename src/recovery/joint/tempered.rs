@@ -20,6 +20,7 @@ use super::ground::{Ground, Moments, Summed};
 use super::walker::{Land, Walker, accepted};
 use crate::num::linalg::{LinalgError, svd};
 use crate::num::stream::{Key, Sampling, Stream};
+use crate::recovery::RecoveryError;
 use crate::recovery::Sum;
 
 /// Multiplications that one ladder may take for what is shown.
@@ -70,6 +71,9 @@ fn ladder(
     let first = sweeps / 5;
     let every = ((sweeps - first) / DRAWN).max(1);
     for sweep in 0..sweeps {
+        if land.ground.control.stopped() {
+            break;
+        }
         for (copy, &beta) in copies.iter_mut().zip(betas) {
             if beta == 0.0 {
                 *copy = Walker::of_chance(land, random);
@@ -155,7 +159,7 @@ pub(super) fn sample(
     ground: &Ground<'_>,
     start: &[bool],
     multiplications: f64,
-) -> Result<Summed, LinalgError> {
+) -> Result<Summed, RecoveryError> {
     let land = &Land::new(ground);
     let betas = temperatures(land)?;
     let n = ground.r.ncols();
@@ -167,6 +171,7 @@ pub(super) fn sample(
         .enumerate()
         .map(|(number, start)| ladder(land, &betas, sweeps, start, key(number as u32)))
         .collect();
+    ground.control.check()?;
     let halves = |l: &Ladder| [&l.halves[0], &l.halves[1]].map(Moments::light);
     let apart = |a: &DVector<f64>, b: &DVector<f64>| (a - b).amax();
     let [own, other] = [&ladders[0], &ladders[1]];

@@ -20,13 +20,19 @@
 //! between the bounds vanishes; a flat one has no λ of its own: the largest is taken. Where even the
 //! unpenalised fit is more than four standard deviations of χ² above its mean, k − F (k singular
 //! values above rounding; Tibshirani and Taylor 2012), the noise is understated and nothing is
-//! chosen.
+//! chosen. A patch that the data hardly see takes less than one of χ², as its value stays between the
+//! bounds: F there is Σ_i s_i²/(1 + s_i²).
 //!
 //! Over 180 draws on 8 × 8 elements (five kinds of pictures, noise 0.1 to 1e-3, both rings) its RMSE
 //! is 1.07 times that at the best λ in the median, and more than 1.55 times in a tenth; a slow test
 //! holds the median of 210 others below 1.1. λ is never 0.
 
+use std::iter::successors;
+
+use rayon::prelude::*;
+
 use super::reduced::Reduced;
+use crate::num::control::{Control, Steps};
 use crate::num::quadratic::{Bounds, Fused, box_least_squares, fused_least_squares};
 use crate::recovery::{
     Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, WeightRule,
@@ -39,6 +45,9 @@ const STEP: f64 = 0.1;
 const LEAST: f64 = 1e-3;
 /// Standard deviations of χ² above its mean beyond which noise does not explain a residual.
 const DEVIATIONS: f64 = 4.0;
+/// What a search that was stopped says.
+const STOPPED: &str = "it was stopped before all weights of the total variation were tried: the likeliest of those that \
+                       were is shown";
 
 pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
@@ -57,9 +66,10 @@ pub(in crate::recovery) fn recover(
         unit: (reduced.unit * reduced.sigma[0]).powi(2),
         start: box_least_squares(&reduced.r, &reduced.d, &reduced.bounds(problem))?.solution,
         reduced: &reduced,
+        control: problem.control,
     };
-    let (lambda, choice) = match options.total_variation {
-        Some(value) if value.is_finite() && value >= 0.0 => (value, Choice::Given),
+    let given = match options.total_variation {
+        Some(value) if value.is_finite() && value >= 0.0 => Some(value),
         Some(value) => {
             return Err(RecoveryError::BadParameter {
                 method,
@@ -82,12 +92,18 @@ pub(in crate::recovery) fn recover(
                 None => RecoveryError::NoNoiseModel { method, parameter },
             });
         }
+        None => None,
+    };
+    let (lambda, choice, fused) = match given {
+        Some(lambda) => (lambda, Choice::Given, search.at(lambda)?),
         None => search.likeliest()?,
     };
-    let found = search.at(lambda)?.found;
+    let unfinished = (given.is_none() && problem.control.stopped()).then_some(STOPPED);
+    let found = fused.found;
     let mut recovered = reduced.finish(method, problem, options, found.solution.clone())?;
     recovered.parameter = Parameter::TotalVariation(lambda);
     recovered.choice = choice;
+    recovered.unfinished = unfinished;
     recovered.solver = Some(reduced.report(&found));
     Ok(recovered)
 }
@@ -100,6 +116,7 @@ struct Search<'a> {
     unit: f64,
     /// The solution without penalty.
     start: nalgebra::DVector<f64>,
+    control: Control<'a>,
 }
 
 impl Search<'_> {
@@ -126,10 +143,10 @@ impl Search<'_> {
         // ‖R ρ − d‖² + 2 λ TV is twice the objective.
         let power = fused.free_sets.saturating_sub(1) as f64 * libm::log(lambda * self.unit);
         Ok(Trial {
+            deviance: 2.0 * (objective - power) + information,
             lambda,
             residual,
-            patches: fused.sets,
-            deviance: 2.0 * (objective - power) + information,
+            fused,
         })
     }
 
@@ -141,8 +158,8 @@ impl Search<'_> {
     fn refuse_understated(&self) -> Result<(), RecoveryError> {
         let fused = self.at(0.0)?;
         let residual = self.residual(&fused);
-        let rows = self.reduced.r.nrows();
-        let mean = rows.saturating_sub(fused.free_sets).max(1) as f64;
+        let taken: f64 = fused.sigma.iter().map(|s| s * s / (1.0 + s * s)).sum();
+        let mean = (self.reduced.r.nrows() as f64 - taken).max(1.0);
         let limit = mean + DEVIATIONS * (2.0 * mean).sqrt();
         if residual > limit {
             return Err(RecoveryError::JointNoiseUnderstated { residual, limit });
@@ -150,37 +167,53 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// The λ/σ₁² of the largest evidence, of equals the largest.
-    fn likeliest(&self) -> Result<(f64, Choice), RecoveryError> {
-        self.refuse_understated()?;
-        let mut best = self.trial(1.0)?;
-        let mut lambda = STEP;
-        while lambda * self.unit > LEAST {
-            best = best.or(self.trial(lambda)?);
-            lambda *= STEP;
-        }
+    /// The λ/σ₁² of the largest evidence, of equals the largest, and its solution.
+    fn likeliest(&self) -> Result<(f64, Choice, Fused), RecoveryError> {
+        let (explained, flattest) = rayon::join(|| self.refuse_understated(), || self.trial(1.0));
+        explained?;
+        let decades = successors(Some(STEP), |lambda| Some(lambda * STEP));
+        let decades = decades.take_while(|lambda| lambda * self.unit > LEAST);
+        let decades: Vec<f64> = decades.collect();
+        let steps = Steps::new(self.control, 80, decades.len() + 4);
+        let mut best = self.best_of(flattest?, decades, &steps)?;
         for by in [STEP.sqrt(), STEP.sqrt().sqrt()] {
-            let centre = best.lambda;
-            for lambda in [centre / by, centre * by] {
-                if lambda <= 1.0 {
-                    best = best.or(self.trial(lambda)?);
-                }
-            }
+            let beside = [best.lambda / by, best.lambda * by];
+            let beside = beside.into_iter().filter(|lambda| *lambda <= 1.0);
+            best = self.best_of(best, beside.collect(), &steps)?;
         }
         let choice = Choice::Evidence {
             deviance: best.deviance,
             residual: best.residual,
-            patches: best.patches,
+            patches: best.fused.sets,
         };
-        Ok((best.lambda, choice))
+        Ok((best.lambda, choice, best.fused))
+    }
+
+    /// The likelier of the best so far and trial values, which are tried side by side until it is
+    /// stopped.
+    fn best_of(
+        &self,
+        best: Trial,
+        lambdas: Vec<f64>,
+        steps: &Steps<'_>,
+    ) -> Result<Trial, RecoveryError> {
+        let trial = |lambda| {
+            let goes_on = !self.control.stopped();
+            let found = goes_on.then(|| self.trial(lambda)).transpose();
+            let _ = steps.done();
+            found
+        };
+        let each = lambdas.into_par_iter().map(trial);
+        let trials: Vec<Option<Trial>> = each.collect::<Result<_, _>>()?;
+        Ok(trials.into_iter().flatten().fold(best, Trial::or))
     }
 }
 
 /// A trial value of λ.
 struct Trial {
     lambda: f64,
+    fused: Fused,
     residual: f64,
-    patches: usize,
     /// −2 ln E but for a constant.
     deviance: f64,
 }

@@ -48,7 +48,7 @@ pub(in crate::recovery) fn recover(
         (None, true) => Levels::Within(f64::INFINITY),
         (None, false) => Levels::Within(1.0),
     };
-    let search = Search::new(&r, &d, levels, options.probabilities);
+    let search = Search::new(&r, &d, levels, options.probabilities).under(problem.control);
     let Found {
         mut best,
         mut bound,
@@ -57,7 +57,10 @@ pub(in crate::recovery) fn recover(
     } = search.best()?;
     // A scale that is free has no measure of what is likely.
     let n = problem.c.ncols();
-    let ground = Ground::new(&r, &d, given);
+    let ground = Ground {
+        control: problem.control,
+        ..Ground::new(&r, &d, given)
+    };
     let summed = if free || n > MOST_SAMPLED || !options.probabilities {
         None
     } else if enumerated::can(&ground) {

@@ -69,11 +69,17 @@ fn few_rows_stand_for_a_smooth_gram_matrix() {
     let gram = DMatrix::from_fn(n, n, |i, j| 1.0 / (i + j + 1) as f64);
     let x = DVector::from_fn(n, |i, _| libm::sin(i as f64 * 0.7));
     let (moment, square) = (&gram * &x, x.dot(&(&gram * &x)));
+    let at_most = |most: usize, lost: f64| {
+        let gram = Gram {
+            diagonal: gram.diagonal(),
+            column: |j| Some(gram.column(j).into_owned()),
+            most,
+        };
+        pivoted_triangle(gram, &moment, square, lost).unwrap()
+    };
     let mut rows = 0;
     for lost in [1e-2, 1e-5, 1e-8] {
-        let found = pivoted_triangle(&gram, &moment, square, lost)
-            .unwrap()
-            .unwrap();
+        let found = at_most(n, lost).unwrap();
         let left = &gram - found.r.tr_mul(&found.r);
         let least = left.clone().symmetric_eigen().eigenvalues.min();
         assert!(left.trace() <= lost && least > -1e-14, "{lost}: {least}");
@@ -82,9 +88,7 @@ fn few_rows_stand_for_a_smooth_gram_matrix() {
         let off = (&found.r * &x - &found.d).norm_squared() + found.rest.powi(2);
         assert!(off <= 2.0 * lost * x.norm_squared(), "{lost}: {off}");
     }
-    assert!(
-        pivoted_triangle(&gram, &moment, square, 1e-16)
-            .unwrap()
-            .is_none()
-    );
+    assert!(at_most(n, 1e-16).is_none());
+    // Fewer columns than it takes.
+    assert!(at_most(rows, 1e-8).is_some() && at_most(rows - 1, 1e-8).is_none());
 }

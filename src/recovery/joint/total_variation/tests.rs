@@ -1,3 +1,5 @@
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use nalgebra::DMatrix;
 
 use super::*;
@@ -193,4 +195,33 @@ fn picture(bench: &Bench, kind: usize, seed: u64) -> nalgebra::DVector<f64> {
             })
         }
     }
+}
+
+/// Stopped while it looks for its weight, it shows the likeliest of those that it has tried, and says
+/// so; where it was left alone it says nothing.
+#[test]
+fn a_search_that_was_stopped_shows_the_best_till_then() {
+    let bench = Bench::new(6.0, 4, 8);
+    let [phi, stderr] = noisy(&bench, &bench.phi(&bench.board(2)), 1e-2, 1);
+    let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+    let problem = problem.with_grids(&[[4, 4]]).unwrap();
+    let whole = recover(Method::JointTv, &problem, &Options::default()).unwrap();
+    let stop = AtomicBool::new(false);
+    let control = Control {
+        progress: &|_| stop.store(true, Ordering::Relaxed),
+        stop: &stop,
+    };
+    let cut = recover(
+        Method::JointTv,
+        &problem.under(control),
+        &Options::default(),
+    )
+    .unwrap();
+    assert_eq!((whole.unfinished, cut.unfinished), (None, Some(STOPPED)));
+    let deviance = |found: &Recovered| match found.choice {
+        Choice::Evidence { deviance, .. } => deviance,
+        _ => panic!("{:?}", found.choice),
+    };
+    // The first weight, 1, is flat: two decades down the board is there.
+    assert!(deviance(&whole) + 1.0 < deviance(&cut));
 }
