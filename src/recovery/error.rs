@@ -283,7 +283,7 @@ pub enum RecoveryError {
         largest: f64,
     },
     /// It was stopped from outside before it was finished.
-    #[error("{0}")]
+    #[error("stopped before it was finished, so there is no picture of it; recover again for one")]
     Stopped(#[from] Stopped),
     /// A decomposition failed.
     #[error(transparent)]
