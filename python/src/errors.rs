@@ -37,11 +37,11 @@ pub fn raised(error: &(dyn Error + 'static)) -> PyErr {
     let mut source = error.source();
     while let Some(inner) = source {
         let text = inner.to_string();
-        if !message.contains(&text) {
+        stopped |= inner.is::<Stopped>();
+        if !stopped && !message.contains(&text) {
             let _ = write!(message, ": {text}");
         }
         file |= is_of_a_file(inner);
-        stopped |= inner.is::<Stopped>();
         source = inner.source();
     }
     if stopped {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use phicam::jobs::need;
 use phicam::lab::options::{Kind, Values};
-use phicam::lab::{Found, STUDIES, StudyError, Work};
+use phicam::lab::{Found, STUDIES, StudyError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -85,9 +85,7 @@ pub fn study<'py>(
     };
     let ready = run(py, threads, None, move |_| prepare(&scene, &values))?;
     let ready = ready.map_err(boxed)?;
-    report(match ready.work() {
-        Work::Tasks(n) | Work::Samples(n) => n,
-    })?;
+    report(ready.work().units())?;
     let done = run(
         py,
         threads,

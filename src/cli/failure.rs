@@ -139,11 +139,12 @@ impl Failure {
         let mut source = error.source();
         while let Some(inner) = source {
             let text = inner.to_string();
-            if !message.contains(&text) {
+            stopped |= inner.is::<Stopped>();
+            // What was stopped says itself how to go on.
+            if !stopped && !message.contains(&text) {
                 let _ = write!(message, ": {text}");
             }
             system |= is_of_the_system(inner);
-            stopped |= inner.is::<Stopped>();
             source = inner.source();
         }
         if stopped {

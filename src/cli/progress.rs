@@ -49,7 +49,7 @@ pub(super) fn start(console: Console, what: &str, work: Work) -> ProgressBar {
         Work::Samples(total) => bar(console, what, total, |state, w| {
             let _ = w.write_str(&per_second(state.per_sec()));
         }),
-        Work::Methods(count) => bar(console, what, count * Work::EACH_METHOD, move |state, w| {
+        Work::Methods(count) => bar(console, what, work.units(), move |state, w| {
             let done = state.pos() / Work::EACH_METHOD;
             let _ = write!(w, "{done} of {count} methods");
         }),

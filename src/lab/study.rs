@@ -39,6 +39,14 @@ impl Work {
     /// Units of a method of recovery.
     pub const EACH_METHOD: u64 = 100;
 
+    /// What is reported when all of it is done.
+    pub fn units(self) -> u64 {
+        match self {
+            Self::Tasks(n) | Self::Samples(n) => n,
+            Self::Methods(n) => n.saturating_mul(Self::EACH_METHOD),
+        }
+    }
+
     /// The paths that a scene needs: `shared` of them per pixel and `independent` ones per pixel
     /// and spot. A number too large to count is as good as any other for a progress bar.
     pub fn samples(scene: &Scene, shared: u64, independent: u64) -> Self {
