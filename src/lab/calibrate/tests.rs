@@ -5,6 +5,7 @@ use nalgebra::DVector;
 
 use super::picture::{Prior, priors};
 use super::*;
+use crate::lab::finding::Describe;
 use crate::scene::file::SceneFile;
 
 fn small(name: &str, pixels: u32) -> Scene {
@@ -190,6 +191,33 @@ fn a_displaced_scene_is_found() {
     };
     let (a, b) = (phi(&own), phi(&written));
     assert!((a - &b).norm() < 1e-12 * b.norm());
+}
+
+/// Photographs in another order than the spots are no picture of any geometry: that comes first, and
+/// that nothing is estimated.
+#[test]
+fn photographs_of_no_geometry_come_with_that_verdict_first() {
+    let scene = small("bench", 8);
+    let names = ["hinge.angle", "hidden.yaw"];
+    let told = |is_in_order: bool| {
+        let (mut phi, mut stderr) = photographs(&scene, 4, 1e-2, 5);
+        let last = phi.ncols() - 1;
+        for l in 0..=last / 2 {
+            if !is_in_order {
+                phi.swap_columns(l, last - l);
+                stderr.swap_columns(l, last - l);
+            }
+        }
+        let found = plan(&names, 4).calibrate(&scene, &unexplained(&phi, &stderr), Control::none());
+        found.unwrap().describe().sentence
+    };
+    let (right, wrong) = (told(true), told(false));
+    assert!(right.starts_with("From what the scene says"), "{right}");
+    assert!(
+        wrong.starts_with("The photographs fit NO geometry"),
+        "{wrong}"
+    );
+    assert!(wrong.contains("these are no estimates"), "{wrong}");
 }
 
 /// What moves together is refused with its names, and taken where one of it is known.

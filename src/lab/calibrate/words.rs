@@ -16,7 +16,7 @@ const FAR: f64 = 3.0;
 const NOTABLE: f64 = 0.5;
 /// Gains that are listed one by one.
 const LISTED: usize = 12;
-/// What is left of other light's remainder where no noise is stated, above which it is told.
+/// What is left of other light's remainder beyond the stated noise, above which nothing is estimated.
 const MUCH: f64 = 0.05;
 
 /// Why some combinations of unknowns cannot be estimated.
@@ -63,6 +63,16 @@ impl Calibration {
         self.found.iter().filter(|f| !f.unit.is_empty())
     }
 
+    /// What neither model nor stated noise explains, of what other light leaves.
+    fn unexplained(&self) -> f64 {
+        let by_noise = if self.p.is_some() {
+            self.misfit.recip()
+        } else {
+            0.0
+        };
+        self.left * (1.0 - by_noise).max(0.0).sqrt()
+    }
+
     fn sentence(&self) -> String {
         let of = |f: &Calibrated| {
             let (value, error) = (figure(f.value, 3), with_unit(f.stderr, 2, &f.unit));
@@ -74,7 +84,26 @@ impl Calibration {
         } else {
             " The search did not end: do not use it."
         };
-        format!("From what the scene says: {}.{ended}", listed(&few))
+        let found = format!("rom what the scene says: {}.{ended}", listed(&few));
+        match self.p.filter(|p| *p < SIGNIFICANCE) {
+            None => format!("F{found}"),
+            Some(p) => {
+                let much = if self.unexplained() > MUCH {
+                    format!(
+                        ", {} of what other light leaves is explained by nothing: these are no estimates",
+                        figure(self.unexplained(), 2)
+                    )
+                } else {
+                    String::new()
+                };
+                format!(
+                    "The photographs fit NO geometry that is free to be: χ²/dof {} (p = {}){much}. \
+                     Closest, f{found}",
+                    figure(self.misfit, 3),
+                    figure(p, 1)
+                )
+            }
+        }
     }
 
     /// Whether noise alone explains what is left.
@@ -85,16 +114,12 @@ impl Calibration {
                 figure(self.misfit, 3),
                 figure(p, 2)
             ),
-            Some(p) => format!(
-                "The photographs do NOT fit even so: χ²/dof {} (p = {}). The model lacks something, \
-                 or something is wrong that is not free. Errors are the largest of three: by the \
-                 noise, by what single frames and by what blocks of pixels say; none of them sees \
-                 what is wrong in all alike.",
-                figure(self.misfit, 3),
-                figure(p, 1)
-            ),
+            Some(_) => "The model lacks something, or something is wrong that is not free: the order \
+                 of the spots, say. Errors are the largest of three: by the noise, by what single \
+                 frames and by what blocks of pixels say; none of them sees what is wrong in all alike."
+                .to_owned(),
             None => {
-                let much = if self.left > MUCH {
+                let much = if self.unexplained() > MUCH {
                     " That is much: the model lacks something."
                 } else {
                     ""
