@@ -24,9 +24,11 @@ from ._model import Model, model, model_of
 from ._native import __version__
 from ._phi import Phi, load, render
 from ._photographs import import_photographs
+from ._published import Reproduction, published, reproduce
 from ._recovery import Recovery, Surface, methods, recover
 from ._scene import Scene, scenes
 from ._study import Study, options, studies, study
+from ._target import target, targets
 from ._verdict import Verdict, validate
 from .errors import Error, FileError, InputError, InternalError, SceneError, Stopped, Suspicious
 
@@ -42,6 +44,7 @@ __all__ = [
     "Phi",
     "Photographs",
     "Recovery",
+    "Reproduction",
     "Scene",
     "SceneError",
     "Stopped",
@@ -59,11 +62,15 @@ __all__ = [
     "model",
     "model_of",
     "options",
+    "published",
     "recover",
     "render",
+    "reproduce",
     "scenes",
     "sensors",
     "studies",
     "study",
+    "target",
+    "targets",
     "validate",
 ]

@@ -129,6 +129,12 @@ class Phi:
         """Of `flux` and `stderr`: W, or counts (or counts/s) of photographs whose scale is unknown."""
         return str(self.account.get("unit", "W"))
 
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Any:
+        """The flux: ``numpy.asarray(phi)`` is ``phi.flux``."""
+        if copy is None:
+            return np.asarray(self.flux, dtype)
+        return np.array(self.flux, dtype, copy=copy)
+
     def frame(self, spot: int) -> Floats:
         """The photograph of a spot, rows × columns, W; row 0 is the lowest: ``imshow(…, origin="lower")``.
 

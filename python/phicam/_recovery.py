@@ -75,6 +75,17 @@ class Surface:
             raise InputError(f"values has {flat.size} numbers\n  cure: give {nu * nv}, one for each element")
         return flat.reshape(nv, nu)
 
+    def to_xarray(self) -> Any:
+        """An ``xarray.Dataset`` of all that is known of each element over (v, u), each 0 to 1 in the surface's parameters."""
+        import xarray
+
+        named = ("reflectance", "stderr", "lower", "upper", "bias", "light", "determined", "truth")
+        known = {name: values for name in named if (values := getattr(self, name)) is not None}
+        data = {name: (("v", "u"), self.picture(values)) for name, values in known.items()}
+        nu, nv = self.elements
+        coords = {"v": (np.arange(nv) + 0.5) / nv, "u": (np.arange(nu) + 0.5) / nu}
+        return xarray.Dataset(data, coords, {"surface": self.name, "method": self.values["method"]})
+
 
 class Recovery:
     """What one method recovered, with how sure it is.
@@ -148,6 +159,16 @@ class Recovery:
     def picture(self, surface: int = 0) -> Floats:
         """The reflectances of a surface as a picture, nv × nu, row 0 the lowest: ``imshow(…, origin="lower")``."""
         return self.surfaces[surface].picture()
+
+    def to_xarray(self, surface: int = 0) -> Any:
+        """An ``xarray.Dataset`` of the reflectances of a surface, their errors and all else that is known, over (v, u).
+
+        >>> import phicam
+        >>> phi = phicam.render(phicam.Scene("bench"), samples=32)
+        >>> phicam.recover(phi, method="tsvd").to_xarray().reflectance.dims
+        ('v', 'u')
+        """
+        return self.surfaces[surface].to_xarray()
 
     @property
     def fit(self) -> dict[str, Any] | None:

@@ -13,10 +13,12 @@ mod findings;
 mod folder;
 mod import;
 mod model;
+mod published;
 mod recover;
 mod render;
 mod scene;
 mod study;
+mod target;
 mod validate;
 mod work;
 
@@ -37,6 +39,8 @@ mod _native {
     #[pymodule_export]
     use crate::model::Model;
     #[pymodule_export]
+    use crate::published::{again, published};
+    #[pymodule_export]
     use crate::recover::{methods, recover, setting_allows, setting_methods, setting_range};
     #[pymodule_export]
     use crate::render::render;
@@ -44,6 +48,8 @@ mod _native {
     use crate::scene::{Scene, builtins};
     #[pymodule_export]
     use crate::study::{studies, study};
+    #[pymodule_export]
+    use crate::target::{target, targets};
     #[pymodule_export]
     use crate::validate::{shares_by_pixel, validate};
 
