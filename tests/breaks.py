@@ -251,6 +251,15 @@ BREAKS = [
         2,
     ),
     Break(
+        "Photographs that fit no geometry are no estimate of one",
+        "src/lab/calibrate/words.rs",
+        "self.left * (1.0 - by_noise)",
+        "self.left * (by_noise - 1.0)",
+        "lib",
+        "lab::calibrate::tests::photographs_of_no_geometry_come_with_that_verdict_first",
+        3,
+    ),
+    Break(
         "The ends of bands of many elements are those of a conic solver",
         "src/num/quadratic/region.rs",
         "length.is_finite() && e.norm() <= self.radius",
