@@ -6,6 +6,9 @@ use super::Scene;
 use super::error::SceneError;
 use super::files::Files;
 
+/// Characters of changes that an error repeats.
+const MOST_LISTED: usize = 100;
+
 impl Scene {
     /// The same scene with other values of some keys: (key, value as TOML). Keys are names parted
     /// by dots; a table of a list is named by its `name` or by its number from 0.
@@ -20,8 +23,8 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// [`SceneError`]: no such table, no such value in TOML, or what the scene then has wrong; its line
-    /// is that of the new text.
+    /// [`SceneError`]: no such table, no such value in TOML, or what the scene then has wrong, without a
+    /// line, for the text with the new values is nobody's file.
     pub fn with(&self, changes: &[(&str, &str)]) -> Result<Self, SceneError> {
         let mut document: Value =
             super::read_toml(&self.name, &self.text, "export the scene again")?;
@@ -42,7 +45,12 @@ impl Scene {
             set(&mut document, key, value).map_err(|(cause, cure)| fault(cause, cure))?;
         }
         let text = super::parse::write(&self.name, &document)?;
-        Self::read(&self.name, &text, Files::from(self.folders.clone()))
+        let read = Self::read(&self.name, &text, Files::from(self.folders.clone()));
+        read.map_err(|error| SceneError {
+            source: format!("{} with {}", self.name, listed(changes)),
+            place: None,
+            ..error
+        })
     }
 
     /// The scene of another text, which reads its files where this one does.
@@ -51,6 +59,18 @@ impl Scene {
     /// [`SceneError`] with line, cause and cure.
     pub fn remade(&self, text: &str) -> Result<Self, SceneError> {
         Self::read(&self.name, text, Files::from(self.folders.clone()))
+    }
+}
+
+/// The changes in words, of long ones the keys.
+fn listed(changes: &[(&str, &str)]) -> String {
+    let each = changes.iter().map(|(key, value)| format!("{key}={value}"));
+    let all = each.collect::<Vec<_>>().join(", ");
+    if all.chars().count() <= MOST_LISTED {
+        all
+    } else {
+        let keys = changes.iter().map(|(key, _)| *key);
+        format!("other values of {}", keys.collect::<Vec<_>>().join(", "))
     }
 }
 
@@ -162,7 +182,24 @@ mod tests {
             let error = bench().with(&[(key, value)]).unwrap_err();
             assert!(error.cause.contains(cause), "{key}: {}", error.cause);
             assert!(error.cure.contains(cure), "{key}: {}", error.cure);
+            assert_eq!(error.place, None);
         }
+    }
+
+    /// No line of a text that nobody wrote: what was changed.
+    #[test]
+    fn what_is_wrong_is_told_with_what_was_changed() {
+        let error = |value: &str| bench().with(&[("camera.pixels", value)]).unwrap_err();
+        let told = error("[0, 8]").to_string();
+        assert!(
+            told.starts_with("bench with camera.pixels=[0, 8]: 0 × 8 pixels\n  cure: "),
+            "{told}"
+        );
+        let told = error(&format!("[0, 8{}]", " ".repeat(100))).to_string();
+        assert!(
+            told.starts_with("bench with other values of camera.pixels: "),
+            "{told}"
+        );
     }
 
     #[test]
