@@ -21,19 +21,16 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::{DMatrix, DVector};
 
 use super::conditional::Conditional;
-use super::elimination::{directions, estimate, unit, without_left, without_right};
+use super::elimination::{directions, unit, without_left, without_right};
 use super::gram;
 use super::sides::Sides;
 use super::stacked::{Coupled, Stacked, stack};
 use super::weights::{self, Weights};
 use crate::num::linalg::{
-    Gram, LeastSquares, Route, Svd, Tolerance, Triangle, columns_over, least_squares,
-    normal_triangle, pivoted_triangle, product, rows_times, svd_of_range, svd_to, tr_product,
-    triangle,
+    Gram, LeastSquares, Route, Svd, Tolerance, Triangle, least_squares, normal_triangle,
+    pivoted_triangle, product, svd_of_range, svd_to, tr_product, triangle,
 };
-use crate::recovery::{
-    Deviations, Estimated, Gains, Options, Problem, RecoveryError, WeightRule, Weighting,
-};
+use crate::recovery::{Options, Problem, RecoveryError, WeightRule, Weighting};
 
 /// Elements whose Gram matrix (and its few copies) is still formed: 512 MiB each.
 const MOST_ELEMENTS: usize = 8192;
@@ -62,11 +59,6 @@ pub(super) struct Operator {
 fn known<'a>(problem: &Problem<'a>, options: &Options) -> Option<&'a DMatrix<f64>> {
     let weighted = options.weighting != WeightRule::Unweighted;
     problem.noise().filter(|_| weighted)
-}
-
-/// v_k/s_k as columns, r × rank.
-fn towards(solved: &LeastSquares) -> DMatrix<f64> {
-    columns_over(solved.vt.transpose(), &solved.sigma)
 }
 
 #[derive(Debug)]
@@ -262,98 +254,6 @@ impl Operator {
         })
     }
 
-    /// The nuisance terms that go with `seen` = s ρ, and what they and its light leave over,
-    /// pixels × spots, W.
-    pub(super) fn nuisances(
-        &self,
-        problem: &Problem<'_>,
-        options: &Options,
-        seen: &DVector<f64>,
-    ) -> Result<(Estimated, DMatrix<f64>), RecoveryError> {
-        let (seen, whole) = match (&self.gains.whole, self.direction(problem)) {
-            (Some(of), Some(z)) => {
-                let whole = of.given(seen);
-                (seen + z * whole[0], Some(whole))
-            }
-            _ => (seen.clone(), None),
-        };
-        let frames = self.gains.frames.as_ref().map(|of| of.given(&seen));
-        let mut left = problem.phi - problem.light(&seen);
-        let pattern = problem.soft.and_then(|soft| soft.frames.as_ref());
-        if let (Some((pattern, _)), Some(gains)) = (pattern, &frames) {
-            for (l, gain) in gains.iter().enumerate() {
-                left.column_mut(l).axpy(-gain, &pattern.column(l), 1.0);
-            }
-        }
-        let known = known(problem, options);
-        let mut found = match &self.form {
-            Form::Stacked { coupled, .. } => {
-                let coupled = coupled.as_ref().map(|c| c.solve(&seen, frames.as_ref()));
-                let root = |p: usize, l: usize| self.weights.root(problem, known, p, l);
-                estimate(&problem.nuisance, &left, root, coupled.as_ref())?
-            }
-            _ => {
-                let root = |p: usize, l: usize| self.weights.pixels[p] * self.weights.spots[l];
-                estimate(&problem.nuisance, &left, root, None)?
-            }
-        };
-        let (pixels, spots) = left.shape();
-        left -= found.light(&problem.nuisance, pixels, spots);
-        if let Some(soft) = problem.soft {
-            let factors = |size: Option<DVector<f64>>, known_to: Option<f64>| {
-                let (size, known_to) = (size?, known_to?);
-                Some(Deviations {
-                    standard_error: DVector::zeros(size.len()),
-                    size,
-                    known_to,
-                    picture_given: true,
-                })
-            };
-            let mut gains = Gains {
-                frames: factors(frames, soft.frames.as_ref().map(|of| of.1)),
-                whole: factors(whole, soft.whole.as_ref().map(|of| of.1)),
-                ..Gains::default()
-            };
-            self.add_errors(problem, &mut gains, None);
-            found.gains = Some(gains);
-        }
-        Ok((found, left))
-    }
-
-    /// z: the common factor's ε multiplies the light of these numbers.
-    fn direction<'a>(&self, problem: &Problem<'a>) -> Option<&'a DVector<f64>> {
-        let (z, _) = problem.soft?.whole.as_ref()?;
-        Some(z)
-    }
-
-    /// The standard errors of the factors where x has the covariance `of_x`; where none is known,
-    /// given x. With x and ε uncertain x + ε z has the covariance
-    ///
-    /// > (1 − z qᵀ) Cov(x) (1 − q zᵀ) + v z zᵀ,   ε | x ~ N(… − qᵀx, v).
-    pub(super) fn add_errors(
-        &self,
-        problem: &Problem<'_>,
-        gains: &mut Gains,
-        of_x: Option<&DMatrix<f64>>,
-    ) {
-        let Some(soft) = problem.soft else { return };
-        let n = self.elements;
-        let mut of_seen = of_x.cloned().unwrap_or_else(|| DMatrix::zeros(n, n));
-        if let (Some(of), Some(z)) = (&self.gains.whole, self.direction(problem)) {
-            if let Some(whole) = &mut gains.whole {
-                whole.standard_error = of.errors(&of_seen, soft.noise);
-                whole.picture_given = of_x.is_none();
-            }
-            let turn = DMatrix::identity(n, n) - z * of.slope.row(0);
-            of_seen = product(&product(&turn, &of_seen), &turn.transpose());
-            of_seen.ger(of.variance[0] * soft.noise * soft.noise, z, z, 1.0);
-        }
-        if let (Some(of), Some(frames)) = (&self.gains.frames, &mut gains.frames) {
-            frames.standard_error = of.errors(&of_seen, soft.noise);
-            frames.picture_given = of_x.is_none();
-        }
-    }
-
     /// −2 ln of the density of the data at the x that fits best, but for a constant that holds for all
     /// factors: what is left of χ², and ln det of what the factors add to the covariance. None of an
     /// operator that is not in rows.
@@ -364,62 +264,6 @@ impl Operator {
         let Conditionals { frames, whole } = &self.gains;
         let of = [frames, whole].into_iter().flatten().map(|of| of.log_det);
         Some(triangle.rest * triangle.rest + of.sum::<f64>())
-    }
-
-    /// Covariance of the solution as the standard errors make it, whether or not the weights are
-    /// theirs:
-    ///
-    /// > (KᵀWK)⁺ KᵀW Σ W K (KᵀWK)⁺ = Σ_kk' v_k (1/s_k) N_kk' (1/s_k') v_k'ᵀ,
-    ///
-    /// N that of [`Operator::noise`]. Where the weights are the entries' own it is (KᵀWK)⁺.
-    pub(super) fn covariance(
-        &self,
-        problem: &Problem<'_>,
-        solved: &LeastSquares,
-    ) -> Option<DMatrix<f64>> {
-        let towards = towards(solved);
-        let noise = self.noise(problem, solved)?;
-        Some(product(&product(&towards, &noise), &towards.transpose()))
-    }
-
-    /// Covariance of the data along the left singular vectors, as the standard errors make it, rank
-    /// × rank:
-    ///
-    /// > N_kk' = Σ_pl u_k\[p,l\] u_k'\[p,l\] w_p v_l σ²\[p,l\],   u_k = √W K v_k/s_k as pixels × spots.
-    ///
-    /// The unit matrix where the weights are the entries' own; none without a noise model, and none
-    /// for unweighted rows with glare patterns. C̃ = U T and D̃ = S V with few (c, d) orthonormal
-    /// columns to rounding, so that the sums cost d·c·r·k + l·(p·c² + c·k·(d + c + k)) operations
-    /// and not l·p·k·(r + k).
-    pub(super) fn noise(
-        &self,
-        problem: &Problem<'_>,
-        solved: &LeastSquares,
-    ) -> Option<DMatrix<f64>> {
-        let stderr = problem.noise()?;
-        let Some(Sides { u, t, s, v }) = &self.sides else {
-            return (self.weighting == Weighting::EntryByEntry)
-                .then(|| DMatrix::identity(solved.rank, solved.rank));
-        };
-        let towards = towards(solved).select_rows(&self.element);
-        // T diag(S_b) v_k/s_k of each direction b of the laser side, as columns.
-        let (c, k) = (t.nrows(), solved.rank);
-        let mut lit = DMatrix::zeros(c * k, s.ncols());
-        for (b, mut target) in lit.column_iter_mut().enumerate() {
-            let by_term = rows_times(towards.clone(), s.column(b).iter());
-            target.copy_from_slice(product(t, &by_term).as_slice());
-        }
-        let mut sum = DMatrix::zeros(k, k);
-        for l in 0..v.ncols() {
-            let along = DMatrix::from_column_slice(c, k, (&lit * v.column(l)).as_slice());
-            let errors: Vec<f64> = (0..u.nrows())
-                .map(|p| self.weights.pixels[p] * self.weights.spots[l] * stderr[(p, l)])
-                .collect();
-            let noise = rows_times(u.clone(), &errors);
-            let weighted = product(&tr_product(&noise, &noise), &along);
-            sum += tr_product(&along, &weighted);
-        }
-        Some(sum)
     }
 
     /// Rows of the matrix that is decomposed, by which an automatic rank cut is scaled.
@@ -490,5 +334,6 @@ impl Operator {
     }
 }
 
+mod errors;
 #[cfg(test)]
 mod tests;
