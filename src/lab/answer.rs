@@ -3,8 +3,9 @@
 
 use super::finding::{Describe, Finding, Tone};
 use super::objects::RecoveredObject;
+use super::recoveries::{by_surface, determined};
 use super::results::RunResults;
-use super::summary::{by_surface, determined, facts};
+use super::summary::facts;
 use crate::num::digits::{figure, significant};
 
 /// More hidden surfaces than this are counted, not named.

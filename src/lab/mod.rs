@@ -183,6 +183,7 @@ mod power;
 mod preview;
 mod problem;
 pub mod published;
+mod recoveries;
 mod registered;
 mod registry;
 mod results;
@@ -244,15 +245,14 @@ pub use preview::{
     Colour, Preview, PreviewError, PreviewPlan, ViewOptions, Viewpoint, auto_viewpoint, preview,
 };
 pub use problem::{MOST_INTEGRATED, inverted};
+pub use recoveries::{by_surface, describe_recovery, determined, fits, recovery, warnings};
 pub use registered::{AnyStudy, Found, Prepare, Registered, prepared};
 pub use registry::STUDIES;
 pub use results::RunResults;
 pub use score::{Derivatives, Deviation, Parameter, Score};
 pub use smooth::polynomials;
 pub use study::{Sharing, Study, Work, context, outputs, run};
-pub use summary::{
-    by_surface, describe_recovery, describe_render, determined, fits, recovery, warnings,
-};
+pub use summary::describe_render;
 pub use tails::Tails;
 pub use tolerance::{Misplacement, Sensitivity, Tolerance, ToleranceTasks};
 pub use trust::by_trust;
