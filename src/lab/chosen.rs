@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::gains::{self, Gains};
+use crate::num::digits::significant;
 use crate::recovery::{Choice, Estimated, Method, Parameter, Patterns, Recovered, Sum};
 
 /// A parameter, why it is this one, and what a run needs to take the same again.
@@ -247,9 +248,13 @@ fn patterns(of: &Patterns) -> String {
     let how = match of.sum {
         Sum::Exhaustive => "of all patterns".to_owned(),
         Sum::Sampled {
-            sweeps,
+            draws,
+            listed,
             disagreement,
-        } => format!("by {sweeps} sweeps of two ladders that differ by {disagreement:.2}"),
+        } => format!(
+            "{} % of them one by one and the others by {draws} draws, to within {disagreement:.2}",
+            significant(100.0 * listed, 2)
+        ),
     };
     let undecided = of.light.iter().filter(|p| (0.05..=0.95).contains(*p));
     // Levels that were given are taken for the surface's.

@@ -260,8 +260,8 @@ fn unsampled(found: &Recovered) -> Option<String> {
     };
     (disagreement > Sum::AGREEMENT).then(|| {
         format!(
-            "the probabilities of its patterns are NOT to be believed: two samplings from different \
-             starts differ by {} in an element. Use fewer --elements, give the --levels, or believe \
+            "the probabilities of its patterns are NOT to be believed: that of an element may be off by \
+             {}. Use fewer --elements, give the --levels, or believe \
              joint-gp",
             significant(disagreement, 2)
         )

@@ -8,6 +8,8 @@ pub mod decimal;
 pub mod digits;
 #[doc(hidden)]
 pub mod lanes;
+#[doc(hidden)]
+pub mod lattice;
 pub mod linalg;
 #[doc(hidden)]
 pub mod multiprecision;

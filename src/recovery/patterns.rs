@@ -7,11 +7,14 @@ use nalgebra::DVector;
 pub enum Sum {
     /// Over all patterns.
     Exhaustive,
-    /// By two independent ladders of Markov chains (parallel tempering).
+    /// Of the likeliest patterns one by one, of the others by chance.
     Sampled {
-        /// Sweeps of each ladder after the first fifth.
-        sweeps: usize,
-        /// The largest difference of an element's probability between halves of the ladders.
+        /// Patterns that were drawn.
+        draws: usize,
+        /// Share of the probability that was summed pattern by pattern.
+        listed: f64,
+        /// By how much an element's probability may be off: twice its standard error, what two
+        /// samplings differ in, or the share of patterns that both are likely to have missed.
         disagreement: f64,
     },
 }

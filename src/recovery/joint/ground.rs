@@ -4,8 +4,9 @@ use std::collections::HashMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::levels::{LevelFit, rule};
+use super::levels::{LevelFit, possible};
 use crate::num::control::Control;
+use crate::num::quadrature::Rule;
 use crate::recovery::{Patterns, Sum};
 
 /// χ² = ‖R x − d‖², x_j one of two levels, given or not.
@@ -40,21 +41,109 @@ impl<'a> Ground<'a> {
     }
 }
 
+/// A pattern's weight, exp(−½ χ²) over all its levels.
+pub(super) struct Weighed {
+    /// ln of it.
+    pub(super) log: f64,
+    /// Means of the dark and the light level under it, and of their squares.
+    pub(super) levels: [[f64; 2]; 2],
+    /// χ² of its best levels; infinite where these cannot be.
+    pub(super) chi2: f64,
+}
+
+impl Weighed {
+    /// Mean of the light level less that of the dark one.
+    pub(super) fn contrast(&self) -> f64 {
+        self.levels[1][0] - self.levels[0][0]
+    }
+}
+
 impl Ground<'_> {
-    /// ln of a pattern's weight, all levels that are possible together where they are not given; none
-    /// where only one level is there.
-    pub(super) fn log_weight(&self, light: &[bool]) -> Option<f64> {
-        let lit = self.lit(light);
-        match self.given {
-            Some([dark, light]) => {
-                let left = self.d - &self.all * dark - lit * (light - dark);
-                Some(-0.5 * left.norm_squared())
-            }
-            None => {
-                let fit = LevelFit::new(self.d, &(&self.all - &lit), &lit)?;
-                Some(fit.weight(&rule())?.log)
+    /// A pattern's weight over levels that differ by these contrasts, where they are not given; none
+    /// where levels are not told apart or none can be.
+    pub(super) fn weigh(
+        &self,
+        light: &[bool],
+        rule: &Rule,
+        contrasts: [f64; 2],
+    ) -> Option<Weighed> {
+        let count = light.iter().filter(|light| **light).count();
+        self.weigh_lit(
+            (&self.lit(light), count),
+            rule,
+            contrasts,
+            f64::NEG_INFINITY,
+        )
+    }
+
+    /// The same of the light of so many light elements, unless ln of it is less than `least` whatever
+    /// its levels are.
+    pub(super) fn weigh_lit(
+        &self,
+        (lit, count): (&DVector<f64>, usize),
+        rule: &Rule,
+        contrasts: [f64; 2],
+        least: f64,
+    ) -> Option<Weighed> {
+        if let Some([dark, light]) = self.given {
+            let chi2 = (self.d - &self.all * dark - lit * (light - dark)).norm_squared();
+            return Some(Weighed {
+                log: -0.5 * chi2,
+                levels: [dark, light].map(|x| [x, x * x]),
+                chi2,
+            });
+        }
+        if count == 0 || count == self.r.ncols() {
+            return self.one_level(count > 0, rule);
+        }
+        let fit = LevelFit::new(self.d, &(&self.all - lit), lit)?;
+        if -0.5 * fit.chi2 < least {
+            return None;
+        }
+        let weight = fit.weight(rule, contrasts)?;
+        Some(Weighed {
+            log: weight.log,
+            levels: weight.moments,
+            chi2: if possible(fit.best) {
+                fit.chi2
+            } else {
+                f64::INFINITY
+            },
+        })
+    }
+
+    /// Of a pattern without light elements or without dark ones: of the one level x that is seen, with
+    /// what remains for the other, 2 (1 − x) or 2 x, by quadrature.
+    fn one_level(&self, light: bool, rule: &Rule) -> Option<Weighed> {
+        let (own, along) = (self.all.norm_squared(), self.all.dot(self.d));
+        let (best, sd) = (along / own, own.sqrt().recip());
+        let middle = best.clamp(0.0, 1.0);
+        let (low, high) = ((middle - 9.0 * sd).max(0.0), (middle + 9.0 * sd).min(1.0));
+        let chi2 = |x: f64| (self.d - &self.all * x).norm_squared();
+        let least = chi2(middle);
+        let (mut sum, mut moments) = (0.0, [[0.0; 2]; 2]);
+        for (x, weight) in rule.on(low, high) {
+            let room = if light { x } else { 1.0 - x };
+            let own = weight * 2.0 * room * libm::exp(-0.5 * (chi2(x) - least));
+            sum += own;
+            // The level that is not seen lies evenly in [0, x] or [x, 1].
+            let (from, to) = if light { (0.0, x) } else { (x, 1.0) };
+            let unseen = [(from + to) / 2.0, (from * from + from * to + to * to) / 3.0];
+            let levels = if light {
+                [unseen, [x, x * x]]
+            } else {
+                [[x, x * x], unseen]
+            };
+            for (moment, level) in moments.iter_mut().zip(levels) {
+                moment[0] += own * level[0];
+                moment[1] += own * level[1];
             }
         }
+        (sum > 0.0).then(|| Weighed {
+            log: -0.5 * least + libm::log(sum),
+            levels: moments.map(|m| m.map(|x| x / sum)),
+            chi2: least,
+        })
     }
 }
 
@@ -72,17 +161,6 @@ pub(super) struct Summed {
 }
 
 impl Summed {
-    /// The same with no less evidence than a pattern alone has, of the weight e^`log`: all patterns have
-    /// no less, though sampling may not have met it.
-    pub(super) fn with_known(self, log: Option<f64>) -> Self {
-        let all = self.best.len() as f64 * std::f64::consts::LN_2;
-        let known = log.unwrap_or(f64::NEG_INFINITY) - all;
-        Self {
-            log_evidence: self.log_evidence.max(known),
-            ..self
-        }
-    }
-
     /// The probabilities, with that of the pattern that is recovered.
     pub(super) fn finish(&self, recovered: &[bool]) -> Patterns {
         let own = self.weights.get(recovered).copied().unwrap_or(0.0);

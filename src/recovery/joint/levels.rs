@@ -10,6 +10,9 @@ const NODES: usize = 40;
 /// Standard deviations on either side of its likeliest value.
 const REACH: f64 = 9.0;
 
+/// All contrasts b − a.
+pub(super) const ALL: [f64; 2] = [0.0, 1.0];
+
 /// χ²(a, b) = ‖d − a u − b w‖² of the levels a, b of elements whose light is u (dark) and w (light),
 /// in standard deviations: a parabola about its minimum.
 pub(super) struct LevelFit {
@@ -64,55 +67,31 @@ impl LevelFit {
         })
     }
 
-    /// The same from what is left over at levels `at`: its square `left`, its products with u and w,
-    /// and \[uᵀu, uᵀw, wᵀw\]. No large numbers cancel where little is left over.
-    pub(super) fn about(
-        at: [f64; 2],
-        left: f64,
-        along: [f64; 2],
-        curvature: [f64; 3],
-    ) -> Option<Self> {
-        let [uu, uw, ww] = curvature;
-        let own = ww - uw / uu * uw;
-        if uu.is_nan() || uu <= 0.0 || own.is_nan() || own <= 1e-9 * ww {
-            return None;
-        }
-        let b = (along[1] - uw / uu * along[0]) / own;
-        let a = (along[0] - uw * b) / uu;
-        Some(Self {
-            best: [at[0] + a, at[1] + b],
-            curvature,
-            chi2: (left - a * along[0] - b * along[1]).max(0.0),
-        })
-    }
-
     fn determinant(&self) -> f64 {
         let [uu, uw, ww] = self.curvature;
         (uu * ww - uw * uw).max(f64::MIN_POSITIVE)
     }
 
-    /// ln of 2 ∫∫ exp(−β ½ χ²) over the whole plane: −β ½ χ²_min + ln(4π/(β √det)).
-    pub(super) fn log_plane(&self, beta: f64) -> f64 {
-        let width = 4.0 * std::f64::consts::PI / (beta * self.determinant().sqrt());
-        -0.5 * beta * self.chi2 + libm::log(width)
-    }
-
-    /// Levels of density ∝ exp(−β ½ χ²) over the plane, from two standard normal numbers.
-    pub(super) fn draw(&self, beta: f64, [x, y]: [f64; 2]) -> [f64; 2] {
+    /// Levels of density ∝ exp(−½ χ²) over the plane, from two standard normal numbers.
+    pub(super) fn draw(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [_, uw, ww] = self.curvature;
-        let a = x * (ww / (beta * self.determinant())).sqrt();
-        let b = -a * uw / ww + y / (beta * ww).sqrt();
+        let a = x * (ww / self.determinant()).sqrt();
+        let b = -a * uw / ww + y / ww.sqrt();
         [self.best[0] + a, self.best[1] + b]
     }
 
-    /// The weight over 0 ≤ a < b ≤ 1: closed in b, Gauss–Legendre in a.
-    pub(super) fn weight(&self, rule: &Rule) -> Option<Weight> {
-        let [_, uw, ww] = self.curvature;
+    /// The weight over 0 ≤ a < b ≤ 1 with b − a between two contrasts: closed in b, Gauss–Legendre in
+    /// a. At a contrast Δ the likeliest a is that of the parabola along b = a + Δ.
+    pub(super) fn weight(&self, rule: &Rule, [least, most]: [f64; 2]) -> Option<Weight> {
+        let [uu, uw, ww] = self.curvature;
         let (sa, sb) = ((ww / self.determinant()).sqrt(), ww.sqrt().recip());
         // ln ∫ exp(−½ χ²) db at a, and the moments of b there.
         let at = |a: f64| {
             let middle = self.best[1] - uw / ww * (a - self.best[0]);
-            let [x, y] = [a, 1.0].map(|b| (b - middle) / sb);
+            let [x, y] = [a + least, (a + most).min(1.0)].map(|b| (b - middle) / sb);
+            if x >= y {
+                return None;
+            }
             let share = between(x, y);
             if share <= 0.0 {
                 return None;
@@ -134,8 +113,16 @@ impl LevelFit {
             self.best[0]
         };
         let middle = middle.clamp(0.0, 1.0);
-        let low = (middle - REACH * sa).max(0.0);
-        let high = (middle + REACH * sa).min(1.0);
+        let both = uu + 2.0 * uw + ww;
+        let off = self.best[1] - self.best[0];
+        let along = [least, most].map(|c| self.best[0] - (uw + ww) / both * (c - off));
+        let (first, last) = (along[0].min(along[1]), along[0].max(along[1]));
+        let reach = REACH / both.sqrt();
+        let low = (middle - REACH * sa).max(first - reach).max(0.0);
+        let high = (middle + REACH * sa).min(last + reach).min(1.0 - least);
+        if low >= high {
+            return None;
+        }
         let values: Vec<(f64, f64, (f64, f64, f64))> = rule
             .on(low, high)
             .filter_map(|(a, weight)| Some((a, weight, at(a)?)))
@@ -172,7 +159,7 @@ pub(super) fn rule() -> Rule {
 mod tests {
     use super::*;
 
-    /// Sums over a fine grid of the triangle: inside it, at its corner and beyond it.
+    /// Sums over a fine grid of the triangle and of strips of it: inside it, at its corner and beyond it.
     #[test]
     fn weights_are_integrals_over_the_triangle() {
         let u = DVector::from_row_slice(&[9.0, 3.0, 1.0]);
@@ -180,43 +167,51 @@ mod tests {
         for [a, b] in [[0.3, 0.7], [0.0, 1.0], [-0.2, 1.3], [0.6, 0.5], [0.9, 1.2]] {
             let d = &u * a + &w * b + DVector::from_row_slice(&[0.4, -0.2, 0.3]);
             let fit = LevelFit::new(&d, &u, &w).unwrap();
-            let found = fit.weight(&rule()).unwrap();
-            let (n, mut sum, mut first, mut second) = (2000, 0.0, 0.0, 0.0);
-            for i in 0..n {
-                for j in i..n {
-                    let [x, y] = [i, j].map(|k| (f64::from(k) + 0.5) / f64::from(n));
-                    let half = if i == j { 0.5 } else { 1.0 };
-                    let own = half * libm::exp(-0.5 * (&d - &u * x - &w * y).norm_squared());
-                    sum += own;
-                    first += own * x;
-                    second += own * y * y;
+            let n = 2000;
+            for contrasts in [ALL, [0.3, 0.45], [0.9, 1.0], [0.0, 0.1]] {
+                let found = fit.weight(&rule(), contrasts);
+                let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
+                for i in 0..n {
+                    for j in i..n {
+                        let [x, y] = [i, j].map(|k| (f64::from(k) + 0.5) / f64::from(n));
+                        // A point on an edge counts half.
+                        let edge = contrasts.map(|c| (f64::from(j - i) - c * f64::from(n)).abs());
+                        let inside = (y - x - contrasts[0]).min(contrasts[1] - (y - x));
+                        let half = match edge[0].min(edge[1]) < 0.5 {
+                            true => 0.5,
+                            false => f64::from(u8::from(inside > 0.0)),
+                        };
+                        let own = half * libm::exp(-0.5 * (&d - &u * x - &w * y).norm_squared());
+                        sum += own;
+                        first += own * x;
+                        second += own * y * y;
+                    }
                 }
+                let expected = libm::log(2.0 * sum / f64::from(n * n));
+                let told = format!("{a} {b} {contrasts:?} {expected}");
+                let Some(found) = found else {
+                    assert!(expected < -30.0, "{told}");
+                    continue;
+                };
+                assert!((found.log - expected).abs() < 4e-3, "{told} {}", found.log);
+                assert!((found.moments[0][0] - first / sum).abs() < 1e-3, "{told}");
+                assert!((found.moments[1][1] - second / sum).abs() < 1e-3, "{told}");
             }
-            let expected = libm::log(2.0 * sum / f64::from(n * n));
-            assert!(
-                (found.log - expected).abs() < 2e-3,
-                "{a} {b} {} {expected}",
-                found.log
-            );
-            assert!((found.moments[0][0] - first / sum).abs() < 1e-3);
-            assert!((found.moments[1][1] - second / sum).abs() < 1e-3);
         }
         assert!(LevelFit::new(&u, &u, &(&u * 2.0)).is_none());
     }
 
-    /// Over the plane: ln 2 − ½ β χ² + ln(2π/(β √det)); draws have the covariance (β M)⁻¹.
+    /// Draws over the plane have the covariance of the least squares.
     #[test]
-    fn the_plane_by_hand() {
+    fn draws_by_hand() {
         let u = DVector::from_row_slice(&[2.0, 0.0, 0.0]);
         let w = DVector::from_row_slice(&[0.0, 4.0, 0.0]);
         let d = DVector::from_row_slice(&[1.0, 2.0, 3.0]);
         let fit = LevelFit::new(&d, &u, &w).unwrap();
         assert!((fit.chi2 - 9.0).abs() < 1e-12);
-        let expected = libm::log(2.0) - 4.5 * 0.5 + libm::log(std::f64::consts::PI / 2.0);
-        assert!((fit.log_plane(0.5) - expected).abs() < 1e-12);
-        let drawn = fit.draw(0.25, [1.0, -1.0]);
+        let drawn = fit.draw([1.0, -1.0]);
         assert!(
-            (drawn[0] - 1.5).abs() < 1e-12 && drawn[1].abs() < 1e-12,
+            (drawn[0] - 1.0).abs() < 1e-12 && (drawn[1] - 0.25).abs() < 1e-12,
             "{drawn:?}"
         );
     }

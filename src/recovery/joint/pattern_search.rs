@@ -1,41 +1,34 @@
 //! The pattern of two values that fits best, as far as it can be found.
 //!
-//! A combinatorial problem, searched in two ways. Descent: from the minimiser over all 0 ≤ x ≤ 1,
-//! cut at several thresholds, the change of one or two elements that lowers ‖R x − d‖ most is made
-//! until none lowers it; without given levels also from the minimisers between pairs of levels.
-//! Branch and bound ([`super::branch`]): with the levels held, elements are put to one level after
-//! the other, and what relaxation shows to be hopeless is left out; it ends with a proof or after a
-//! fixed number of relaxations. Where the levels are not given they are the best for each pattern
-//! (least squares in [0, 1]), found anew after every search, until nothing improves. Misfits are
-//! norms of R x − d itself, never differences of Gram products, which would lose what little noise
-//! leaves.
+//! A combinatorial problem. Patterns to start from are points near the data in a lattice
+//! ([`super::pattern_lattice`]), for contrasts of all sizes where the levels are not given, and the
+//! minimiser over all 0 ≤ x ≤ 1, cut at several thresholds. From each the change of one or two
+//! elements that lowers ‖R x − d‖ most is made until none lowers it, with the levels that are best for
+//! the pattern (least squares in [0, 1]). With given levels branch and bound ([`super::branch`]) ends
+//! with a proof, or after a fixed number of relaxations. Misfits are norms of R x − d itself, never
+//! differences of Gram products, which would lose what little noise leaves.
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::branch;
 use super::levels::LevelFit;
+use super::pattern_lattice::{Dark, MOST, PatternLattice, nearest};
 use crate::num::control::Control;
 use crate::num::linalg::gram_product;
-use crate::num::quadratic::{Bounds, box_least_squares, box_least_squares_from};
+use crate::num::quadratic::{Bounds, box_least_squares};
 use crate::recovery::RecoveryError;
 
-/// Thresholds that the relaxation is cut at.
+/// Thresholds that the relaxation is cut at, and near patterns that are descended from.
 const STARTS: usize = 12;
-/// Steps of the lattice of levels.
-const LEVELS: usize = 10;
-/// Levels of that lattice where the scale is free, in units of which a grey of ½ fits best: one lies
-/// below ½ then and one above.
-const DARK: [f64; 5] = [0.0, 0.1, 0.2, 0.3, 0.4];
-const LIGHT: [f64; 10] = [0.55, 0.625, 0.7, 0.8, 0.9, 1.0, 1.25, 1.5, 2.0, 3.0];
+/// The largest contrast where the scale is free, in units of which a grey of ½ fits best.
+const BRIGHTEST: f64 = 3.0;
+/// Share of the contrast on either side of a lattice's.
+const SHARE: f64 = 0.15;
+/// Factor by which a contrast may differ from that about which a problem is linear.
+const NEAR: f64 = 2.0;
 /// Above this many elements pairs are not tried.
 const MOST_PAIRED: usize = 2048;
-/// Searches by branch and bound, each with the levels of a good pattern.
-const ROUNDS: usize = 10;
-/// Of the best descents so many have their levels searched with.
-const TRIALS: usize = 6;
-/// Levels that differ by less, relative to the light one, are searched with once.
-const SAME: f64 = 1e-3;
 /// A change must lower ‖R x − d‖² by more than this fraction, or rounding would go round in circles.
 const WORTH: f64 = 1e-10;
 
@@ -76,8 +69,8 @@ pub(super) struct Search<'a> {
     /// RᵀR.
     gram: DMatrix<f64>,
     levels: Levels,
-    /// Whether to start from between pairs of levels too, and to search with more of them.
-    wide: bool,
+    /// Contrasts that are possible.
+    contrasts: [f64; 2],
     control: Control<'a>,
 }
 
@@ -91,12 +84,7 @@ pub(super) struct Found {
 }
 
 impl<'a> Search<'a> {
-    pub(super) fn new(
-        r: &'a DMatrix<f64>,
-        d: &'a DVector<f64>,
-        levels: Levels,
-        wide: bool,
-    ) -> Self {
+    pub(super) fn new(r: &'a DMatrix<f64>, d: &'a DVector<f64>, levels: Levels) -> Self {
         let mut gram = DMatrix::zeros(r.ncols(), r.ncols());
         gram_product(&mut gram, r);
         Search {
@@ -104,7 +92,7 @@ impl<'a> Search<'a> {
             d,
             gram,
             levels,
-            wide,
+            contrasts: [0.0, f64::INFINITY],
             control: Control::none(),
         }
     }
@@ -112,6 +100,22 @@ impl<'a> Search<'a> {
     /// The same until it is told to stop.
     pub(super) fn under(self, control: Control<'a>) -> Self {
         Self { control, ..self }
+    }
+
+    /// The same among patterns of nearly this contrast, where the problem is linear about one.
+    pub(super) fn about(self, contrast: Option<f64>) -> Self {
+        let contrasts = match contrast {
+            Some(contrast) => [contrast / NEAR, contrast * NEAR],
+            None => self.contrasts,
+        };
+        Self { contrasts, ..self }
+    }
+
+    /// Whether its contrast is possible.
+    pub(super) fn can(&self, pattern: &Pattern) -> bool {
+        let [dark, light] = pattern.levels;
+        let [low, high] = self.contrasts;
+        (low..=high).contains(&(light - dark).abs())
     }
 
     /// The best pattern that is found.
@@ -127,7 +131,12 @@ impl<'a> Search<'a> {
             None => Bounds::all(n, 0.0, top),
         };
         let relaxed = box_least_squares(self.r, self.d, &bounds)?;
-        let starts = self.starts(&relaxed.solution)?;
+        let mut starts = thresholds(&relaxed.solution);
+        for start in self.near()? {
+            if !starts.contains(&start) {
+                starts.push(start);
+            }
+        }
         let mut descents: Vec<(Pattern, usize)> = starts
             .into_par_iter()
             .map(|start| {
@@ -136,54 +145,25 @@ impl<'a> Search<'a> {
             })
             .collect();
         let mut changes = descents.iter().map(|(_, changes)| changes).sum();
-        descents.sort_by(|(a, _), (b, _)| a.misfit.total_cmp(&b.misfit));
+        // Possible ones first.
+        let rank = |pattern: &Pattern| !self.can(pattern);
+        descents.sort_by(|(a, _), (b, _)| {
+            let first = rank(a).cmp(&rank(b));
+            first.then(a.misfit.total_cmp(&b.misfit))
+        });
         let Some((mut best, _)) = descents.first().cloned() else {
             return Err(RecoveryError::NO_DIRECTION);
         };
         let mut bound = relaxed.objective - relaxed.gap;
-        // Levels yet to be searched with, last first.
-        let whole = [relaxed.solution.min(), relaxed.solution.max()];
-        let mut trials = Vec::new();
-        match given {
-            Some(levels) => trials.push(levels),
-            None => {
-                let most = if self.wide { TRIALS } else { 0 };
-                let known = descents.iter().take(most).rev();
-                trials.extend(known.map(|(found, _)| ascending(found.levels)));
-                trials.push(whole);
-                if top == 1.0 {
-                    trials.push([0.0, 1.0]);
-                }
-            }
-        }
-        let mut tried: Vec<[f64; 2]> = Vec::new();
-        let rounds = if self.wide { ROUNDS } else { ROUNDS / 2 };
-        for _ in 0..rounds {
-            self.control.check()?;
-            let Some(levels) = trials.pop() else { break };
-            let near = |old: &[f64; 2]| {
-                (old[0] - levels[0]).abs() + (old[1] - levels[1]).abs() < SAME * levels[1]
-            };
-            if levels[0] >= levels[1] || tried.iter().any(near) {
-                continue;
-            }
-            tried.push(levels);
-            // Misfits at other levels than a pattern's best do not compare.
-            let known = match given {
-                Some(_) => 0.5 * best.misfit,
-                None => f64::INFINITY,
-            };
+        if let Some(levels) = given {
+            let known = 0.5 * best.misfit;
             let searched = branch::search(self.r, self.d, levels, &relaxed.solution, known)?;
-            if given.is_some() {
-                bound = bound.max(searched.bound);
-            }
-            let Some(light) = searched.light else {
-                continue;
-            };
-            let found = self.descend(light, &mut changes);
-            if found.misfit < best.misfit * (1.0 - WORTH) {
-                best = found;
-                trials.push(ascending(best.levels));
+            bound = bound.max(searched.bound);
+            if let Some(light) = searched.light {
+                let found = self.descend(light, &mut changes);
+                if found.misfit < best.misfit * (1.0 - WORTH) {
+                    best = found;
+                }
             }
         }
         Ok(Found {
@@ -218,49 +198,34 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Patterns to descend from: those of the relaxation to all values, and, where the levels are not
-    /// given, of the relaxations between the pairs of levels of a lattice. Near the true levels a
-    /// relaxation between them is nearly the pattern; between others it is not.
-    fn starts(&self, relaxed: &DVector<f64>) -> Result<Vec<Vec<bool>>, RecoveryError> {
-        let mut starts = thresholds(relaxed);
-        if !self.wide {
-            return Ok(starts);
+    /// The best of the patterns that are near in the lattices of all contrasts.
+    fn near(&self) -> Result<Vec<Vec<bool>>, RecoveryError> {
+        if self.r.ncols() > MOST {
+            return Ok(Vec::new());
         }
-        let between = |[dark, light]: &[f64; 2]| -> Result<Vec<bool>, RecoveryError> {
-            self.control.check()?;
-            let bounds = Bounds::all(self.r.ncols(), *dark, *light);
-            let found = box_least_squares_from(self.r, self.d, &bounds, relaxed)?.solution;
-            let middle = 0.5 * (dark + light);
-            Ok(found.iter().map(|x| *x > middle).collect())
+        let (dark, top) = match self.levels {
+            Levels::Given([dark, _]) => (Dark::Given(dark), 1.0),
+            Levels::Ratio([dark, light]) => (Dark::Times(dark / (light - dark)), BRIGHTEST),
+            Levels::Within(top) => (Dark::Free, top.min(BRIGHTEST)),
         };
-        let found: Result<Vec<Vec<bool>>, RecoveryError> =
-            self.pairs().par_iter().map(between).collect();
-        for start in found? {
-            if !starts.contains(&start) {
-                starts.push(start);
-            }
-        }
-        Ok(starts)
-    }
-
-    /// Pairs of levels to search between; none where they are given.
-    fn pairs(&self) -> Vec<[f64; 2]> {
-        match self.levels {
-            Levels::Given(_) => Vec::new(),
-            Levels::Within(top) if top.is_finite() => {
-                let level = |k: usize| top * k as f64 / LEVELS as f64;
-                let above = |a: usize| (a + 1..=LEVELS).map(move |b| [level(a), level(b)]);
-                (0..LEVELS).flat_map(above).collect()
-            }
-            Levels::Within(_) => {
-                let above = |dark: f64| LIGHT.map(|light| [dark, light]);
-                DARK.into_iter().flat_map(above).collect()
-            }
-            Levels::Ratio([dark, light]) => {
-                let pairs = LIGHT.map(|own| [own * dark / light, own]);
-                pairs.into_iter().filter(|[dark, _]| *dark < 0.5).collect()
-            }
-        }
+        let lattice = PatternLattice {
+            r: self.r,
+            d: self.d,
+            dark,
+        };
+        let (contrasts, share) = match self.levels {
+            Levels::Given([dark, light]) => (vec![light - dark], 0.0),
+            _ => (lattice.contrasts(top, SHARE), SHARE),
+        };
+        self.control.check()?;
+        let cells = lattice.cells(&contrasts, share, lattice.weight())?;
+        let mut found: Vec<Pattern> = nearest(&cells)
+            .into_par_iter()
+            .map(|light| self.fit(light))
+            .collect();
+        found.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
+        found.truncate(STARTS);
+        Ok(found.into_iter().map(|pattern| pattern.light).collect())
     }
 
     /// Changes and levels in turn until neither lowers the misfit.
@@ -358,11 +323,6 @@ fn within(d: &DVector<f64>, [u, w]: &[DVector<f64>; 2], top: f64) -> [f64; 2] {
     let misfit = |[a, b]: &[f64; 2]| (u * *a + w * *b - d).norm_squared();
     let least = sides.min_by(|x, y| misfit(x).total_cmp(&misfit(y)));
     least.unwrap_or([0.0; 2])
-}
-
-/// The lesser first.
-fn ascending([a, b]: [f64; 2]) -> [f64; 2] {
-    [a.min(b), a.max(b)]
 }
 
 /// Patterns of a relaxation: light where it exceeds a threshold, thresholds between neighbouring

@@ -18,15 +18,15 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::ground::{Ground, Moments, Summed};
-use super::tempered;
+use super::sampled;
 use crate::num::linalg::{Cholesky, gram_product};
 use crate::recovery::Patterns;
 use crate::recovery::RecoveryError;
 
 /// Spreads τ that are tried, from hardly any to no levels at all.
 const SPREADS: [f64; 5] = [0.003, 0.01, 0.03, 0.1, 0.3];
-/// Multiplications that a ladder may take for one of them.
-const WORK: f64 = 3e7;
+/// Patterns that are drawn for one of them.
+const DRAWS: usize = 16_000;
 
 /// How likely each of [`SPREADS`] is beforehand, together 1.
 pub(super) fn beforehand() -> [f64; SPREADS.len()] {
@@ -135,8 +135,9 @@ fn part(
     let d = DMatrix::from_column_slice(ground.d.len(), 1, ground.d.as_slice());
     let d = factor.forward(d).column(0).into_owned();
     let own = Ground::new(&r, &d, None);
-    let summed = tempered::sample(&own, light, WORK)?;
-    let summed = summed.with_known(own.log_weight(light));
+    let Some(summed) = sampled::sample(&own, &[light.to_vec()], DRAWS)? else {
+        return Ok(None);
+    };
     let m = inverse.inverse();
     let toward = ground.r.tr_mul(ground.d) * (tau * tau);
     let mut square = m.diagonal() * (tau * tau);

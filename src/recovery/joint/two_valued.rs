@@ -5,21 +5,26 @@
 //! ([`super::pattern_search`]). The reported gap says how far it can be above that: with given levels
 //! above what branch and bound left open (zero: proved best), with estimated ones above the minimum
 //! over all 0 ≤ ρ ≤ 1. The probabilities are sums over all patterns of few elements
-//! ([`super::enumerated`]), of more by sampling ([`super::tempered`]), every pattern as likely
-//! beforehand. Where the levels are not given, they and the standard errors allow for elements that
-//! differ from their level, as far as the photographs do ([`super::spread`]). How likely the photographs are by two levels, against what other methods assume, takes
-//! neighbours to be alike by an unknown degree ([`super::neighbours`]).
+//! ([`super::enumerated`]), of more over the likeliest and by sampling ([`super::sampled`]), every
+//! pattern as likely beforehand. Where the levels are not given, they and the standard errors allow
+//! for elements that differ from their level, as far as the photographs do ([`super::spread`]). How
+//! likely the photographs are by two levels, against what other methods assume, takes neighbours to be
+//! alike by an unknown degree ([`super::neighbours`]).
 
 use super::coordinates::Coordinates;
 use super::ground::Ground;
 use super::pattern_search::{Found, Levels, Search};
-use super::{enumerated, neighbours, scale, spread, tempered};
+use super::{enumerated, neighbours, sampled, scale, spread};
 use crate::recovery::{
     Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, Solver, Sum,
 };
 
 /// Above this many elements patterns are not sampled.
-const MOST_SAMPLED: usize = 1024;
+const MOST_SAMPLED: usize = 576;
+/// Patterns that are drawn, times n², and at least and at most.
+const DRAWS: f64 = 1.6e9;
+const FEWEST: f64 = 2000.0;
+const MOST: f64 = 400_000.0;
 
 pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
@@ -48,7 +53,13 @@ pub(in crate::recovery) fn recover(
         (None, true) => Levels::Within(f64::INFINITY),
         (None, false) => Levels::Within(1.0),
     };
-    let search = Search::new(&r, &d, levels, options.probabilities).under(problem.control);
+    // About estimates of picture and scale the problem is linear, and holds near these.
+    let whole = problem.soft.and_then(|soft| soft.whole.as_ref());
+    let contrast = whole.filter(|_| options.levels.is_none());
+    let contrast = contrast.map(|(z, _)| (z.max() - z.min()) / unit);
+    let search = Search::new(&r, &d, levels)
+        .about(contrast)
+        .under(problem.control);
     let Found {
         mut best,
         mut bound,
@@ -66,11 +77,12 @@ pub(in crate::recovery) fn recover(
     } else if enumerated::can(&ground) {
         Some(enumerated::sum(&ground))
     } else {
-        Some(tempered::sample(&ground, &best.light, tempered::MOST_WORK)?)
+        let draws = (DRAWS / (n * n) as f64).clamp(FEWEST, MOST) as usize;
+        sampled::sample(&ground, &[best.light.clone()], draws)?
     };
     if let Some(summed) = &summed {
         let found = search.descend(summed.best.clone(), &mut changes);
-        if found.misfit < best.misfit {
+        if search.can(&found) && found.misfit < best.misfit {
             best = found;
         }
     }
@@ -79,7 +91,6 @@ pub(in crate::recovery) fn recover(
         bound = objective;
     }
     let shown = best.values();
-    let summed = summed.map(|all| all.with_known(ground.log_weight(&best.light)));
     let spread = match &summed {
         Some(exact) if given.is_none() && options.spreads => {
             Some(spread::sum(&ground, exact, (&best.light, &shown))?)

@@ -50,7 +50,9 @@ fn errors_are_those_of_all_patterns_levels_and_spreads() {
         let shown = DVector::from_row_slice(&SHOWN);
         let ground = Ground::new(&r, &d, None);
         let light = [false, true, false, true];
-        let exact = tempered::sample(&ground, &light, tempered::MOST_WORK).unwrap();
+        let exact = sampled::sample(&ground, &[light.to_vec()], 4000)
+            .unwrap()
+            .unwrap();
         let found = sum(&ground, &exact, (&light, &shown)).unwrap();
         let parts = SPREADS.map(|tau| by_hand(&r, &d, tau));
         let own = by_hand(&r, &d, 0.0);

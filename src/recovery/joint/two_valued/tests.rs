@@ -119,7 +119,8 @@ fn probabilities_are_those_of_all_patterns() {
         Coordinates::new(Method::JointTwoValued, &problem, &options, 1.0, 1.0).unwrap();
     let (r, d) = coordinates.whitened();
     let ground = Ground::new(&r, &d, Some([0.3, 0.7]));
-    let sampled = tempered::sample(&ground, &[false; 9], tempered::MOST_WORK)
+    let sampled = sampled::sample(&ground, &[vec![false; 9]], 4000)
+        .unwrap()
         .unwrap()
         .finish(&[false; 9]);
     assert!(sampled.sum.converged(), "{:?}", sampled.sum);
@@ -155,7 +156,9 @@ fn sampled_levels_are_those_of_the_sum() {
         let best = all.best.clone();
         let [all, sampled] = [
             all,
-            tempered::sample(&ground, &best, tempered::MOST_WORK).unwrap(),
+            sampled::sample(&ground, &[best.clone()], 4000)
+                .unwrap()
+                .unwrap(),
         ]
         .map(|s| s.finish(&best));
         assert!(sampled.sum.converged(), "{:?}", sampled.sum);
@@ -166,6 +169,57 @@ fn sampled_levels_are_those_of_the_sum() {
             assert!((sampled.level_errors[k] / all.level_errors[k] - 1.0).abs() < 0.1);
         }
         assert!((sampled.log_evidence - all.log_evidence).abs() < 0.2);
+    }
+}
+
+/// 4 × 4 elements at noise that leaves far more patterns likely than are listed: what is drawn makes
+/// up for the others, to within what is stated.
+#[test]
+fn drawn_patterns_make_up_for_those_that_are_not_listed() {
+    let bench = Bench::new(6.0, 4, 8);
+    let truth = DVector::from_fn(16, |j, _| if j % 5 < 2 { 0.8 } else { 0.2 });
+    for given in [None, Some([0.2, 0.8])] {
+        let [phi, stderr] = noisy(&bench, &truth, 3.0, 7);
+        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+        let options = Options::default();
+        let coordinates =
+            Coordinates::new(Method::JointTwoValued, &problem, &options, 1.0, 1.0).unwrap();
+        let (r, d) = coordinates.whitened();
+        let ground = Ground::new(&r, &d, given);
+        let all = enumerated::sum(&ground);
+        let known = [all.best.clone()];
+        let sampled = sampled::sample(&ground, &known, 20_000).unwrap().unwrap();
+        let Sum::Sampled {
+            listed,
+            disagreement,
+            ..
+        } = sampled.sum
+        else {
+            panic!("{:?}", sampled.sum)
+        };
+        assert!(listed < 0.7, "{given:?}: {listed}");
+        assert!(disagreement < 0.05, "{given:?}: {disagreement}");
+        let drawn = sampled.drawn.len() as f64;
+        let mean = |j: usize| {
+            let levels = sampled.drawn.iter().map(|of| of.2[usize::from(of.1[j])]);
+            levels.sum::<f64>() / drawn
+        };
+        let means = DVector::from_fn(16, |j, _| mean(j));
+        let [all, own] = [&all, &sampled].map(|s| s.finish(&all.best));
+        let off = (&own.light - &all.light).amax();
+        assert!(off < 1.5 * disagreement, "{given:?}: {off} {disagreement}");
+        assert!((&own.mean - &all.mean).amax() < 0.02, "{given:?}");
+        // 200 pictures, none of an element's values further than ½ from its mean.
+        assert!(
+            (means - &all.mean).amax() < 4.0 * 0.5 / drawn.sqrt(),
+            "{given:?}"
+        );
+        let evidences = own.log_evidence - all.log_evidence;
+        assert!(evidences.abs() < 0.05, "{given:?}: {evidences}");
+        for k in 0..2 {
+            assert!((own.levels[k] - all.levels[k]).abs() < 0.01);
+            assert!((own.level_errors[k] - all.level_errors[k]).abs() < 0.01);
+        }
     }
 }
 
@@ -225,29 +279,34 @@ fn random_patterns_are_found_at_a_tenth_of_noise() {
     assert!(right >= 95, "{right}");
 }
 
-/// Levels unknown on 8 × 8 elements: what is found fits at least as well as what made the
-/// photographs.
+/// Boards of 2 × 2 and 4 × 4 fields on 8 × 8 elements, levels unknown: what is found fits at least as
+/// well as what made the photographs.
 #[test]
 #[ignore = "slow"]
 fn the_search_reaches_what_made_the_photographs() {
-    let bench = Bench::new(6.0, 8, 8);
-    for (levels, noise) in [([0.2, 0.8], 1e-2), ([0.1, 0.6], 1e-3)] {
-        let truth = bench
-            .board(2)
-            .map(|x| levels[0] + (levels[1] - levels[0]) * x);
-        for seed in 0..4 {
-            let [phi, stderr] = noisy(&bench, &truth, noise, seed);
-            let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
-            let found = recover(Method::JointTwoValued, &problem, &Options::default()).unwrap();
-            let chi2 = |x: &DVector<f64>| {
-                let off = (&phi - bench.phi(x)).component_div(&stderr);
-                off.norm_squared()
-            };
-            let [own, made] = [chi2(&found.reflectance), chi2(&truth)];
-            assert!(
-                own <= made + 1e-3,
-                "{levels:?} {noise} {seed}: {own} {made}"
-            );
+    let bench = Bench::new(6.0, 8, 16);
+    for (k, levels) in [(2, [0.2, 0.8]), (4, [0.2, 0.8]), (4, [0.1, 0.6])] {
+        for noise in [1e-3, 5.5e-3, 3e-2] {
+            for seed in 0..2 {
+                let truth = bench.board(k);
+                let truth = truth.map(|x| levels[0] + (levels[1] - levels[0]) * x);
+                let [phi, stderr] = noisy(&bench, &truth, noise, seed);
+                let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+                let found = recover(Method::JointTwoValued, &problem, &Options::default()).unwrap();
+                let chi2 = |x: &DVector<f64>| {
+                    let off = (&phi - bench.phi(x)).component_div(&stderr);
+                    off.norm_squared()
+                };
+                let [own, made] = [chi2(&found.reflectance), chi2(&truth)];
+                let told = format!("{k} {levels:?} {noise} {seed}");
+                assert!(own <= made + 1e-3, "{told}: {own} {made}");
+                // Where little noise sets one pattern apart, it is that of the photographs.
+                let patterns = found.patterns.unwrap();
+                if noise < 2e-3 {
+                    assert!((&found.reflectance - &truth).amax() < 0.01, "{told}");
+                    assert!(patterns.pattern > 0.2 && patterns.sum.converged(), "{told}");
+                }
+            }
         }
     }
 }

@@ -1,0 +1,268 @@
+//! Lattices {B z : z ∈ Zⁿ}: reduced bases, the points nearest to a target, and points of chance
+//! about it.
+//!
+//! A reduced basis (Lenstra, Lenstra and Lovász 1982) is of short vectors that are nearly at right
+//! angles,
+//!
+//! > B U = Q T,   |T_ik| ≤ ½ |T_ii|,   δ T_ii² ≤ T_i,i+1² + T_i+1,i+1²,
+//!
+//! U of integers with determinant ±1, T upper triangular. In its coordinates ζ = U⁻¹z
+//!
+//! > ‖B z − t‖² = Σ_i T_ii² (ζ_i − c_i)² + rest,   c_i = (y_i − Σ_k>i T_ik ζ_k)/T_ii,   y = Qᵀt,
+//!
+//! and one coordinate after the other, last first, tells which points are near.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::linalg::{LinalgError, triangle};
+use super::stream::Stream;
+
+/// δ of the reduction.
+const DELTA: f64 = 0.99;
+/// Sizes of T_ik above this fraction of T_ii are reduced; more than ½, or rounding would never end.
+const SIZE: f64 = 0.5 + 1e-6;
+/// Exchanges in a reduction, at most, for each pair of vectors.
+const MOST: usize = 400;
+/// ln of a determinant that is not kept to this is beyond double precision.
+const KEPT: f64 = 1e-6;
+/// A coordinate that is less likely than the likeliest by e to this is not drawn.
+const NEGLIGIBLE: f64 = 38.0;
+
+/// A lattice by a reduced basis, and a target.
+#[derive(Debug, Clone)]
+pub struct Lattice {
+    u: DMatrix<f64>,
+    t: DMatrix<f64>,
+    y: DVector<f64>,
+}
+
+/// A point that was drawn.
+#[derive(Debug, Clone)]
+pub struct Drawn {
+    /// z, n integers.
+    pub point: Vec<f64>,
+    /// ln of the probability with which it is drawn.
+    pub log_probability: f64,
+}
+
+impl Lattice {
+    /// Reduces `basis` (m × n, m ≥ n, of full rank) for a target of m entries, from the reduced basis
+    /// of a lattice `near` it where one is known. `None` where the reduction is beyond double
+    /// precision.
+    ///
+    /// # Errors
+    /// Empty or non-finite input, sides that do not fit.
+    pub fn new(
+        basis: &DMatrix<f64>,
+        target: &DVector<f64>,
+        near: Option<&Self>,
+    ) -> Result<Option<Self>, LinalgError> {
+        let n = basis.ncols();
+        let first = triangle(basis, target)?;
+        let start = near.filter(|near| near.u.nrows() == n);
+        let u = start.map_or_else(|| DMatrix::identity(n, n), |near| near.u.clone());
+        let volume = log_volume(&first.r);
+        let mut found = Self {
+            u,
+            t: first.r.clone(),
+            y: first.d.clone(),
+        };
+        let mut changed = start.is_some();
+        loop {
+            if changed {
+                // T anew from the integers, without what rounding has gathered.
+                let again = triangle(&(&first.r * &found.u), &first.d)?;
+                (found.t, found.y) = (again.r, again.d);
+            }
+            let kept = (log_volume(&found.t) - volume).abs() < KEPT * (1.0 + volume.abs());
+            if !kept {
+                return Ok(None);
+            }
+            match found.reduce() {
+                None => return Ok(None),
+                Some(0) => return Ok(Some(found)),
+                Some(_) => changed = true,
+            }
+        }
+    }
+
+    /// n.
+    pub fn dimension(&self) -> usize {
+        self.t.ncols()
+    }
+
+    /// Reduces T and U together; how many pairs were exchanged, `None` if it does not end.
+    fn reduce(&mut self) -> Option<usize> {
+        let n = self.t.ncols();
+        let mut exchanged = 0;
+        let mut k = 1;
+        while k < n {
+            self.shorten(k, k - 1);
+            let [a, b, c] = [(k - 1, k - 1), (k - 1, k), (k, k)].map(|at| self.t[at]);
+            if DELTA * a * a > b * b + c * c {
+                self.exchange(k);
+                exchanged += 1;
+                if exchanged > MOST * n * n {
+                    return None;
+                }
+                k = (k - 1).max(1);
+            } else {
+                (0..k - 1).rev().for_each(|i| self.shorten(k, i));
+                k += 1;
+            }
+        }
+        Some(exchanged)
+    }
+
+    /// Takes the nearest multiple of vector i from vector k.
+    fn shorten(&mut self, k: usize, i: usize) {
+        let ratio = self.t[(i, k)] / self.t[(i, i)];
+        if ratio.abs() <= SIZE {
+            return;
+        }
+        let times = ratio.round();
+        for matrix in [&mut self.t, &mut self.u] {
+            let (left, right) = matrix.columns_range_pair_mut(i, k..k + 1);
+            let mut right = right;
+            right.column_mut(0).axpy(-times, &left, 1.0);
+        }
+    }
+
+    /// Exchanges vectors k − 1 and k and makes T triangular again by a rotation.
+    fn exchange(&mut self, k: usize) {
+        self.u.swap_columns(k - 1, k);
+        self.t.swap_columns(k - 1, k);
+        let (a, b) = (self.t[(k - 1, k - 1)], self.t[(k, k - 1)]);
+        let length = a.hypot(b);
+        let (cosine, sine) = (a / length, b / length);
+        let turned = |x: f64, y: f64| (cosine * x + sine * y, cosine * y - sine * x);
+        for column in k - 1..self.t.ncols() {
+            let (x, y) = turned(self.t[(k - 1, column)], self.t[(k, column)]);
+            (self.t[(k - 1, column)], self.t[(k, column)]) = (x, y);
+        }
+        self.t[(k, k - 1)] = 0.0;
+        (self.y[k - 1], self.y[k]) = turned(self.y[k - 1], self.y[k]);
+    }
+
+    /// z of ζ.
+    fn point(&self, coordinates: &[f64]) -> Vec<f64> {
+        let mut z = DVector::zeros(coordinates.len());
+        for (column, times) in self.u.column_iter().zip(coordinates) {
+            if *times != 0.0 {
+                z.axpy(*times, &column, 1.0);
+            }
+        }
+        z.iter().map(|z| z.round()).collect()
+    }
+
+    /// Points near the target, z, nearest first: of all choices of the last coordinates the `keep`
+    /// nearest are gone on with, coordinate after coordinate (the M-algorithm of Anderson and Mohan
+    /// 1984). The first is the nearest of all unless more than `keep` seemed nearer on the way.
+    pub fn nearest(&self, keep: usize) -> Vec<Vec<f64>> {
+        let n = self.t.ncols();
+        // Distances², coordinates, and what is left of y in the rows above: n numbers a point.
+        let mut distances = vec![0.0];
+        let mut coordinates = vec![0.0; n];
+        let mut left: Vec<f64> = self.y.as_slice().to_vec();
+        for k in (0..n).rev() {
+            let own = self.t[(k, k)];
+            let mut next: Vec<(f64, usize, f64)> = Vec::with_capacity(distances.len() * CHILDREN);
+            for (parent, distance) in distances.iter().enumerate() {
+                let centre = left[parent * n + k] / own;
+                next.extend(around(centre).take(CHILDREN).map(|z| {
+                    let off = own * (z - centre);
+                    (distance + off * off, parent, z)
+                }));
+            }
+            // Ties by the order of the points.
+            let before = |a: &(f64, usize, f64), b: &(f64, usize, f64)| {
+                let first = a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+                first.then(a.2.total_cmp(&b.2))
+            };
+            if next.len() > keep {
+                next.select_nth_unstable_by(keep, before);
+                next.truncate(keep);
+            }
+            next.sort_unstable_by(before);
+            let column = &self.t.column(k).data.into_slice()[..k];
+            let (mut all, mut rest) = (Vec::new(), Vec::new());
+            all.reserve(next.len() * n);
+            rest.reserve(next.len() * n);
+            for (_, parent, z) in &next {
+                let from = parent * n..(parent + 1) * n;
+                all.extend_from_slice(&coordinates[from.clone()]);
+                let last = all.len() - n + k;
+                all[last] = *z;
+                let old = &left[from];
+                rest.extend(old.iter().zip(column).map(|(old, t)| old - z * t));
+                rest.extend_from_slice(&old[k..]);
+            }
+            distances = next.into_iter().map(|(distance, _, _)| distance).collect();
+            (coordinates, left) = (all, rest);
+        }
+        coordinates.chunks(n).map(|zeta| self.point(zeta)).collect()
+    }
+
+    /// A point of chance: coordinate after coordinate, last first, each with the probability
+    /// ∝ exp(−½ T_ii² (ζ_i − c_i)²) (Klein 2000). Nearly ∝ exp(−½ ‖B z − t‖²), the more the less
+    /// |T_ii| exceeds 1; the probability itself is told.
+    pub fn draw(&self, random: &mut Stream) -> Drawn {
+        let n = self.t.ncols();
+        let mut left = self.y.clone();
+        let mut coordinates = vec![0.0; n];
+        let mut choices: Vec<(f64, f64)> = Vec::new();
+        let mut log_probability = 0.0;
+        for k in (0..n).rev() {
+            let own = self.t[(k, k)];
+            let centre = left[k] / own;
+            let log = |z: f64| -0.5 * (own * (z - centre)).powi(2);
+            let top = log(centre.round());
+            let likely = around(centre)
+                .map(|z| (z, log(z) - top))
+                .take_while(|(_, log)| *log > -NEGLIGIBLE);
+            choices.clear();
+            choices.extend(likely.map(|(z, log)| (z, libm::exp(log))));
+            let all: f64 = choices.iter().map(|c| c.1).sum();
+            let mut rest = random.uniform() * all;
+            let chosen = choices.iter().find(|(_, weight)| {
+                rest -= weight;
+                rest < 0.0
+            });
+            let (z, weight) = *chosen.unwrap_or(&choices[0]);
+            log_probability += libm::log(weight / all);
+            left.rows_mut(0, k)
+                .axpy(-z, &self.t.column(k).rows(0, k), 1.0);
+            coordinates[k] = z;
+        }
+        Drawn {
+            point: self.point(&coordinates),
+            log_probability,
+        }
+    }
+}
+
+/// Integers that are tried for a coordinate of each kept point.
+const CHILDREN: usize = 5;
+
+/// The integers, nearest to `centre` first.
+fn around(centre: f64) -> impl Iterator<Item = f64> {
+    let first = centre.round();
+    let side = if centre >= first { 1.0 } else { -1.0 };
+    (0..).map(move |k: u32| {
+        let step = f64::from(k.div_ceil(2));
+        first
+            + if k % 2 == 1 {
+                side * step
+            } else {
+                -side * step
+            }
+    })
+}
+
+/// Σ ln |T_ii|.
+fn log_volume(t: &DMatrix<f64>) -> f64 {
+    t.diagonal().iter().map(|x| libm::log(x.abs())).sum()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,251 @@
+//! The probabilities of patterns of many elements: those near the best one by one, the others by
+//! chance.
+//!
+//! Patterns are points of a lattice ([`super::pattern_lattice`]). The nearest of them are summed. All
+//! others p are drawn with a probability q(p) that is known ([`Lattice::draw`]) and, w(p) the weight of
+//! a pattern over all its levels,
+//!
+//! > Σ_p w(p) f(p) = Σ_listed w f + E_q \[f w/q, p not listed\],
+//!
+//! without bias and with an error that is known. Where the levels are not given, contrasts are divided
+//! into cells, each with its own lattice, and w of a pattern that is drawn is the weight over the
+//! levels of the cell. Two sets of lattices are used: what they disagree in is not known, nor what the
+//! errors of both allow.
+
+use std::collections::{BTreeMap, HashMap};
+
+use nalgebra::DVector;
+
+use super::ground::{Ground, Moments, Summed, Weighed};
+use super::levels::{ALL, LevelFit, possible, rule};
+use super::pattern_lattice::{Dark, PatternLattice};
+use super::sampler::{List, Met, Sampler, Side, counts, effective};
+use crate::num::stream::{Key, Sampling, Stream};
+use crate::recovery::{RecoveryError, Sum};
+
+/// Of the weight that lets a third of all draws be patterns, those of the two lattices.
+const WEIGHTS: [f64; 2] = [0.94, 1.06];
+/// Share ε of the contrast in a cell, to find where the likely ones are; and the parts of each of these
+/// that are drawn from.
+const COARSE: f64 = 0.1;
+const PARTS: usize = 5;
+/// Share of the draws by which the others are distributed over the cells.
+const FIRST: f64 = 0.2;
+/// Patterns with their levels that are drawn from all that were met, and tries to draw possible levels.
+const DRAWN: usize = 200;
+const TRIES: usize = 100;
+
+/// The sum over patterns by so many draws; `known` ones are listed. `None` where the lattices are
+/// beyond double precision.
+pub(super) fn sample(
+    ground: &Ground<'_>,
+    known: &[Vec<bool>],
+    draws: usize,
+) -> Result<Option<Summed>, RecoveryError> {
+    let lattice = PatternLattice {
+        r: ground.r,
+        d: ground.d,
+        dark: ground
+            .given
+            .map_or(Dark::Free, |[dark, _]| Dark::Given(dark)),
+    };
+    let contrasts = match ground.given {
+        Some([dark, light]) => vec![light - dark],
+        None => lattice.contrasts(1.0, COARSE),
+    };
+    let share = ground.given.map_or(COARSE, |_| 0.0);
+    let both = |contrasts: &[f64], share: f64, ends: [f64; 2]| {
+        let side = |number: usize| -> Result<Option<Side>, RecoveryError> {
+            ground.control.check()?;
+            let weight = WEIGHTS[number] * lattice.weight();
+            let mut cells = lattice.cells(contrasts, share, weight)?;
+            let whole = cells.len() == contrasts.len();
+            if let Some(first) = cells.first_mut() {
+                first.contrasts[0] = ends[0];
+            }
+            if let Some(last) = cells.last_mut() {
+                last.contrasts[1] = ends[1];
+            }
+            let number = number as u32;
+            Ok(whole.then_some(Side { cells, number }))
+        };
+        Ok::<_, RecoveryError>(side(0)?.zip(side(1)?).map(|(a, b)| [a, b]))
+    };
+    let Some(coarse) = both(&contrasts, share, ALL)? else {
+        return Ok(None);
+    };
+    let quadrature = rule();
+    let mut sampler = Sampler {
+        ground,
+        list: List::new(),
+        quadrature: &quadrature,
+    };
+    let n = ground.r.ncols();
+    sampler.list(known);
+    sampler.list(&[vec![false; n], vec![true; n]]);
+    let mut missed = sampler.list_near(&coarse);
+    let mut fine = coarse;
+    if ground.given.is_none() {
+        let [first, last] = sampler.likely(&fine)?;
+        let cells = &fine[0].cells;
+        let ends = [cells[first].contrasts[0], cells[last].contrasts[1]];
+        let middle = 0.5 * (PARTS as f64 - 1.0);
+        let step = |k: usize| libm::exp(2.0 * COARSE / PARTS as f64 * (k as f64 - middle));
+        let likely = contrasts[first..=last].iter();
+        let likely = likely.flat_map(|contrast| (0..PARTS).map(move |k| contrast * step(k)));
+        let likely: Vec<f64> = likely.collect();
+        let Some(own) = both(&likely, COARSE / PARTS as f64, ends)? else {
+            return Ok(None);
+        };
+        fine = own;
+        missed = sampler.list_near(&fine);
+    }
+    let even = |side: &Side| {
+        let count = FIRST * draws as f64 / 2.0 / side.cells.len() as f64;
+        vec![count.ceil() as usize; side.cells.len()]
+    };
+    let first = [
+        sampler.draw(&fine[0], &even(&fine[0]), 1)?,
+        sampler.draw(&fine[1], &even(&fine[1]), 1)?,
+    ];
+    let rest = (1.0 - FIRST) * draws as f64 / 2.0;
+    let counts = [0, 1].map(|k| counts(&first[k], fine[k].cells.len(), rest));
+    let trusts = first.each_ref().map(|met| effective(met));
+    // The later draws are independent of the first, which may so be listed too.
+    let first = first.into_iter().flatten();
+    let first: Vec<Vec<bool>> = first.map(|met| met.light).collect();
+    sampler.list(&first);
+    let met = [
+        sampler.draw(&fine[0], &counts[0], 2)?,
+        sampler.draw(&fine[1], &counts[1], 2)?,
+    ];
+    let known = Known {
+        met,
+        trusts,
+        missed,
+        draws,
+    };
+    Ok(known.together(ground, &sampler.list))
+}
+
+/// What is known beside the list.
+struct Known {
+    /// Patterns that were drawn, by side.
+    met: [Vec<Met>; 2],
+    /// How much each side tells.
+    trusts: [f64; 2],
+    /// Share of the listed weight that both sides are likely to have missed.
+    missed: f64,
+    draws: usize,
+}
+
+impl Known {
+    /// List and draws as one; none where no pattern is possible.
+    fn together(self, ground: &Ground<'_>, list: &List) -> Option<Summed> {
+        let n = ground.r.ncols();
+        let drawn = self.met.iter().flatten().map(|met| met.log);
+        let logs = list.values().map(|weighed| weighed.log).chain(drawn);
+        let top = logs.fold(f64::NEG_INFINITY, f64::max);
+        if !top.is_finite() {
+            return None;
+        }
+        let all = self.trusts[0] + self.trusts[1];
+        let shares = self
+            .trusts
+            .map(|own| if all > 0.0 { own / all } else { 0.5 });
+        let mut best = (f64::INFINITY, vec![false; n]);
+        let mut weights: BTreeMap<Vec<bool>, f64> = BTreeMap::new();
+        let mut add = |sum: &mut Moments, light: &Vec<bool>, of: &Weighed, log: f64, share: f64| {
+            let weight = libm::exp(log - top);
+            sum.add(light, weight, of.levels);
+            *weights.entry(light.clone()).or_insert(0.0) += share * weight;
+            if of.chi2 < best.0 {
+                best = (of.chi2, light.clone());
+            }
+        };
+        let mut listed = Moments::new(n);
+        for (light, weighed) in list {
+            add(&mut listed, light, weighed, weighed.log, 1.0);
+        }
+        let mut drawn = [Moments::new(n), Moments::new(n)];
+        for ((sum, met), share) in drawn.iter_mut().zip(&self.met).zip(shares) {
+            for met in met {
+                add(sum, &met.light, &met.weighed, met.log, share);
+            }
+        }
+        let with = |of: [Moments; 2]| {
+            let [first, second] = of;
+            Moments::together(&[listed.clone(), first, second])
+        };
+        let none = Moments::new(n);
+        let halves = drawn
+            .each_ref()
+            .map(|own| with([own.clone(), none.clone()]).light());
+        let moments = with([drawn[0].scaled(shares[0]), drawn[1].scaled(shares[1])]);
+        let light = moments.light();
+        let mut variance = DVector::<f64>::zeros(n);
+        for (met, share) in self.met.iter().zip(shares) {
+            for met in met {
+                let weight = share * libm::exp(met.log - top) / moments.weight;
+                for (j, sum) in variance.iter_mut().enumerate() {
+                    let off = f64::from(u8::from(met.light[j])) - light[j];
+                    *sum += (weight * off).powi(2);
+                }
+            }
+        }
+        let between = 2.0 * shares[0].min(shares[1]) * (&halves[0] - &halves[1]).amax();
+        let listed = listed.weight / moments.weight;
+        let error = 2.0 * variance.max().sqrt();
+        Some(Summed {
+            log_evidence: top + libm::log(moments.weight) - n as f64 * std::f64::consts::LN_2,
+            drawn: resampled(ground, &weights, moments.weight),
+            weights: weights.into_iter().collect::<HashMap<_, _>>(),
+            moments,
+            sum: Sum::Sampled {
+                draws: self.draws,
+                listed,
+                disagreement: error.max(between).max(self.missed * listed),
+            },
+            best: best.1,
+        })
+    }
+}
+
+/// Patterns in proportion to their weights, with levels of each.
+fn resampled(
+    ground: &Ground<'_>,
+    weights: &BTreeMap<Vec<bool>, f64>,
+    all: f64,
+) -> Vec<(f64, Vec<bool>, [f64; 2])> {
+    let key = Key {
+        seed: 3,
+        spot: 0,
+        pixel: 0,
+        block: 0,
+    };
+    let random = &mut Stream::new(Sampling::Pcg, key);
+    let step = all / DRAWN as f64;
+    let mut next = random.uniform() * step;
+    let mut drawn = Vec::with_capacity(DRAWN);
+    for (light, weight) in weights {
+        next -= weight;
+        while next < 0.0 {
+            if let Some(levels) = levels(ground, light, random) {
+                drawn.push((1.0, light.clone(), levels));
+            }
+            next += step;
+        }
+    }
+    drawn
+}
+
+/// Levels of a pattern, as likely as they are.
+fn levels(ground: &Ground<'_>, light: &[bool], random: &mut Stream) -> Option<[f64; 2]> {
+    if ground.given.is_some() {
+        return ground.given;
+    }
+    let lit = ground.lit(light);
+    let fit = LevelFit::new(ground.d, &(&ground.all - &lit), &lit)?;
+    let mut tries = (0..TRIES).map(|_| fit.draw([random.normal(), random.normal()]));
+    tries.find(|levels| possible(*levels))
+}
