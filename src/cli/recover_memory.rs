@@ -9,7 +9,9 @@ use super::load_run::{refuse_damaged, refuse_shape};
 use crate::lab::{Attempt, Certainty, Judged, MOST_INTEGRATED, Residuals, measured};
 use crate::matrix::npy::Rows;
 use crate::model::MatrixModel;
-use crate::recovery::{Method, Options, Problem, Recovered, Strip, recover_strips};
+use crate::recovery::{
+    Method, Options, Problem, Recovered, Strip, recover_strips, two_valued_bytes,
+};
 use crate::scene::Scene;
 use crate::store::memory::{GIB, room};
 
@@ -102,7 +104,12 @@ pub(super) fn plan(
         .map(|m| m * GIB)
         .or_else(|| room().map(|room| room.bytes));
     let joint = methods.iter().any(|m| m.is_joint());
-    let whole = size.whole(joint, options.budget);
+    let lattices = if methods.contains(&Method::JointTwoValued) {
+        two_valued_bytes(elements(args, scene))
+    } else {
+        0.0
+    };
+    let whole = size.whole(joint, options.budget) + lattices;
     if allowed.is_none_or(|allowed| whole <= allowed) {
         if whole > GIB {
             console.say(format!("memory: up to {:.1} GiB", whole / GIB));

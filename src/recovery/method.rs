@@ -59,7 +59,7 @@ impl Method {
     /// [`Method::USUAL`], and of those that know how likely the photographs are by what they assume the
     /// ones that end within a minute or so.
     pub fn tried(elements: usize) -> Vec<Method> {
-        let limits = [(Method::JointGp, 2048), (Method::JointTwoValued, 100)];
+        let limits = [(Method::JointGp, 2048), (Method::JointTwoValued, 256)];
         let few = limits.into_iter().filter(|(_, most)| elements <= *most);
         let few = few.map(|(method, _)| method);
         Method::USUAL.into_iter().chain(few).collect()

@@ -115,7 +115,9 @@ mod spectrum;
 pub use bands::{BandKind, Bands};
 pub use error::RecoveryError;
 pub use gains::{Deviations, Gains};
-pub use joint::{CramerRao, Determined, Exponential, cramer_rao, determined, picard_joint};
+pub use joint::{
+    CramerRao, Determined, Exponential, cramer_rao, determined, picard_joint, two_valued_bytes,
+};
 pub use method::{Method, UnknownMethod};
 pub use nuisance::{Estimated, Nuisance};
 pub use options::{Options, Rule, Uncertainty, WeightRule};

@@ -177,9 +177,10 @@ mod tests {
                         // A point on an edge counts half.
                         let edge = contrasts.map(|c| (f64::from(j - i) - c * f64::from(n)).abs());
                         let inside = (y - x - contrasts[0]).min(contrasts[1] - (y - x));
-                        let half = match edge[0].min(edge[1]) < 0.5 {
-                            true => 0.5,
-                            false => f64::from(u8::from(inside > 0.0)),
+                        let half = if edge[0].min(edge[1]) < 0.5 {
+                            0.5
+                        } else {
+                            f64::from(u8::from(inside > 0.0))
                         };
                         let own = half * libm::exp(-0.5 * (&d - &u * x - &w * y).norm_squared());
                         sum += own;

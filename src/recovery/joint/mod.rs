@@ -37,3 +37,4 @@ pub use cramer_rao::{CramerRao, cramer_rao};
 pub use determined::{Determined, determined};
 pub use exponential::Exponential;
 pub use picard::picard_joint;
+pub use two_valued::two_valued_bytes;

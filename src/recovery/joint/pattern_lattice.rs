@@ -16,14 +16,16 @@ use rayon::prelude::*;
 use crate::num::lattice::Lattice;
 use crate::num::linalg::LinalgError;
 
-/// Above this many elements patterns are no points of a lattice: its reduction takes too long.
-pub(super) const MOST: usize = 1024;
+/// Above this many elements patterns are not searched in lattices, whose reduction takes too long.
+pub(super) const MOST: usize = 2048;
 /// Points near a cell's target that are looked at, times n, and at least and at most.
 const KEPT: usize = 25_600;
-const FEWEST: usize = 50;
+const FEWEST: usize = 200;
 const MOST_KEPT: usize = 1000;
+/// Contrasts at most.
+const MOST_STEPS: f64 = 100.0;
 /// Cells that are reduced one from the other.
-const CHAIN: usize = 8;
+const CHAIN: usize = 6;
 
 /// What is known of the dark level.
 #[derive(Clone, Copy)]
@@ -59,7 +61,8 @@ impl PatternLattice<'_> {
     /// Contrasts from where no pattern is told from another up to `top`, in steps of e^(2 ε).
     pub(super) fn contrasts(&self, top: f64, share: f64) -> Vec<f64> {
         let least = 1.0 / self.r.norm().max(2.0 / top);
-        let steps = (libm::log(top / least) / (2.0 * share)).ceil().max(1.0) as usize;
+        let steps = (libm::log(top / least) / (2.0 * share)).ceil();
+        let steps = steps.clamp(1.0, MOST_STEPS) as usize;
         let at = |k: usize| top * libm::exp(-2.0 * share * ((steps - k) as f64 - 0.5));
         (0..steps).map(at).collect()
     }
@@ -71,20 +74,46 @@ impl PatternLattice<'_> {
         share: f64,
         weight: f64,
     ) -> Result<Vec<Cell>, LinalgError> {
-        let chains: Result<Vec<Vec<Cell>>, LinalgError> = contrasts
+        self.each((contrasts, share), weight, |contrast, lattice| Cell {
+            contrasts: [-share, share].map(|off| contrast * libm::exp(off)),
+            lattice: lattice.clone(),
+        })
+    }
+
+    /// Patterns of the points near the target of any of the same, in order; of integers beyond 0 and 1
+    /// the pattern that is nearest.
+    pub(super) fn near(
+        &self,
+        contrasts: &[f64],
+        share: f64,
+    ) -> Result<Vec<Vec<bool>>, LinalgError> {
+        let cut = |point: &Vec<f64>| point.iter().map(|z| *z > 0.5).collect();
+        let of = |_, lattice: &Lattice| points(lattice).iter().map(cut).collect();
+        Ok(in_order(self.each(
+            (contrasts, share),
+            self.weight(),
+            of,
+        )?))
+    }
+
+    /// Something of the lattice of each contrast.
+    fn each<T: Send>(
+        &self,
+        (contrasts, share): (&[f64], f64),
+        weight: f64,
+        of: impl Fn(f64, &Lattice) -> T + Sync,
+    ) -> Result<Vec<T>, LinalgError> {
+        let chains: Result<Vec<Vec<T>>, LinalgError> = contrasts
             .par_chunks(CHAIN)
             .map(|chain| {
-                let mut cells: Vec<Cell> = Vec::with_capacity(chain.len());
+                let (mut found, mut near) = (Vec::with_capacity(chain.len()), None);
                 for &contrast in chain {
-                    let near = cells.last().map(|cell| &cell.lattice);
-                    if let Some(lattice) = self.lattice(contrast, share, weight, near)? {
-                        cells.push(Cell {
-                            contrasts: [-share, share].map(|off| contrast * libm::exp(off)),
-                            lattice,
-                        });
+                    if let Some(own) = self.lattice(contrast, share, weight, near.as_ref())? {
+                        found.push(of(contrast, &own));
+                        near = Some(own);
                     }
                 }
-                Ok(cells)
+                Ok(found)
             })
             .collect();
         Ok(chains?.into_iter().flatten().collect())
@@ -144,16 +173,22 @@ pub(super) fn pattern(point: &[f64]) -> Option<Vec<bool>> {
     inside.then(|| point.iter().map(|z| *z > 0.5).collect())
 }
 
-/// The patterns among the points near the target of each cell, in order.
+/// Points near the target.
+fn points(lattice: &Lattice) -> Vec<Vec<f64>> {
+    lattice.nearest((KEPT / lattice.dimension()).clamp(FEWEST, MOST_KEPT))
+}
+
+/// The patterns among the points near the target of any cell, in order.
 pub(super) fn nearest(cells: &[Cell]) -> Vec<Vec<bool>> {
-    let found: Vec<Vec<Vec<bool>>> = cells
-        .par_iter()
-        .map(|cell| {
-            let keep = (KEPT / cell.lattice.dimension()).clamp(FEWEST, MOST_KEPT);
-            let points = cell.lattice.nearest(keep);
-            points.iter().filter_map(|point| pattern(point)).collect()
-        })
-        .collect();
+    let patterns = |cell: &Cell| {
+        let points = points(&cell.lattice);
+        points.iter().filter_map(|point| pattern(point)).collect()
+    };
+    in_order(cells.par_iter().map(patterns).collect())
+}
+
+/// Each pattern once.
+fn in_order(found: Vec<Vec<Vec<bool>>>) -> Vec<Vec<bool>> {
     let mut all: Vec<Vec<bool>> = found.into_iter().flatten().collect();
     all.sort_unstable();
     all.dedup();

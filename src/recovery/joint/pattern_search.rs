@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use super::branch;
 use super::levels::LevelFit;
-use super::pattern_lattice::{Dark, MOST, PatternLattice, nearest};
+use super::pattern_lattice::{Dark, MOST, PatternLattice};
 use crate::num::control::Control;
 use crate::num::linalg::gram_product;
 use crate::num::quadratic::{Bounds, box_least_squares};
@@ -218,11 +218,8 @@ impl<'a> Search<'a> {
             _ => (lattice.contrasts(top, SHARE), SHARE),
         };
         self.control.check()?;
-        let cells = lattice.cells(&contrasts, share, lattice.weight())?;
-        let mut found: Vec<Pattern> = nearest(&cells)
-            .into_par_iter()
-            .map(|light| self.fit(light))
-            .collect();
+        let near = lattice.near(&contrasts, share)?;
+        let mut found: Vec<Pattern> = near.into_par_iter().map(|light| self.fit(light)).collect();
         found.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
         found.truncate(STARTS);
         Ok(found.into_iter().map(|pattern| pattern.light).collect())

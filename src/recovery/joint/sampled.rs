@@ -29,6 +29,9 @@ const WEIGHTS: [f64; 2] = [0.94, 1.06];
 /// that are drawn from.
 const COARSE: f64 = 0.1;
 const PARTS: usize = 5;
+/// Lattices of fine cells that are held at most, and with them of the coarse ones.
+const MOST_FINE: usize = 300;
+pub(super) const MOST_LATTICES: usize = MOST_FINE + 200;
 /// Share of the draws by which the others are distributed over the cells.
 const FIRST: f64 = 0.2;
 /// Patterns with their levels that are drawn from all that were met, and tries to draw possible levels.
@@ -89,12 +92,15 @@ pub(super) fn sample(
         let [first, last] = sampler.likely(&fine)?;
         let cells = &fine[0].cells;
         let ends = [cells[first].contrasts[0], cells[last].contrasts[1]];
-        let middle = 0.5 * (PARTS as f64 - 1.0);
-        let step = |k: usize| libm::exp(2.0 * COARSE / PARTS as f64 * (k as f64 - middle));
-        let likely = contrasts[first..=last].iter();
-        let likely = likely.flat_map(|contrast| (0..PARTS).map(move |k| contrast * step(k)));
-        let likely: Vec<f64> = likely.collect();
-        let Some(own) = both(&likely, COARSE / PARTS as f64, ends)? else {
+        let likely = &contrasts[first..=last];
+        let parts = (MOST_FINE / 2 / likely.len()).clamp(1, PARTS);
+        let share = COARSE / parts as f64;
+        let middle = 0.5 * (parts as f64 - 1.0);
+        let step = |k: usize| libm::exp(2.0 * share * (k as f64 - middle));
+        let part =
+            |contrast: &f64| -> Vec<f64> { (0..parts).map(|k| contrast * step(k)).collect() };
+        let likely: Vec<f64> = likely.iter().flat_map(part).collect();
+        let Some(own) = both(&likely, share, ends)? else {
             return Ok(None);
         };
         fine = own;

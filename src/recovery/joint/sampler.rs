@@ -66,9 +66,12 @@ pub(super) fn counts(first: &[Met], cells: usize, draws: f64) -> Vec<usize> {
         squares[met.cell] += libm::exp(2.0 * (met.log - top));
     }
     let all: f64 = squares.iter().map(|s| s.sqrt()).sum();
-    let share = |square: &f64| match all > 0.0 {
-        true => square.sqrt() / all,
-        false => 1.0 / cells as f64,
+    let share = |square: &f64| {
+        if all > 0.0 {
+            square.sqrt() / all
+        } else {
+            1.0 / cells as f64
+        }
     };
     let count = |square: &f64| (share(square) * draws).ceil().max(LEAST);
     squares

@@ -14,17 +14,30 @@
 use super::coordinates::Coordinates;
 use super::ground::Ground;
 use super::pattern_search::{Found, Levels, Search};
-use super::{enumerated, neighbours, sampled, scale, spread};
+use super::{enumerated, neighbours, pattern_lattice, sampled, scale, spread};
 use crate::recovery::{
     Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, Solver, Sum,
 };
 
 /// Above this many elements patterns are not sampled.
-const MOST_SAMPLED: usize = 576;
+const MOST_SAMPLED: usize = 400;
 /// Patterns that are drawn, times n², and at least and at most.
 const DRAWS: f64 = 1.6e9;
 const FEWEST: f64 = 2000.0;
 const MOST: f64 = 400_000.0;
+
+/// Bytes that this method takes of so many elements beside what every joint method does, at most: two
+/// matrices of n × n numbers for each lattice that is held.
+pub fn two_valued_bytes(elements: usize) -> f64 {
+    let held = if elements <= MOST_SAMPLED {
+        sampled::MOST_LATTICES
+    } else if elements <= pattern_lattice::MOST {
+        2 * rayon::current_num_threads()
+    } else {
+        0
+    };
+    16.0 * held as f64 * (elements as f64).powi(2)
+}
 
 pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
