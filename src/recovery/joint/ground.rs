@@ -119,12 +119,13 @@ impl Ground<'_> {
         let (best, sd) = (along / own, own.sqrt().recip());
         let middle = best.clamp(0.0, 1.0);
         let (low, high) = ((middle - 9.0 * sd).max(0.0), (middle + 9.0 * sd).min(1.0));
-        let chi2 = |x: f64| (self.d - &self.all * x).norm_squared();
-        let least = chi2(middle);
+        let least = (self.d - &self.all * middle).norm_squared();
+        // χ² above the least, without the cancellation of large numbers.
+        let more = |x: f64| own * (x - middle) * (x + middle - 2.0 * best);
         let (mut sum, mut moments) = (0.0, [[0.0; 2]; 2]);
         for (x, weight) in rule.on(low, high) {
             let room = if light { x } else { 1.0 - x };
-            let own = weight * 2.0 * room * libm::exp(-0.5 * (chi2(x) - least));
+            let own = weight * 2.0 * room * libm::exp(-0.5 * more(x));
             sum += own;
             // The level that is not seen lies evenly in [0, x] or [x, 1].
             let (from, to) = if light { (0.0, x) } else { (x, 1.0) };

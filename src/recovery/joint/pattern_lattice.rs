@@ -13,8 +13,9 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use crate::num::control::Control;
 use crate::num::lattice::Lattice;
-use crate::num::linalg::LinalgError;
+use crate::recovery::RecoveryError;
 
 /// Above this many elements patterns are not searched in lattices, whose reduction takes too long.
 pub(super) const MOST: usize = 2048;
@@ -22,6 +23,8 @@ pub(super) const MOST: usize = 2048;
 const KEPT: usize = 25_600;
 const FEWEST: usize = 200;
 const MOST_KEPT: usize = 1000;
+/// Largest light of a pattern, in standard deviations of the noise.
+const MOST_LIGHT: f64 = 1e9;
 /// Contrasts at most.
 const MOST_STEPS: f64 = 100.0;
 /// Cells that are reduced one from the other.
@@ -48,6 +51,7 @@ pub(super) struct PatternLattice<'a> {
     pub(super) r: &'a DMatrix<f64>,
     pub(super) d: &'a DVector<f64>,
     pub(super) dark: Dark,
+    pub(super) control: Control<'a>,
 }
 
 impl PatternLattice<'_> {
@@ -73,7 +77,7 @@ impl PatternLattice<'_> {
         contrasts: &[f64],
         share: f64,
         weight: f64,
-    ) -> Result<Vec<Cell>, LinalgError> {
+    ) -> Result<Vec<Cell>, RecoveryError> {
         self.each((contrasts, share), weight, |contrast, lattice| Cell {
             contrasts: [-share, share].map(|off| contrast * libm::exp(off)),
             lattice: lattice.clone(),
@@ -86,7 +90,7 @@ impl PatternLattice<'_> {
         &self,
         contrasts: &[f64],
         share: f64,
-    ) -> Result<Vec<Vec<bool>>, LinalgError> {
+    ) -> Result<Vec<Vec<bool>>, RecoveryError> {
         let cut = |point: &Vec<f64>| point.iter().map(|z| *z > 0.5).collect();
         let of = |_, lattice: &Lattice| points(lattice).iter().map(cut).collect();
         Ok(in_order(self.each(
@@ -102,12 +106,13 @@ impl PatternLattice<'_> {
         (contrasts, share): (&[f64], f64),
         weight: f64,
         of: impl Fn(f64, &Lattice) -> T + Sync,
-    ) -> Result<Vec<T>, LinalgError> {
-        let chains: Result<Vec<Vec<T>>, LinalgError> = contrasts
+    ) -> Result<Vec<T>, RecoveryError> {
+        let chains: Result<Vec<Vec<T>>, RecoveryError> = contrasts
             .par_chunks(CHAIN)
             .map(|chain| {
                 let (mut found, mut near) = (Vec::with_capacity(chain.len()), None);
                 for &contrast in chain {
+                    self.control.check()?;
                     if let Some(own) = self.lattice(contrast, share, weight, near.as_ref())? {
                         found.push(of(contrast, &own));
                         near = Some(own);
@@ -126,7 +131,7 @@ impl PatternLattice<'_> {
         share: f64,
         weight: f64,
         near: Option<&Lattice>,
-    ) -> Result<Option<Lattice>, LinalgError> {
+    ) -> Result<Option<Lattice>, RecoveryError> {
         let (k, n) = self.r.shape();
         let all = self.r.column_sum();
         let dark = match self.dark {
@@ -135,11 +140,15 @@ impl PatternLattice<'_> {
             Dark::Free => 0.0,
         };
         let (mut own, mut target) = (self.r * contrast, self.d - &all * dark);
+        // Of noise below what double precision holds, as if it were larger: more patterns are near.
+        let less = (MOST_LIGHT / own.norm().max(1.0)).min(1.0);
+        own *= less;
+        target *= less;
         if matches!(self.dark, Dark::Free) {
             damp(&mut own, &mut target, &all, f64::INFINITY);
         }
         let along = match self.dark {
-            Dark::Times(_) => self.d.clone(),
+            Dark::Times(_) => self.d * less,
             _ => target.clone(),
         };
         let off = share * along.norm();
@@ -150,7 +159,7 @@ impl PatternLattice<'_> {
             Some(_) => 0.0,
         });
         let target = DVector::from_fn(k + n, |i, _| if i < k { target[i] } else { 0.5 * weight });
-        Lattice::new(&basis, &target, near)
+        Ok(Lattice::new(&basis, &target, near)?)
     }
 }
 

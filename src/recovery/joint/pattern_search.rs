@@ -212,12 +212,12 @@ impl<'a> Search<'a> {
             r: self.r,
             d: self.d,
             dark,
+            control: self.control,
         };
         let (contrasts, share) = match self.levels {
             Levels::Given([dark, light]) => (vec![light - dark], 0.0),
             _ => (lattice.contrasts(top, SHARE), SHARE),
         };
-        self.control.check()?;
         let near = lattice.near(&contrasts, share)?;
         let mut found: Vec<Pattern> = near.into_par_iter().map(|light| self.fit(light)).collect();
         found.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));

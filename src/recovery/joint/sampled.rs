@@ -51,6 +51,7 @@ pub(super) fn sample(
         dark: ground
             .given
             .map_or(Dark::Free, |[dark, _]| Dark::Given(dark)),
+        control: ground.control,
     };
     let contrasts = match ground.given {
         Some([dark, light]) => vec![light - dark],
@@ -59,7 +60,6 @@ pub(super) fn sample(
     let share = ground.given.map_or(COARSE, |_| 0.0);
     let both = |contrasts: &[f64], share: f64, ends: [f64; 2]| {
         let side = |number: usize| -> Result<Option<Side>, RecoveryError> {
-            ground.control.check()?;
             let weight = WEIGHTS[number] * lattice.weight();
             let mut cells = lattice.cells(contrasts, share, weight)?;
             let whole = cells.len() == contrasts.len();

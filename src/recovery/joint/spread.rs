@@ -134,7 +134,10 @@ fn part(
     let r = factor.forward(ground.r.clone());
     let d = DMatrix::from_column_slice(ground.d.len(), 1, ground.d.as_slice());
     let d = factor.forward(d).column(0).into_owned();
-    let own = Ground::new(&r, &d, None);
+    let own = Ground {
+        control: ground.control,
+        ..Ground::new(&r, &d, None)
+    };
     let Some(summed) = sampled::sample(&own, &[light.to_vec()], DRAWS)? else {
         return Ok(None);
     };

@@ -223,6 +223,25 @@ fn drawn_patterns_make_up_for_those_that_are_not_listed() {
     }
 }
 
+/// At noise as low as the published study's the one pattern is certain, and is said to be.
+#[test]
+fn little_noise_leaves_one_pattern() {
+    let bench = Bench::new(6.0, 8, 16);
+    let truth = two_levels(&bench, [0.2, 0.8]);
+    for noise in [1e-6, 1e-8] {
+        let [phi, stderr] = noisy(&bench, &truth, noise, 3);
+        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+        let found = recover(Method::JointTwoValued, &problem, &Options::default()).unwrap();
+        assert!(
+            (&found.reflectance - &truth).amax() < 100.0 * noise,
+            "{noise}"
+        );
+        let patterns = found.patterns.unwrap();
+        assert!(patterns.sum.converged(), "{noise}: {:?}", patterns.sum);
+        assert!(patterns.pattern > 0.9, "{noise}: {}", patterns.pattern);
+    }
+}
+
 /// Random patterns of 4 × 4 elements, levels known: of all elements said to be light with a
 /// probability of p the share p is. 1000 pictures at noise that leaves elements undecided; in each
 /// tenth of p the light ones within four deviations of the binomial that the probabilities make.
