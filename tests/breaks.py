@@ -604,7 +604,7 @@ BREAKS = [
     Break(
         "Elements that differ from their level are weighed against two levels (whole sums, by hand)",
         "src/recovery/joint/spread.rs",
-        "log_evidence: summed.log_evidence - 0.5 * factor.log_det(),",
+        "log_evidence: summed.log_evidence - 0.5 * (log_det + beside),",
         "log_evidence: summed.log_evidence,",
         "lib",
         "recovery::joint::spread::tests::errors_are_those_of_all_patterns_levels_and_spreads",

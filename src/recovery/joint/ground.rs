@@ -148,6 +148,9 @@ impl Ground<'_> {
     }
 }
 
+/// Of a mean square, what rounding leaves of a variance.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
 /// What was summed over patterns and levels.
 pub(super) struct Summed {
     pub(super) moments: Moments,
@@ -242,7 +245,8 @@ impl Moments {
     pub(super) fn square_about(&self, x: &DVector<f64>) -> DVector<f64> {
         let [mean, square] = [&self.mean, &self.square].map(|sum| sum / self.weight);
         DVector::from_fn(x.len(), |j, _| {
-            (square[j] - 2.0 * x[j] * mean[j] + x[j] * x[j]).max(0.0)
+            let own = square[j] - 2.0 * x[j] * mean[j] + x[j] * x[j];
+            own.max(ROUNDING * square[j])
         })
     }
 
@@ -250,7 +254,8 @@ impl Moments {
     pub(super) fn finish(&self, pattern: f64, log_evidence: f64, sum: Sum) -> Patterns {
         let mean = &self.mean / self.weight;
         let square = &self.square / self.weight;
-        let spread = |first: f64, second: f64| (second - first * first).max(0.0).sqrt();
+        let spread =
+            |first: f64, second: f64| (second - first * first).max(ROUNDING * second).sqrt();
         let of = |k: usize| self.levels[k].map(|x| x / self.weight);
         let levels = [of(0), of(1)];
         Patterns {

@@ -115,7 +115,7 @@ impl<'a> Search<'a> {
     pub(super) fn can(&self, pattern: &Pattern) -> bool {
         let [dark, light] = pattern.levels;
         let [low, high] = self.contrasts;
-        (low..=high).contains(&(light - dark).abs())
+        (low..=high).contains(&(light - dark))
     }
 
     /// The best pattern that is found.
@@ -174,8 +174,8 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The pattern with its best levels.
-    fn fit(&self, light: Vec<bool>) -> Pattern {
+    /// The pattern with its best levels, the lighter one as the light one.
+    fn fit(&self, mut light: Vec<bool>) -> Pattern {
         let of = |which: bool| {
             let set = DVector::from_fn(light.len(), |j, _| f64::from(u8::from(light[j] == which)));
             self.r * set
@@ -191,9 +191,14 @@ impl<'a> Search<'a> {
             Levels::Within(top) => within(self.d, &columns, top),
         };
         let misfit = (&columns[0] * levels[0] + &columns[1] * levels[1] - self.d).norm_squared();
+        let [mut dark, mut bright] = levels;
+        if dark > bright {
+            (dark, bright) = (bright, dark);
+            light.iter_mut().for_each(|light| *light = !*light);
+        }
         Pattern {
             light,
-            levels,
+            levels: [dark, bright],
             misfit,
         }
     }

@@ -14,12 +14,12 @@
 //! [`SPREADS`] is as likely (Gelman 2006); one of these stands for those that are nearer to it than
 //! to others by their ratio.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::ground::{Ground, Moments, Summed};
 use super::sampled;
-use crate::num::linalg::{Cholesky, gram_product};
+use crate::num::linalg::{Svd, rows_times, svd};
 use crate::recovery::Patterns;
 use crate::recovery::RecoveryError;
 
@@ -78,12 +78,10 @@ pub(super) fn sum(
     exact: &Summed,
     (light, shown): (&[bool], &DVector<f64>),
 ) -> Result<Spread, RecoveryError> {
-    let mut gram = DMatrix::zeros(ground.r.ncols(), ground.r.ncols());
-    gram_product(&mut gram, ground.r);
-    let own = ground.r * ground.r.transpose();
+    let axes = svd(ground.r)?;
     let parts: Result<Vec<Option<Part>>, RecoveryError> = SPREADS
         .par_iter()
-        .map(|tau| part(ground, [&own, &gram], *tau, (light, shown)))
+        .map(|tau| part(ground, &axes, *tau, (light, shown)))
         .collect();
     let parts: Vec<(f64, f64, Part)> = SPREADS
         .into_iter()
@@ -116,24 +114,21 @@ pub(super) fn sum(
     })
 }
 
-/// The sums at one spread; none where its covariance is beyond arithmetic. `[R Rᵀ, RᵀR]` are given.
+/// The sums at one spread, along the singular vectors of R = U S Vᵀ: with e = 1 + τ² s² a row of L⁻¹R is
+/// s vᵀ/√e, and x of levels ℓ is ℓ + V (τ² s/e)(Uᵀd − S Vᵀℓ) on average.
 fn part(
     ground: &Ground<'_>,
-    [own, gram]: [&DMatrix<f64>; 2],
+    axes: &Svd,
     tau: f64,
     (light, shown): (&[bool], &DVector<f64>),
 ) -> Result<Option<Part>, RecoveryError> {
-    let with_one = |of: &DMatrix<f64>| {
-        let mut sum = of * (tau * tau);
-        (0..sum.nrows()).for_each(|i| sum[(i, i)] += 1.0);
-        Cholesky::new(&sum)
-    };
-    let (Some(factor), Some(inverse)) = (with_one(own), with_one(gram)) else {
-        return Ok(None);
-    };
-    let r = factor.forward(ground.r.clone());
-    let d = DMatrix::from_column_slice(ground.d.len(), 1, ground.d.as_slice());
-    let d = factor.forward(d).column(0).into_owned();
+    let s = &axes.sigma;
+    let excess = s.map(|s| 1.0 + (tau * s).powi(2));
+    let along = axes.u.tr_mul(ground.d);
+    let beside = (ground.d - &axes.u * &along).norm_squared();
+    let scale = s.zip_map(&excess, |s, e| s / e.sqrt());
+    let r = rows_times(axes.vt.clone(), &scale);
+    let d = along.zip_map(&excess, |d, e| d / e.sqrt());
     let own = Ground {
         control: ground.control,
         ..Ground::new(&r, &d, None)
@@ -141,17 +136,20 @@ fn part(
     let Some(summed) = sampled::sample(&own, &[light.to_vec()], DRAWS)? else {
         return Ok(None);
     };
-    let m = inverse.inverse();
-    let toward = ground.r.tr_mul(ground.d) * (tau * tau);
-    let mut square = m.diagonal() * (tau * tau);
+    let told = s.zip_map(&excess, |s, e| (tau * s).powi(2) / e);
+    let share = axes.vt.map(|v| v * v).tr_mul(&told);
+    let mut square = share.map(|share| tau * tau * (1.0 - share).max(0.0));
+    let gain = s.zip_map(&excess, |s, e| tau * tau * s / e);
     let all: f64 = summed.drawn.iter().map(|drawn| drawn.0).sum();
     for (weight, light, levels) in &summed.drawn {
-        let level = |j: usize| levels[usize::from(light[j])];
-        let mean = &m * DVector::from_fn(toward.len(), |j, _| level(j) + toward[j]);
+        let level = DVector::from_fn(light.len(), |j, _| levels[usize::from(light[j])]);
+        let left = &along - (&axes.vt * &level).component_mul(s);
+        let mean = level + axes.vt.tr_mul(&left.component_mul(&gain));
         square += (mean - shown).map(|off| off * off * (weight / all));
     }
+    let log_det: f64 = excess.iter().map(|e| libm::log(*e)).sum();
     Ok(Some(Part {
-        log_evidence: summed.log_evidence - 0.5 * factor.log_det(),
+        log_evidence: summed.log_evidence - 0.5 * (log_det + beside),
         summed,
         square,
     }))

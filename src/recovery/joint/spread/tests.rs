@@ -1,6 +1,7 @@
 use super::*;
 use crate::num::quadrature::Rule;
 use crate::recovery::bench::normal_stream;
+use nalgebra::DMatrix;
 
 /// By hand: (0, √(0.003·0.01)], … of 0.3.
 const BEFOREHAND: [f64; 5] = [0.018_257, 0.039_478, 0.124_839, 0.394_776, 0.422_650];

@@ -228,7 +228,7 @@ fn drawn_patterns_make_up_for_those_that_are_not_listed() {
 fn little_noise_leaves_one_pattern() {
     let bench = Bench::new(6.0, 8, 16);
     let truth = two_levels(&bench, [0.2, 0.8]);
-    for noise in [1e-6, 1e-8] {
+    for noise in [1e-6, 1e-8, 1e-10] {
         let [phi, stderr] = noisy(&bench, &truth, noise, 3);
         let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
         let found = recover(Method::JointTwoValued, &problem, &Options::default()).unwrap();
