@@ -6,8 +6,8 @@
 //! it. Profiles and gamma chunks within a file are not read. Photographs are read by
 //! [`fn@samples`], as the integers that they are.
 //!
-//! A file is believed nothing. Width and height are read from its header and held against
-//! [`MOST_PIXELS`] and against the file's length before memory is taken for pixels: deflate (PNG,
+//! No claim of a file is trusted: width and height are read from its header and held against
+//! [`MOST_PIXELS`] and against the file's length before memory is taken for pixels. Deflate (PNG,
 //! most OpenEXR) makes at most 1032 bytes of one, and a JPEG takes at least a bit for a block of 8
 //! × 8 pixels. So decoding takes at most [`PIXEL_BYTES`] for each of [`MOST_PIXELS`], whatever a
 //! file claims.

@@ -155,9 +155,8 @@ impl Lattice {
         z.iter().map(|z| z.round()).collect()
     }
 
-    /// Points near the target, z, nearest first: of all choices of the last coordinates the `keep`
-    /// nearest are gone on with, coordinate after coordinate (the M-algorithm of Anderson and Mohan
-    /// 1984). The first is the nearest of all unless more than `keep` seemed nearer on the way.
+    /// Points near the target, z, nearest first. Coordinates are chosen from the last to the first, and
+    /// after each the `keep` nearest choices stay (the M-algorithm of Anderson and Mohan 1984). The first is the nearest of all unless more than `keep` seemed nearer on the way.
     pub fn nearest(&self, keep: usize) -> Vec<Vec<f64>> {
         let n = self.t.ncols();
         // Distances², coordinates, and what is left of y in the rows above: n numbers a point.

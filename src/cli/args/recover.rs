@@ -10,7 +10,7 @@ use super::terms::explained;
 use super::value::{count, elements, levels};
 use crate::lab::Integration;
 use crate::model::Kernel;
-use crate::recovery::{Rule, WeightRule};
+use crate::recovery::{Method, Rule, WeightRule};
 
 #[derive(Debug, Arguments)]
 #[command(after_long_help = explained(&["G12", "determined", "by centres", "degrees of freedom", "MTF raw", "MTF normalized", "RMSE", "singular values"]))]
@@ -26,11 +26,7 @@ pub(in crate::cli) struct RecoverArgs {
     /// DIR/recovered-NAME-DIGEST
     #[arg(long, short, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
-    /// Methods, separated by commas: pinv, left-inverse, right-inverse, rdivide, rdivide-min-norm,
-    /// tsvd, tikhonov, tikhonov-gradient, joint-unbounded, joint, nnls, joint-gp, joint-tv,
-    /// joint-two-valued; unless given pinv, tsvd, tikhonov, joint-unbounded, joint, and of few
-    /// enough elements joint-gp (2048) and joint-two-valued (100)
-    #[arg(long, value_delimiter = ',', value_name = "METHOD")]
+    #[arg(long, value_delimiter = ',', value_name = "METHOD", help = methods())]
     pub method: Vec<String>,
     /// Φcam to invert, pixels × spots in W, in place of DIR/phi.npy
     #[arg(long, value_name = "FILE")]
@@ -156,4 +152,22 @@ pub(in crate::cli) struct JointArgs {
     /// Estimate the strength of this pattern in each frame: pixels × spots
     #[arg(long, value_name = "FILE")]
     pub glare_pattern: Option<PathBuf>,
+}
+
+/// The help of `--method`.
+fn methods() -> String {
+    let names = |methods: &[Method]| {
+        methods
+            .iter()
+            .map(|m| m.name())
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let few = Method::OF_FEW.map(|(method, most)| format!("{method} (up to {most})"));
+    format!(
+        "Methods, separated by commas: {}; unless given {}, and of few enough elements {}",
+        names(&Method::ALL),
+        names(&Method::USUAL),
+        few.join(" and ")
+    )
 }

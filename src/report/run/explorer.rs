@@ -39,7 +39,7 @@ const PRECISIONS: [[Precision; MATRICES]; 5] = {
 const MATRICES: usize = 5;
 
 /// The part of Φcam that lies in the page: every pixel and spot, or the middle one of each block of
-/// pixels and every so-manieth spot.
+/// pixels, and one spot of every `step`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Excerpt {
     /// Every so many columns and rows of the camera.

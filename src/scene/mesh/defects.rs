@@ -91,10 +91,14 @@ impl Defects {
             .triangles
             .iter()
             .enumerate()
-            .map(|(i, t)| match sound(t) && painted(i) {
-                false => Fate::NotFinite,
-                true if is_proper(t.map(|c| mesh.positions[c as usize])) => Fate::Kept,
-                true => Fate::Degenerate,
+            .map(|(i, t)| {
+                if !(sound(t) && painted(i)) {
+                    Fate::NotFinite
+                } else if is_proper(t.map(|c| mesh.positions[c as usize])) {
+                    Fate::Kept
+                } else {
+                    Fate::Degenerate
+                }
             })
             .collect();
         let vertex = |c: u32| welded.get(c as usize).copied().unwrap_or(u32::MAX);
