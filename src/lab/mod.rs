@@ -164,6 +164,7 @@ mod fit;
 mod foot;
 mod gains;
 mod gallery;
+mod grey;
 mod indicator;
 mod inversion;
 mod layout;

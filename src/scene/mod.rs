@@ -65,6 +65,7 @@ pub use material::Material;
 pub use parameter::Parameter;
 pub use parse::read_toml;
 pub use quantity::Quantity;
+pub use replaced::quoted;
 pub use sensor::{Glare, MOST_BRACKETS, SensorModel, SensorSettings, Spread};
 pub use surface::{Division, Role, Surface};
 pub use texture::{

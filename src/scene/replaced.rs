@@ -137,6 +137,39 @@ fn entry<'a>(list: &'a mut [Value], step: &str) -> Result<&'a mut Value, (String
     found.and_then(|i| list.get_mut(i)).ok_or((cause, cure))
 }
 
+/// Whether `text` is a number and a unit, as 5 mW.
+fn has_unit(text: &str) -> bool {
+    let is_of_a_number = |c: char| c.is_ascii_digit() || "+-.".contains(c);
+    let rest = text.trim_start_matches(is_of_a_number);
+    let digits = &text[..text.len() - rest.len()];
+    // Of a number with an exponent the unit follows that.
+    let exponent = rest
+        .strip_prefix(['e', 'E'])
+        .map(|r| (r, r.trim_start_matches(is_of_a_number)));
+    let unit = match exponent {
+        Some((whole, after)) if whole.len() > after.len() => after,
+        _ => rest,
+    };
+    let unit = unit.trim();
+    let starts_a_unit = |c: char| c.is_alphabetic() || "°%".contains(c);
+    let is_of_a_base = digits == "0" && unit.starts_with(['x', 'o', 'b']);
+    digits.contains(|c: char| c.is_ascii_digit())
+        && unit.starts_with(starts_a_unit)
+        && !is_of_a_base
+}
+
+/// A value as TOML from what a user writes: words, and numbers with units, need no quotes there.
+pub fn quoted(value: &str) -> String {
+    let is_of_a_word = |c: char| c.is_alphabetic() || "_-".contains(c);
+    let is_word = !value.is_empty() && value.chars().all(is_of_a_word);
+    let known = ["true", "false", "nan", "inf", "-inf"].contains(&value);
+    if (is_word && !known) || has_unit(value) {
+        format!("\"{value}\"")
+    } else {
+        value.to_owned()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

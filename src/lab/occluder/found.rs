@@ -7,11 +7,10 @@ use super::sight::Seen;
 use crate::lab::finding::{
     Axis, Cell, Column, Curve, Describe, Figure, Finding, Mark, Plot, Table, listed,
 };
+use crate::lab::grey::{self, LEVELS};
 use crate::lab::subject::{Recovery, Subject};
 use crate::num::digits::figure;
 
-/// Noise levels at which directions are counted.
-pub(super) const LEVELS: [f64; 4] = [0.1, 0.01, 1e-3, 1e-4];
 /// Pixels a side, and spots, of the scene on which the place is searched.
 pub(super) const SEARCHED: [usize; 2] = [12, 25];
 
@@ -67,13 +66,7 @@ impl Occluders {
             Column::number("aside, v", "offset_v", "", 2),
             Column::number("size", "size", "", 3),
         ];
-        columns.extend(LEVELS.iter().map(|l| {
-            Column::text(
-                &format!("above {} %", figure(100.0 * l, 1)),
-                &format!("directions_{l:e}"),
-            )
-        }));
-        columns.push(Column::number("risk", "risk", "", 2));
+        columns.extend(grey::columns());
         columns.extend(
             self.subjects
                 .iter()

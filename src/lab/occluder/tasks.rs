@@ -1,23 +1,19 @@
 //! The tasks of the study: an occluder and a number of spots each.
 
-use super::found::{LEVELS, Misplaced, Occluders, Row, SEARCHED};
+use super::found::{Misplaced, Occluders, Row, SEARCHED};
 use super::kinds::{Cells, Kind, Place};
 use super::search::search;
 use super::sight::Camera;
 use crate::lab::ensemble::Photographs;
 use crate::lab::error::LabError;
+use crate::lab::grey::Grey;
 use crate::lab::limit::Limit;
 use crate::lab::noise_law::NoiseLaw;
-use crate::lab::problem::problem;
 use crate::lab::study::{Sharing, Study};
 use crate::lab::subject::{Subject, recovered};
 use crate::model::{Kernel, MatrixModel, ModelError};
-use crate::recovery::{Options, determined, picard_joint};
 use crate::scene::Scene;
 use crate::transport::Control;
-
-/// Standard deviation of the prior, about ½.
-const BEFORE: f64 = 0.5;
 
 /// What is studied.
 #[derive(Clone, Debug)]
@@ -74,14 +70,6 @@ impl OccluderTasks {
             .elements
             .map_or(own.unwrap_or_default(), |n| [n; 2])
     }
-
-    /// Share of the prior variance that photographs of a surface of mean ½ leave.
-    fn risk(&self, model: &MatrixModel, level: f64) -> Result<f64, LabError> {
-        let grey = model.phi_of(&vec![BEFORE; model.albedo.len()]);
-        let stderr = self.plan.noise.stderrs(&grey, level);
-        let shares = determined(&problem(model, &grey, Some(&stderr))?)?;
-        Ok(1.0 - shares.rank / model.albedo.len() as f64)
-    }
 }
 
 /// `n` of the scene's spots, evenly among them, and at most so many pixels a side.
@@ -124,7 +112,7 @@ impl Study for OccluderTasks {
         let merit = |place: &Place| -> Result<f64, LabError> {
             control.check()?;
             let scene = kind.in_scene(&rough, place, &plan.mask)?;
-            self.risk(&self.model(&scene)?, plan.level)
+            Grey::new(&self.model(&scene)?, plan.noise).risk(plan.level)
         };
         let tries = if kind == Kind::None { 0 } else { plan.search };
         let (place, tries) = search(plan.start, tries, merit)?;
@@ -132,10 +120,8 @@ impl Study for OccluderTasks {
         let at = |place: &Place| kind.in_scene(&whole, place, &plan.mask);
         let scene = at(&place)?;
         let own = self.model(&scene)?;
-        let grey = own.phi_of(&vec![BEFORE; own.albedo.len()]);
-        let stderr = self.plan.noise.stderrs(&grey, 1.0);
-        let sigma = picard_joint(&problem(&own, &grey, Some(&stderr))?, &Options::default())?.sigma;
-        let above = |level: f64| sigma.iter().filter(|s| **s * BEFORE > level).count();
+        let grey = Grey::new(&own, plan.noise);
+        let (directions, risk) = (grey.directions()?, grey.risk(plan.level)?);
         let limit = Limit {
             noise: plan.noise,
             draws: plan.draws,
@@ -178,8 +164,8 @@ impl Study for OccluderTasks {
             kind,
             spots,
             tries,
-            directions: LEVELS.iter().map(|l| above(*l)).collect(),
-            risk: self.risk(&own, plan.level)?,
+            directions,
+            risk,
             limits,
             seen,
             misplaced: shifts
