@@ -198,6 +198,7 @@ mod spots;
 mod study;
 mod subject;
 mod summary;
+mod sweep;
 mod tails;
 mod tolerance;
 mod traced;

@@ -16,4 +16,5 @@ pub static STUDIES: &[&Registered] = &[
     &super::spots::STUDY,
     &super::occluder::STUDY,
     &super::layout::STUDY,
+    &super::sweep::STUDY,
 ];

@@ -335,3 +335,48 @@ fn a_layout_is_tables_a_drawing_and_a_scene() {
         workspace.refuses(&line, &words);
     }
 }
+
+/// Of a surface that is one element, seen under a relative noise ε, N = pixels × spots entries
+/// leave 1/(1 + N/ε²) of a variance of ¼: each tells Φ = A/2 to ε A/2. So power changes the light in
+/// proportion and nothing else, and pixels count as many as they are; texts and refusals.
+#[test]
+fn a_sweep_follows_the_law_of_one_element() {
+    let workspace = Workspace::with_scenes();
+    let line = "study sweep tiny.toml --elements 1 --noise 0.5";
+    let steps = |folder: &str, key: &str, values: &str| -> Vec<serde_json::Value> {
+        let line = format!("{line} --key {key} --values {values} -o {folder}");
+        let ended = workspace.phicam(&line).exits(0);
+        says(&ended, &[key, "least of the prior variance"]);
+        workspace.json(&format!("{folder}/sweep.json"))["steps"]
+            .as_array()
+            .unwrap()
+            .clone()
+    };
+    let left = |step: &serde_json::Value| step["risk"].as_f64().unwrap();
+    let power = steps("p", "laser.power", "5mW,0.01");
+    for step in &power {
+        let law = 1.0 / (1.0 + 48.0 / 0.25);
+        assert!((left(step) - law).abs() < 1e-9 * law, "{step} and {law}");
+        assert_eq!(step["directions"], serde_json::json!([1, 1, 1, 1]));
+    }
+    let light = |k: usize| power[k]["brightest"].as_f64().unwrap();
+    assert!((light(1) / light(0) - 2.0).abs() < 1e-12);
+    assert_eq!(workspace.text("p/sweep.csv").lines().count(), 3);
+    told(&workspace, "p", &["laser.power of bench", "<metadata>"]);
+    // The same camera with 5 and with 9 columns of pixels, 2 rows and 8 spots.
+    for (step, columns) in steps("c", "camera.pixels.0", "5,9").iter().zip([5.0, 9.0]) {
+        let law = 1.0 / (1.0 + 16.0 * columns / 0.25);
+        assert!((left(step) - law).abs() < 1e-9 * law, "{step} and {law}");
+    }
+    for (wrong, words) in [
+        ("--values 1", ["no sweep", "cure"]),
+        ("--values 1,2 --noise 0", ["--noise", "cure"]),
+        (
+            "--key camera.pixel --values 1,2",
+            ["camera.pixel", "pixels"],
+        ),
+        ("--values 3,300", ["half_width=300", "wall"]),
+    ] {
+        workspace.refuses(&format!("study sweep tiny.toml -o d {wrong}"), &words);
+    }
+}
