@@ -3,7 +3,7 @@
 use super::device;
 use super::error::{Fault, keys};
 use super::file::CameraTable;
-use super::surface::{Surface, facing_at_xy, is_off_the_wall};
+use super::surface::{Surface, facing_at_xy, is_off_the_wall, upright};
 use super::{FARTHEST, FINEST};
 use crate::geometry::{DVec3, Parallelogram};
 
@@ -132,11 +132,15 @@ fn on_the_wall(
     view(x, y, camera, surfaces).map_err(|e| {
         let at = format!("the view [{}, {}] × [{}, {}]", x[0], x[1], y[0], y[1]);
         match e {
-            NoView::OffTheWall => Fault::new(
-                keys!["view"],
-                format!("{at} does not lie on the wall"),
-                "keep it within a relay surface, or extend the wall",
-            ),
+            NoView::OffTheWall => {
+                let (cause, cure) = upright(surfaces).unwrap_or_else(|| {
+                    (
+                        format!("{at} does not lie on the wall"),
+                        "keep it within a relay surface, or extend the wall",
+                    )
+                });
+                Fault::new(keys!["view"], cause, cure)
+            }
             NoView::Behind => Fault::new(
                 keys!["position"],
                 format!("the camera stands behind the wall on which {at} lies"),

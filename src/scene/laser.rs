@@ -4,7 +4,7 @@ use super::device;
 use super::error::{Fault, keys};
 use super::file::{LaserTable, ProfileShape};
 use super::spots;
-use super::surface::{Surface, facing_at_xy, is_off_the_wall};
+use super::surface::{Surface, facing_at_xy, is_off_the_wall, upright};
 use super::{FARTHEST, FINEST};
 use crate::geometry::{DVec3, Interaction, ShapeId};
 
@@ -116,10 +116,12 @@ pub(super) fn place(
                 spots.push(Spot { target, surface });
                 continue;
             }
-            None if is_off_the_wall(surfaces, [x, y]) => (
-                format!("spot {i} at ({x}, {y}) falls off every relay surface"),
-                "move or shrink the layout, or extend the wall",
-            ),
+            None if is_off_the_wall(surfaces, [x, y]) => upright(surfaces).unwrap_or_else(|| {
+                (
+                    format!("spot {i} at ({x}, {y}) falls off every relay surface"),
+                    "move or shrink the layout, or extend the wall",
+                )
+            }),
             None => (
                 format!(
                     "the laser stands behind (or in the plane of) the surface that spot {i} at ({x}, {y}) lies on"

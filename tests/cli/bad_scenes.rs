@@ -99,6 +99,17 @@ fn a_view_off_the_wall() {
     refuses_altered("x = [3.25, 6.5]", "x = [3.25, 16.5]", "view =", &words);
 }
 
+/// The wall in the plane of x and z: x and y name no point of it.
+#[test]
+fn a_wall_parallel_to_z() {
+    let words = [
+        "the wall `wall` stands parallel to z",
+        "turn the whole scene",
+    ];
+    let (old, new) = ("v = [0, 15.5, 0]", "v = [0, 0, 15.5]");
+    refuses_altered(old, new, "[laser.spots]", &words);
+}
+
 #[test]
 fn a_camera_that_sees_the_hidden_face() {
     // In front of the leaning surface, whose front looks towards −y and −z.
