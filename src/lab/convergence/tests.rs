@@ -1,4 +1,5 @@
 use super::*;
+use crate::lab::finding::{Cell, Describe};
 use crate::lab::study::tests::{divides, refuses, small};
 
 #[test]
@@ -22,11 +23,13 @@ fn slopes_are_told_by_sampler() {
             stated: error,
         }],
         slope,
+        slope_bound: (error > 0.05).then_some(0.25),
     };
     let found = Convergence {
         scene: "bench".to_owned(),
         scene_hash: String::new(),
         seed: 1,
+        quadrature_bound: 0.05,
         curves: vec![
             curve("pcg", -0.51, 0.1),
             curve("pcg", -0.49, 0.2),
@@ -37,6 +40,7 @@ fn slopes_are_told_by_sampler() {
     for words in [
         "that of pcg by a slope of −0.510 to −0.490 and of sobol",
         "0.010, is that of shared, sobol with 64 samples",
+        "known to 0.050 only: errors of shared, sobol fall below that",
     ] {
         assert!(found.sentence.contains(words), "{}", found.sentence);
     }
@@ -56,4 +60,31 @@ fn a_power_law_has_its_exponent() {
     let found = slope(&[step(16.0), step(64.0), step(1024.0)]).unwrap();
     assert!((found + 1.5).abs() < 1e-12, "{found}");
     assert_eq!(slope(&[step(16.0), step(16.0)]), None);
+}
+
+/// Errors that a reference may move by ± β move the slope by no more than its bound, and by that
+/// much where all move the worst way.
+#[test]
+fn a_slope_is_known_as_well_as_its_reference() {
+    let steps = |off: [f64; 2]| {
+        [16.0, 1024.0].map(|n: f64| Step {
+            samples: n as u64,
+            error: 8.0 / n + off[usize::from(n > 100.0)],
+            stated: 0.0,
+        })
+    };
+    // ln 64 apart, errors 1/2 and 1/128: the worst is 0.004 less of both.
+    let bound = 0.004;
+    let worst = (-(1.0f64 - bound / 0.5).ln() - (1.0 - 128.0 * bound).ln()) / 64f64.ln();
+    let own = slope(&steps([0.0; 2])).unwrap();
+    let said = slope_bound(&steps([0.0; 2]), bound).unwrap();
+    assert!((said - worst).abs() < 1e-12 * worst, "{said} {worst}");
+    for off in [[bound, -bound], [-bound, bound], [-bound; 2], [bound; 2]] {
+        let moved = slope(&steps(off)).unwrap();
+        assert!(
+            (moved - own).abs() <= said,
+            "{off:?}: {own} {moved} ± {said}"
+        );
+    }
+    assert_eq!(slope_bound(&steps([0.0; 2]), 0.01), None);
 }

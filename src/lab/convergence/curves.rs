@@ -1,0 +1,185 @@
+//! How the errors fall, in tables and a figure.
+
+use serde::Serialize;
+
+use crate::lab::finding::{
+    self, Axis, Cell, Column, Describe, Figure, Finding, Mark, Plot, Table, listed,
+};
+use crate::num::digits::figure;
+
+/// One number of paths.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Step {
+    /// Paths, as the estimator counts them.
+    pub samples: u64,
+    /// ‖traced − Φ‖/‖Φ‖ against converged quadrature.
+    pub error: f64,
+    /// ‖standard error‖/‖Φ‖, as the render states it.
+    pub stated: f64,
+}
+
+/// The error of one estimator and sampler.
+#[derive(Clone, Debug, Serialize)]
+pub struct Curve {
+    /// Estimator.
+    pub estimator: String,
+    /// Sampler.
+    pub sampler: String,
+    /// By growing number of paths.
+    pub steps: Vec<Step>,
+    /// Slope of ln error against ln samples, least squares: −½ for independent random numbers.
+    pub slope: f64,
+    /// How far the bound of the quadrature may have moved it; `None` where an error is below that
+    /// bound.
+    pub slope_bound: Option<f64>,
+}
+
+/// The study of a scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct Convergence {
+    /// Name of the scene.
+    pub scene: String,
+    /// Its hash.
+    pub scene_hash: String,
+    /// Seed.
+    pub seed: u64,
+    /// β: ‖bound‖/‖Φ‖ of the quadrature. Errors below it are not measured.
+    pub quadrature_bound: f64,
+    /// Every estimator with every sampler.
+    pub curves: Vec<Curve>,
+}
+
+impl Convergence {
+    /// How fast the errors of each sampler fall, and which is the least.
+    fn sentence(&self) -> String {
+        let mut samplers: Vec<&str> = self.curves.iter().map(|c| c.sampler.as_str()).collect();
+        samplers.sort_unstable();
+        samplers.dedup();
+        let range = |sampler: &&str| {
+            let own = self.curves.iter().filter(|c| c.sampler == **sampler);
+            let none = [f64::INFINITY, f64::NEG_INFINITY];
+            let [low, high] = own.fold(none, |[l, h], c| [l.min(c.slope), h.max(c.slope)]);
+            format!(
+                "of {sampler} by a slope of {} to {}",
+                figure(low, 3),
+                figure(high, 3)
+            )
+        };
+        let ranges: Vec<String> = samplers.iter().map(range).collect();
+        let last = self
+            .curves
+            .iter()
+            .filter_map(|c| Some((c, c.steps.last()?)));
+        let least = last.min_by(|a, b| a.1.error.total_cmp(&b.1.error));
+        let least = least.map_or(String::new(), |(c, s)| {
+            format!(
+                " The smallest error, {}, is that of {}, {} with {} samples.",
+                figure(s.error, 2),
+                c.estimator,
+                c.sampler,
+                s.samples
+            )
+        });
+        let lost = self.curves.iter().filter(|c| c.slope_bound.is_none());
+        let lost: Vec<String> = lost
+            .map(|c| format!("{}, {}", c.estimator, c.sampler))
+            .collect();
+        let floor = if lost.is_empty() {
+            String::new()
+        } else {
+            format!(
+                " The quadrature is itself known to {} only: errors of {} fall below that, and \
+                 their slopes are its.",
+                figure(self.quadrature_bound, 2),
+                listed(&lost)
+            )
+        };
+        format!(
+            "The relative error of Φcam on {} falls with the number of samples: that {} \
+             (independent random numbers have a slope of −½).{least}{floor}",
+            self.scene,
+            listed(&ranges)
+        )
+    }
+}
+
+impl Describe for Convergence {
+    fn describe(&self) -> Finding {
+        let title = format!("How fast the error falls: {}", self.scene);
+        let named = |c: &Curve| {
+            [&c.estimator, &c.sampler]
+                .map(|n| Cell::Name(n.clone()))
+                .to_vec()
+        };
+        let with = |c: &Curve, more: Vec<Cell>| [named(c), more].concat();
+        let heads = [Column::text("estimator", ""), Column::text("sampler", "")];
+        let slopes = Table {
+            caption: "Slopes of log error against log samples".to_owned(),
+            columns: [
+                &heads[..],
+                &[
+                    Column::number("slope", "", "", 3),
+                    Column::number("± by the quadrature", "slope_bound", "", 2),
+                ],
+            ]
+            .concat(),
+            rows: self
+                .curves
+                .iter()
+                .map(|c| with(c, vec![c.slope.into(), Cell::Number(c.slope_bound)]))
+                .collect(),
+            ..Table::default()
+        };
+        let step =
+            |c: &Curve, s: &Step| with(c, vec![s.samples.into(), s.error.into(), s.stated.into()]);
+        let numbers = [
+            Column::text("samples", ""),
+            Column::number("error", "", "", 4),
+            Column::number("stated standard error", "", "", 4),
+        ];
+        let steps = Table {
+            caption: "Relative error against converged quadrature".to_owned(),
+            columns: [&heads[..], &numbers].concat(),
+            rows: self
+                .curves
+                .iter()
+                .flat_map(|c| c.steps.iter().map(move |s| step(c, s)))
+                .collect(),
+            ..Table::default()
+        };
+        let curve = |c: &Curve| {
+            let name = format!(
+                "{}, {}: slope {}",
+                c.estimator,
+                c.sampler,
+                figure(c.slope, 3)
+            );
+            let points = c.steps.iter().map(|s| [s.samples as f64, s.error]);
+            finding::Curve::new(name, Mark::Line, points.collect())
+        };
+        let plot = Plot {
+            title: String::new(),
+            axes: [
+                Axis::decades("paths per pixel (shared) or per pixel and spot (independent)"),
+                Axis::decades("‖Φ̂ − Φ‖ / ‖Φ‖"),
+            ],
+            curves: self.curves.iter().map(curve).collect(),
+        };
+        Finding {
+            sentence: self.sentence(),
+            notes: vec![format!(
+                "The quadrature's own bound is {} of ‖Φcam‖: so much an error may be off.",
+                figure(self.quadrature_bound, 2)
+            )],
+            tables: vec![slopes, steps],
+            figures: vec![Figure {
+                file: "convergence.svg".to_owned(),
+                title: title.clone(),
+                plots: vec![plot],
+                ..Figure::default()
+            }],
+            title,
+            ..Finding::default()
+        }
+    }
+}
