@@ -26,6 +26,7 @@ mod main_job;
 mod many;
 mod memory;
 mod mistakes;
+mod occluders;
 mod recovery;
 mod recovery_own;
 mod replacing;

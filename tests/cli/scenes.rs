@@ -3,7 +3,7 @@
 use crate::small_scene::{bench, with_points_and_surface};
 use crate::workspace::Workspace;
 
-pub(crate) const BUILT_IN: [&str; 13] = [
+pub(crate) const BUILT_IN: [&str; 14] = [
     "bench",
     "thesis",
     "experiment",
@@ -14,6 +14,7 @@ pub(crate) const BUILT_IN: [&str; 13] = [
     "periscope",
     "screen",
     "mask",
+    "masked-card",
     "corner",
     "room",
     "furnace",
@@ -44,6 +45,7 @@ fn every_built_in_scene_is_sound() {
         "120 spots; 16 × 16 pixels",
         "100 spots; 32 × 32 pixels",
         "`monitor` shines; 24 × 24 pixels",
+        "100 spots; 32 × 32 pixels",
         "100 spots; 32 × 32 pixels",
         "144 spots; 32 × 32 pixels",
         "120 spots; 64 × 64 pixels",
