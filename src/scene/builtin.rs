@@ -42,6 +42,7 @@ pub fn builtins() -> &'static [Builtin] {
         "periscope": "a plate between object and wall: the edge of its shadow is a lens",
         "screen": "a monitor that faces a wall, a plate between: one photograph without a laser",
         "mask": "the same with a half-open mask: its shadow is another for each element",
+        "masked-card": "a playing card of 47 × 31 cells past a half-open mask of 16 × 16",
         "corner": "a letter chart around a corner: the relay wall is seen past another wall",
         "room": "a furnished room with a bust of a million triangles in it",
         "furnace": "an integrating sphere, whose flux at every bounce count is known in closed form",
