@@ -119,14 +119,14 @@ impl ConvergenceTasks {
 
     /// Refuses what the reference does not know.
     fn check(&self) -> Result<(), LabError> {
-        let mut occluders = self.scene.surfaces.iter();
-        let reflects = occluders.any(|s| s.role == Role::Occluder && !s.is_black());
-        let glossy = self.scene.hidden().any(|(_, s)| !s.is_lambertian());
-        match (glossy, reflects) {
-            (true, _) => Err(GLOSSY),
-            (_, true) => Err(REFLECTING),
-            _ => Ok(()),
+        if self.scene.hidden().any(|(_, s)| !s.is_lambertian()) {
+            return Err(GLOSSY);
         }
+        let mut surfaces = self.scene.surfaces.iter();
+        if surfaces.any(|s| s.role == Role::Occluder && !s.is_black()) {
+            return Err(REFLECTING);
+        }
+        Ok(())
     }
 }
 
