@@ -69,7 +69,9 @@ pub(super) fn cells_of_elements(
     let fine = count.map(|n| n << halvings);
     let element =
         |cell: usize| ((cell % fine[0]) >> halvings) + ((cell / fine[0]) >> halvings) * nu;
-    if let Shape::Instance(_) = surface.shape {
+    if let Shape::Instance(body) = &surface.shape
+        && !body.is_exact_patch()
+    {
         for (k, e) in surface.divided(fine).iter().enumerate() {
             found[element(k)].extend(HiddenCell::new((id, &surface), e, None));
         }

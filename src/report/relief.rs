@@ -31,6 +31,7 @@ pub fn recovered_ply(surface: &Surface, elements: [usize; 2], values: &[f64]) ->
                 triangles: body.mesh().triangles().to_vec(),
                 uv: body.mesh().uv().map(<[_]>::to_vec),
                 bare: None,
+                paint: None,
             };
             (mesh, surface.elements_of_triangles(elements))
         }

@@ -23,15 +23,21 @@ pub(super) struct Meshes {
     faces: u64,
 }
 
-/// A mesh, what was wrong with it, and its first face without texture coordinates where others have
-/// them.
-type Made = (Arc<Mesh>, Defects, Option<String>);
+/// A mesh, and what its file says besides.
+#[derive(Clone, Debug)]
+struct Made {
+    mesh: Arc<Mesh>,
+    told: Told,
+}
 
-/// A placed mesh.
-pub(super) struct Placed {
-    pub body: Instance,
+/// What is told of a mesh.
+#[derive(Clone, Debug)]
+pub(super) struct Told {
     pub defects: Defects,
+    /// Its first face without texture coordinates, where others have them.
     pub bare: Option<String>,
+    /// What its file says of colours.
+    pub paint: Option<String>,
 }
 
 impl Meshes {
@@ -41,7 +47,7 @@ impl Meshes {
         table: &MeshTable,
         earlier: &[Surface],
         files: &mut Files,
-    ) -> Result<Placed, Fault> {
+    ) -> Result<(Instance, Told), Fault> {
         let scale = match table.scale.unwrap_or(ScaleTable::Uniform(1.0)) {
             ScaleTable::Uniform(s) => [s; 3],
             ScaleTable::Axes(s) => s,
@@ -57,7 +63,7 @@ impl Meshes {
         } else {
             (1.0, Some(DVec3::from_array(scale)))
         };
-        let (mesh, defects, bare) = self.mesh(table, stretch, files)?;
+        let Made { mesh, mut told } = self.mesh(table, stretch, files)?;
         let mut turned = DAffine3::from_scale(DVec3::splat(uniform));
         for (i, r) in table.rotate.iter().flatten().enumerate() {
             let axis = DVec3::from_array(r.axis).try_normalize();
@@ -70,20 +76,17 @@ impl Meshes {
         }
         let shift = self.shift(table, &mesh, &turned, earlier)?;
         let placement = DAffine3::from_translation(shift) * turned;
-        let (side, defects) = if table.flip == Some(true) {
-            (Side::Inner, defects.turned())
+        let side = if table.flip == Some(true) {
+            told.defects = told.defects.turned();
+            Side::Inner
         } else {
-            (Side::Outer, defects)
+            Side::Outer
         };
         let body = Instance::new(mesh, placement, side).ok_or_else(|| {
             let cure = "use finite factors, angles and places";
             Fault::new(keys![], "the mesh has no proper place", cure)
         })?;
-        Ok(Placed {
-            body,
-            defects,
-            bare,
-        })
+        Ok((body, told))
     }
 
     /// Where the turned mesh goes.
@@ -182,7 +185,11 @@ impl Meshes {
             *p *= stretch.unwrap_or(DVec3::ONE);
         }
         let (mut triangles, defects) = triangles.mended();
-        let bare = triangles.bare.take();
+        let told = Told {
+            defects,
+            bare: triangles.bare.take(),
+            paint: triangles.paint.take(),
+        };
         let fault = |e: crate::geometry::MeshError| {
             Fault::new([at.clone()], e.to_string(), "mend the mesh, or use another")
         };
@@ -190,7 +197,8 @@ impl Meshes {
         if let Some(uv) = triangles.uv {
             mesh = mesh.with_uv(uv).map_err(&fault)?;
         }
-        let made = (Arc::new(mesh), defects, bare);
+        let mesh = Arc::new(mesh);
+        let made = Made { mesh, told };
         self.made.insert(key, made.clone());
         Ok(made)
     }

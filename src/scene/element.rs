@@ -24,16 +24,17 @@ pub struct Element {
 
 impl Surface {
     /// The elements, iu + iv·nu. Of rectangles, discs and spheres cells of equal area in their
-    /// parameters, taken at their middle. Of a mesh the triangles, at their centroids; or the cells
-    /// of its texture coordinates: each has the area of what the coordinates put there (the
-    /// triangles clipped), the direction of that part's vector area as its normal, and the point of
-    /// the mesh nearest to its centroid. Coordinates outside \[0, 1\] are taken as the texture
-    /// takes them, repeated or held to the border. Albedos are means over the area, exact.
+    /// parameters, taken at their middle; so of a mesh that is a parallelogram in its texture
+    /// coordinates. Of another the triangles, at their centroids; or the cells of its texture
+    /// coordinates: each has the area of what the coordinates put there (the triangles clipped),
+    /// the direction of that part's vector area as its normal, and the point of the mesh nearest
+    /// to its centroid. Coordinates outside \[0, 1\] are taken as the texture takes them, repeated
+    /// or held to the border. Albedos are means over the area, exact.
     pub fn divided(&self, [nu, nv]: [usize; 2]) -> Vec<Element> {
         let matt = self.lambertian_equivalent();
         match (&matt.shape, matt.division) {
             (Shape::Instance(body), Division::Faces) => faces(body, &matt.albedo),
-            (Shape::Instance(body), Division::Cells) => {
+            (Shape::Instance(body), Division::Cells) if !body.is_exact_patch() => {
                 cells(body, &matt.albedo, matt.grid([nu, nv]))
             }
             (Shape::Instance(body), Division::Whole) => {
@@ -90,8 +91,8 @@ impl Surface {
     pub fn element_at(&self, uv: [f64; 2]) -> Element {
         let at = |uv| self.shape.at(uv);
         let point = at(uv);
-        let along = match self.shape {
-            Shape::Instance(_) => DVec3::ZERO,
+        let along = match &self.shape {
+            Shape::Instance(body) if !body.is_exact_patch() => DVec3::ZERO,
             _ => at([1.0, uv[1]]).position - at([0.0, uv[1]]).position,
         };
         Element {

@@ -1,6 +1,6 @@
 //! Surfaces from their tables.
 
-use super::body::{Meshes, Placed};
+use super::body::Meshes;
 use super::coordinates;
 use super::error::{Fault, keys};
 use super::file::{ElementsTable, Sides, SurfaceTable};
@@ -283,15 +283,16 @@ fn shape(
                 Fault::new(keys!["disc"], cause, cure)
             }),
         (None, None, None, Some(m)) => {
-            let Placed {
-                body,
-                defects,
-                bare,
-            } = sources
+            let (body, told) = sources
                 .meshes
                 .place(m, earlier, sources.files)
                 .map_err(|f| f.within(keys!["mesh"]))?;
-            sources.bare = bare;
+            let defects = told.defects;
+            sources.bare = told.bare;
+            if let Some(paint) = told.paint {
+                let name = table.name.clone();
+                sources.found.push(Warning::MeshPaint(name, paint));
+            }
             let open = m.closed == Some(true) && !defects.is_closed();
             if open || !defects.is_empty() {
                 let name = table.name.clone();

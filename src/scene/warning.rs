@@ -27,6 +27,8 @@ pub enum Warning {
     SpotsShadowed(Vec<usize>),
     /// Defects of a surface's mesh.
     Mesh(String, Defects),
+    /// Colours that come with a surface's mesh and are not used: (surface, what they are).
+    MeshPaint(String, String),
     /// Spots of which a part falls beside the wall and is lost.
     SpotsOverhang(Vec<usize>),
     /// A wavelength, m, far from those of lasers.
@@ -62,6 +64,10 @@ impl fmt::Display for Warning {
                 "{entries} photographed values (pixels × spots) for {elements} elements: fewer than what is to be recovered"
             ),
             Self::Mesh(surface, defects) => write!(f, "the mesh of `{surface}`: {defects}"),
+            Self::MeshPaint(surface, what) => write!(
+                f,
+                "the mesh of `{surface}` comes with {what}, which are not used: its albedo is what `material` says, such as `{{ lambertian = 0.5 }}` or, by its texture coordinates, `{{ lambertian = {{ image = \"picture.png\", transfer = \"srgb\" }} }}`"
+            ),
             Self::SpotsInView(spots) => {
                 let spots = Spots(spots);
                 write!(

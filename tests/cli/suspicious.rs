@@ -55,6 +55,31 @@ fn a_dark_scene_is_told() {
     }
 }
 
+/// An OBJ that names a material library: its colours are not used, and how else an albedo is given
+/// is said; the same file without that line is not suspicious.
+#[test]
+fn colours_of_a_mesh_are_told_and_not_used() {
+    let square = "v 3 11 4\nv 7 11 4\nv 7 9 6\nv 3 9 6\nf 1 2 3 4\n";
+    let scene = altered(&TINY)
+        + "\n[[surface]]\nname = \"sheet\"\nrole = \"occluder\"\nmaterial = { lambertian = 0.5 }\n\
+           mesh = { file = \"sheet.obj\" }\n";
+    let check = |obj: &str| {
+        let workspace = Workspace::new();
+        workspace.write("sheet.obj", obj);
+        workspace.write("odd.toml", &scene);
+        workspace.phicam("scene check odd.toml").exits(0).stdout
+    };
+    let told = check(&format!("mtllib paint.mtl\n{square}"));
+    for words in [
+        "suspicious: the mesh of `sheet` comes with materials in `paint.mtl`, which are not used",
+        "its albedo is what `material` says",
+        "image = \"picture.png\"",
+    ] {
+        assert!(told.contains(words), "{told}");
+    }
+    assert!(!check(square).contains("not used"));
+}
+
 /// A sphere that nearly touches the wall in view, by few samples: what is foretold of the overall
 /// standard error is what the render then states, within a factor of two; without the sphere
 /// nothing is.

@@ -72,7 +72,10 @@ fn refuse_unsupported(root: &Root) -> Result<(), MeshFileError> {
     let version = &root.asset.version;
     if !version.starts_with("2.") {
         let version: String = version.chars().take(20).collect();
-        return Err(unsupported(format!("glTF version `{version}`")));
+        return Err(unsupported(
+            format!("glTF version `{version}`"),
+            "as glTF 2.0",
+        ));
     }
     // Extensions that leave the shape alone.
     let harmless = [
@@ -86,7 +89,10 @@ fn refuse_unsupported(root: &Root) -> Result<(), MeshFileError> {
         None => Ok(()),
         Some(extension) => {
             let extension: String = extension.chars().take(60).collect();
-            Err(unsupported(format!("extension `{extension}`")))
+            Err(unsupported(
+                format!("extension `{extension}`"),
+                "without it",
+            ))
         }
     }
 }
@@ -132,7 +138,8 @@ impl<'a> Body<'a> {
             self.visited += 1;
             if self.visited > MOST_VISITED {
                 let what = "parts, meshes counted wherever they stand";
-                return Err(unsupported(format!("more than {MOST_VISITED} {what}")));
+                let what = format!("more than {MOST_VISITED} {what}");
+                return Err(unsupported(what, "as fewer"));
             }
             let place = format!("mesh {at}, primitive {i}");
             let mode = match primitive.mode {
@@ -164,6 +171,9 @@ impl<'a> Body<'a> {
             None => None,
             Some(uv) => Some(self.elements(uv.value(), Type::Vec2)?),
         };
+        if primitive.material.is_some() {
+            self.made.paint = Some(String::from("materials"));
+        }
         if let Some(uv) = &uv
             && uv.count != position.count
         {
@@ -213,7 +223,7 @@ impl<'a> Body<'a> {
     /// The indices of a primitive, each below `count`.
     fn indices(&mut self, place: &str, at: usize, count: usize) -> Result<Vec<u32>, MeshFileError> {
         let elements = self.elements(at, Type::Scalar)?;
-        let indices = elements.indices(at)?;
+        let indices = elements.indices(&format!("accessor {at}"))?;
         match indices.iter().position(|i| *i as usize >= count) {
             None => Ok(indices),
             Some(k) => Err(MeshFileError::NoVertex {

@@ -40,6 +40,8 @@ pub struct Triangles {
     pub uv: Option<Vec<[[f64; 2]; 3]>>,
     /// The first face without them, where others have some.
     pub bare: Option<String>,
+    /// What the file says of colours, none of which is read.
+    pub paint: Option<String>,
 }
 
 /// Why a file gives no triangles.
@@ -47,7 +49,7 @@ pub struct Triangles {
 pub enum MeshFileError {
     /// The name does not tell the format.
     #[error(
-        "the name of mesh `{name}` ends in none of .ply, .obj, .gltf and .glb: rename the file after its format, or convert it"
+        "its name ends in none of .ply, .obj, .gltf and .glb: convert `{name}` to one of these formats, or rename it after its own"
     )]
     UnknownFormat {
         /// The file.
@@ -114,10 +116,12 @@ pub enum MeshFileError {
         cause: String,
     },
     /// The format's own extension or a feature that this reader lacks.
-    #[error("{what} is not supported: export the mesh without it")]
+    #[error("{what} is not supported: export the mesh {cure}")]
     Unsupported {
         /// What.
         what: String,
+        /// How to export it instead.
+        cure: &'static str,
     },
     /// Nothing to see.
     #[error("the file has no faces: export a mesh, not a cloud of points or lines")]
@@ -197,8 +201,8 @@ fn malformed(place: impl Into<String>, cause: impl Into<String>) -> MeshFileErro
     }
 }
 
-fn unsupported(what: String) -> MeshFileError {
-    MeshFileError::Unsupported { what }
+fn unsupported(what: String, cure: &'static str) -> MeshFileError {
+    MeshFileError::Unsupported { what, cure }
 }
 
 /// The fan of a face with `corners` corners: right where it is convex, and what stands in for it

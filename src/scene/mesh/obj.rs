@@ -1,4 +1,4 @@
-//! Wavefront OBJ files: `v`, `vt` and `f`; every other statement is read over.
+//! Wavefront OBJ files: `v`, `vt` and `f`; every other statement is read over, and `mtllib` is told.
 //!
 //! Read here and not by `tobj` 4.0.5, which multiplies a texture coordinate's index before it
 //! checks it (an overflow that panics or wraps around), gives a corner without texture coordinate
@@ -57,6 +57,8 @@ struct Body {
     early: Early,
     /// Line of the first face without texture coordinates.
     bare: Option<usize>,
+    /// The first material library.
+    library: Option<String>,
 }
 
 impl Body {
@@ -81,6 +83,9 @@ impl Body {
                 self.uvs.push(uv);
             }
             Some(b"f") => self.face(at, words)?,
+            Some(b"mtllib") if self.library.is_none() => {
+                self.library = Some(quoted(line.trim_ascii()[6..].trim_ascii()));
+            }
             _ => {}
         }
         Ok(())
@@ -186,6 +191,7 @@ impl Body {
             positions: self.positions,
             triangles: self.triangles,
             bare: self.bare.filter(|_| !self.uvs.is_empty()).map(line),
+            paint: self.library.map(|name| format!("materials in `{name}`")),
         })
     }
 }

@@ -40,12 +40,20 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, MeshFileError> {
                     "a surface in strips or fans of triangles (`{}`)",
                     element.name
                 );
-                return Err(unsupported(what));
+                return Err(unsupported(what, "as faces, each with its own corners"));
             }
             _ => each::<Skipped>(&mut reader, element, &header, |_, _| Ok(()))?,
         }
     }
-    body.finish()
+    let mut elements = header.elements.values();
+    let is_painted = elements.any(|e| {
+        let is_colour = |p: &&str| e.properties.contains_key(*p);
+        ["red", "diffuse_red"].iter().any(is_colour)
+    });
+    Ok(Triangles {
+        paint: is_painted.then(|| String::from("colours")),
+        ..body.finish()?
+    })
 }
 
 /// Reads an element and hands each instance on with its place from 0.
@@ -247,6 +255,7 @@ impl Body {
             None
         };
         Ok(Triangles {
+            paint: None,
             positions: self.positions,
             triangles: self.triangles,
             bare: self.bare.filter(|_| partly && uv.is_none()).map(face_at),

@@ -31,6 +31,7 @@ fn cube() -> Triangles {
         triangles: QUADS.into_iter().flat_map(halves).collect(),
         uv: None,
         bare: None,
+        paint: None,
     }
 }
 

@@ -53,8 +53,6 @@ impl Bench {
 
     /// Φcam\[pixel\]\[spot\] in W with `n` nodes a side on each check and `m` on each footprint.
     pub(crate) fn phi(&self, n: usize, m: usize) -> Vec<Vec<f64>> {
-        let h = 0.5f64.sqrt();
-        // Points of the light checks with weights in area; the normal of S2 is (0, −h, −h).
         let mut board = Vec::new();
         let side = 4.0 / self.checks as f64;
         for j in 0..self.checks {
@@ -64,13 +62,25 @@ impl Bench {
                 }
                 for (a, wa) in gauss(n) {
                     for (b, wb) in gauss(n) {
-                        let x = 3.0 + (i as f64 + a) * side;
-                        let d = 5.86764 + (j as f64 + b) * side;
-                        board.push(([x, 15.5 - d * h, d * h], wa * wb * side * side));
+                        let place = [(i as f64 + a) * side, (j as f64 + b) * side];
+                        board.push((place, wa * wb * side * side));
                     }
                 }
             }
         }
+        self.phi_of(&board, m)
+    }
+
+    /// The same of points of the board, counted along x and d from its corner, with their weights:
+    /// area times albedo.
+    pub(crate) fn phi_of(&self, board: &[([f64; 2], f64)], m: usize) -> Vec<Vec<f64>> {
+        // The normal of S2 is (0, −h, −h).
+        let h = 0.5f64.sqrt();
+        let place = |([x, d], w): &([f64; 2], f64)| {
+            let d = 5.86764 + d;
+            ([3.0 + x, 15.5 - d * h, d * h], *w)
+        };
+        let board: Vec<([f64; 3], f64)> = board.iter().map(place).collect();
         // cosθ_wall cosθ_board / R² between a wall point and a board point.
         let kernel = |wall: [f64; 2], p: [f64; 3]| {
             let r = [p[0] - wall[0], p[1] - wall[1], p[2]];

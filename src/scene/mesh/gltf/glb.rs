@@ -17,7 +17,8 @@ pub(super) fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), MeshFileErr
     }
     let version = word(bytes, 4);
     if version != 2 {
-        return Err(unsupported(format!("binary glTF version {version}")));
+        let what = format!("binary glTF version {version}");
+        return Err(unsupported(what, "as glTF 2.0"));
     }
     let length = word(bytes, 8) as usize;
     if length > bytes.len() {

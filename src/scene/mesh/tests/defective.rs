@@ -6,6 +6,7 @@ fn of(triangles: &[[u32; 3]]) -> Defects {
         triangles: triangles.to_vec(),
         uv: None,
         bare: None,
+        paint: None,
     })
 }
 

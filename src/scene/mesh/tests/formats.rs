@@ -96,7 +96,7 @@ fn concave_faces_have_their_area_whatever_their_first_corner() {
         element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
     let error = alone("m.ply", strips.as_bytes()).unwrap_err().to_string();
     assert!(
-        error.contains("strips") && error.contains("is not supported"),
+        error.contains("strips") && error.contains("export the mesh as faces"),
         "{error}"
     );
 }
@@ -130,6 +130,7 @@ fn what_is_written_is_read_back() {
         *corner = corner.map(|x| f64::from(x as f32));
     }
     for values in [FaceValues::default(), full] {
+        mesh.paint = values.colours.map(|_| String::from("colours"));
         assert_eq!(alone("t.ply", &to_ply(&mesh, values)).unwrap(), mesh);
     }
     mesh.uv = None;

@@ -183,9 +183,7 @@ fn accessors_that_reach_too_far() {
             "{to}: {error}"
         );
     }
-    let sparse = r#""count": 8, "sparse": {"count": 1, "indices": {"bufferView": 1, "componentType": 5123}, "values": {"bufferView": 0}}"#;
     for (from, to) in [
-        (r#""count": 8"#, sparse),
         (r#""version": "2.0""#, r#""version": "1.0""#),
         (
             r#""scene": 0"#,
@@ -211,6 +209,83 @@ fn accessors_that_reach_too_far() {
         ),
         "{error}"
     );
+}
+
+/// The cube whose positions are those of buffer view 0, which has 96 bytes, but for those that a
+/// sparse accessor puts in their place: `view` names the former if there are any.
+fn sparse(
+    base: &[u8],
+    view: &str,
+    indices: &[u8],
+    values: &[u8],
+) -> Result<Triangles, MeshFileError> {
+    let count = indices.len();
+    let text = gltf_text(r#""uri": "a.bin","#, r#"{"mesh": 0}"#)
+        .replace(r#""byteLength": 168"#, &format!(r#""byteLength": {}"#, 168 + 13 * count))
+        .replace(
+            r#""byteOffset": 96, "byteLength": 72}"#,
+            &format!(
+                r#""byteOffset": 96, "byteLength": 72}},
+{{"buffer": 0, "byteOffset": 168, "byteLength": {count}}}, {{"buffer": 0, "byteOffset": {}, "byteLength": {}}}"#,
+                168 + count,
+                12 * count
+            ),
+        )
+        .replace(
+            r#"{"bufferView": 0, "componentType": 5126, "count": 8"#,
+            &format!(
+                r#"{{{view} "sparse": {{"count": {count}, "indices": {{"bufferView": 2, "componentType": 5121}}, "values": {{"bufferView": 3}}}}, "componentType": 5126, "count": 8"#
+            ),
+        );
+    let bytes = [base, &gltf_buffer(&cube())[96..], indices, values].concat();
+    read("a.gltf", text.as_bytes(), &mut |_| Ok(bytes.clone()))
+}
+
+#[test]
+fn sparse_accessors_replace_single_elements() {
+    let right = &gltf_buffer(&cube())[..96];
+    let of = |k: usize| &right[12 * k..12 * (k + 1)];
+    let mut wrong = right.to_vec();
+    wrong[24..36].copy_from_slice(of(7));
+    wrong[60..72].copy_from_slice(of(0));
+    let (view, values) = (r#""bufferView": 0,"#, [of(2), of(5)].concat());
+    is_unit_cube(&sparse(&wrong, view, &[2, 5], &values).unwrap());
+    // Those that are not named are 0 where there is no other view: so is the cube's first vertex.
+    assert_eq!(of(0), [0; 12]);
+    let all: Vec<u8> = (1..8).collect();
+    is_unit_cube(&sparse(&wrong, "", &all, &right[12..]).unwrap());
+    for indices in [[5, 2], [2, 2], [2, 8]] {
+        let error = sparse(&wrong, view, &indices, &values)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            error.starts_with("accessor 0: its sparse indices do not grow"),
+            "{error}"
+        );
+    }
+    // Zeros have no bytes in the file that would bound them.
+    let text = gltf_text(&inline_buffer(), r#"{"mesh": 0}"#).replace(
+        r#"{"bufferView": 0, "componentType": 5126, "count": 8"#,
+        r#"{"sparse": {"count": 0, "indices": {"bufferView": 1, "componentType": 5121}, "values": {"bufferView": 0}}, "componentType": 5126, "count": 9000000000"#,
+    );
+    let error = alone("a.gltf", text.as_bytes()).unwrap_err();
+    assert!(matches!(error, MeshFileError::TooMany { .. }), "{error}");
+}
+
+#[test]
+fn colours_that_are_not_read_are_told() {
+    let paint = |name: &str, text: &str| alone(name, text.as_bytes()).unwrap().paint;
+    let told = |what: &str| Some(String::from(what));
+    assert_eq!(paint("a.obj", &obj_text()), told("materials in `none.mtl`"));
+    let spaced = "v 0 0 0\nv 1 0 0\nv 0 1 0\n  mtllib my body.mtl # library\r\nf 1 2 3\n";
+    assert_eq!(paint("a.obj", spaced), told("materials in `my body.mtl`"));
+    assert_eq!(paint("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), None);
+    assert_eq!(paint("a.ply", &ply_text()), told("colours"));
+    assert_eq!(paint("a.ply", &ply_text().replace("red", "heat")), None);
+    let plain = gltf_text(&inline_buffer(), r#"{"mesh": 0}"#);
+    let painted = plain.replace(r#""indices": 1}"#, r#""indices": 1, "material": 0}"#);
+    assert_eq!(paint("a.gltf", &painted), told("materials"));
+    assert_eq!(paint("a.gltf", &plain), None);
 }
 
 #[test]
