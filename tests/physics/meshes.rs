@@ -322,9 +322,9 @@ fn condition(model: &MatrixModel) -> f64 {
 }
 
 /// Truth, model and recovery of a mesh of the rectangle are the rectangle's, whatever texture the
-/// elements straddle, and the truth is the mean albedo. Where the mesh's corners are the
-/// rectangle's to the bit the recovery is so to 1e-12; where they are rounded otherwise it differs
-/// by that rounding times the condition number κ of the inversion, and no more than 10·ε·κ.
+/// elements straddle, and the truth is the mean albedo: to 1e-12 where the corners are read from a
+/// file. Where they are computed in another order, and rounded otherwise, the recovery differs by
+/// that rounding times the condition number κ of the inversion, and by no more than 10·ε·κ.
 #[test]
 fn a_mesh_of_the_rectangle_has_its_truth_model_and_recovery() {
     let board = DVec3::new(3.0, 11.350951966438567, 4.149048033561433);
@@ -384,7 +384,7 @@ fn a_mesh_of_the_rectangle_has_its_truth_model_and_recovery() {
             assert!(of_truth < 1e-12, "{texture}, {name}: truth {of_truth:e}");
             assert!(of_model < 1e-12, "{texture}, {name}: model {of_model:e}");
             let limit = match name {
-                "exact corners" => 1e-12,
+                "exact corners" | "rounded corners" => 1e-12,
                 _ => 10.0 * f64::EPSILON * kappa,
             };
             assert!(
@@ -766,7 +766,7 @@ fn a_mesh_of_the_rectangle_has_its_noise() {
 /// no face respects: the quadrature over area and normals says how far it can be trusted, which is
 /// less than 1e-4, and the tracer agrees within that. Errors of `independent` are independent
 /// between entries, so that the mean of the ratios of traced to modelled flux has a standard error
-/// below 3e-5. The weights of that mean are equal: by standard errors that were estimated with the
+/// below 2.5e-5. The weights of that mean are equal: by standard errors that were estimated with the
 /// flux itself they would favour entries that came out low.
 #[test]
 #[ignore = "slow"]
@@ -783,7 +783,7 @@ fn a_textured_sphere_is_integrated_within_its_bound() {
                 ("layout = \"square\"", "layout = \"grid\""),
                 ("per_side = 30", "per_side = 2"),
                 ("stagger = [-1.0, 1.0, 0.0]", ""),
-                ("pixels = [16, 16]", "pixels = [2, 2]"),
+                ("pixels = [16, 16]", "pixels = [2, 1]"),
                 (CHECKS, &checks),
                 ("elements = [8, 8]", &format!("elements = [{side}, {side}]")),
                 (RECTANGLE, &ball),
@@ -793,7 +793,7 @@ fn a_textured_sphere_is_integrated_within_its_bound() {
             let found = converged(&scene, Kernel::Physical, Extent::FULL).unwrap();
             let (_, bound) = found.worst().unwrap();
             let modelled = start.elapsed().as_secs_f64();
-            let way = Way(Estimator::Independent, Sampling::Sobol, 1, 1 << 19);
+            let way = Way(Estimator::Independent, Sampling::Sobol, 1, 1 << 20);
             let traced = trace(&scene, way);
             let took = start.elapsed().as_secs_f64() - modelled;
             let count = found.phi.len() as f64;
@@ -804,7 +804,7 @@ fn a_textured_sphere_is_integrated_within_its_bound() {
                 "{faces} faces, {side} × {side}: bound {bound:.1e} ({modelled:.1} s), apart {apart:.1e}, σ {sigma:.1e} ({took:.1} s), {verdict:?}"
             );
             assert!(bound < 1e-4, "{faces} faces, {side}: bound {bound:e}");
-            assert!(sigma < 3e-5, "{faces} faces, {side}: σ {sigma:e}");
+            assert!(sigma < 2.5e-5, "{faces} faces, {side}: σ {sigma:e}");
             assert!(
                 apart.abs() < bound + 4.0 * sigma,
                 "{faces} faces, {side}: {apart:e}, σ {sigma:e}"

@@ -92,6 +92,10 @@ fn concave_faces_have_their_area_whatever_their_first_corner() {
         error.starts_with("line 6: the sides of the face cross"),
         "{error}"
     );
+}
+
+#[test]
+fn strips_of_a_ply_are_named() {
     let strips = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
         element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
     let error = alone("m.ply", strips.as_bytes()).unwrap_err().to_string();
