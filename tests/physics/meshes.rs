@@ -766,7 +766,7 @@ fn a_mesh_of_the_rectangle_has_its_noise() {
 /// no face respects: the quadrature over area and normals says how far it can be trusted, which is
 /// less than 1e-4, and the tracer agrees within that. Errors of `independent` are independent
 /// between entries, so that the mean of the ratios of traced to modelled flux has a standard error
-/// below 2.5e-5. The weights of that mean are equal: by standard errors that were estimated with the
+/// below 4e-5. The weights of that mean are equal: by standard errors that were estimated with the
 /// flux itself they would favour entries that came out low.
 #[test]
 #[ignore = "slow"]
@@ -783,7 +783,7 @@ fn a_textured_sphere_is_integrated_within_its_bound() {
                 ("layout = \"square\"", "layout = \"grid\""),
                 ("per_side = 30", "per_side = 2"),
                 ("stagger = [-1.0, 1.0, 0.0]", ""),
-                ("pixels = [16, 16]", "pixels = [2, 1]"),
+                ("pixels = [16, 16]", "pixels = [2, 2]"),
                 (CHECKS, &checks),
                 ("elements = [8, 8]", &format!("elements = [{side}, {side}]")),
                 (RECTANGLE, &ball),
@@ -793,7 +793,7 @@ fn a_textured_sphere_is_integrated_within_its_bound() {
             let found = converged(&scene, Kernel::Physical, Extent::FULL).unwrap();
             let (_, bound) = found.worst().unwrap();
             let modelled = start.elapsed().as_secs_f64();
-            let way = Way(Estimator::Independent, Sampling::Sobol, 1, 1 << 20);
+            let way = Way(Estimator::Independent, Sampling::Sobol, 1, 1 << 19);
             let traced = trace(&scene, way);
             let took = start.elapsed().as_secs_f64() - modelled;
             let count = found.phi.len() as f64;
@@ -804,7 +804,7 @@ fn a_textured_sphere_is_integrated_within_its_bound() {
                 "{faces} faces, {side} × {side}: bound {bound:.1e} ({modelled:.1} s), apart {apart:.1e}, σ {sigma:.1e} ({took:.1} s), {verdict:?}"
             );
             assert!(bound < 1e-4, "{faces} faces, {side}: bound {bound:e}");
-            assert!(sigma < 2.5e-5, "{faces} faces, {side}: σ {sigma:e}");
+            assert!(sigma < 4e-5, "{faces} faces, {side}: σ {sigma:e}");
             assert!(
                 apart.abs() < bound + 4.0 * sigma,
                 "{faces} faces, {side}: {apart:e}, σ {sigma:e}"
