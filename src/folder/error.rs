@@ -1,5 +1,6 @@
 //! Why a run folder cannot be read or written.
 
+use crate::film::StackError;
 use crate::film::exr::FrameError;
 use crate::matrix::npy::NpyError;
 use crate::scene::SceneError;
@@ -26,6 +27,9 @@ pub enum FolderError {
     /// A frame cannot be written.
     #[error("{0}")]
     Frame(#[from] FrameError),
+    /// Its frames do not make a matrix.
+    #[error("{0}")]
+    Stack(#[from] StackError),
     /// Its scene cannot be used.
     #[error("{0}")]
     Scene(#[from] SceneError),

@@ -3,6 +3,8 @@
 use crate::film::frame_name;
 use crate::recovery::Method;
 
+/// The frames, one a spot.
+pub const FRAMES: &str = "frames";
 /// Φcam, pixels × spots, W.
 pub const PHI: &str = "phi.npy";
 /// Its standard error.

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 
 use super::error::FolderError;
-use super::frames::{columns, frame, refuse_beyond_f32};
-use super::names::{LEFT_OUT, PHI, SCENE, STDERR, TAILS, is_frame};
+use super::frames::{columns, frame, frame_max, refuse_beyond_f32};
+use super::names::{FRAMES, LEFT_OUT, PHI, SCENE, STDERR, TAILS, is_frame};
 use super::record::Record;
 use crate::film::{self, frame_name};
 use crate::lab::Tails;
@@ -28,6 +28,9 @@ pub struct Run {
     pub stderr: Option<Matrix>,
     /// What does not count, pixels × spots: where it is not 0.
     pub left_out: Option<Matrix>,
+    /// Light that met exactly 1, 2, … surfaces, pixels × spots, W, to the f32 of the frames; none
+    /// where there are no frames.
+    pub bounces: Option<Vec<Matrix>>,
 }
 
 /// Writes the scene, whole: with copies of the files that it names.
@@ -77,12 +80,12 @@ pub fn finish(
     npy::write(&folder.join(TAILS), tails)?;
     npy::write(&folder.join(STDERR), stderr)?;
     npy::write(&folder.join(PHI), phi)?;
-    flush(&folder.join("frames"))?;
+    flush(&folder.join(FRAMES))?;
     let spots = record.spots;
     record.finished = spots;
     record.files.clear();
     record.vouch(folder, [SCENE, PHI, STDERR, TAILS])?;
-    record.vouch_all(folder, "frames", |name| is_frame(name, spots))?;
+    record.vouch_all(folder, FRAMES, |name| is_frame(name, spots))?;
     record.vouch_all(folder, COPIES, |name| {
         scene.files.iter().any(|file| file.copy_name() == name)
     })?;
@@ -118,7 +121,7 @@ pub fn write_run(
     };
     let _lock = FolderLock::take(folder, &(0..u64::MAX), "phicam", alone)?;
     let mut record = Record::new(scene, plan, 0, threads, seconds);
-    let frames = folder.join("frames");
+    let frames = folder.join(FRAMES);
     ensure_writable(&frames)?;
     write_scene(folder, scene)?;
     let kept: Vec<Matrix> = columns(traced).collect();
@@ -179,11 +182,80 @@ pub fn read_run(folder: &Path, also: &[PathBuf]) -> Result<Run, FolderError> {
         return Err(FolderError::new(cause, "restore it, or render again"));
     }
     let left_out = left_out.map(matrix).transpose()?;
+    let framed = !record.is_imported() && folder.join(FRAMES).is_dir();
+    let bounces = framed.then(|| bounces(folder, &scene, &record));
+    let bounces = bounces.transpose()?;
     Ok(Run {
         scene,
         record,
         flux,
         stderr,
         left_out,
+        bounces,
     })
+}
+
+/// Light by the number of surfaces met, from the frames, each as the record vouches for it.
+fn bounces(folder: &Path, scene: &Scene, record: &Record) -> Result<Vec<Matrix>, FolderError> {
+    let stack = film::stack_within(folder, frame_max(scene))?;
+    for spot in 0..record.spots {
+        let name = frame_name(spot as u32);
+        record.check(folder, &format!("{FRAMES}/{name}"))?;
+    }
+    let expected = (scene.camera.pixels(), scene.laser.spots.len());
+    if stack.phi.shape() != expected || stack.run.scene_hash != record.scene_hash {
+        let place = folder.join(FRAMES);
+        let cause = format!("the frames in {} are of another run", place.display());
+        return Err(FolderError::new(cause, "restore them, or render again"));
+    }
+    let named = |n: usize| film::frame::bounce_channel(n + 1);
+    let found = stack.bounces.into_iter().enumerate();
+    let found = found.take_while(|(n, (name, _))| *name == named(*n));
+    Ok(found.map(|(_, (_, matrix))| matrix).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::file::SceneFile;
+    use crate::transport::{Budget, Control, Estimator, Sampling, render};
+
+    /// What is read back is what was written: the light of each number of surfaces to the f32 of the
+    /// frames; none of a run without frames; a frame that was changed is refused.
+    #[test]
+    fn light_by_bounces_is_read_back() {
+        let mut file = SceneFile::default();
+        file.max_bounces = 5;
+        file.laser.as_mut().unwrap().spots.per_side = Some(2);
+        let scene = Scene::new(&file, None).unwrap();
+        let plan = Plan {
+            estimator: Estimator::Shared,
+            sampling: Sampling::Pcg,
+            seed: 1,
+            budget: Budget::new(8, Sampling::Pcg).unwrap(),
+        };
+        let spots = scene.laser.spots.len();
+        let traced = render(&scene, &plan, 0..spots, Control::none()).unwrap();
+        assert!(traced.bounces[4].amax() > 0.0);
+        let dir = tempfile::tempdir().unwrap();
+        let folder = dir.path().join("run");
+        write_run(&folder, &scene, &plan, &traced, (1.0, 1)).unwrap();
+        let found = read_run(&folder, &[]).unwrap();
+        assert_eq!(found.flux, traced.flux);
+        let f32_of = |m: &Matrix| m.map(|x| f64::from(x as f32));
+        let wanted: Vec<Matrix> = traced.bounces.iter().map(f32_of).collect();
+        assert_eq!(found.bounces, Some(wanted));
+        let frame = folder.join(FRAMES).join(frame_name(1));
+        let other = std::fs::read(folder.join(FRAMES).join(frame_name(0))).unwrap();
+        let own = std::fs::read(&frame).unwrap();
+        std::fs::write(&frame, &other).unwrap();
+        assert!(read_run(&folder, &[]).is_err());
+        let mut changed = own;
+        let last = changed.len() - 1;
+        changed[last] ^= 1;
+        std::fs::write(&frame, &changed).unwrap();
+        assert!(read_run(&folder, &[]).is_err());
+        std::fs::remove_dir_all(folder.join(FRAMES)).unwrap();
+        assert_eq!(read_run(&folder, &[]).unwrap().bounces, None);
+    }
 }

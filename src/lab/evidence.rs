@@ -19,6 +19,18 @@ pub enum Errors {
 const NOTICED: f64 = 0.1;
 
 impl Errors {
+    /// Every way.
+    pub const ALL: [Errors; 3] = [Self::Independent, Self::WithinRows, Self::Everywhere];
+
+    /// The name by which it is asked for.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Independent => "independent",
+            Self::WithinRows => "pixel",
+            Self::Everywhere => "all",
+        }
+    }
+
     /// Those of an estimator.
     pub fn of(estimator: Estimator) -> Self {
         match estimator {

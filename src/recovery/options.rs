@@ -51,6 +51,24 @@ pub enum WeightRule {
     Unweighted,
 }
 
+impl WeightRule {
+    /// Every rule.
+    pub const ALL: [WeightRule; 3] = [
+        WeightRule::Noise,
+        WeightRule::Entries,
+        WeightRule::Unweighted,
+    ];
+
+    /// The name by which it is asked for.
+    pub fn name(self) -> &'static str {
+        match self {
+            WeightRule::Noise => "noise",
+            WeightRule::Entries => "entries",
+            WeightRule::Unweighted => "none",
+        }
+    }
+}
+
 /// How much the methods that work pixel by pixel tell of their uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Uncertainty {

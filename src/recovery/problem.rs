@@ -385,7 +385,12 @@ impl<'a> Problem<'a> {
     pub(super) fn light(&self, reflectance: &DVector<f64>) -> DMatrix<f64> {
         let (c, d, element) = self.sides();
         let of_terms: Vec<f64> = element.iter().map(|j| reflectance[*j]).collect();
-        columns_times(c.clone(), &of_terms) * d
+        // The lesser side is copied.
+        if c.len() < d.len() {
+            columns_times(c.clone(), &of_terms) * d
+        } else {
+            c * rows_times(d.clone(), &of_terms)
+        }
     }
 
     /// ‖Φ − Σ_j ρ_j A_j‖, Frobenius, W.

@@ -76,15 +76,14 @@ pub(super) fn integration() -> impl TypedValueParser<Value = Integration> {
 }
 
 pub(super) fn errors() -> impl TypedValueParser<Value = Errors> {
-    one_of([
-        ("independent", Errors::Independent, "None"),
-        (
-            "pixel",
-            Errors::WithinRows,
-            "Those of one pixel, as of estimator shared",
-        ),
-        ("all", Errors::Everywhere, "All, as of estimator factored"),
-    ])
+    one_of(Errors::ALL.map(|errors| {
+        let help = match errors {
+            Errors::Independent => "None",
+            Errors::WithinRows => "Those of one pixel, as of estimator shared",
+            Errors::Everywhere => "All, as of estimator factored",
+        };
+        (errors.name(), errors, help)
+    }))
 }
 
 pub(super) fn rule() -> impl TypedValueParser<Value = Rule> {
@@ -99,19 +98,16 @@ pub(super) fn rule() -> impl TypedValueParser<Value = Rule> {
 }
 
 pub(super) fn weighting() -> impl TypedValueParser<Value = WeightRule> {
-    one_of([
-        (
-            "noise",
-            WeightRule::Noise,
-            "By the noise, where it is known",
-        ),
-        (
-            "entries",
-            WeightRule::Entries,
-            "By the noise of each entry, as joint-gp and more than 512 elements have it",
-        ),
-        ("none", WeightRule::Unweighted, "All alike"),
-    ])
+    one_of(WeightRule::ALL.map(|rule| {
+        let help = match rule {
+            WeightRule::Noise => "By the noise, where it is known",
+            WeightRule::Entries => {
+                "By the noise of each entry, as joint-gp and more than 512 elements have it"
+            }
+            WeightRule::Unweighted => "All alike",
+        };
+        (rule.name(), rule, help)
+    }))
 }
 
 pub(super) fn law() -> impl TypedValueParser<Value = Law> {

@@ -37,11 +37,11 @@ pub use householder::{Complement, complement};
 pub use least_squares::least_squares;
 pub use pinv::{Pinv, pinv};
 pub use pivoted_qr::{PivotedQr, pivoted_qr, pivoted_qr_to};
-pub use product::{gram_product, product, subtract_product, tr_product};
+pub use product::{gram_product, product, subtract_product, tr_product, tr_product_of};
 pub use range::{Range, range};
 pub use solution::{LeastSquares, Route};
 pub use svd::{Svd, svd, svd_of_range, svd_to};
-pub use triangle::{Gram, Triangle, normal_triangle, pivoted_triangle, triangle};
+pub use triangle::{Gram, Triangle, normal_triangle, pivoted_triangle, triangle, triangle_of};
 
 use nalgebra::DMatrix;
 
@@ -133,7 +133,6 @@ pub enum LinalgError {
     Overflow(&'static str),
 }
 
-/// The matrix times 2^−e, its largest entry then in [1, 2), and e. A zero matrix has e = 0.
 /// Refuses two lengths that should be one.
 pub(super) fn same_length(
     what: &'static str,
@@ -163,29 +162,41 @@ fn same_to_rounding(a: &DMatrix<f64>, check: &'static str, error: f64) -> Result
     })
 }
 
-fn scaled(a: &DMatrix<f64>) -> Result<(DMatrix<f64>, i32), LinalgError> {
-    if a.is_empty() {
-        return Err(LinalgError::Empty {
-            rows: a.nrows(),
-            columns: a.ncols(),
-        });
-    }
+/// The e by which 2^−e times these entries has its largest in [1, 2); 0 where all are zero. `rows` of
+/// them make a column.
+fn exponent(entries: &[f64], rows: usize) -> Result<i32, LinalgError> {
     let mut largest = 0.0f64;
-    for (index, &value) in a.iter().enumerate() {
+    for (index, &value) in entries.iter().enumerate() {
         if !value.is_finite() {
             return Err(LinalgError::NotFinite {
-                row: index % a.nrows(),
-                column: index / a.nrows(),
+                row: index % rows,
+                column: index / rows,
                 value,
             });
         }
         largest = largest.max(value.abs());
     }
     if largest == 0.0 {
+        return Ok(0);
+    }
+    Ok(libm::ilogb(largest))
+}
+
+/// The matrix times 2^−e, e its [`exponent`], and e.
+fn scaled(a: &DMatrix<f64>) -> Result<(DMatrix<f64>, i32), LinalgError> {
+    refuse_empty(a.nrows(), a.ncols())?;
+    let exponent = exponent(a.as_slice(), a.nrows())?;
+    if exponent == 0 {
         return Ok((a.clone(), 0));
     }
-    let exponent = libm::ilogb(largest);
     Ok((a.map(|value| libm::scalbn(value, -exponent)), exponent))
+}
+
+fn refuse_empty(rows: usize, columns: usize) -> Result<(), LinalgError> {
+    if rows == 0 || columns == 0 {
+        return Err(LinalgError::Empty { rows, columns });
+    }
+    Ok(())
 }
 
 /// How many of the descending singular values survive `tolerance` for a rows × columns matrix, and

@@ -1,6 +1,8 @@
 //! Products of large matrices: faer's, on one thread, so that their bits do not depend on the
 //! number of cores.
 
+use std::ops::Range;
+
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, MatMut, MatRef, Par};
@@ -32,11 +34,20 @@ pub fn product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
 /// # Panics
 /// Where A has not as many rows as B.
 pub fn tr_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
-    let mut target = DMatrix::zeros(a.ncols(), b.ncols());
+    tr_product_of(a, 0..a.ncols(), b)
+}
+
+/// The same with some neighbouring columns of A.
+///
+/// # Panics
+/// Where A has not these columns, or not as many rows as B.
+pub fn tr_product_of(a: &DMatrix<f64>, columns: Range<usize>, b: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut target = DMatrix::zeros(columns.len(), b.ncols());
+    let columns = view(a).subcols(columns.start, columns.len());
     write(
         &mut target,
         Accum::Replace,
-        view(a).transpose(),
+        columns.transpose(),
         view(b),
         1.0,
     );
@@ -85,6 +96,8 @@ mod tests {
         // Small integers: exact in any order.
         assert_eq!(product(&a, &b), by_hand);
         assert_eq!(tr_product(&a.transpose(), &b), by_hand);
+        let some = tr_product_of(&a.transpose(), 1..4, &b);
+        assert_eq!(some, by_hand.rows(1, 3));
         let mut c = tr_product(&a, &a);
         gram_product(&mut c, &a);
         assert_eq!(c, tr_product(&a, &a) * 2.0);

@@ -1,12 +1,16 @@
 //! Orthogonal reduction of a least-squares problem to a square one, and the same from normal
 //! equations.
 
-use faer::linalg::solvers::{Llt, Qr};
-use faer::{MatRef, Side};
+use std::ops::Range;
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::qr::no_pivoting::factor;
+use faer::linalg::solvers::Llt;
+use faer::{Mat, MatMut, MatRef, Par, Side};
 use nalgebra::{DMatrix, DVector};
 
 use super::solution::{LeastSquares, Route, solve_by_svd};
-use super::{LinalgError, Tolerance, same_length, scaled, svd};
+use super::{LinalgError, Tolerance, exponent, refuse_empty, same_length, scaled, svd};
 
 /// The reduction of min ‖A x − b‖ for an m × n matrix to k = min(m, n) rows:
 /// ‖A x − b‖² = ‖R x − d‖² + rest² for every x.
@@ -32,15 +36,32 @@ pub(super) fn scaled_vector(b: &DVector<f64>) -> Result<(DVector<f64>, i32), Lin
 /// Empty or non-finite input, a b that has not as many entries as A has rows, overflow.
 pub fn triangle(a: &DMatrix<f64>, b: &DVector<f64>) -> Result<Triangle, LinalgError> {
     same_length("entries of b against rows of A", a.nrows(), b.len())?;
-    let (m, n) = a.shape();
-    let (mut joined, a_exponent) = scaled(a)?;
-    let (b, b_exponent) = scaled_vector(b)?;
-    joined = joined.insert_column(n, 0.0);
-    joined.set_column(n, &b);
-    let qr = Qr::new(MatRef::from_column_major_slice(joined.as_slice(), m, n + 1));
-    let upper = qr.thin_R();
+    let n = a.ncols();
+    let mut joined = a.clone().insert_column(n, 0.0);
+    joined.set_column(n, b);
+    triangle_of(joined)
+}
+
+/// The same of the matrix [A | b], in its own memory.
+///
+/// # Errors
+/// Empty or non-finite input, overflow.
+pub fn triangle_of(mut joined: DMatrix<f64>) -> Result<Triangle, LinalgError> {
+    let (m, columns) = joined.shape();
+    let n = columns.saturating_sub(1);
+    refuse_empty(m, n)?;
+    let mut scale = |entries: Range<usize>| {
+        let entries = &mut joined.as_mut_slice()[entries];
+        let exponent = exponent(entries, m)?;
+        entries
+            .iter_mut()
+            .for_each(|x| *x = libm::scalbn(*x, -exponent));
+        Ok(exponent)
+    };
+    let (a_exponent, b_exponent) = (scale(0..m * n)?, scale(m * n..m * columns)?);
+    reduce(&mut joined);
     let k = m.min(n);
-    let entry = |i: usize, j: usize| if i <= j { upper[(i, j)] } else { 0.0 };
+    let entry = |i: usize, j: usize| if i <= j { joined[(i, j)] } else { 0.0 };
     let result = Triangle {
         r: DMatrix::from_fn(k, n, |i, j| libm::scalbn(entry(i, j), a_exponent)),
         d: DVector::from_fn(k, |i, _| libm::scalbn(entry(i, n), b_exponent)),
@@ -61,6 +82,22 @@ pub fn triangle(a: &DMatrix<f64>, b: &DVector<f64>) -> Result<Triangle, LinalgEr
     } else {
         Err(LinalgError::Overflow("the triangular factor"))
     }
+}
+
+/// R of the Householder QR above the diagonal of the matrix, in its place.
+fn reduce(a: &mut DMatrix<f64>) {
+    let (m, n) = a.shape();
+    let block = factor::recommended_block_size::<f64>(m, n);
+    let mut coefficients = Mat::<f64>::zeros(block, m.min(n));
+    let (how, par) = (Default::default(), Par::Seq);
+    let mut memory = MemBuffer::new(factor::qr_in_place_scratch::<f64>(m, n, block, par, how));
+    factor::qr_in_place(
+        MatMut::from_column_major_slice_mut(a.as_mut_slice(), m, n),
+        coefficients.as_mut(),
+        par,
+        MemStack::new(&mut memory),
+        how,
+    );
 }
 
 /// Unknowns of normal equations; refuses those whose sides do not fit.

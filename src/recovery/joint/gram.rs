@@ -1,13 +1,15 @@
 //! The normal equations of many elements, each entry of Φ with its own weight.
 
-use nalgebra::{DMatrix, DVector, DVectorViewMut};
+use std::ops::Range;
+
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::conditional::{Conditional, One, Softening, soften_whole};
-use super::elimination::{directions, without_left};
+use super::conditional::{Conditional, One, soften_whole};
 use super::stacked::Stacked;
-use crate::num::linalg::{Gram, gram_product, pivoted_triangle, tr_product};
+use crate::num::linalg::{Gram, gram_product, pivoted_triangle, tr_product_of};
 use crate::recovery::{Problem, RecoveryError};
+use frame::Frame;
 
 /// Elements whose Gram matrix is formed whole, at half the cost of all its columns one by one.
 const WHOLE: usize = 2048;
@@ -17,6 +19,8 @@ const MOST_WORK: f64 = 2e12;
 const PARTS: usize = 4;
 /// Terms that are multiplied at once.
 const TERMS: usize = 512;
+/// Pixels of a frame whose rows are held at once.
+const STRIP: usize = 512;
 /// The trace of the Gram matrix, in units of the noise, that may be left out: of n reflectances up to
 /// 1 the light of what is lost is at most √(n·1e-6) standard deviations in all of Φ together.
 const LOST: f64 = 1e-6;
@@ -111,42 +115,10 @@ struct Rows<'a> {
     frames: Vec<Frame>,
 }
 
-/// What is taken out of the weighted rows of a frame.
-struct Frame {
-    /// Orthonormal directions, as a whole,
-    taken: Vec<DVector<f64>>,
-    /// and the frame's factor m, softly.
-    softly: Option<(DVector<f64>, Softening)>,
-}
-
-impl Frame {
-    fn new(problem: &Problem<'_>, patterns: &DMatrix<f64>, root: &[f64], l: usize) -> Self {
-        let taken = directions(&problem.nuisance.of_frame(patterns, l), |p| root[p]);
-        let frames = problem.soft.and_then(|soft| {
-            let (pattern, known_to) = soft.frames.as_ref()?;
-            Some((pattern.column(l), known_to / soft.noise))
-        });
-        let softly = frames.map(|(pattern, width)| {
-            let mut m = DMatrix::from_fn(root.len(), 1, |p, _| root[p] * pattern[p]);
-            taken.iter().for_each(|u| without_left(&mut m, u));
-            let m = m.column(0).into_owned();
-            let softening = Softening::new(m.norm_squared(), width);
-            (m, softening)
-        });
-        Frame { taken, softly }
-    }
-
-    fn take_out(&self, rows: &mut DVectorViewMut<'_, f64>) {
-        // Twice: once leaves rounding of the size of what was removed.
-        for u in self.taken.iter().flat_map(|u| [u, u]) {
-            let along = u.dot(rows);
-            rows.axpy(-along, u, 1.0);
-        }
-        if let Some((m, softening)) = &self.softly {
-            let along = m.dot(rows);
-            rows.axpy(-softening.taken * along, m, 1.0);
-        }
-    }
+/// The pixels of a frame, strip by strip.
+fn strips(pixels: usize) -> impl Iterator<Item = Range<usize>> {
+    let firsts = (0..pixels).step_by(STRIP);
+    firsts.map(move |first| first..pixels.min(first + STRIP))
 }
 
 impl<'a> Rows<'a> {
@@ -185,34 +157,60 @@ impl<'a> Rows<'a> {
         (self.root.len() * self.element.len()) as f64
     }
 
-    /// G, frame by frame; none where it is not to be gone on, or takes too long.
+    /// √w A of some pixels of frame l, a column for each element, without what the frame's first
+    /// steps take: `along` their directions.
+    fn strip(&self, l: usize, pixels: &Range<usize>, along: &[DMatrix<f64>]) -> DMatrix<f64> {
+        let mut rows = DMatrix::zeros(pixels.len(), self.problem.elements());
+        for (s, j) in self.element.iter().enumerate() {
+            let c = self.c.column(s);
+            let c = c.rows_range(pixels.clone());
+            rows.column_mut(*j).axpy(self.d[(s, l)], &c, 1.0);
+        }
+        let root = self.root.column(l);
+        for mut column in rows.column_iter_mut() {
+            column.component_mul_assign(&root.rows_range(pixels.clone()));
+        }
+        for ((u, _), along) in self.frames[l].steps().zip(along) {
+            rows.gemm(-1.0, &u.rows_range(pixels.clone()), along, 1.0);
+        }
+        rows
+    }
+
+    /// s Uᵀ rows of each step of frame l, all of its pixels summed.
+    fn along(&self, l: usize) -> Vec<DMatrix<f64>> {
+        let mut found: Vec<DMatrix<f64>> = Vec::new();
+        for (u, share) in self.frames[l].steps() {
+            let mut sum = DMatrix::zeros(u.ncols(), self.problem.elements());
+            for pixels in strips(u.nrows()) {
+                let rows = self.strip(l, &pixels, &found);
+                sum.gemm_tr(share, &u.rows_range(pixels), &rows, 1.0);
+            }
+            found.push(sum);
+        }
+        found
+    }
+
+    /// G, frame by frame, a strip of each at a time; none where it is not to be gone on, or takes
+    /// too long.
     fn whole(&self) -> Option<DMatrix<f64>> {
         let (n, spots) = (self.problem.elements(), self.frames.len());
         if (self.root.len() * n * n) as f64 > MOST_WORK {
             return None;
         }
-        let frame = |l: usize| {
-            let mut rows = DMatrix::zeros(self.root.nrows(), n);
-            for (s, j) in self.element.iter().enumerate() {
-                rows.column_mut(*j)
-                    .axpy(self.d[(s, l)], &self.c.column(s), 1.0);
-            }
-            for mut column in rows.column_iter_mut() {
-                column.component_mul_assign(&self.root.column(l));
-                self.frames[l].take_out(&mut column);
-            }
-            rows
-        };
-        let part = |k: usize| {
+        let part = |frames: Range<usize>| {
             let mut sum = DMatrix::zeros(n, n);
-            for l in k * spots / PARTS..(k + 1) * spots / PARTS {
-                if self.goes_on() {
-                    gram_product(&mut sum, &frame(l));
+            for l in frames.take_while(|_| self.goes_on()) {
+                let along = self.along(l);
+                for pixels in strips(self.root.nrows()) {
+                    gram_product(&mut sum, &self.strip(l, &pixels, &along));
                 }
             }
             sum
         };
-        let parts: Vec<DMatrix<f64>> = (0..PARTS).into_par_iter().map(part).collect();
+        let parts = (0..PARTS).into_par_iter();
+        let parts = parts.map(|k| k * spots / PARTS..(k + 1) * spots / PARTS);
+        let parts = parts.filter(|frames| !frames.is_empty());
+        let parts: Vec<DMatrix<f64>> = parts.map(part).collect();
         let whole = parts.into_iter().reduce(|sum, part| sum + part);
         whole.filter(|_| self.goes_on())
     }
@@ -248,7 +246,7 @@ impl<'a> Rows<'a> {
         let terms: Vec<usize> = (0..self.element.len()).collect();
         let of_terms = terms.par_chunks(TERMS).flat_map_iter(|terms| {
             let (first, several) = (terms[0], terms.len());
-            let along = tr_product(&self.c.columns(first, several).into_owned(), &back);
+            let along = tr_product_of(self.c, first..first + several, &back);
             let both = along.component_mul(&self.d.rows(first, several));
             both.column_sum().data.as_vec().clone()
         });
@@ -265,7 +263,7 @@ impl<'a> Rows<'a> {
         let each = self.frames.iter().enumerate();
         let gains = each.filter_map(|(l, frame)| {
             let (m, softening) = frame.softly.as_ref()?;
-            let seen = m.component_mul(&self.root.column(l));
+            let seen = m.column(0).component_mul(&self.root.column(l));
             let of_terms = self.c.tr_mul(&seen).component_mul(&self.d.column(l));
             let mut along = DVector::zeros(self.problem.elements() + 1);
             for (s, j) in self.element.iter().enumerate() {
@@ -279,6 +277,7 @@ impl<'a> Rows<'a> {
     }
 }
 
+mod frame;
 #[cfg(test)]
 mod tests {
     use super::super::stacked::stack;
@@ -288,15 +287,23 @@ mod tests {
     use crate::recovery::bench::{Bench, normal_stream};
 
     /// Differences of the objective are those of rows reduced by orthogonal transformations,
-    /// with and without constants and glare, to what may be lost.
+    /// with and without constants and glare, to what may be lost; of frames of several strips too.
     #[test]
     fn it_is_the_objective_of_the_rows() {
-        let bench = Bench::new(3.0, 6, 8);
+        it_is_the_objective_of(Bench::new(3.0, 6, 8));
+        let mut few = Bench::new(3.0, 6, 24);
+        assert!(few.c.nrows() > STRIP);
+        few.d = DMatrix::from_fn(36, 20, |j, l| few.d[(j, 6 * l)]);
+        it_is_the_objective_of(few);
+    }
+
+    fn it_is_the_objective_of(bench: Bench) {
         let exact = bench.phi(&bench.board(2));
         let stderr = exact.map(|x| 0.02 * x.abs() + 1e-3 * exact.amax());
         let mut normal = normal_stream(3);
         let phi = exact.zip_map(&stderr, |x, s| x + s * normal());
-        let pattern = DMatrix::from_fn(64, 120, |p, l| 1.0 + ((p * 7 + l) % 11) as f64);
+        let (pixels, spots) = exact.shape();
+        let pattern = DMatrix::from_fn(pixels, spots, |p, l| 1.0 + ((p * 7 + l) % 11) as f64);
         let plain = Nuisance::default();
         let cases = [
             plain,

@@ -14,7 +14,8 @@
 //! first ([`super::elimination`]). Of more than 512 elements, where the noise is known, the normal
 //! equations are summed with each entry's own weight, and reduced to the rows that the noise leaves
 //! ([`super::gram`]); with glare patterns there is no such product, and the rows are
-//! stacked instead ([`super::stacked`]), each with its own weight.
+//! stacked instead ([`super::stacked`]), each with its own weight. So are those of a single photograph
+//! of many pixels, which is a column of its own and nothing to compress: no copy of C is held.
 
 use std::sync::{Arc, OnceLock};
 
@@ -39,6 +40,10 @@ const MOST_ELEMENTS: usize = 8192;
 /// the noise is known, to what it leaves.
 const FEW: usize = 512;
 
+/// Pixels from which on a QR blurs the singular values, by 4e-14 σ₁ (measured), less than the entries'
+/// own rounding, p·eps σ₁, at which they are cut.
+const TALL: usize = 512;
+
 /// The problem after compression.
 #[derive(Debug)]
 pub(super) struct Operator {
@@ -59,6 +64,17 @@ pub(super) struct Operator {
 fn known<'a>(problem: &Problem<'a>, options: &Options) -> Option<&'a DMatrix<f64>> {
     let weighted = options.weighting != WeightRule::Unweighted;
     problem.noise().filter(|_| weighted)
+}
+
+/// Whether it is one photograph of many pixels, its weights those of its noise if that is known: then
+/// the covariance needs no left singular vectors, pixels × rank.
+fn is_tall(problem: &Problem<'_>, known: Option<&DMatrix<f64>>) -> bool {
+    let (pixels, spots) = problem.phi.shape();
+    let own = |stderr: &DMatrix<f64>| known.is_some() && stderr.iter().all(|x| *x > 0.0);
+    spots == 1
+        && pixels >= TALL.max(problem.elements() + 1)
+        && !problem.nuisance.background
+        && problem.noise().is_none_or(own)
 }
 
 #[derive(Debug)]
@@ -154,7 +170,7 @@ impl Operator {
         };
         let by_rows = match reduced {
             Some(stacked) => Some((stacked.triangle.r.nrows(), stacked)),
-            None if problem.nuisance.glare.is_some() || holed => {
+            None if problem.nuisance.glare.is_some() || holed || is_tall(problem, known) => {
                 Some((pixels * spots, stack(problem, root)?))
             }
             None => None,

@@ -13,15 +13,18 @@
 //! With one the blocks are pixels, whose background concerns that pixel alone; the terms of all
 //! frames are then carried along and eliminated from the last triangle. Factors of the frames that
 //! are known to a standard deviation w are eliminated after all others, softly
-//! ([`super::conditional`]); beside a background as columns with one more row each, 0 = ε_l/w. Memory: one block and two
-//! triangles of elements (and, with a background, of the terms of all frames).
+//! ([`super::conditional`]); beside a background as columns with one more row each, 0 = ε_l/w. A tall frame
+//! is reduced strip by strip, each below the triangle of those before. Memory: some triangles of
+//! elements (and, with a background, of the terms of all frames), whatever the pixels.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::conditional::{Conditional, One, soften, soften_whole};
-use crate::num::linalg::{Triangle, columns_over, svd, triangle};
+use crate::num::linalg::{Triangle, columns_over, svd, triangle_of};
 use crate::recovery::{Problem, RecoveryError};
 
+/// Pixels of a strip, if there are not more columns.
+const STRIP: usize = 512;
 /// Singular values of unit nuisance columns at or below this count as zero: some thousand
 /// roundings.
 const DEPENDENT: f64 = 1e-12;
@@ -110,7 +113,7 @@ pub(super) fn stack(
         let mut rows = Rows::new(elements + 1);
         let frame = |l: usize| {
             let gain = usize::from(soft.is_some());
-            DMatrix::from_fn(pixels, kinds + gain + elements + 1, |p, k| {
+            by_strips(pixels, kinds + gain + elements + 1, |p, k| {
                 match (own.get(k), soft) {
                     (Some(value), _) => value(p, l) / lengths[k][l],
                     (None, Some((pattern, _))) if k == kinds => root(p, l) * pattern[(p, l)],
@@ -119,8 +122,8 @@ pub(super) fn stack(
             })
         };
         let mut gains: Vec<One> = Vec::new();
-        for block in (0..spots).map(frame) {
-            let mut left = eliminate(&reduce(&block)?.joined(), kinds)?.remaining;
+        for reduced in (0..spots).map(frame) {
+            let mut left = eliminate(&reduced?, kinds)?.remaining;
             if let Some((_, width)) = soft {
                 let pattern = left.column(0).into_owned();
                 left = left.remove_column(0);
@@ -157,7 +160,7 @@ pub(super) fn stack(
             },
             k => data(p, l, k - 1 - own_terms - gains),
         });
-        rows.push(eliminate(&reduce(&block)?.joined(), 1)?.remaining)?;
+        rows.push(eliminate(&reduce(block)?, 1)?.remaining)?;
     }
     let Eliminated {
         remaining,
@@ -210,38 +213,57 @@ impl Rows {
         self.count += block.nrows();
         self.held.push(block);
         if self.count > 4 * self.columns {
-            let reduced = reduce(&self.stacked())?.joined();
+            let reduced = reduce(self.stacked())?;
             self.count = reduced.nrows();
             self.held = vec![reduced];
         }
         Ok(())
     }
 
-    fn stacked(&self) -> DMatrix<f64> {
+    /// All that are held, which are held no more.
+    fn stacked(&mut self) -> DMatrix<f64> {
         let mut all = DMatrix::zeros(self.count, self.columns);
         let mut at = 0;
-        for block in &self.held {
-            all.rows_mut(at, block.nrows()).copy_from(block);
+        for block in self.held.drain(..) {
+            all.rows_mut(at, block.nrows()).copy_from(&block);
             at += block.nrows();
         }
         all
     }
 
-    fn finish(self) -> Result<Triangle, RecoveryError> {
+    fn finish(mut self) -> Result<Triangle, RecoveryError> {
         if self.count == 0 {
             return Err(RecoveryError::RankZero {
                 side: "model beside its nuisance terms",
             });
         }
-        reduce(&self.stacked())
+        Ok(triangle_of(self.stacked())?)
     }
 }
 
 /// The triangle of a block, whose last column is the data.
-fn reduce(block: &DMatrix<f64>) -> Result<Triangle, RecoveryError> {
-    let last = block.ncols() - 1;
-    let a = block.columns(0, last).into_owned();
-    Ok(triangle(&a, &block.column(last).into_owned())?)
+fn reduce(block: DMatrix<f64>) -> Result<DMatrix<f64>, RecoveryError> {
+    Ok(triangle_of(block)?.joined())
+}
+
+/// The triangle of rows × columns, the last the data, from what is at (row, column): strip by strip.
+fn by_strips(
+    rows: usize,
+    columns: usize,
+    at: impl Fn(usize, usize) -> f64,
+) -> Result<DMatrix<f64>, RecoveryError> {
+    let most = STRIP.max(columns);
+    let mut above = DMatrix::zeros(0, columns);
+    for first in (0..rows).step_by(most) {
+        let known = above.nrows();
+        let strip = most.min(rows - first);
+        let block = DMatrix::from_fn(known + strip, columns, |i, k| match i.checked_sub(known) {
+            None => above[(i, k)],
+            Some(i) => at(first + i, k),
+        });
+        above = reduce(block)?;
+    }
+    Ok(above)
 }
 
 /// Rows of a triangle after its first columns were taken out.
@@ -301,7 +323,7 @@ fn eliminate_softly(
         };
         own / lengths.get(k).unwrap_or(&1.0)
     });
-    let whole = reduce(&all)?.joined();
+    let whole = reduce(all)?;
     let corner = svd(&whole.view((0, 0), (lead, lead)).into_owned())?;
     let logs = corner.sigma.iter().map(|s| 2.0 * libm::log(*s));
     let of_lengths = lengths.iter().map(|x| 2.0 * libm::log(x * width));

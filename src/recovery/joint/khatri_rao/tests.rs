@@ -85,3 +85,81 @@ fn both_routes_solve_a_well_conditioned_problem_alike() {
         (&small.solution - &normal.solution).norm() < 100.0 * f64::EPSILON * condition * condition
     );
 }
+
+/// One photograph of 1100 pixels: the objective, the covariance and the rank are those of its rows by
+/// hand, however the noise is known and with a constant of the frame, and C is not compressed.
+#[test]
+fn one_tall_photograph_is_its_rows() {
+    let mut normal = normal_stream(8);
+    let c = DMatrix::from_fn(1100, 6, |_, _| 1.0 + 0.3 * normal());
+    // The last element is seen as the first two together.
+    let c = DMatrix::from_fn(1100, 7, |p, j| {
+        if j < 6 {
+            c[(p, j)]
+        } else {
+            c[(p, 0)] + c[(p, 1)]
+        }
+    });
+    let d = DMatrix::from_fn(7, 1, |j, _| 0.5 + 0.1 * j as f64);
+    let truth = DVector::from_fn(7, |j, _| 0.1 * (j + 1) as f64);
+    let lit = DMatrix::from_fn(7, 1, |j, _| d[j] * truth[j]);
+    let phi = &c * lit + DMatrix::from_fn(1100, 1, |_, _| 0.7 + 0.01 * normal());
+    let stderr = DMatrix::from_fn(1100, 1, |p, _| 0.01 * (1.0 + (p % 3) as f64));
+    for (noise, frame_constant) in [(None, false), (Some(&stderr), false), (Some(&stderr), true)] {
+        let nuisance = crate::recovery::Nuisance {
+            frame_constant,
+            ..Default::default()
+        };
+        let problem = Problem::new(&phi, &c, &d, noise).unwrap();
+        let problem = problem.with_nuisance(nuisance).unwrap();
+        let operator = Operator::new(&problem, &Options::default()).unwrap();
+        assert!(matches!(operator.form, Form::Stacked { .. }) && operator.rows() == 1100);
+        // The weighted rows, the constant's part taken out as a regression does it.
+        let root = |p: usize| noise.map_or(1.0, |s| 1.0 / s[p]);
+        let total: f64 = (0..1100).map(|p| root(p) * root(p)).sum();
+        let rows = DMatrix::from_fn(1100, 8, |p, k| match k {
+            7 => phi[p],
+            j => c[(p, j)] * d[j],
+        });
+        let rows = DMatrix::from_fn(1100, 8, |p, k| {
+            let mean = |k| {
+                (0..1100)
+                    .map(|q| root(q) * root(q) * rows[(q, k)])
+                    .sum::<f64>()
+                    / total
+            };
+            let mean = if frame_constant { mean(k) } else { 0.0 };
+            root(p) * (rows[(p, k)] - mean)
+        });
+        let (k, data) = (rows.columns(0, 7).into_owned(), rows.column(7).into_owned());
+        let directions = operator.directions().unwrap();
+        let (found, along) = &*directions;
+        let small = |x: &DVector<f64>| {
+            (DMatrix::from_diagonal(&found.sigma) * &found.vt * x - along).norm_squared()
+        };
+        let whole = |x: &DVector<f64>| (&k * x - &data).norm_squared();
+        let zero = DVector::zeros(7);
+        for _ in 0..3 {
+            let x = DVector::from_fn(7, |_, _| normal());
+            let (small, whole) = (small(&x) - small(&zero), whole(&x) - whole(&zero));
+            assert!((small / whole - 1.0).abs() < 1e-9, "{small} {whole}");
+        }
+        let solved = operator.solve(Tolerance::Auto).unwrap();
+        assert_eq!(solved.rank, 6, "{:?}", solved.sigma);
+        let covariance = operator.covariance(&problem, &solved);
+        assert_eq!(covariance.is_some(), noise.is_some());
+        if let Some(covariance) = covariance {
+            let inverse = (k.transpose() * &k).pseudo_inverse(1e-6).unwrap();
+            assert!((&covariance - &inverse).amax() < 1e-6 * inverse.amax());
+        }
+    }
+    // Errors that are no weights need the left singular vectors.
+    let unweighted = Options {
+        weighting: WeightRule::Unweighted,
+        ..Options::default()
+    };
+    let problem = Problem::new(&phi, &c, &d, Some(&stderr)).unwrap();
+    let operator = Operator::new(&problem, &unweighted).unwrap();
+    let solved = operator.solve(Tolerance::Auto).unwrap();
+    assert!(operator.covariance(&problem, &solved).is_some());
+}
