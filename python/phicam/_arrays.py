@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _native
 from .errors import InputError
 
 Floats = NDArray[np.float64]
@@ -142,3 +143,10 @@ def number(value: Any, name: str, fine: str, holds: Callable[[float], bool]) -> 
     if not np.isfinite(found) or not holds(found):
         raise InputError(f"{name} is {value!r}\n  cure: give a number {fine}")
     return found
+
+
+def setting(value: Any, name: str) -> float | None:
+    """A number of the range that the setting of that name has, or None."""
+    if value is None:
+        return None
+    return number(value, name, _native.setting_range(name), lambda x: _native.setting_allows(name, x))

@@ -40,7 +40,13 @@ class Finding:
 
     def table(self, number: int = 0) -> dict[str, list[Any]]:
         """A table as columns by their keys: numbers, names, booleans; None where a number is not defined. Of estimates
-        there is a column KEY_stderr too. Raises IndexError where there is no such table."""
+        there is a column KEY_stderr too. Raises IndexError where there is no such table.
+
+        >>> import phicam
+        >>> scene = phicam.Scene("bench").replace({"laser.spots.per_side": 2, "camera.pixels": (4, 4)})
+        >>> phicam.study("convergence", scene, samples=[64, 256]).table(0)["estimator"][0]
+        'independent'
+        """
         table = self._finding["tables"][number]
         columns: dict[str, list[Any]] = {}
         for at, column in enumerate(table["columns"]):
@@ -57,7 +63,14 @@ class Finding:
         return [self.table(number) for number in range(len(self._finding["tables"]))]
 
     def save(self, folder: str | os.PathLike[str]) -> list[Path]:
-        """Writes :attr:`files`, and the result as result.json, into `folder`, which is made; their paths."""
+        """Writes :attr:`files`, and the result as result.json, into `folder`, which is made; their paths.
+
+        >>> import phicam, tempfile
+        >>> scene = phicam.Scene("bench").replace({"laser.spots.per_side": 2, "camera.pixels": (4, 4)})
+        >>> found = phicam.study("convergence", scene, samples=[64, 256])
+        >>> sorted(path.name for path in found.save(tempfile.mkdtemp()))
+        ['convergence.csv', 'convergence.svg', 'result.json']
+        """
         to = Path(folder)
         to.mkdir(parents=True, exist_ok=True)
         written: list[Path] = []

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._arrays import Floats, maybe, number, pair, threads_of, whole
+from ._arrays import Floats, maybe, number, pair, setting, threads_of, whole
 from ._finding import Finding
 from ._model import Integration
 from ._phi import Phi
@@ -61,7 +61,14 @@ class Calibration(Finding):
         return {each["name"]: (each["value"], each["stderr"]) for each in self.values["found"]}
 
     def picture(self, surface: int = 0) -> Floats:
-        """The picture that the photographs make with that geometry, nv × nu, row 0 the lowest."""
+        """The picture that the photographs make with that geometry, nv × nu, row 0 the lowest.
+
+        >>> import phicam
+        >>> scene = phicam.Scene("bench").replace({"laser.spots.per_side": 6, "camera.pixels": (8, 8)})
+        >>> phi = phicam.render(scene, samples=256)
+        >>> phicam.calibrate(phi, ["hinge.angle"], elements=(2, 2), starts=1).picture().shape
+        (2, 2)
+        """
         grid = self.values["grids"][surface]
         nu, nv = grid["count"]
         return np.array(grid["values"]).reshape(nv, nu)
@@ -149,7 +156,7 @@ def calibrate(
         stderr,
         flags,
         free=given,
-        frame_gain=None if frame_gain is None else number(frame_gain, "frame_gain", "in (0, 1]", lambda x: 0 < x <= 1),
+        frame_gain=setting(frame_gain, "frame_gain"),
         free_scale=bool(free_scale),
         replicates=phi.replicates,
         elements=pair(elements, "elements"),

@@ -42,6 +42,12 @@ class Model:
     Φcam[p, l] = Φlaser · E_p · (ρ3/π) · (ρ1/π) · Σ_j G23[p, j] · (ρ2_j/π) · A_j · G12[j, l]
 
     Made by :func:`model` and :func:`model_of`. Arrays are computed at first use, and read-only; their copies are not.
+
+    >>> import phicam, numpy
+    >>> model = phicam.model(phicam.Scene("bench"), elements=(2, 2))
+    >>> phi = model.camera_side @ numpy.diag(model.albedo) @ model.laser_side
+    >>> bool(numpy.allclose(phi, model.phi(), rtol=1e-12, atol=0))
+    True
     """
 
     def __init__(self, native: _native.Model, made_of: tuple[Any, ...]) -> None:
@@ -130,7 +136,14 @@ class Model:
 
     def converged(self) -> tuple[Floats, Floats]:
         """Φcam of the scene's own reflectances, integrated over elements, footprints and spots until it no longer
-        changes, W, and a bound of what is left of each entry."""
+        changes, W, and a bound of what is left of each entry.
+
+        >>> import phicam
+        >>> scene = phicam.Scene("bench").replace({"laser.spots.per_side": 2, "camera.pixels": (4, 4)})
+        >>> phi, bound = phicam.model(scene).converged()
+        >>> bool((bound < 1e-3 * phi).all())
+        True
+        """
         return self._core.converged()
 
     def derivatives(self, name: str, rho: ArrayLike | None = None) -> dict[str, Floats]:

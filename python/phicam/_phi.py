@@ -43,9 +43,16 @@ class Phi:
         Not 0 where an entry does not count: of a render where its standard error is not to be trusted (``tails``), of
         photographs why it is left out.
     by_bounces : tuple of ndarrays, or None
-        Light that met exactly 1, 2, … surfaces; its sum is `flux`. None where it was not traced here.
+        Light that met exactly 1, 2, … surfaces; its sum is `flux`. Of a run that was loaded float32, as its frames are. None
+        of photographs, and where there are no frames.
     settings : dict
         Estimator, sampler, seed, samples, blocks, seconds of a render.
+
+    >>> import phicam, numpy
+    >>> scene = phicam.Scene("bench").replace({"laser.spots.per_side": 2, "camera.pixels": (4, 3)})
+    >>> flux = phicam.model(scene).phi()
+    >>> phicam.Phi(scene, flux, stderr=0.01 * flux)
+    Phi(12 pixels × 8 spots of 'bench')
     """
 
     def __init__(
@@ -192,6 +199,8 @@ class Phi:
                 "flux or stderr is not what was rendered any more, and would be taken for it\n  cure: numpy.save(…, phi.flux); "
                 "Phi(scene, flux, stderr) holds arrays of one's own"
             )
+        if any(part.dtype != np.float64 for part in self.by_bounces):
+            raise InputError("by_bounces is float32, as of a run that was loaded\n  cure: copy the folder of that run")
         own = self.settings
         _native.write_run(
             Path(folder),
@@ -209,7 +218,17 @@ class Phi:
         )
 
     def refuse_unscaled(self, cure: str) -> None:
-        """Raises InputError of photographs in counts where those in W are asked for."""
+        """Raises InputError, with this cure before its own, of photographs in counts where those in W are asked for.
+
+        >>> import phicam, numpy
+        >>> scene = phicam.Scene("bench").replace({"laser.spots.per_side": 2, "camera.pixels": (4, 4)})
+        >>> phi = phicam.Phi(scene, numpy.ones((16, 8)), account={"unit": "counts"})
+        >>> try:
+        ...     phi.refuse_unscaled("wait, or")
+        ... except phicam.InputError as error:
+        ...     error.cure
+        'wait, or import them with `watts`, what one of these is in W'
+        """
         if self.unit != "W":
             raise InputError(
                 f"the photographs are in {self.unit}, not in W, so their size says nothing of reflectances\n  cure: {cure} "
@@ -218,7 +237,17 @@ class Phi:
 
     def refuse_clipped(self) -> None:
         """Raises InputError where entries are saturated or cut off: neither they nor their standard errors mean
-        anything."""
+        anything.
+
+        >>> import phicam, numpy
+        >>> phi = phicam.render(phicam.Scene("bench").replace({"laser.spots.per_side": 2}), samples=32)
+        >>> phi.clipped = numpy.eye(256, 8)
+        >>> try:
+        ...     phi.refuse_clipped()
+        ... except phicam.InputError as error:
+        ...     error.cause[:41]
+        '8 of 2048 entries are saturated or cut of'
+        """
         marked = 0 if self.clipped is None else int((np.abs(self.clipped) >= 1).sum())
         if marked:
             raise InputError(
@@ -366,6 +395,8 @@ def load(folder: str | os.PathLike[str], *, also_read: Iterable[str | os.PathLik
         found["flux"],
         found["stderr"],
         left_out=found["left_out"],
+        # What was f32 on disk is exactly that again.
+        by_bounces=None if found["bounces"] is None else [part.astype(np.float32) for part in found["bounces"]],
         settings={key: record[key] for key in keys} if rendered else {},
         account={} if rendered else {"unit": record["imported"]["flux_unit"], **record["imported"]},
     )

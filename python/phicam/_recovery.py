@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _html, _native
-from ._arrays import Floats, matrix, maybe, number, pair, shaped, spread, threads_of, vector, whole, without
+from ._arrays import Floats, matrix, maybe, pair, setting, shaped, spread, threads_of, vector, whole, without
 from ._model import Integration, Kernel, Model, model, model_of
 from ._phi import Phi
 from ._scene import Scene
@@ -68,7 +68,14 @@ class Surface:
         self._text: str = found["text"]
 
     def picture(self, values: ArrayLike | None = None) -> Floats:
-        """`values` of the elements (the reflectances unless given) as a picture: nv × nu, row 0 the lowest."""
+        """`values` of the elements (the reflectances unless given) as a picture: nv × nu, row 0 the lowest.
+
+        >>> import phicam, numpy
+        >>> A = numpy.random.default_rng(1).random((40, 6))
+        >>> found = phicam.recover(A @ [1, 0, 0, 0, 0, 1], A, "joint", elements=(3, 2))
+        >>> found.surfaces[0].picture().round(6).tolist()
+        [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
+        """
         nu, nv = self.elements
         flat = self.reflectance if values is None else vector(values, "values")
         if flat.size != nu * nv:
@@ -76,7 +83,13 @@ class Surface:
         return flat.reshape(nv, nu)
 
     def to_xarray(self) -> Any:
-        """An ``xarray.Dataset`` of all that is known of each element over (v, u), each 0 to 1 in the surface's parameters."""
+        """An ``xarray.Dataset`` of all that is known of each element over (v, u), each 0 to 1 in the surface's parameters.
+
+        >>> import phicam, numpy
+        >>> found = phicam.recover(numpy.eye(4) @ [1, 0, 0, 1], numpy.eye(4), "joint", elements=(2, 2))
+        >>> found.surfaces[0].to_xarray().u.values.tolist()
+        [0.25, 0.75]
+        """
         import xarray
 
         named = ("reflectance", "stderr", "lower", "upper", "bias", "light", "determined", "truth")
@@ -157,7 +170,12 @@ class Recovery:
         return _stacked([surface.resolution for surface in self.surfaces])
 
     def picture(self, surface: int = 0) -> Floats:
-        """The reflectances of a surface as a picture, nv × nu, row 0 the lowest: ``imshow(…, origin="lower")``."""
+        """The reflectances of a surface as a picture, nv × nu, row 0 the lowest: ``imshow(…, origin="lower")``.
+
+        >>> import phicam, numpy
+        >>> phicam.recover(numpy.eye(4) @ [1, 0, 0, 1], numpy.eye(4), "joint", elements=(2, 2)).picture().round(6).tolist()
+        [[1.0, 0.0], [0.0, 1.0]]
+        """
         return self.surfaces[surface].picture()
 
     def to_xarray(self, surface: int = 0) -> Any:
@@ -353,7 +371,7 @@ def recover(
     if noise is not None:
         if stderr is not None:
             raise InputError("stderr and noise are both given\n  cure: give one of them")
-        factor = _within(noise, "noise")
+        factor = setting(noise, "noise")
         stderr = np.abs(np.asarray(flux, dtype=np.float64)) * factor
     named = None if method is None else [method] if isinstance(method, str) else list(method)
     if named is not None and (not named or len(set(named)) < len(named)):
@@ -364,19 +382,19 @@ def recover(
     is_grid = inverse.scene is not None or inverse._made_of[2] is not None
     settings = _Settings(
         rank=None if rank is None else whole(rank, "rank", 1),
-        damping=_within(damping, "damping"),
+        damping=setting(damping, "damping"),
         rule=rule,
-        tolerance=_within(tolerance, "tolerance"),
-        tv=_within(tv, "tv"),
+        tolerance=setting(tolerance, "tolerance"),
+        tv=setting(tv, "tv"),
         levels=None if levels is None else (float(levels[0]), float(levels[1])),
         weighting=weighting,
-        bands=_within(bands, "bands"),
+        bands=setting(bands, "bands"),
         frame_constant=bool(frame_constant),
         frame_polynomial=None if frame_polynomial is None else whole(frame_polynomial, "frame_polynomial", 0, 8),
         background=bool(background),
         free_scale=bool(free_scale),
-        frame_gain=_within(frame_gain, "frame_gain"),
-        scale_error=_within(scale_error, "scale_error"),
+        frame_gain=setting(frame_gain, "frame_gain"),
+        scale_error=setting(scale_error, "scale_error"),
         pixels=pixels,
     )
     flags, patterns = maybe(left_out, "left_out"), maybe(frame_patterns, "frame_patterns")
@@ -437,12 +455,6 @@ def _inverse(given: Any, how: tuple[Kernel, Integration, bool], elements: Any) -
             raise InputError(f"model is a tuple of {len(sides)}\n  cure: give the pair (C, D)")
         return model_of(sides[0], sides[1], pair(elements, "elements"))
     return model_of(given, None, pair(elements, "elements"))
-
-
-def _within(value: Any, name: str) -> float | None:
-    if value is None:
-        return None
-    return number(value, name, _native.setting_range(name), lambda x: _native.setting_allows(name, x))
 
 
 def _used(settings: dict[str, Any], methods: Sequence[str] | None) -> None:

@@ -228,6 +228,13 @@ class Scene:
         ``module.scene(spot)`` is the dictionary for ``mi.load_dict``; ``module.render(spot, spp, seed, max_bounces)`` are
         a column of Φcam, W, and its standard error. Its documentation says how each part is translated. Raises InputError
         for what Mitsuba has not.
+
+        >>> import mitsuba, phicam
+        >>> mitsuba.set_variant("llvm_ad_rgb")
+        >>> scene = phicam.Scene("bench").replace({"camera.pixels": (4, 4)})
+        >>> column, error = scene.mitsuba().render(0, 64, 1, 3)
+        >>> column.shape
+        (16,)
         """
         module = types.ModuleType("phicam_mitsuba_scene")
         program = self._core.mitsuba_script()
@@ -240,6 +247,11 @@ class Scene:
     def to_mitsuba(self, spot: int = 0) -> dict[str, Any]:
         """The scene while the laser lights `spot`, as a dictionary that ``mitsuba.load_dict`` takes as it is. Call
         ``mitsuba.set_variant`` before. Lengths are scaled to the scene's extent: see :meth:`mitsuba`.
+
+        >>> import mitsuba, phicam
+        >>> mitsuba.set_variant("llvm_ad_rgb")
+        >>> type(mitsuba.load_dict(phicam.Scene("bench").to_mitsuba(spot=3))).__name__
+        'Scene'
         """
         if not 0 <= spot < self.shape[1]:
             raise InputError(f"spot is {spot}\n  cure: there are spots 0 to {self.shape[1] - 1}")

@@ -23,6 +23,20 @@ pub fn input(cause: impl AsRef<str>, cure: &str) -> PyErr {
     python::InputError::new_err(format!("{}\n  cure: {cure}", cause.as_ref()))
 }
 
+/// The one of `all` that has this name.
+pub fn named<T: Copy, const N: usize>(
+    given: &str,
+    what: &str,
+    all: [T; N],
+    name: fn(T) -> &'static str,
+) -> Result<T, PyErr> {
+    let found = all.into_iter().find(|one| name(*one) == given);
+    found.ok_or_else(|| {
+        let cure = format!("use one of {}", all.map(name).join(", "));
+        input(format!("no {what} `{given}`"), &cure)
+    })
+}
+
 /// A fault of phicam itself.
 pub fn internal(what: &str) -> PyErr {
     python::InternalError::new_err(format!(
@@ -56,8 +70,8 @@ pub fn raised(error: &(dyn Error + 'static)) -> PyErr {
 }
 
 fn is_of_a_file(error: &(dyn Error + 'static)) -> bool {
-    let refused = matches!(error.downcast_ref(), Some(FolderError::Refused(_)));
-    refused
+    let folder = error.downcast_ref::<FolderError>();
+    folder.is_some_and(|e| !matches!(e, FolderError::Scene(_)))
         || error.is::<ReadError>()
         || error.is::<StoreError>()
         || error.is::<LockError>()

@@ -62,11 +62,15 @@ pub fn read_run(
         flux,
         stderr,
         left_out,
+        bounces,
     } = read.raise()?;
     let found = PyDict::new(py);
     found.set_item("flux", array(py, flux)?)?;
     found.set_item("stderr", maybe_array(py, stderr)?)?;
     found.set_item("left_out", maybe_array(py, left_out)?)?;
+    let bounces = bounces.map(|parts| parts.into_iter().map(|m| array(py, m)).collect());
+    let bounces: Option<PyResult<Vec<_>>> = bounces;
+    found.set_item("bounces", bounces.transpose()?)?;
     found.set_item("record", record.json().raise()?)?;
     Ok((Scene::from(scene), found))
 }

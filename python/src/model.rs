@@ -12,28 +12,20 @@ use phicam::scene::{self, Parameter};
 use pyo3::prelude::*;
 
 use crate::arrays::{array, matrix, points};
-use crate::errors::{Raise, input};
+use crate::errors::{Raise, input, named};
 use crate::scene::Scene;
 use crate::work::{fits, run};
 
 /// The kernel of that name.
 pub fn kernel(name: &str) -> PyResult<Kernel> {
-    let found = [Kernel::Physical, Kernel::Published].into_iter();
-    let mut found = found.filter(|k| k.name() == name);
-    let cause = format!("no kernel `{name}`");
-    found
-        .next()
-        .ok_or_else(|| input(cause, "use physical or published"))
+    let all = [Kernel::Physical, Kernel::Published];
+    named(name, "kernel", all, Kernel::name)
 }
 
 /// The integration of that name.
 pub fn integration(name: &str) -> PyResult<Integration> {
-    let found = [Integration::Centres, Integration::Quadrature].into_iter();
-    let mut found = found.filter(|k| k.name() == name);
-    let cause = format!("no integration `{name}`");
-    found
-        .next()
-        .ok_or_else(|| input(cause, "use centres or quadrature"))
+    let all = [Integration::Centres, Integration::Quadrature];
+    named(name, "integration", all, Integration::name)
 }
 
 /// Whether things in the way are considered.

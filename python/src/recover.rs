@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{array, errors, matrix, maybe, vector};
-use crate::errors::{Raise, input};
+use crate::errors::{Raise, input, named};
 use crate::model::Model;
 use crate::validate::errors as ways;
 use crate::work::run;
@@ -92,35 +92,21 @@ pub struct Settings {
 
 impl Settings {
     fn options(&self, elements: usize) -> PyResult<Options> {
-        let rule = match &self.rule {
-            None => Rule::default(),
-            Some(name) => {
-                let found = Rule::ALL.into_iter().find(|r| r.name() == name);
-                found.ok_or_else(|| {
-                    let names = Rule::ALL.map(Rule::name).join(", ");
-                    input(format!("no rule `{name}`"), &format!("use one of {names}"))
-                })?
-            }
-        };
-        let weighting = match self.weighting.as_deref() {
-            None | Some("noise") => WeightRule::Noise,
-            Some("entries") => WeightRule::Entries,
-            Some("none") => WeightRule::Unweighted,
-            Some(other) => {
-                let cause = format!("no weighting `{other}`");
-                return Err(input(cause, "use noise, entries or none"));
-            }
-        };
+        let rule = self.rule.as_deref();
+        let rule = rule.map(|name| named(name, "rule", Rule::ALL, Rule::name));
+        let weighting = self.weighting.as_deref();
+        let weighting =
+            weighting.map(|name| named(name, "weighting", WeightRule::ALL, WeightRule::name));
         let usual = Options::default();
         Ok(Options {
             rank: self.rank,
             damping: self.damping,
-            rule,
+            rule: rule.transpose()?.unwrap_or_default(),
             tolerance: self.tolerance.map_or(usual.tolerance, Tolerance::Relative),
             total_variation: self.tv,
             levels: self.levels.map(Into::into),
             bands: self.bands,
-            weighting,
+            weighting: weighting.transpose()?.unwrap_or_default(),
             frame: self.pixels.map(Into::into),
             uncertainty: Uncertainty::of(elements),
             ..usual

@@ -45,9 +45,10 @@ pub fn render<'py>(
     let plan = plan(estimator, sampler, seed, samples)?;
     fits(py, &scene.inner, move |scene| need::render(scene, &plan))?;
     let scene = Arc::clone(&scene.inner);
-    let begun = Instant::now();
-    let traced = run(py, threads, progress, move |control| {
-        traced_render(&scene, &plan, spots.0..spots.1, control)
+    let (traced, seconds) = run(py, threads, progress, move |control| {
+        let begun = Instant::now();
+        let traced = traced_render(&scene, &plan, spots.0..spots.1, control);
+        (traced, begun.elapsed().as_secs_f64())
     })?;
     let Traced {
         bounces,
@@ -62,7 +63,7 @@ pub fn render<'py>(
     found.set_item("stderr", array(py, stderr)?)?;
     found.set_item("tails", array(py, tails)?)?;
     found.set_item("bounces", bounces?)?;
-    found.set_item("seconds", begun.elapsed().as_secs_f64())?;
+    found.set_item("seconds", seconds)?;
     found.set_item("samples", plan.budget.samples())?;
     found.set_item("blocks", plan.budget.blocks)?;
     Ok(found)

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{array, matrix, maybe};
-use crate::errors::{Raise, input};
+use crate::errors::{Raise, named};
 use crate::findings::found;
 use crate::model::{integration, kernel, occlusion};
 use crate::scene::Scene;
@@ -18,15 +18,7 @@ use crate::work::{fits, run};
 
 /// How errors hang together, by its name.
 pub fn errors(name: &str) -> PyResult<Errors> {
-    match name {
-        "independent" => Ok(Errors::Independent),
-        "pixel" => Ok(Errors::WithinRows),
-        "all" => Ok(Errors::Everywhere),
-        _ => {
-            let cause = format!("no way of errors to hang together is called `{name}`");
-            Err(input(cause, "use independent, pixel or all"))
-        }
-    }
+    named(name, "errors", Errors::ALL, Errors::name)
 }
 
 /// Whether errors that all spots of a pixel have in common, a part `common` of the variance, matter.

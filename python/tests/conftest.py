@@ -32,4 +32,5 @@ def command():
         assert done.returncode == code, done.stderr
         return done.stdout
 
+    run.program = path
     return run

@@ -1,6 +1,8 @@
 """The same bytes as the command's files."""
 
 import json
+import subprocess
+import time
 
 import numpy as np
 import pytest
@@ -144,6 +146,20 @@ def test_a_commands_run_is_loaded(run, phi):
     assert loaded.scene == phi.scene
     assert loaded.settings | {"seconds": 0, "threads": 0} == phi.settings | {"seconds": 0, "threads": 0}
     assert (loaded.flux == phi.flux).all() and (loaded.stderr == phi.stderr).all()
+    assert [b.tobytes() for b in loaded.by_bounces] == [b.astype("f4").tobytes() for b in phi.by_bounces]
+    assert loaded.by_bounces[2].any()
+
+
+def test_a_run_that_was_stopped_is_no_run(command, scene, tmp_path):
+    (tmp_path / "scene.toml").write_text(scene.text)
+    run = [command.program, "-q", "render", tmp_path / "scene.toml", "-o", tmp_path / "run", "--samples", "1000000"]
+    with subprocess.Popen([str(word) for word in run], stderr=subprocess.DEVNULL) as process:
+        while not (tmp_path / "run" / "run.json").exists():
+            assert process.poll() is None
+            time.sleep(0.01)
+        process.kill()
+    with pytest.raises(phicam.FileError, match="of 16 spots\n  cure: finish it"):
+        phicam.load(tmp_path / "run")
 
 
 def test_study(command, run, scene, tmp_path):

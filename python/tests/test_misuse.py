@@ -1,7 +1,10 @@
 """What cannot be is refused by the right exception, with cause and cure."""
 
+import json
 import math
+import os
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -30,6 +33,29 @@ def changed(phi):
     copy = pickle.loads(pickle.dumps(phi))
     copy.flux *= 3.0
     return copy
+
+
+def refusing(folder):
+    """A folder in which nothing can be made; root can write everywhere but where the system itself says no."""
+    if os.geteuid() == 0:
+        return Path("/proc/phicam")
+    folder.chmod(0o500)
+    return folder / "run"
+
+
+def stopped(phi, folder):
+    """A run that was stopped after three spots, as a killed render leaves it."""
+    phi.save(folder / "run")
+    (folder / "run" / "phi.npy").unlink()
+    record = json.loads((folder / "run" / "run.json").read_text())
+    del record["digest"], record["files"]
+    (folder / "run" / "run.json").write_text(json.dumps(record | {"finished": 3}))
+    return folder / "run"
+
+
+def loaded(phi, folder):
+    phi.save(folder / "run")
+    return phicam.load(folder / "run")
 
 
 def saturated(phi):
@@ -126,6 +152,9 @@ MISUSES = [
     ("no folder", File, lambda s, p, t: phicam.load(t / "nowhere"), "run.json"),
     ("a folder with something in it", File, lambda s, p, t: (t.joinpath("x").touch(), p.save(t)), "empty"),
     ("a file for a folder", File, lambda s, p, t: (t.joinpath("x").touch(), p.save(t / "x")), "x"),
+    ("a folder that refuses", File, lambda s, p, t: p.save(refusing(t)), "cure"),
+    ("a run that was stopped", File, lambda s, p, t: phicam.load(stopped(p, t)), "3 of 8 spots"),
+    ("a loaded run as a run", Input, lambda s, p, t: loaded(p, t).save(t / "again"), "copy the folder"),
     ("counts taken for W", Input, lambda s, p, t: phicam.recover(phicam.Phi(s, FLUX, FLUX, account=COUNTS)), "free_scale=True"),
     ("counts by joint", Input, lambda s, p, t: phicam.recover(phicam.Phi(s, FLUX, FLUX, account=COUNTS), method="joint"), "counts"),
     ("counts against a model", Input, lambda s, p, t: phicam.validate(phicam.Phi(s, FLUX, FLUX, account=COUNTS)), "watts"),
