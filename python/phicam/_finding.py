@@ -69,7 +69,7 @@ class Finding:
         >>> scene = phicam.Scene("bench").replace({"laser.spots.per_side": 2, "camera.pixels": (4, 4)})
         >>> found = phicam.study("convergence", scene, samples=[64, 256])
         >>> sorted(path.name for path in found.save(tempfile.mkdtemp()))
-        ['convergence.csv', 'convergence.svg', 'result.json']
+        ['convergence.svg', 'result.json']
         """
         to = Path(folder)
         to.mkdir(parents=True, exist_ok=True)

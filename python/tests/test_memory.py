@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -28,7 +29,8 @@ assert abs(found.reflectance - x).max() < (1e-9 if noise is None else 0.1)
 def grown(pixels, elements, noise):
     """By how much a recovery lets the peak grow, bytes."""
     arguments = [sys.executable, "-c", PROGRAM, str(pixels), str(elements), str(noise)]
-    return int(subprocess.run(arguments, check=True, capture_output=True, text=True).stdout)
+    # Not where the sources lie, which are not the module.
+    return int(subprocess.run(arguments, check=True, stdout=subprocess.PIPE, text=True, cwd=Path(__file__).parent).stdout)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
@@ -39,6 +41,7 @@ def test_more_pixels_are_copied_once(elements, pixels, noise):
     matrix = 8 * elements * (pixels[1] - pixels[0])
     copies = (many - few) / matrix
     print(f"{elements} elements: {few / 2**20:.0f} MiB of {pixels[0]} pixels, {many / 2**20:.0f} of {pixels[1]}: {copies:.2f} copies")
-    assert 0.9 < copies < 1.3
-    # What does not grow is n × n: factors, covariance, resolution.
-    assert few - 8 * elements * pixels[0] < 16 * 8 * elements**2 + 16 * 2**20
+    assert copies < 1.3
+    # Beside that copy there are n × n matrices: factors, covariance, resolution.
+    for peak, count in ((few, pixels[0]), (many, pixels[1])):
+        assert peak - 8 * elements * count < 20 * 8 * elements**2 + 16 * 2**20

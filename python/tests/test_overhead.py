@@ -1,9 +1,10 @@
-"""What Python adds to a call, and to the start of a program."""
+"""What Python adds to a call, and an import to the start of a program."""
 
 import re
 import subprocess
 import sys
 import time
+from pathlib import Path
 from statistics import median
 
 import phicam
@@ -44,13 +45,15 @@ def test_a_call_costs_less_than_5_ms(monkeypatch):
     assert max(costs.values()) < 5e-3
 
 
-def test_import_takes_less_than_a_tenth_of_a_second():
-    """NumPy included; the quickest of five, as a program meets it that was started before."""
+def test_import_takes_less_than_numpys():
+    """What it takes beside NumPy, in units of what that takes, so that a busy machine matters less; the least of five."""
     program = [sys.executable, "-X", "importtime", "-c", "import phicam"]
     took = []
     for _ in range(5):
-        lines = subprocess.run(program, check=True, capture_output=True, text=True).stderr
-        micros = {name: int(us) for us, name in re.findall(r"\|\s*(\d+) \| (phicam|numpy|  numpy)$", lines, re.MULTILINE)}
-        took.append((micros["phicam"] / 1e6, lines))
-    print(f"{1e3 * min(took)[0]:.0f} ms")
-    assert min(took)[0] < 0.1
+        lines = subprocess.run(program, check=True, capture_output=True, text=True, cwd=Path(__file__).parent).stderr
+        whole, numpys = (
+            int(re.search(rf"\|\s*(\d+) \| +{name}$", lines, re.MULTILINE)[1]) / 1e6 for name in ("phicam", "numpy")
+        )
+        took.append(((whole - numpys) / numpys, whole - numpys))
+    print(f"{1e3 * min(took)[1]:.0f} ms beside NumPy, {min(took)[0]:.2f} of it")
+    assert min(took)[0] < 1.0
