@@ -8,16 +8,35 @@ use super::deviate::normal_deviates;
 use crate::matrix::Matrix;
 use crate::model::MatrixModel;
 use crate::num::summation::{mean_and_stderr, tree_sum};
-use crate::recovery::{Method, Options, Recovered, RecoveryError, recover};
+use crate::recovery::{Method, Nuisance, Options, Recovered, RecoveryError, recover};
 
 /// A noisy Φcam and the standard errors that a recovery is told, pixels × spots, W.
 #[derive(Debug)]
 pub(super) struct Photographs {
     pub(super) phi: Matrix,
     pub(super) stderr: Matrix,
+    /// The relative error of their scale, which joint methods are told.
+    pub(super) scale_error: Option<f64>,
 }
 
 impl Photographs {
+    /// Photographs of a scale that is known.
+    pub(super) fn told(phi: Matrix, stderr: Matrix) -> Self {
+        Self {
+            phi,
+            stderr,
+            scale_error: None,
+        }
+    }
+
+    /// The same of a scale that is known to this relative error.
+    pub(super) fn of_scale(self, error: f64) -> Self {
+        Self {
+            scale_error: Some(error),
+            ..self
+        }
+    }
+
     /// Φcam with each entry times 1 + σ·N(0, 1), σ = `noise`. One seed gives the same deviates at
     /// every σ, so that methods, levels and objects are compared under the same draw.
     pub(super) fn relative(exact: &Matrix, noise: f64, seed: u64) -> Self {
@@ -27,10 +46,7 @@ impl Photographs {
     /// Φcam with a normal deviate of each entry's standard error added.
     pub(super) fn drawn(exact: &Matrix, stderr: Matrix, seed: u64) -> Self {
         let deviates = normal_deviates(seed, exact.nrows(), exact.ncols());
-        Self {
-            phi: exact + deviates.component_mul(&stderr),
-            stderr,
-        }
+        Self::told(exact + deviates.component_mul(&stderr), stderr)
     }
 
     /// What `method` recovers from them with the matrices of `model`.
@@ -42,7 +58,11 @@ impl Photographs {
     ) -> Result<Recovered, RecoveryError> {
         let grids: Vec<[usize; 2]> = model.grids.iter().map(|grid| grid.count).collect();
         let problem = problem(model, &self.phi, Some(&self.stderr))?.with_grids(&grids)?;
-        recover(method, &problem, options)
+        let nuisance = Nuisance {
+            scale_error: self.scale_error.filter(|_| method.is_joint()),
+            ..Nuisance::default()
+        };
+        recover(method, &problem.with_nuisance(nuisance)?, options)
     }
 }
 

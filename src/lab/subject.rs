@@ -144,7 +144,7 @@ pub(super) fn recovered(
     model: &MatrixModel,
     subject: Subject,
     truth: &[f64],
-    Photographs { phi, stderr }: &Photographs,
+    Photographs { phi, stderr, .. }: &Photographs,
 ) -> Result<Recovery, LabError> {
     let problem = problem(model, phi, Some(stderr))?;
     let found = recover(Method::Joint, &problem, &Options::default())?;

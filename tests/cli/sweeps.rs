@@ -80,6 +80,7 @@ fn every_axis_of_noise_names_its_levels() {
         ("exposure", "exposure_s", "exposure of a frame / s"),
         ("glare", "glare_over_signal", "glare over signal, even"),
         ("bits", "bits", "bits of the converter"),
+        ("scale", "scale_error", "error of the absolute scale"),
     ] {
         let line = "study noise small.toml --boards 2 --elements 2 --method pinv,joint --seeds 2";
         let ended = workspace
@@ -172,6 +173,10 @@ fn bad_sweeps_are_refused() {
         (
             "noise small.toml -o n --axis bits --render-samples 16",
             ["axis bits", "--render-samples"],
+        ),
+        (
+            "noise small.toml -o n --axis scale --noise 1.5",
+            ["--noise 1.5", "not above 1"],
         ),
         ("noise small.toml -o n --boards 1", ["--boards 1", "cure"]),
         (

@@ -78,6 +78,10 @@ pub enum NoiseAxis {
     /// is noisy. The recovery is told K/√12. Rounding is no random number, so what a draw varies is
     /// the offset, by a part of a count that is common to all entries.
     Bits,
+    /// s: all of Φcam times 1 + s·N(0, 1), one number a draw, and each entry noisy by
+    /// [`BESIDE_SCALE`] of it. Joint methods are told s and the entries' errors, the others these
+    /// alone.
+    Scale,
 }
 
 /// What an axis is called, as the files of a study have it.
@@ -114,6 +118,9 @@ pub(super) const RANGE: f64 = 0.8;
 /// Converters of that axis, bits: with fewer the brightest entry and an offset of a count reach the
 /// top.
 const BITS: std::ops::RangeInclusive<u32> = 4..=24;
+
+/// Relative noise of each entry on the axis of scale.
+pub(super) const BESIDE_SCALE: f64 = 1e-3;
 
 impl NoiseAxis {
     /// What it is called.
@@ -158,6 +165,14 @@ impl NoiseAxis {
                 "Rounding alone, no shot or read noise; the brightest entry takes 80 % of the range. The recovery is \
                  told count/√12. Draws differ in the offset, a part of a count.",
             ),
+            Self::Scale => (
+                "scale",
+                "relative error of the absolute scale",
+                "scale_error",
+                "All photographs of a draw are multiplied by 1 + s·N(0, 1), one number, and each entry by \
+                 1 + 0.001·N(0, 1). The recovery is told the standard error of each entry, joint methods s as well; to the \
+                 others the error of the scale is a bias. The Cramér–Rao bound is of both.",
+            ),
         };
         AxisLabel {
             name,
@@ -170,7 +185,7 @@ impl NoiseAxis {
             },
             procedure,
             sensor: match self {
-                Self::Relative | Self::Photons | Self::Bits => None,
+                Self::Relative | Self::Photons | Self::Bits | Self::Scale => None,
                 Self::Exposure(camera) | Self::Glare(camera, _) => Some(&camera.name),
             },
         }
@@ -179,7 +194,7 @@ impl NoiseAxis {
     /// How many frames, and how many dark frames, are averaged.
     pub(super) fn frames(&self) -> [u32; 2] {
         match self {
-            Self::Relative | Self::Photons | Self::Bits => [1, 0],
+            Self::Relative | Self::Photons | Self::Bits | Self::Scale => [1, 0],
             Self::Exposure(camera) | Self::Glare(camera, _) => [camera.frames, camera.dark_frames],
         }
     }
@@ -274,6 +289,7 @@ impl NoiseAxis {
             }
             Self::Glare(..) => decades(-8..=4, 0.5),
             Self::Bits => BITS.step_by(2).map(f64::from).collect(),
+            Self::Scale => decades(-6..=-1, 0.5),
         };
         levels.sort_by(|a, b| self.quiet_first(*a, *b));
         levels
@@ -303,6 +319,10 @@ impl NoiseAxis {
                 BITS.map(f64::from).any(|b| b == level),
                 "bits are a whole number from 4 to 24",
             ),
+            Self::Scale => (
+                up_to(1.0),
+                "an error of the scale is a number above 0 and not above 1, e.g. 0.05",
+            ),
         };
         (!fine).then_some(cure)
     }
@@ -314,8 +334,13 @@ impl NoiseAxis {
             Self::Relative => Some(level),
             Self::Photons => Some(1.0 / level.sqrt()),
             Self::Bits => Some(1.0 / (libm::exp2(level) - 1.0)),
-            Self::Exposure(_) | Self::Glare(..) => None,
+            Self::Exposure(_) | Self::Glare(..) | Self::Scale => None,
         }
+    }
+
+    /// The relative error that all entries of a draw share, and that joint methods are told.
+    pub(super) fn scale_error(&self, level: f64) -> Option<f64> {
+        (*self == Self::Scale).then_some(level)
     }
 
     /// The level at which an entry of mean flux has this relative noise; `None` on axes where that
@@ -324,7 +349,7 @@ impl NoiseAxis {
         match self {
             Self::Relative => Some(noise),
             Self::Photons => Some(1.0 / (noise * noise)),
-            Self::Exposure(_) | Self::Glare(..) | Self::Bits => None,
+            Self::Exposure(_) | Self::Glare(..) | Self::Bits | Self::Scale => None,
         }
     }
 }

@@ -11,6 +11,9 @@ use crate::recovery::cramer_rao;
 /// unbiased recoveries from independent errors of the level's standard error. `None` where there is
 /// none: the sensor has no noise, or directions are lost in f64.
 ///
+/// A relative error s that all entries share adds s² ρρᵀ to the bound of the entries' own errors: with
+/// the scale known to s beforehand, of a picture ρ.
+///
 /// Where the levels change the size of the standard errors alone, the bound is proportional to it
 /// and computed once.
 pub(super) fn bounds(stage: &Stage, model: &MatrixModel, levels: &[f64]) -> Vec<Option<f64>> {
@@ -18,7 +21,9 @@ pub(super) fn bounds(stage: &Stage, model: &MatrixModel, levels: &[f64]) -> Vec<
         let stderr = stage.stderr(level).ok()?;
         let problem = problem(model, &stage.exact, Some(&stderr)).ok()?;
         let errors = cramer_rao(&problem).ok()?.standard_error;
-        let mean = errors.norm_squared() / errors.len() as f64;
+        let shared = stage.axis.scale_error(level).unwrap_or(0.0);
+        let picture: f64 = model.albedo.iter().map(|x| x * x).sum();
+        let mean = (errors.norm_squared() + shared * shared * picture) / errors.len() as f64;
         mean.is_finite().then(|| mean.sqrt())
     };
     let size = |level: &f64| stage.axis.size(*level);

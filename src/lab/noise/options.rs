@@ -59,6 +59,10 @@ pub(in crate::lab) const STUDY: Registered = Registered {
                     "Glare over signal, photographed by a sensor and left in",
                 ),
                 ("bits", "Bits of a converter, nothing else being noisy"),
+                (
+                    "scale",
+                    "Relative error of the absolute scale, told to joint methods; entries have 0.001 of noise beside",
+                ),
             ],
         )
         .or("relative"),
@@ -68,7 +72,7 @@ pub(in crate::lab) const STUDY: Registered = Registered {
                 "noise",
                 "Levels on the axis, separated by commas; unless given relative noise 1e-12 to 1 and 1 to 1e20 photons by decades, \
                  exposures over six decades up to what the sensor bears, glare 1e-4 to 100 times the signal by half decades, \
-                 4 to 24 bits",
+                 4 to 24 bits, errors of the scale 1e-3 to 0.3 by half decades",
             )
             .list()
         },
@@ -160,6 +164,7 @@ fn axis(values: &Values, scene: &Scene) -> Result<NoiseAxis, StudyError> {
     Ok(match name.as_str() {
         "photons" => NoiseAxis::Photons,
         "bits" => NoiseAxis::Bits,
+        "scale" => NoiseAxis::Scale,
         "exposure" => NoiseAxis::Exposure(NamedSensor::studied(sensor, scene)?),
         "glare" => {
             let spread = falloff.map_or(Spread::Uniform, Spread::Falloff);

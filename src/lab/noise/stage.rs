@@ -1,6 +1,6 @@
 //! Exact light made into noisy photographs.
 
-use super::axis::{NoiseAxis, RANGE};
+use super::axis::{BESIDE_SCALE, NoiseAxis, RANGE};
 use crate::lab::LabError;
 use crate::lab::ensemble::Photographs;
 use crate::matrix::Matrix;
@@ -60,11 +60,21 @@ impl Stage {
     /// The photographs of one draw.
     ///
     /// # Errors
-    /// In words: what the sensor cannot take, or that entries are saturated, which no recovery is
-    /// told of.
+    /// In words: what the sensor cannot take, that entries are saturated, which no recovery is told
+    /// of, or that a draw of the scale leaves no light.
     pub(super) fn photograph(&self, level: f64, seed: u64) -> Result<Photographs, String> {
         if self.axis == NoiseAxis::Relative {
             return Ok(Photographs::relative(&self.exact, level, seed));
+        }
+        if let Some(error) = self.axis.scale_error(level) {
+            let scale = 1.0 + error * stream(seed).normal();
+            if scale <= 0.0 {
+                return Err(format!(
+                    "the scale that was drawn, {scale:.2}, leaves no light"
+                ));
+            }
+            let taken = Photographs::relative(&(&self.exact * scale), BESIDE_SCALE, seed);
+            return Ok(taken.of_scale(error));
         }
         let take = || {
             let shot = self.shot(level, offset(seed))?;
@@ -73,18 +83,18 @@ impl Stage {
         };
         let taken = take().map_err(|e| e.to_string())?;
         match taken.count(Range::Saturated) {
-            0 => Ok(Photographs {
-                phi: taken.flux,
-                stderr: taken.stderr,
-            }),
+            0 => Ok(Photographs::told(taken.flux, taken.stderr)),
             n => Err(format!("{n} entries are saturated; expose for less")),
         }
     }
 
-    /// The standard error of every entry at `level`, W.
+    /// The standard error of every entry at `level`, W, without what all entries share.
     pub(super) fn stderr(&self, level: f64) -> Result<Matrix, SensorError> {
         if self.axis == NoiseAxis::Relative {
             return Ok(self.exact.map(|x| level * x.abs()));
+        }
+        if self.axis == NoiseAxis::Scale {
+            return Ok(self.exact.map(|x| BESIDE_SCALE * x.abs()));
         }
         let shot = self.shot(level, 0.0)?;
         let expected = shot.sensor.expected(&self.light(&shot)?, &shot.exposure);
@@ -104,7 +114,7 @@ impl Stage {
     fn shot(&self, level: f64, offset: f64) -> Result<Shot, SensorError> {
         let energy = photon_energy(self.wavelength);
         let (sensor, time, glare) = match &self.axis {
-            NoiseAxis::Relative => (Sensor::new(Figures::IDEAL)?, 1.0, None),
+            NoiseAxis::Relative | NoiseAxis::Scale => (Sensor::new(Figures::IDEAL)?, 1.0, None),
             NoiseAxis::Photons => {
                 let figures = Figures {
                     shot_noise: ShotNoise::Poisson,
@@ -143,15 +153,20 @@ impl Stage {
     }
 }
 
-/// A part of a count, in [0, 1), of a block of random numbers that is of no entry.
+/// A part of a count, in [0, 1).
 fn offset(seed: u64) -> f64 {
+    stream(seed).uniform()
+}
+
+/// A block of random numbers that is of no entry.
+fn stream(seed: u64) -> Stream {
     let key = Key {
         seed,
         spot: Key::ALL_SPOTS,
         pixel: u32::MAX,
         block: u32::MAX,
     };
-    Stream::new(Sampling::Pcg, key).uniform()
+    Stream::new(Sampling::Pcg, key)
 }
 
 #[cfg(test)]
@@ -249,6 +264,43 @@ mod tests {
         assert!(
             (relative * 35_000f64.sqrt() - 1.0).abs() < 0.02,
             "{relative}"
+        );
+    }
+
+    /// Of 4000 draws the mean over the entries, exact/(1 + s ξ) apart, is normal: mean 1, standard
+    /// deviation s and fourth moment 3 s⁴, each within five of its errors. Entries differ from their draw's
+    /// scale by the noise that is told, and joint methods are told s.
+    #[test]
+    fn a_scale_is_common_to_all_entries() {
+        let exact = exact();
+        let stage = stage(&NoiseAxis::Scale, &exact);
+        let (s, draws) = (0.03, 4000u32);
+        let mut moments = [0.0; 3];
+        for seed in 0..u64::from(draws) {
+            let taken = stage.photograph(s, seed).unwrap();
+            let ratio = taken.phi.component_div(&exact);
+            let off = (ratio.mean() - 1.0) / s;
+            for (power, moment) in [1, 2, 4].into_iter().zip(&mut moments) {
+                *moment += off.powi(power) / f64::from(draws);
+            }
+            let left = (ratio / (1.0 + s * off)).add_scalar(-1.0);
+            let rms = (left.norm_squared() / left.len() as f64).sqrt();
+            assert!((rms / 1e-3 - 1.0).abs() < 0.2, "{seed}: {rms}");
+            assert!((taken.stderr.component_div(&taken.phi).mean() / 1e-3 - 1.0).abs() < 0.01);
+            assert_eq!(taken.scale_error, Some(s));
+        }
+        // Variances of ξ, ξ² and ξ⁴: 1, 2 and 96.
+        let expected = [(0.0, 1.0), (1.0, 2.0), (3.0, 96.0)];
+        for (found, (mean, variance)) in moments.into_iter().zip(expected) {
+            let error = (variance / f64::from(draws)).sqrt();
+            assert!((found - mean).abs() < 5.0 * error, "{moments:?}");
+        }
+        // Of a scale known to its own size some draws leave no light, and say so.
+        let dark = (0..100).filter_map(|seed| stage.photograph(1.0, seed).err());
+        let dark: Vec<String> = dark.collect();
+        assert!(
+            (5..30).contains(&dark.len()) && dark[0].contains("no light"),
+            "{dark:?}"
         );
     }
 

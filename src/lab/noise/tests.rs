@@ -1,6 +1,7 @@
 use super::trial::Trial;
 use super::*;
 use crate::lab::LabError;
+use crate::lab::ensemble::Photographs;
 use crate::lab::finding::Describe;
 use crate::lab::measures::Measures;
 use crate::lab::study::{self, tests::divides};
@@ -62,6 +63,7 @@ fn on_every_axis_going_on_gives_what_running_through_gives_on_any_threads() {
             vec![1e-3, 0.1, 10.0],
         ),
         (NoiseAxis::Bits, vec![24.0, 16.0, 8.0]),
+        (NoiseAxis::Scale, vec![1e-3, 0.03, 0.3]),
     ] {
         let plan = NoisePlan {
             axis,
@@ -83,6 +85,7 @@ fn default_levels_can_be_studied() {
         NoiseAxis::Exposure(ccd()),
         NoiseAxis::Glare(ccd(), Spread::Uniform),
         NoiseAxis::Bits,
+        NoiseAxis::Scale,
     ] {
         let mut plan = NoisePlan {
             axis,
@@ -113,6 +116,7 @@ fn unbiased_recoveries_keep_the_bound_of_cramer_and_rao() {
     for (axis, levels) in [
         (NoiseAxis::Relative, vec![1e-6]),
         (NoiseAxis::Photons, vec![1e12]),
+        (NoiseAxis::Scale, vec![0.03]),
     ] {
         let plan = NoisePlan {
             boards: vec![2],
@@ -134,6 +138,27 @@ fn unbiased_recoveries_keep_the_bound_of_cramer_and_rao() {
         assert!(ratios.iter().all(|(r, s)| *r > 1.0 - s), "{ratios:?}");
         assert!(ratios[1].0 < 1.1 + ratios[1].1, "{ratios:?}");
     }
+}
+
+/// White that photographs of 5 % more light would make lighter than white: a bounded recovery that is
+/// told of the scale's error takes it there, one that is not puts the light elsewhere.
+#[test]
+fn a_recovery_that_is_told_of_the_scale_is_nearer() {
+    let (scene, plan) = small();
+    let model = plan.model(&scene, (Picture::Board(2), 4)).unwrap();
+    let stage = stage::Stage::new(&NoiseAxis::Scale, &scene, model.phi()).unwrap();
+    let (mut told, mut untold) = (0.0, 0.0);
+    for seed in 0..10 {
+        let photographs = stage.photograph(0.05, seed).unwrap();
+        let error = |photographs: &Photographs| {
+            let found = trial::measure(&model, photographs, Method::Joint).unwrap();
+            found.rmse.unwrap().powi(2)
+        };
+        told += error(&photographs);
+        let Photographs { phi, stderr, .. } = photographs;
+        untold += error(&Photographs::told(phi, stderr));
+    }
+    assert!(told < 0.5 * untold, "{told} {untold}");
 }
 
 /// The unbounded pseudo-inverse is linear and unbiased here (2 × 2 elements have full rank), so its

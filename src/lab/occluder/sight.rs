@@ -67,10 +67,7 @@ impl Camera {
         loop {
             let shot = Exposure::new(&[exposure], frames, frames)?;
             let taken = sensor.expose(&light, &shot, Stated::Oracle, self.seed)?;
-            let photographs = Photographs {
-                phi: taken.flux,
-                stderr: taken.stderr,
-            };
+            let photographs = Photographs::told(taken.flux, taken.stderr);
             let recovery = recovered(model, subject, &truth, &photographs)?;
             if recovery.is_resolved() || 2 * frames > self.frames {
                 return Ok(Seen {
