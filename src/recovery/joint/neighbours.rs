@@ -163,18 +163,30 @@ mod tests {
         }
     }
 
-    /// A wide grid dark on one side and light on the other, 14 of 364 pairs unlike: at β = 1 nearly all
-    /// of Z is that of elements all alike, so P(s) is about ½ e^(−28), a share 1/11 of it against 2^−196.
+    /// A wide grid dark on one side and light on the other, 14 of 364 pairs unlike. At β = 1 nearly all
+    /// of Z is that of elements all alike, so a share 1/11 of ½ e^(−28) is the least. At each β the
+    /// patterns with both levels have at least the weight of those with one element unlike, and Z at
+    /// least 2ⁿ cosh β to the number of pairs, the first term of a sum of positive ones.
     #[test]
     fn a_wide_grid_gains_as_well() {
         let half: Vec<bool> = (0..196).map(|j| j % 14 < 7).collect();
         let found = gained(&[[14, 14]], &HashMap::from([(half, 1.0)])).unwrap();
-        let least = 196.0 * libm::log(2.0) - 28.0 - libm::log(22.0);
-        // Single elements in the corners, at the edges and inside that are unlike add to Z.
-        let flips = [(4.0, 4.0), (48.0, 6.0), (144.0, 8.0)];
-        let more: f64 = flips.iter().map(|(n, cost)| n * libm::exp(-cost)).sum();
-        assert!(found > least - 1.5 * more, "{found} {least} {more}");
-        assert!(found < least + libm::log(11.0) + 5.0, "{found} {least}");
+        let coins = 196.0 * libm::log(2.0);
+        // One element unlike: so many in corners, at edges and inside, with 2, 3 and 4 neighbours.
+        let flips = |beta: f64| -> f64 {
+            let of = |(n, neighbours): (f64, f64)| n * libm::exp(-2.0 * neighbours * beta);
+            [(4.0, 2.0), (48.0, 3.0), (144.0, 4.0)].map(of).iter().sum()
+        };
+        let least = coins - 28.0 - libm::log(22.0) - 1.5 * flips(1.0);
+        let most = (0..11).map(|k| 0.1 * f64::from(k)).map(|beta| {
+            let one = libm::exp(-28.0 * beta) / (2.0 * flips(beta));
+            let pairs = 364.0 * (libm::log(libm::cosh(beta)) - beta) + coins;
+            let all = libm::exp(pairs) - 2.0;
+            let other = libm::exp(-28.0 * beta) / all;
+            if all > 0.0 { one.min(other) } else { one }
+        });
+        let most = coins + libm::log(most.sum::<f64>() / 11.0);
+        assert!((least..most).contains(&found), "{found} {least} {most}");
     }
 
     /// Over all patterns alike nothing is gained; one patch gains, one of chance loses at most the

@@ -8,7 +8,8 @@
 //! patterns of a small χ² are the points of the lattice of Δ R over w 1 near a target (as in the
 //! low-density subset sums of Coster, Joux, LaMacchia, Odlyzko, Schnorr and Stern 1992). Levels that
 //! are not given are allowed for: a is projected out, and Δ known to a share ε is an error along
-//! Δ R p, the light that a R 1 leaves of d.
+//! Δ R p, the light that a R 1 leaves of d. Where neighbours are alike to a degree β
+//! ([`super::neighbours`]), s = 2 p − 1, so are points: −2 β Σ s_i s_j is 4 β Σ (p_i − p_j)² but for a constant.
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -51,6 +52,8 @@ pub(super) struct PatternLattice<'a> {
     pub(super) r: &'a DMatrix<f64>,
     pub(super) d: &'a DVector<f64>,
     pub(super) dark: Dark,
+    /// Neighbours and the degree β to which they are alike.
+    pub(super) alike: (&'a [[usize; 2]], f64),
     pub(super) control: Control<'a>,
 }
 
@@ -153,12 +156,20 @@ impl PatternLattice<'_> {
         };
         let off = share * along.norm();
         damp(&mut own, &mut target, &along, off);
-        let basis = DMatrix::from_fn(k + n, n, |i, j| match i.checked_sub(k) {
-            None => own[(i, j)],
-            Some(i) if i == j => weight,
+        let (pairs, beta) = self.alike;
+        let mut basis = DMatrix::zeros(k + n + pairs.len(), n);
+        basis.rows_mut(0, k).copy_from(&own);
+        basis.rows_mut(k, n).fill_diagonal(weight);
+        let tie = 2.0 * beta.sqrt();
+        for (row, [a, b]) in pairs.iter().enumerate() {
+            basis[(k + n + row, *a)] = tie;
+            basis[(k + n + row, *b)] = -tie;
+        }
+        let target = DVector::from_fn(k + n + pairs.len(), |i, _| match i.checked_sub(k) {
+            None => target[i],
+            Some(i) if i < n => 0.5 * weight,
             Some(_) => 0.0,
         });
-        let target = DVector::from_fn(k + n, |i, _| if i < k { target[i] } else { 0.5 * weight });
         Ok(Lattice::new(&basis, &target, near)?)
     }
 }

@@ -13,6 +13,7 @@ use rayon::prelude::*;
 
 use super::branch;
 use super::levels::LevelFit;
+use super::neighbours;
 use super::pattern_lattice::{Dark, MOST, PatternLattice};
 use crate::num::control::Control;
 use crate::num::linalg::gram_product;
@@ -21,6 +22,9 @@ use crate::recovery::RecoveryError;
 
 /// Thresholds that the relaxation is cut at, and near patterns that are descended from.
 const STARTS: usize = 12;
+/// Degrees to which neighbours are taken to be alike, and patterns that are kept of each.
+const ALIKE: [f64; 2] = [0.3, 0.8];
+const KEPT: usize = 400;
 /// The largest contrast where the scale is free, in units of which a grey of ½ fits best.
 const BRIGHTEST: f64 = 3.0;
 /// Share of the contrast on either side of a lattice's.
@@ -208,6 +212,32 @@ impl<'a> Search<'a> {
         if self.r.ncols() > MOST {
             return Ok(Vec::new());
         }
+        let mut found = self.points(&[], 0.0)?;
+        found.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
+        found.truncate(STARTS);
+        Ok(found.into_iter().map(|pattern| pattern.light).collect())
+    }
+
+    /// Patterns that are likely where neighbours on the grids are alike, those of the least
+    /// ½ χ² − β Σ s_i s_j.
+    pub(super) fn alike(&self, grids: &[[usize; 2]]) -> Result<Vec<Vec<bool>>, RecoveryError> {
+        let pairs = neighbours::pairs(grids);
+        let mut kept = Vec::new();
+        for beta in ALIKE.into_iter().filter(|_| !pairs.is_empty()) {
+            let energy = |pattern: &Pattern| {
+                0.5 * pattern.misfit - beta * neighbours::alike(&pairs, &pattern.light) as f64
+            };
+            let found = self.points(&pairs, beta)?.into_iter();
+            let mut found: Vec<(f64, Pattern)> = found.map(|p| (energy(&p), p)).collect();
+            found.sort_by(|a, b| a.0.total_cmp(&b.0));
+            found.truncate(KEPT);
+            kept.extend(found.into_iter().map(|(_, pattern)| pattern.light));
+        }
+        Ok(kept)
+    }
+
+    /// The patterns that are near in the lattices of all contrasts, neighbours being alike to a degree.
+    fn points(&self, pairs: &[[usize; 2]], beta: f64) -> Result<Vec<Pattern>, RecoveryError> {
         let (dark, top) = match self.levels {
             Levels::Given([dark, _]) => (Dark::Given(dark), 1.0),
             Levels::Ratio([dark, light]) => (Dark::Times(dark / (light - dark)), BRIGHTEST),
@@ -217,6 +247,7 @@ impl<'a> Search<'a> {
             r: self.r,
             d: self.d,
             dark,
+            alike: (pairs, beta),
             control: self.control,
         };
         let (contrasts, share) = match self.levels {
@@ -224,10 +255,7 @@ impl<'a> Search<'a> {
             _ => (lattice.contrasts(top, SHARE), SHARE),
         };
         let near = lattice.near(&contrasts, share)?;
-        let mut found: Vec<Pattern> = near.into_par_iter().map(|light| self.fit(light)).collect();
-        found.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
-        found.truncate(STARTS);
-        Ok(found.into_iter().map(|pattern| pattern.light).collect())
+        Ok(near.into_par_iter().map(|light| self.fit(light)).collect())
     }
 
     /// Changes and levels in turn until neither lowers the misfit.

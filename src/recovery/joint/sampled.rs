@@ -51,6 +51,7 @@ pub(super) fn sample(
         dark: ground
             .given
             .map_or(Dark::Free, |[dark, _]| Dark::Given(dark)),
+        alike: (&[], 0.0),
         control: ground.control,
     };
     let contrasts = match ground.given {

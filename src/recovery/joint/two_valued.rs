@@ -79,6 +79,7 @@ pub(in crate::recovery) fn recover(
         mut changes,
         iterations,
     } = search.best()?;
+    let grids = problem.grids.unwrap_or(&[]);
     // A scale that is free has no measure of what is likely.
     let n = problem.c.ncols();
     let ground = Ground {
@@ -91,7 +92,10 @@ pub(in crate::recovery) fn recover(
         Some(enumerated::sum(&ground))
     } else {
         let draws = (DRAWS / (n * n) as f64).clamp(FEWEST, MOST) as usize;
-        sampled::sample(&ground, &[best.light.clone()], draws)?
+        // Where little is told, rough patterns fit better than those that are likely beforehand.
+        let mut known = search.alike(grids)?;
+        known.push(best.light.clone());
+        sampled::sample(&ground, &known, draws)?
     };
     if let Some(summed) = &summed {
         let found = search.descend(summed.best.clone(), &mut changes);
@@ -111,7 +115,6 @@ pub(in crate::recovery) fn recover(
         _ => None,
     };
     let mut recovered = coordinates.finish(method, problem, options, &shown * unit)?;
-    let grids = problem.grids.unwrap_or(&[]);
     let gained = summed
         .as_ref()
         .and_then(|summed| neighbours::gained(grids, &summed.weights));
@@ -145,5 +148,7 @@ pub(in crate::recovery) fn recover(
     Ok(recovered)
 }
 
+#[cfg(test)]
+mod boards;
 #[cfg(test)]
 mod tests;

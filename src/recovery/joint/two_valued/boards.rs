@@ -1,0 +1,117 @@
+//! Boards of unknown levels: is what is found as good as what made the photographs?
+
+use nalgebra::DVector;
+
+use super::tests::noisy;
+use super::*;
+use crate::recovery::bench::{Bench, normal_stream};
+use crate::recovery::recover;
+
+/// Draws of the noise for each board and noise. Of 40, one may miss.
+const DRAWS: u64 = 1;
+
+/// What is counted of one board at one noise.
+#[derive(Debug, Default)]
+struct Count {
+    /// Draws whose χ² is at most that of the picture that made the photographs.
+    reached: u64,
+    /// Draws whose pattern is that one.
+    same: u64,
+    /// Draws with stated probabilities, and those of them with both levels within three of their
+    /// standard errors.
+    stated: u64,
+    levels: u64,
+}
+
+/// Boards of 2 × 2 and 4 × 4 fields on 8 × 8 elements, levels unknown: what is found fits at least as
+/// well as what made the photographs, and the levels are within three of their standard errors.
+#[test]
+#[ignore = "slow"]
+fn the_search_reaches_what_made_the_photographs() {
+    let bench = Bench::new(6.0, 8, 16);
+    let mut short = Vec::new();
+    for (k, levels) in [
+        (2, [0.2, 0.8]),
+        (2, [0.1, 0.6]),
+        (4, [0.2, 0.8]),
+        (4, [0.1, 0.6]),
+    ] {
+        for noise in [1e-3, 5.5e-3, 3e-2] {
+            let mut count = Count::default();
+            for seed in 0..DRAWS {
+                let light = bench.board(k);
+                let truth = light.map(|x| levels[0] + (levels[1] - levels[0]) * x);
+                let [phi, stderr] = noisy(&bench, &truth, noise, seed);
+                let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+                let found = recover(Method::JointTwoValued, &problem, &Options::default()).unwrap();
+                let chi2 = |x: &DVector<f64>| {
+                    let off = (&phi - bench.phi(x)).component_div(&stderr);
+                    off.norm_squared()
+                };
+                let [own, made] = [chi2(&found.reflectance), chi2(&truth)];
+                count.reached += u64::from(own <= made + 1e-3);
+                let middle = 0.5 * (found.reflectance.min() + found.reflectance.max());
+                let same = found.reflectance.map(|x| f64::from(u8::from(x > middle))) == light;
+                count.same += u64::from(same);
+                let patterns = found.patterns.unwrap();
+                let within = |k: usize| {
+                    (patterns.levels[k] - levels[k]).abs() <= 3.0 * patterns.level_errors[k]
+                };
+                if patterns.sum.converged() {
+                    count.stated += 1;
+                    count.levels += u64::from(within(0) && within(1));
+                }
+                // Where little noise sets one pattern apart, it is that of the photographs.
+                if noise < 2e-3 {
+                    let told = format!("{k} {levels:?} {seed}: {patterns:?}");
+                    assert!((&found.reflectance - &truth).amax() < 0.01, "{told}");
+                    assert!(patterns.pattern > 0.2 && patterns.sum.converged(), "{told}");
+                }
+            }
+            println!("{k} {levels:?} {noise:e}: {count:?} of {DRAWS}");
+            let most = DRAWS / 40;
+            if count.reached + most < DRAWS || count.levels + most < count.stated {
+                short.push((k, levels, noise, count));
+            }
+        }
+    }
+    assert!(short.is_empty(), "{short:?}");
+}
+
+/// Random pictures of 4 × 4 elements, levels known and not: the marginals of the sampler, called itself,
+/// are those of the sum over all patterns to 0.02.
+#[test]
+#[ignore = "slow"]
+fn sampled_marginals_are_those_of_all_patterns() {
+    let bench = Bench::new(6.0, 4, 16);
+    let mut normal = normal_stream(51);
+    let mut largest = 0.0f64;
+    for noise in [1.0, 0.3, 0.1, 0.03, 1e-2] {
+        for seed in 0..8 {
+            let light: Vec<bool> = (0..16).map(|_| normal() > 0.0).collect();
+            let truth = DVector::from_fn(16, |j, _| if light[j] { 0.8 } else { 0.2 });
+            let [phi, stderr] = noisy(&bench, &truth, noise, seed);
+            let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+            let options = Options::default();
+            let coordinates =
+                Coordinates::new(Method::JointTwoValued, &problem, &options, 1.0, 1.0).unwrap();
+            let (r, d) = coordinates.whitened();
+            for given in [None, Some([0.2, 0.8])] {
+                let ground = Ground::new(&r, &d, given);
+                let all = enumerated::sum(&ground);
+                let start = [vec![false; 16]];
+                let sampled = sampled::sample(&ground, &start, MOST as usize)
+                    .unwrap()
+                    .unwrap();
+                let [all, own] = [&all, &sampled].map(|sum| sum.moments.light());
+                let off = (own - &all).amax();
+                println!(
+                    "{noise} {seed} {given:?}: {off:.1e} of {all:.2?} {:?}",
+                    sampled.sum
+                );
+                largest = largest.max(off);
+            }
+        }
+    }
+    assert!(largest < 0.02, "{largest}");
+}
