@@ -179,6 +179,8 @@ mod objects;
 mod occluder;
 pub mod options;
 mod picard;
+#[cfg(test)]
+mod pictures;
 mod pilot;
 mod power;
 mod preview;
