@@ -154,7 +154,7 @@ def test_a_run_that_was_stopped_is_no_run(command, scene, tmp_path):
     (tmp_path / "scene.toml").write_text(scene.text)
     run = [command.program, "-q", "render", tmp_path / "scene.toml", "-o", tmp_path / "run", "--samples", "1000000"]
     with subprocess.Popen([str(word) for word in run], stderr=subprocess.DEVNULL) as process:
-        while not (tmp_path / "run" / "run.json").exists():
+        while not all((tmp_path / "run" / name).exists() for name in ("run.json", "scene.toml")):
             assert process.poll() is None
             time.sleep(0.01)
         process.kill()
