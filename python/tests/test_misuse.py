@@ -152,7 +152,7 @@ MISUSES = [
     ("no folder", File, lambda s, p, t: phicam.load(t / "nowhere"), "run.json"),
     ("a folder with something in it", File, lambda s, p, t: (t.joinpath("x").touch(), p.save(t)), "empty"),
     ("a file for a folder", File, lambda s, p, t: (t.joinpath("x").touch(), p.save(t / "x")), "x"),
-    ("a folder that refuses", File, lambda s, p, t: p.save(refusing(t)), "cure"),
+    ("a folder that refuses", File, lambda s, p, t: p.save(refusing(t)), "cannot write"),
     ("a run that was stopped", File, lambda s, p, t: phicam.load(stopped(p, t)), "3 of 8 spots"),
     ("a loaded run as a run", Input, lambda s, p, t: loaded(p, t).save(t / "again"), "copy the folder"),
     ("counts taken for W", Input, lambda s, p, t: phicam.recover(phicam.Phi(s, FLUX, FLUX, account=COUNTS)), "free_scale=True"),
