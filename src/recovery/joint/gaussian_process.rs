@@ -1,21 +1,24 @@
 //! Reflectances as a Gaussian process on the surfaces: pictures whose elements resemble their
 //! neighbours, without bounds and without edges known beforehand.
 //!
-//! > ρ_j = m + f_j,   m ~ N(½, ½²),   cov(f_i, f_j) = τ² exp(−|x_i − x_j|/ℓ) on one surface
+//! > ρ_j = m + f_j,   m ~ N(½, ½²),   cov(f_i, f_j) = τ² k_ij,
+//! > k_ij = (1 − η) exp(−|x_i − x_j|/ℓ) on one surface + η where i = j
 //!
-//! (with a free scale x/s₀ in place of ρ, see [`scale`]).
-//! The photographs know ρ by the coordinates y = V ρ + errors of covariance E ([`Coordinates`]). So
-//! with K = ¼ 11ᵀ + τ² k(ℓ), all is closed (Rasmussen and Williams 2006):
+//! (with a free scale x/s₀ in place of ρ, see [`scale`]). The share η is of what has no alike neighbours:
+//! texture finer than the elements.
+//! The photographs know ρ by the coordinates y = V ρ + errors of covariance E ([`Coordinates`]), V Vᵀ = 1.
+//! So with K = ¼ 11ᵀ + τ² k(ℓ, η), all is closed (Rasmussen and Williams 2006):
 //!
 //! > S = V K Vᵀ + E,   z = y − ½ V 1
-//! > ln p(y | τ, ℓ)/p_best = −½ (zᵀS⁻¹z + ln det S − ln det E),   p_best that of an exact fit
+//! > ln p(y | τ, ℓ, η)/p_best = −½ (zᵀS⁻¹z + ln det S − ln det E),   p_best that of an exact fit
 //! > E\[ρ | y\] = ½ + K Vᵀ S⁻¹ z,   cov\[ρ | y\] = K − K Vᵀ S⁻¹ V K
 //!
-//! How much and over what length a picture varies (τ, ℓ) the photographs say only roughly, and of
-//! what is finer than they resolve nothing: one best pair gives errors that are too small. So all
-//! pairs of a lattice count, each by its evidence p(y | τ, ℓ) and by how often pictures are such:
+//! How much and over what length a picture varies (τ, ℓ, η) the photographs say only roughly, and of
+//! what is finer than they resolve nothing: one best triple gives errors that are too small. So all
+//! triples of a lattice count, each by its evidence p(y | τ, ℓ, η) and by how often pictures are such:
 //! ln ℓ evenly from less than the distance of neighbours to a slope over the whole surface, ln τ
-//! normal; one surface in fifty is of one reflectance throughout, τ = 0. The estimate is the mean of that mixture, its covariance and bands those of the mixture.
+//! normal, each η of [`INDEPENDENT`] alike; one surface in fifty is of one reflectance throughout, τ = 0. The
+//! estimate is the mean of that mixture, its covariance and bands those of the mixture.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -37,9 +40,11 @@ const LN_SPREAD: [f64; 2] = [-2.13, 0.98];
 /// Step of ln τ, and how many of them from the mean down and up.
 const STEP: f64 = 0.35;
 const STEPS: [i32; 2] = [-9, 9];
+/// Shares η of the variance that neighbours do not share.
+const INDEPENDENT: [f64; 3] = [0.0, 0.1, 0.3];
 /// Share of surfaces of one reflectance throughout.
 const FLAT: f64 = 0.02;
-/// What is less likely than the likeliest pair by more than e to this counts for nothing.
+/// What is less likely than the likeliest by more than e to this counts for nothing.
 const NEGLIGIBLE: f64 = 6.0;
 /// How often it is done again with what hangs together, and a change of that which makes no difference.
 const MOST_AGAIN: usize = 3;
@@ -65,10 +70,25 @@ struct Length {
     vkv: DMatrix<f64>,
 }
 
-/// A pair (τ, ℓ) of the lattice.
-struct Pair {
-    length: usize,
+/// τ and η.
+#[derive(Clone, Copy)]
+struct Variance {
     spread: f64,
+    independent: f64,
+}
+
+impl Variance {
+    /// τ², of it what neighbours share and what they do not.
+    fn parts(self) -> [f64; 2] {
+        let whole = self.spread * self.spread;
+        [whole * (1.0 - self.independent), whole * self.independent]
+    }
+}
+
+/// A triple (τ, ℓ, η) of the lattice.
+struct Triple {
+    length: usize,
+    variance: Variance,
     /// ln of evidence times prior.
     weight: f64,
 }
@@ -111,9 +131,9 @@ fn with_alike(
     let coordinates = Coordinates::new(Method::JointGp, problem, options, unit, alike)?;
     let seen = Seen::new(&coordinates, unit);
     let prior = Exponential::new(problem);
-    let (lengths, pairs, evidence) = seen.lattice(&prior, problem.control)?;
-    let mut found = seen.mixture(&prior, &lengths, &pairs, options.bands)?;
-    let best = &pairs[0];
+    let (lengths, triples, evidence) = seen.lattice(&prior, problem.control)?;
+    let mut found = seen.mixture(&prior, &lengths, &triples, options.bands)?;
+    let best = &triples[0];
     let mut recovered =
         coordinates.finish(Method::JointGp, problem, options, found.mean.clone())?;
     coordinates.add_errors(problem, &mut recovered, found.covariance.as_ref());
@@ -123,7 +143,7 @@ fn with_alike(
     recovered.effective_rank = found.freedom;
     let scale = recovered.nuisance.as_ref().and_then(|n| n.scale);
     recovered.parameter = Parameter::GaussianProcess {
-        spread: best.spread * (unit / scale.unwrap_or(1.0)),
+        spread: best.variance.spread * (unit / scale.unwrap_or(1.0)),
         length: lengths[best.length].length,
     };
     recovered.choice = Choice::Averaged;
@@ -134,7 +154,7 @@ fn with_alike(
     Ok(recovered)
 }
 
-/// The mixture of all pairs.
+/// The mixture of all triples.
 struct Mixture {
     mean: DVector<f64>,
     standard_error: DVector<f64>,
@@ -170,10 +190,14 @@ impl Seen {
         }
     }
 
-    /// S of a pair; none where rounding makes it indefinite.
-    fn factor(&self, of: &Length, spread: f64) -> Option<Cholesky> {
+    /// S of a triple; none where rounding makes it indefinite.
+    fn factor(&self, of: &Length, variance: Variance) -> Option<Cholesky> {
         let level = self.v.column_sum();
-        let mut s = &of.vkv * (spread * spread) + &self.errors;
+        let [alike, own] = variance.parts();
+        let mut s = &of.vkv * alike + &self.errors;
+        for i in 0..s.nrows() {
+            s[(i, i)] += own;
+        }
         s.ger(MEAN * MEAN, &level, &level, 1.0);
         Cholesky::new(&s)
     }
@@ -184,9 +208,9 @@ impl Seen {
         DMatrix::from_column_slice(left.len(), 1, left.as_slice())
     }
 
-    /// ln of p(y | τ, ℓ) over that of a picture that fits y exactly.
-    fn evidence(&self, of: &Length, spread: f64, left: &DMatrix<f64>) -> f64 {
-        let Some(factor) = self.factor(of, spread) else {
+    /// ln of p(y | τ, ℓ, η) over that of a picture that fits y exactly.
+    fn evidence(&self, of: &Length, variance: Variance, left: &DMatrix<f64>) -> f64 {
+        let Some(factor) = self.factor(of, variance) else {
             return f64::NEG_INFINITY;
         };
         let chi2 = factor.forward(left.clone()).norm_squared();
@@ -194,22 +218,21 @@ impl Seen {
     }
 
     /// The same times p(τ), but for the prior's common factor.
-    fn weight(&self, of: &Length, spread: f64, left: &DMatrix<f64>) -> f64 {
-        let z = (libm::log(spread) - LN_SPREAD[0]) / LN_SPREAD[1];
-        self.evidence(of, spread, left) - 0.5 * z * z
+    fn weight(&self, of: &Length, variance: Variance, left: &DMatrix<f64>) -> f64 {
+        let z = (libm::log(variance.spread) - LN_SPREAD[0]) / LN_SPREAD[1];
+        self.evidence(of, variance, left) - 0.5 * z * z
     }
 
-    /// The pairs that count, likeliest first, with weights that sum to 1, and ln of p(y) over that
+    /// The triples that count, likeliest first, with weights that sum to 1, and ln of p(y) over that
     /// of a picture that fits y exactly.
     fn lattice(
         &self,
         prior: &Exponential,
         control: Control<'_>,
-    ) -> Result<(Vec<Length>, Vec<Pair>, f64), RecoveryError> {
+    ) -> Result<(Vec<Length>, Vec<Triple>, f64), RecoveryError> {
         let left = self.left();
-        let spread = |step: i32| libm::exp(LN_SPREAD[0] + STEP * f64::from(step));
         let [least, most] = STEPS;
-        let (mut lengths, mut pairs, mut best) = (Vec::new(), Vec::new(), f64::NEG_INFINITY);
+        let (mut lengths, mut triples, mut best) = (Vec::new(), Vec::new(), f64::NEG_INFINITY);
         let mut start = 0;
         let tried = prior.lengths();
         let count = tried.len();
@@ -219,71 +242,81 @@ impl Seen {
             let vk = product(&self.v, &prior.matrix(length));
             let vkv = product(&vk, &self.v.transpose());
             let of = Length { length, vk, vkv };
-            let mut known: Vec<(i32, f64)> = Vec::new();
-            let mut at = |step: i32| {
-                let weight = self.weight(&of, spread(step), &left);
-                known.push((step, weight));
-                weight
-            };
-            // From the best spread of the length before down and up as far as it counts.
-            let mut top = at(start);
-            for way in [-1, 1] {
-                let mut step = start + way;
-                let mut before = top;
-                while (least..=most).contains(&step) {
-                    let weight = at(step);
-                    top = top.max(weight);
-                    if weight < before && weight < top.max(best) - NEGLIGIBLE {
-                        break;
+            for independent in INDEPENDENT {
+                let variance = |step: i32| Variance {
+                    spread: libm::exp(LN_SPREAD[0] + STEP * f64::from(step)),
+                    independent,
+                };
+                let mut known: Vec<(i32, f64)> = Vec::new();
+                let mut at = |step: i32| {
+                    let weight = self.weight(&of, variance(step), &left);
+                    known.push((step, weight));
+                    weight
+                };
+                // From the best spread before down and up as far as it counts.
+                let mut top = at(start);
+                for way in [-1, 1] {
+                    let mut step = start + way;
+                    let mut before = top;
+                    while (least..=most).contains(&step) {
+                        let weight = at(step);
+                        top = top.max(weight);
+                        if weight < before && weight < top.max(best) - NEGLIGIBLE {
+                            break;
+                        }
+                        before = weight;
+                        step += way;
                     }
-                    before = weight;
-                    step += way;
                 }
+                best = best.max(top);
+                if let Some((step, _)) = known.iter().find(|known| known.1 == top) {
+                    start = *step;
+                }
+                triples.extend(known.into_iter().map(|(step, weight)| Triple {
+                    length: lengths.len(),
+                    variance: variance(step),
+                    weight,
+                }));
             }
-            best = best.max(top);
-            if let Some((step, _)) = known.iter().find(|known| known.1 == top) {
-                start = *step;
-            }
-            pairs.extend(known.into_iter().map(|(step, weight)| Pair {
-                length: lengths.len(),
-                spread: spread(step),
-                weight,
-            }));
             lengths.push(of);
         }
         let spreads: f64 = (least..=most)
             .map(|step| (f64::from(step) * STEP / LN_SPREAD[1]).powi(2))
             .map(|z2| libm::exp(-0.5 * z2))
             .sum();
-        let all = spreads * count as f64;
+        let all = spreads * (count * INDEPENDENT.len()) as f64;
         if let Some(of) = lengths.first() {
             let share = libm::log(FLAT / (1.0 - FLAT) * all);
-            let weight = self.evidence(of, 0.0, &left) + share;
-            best = best.max(weight);
-            pairs.push(Pair {
-                length: 0,
+            let variance = Variance {
                 spread: 0.0,
+                independent: 0.0,
+            };
+            let weight = self.evidence(of, variance, &left) + share;
+            best = best.max(weight);
+            triples.push(Triple {
+                length: 0,
+                variance,
                 weight,
             });
         }
         if !best.is_finite() {
             return Err(RecoveryError::NO_DIRECTION);
         }
-        pairs.retain(|pair| pair.weight > best - NEGLIGIBLE);
-        pairs.sort_by(|a, b| b.weight.total_cmp(&a.weight));
-        let sum: f64 = pairs.iter().map(|p| libm::exp(p.weight - best)).sum();
-        for pair in &mut pairs {
-            pair.weight = libm::exp(pair.weight - best) / sum;
+        triples.retain(|triple| triple.weight > best - NEGLIGIBLE);
+        triples.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+        let sum: f64 = triples.iter().map(|t| libm::exp(t.weight - best)).sum();
+        for triple in &mut triples {
+            triple.weight = libm::exp(triple.weight - best) / sum;
         }
         let evidence = best + libm::log((1.0 - FLAT) * sum / all);
-        Ok((lengths, pairs, evidence))
+        Ok((lengths, triples, evidence))
     }
 
     fn mixture(
         &self,
         prior: &Exponential,
         lengths: &[Length],
-        pairs: &[Pair],
+        triples: &[Triple],
         confidence: Option<f64>,
     ) -> Result<Mixture, RecoveryError> {
         let n = self.v.ncols();
@@ -294,44 +327,51 @@ impl Seen {
         let mut parts: Vec<(f64, DVector<f64>, DVector<f64>)> = Vec::new();
         let mut freedom = 0.0;
         let mut alike: Option<(usize, DMatrix<f64>)> = None;
-        let mut order: Vec<&Pair> = pairs.iter().collect();
-        order.sort_by_key(|pair| pair.length);
-        for pair in order {
-            let (of, tau2) = (&lengths[pair.length], pair.spread * pair.spread);
+        let mut order: Vec<&Triple> = triples.iter().collect();
+        order.sort_by_key(|triple| triple.length);
+        for triple in order {
+            let (of, [shared, own]) = (&lengths[triple.length], triple.variance.parts());
             let factor = self
-                .factor(of, pair.spread)
+                .factor(of, triple.variance)
                 .ok_or(RecoveryError::NO_DIRECTION)?;
-            let mut vk = &of.vk * tau2;
+            let mut vk = &of.vk * shared + &self.v * own;
             for mut column in vk.column_iter_mut() {
                 column.axpy(MEAN * MEAN, &level, 1.0);
             }
             let towards = factor.forward(vk);
-            let own = factor.forward(left.clone());
-            let found = (tr_product(&towards, &own).column(0)).add_scalar(MEAN);
+            let seen = factor.forward(left.clone());
+            let found = (tr_product(&towards, &seen).column(0)).add_scalar(MEAN);
             let variance = DVector::from_fn(n, |j, _| {
-                (tau2 + MEAN * MEAN - towards.column(j).norm_squared()).max(0.0)
+                (shared + own + MEAN * MEAN - towards.column(j).norm_squared()).max(0.0)
             });
             // tr(S⁻¹ (S − E)): how much of the data's directions goes into the picture.
             let errors = factor.forward(self.errors.clone());
             let unseen = factor.forward(errors.transpose()).trace();
-            freedom += pair.weight * (self.y.len() as f64 - unseen);
-            mean.axpy(pair.weight, &found, 1.0);
-            square.axpy(pair.weight, &(found.component_mul(&found) + &variance), 1.0);
+            freedom += triple.weight * (self.y.len() as f64 - unseen);
+            mean.axpy(triple.weight, &found, 1.0);
+            square.axpy(
+                triple.weight,
+                &(found.component_mul(&found) + &variance),
+                1.0,
+            );
             if let Some(covariance) = &mut covariance {
-                if alike.as_ref().is_none_or(|(of, _)| *of != pair.length) {
-                    alike = Some((pair.length, prior.matrix(of.length)));
+                if alike.as_ref().is_none_or(|(of, _)| *of != triple.length) {
+                    alike = Some((triple.length, prior.matrix(of.length)));
                 }
                 let k = alike.as_ref().map(|(_, k)| k);
-                let mut own = DMatrix::zeros(n, n);
-                gram_product(&mut own, &towards);
-                *covariance -= own * pair.weight;
+                let mut told = DMatrix::zeros(n, n);
+                gram_product(&mut told, &towards);
+                *covariance -= told * triple.weight;
                 if let Some(k) = k {
-                    *covariance += k * (pair.weight * tau2);
+                    *covariance += k * (triple.weight * shared);
                 }
-                covariance.add_scalar_mut(pair.weight * MEAN * MEAN);
-                covariance.ger(pair.weight, &found, &found, 1.0);
+                for j in 0..n {
+                    covariance[(j, j)] += triple.weight * own;
+                }
+                covariance.add_scalar_mut(triple.weight * MEAN * MEAN);
+                covariance.ger(triple.weight, &found, &found, 1.0);
             }
-            parts.push((pair.weight, found, variance));
+            parts.push((triple.weight, found, variance));
         }
         if let Some(covariance) = &mut covariance {
             covariance.ger(-1.0, &mean, &mean, 1.0);

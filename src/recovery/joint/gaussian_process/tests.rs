@@ -51,7 +51,7 @@ fn one_element_by_hand() {
     }
 }
 
-/// Pictures that are what the method takes them for, spread and length drawn as it says: of all
+/// Pictures that are what the method takes them for, spread, length and independent share drawn as it says: of all
 /// their elements 95 % bands cover 95 %, and z = (ρ̂ − ρ)/σ has the square 1 in the mean. 300 pictures;
 /// elements of one hang together, so the error is taken from the scatter among pictures, five
 /// standard errors.
@@ -76,7 +76,11 @@ fn pictures_of_the_prior_are_covered_as_promised() {
                     (i / 5) as f64 - (j / 5) as f64,
                 )
             };
-            let k = DMatrix::from_fn(25, 25, |i, j| libm::exp(-distance(i, j) / length));
+            let own = [0.0, 0.1, 0.3][(seed / 10 % 3) as usize];
+            let k = DMatrix::from_fn(25, 25, |i, j| {
+                let alike = (1.0 - own) * libm::exp(-distance(i, j) / length);
+                alike + if i == j { own } else { 0.0 }
+            });
             let found = svd(&k).unwrap();
             let root = columns_times(found.u, &found.sigma.map(f64::sqrt));
             let mean = 0.5 + 0.5 * normal();
