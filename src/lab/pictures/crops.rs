@@ -80,19 +80,8 @@ fn pictures_of_leaves_are_near_and_covered() {
             let flat = pictures.iter().map(|p| deviation(p)).sum::<f64>() / n;
             let spread = found.iter().map(|f| (f.1 - share).powi(2)).sum::<f64>();
             let stderr = (spread / (n * (n - 1.0))).sqrt();
-            let below = found
-                .iter()
-                .zip(&pictures)
-                .filter(|(f, p)| f.0 < deviation(p))
-                .count();
-            println!(
-                "ring {half_width}, noise {noise:e}: RMSE {error:.4}, flat {flat:.4}, below it in \
-                 {below} of {n}; covered {:.2} ± {:.2} %",
-                100.0 * share,
-                100.0 * stderr
-            );
             if error >= flat || (share - 0.95).abs() > 0.02 + 3.0 * stderr {
-                short.push((half_width, noise, error, share));
+                short.push((half_width, noise, error, flat, share, stderr));
             }
             shares.push((share, stderr));
         }
@@ -101,11 +90,6 @@ fn pictures_of_leaves_are_near_and_covered() {
     let share = shares.iter().map(|s| s.0).sum::<f64>() / n;
     // The same pictures at each ring and noise: their errors hang together.
     let stderr = shares.iter().map(|s| s.1).sum::<f64>() / n;
-    println!(
-        "covered in the mean: {:.2} ± {:.2} %",
-        100.0 * share,
-        100.0 * stderr
-    );
     assert!(short.is_empty(), "{short:?}");
     assert!(
         (share - 0.95).abs() < 0.02 + 3.0 * stderr,

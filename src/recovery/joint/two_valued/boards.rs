@@ -68,7 +68,6 @@ fn the_search_reaches_what_made_the_photographs() {
                     assert!(patterns.pattern > 0.2 && patterns.sum.converged(), "{told}");
                 }
             }
-            println!("{k} {levels:?} {noise:e}: {count:?} of {DRAWS}");
             let most = DRAWS / 40;
             if count.reached + most < DRAWS || count.levels + most < count.stated {
                 short.push((k, levels, noise, count));
@@ -105,10 +104,6 @@ fn sampled_marginals_are_those_of_all_patterns() {
                     .unwrap();
                 let [all, own] = [&all, &sampled].map(|sum| sum.moments.light());
                 let off = (own - &all).amax();
-                println!(
-                    "{noise} {seed} {given:?}: {off:.1e} of {all:.2?} {:?}",
-                    sampled.sum
-                );
                 largest = largest.max(off);
             }
         }
