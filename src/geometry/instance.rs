@@ -103,6 +103,12 @@ impl Instance {
         self.facets.as_deref()
     }
 
+    /// How many facets it is cut into, or its triangles where it is not cut.
+    pub fn facet_count(&self) -> usize {
+        let triangles = self.mesh.triangles().len();
+        self.facets().map_or(triangles, |f| f.all().len())
+    }
+
     /// Corners of a facet in the scene.
     pub fn facet_corners(&self, facet: &Facet) -> [DVec3; 3] {
         let place = |w| self.mesh.place(facet.triangle, w);

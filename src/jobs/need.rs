@@ -28,7 +28,7 @@ pub struct Need {
     spots: f64,
     elements: f64,
     orders: f64,
-    /// Surfaces, and cells of their textures.
+    /// Surfaces, cells of their textures, and facets of meshes.
     surfaces: f64,
     cells: f64,
     wide: bool,
@@ -55,7 +55,7 @@ impl Need {
         };
         let cells = scene.surfaces.iter().map(|s| {
             let faces = match &s.shape {
-                Shape::Instance(_) => 1.0,
+                Shape::Instance(body) => body.facet_count() as f64,
                 _ => 0.0,
             };
             let [nu, nv] = s.albedo.smooth_cells();
@@ -374,6 +374,7 @@ pub fn photographs(scene: &Scene, matrices: f64) -> Result<(), NoRoom> {
 /// # Errors
 /// [`NoRoom`].
 pub fn study(scene: &Scene) -> Result<(), NoRoom> {
+    frames(scene)?;
     let bytes = |need: &Need| {
         let traced = 7.0 * need.part(need.spots) + PIXEL * need.pixels;
         let trials = need.threads * 8.0 * 8.0 * need.entries();

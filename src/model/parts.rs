@@ -322,10 +322,7 @@ fn folded(n: usize, square: &[([f64; 2], f64)]) -> Vec<([f64; 3], f64)> {
 /// Cells of a hidden surface within which it is smooth: of its texture, or the triangles.
 fn cells(surface: &Surface) -> usize {
     match &surface.shape {
-        Shape::Instance(body) if !body.is_exact_patch() => {
-            let triangles = body.mesh().triangles().len();
-            body.facets().map_or(triangles, |f| f.all().len())
-        }
+        Shape::Instance(body) if !body.is_exact_patch() => body.facet_count(),
         _ => surface.albedo.smooth_cells().iter().product(),
     }
 }

@@ -7,6 +7,7 @@ use super::error::{Fault, Step, keys};
 use super::file::{MeshTable, ScaleTable};
 use super::files::{Files, LARGEST};
 use super::mesh::{self, Defects, Generator, Triangles};
+use super::room::refuse_larger;
 use super::surface::Surface;
 use crate::geometry::{DAffine3, DQuat, DVec3, Instance, Mesh, Shape, Side};
 
@@ -14,6 +15,12 @@ use crate::geometry::{DAffine3, DQuat, DVec3, Instance, Mesh, Shape, Side};
 const FACES: u64 = 20_000;
 /// More are not made, of all meshes of a scene together.
 const MOST_FACES: u64 = 20_000_000;
+
+/// Bytes that a triangle takes while its mesh is made, upper bound: as it is read or made, its box
+/// and its share of the trees over the boxes. Measured: 550 of a bust, 460 of a square.
+const FACE: f64 = 640.0;
+/// Bytes that a byte of a mesh file takes while it is read.
+const READ: f64 = 8.0;
 
 /// What meshes share: two surfaces that name one mesh at one stretch use one copy, and one tree.
 #[derive(Debug, Default)]
@@ -181,6 +188,7 @@ impl Meshes {
                 return Err(Fault::new(keys![], cause, cure));
             }
         };
+        refuse_faces(triangles.triangles.len()).map_err(|f| f.within([at.clone()]))?;
         for p in &mut triangles.positions {
             *p *= stretch.unwrap_or(DVec3::ONE);
         }
@@ -220,8 +228,15 @@ impl Meshes {
             let cure = format!("use 1 to {MOST_FACES}, for all meshes of the scene together");
             return Err(Fault::new(keys!["faces"], cause, cure));
         }
+        refuse_faces(faces as usize).map_err(|f| f.within(keys!["faces"]))?;
         Ok(generator.triangles(faces as usize))
     }
+}
+
+/// Refuses a mesh of so many triangles if it does not fit into memory.
+fn refuse_faces(faces: usize) -> Result<(), Fault> {
+    let what = format!("a mesh of {faces} triangles");
+    refuse_larger(&what, FACE * faces as f64, "use fewer triangles")
 }
 
 /// The rotation by `degrees` about a unit vector: q = (axis·sin ½φ, cos ½φ).
@@ -234,6 +249,9 @@ pub(super) fn rotation(axis: DVec3, degrees: f64) -> DQuat {
 fn read(name: &str, files: &mut Files) -> Result<Triangles, Fault> {
     let fault = |(cause, cure): (String, String)| Fault::new(keys!["file"], cause, cure);
     let bytes = files.bytes(name, LARGEST).map_err(fault)?;
+    let what = format!("mesh `{name}` of {} bytes", bytes.len());
+    refuse_larger(&what, READ * bytes.len() as f64, "use fewer triangles")
+        .map_err(|f| f.within(keys!["file"]))?;
     let folder = name.rsplit_once('/').map_or("", |(folder, _)| folder);
     let mut beside = |other: &str| {
         let path = match folder {

@@ -35,6 +35,7 @@ mod pieces;
 mod quantity;
 pub mod reference;
 mod replaced;
+mod room;
 mod sensor;
 mod shining;
 pub mod spots;

@@ -194,6 +194,22 @@ fn of_piece(texture: &Texture, piece: &Piece) -> f64 {
 /// Facets of one mesh; one that would have more is not cut.
 const MOST_FACETS: usize = 1 << 20;
 
+/// Bytes that a facet takes while a mesh is cut into facets, upper bound.
+const FACET: f64 = 256.0;
+
+/// Bytes that cutting a mesh into [`facets`] takes at most.
+pub(super) fn facets_need(body: &Instance, texture: &Texture) -> f64 {
+    let Some(uv) = body.mesh().uv().filter(|uv| uv.len() <= MOST_FACETS) else {
+        return 0.0;
+    };
+    if matches!(texture, Texture::Constant(_)) || body.is_exact_patch() {
+        return 0.0;
+    }
+    let grid = Grid::of_texture(texture);
+    let pieces: f64 = uv.iter().map(|uv| 2.0 * grid.pieces(uv)).sum();
+    FACET * pieces.min(2.0 * MOST_FACETS as f64)
+}
+
 /// A mesh's triangles cut along the edges of its texture, so that each part is smooth; `None` where
 /// nothing is cut and all is one cell, where the mesh is a patch with cells of its own, or where
 /// there would be too many.

@@ -6,6 +6,8 @@ use super::error::{Fault, keys};
 use super::file::{ElementsTable, Sides, SurfaceTable};
 use super::files::Files;
 use super::material::Material;
+use super::pieces::facets_need;
+use super::room::refuse_larger;
 use super::surface::{Division, Role, Surface};
 use super::texture::AlbedoTable;
 use super::warning::Warning;
@@ -227,7 +229,24 @@ impl Surface {
             division,
         };
         coordinates::refuse_unfit(&surface, sources.bare.as_deref())?;
+        surface.refuse_large()?;
         Ok(surface.in_facets())
+    }
+
+    /// Refuses a mesh whose facets do not fit into memory.
+    fn refuse_large(&self) -> Result<(), Fault> {
+        let Shape::Instance(body) = &self.shape else {
+            return Ok(());
+        };
+        let what = format!(
+            "surface `{}`, cut along the edges of its texture,",
+            self.name
+        );
+        refuse_larger(
+            &what,
+            facets_need(body, &self.albedo),
+            "use a coarser texture",
+        )
     }
 }
 

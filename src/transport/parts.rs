@@ -69,10 +69,8 @@ impl Parts {
     pub(super) fn divided(scene: &Scene, shapes: &[ShapeId], side: usize) -> Self {
         Self::new(scene, shapes, |surface| match &surface.shape {
             Shape::Instance(body) if !body.is_patch() => {
-                let triangles = body.mesh().triangles().len();
-                let count = body.facets().map_or(triangles, |f| f.all().len());
                 // Large triangles are divided along v too.
-                let across = if count < side * side / ACROSS {
+                let across = if body.facet_count() < side * side / ACROSS {
                     ACROSS
                 } else {
                     1

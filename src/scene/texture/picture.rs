@@ -4,8 +4,8 @@ use super::file::{Filter, PictureChannel, VariedTable};
 use super::{Bilinear, Cells, Files, MOST_CELLS, Texture, Wrap, albedo};
 use crate::image::{self, Channel, Encoding, Image, MOST_PIXELS, Transfer};
 use crate::scene::error::{Fault, keys};
+use crate::scene::room::refuse_larger;
 use crate::scene::target::Target;
-use crate::store::Room;
 
 /// Bytes of a value.
 const NUMBER: usize = 8;
@@ -96,16 +96,8 @@ pub(super) fn from_target(name: &str, table: &VariedTable) -> Result<Texture, Fa
 fn refuse_large(what: &str, [width, height]: [usize; 2], made: usize) -> Result<(), Fault> {
     let pixels = width.saturating_mul(height).min(MOST_PIXELS);
     let need = ((made + 2 * NUMBER) * pixels) as f64;
-    let Some(room) = Room::now(0).filter(|room| need > room.bytes) else {
-        return Ok(());
-    };
-    let [need, bytes] = [need, room.bytes].map(|bytes| bytes / (1u64 << 30) as f64);
-    let cause = format!(
-        "{what} of {width} × {height} pixels needs up to {need:.2} GiB of memory, and {bytes:.2} GiB may be taken ({})",
-        room.by
-    );
-    let cure = "scale it down, free some memory, or use a larger machine";
-    Err(Fault::new(keys![], cause, cure))
+    let what = format!("{what} of {width} × {height} pixels");
+    refuse_larger(&what, need, "scale it down")
 }
 
 /// Linear values in \[0, 1\], row by row from the top, as albedo: the lowest row first.
