@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::console::Console;
 use super::failure::Failure;
-use super::run_folder::{LEFT_OUT, SCENE, TAILS};
+use super::run_folder::{IMPORT, IMPORT_PNG, LEFT_OUT, SCENE, TAILS};
 use crate::folder::Record;
 use crate::jobs::need;
 use crate::matrix::{Matrix, npy};
@@ -40,6 +40,12 @@ pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), 
         ));
     }
     record.check_scene(dir, &scene)?;
+    // No other command reads how photographs were imported.
+    for name in [IMPORT, IMPORT_PNG] {
+        if dir.join(name).exists() {
+            record.check(dir, name)?;
+        }
+    }
     Ok((scene, record))
 }
 

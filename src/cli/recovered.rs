@@ -105,12 +105,14 @@ pub(super) fn write(
 ) -> Result<(), Failure> {
     ensure_writable(folder)?;
     remove_abandoned(folder)?;
-    remove_named(folder, &["picard-joint.csv", "picard-joint.svg"])?;
+    let mut stale = vec!["picard-joint.csv", "picard-joint.svg"];
     for picard in picards {
         for (name, text) in report::finding_files(&picard.describe()) {
+            stale.retain(|old| *old != name);
             output::write(&folder.join(name), text)?;
         }
     }
+    remove_named(folder, &stale)?;
     let mut surfaces: Vec<&str> = Vec::new();
     for object in objects {
         if !surfaces.contains(&object.surface.as_str()) {

@@ -13,6 +13,7 @@ use super::process::{pool, version};
 use super::run_folder::RunFolder;
 use super::tasks::Tasks;
 use super::{Outcome, progress};
+use crate::folder::ItemRecord;
 use crate::lab::finding::Finding;
 use crate::lab::published::{
     Item, ItemSummary, ReproducePlan, ReproduceTasks, overview, reproduce,
@@ -39,6 +40,7 @@ pub(super) fn execute(args: &ReproduceArgs, console: Console) -> Result<Outcome,
         if finished(&args.output, item, &wanted).is_some() {
             kept += 1;
         } else {
+            tell_damage(&args.output, item, console);
             match pool.install(|| reproduce(item, &plan, control())) {
                 Ok(found) => leave(&args.output, item, &found, &plan)?,
                 Err(e) => {
@@ -109,20 +111,15 @@ fn write(
         write_whole(&folder.join(name), |w| w.write_all(bytes))?;
     }
     let summary = summary(files.iter().map(|f| f.0.clone()).collect());
-    let path = folder.join(format!("{}.json", summary.item));
-    output::write(&path, output::json(&summary)?)
-}
-
-/// What the folder says of an item.
-fn summary(folder: &Path, item: Item) -> Option<ItemSummary> {
-    let text = store::read(&folder.join(format!("{item}.json")), LARGEST).ok()?;
-    serde_json::from_slice(&text).ok()
+    Ok(ItemRecord::write(folder, summary)?)
 }
 
 /// Refuses to replace an item that was computed with other settings.
 fn refuse_other(folder: &Path, item: Item, plan: &ReproducePlan) -> Result<(), Failure> {
     let wanted = plan.settings(item);
-    let Some(there) = summary(folder, item).filter(|there| there.settings != wanted) else {
+    let there = ItemRecord::read(folder, item).filter(|there| !there.is_damaged());
+    let there = there.map(|there| there.summary);
+    let Some(there) = there.filter(|there| there.settings != wanted) else {
         return Ok(());
     };
     let cause = format!(
@@ -134,14 +131,33 @@ fn refuse_other(folder: &Path, item: Item, plan: &ReproducePlan) -> Result<(), F
     Err(Failure::new(cause, cure))
 }
 
-/// Most bytes of a file of an item: 64 MiB.
-const LARGEST: u64 = 64 << 20;
-
-/// The summary of an item that was computed with the same settings and whose files are all there.
+/// The summary of an item that was computed with the same settings; neither it nor any of its files
+/// has changed.
 fn finished(folder: &Path, item: Item, settings: &str) -> Option<ItemSummary> {
-    let found = summary(folder, item)?;
-    let whole = found.files.iter().all(|f| folder.join(f).is_file());
-    (whole && found.settings == settings && found.item == item.name()).then_some(found)
+    let found = ItemRecord::read(folder, item)?;
+    let whole = !found.is_damaged() && found.changed(folder).is_none();
+    let summary = found.summary;
+    (whole && summary.settings == settings && summary.item == item.name()).then_some(summary)
+}
+
+/// Says which file of an item has changed since it was finished.
+fn tell_damage(folder: &Path, item: Item, console: Console) {
+    let Some(found) = ItemRecord::read(folder, item) else {
+        return;
+    };
+    let own = format!("{item}.json");
+    let changed = if found.is_damaged() {
+        Some(own.as_str())
+    } else {
+        found.changed(folder)
+    };
+    if let Some(name) = changed {
+        let path = folder.join(name);
+        console.say(format!(
+            "warning: {} is not what was written; {item} is computed again",
+            path.display()
+        ));
+    }
 }
 
 /// The pages of every item that is finished, asked for or not.
@@ -152,7 +168,7 @@ fn pages(folder: &Path, plan: &ReproducePlan) -> Result<(), Failure> {
         plan,
         version: version(),
     };
-    let read = |file: &str| store::read(&folder.join(file), LARGEST).ok();
+    let read = |file: &str| store::read(&folder.join(file), ItemRecord::LARGEST).ok();
     let html = report::reproduction_html(&found, settings, read);
     for (name, text) in [
         ("reproduction.md", report::reproduction_markdown(&found)),

@@ -14,6 +14,7 @@
 
 mod error;
 mod frames;
+mod item;
 pub mod names;
 mod origin;
 mod record;
@@ -21,6 +22,7 @@ mod whole;
 
 pub use error::FolderError;
 pub use frames::{columns, frame, frame_max, refuse_beyond_f32};
+pub use item::ItemRecord;
 pub use origin::{Origin, Photographs};
 pub use record::{Record, Written};
 pub use whole::{Run, finish, read_run, write_copies, write_run, write_scene};

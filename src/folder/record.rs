@@ -59,7 +59,7 @@ pub struct Written {
 
 impl Written {
     /// The file `path` as it is.
-    fn of(path: &Path) -> Result<Self, ReadError> {
+    pub(super) fn of(path: &Path) -> Result<Self, ReadError> {
         Ok(Self {
             bytes: store::length(path)?,
             sha256: store::digest(path)?,
@@ -67,9 +67,14 @@ impl Written {
     }
 
     /// Whether the file `path` is still this; one of another length is not read.
-    fn is_at(&self, path: &Path) -> Result<bool, ReadError> {
+    pub(super) fn is_at(&self, path: &Path) -> Result<bool, ReadError> {
         Ok(store::length(path)? == self.bytes && store::digest(path)? == self.sha256)
     }
+}
+
+/// SHA-256 of a value as JSON.
+pub(super) fn seal(value: &impl Serialize) -> Result<String, serde_json::Error> {
+    Ok(hex(&Sha256::digest(serde_json::to_vec(value)?)))
 }
 
 impl Record {
@@ -151,7 +156,7 @@ impl Record {
             digest: None,
             ..self.clone()
         };
-        record.digest = Some(hex(&Sha256::digest(serde_json::to_vec(&record)?)));
+        record.digest = Some(seal(&record)?);
         Ok(record)
     }
 

@@ -549,3 +549,20 @@ fn public_photographs_are_imported_in_one_command() {
     let told = w.phicam(line).exits(1);
     assert!(told.stdout.contains("Nothing says"), "{}", told.account());
 }
+
+/// How photographs were imported is vouched for, as they are.
+#[test]
+fn a_changed_account_is_found() {
+    let w = with_photographs();
+    let _ = w.phicam(PLAIN).exits(0);
+    for name in ["out/import.json", "out/import.png"] {
+        let own = w.read(name);
+        let mut changed = own.clone();
+        changed[own.len() / 2] ^= 1;
+        w.write(name, changed);
+        let ended = w.phicam("recover out --method pinv -o mine").exits(2);
+        assert!(ended.stderr.contains(name), "{}", ended.account());
+        w.write(name, own);
+    }
+    let _ = w.phicam("recover out --method pinv -o mine").exits(0);
+}

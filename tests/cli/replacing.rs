@@ -200,6 +200,24 @@ fn the_deviations_of_a_run_outlive_a_model_that_is_not_written() {
     assert!(!workspace.path("done/model/z.npy").exists());
 }
 
+/// What a recovery has left stays until the same of a new one is whole.
+#[test]
+fn the_files_of_a_recovery_outlive_one_that_is_not_written() {
+    let workspace = Workspace::with_scenes();
+    let _ = workspace.phicam(QUICK).exits(0);
+    let line = "recover done --method joint -o mine";
+    let _ = workspace.phicam(line);
+    let before = workspace.contents("mine");
+    assert!(
+        before.contains_key("picard-joint.csv"),
+        "{:?}",
+        before.keys()
+    );
+    let ended = workspace.phicam_after("ulimit -f 1", line).exits(2);
+    assert!(ended.stderr.contains("picard"), "{}", ended.account());
+    assert_same(&before, &workspace.contents("mine"), line);
+}
+
 #[test]
 fn files_are_not_overwritten_without_force() {
     let workspace = Workspace::with_scenes();
