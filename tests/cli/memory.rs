@@ -40,6 +40,13 @@ fn frames_that_no_file_holds_are_refused_at_once() {
         "scene show huge.toml",
         "render huge.toml -o out",
         "run huge.toml -o out",
+        "study budget huge.toml -o out",
+        "study tolerance huge.toml -o out",
+        "study convergence huge.toml -o out",
+        "study power huge.toml -o out",
+        "study noise huge.toml -o out",
+        "study coverage huge.toml -o out",
+        "study spots huge.toml -o out",
     ] {
         workspace.refuses(
             line,
@@ -115,6 +122,48 @@ fn meshes_and_pictures_are_refused_before_they_are_taken() {
     workspace.refuses_within(ONE_GIB, line, &["as text", "GiB may be taken"]);
 }
 
+/// Meshes are counted before they are made, read or cut along the edges of a texture, which takes
+/// twenty times what the file has.
+#[test]
+fn meshes_of_scenes_are_refused_before_they_are_taken() {
+    let workspace = Workspace::new();
+    let _ = workspace
+        .phicam("target sphere --faces 3000000 -o sphere.ply")
+        .exits(0);
+    let scene = |mesh: &str, albedo: &str| {
+        altered(&TINY)
+            + &format!(
+                "\n[[surface]]\nname = \"body\"\nrole = \"occluder\"\nmesh = {{ {mesh}, scale = 0.1, translate = [1, 1, 1] }}\nmaterial = {{ lambertian = {albedo} }}\n"
+            )
+    };
+    let words = ["triangles", "GiB may be taken", "use fewer triangles"];
+    for mesh in [
+        "file = \"sphere.ply\"",
+        "generate = \"sphere\", faces = 3000000",
+    ] {
+        workspace.write("body.toml", scene(mesh, "0.5"));
+        for line in [
+            "scene check body.toml",
+            "render body.toml -o out",
+            "model body.toml -o out",
+            "study budget body.toml -o out",
+        ] {
+            workspace.refuses_within(ONE_GIB, line, &words);
+        }
+    }
+    let board = "{ checkerboard = [1000, 1000], dark = 0.0, light = 1.0 }";
+    workspace.write(
+        "cut.toml",
+        scene("generate = \"rectangle\", faces = 2", board),
+    );
+    let words = [
+        "surface `body`, cut along",
+        "GiB may be taken",
+        "a coarser texture",
+    ];
+    workspace.refuses_within(ONE_GIB / 2, "scene check cut.toml", &words);
+}
+
 /// What would fit, does: the number of pixels that the refusal names is rendered in the same
 /// memory.
 #[test]
@@ -147,6 +196,13 @@ fn threads_without_room_are_refused() {
     let _ = workspace
         .phicam_within(ONE_GIB / 2, "scene check tiny.toml")
         .exits(0);
+}
+
+/// How many processes want to run for each that can, at least 1: so much longer all of them take.
+fn busy() -> f64 {
+    let load = std::fs::read_to_string("/proc/loadavg").unwrap();
+    let load: f64 = load.split(' ').next().unwrap().parse().unwrap();
+    (load / std::thread::available_parallelism().unwrap().get() as f64).max(1.0)
 }
 
 /// Ctrl-C in the midst of a million pixels ends the process within two seconds, with the code of
@@ -189,7 +245,7 @@ fn ctrl_c_is_answered_while_a_scene_is_prepared() {
         let words = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(130), "{estimator}: {words}");
         assert!(words.contains("stopped"), "{estimator}: {words}");
-        let answer = sent.elapsed();
-        assert!(answer < Duration::from_secs(3), "{estimator}: {answer:?}");
+        let (answer, most) = (sent.elapsed(), Duration::from_secs(2).mul_f64(busy()));
+        assert!(answer < most, "{estimator}: {answer:?} of {most:?}");
     }
 }
