@@ -154,7 +154,7 @@ fn meshes_of_scenes_are_refused_before_they_are_taken() {
     let board = "{ checkerboard = [1000, 1000], dark = 0.0, light = 1.0 }";
     workspace.write(
         "cut.toml",
-        scene("generate = \"rectangle\", faces = 2", board),
+        scene("generate = \"sphere\", faces = 2000", board),
     );
     let words = [
         "surface `body`, cut along",

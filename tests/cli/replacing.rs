@@ -213,8 +213,14 @@ fn the_files_of_a_recovery_outlive_one_that_is_not_written() {
         "{:?}",
         before.keys()
     );
-    let ended = workspace.phicam_after("ulimit -f 1", line).exits(2);
-    assert!(ended.stderr.contains("picard"), "{}", ended.account());
+    // A folder where the first figure is to be.
+    let obstacle = workspace.path("mine/picard.svg");
+    fs::remove_file(&obstacle).unwrap();
+    fs::create_dir(&obstacle).unwrap();
+    let ended = workspace.phicam(line).exits(2);
+    assert!(ended.stderr.contains("picard.svg"), "{}", ended.account());
+    fs::remove_dir(&obstacle).unwrap();
+    workspace.write("mine/picard.svg", &before["picard.svg"]);
     assert_same(&before, &workspace.contents("mine"), line);
 }
 
