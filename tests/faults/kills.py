@@ -124,7 +124,7 @@ def kills(program: Program, share: float) -> int:
                 met += bool(now - before)
                 faults += [f"{lost} is lost" for lost in sorted(before - now)]
                 before = now
-            ended = program(line)
+            ended = program(line, most=1200.0)
             if ended.code not in {0, 1}:
                 faults.append(ended.account())
             faults += [f"{n} has other bytes" for n in differing(place, results)]
