@@ -82,7 +82,7 @@ def outcome(ended: Ended) -> str:
     is_soon = ended.seconds < LONG + SOON or os.getloadavg()[0] > (os.cpu_count() or 1)
     if ended.cut and not ended.crashed and ended.code == STOPPED and is_soon:
         return "at work"
-    return str(ended.code) if ended.is_documented and not ended.cut else f"WRONG: {ended.code}"
+    return str(ended.code) if ended.is_documented else f"WRONG: {ended.code}"
 
 
 def remove(program: Program, names: list[str]) -> None:
