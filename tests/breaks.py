@@ -468,9 +468,9 @@ BREAKS = [
     ),
     Break(
         "A study of occluders counts the directions that traced light tells",
-        "src/lab/occluder/tasks.rs",
-        "sigma.iter().filter(|s| **s * BEFORE > level).count()",
-        "sigma.iter().filter(|s| **s > level).count()",
+        "src/lab/grey.rs",
+        "sigma.iter().filter(|s| **s * BEFORE > *level).count()",
+        "sigma.iter().filter(|s| **s > *level).count()",
         "cli",
         "occluders::the_study_counts_what_traced_light_tells",
         4,
@@ -752,6 +752,9 @@ BREAKS = [
         "if let Some(paint) = told.paint.filter(String::is_empty) {",
         "cli",
         "suspicious::colours_of_a_mesh_are_told_and_not_used",
+        1,
+    ),
+    Break(
         "One photograph of many pixels is reduced strip by strip to its own rows (objective, covariance and rank by hand)",
         "src/recovery/joint/stacked.rs",
         "Some(i) => at(first + i, k),",
@@ -777,6 +780,8 @@ BREAKS = [
         "lib",
         "folder::whole::tests::light_by_bounces_is_read_back",
         1,
+    ),
+    Break(
         "A changed file of a published item is told, and the item computed again",
         "src/folder/item.rs",
         "files.find(|file| !is_whole(file))",
@@ -820,6 +825,24 @@ BREAKS = [
         "cli",
         "memory::frames_that_no_file_holds_are_refused_at_once",
         5,
+    ),
+    Break(
+        "A sweep follows the law of one element (closed form)",
+        "src/lab/grey.rs",
+        "Ok(1.0 - shares.rank / self.model.albedo.len() as f64)",
+        "Ok(1.0 - 0.99 * shares.rank / self.model.albedo.len() as f64)",
+        "cli",
+        "studies::a_sweep_follows_the_law_of_one_element",
+        1,
+    ),
+    Break(
+        "A wall parallel to z is refused for what it is",
+        "src/scene/surface.rs",
+        "(stands(first) && walls.all(stands)).then(|| {",
+        "(stands(first) && walls.any(stands)).then(|| {",
+        "cli",
+        "bad_scenes::a_wall_parallel_to_z",
+        1,
     ),
 ]
 

@@ -220,12 +220,14 @@ mod tests {
     use crate::scene::file::SceneFile;
     use crate::transport::{Budget, Control, Estimator, Sampling, render};
 
-    /// What is read back is what was written: the light of each number of surfaces to the f32 of the
-    /// frames; none of a run without frames; a frame that was changed is refused.
+    /// What is read back is what was written: the light of each number of surfaces to the f32 of
+    /// the frames; none of a run without frames; a frame that was changed is refused.
     #[test]
     fn light_by_bounces_is_read_back() {
-        let mut file = SceneFile::default();
-        file.max_bounces = 5;
+        let mut file = SceneFile {
+            max_bounces: 5,
+            ..SceneFile::default()
+        };
         file.laser.as_mut().unwrap().spots.per_side = Some(2);
         let scene = Scene::new(&file, None).unwrap();
         let plan = Plan {
