@@ -131,8 +131,8 @@
 //! * [`scene`]: what a scene is, and its file format key by key.
 //! * [`transport`]: the integral that is estimated, and how.
 //! * [`model`]: the matrices, and what they leave out.
-//! * [`sensor`]: from the flux to what a camera stores, its noise, and the built-in sensors with their
-//!   sources.
+//! * [`sensor`]: from the flux to what a camera stores, its noise, and the built-in sensors with
+//!   their sources.
 //! * [`photographs`]: from what a real camera has stored to the flux.
 //! * [`lab`]: what "agree" means.
 //! * [`recovery`]: the methods, their parameters, their uncertainty.

@@ -62,6 +62,8 @@ struct Source {
     path: String,
     /// Without comments, strings kept.
     code: String,
+    /// Its lines of comment, each with its number from 1.
+    comments: Vec<(usize, String)>,
 }
 
 impl Source {
@@ -89,8 +91,11 @@ fn sources() -> Vec<Source> {
         .into_iter()
         .map(|p| {
             let text = fs::read_to_string(&p).unwrap();
-            let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
+            let is_comment = |line: &str| line.trim_start().starts_with("//");
+            let code = text.lines().filter(|line| !is_comment(line));
+            let comments = (1..).zip(text.lines()).filter(|(_, line)| is_comment(line));
             Source {
+                comments: comments.map(|(n, line)| (n, line.to_owned())).collect(),
                 path: p
                     .strip_prefix(&root)
                     .unwrap()
@@ -336,6 +341,28 @@ fn the_library_is_silent() {
             "std::env",
         ] {
             assert!(!source.code.contains(word), "{} uses {word}", source.path);
+        }
+    }
+}
+
+/// Comments end at column 100, but for rows of tables, quoted equations and code.
+#[test]
+fn comments_end_at_column_100() {
+    for source in sources() {
+        let mut in_code = false;
+        for (number, line) in source.comments {
+            let text = line
+                .trim_start()
+                .trim_start_matches(['/', '!'])
+                .trim_start();
+            in_code ^= text.starts_with("```");
+            let is_prose = !in_code && !text.starts_with(['|', '>']);
+            let columns = line.chars().count();
+            assert!(
+                columns <= 100 || !is_prose,
+                "{}:{number} has {columns} columns",
+                source.path
+            );
         }
     }
 }

@@ -85,18 +85,18 @@ pub(super) fn tell(objects: &[RecoveredObject], json: bool) -> Result<Outcome, F
     Ok(Outcome::Done)
 }
 
-/// Writes into `folder` METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png where it is known, what the
-/// photographs determine of each element in determined.npy and determined.png, and overview.png with
-/// all of them side by side (no pictures of elements that are the triangles of a mesh); METHOD.texture.png, the reflectance as a texture for a scene, and METHOD.ply, the surface
-/// with it as colours; what is known of the uncertainty in METHOD.stderr.npy (nv × nu), METHOD.light.npy (nv × nu,
-/// probability to be light),
-/// METHOD.covariance.npy and METHOD.resolution.npy (own elements × elements of all surfaces),
-/// METHOD.bias.npy (nv × nu), METHOD.lower.npy and METHOD.upper.npy where bands were asked for;
-/// what was chosen and found beside it in METHOD.choice.json, METHOD.frame_constant.npy and
-/// METHOD.glare.npy (1 × spots), METHOD.frame_gain.npy (2 × spots: ε, its standard errors) and
-/// METHOD.background.npy (pixels × 1);
-/// NAME.csv and NAME.svg of each of `picards`, and no others. Where several surfaces are hidden the
-/// names are METHOD-0, METHOD-1, … in file order.
+/// Writes into `folder` METHOD.npy (nv × nu) and METHOD.png, truth.npy and truth.png where it is
+/// known, what the photographs determine of each element in determined.npy and determined.png, and
+/// overview.png with all of them side by side (no pictures of elements that are the triangles of a
+/// mesh); METHOD.texture.png, the reflectance as a texture for a scene, and METHOD.ply, the surface
+/// with it as colours; what is known of the uncertainty in METHOD.stderr.npy (nv × nu),
+/// METHOD.light.npy (nv × nu, probability to be light), METHOD.covariance.npy and
+/// METHOD.resolution.npy (own elements × elements of all surfaces), METHOD.bias.npy (nv × nu),
+/// METHOD.lower.npy and METHOD.upper.npy where bands were asked for; what was chosen and found
+/// beside it in METHOD.choice.json, METHOD.frame_constant.npy and METHOD.glare.npy (1 × spots),
+/// METHOD.frame_gain.npy (2 × spots: ε, its standard errors) and METHOD.background.npy (pixels ×
+/// 1); NAME.csv and NAME.svg of each of `picards`, and no others. Where several surfaces are hidden
+/// the names are METHOD-0, METHOD-1, … in file order.
 pub(super) fn write(
     folder: &Path,
     scene: Option<&Scene>,
@@ -217,9 +217,9 @@ fn uncertainties(object: &RecoveredObject) -> [(&'static str, Option<Matrix>); 7
     ]
 }
 
-/// What was estimated beside the reflectances of `object`, by the names of its files: b, f and g of a
-/// frame as a row, a of a pixel as a column, as they add to Φcam; ε_l of a frame, whose light has the factor
-/// 1 + ε_l, above its standard error.
+/// What was estimated beside the reflectances of `object`, by the names of its files: b, f and g of
+/// a frame as a row, a of a pixel as a column, as they add to Φcam; ε_l of a frame, whose light has
+/// the factor 1 + ε_l, above its standard error.
 fn beside(object: &RecoveredObject) -> [(&'static str, Option<Matrix>); 5] {
     let found = object.estimated.as_ref();
     let of = |values: fn(&Beside) -> &Option<Vec<f64>>| found.and_then(|b| values(b).as_deref());

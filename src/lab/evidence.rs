@@ -40,8 +40,9 @@ impl Errors {
         }
     }
 
-    /// Those of photographs of `spots` spots, a part `common` of whose variance all spots of a pixel
-    /// have in common: the error of their mean is √(1 + c (l − 1)) times that of independent ones.
+    /// Those of photographs of `spots` spots, a part `common` of whose variance all spots of a
+    /// pixel have in common: the error of their mean is √(1 + c (l − 1)) times that of independent
+    /// ones.
     pub fn of_common(common: f64, spots: usize) -> Self {
         Self::of_photographs(common * spots as f64 > NOTICED)
     }

@@ -237,8 +237,9 @@ impl LeftOver {
     ///
     /// > F = (S − S₀)/(ν₀ − ν) · (N − ν₀)/S₀
     ///
-    /// of what it leaves over, S, and they leave over, S₀, follows the law of that name if the picture
-    /// is right and the noise alike in all entries. Noise that a pixels share is counted a times.
+    /// of what it leaves over, S, and they leave over, S₀, follows the law of that name if the
+    /// picture is right and the noise alike in all entries. Noise that a pixels share is counted a
+    /// times.
     fn refutes(&self, problem: &Problem<'_>, found: &Recovered) -> Option<Fit> {
         let own = squares(problem, found);
         let (sum, used) = (own.sums.iter().sum::<f64>(), found.freedom_used());

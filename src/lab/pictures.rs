@@ -1,5 +1,5 @@
-//! Pictures to recover, drawn by chance, each a square of elements of reflectances 0 to 1; and what is
-//! measured with them.
+//! Pictures to recover, drawn by chance, each a square of elements of reflectances 0 to 1; and what
+//! is measured with them.
 
 use crate::num::stream::{Key, Sampling, Stream};
 
@@ -22,9 +22,10 @@ fn stream(seed: u64, kind: u32) -> Stream {
     Stream::new(Sampling::Pcg, key)
 }
 
-/// Dead leaves (Matheron 1968; statistics of photographs: Lee, Mumford and Huang 2001): discs of even
-/// greys, radii of density r^−3, each over those before it, until all is covered; light that falls off
-/// from a corner by chance; averaged over the elements. Greys spread by `contrast` about ½ on average.
+/// Dead leaves (Matheron 1968; statistics of photographs: Lee, Mumford and Huang 2001): discs of
+/// even greys, radii of density r^−3, each over those before it, until all is covered; light that
+/// falls off from a corner by chance; averaged over the elements. Greys spread by `contrast` about
+/// ½ on average.
 fn leaves(elements: usize, contrast: f64, seed: u64) -> Vec<f64> {
     let random = &mut stream(seed, 1);
     let cells = elements * FINE;
@@ -102,8 +103,8 @@ fn of_levels(light: &[bool], levels: [f64; 2]) -> Vec<f64> {
     light.iter().map(|l| levels[usize::from(*l)]).collect()
 }
 
-/// The generator itself: what is known of dead leaves. Of even greys the variance of a point is 1/12 of
-/// the contrast's square; and elements hang together less, the further apart they are.
+/// The generator itself: what is known of dead leaves. Of even greys the variance of a point is
+/// 1/12 of the contrast's square; and elements hang together less, the further apart they are.
 #[test]
 fn leaves_are_natural() {
     let (elements, pictures) = (16, 60);

@@ -297,8 +297,8 @@ fn signed(x: f64, digits: usize, unit: &str) -> String {
 mod tests {
     use super::*;
 
-    /// A parameter that takes the excess of χ² is the cause; one that leaves it is none, however large
-    /// its fit is against its error.
+    /// A parameter that takes the excess of χ² is the cause; one that leaves it is none, however
+    /// large its fit is against its error.
     #[test]
     fn what_leaves_the_difference_is_no_cause() {
         let deviation = |chi2_per_dof: f64| Deviation {

@@ -111,11 +111,11 @@ const ROUGH: f64 = 1e-4;
 /// surface, over each footprint and over each spot's profile, as far as `extent` asks for it,
 /// refined together until Φcam changes by less than 1e-10, and every entry by less than 1e-7, or
 /// the rules are as large as they may be; where the bound of an entry is then above 1e-5 of it, the
-/// hidden surfaces and the walls are refined further, each by itself. Cells and footprints that come close to each other or to
-/// a spot are cut into smaller ones there. What stands in the way takes its share of each entry
-/// ([`visible`](fn@visible)) where `extent` says so. As in the matrix model light meets three
-/// surfaces, and the hidden ones are Lambertian: one that is not is taken for
-/// [`Surface::lambertian_equivalent`](crate::scene::Surface::lambertian_equivalent).
+/// hidden surfaces and the walls are refined further, each by itself. Cells and footprints that
+/// come close to each other or to a spot are cut into smaller ones there. What stands in the way
+/// takes its share of each entry ([`visible`](fn@visible)) where `extent` says so. As in the matrix
+/// model light meets three surfaces, and the hidden ones are Lambertian: one that is not is taken
+/// for [`Surface::lambertian_equivalent`](crate::scene::Surface::lambertian_equivalent).
 ///
 /// # Errors
 /// [`ModelError::NothingHidden`].

@@ -46,8 +46,8 @@ pub struct Drawn {
 }
 
 impl Lattice {
-    /// Reduces `basis` (m × n, m ≥ n, of full rank) for a target of m entries, from the reduced basis
-    /// of a lattice `near` it where one is known. `None` where the reduction is beyond double
+    /// Reduces `basis` (m × n, m ≥ n, of full rank) for a target of m entries, from the reduced
+    /// basis of a lattice `near` it where one is known. `None` where the reduction is beyond double
     /// precision.
     ///
     /// # Errors
@@ -155,8 +155,9 @@ impl Lattice {
         z.iter().map(|z| z.round()).collect()
     }
 
-    /// Points near the target, z, nearest first. Coordinates are chosen from the last to the first, and
-    /// after each the `keep` nearest choices stay (the M-algorithm of Anderson and Mohan 1984). The first is the nearest of all unless more than `keep` seemed nearer on the way.
+    /// Points near the target, z, nearest first. Coordinates are chosen from the last to the first,
+    /// and after each the `keep` nearest choices stay (the M-algorithm of Anderson and Mohan 1984).
+    /// The first is the nearest of all unless more than `keep` seemed nearer on the way.
     pub fn nearest(&self, keep: usize) -> Vec<Vec<f64>> {
         let n = self.t.ncols();
         // Distances², coordinates, and what is left of y in the rows above: n numbers a point.

@@ -36,8 +36,8 @@ pub struct Corrected {
     pub flux: Vec<f64>,
     /// Its variance, (counts/s)²; `None` where the noise is not known.
     pub variance: Option<Vec<f64>>,
-    /// Part of the variance that is that of the dark frames, mean over the pixels: an error that all
-    /// photographs have in common.
+    /// Part of the variance that is that of the dark frames, mean over the pixels: an error that
+    /// all photographs have in common.
     pub common: f64,
 }
 

@@ -1,14 +1,14 @@
 //! Bands around recovered reflectances, and how often they cover.
 //!
-//! Linear estimates have ρ̂ ± z σ, each element alone. Estimates between bounds have no such law: the
-//! χ² that an element costs where it is held at its true value follows χ² of one degree of freedom
-//! only where no bound is near. A light element among
-//! eight dark ones, at the levels 1 and 0 on the bench, is then covered by 95 % bands in 59 seeds of
-//! 100 (400 seeds; χ² of two degrees: 79; quantiles by a bootstrap from ρ̂ do little better), because
-//! the columns of its neighbours surround its own.
+//! Linear estimates have ρ̂ ± z σ, each element alone. Estimates between bounds have no such law:
+//! the χ² that an element costs where it is held at its true value follows χ² of one degree of
+//! freedom only where no bound is near. A light element among eight dark ones, at the levels 1 and
+//! 0 on the bench, is then covered by 95 % bands in 59 seeds of 100 (400 seeds; χ² of two degrees:
+//! 79; quantiles by a bootstrap from ρ̂ do little better), because the columns of its neighbours
+//! surround its own.
 //!
-//! So the bands of `joint` and `nnls` are the shadows of one region that holds all elements at once:
-//! [`BandKind::Simultaneous`].
+//! So the bands of `joint` and `nnls` are the shadows of one region that holds all elements at
+//! once: [`BandKind::Simultaneous`].
 //!
 //! The region promises no more than it must: in that case it covers in 95 seeds of 100.
 //!
@@ -31,20 +31,20 @@ pub enum BandKind {
     /// ρ̂ ± z σ of an unbiased linear estimate: covers with exactly its confidence under normal
     /// noise of the stated standard errors.
     Gaussian,
-    /// The probability of ρ_j given the photographs and the method's assumption, as much beyond either
-    /// limit: covers as often as it says **on average over pictures as the assumption describes
-    /// them**, not for every picture.
+    /// The probability of ρ_j given the photographs and the method's assumption, as much beyond
+    /// either limit: covers as often as it says **on average over pictures as the assumption
+    /// describes them**, not for every picture.
     Posterior,
-    /// The values of ρ_j among all reflectances within the bounds that are as near to the data as the
-    /// truth is with the stated probability,
+    /// The values of ρ_j among all reflectances within the bounds that are as near to the data as
+    /// the truth is with the stated probability,
     ///
     /// > { ρ_j : l ≤ ρ ≤ u, ‖R ρ − d‖² ≤ q },   P(χ²_k ≤ q) = confidence,
     ///
-    /// d the k directions of the data, in standard deviations, that reflectances between 0 and 1 can
-    /// move by more than one (Stark 1992). For any ρ within the bounds and normal noise of the stated
-    /// errors **all elements together** are covered with at least that probability, so each alone is
-    /// covered more often: how much more depends on the object. Limits are certified from outside: an
-    /// inexact solver makes a band wider.
+    /// d the k directions of the data, in standard deviations, that reflectances between 0 and 1
+    /// can move by more than one (Stark 1992). For any ρ within the bounds and normal noise of the
+    /// stated errors **all elements together** are covered with at least that probability, so each
+    /// alone is covered more often: how much more depends on the object. Limits are certified from
+    /// outside: an inexact solver makes a band wider.
     Simultaneous,
 }
 

@@ -32,9 +32,9 @@ impl Deviations {
         self.standard_error.iter().map(known).sum()
     }
 
-    /// Probability of as large a Σ ε̂²/σ² if the factors are as they were said to be: that of χ² with as
-    /// many degrees of freedom as factors are determined, which is its mean. None where less than
-    /// one is.
+    /// Probability of as large a Σ ε̂²/σ² if the factors are as they were said to be: that of χ²
+    /// with as many degrees of freedom as factors are determined, which is its mean. None where
+    /// less than one is.
     pub fn probability(&self) -> Option<f64> {
         let freedom = self.freedom();
         let chi2 = self.size.norm_squared() / (self.known_to * self.known_to);
@@ -53,9 +53,9 @@ pub struct Gains {
     pub steps: usize,
     /// Whether they no longer changed: by no more than 1e-4 of σ.
     pub settled: bool,
-    /// Mean standard error of the reflectances over what it would be with these factors known; absent
-    /// of methods without standard errors. Of `joint-gp`, which then averages over other spreads and
-    /// lengths, it can be below 1.
+    /// Mean standard error of the reflectances over what it would be with these factors known;
+    /// absent of methods without standard errors. Of `joint-gp`, which then averages over other
+    /// spreads and lengths, it can be below 1.
     pub widened: Option<f64>,
 }
 

@@ -55,13 +55,13 @@ impl Method {
         Method::JointTwoValued,
     ];
 
-    /// Methods that know how likely the photographs are by what they assume, and the most elements of
-    /// which they end within a minute or so.
+    /// Methods that know how likely the photographs are by what they assume, and the most elements
+    /// of which they end within a minute or so.
     pub const OF_FEW: [(Method, usize); 2] =
         [(Method::JointGp, 2048), (Method::JointTwoValued, 256)];
 
-    /// The methods that are tried for so many elements where none is named, simplest first: those of
-    /// [`Method::USUAL`], and those of [`Method::OF_FEW`] that take so many.
+    /// The methods that are tried for so many elements where none is named, simplest first: those
+    /// of [`Method::USUAL`], and those of [`Method::OF_FEW`] that take so many.
     pub fn tried(elements: usize) -> Vec<Method> {
         let few = Method::OF_FEW
             .into_iter()

@@ -41,11 +41,10 @@
 //! | 3, 2 × 2, 0.01 | 0.918 | 0.994 | 0.994 | 1.000 |
 //! | 3, 4 × 4, 1e-4 | 0.559 | 0.752 | 0.375 | 0.846 |
 //!
-//! The joint methods can estimate other light of known form with the reflectances, and factors of the
-//! light that are known only roughly ([`Nuisance`]).
-//! [`cramer_rao`] says what no unbiased estimate can undercut; [`determined`](determined()) how much of
-//! each element the photographs determine by any method; [`Bands`] what a recovery knows of
-//! itself.
+//! The joint methods can estimate other light of known form with the reflectances, and factors of
+//! the light that are known only roughly ([`Nuisance`]). [`cramer_rao`] says what no unbiased
+//! estimate can undercut; [`determined`](determined()) how much of each element the photographs
+//! determine by any method; [`Bands`] what a recovery knows of itself.
 //!
 //! Those up to [`Method::JointUnbounded`] are linear in Φ: with a noise model they carry the
 //! covariance that it makes of their noise, and always the resolution matrix of what they make of
@@ -134,7 +133,8 @@ use spectrum::Spectrum;
 /// Recovers the reflectances of the r elements by the method asked for.
 ///
 /// # Errors
-/// [`RecoveryError`]: what is missing for the method (and how to supply it), or what the matrices do not allow.
+/// [`RecoveryError`]: what is missing for the method (and how to supply it), or what the matrices
+/// do not allow.
 pub fn recover(
     method: Method,
     problem: &Problem<'_>,

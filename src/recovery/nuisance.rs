@@ -25,11 +25,11 @@ pub struct Nuisance<'a> {
     /// element has ρ = 1**; a surface without a white element is recovered relative to its
     /// brightest. Bounds from above mean nothing then: `joint` keeps ρ ≥ 0 alone.
     pub free_scale: bool,
-    /// σ_g: the light of each frame has a factor 1 + ε_l of its own, ε_l ~ N(0, σ_g²), as of a laser
-    /// whose power drifts; above 0, at most 1.
+    /// σ_g: the light of each frame has a factor 1 + ε_l of its own, ε_l ~ N(0, σ_g²), as of a
+    /// laser whose power drifts; above 0, at most 1.
     pub frame_gain: Option<f64>,
-    /// σ_s: the light of all frames has one factor 1 + ε, ε ~ N(0, σ_s²), as of a calibration that is
-    /// known to so much; above 0, at most 1. Not with `free_scale`.
+    /// σ_s: the light of all frames has one factor 1 + ε, ε ~ N(0, σ_s²), as of a calibration that
+    /// is known to so much; above 0, at most 1. Not with `free_scale`.
     pub scale_error: Option<f64>,
     /// Entries that do not count, pixels × spots: those that are not 0. Each holds an unknown light
     /// of its own, so that its value says nothing; it must be finite.
@@ -91,8 +91,8 @@ pub struct Estimated {
     pub scale: Option<f64>,
     /// ε_l and ε.
     pub gains: Option<Gains>,
-    /// Directions of Φ that all these take up, but for s and the factors 1 + ε: less than their numbers where some are the
-    /// same, and where nothing counts.
+    /// Directions of Φ that all these take up, but for s and the factors 1 + ε: less than their
+    /// numbers where some are the same, and where nothing counts.
     pub freedom: usize,
 }
 

@@ -121,17 +121,18 @@ pub struct Options {
     /// The reflectances \[dark, light\] of `joint-two-valued`; estimated with the pattern where not
     /// given.
     pub levels: Option<[f64; 2]>,
-    /// Whether `joint-two-valued` sums over patterns, and searches widely for the best one; seconds in
-    /// place of tenths of them.
+    /// Whether `joint-two-valued` sums over patterns, and searches widely for the best one; seconds
+    /// in place of tenths of them.
     pub probabilities: bool,
-    /// Whether these sums allow for elements that differ from their level, where levels are not given.
+    /// Whether these sums allow for elements that differ from their level, where levels are not
+    /// given.
     pub spreads: bool,
     /// Confidence level, in (0, 1), of the bands to be computed ([`Bands`](super::Bands)); none
     /// where not given.
     pub bands: Option<f64>,
-    /// Columns and rows of a photograph, pixel column + row·columns. Where the noise is unknown `joint-gp`
-    /// takes what it leaves over for noise: with these of neighbours that err alike, without of pixels that
-    /// err independently.
+    /// Columns and rows of a photograph, pixel column + row·columns. Where the noise is unknown
+    /// `joint-gp` takes what it leaves over for noise: with these of neighbours that err alike,
+    /// without of pixels that err independently.
     pub frame: Option<[usize; 2]>,
 }
 

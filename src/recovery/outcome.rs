@@ -17,8 +17,8 @@ pub enum Parameter {
     /// λ of the total variation, as a fraction of the largest squared singular value of the
     /// weighted operator.
     TotalVariation(f64),
-    /// Of `joint-gp`, the likeliest pair: standard deviation τ of the reflectances about their mean,
-    /// and length ℓ over which they resemble one another, in the unit of the places.
+    /// Of `joint-gp`, the likeliest pair: standard deviation τ of the reflectances about their
+    /// mean, and length ℓ over which they resemble one another, in the unit of the places.
     GaussianProcess {
         /// τ.
         spread: f64,
@@ -161,12 +161,12 @@ pub struct Recovered {
     pub solver: Option<Solver>,
     /// What was estimated beside the reflectances, where it was asked for.
     pub nuisance: Option<Estimated>,
-    /// ln of the probability density that the method's assumption gives the photographs, over that of
-    /// the numbers that fit them best: at most 0, and comparable among methods. Of `joint-gp` and
-    /// `joint-two-valued`. With factors that are known only roughly over that of the numbers that
-    /// fit best without them, by Laplace's method for the factors, so that it also says (by the
-    /// difference from the evidence without) whether the photographs ask for them; none then where the
-    /// noise is unknown.
+    /// ln of the probability density that the method's assumption gives the photographs, over that
+    /// of the numbers that fit them best: at most 0, and comparable among methods. Of `joint-gp`
+    /// and `joint-two-valued`. With factors that are known only roughly over that of the numbers
+    /// that fit best without them, by Laplace's method for the factors, so that it also says (by
+    /// the difference from the evidence without) whether the photographs ask for them; none then
+    /// where the noise is unknown.
     pub log_evidence: Option<f64>,
     /// What is known of the pattern, of `joint-two-valued` where the scale is known.
     pub patterns: Option<Patterns>,
@@ -174,9 +174,9 @@ pub struct Recovered {
     pub bands: Option<Bands>,
     /// Why there are none, where they were asked for.
     pub no_bands: Option<&'static str>,
-    /// κ, the pixels over which what is left over hangs together: of `joint-gp` where the noise is unknown
-    /// and [`Options::frame`](super::Options::frame) is not. Its errors are those of noise of κ times the
-    /// variance then.
+    /// κ, the pixels over which what is left over hangs together: of `joint-gp` where the noise is
+    /// unknown and [`Options::frame`](super::Options::frame) is not. Its errors are those of noise
+    /// of κ times the variance then.
     pub alike: Option<f64>,
     /// What was left undone, where it was stopped and this is the best till then.
     pub unfinished: Option<&'static str>,
@@ -210,8 +210,8 @@ impl Recovered {
         })
     }
 
-    /// What ρ̂ would photograph, s C diag(ρ̂) D and the nuisance terms found with it, pixels × spots,
-    /// W. `problem` is the one that it was recovered from, or some rows (pixels) of it.
+    /// What ρ̂ would photograph, s C diag(ρ̂) D and the nuisance terms found with it, pixels ×
+    /// spots, W. `problem` is the one that it was recovered from, or some rows (pixels) of it.
     pub fn photographs(&self, problem: &Problem<'_>) -> DMatrix<f64> {
         let Some(found) = &self.nuisance else {
             return problem.light(&self.reflectance);

@@ -52,7 +52,8 @@ pub struct Patterns {
     /// Probability that the elements do not differ from their levels, ½ beforehand; 1 where the
     /// levels were given.
     pub exact: f64,
-    /// The likeliest standard deviation by which they do, if they do; 0 where the levels were given.
+    /// The likeliest standard deviation by which they do, if they do; 0 where the levels were
+    /// given.
     pub spread: f64,
     /// ln of the probability density of the photographs if the levels are exact, over that of the
     /// numbers that fit them best.

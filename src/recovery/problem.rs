@@ -193,8 +193,8 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// The same with other photographs and another right side of the operator, and with factors about
-    /// estimates of them.
+    /// The same with other photographs and another right side of the operator, and with factors
+    /// about estimates of them.
     pub(super) fn about<'b>(
         &self,
         phi: &'b DMatrix<f64>,
@@ -264,8 +264,8 @@ impl<'a> Problem<'a> {
     ///
     /// # Errors
     /// [`RecoveryError::Shape`], [`RecoveryError::NotFinite`] or [`RecoveryError::OutOfScale`] of a
-    /// glare pattern; [`RecoveryError::RelativeDeviation`] and [`RecoveryError::ScaleTwice`] of factors
-    /// that are known only roughly.
+    /// glare pattern; [`RecoveryError::RelativeDeviation`] and [`RecoveryError::ScaleTwice`] of
+    /// factors that are known only roughly.
     pub fn with_nuisance(self, nuisance: Nuisance<'a>) -> Result<Self, RecoveryError> {
         let (pixels, spots) = self.phi.shape();
         let fits = |name, matrix: Option<&DMatrix<f64>>, columns| match matrix {

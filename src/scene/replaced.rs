@@ -23,8 +23,8 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// [`SceneError`]: no such table, no such value in TOML, or what the scene then has wrong, without a
-    /// line, for the text with the new values is nobody's file.
+    /// [`SceneError`]: no such table, no such value in TOML, or what the scene then has wrong,
+    /// without a line, for the text with the new values is nobody's file.
     pub fn with(&self, changes: &[(&str, &str)]) -> Result<Self, SceneError> {
         let mut document: Value =
             super::read_toml(&self.name, &self.text, "export the scene again")?;

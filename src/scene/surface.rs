@@ -210,7 +210,8 @@ pub(super) fn is_off_the_wall(surfaces: &[Surface], [x, y]: [f64; 2]) -> bool {
     of_role(Role::Relay, surfaces).all(|(_, s)| s.shape.at_xy(x, y).is_empty())
 }
 
-/// Why x and y name no point of any wall, where every relay surface is parallel to z: cause and cure.
+/// Why x and y name no point of any wall, where every relay surface is parallel to z: cause and
+/// cure.
 pub(super) fn upright(surfaces: &[Surface]) -> Option<(String, &'static str)> {
     let stands = |s: &Surface| {
         let middle = s.shape.at([0.5; 2]).position;

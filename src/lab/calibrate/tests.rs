@@ -193,8 +193,8 @@ fn a_displaced_scene_is_found() {
     assert!((a - &b).norm() < 1e-12 * b.norm());
 }
 
-/// Photographs in another order than the spots are no picture of any geometry: that comes first, and
-/// that nothing is estimated.
+/// Photographs in another order than the spots are no picture of any geometry: that comes first,
+/// and that nothing is estimated.
 #[test]
 fn photographs_of_no_geometry_come_with_that_verdict_first() {
     let scene = small("bench", 8);

@@ -16,7 +16,8 @@ const FAR: f64 = 3.0;
 const NOTABLE: f64 = 0.5;
 /// Gains that are listed one by one.
 const LISTED: usize = 12;
-/// What is left of other light's remainder beyond the stated noise, above which nothing is estimated.
+/// What is left of other light's remainder beyond the stated noise, above which nothing is
+/// estimated.
 const MUCH: f64 = 0.05;
 
 /// Why some combinations of unknowns cannot be estimated.

@@ -123,8 +123,9 @@ fn right_photographs_are_not_warned_of() {
     }
 }
 
-/// Two elements of equal columns are known by their sum alone: the shortest solution gives each a half
-/// of it with an error that does not know that, and says so; without the second nothing is said.
+/// Two elements of equal columns are known by their sum alone: the shortest solution gives each a
+/// half of it with an error that does not know that, and says so; without the second nothing is
+/// said.
 #[test]
 fn elements_that_cannot_be_told_apart_are_told() {
     let camera = |alike: bool| {
@@ -158,8 +159,8 @@ fn elements_that_cannot_be_told_apart_are_told() {
     }
 }
 
-/// Elements about two levels, and on them: at the same noise the first are told from two reflectances
-/// and have errors that hold all the same, the second are taken for two.
+/// Elements about two levels, and on them: at the same noise the first are told from two
+/// reflectances and have errors that hold all the same, the second are taken for two.
 #[test]
 fn greys_about_two_levels_are_told_from_two_levels() {
     let model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([4, 4])).unwrap();

@@ -11,8 +11,8 @@ use crate::recovery::cramer_rao;
 /// unbiased recoveries from independent errors of the level's standard error. `None` where there is
 /// none: the sensor has no noise, or directions are lost in f64.
 ///
-/// A relative error s that all entries share adds s² ρρᵀ to the bound of the entries' own errors: with
-/// the scale known to s beforehand, of a picture ρ.
+/// A relative error s that all entries share adds s² ρρᵀ to the bound of the entries' own errors:
+/// with the scale known to s beforehand, of a picture ρ.
 ///
 /// Where the levels change the size of the standard errors alone, the bound is proportional to it
 /// and computed once.

@@ -268,8 +268,8 @@ mod tests {
     }
 
     /// Of 4000 draws the mean over the entries, exact/(1 + s ξ) apart, is normal: mean 1, standard
-    /// deviation s and fourth moment 3 s⁴, each within five of its errors. Entries differ from their draw's
-    /// scale by the noise that is told, and joint methods are told s.
+    /// deviation s and fourth moment 3 s⁴, each within five of its errors. Entries differ from
+    /// their draw's scale by the noise that is told, and joint methods are told s.
     #[test]
     fn a_scale_is_common_to_all_entries() {
         let exact = exact();

@@ -140,8 +140,8 @@ fn unbiased_recoveries_keep_the_bound_of_cramer_and_rao() {
     }
 }
 
-/// White that photographs of 5 % more light would make lighter than white: a bounded recovery that is
-/// told of the scale's error takes it there, one that is not puts the light elsewhere.
+/// White that photographs of 5 % more light would make lighter than white: a bounded recovery that
+/// is told of the scale's error takes it there, one that is not puts the light elsewhere.
 #[test]
 fn a_recovery_that_is_told_of_the_scale_is_nearer() {
     let (scene, plan) = small();

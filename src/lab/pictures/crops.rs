@@ -8,8 +8,8 @@ use crate::model::{Kernel, MatrixModel};
 use crate::recovery::{Method, Options};
 use crate::scene::Scene;
 
-/// Pictures, elements a side and root mean square deviation from their own means on average, that of the
-/// crops of photographs of the published comparison.
+/// Pictures, elements a side and root mean square deviation from their own means on average, that
+/// of the crops of photographs of the published comparison.
 const PICTURES: u64 = 4;
 const ELEMENTS: usize = 16;
 const FLAT: f64 = 0.147;
@@ -33,9 +33,9 @@ fn pictures() -> Vec<Vec<f64>> {
     all(0.1 * FLAT / mean(&all(0.1)))
 }
 
-/// Over both rings and noises of 1e-3 to 1e-1: root mean square errors below those of flat pictures, and
-/// bands of 95 % that cover 95 % of all elements within 2 % and three of their own standard errors over
-/// pictures, at each ring and noise and in the mean over all.
+/// Over both rings and noises of 1e-3 to 1e-1: root mean square errors below those of flat
+/// pictures, and bands of 95 % that cover 95 % of all elements within 2 % and three of their own
+/// standard errors over pictures, at each ring and noise and in the mean over all.
 #[test]
 #[ignore = "slow"]
 fn pictures_of_leaves_are_near_and_covered() {

@@ -98,8 +98,8 @@ fn right(kind: Kind, noise: f64) -> u64 {
     count
 }
 
-/// What the picture is decides what comes first, in 19 of 20 draws of picture and noise; of frames in any
-/// order all methods say that they do not fit.
+/// What the picture is decides what comes first, in 19 of 20 draws of picture and noise; of frames
+/// in any order all methods say that they do not fit.
 #[test]
 #[ignore = "slow"]
 fn the_default_is_right() {

@@ -101,8 +101,8 @@ fn the_nearest_points_are_those_of_all() {
     }
 }
 
-/// Points are drawn with the probability that is told, and Σ exp(−½ ‖B z − t‖²) estimated by them is
-/// that of all points.
+/// Points are drawn with the probability that is told, and Σ exp(−½ ‖B z − t‖²) estimated by them
+/// is that of all points.
 #[test]
 fn points_of_chance_have_the_probability_that_is_told() {
     let random = &mut chance(3);
@@ -135,7 +135,8 @@ fn points_of_chance_have_the_probability_that_is_told() {
     }
 }
 
-/// One dimension, by Poisson's sum: Σ_z exp(−½ (b z − t)²) = √(2π)/b (1 + 2 e^(−2π²/b²) cos(2π t/b) + …).
+/// One dimension, by Poisson's sum: Σ_z exp(−½ (b z − t)²) = √(2π)/b (1 + 2 e^(−2π²/b²) cos(2π t/b)
+/// + …).
 #[test]
 fn sums_in_one_dimension_are_poissons() {
     let random = &mut chance(4);

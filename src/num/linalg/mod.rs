@@ -162,8 +162,8 @@ fn same_to_rounding(a: &DMatrix<f64>, check: &'static str, error: f64) -> Result
     })
 }
 
-/// The e by which 2^−e times these entries has its largest in [1, 2); 0 where all are zero. `rows` of
-/// them make a column.
+/// The e by which 2^−e times these entries has its largest in [1, 2); 0 where all are zero. `rows`
+/// of them make a column.
 fn exponent(entries: &[f64], rows: usize) -> Result<i32, LinalgError> {
     let mut largest = 0.0f64;
     for (index, &value) in entries.iter().enumerate() {

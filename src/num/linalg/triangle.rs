@@ -184,8 +184,8 @@ pub struct Gram<F> {
 }
 
 /// The same reduction of as few rows as leave at most `lost` of the trace of the Gram matrix, by
-/// Cholesky with pivots (Harbrecht, Peters and Schneider 2012): G − RᵀR is positive semidefinite and
-/// of trace ≤ `lost`, so that for every x
+/// Cholesky with pivots (Harbrecht, Peters and Schneider 2012): G − RᵀR is positive semidefinite
+/// and of trace ≤ `lost`, so that for every x
 ///
 /// > 0 ≤ ‖A x‖² − ‖R x‖² ≤ lost·‖x‖².
 ///

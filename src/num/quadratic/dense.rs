@@ -17,8 +17,8 @@ const LEAST: f64 = 1e-12;
 /// Share of the way to the nearest bound that is gone.
 const STEP: f64 = 0.995;
 
-/// Solves min ½‖R x − d‖², 0 ≤ x ≤ u, by Mehrotra's predictor and corrector (Nocedal and Wright 2006,
-/// algorithm 16.4). With multipliers z of x ≥ 0 and w of s = u − x ≥ 0 each step solves
+/// Solves min ½‖R x − d‖², 0 ≤ x ≤ u, by Mehrotra's predictor and corrector (Nocedal and Wright
+/// 2006, algorithm 16.4). With multipliers z of x ≥ 0 and w of s = u − x ≥ 0 each step solves
 ///
 /// > (RᵀR + Θ) Δx = b,   Θ = z/x + w/s,   by   Δx = Θ⁻¹(b − Rᵀ(1 + R Θ⁻¹ Rᵀ)⁻¹ R Θ⁻¹ b),
 ///
@@ -215,8 +215,8 @@ impl<'a> State<'a> {
     }
 }
 
-/// x of A x = b by conjugate gradients, preconditioned by an inverse that rounding disturbs: mostly a
-/// step or two.
+/// x of A x = b by conjugate gradients, preconditioned by an inverse that rounding disturbs: mostly
+/// a step or two.
 pub(super) fn conjugate(
     b: &DVector<f64>,
     times: impl Fn(&DVector<f64>) -> DVector<f64>,

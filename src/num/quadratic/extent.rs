@@ -22,8 +22,8 @@ const LARGE: usize = 1 << 12;
 /// > ±(x_j − x̂_j) ≥ Σ_i min over l_i ≤ x_i ≤ u_i of h_i (x_i − x̂_i) + zᵀe − radius ‖z‖   for every z,
 ///
 /// so the true extent is never wider than the returned one, whatever the accuracy of the solver;
-/// the bounds hold besides. Of large problems it is narrower by at most 1e-4 of the room between the
-/// bounds wherever the method ends well, which it did at all ends measured.
+/// the bounds hold besides. Of large problems it is narrower by at most 1e-4 of the room between
+/// the bounds wherever the method ends well, which it did at all ends measured.
 pub struct Extents<'a> {
     region: Region<'a>,
     centre: Option<Centre>,
@@ -207,8 +207,8 @@ mod tests {
         }
     }
 
-    /// From the middle of the region as by the conic solver, to what the first leaves open: some ends
-    /// at bounds, some between them, with and without upper bounds.
+    /// From the middle of the region as by the conic solver, to what the first leaves open: some
+    /// ends at bounds, some between them, with and without upper bounds.
     #[test]
     fn many_variables_end_where_the_conic_solver_ends() {
         let mut state = 11u64;

@@ -22,8 +22,8 @@ struct Manner {
     corrected: bool,
 }
 
-/// Bold steps end at the edge of the ellipsoid: of 273 ends of a picture of 24 × 24 elements 12 with
-/// (0.99, 1e-9), 3 with the first of these, none with the second after it.
+/// Bold steps end at the edge of the ellipsoid: of 273 ends of a picture of 24 × 24 elements 12
+/// with (0.99, 1e-9), 3 with the first of these, none with the second after it.
 const MANNERS: [Manner; 3] = [
     Manner {
         step: 0.9,
@@ -180,8 +180,8 @@ impl Region<'_> {
         })
     }
 
-    /// The end at which sign · x_j is least, `proves` what multipliers prove of sign · (x_j − x̂_j);
-    /// where the method ends before it comes near, what proves most till then.
+    /// The end at which sign · x_j is least, `proves` what multipliers prove of sign · (x_j −
+    /// x̂_j); where the method ends before it comes near, what proves most till then.
     pub(super) fn end(
         &self,
         centre: &Centre,
@@ -225,8 +225,8 @@ impl Region<'_> {
         End::Proved(most.1)
     }
 
-    /// Whether the region has a point with x_j = `bound` on the way that changes the others least, in
-    /// the metric of the centre's barrier.
+    /// Whether the region has a point with x_j = `bound` on the way that changes the others least,
+    /// in the metric of the centre's barrier.
     fn holds_at(&self, centre: &Centre, axis: &DVector<f64>, (j, bound): (usize, f64)) -> bool {
         let Centre { state, equations } = centre;
         let way = equations.solve(self.r, axis);

@@ -3,8 +3,8 @@
 use statrs::function::beta::beta_reg;
 
 /// Probability that F with `over` and `under` > 0 degrees of freedom, the quotient of two means of
-/// squares, exceeds `x`: the regularised incomplete beta function I_y(under/2, over/2),
-/// y = under/(under + over·x). NaN where x is NaN or a number of degrees is not positive and finite.
+/// squares, exceeds `x`: the regularised incomplete beta function I_y(under/2, over/2), y =
+/// under/(under + over·x). NaN where x is NaN or a number of degrees is not positive and finite.
 pub fn fisher_sf(x: f64, over: f64, under: f64) -> f64 {
     let has_meaning = |dof: f64| dof > 0.0 && dof.is_finite();
     if x.is_nan() || !has_meaning(over) || !has_meaning(under) {

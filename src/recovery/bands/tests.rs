@@ -164,8 +164,8 @@ fn what_has_no_bands_says_why() {
     }
 }
 
-/// Stopped at the first of the ends, the picture is kept, and it is said why it has no bands; stopped
-/// before, nothing is.
+/// Stopped at the first of the ends, the picture is kept, and it is said why it has no bands;
+/// stopped before, nothing is.
 #[test]
 fn a_picture_that_was_stopped_is_kept_without_its_bands() {
     let bench = Bench::new(6.0, 4, 8);

@@ -16,8 +16,8 @@ const UNKNOWN: f64 = 100.0;
 ///
 /// for the unbounded least-squares estimate x̂ along k directions V (k × n) of the joint operator,
 /// whose errors have the covariance that the noise makes of them. Of unknown noise, the same in all
-/// entries, the variance is what least squares leaves over, times the pixels that it hangs together over
-/// ([`super::correlated`]) where those are known.
+/// entries, the variance is what least squares leaves over, times the pixels that it hangs together
+/// over ([`super::correlated`]) where those are known.
 pub(super) struct Coordinates {
     pub(super) v: DMatrix<f64>,
     pub(super) y: DVector<f64>,
@@ -29,7 +29,8 @@ pub(super) struct Coordinates {
 }
 
 impl Coordinates {
-    /// `unit` is the size of the largest x; `alike`, how many pixels unknown noise hangs together over.
+    /// `unit` is the size of the largest x; `alike`, how many pixels unknown noise hangs together
+    /// over.
     pub(super) fn new(
         method: Method,
         problem: &Problem<'_>,

@@ -9,14 +9,16 @@ const FARTHEST: usize = 48;
 /// Standard deviations of chance above which a ring of neighbours hangs together with its middle.
 const DEVIATIONS: f64 = 2.0;
 
-/// κ = Σ ρ(Δ), ρ(Δ) the autocorrelation of what is left over (pixels × spots) between pixels Δ apart in
-/// a photograph: noise of this correlation has in all that varies little over such a distance the variance
-/// κ σ², as if only every κ-th pixel counted. 1 where pixels err independently.
+/// κ = Σ ρ(Δ), ρ(Δ) the autocorrelation of what is left over (pixels × spots) between pixels Δ
+/// apart in a photograph: noise of this correlation has in all that varies little over such a
+/// distance the variance κ σ², as if only every κ-th pixel counted. 1 where pixels err
+/// independently.
 ///
 /// > ρ(Δ) = Σ_l Σ_p r\[p,l\] r\[p + Δ,l\] / Σ_pl r²\[p,l\]
 ///
-/// summed over square rings about Δ = 0, the innermost first, up to the first whose sum chance explains:
-/// of n independent entries the sum over the 8 d neighbours at distance d scatters by 4 √(d/n).
+/// summed over square rings about Δ = 0, the innermost first, up to the first whose sum chance
+/// explains: of n independent entries the sum over the 8 d neighbours at distance d scatters by 4
+/// √(d/n).
 ///
 /// # Errors
 /// [`RecoveryError::Shape`] where the photographs have other than columns × rows pixels.
@@ -79,7 +81,8 @@ mod tests {
     use super::*;
     use crate::recovery::bench::normal_stream;
 
-    /// Independent noise: 1. Noise averaged over m × m pixels: ρ(x, y) = (1 − |x|/m)(1 − |y|/m) sums to m².
+    /// Independent noise: 1. Noise averaged over m × m pixels: ρ(x, y) = (1 − |x|/m)(1 − |y|/m)
+    /// sums to m².
     #[test]
     fn averaged_noise_hangs_together_over_what_was_averaged() {
         let mut normal = normal_stream(3);

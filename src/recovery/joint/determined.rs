@@ -27,10 +27,10 @@ pub struct Determined {
 ///
 /// > R_jj = Σ_i V_ij² s_i² τ²/(1 + s_i² τ²) = 1 − var(ρ_j | Φ)/τ²,   τ = ½.
 ///
-/// With a free scale the same of s ρ, τ half of what a grey surface says of s.
-/// Where τ s_i is the signal of a direction, this counts the directions that rise above the noise in
-/// a Picard plot. It depends on geometry and noise, not on Φ; with factors that are known only roughly
-/// or a free scale on how bright Φ is.
+/// With a free scale the same of s ρ, τ half of what a grey surface says of s. Where τ s_i is the
+/// signal of a direction, this counts the directions that rise above the noise in a Picard plot. It
+/// depends on geometry and noise, not on Φ; with factors that are known only roughly or a free
+/// scale on how bright Φ is.
 ///
 /// # Errors
 /// [`RecoveryError::NotForMethod`] without a noise model, [`RecoveryError::TooManyElements`], a
@@ -94,8 +94,8 @@ mod tests {
         assert!(determined(&Problem::new(&phi, &two, &d, None).unwrap()).is_err());
     }
 
-    /// 1 − var(ρ_j | Φ)/τ² by the inverse of the normal matrix; less noise determines more, and what
-    /// is estimated besides takes of it.
+    /// 1 − var(ρ_j | Φ)/τ² by the inverse of the normal matrix; less noise determines more, and
+    /// what is estimated besides takes of it.
     #[test]
     fn shares_are_what_the_variance_loses() {
         let bench = Bench::new(6.0, 2, 4);

@@ -3,8 +3,8 @@
 //! Everything but ρ enters linearly once s ρ is one unknown, so it is eliminated exactly (variable
 //! projection), never guessed first. With weights w_p v_l the constants b_l are all matrices u b'ᵀ
 //! of the weighted problem, u_p = √w_p (of patterns √w_p F\[p,k\]), and the background all a' vᵀ,
-//! v_l = √v_l; what either cannot reach is the tensor product of what is orthogonal to u and what is
-//! orthogonal to v. So both at once are eliminated by
+//! v_l = √v_l; what either cannot reach is the tensor product of what is orthogonal to u and what
+//! is orthogonal to v. So both at once are eliminated by
 //!
 //! > C̃ → (1 − û ûᵀ) C̃,   D̃ → D̃ (1 − v̂ v̂ᵀ),   Φ̃ → (1 − û ûᵀ) Φ̃ (1 − v̂ v̂ᵀ)
 //!

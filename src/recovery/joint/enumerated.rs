@@ -18,8 +18,8 @@ pub(super) fn can(ground: &Ground<'_>) -> bool {
     ground.r.ncols() <= MOST[usize::from(ground.given.is_none())]
 }
 
-/// The sum over all 2ⁿ patterns; the best is the likeliest: of given levels that of the least χ², of
-/// others that of the largest weight over all levels.
+/// The sum over all 2ⁿ patterns; the best is the likeliest: of given levels that of the least χ²,
+/// of others that of the largest weight over all levels.
 pub(super) fn sum(ground: &Ground<'_>) -> Summed {
     let n = ground.r.ncols();
     // ln weights by pattern number, pattern after pattern by one element (Gray).

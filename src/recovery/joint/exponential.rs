@@ -24,8 +24,8 @@ pub struct Exponential {
 }
 
 impl Exponential {
-    /// For the elements of the problem: by their places, else those of grids of unit squares, else a
-    /// row of them.
+    /// For the elements of the problem: by their places, else those of grids of unit squares, else
+    /// a row of them.
     pub fn new(problem: &Problem<'_>) -> Self {
         let n = problem.elements();
         let whole = [[n, 1]];
@@ -64,8 +64,8 @@ impl Exponential {
         }
     }
 
-    /// Lengths ℓ from where elements are independent to where a surface is one slope, in equal steps
-    /// of ln ℓ.
+    /// Lengths ℓ from where elements are independent to where a surface is one slope, in equal
+    /// steps of ln ℓ.
     pub(super) fn lengths(&self) -> Vec<f64> {
         let (from, to) = (SHORTEST * self.nearest, LONGEST * self.extent);
         let steps = (libm::log(to / from) / STEP).ceil() as usize;
@@ -91,8 +91,8 @@ impl Exponential {
 mod tests {
     use super::*;
 
-    /// Two surfaces, one of 2 × 3 squares and one of a single element, by hand; places in space take
-    /// the place of the squares.
+    /// Two surfaces, one of 2 × 3 squares and one of a single element, by hand; places in space
+    /// take the place of the squares.
     #[test]
     fn distances_by_hand() {
         let ones = |rows, columns| DMatrix::from_element(rows, columns, 1.0);

@@ -8,18 +8,18 @@
 //! >                                          + ε_l (1 + ε₀) m + ε (1 + ε₀_l) m + …
 //!
 //! So a factor is one more pattern, of a size that is known beforehand: its elimination
-//! ([`super::conditional`]) gives every method rows of unit noise for x alone, whose normal matrix is
-//! H_xx − H_xε H_εε⁻¹ H_εx, so that errors, bands, probabilities and bounds are those of x with ε
-//! unknown. The estimates are then set to what was found and all is done again, until the factors no
-//! longer change (Gauss–Newton, by half steps where whole ones do not settle). Where that ends,
+//! ([`super::conditional`]) gives every method rows of unit noise for x alone, whose normal matrix
+//! is H_xx − H_xε H_εε⁻¹ H_εx, so that errors, bands, probabilities and bounds are those of x with
+//! ε unknown. The estimates are then set to what was found and all is done again, until the factors
+//! no longer change (Gauss–Newton, by half steps where whole ones do not settle). Where that ends,
 //! (x̂, ε̂) is where Σ z² + Σ ε_l²/σ_g² + ε²/σ_s² with the method's own terms is stationary.
 //!
 //! Patterns of two values are weighed against each other with the factors linear about the best of
 //! them: of another one ε multiplies this one's light, an error of the second order.
 //!
-//! Evidence: ∫ p(Φ|x, ε) p(ε) dε by Laplace's method is that of the linear problem times
-//! Π (1 + σ²⟨m, m⟩)^(−½), m in units of the noise and without what other terms take, so that factors
-//! that nothing asks for lower it.
+//! Evidence: ∫ p(Φ|x, ε) p(ε) dε by Laplace's method is that of the linear problem times Π (1 +
+//! σ²⟨m, m⟩)^(−½), m in units of the noise and without what other terms take, so that factors that
+//! nothing asks for lower it.
 
 use nalgebra::DVector;
 
@@ -54,8 +54,8 @@ pub(in crate::recovery) fn recover(
         let floor = f64::EPSILON * problem.counted(problem.phi.clone()).norm();
         found.residual.max(floor) / freedom.sqrt()
     };
-    // A pattern is found by its levels, of which only the ratio is known with the scale, and by a wide
-    // search: along the scale many patterns fit nearly as well.
+    // A pattern is found by its levels, of which only the ratio is known with the scale, and by a
+    // wide search: along the scale many patterns fit nearly as well.
     let by_ratio = method == Method::JointTwoValued && problem.nuisance.scale_error.is_some();
     let quick = Options {
         bands: None,
@@ -122,8 +122,8 @@ pub(in crate::recovery) fn recover(
     Ok(found)
 }
 
-/// The evidence of the linear problem over the density of the numbers that fit best without factors:
-/// by what the deviance of each one's best fit differs.
+/// The evidence of the linear problem over the density of the numbers that fit best without
+/// factors: by what the deviance of each one's best fit differs.
 fn punished(
     evidence: f64,
     base: &Problem<'_>,

@@ -4,21 +4,22 @@
 //! > ρ_j = m + f_j,   m ~ N(½, ½²),   cov(f_i, f_j) = τ² k_ij,
 //! > k_ij = (1 − η) exp(−|x_i − x_j|/ℓ) on one surface + η where i = j
 //!
-//! (with a free scale x/s₀ in place of ρ, see [`scale`]). The share η is of what has no alike neighbours:
-//! texture finer than the elements.
-//! The photographs know ρ by the coordinates y = V ρ + errors of covariance E ([`Coordinates`]), V Vᵀ = 1.
-//! So with K = ¼ 11ᵀ + τ² k(ℓ, η), all is closed (Rasmussen and Williams 2006):
+//! (with a free scale x/s₀ in place of ρ, see [`scale`]). The share η is of what has no alike
+//! neighbours: texture finer than the elements. The photographs know ρ by the coordinates y = V ρ +
+//! errors of covariance E ([`Coordinates`]), V Vᵀ = 1. So with K = ¼ 11ᵀ + τ² k(ℓ, η), all is
+//! closed (Rasmussen and Williams 2006):
 //!
 //! > S = V K Vᵀ + E,   z = y − ½ V 1
 //! > ln p(y | τ, ℓ, η)/p_best = −½ (zᵀS⁻¹z + ln det S − ln det E),   p_best that of an exact fit
 //! > E\[ρ | y\] = ½ + K Vᵀ S⁻¹ z,   cov\[ρ | y\] = K − K Vᵀ S⁻¹ V K
 //!
-//! How much and over what length a picture varies (τ, ℓ, η) the photographs say only roughly, and of
-//! what is finer than they resolve nothing: one best triple gives errors that are too small. So all
-//! triples of a lattice count, each by its evidence p(y | τ, ℓ, η) and by how often pictures are such:
-//! ln ℓ evenly from less than the distance of neighbours to a slope over the whole surface, ln τ
-//! normal, each η of [`INDEPENDENT`] alike; one surface in fifty is of one reflectance throughout, τ = 0. The
-//! estimate is the mean of that mixture, its covariance and bands those of the mixture.
+//! How much and over what length a picture varies (τ, ℓ, η) the photographs say only roughly, and
+//! of what is finer than they resolve nothing: one best triple gives errors that are too small. So
+//! all triples of a lattice count, each by its evidence p(y | τ, ℓ, η) and by how often pictures
+//! are such: ln ℓ evenly from less than the distance of neighbours to a slope over the whole
+//! surface, ln τ normal, each η of [`INDEPENDENT`] alike; one surface in fifty is of one
+//! reflectance throughout, τ = 0. The estimate is the mean of that mixture, its covariance and
+//! bands those of the mixture.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -46,7 +47,8 @@ const INDEPENDENT: [f64; 3] = [0.0, 0.1, 0.3];
 const FLAT: f64 = 0.02;
 /// What is less likely than the likeliest by more than e to this counts for nothing.
 const NEGLIGIBLE: f64 = 6.0;
-/// How often it is done again with what hangs together, and a change of that which makes no difference.
+/// How often it is done again with what hangs together, and a change of that which makes no
+/// difference.
 const MOST_AGAIN: usize = 3;
 const SETTLED: f64 = 0.2;
 /// Elements up to which the covariance matrix is made.
@@ -93,8 +95,8 @@ struct Triple {
     weight: f64,
 }
 
-/// Where the noise is unknown and the pixels' places are known, what is left over says over how many
-/// pixels it hangs together, and all is done again with that.
+/// Where the noise is unknown and the pixels' places are known, what is left over says over how
+/// many pixels it hangs together, and all is done again with that.
 pub(in crate::recovery) fn recover(
     problem: &Problem<'_>,
     options: &Options,
@@ -223,8 +225,8 @@ impl Seen {
         self.evidence(of, variance, left) - 0.5 * z * z
     }
 
-    /// The triples that count, likeliest first, with weights that sum to 1, and ln of p(y) over that
-    /// of a picture that fits y exactly.
+    /// The triples that count, likeliest first, with weights that sum to 1, and ln of p(y) over
+    /// that of a picture that fits y exactly.
     fn lattice(
         &self,
         prior: &Exponential,

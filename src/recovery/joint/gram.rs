@@ -21,8 +21,8 @@ const PARTS: usize = 4;
 const TERMS: usize = 512;
 /// Pixels of a frame whose rows are held at once.
 const STRIP: usize = 512;
-/// The trace of the Gram matrix, in units of the noise, that may be left out: of n reflectances up to
-/// 1 the light of what is lost is at most √(n·1e-6) standard deviations in all of Φ together.
+/// The trace of the Gram matrix, in units of the noise, that may be left out: of n reflectances up
+/// to 1 the light of what is lost is at most √(n·1e-6) standard deviations in all of Φ together.
 const LOST: f64 = 1e-6;
 /// A grey picture.
 pub(super) const GREY: f64 = 0.5;
@@ -35,8 +35,8 @@ pub(super) fn grey_factor(along: f64, grey: f64, square: f64) -> Option<f64> {
     best.or(Some((square / grey).sqrt()).filter(possible))
 }
 
-/// What of the trace of the Gram matrix may be left out: with a free scale of s ρ, by the scale of a grey
-/// surface, whose light M has ⟨Φ, M⟩ = `along` and ⟨M, M⟩ = `grey`; ⟨Φ, Φ⟩ = `square`.
+/// What of the trace of the Gram matrix may be left out: with a free scale of s ρ, by the scale of
+/// a grey surface, whose light M has ⟨Φ, M⟩ = `along` and ⟨M, M⟩ = `grey`; ⟨Φ, Φ⟩ = `square`.
 pub(super) fn lost(problem: &Problem<'_>, along: f64, grey: f64, square: f64) -> f64 {
     let factor = || grey_factor(along, grey, square);
     match problem.nuisance.free_scale.then(factor).flatten() {
@@ -50,10 +50,10 @@ pub(super) fn lost(problem: &Problem<'_>, along: f64, grey: f64, square: f64) ->
 ///
 /// > G_ij = Σ_pl w\[p,l\] A_i\[p,l\] A_j\[p,l\],
 ///
-/// whole of up to [`WHOLE`] elements; of more from those of its columns that its Cholesky factor with
-/// pivots asks for, one for each direction that the noise leaves ([`LOST`]). `root`(p, l) is √w, 1/σ.
-/// `None` where that is below the rounding of G, where it takes too long, and with a background, which
-/// ties the frames together.
+/// whole of up to [`WHOLE`] elements; of more from those of its columns that its Cholesky factor
+/// with pivots asks for, one for each direction that the noise leaves ([`LOST`]). `root`(p, l) is
+/// √w, 1/σ. `None` where that is below the rounding of G, where it takes too long, and with a
+/// background, which ties the frames together.
 pub(super) fn reduced(
     problem: &Problem<'_>,
     root: impl Fn(usize, usize) -> f64 + Sync,

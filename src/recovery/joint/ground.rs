@@ -59,8 +59,8 @@ impl Weighed {
 }
 
 impl Ground<'_> {
-    /// A pattern's weight over levels that differ by these contrasts, where they are not given; none
-    /// where levels are not told apart or none can be.
+    /// A pattern's weight over levels that differ by these contrasts, where they are not given;
+    /// none where levels are not told apart or none can be.
     pub(super) fn weigh(
         &self,
         light: &[bool],
@@ -76,8 +76,8 @@ impl Ground<'_> {
         )
     }
 
-    /// The same of the light of so many light elements, unless ln of it is less than `least` whatever
-    /// its levels are.
+    /// The same of the light of so many light elements, unless ln of it is less than `least`
+    /// whatever its levels are.
     pub(super) fn weigh_lit(
         &self,
         (lit, count): (&DVector<f64>, usize),
@@ -112,8 +112,8 @@ impl Ground<'_> {
         })
     }
 
-    /// Of a pattern without light elements or without dark ones: of the one level x that is seen, with
-    /// what remains for the other, 2 (1 − x) or 2 x, by quadrature.
+    /// Of a pattern without light elements or without dark ones: of the one level x that is seen,
+    /// with what remains for the other, 2 (1 − x) or 2 x, by quadrature.
     fn one_level(&self, light: bool, rule: &Rule) -> Option<Weighed> {
         let (own, along) = (self.all.norm_squared(), self.all.dot(self.d));
         let (best, sd) = (along / own, own.sqrt().recip());

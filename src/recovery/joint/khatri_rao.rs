@@ -13,9 +13,9 @@
 //! than one rounding of the whole. Frame constants and a background are projected out of both sides
 //! first ([`super::elimination`]). Of more than 512 elements, where the noise is known, the normal
 //! equations are summed with each entry's own weight, and reduced to the rows that the noise leaves
-//! ([`super::gram`]); with glare patterns there is no such product, and the rows are
-//! stacked instead ([`super::stacked`]), each with its own weight. So are those of a single photograph
-//! of many pixels, which is a column of its own and nothing to compress: no copy of C is held.
+//! ([`super::gram`]); with glare patterns there is no such product, and the rows are stacked
+//! instead ([`super::stacked`]), each with its own weight. So are those of a single photograph of
+//! many pixels, which is a column of its own and nothing to compress: no copy of C is held.
 
 use std::sync::{Arc, OnceLock};
 
@@ -40,8 +40,8 @@ const MOST_ELEMENTS: usize = 8192;
 /// the noise is known, to what it leaves.
 const FEW: usize = 512;
 
-/// Pixels from which on a QR blurs the singular values, by 4e-14 σ₁ (measured), less than the entries'
-/// own rounding, p·eps σ₁, at which they are cut.
+/// Pixels from which on a QR blurs the singular values, by 4e-14 σ₁ (measured), less than the
+/// entries' own rounding, p·eps σ₁, at which they are cut.
 const TALL: usize = 512;
 
 /// The problem after compression.
@@ -66,8 +66,8 @@ fn known<'a>(problem: &Problem<'a>, options: &Options) -> Option<&'a DMatrix<f64
     problem.noise().filter(|_| weighted)
 }
 
-/// Whether it is one photograph of many pixels, its weights those of its noise if that is known: then
-/// the covariance needs no left singular vectors, pixels × rank.
+/// Whether it is one photograph of many pixels, its weights those of its noise if that is known:
+/// then the covariance needs no left singular vectors, pixels × rank.
 fn is_tall(problem: &Problem<'_>, known: Option<&DMatrix<f64>>) -> bool {
     let (pixels, spots) = problem.phi.shape();
     let own = |stderr: &DMatrix<f64>| known.is_some() && stderr.iter().all(|x| *x > 0.0);
@@ -270,9 +270,9 @@ impl Operator {
         })
     }
 
-    /// −2 ln of the density of the data at the x that fits best, but for a constant that holds for all
-    /// factors: what is left of χ², and ln det of what the factors add to the covariance. None of an
-    /// operator that is not in rows.
+    /// −2 ln of the density of the data at the x that fits best, but for a constant that holds for
+    /// all factors: what is left of χ², and ln det of what the factors add to the covariance. None
+    /// of an operator that is not in rows.
     pub(super) fn deviance(&self) -> Option<f64> {
         let Form::Stacked { triangle, .. } = &self.form else {
             return None;

@@ -13,8 +13,8 @@ const REACH: f64 = 9.0;
 /// All contrasts b − a.
 pub(super) const ALL: [f64; 2] = [0.0, 1.0];
 
-/// χ²(a, b) = ‖d − a u − b w‖² of the levels a, b of elements whose light is u (dark) and w (light),
-/// in standard deviations: a parabola about its minimum.
+/// χ²(a, b) = ‖d − a u − b w‖² of the levels a, b of elements whose light is u (dark) and w
+/// (light), in standard deviations: a parabola about its minimum.
 pub(super) struct LevelFit {
     /// \[a, b\] of the minimum over the plane.
     pub(super) best: [f64; 2],
@@ -80,8 +80,8 @@ impl LevelFit {
         [self.best[0] + a, self.best[1] + b]
     }
 
-    /// The weight over 0 ≤ a < b ≤ 1 with b − a between two contrasts: closed in b, Gauss–Legendre in
-    /// a. At a contrast Δ the likeliest a is that of the parabola along b = a + Δ.
+    /// The weight over 0 ≤ a < b ≤ 1 with b − a between two contrasts: closed in b, Gauss–Legendre
+    /// in a. At a contrast Δ the likeliest a is that of the parabola along b = a + Δ.
     pub(super) fn weight(&self, rule: &Rule, [least, most]: [f64; 2]) -> Option<Weight> {
         let [uu, uw, ww] = self.curvature;
         let (sa, sb) = ((ww / self.determinant()).sqrt(), ww.sqrt().recip());
@@ -159,7 +159,8 @@ pub(super) fn rule() -> Rule {
 mod tests {
     use super::*;
 
-    /// Sums over a fine grid of the triangle and of strips of it: inside it, at its corner and beyond it.
+    /// Sums over a fine grid of the triangle and of strips of it: inside it, at its corner and
+    /// beyond it.
     #[test]
     fn weights_are_integrals_over_the_triangle() {
         let u = DVector::from_row_slice(&[9.0, 3.0, 1.0]);

@@ -18,8 +18,8 @@ pub(super) struct Estimates {
 }
 
 impl Estimates {
-    /// Goes this share of the way to what was found; by how much a factor differs from that at most, in
-    /// units of its σ.
+    /// Goes this share of the way to what was found; by how much a factor differs from that at
+    /// most, in units of its σ.
     pub(super) fn take(&mut self, found: &Recovered, share: f64) -> f64 {
         self.x = &self.x * (1.0 - share) + found.seen() * share;
         let mut change = 0.0f64;
@@ -80,8 +80,9 @@ impl Linear {
     }
 }
 
-/// What `of` makes of a problem whose factors are known only roughly: of that about factors of 1 and the
-/// grey surface that fits best. Of other problems, and where the noise is not known, of itself.
+/// What `of` makes of a problem whose factors are known only roughly: of that about factors of 1
+/// and the grey surface that fits best. Of other problems, and where the noise is not known, of
+/// itself.
 pub(super) fn about_grey<T>(
     problem: &Problem<'_>,
     options: &Options,

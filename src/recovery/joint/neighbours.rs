@@ -4,9 +4,10 @@
 //!
 //! > P(s | β) = exp(β Σ_⟨ij⟩ s_i s_j)/Z(β),
 //!
-//! the sum over neighbours along u and v, of the patterns in which both levels are seen. β = 0 is a fair coin for each element, 2⁻ⁿ for each
-//! pattern; the larger β, the larger the patches (above 0.44 they fill the grid, Onsager 1944). β is
-//! not known: each of eleven values from 0 to 1 is as likely.
+//! the sum over neighbours along u and v, of the patterns in which both levels are seen. β = 0 is a
+//! fair coin for each element, 2⁻ⁿ for each pattern; the larger β, the larger the patches (above
+//! 0.44 they fill the grid, Onsager 1944). β is not known: each of eleven values from 0 to 1 is as
+//! likely.
 
 use std::collections::HashMap;
 
@@ -19,7 +20,8 @@ const MOST_ACROSS: usize = 20;
 
 /// ln of Σ_s w_s P(s)/2⁻ⁿ over Σ_s w_s: with `weights` those of the patterns where every one is as
 /// likely beforehand, what their evidence gains where neighbours may be alike. 0 where there is no
-/// grid, or one too wide to tell; `None` where no pattern has both levels: one reflectance throughout is no pattern.
+/// grid, or one too wide to tell; `None` where no pattern has both levels: one reflectance
+/// throughout is no pattern.
 pub(super) fn gained(grids: &[[usize; 2]], weights: &HashMap<Vec<bool>, f64>) -> Option<f64> {
     if grids.is_empty() || grids.iter().any(|[nu, nv]| *nu.min(nv) > MOST_ACROSS) {
         return Some(0.0);
@@ -76,9 +78,9 @@ pub(super) fn pairs(grids: &[[usize; 2]]) -> Vec<[usize; 2]> {
     pairs
 }
 
-/// ln Z(β) of a grid, element by element: of each state of the last `across` elements the sum over all
-/// before them. Bit i of a state is the last element of column i. An element at column i takes the place
-/// of the one above it, so states that differ in bit i alone pass into one another.
+/// ln Z(β) of a grid, element by element: of each state of the last `across` elements the sum over
+/// all before them. Bit i of a state is the last element of column i. An element at column i takes
+/// the place of the one above it, so states that differ in bit i alone pass into one another.
 fn log_sum([nu, nv]: [usize; 2], beta: f64) -> f64 {
     let (across, along) = (nu.min(nv), nu.max(nv));
     let [same, other] = [beta, -beta].map(libm::exp);
@@ -141,8 +143,8 @@ mod tests {
         }
     }
 
-    /// Of a wide grid by the expansion in v = tanh β with a free edge, per plaquette v⁴ and per pair of
-    /// neighbouring plaquettes v⁶ (v⁸ counts 4½ times per element at most):
+    /// Of a wide grid by the expansion in v = tanh β with a free edge, per plaquette v⁴ and per
+    /// pair of neighbouring plaquettes v⁶ (v⁸ counts 4½ times per element at most):
     ///
     /// > ln Z = n ln 2 + bonds ln cosh β + plaquettes v⁴ + pairs v⁶ + …
     #[test]
@@ -163,10 +165,10 @@ mod tests {
         }
     }
 
-    /// A wide grid dark on one side and light on the other, 14 of 364 pairs unlike. At β = 1 nearly all
-    /// of Z is that of elements all alike, so a share 1/11 of ½ e^(−28) is the least. At each β the
-    /// patterns with both levels have at least the weight of those with one element unlike, and Z at
-    /// least 2ⁿ cosh β to the number of pairs, the first term of a sum of positive ones.
+    /// A wide grid dark on one side and light on the other, 14 of 364 pairs unlike. At β = 1 nearly
+    /// all of Z is that of elements all alike, so a share 1/11 of ½ e^(−28) is the least. At each β
+    /// the patterns with both levels have at least the weight of those with one element unlike, and
+    /// Z at least 2ⁿ cosh β to the number of pairs, the first term of a sum of positive ones.
     #[test]
     fn a_wide_grid_gains_as_well() {
         let half: Vec<bool> = (0..196).map(|j| j % 14 < 7).collect();

@@ -6,10 +6,11 @@
 //!
 //! With w² ‖p − ½‖² added, which is w² n/4 for every pattern and more for all other integers, the
 //! patterns of a small χ² are the points of the lattice of Δ R over w 1 near a target (as in the
-//! low-density subset sums of Coster, Joux, LaMacchia, Odlyzko, Schnorr and Stern 1992). Levels that
-//! are not given are allowed for: a is projected out, and Δ known to a share ε is an error along
-//! Δ R p, the light that a R 1 leaves of d. Where neighbours are alike to a degree β
-//! ([`super::neighbours`]), s = 2 p − 1, so are points: −2 β Σ s_i s_j is 4 β Σ (p_i − p_j)² but for a constant.
+//! low-density subset sums of Coster, Joux, LaMacchia, Odlyzko, Schnorr and Stern 1992). Levels
+//! that are not given are allowed for: a is projected out, and Δ known to a share ε is an error
+//! along Δ R p, the light that a R 1 leaves of d. Where neighbours are alike to a degree β
+//! ([`super::neighbours`]), s = 2 p − 1, so are points: −2 β Σ s_i s_j is 4 β Σ (p_i − p_j)² but
+//! for a constant.
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -87,8 +88,8 @@ impl PatternLattice<'_> {
         })
     }
 
-    /// Patterns of the points near the target of any of the same, in order; of integers beyond 0 and 1
-    /// the pattern that is nearest.
+    /// Patterns of the points near the target of any of the same, in order; of integers beyond 0
+    /// and 1 the pattern that is nearest.
     pub(super) fn near(
         &self,
         contrasts: &[f64],

@@ -3,10 +3,11 @@
 //! A combinatorial problem. Patterns to start from are points near the data in a lattice
 //! ([`super::pattern_lattice`]), for contrasts of all sizes where the levels are not given, and the
 //! minimiser over all 0 ≤ x ≤ 1, cut at several thresholds. From each the change of one or two
-//! elements that lowers ‖R x − d‖ most is made until none lowers it, with the levels that are best for
-//! the pattern (least squares in [0, 1]). With given levels branch and bound ([`super::branch`]) ends
-//! with a proof, or after a fixed number of relaxations. Misfits are norms of R x − d itself, never
-//! differences of Gram products, which would lose what little noise leaves.
+//! elements that lowers ‖R x − d‖ most is made until none lowers it, with the levels that are best
+//! for the pattern (least squares in [0, 1]). With given levels branch and bound
+//! ([`super::branch`]) ends with a proof, or after a fixed number of relaxations. Misfits are norms
+//! of R x − d itself, never differences of Gram products, which would lose what little noise
+//! leaves.
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -33,7 +34,8 @@ const SHARE: f64 = 0.15;
 const NEAR: f64 = 2.0;
 /// Above this many elements pairs are not tried.
 const MOST_PAIRED: usize = 2048;
-/// A change must lower ‖R x − d‖² by more than this fraction, or rounding would go round in circles.
+/// A change must lower ‖R x − d‖² by more than this fraction, or rounding would go round in
+/// circles.
 const WORTH: f64 = 1e-10;
 
 /// What the two levels can be.
@@ -236,7 +238,8 @@ impl<'a> Search<'a> {
         Ok(kept)
     }
 
-    /// The patterns that are near in the lattices of all contrasts, neighbours being alike to a degree.
+    /// The patterns that are near in the lattices of all contrasts, neighbours being alike to a
+    /// degree.
     fn points(&self, pairs: &[[usize; 2]], beta: f64) -> Result<Vec<Pattern>, RecoveryError> {
         let (dark, top) = match self.levels {
             Levels::Given([dark, _]) => (Dark::Given(dark), 1.0),
@@ -274,8 +277,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Makes the best change of one or two elements until none is worth it; how many were made. With
-    /// x_j changed by t, ‖R x − d‖² changes by −2 t g_j + t² G_jj, g = Rᵀ(d − R x), G = RᵀR.
+    /// Makes the best change of one or two elements until none is worth it; how many were made.
+    /// With x_j changed by t, ‖R x − d‖² changes by −2 t g_j + t² G_jj, g = Rᵀ(d − R x), G = RᵀR.
     fn change(&self, light: &mut [bool], [dark, bright]: [f64; 2]) -> usize {
         let n = light.len();
         let mut made = 0;
@@ -325,8 +328,8 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The levels a, b from 0 to `top` of the least ‖d − a u − b w‖: that of the plane, or on one of the
-/// sides. Not by iteration, whose tolerance is wide along the scale where that is nearly free.
+/// The levels a, b from 0 to `top` of the least ‖d − a u − b w‖: that of the plane, or on one of
+/// the sides. Not by iteration, whose tolerance is wide along the scale where that is nearly free.
 fn within(d: &DVector<f64>, [u, w]: &[DVector<f64>; 2], top: f64) -> [f64; 2] {
     let inside = |x: &f64| (0.0..=top).contains(x);
     if let Some(best) = LevelFit::new(d, u, w).map(|fit| fit.best)

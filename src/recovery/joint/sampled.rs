@@ -1,16 +1,16 @@
 //! The probabilities of patterns of many elements: those near the best one by one, the others by
 //! chance.
 //!
-//! Patterns are points of a lattice ([`super::pattern_lattice`]). The nearest of them are summed. All
-//! others p are drawn with a probability q(p) that is known ([`Lattice::draw`]) and, w(p) the weight of
-//! a pattern over all its levels,
+//! Patterns are points of a lattice ([`super::pattern_lattice`]). The nearest of them are summed.
+//! All others p are drawn with a probability q(p) that is known ([`Lattice::draw`]) and, w(p) the
+//! weight of a pattern over all its levels,
 //!
 //! > Σ_p w(p) f(p) = Σ_listed w f + E_q \[f w/q, p not listed\],
 //!
-//! without bias and with an error that is known. Where the levels are not given, contrasts are divided
-//! into cells, each with its own lattice, and w of a pattern that is drawn is the weight over the
-//! levels of the cell. Two sets of lattices are used: what they disagree in is not known, nor what the
-//! errors of both allow.
+//! without bias and with an error that is known. Where the levels are not given, contrasts are
+//! divided into cells, each with its own lattice, and w of a pattern that is drawn is the weight
+//! over the levels of the cell. Two sets of lattices are used: what they disagree in is not known,
+//! nor what the errors of both allow.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -25,8 +25,8 @@ use crate::recovery::{RecoveryError, Sum};
 
 /// Of the weight that lets a third of all draws be patterns, those of the two lattices.
 const WEIGHTS: [f64; 2] = [0.94, 1.06];
-/// Share ε of the contrast in a cell, to find where the likely ones are; and the parts of each of these
-/// that are drawn from.
+/// Share ε of the contrast in a cell, to find where the likely ones are; and the parts of each of
+/// these that are drawn from.
 const COARSE: f64 = 0.1;
 const PARTS: usize = 5;
 /// Lattices of fine cells that are held at most, and with them of the coarse ones.
@@ -34,7 +34,8 @@ const MOST_FINE: usize = 300;
 pub(super) const MOST_LATTICES: usize = MOST_FINE + 200;
 /// Share of the draws by which the others are distributed over the cells.
 const FIRST: f64 = 0.2;
-/// Patterns with their levels that are drawn from all that were met, and tries to draw possible levels.
+/// Patterns with their levels that are drawn from all that were met, and tries to draw possible
+/// levels.
 const DRAWN: usize = 200;
 const TRIES: usize = 100;
 

@@ -109,9 +109,9 @@ impl Sampler<'_> {
         logs.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Lists the patterns near the targets of both sides; the share of the listed weight that both are
-    /// likely to have missed, from what one has found and the other not: (1 − M/A)(1 − M/B), A and B the
-    /// weights that they found and M that of both (Lincoln and Petersen).
+    /// Lists the patterns near the targets of both sides; the share of the listed weight that both
+    /// are likely to have missed, from what one has found and the other not: (1 − M/A)(1 − M/B), A
+    /// and B the weights that they found and M that of both (Lincoln and Petersen).
     pub(super) fn list_near(&mut self, sides: &[Side; 2]) -> f64 {
         let near = sides.each_ref().map(|side| nearest(&side.cells));
         near.iter().for_each(|near| self.list(near));

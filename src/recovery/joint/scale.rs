@@ -6,13 +6,13 @@ use super::gram::{GREY, grey_factor};
 use super::khatri_rao::operator;
 use crate::recovery::{Options, Problem, RecoveryError};
 
-/// s₀, what s is before the picture is known: 1, or with a free scale the factor that brings the model's
-/// photographs M of a grey surface, ρ = ½, nearest to Φ:
+/// s₀, what s is before the picture is known: 1, or with a free scale the factor that brings the
+/// model's photographs M of a grey surface, ρ = ½, nearest to Φ:
 ///
 /// > s₀ = ⟨Φ, M⟩/⟨M, M⟩,   weighted, other light eliminated from both,
 ///
-/// or ‖Φ‖/‖M‖ where that is not positive. What a method supposes of ρ it supposes of x/s₀ then, so that
-/// photographs in any unit give the same picture. In the unit of Φ per W.
+/// or ‖Φ‖/‖M‖ where that is not positive. What a method supposes of ρ it supposes of x/s₀ then, so
+/// that photographs in any unit give the same picture. In the unit of Φ per W.
 ///
 /// # Errors
 /// [`RecoveryError::NO_DIRECTION`] where nothing of M or Φ is left; those of the operator.
@@ -87,8 +87,9 @@ mod tests {
         off.fold(0.0, f64::max) / largest
     }
 
-    /// Photographs in another unit, by a power of 2 since normal equations double what roundings do: the same reflectances, errors, bands, evidence, Picard plot and share
-    /// that is determined; a scale as many times as large.
+    /// Photographs in another unit, by a power of 2 since normal equations double what roundings
+    /// do: the same reflectances, errors, bands, evidence, Picard plot and share that is
+    /// determined; a scale as many times as large.
     #[test]
     fn the_unit_of_the_photographs_changes_nothing_but_the_scale() {
         let bench = Bench::new(6.0, 4, 8);

@@ -1,7 +1,8 @@
 //! Two levels that the elements keep to within a spread.
 //!
 //! That a picture has two reflectances and no more makes its standard errors small, and where it is
-//! not so they are wrong. So the photographs are asked whether each element may differ from its level,
+//! not so they are wrong. So the photographs are asked whether each element may differ from its
+//! level,
 //!
 //! > x = ℓ + τ n,   n ~ N(0, 1),   d ~ N(R ℓ, L Lᵀ),   L Lᵀ = 1 + τ² R Rᵀ,
 //!
@@ -114,8 +115,8 @@ pub(super) fn sum(
     })
 }
 
-/// The sums at one spread, along the singular vectors of R = U S Vᵀ: with e = 1 + τ² s² a row of L⁻¹R is
-/// s vᵀ/√e, and x of levels ℓ is ℓ + V (τ² s/e)(Uᵀd − S Vᵀℓ) on average.
+/// The sums at one spread, along the singular vectors of R = U S Vᵀ: with e = 1 + τ² s² a row of
+/// L⁻¹R is s vᵀ/√e, and x of levels ℓ is ℓ + V (τ² s/e)(Uᵀd − S Vᵀℓ) on average.
 fn part(
     ground: &Ground<'_>,
     axes: &Svd,

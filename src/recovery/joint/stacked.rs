@@ -13,9 +13,9 @@
 //! With one the blocks are pixels, whose background concerns that pixel alone; the terms of all
 //! frames are then carried along and eliminated from the last triangle. Factors of the frames that
 //! are known to a standard deviation w are eliminated after all others, softly
-//! ([`super::conditional`]); beside a background as columns with one more row each, 0 = ε_l/w. A tall frame
-//! is reduced strip by strip, each below the triangle of those before. Memory: some triangles of
-//! elements (and, with a background, of the terms of all frames), whatever the pixels.
+//! ([`super::conditional`]); beside a background as columns with one more row each, 0 = ε_l/w. A
+//! tall frame is reduced strip by strip, each below the triangle of those before. Memory: some
+//! triangles of elements (and, with a background, of the terms of all frames), whatever the pixels.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -246,7 +246,8 @@ fn reduce(block: DMatrix<f64>) -> Result<DMatrix<f64>, RecoveryError> {
     Ok(triangle_of(block)?.joined())
 }
 
-/// The triangle of rows × columns, the last the data, from what is at (row, column): strip by strip.
+/// The triangle of rows × columns, the last the data, from what is at (row, column): strip by
+/// strip.
 fn by_strips(
     rows: usize,
     columns: usize,

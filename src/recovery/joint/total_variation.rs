@@ -8,24 +8,24 @@
 //!
 //! λ is given as a fraction of σ₁², σ₁ the largest singular value of the weighted operator, or it
 //! is the one at which the photographs are likeliest if the penalty is a prior, p(ρ|λ) ∝ exp(−λ TV)
-//! (noise of unit variance: that is what the weights make). Over the n − 1 differences of n elements
-//! ∫ exp(−λ TV) ∝ λ^(1 − n). About ρ_λ what lies within a patch of one value or on a bound integrates
-//! to some 1/λ each, n − F times where F patches lie between the bounds, and the values of those to
-//! a normal integral (Laplace), so that the evidence E is
+//! (noise of unit variance: that is what the weights make). Over the n − 1 differences of n
+//! elements ∫ exp(−λ TV) ∝ λ^(1 − n). About ρ_λ what lies within a patch of one value or on a bound
+//! integrates to some 1/λ each, n − F times where F patches lie between the bounds, and the values
+//! of those to a normal integral (Laplace), so that the evidence E is
 //!
 //! > −2 ln E(λ) = ‖R ρ_λ − d‖² + 2 λ TV(ρ_λ) − 2 (F − 1) ln λ + Σ_i ln(1 + s_i²/2π) + const,
 //!
 //! s_i the singular values of R on those F patches, and the 1 the range that a reflectance has
 //! without any data (no power of λ where F is 0). As λ → 0 the evidence of a picture with an edge
-//! between the bounds vanishes; a flat one has no λ of its own: the largest is taken. Where even the
-//! unpenalised fit is more than four standard deviations of χ² above its mean, k − F (k singular
-//! values above rounding; Tibshirani and Taylor 2012), the noise is understated and nothing is
-//! chosen. A patch that the data hardly see takes less than one of χ², as its value stays between the
-//! bounds: F there is Σ_i s_i²/(1 + s_i²).
+//! between the bounds vanishes; a flat one has no λ of its own: the largest is taken. Where even
+//! the unpenalised fit is more than four standard deviations of χ² above its mean, k − F (k
+//! singular values above rounding; Tibshirani and Taylor 2012), the noise is understated and
+//! nothing is chosen. A patch that the data hardly see takes less than one of χ², as its value
+//! stays between the bounds: F there is Σ_i s_i²/(1 + s_i²).
 //!
-//! Over 180 draws on 8 × 8 elements (five kinds of pictures, noise 0.1 to 1e-3, both rings) its RMSE
-//! is 1.07 times that at the best λ in the median, and more than 1.55 times in a tenth; a slow test
-//! holds the median of 210 others below 1.1. λ is never 0.
+//! Over 180 draws on 8 × 8 elements (five kinds of pictures, noise 0.1 to 1e-3, both rings) its
+//! RMSE is 1.07 times that at the best λ in the median, and more than 1.55 times in a tenth; a slow
+//! test holds the median of 210 others below 1.1. λ is never 0.
 
 use std::iter::successors;
 

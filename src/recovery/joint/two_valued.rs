@@ -1,15 +1,15 @@
 //! Least squares over all pixels and spots with reflectances of two values only, ρ_j ∈ {dark,
 //! light}, and how likely each element is to be the light one.
 //!
-//! The pattern is one that no change of one or two elements improves, and not always the best of all
-//! ([`super::pattern_search`]). The reported gap says how far it can be above that: with given levels
-//! above what branch and bound left open (zero: proved best), with estimated ones above the minimum
-//! over all 0 ≤ ρ ≤ 1. The probabilities are sums over all patterns of few elements
+//! The pattern is one that no change of one or two elements improves, and not always the best of
+//! all ([`super::pattern_search`]). The reported gap says how far it can be above that: with given
+//! levels above what branch and bound left open (zero: proved best), with estimated ones above the
+//! minimum over all 0 ≤ ρ ≤ 1. The probabilities are sums over all patterns of few elements
 //! ([`super::enumerated`]), of more over the likeliest and by sampling ([`super::sampled`]), every
 //! pattern as likely beforehand. Where the levels are not given, they and the standard errors allow
 //! for elements that differ from their level, as far as the photographs do ([`super::spread`]). How
-//! likely the photographs are by two levels, against what other methods assume, takes neighbours to be
-//! alike by an unknown degree ([`super::neighbours`]).
+//! likely the photographs are by two levels, against what other methods assume, takes neighbours to
+//! be alike by an unknown degree ([`super::neighbours`]).
 
 use super::coordinates::Coordinates;
 use super::ground::Ground;
@@ -26,8 +26,8 @@ const DRAWS: f64 = 1.6e9;
 const FEWEST: f64 = 2000.0;
 const MOST: f64 = 400_000.0;
 
-/// Bytes that this method takes of so many elements beside what every joint method does, at most: two
-/// matrices of n × n numbers for each lattice that is held.
+/// Bytes that this method takes of so many elements beside what every joint method does, at most:
+/// two matrices of n × n numbers for each lattice that is held.
 pub fn two_valued_bytes(elements: usize) -> f64 {
     let held = if elements <= MOST_SAMPLED {
         sampled::MOST_LATTICES

@@ -37,8 +37,8 @@ fn decompose(
     problem.laser(tolerance)
 }
 
-/// Refuses a single photograph: these methods tell elements apart by how the spots light them, and of
-/// one spot D⁺ = Dᵀ/‖D‖² is no inverse. Only differences that are damped make up for it.
+/// Refuses a single photograph: these methods tell elements apart by how the spots light them, and
+/// of one spot D⁺ = Dᵀ/‖D‖² is no inverse. Only differences that are damped make up for it.
 fn refuse_one_spot(method: Method, problem: &Problem<'_>) -> Result<(), RecoveryError> {
     let (elements, spots) = problem.d.shape();
     if spots > 1 || elements == 1 || method == Method::TikhonovGradient {

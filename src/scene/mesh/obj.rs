@@ -1,4 +1,5 @@
-//! Wavefront OBJ files: `v`, `vt` and `f`; every other statement is read over, and `mtllib` is told.
+//! Wavefront OBJ files: `v`, `vt` and `f`; every other statement is read over, and `mtllib` is
+//! told.
 //!
 //! Read here and not by `tobj` 4.0.5, which multiplies a texture coordinate's index before it
 //! checks it (an overflow that panics or wraps around), gives a corner without texture coordinate

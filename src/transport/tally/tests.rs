@@ -145,8 +145,8 @@ fn what_cannot_be_a_part_is_refused() {
     assert_eq!(tally.add_part(4..8, &bytes), Ok(()));
 }
 
-/// Every estimator, cut anywhere, gives the bits of the whole; tracing goes on from what the control
-/// stopped.
+/// Every estimator, cut anywhere, gives the bits of the whole; tracing goes on from what the
+/// control stopped.
 #[test]
 fn traced_in_pieces_or_at_once_the_bits_are_the_same() {
     let text = Scene::load("bench").unwrap().text;

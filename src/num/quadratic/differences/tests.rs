@@ -56,7 +56,8 @@ fn no_point_of_a_grid_is_better() {
     }
 }
 
-/// Both methods end at one minimum, with multipliers that prove it, between two bounds and above one.
+/// Both methods end at one minimum, with multipliers that prove it, between two bounds and above
+/// one.
 #[test]
 fn dense_matrices_end_where_the_conic_solver_ends() {
     let mut state = 11u64;

@@ -48,9 +48,9 @@ impl Small {
         problem.with_nuisance(nuisance).unwrap()
     }
 
-    /// The minimum of Σ z² + Σ ε_l²/σ_g² + ε²/σ_s² over x, ε and the strengths of patterns (pixels ×
-    /// patterns, of each frame), and the inverse of half its Hessian in Gauss and Newton's form: all
-    /// rows and columns written out, from the truth, by the pseudo-inverse.
+    /// The minimum of Σ z² + Σ ε_l²/σ_g² + ε²/σ_s² over x, ε and the strengths of patterns (pixels
+    /// × patterns, of each frame), and the inverse of half its Hessian in Gauss and Newton's form:
+    /// all rows and columns written out, from the truth, by the pseudo-inverse.
     fn brute(
         &self,
         phi: &DMatrix<f64>,
@@ -125,8 +125,8 @@ fn gains(found: &Recovered) -> &Gains {
     found.nuisance.as_ref().unwrap().gains.as_ref().unwrap()
 }
 
-/// ρ̂, its standard errors and its covariance, ε̂ and its standard errors, against the minimum and the
-/// inverse Hessian of the whole problem written out; with other light too.
+/// ρ̂, its standard errors and its covariance, ε̂ and its standard errors, against the minimum and
+/// the inverse Hessian of the whole problem written out; with other light too.
 #[test]
 fn it_is_the_minimum_over_picture_and_factors_written_out() {
     let small = Small::new();
@@ -200,8 +200,8 @@ fn it_is_the_minimum_over_picture_and_factors_written_out() {
     }
 }
 
-/// An entry left out, and glare, take nothing from it: the minimum written out has the entry without
-/// weight.
+/// An entry left out, and glare, take nothing from it: the minimum written out has the entry
+/// without weight.
 #[test]
 fn entries_left_out_have_no_factor() {
     let mut small = Small::new();
@@ -228,9 +228,9 @@ fn entries_left_out_have_no_factor() {
     }
 }
 
-/// 200 draws of random factors and noise, 4 elements each: 95 % bars of ρ, and of ε, cover within 4.5
-/// standard deviations of the draws' number (those of one draw hang together: counted as draws);
-/// without the option far less.
+/// 200 draws of random factors and noise, 4 elements each: 95 % bars of ρ, and of ε, cover within
+/// 4.5 standard deviations of the draws' number (those of one draw hang together: counted as
+/// draws); without the option far less.
 #[test]
 fn bars_cover_with_the_option_and_not_without() {
     let small = Small::new();
@@ -275,8 +275,8 @@ fn bars_cover_with_the_option_and_not_without() {
     assert!(without < 0.8, "{covered:?}");
 }
 
-/// A wide prior is the exact elimination of the light of each frame as a pattern of unknown strength,
-/// a narrow one changes nothing.
+/// A wide prior is the exact elimination of the light of each frame as a pattern of unknown
+/// strength, a narrow one changes nothing.
 #[test]
 fn wide_priors_eliminate_and_narrow_ones_do_nothing() {
     let small = Small::new();
@@ -343,8 +343,8 @@ fn wide_priors_eliminate_and_narrow_ones_do_nothing() {
     }
 }
 
-/// A surface of one reflectance, of a scale known to 5 %: its mean is known to no less, and to hardly
-/// more where the noise is small; the factor itself is known to its σ.
+/// A surface of one reflectance, of a scale known to 5 %: its mean is known to no less, and to
+/// hardly more where the noise is small; the factor itself is known to its σ.
 #[test]
 fn a_scale_known_to_five_percent_leaves_five_percent() {
     let small = Small::new();
@@ -388,8 +388,8 @@ fn a_scale_known_to_five_percent_leaves_five_percent() {
 }
 
 /// The evidence of factors against the density of the data written out, N(Φ; A x, Σ + …) for a
-/// picture whose levels are given: all patterns summed. It rises where there are factors, by far, and
-/// falls where there are none.
+/// picture whose levels are given: all patterns summed. It rises where there are factors, by far,
+/// and falls where there are none.
 #[test]
 fn the_evidence_punishes_factors_that_nothing_asks_for() {
     let mut small = Small::new();
@@ -415,8 +415,9 @@ fn the_evidence_punishes_factors_that_nothing_asks_for() {
         );
     }
     // Of joint-gp the density of the data with the factors linear about x̂, all written out: x is
-    // normal with each pair of its lattice, so that a mixture of normals is the density. It is compared
-    // by its gain over no factors, for one pair: a flat surface, where the pair does not matter.
+    // normal with each pair of its lattice, so that a mixture of normals is the density. It is
+    // compared by its gain over no factors, for one pair: a flat surface, where the pair does not
+    // matter.
     let phi = small.drawn(0.1, 0.0, 9);
     let problem = small.problem(&phi, nuisance);
     let found = recover(Method::JointUnbounded, &problem, &Options::default()).unwrap();

@@ -11,10 +11,10 @@ fn gp(problem: &Problem<'_>, options: &Options) -> Recovered {
     recover(Method::JointGp, problem, options).unwrap()
 }
 
-/// One element seen n times with signal a and noise σ: ŷ = Φ̄/a with variance e = σ²/(n a²). At one τ
-/// the posterior is N(½ + v z/(v + e), v e/(v + e)), v = ¼ + τ², z = ŷ − ½, and
-/// p(y | τ) ∝ N(z; 0, v + e); over τ a sum of many terms, ten times as fine as the lattice, and
-/// one in fifty of τ = 0.
+/// One element seen n times with signal a and noise σ: ŷ = Φ̄/a with variance e = σ²/(n a²). At one
+/// τ the posterior is N(½ + v z/(v + e), v e/(v + e)), v = ¼ + τ², z = ŷ − ½, and p(y | τ) ∝ N(z;
+/// 0, v + e); over τ a sum of many terms, ten times as fine as the lattice, and one in fifty of τ =
+/// 0.
 #[test]
 fn one_element_by_hand() {
     let (c, d) = (
@@ -51,10 +51,10 @@ fn one_element_by_hand() {
     }
 }
 
-/// Pictures that are what the method takes them for, spread, length and independent share drawn as it says: of all
-/// their elements 95 % bands cover 95 %, and z = (ρ̂ − ρ)/σ has the square 1 in the mean. 300 pictures;
-/// elements of one hang together, so the error is taken from the scatter among pictures, five
-/// standard errors.
+/// Pictures that are what the method takes them for, spread, length and independent share drawn as
+/// it says: of all their elements 95 % bands cover 95 %, and z = (ρ̂ − ρ)/σ has the square 1 in the
+/// mean. 300 pictures; elements of one hang together, so the error is taken from the scatter among
+/// pictures, five standard errors.
 #[test]
 fn pictures_of_the_prior_are_covered_as_promised() {
     let bench = Bench::new(6.0, 5, 8);
@@ -185,10 +185,10 @@ fn nothing_to_tell_the_noise_from() {
     );
 }
 
-/// Noise of unknown size that neighbouring pixels share, each the sum of 2 × 2 independent ones: where the
-/// pixels' places are known, the errors are those of four times the variance, z² is 1 in the mean and not 4.
-/// 40 photographs of 4 elements; five standard errors of the scatter among photographs, and a tenth for what
-/// is taken from the noise to tell its size.
+/// Noise of unknown size that neighbouring pixels share, each the sum of 2 × 2 independent ones:
+/// where the pixels' places are known, the errors are those of four times the variance, z² is 1 in
+/// the mean and not 4. 40 photographs of 4 elements; five standard errors of the scatter among
+/// photographs, and a tenth for what is taken from the noise to tell its size.
 #[test]
 fn pixels_that_err_alike_are_not_counted_as_many() {
     let bench = Bench::new(6.0, 2, 16);

@@ -1,5 +1,5 @@
-//! What goes with a solution of the operator: light beside that of the hidden surface, factors that are
-//! known roughly, covariances.
+//! What goes with a solution of the operator: light beside that of the hidden surface, factors that
+//! are known roughly, covariances.
 
 use nalgebra::{DMatrix, DVector};
 

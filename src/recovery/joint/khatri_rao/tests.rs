@@ -86,8 +86,8 @@ fn both_routes_solve_a_well_conditioned_problem_alike() {
     );
 }
 
-/// One photograph of 1100 pixels: the objective, the covariance and the rank are those of its rows by
-/// hand, however the noise is known and with a constant of the frame, and C is not compressed.
+/// One photograph of 1100 pixels: the objective, the covariance and the rank are those of its rows
+/// by hand, however the noise is known and with a constant of the frame, and C is not compressed.
 #[test]
 fn one_tall_photograph_is_its_rows() {
     let mut normal = normal_stream(8);

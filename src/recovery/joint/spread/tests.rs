@@ -7,8 +7,8 @@ use nalgebra::DMatrix;
 const BEFOREHAND: [f64; 5] = [0.018_257, 0.039_478, 0.124_839, 0.394_776, 0.422_650];
 const SHOWN: [f64; 4] = [0.2, 0.8, 0.2, 0.8];
 
-/// ln of 2 ∫∫ N(d; R ℓ, 1 + τ² R Rᵀ) da db/2⁴ over all patterns, but for (2π)⁻²; and E (x − shown)²,
-/// by Gauss–Legendre on 60 × 60 levels and inverses of whole matrices.
+/// ln of 2 ∫∫ N(d; R ℓ, 1 + τ² R Rᵀ) da db/2⁴ over all patterns, but for (2π)⁻²; and E (x −
+/// shown)², by Gauss–Legendre on 60 × 60 levels and inverses of whole matrices.
 fn by_hand(r: &DMatrix<f64>, d: &DVector<f64>, tau: f64) -> (f64, DVector<f64>) {
     let one = DMatrix::<f64>::identity(4, 4);
     let covariance = &one + r * r.transpose() * (tau * tau);
@@ -35,8 +35,8 @@ fn by_hand(r: &DMatrix<f64>, d: &DVector<f64>, tau: f64) -> (f64, DVector<f64>) 
     (libm::log(sum), square / sum)
 }
 
-/// Elements exactly on two levels and elements that are not: the probability of exact levels and the
-/// errors are those of the whole sums.
+/// Elements exactly on two levels and elements that are not: the probability of exact levels and
+/// the errors are those of the whole sums.
 #[test]
 fn errors_are_those_of_all_patterns_levels_and_spreads() {
     let mut normal = normal_stream(3);

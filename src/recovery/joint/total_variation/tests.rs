@@ -197,8 +197,8 @@ fn picture(bench: &Bench, kind: usize, seed: u64) -> nalgebra::DVector<f64> {
     }
 }
 
-/// Stopped while it looks for its weight, it shows the likeliest of those that it has tried, and says
-/// so; where it was left alone it says nothing.
+/// Stopped while it looks for its weight, it shows the likeliest of those that it has tried, and
+/// says so; where it was left alone it says nothing.
 #[test]
 fn a_search_that_was_stopped_shows_the_best_till_then() {
     let bench = Bench::new(6.0, 4, 8);

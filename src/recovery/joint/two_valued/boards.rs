@@ -23,8 +23,8 @@ struct Count {
     levels: u64,
 }
 
-/// Boards of 2 × 2 and 4 × 4 fields on 8 × 8 elements, levels unknown: what is found fits at least as
-/// well as what made the photographs, and the levels are within three of their standard errors.
+/// Boards of 2 × 2 and 4 × 4 fields on 8 × 8 elements, levels unknown: what is found fits at least
+/// as well as what made the photographs, and the levels are within three of their standard errors.
 #[test]
 #[ignore = "slow"]
 fn the_search_reaches_what_made_the_photographs() {
@@ -77,8 +77,8 @@ fn the_search_reaches_what_made_the_photographs() {
     assert!(short.is_empty(), "{short:?}");
 }
 
-/// Random pictures of 4 × 4 elements, levels known and not: the marginals of the sampler, called itself,
-/// are those of the sum over all patterns to 0.02.
+/// Random pictures of 4 × 4 elements, levels known and not: the marginals of the sampler, called
+/// itself, are those of the sum over all patterns to 0.02.
 #[test]
 #[ignore = "slow"]
 fn sampled_marginals_are_those_of_all_patterns() {

@@ -177,8 +177,8 @@ fn sampled_levels_are_those_of_the_sum() {
     }
 }
 
-/// 4 × 4 elements at noise that leaves far more patterns likely than are listed: what is drawn makes
-/// up for the others, to within what is stated.
+/// 4 × 4 elements at noise that leaves far more patterns likely than are listed: what is drawn
+/// makes up for the others, to within what is stated.
 #[test]
 fn drawn_patterns_make_up_for_those_that_are_not_listed() {
     let bench = Bench::new(6.0, 4, 8);
@@ -283,7 +283,8 @@ fn stated_probabilities_come_true() {
     }
 }
 
-/// At a noise of a tenth, levels known: the pattern of 4 × 4 elements is right in 95 of 100 or more.
+/// At a noise of a tenth, levels known: the pattern of 4 × 4 elements is right in 95 of 100 or
+/// more.
 #[test]
 fn random_patterns_are_found_at_a_tenth_of_noise() {
     let bench = Bench::new(6.0, 4, 16);
@@ -308,9 +309,9 @@ fn two_levels(bench: &Bench, [dark, light]: [f64; 2]) -> DVector<f64> {
     bench.board(4).map(|x| dark + (light - dark) * x)
 }
 
-/// Photographs in an unknown unit, of a surface of exactly two reflectances: the pattern, the ratio of
-/// its levels and a fit within the noise, as where the scale is known. Levels that are given are a
-/// ratio.
+/// Photographs in an unknown unit, of a surface of exactly two reflectances: the pattern, the ratio
+/// of its levels and a fit within the noise, as where the scale is known. Levels that are given are
+/// a ratio.
 #[test]
 fn a_pattern_is_found_whatever_the_unit() {
     let bench = Bench::new(6.0, 4, 8);
@@ -346,8 +347,8 @@ fn a_pattern_is_found_whatever_the_unit() {
     }
 }
 
-/// Photographs in W whose scale is stated to be known to `known`, and is `factor`: the pattern is found
-/// however large the stated error is.
+/// Photographs in W whose scale is stated to be known to `known`, and is `factor`: the pattern is
+/// found however large the stated error is.
 #[test]
 fn a_larger_error_of_the_scale_loses_no_pattern() {
     let bench = Bench::new(6.0, 4, 8);
