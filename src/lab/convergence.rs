@@ -43,11 +43,10 @@ pub(super) const STUDY: Registered = Registered {
     ],
     prepare: |scene, values| {
         let samples: Vec<u64> = values.list("samples")?;
-        Ok(prepared(ConvergenceTasks::new(
-            scene,
-            &samples,
-            values.one("seed")?,
-        )))
+        let tasks = ConvergenceTasks::new(scene, &samples, values.one("seed")?);
+        // Before a folder is begun.
+        tasks.check()?;
+        Ok(prepared(tasks))
     },
 };
 
