@@ -36,7 +36,7 @@ const HEADERS: Duration = Duration::from_secs(10);
 /// no room.
 const LOOK: Duration = Duration::from_millis(100);
 /// How long answers under way may take after Ctrl-C.
-const FAREWELL: Duration = Duration::from_secs(1);
+const FAREWELL: Duration = Duration::from_millis(500);
 
 /// A listener on `address`.
 pub(super) fn listen(address: SocketAddr) -> io::Result<TcpListener> {
