@@ -78,9 +78,8 @@ pub enum NoiseAxis {
     /// is noisy. The recovery is told K/√12. Rounding is no random number, so what a draw varies is
     /// the offset, by a part of a count that is common to all entries.
     Bits,
-    /// s: all of Φcam times 1 + s·N(0, 1), one number a draw, and each entry noisy by
-    /// [`BESIDE_SCALE`] of it. Joint methods are told s and the entries' errors, the others these
-    /// alone.
+    /// s: all of Φcam times 1 + s·N(0, 1), one number a draw, and each entry noisy by a thousandth
+    /// of it. Joint methods are told s and the entries' errors, the others these alone.
     Scale,
 }
 
