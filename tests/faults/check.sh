@@ -4,7 +4,6 @@
 #   usage: check.sh PHICAM     (as root: it mounts file systems in a mount namespace of its own; needs faketime)
 set -euo pipefail
 phicam=$(realpath "$1")
-grids=$(realpath "$(dirname "$0")")/grids.py
 if [ "${FAULTS_INSIDE:-}" != 1 ]; then
     FAULTS_INSIDE=1 exec unshare --mount -- "$0" "$phicam"
 fi
@@ -132,6 +131,4 @@ timeout -s KILL 0.3 "$phicam" -q render bench.toml -o back $more >/dev/null 2>&1
 find back -type f -exec touch -d '2040-01-01' {} +
 ends 0 "of 24 spots" faketime '1999-12-31 23:59:59' "$phicam" render bench.toml -o back $more
 same back alone
-echo "a share of the grids"
-python3 "$grids" "$phicam" flips kinds --share 0.0005 >said 2>&1 || fail "a cell of a grid is wrong"
 echo "faults: all as they should be"
