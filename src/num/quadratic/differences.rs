@@ -6,8 +6,8 @@ use nalgebra::{DMatrix, DVector};
 use super::dense_differences::{self, Penalised};
 use super::program::{Program, half_square};
 use super::{
-    Bounds, BoxSolution, GAP_ALLOWED, QuadraticError, box_least_squares_from, certificate,
-    not_solved,
+    Bounds, BoxSolution, GAP_ALLOWED, QuadraticError, active_set, box_least_squares_from,
+    certificate, not_solved,
 };
 use crate::num::linalg::{Tolerance, least_squares};
 
@@ -70,7 +70,7 @@ pub fn fused_least_squares(
     let mut x = interior.x;
     let (polished, sigma) = problem.polish(&x)?;
     let mut free_sets = sigma.len();
-    if problem.objective(&polished) <= problem.objective(&x) {
+    if lambda > 0.0 && problem.objective(&polished) <= problem.objective(&x) {
         x = polished;
         free_sets = problem
             .sets(&x)
@@ -129,7 +129,7 @@ struct Interior {
     x: DVector<f64>,
     /// Multipliers of the differences, within ±λ.
     w: DVector<f64>,
-    /// Residuals.
+    /// Residuals; without a penalty their part that no variable between its bounds can change.
     y: DVector<f64>,
     status: String,
     iterations: u32,
@@ -152,8 +152,11 @@ impl Problem<'_> {
     /// Without a penalty, from near its minimum.
     fn unpenalised(&self, start: &DVector<f64>) -> Result<Interior, QuadraticError> {
         let found = box_least_squares_from(self.r, self.d, self.bounds, start)?;
+        let room = &self.bounds.upper - &self.bounds.lower;
+        let above = &found.solution - &self.bounds.lower;
+        let residual = self.r * &found.solution - self.d;
         Ok(Interior {
-            y: self.r * &found.solution - self.d,
+            y: active_set::orthogonal_to_free(self.r, &residual, &room, &above)?,
             x: found.solution,
             w: DVector::zeros(self.pairs.len()),
             status: found.status,
