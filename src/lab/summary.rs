@@ -8,6 +8,7 @@ use super::tails::Tails;
 use crate::matrix::Matrix;
 use crate::num::digits::figure;
 use crate::scene::Scene;
+use crate::transport::tails::UNLIT;
 use crate::transport::{Plan, Traced};
 
 /// A table without heads: what is told, and what is told of it.
@@ -41,9 +42,9 @@ impl RunResults {
         self.agreement.as_ref().map_or(Tone::Plain, Agreement::tone)
     }
 
-    /// ‖standard error‖/‖Φcam‖; `None` where there is no light.
+    /// ‖standard error‖/‖Φcam‖ of the entries that light was met for; `None` where there is none.
     pub fn relative_stderr(&self) -> Option<f64> {
-        relative(&self.stderr, &self.phi)
+        relative_stderr(&self.phi, &self.stderr, &self.tails)
     }
 
     /// Scene, settings, flux with its precision, the test and times.
@@ -164,7 +165,7 @@ pub fn describe_render(scene: &Scene, plan: &Plan, traced: &Traced, seconds: f64
     let total = traced.flux.sum();
     let share = |m: &Matrix| if total > 0.0 { m.sum() / total } else { 0.0 };
     let bounces: Vec<(u32, f64)> = (1..).zip(traced.bounces.iter().map(share)).collect();
-    let precision = relative(&traced.stderr, &traced.flux);
+    let precision = relative_stderr(&traced.flux, &traced.stderr, &traced.tails);
     let mut told = rendered(
         scene,
         plan,
@@ -178,10 +179,13 @@ pub fn describe_render(scene: &Scene, plan: &Plan, traced: &Traced, seconds: f64
     }
 }
 
-/// ‖a‖/‖b‖; `None` where b is zero.
-fn relative(a: &Matrix, b: &Matrix) -> Option<f64> {
-    let norm = b.norm();
-    (norm > 0.0).then(|| a.norm() / norm)
+/// ‖σ‖/‖Φ‖. Entries for which no light was met have an upper bound in place of σ, which takes no
+/// part; they are counted as such. `None` where there is no light.
+fn relative_stderr(flux: &Matrix, stderr: &Matrix, tails: &Matrix) -> Option<f64> {
+    let met = |(sigma, code): (&f64, &f64)| (*code as u32 & UNLIT == 0).then_some(sigma * sigma);
+    let variance: f64 = stderr.iter().zip(tails.iter()).filter_map(met).sum();
+    let norm = flux.norm();
+    (norm > 0.0).then(|| variance.sqrt() / norm)
 }
 
 /// The relative standard error that a run should reach.
