@@ -37,10 +37,20 @@ pub(super) fn execute(args: &ReproduceArgs, console: Console) -> Result<Outcome,
     for &item in &items {
         bar.set_message(item.name());
         let wanted = plan.settings(item);
-        if finished(&args.output, item, &wanted).is_some() {
+        let there = ItemRecord::whole(&args.output, item);
+        if there
+            .as_ref()
+            .is_some_and(|there| there.as_ref().is_ok_and(|s| is_of(s, item, &wanted)))
+        {
             kept += 1;
         } else {
-            tell_damage(&args.output, item, console);
+            if let Some(Err(name)) = there {
+                let path = args.output.join(name);
+                console.say(format!(
+                    "warning: {} is not what was written; {item} is computed again",
+                    path.display()
+                ));
+            }
             match pool.install(|| reproduce(item, &plan, control())) {
                 Ok(found) => leave(&args.output, item, &found, &plan)?,
                 Err(e) => {
@@ -131,33 +141,15 @@ fn refuse_other(folder: &Path, item: Item, plan: &ReproducePlan) -> Result<(), F
     Err(Failure::new(cause, cure))
 }
 
-/// The summary of an item that was computed with the same settings; neither it nor any of its files
-/// has changed.
-fn finished(folder: &Path, item: Item, settings: &str) -> Option<ItemSummary> {
-    let found = ItemRecord::read(folder, item)?;
-    let whole = !found.is_damaged() && found.changed(folder).is_none();
-    let summary = found.summary;
-    (whole && summary.settings == settings && summary.item == item.name()).then_some(summary)
+/// Whether `summary` is of `item`, computed with these settings.
+fn is_of(summary: &ItemSummary, item: Item, settings: &str) -> bool {
+    summary.settings == settings && summary.item == item.name()
 }
 
-/// Says which file of an item has changed since it was finished.
-fn tell_damage(folder: &Path, item: Item, console: Console) {
-    let Some(found) = ItemRecord::read(folder, item) else {
-        return;
-    };
-    let own = format!("{item}.json");
-    let changed = if found.is_damaged() {
-        Some(own.as_str())
-    } else {
-        found.changed(folder)
-    };
-    if let Some(name) = changed {
-        let path = folder.join(name);
-        console.say(format!(
-            "warning: {} is not what was written; {item} is computed again",
-            path.display()
-        ));
-    }
+/// The whole item of `folder`, if it was computed with these settings.
+fn finished(folder: &Path, item: Item, settings: &str) -> Option<ItemSummary> {
+    let there = ItemRecord::whole(folder, item)?.ok()?;
+    is_of(&there, item, settings).then_some(there)
 }
 
 /// The pages of every item that is finished, asked for or not.

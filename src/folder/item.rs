@@ -65,8 +65,19 @@ impl ItemRecord {
         self.digest.is_some() && seal(&bare).ok() != self.digest
     }
 
+    /// The item that `folder` keeps if neither it nor any of its files has changed, else the name
+    /// of the first that has. None where there is none.
+    pub fn whole(folder: &Path, item: Item) -> Option<Result<ItemSummary, String>> {
+        let found = Self::read(folder, item)?;
+        if found.is_damaged() {
+            return Some(Err(name(item.name())));
+        }
+        let changed = found.changed(folder).map(str::to_owned);
+        Some(changed.map_or(Ok(found.summary), Err))
+    }
+
     /// The first of its files in `folder` that is not what was written.
-    pub fn changed(&self, folder: &Path) -> Option<&str> {
+    fn changed(&self, folder: &Path) -> Option<&str> {
         let is_whole = |file: &str| {
             let written = self.written.get(file);
             written.is_some_and(|w| w.is_at(&folder.join(file)).unwrap_or(false))
