@@ -78,8 +78,11 @@ STAGED = re.compile(r"(^|/)[.](replacement|incoming|exposed-new|exposed-incoming
 
 def finished(place: pathlib.Path, results: dict[str, bytes]) -> set[str]:
     """The files that are what they will be, in their place or on their way to it."""
-    found = kept(contents(place)).items()
-    named = ((STAGED.sub(r"\1", name), name, data) for name, data in found)
+    found = kept(contents(place))
+    # Photographs are finished together: their account is written last.
+    whole = any(name.endswith(".exposed-new/exposure.json") for name in found)
+    ready = [(n, data) for n, data in found.items() if whole or ".exposed-new/" not in n]
+    named = ((STAGED.sub(r"\1", name), name, data) for name, data in ready)
     # Photographs wait beside their folder's others.
     return {
         last

@@ -78,10 +78,16 @@ def run_of_this_size(program: Program) -> bool:
 
 
 def outcome(ended: Ended) -> str:
-    """The exit code, or that it worked until its time was over and then ended soon; else wrong."""
+    """The exit code, or that it worked until its time was over and then ended soon; else wrong.
+
+    writing: it said that what is finished is being written, and ended when it was.
+    """
     is_soon = ended.seconds < LONG + SOON or os.getloadavg()[0] > (os.cpu_count() or 1)
-    if ended.cut and not ended.crashed and ended.code == STOPPED and is_soon:
-        return "at work"
+    if ended.cut and not ended.crashed and ended.code == STOPPED:
+        if is_soon:
+            return "at work"
+        if "is being written" in ended.words:
+            return "writing"
     return str(ended.code) if ended.is_documented else f"WRONG: {ended.code}"
 
 
@@ -108,7 +114,7 @@ def limits(program: Program, share: float) -> int:
             if not found:
                 ended = program(line, most=LONG, space=space * GIB)
                 found = outcome(ended)
-            if found == "at work":
+            if found in {"at work", "writing"}:
                 slow.add(line)
             elif found.startswith("WRONG"):
                 wrong += 1
