@@ -37,31 +37,31 @@ pub(super) fn execute(args: &ReproduceArgs, console: Console) -> Result<Outcome,
     for &item in &items {
         bar.set_message(item.name());
         let wanted = plan.settings(item);
-        let there = ItemRecord::whole(&args.output, item);
-        if there
-            .as_ref()
-            .is_some_and(|there| there.as_ref().is_ok_and(|s| is_of(s, item, &wanted)))
-        {
-            kept += 1;
-        } else {
-            if let Some(Err(name)) = there {
+        match ItemRecord::whole(&args.output, item) {
+            Some(Ok(there)) if is_of(&there, item, &wanted) => {
+                kept += 1;
+                bar.inc(1);
+                continue;
+            }
+            Some(Err(name)) => {
                 let path = args.output.join(name);
                 console.say(format!(
                     "warning: {} is not what was written; {item} is computed again",
                     path.display()
                 ));
             }
-            match pool.install(|| reproduce(item, &plan, control())) {
-                Ok(found) => leave(&args.output, item, &found, &plan)?,
-                Err(e) => {
-                    return Err(Failure::from(e).if_stopped(format!(
-                        "finished items are kept in {}; go on with the same command",
-                        args.output.display()
-                    )));
-                }
-            }
-            pages(&args.output, &plan)?;
+            _ => {}
         }
+        match pool.install(|| reproduce(item, &plan, control())) {
+            Ok(found) => leave(&args.output, item, &found, &plan)?,
+            Err(e) => {
+                return Err(Failure::from(e).if_stopped(format!(
+                    "finished items are kept in {}; go on with the same command",
+                    args.output.display()
+                )));
+            }
+        }
+        pages(&args.output, &plan)?;
         bar.inc(1);
     }
     bar.finish_and_clear();
