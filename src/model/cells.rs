@@ -2,13 +2,15 @@
 
 use super::kernel::HiddenPoint;
 use super::place::{Place, grid};
-use crate::geometry::{Polygon, Shape, ShapeId};
+use crate::geometry::{DVec3, Polygon, Shape, ShapeId};
 use crate::scene::{Division, Element, Surface};
 
 /// A small part of a hidden surface, taken at its middle.
 #[derive(Debug)]
 pub(super) struct HiddenCell {
     pub point: HiddenPoint,
+    /// The place whose view of the wall stands for all of the cell.
+    pub viewpoint: DVec3,
     /// Its area/π, length².
     pub area: f64,
     pub albedo: f64,
@@ -26,12 +28,34 @@ impl HiddenCell {
     ) -> Option<Self> {
         (element.area > 0.0).then(|| Self {
             point: HiddenPoint::new(surface, element),
+            viewpoint: element.position,
             area: element.area * std::f64::consts::FRAC_1_PI,
             albedo: element.albedo,
             surface: id,
             corners,
         })
     }
+
+    /// The same, one of the 2^h × 2^h cells of an element or a texture's cell. Their viewpoints
+    /// have 4^h different places along either axis, evenly spaced (a turned Hammersley set), so
+    /// that a shadow's edge along a row of cells does not pass all of them alike. Where a cell is
+    /// no parallelogram, its middle.
+    pub(super) fn viewed_from(mut self, place: &Place, h: u32) -> Self {
+        if let (Place::Cell { from, size }, Some([p, q, _, s])) = (place, self.corners.as_deref()) {
+            let [iu, iv] = [0, 1].map(|axis| (from[axis] / size[axis]).round() as u32);
+            self.viewpoint = *p + (*q - *p) * spread(iv, h) + (*s - *p) * (1.0 - spread(iu, h));
+        }
+        self
+    }
+}
+
+/// The last h bits of a number in reverse order, every other one flipped, in the middle of the 2^h
+/// steps from 0 to 1. Over the 2^h numbers at x in such steps Σ (x − ½)(spread − ½) is 0 for even h
+/// and ⅛ for odd, where it would be h/8 with no bit flipped: viewpoints do not lean with the place.
+fn spread(number: u32, h: u32) -> f64 {
+    let flipped = number ^ 0xAAAA_AAAA;
+    let reversed = flipped.reverse_bits().checked_shr(32 - h).unwrap_or(0);
+    (f64::from(reversed) + 0.5) / f64::from(1u32 << h)
 }
 
 /// The elements of a hidden surface, `count` a side, each in 4^`halvings` cells: squares of its
@@ -77,8 +101,59 @@ pub(super) fn cells_of_elements(
         }
     } else {
         for (k, place) in grid(fine).enumerate() {
-            found[element(k)].extend(of_place(&place));
+            let cell = of_place(&place);
+            found[element(k)].extend(cell.map(|cell| cell.viewed_from(&place, halvings)));
         }
     }
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    #[test]
+    fn viewpoints_do_not_lean_with_the_place() {
+        for h in 0..8 {
+            let count = 1u32 << h;
+            let lean = |k: u32| (f64::from(k) + 0.5) / f64::from(count) - 0.5;
+            let sum: f64 = (0..count).map(|k| lean(k) * (spread(k, h) - 0.5)).sum();
+            let wanted = if h % 2 == 0 { 0.0 } else { 0.125 };
+            assert!((sum - wanted).abs() < 1e-12, "{h}: {sum}");
+        }
+    }
+
+    /// Along either axis the viewpoints of an element lie in the middles of equal steps, one in
+    /// each.
+    #[test]
+    fn viewpoints_have_as_many_places_along_an_axis_as_there_are_cells() {
+        let scene = Scene::load("thesis").expect("built in");
+        let hidden = scene.hidden().next().expect("one");
+        let Shape::Parallelogram(shape) = &hidden.1.shape else {
+            panic!("a board");
+        };
+        let (count, corner) = ([3, 2], shape.at([0.0; 2]).position);
+        for h in 0..4 {
+            let of = cells_of_elements(hidden, count, h);
+            for axis in 0..2 {
+                let end = shape.at([[1.0, 0.0], [0.0, 1.0]][axis]).position - corner;
+                for (number, cells) in of.iter().enumerate() {
+                    let own = [number % 3, number / 3][axis] as f64;
+                    let steps = cells.iter().map(|cell| {
+                        let along = (cell.viewpoint - corner).dot(end) / end.length_squared();
+                        (along * count[axis] as f64 - own) * cells.len() as f64
+                    });
+                    let mut steps: Vec<f64> = steps.collect();
+                    steps.sort_by(f64::total_cmp);
+                    for (k, step) in steps.iter().enumerate() {
+                        assert!(
+                            (step - k as f64 - 0.5).abs() < 1e-9,
+                            "{h}, {axis}: {steps:?}"
+                        );
+                    }
+                }
+            }
+        }
+    }
 }

@@ -149,7 +149,7 @@ impl<'a> Obstructed<'a> {
             let all: f64 = patches.iter().map(light).sum();
             [all, all]
         };
-        let origin = cell.point.position;
+        let origin = cell.viewpoint;
         let hidden = self
             .opaque
             .from(origin, Some(cell.surface), self.scene.bvh());
@@ -210,7 +210,7 @@ impl<'a> Obstructed<'a> {
         let (Some(wall), true) = (patch.whole.surface, whole != 0.0) else {
             return 0.0;
         };
-        let to = (cell.surface, cell.point.position);
+        let to = (cell.surface, cell.viewpoint);
         let Some(corners) = &patch.corners else {
             let open = patch.open && self.is_free(patch.whole.position, to, wall, &Blockers::Any);
             return if open { whole } else { 0.0 };

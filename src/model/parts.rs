@@ -97,6 +97,8 @@ pub(super) struct HiddenParts<'a> {
     /// level 0: each with its mean albedo, and a node in its middle.
     coarse: Vec<usize>,
     coarse_side: usize,
+    /// How often each part was cut in four.
+    halvings: u32,
 }
 
 impl<'a> HiddenParts<'a> {
@@ -110,6 +112,7 @@ impl<'a> HiddenParts<'a> {
             parts: Vec::new(),
             coarse: Vec::new(),
             coarse_side: ((0.25 * MOST_CONNECTIONS / walls).sqrt() as usize).clamp(8, 256),
+            halvings: 0,
         };
         // Four nodes a part and as many a footprint must be few enough.
         let most = (0.25 * MOST_APART / walls) as usize;
@@ -160,6 +163,7 @@ impl<'a> HiddenParts<'a> {
         Self {
             parts: quarters.collect(),
             coarse_side: 2 * self.coarse_side,
+            halvings: self.halvings + 1,
             ..self
         }
     }
@@ -169,7 +173,8 @@ impl<'a> HiddenParts<'a> {
         let cell = |index: usize, place: &Place| {
             let surface = &*self.surfaces[index];
             let (element, corners) = place.cell(surface)?;
-            HiddenCell::new((self.ids[index], surface), &element, corners)
+            let cell = HiddenCell::new((self.ids[index], surface), &element, corners)?;
+            Some(cell.viewed_from(place, self.halvings))
         };
         let parts = self.parts.iter();
         let parts = parts.filter_map(|(index, place, _)| cell(*index, place));

@@ -86,6 +86,32 @@ fn the_model_sees_past_what_the_tracer_sees_past() {
     }
 }
 
+/// A mask whose edges run along the rows of the picture's elements: what a cell of an element sees
+/// from its middle alone would be 2.7e-3 off here.
+#[test]
+#[ignore = "slow"]
+fn a_mask_along_the_elements_is_modelled_to_a_thousandth() {
+    let scene = builtin(
+        "masked-card",
+        &[
+            ("pixels = [32, 32]", "pixels = [16, 16]"),
+            (
+                "x = [3.25, 6.5], y = [2.75, 6.0]",
+                "x = [4.0, 4.8125], y = [3.0, 3.8125]",
+            ),
+            ("per_side = 25", "per_side = 2"),
+        ],
+    );
+    let way = Way(Estimator::Factored, Sampling::Sobol, 1, 1 << 18);
+    let traced = trace(&scene, way);
+    let truth = converged(&scene, Kernel::Physical, Extent::FULL).unwrap();
+    let model = MatrixModel::new(&scene, Kernel::Physical, None).unwrap();
+    for phi in [&truth.phi, &model.phi()] {
+        let error = relative(phi, &traced.flux);
+        assert!(error <= 1e-3, "{error:.1e}");
+    }
+}
+
 /// Light that occluders reflect spoils the picture; with an albedo of each of their sides as one
 /// more unknown the picture is there again, and what faces the wall comes out as grey as it was
 /// painted. The tracer knows nothing of unknowns.
