@@ -301,6 +301,11 @@ pub fn digest(path: &Path) -> Result<String, ReadError> {
     }
 }
 
+/// SHA-256 of these bytes, in hexadecimal digits.
+pub fn digest_of(bytes: &[u8]) -> String {
+    hex(&Sha256::digest(bytes))
+}
+
 /// Hexadecimal digits of a digest.
 pub fn hex(digest: &[u8]) -> String {
     digest.iter().map(|b| format!("{b:02x}")).collect()

@@ -7,9 +7,9 @@ use super::console::Console;
 use super::failure::Failure;
 use super::findings::deliver;
 use super::interrupt::SignalGuard;
-use super::load_run::read_run;
+use super::load_run::{read_bare_scene, read_run};
 use super::process::{pool, version};
-use super::run_folder::{CALIBRATED, PHI, RunFolder, SCENE, STDERR};
+use super::run_folder::{CALIBRATED, PHI, RunFolder, STDERR};
 use super::unexplained::{Photographs, elements};
 use super::{Outcome, progress};
 use crate::folder::{Record, write_copies};
@@ -21,8 +21,7 @@ use crate::scene::Scene;
 
 pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome, Failure> {
     let (scene, record) = if args.phi.is_some() && !args.dir.join(Record::FILE).exists() {
-        let path = args.dir.join(SCENE);
-        (console.load_any_scene(&path.to_string_lossy())?, None)
+        (read_bare_scene(&args.dir, console)?, None)
     } else {
         let (scene, record) = read_run(&args.dir, console)?;
         (scene, Some(record))

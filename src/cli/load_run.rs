@@ -4,11 +4,12 @@ use std::path::Path;
 
 use super::console::Console;
 use super::failure::Failure;
-use super::run_folder::{IMPORT, IMPORT_PNG, LEFT_OUT, SCENE, TAILS};
+use super::run_folder::{CALIBRATION, IMPORT, IMPORT_PNG, LEFT_OUT, SCENE, TAILS};
 use crate::folder::Record;
 use crate::jobs::need;
 use crate::matrix::{Matrix, npy};
 use crate::scene::{COPIES, Scene, builtins};
+use crate::store;
 
 /// The scene and the record of a finished run.
 pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), Failure> {
@@ -47,6 +48,27 @@ pub(super) fn read_run(dir: &Path, console: Console) -> Result<(Scene, Record), 
         }
     }
     Ok((scene, record))
+}
+
+/// The scene of photographs that come without a run. It is told where `phicam calibrate` wrote it
+/// and it has changed since.
+pub(super) fn read_bare_scene(dir: &Path, console: Console) -> Result<Scene, Failure> {
+    let path = dir.join(SCENE);
+    let scene = console.load_any_scene(&path.to_string_lossy())?;
+    let account = dir.join(CALIBRATION);
+    if account.exists() {
+        let found: serde_json::Value =
+            serde_json::from_slice(&store::read(&account, Record::LARGEST)?).unwrap_or_default();
+        let written = found["scene_sha256"].as_str();
+        if written.is_none_or(|written| store::digest(&path).ok().as_deref() != Some(written)) {
+            console.say(format!(
+                "warning: {} is not what `phicam calibrate` wrote: it, or {}, was changed since",
+                path.display(),
+                account.display()
+            ));
+        }
+    }
+    Ok(scene)
 }
 
 /// What to give where `given` is not the folder of a run.

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use super::args::RecoverArgs;
 use super::console::Console;
 use super::failure::Failure;
-use super::load_run::{read_matrix, read_run, read_stderr};
+use super::load_run::{read_bare_scene, read_matrix, read_run, read_stderr};
 use super::recover_beside::{Beside, Photographs, mask};
 use super::recover_memory::{self, Errors, Held, Strips};
 use super::recover_options::{self, uncertainty};
 use super::recovered::{collect, recovering, tell, write};
-use super::run_folder::{PHI, RECOVERED, RunFolder, SATURATED, SCENE, STDERR, is_of_recovered};
+use super::run_folder::{PHI, RECOVERED, RunFolder, SATURATED, STDERR, is_of_recovered};
 use super::{Outcome, recover_own};
 use crate::folder::Record;
 use crate::lab::{
@@ -49,8 +49,7 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     // Measured photographs come without a run: a scene.toml is enough for them.
     let measured = args.phi.is_some() && !dir.join(Record::FILE).exists();
     let (scene, record) = if measured {
-        let path = dir.join(SCENE);
-        (console.load_any_scene(&path.to_string_lossy())?, None)
+        (read_bare_scene(dir, console)?, None)
     } else {
         let (scene, record) = read_run(dir, console)?;
         (scene, Some(record))

@@ -18,9 +18,9 @@ use super::replacement::{move_in, remove_folder};
 use crate::film::{self, frame_name};
 use crate::folder::names::MODEL_FILES;
 pub(super) use crate::folder::names::{
-    CALIBRATED, CALIBRATED_FILES, EXPOSED, IMPORT, IMPORT_PNG, LEFT_OUT, LOCATED, LOCATED_FILES,
-    MODEL, PHI, RECOVERED, REPORT, SATURATED, SCENE, STDERR, SUMMARY, TAILS, VALIDATION, Z,
-    is_of_model, is_of_recovered,
+    CALIBRATED, CALIBRATED_FILES, CALIBRATION, EXPOSED, IMPORT, IMPORT_PNG, LEFT_OUT, LOCATED,
+    LOCATED_FILES, MODEL, PHI, RECOVERED, REPORT, SATURATED, SCENE, STDERR, SUMMARY, TAILS,
+    VALIDATION, Z, is_of_model, is_of_recovered,
 };
 use crate::folder::{Record, columns, finish, frame, frame_max, refuse_beyond_f32, write_scene};
 use crate::matrix::Matrix;

@@ -44,9 +44,11 @@ pub const LOCATED: &str = "located";
 pub const LOCATED_FILES: [&str; 4] = ["locate.json", "locate.csv", "locate.svg", "report.html"];
 /// The calibrated geometry.
 pub const CALIBRATED: &str = "calibrated";
+/// The account of it.
+pub const CALIBRATION: &str = "calibration.json";
 /// What is in [`CALIBRATED`].
 pub const CALIBRATED_FILES: [&str; 7] = [
-    "calibration.json",
+    CALIBRATION,
     "calibration.csv",
     "identifiability.csv",
     "stages.csv",

@@ -69,7 +69,7 @@ impl PlanFolder {
                 "use the version of phicam that planned it, or plan again into another folder",
             ),
             "scene" | "scene's digest" | "scene's text" => (
-                edited(format!("the scene in {dir}")),
+                edited(format!("{dir}/scene.toml")),
                 "restore it, or plan the changed scene into another folder",
             ),
             _ => (

@@ -38,6 +38,7 @@ use crate::model::{Fineness, Kernel, MatrixModel, Occlusion};
 use crate::num::linalg::Cholesky;
 use crate::num::statistics::chi_square_sf;
 use crate::scene::{Parameter, Scene};
+use crate::store::digest_of;
 use crate::transport::Control;
 use descent::{Problem, State};
 use geometry::{Geometry, distance};
@@ -164,6 +165,8 @@ pub struct Calibration {
     pub correlation: Option<f64>,
     /// The same.
     pub mtf_raw: Option<f64>,
+    /// SHA-256 of the calibrated scene's file, so that it is told if that is changed.
+    pub scene_sha256: String,
     /// The calibrated scene as a file.
     #[serde(skip)]
     pub toml: String,
@@ -361,6 +364,7 @@ impl CalibrationPlan {
         let count = problem.geometry.parameters.len();
         let mut file = scene.displaced_file(problem.geometry.parameters, &best.values[..count])?;
         file.name = format!("{} calibrated", scene.name);
+        let toml = file.toml()?;
         Ok(Calibration {
             scene: scene.name.clone(),
             scene_hash: scene.hash.clone(),
@@ -381,7 +385,8 @@ impl CalibrationPlan {
             directions: best.value.freedom,
             correlation: truth.and_then(|t| correlation(rho.as_slice(), t)),
             mtf_raw: truth.and_then(|t| mtf_raw(rho.as_slice(), t)),
-            toml: file.toml()?,
+            scene_sha256: digest_of(toml.as_bytes()),
+            toml,
             found,
         })
     }

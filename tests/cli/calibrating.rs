@@ -44,6 +44,16 @@ fn a_rendered_scene_is_as_it_is_written() {
     let _ = w
         .phicam("recover run/calibrated --phi run/phi.npy --noise 0.05 --method joint --elements 4x4 -o there -q")
         .exits(0);
+    // A calibrated scene that is no longer what was found is used, and told.
+    let recover = "recover run/calibrated --phi run/phi.npy --noise 0.05 --method joint --elements 4x4 -o there";
+    let is_told = || w.phicam(recover).exits(0).stderr.contains("was changed");
+    assert!(!is_told());
+    let own = w.text("run/calibrated/scene.toml");
+    let other = own.replacen("power = 0.005", "power = 0.006", 1);
+    assert_ne!(own, other, "{own}");
+    w.write("run/calibrated/scene.toml", other);
+    assert!(is_told());
+    w.write("run/calibrated/scene.toml", own);
     // A scene that is wrong by 0.3 in. is put right, also where the errors are not stated.
     let text = w.text("run/scene.toml");
     let there = phicam::scene::Scene::from_toml("small", &text).unwrap();
