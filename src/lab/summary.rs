@@ -292,6 +292,22 @@ mod tests {
         }
     }
 
+    /// An entry that no light was met for has an upper bound in place of a standard error: it has
+    /// no part in the figure for all. Five entries of 1 W ± 0.01 W: 1 %.
+    #[test]
+    fn bounds_are_no_part_of_the_overall_error() {
+        let of = |last: [f64; 3]| {
+            let [flux, stderr, tails] = [0, 1, 2].map(|which| {
+                let usual = [1.0, 0.01, 0.0][which];
+                Matrix::from_fn(6, 1, |p, _| if p == 5 { last[which] } else { usual })
+            });
+            relative_stderr(&flux, &stderr, &tails).unwrap()
+        };
+        let unlit = f64::from(UNLIT);
+        assert!((of([0.0, 1e3, unlit]) - 0.01).abs() < 1e-15);
+        assert!(of([0.0, 1e3, 0.0]) > 100.0);
+    }
+
     #[test]
     fn disagreement_is_loud() {
         let mut results = run("bench");

@@ -25,6 +25,7 @@ mod machine_readable;
 mod main_job;
 mod many;
 mod memory;
+mod misfits;
 mod mistakes;
 mod occluders;
 mod recovery;
