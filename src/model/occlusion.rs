@@ -6,8 +6,9 @@
 //! Where a surface shines, d_l(x) is its exitance M, or 0 where it is dark.
 //!
 //! Of a flat wall what the camera sees of a pixel's footprint, and of that what x sees, are convex
-//! pieces, found exactly ([`Shadow`]); each is taken at its centroid. So is what a lit point sees
-//! of a flat cell of the hidden surface. Other walls, cells and large meshes are asked ray by ray.
+//! pieces, found exactly ([`Shadow`]) for one viewpoint x of each cell; each is taken at its
+//! centroid. So is what a lit point sees of a flat cell of the hidden surface. Other walls, cells
+//! and large meshes are asked ray by ray.
 
 use super::cells::HiddenCell;
 use super::cut::exitance;
@@ -142,7 +143,8 @@ impl<'a> Obstructed<'a> {
         if self.by_rays() { 8e6 } else { 1e8 }
     }
 
-    /// What each pixel sees of a cell's middle: c_p.
+    /// What a cell sends to each pixel, by its middle, past what hides the wall from its viewpoint:
+    /// c_p.
     pub(super) fn camera(&self, cell: &HiddenCell) -> Vec<Both> {
         let whole = |patches: &Vec<Patch>| {
             let light = |p: &Patch| p.whole.towards(self.scene, self.kernel, &cell.point);

@@ -130,7 +130,7 @@ pub enum RecoveryError {
     },
     /// Nothing of the model is left to invert.
     #[error(
-        "the {side} has rank zero, so no photograph could tell elements apart; check that light reaches the hidden surface"
+        "the {side} has rank zero, so no photograph could tell elements apart; check that light reaches the hidden surface, and that photographs and their standard errors are in W"
     )]
     RankZero {
         /// Which side of the model.

@@ -26,7 +26,6 @@ fn every_method_tells_by_its_exit_code_what_does_not_fit() {
         Matrix::from_fn(m.nrows(), n, |p, l| m[(p, (l + 1) % n)])
     };
     let counts = |m: &Matrix| m * 1e15;
-    let own = |m: &Matrix| m.clone();
     let scene = w.text("small.toml");
     let elsewhere = scene.replace("centre = [5.0, 4.37", "centre = [5.5, 4.37");
     assert_ne!(scene, elsewhere);
@@ -34,16 +33,16 @@ fn every_method_tells_by_its_exit_code_what_does_not_fit() {
         std::fs::create_dir(w.path(folder)).unwrap();
         w.write(&format!("{folder}/scene.toml"), text);
     }
-    let faults: [(&str, &str, &dyn Fn(&Matrix) -> Matrix); 5] = [
-        ("upside-down", "here", &upside_down),
-        ("permuted", "here", &permuted),
-        ("counts", "here", &counts),
-        ("elsewhere", "elsewhere", &own),
-        ("right", "here", &own),
+    let faults = [
+        ("upside-down", "here", both.each_ref().map(upside_down)),
+        ("permuted", "here", both.each_ref().map(permuted)),
+        ("counts", "here", both.each_ref().map(counts)),
+        ("elsewhere", "elsewhere", both.clone()),
+        ("right", "here", both.clone()),
     ];
-    for (fault, folder, change) in faults {
-        for (name, matrix) in ["phi", "stderr"].into_iter().zip(&both) {
-            npy::write(&w.path(&format!("{fault}.{name}.npy")), &change(matrix)).unwrap();
+    for (fault, folder, matrices) in faults {
+        for (name, matrix) in ["phi", "stderr"].into_iter().zip(&matrices) {
+            npy::write(&w.path(&format!("{fault}.{name}.npy")), matrix).unwrap();
         }
         let recover = |method: &str| {
             w.phicam(&format!(
