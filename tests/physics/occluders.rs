@@ -87,7 +87,7 @@ fn the_model_sees_past_what_the_tracer_sees_past() {
 }
 
 /// A mask whose edges run along the rows of the picture's elements: what a cell of an element sees
-/// from its middle alone would be 2.7e-3 off here.
+/// from its middle alone would be 2.4e-3 off here.
 #[test]
 #[ignore = "slow"]
 fn a_mask_along_the_elements_is_modelled_to_a_thousandth() {
