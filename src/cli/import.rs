@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use sha2::{Digest, Sha256};
 
 use super::Outcome;
 use super::args::ImportArgs;
@@ -23,7 +22,7 @@ use crate::photographs::set::{ChannelName, DarkTable, Files, Set};
 use crate::photographs::{ImportAccount, Imported, import, scene_of};
 use crate::report;
 use crate::scene::Scene;
-use crate::store::{self, hex};
+use crate::store::{self, digest_of};
 
 /// Most bytes of a list.
 const LIST_MAX: u64 = 16 << 20;
@@ -158,7 +157,7 @@ fn one(
         account,
     })?;
     let photographs = Photographs {
-        settings: hex(&Sha256::digest(serde_json::to_vec(&(set, channel))?)),
+        settings: digest_of(&serde_json::to_vec(&(set, channel))?),
         flux_unit: account.unit.to_owned(),
         shares_by_pixel: errors != Errors::Independent,
         sources: account.files.clone(),

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use super::error::FolderError;
 use super::names::{IMPORT, IMPORT_PNG, LEFT_OUT, PHI, SCENE, STDERR};
@@ -12,7 +11,7 @@ use super::origin::Origin;
 use crate::film::{FrameMeta, RunMeta};
 use crate::lab::Tails;
 use crate::scene::{COPIES, Scene};
-use crate::store::{self, ReadError, harmless_json, hex, write_whole};
+use crate::store::{self, ReadError, digest_of, harmless_json, write_whole};
 
 /// The record of a run.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -74,7 +73,7 @@ impl Written {
 
 /// SHA-256 of a value as JSON.
 pub(super) fn seal(value: &impl Serialize) -> Result<String, serde_json::Error> {
-    Ok(hex(&Sha256::digest(serde_json::to_vec(value)?)))
+    Ok(digest_of(&serde_json::to_vec(value)?))
 }
 
 impl Record {

@@ -4,13 +4,12 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use super::error::{PhotographError, refused};
 use super::set::Axes;
 use crate::image::{Channel, ImageError, Samples, samples};
 use crate::matrix::{Array, mat, npy};
-use crate::store::{self, hex};
+use crate::store::{self, digest_of};
 
 /// Most bytes of a file.
 const MOST_BYTES: u64 = 1 << 31;
@@ -61,7 +60,7 @@ impl<'a> Reader<'a> {
         let found = SourceFile {
             name: self.name(path),
             bytes: bytes.len() as u64,
-            sha256: hex(&Sha256::digest(&bytes)),
+            sha256: digest_of(&bytes),
         };
         match self.sources.get(path) {
             Some(earlier) if *earlier != found => Err(refused(

@@ -7,9 +7,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use sha2::{Digest, Sha256};
-
-use crate::store::{self, hex};
+use crate::store::{self, digest_of};
 
 /// Folder of copies beside a scene file: looked into for what is not there itself.
 pub const COPIES: &str = "files";
@@ -45,7 +43,7 @@ impl Referenced {
             let cure = "leave the scene's files in place while phicam starts";
             (cause, cure)
         })?;
-        if hex(&Sha256::digest(&bytes)) == self.digest {
+        if digest_of(&bytes) == self.digest {
             return Ok(bytes);
         }
         let cause = format!("`{}` has changed since the scene was read", self.name);
@@ -67,7 +65,7 @@ fn copy_name(name: &str) -> String {
             }
         })
         .collect();
-    format!("{}-{last}", &hex(&Sha256::digest(name))[..12])
+    format!("{}-{last}", &digest_of(name.as_bytes())[..12])
 }
 
 /// Where a scene may read files.
@@ -113,7 +111,7 @@ impl Files {
             let cause = format!("cannot read `{name}`{place}: {}", e.fault);
             (cause, e.fault.cure().to_owned())
         })?;
-        let digest = hex(&Sha256::digest(&bytes));
+        let digest = digest_of(&bytes);
         if let Some(earlier) = self.read.iter().find(|r| r.name == name) {
             if earlier.digest != digest {
                 let cause = format!("`{name}` changed while the scene was read");

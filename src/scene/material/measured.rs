@@ -1,7 +1,5 @@
 //! Measured materials.
 
-use sha2::{Digest, Sha256};
-
 use super::ggx::Ggx;
 use super::grid::Grid;
 use super::lobe::Lobe;
@@ -10,7 +8,7 @@ use super::slanted;
 use crate::geometry::DVec3;
 use crate::num::quadrature::Rule;
 use crate::scene::error::{Fault, keys};
-use crate::store::hex;
+use crate::store::digest_of;
 
 /// An isotropic BRDF measured on a surface, from a file: one colour of a binary table of the MERL
 /// database, or, where the file's name ends in `.csv`, text with the header
@@ -57,7 +55,7 @@ impl Measured {
         let mut measured = Self {
             table,
             lobe: Lobe::cosine(),
-            digest: hex(&Sha256::digest(bytes)),
+            digest: digest_of(bytes),
         };
         measured.lobe = measured.best_lobe();
         measured.refuse_gain(largest)?;
