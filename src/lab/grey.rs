@@ -34,11 +34,19 @@ impl<'a> Grey<'a> {
         Self { model, noise, phi }
     }
 
+    /// Whether no light of the surface comes into view: the photographs then tell nothing.
+    fn is_dark(&self) -> bool {
+        self.phi.amax() == 0.0
+    }
+
     /// How many directions of the picture are above a noise of 10 %, 1 %, 0.1 %, 0.01 %.
     ///
     /// # Errors
     /// [`LabError::Recovery`].
     pub(super) fn directions(&self) -> Result<Vec<usize>, LabError> {
+        if self.is_dark() {
+            return Ok(vec![0; LEVELS.len()]);
+        }
         let stderr = self.noise.stderrs(&self.phi, 1.0);
         let problem = problem(self.model, &self.phi, Some(&stderr))?;
         let sigma = picard_joint(&problem, &Options::default())?.sigma;
@@ -52,6 +60,9 @@ impl<'a> Grey<'a> {
     /// # Errors
     /// [`LabError::Recovery`].
     pub(super) fn risk(&self, level: f64) -> Result<f64, LabError> {
+        if self.is_dark() {
+            return Ok(1.0);
+        }
         let stderr = self.noise.stderrs(&self.phi, level);
         let shares = determined(&problem(self.model, &self.phi, Some(&stderr))?)?;
         Ok(1.0 - shares.rank / self.model.albedo.len() as f64)

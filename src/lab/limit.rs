@@ -43,7 +43,7 @@ struct Posed<'a> {
 
 impl Limit {
     /// The most noise at which `joint` resolves the picture on average over the draws, by halving
-    /// ln ε; `None` below 1e-14.
+    /// ln ε; `None` below 1e-14, and of a picture from which no light comes into view.
     ///
     /// # Errors
     /// [`LabError`].
@@ -54,7 +54,9 @@ impl Limit {
         subject: Subject,
         control: Control<'_>,
     ) -> Result<Option<f64>, LabError> {
-        let posed = Posed::new(scene, model, subject, self.noise)?;
+        let Some(posed) = Posed::new(scene, model, subject, self.noise)? else {
+            return Ok(None);
+        };
         let resolved = |decades: f64| -> Result<bool, LabError> {
             let level = libm::pow(10.0, -decades);
             let draw = |draw| {
@@ -88,14 +90,18 @@ impl<'a> Posed<'a> {
     /// Of few elements photographs are reduced: with the whitened sensitivities J = U S Vᵀ of all
     /// entries, Uᵀ takes photographs with normal noise to S Vᵀ ρ with independent normal noise of
     /// deviation ε, and what `joint` makes of them with the weight of each entry is the same.
+    /// `None` where no light comes into view.
     fn new(
         scene: &Scene,
         model: &'a MatrixModel,
         subject: Subject,
         noise: NoiseLaw,
-    ) -> Result<Self, LabError> {
+    ) -> Result<Option<Self>, LabError> {
         let truth = subject.albedo(scene, model);
         let exact = model.phi_of(&truth);
+        if exact.amax() == 0.0 {
+            return Ok(None);
+        }
         let few = truth.len() <= FEW && model.camera_side.nrows() > 1;
         let reduced = few.then(|| -> Result<Matrix, LabError> {
             let stderr = noise.stderrs(&exact, 1.0);
@@ -112,13 +118,13 @@ impl<'a> Posed<'a> {
             let (rows, _) = cut(all.sigma.as_slice(), 1, 1, rounding)?;
             Ok(rows_times(all.vt.rows(0, rows).into_owned(), &all.sigma))
         });
-        Ok(Self {
+        Ok(Some(Self {
             model,
             subject,
             truth,
             exact,
             reduced: reduced.transpose()?,
-        })
+        }))
     }
 
     /// How like the truth what is recovered from one draw is; 0 where that is not defined.
@@ -160,7 +166,8 @@ mod tests {
         let model = MatrixModel::new(&scene, Kernel::Physical, Some([2; 2])).unwrap();
         let board = Subject::Board(2);
         let mean = |reduced: bool| {
-            let mut posed = Posed::new(&scene, &model, board, NoiseLaw::Relative).unwrap();
+            let posed = Posed::new(&scene, &model, board, NoiseLaw::Relative);
+            let mut posed = posed.unwrap().unwrap();
             if !reduced {
                 posed.reduced = None;
             }

@@ -10,7 +10,7 @@ use super::fit::{Certainty, Residuals};
 use super::problem::problem;
 use crate::metrics::{correlation, mtf_raw};
 use crate::model::MatrixModel;
-use crate::recovery::{Method, Options, recover};
+use crate::recovery::{Method, Options, RecoveryError, recover};
 use crate::scene::target::Target;
 use crate::scene::{Cells, Scene};
 
@@ -139,7 +139,7 @@ impl Recovery {
     }
 }
 
-/// What `joint` recovers from photographs.
+/// What `joint` recovers from photographs: nothing where they, or those of the model, have no light.
 pub(super) fn recovered(
     model: &MatrixModel,
     subject: Subject,
@@ -147,7 +147,15 @@ pub(super) fn recovered(
     Photographs { phi, stderr, .. }: &Photographs,
 ) -> Result<Recovery, LabError> {
     let problem = problem(model, phi, Some(stderr))?;
-    let found = recover(Method::Joint, &problem, &Options::default())?;
+    let found = match recover(Method::Joint, &problem, &Options::default()) {
+        Err(RecoveryError::Dark | RecoveryError::RankZero { .. }) => {
+            return Ok(Recovery {
+                likeness: None,
+                p: None,
+            });
+        }
+        found => found?,
+    };
     let mut residuals = Residuals::default();
     residuals.add(phi, &found.photographs(&problem), stderr, Certainty::STATED);
     let fit = residuals.fit(found.freedom_used(), Certainty::STATED.errors);

@@ -174,6 +174,7 @@ impl Occluders {
     fn sentence(&self) -> String {
         let risk = |row: &&Row| row.risk;
         let least = self.rows.iter().min_by(|a, b| risk(a).total_cmp(&risk(b)));
+        let least = least.filter(|row| row.kind != Kind::None);
         let none = self.rows.iter().find(|row| row.kind == Kind::None);
         let of = |row: &Row| {
             format!(
@@ -221,7 +222,7 @@ impl Describe for Occluders {
                     SEARCHED[0], SEARCHED[0], SEARCHED[1]
                 ),
                 format!(
-                    "Boards have albedos 0 and 1. Limits are of {} draws of modelled photographs, recovered by joint. Occluders are black; of one that reflects `recover --occluder-light` estimates the light.",
+                    "Boards have albedos 0 and 1. Limits are of {} draws of modelled photographs, recovered by joint; a dash is a limit below 1e-14, or a picture of which no light comes into view. Occluders are black; of one that reflects `recover --occluder-light` estimates the light.",
                     self.draws
                 ),
             ],

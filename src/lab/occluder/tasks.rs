@@ -197,3 +197,53 @@ impl Study for OccluderTasks {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::occluder::kinds;
+    use crate::lab::study::tests::small;
+    use crate::scene::SensorModel;
+
+    /// Behind a plate that hides the whole view nothing is known but what was known before, R = 1,
+    /// and no noise is low enough; past a small one something is.
+    #[test]
+    fn darkness_tells_nothing() {
+        let row = |size: f64| {
+            let plan = Plan {
+                kinds: vec![Kind::Plate],
+                spots: Vec::new(),
+                noise: NoiseLaw::Relative,
+                level: 0.01,
+                start: Place {
+                    height: 0.36,
+                    offset: [0.0; 2],
+                    size,
+                },
+                search: 0,
+                subjects: vec![Subject::Board(2)],
+                mask: kinds::random(6, 1),
+                camera: Camera {
+                    sensor: SensorModel::MachineVision,
+                    exposure: 0.1,
+                    frames: 1,
+                    samples: 1024,
+                    seed: 1,
+                },
+                draws: 1,
+                misplaced: vec![0.01],
+                elements: Some(4),
+                seed: 1,
+            };
+            let study = OccluderTasks::new(&small("thesis"), plan).unwrap();
+            study.task(&(), 0, Control::none()).unwrap()
+        };
+        let (hidden, seen) = (row(100.0), row(1.0));
+        assert_eq!((hidden.directions, hidden.risk), (vec![0; 4], 1.0));
+        assert_eq!(hidden.limits, [None]);
+        assert_eq!(hidden.seen[0].recovery.likeness, None);
+        assert_eq!(hidden.misplaced[0].recovery.likeness, None);
+        assert!(seen.directions[3] > 0 && seen.risk < 1.0 && seen.limits[0].is_some());
+        assert!(seen.seen[0].recovery.likeness.is_some());
+    }
+}

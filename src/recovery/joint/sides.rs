@@ -35,6 +35,9 @@ fn compress(
     before: f64,
     name: &'static str,
 ) -> Result<(Svd, usize), RecoveryError> {
+    if side.is_empty() {
+        return Err(RecoveryError::RankZero { side: name });
+    }
     let decomposed = svd_to(side, Tolerance::Auto)?;
     let (rank, _) = decomposed.cut(Tolerance::Auto)?;
     let rounding = side.nrows().max(side.ncols()) as f64 * f64::EPSILON * before;
