@@ -189,7 +189,21 @@ fn scaled(a: &DMatrix<f64>) -> Result<(DMatrix<f64>, i32), LinalgError> {
     if exponent == 0 {
         return Ok((a.clone(), 0));
     }
-    Ok((a.map(|value| libm::scalbn(value, -exponent)), exponent))
+    Ok((a.map(times_two_to(-exponent)), exponent))
+}
+
+/// x ↦ 2ⁿ x, with the bits of [`libm::scalbn`]: one product where 2ⁿ is a normal number, which is
+/// ten times as fast.
+pub(super) fn times_two_to(n: i32) -> impl Fn(f64) -> f64 + Copy {
+    let is_normal = (-1022..=1023).contains(&n);
+    let factor = libm::scalbn(1.0, if is_normal { n } else { 0 });
+    move |x| {
+        if is_normal {
+            x * factor
+        } else {
+            libm::scalbn(x, n)
+        }
+    }
 }
 
 fn refuse_empty(rows: usize, columns: usize) -> Result<(), LinalgError> {
@@ -232,3 +246,27 @@ pub fn cut(
 
 #[cfg(test)]
 mod kernel;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The bits of libm's, at all exponents, of normal and subnormal numbers.
+    #[test]
+    fn powers_of_two_multiply_as_libm_has_it() {
+        let numbers = [
+            1.0,
+            -std::f64::consts::PI,
+            0.0,
+            f64::MIN_POSITIVE / 3.0,
+            f64::MAX,
+            7e-300,
+        ];
+        for n in -2100..2100 {
+            for x in numbers {
+                let (own, wanted) = (times_two_to(n)(x), libm::scalbn(x, n));
+                assert_eq!(own.to_bits(), wanted.to_bits(), "{x:e} 2^{n}");
+            }
+        }
+    }
+}

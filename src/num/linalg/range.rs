@@ -11,7 +11,7 @@
 use nalgebra::DMatrix;
 
 use super::householder::{Pivoting, reduce};
-use super::{LinalgError, product, scaled, subtract_product, tr_product};
+use super::{LinalgError, product, scaled, subtract_product, times_two_to, tr_product};
 use crate::num::stream::{Key, Sampling, Stream};
 
 /// Directions looked for at once.
@@ -54,8 +54,8 @@ pub fn range(a: &DMatrix<f64>) -> Result<Option<Range>, LinalgError> {
     };
     Ok(Some(Range {
         q,
-        b: b.map(|x| libm::scalbn(x, exponent)),
-        rest: libm::scalbn(left.norm(), exponent),
+        b: b.map(times_two_to(exponent)),
+        rest: times_two_to(exponent)(left.norm()),
     }))
 }
 

@@ -10,7 +10,9 @@ use faer::{Mat, MatMut, MatRef, Par, Side};
 use nalgebra::{DMatrix, DVector};
 
 use super::solution::{LeastSquares, Route, solve_by_svd};
-use super::{LinalgError, Tolerance, exponent, refuse_empty, same_length, scaled, svd};
+use super::{
+    LinalgError, Tolerance, exponent, refuse_empty, same_length, scaled, svd, times_two_to,
+};
 
 /// The reduction of min ‖A x − b‖ for an m × n matrix to k = min(m, n) rows:
 /// ‖A x − b‖² = ‖R x − d‖² + rest² for every x.
@@ -53,23 +55,19 @@ pub fn triangle_of(mut joined: DMatrix<f64>) -> Result<Triangle, LinalgError> {
     let mut scale = |entries: Range<usize>| {
         let entries = &mut joined.as_mut_slice()[entries];
         let exponent = exponent(entries, m)?;
-        entries
-            .iter_mut()
-            .for_each(|x| *x = libm::scalbn(*x, -exponent));
+        let down = times_two_to(-exponent);
+        entries.iter_mut().for_each(|x| *x = down(*x));
         Ok(exponent)
     };
     let (a_exponent, b_exponent) = (scale(0..m * n)?, scale(m * n..m * columns)?);
     reduce(&mut joined);
     let k = m.min(n);
     let entry = |i: usize, j: usize| if i <= j { joined[(i, j)] } else { 0.0 };
+    let [a_up, b_up] = [a_exponent, b_exponent].map(times_two_to);
     let result = Triangle {
-        r: DMatrix::from_fn(k, n, |i, j| libm::scalbn(entry(i, j), a_exponent)),
-        d: DVector::from_fn(k, |i, _| libm::scalbn(entry(i, n), b_exponent)),
-        rest: if m > n {
-            libm::scalbn(entry(n, n).abs(), b_exponent)
-        } else {
-            0.0
-        },
+        r: DMatrix::from_fn(k, n, |i, j| a_up(entry(i, j))),
+        d: DVector::from_fn(k, |i, _| b_up(entry(i, n))),
+        rest: if m > n { b_up(entry(n, n).abs()) } else { 0.0 },
     };
     let finite = result
         .r
@@ -164,10 +162,10 @@ pub fn normal_triangle(
             (r, d)
         }
     };
-    let d = d.map(|x| libm::scalbn(x, moment_exponent - half));
+    let d = d.map(times_two_to(moment_exponent - half));
     let rest = (square - d.norm_squared()).max(0.0).sqrt();
     Ok(Triangle {
-        r: r.map(|x| libm::scalbn(x, half)),
+        r: r.map(times_two_to(half)),
         d,
         rest,
     })

@@ -15,7 +15,7 @@ pub use extent::Extents;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::linalg::{LinalgError, same_length};
+use super::linalg::{LinalgError, same_length, times_two_to};
 use interior_point::Interior;
 
 /// Largest duality gap accepted, as a fraction of ½(‖d‖² + ‖R‖²).
@@ -230,7 +230,7 @@ impl Scaled {
         let d = d - r * &bounds.lower;
         let scale = r.amax().max(d.amax());
         let exponent = if scale > 0.0 { libm::ilogb(scale) } else { 0 };
-        let down = |x: f64| libm::scalbn(x, -exponent);
+        let down = times_two_to(-exponent);
         Ok(Scaled {
             r: r.map(down),
             d: d.map(down),
@@ -258,7 +258,7 @@ impl Scaled {
         if gap.is_nan() || gap > GAP_ALLOWED * unit {
             return Err(not_solved(start.status, gap / unit));
         }
-        let up = |x: f64| libm::scalbn(x, 2 * self.exponent);
+        let up = times_two_to(2 * self.exponent);
         let solution = DVector::from_fn(n, |j, _| {
             (x[j] + bounds.lower[j]).clamp(bounds.lower[j], bounds.upper[j])
         });
