@@ -81,14 +81,14 @@ const LETTERS: [[u8; 7]; 10] = [
     [0x1f, 0x01, 0x02, 0x04, 0x08, 0x10, 0x1f], // Z
 ];
 
-/// A letter, twice as large on 14 × 14 elements: light on dark.
-fn letter(which: usize) -> Vec<bool> {
-    let rows = LETTERS[which % LETTERS.len()];
+/// A letter on 7 `times` as many elements a side: light on dark.
+fn letter(which: usize, times: usize) -> Vec<bool> {
+    let (rows, side) = (LETTERS[which % LETTERS.len()], 7 * times);
     let lit = |j: usize| {
-        let (x, y) = (j % 14 / 2, j / 14 / 2);
+        let (x, y) = (j % side / times, j / side / times);
         (1..6).contains(&x) && rows[6 - y] >> (5 - x) & 1 == 1
     };
-    (0..196).map(lit).collect()
+    (0..side * side).map(lit).collect()
 }
 
 /// A board of so many fields a side, the first dark.

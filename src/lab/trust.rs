@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::likelier::ranked;
 use super::objects::RecoveredObject;
 
 /// No surface's reflectance is as far from ½ as this.
@@ -10,14 +11,17 @@ const IMPOSSIBLE: f64 = 1.0;
 const EXACT: f64 = 0.05;
 
 /// Puts first what can be vouched for: methods that explain the photographs before others; of those
-/// the ones that know how likely their assumption makes the photographs, the likeliest first; then
-/// those that a surface can be, and those with the fewest warnings. What is equal stays in its
-/// order, and so do the surfaces of one method, which stand together.
+/// the ones that know how likely their assumption makes the photographs, the likeliest first, two
+/// levels only where that tells; then those that a surface can be, and those with the fewest
+/// warnings. What is equal stays in its order, and so do the surfaces of one method, which stand
+/// together.
 pub fn by_trust(objects: &mut [RecoveredObject]) {
     let mut ranks: BTreeMap<String, Rank> = BTreeMap::new();
     for (first, object) in objects.iter().enumerate() {
         let rank = ranks.entry(object.method.clone()).or_insert(Rank {
-            evidence: object.log_evidence.unwrap_or(f64::NEG_INFINITY),
+            evidence: object.log_evidence.map_or(f64::NEG_INFINITY, |known| {
+                ranked(known, object.patterns.is_some())
+            }),
             first,
             ..Rank::default()
         });
@@ -104,6 +108,11 @@ mod tests {
         let mut surfaces = vec![of("a", -0.9), of("b", 0.5)];
         by_trust(&mut surfaces);
         assert_eq!(surfaces[0].surface, "a");
+        // Hardly likelier than what assumes less, a pattern comes after it.
+        let mut untold = objects.clone();
+        untold[0].log_evidence = objects[1].log_evidence.map(|known| known + 2.0);
+        by_trust(&mut untold);
+        assert_eq!(untold[0].method, "joint-gp");
         // Without its fit the first is no longer one to be shown.
         let mut refuted = objects[0].clone();
         refuted.fit.as_mut().unwrap().fits = false;
