@@ -6,37 +6,49 @@ use crate::recovery::{Method, Recovered};
 /// Evidences that differ by less, ln, do not tell: a factor of 20.
 const TELLS: f64 = 3.0;
 
-/// The evidence by which a picture is ranked, ln. One of two levels is sharp, and far off where it
-/// is wrong; one of a Gaussian process is a mean with its errors. So two levels come first only
-/// where the photographs tell.
-pub(super) fn ranked(evidence: f64, is_two_valued: bool) -> f64 {
-    evidence - if is_two_valued { TELLS } else { 0.0 }
-}
-
 /// Of the methods that know how likely the photographs are by what they assume (`joint-gp`:
 /// neighbours resemble one another; `joint-two-valued`: two levels in any pattern) the one of the
-/// largest evidence as [`ranked`], and how much that tells. None where fewer than two of them were
-/// tried. Every error of the model counts as evidence against both, the stiffer one more.
+/// largest evidence, unless its picture is a pattern of a larger expected squared error ([`loss`]);
+/// and by how much which assumption is likelier. None where fewer than two of them know: a sum over
+/// patterns that is not to be believed does not. Every error of the model counts as evidence
+/// against both, the stiffer one more.
 pub(super) fn likelier(found: &[&Recovered]) -> Option<(Method, String)> {
-    let known = found
-        .iter()
-        .filter_map(|f| Some((f.method, f.log_evidence?, f.patterns.is_some())));
-    let mut known: Vec<(Method, f64, bool)> = known.collect();
-    known.sort_by(|a, b| ranked(b.1, b.2).total_cmp(&ranked(a.1, a.2)));
-    let [(first, best, _), (second, next, _), ..] = known[..] else {
+    let believed = |f: &&&Recovered| f.patterns.as_ref().is_none_or(|p| p.sum.converged());
+    let known = found.iter().filter(believed);
+    let mut known: Vec<(&Recovered, f64)> =
+        known.filter_map(|f| Some((*f, f.log_evidence?))).collect();
+    known.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let [(likeliest, best), (next, less), ..] = known[..] else {
         return None;
     };
-    let ahead = best - next;
-    let words = if ahead.abs() < TELLS {
-        format!("The photographs do not tell what {first} assumes from what {second} assumes.")
+    let is_far = likeliest.patterns.is_some() && loss(next, &known) < loss(likeliest, &known);
+    let first = if is_far { next } else { likeliest };
+    let (a, b) = (likeliest.method, next.method);
+    let ahead = best - less;
+    let mut words = if ahead < TELLS {
+        format!("The photographs do not tell what {a} assumes from what {b} assumes")
     } else {
         format!(
-            "What {first} assumes makes the photographs e^{} times likelier than what {second} \
-             assumes.",
+            "What {a} assumes makes the photographs e^{} times likelier than what {b} assumes",
             figure(ahead, 2)
         )
     };
-    Some((first, words))
+    if is_far {
+        words += &format!(", and the picture of {a} is expected to be further off");
+    }
+    Some((first.method, words + "."))
+}
+
+/// Expected squared error of a picture x, but for what is the same for all: Σ_k w_k |x − m_k|², w_k
+/// the probability of what method k assumes and m_k the mean of the reflectances by it. A pattern
+/// is the likeliest of many, and far from their mean where it is one of many.
+fn loss(shown: &Recovered, all: &[(&Recovered, f64)]) -> f64 {
+    let best = all.iter().map(|(_, e)| *e).fold(f64::MIN, f64::max);
+    let each = all.iter().map(|(by, evidence)| {
+        let mean = by.patterns.as_ref().map_or(&by.reflectance, |p| &p.mean);
+        libm::exp(evidence - best) * (&shown.reflectance - mean).norm_squared()
+    });
+    each.sum()
 }
 
 #[cfg(test)]
@@ -46,7 +58,7 @@ mod tests {
     use crate::lab::study::tests::small;
     use crate::matrix::Matrix;
     use crate::model::{Kernel, MatrixModel};
-    use crate::recovery::{Options, recover};
+    use crate::recovery::{Options, Sum, recover};
 
     /// A slope over the surface is no picture of two values, a board of random elements no surface
     /// whose neighbours resemble one another, and one reflectance throughout no pattern.
@@ -80,10 +92,10 @@ mod tests {
         }
     }
 
-    /// Two levels whose photographs are e^2 times likelier are not told from a Gaussian process,
-    /// which comes first; of those e^4 times likelier the pattern does.
+    /// Evidence that hardly differs tells nothing, and that of a sum over patterns that is not to
+    /// be believed is none. A pattern that is one of many comes after what is near to their mean.
     #[test]
-    fn a_pattern_comes_first_only_where_the_photographs_tell() {
+    fn what_is_expected_to_be_nearer_comes_first() {
         let model = MatrixModel::new(&small("bench"), Kernel::Physical, Some([4, 4])).unwrap();
         let exact = model.phi();
         let stderr = Matrix::from_element(exact.nrows(), exact.ncols(), 1e-4 * exact.mean());
@@ -92,22 +104,36 @@ mod tests {
         let problem = problem.with_grids(&grids).unwrap();
         let mut found = [Method::JointTwoValued, Method::JointGp]
             .map(|method| recover(method, &problem, &Options::default()).unwrap());
-        for (ahead, expected, word) in [
-            (2.0, Method::JointGp, "do not tell what joint-gp"),
+        let said = |found: &[Recovered; 2]| likelier(&found.each_ref()).unwrap();
+        for (ahead, expected, words) in [
+            (
+                2.0,
+                Method::JointTwoValued,
+                "do not tell what joint-two-valued",
+            ),
             (-2.0, Method::JointGp, "do not tell what joint-gp"),
             (
                 4.0,
                 Method::JointTwoValued,
                 "What joint-two-valued assumes makes",
             ),
-            (-4.0, Method::JointGp, "What joint-gp assumes makes"),
         ] {
             found[0].log_evidence = found[1].log_evidence.map(|known| known + ahead);
-            let (method, words) = likelier(&found.each_ref()).unwrap();
-            assert!(
-                method == expected && words.contains(word),
-                "{ahead}: {words}"
-            );
+            let (method, own) = said(&found);
+            assert!(method == expected && own.contains(words), "{ahead}: {own}");
         }
+        let process = found[1].reflectance.clone();
+        found[0].patterns.as_mut().unwrap().mean = process;
+        let (method, words) = said(&found);
+        assert!(
+            method == Method::JointGp && words.ends_with("to be further off."),
+            "{words}"
+        );
+        found[0].patterns.as_mut().unwrap().sum = Sum::Sampled {
+            draws: 1000,
+            listed: 0.5,
+            disagreement: 0.2,
+        };
+        assert_eq!(likelier(&found.each_ref()), None);
     }
 }

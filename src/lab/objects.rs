@@ -49,8 +49,8 @@ pub struct RecoveredObject {
     pub solver: Option<Ended>,
     /// What was estimated beside the reflectances; absent where nothing was asked for.
     pub estimated: Option<Beside>,
-    /// Where its method's assumption makes the photographs the likeliest, by how much; absent of
-    /// the other methods.
+    /// Of the picture that is expected to be the nearest to the truth, which assumption makes the
+    /// photographs likelier, and by how much; absent of the other methods.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub likelier: Option<String>,
     /// ln of how likely its method's assumption makes the photographs, over the numbers that fit

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use super::likelier::ranked;
 use super::objects::RecoveredObject;
 
 /// No surface's reflectance is as far from ½ as this.
@@ -11,17 +10,16 @@ const IMPOSSIBLE: f64 = 1.0;
 const EXACT: f64 = 0.05;
 
 /// Puts first what can be vouched for: methods that explain the photographs before others; of those
-/// the ones that know how likely their assumption makes the photographs, the likeliest first, two
-/// levels only where that tells; then those that a surface can be, and those with the fewest
-/// warnings. What is equal stays in its order, and so do the surfaces of one method, which stand
-/// together.
+/// the ones that know how likely their assumption makes the photographs, that of the least expected
+/// squared error first, then the likeliest; then those that a surface can be, and those with the
+/// fewest warnings. What is equal stays in its order, and so do the surfaces of one method, which
+/// stand together.
 pub fn by_trust(objects: &mut [RecoveredObject]) {
     let mut ranks: BTreeMap<String, Rank> = BTreeMap::new();
     for (first, object) in objects.iter().enumerate() {
         let rank = ranks.entry(object.method.clone()).or_insert(Rank {
-            evidence: object.log_evidence.map_or(f64::NEG_INFINITY, |known| {
-                ranked(known, object.patterns.is_some())
-            }),
+            evidence: evidence(object).unwrap_or(f64::NEG_INFINITY),
+            nearest: object.likelier.is_some(),
             first,
             ..Rank::default()
         });
@@ -33,7 +31,8 @@ pub fn by_trust(objects: &mut [RecoveredObject]) {
     objects.sort_by(|a, b| {
         let [a, b] = [a, b].map(|object| &ranks[&object.method]);
         let fits = a.refuted.cmp(&b.refuted);
-        fits.then(b.evidence.total_cmp(&a.evidence))
+        fits.then(b.nearest.cmp(&a.nearest))
+            .then(b.evidence.total_cmp(&a.evidence))
             .then(a.impossible.cmp(&b.impossible))
             .then(a.warnings.cmp(&b.warnings))
             .then(a.first.cmp(&b.first))
@@ -44,11 +43,20 @@ pub fn by_trust(objects: &mut [RecoveredObject]) {
 #[derive(Default)]
 struct Rank {
     refuted: bool,
+    /// Whether its picture is expected to be the nearest to the truth.
+    nearest: bool,
     evidence: f64,
     impossible: bool,
     warnings: usize,
     /// Where it stood.
     first: usize,
+}
+
+/// How likely its assumption makes the photographs, ln; none where that was summed over patterns
+/// and is not to be believed.
+fn evidence(object: &RecoveredObject) -> Option<f64> {
+    let believed = object.patterns.as_ref().is_none_or(|p| p.converged);
+    object.log_evidence.filter(|_| believed)
 }
 
 fn is_impossible(object: &RecoveredObject) -> bool {
@@ -108,9 +116,10 @@ mod tests {
         let mut surfaces = vec![of("a", -0.9), of("b", 0.5)];
         by_trust(&mut surfaces);
         assert_eq!(surfaces[0].surface, "a");
-        // Hardly likelier than what assumes less, a pattern comes after it.
+        // Probabilities that are not to be believed put no pattern first.
         let mut untold = objects.clone();
-        untold[0].log_evidence = objects[1].log_evidence.map(|known| known + 2.0);
+        untold[0].patterns.as_mut().unwrap().converged = false;
+        untold[0].likelier = None;
         by_trust(&mut untold);
         assert_eq!(untold[0].method, "joint-gp");
         // Without its fit the first is no longer one to be shown.
