@@ -139,7 +139,7 @@ impl Recovery {
     }
 }
 
-/// What `joint` recovers from photographs: nothing where they, or those of the model, have no light.
+/// What `joint` recovers from photographs: nothing where these, or those of the model, are dark.
 pub(super) fn recovered(
     model: &MatrixModel,
     subject: Subject,
