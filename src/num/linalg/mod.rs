@@ -192,8 +192,7 @@ fn scaled(a: &DMatrix<f64>) -> Result<(DMatrix<f64>, i32), LinalgError> {
     Ok((a.map(times_two_to(-exponent)), exponent))
 }
 
-/// x ↦ 2ⁿ x, with the bits of [`libm::scalbn`]: one product where 2ⁿ is a normal number, which is
-/// ten times as fast.
+/// x ↦ 2ⁿ x, with the bits of [`libm::scalbn`]: one product where 2ⁿ is a normal number.
 pub(super) fn times_two_to(n: i32) -> impl Fn(f64) -> f64 + Copy {
     let is_normal = (-1022..=1023).contains(&n);
     let factor = libm::scalbn(1.0, if is_normal { n } else { 0 });
