@@ -61,7 +61,7 @@ impl Limit {
             let level = libm::pow(10.0, -decades);
             let draw = |draw| {
                 control.check()?;
-                posed.likeness(self.noise, level, self.seed.wrapping_add(draw))
+                posed.likeness(self.noise, level, self.seed.wrapping_add(draw), control)
             };
             let found: Result<Vec<f64>, LabError> =
                 (0..self.draws).into_par_iter().map(draw).collect();
@@ -128,12 +128,18 @@ impl<'a> Posed<'a> {
     }
 
     /// How like the truth what is recovered from one draw is; 0 where that is not defined.
-    fn likeness(&self, noise: NoiseLaw, level: f64, seed: u64) -> Result<f64, LabError> {
+    fn likeness(
+        &self,
+        noise: NoiseLaw,
+        level: f64,
+        seed: u64,
+        control: Control<'_>,
+    ) -> Result<f64, LabError> {
         let found = match &self.reduced {
             None => {
                 let stderr = noise.stderrs(&self.exact, level);
                 let photographs = Photographs::drawn(&self.exact, stderr, seed);
-                recovered(self.model, self.subject, &self.truth, &photographs)?.likeness
+                recovered(self.model, self.subject, &self.truth, &photographs, control)?.likeness
             }
             Some(reduced) => {
                 let truth = DVector::from_column_slice(&self.truth);
@@ -171,7 +177,12 @@ mod tests {
             if !reduced {
                 posed.reduced = None;
             }
-            let draw = |seed| posed.likeness(NoiseLaw::Relative, 0.03, seed).unwrap();
+            let draw = |seed| {
+                let control = Control::none();
+                posed
+                    .likeness(NoiseLaw::Relative, 0.03, seed, control)
+                    .unwrap()
+            };
             (0..200).map(draw).sum::<f64>() / 200.0
         };
         let [with, without] = [true, false].map(mean);

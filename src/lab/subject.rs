@@ -13,6 +13,7 @@ use crate::model::MatrixModel;
 use crate::recovery::{Method, Options, RecoveryError, recover};
 use crate::scene::target::Target;
 use crate::scene::{Cells, Scene};
+use crate::transport::Control;
 
 /// Likeness (MTF of a board, correlation of another picture) at which a picture is resolved.
 pub(super) const RESOLVED: f64 = 0.9;
@@ -145,8 +146,9 @@ pub(super) fn recovered(
     subject: Subject,
     truth: &[f64],
     Photographs { phi, stderr, .. }: &Photographs,
+    control: Control<'_>,
 ) -> Result<Recovery, LabError> {
-    let problem = problem(model, phi, Some(stderr))?;
+    let problem = problem(model, phi, Some(stderr))?.under(control);
     let found = match recover(Method::Joint, &problem, &Options::default()) {
         Err(RecoveryError::Dark | RecoveryError::RankZero { .. }) => {
             return Ok(Recovery {
@@ -156,6 +158,8 @@ pub(super) fn recovered(
         }
         found => found?,
     };
+    // A recovery that is stopped ends with the best so far, which is no answer here.
+    control.check()?;
     let mut residuals = Residuals::default();
     residuals.add(phi, &found.photographs(&problem), stderr, Certainty::STATED);
     let fit = residuals.fit(found.freedom_used(), Certainty::STATED.errors);

@@ -68,7 +68,7 @@ impl Camera {
             let shot = Exposure::new(&[exposure], frames, frames)?;
             let taken = sensor.expose(&light, &shot, Stated::Oracle, self.seed)?;
             let photographs = Photographs::told(taken.flux, taken.stderr);
-            let recovery = recovered(model, subject, &truth, &photographs)?;
+            let recovery = recovered(model, subject, &truth, &photographs, control)?;
             if recovery.is_resolved() || 2 * frames > self.frames {
                 return Ok(Seen {
                     subject,
@@ -77,7 +77,6 @@ impl Camera {
                     recovery,
                 });
             }
-            control.check()?;
             frames *= 2;
         }
     }

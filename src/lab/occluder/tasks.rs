@@ -157,7 +157,7 @@ impl Study for OccluderTasks {
             let exact = own.phi_of(&truth);
             let stderr = self.plan.noise.stderrs(&exact, plan.level);
             let photographs = Photographs::drawn(&exact, stderr, plan.seed);
-            let recovery = recovered(&wrong, subject, &truth, &photographs)?;
+            let recovery = recovered(&wrong, subject, &truth, &photographs, control)?;
             Ok(Misplaced { by: *by, recovery })
         };
         Ok(Row {
