@@ -230,13 +230,43 @@ impl Instance {
 
     /// Whether a triangle stands between the two ends of the segment.
     pub fn blocks(&self, segment: &Ray) -> bool {
-        self.mesh.blocks_beyond(&self.local(segment), self.reach())
+        self.is_near(segment) && self.mesh.blocks_beyond(&self.local(segment), self.reach())
     }
 
     /// [`Instance::blocks`] for many segments.
     pub fn blocks_many(&self, segments: &[Ray]) -> Vec<bool> {
-        let local: Vec<Ray> = segments.iter().map(|s| self.local(s)).collect();
-        self.mesh.blocks_many_beyond(&local, self.reach())
+        let mut blocked = vec![false; segments.len()];
+        let near = |i: &usize| self.is_near(&segments[*i]);
+        let near: Vec<usize> = (0..segments.len()).filter(near).collect();
+        let local: Vec<Ray> = near.iter().map(|i| self.local(&segments[*i])).collect();
+        let found = self.mesh.blocks_many_beyond(&local, self.reach());
+        near.iter().zip(found).for_each(|(i, b)| blocked[*i] = b);
+        blocked
+    }
+
+    /// Whether a segment meets the box around the body, widened by more than rounding moves either:
+    /// what misses it meets no triangle, and costs neither a transform nor a walk down the tree.
+    fn is_near(&self, segment: &Ray) -> bool {
+        const ROUNDING: f64 = 1e-9;
+        let (low, high) = self.bounds;
+        let origin = segment.origin;
+        let size = low.abs().max(high.abs()).max(origin.abs()).max_element();
+        let by = ROUNDING * (size + segment.length);
+        let (mut enter, mut leave) = (0.0_f64, segment.length);
+        for axis in 0..3 {
+            let (o, d) = (origin[axis], segment.direction[axis]);
+            let ends = [low[axis] - by - o, high[axis] + by - o];
+            if d.abs() < f64::MIN_POSITIVE {
+                if ends[0] > 0.0 || ends[1] < 0.0 {
+                    return false;
+                }
+                continue;
+            }
+            let inverse = 1.0 / d;
+            let [a, b] = ends.map(|end| end * inverse);
+            (enter, leave) = (enter.max(a.min(b)), leave.min(a.max(b)));
+        }
+        enter <= leave
     }
 
     fn to_scene(&self, point: Interaction) -> Interaction {

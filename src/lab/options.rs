@@ -58,7 +58,7 @@ pub const ESTIMATORS: &[(&str, &str)] = &[
     ("shared", "The paths of a pixel serve all spots"),
     (
         "factored",
-        "The points on the hidden surface serve all pixels and all spots",
+        "The points between the walls serve all pixels and all spots",
     ),
 ];
 

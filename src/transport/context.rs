@@ -94,4 +94,11 @@ impl<'a> Context<'a> {
             (!surface.is_lambertian()).then_some(surface.name.as_str())
         })
     }
+
+    /// The shape that estimator `Factored` has no points on, by name: one that is not Lambertian,
+    /// where a path goes on from it to a fourth surface.
+    pub(super) fn unfactored(&self) -> Option<&'a str> {
+        let deep = self.scene.max_bounces > 3;
+        deep.then(|| self.glossy_between()).flatten()
+    }
 }

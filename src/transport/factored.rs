@@ -13,6 +13,9 @@
 //! Where surfaces come close to a spot, its column gets points of its own besides
 //! ([`light_path`](super::light_path)).
 //!
+//! Where light meets at most three surfaces those between the walls need not be Lambertian: see
+//! [`glossy`](super::glossy).
+//!
 //! Points that serve all pixels cannot crowd where each of them sees another surface up close.
 //! Where the view reaches into the edge between two surfaces, C grows like 1/d² towards it and the
 //! variance of those pixels' estimates has no bound: use `shared` there.
@@ -23,6 +26,7 @@ use rayon::prelude::*;
 
 use super::camera::camera_terms;
 use super::context::Context;
+use super::glossy::GlossyPoint;
 use super::light_path::light_end;
 use super::light_points::LightPoints;
 use super::spots::LitPoints;
@@ -55,7 +59,7 @@ pub(super) struct Factored<'a> {
 }
 
 /// The points of one block.
-struct Points {
+struct Points<'a> {
     /// Position and normal of the points y.
     at: Batch,
     /// Place in the footprints of all pixels.
@@ -66,7 +70,7 @@ struct Points {
     /// throughput 1/density.
     vertices: Vec<Option<Vertex>>,
     key: Key,
-    light_paths: Vec<LightPoints>,
+    light_paths: Vec<LightPoints<'a>>,
 }
 
 /// Points that are multiplied together.
@@ -75,6 +79,8 @@ struct Chunk<'a> {
     places: &'a [[f64; 2]],
     /// L by order from three surfaces on: points × spots.
     light: Vec<Vec<f64>>,
+    /// Points that are not Lambertian; L_3 is without the factor d of their BRDF.
+    glossy: Vec<(usize, GlossyPoint<'a>)>,
     lit: LitPoints<'a>,
 }
 
@@ -129,7 +135,7 @@ impl<'a> Factored<'a> {
     /// The estimate of one block; `None` if stopped.
     ///
     /// While they are made its sums lie in memory as \[tile\]\[order\]\[pixel in tile\]\[column\].
-    fn block(&self, points: &Points, control: Control<'_>) -> Option<Moments> {
+    fn block(&self, points: &Points<'_>, control: Control<'_>) -> Option<Moments> {
         let pixels = self.context.views.len();
         let tile_length = (self.orders * TILE * self.width).max(1);
         let mut sums = vec![0.0; pixels.div_ceil(TILE) * tile_length];
@@ -181,7 +187,7 @@ impl<'a> Factored<'a> {
 
     /// Draws the points of a block and, where light may meet more than three surfaces, the paths
     /// that go on from them.
-    fn points(&self, block: u32) -> Points {
+    fn points(&self, block: u32) -> Points<'a> {
         let Context { scene, strata, .. } = self.context;
         let count = strata.block_size();
         let key = Key {
@@ -211,8 +217,7 @@ impl<'a> Factored<'a> {
             } else {
                 [0.0; 4]
             };
-            // A point elsewhere sends no light to any pixel, and a glossy one would have to know
-            // which.
+            // A point elsewhere sends no light to any pixel.
             let throughput = 1.0 / drawn.density;
             let y = Vertex {
                 density: drawn.density,
@@ -235,10 +240,18 @@ impl<'a> Factored<'a> {
         points
     }
 
-    fn chunk<'p>(&'p self, points: &'p Points, range: Range<usize>) -> Chunk<'p> {
+    fn chunk<'p>(&'p self, points: &'p Points<'_>, range: Range<usize>) -> Chunk<'p> {
         let beams = points.beam.get(range.clone()).unwrap_or_default();
         let lit = self.context.spots.points(beams, &(0..self.columns));
+        let glossy = |i: usize| {
+            let y = points
+                .vertices
+                .get((range.start + i) * self.deeper)?
+                .as_ref()?;
+            Some((i, GlossyPoint::new(self.context.scene, y, lit.at(i))?))
+        };
         Chunk {
+            glossy: (0..range.len()).filter_map(glossy).collect(),
             at: points.at.part(range.clone()),
             places: &points.footprint[range.clone()],
             light: self.light(points, range, &lit),
@@ -247,7 +260,12 @@ impl<'a> Factored<'a> {
     }
 
     /// L for the points `range`, by order from three surfaces on: points × spots.
-    fn light(&self, points: &Points, range: Range<usize>, lit: &LitPoints<'_>) -> Vec<Vec<f64>> {
+    fn light(
+        &self,
+        points: &Points<'_>,
+        range: Range<usize>,
+        lit: &LitPoints<'_>,
+    ) -> Vec<Vec<f64>> {
         let Context { scene, spots, .. } = self.context;
         let paths = &spots.light_paths;
         let places = if lit.is_fixed() { 1 } else { range.len() };
@@ -267,7 +285,9 @@ impl<'a> Factored<'a> {
                 let m = if n == 0 { paths.count } else { 1 };
                 let drawn = (y.oriented(), y.density, f64::from(m));
                 paths.weigh(drawn, lit.at(i), 0, row);
-                spots.connect_row(place, lit.at(i), 0, row, |p| y.factor_from(scene, p));
+                // The first is Lambertian, or its factor is multiplied in by the pixel.
+                let factor = |p| if n == 0 { 1.0 } else { y.factor_from(scene, p) };
+                spots.connect_row(place, lit.at(i), 0, row, factor);
             }
             if n > 0 {
                 self.add_deeper(points, range.clone(), n, lit, &mut light);
@@ -281,7 +301,7 @@ impl<'a> Factored<'a> {
     /// column that has any.
     fn add_deeper(
         &self,
-        points: &Points,
+        points: &Points<'_>,
         range: Range<usize>,
         n: usize,
         lit: &LitPoints<'_>,
@@ -334,6 +354,14 @@ impl<'a> Factored<'a> {
                 (&x, at),
                 row,
             );
+            for (k, y) in &chunk.glossy {
+                let c = std::mem::take(&mut row[*k]);
+                if c != 0.0 {
+                    let three = &mut sums[(2 * rows + i) * width..(2 * rows + i + 1) * width];
+                    let light = &chunk.light[0][k * width..(k + 1) * width];
+                    y.add(c, x.place(*k).0, light, three);
+                }
+            }
             if self.context.has_two_bounce_light {
                 let two = &mut sums[(rows + i) * width..(rows + i + 1) * width];
                 let factor = |k, light| x.factor_from(scene, k, light);

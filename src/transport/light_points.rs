@@ -2,6 +2,7 @@
 
 use super::camera::{PixelView, camera_terms};
 use super::context::Context;
+use super::glossy::GlossyPoint;
 use super::light_path::{LightEnd, light_end};
 use super::spots::LitSpots;
 use super::vertex::{Batch, Vertex};
@@ -38,16 +39,18 @@ impl LightPoint {
 }
 
 /// The light paths of one column in a block.
-pub(super) struct LightPoints {
+pub(super) struct LightPoints<'a> {
     pub column: usize,
     at: Batch,
     footprint: Vec<[f64; 2]>,
     /// L_3 at each, over the density of all points there.
     light: Vec<f64>,
+    /// Those that are not Lambertian; L_3 is then without the factor d of their BRDF.
+    glossy: Vec<(usize, GlossyPoint<'a>)>,
 }
 
-impl LightPoints {
-    pub(super) fn draw(context: &Context<'_>, key: Key, column: usize) -> Self {
+impl<'a> LightPoints<'a> {
+    pub(super) fn draw(context: &Context<'a>, key: Key, column: usize) -> Self {
         let Context { scene, spots, .. } = context;
         let count = spots.light_paths.count;
         let mut points = Self {
@@ -55,6 +58,7 @@ impl LightPoints {
             at: Batch::zeros(count as usize),
             footprint: Vec::with_capacity(count as usize),
             light: vec![0.0; count as usize],
+            glossy: Vec::new(),
         };
         let mut stream = spots.light_paths.stream(key, column);
         for k in 0..count {
@@ -68,7 +72,12 @@ impl LightPoints {
             let y = Vertex::new(scene, end.at.shape, &end.at.point, DVec3::ZERO, 1.0 / all);
             if context.between.contains(&y.shape) && y.reflects(scene) {
                 points.at.set(k as usize, y.oriented(), 1.0, y.shape);
-                points.light[k as usize] = spots.light_from(&lit, &y);
+                let own = GlossyPoint::new(scene, &y, &[Some(lit)]);
+                points.light[k as usize] = match &own {
+                    None => spots.light_from(&lit, &y),
+                    Some(_) => spots.light_onto(&lit, &y),
+                };
+                points.glossy.extend(own.map(|own| (k as usize, own)));
             }
         }
         points
@@ -86,6 +95,18 @@ impl LightPoints {
         view.vertices(context.scene, &self.footprint, &mut x);
         let surfaces = (context.scene, context.is_glossy);
         camera_terms(surfaces, blockers, (&x, &self.at), &mut camera);
-        camera.iter().zip(&self.light).map(|(c, l)| c * l).sum()
+        let mut glossy = 0.0;
+        for (k, y) in &self.glossy {
+            let (to, _) = x.place(*k);
+            let c = std::mem::take(&mut camera[*k]);
+            y.add(
+                c,
+                to,
+                &self.light[*k..=*k],
+                std::slice::from_mut(&mut glossy),
+            );
+        }
+        let matt: f64 = camera.iter().zip(&self.light).map(|(c, l)| c * l).sum();
+        matt + glossy
     }
 }

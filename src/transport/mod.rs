@@ -40,6 +40,7 @@ mod beam;
 mod camera;
 mod context;
 mod factored;
+mod glossy;
 mod guide;
 mod independent;
 mod light_path;

@@ -208,9 +208,9 @@ pub enum RenderError {
         /// Spots of the scene.
         count: usize,
     },
-    /// The estimator needs a Lambertian surface in its place.
+    /// The estimator needs a Lambertian surface in its place, or fewer surfaces in a path.
     #[error(
-        "estimator factored needs Lambertian surfaces between the walls, and `{surface}` is none; use shared"
+        "estimator factored needs Lambertian surfaces between the walls where light meets more than three, and `{surface}` is none; use shared, or max_bounces = 3"
     )]
     UnsupportedSurface {
         /// Its name.

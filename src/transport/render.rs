@@ -27,14 +27,15 @@ pub fn block_size(scene: &Scene, plan: &Plan) -> usize {
     plan.budget.size as usize
 }
 
-/// The surface for which `plan` has no estimator, by name: [`Estimator::Factored`] needs all that
-/// light may meet between the first and the last wall to be Lambertian, for its points are the same
-/// for all pixels and spots.
+/// The surface for which `plan` has no estimator, by name: where light may meet more than three
+/// surfaces [`Estimator::Factored`] needs all of them between the first and the last wall to be
+/// Lambertian, for its paths go on from points that are the same for all pixels.
 pub fn unsupported_surface<'a>(scene: &'a Scene, plan: &Plan) -> Option<&'a str> {
-    if plan.estimator != Estimator::Factored || scene.surfaces.iter().all(Surface::is_lambertian) {
+    let all_matt = || scene.surfaces.iter().all(Surface::is_lambertian);
+    if plan.estimator != Estimator::Factored || scene.max_bounces <= 3 || all_matt() {
         return None;
     }
-    Context::new(scene, plan, 0..1).glossy_between()
+    Context::new(scene, plan, 0..1).unfactored()
 }
 
 /// Version of the bits that a plan leads to: raised whenever a change of the tracer, of the random
@@ -106,7 +107,7 @@ pub fn trace(
     }
     let context = Context::new(scene, plan, spots);
     if plan.estimator == Estimator::Factored {
-        if let Some(surface) = context.glossy_between() {
+        if let Some(surface) = context.unfactored() {
             let surface = surface.to_owned();
             return Err(RenderError::UnsupportedSurface { surface });
         }

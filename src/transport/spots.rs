@@ -250,6 +250,11 @@ impl<'a> LitSpots<'a> {
         self.constant_light(lit, x) * factors
     }
 
+    /// The same without the factor d of the BRDF at x.
+    pub(super) fn light_onto(&self, lit: &Vertex, x: &Vertex) -> f64 {
+        self.constant_light(lit, x) * lit.factor_to(self.scene, x.position)
+    }
+
     /// β·c·Φlaser · G·c_l.
     fn constant_light(&self, lit: &Vertex, x: &Vertex) -> f64 {
         let Some((term, _)) = geometry_term(x.oriented(), lit.oriented()) else {

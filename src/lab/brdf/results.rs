@@ -9,7 +9,7 @@ use crate::recovery::Method;
 /// How the study is done.
 #[derive(Clone, Debug)]
 pub struct BrdfPlan {
-    /// Paths per pixel, or points, of each of the two renders.
+    /// Points between the walls, of each of the two renders.
     pub samples: u64,
     /// Seed of the tracer and first one of the noise.
     pub seed: u64,

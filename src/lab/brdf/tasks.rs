@@ -13,9 +13,7 @@ use crate::lab::validation::Integration;
 use crate::model::{Extent, Kernel, MatrixModel, converged};
 use crate::num::stream::Sampling;
 use crate::scene::Scene;
-use crate::transport::{
-    Budget, Control, Estimator, Plan, SamplesError, Traced, render, unsupported_surface,
-};
+use crate::transport::{Control, Estimator, Plan, SamplesError, Traced, render};
 
 /// `phicam study brdf`.
 pub(in crate::lab) const STUDY: Registered = Registered {
@@ -26,13 +24,20 @@ pub(in crate::lab) const STUDY: Registered = Registered {
     options: &[
         Opt::paths(
             "samples",
-            "Points, or paths per pixel where the hidden surface is not Lambertian, of each of the two renders",
+            "Points between the walls, of each of the two renders",
         )
         .or("65536"),
-        Opt::relative_noise("Noise of the photographs, relative to each entry, separated by commas")
-            .or("0.001,0.01,0.1"),
-        Opt::methods("Recovery methods, separated by commas", "pinv,tikhonov,joint"),
-        Opt::whole("seeds", "Draws of the noise").or("20").within(1, 100_000),
+        Opt::relative_noise(
+            "Noise of the photographs, relative to each entry, separated by commas",
+        )
+        .or("0.001,0.01,0.1"),
+        Opt::methods(
+            "Recovery methods, separated by commas",
+            "pinv,tikhonov,joint",
+        ),
+        Opt::whole("seeds", "Draws of the noise")
+            .or("20")
+            .within(1, 100_000),
         Opt::seed("Seed of the tracer and first one of the noise"),
         Opt::significance("0.0001"),
     ],
@@ -82,22 +87,9 @@ impl BrdfTasks {
         })
     }
 
-    /// `factored` where the hidden surfaces allow it, else `shared`.
     fn tracing(&self) -> Result<Plan, SamplesError> {
-        let factored = Plan {
-            estimator: Estimator::Factored,
-            sampling: Sampling::Sobol,
-            seed: self.plan.seed,
-            budget: Budget::new(self.plan.samples, Sampling::Sobol)?,
-        };
-        let estimator = match unsupported_surface(&self.scene, &factored) {
-            Some(_) => Estimator::Shared,
-            None => Estimator::Factored,
-        };
-        Ok(Plan {
-            estimator,
-            ..factored
-        })
+        let BrdfPlan { seed, samples, .. } = self.plan;
+        Plan::new(Estimator::Factored, Sampling::Sobol, seed, samples)
     }
 
     /// Tests an assumption against the light, and recovers with it.
