@@ -99,6 +99,7 @@ def gallery_svg(
     is_reflectance: bool,
     pictures: Sequence[tuple[str, tuple[int, int], list[float], tuple[str, str], float]],
 ) -> str: ...
+def aimed(scene: Scene, *, sampler: str, seed: int) -> tuple[str, int]: ...
 def render(
     scene: Scene,
     *,

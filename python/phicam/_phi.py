@@ -274,8 +274,8 @@ class Phi:
 def render(
     scene: Scene,
     *,
-    samples: int = 512,
-    estimator: Estimator = "independent",
+    samples: int | None = None,
+    estimator: Estimator | None = None,
     sampler: Sampler = "sobol",
     seed: int = 1,
     spots: int | slice | Iterable[int] | None = None,
@@ -287,12 +287,14 @@ def render(
     Parameters
     ----------
     scene : Scene
-    samples : int
+    samples : int, optional
         Paths per pixel and spot (``independent``), paths per pixel (``shared``) or points between the walls
-        (``factored``), rounded up to whole blocks.
-    estimator : str
+        (``factored``), rounded up to whole blocks; 512 where only the estimator is given.
+    estimator : str, optional
         What paths have in common: ``independent`` errors are independent; ``shared`` paths of a pixel serve all spots;
-        ``factored`` points serve all pixels and spots. All are unbiased.
+        ``factored`` points serve all pixels and spots. All are unbiased. ``independent`` where only the samples are
+        given. Given neither, it is ``factored`` or ``shared`` where other surfaces than the hidden reflect between the
+        walls, with as many samples as a pilot says make the overall standard error 1 %, else ``independent``.
     sampler : str
         ``sobol``: Owen-scrambled Sobol' points; ``pcg``: independent random numbers.
     seed : int
@@ -323,7 +325,11 @@ def render(
     >>> bool((phi.stderr < 0.2 * phi.flux.max()).all())
     True
     """
-    count, all_spots = whole(samples, "samples", 1, 2**32), scene_at(scene).shape[1]
+    all_spots = scene_at(scene).shape[1]
+    if samples is None and estimator is None:
+        estimator, samples = _native.aimed(scene._core, sampler=sampler, seed=whole(seed, "seed"))
+    estimator = "independent" if estimator is None else estimator
+    count = whole(512 if samples is None else samples, "samples", 1, 2**32)
     runs = [(0, all_spots)] if spots is None else chosen(spots, "spots", all_spots)
     paths = count if estimator == "factored" else count * scene.shape[0]
     each = [paths * (end - first if estimator == "independent" else 1) for first, end in runs]

@@ -43,6 +43,8 @@ mod _native {
     #[pymodule_export]
     use crate::recover::{methods, recover, setting_allows, setting_methods, setting_range};
     #[pymodule_export]
+    use crate::render::aimed;
+    #[pymodule_export]
     use crate::render::render;
     #[pymodule_export]
     use crate::scene::{Scene, builtins};

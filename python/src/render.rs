@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use numpy::PyArray2;
 use phicam::jobs::need;
+use phicam::lab;
 use phicam::transport::{Plan, Traced, render as traced_render};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -22,6 +23,25 @@ pub fn plan(estimator: &str, sampler: &str, seed: u64, samples: u64) -> PyResult
         sampler.parse().map_err(refused)?,
     );
     Plan::new(estimator, sampling, seed, samples).raise()
+}
+
+/// Estimator and samples of a render that is told neither.
+#[pyfunction]
+#[pyo3(signature = (scene, *, sampler, seed))]
+pub fn aimed(
+    py: Python<'_>,
+    scene: &Scene,
+    sampler: &str,
+    seed: u64,
+) -> PyResult<(&'static str, u64)> {
+    let refused = |e: String| input(e, "see the function's documentation");
+    let sampling = sampler.parse().map_err(refused)?;
+    let scene = Arc::clone(&scene.inner);
+    let found = run(py, None, None, move |control| {
+        lab::aimed(&scene, sampling, seed, control)
+    })?;
+    let (plan, _) = found.map_err(|e| input(e.to_string(), "give estimator and samples"))?;
+    Ok((plan.estimator.name(), plan.budget.samples()))
 }
 
 /// Traces the spots `first..last`; `progress` is called with the paths that are done.

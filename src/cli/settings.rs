@@ -3,30 +3,55 @@
 use super::args::{PathArgs, TestArgs};
 use super::console::Console;
 use super::failure::Failure;
-use crate::lab::{Errors, Test};
+use super::interrupt;
+use crate::lab::{self, Errors, PilotError, Test};
 use crate::scene::Scene;
-use crate::transport::{Budget, Plan, unsupported_surface};
+use crate::transport::{Budget, Estimator, Plan, RenderError, unsupported_surface};
 
-/// The plan that the arguments describe.
-pub(super) fn plan(args: &PathArgs) -> Result<Plan, Failure> {
-    let plan = Plan::new(args.estimator, args.sampler, args.seed, args.samples);
+/// Samples that are taken where some estimator is asked for and no number.
+const SAMPLES: u64 = 512;
+
+/// The plan that the arguments describe for the scene; says what was chosen where they leave both
+/// estimator and samples open.
+pub(super) fn plan(args: &PathArgs, scene: &Scene, console: Console) -> Result<Plan, Failure> {
+    if args.estimator.is_none() && args.samples.is_none() {
+        return aimed(args, scene, console);
+    }
+    let estimator = args.estimator.unwrap_or(Estimator::Independent);
+    let samples = args.samples.unwrap_or(SAMPLES);
+    let plan = Plan::new(estimator, args.sampler, args.seed, samples);
     plan.map_err(|_| {
-        let cause = format!(
-            "--samples {} is not a number of paths that can be traced",
-            args.samples
-        );
+        let cause = format!("--samples {samples} is not a number of paths that can be traced");
         Failure::usage(cause, "use at least 1 and at most 2³²")
     })
+}
+
+fn aimed(args: &PathArgs, scene: &Scene, console: Console) -> Result<Plan, Failure> {
+    let found = lab::aimed(scene, args.sampler, args.seed, interrupt::control());
+    let (plan, foretold) = found.map_err(|error| match error {
+        PilotError::Render(RenderError::Stopped(stopped)) => stopped.into(),
+        error => Failure::new(error.to_string(), "give --estimator and --samples"),
+    })?;
+    if let Some(error) = foretold {
+        let Plan {
+            estimator, budget, ..
+        } = plan;
+        console.say(format!(
+            "a pilot chose --estimator {estimator} --samples {}: it foretells an overall standard error of {:.2} %",
+            budget.samples(),
+            100.0 * error
+        ));
+    }
+    Ok(plan)
 }
 
 /// Says so where `plan` has more samples than were asked for.
 pub(super) fn remark_rounding(args: &PathArgs, plan: &Plan, console: Console) {
     let Budget { blocks, size } = plan.budget;
     let samples = plan.budget.samples();
-    if samples != args.samples {
+    if let Some(asked) = args.samples.filter(|asked| *asked != samples) {
         console.say(format!(
-            "{} samples rounded up to {samples}: {blocks} blocks of {size}",
-            args.samples
+            "{asked} samples rounded up to {samples}: {blocks} blocks of {size}"
         ));
     }
 }
@@ -37,10 +62,13 @@ pub(super) fn suited(scene: &Scene, plan: &Plan) -> Result<(), Failure> {
         return Ok(());
     };
     let cause = format!(
-        "--estimator {} needs Lambertian surfaces between the walls, and `{surface}` is none",
+        "--estimator {} needs Lambertian surfaces between the walls where light meets more than three, and `{surface}` is none",
         plan.estimator.name()
     );
-    Err(Failure::new(cause, "use --estimator shared"))
+    Err(Failure::new(
+        cause,
+        "use --estimator shared, or max_bounces = 3 in the scene",
+    ))
 }
 
 /// Paths a block from which on its mean is taken as normally distributed.

@@ -142,6 +142,7 @@
 //! ```
 
 mod agreement;
+mod aim;
 mod answer;
 mod brdf;
 mod budget;
@@ -210,6 +211,7 @@ mod validation;
 mod verdict;
 
 pub use agreement::{Agreement, Entry, EntryBound, agree};
+pub use aim::aimed;
 pub use answer::{Answer, Claim};
 pub use brdf::{Assumption, BrdfPlan, BrdfStudy, BrdfTasks, Quality, Ratio};
 pub use budget::{BudgetPlan, BudgetTasks, Closure, ErrorBudget, Term};

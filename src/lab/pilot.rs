@@ -125,7 +125,8 @@ pub fn darkness(
     Ok(found.filter(|found| !matches!(found, Foretold::Coarse(_))))
 }
 
-fn look(scene: &Scene, plan: &Plan, control: Control<'_>) -> Result<Tally, PilotError> {
+/// The tally of a render that tells nobody of its progress.
+pub(super) fn look(scene: &Scene, plan: &Plan, control: Control<'_>) -> Result<Tally, PilotError> {
     let spots = 0..scene.laser.spots.len();
     let tally = Tally::new(scene, plan, spots.len(), 0);
     let silent = Control {

@@ -1,6 +1,7 @@
 //! A render, a recovery and a whole run in words and tables.
 
 use super::agreement::Agreement;
+use super::aim::AIM;
 use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone};
 use super::recoveries::{recoveries, warnings};
 use super::results::RunResults;
@@ -187,9 +188,6 @@ fn relative_stderr(flux: &Matrix, stderr: &Matrix, tails: &Matrix) -> Option<f64
     let norm = flux.norm();
     (norm > 0.0).then(|| variance.sqrt() / norm)
 }
-
-/// The relative standard error that a run should reach.
-const AIM: f64 = 0.01;
 
 /// What would bring a relative standard error down to [`AIM`]: it falls like 1/√samples, or faster.
 fn cure(stderr: f64, plan: &Plan) -> String {

@@ -180,16 +180,18 @@ impl Command {
 /// The paths that are traced.
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct PathArgs {
-    /// Which paths are shared
-    #[arg(long, value_parser = choice::estimator(), default_value = "independent")]
-    pub estimator: Estimator,
+    /// Which paths are shared. Given neither this nor --samples: factored or shared where other
+    /// surfaces than the hidden reflect between the walls, with as many samples as a pilot says make
+    /// the overall standard error 1 %; else independent
+    #[arg(long, value_parser = choice::estimator())]
+    pub estimator: Option<Estimator>,
     /// Where random numbers come from
     #[arg(long, value_parser = choice::sampler(), default_value = "sobol")]
     pub sampler: Sampling,
-    /// Paths per pixel and spot (independent) or per pixel (shared), points on the hidden surface
-    /// (factored); rounded up to whole blocks
-    #[arg(long, default_value_t = 512, allow_negative_numbers = true, value_parser = whole)]
-    pub samples: u64,
+    /// Paths per pixel and spot (independent) or per pixel (shared), points between the walls
+    /// (factored); rounded up to whole blocks. 512 unless given or chosen as above
+    #[arg(long, allow_negative_numbers = true, value_parser = whole)]
+    pub samples: Option<u64>,
     /// Seed: the same seed gives the same bytes
     #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole)]
     pub seed: u64,

@@ -85,8 +85,9 @@ fn is_free(dir: &Path, work: &dyn Work) -> bool {
 /// A render of the scene, or the command after `--`.
 fn asked(args: &PlanArgs, console: Console) -> Result<Settings, Failure> {
     match (&args.scene, args.command.is_empty()) {
-        (Some(_), true) => {
-            let plan = settings::plan(&args.paths)?;
+        (Some(name), true) => {
+            let scene = console.load_scene(name)?;
+            let plan = settings::plan(&args.paths, &scene, console)?;
             settings::remark_rounding(&args.paths, &plan, console);
             Ok(Settings::render(&plan))
         }
