@@ -17,7 +17,7 @@ const STEP: u64 = 8;
 const MARGIN: f64 = 1.1;
 /// Pairs of a point with a pixel or a spot (`factored`), and of a path with a spot (`shared`), that
 /// a render may cost: some minutes on two cores.
-const MOST_PAIRS: u64 = 1 << 25;
+const MOST_PAIRS: u64 = 1 << 26;
 const MOST_PATHS: u64 = 1 << 28;
 /// Pixels a side and entries that a pilot looks at, at most.
 const MOST_SIDE: usize = 128;

@@ -53,7 +53,7 @@ fn the_most_is_a_power_of_two() {
         (scene.camera.columns, scene.camera.rows) = (side, side);
         [Estimator::Factored, Estimator::Shared].map(|e| most(&scene, e))
     };
-    // 2²⁵/(64² + 12) = 8168, 2²⁸/(64²·12) = 5461.
-    assert_eq!(of(64), [4096, 4096]);
+    // 2²⁶/(64² + 12) = 16336, 2²⁸/(64²·12) = 5461.
+    assert_eq!(of(64), [8192, 4096]);
     assert_eq!(of(1024), [512, 512]);
 }

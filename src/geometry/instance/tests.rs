@@ -54,6 +54,55 @@ fn a_placed_mesh_is_the_mesh_of_the_placed_vertices() {
     assert!(met > 100);
 }
 
+/// Segments around the body, along the axes and across: blocked where x, y, z ≥ 0 and x + y + z ≤ 1
+/// leave some of the segment, in the coordinates of the tetrahedron.
+#[test]
+fn segments_are_blocked_by_what_they_pass_through() {
+    let place = placement();
+    let body = Instance::new(tetrahedron(), place, Side::Outer).unwrap();
+    let (middle, back) = (place.transform_point3(DVec3::splat(0.2)), place.inverse());
+    let passes = |from: DVec3, to: DVec3| {
+        let [a, b] = [from, to].map(|p| back.transform_point3(p));
+        let heights = |p: DVec3| [p.x, p.y, p.z, 1.0 - p.x - p.y - p.z];
+        let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+        for (from, to) in heights(a).into_iter().zip(heights(b)) {
+            let crossing = from / (from - to);
+            match (from < 0.0, to < 0.0) {
+                (true, true) => return false,
+                (true, false) => enter = enter.max(crossing),
+                (false, true) => leave = leave.min(crossing),
+                (false, false) => {}
+            }
+        }
+        enter < leave
+    };
+    let mut segments = Vec::new();
+    for i in 0..9 {
+        for j in 0..9 {
+            let [a, b] = [i, j].map(|k| 0.7 * (f64::from(k) - 4.0) + 0.013);
+            for axis in 0..3 {
+                let mut across = [a, b, 0.0];
+                across.rotate_right(axis);
+                let start = middle + DVec3::from_array(across);
+                let along = DVec3::AXES[(axis + 2) % 3] * 6.0;
+                let slant = along + DVec3::new(0.3, -1.1, 0.7);
+                for way in [along, slant, 0.4 * along] {
+                    segments.push((start - way, start + way));
+                    segments.push((start + way, start + 3.0 * way));
+                }
+            }
+        }
+    }
+    let truth: Vec<bool> = segments.iter().map(|(a, b)| passes(*a, *b)).collect();
+    let met = truth.iter().filter(|b| **b).count();
+    assert!(met > 50 && 2 * met < truth.len(), "{met}");
+    let rays = segments.iter().map(|(a, b)| Ray::between(*a, *b).unwrap());
+    let rays: Vec<Ray> = rays.collect();
+    let found: Vec<bool> = rays.iter().map(|ray| body.blocks(ray)).collect();
+    assert_eq!(found, truth);
+    assert_eq!(body.blocks_many(&rays), truth);
+}
+
 #[test]
 fn what_is_no_similarity_is_refused() {
     let mesh = tetrahedron();
