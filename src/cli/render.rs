@@ -39,7 +39,7 @@ pub(super) fn execute(args: &RenderArgs, console: Console) -> Result<Outcome, Fa
             format!("use a range within 0..{total}"),
         ));
     }
-    let plan = settings::plan(&args.trace.paths, &scene, console)?;
+    let plan = settings::plan(&args.trace.paths, args.trace.threads, &scene, console)?;
     let claim = Claim {
         what: "phicam render",
         spots: (spots.len() < total).then_some(spots),

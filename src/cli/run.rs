@@ -34,7 +34,7 @@ use crate::scene::Scene;
 pub(super) fn execute(args: &RunArgs, console: Console) -> Result<Outcome, Failure> {
     let scene = console.load_scene(&args.scene)?;
     let mut clock = Clock::start();
-    let plan = settings::plan(&args.trace.paths, &scene, console)?;
+    let plan = settings::plan(&args.trace.paths, args.trace.threads, &scene, console)?;
     let test = settings::test(&args.test, &plan, console)?;
     need::run(&scene, &plan)?;
     let claim = Claim {

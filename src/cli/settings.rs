@@ -4,6 +4,7 @@ use super::args::{PathArgs, TestArgs};
 use super::console::Console;
 use super::failure::Failure;
 use super::interrupt;
+use super::process::pool;
 use crate::lab::{self, Errors, PilotError, Test};
 use crate::scene::Scene;
 use crate::transport::{Budget, Estimator, Plan, RenderError, unsupported_surface};
@@ -12,10 +13,16 @@ use crate::transport::{Budget, Estimator, Plan, RenderError, unsupported_surface
 const SAMPLES: u64 = 512;
 
 /// The plan that the arguments describe for the scene; says what was chosen where they leave both
-/// estimator and samples open.
-pub(super) fn plan(args: &PathArgs, scene: &Scene, console: Console) -> Result<Plan, Failure> {
+/// estimator and samples open, on so many threads.
+pub(super) fn plan(
+    args: &PathArgs,
+    threads: Option<usize>,
+    scene: &Scene,
+    console: Console,
+) -> Result<Plan, Failure> {
     if args.estimator.is_none() && args.samples.is_none() {
-        return aimed(args, scene, console);
+        let chosen = || aimed(args, scene, console);
+        return pool(threads)?.install(chosen);
     }
     let estimator = args.estimator.unwrap_or(Estimator::Independent);
     let samples = args.samples.unwrap_or(SAMPLES);

@@ -87,7 +87,7 @@ fn asked(args: &PlanArgs, console: Console) -> Result<Settings, Failure> {
     match (&args.scene, args.command.is_empty()) {
         (Some(name), true) => {
             let scene = console.load_scene(name)?;
-            let plan = settings::plan(&args.paths, &scene, console)?;
+            let plan = settings::plan(&args.paths, None, &scene, console)?;
             settings::remark_rounding(&args.paths, &plan, console);
             Ok(Settings::render(&plan))
         }
