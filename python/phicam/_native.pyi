@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, final
+from typing import Any, Literal, final
 
 from numpy.typing import NDArray
 
@@ -99,7 +99,9 @@ def gallery_svg(
     is_reflectance: bool,
     pictures: Sequence[tuple[str, tuple[int, int], list[float], tuple[str, str], float]],
 ) -> str: ...
-def aimed(scene: Scene, *, sampler: str, seed: int) -> tuple[str, int]: ...
+def aimed(
+    scene: Scene, *, sampler: str, seed: int
+) -> tuple[Literal["independent", "shared", "factored"], int]: ...
 def render(
     scene: Scene,
     *,
