@@ -190,6 +190,7 @@ fn relative_stderr(flux: &Matrix, stderr: &Matrix, tails: &Matrix) -> Option<f64
 }
 
 /// What would bring a relative standard error down to [`AIM`]: it falls like 1/√samples, or faster.
+/// The estimator is named too, for samples alone would be those of another.
 fn cure(stderr: f64, plan: &Plan) -> String {
     if stderr <= AIM {
         return String::new();
@@ -197,7 +198,8 @@ fn cure(stderr: f64, plan: &Plan) -> String {
     let samples = plan.budget.samples() as f64 * (stderr / AIM).powi(2);
     let samples = (samples as u64).next_power_of_two();
     format!(
-        "; `--samples {samples}` makes that {} or less",
+        "; `--estimator {} --samples {samples}` makes that {} or less",
+        plan.estimator,
         percent(AIM)
     )
 }
@@ -256,6 +258,8 @@ fn rendered(
 mod tests {
     use super::super::sample::{bare, run};
     use super::*;
+    use crate::num::stream::Sampling;
+    use crate::transport::Estimator;
 
     fn told(finding: &Finding) -> String {
         format!("{:?}", finding.tables)
@@ -288,6 +292,15 @@ mod tests {
         ] {
             assert!(texts.contains(words), "no {words}: {texts}");
         }
+        // 2 %: four times the samples.
+        let coarse = Traced {
+            stderr: matrix(4e-14),
+            ..traced
+        };
+        let plan = Plan::new(Estimator::Shared, Sampling::Sobol, 1, 512).unwrap();
+        let finding = describe_render(&results.scene, &plan, &coarse, 8.04);
+        let cure = "`--estimator shared --samples 2048` makes that 1.00";
+        assert!(told(&finding).contains(cure), "{finding:?}");
     }
 
     /// An entry that no light was met for has an upper bound in place of a standard error: it has

@@ -181,8 +181,8 @@ impl Command {
 #[derive(Debug, Arguments)]
 pub(in crate::cli) struct PathArgs {
     /// Which paths are shared. Given neither this nor --samples: factored or shared where other
-    /// surfaces than the hidden reflect between the walls, with as many samples as a pilot says make
-    /// the overall standard error 1 %; else independent
+    /// surfaces than the hidden reflect between the walls, with as many samples as a pilot says
+    /// make the overall standard error 1 %; else independent
     #[arg(long, value_parser = choice::estimator())]
     pub estimator: Option<Estimator>,
     /// Where random numbers come from
