@@ -1,6 +1,6 @@
 //! Estimator and samples of a render that is told neither: what brings ‖σ‖/‖Φ‖ to 1 %.
 
-use super::pilot::{PilotError, look};
+use super::pilot::{PilotError, look, thinned};
 use crate::num::stream::Sampling;
 use crate::scene::{Role, Scene, Surface};
 use crate::transport::{Control, Estimator, Plan, unsupported_surface};
@@ -48,7 +48,8 @@ pub fn aimed(
     if scene.max_bounces < 3 || scene.shining().is_some() || !scene.surfaces.iter().any(others) {
         return Ok((usual, None));
     }
-    let looked_at = thinned(scene);
+    let [columns, rows] = [scene.camera.columns, scene.camera.rows].map(|n| n.min(MOST_SIDE));
+    let looked_at = thinned(scene, MOST_SIDE, (MOST_ENTRIES / (columns * rows)).max(1));
     let mut best: Option<(Plan, f64)> = None;
     for estimator in [Estimator::Factored, Estimator::Shared] {
         let least = Plan { estimator, ..usual };
@@ -107,20 +108,6 @@ fn most(scene: &Scene, estimator: Estimator) -> u64 {
     };
     // The power of two that is not above it.
     1 << samples.max(USUAL).ilog2()
-}
-
-/// The scene in at most 128 × 128 pixels, and with so many of its spots, evenly chosen, that there
-/// are at most 2²¹ entries.
-fn thinned(scene: &Scene) -> Scene {
-    let mut few = scene.clone();
-    few.camera.columns = few.camera.columns.min(MOST_SIDE);
-    few.camera.rows = few.camera.rows.min(MOST_SIDE);
-    few.known.clear();
-    let all = &scene.laser.spots;
-    let count = all.len().min((MOST_ENTRIES / few.camera.pixels()).max(1));
-    let places = (0..count).map(|i| (2 * i + 1) * all.len() / (2 * count));
-    few.laser.spots = places.map(|i| all[i]).collect();
-    few
 }
 
 #[cfg(test)]

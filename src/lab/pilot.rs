@@ -70,7 +70,7 @@ pub fn foretold(
     control: Control<'_>,
 ) -> Result<Option<Foretold>, PilotError> {
     let samples = plan.budget.samples();
-    let thinned = thinned(scene);
+    let thinned = thinned(scene, SIDE, SPOTS);
     let paths = |scene: &Scene| {
         let sets = if plan.estimator.serves_all_spots() {
             1
@@ -138,14 +138,14 @@ pub(super) fn look(scene: &Scene, plan: &Plan, control: Control<'_>) -> Result<T
     Ok(trace(scene, plan, spots, tally, end, silent, go_on)?)
 }
 
-/// The same view in fewer pixels, and some of the spots, evenly chosen.
-fn thinned(scene: &Scene) -> Scene {
+/// The same view in at most so many pixels a `side`, and as many of the `spots`, evenly chosen.
+pub(super) fn thinned(scene: &Scene, side: usize, spots: usize) -> Scene {
     let mut few = scene.clone();
-    few.camera.columns = few.camera.columns.min(SIDE);
-    few.camera.rows = few.camera.rows.min(SIDE);
+    few.camera.columns = few.camera.columns.min(side);
+    few.camera.rows = few.camera.rows.min(side);
     few.known.clear();
     let all = &scene.laser.spots;
-    let count = all.len().min(SPOTS);
+    let count = all.len().min(spots);
     let places = (0..count).map(|i| (2 * i + 1) * all.len() / (2 * count));
     few.laser.spots = places.map(|i| all[i]).collect();
     few
