@@ -23,7 +23,7 @@ mod tree;
 pub use basis::Basis;
 pub use bvh::{Bvh, GeometryError, Hit};
 pub use disc::Disc;
-pub use glam::{DAffine3, DQuat, DVec3};
+pub use glam::{DAffine3, DMat3, DQuat, DVec3};
 pub use instance::{Instance, Side};
 pub(crate) use mesh::is_proper;
 pub use mesh::{Facet, Facets, Mesh, MeshError, Patch};

@@ -1,7 +1,7 @@
 //! A recovered reflectance on the surface that it belongs to: as a texture, and as a coloured mesh.
 
 use super::encode::{PictureError, grey16};
-use crate::geometry::{DVec3, Shape};
+use crate::geometry::{DAffine3, DVec3, Shape};
 use crate::image::Transfer;
 use crate::scene::Surface;
 use crate::scene::mesh::{FaceValues, Triangles, to_ply};
@@ -21,9 +21,15 @@ pub fn texture_png([nu, nv]: [usize; 2], values: &[f64]) -> Result<Vec<u8>, Pict
 
 /// The surface as a PLY mesh, each triangle with the reflectance of its element: as it is under the
 /// name `reflectance`, and as a grey between 0 and 1, by the transfer of sRGB, for the eye. A flat
-/// or round surface becomes two triangles for each element.
-pub fn recovered_ply(surface: &Surface, elements: [usize; 2], values: &[f64]) -> Vec<u8> {
-    let (mesh, cells) = match &surface.shape {
+/// or round surface becomes two triangles for each element. `to_file` leads from the scene's
+/// coordinates to those of the mesh ([`Scene::to_file`](crate::scene::Scene::to_file)).
+pub fn recovered_ply(
+    surface: &Surface,
+    elements: [usize; 2],
+    values: &[f64],
+    to_file: &DAffine3,
+) -> Vec<u8> {
+    let (mut mesh, cells) = match &surface.shape {
         Shape::Instance(body) => {
             let place = |p: &DVec3| body.placement().transform_point3(*p);
             let mesh = Triangles {
@@ -37,6 +43,9 @@ pub fn recovered_ply(surface: &Surface, elements: [usize; 2], values: &[f64]) ->
         }
         _ => net(surface, elements),
     };
+    for p in &mut mesh.positions {
+        *p = to_file.transform_point3(*p);
+    }
     let reflectances: Vec<f64> = cells.iter().map(|c| values[*c]).collect();
     let grey = |x: &f64| (255.0 * Transfer::Srgb.encode(x.clamp(0.0, 1.0))).round() as u8;
     let colours: Vec<[u8; 3]> = reflectances.iter().map(|x| [grey(x); 3]).collect();
@@ -113,7 +122,7 @@ mod tests {
         let values = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6];
         for text in [bench.clone(), bench.replace(line, mesh)] {
             let surface = hidden(&text);
-            let bytes = recovered_ply(&surface, [3, 2], &values);
+            let bytes = recovered_ply(&surface, [3, 2], &values, &DAffine3::IDENTITY);
             let mesh = read("own.ply", &bytes, &mut |_| Err(String::new())).unwrap();
             let header = String::from_utf8_lossy(&bytes[..400]).into_owned();
             assert!(header.contains("property double reflectance") && header.contains("uchar red"));

@@ -1,11 +1,12 @@
 //! The camera: an off-axis pinhole whose pixel grid covers a rectangle of the wall exactly.
 
+use super::axes::upright;
 use super::device;
 use super::error::{Fault, keys};
 use super::file::CameraTable;
-use super::surface::{Surface, facing_at_xy, is_off_the_wall, upright};
+use super::surface::{Surface, facing_at_xy, is_off_the_wall};
 use super::{FARTHEST, FINEST};
-use crate::geometry::{DVec3, Parallelogram};
+use crate::geometry::{DAffine3, DVec3, Parallelogram};
 
 /// More pixels than this are taken for a mistake.
 const MOST_PIXELS: u64 = 1 << 26;
@@ -79,7 +80,11 @@ impl Camera {
         })
     }
 
-    pub(super) fn from_table(table: &CameraTable, surfaces: &[Surface]) -> Result<Self, Fault> {
+    pub(super) fn from_table(
+        table: &CameraTable,
+        axes: &DAffine3,
+        surfaces: &[Surface],
+    ) -> Result<Self, Fault> {
         let refuse = |key, cause: String, cure: &str| {
             Err(Fault::new(keys![key], cause, cure).within(keys!["camera"]))
         };
@@ -104,7 +109,7 @@ impl Camera {
                 "give a positive area in unit², from 1e-30 to 1e30",
             );
         }
-        let position = device::position("camera", table.position)?;
+        let position = device::position("camera", table.position, axes)?;
         let ([x0, x1], [y0, y1]) = (table.view.x, table.view.y);
         if !(x0 < x1 && y0 < y1 && [x0, x1, y0, y1].iter().all(|c| c.is_finite())) {
             let cause = format!("the view [{x0}, {x1}] × [{y0}, {y1}] has no area");
@@ -136,7 +141,7 @@ fn on_the_wall(
                 let (cause, cure) = upright(surfaces).unwrap_or_else(|| {
                     (
                         format!("{at} does not lie on the wall"),
-                        "keep it within a relay surface, or extend the wall",
+                        "keep it within a relay surface, or extend the wall".to_owned(),
                     )
                 });
                 Fault::new(keys!["view"], cause, cure)

@@ -189,12 +189,13 @@ impl Scene {
         let each = file.surface.iter_mut().zip(&self.surfaces);
         for ((table, surface), motion) in each.zip(&to.surfaces) {
             if *motion != DAffine3::IDENTITY {
-                write_moved(table, surface, motion);
+                write_moved(table, surface, motion, &self.axes);
             }
         }
+        let in_file = |p| self.to_file().transform_point3(p).to_array();
         let spots_move = parameters.iter().any(|p| p.kind.is_of_spots());
         if let Some(laser) = &mut file.laser {
-            laser.position = to.laser.to_array();
+            laser.position = in_file(to.laser);
             if spots_move {
                 laser.spots = SpotsTable {
                     layout: Layout::List,
@@ -203,7 +204,7 @@ impl Scene {
                 };
             }
         }
-        file.camera.position = to.camera.to_array();
+        file.camera.position = in_file(to.camera);
         [file.camera.view.x, file.camera.view.y] = to.view;
         Ok(file)
     }
@@ -326,8 +327,9 @@ fn ends(scene: &Scene) -> [[f64; 2]; 2] {
     [[corners[0].x, corners[2].x], [corners[0].y, corners[2].y]]
 }
 
-/// Moves the shape of a surface in its table.
-fn write_moved(table: &mut SurfaceTable, surface: &Surface, motion: &DAffine3) {
+/// Moves the shape of a surface in its table, whose coordinates are those of the file.
+fn write_moved(table: &mut SurfaceTable, surface: &Surface, motion: &DAffine3, axes: &DAffine3) {
+    let motion = &(axes.inverse() * *motion * *axes);
     let point = |p: [f64; 3]| motion.transform_point3(DVec3::from_array(p)).to_array();
     let vector = |v: [f64; 3]| motion.transform_vector3(DVec3::from_array(v)).to_array();
     if let Some(r) = &mut table.rectangle {
@@ -340,7 +342,7 @@ fn write_moved(table: &mut SurfaceTable, surface: &Surface, motion: &DAffine3) {
         (d.centre, d.normal) = (point(d.centre), vector(d.normal));
     }
     if let (Some(m), Shape::Instance(body)) = (&mut table.mesh, &surface.shape) {
-        write_moved_mesh(m, &(*motion * *body.placement()), motion);
+        write_moved_mesh(m, &(*motion * axes.inverse() * *body.placement()), motion);
     }
 }
 

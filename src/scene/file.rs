@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::axes::AxesTable;
 use super::builtin::builtins;
 use super::error::SceneError;
 use super::material::MaterialTable;
@@ -63,6 +64,9 @@ pub struct SceneFile {
     pub unit: Unit,
     /// Largest number of surfaces met between laser and camera (3: S1, S2, S3).
     pub max_bounces: u32,
+    /// Directions of x and y, in which spots and view are given; none: those of the file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub axes: Option<AxesTable>,
     /// Laser and spots; none where a hidden surface shines.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub laser: Option<LaserTable>,

@@ -1,12 +1,13 @@
 //! The light: a laser and its spots, or a surface that shines.
 
+use super::axes::upright;
 use super::device;
 use super::error::{Fault, keys};
 use super::file::{LaserTable, ProfileShape};
 use super::spots;
-use super::surface::{Surface, facing_at_xy, is_off_the_wall, upright};
+use super::surface::{Surface, facing_at_xy, is_off_the_wall};
 use super::{FARTHEST, FINEST};
-use crate::geometry::{DVec3, Interaction, ShapeId};
+use crate::geometry::{DAffine3, DVec3, Interaction, ShapeId};
 
 /// Powers in W beyond which fluxes would leave the range of f64.
 const LEAST_POWER: f64 = 1e-60;
@@ -62,7 +63,11 @@ pub struct Laser {
 }
 
 impl Laser {
-    pub(super) fn from_table(table: &LaserTable, surfaces: &[Surface]) -> Result<Self, Fault> {
+    pub(super) fn from_table(
+        table: &LaserTable,
+        axes: &DAffine3,
+        surfaces: &[Surface],
+    ) -> Result<Self, Fault> {
         let within = |f: Fault| f.within(keys!["laser"]);
         let refuse = |key, cause, cure| Err(within(Fault::new(keys![key], cause, cure)));
         if !(LEAST_POWER..=MOST_POWER).contains(&table.power) {
@@ -84,7 +89,7 @@ impl Laser {
                 "use 0 for an ideal spot, or a length from 1e-15 to 1e15",
             );
         }
-        let position = device::position("laser", table.position)?;
+        let position = device::position("laser", table.position, axes)?;
         let profile = match table.profile {
             _ if d == 0.0 => Profile::Ideal,
             ProfileShape::Disc => Profile::Disc { radius: 0.5 * d },
@@ -119,14 +124,14 @@ pub(super) fn place(
             None if is_off_the_wall(surfaces, [x, y]) => upright(surfaces).unwrap_or_else(|| {
                 (
                     format!("spot {i} at ({x}, {y}) falls off every relay surface"),
-                    "move or shrink the layout, or extend the wall",
+                    "move or shrink the layout, or extend the wall".to_owned(),
                 )
             }),
             None => (
                 format!(
                     "the laser stands behind (or in the plane of) the surface that spot {i} at ({x}, {y}) lies on"
                 ),
-                "move laser.position to the front of the wall (the side of u × v)",
+                "move laser.position to the front of the wall (the side of u × v)".to_owned(),
             ),
         };
         return Err(Fault::new(keys!["laser", "spots"], cause, cure));

@@ -12,6 +12,7 @@
 //!
 #![doc = include_str!("reference.md")]
 
+mod axes;
 mod body;
 mod builtin;
 mod camera;
@@ -53,6 +54,7 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
+pub use axes::AxesTable;
 pub use builtin::{Builtin, builtins};
 pub use camera::Camera;
 pub use dimension::{Dimension, NoNumber};
@@ -75,7 +77,7 @@ pub use texture::{
 pub use unit::Unit;
 pub use warning::Warning;
 
-use crate::geometry::Bvh;
+use crate::geometry::{Bvh, DAffine3};
 use error::{Fault, keys};
 use file::SceneFile;
 use files::{Files, Folders};
@@ -119,6 +121,8 @@ pub struct Scene {
     /// SHA-256 (hex) of the scene's content: comments and spelling of numbers do not change it.
     pub hash: String,
     bvh: Bvh,
+    /// From the coordinates of the file to those of the scene.
+    axes: DAffine3,
     /// What was suspicious in the files.
     found: Vec<Warning>,
     /// Where they are read.
@@ -207,10 +211,11 @@ impl Scene {
         let wavelength = shining::wavelength(file);
         let mut surfaces =
             surface_tables::from_tables(&file.surface, &mut files, wavelength, &mut found)?;
+        let axes = axes::turn(&mut surfaces, file.axes.as_ref())?;
         let bvh = surface::bvh(&surfaces)?;
         let laser = match (Laser::of_shining(file, &mut surfaces)?, &file.laser) {
             (Some(shining), _) => shining,
-            (None, Some(table)) => Laser::from_table(table, &surfaces)?,
+            (None, Some(table)) => Laser::from_table(table, &axes, &surfaces)?,
             (None, None) => {
                 let cause = "nothing gives light: there is no [laser] table, and no surface shines";
                 let cure =
@@ -218,7 +223,7 @@ impl Scene {
                 return Err(Fault::new(keys![], cause, cure));
             }
         };
-        let camera = Camera::from_table(&file.camera, &surfaces)?;
+        let camera = Camera::from_table(&file.camera, &axes, &surfaces)?;
         let known = Known::from_tables(
             &file.known,
             camera.pixels(),
@@ -245,6 +250,7 @@ impl Scene {
             files: files.read,
             hash,
             bvh,
+            axes,
             found,
             folders: files.folders,
         };
@@ -256,6 +262,11 @@ impl Scene {
     /// The surfaces' shapes, ready for ray queries.
     pub fn bvh(&self) -> &Bvh {
         &self.bvh
+    }
+
+    /// From the scene's coordinates back to those of its file.
+    pub fn to_file(&self) -> DAffine3 {
+        self.axes.inverse()
     }
 
     /// The hidden surfaces with their shape ids, in file order.

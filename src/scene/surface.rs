@@ -210,26 +210,6 @@ pub(super) fn is_off_the_wall(surfaces: &[Surface], [x, y]: [f64; 2]) -> bool {
     of_role(Role::Relay, surfaces).all(|(_, s)| s.shape.at_xy(x, y).is_empty())
 }
 
-/// Why x and y name no point of any wall, where every relay surface is parallel to z: cause and
-/// cure.
-pub(super) fn upright(surfaces: &[Surface]) -> Option<(String, &'static str)> {
-    let stands = |s: &Surface| {
-        let middle = s.shape.at([0.5; 2]).position;
-        s.shape.at_xy(middle.x, middle.y).is_empty()
-    };
-    let mut walls = of_role(Role::Relay, surfaces).map(|(_, s)| s);
-    let first = walls.next()?;
-    (stands(first) && walls.all(stands)).then(|| {
-        (
-            format!(
-                "the wall `{}` stands parallel to z, so that no x and y name a point of it",
-                first.name
-            ),
-            "turn the whole scene, e.g. (x, y, z) to (x, z, −y): views and spots are places (x, y), and z leads away from the wall",
-        )
-    })
-}
-
 /// The point of a relay surface above or below (x, y) that shows its front to `device`, and the
 /// surface's shape id: of several surfaces the nearest, of a sphere's two points the lower one.
 pub(super) fn facing_at_xy(

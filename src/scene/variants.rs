@@ -57,7 +57,9 @@ impl Scene {
             if let (Some(Shape::Parallelogram(p)), Some(rectangle)) =
                 (own.map(|s| &s.shape), &mut table.rectangle)
             {
-                let [corner, u, v] = [p.corner(), p.u(), p.v()].map(|x| x.to_array());
+                let back = self.to_file();
+                let [u, v] = [p.u(), p.v()].map(|x| back.transform_vector3(x).to_array());
+                let corner = back.transform_point3(p.corner()).to_array();
                 *rectangle = RectangleTable { corner, u, v };
             }
         }

@@ -104,7 +104,7 @@ fn a_view_off_the_wall() {
 fn a_wall_parallel_to_z() {
     let words = [
         "the wall `wall` stands parallel to z",
-        "turn the whole scene",
+        "axes = { x = [1, 0, 0], y = [0, 0, 1] }",
     ];
     let (old, new) = ("v = [0, 15.5, 0]", "v = [0, 0, 15.5]");
     refuses_altered(old, new, "[laser.spots]", &words);

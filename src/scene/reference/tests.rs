@@ -9,7 +9,7 @@ use crate::scene::file::{
     RotationTable, SceneFile, SphereTable, SpotsTable, SurfaceTable, ViewTable,
 };
 use crate::scene::material::{IndexTable, MaterialTable, PartTable};
-use crate::scene::{Glare, SensorSettings, VariedTable};
+use crate::scene::{AxesTable, Glare, SensorSettings, VariedTable};
 
 /// Asks a table for its keys, and gives it nothing.
 struct Keys<'a>(&'a mut &'static [&'static str]);
@@ -65,6 +65,7 @@ fn keys_of<'de, T: Deserialize<'de>>() -> &'static [&'static str] {
 fn tables() -> Vec<(&'static str, &'static [&'static str])> {
     vec![
         ("", keys_of::<SceneFile>()),
+        ("axes", keys_of::<AxesTable>()),
         ("laser", keys_of::<LaserTable>()),
         ("laser.spots", keys_of::<SpotsTable>()),
         ("laser.spots.lines", keys_of::<LineTable>()),
@@ -120,6 +121,7 @@ fn every_key_that_a_reader_takes_stands_in_the_reference_and_no_other() {
 #[test]
 fn every_strict_table_of_the_sources_is_looked_at() {
     let sources = [
+        include_str!("../axes.rs"),
         include_str!("../file.rs"),
         include_str!("../material/file.rs"),
         include_str!("../sensor.rs"),
