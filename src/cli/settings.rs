@@ -9,9 +9,6 @@ use crate::lab::{self, Errors, PilotError, Test};
 use crate::scene::Scene;
 use crate::transport::{Budget, Estimator, Plan, RenderError, unsupported_surface};
 
-/// Samples that are taken where some estimator is asked for and no number.
-const SAMPLES: u64 = 512;
-
 /// The plan that the arguments describe for the scene; says what was chosen where they leave both
 /// estimator and samples open, on so many threads.
 pub(super) fn plan(
@@ -25,7 +22,7 @@ pub(super) fn plan(
         return pool(threads)?.install(chosen);
     }
     let estimator = args.estimator.unwrap_or(Estimator::Independent);
-    let samples = args.samples.unwrap_or(SAMPLES);
+    let samples = args.samples.unwrap_or(lab::SAMPLES);
     let plan = Plan::new(estimator, args.sampler, args.seed, samples);
     plan.map_err(|_| {
         let cause = format!("--samples {samples} is not a number of paths that can be traced");

@@ -7,8 +7,8 @@ use crate::transport::{Control, Estimator, Plan, unsupported_surface};
 
 /// The relative standard error that a render should reach.
 pub(super) const AIM: f64 = 0.01;
-/// Samples unless a pilot asks for more.
-const USUAL: u64 = 512;
+/// Samples of a render unless it is told how many, or a pilot asks for more.
+pub const SAMPLES: u64 = 512;
 /// Samples of the first pilot by `shared`, whose paths serve one pixel each.
 const FEW: u64 = 64;
 /// A pilot has at least one sample in so many of the render's.
@@ -43,7 +43,7 @@ pub fn aimed(
     seed: u64,
     control: Control<'_>,
 ) -> Result<(Plan, Option<f64>), PilotError> {
-    let usual = Plan::new(Estimator::Independent, sampling, seed, USUAL)?;
+    let usual = Plan::new(Estimator::Independent, sampling, seed, SAMPLES)?;
     let others = |s: &Surface| s.role == Role::Occluder && !s.is_black();
     if scene.max_bounces < 3 || scene.shining().is_some() || !scene.surfaces.iter().any(others) {
         return Ok((usual, None));
@@ -80,7 +80,7 @@ fn reaching(
 ) -> Result<Option<(Plan, f64)>, PilotError> {
     let of = |samples, seed| Plan::new(least.estimator, least.sampling, seed, samples);
     let mut asked = match least.estimator {
-        Estimator::Factored => USUAL,
+        Estimator::Factored => SAMPLES,
         _ => FEW,
     };
     loop {
@@ -90,7 +90,7 @@ fn reaching(
         };
         let wished = asked as f64 * (MARGIN * error / AIM).powi(2);
         let needed = (wished.min(most as f64) as u64).next_power_of_two();
-        let needed = needed.clamp(USUAL, most);
+        let needed = needed.clamp(SAMPLES, most);
         if needed <= STEP * asked {
             let end = error * (asked as f64 / needed as f64).sqrt();
             return Ok(Some((of(needed, least.seed)?, end)));
@@ -107,7 +107,7 @@ fn most(scene: &Scene, estimator: Estimator) -> u64 {
         _ => MOST_PATHS / (pixels * spots).max(1),
     };
     // The power of two that is not above it.
-    1 << samples.max(USUAL).ilog2()
+    1 << samples.max(SAMPLES).ilog2()
 }
 
 #[cfg(test)]

@@ -16,13 +16,13 @@ fn what_is_chosen_reaches_its_aim() {
     let aim = |scene: &Scene| aimed(scene, Sampling::Sobol, 1, Control::none()).unwrap();
     for name in ["bench", "periscope", "satin", "screen"] {
         let (plan, foretold) = aim(&scene(name));
-        let usual = (Estimator::Independent, USUAL, None);
+        let usual = (Estimator::Independent, SAMPLES, None);
         assert_eq!((plan.estimator, plan.budget.samples(), foretold), usual);
     }
     let shelf = scene("shelf");
     let (plan, foretold) = aim(&shelf);
     assert_eq!(plan.estimator, Estimator::Factored);
-    assert!(plan.budget.samples() > USUAL && foretold.unwrap() <= AIM);
+    assert!(plan.budget.samples() > SAMPLES && foretold.unwrap() <= AIM);
     let traced = |seed| {
         let plan = Plan { seed, ..plan };
         let spots = 0..shelf.laser.spots.len();

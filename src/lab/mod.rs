@@ -211,7 +211,7 @@ mod validation;
 mod verdict;
 
 pub use agreement::{Agreement, Entry, EntryBound, agree};
-pub use aim::aimed;
+pub use aim::{SAMPLES, aimed};
 pub use answer::{Answer, Claim};
 pub use brdf::{Assumption, BrdfPlan, BrdfStudy, BrdfTasks, Quality, Ratio};
 pub use budget::{BudgetPlan, BudgetTasks, Closure, ErrorBudget, Term};
