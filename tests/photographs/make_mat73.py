@@ -90,7 +90,7 @@ def others(file):
 save("types-v73.mat", plain)
 save("packed-v73.mat", packed)
 save("others-v73.mat", others)
-save("tree-v73.mat", lambda file: put(file, "photo", values(20, 37)[..., 0].astype("u1"), "uint8", chunks=(2, 2)))
+save("tree-v73.mat", lambda file: put(file, "photo", values(20, 37)[..., 0].astype("u1"), "uint8", chunks=(3, 3)))
 save("later-v73.mat", lambda file: put(file, "photo", grey.astype("f8"), "double"), libver="latest")
 (here / "python-v73.mat").unlink(missing_ok=True)
 options = hdf5storage.Options(matlab_compatible=True, compress_size_threshold=0)

@@ -71,7 +71,7 @@ impl<'g> Grid<'g> {
         };
         let count: usize = self.cells.iter().product();
         let all = (count as u64).saturating_mul(self.bytes as u64);
-        if all > filters.most(file.len()) || count > file.len() / tree.key {
+        if all > filters.most(file.len()) {
             return Err(Fault::Damaged("is larger than its file can hold"));
         }
         let entries: usize = self.shape.iter().product();

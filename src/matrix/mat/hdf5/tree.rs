@@ -46,7 +46,7 @@ impl<'a> Tree<'a> {
         })();
         let (level, entries) = head.ok_or(Fault::Damaged("has no B-tree where it should be"))?;
         if above.is_some_and(|above| level >= above) {
-            return Err(Fault::Damaged("has a B-tree without an end"));
+            return Err(Fault::Damaged("has a B-tree that does not go down"));
         }
         for _ in 0..entries {
             *left = left

@@ -54,7 +54,7 @@ fn chunks_are_the_array_in_one_piece() {
         let due = read("a.mat", VERSION5, Some(name)).unwrap();
         assert_eq!(read("a.mat", PACKED, Some(name)), Ok(due), "{name}");
     }
-    // 190 chunks, whose tree has two levels.
+    // 91 chunks, whose tree has two levels.
     let deep = read("a.mat", TREE, None).unwrap();
     assert_eq!(
         (&deep.shape[..], deep.full_scale),
@@ -129,16 +129,14 @@ fn a_forged_file_is_read_or_refused() {
     for whole in [TYPES, PACKED, OTHERS, TREE, LATER, PYTHON] {
         let name = (whole == TYPES || whole == PACKED).then_some("frames");
         for at in 512..whole.len() {
-            for change in [1, 0x80, 0xff] {
-                let mut forged = whole.to_vec();
-                forged[at] ^= change;
-                check(read("a.mat", &forged, name));
-            }
+            let mut forged = whole.to_vec();
+            forged[at] ^= 0x81;
+            check(read("a.mat", &forged, name));
             if at % 8 != 0 {
                 continue;
             }
-            for number in [u64::MAX, u64::MAX - 7, 1 << 62, 1 << 40, 1 << 31, 1 << 20] {
-                let mut forged = whole.to_vec();
+            for number in [u64::MAX, 1 << 40, 1 << 20] {
+                forged.copy_from_slice(whole);
                 let end = (at + 8).min(whole.len());
                 forged[at..end].copy_from_slice(&number.to_le_bytes()[..end - at]);
                 check(read("a.mat", &forged, name));
@@ -158,7 +156,7 @@ fn damage_is_told_by_its_name() {
         bytes[at..at + to.len()].copy_from_slice(to);
         bytes
     };
-    // The last chunk of `logical` ends with its checksum; the first one begins where the tree says.
+    // A key is 32 bytes here: length, filters left out, and three offsets; then the address.
     let node = place(TREE, b"TREE\x01\x00");
     let first = node + 24;
     let twice = changed(TREE, first + 8 + 32, &TREE[first + 8..first + 32]);
@@ -169,10 +167,13 @@ fn damage_is_told_by_its_name() {
     assert!(twice.contains("chunk twice"), "{twice}");
     let root = place(TREE, b"TREE\x01\x01");
     let itself = changed(TREE, root + 24 + 32, &((root - 512) as u64).to_le_bytes());
-    assert!(error(&itself, None).contains("without an end"));
+    assert!(error(&itself, None).contains("does not go down"));
     // The dataspace: version, rank, flags, and two lengths.
     let space = place(TREE, &[1, 2, 1, 0, 0, 0, 0, 0, 37, 0, 0, 0]) + 8;
     let wide = changed(TREE, space, &(1u64 << 22).to_le_bytes());
+    assert!(error(&wide, None).contains("larger than its file"));
+    let chunk = place(TREE, &[3, 0, 0, 0, 3, 0, 0, 0, 1, 0, 0, 0]);
+    let wide = changed(&wide, chunk, &(1u32 << 22).to_le_bytes());
     assert!(error(&wide, None).contains("larger than its file"));
     let wider = changed(TREE, space, &(1u64 << 60).to_le_bytes());
     assert!(error(&wider, None).contains("2²⁷"));
