@@ -611,6 +611,15 @@ BREAKS = [
         4,
     ),
     Break(
+        "An array of MATLAB 7.3 is that of version 5, in chunks too",
+        "src/matrix/mat/hdf5/chunks.rs",
+        "from = from * self.chunk[axis] + index[axis];",
+        "from = from * self.shape[axis] + index[axis];",
+        "lib",
+        "matrix::mat::version73::tests::chunks_are_the_array_in_one_piece",
+        4,
+    ),
+    Break(
         "A pattern of two values is found in any unit",
         "src/recovery/joint/pattern_search.rs",
         "Levels::Within(top) => (Dark::Free, top.min(BRIGHTEST)),",

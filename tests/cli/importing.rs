@@ -462,6 +462,7 @@ fn stacks_of_other_programs_are_read() {
             "stack-v7.mat",
             "variable = \"frames\"\naxes = \"frames-rows-columns\"",
         ),
+        ("python-v73.mat", "axes = \"rows-columns-frames\""),
         ("pages8-s1-3.tif", ""),
     ] {
         list(file, more);
@@ -481,7 +482,7 @@ fn stacks_of_other_programs_are_read() {
     list("stack-v73.mat", "");
     w.refuses(
         &format!("import set.toml --from {folder} -o out"),
-        &["7.3", "save -v7"],
+        &["`photo`", "MATLAB_class", "save -v7.3"],
     );
 }
 

@@ -60,6 +60,9 @@ fn photographs() -> Vec<Vec<u8>> {
 fn stacks() -> Vec<Vec<u8>> {
     stored![
         "one-v7.mat",
+        "tree-v73.mat",
+        "later-v73.mat",
+        "python-v73.mat",
         "stack-i2-fortran.npy",
         "stack-u1.npy",
         "colour-f4.npy"
