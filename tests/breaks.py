@@ -918,7 +918,7 @@ BREAKS = [
     ),
     Break(
         "A wall parallel to z is refused for what it is",
-        "src/scene/surface.rs",
+        "src/scene/axes.rs",
         "(stands(first) && walls.all(stands)).then(|| {",
         "(stands(first) && walls.any(stands)).then(|| {",
         "cli",
