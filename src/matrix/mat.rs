@@ -1,7 +1,7 @@
 //! Variables of MATLAB's MAT-files: numeric arrays.
 //!
-//! Two formats have the name: version 5 (`save -v6`, `save -v7`), a row of elements, and version 7.3
-//! (`save -v7.3`), an HDF5 file behind 512 bytes of header. The bytes say which one a file is.
+//! Two formats have the name: version 5 (`save -v6`, `save -v7`), a row of elements, and version
+//! 7.3 (`save -v7.3`), an HDF5 file behind 512 bytes of header. The bytes say which one a file is.
 
 mod choice;
 mod hdf5;
@@ -11,8 +11,8 @@ mod version73;
 use super::array::{Array, ArrayError};
 
 /// The variable `wanted` of a MAT-file of version 5 or 7.3, or its only numeric array. Its shape is
-/// that in MATLAB: (rows, columns, …). `name` is only for messages. Takes at most 24 bytes of memory
-/// for each entry, and there are at most [`MOST_ENTRIES`](super::MOST_ENTRIES).
+/// that in MATLAB: (rows, columns, …). `name` is only for messages. Takes at most 24 bytes of
+/// memory for each entry, and there are at most [`MOST_ENTRIES`](super::MOST_ENTRIES).
 ///
 /// # Errors
 /// [`ArrayError`] for another version, no such variable, more than one where none is named, complex

@@ -25,7 +25,8 @@ const HEAD: u64 = 4096;
 /// Deflate's best: no n bytes hold more than 1032·n.
 const RATIO: u64 = 1032;
 
-/// The variable `wanted`, or the only numeric array. Takes at most 24 bytes of memory for each entry.
+/// The variable `wanted`, or the only numeric array. Takes at most 24 bytes of memory for each
+/// entry.
 pub(super) fn read(name: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Array, ArrayError> {
     let big = byte_order(name, bytes)?;
     let mut rest = &bytes[HEADER..];

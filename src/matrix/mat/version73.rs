@@ -21,10 +21,11 @@ pub(super) fn is_it(bytes: &[u8]) -> bool {
     bytes.starts_with(b"MATLAB 7.3") || bytes.get(HEADER..HEADER + 4) == Some(b"\x89HDF")
 }
 
-/// The variable `wanted`, or the only numeric array. Takes at most 24 bytes of memory for each entry.
+/// The variable `wanted`, or the only numeric array. Takes at most 24 bytes of memory for each
+/// entry.
 pub(super) fn read(name: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Array, ArrayError> {
     let of_file = |fault| error_of(name, "it", fault);
-    let file = File::open(bytes, HEADER).map_err(of_file)?;
+    let file = File::new(bytes, HEADER).map_err(of_file)?;
     let mut choice = Choice::new(name, wanted);
     for member in members(&file).map_err(of_file)? {
         // What cells refer to, and objects of classes.

@@ -15,8 +15,8 @@ pub(in super::super) enum Datatype {
     Other,
 }
 
-/// Where sign, exponent and mantissa of an IEEE 754 number lie: first bit and length of the exponent,
-/// of the mantissa, and the exponent of 1.
+/// Where sign, exponent and mantissa of an IEEE 754 number lie: first bit and length of the
+/// exponent, of the mantissa, and the exponent of 1.
 const SINGLE: [u8; 8] = [23, 8, 0, 23, 127, 0, 0, 0];
 const DOUBLE: [u8; 8] = [52, 11, 0, 52, 0xff, 3, 0, 0];
 

@@ -20,7 +20,7 @@ impl<'a> File<'a> {
     /// # Errors
     /// [`Fault`] if there is none, for addresses of other than 8 bytes, and for fewer bytes than it
     /// says.
-    pub(in super::super) fn open(bytes: &'a [u8], start: usize) -> Result<Self, Fault> {
+    pub(in super::super) fn new(bytes: &'a [u8], start: usize) -> Result<Self, Fault> {
         let bytes_from = bytes.get(start..).ok_or(CUT)?;
         let (root, end) = Self::superblock(Fields(bytes_from))?;
         // The end counts from the first byte of the whole file.

@@ -81,8 +81,8 @@ impl Filters {
         ratio.saturating_mul(stored as u64)
     }
 
-    /// The chunk of `length` bytes, whose elements have `element` bytes, from what was stored of it.
-    /// Bit k of `left_out` is set if filter k was not applied to it.
+    /// The chunk of `length` bytes, whose elements have `element` bytes, from what was stored of
+    /// it. Bit k of `left_out` is set if filter k was not applied to it.
     ///
     /// # Errors
     /// [`Fault::Damaged`] if it does not become `length` bytes, or has another checksum.

@@ -97,8 +97,8 @@ impl<'a> Header<'a> {
         })
     }
 
-    /// The messages of `first` and of the blocks that go on from it. Fewer than `least` bytes at the
-    /// end of a block are a gap.
+    /// The messages of `first` and of the blocks that go on from it. Fewer than `least` bytes at
+    /// the end of a block are a gap.
     fn listed(
         first: &'a [u8],
         least: usize,

@@ -118,7 +118,8 @@ fn a_cut_file_is_refused() {
     }
 }
 
-/// Any byte changed, any field of 8 bytes a large number: an error, or an array that keeps its promises.
+/// Any byte changed, any field of 8 bytes a large number: an error, or an array that keeps its
+/// promises.
 #[test]
 fn a_forged_file_is_read_or_refused() {
     let check = |found: Result<Array, ArrayError>| {
