@@ -321,8 +321,8 @@ impl Format {
 }
 
 /// Recovers `out`, and `direct.npy` with the same weights and with bands that hold all elements at
-/// once in 95 of 100 cases: every element of the former lies within them. (The former has no bands of
-/// its own: all spots of a pixel share the error of the dark frames.)
+/// once in 95 of 100 cases: every element of the former lies within them. (The former has no bands
+/// of its own: all spots of a pixel share the error of the dark frames.)
 fn agrees_with_direct(w: &Workspace, out: &str) {
     let _ = w.phicam(&format!("recover {out} --method joint")).exits(0);
     let given = format!("--stderr {out}/phi.stderr.npy --left-out {out}/left_out.npy");
