@@ -5,6 +5,7 @@
 
 mod choice;
 mod hdf5;
+mod inflated;
 mod version5;
 mod version73;
 

@@ -8,12 +8,9 @@
 //!
 //! Source: MAT-File Format, MathWorks, R2021b.
 
-use std::io::Read;
-
-use flate2::read::ZlibDecoder;
-
 use super::super::array::{Array, ArrayError, Number, damaged, from_fortran, unsupported};
 use super::choice::{Choice, entries};
+use super::inflated;
 
 /// Bytes before the first element.
 const HEADER: usize = 128;
@@ -22,8 +19,6 @@ const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
 /// Bytes within which flags, dimensions and name of a variable lie.
 const HEAD: u64 = 4096;
-/// Deflate's best: no n bytes hold more than 1032·n.
-const RATIO: u64 = 1032;
 
 /// The variable `wanted`, or the only numeric array. Takes at most 24 bytes of memory for each
 /// entry.
@@ -105,13 +100,10 @@ fn word(bytes: &[u8], big: bool) -> Option<u32> {
     })
 }
 
-/// At most `most` bytes of what `packed` becomes, which Deflate bounds too.
+/// At most `most` bytes of what a packed variable becomes.
 fn inflated(name: &str, packed: &[u8], most: u64) -> Result<Vec<u8>, ArrayError> {
-    let most = most.min(packed.len() as u64 * RATIO);
-    let mut bytes = Vec::new();
-    let read = ZlibDecoder::new(packed).take(most).read_to_end(&mut bytes);
-    read.map_err(|e| damaged(name, format!("a packed variable cannot be read ({e})")))?;
-    Ok(bytes)
+    inflated::inflated(packed, most)
+        .map_err(|e| damaged(name, format!("a packed variable cannot be read ({e})")))
 }
 
 /// What a variable says of itself before its numbers.

@@ -1,15 +1,11 @@
 //! What was done to a chunk before it was stored.
 
 use std::borrow::Cow;
-use std::io::Read;
 
-use flate2::read::ZlibDecoder;
-
+use super::super::inflated::{RATIO, inflated};
 use super::fault::{CUT, Fault};
 use super::fields::Fields;
 
-/// Deflate's best: no n bytes hold more than 1032·n.
-const RATIO: u64 = 1032;
 /// Most filters of an array.
 const MOST_FILTERS: u64 = 8;
 
@@ -98,7 +94,11 @@ impl Filters {
         for (_, filter) in applied.rev().filter(|(k, _)| left_out >> k & 1 == 0) {
             chunk = match filter {
                 // A checksum may be packed with the chunk.
-                Filter::Deflate => Cow::Owned(inflated(&chunk, length + 4)?),
+                Filter::Deflate => {
+                    let bytes = inflated(&chunk, length as u64 + 4);
+                    let unread = Fault::Damaged("has a packed chunk that cannot be read");
+                    Cow::Owned(bytes.map_err(|_| unread)?)
+                }
                 Filter::Shuffle => Cow::Owned(unshuffled(&chunk, element)),
                 Filter::Fletcher32 => checked(chunk)?,
             };
@@ -109,15 +109,6 @@ impl Filters {
             Err(Fault::Damaged("has a chunk of another length"))
         }
     }
-}
-
-/// At most `most` bytes of what `packed` becomes.
-fn inflated(packed: &[u8], most: usize) -> Result<Vec<u8>, Fault> {
-    let most = (most as u64).min(RATIO * packed.len() as u64);
-    let mut bytes = Vec::with_capacity(most as usize);
-    let read = ZlibDecoder::new(packed).take(most).read_to_end(&mut bytes);
-    read.map_err(|_| Fault::Damaged("has a packed chunk that cannot be read"))?;
-    Ok(bytes)
 }
 
 /// The bytes of each element side by side again; what is no whole element stays at the end.
