@@ -29,7 +29,9 @@ one() {
     "$built/$target" -max_total_time="$seconds" -timeout=30 -rss_limit_mb=1024 -max_len=16384 -print_final_stats=1 \
         -artifact_prefix="artifacts/$target/" "${dictionary[@]}" "corpus/$target" "found/$target" 2>"artifacts/$target/log" ||
         { echo "-- $target"; tail -40 "artifacts/$target/log"; return 1; }
-    echo "-- $target, $seconds s"$'\n'"$(grep -E "DONE|^stat::(number_of_executed_units|peak_rss_mb)" "artifacts/$target/log")"
+    local told
+    told=$(grep -E "DONE|^stat::(number_of_executed_units|peak_rss_mb)" "artifacts/$target/log") || return 1
+    echo "-- $target, $seconds s"$'\n'"$told"
 }
 export -f one
 printf '%s\n' "$@" | xargs -P "$(nproc)" -I{} bash -c 'one {}'
