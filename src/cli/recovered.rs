@@ -127,13 +127,9 @@ pub(super) fn write(
         };
         let named = |name: &str, what: &str| format!("{name}{suffix}.{what}");
         let file = |name: &str, what: &str| folder.join(named(name, what));
-        let shape = scene.and_then(|scene| {
-            let own = scene.surfaces.iter().find(|s| s.name == **surface)?;
-            Some((own, scene.to_file()))
-        });
-        let drawn = shape
-            .as_ref()
-            .is_none_or(|(s, _)| s.division == Division::Cells);
+        let mut surfaces = scene.iter().flat_map(|scene| &scene.surfaces);
+        let shape = surfaces.find(|s| s.name == **surface);
+        let drawn = shape.is_none_or(|s| s.division == Division::Cells);
         let mut panels = Vec::new();
         let known = objects.iter().find(|o| o.surface == *surface);
         let shares = known.and_then(|o| o.determined_share.as_ref());
@@ -173,13 +169,13 @@ pub(super) fn write(
                 };
                 panels.extend(values.as_ref().map(of));
             }
-            if let Some((shape, to_file)) = &shape {
+            if let (Some(shape), Some(scene)) = (shape, scene) {
                 let (elements, values) = (object.elements, &object.reflectance);
                 if drawn {
                     let png = report::texture_png(elements, values)?;
                     output::write(&file(method, "texture.png"), png)?;
                 }
-                let ply = report::recovered_ply(shape, elements, values, to_file);
+                let ply = report::recovered_ply(shape, elements, values, &scene.to_file());
                 output::write(&file(method, "ply"), ply)?;
             }
             let choice = json!({

@@ -329,7 +329,8 @@ fn ends(scene: &Scene) -> [[f64; 2]; 2] {
 
 /// Moves the shape of a surface in its table, whose coordinates are those of the file.
 fn write_moved(table: &mut SurfaceTable, surface: &Surface, motion: &DAffine3, axes: &DAffine3) {
-    let motion = &(axes.inverse() * *motion * *axes);
+    let placed = axes.inverse() * *motion;
+    let motion = &(placed * *axes);
     let point = |p: [f64; 3]| motion.transform_point3(DVec3::from_array(p)).to_array();
     let vector = |v: [f64; 3]| motion.transform_vector3(DVec3::from_array(v)).to_array();
     if let Some(r) = &mut table.rectangle {
@@ -342,7 +343,7 @@ fn write_moved(table: &mut SurfaceTable, surface: &Surface, motion: &DAffine3, a
         (d.centre, d.normal) = (point(d.centre), vector(d.normal));
     }
     if let (Some(m), Shape::Instance(body)) = (&mut table.mesh, &surface.shape) {
-        write_moved_mesh(m, &(*motion * axes.inverse() * *body.placement()), motion);
+        write_moved_mesh(m, &(placed * *body.placement()), motion);
     }
 }
 

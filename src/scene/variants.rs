@@ -52,12 +52,12 @@ impl Scene {
             };
         }
         file.known.clear();
+        let back = self.to_file();
         for table in &mut file.surface {
             let own = self.surfaces.iter().find(|s| s.name == table.name);
             if let (Some(Shape::Parallelogram(p)), Some(rectangle)) =
                 (own.map(|s| &s.shape), &mut table.rectangle)
             {
-                let back = self.to_file();
                 let [u, v] = [p.u(), p.v()].map(|x| back.transform_vector3(x).to_array());
                 let corner = back.transform_point3(p.corner()).to_array();
                 *rectangle = RectangleTable { corner, u, v };
