@@ -246,6 +246,7 @@ class _Settings(TypedDict):
     levels: tuple[float, float] | None
     weighting: str | None
     bands: float | None
+    error_field: bool
     frame_constant: bool
     frame_polynomial: int | None
     background: bool
@@ -275,6 +276,7 @@ def recover(
     levels: tuple[float, float] | None = None,
     weighting: Literal["noise", "entries", "none"] | None = None,
     bands: float | None = None,
+    error_field: bool = False,
     frame_constant: bool = False,
     frame_polynomial: int | None = None,
     frame_patterns: ArrayLike | None = None,
@@ -316,6 +318,9 @@ def recover(
         Parameters of methods; by their own rule unless given.
     bands : float
         Confidence of bands, e.g. 0.95.
+    error_field : bool
+        Where the noise is not known, ``joint-gp`` takes what it leaves over for noise of single pixels and a field of errors
+        that neighbours share, in place of noise that so many pixels share.
     frame_constant, frame_polynomial, frame_patterns, background, glare_pattern, free_scale, frame_gain, scale_error
         What else the photographs hold, estimated with the reflectances (joint methods): a constant, a polynomial of that
         degree, or patterns (pixels × patterns) in each frame; a background of all frames; strength of glare (pixels ×
@@ -389,6 +394,7 @@ def recover(
         levels=None if levels is None else (float(levels[0]), float(levels[1])),
         weighting=weighting,
         bands=setting(bands, "bands"),
+        error_field=bool(error_field),
         frame_constant=bool(frame_constant),
         frame_polynomial=None if frame_polynomial is None else whole(frame_polynomial, "frame_polynomial", 0, 8),
         background=bool(background),

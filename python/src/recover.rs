@@ -75,6 +75,8 @@ pub struct Settings {
     #[pyo3(item)]
     bands: Option<f64>,
     #[pyo3(item)]
+    error_field: bool,
+    #[pyo3(item)]
     frame_constant: bool,
     #[pyo3(item)]
     frame_polynomial: Option<u8>,
@@ -108,6 +110,7 @@ impl Settings {
             bands: self.bands,
             weighting: weighting.transpose()?.unwrap_or_default(),
             frame: self.pixels.map(Into::into),
+            error_field: self.error_field,
             uncertainty: Uncertainty::of(elements),
             ..usual
         })

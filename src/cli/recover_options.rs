@@ -39,6 +39,7 @@ pub(super) fn checked(args: &RecoverArgs, methods: &[Method]) -> Result<Options,
         levels: args.joint.levels,
         bands: args.bands,
         weighting: args.joint.weighting,
+        error_field: args.joint.error_field,
         ..Options::default()
     };
     if let Some(tolerance) = args.tolerance {
@@ -76,6 +77,7 @@ fn used(args: &RecoverArgs, methods: &[Method]) -> Result<(), Failure> {
             Setting::Weighting,
             joint.weighting == WeightRule::Unweighted,
         ),
+        (Setting::ErrorField, joint.error_field),
         (Setting::FrameConstant, joint.frame_constant),
         (Setting::FramePolynomial, joint.frame_polynomial.is_some()),
         (Setting::FramePatterns, joint.frame_patterns.is_some()),

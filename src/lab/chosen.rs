@@ -112,7 +112,14 @@ impl Chosen {
             Parameter::Levels(levels) => (Some("levels"), levels.to_vec()),
         };
         let (rule, mut measures) = went_by(found.choice);
-        measures.extend(found.alike.map(|pixels| ("pixels alike", pixels)));
+        match found.field {
+            Some(field) => measures.extend([
+                ("error of a pixel alone", field.pixel),
+                ("error that neighbours share", field.shared),
+                ("pixels over which", field.range),
+            ]),
+            None => measures.extend(found.alike.map(|pixels| ("pixels alike", pixels))),
+        }
         // The rank of the methods that only drop what is lost in rounding is no option of theirs.
         let option = match found.parameter {
             Parameter::Rank(_) => found.method == Method::Tsvd,
@@ -233,9 +240,19 @@ pub(super) fn words(found: &Recovered, explains: bool) -> String {
         Some(_) => "; without a probability, since it does not explain the photographs".to_owned(),
         None => String::new(),
     };
-    let alike = found.alike.map_or(String::new(), |pixels| {
-        format!("; what is left over is taken for noise that {pixels:.0} pixels share")
-    });
+    let alike = match (found.field, found.alike) {
+        (Some(field), _) => format!(
+            "; what is left over is taken for errors of {} of each pixel alone and {} that \
+             neighbours share over {:.0} pixels (the photographs' unit)",
+            significant(field.pixel, 2),
+            significant(field.shared, 2),
+            field.range
+        ),
+        (None, Some(pixels)) => {
+            format!("; what is left over is taken for noise that {pixels:.0} pixels share")
+        }
+        (None, None) => String::new(),
+    };
     chosen_words(found.parameter, found.rank, found.choice)
         + &solver
         + &patterns

@@ -144,9 +144,14 @@ fn contradiction(best: &Attainable) -> String {
 
 fn unjudged(found: &Recovered, judged: &Judged) -> Option<String> {
     judged.fit.is_none().then(|| {
-        let taken = found.alike.map_or("independent noise".to_owned(), |pixels| {
-            format!("noise that {pixels:.0} neighbouring pixels share")
-        });
+        let taken = match (found.field, found.alike) {
+            (Some(field), _) => format!(
+                "noise of the pixels and errors that neighbours share over {:.0} of them",
+                field.range
+            ),
+            (None, Some(pixels)) => format!("noise that {pixels:.0} neighbouring pixels share"),
+            (None, None) => "independent noise".to_owned(),
+        };
         format!(
             "the fit CANNOT BE JUDGED: the noise of the photographs is not known, or there are not \
              more of them than unknowns. It leaves {} % of Φcam unexplained; errors that are stated \

@@ -120,7 +120,7 @@ pub use joint::{
 pub use method::{Method, UnknownMethod};
 pub use nuisance::{Estimated, Nuisance};
 pub use options::{Options, Rule, Uncertainty, WeightRule};
-pub use outcome::{Choice, Parameter, Recovered, Solver, Weighting};
+pub use outcome::{Choice, ErrorField, Parameter, Recovered, Solver, Weighting};
 pub use patterns::{Patterns, Sum};
 pub use picard::{Directions, Picard, picard};
 pub use pixelwise::laser_side::{LaserSide, Parts};
@@ -180,7 +180,7 @@ fn by(
         | Method::TikhonovGradient => pixelwise::recover(method, problem, options),
         Method::JointUnbounded => joint::unbounded::recover(problem, options),
         Method::Joint | Method::Nnls => joint::bounded::recover(method, problem, options),
-        Method::JointGp => joint::gaussian_process::recover(problem, options),
+        Method::JointGp => joint::unknown_noise::recover(problem, options),
         Method::JointTv => joint::total_variation::recover(problem, options),
         Method::JointTwoValued => joint::two_valued::recover(problem, options),
     }

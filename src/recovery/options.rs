@@ -134,6 +134,11 @@ pub struct Options {
     /// `joint-gp` takes what it leaves over for noise: with these of neighbours that err alike,
     /// without of pixels that err independently.
     pub frame: Option<[usize; 2]>,
+    /// Whether `joint-gp` takes it for noise of single pixels and a field that neighbours share
+    /// ([`ErrorField`](super::ErrorField)), in place of noise that so many pixels share. For light
+    /// from elsewhere that no polynomial has; where the geometry alone is a little off, the other
+    /// comes nearer to the picture.
+    pub error_field: bool,
 }
 
 impl Default for Options {
@@ -152,6 +157,7 @@ impl Default for Options {
             spreads: true,
             bands: None,
             frame: None,
+            error_field: false,
         }
     }
 }

@@ -121,6 +121,18 @@ pub struct Solver {
     pub gap: f64,
 }
 
+/// Errors of a photograph of which a part is shared by neighbouring pixels, as what is left over
+/// tells them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ErrorField {
+    /// σ, of each pixel alone, W.
+    pub pixel: f64,
+    /// τ, of the field that neighbours share, W: its root mean square over the photograph.
+    pub shared: f64,
+    /// ℓ, over which the field varies, pixels.
+    pub range: f64,
+}
+
 /// Recovered reflectances and how they came about.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recovered {
@@ -176,8 +188,11 @@ pub struct Recovered {
     pub no_bands: Option<&'static str>,
     /// κ, the pixels over which what is left over hangs together: of `joint-gp` where the noise is
     /// unknown and [`Options::frame`](super::Options::frame) is not. Its errors are those of noise
-    /// of κ times the variance then.
+    /// of κ times the variance then, unless `field` says more.
     pub alike: Option<f64>,
+    /// The errors that it takes what is left over for, where
+    /// [`Options::error_field`](super::Options::error_field) asks for that.
+    pub field: Option<ErrorField>,
     /// What was left undone, where it was stopped and this is the best till then.
     pub unfinished: Option<&'static str>,
 }
@@ -341,6 +356,7 @@ impl Recovered {
             bands: None,
             no_bands: None,
             alike: None,
+            field: None,
             unfinished: None,
         }
     }

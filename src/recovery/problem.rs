@@ -215,6 +215,30 @@ impl<'a> Problem<'a> {
         }
     }
 
+    /// The same along other directions of its photographs: `phi` and the camera side of its terms
+    /// turned by one orthogonal matrix, with the errors and the light beside it along them.
+    pub(super) fn along<'b>(
+        &self,
+        phi: &'b DMatrix<f64>,
+        c: &'b DMatrix<f64>,
+        stderr: &'b DMatrix<f64>,
+        nuisance: Nuisance<'b>,
+    ) -> Problem<'b>
+    where
+        'a: 'b,
+    {
+        let own: Problem<'b> = *self;
+        Problem {
+            phi,
+            c: if own.terms.is_some() { own.c } else { c },
+            terms: own.terms.map(|terms| Terms { c, ..terms }),
+            stderr: Some(stderr),
+            nuisance,
+            shared: None,
+            ..own
+        }
+    }
+
     /// The same with the element grids known, \[nu, nv\] of each hidden surface in the order of the
     /// elements; element iu + iv·nu within each. Methods that compare neighbouring elements need
     /// them.

@@ -21,6 +21,8 @@ pub enum Setting {
     Bands,
     /// How entries are weighted.
     Weighting,
+    /// Errors of unknown noise as a field over the photograph.
+    ErrorField,
     /// A constant in each photograph.
     FrameConstant,
     /// A polynomial of this degree in each photograph.
@@ -45,7 +47,7 @@ pub enum Setting {
 
 impl Setting {
     /// Every setting.
-    pub const ALL: [Setting; 18] = [
+    pub const ALL: [Setting; 19] = [
         Setting::Noise,
         Setting::Rank,
         Setting::Damping,
@@ -54,6 +56,7 @@ impl Setting {
         Setting::Levels,
         Setting::Bands,
         Setting::Weighting,
+        Setting::ErrorField,
         Setting::FrameConstant,
         Setting::FramePolynomial,
         Setting::FramePatterns,
@@ -77,6 +80,7 @@ impl Setting {
             Setting::Levels => "levels",
             Setting::Bands => "bands",
             Setting::Weighting => "weighting",
+            Setting::ErrorField => "error-field",
             Setting::FrameConstant => "frame-constant",
             Setting::FramePolynomial => "frame-polynomial",
             Setting::FramePatterns => "frame-patterns",
@@ -107,6 +111,7 @@ impl Setting {
             .contains(&method),
             Setting::Tv => method == Method::JointTv,
             Setting::Levels => method == Method::JointTwoValued,
+            Setting::ErrorField => method == Method::JointGp,
             Setting::OccluderLight => method.is_joint() && method != Method::JointTwoValued,
             Setting::Weighting
             | Setting::FrameConstant

@@ -113,6 +113,10 @@ pub(in crate::cli) struct JointArgs {
     /// The two reflectances of joint-two-valued, estimated unless given: DARK,LIGHT
     #[arg(long, value_name = "DARK,LIGHT", value_parser = levels, allow_hyphen_values = true)]
     pub levels: Option<[f64; 2]>,
+    /// Where the noise is not known, joint-gp takes what it leaves over for noise of single pixels
+    /// and a field of errors that neighbours share, in place of noise that so many pixels share
+    #[arg(long)]
+    pub error_field: bool,
     /// Estimate a constant of each frame with the reflectances
     #[arg(long)]
     pub frame_constant: bool,

@@ -26,7 +26,7 @@ use nalgebra::{DMatrix, DVector};
 use super::coordinates::Coordinates;
 use super::exponential::Exponential;
 use super::reduced::over_brightest;
-use super::{correlated, scale};
+use super::scale;
 use crate::num::control::{Control, Steps};
 use crate::num::linalg::{Cholesky, gram_product, product, tr_product};
 use crate::recovery::{
@@ -47,10 +47,6 @@ const INDEPENDENT: [f64; 3] = [0.0, 0.1, 0.3];
 const FLAT: f64 = 0.02;
 /// What is less likely than the likeliest by more than e to this counts for nothing.
 const NEGLIGIBLE: f64 = 6.0;
-/// How often it is done again with what hangs together, and a change of that which makes no
-/// difference.
-const MOST_AGAIN: usize = 3;
-const SETTLED: f64 = 0.2;
 /// Elements up to which the covariance matrix is made.
 const MOST_COVARIANCE: usize = 2048;
 
@@ -73,7 +69,7 @@ struct Length {
 }
 
 /// τ and η.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 struct Variance {
     spread: f64,
     independent: f64,
@@ -87,6 +83,35 @@ impl Variance {
     }
 }
 
+/// The likeliest prior: ℓ, and τ and η.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Likeliest {
+    length: f64,
+    variance: Variance,
+}
+
+impl Likeliest {
+    /// Of pictures of the usual spread, before the photographs say more.
+    pub(super) fn usual(prior: &Exponential) -> Self {
+        let lengths = prior.lengths();
+        Self {
+            length: lengths[lengths.len() / 2],
+            variance: Variance {
+                spread: libm::exp(LN_SPREAD[0]),
+                independent: INDEPENDENT[0],
+            },
+        }
+    }
+
+    /// K, n × n, about a mean of ½.
+    pub(super) fn covariance(self, prior: &Exponential) -> DMatrix<f64> {
+        let [alike, own] = self.variance.parts();
+        let mut k = (prior.matrix(self.length) * alike).add_scalar(MEAN * MEAN);
+        (0..k.nrows()).for_each(|j| k[(j, j)] += own);
+        k
+    }
+}
+
 /// A triple (τ, ℓ, η) of the lattice.
 struct Triple {
     length: usize,
@@ -95,40 +120,13 @@ struct Triple {
     weight: f64,
 }
 
-/// Where the noise is unknown and the pixels' places are known, what is left over says over how
-/// many pixels it hangs together, and all is done again with that.
-pub(in crate::recovery) fn recover(
-    problem: &Problem<'_>,
-    options: &Options,
-) -> Result<Recovered, RecoveryError> {
-    let mut found = with_alike(problem, options, 1.0)?;
-    let unknown = problem.noise().is_none() && problem.soft.is_none();
-    let Some(frame) = options.frame.filter(|_| unknown) else {
-        return Ok(found);
-    };
-    let mut alike = 1.0;
-    for _ in 0..MOST_AGAIN {
-        let left = problem.counted(problem.phi - found.photographs(problem));
-        let now = correlated::pixels(&left, frame)?;
-        if (now / alike - 1.0).abs() < SETTLED {
-            break;
-        }
-        alike = now;
-        found = with_alike(problem, options, alike)?;
-    }
-    found.alike = Some(alike);
-    // Of pixels that err alike the others' methods know nothing: no evidence that compares.
-    if alike > 1.0 {
-        found.log_evidence = None;
-    }
-    Ok(found)
-}
-
-fn with_alike(
+/// The recovery and its likeliest prior; noise that is not known hangs together over `alike`
+/// pixels.
+pub(super) fn with_alike(
     problem: &Problem<'_>,
     options: &Options,
     alike: f64,
-) -> Result<Recovered, RecoveryError> {
+) -> Result<(Recovered, Likeliest), RecoveryError> {
     let unit = scale::unit(problem)?;
     let coordinates = Coordinates::new(Method::JointGp, problem, options, unit, alike)?;
     let seen = Seen::new(&coordinates, unit);
@@ -136,6 +134,10 @@ fn with_alike(
     let (lengths, triples, evidence) = seen.lattice(&prior, problem.control)?;
     let mut found = seen.mixture(&prior, &lengths, &triples, options.bands)?;
     let best = &triples[0];
+    let likeliest = Likeliest {
+        length: lengths[best.length].length,
+        variance: best.variance,
+    };
     let mut recovered =
         coordinates.finish(Method::JointGp, problem, options, found.mean.clone())?;
     coordinates.add_errors(problem, &mut recovered, found.covariance.as_ref());
@@ -146,14 +148,14 @@ fn with_alike(
     let scale = recovered.nuisance.as_ref().and_then(|n| n.scale);
     recovered.parameter = Parameter::GaussianProcess {
         spread: best.variance.spread * (unit / scale.unwrap_or(1.0)),
-        length: lengths[best.length].length,
+        length: likeliest.length,
     };
     recovered.choice = Choice::Averaged;
     recovered.log_evidence = Some(evidence);
     recovered.standard_error = Some(found.standard_error);
     recovered.covariance = found.covariance;
     recovered.bands = found.bands;
-    Ok(recovered)
+    Ok((recovered, likeliest))
 }
 
 /// The mixture of all triples.

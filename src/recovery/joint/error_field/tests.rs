@@ -1,0 +1,219 @@
+use super::*;
+use crate::recovery::bench::{Bench, normal_stream};
+use crate::recovery::{Method, Options, recover};
+
+const FRAME: [usize; 2] = [7, 5];
+
+/// T is orthogonal: a photograph comes back, its length stays, and a constant is the first cosine
+/// alone.
+#[test]
+fn cosines_turn_photographs() {
+    let mut normal = normal_stream(1);
+    let m = DMatrix::from_fn(35, 3, |_, _| normal());
+    let turned = cosines(&m, FRAME);
+    assert!((turned.norm() - m.norm()).abs() < 1e-12);
+    assert!((from_cosines(&turned, FRAME) - &m).amax() < 1e-13);
+    let constant = cosines(&DMatrix::from_element(35, 1, 1.0), FRAME);
+    assert!((constant[0] - 35f64.sqrt()).abs() < 1e-12);
+    assert!(constant.rows(1, 34).amax() < 1e-13);
+    // Down the columns first: pixel column + row·columns.
+    let slope = DMatrix::from_fn(35, 1, |p, _| (p % 7) as f64);
+    let turned = cosines(&slope, FRAME);
+    assert!(turned[1].abs() > 1.0 && turned[7].abs() < 1e-12);
+}
+
+/// Far apart on a large photograph the field is the exponential covariance of the plane, τ² e^(−
+/// d/ℓ): both sides of the border away, 1 % of τ².
+#[test]
+fn the_field_is_exponential() {
+    let frame = [120, 120];
+    let v = spectrum(frame, 6.0);
+    let t = one_sided(120);
+    let middle = 60;
+    let at = |x: usize, y: usize| -> f64 {
+        let of = |i: usize, j: usize| {
+            v[i + j * 120] * t[(middle, i)] * t[(middle, j)] * t[(x, i)] * t[(y, j)]
+        };
+        (0..120).flat_map(|i| (0..120).map(move |j| of(i, j))).sum()
+    };
+    let own = at(middle, middle);
+    for [x, y] in [[3, 0], [0, 6], [5, 5], [12, 0]] {
+        let distance = libm::hypot(x as f64, y as f64);
+        let found = at(middle + x, middle + y) / own;
+        // The corner of e^(−d/ℓ) is blurred by a pixel's reach.
+        assert!(
+            (found - libm::exp(-distance / 6.0)).abs() < 0.06,
+            "{x} {y}: {found}"
+        );
+    }
+}
+
+/// Squares of 60 frames drawn from a field of one of the ranges that are tried: its numbers come
+/// back, and of noise alone no field.
+#[test]
+fn a_field_is_told_from_its_squares() {
+    let frame = [24, 20];
+    let range = libm::exp(5.0 * 0.35);
+    let mut normal = normal_stream(5);
+    for (pixel, shared) in [(0.3, 2.0), (1.0, 0.3)] {
+        let shape = spectrum(frame, range);
+        let v = shape.iter().map(|w| pixel * pixel + shared * shared * w);
+        let squares: Vec<f64> = v
+            .map(|v| v * (0..60).map(|_| normal().powi(2)).sum::<f64>() / 60.0)
+            .collect();
+        let found = fitted(&squares, frame);
+        assert!((found.pixel / pixel - 1.0).abs() < 0.05, "{found:?}");
+        assert!((found.shared / shared - 1.0).abs() < 0.1, "{found:?}");
+        assert!((found.range / range - 1.0).abs() < 0.3, "{found:?}");
+    }
+    let white: Vec<f64> = (0..480)
+        .map(|_| (0..60).map(|_| normal().powi(2)).sum::<f64>() / 60.0)
+        .collect();
+    let found = fitted(&white, frame);
+    assert!(
+        (found.pixel - 1.0).abs() < 0.02 && found.shared < 0.1,
+        "{found:?}"
+    );
+}
+
+/// The likelihood of all entries, −½ (zᵀS⁻¹z + ln det S), S = A K Aᵀ + the covariance of noise and
+/// field + 10⁶ of each constant, as one dense matrix: nowhere around the field that was found is it
+/// larger.
+#[test]
+fn the_field_is_the_likeliest() {
+    let bench = Bench::new(6.0, 3, 6);
+    let d = bench.d.columns(0, 5).into_owned();
+    let frame = [6, 6];
+    let size = bench.phi(&DVector::from_element(9, 0.5)).mean();
+    let mut normal = normal_stream(9);
+    let truth = DVector::from_fn(9, |_, _| 0.5 + 0.2 * normal());
+    let v = spectrum(frame, 3.0);
+    let rough = from_cosines(
+        &DMatrix::from_fn(36, 5, |k, _| (1e-4 + 4e-4 * v[k]).sqrt() * size * normal()),
+        frame,
+    );
+    let phi = bench.phi(&truth).columns(0, 5) + rough;
+    let nuisance = Nuisance {
+        frame_constant: true,
+        ..Nuisance::default()
+    };
+    let problem = Problem::new(&phi, &bench.c, &d, None).unwrap();
+    let problem = problem.with_nuisance(nuisance).unwrap();
+    let k = DMatrix::from_fn(9, 9, |i, j| 0.25 + if i == j { 0.04 } else { 0.0 });
+    let along = Along::new(&problem, frame).unwrap();
+    let found = along.likeliest(&problem, &k, 1.0, None).unwrap().unwrap();
+    let light = DMatrix::from_fn(180, 9, |at, j| bench.c[(at % 36, j)] * d[(j, at / 36)]);
+    let z = DMatrix::from_fn(180, 1, |at, _| phi[(at % 36, at / 36)])
+        - &light * DMatrix::from_element(9, 1, 0.5);
+    let likelihood = |field: &ErrorField| {
+        let v = along.variances(field);
+        let spread = from_cosines(&DMatrix::from_diagonal(&DVector::from_vec(v)), frame);
+        let covariance = from_cosines(&spread.transpose(), frame);
+        let mut s = &light * &k * light.transpose();
+        for (i, j) in (0..180).flat_map(|i| (0..180).map(move |j| (i, j))) {
+            if i / 36 == j / 36 {
+                s[(i, j)] += covariance[(i % 36, j % 36)] + 1e6 * size * size;
+            }
+        }
+        let factor = Cholesky::new(&s).unwrap();
+        -0.5 * (factor.forward(z.clone()).norm_squared() + factor.log_det())
+    };
+    let best = likelihood(&found);
+    for (pixel, shared, range) in [
+        (1.2, 1.0, 1.0),
+        (0.8, 1.0, 1.0),
+        (1.0, 1.3, 1.0),
+        (1.0, 0.75, 1.0),
+        (1.0, 1.0, 2.0),
+        (1.0, 1.0, 0.5),
+    ] {
+        let other = ErrorField {
+            pixel: found.pixel * pixel,
+            shared: found.shared * shared,
+            range: found.range * range,
+        };
+        let gained = likelihood(&other) - best;
+        assert!(gained < 0.02, "{found:?} {other:?}: {gained}");
+    }
+}
+
+/// Along the cosines, with noise alone, everything is what it is without them: picture, errors and
+/// the light beside it, whose constants and background are those of the photographs.
+#[test]
+fn the_way_back_is_that_of_the_cosines() {
+    let bench = Bench::new(6.0, 2, 6);
+    let truth = DVector::from_row_slice(&[0.3, 0.6, 0.7, 0.4]);
+    let mut phi = bench.phi(&truth);
+    let size = phi.mean();
+    let mut normal = normal_stream(3);
+    phi.apply(|x| *x += 0.01 * size * (3.0 + normal()));
+    let slopes = DMatrix::from_fn(36, 2, |p, k| [p % 6, p / 6][k] as f64);
+    let stderr = DMatrix::from_element(36, phi.ncols(), 0.01 * size);
+    for (frame_constant, patterns, background) in [
+        (true, None, false),
+        (true, Some(&slopes), false),
+        (false, Some(&slopes), false),
+        (true, None, true),
+        (false, None, true),
+    ] {
+        let nuisance = Nuisance {
+            frame_constant,
+            frame_patterns: patterns,
+            background,
+            ..Nuisance::default()
+        };
+        let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+        let problem = problem.with_nuisance(nuisance).unwrap();
+        let along = Along::new(&problem, [6, 6]).unwrap();
+        let white = ErrorField {
+            pixel: 0.01 * size,
+            shared: 0.0,
+            range: 1.0,
+        };
+        let errors = along.stderr(&white);
+        let options = Options::default();
+        let own = recover(Method::JointGp, &problem, &options).unwrap();
+        let mut found =
+            recover(Method::JointGp, &along.problem(&problem, &errors), &options).unwrap();
+        along.back(&problem, &mut found);
+        assert!((&found.reflectance - &own.reflectance).amax() < 1e-8);
+        let [a, b] = [&found, &own].map(|f| f.standard_error.as_ref().unwrap());
+        assert!((a - b).amax() < 1e-8 * b.amax());
+        assert!((found.residual / own.residual - 1.0).abs() < 1e-8);
+        let [a, b] = [&found, &own].map(|f| f.photographs(&problem));
+        assert!((a - b).amax() < 1e-8 * size);
+        let [a, b] = [&found, &own].map(|f| f.nuisance.as_ref().unwrap());
+        for (a, b) in [
+            (&a.frame_constant, &b.frame_constant),
+            (&a.background, &b.background),
+        ] {
+            assert_eq!(a.is_some(), b.is_some());
+            if let (Some(a), Some(b)) = (a, b) {
+                assert!((a - b).amax() < 1e-7 * size, "{}", (a - b).amax() / size);
+            }
+        }
+        assert_eq!(a.frame_patterns.is_some(), b.frame_patterns.is_some());
+    }
+}
+
+/// What has no such form.
+#[test]
+fn entries_left_out_have_no_cosines() {
+    let bench = Bench::new(6.0, 2, 6);
+    let phi = bench.phi(&DVector::from_element(4, 0.5));
+    let problem = Problem::new(&phi, &bench.c, &bench.d, None).unwrap();
+    assert!(Along::new(&problem, [6, 6]).is_some());
+    assert!(Along::new(&problem, [6, 7]).is_none());
+    let mut flags = DMatrix::zeros(36, phi.ncols());
+    flags[(3, 1)] = 1.0;
+    let holed = Nuisance {
+        left_out: Some(&flags),
+        ..Nuisance::default()
+    };
+    assert!(Along::new(&problem.with_nuisance(holed).unwrap(), [6, 6]).is_none());
+    let gains = Nuisance {
+        frame_gain: Some(0.1),
+        ..Nuisance::default()
+    };
+    assert!(Along::new(&problem.with_nuisance(gains).unwrap(), [6, 6]).is_none());
+}
