@@ -845,6 +845,15 @@ BREAKS = [
         1,
     ),
     Break(
+        "The field of errors is the likeliest there is (all entries' likelihood as one dense matrix)",
+        "src/recovery/joint/error_field.rs",
+        "left.row(k).norm_squared() + spread[k] + frames as f64 * leverage[k]",
+        "left.row(k).norm_squared()",
+        "lib",
+        "recovery::joint::error_field::tests::the_field_is_the_likeliest",
+        1,
+    ),
+    Break(
         "Normal equations summed strip by strip are those of the rows",
         "src/recovery/joint/gram.rs",
         "let firsts = (0..pixels).step_by(STRIP);",

@@ -79,6 +79,56 @@ fn a_surface_that_shines_needs_a_camera_side_alone() {
     }
 }
 
+/// A field of errors that neighbours share is found where it is asked for and the noise is not
+/// known, and told in words and numbers; else refused with the reason.
+#[test]
+fn a_field_of_errors_is_told_and_refused_with_the_reason() {
+    let workspace = with_model();
+    let model = workspace.matrix("done/model/phi.npy");
+    // Waves over the 8 × 8 pixels, and a hash of pixel and spot in place of noise.
+    let bright = model.amax();
+    let lit = model.map_with_location(|p, l, x| {
+        let (u, v) = ((p % 8) as f64, (p / 8) as f64);
+        let wave = libm::sin(0.5 * u + l as f64) + libm::sin(0.4 * v + 1.7 * l as f64);
+        let hash = ((p * 7919 + l * 104_729) % 997) as f64 / 997.0 - 0.5;
+        x + bright * (0.01 * wave + 0.002 * hash)
+    });
+    npy::write(&workspace.path("lit.npy"), &lit).unwrap();
+    let line = "recover done --integration centres --method joint-gp --phi lit.npy --error-field";
+    let ended = workspace.phicam(&format!("{line} --json -o field"));
+    let found: serde_json::Value = serde_json::from_str(&ended.stdout).unwrap();
+    let words = found[0]["parameter"].as_str().unwrap();
+    assert!(words.contains("that neighbours share over"), "{words}");
+    let choice: serde_json::Value =
+        serde_json::from_slice(&workspace.read("field/joint-gp.choice.json")).unwrap();
+    let measures = &choice["choice"]["measures"];
+    let of = |name: &str| measures[name].as_f64().unwrap() / bright;
+    let (pixel, shared) = (
+        of("error of a pixel alone"),
+        of("error that neighbours share"),
+    );
+    assert!(
+        pixel < 0.003 && (0.003..0.1).contains(&shared),
+        "{measures}"
+    );
+    assert!(measures["pixels over which"].as_f64().unwrap() > 1.0);
+    workspace.refuses(
+        &format!("{line} --noise 0.01 -o o"),
+        &[
+            "the noise of the photographs is known",
+            "leave out --error-field",
+        ],
+    );
+    workspace.refuses(
+        &format!("{line} --frame-gain 0.1 -o o"),
+        &["finds no field of errors", "leave out --error-field"],
+    );
+    workspace.refuses(
+        "recover done --method joint --phi lit.npy --error-field -o o",
+        &["--error-field", "joint-gp"],
+    );
+}
+
 /// Entries that are wrong by a thousand times the light do not count where they are left out, and
 /// spoil the picture where they are not; a polynomial over each frame is told from the object.
 #[test]

@@ -119,13 +119,17 @@ fn the_field_is_the_likeliest() {
         -0.5 * (factor.forward(z.clone()).norm_squared() + factor.log_det())
     };
     let best = likelihood(&found);
+    // One range further either way.
+    let next = libm::exp(0.35);
     for (pixel, shared, range) in [
-        (1.2, 1.0, 1.0),
-        (0.8, 1.0, 1.0),
-        (1.0, 1.3, 1.0),
-        (1.0, 0.75, 1.0),
-        (1.0, 1.0, 2.0),
-        (1.0, 1.0, 0.5),
+        (1.05, 1.0, 1.0),
+        (0.95, 1.0, 1.0),
+        (1.0, 1.1, 1.0),
+        (1.0, 0.9, 1.0),
+        (1.05, 1.05, 1.0),
+        (0.95, 0.95, 1.0),
+        (1.0, 1.0, next),
+        (1.0, 1.0, 1.0 / next),
     ] {
         let other = ErrorField {
             pixel: found.pixel * pixel,
