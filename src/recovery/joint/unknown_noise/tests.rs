@@ -5,9 +5,13 @@ use super::*;
 use crate::recovery::bench::{Bench, normal_stream};
 use crate::recovery::{ErrorField, Method, Nuisance, recover as recover_by};
 
-/// z² = ((ρ̂ − ρ)/σ)² of 4 elements, mean of 40 photographs of 16 × 16 pixels with 8 spots, and its
-/// standard error: pixels counted each for itself, and as what is left over tells.
-fn squares(mut errors: impl FnMut() -> DMatrix<f64>) -> [(f64, f64); 2] {
+/// 3.5 standard errors of the mean z² of 40 photographs, √(2/40) where the elements of each err as
+/// one.
+const CHANCE: f64 = 0.78;
+
+/// z² = ((ρ̂ − ρ)/σ)² of 4 elements, mean of 40 photographs of 16 × 16 pixels with 8 spots: pixels
+/// counted each for itself, and as what is left over tells.
+fn squares(mut errors: impl FnMut() -> DMatrix<f64>) -> [f64; 2] {
     let bench = Bench::new(6.0, 2, 16);
     let truth = DVector::from_row_slice(&[0.45, 0.5, 0.55, 0.5]);
     let d = bench.d.columns(0, 8).into_owned();
@@ -30,15 +34,11 @@ fn squares(mut errors: impl FnMut() -> DMatrix<f64>) -> [(f64, f64); 2] {
             assert_eq!(found.log_evidence.is_none(), frame.is_some());
         }
     }
-    squares.map(|values| {
-        let values = DVector::from_vec(values);
-        (values.mean(), (values.variance() / 40.0).sqrt())
-    })
+    squares.map(|values| values.iter().sum::<f64>() / 40.0)
 }
 
 /// Errors of the form that is supposed, neighbours sharing most of them: z² is 1 in the mean where
-/// pixels that count each for itself make it several times as much. Five standard errors, and 0.15
-/// for what is not known of the field.
+/// pixels that count each for itself make it several times as much.
 #[test]
 fn errors_that_neighbours_share_are_not_counted_as_many() {
     let bench = Bench::new(6.0, 2, 16);
@@ -55,9 +55,8 @@ fn errors_that_neighbours_share_are_not_counted_as_many() {
         let along = DMatrix::from_fn(256, 8, |k, _| v[k].sqrt() * normal());
         from_cosines(&along, [16, 16])
     });
-    assert!(alone.0 > 3.0, "{alone:?}");
-    assert!((told.0 - 1.0).abs() < 5.0 * told.1 + 0.15, "{told:?}");
-    assert!(told.0 < 1.6, "{told:?}");
+    assert!(alone > 3.0, "{alone}");
+    assert!((told - 1.0).abs() < CHANCE, "{told}");
 }
 
 /// Independent noise is told for what it is, and of sums of 2 × 2 independent pixels, which have no
@@ -66,11 +65,8 @@ fn errors_that_neighbours_share_are_not_counted_as_many() {
 fn errors_of_other_forms_are_not_taken_for_less() {
     let mut normal = normal_stream(13);
     let [alone, told] = squares(|| DMatrix::from_fn(256, 8, |_, _| normal()));
-    for (mean, error) in [alone, told] {
-        assert!(
-            (mean - 1.0).abs() < 5.0 * error + 0.05,
-            "{alone:?} {told:?}"
-        );
+    for mean in [alone, told] {
+        assert!((mean - 1.0).abs() < CHANCE, "{alone} {told}");
     }
     let [alone, told] = squares(|| {
         let white = DMatrix::from_fn(17 * 17, 8, |_, _| normal());
@@ -80,8 +76,8 @@ fn errors_of_other_forms_are_not_taken_for_less() {
             around.iter().map(|q| white[(*q, l)]).sum()
         })
     });
-    assert!(alone.0 > 2.0, "{alone:?}");
-    assert!(told.0 < 1.0 + 5.0 * told.1, "{told:?}");
+    assert!(alone > 2.0, "{alone}");
+    assert!(told < 1.0 + CHANCE, "{told}");
 }
 
 /// Unless a field is asked for what hangs together is counted: sums of 2 × 2 pixels as four. Where
