@@ -22,11 +22,11 @@ use nalgebra::{DMatrix, DVector};
 use spectrum::{fitted, spectrum};
 
 use super::elimination::{directions, unit, without_left, without_right};
+use super::gaussian_process::MEAN;
+use super::khatri_rao::gathered;
 use crate::num::linalg::{Cholesky, gram_product, product, rows_times, tr_product};
 use crate::recovery::{ErrorField, Estimated, Nuisance, Problem, Recovered, RecoveryError};
 
-/// Mean of a picture, as the prior has it.
-const GREY: f64 = 0.5;
 /// Errors of less than this share of the photographs are rounding.
 const ROUNDING: f64 = 1e-5;
 /// A change of the ln v that makes no difference, and how often they are looked for.
@@ -104,7 +104,7 @@ impl Along {
         let mut v = self.variances(&field);
         for _ in 0..MOST_STEPS {
             problem.control.check()?;
-            let Some(squares) = self.squares(problem, root.lower(), GREY * unit, &v) else {
+            let Some(squares) = self.squares(problem, root.lower(), MEAN * unit, &v) else {
                 return Ok(None);
             };
             field = fitted(&squares, self.frame);
@@ -165,13 +165,9 @@ impl Along {
         let mut towards = tr_product(&c, &phi);
         towards.component_mul_assign(&d);
         let n = l.nrows();
-        let (mut g, mut h) = (DMatrix::zeros(n, n), DVector::zeros(n));
-        for (s, i) in element.iter().enumerate() {
-            h[*i] += towards.row(s).sum();
-            for (t, j) in element.iter().enumerate() {
-                g[(*i, *j)] += gram[(s, t)];
-            }
-        }
+        let of_elements = |m: &DMatrix<f64>| gathered(&element, m, n);
+        let g = of_elements(&of_elements(&gram).transpose());
+        let h = of_elements(&towards).column_sum();
         let mut inner = tr_product(l, &product(&g, l));
         (0..n).for_each(|j| inner[(j, j)] += 1.0);
         let half = Cholesky::new(&inner)?.forward(l.transpose());

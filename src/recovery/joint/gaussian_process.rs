@@ -34,7 +34,7 @@ use crate::recovery::{
 };
 
 /// Mean and standard deviation of a picture's mean.
-const MEAN: f64 = 0.5;
+pub(super) const MEAN: f64 = 0.5;
 /// ln τ of pictures, mean and standard deviation: of best fits to 96 crops of 16 × 16 elements of
 /// eight photographs.
 const LN_SPREAD: [f64; 2] = [-2.13, 0.98];

@@ -124,7 +124,7 @@ fn pairs(t: &DMatrix<f64>, s: &DMatrix<f64>, budget: usize) -> Vec<[usize; 2]> {
 }
 
 /// Rows of terms added up to rows of elements.
-fn gathered(element: &[usize], rows: &DMatrix<f64>, elements: usize) -> DMatrix<f64> {
+pub(super) fn gathered(element: &[usize], rows: &DMatrix<f64>, elements: usize) -> DMatrix<f64> {
     let mut sums = DMatrix::zeros(elements, rows.ncols());
     for (s, j) in element.iter().enumerate() {
         let mut sum = sums.row_mut(*j);

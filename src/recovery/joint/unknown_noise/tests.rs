@@ -9,6 +9,16 @@ use crate::recovery::{ErrorField, Method, Nuisance, recover as recover_by};
 /// one.
 const CHANCE: f64 = 0.78;
 
+/// 16 × 16 pixels of 8 photographs, each the sum of 2 × 2 independent ones.
+fn sums_of_four(mut normal: impl FnMut() -> f64) -> DMatrix<f64> {
+    let white = DMatrix::from_fn(17 * 17, 8, |_, _| normal());
+    DMatrix::from_fn(256, 8, |p, l| {
+        let at = p % 16 + p / 16 * 17;
+        let around = [at, at + 1, at + 17, at + 18];
+        around.iter().map(|q| white[(*q, l)]).sum()
+    })
+}
+
 /// z² = ((ρ̂ − ρ)/σ)² of 4 elements, mean of 40 photographs of 16 × 16 pixels with 8 spots: pixels
 /// counted each for itself, and as what is left over tells.
 fn squares(mut errors: impl FnMut() -> DMatrix<f64>) -> [f64; 2] {
@@ -68,14 +78,7 @@ fn errors_of_other_forms_are_not_taken_for_less() {
     for mean in [alone, told] {
         assert!((mean - 1.0).abs() < CHANCE, "{alone} {told}");
     }
-    let [alone, told] = squares(|| {
-        let white = DMatrix::from_fn(17 * 17, 8, |_, _| normal());
-        DMatrix::from_fn(256, 8, |p, l| {
-            let at = p % 16 + p / 16 * 17;
-            let around = [at, at + 1, at + 17, at + 18];
-            around.iter().map(|q| white[(*q, l)]).sum()
-        })
-    });
+    let [alone, told] = squares(|| sums_of_four(&mut normal));
     assert!(alone > 2.0, "{alone}");
     assert!(told < 1.0 + CHANCE, "{told}");
 }
@@ -89,13 +92,7 @@ fn a_field_is_found_where_there_can_be_one() {
     let exact = bench.phi(&DVector::from_element(4, 0.5));
     let exact = exact.columns(0, 8).into_owned();
     let mut normal = normal_stream(14);
-    let white = DMatrix::from_fn(17 * 17, 8, |_, _| normal());
-    let phi = DMatrix::from_fn(256, 8, |p, l| {
-        let at = p % 16 + p / 16 * 17;
-        let around = [at, at + 1, at + 17, at + 18];
-        let sum: f64 = around.iter().map(|q| white[(*q, l)]).sum();
-        exact[(p, l)] + 1e-4 * exact.mean() * sum
-    });
+    let phi = &exact + sums_of_four(&mut normal) * (1e-4 * exact.mean());
     let counted = Options {
         frame: Some([16, 16]),
         ..Options::default()
