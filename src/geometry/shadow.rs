@@ -10,53 +10,34 @@
 
 use std::f64::consts::TAU;
 
-use super::{Basis, Blockers, Bvh, DVec3, Facing, Shape, ShapeId, Sphere};
-
-/// Corners of a convex flat figure, in order around it.
-pub type Polygon = Vec<DVec3>;
+use super::corner::{Corner, Polygon, area_and_middle};
+use super::moving::{Moving, PlaneRate};
+use super::{Basis, DVec3, Sphere};
 
 /// Sides of the polygon that stands for a circle, of the same area: its rim is off by less than
 /// 8e-4 of the radius, to both sides.
 const SIDES: usize = 64;
-/// Meshes of more triangles are asked ray by ray.
-const MOST_TRIANGLES: usize = 256;
 /// A point nearer to a figure's plane than this fraction of its size sees it edge-on.
-const EDGE_ON: f64 = 1e-9;
+pub(super) const EDGE_ON: f64 = 1e-9;
 
-/// The points that something hides: where all n·w > d.
+/// The points that something hides: where all n·w > d. Each plane has what else is known of it.
 #[derive(Clone, Debug)]
-pub struct Shadow {
-    planes: Vec<(DVec3, f64)>,
+pub struct Shadow<P = ()> {
+    pub(super) planes: Vec<(DVec3, f64, P)>,
+}
+
+/// A plane of a shadow that is made.
+enum Bound {
+    /// That of the figure, with its normal away from the viewpoint.
+    Figure(DVec3),
+    /// That of an edge, by the indices of its ends, and ±1 as its normal is ±(a − x) × (b − x).
+    Edge([usize; 2], f64),
 }
 
 impl Shadow {
     /// Of a convex flat figure with these corners, seen from `from`; `None` where it is edge-on.
     pub fn of_figure(corners: &[DVec3], from: DVec3) -> Option<Self> {
-        let (area, middle) = area_and_middle(corners);
-        let next = corners.iter().cycle().skip(1);
-        let edges: Vec<(DVec3, DVec3)> = corners.iter().copied().zip(next.copied()).collect();
-        let normal: DVec3 = edges
-            .iter()
-            .map(|(a, b)| (*a - middle).cross(*b - middle))
-            .sum();
-        let normal = normal.try_normalize()?;
-        let height = normal.dot(middle - from);
-        if height.abs() <= EDGE_ON * area.sqrt() {
-            return None;
-        }
-        let away = normal * height.signum();
-        // What lies in the plane itself, as neighbours of a patch do, is not beyond it.
-        let slack = EDGE_ON * (area.sqrt() + (middle - from).length());
-        let beyond = (away, away.dot(middle) + slack);
-        let side = |(a, b): &(DVec3, DVec3)| {
-            let n = (*a - from).cross(*b - from).try_normalize()?;
-            let n = n * n.dot(middle - from).signum();
-            Some((n, n.dot(from)))
-        };
-        let sides = edges.iter().filter_map(side);
-        Some(Self {
-            planes: std::iter::once(beyond).chain(sides).collect(),
-        })
+        Self::bounded(corners, from, |_| ())
     }
 
     /// Of a ball, seen from `from` outside it; `None` from inside.
@@ -72,187 +53,99 @@ impl Shadow {
             from,
         )
     }
+}
+
+impl<P> Shadow<P> {
+    /// [`Shadow::of_figure`], each plane with what `of` says of it.
+    fn bounded(corners: &[DVec3], from: DVec3, of: impl Fn(Bound) -> P) -> Option<Self> {
+        let (area, middle) = area_and_middle(corners);
+        let count = corners.len();
+        let edges = || (0..count).map(|k| [k, (k + 1) % count]);
+        let normal: DVec3 = edges()
+            .map(|[a, b]| (corners[a] - middle).cross(corners[b] - middle))
+            .sum();
+        let normal = normal.try_normalize()?;
+        let height = normal.dot(middle - from);
+        if height.abs() <= EDGE_ON * area.sqrt() {
+            return None;
+        }
+        let away = normal * height.signum();
+        // What lies in the plane itself, as neighbours of a patch do, is not beyond it.
+        let slack = EDGE_ON * (area.sqrt() + (middle - from).length());
+        let beyond = (away, away.dot(middle) + slack, of(Bound::Figure(away)));
+        let side = |[a, b]: [usize; 2]| {
+            let n = (corners[a] - from)
+                .cross(corners[b] - from)
+                .try_normalize()?;
+            let sign = n.dot(middle - from).signum();
+            let n = n * sign;
+            Some((n, n.dot(from), of(Bound::Edge([a, b], sign))))
+        };
+        let sides = edges().filter_map(side);
+        Some(Self {
+            planes: std::iter::once(beyond).chain(sides).collect(),
+        })
+    }
 
     /// Whether nothing of the convex hull of these points is hidden; errs to no.
-    pub fn misses(&self, hull: &[DVec3]) -> bool {
-        let outside = |(n, d): &(DVec3, f64)| hull.iter().all(|w| n.dot(*w) <= *d);
+    pub fn misses<C: Corner>(&self, hull: &[C]) -> bool {
+        let outside = |(n, d, _): &(DVec3, f64, P)| hull.iter().all(|w| n.dot(w.at()) <= *d);
         self.planes.iter().any(outside)
     }
 
-    /// Whether all of the convex hull of these points is hidden.
-    pub fn covers(&self, hull: &[DVec3]) -> bool {
-        let inside = |(n, d): &(DVec3, f64)| hull.iter().all(|w| n.dot(*w) >= *d);
-        self.planes.iter().all(inside)
+    /// Whether nothing of the box about `middle` is hidden; errs to no.
+    pub fn misses_box(&self, middle: DVec3, half: DVec3) -> bool {
+        let mut planes = self.planes.iter();
+        planes.any(|(n, d, _)| n.dot(middle) + n.abs().dot(half) <= *d)
+    }
+
+    /// Whether all of that box is hidden.
+    pub fn covers_box(&self, middle: DVec3, half: DVec3) -> bool {
+        let mut planes = self.planes.iter();
+        planes.all(|(n, d, _)| n.dot(middle) - n.abs().dot(half) >= *d)
     }
 }
 
-impl Hidden {
-    /// The shapes that have to be asked, for segments that end on the convex hull of these points.
-    pub fn asked(&self, hull: &[DVec3]) -> Blockers {
-        let near = |around: &Option<Shadow>| around.as_ref().is_none_or(|a| !a.misses(hull));
-        let asked = self.by_rays.iter().filter(|(_, around)| near(around));
-        Blockers::Among(asked.map(|(id, _)| *id).collect())
-    }
-}
-
-/// Convex pieces of flat figures that stay in sight, shadow after shadow. Kept for reuse: a piece
-/// is found in less time than its memory.
-#[derive(Clone, Debug, Default)]
-pub struct Pieces {
-    now: Figures,
-    next: Figures,
-    rest: Polygon,
-    inside: Polygon,
-    heights: Vec<f64>,
-}
-
-/// Figures one behind the other.
-#[derive(Clone, Debug, Default)]
-struct Figures {
-    corners: Vec<DVec3>,
-    ends: Vec<usize>,
-}
-
-impl Figures {
-    fn clear(&mut self) {
-        self.corners.clear();
-        self.ends.clear();
-    }
-
-    fn close(&mut self) {
-        self.ends.push(self.corners.len());
-    }
-
-    fn push(&mut self, figure: &[DVec3]) {
-        self.corners.extend_from_slice(figure);
-        self.close();
-    }
-
-    fn iter(&self) -> impl Iterator<Item = &[DVec3]> {
-        let starts = std::iter::once(&0).chain(&self.ends);
-        let ranges = starts.zip(&self.ends);
-        ranges.map(|(start, end)| &self.corners[*start..*end])
-    }
-}
-
-impl Pieces {
-    /// Starts anew with these figures, which lie in the convex hull of some points, and takes away
-    /// what shadows hide. Returns whether any shadow meets the hull.
-    pub fn past<'f, 's>(
-        &mut self,
-        figures: impl IntoIterator<Item = &'f [DVec3]>,
-        hull: &[DVec3],
-        shadows: impl IntoIterator<Item = &'s Shadow>,
-    ) -> bool {
-        self.now.clear();
-        figures.into_iter().for_each(|figure| self.now.push(figure));
-        let mut met = false;
-        for shadow in shadows.into_iter().filter(|s| !s.misses(hull)) {
-            self.cut(shadow);
-            met = true;
-        }
-        met
-    }
-
-    /// The pieces.
-    pub fn iter(&self) -> impl Iterator<Item = &[DVec3]> {
-        self.now.iter()
-    }
-
-    /// Takes away what a shadow hides: of each figure what lies outside each half-space in turn
-    /// stays, and what lies inside all goes.
-    fn cut(&mut self, shadow: &Shadow) {
-        let Self {
-            now,
-            next,
-            rest,
-            inside,
-            heights,
-        } = self;
-        next.clear();
-        for figure in now.iter() {
-            if shadow.misses(figure) {
-                next.push(figure);
-                continue;
-            }
-            rest.clear();
-            rest.extend_from_slice(figure);
-            for (n, d) in &shadow.planes {
-                heights.clear();
-                heights.extend(rest.iter().map(|w| n.dot(*w) - d));
-                if heights.iter().all(|h| *h >= 0.0) {
-                    continue;
+/// [`Shadow::of_figure`] of a figure that moves, from a point that does not.
+impl Shadow<PlaneRate> {
+    /// [`Shadow::of_figure`] of a figure that moves, from a point that does not.
+    pub(super) fn of_moving(figure: &[Moving], from: DVec3) -> Option<Self> {
+        let corners: Vec<DVec3> = figure.iter().map(|corner| corner.at).collect();
+        let first = figure.first()?;
+        // The rate of x/|x|, along which its own length plays no part.
+        let turned = |n: DVec3, length: f64, rate: DVec3| (rate - n * n.dot(rate)) / length;
+        let of = |bound: Bound| -> PlaneRate {
+            std::array::from_fn(|k| match bound {
+                Bound::Figure(n) => {
+                    let (mut whole, mut rate) = (DVec3::ZERO, DVec3::ZERO);
+                    for (i, a) in figure.iter().enumerate() {
+                        let b = &figure[(i + 1) % figure.len()];
+                        let [pa, pb] = [a, b].map(|c| c.at - first.at);
+                        let [da, db] = [a, b].map(|c| c.rate[k] - first.rate[k]);
+                        whole += pa.cross(pb);
+                        rate += da.cross(pb) + pa.cross(db);
+                    }
+                    let sign = n.dot(whole).signum();
+                    let dn = turned(n, whole.length(), rate * sign);
+                    (dn, dn.dot(first.at) + n.dot(first.rate[k]))
                 }
-                inside.clear();
-                split(rest, heights, inside, &mut next.corners);
-                next.close();
-                std::mem::swap(rest, inside);
-                if rest.len() < 3 {
-                    break;
+                Bound::Edge([a, b], sign) => {
+                    let [a, b] = [&figure[a], &figure[b]];
+                    let [pa, pb] = [a.at - from, b.at - from];
+                    let x = pa.cross(pb) * sign;
+                    let rate = (a.rate[k].cross(pb) + pa.cross(b.rate[k])) * sign;
+                    let length = x.length();
+                    let dn = turned(x / length, length, rate);
+                    (dn, dn.dot(from))
                 }
-            }
-        }
-        std::mem::swap(now, next);
+            })
+        };
+        Self::bounded(&corners, from, of)
     }
-}
-
-/// Adds to both the parts of a convex figure whose corners have these heights over a plane.
-fn split(figure: &[DVec3], heights: &[f64], inside: &mut Vec<DVec3>, outside: &mut Vec<DVec3>) {
-    for (i, (a, h)) in figure.iter().zip(heights).enumerate() {
-        let next = if i + 1 == figure.len() { 0 } else { i + 1 };
-        if *h >= 0.0 {
-            inside.push(*a);
-        }
-        if *h <= 0.0 {
-            outside.push(*a);
-        }
-        if h * heights[next] < 0.0 {
-            let cut = *a + (figure[next] - *a) * (h / (h - heights[next]));
-            inside.push(cut);
-            outside.push(cut);
-        }
-    }
-}
-
-/// Area and centroid of a convex flat figure; of one without area its first corner.
-pub fn area_and_middle(figure: &[DVec3]) -> (f64, DVec3) {
-    let Some(first) = figure.first() else {
-        return (0.0, DVec3::ZERO);
-    };
-    let mut sum = (0.0, DVec3::ZERO);
-    for pair in figure[1..].windows(2) {
-        let (a, b) = (pair[0] - *first, pair[1] - *first);
-        let area = 0.5 * a.cross(b).length();
-        sum = (sum.0 + area, sum.1 + (a + b) * (area / 3.0));
-    }
-    match sum.0 {
-        0.0 => (0.0, *first),
-        area => (area, *first + sum.1 / area),
-    }
-}
-
-/// Triangles as figures: of two that follow each other and make up a parallelogram, that.
-fn figures(triangles: Vec<[DVec3; 3]>) -> Vec<Polygon> {
-    let mut found: Vec<Polygon> = Vec::new();
-    for [a, b, c] in triangles {
-        match found.last_mut() {
-            // (p, q, r) and (p, r, s) with s = p + r − q.
-            Some(last) if last.len() == 3 && last[0] == a && last[2] == b => {
-                let expected = last[0] + last[2] - last[1];
-                if (c - expected).length() <= EDGE_ON * (c - a).length() {
-                    last.push(c);
-                } else {
-                    found.push(vec![a, b, c]);
-                }
-            }
-            _ => found.push(vec![a, b, c]),
-        }
-    }
-    found
 }
 
 /// A polygon of a circle's area.
-fn circle(centre: DVec3, normal: DVec3, radius: f64) -> Polygon {
+pub(super) fn circle(centre: DVec3, normal: DVec3, radius: f64) -> Polygon {
     let basis = Basis::around(normal);
     let step = TAU / SIDES as f64;
     let reach = radius * (step / libm::sin(step)).sqrt();
@@ -262,84 +155,3 @@ fn circle(centre: DVec3, normal: DVec3, radius: f64) -> Polygon {
     };
     (0..SIDES).map(corner).collect()
 }
-
-/// What stands in the way in a scene, ready to be seen from many points.
-#[derive(Clone, Debug)]
-pub struct Opaque {
-    figures: Vec<(ShapeId, Polygon)>,
-    spheres: Vec<(ShapeId, Sphere)>,
-    /// Meshes of many triangles.
-    by_rays: Vec<ShapeId>,
-}
-
-/// What is hidden from one point.
-#[derive(Clone, Debug)]
-pub struct Hidden {
-    /// Exactly.
-    pub shadows: Vec<Shadow>,
-    /// Shapes that have to be asked ray by ray besides, each with what its circumsphere hides.
-    pub by_rays: Vec<(ShapeId, Option<Shadow>)>,
-}
-
-impl Opaque {
-    /// All shapes of a scene for which `counts` holds.
-    pub fn new(bvh: &Bvh, counts: impl Fn(ShapeId) -> bool) -> Self {
-        let mut found = Self {
-            figures: Vec::new(),
-            spheres: Vec::new(),
-            by_rays: Vec::new(),
-        };
-        for (id, shape) in (0..).zip(bvh.shapes()).filter(|(id, _)| counts(*id)) {
-            match shape {
-                Shape::Parallelogram(p) => found.figures.push((id, p.corners().to_vec())),
-                Shape::Disc(d) => {
-                    let corners = circle(d.centre(), d.normal(), d.radius());
-                    found.figures.push((id, corners));
-                }
-                Shape::Sphere(s) => found.spheres.push((id, *s)),
-                Shape::Instance(body) => {
-                    let count = body.mesh().triangles().len();
-                    if count > MOST_TRIANGLES {
-                        found.by_rays.push(id);
-                    } else {
-                        let triangles = (0..count as u32).map(|t| body.corners(t));
-                        let figures = figures(triangles.collect());
-                        found.figures.extend(figures.into_iter().map(|f| (id, f)));
-                    }
-                }
-            }
-        }
-        found
-    }
-
-    /// Whether there are meshes that have to be asked ray by ray.
-    pub fn has_meshes(&self) -> bool {
-        !self.by_rays.is_empty()
-    }
-
-    /// What is hidden from `from`, a point of shape `own`: that shape hides nothing of its own
-    /// unless it is a mesh.
-    pub fn from(&self, from: DVec3, own: Option<ShapeId>, bvh: &Bvh) -> Hidden {
-        let is_mesh = |id: ShapeId| matches!(bvh.shapes()[id as usize], Shape::Instance(_));
-        let other = |id: &ShapeId| Some(*id) != own || is_mesh(*id);
-        let figures = self.figures.iter().filter(|(id, _)| other(id));
-        let figures = figures.filter_map(|(_, corners)| Shadow::of_figure(corners, from));
-        let around = |id: &ShapeId| {
-            let (centre, radius) = bvh.shapes()[*id as usize].circumsphere();
-            let sphere = Sphere::new(centre, radius, Facing::Outside);
-            (*id, sphere.and_then(|s| Shadow::of_sphere(&s, from)))
-        };
-        let mut by_rays: Vec<_> = self.by_rays.iter().map(around).collect();
-        let mut shadows: Vec<Shadow> = figures.collect();
-        for (id, sphere) in self.spheres.iter().filter(|(id, _)| other(id)) {
-            match Shadow::of_sphere(sphere, from) {
-                Some(shadow) => shadows.push(shadow),
-                None => by_rays.push((*id, None)),
-            }
-        }
-        Hidden { shadows, by_rays }
-    }
-}
-
-#[cfg(test)]
-mod tests;

@@ -281,8 +281,7 @@ impl CalibrationPlan {
         (model, told, untold): (&MatrixModel, Vec<Identified>, Vec<Direction>),
         mut ends: Vec<(State, Vec<Stage>)>,
     ) -> Result<Calibration, LabError> {
-        let cost = |s: &State| s.value.cost + s.value.count * libm::log(s.factor);
-        ends.sort_by(|a, b| cost(&a.0).total_cmp(&cost(&b.0)));
+        ends.sort_by(|a, b| problem.total(&a.0).total_cmp(&problem.total(&b.0)));
         let (best, stages) = &ends[0];
         let information = problem.information(&best.slope);
         let covariance = Cholesky::new(&information).ok_or(LabError::DARK)?.inverse();

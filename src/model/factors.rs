@@ -8,10 +8,11 @@ use super::error::ModelError;
 use super::extent::Extent;
 use super::kernel::Kernel;
 use super::occlusion::{Both, Obstructed};
+use super::terms::{compressed, stacked};
 use super::wall_point::WallPoint;
 use crate::geometry::ShapeId;
 use crate::matrix::Matrix;
-use crate::num::linalg::{rows_times, svd};
+use crate::num::linalg::rows_times;
 use crate::scene::{Scene, Surface};
 
 /// Element j's light between every spot and every pixel where something stands in the way:
@@ -67,18 +68,13 @@ pub(super) type Shares = [Matrix; 2];
 /// Halvings of an element: 32 × 32 cells, all of which are held with all pixels.
 const MOST_HALVINGS: u32 = 5;
 /// Relative change below which no finer cells are tried; the next halving would change a fourth.
-const TARGET: f64 = 1e-3;
+pub(super) const TARGET: f64 = 1e-3;
 /// The same of what is extrapolated.
 const SMOOTH_TARGET: f64 = 1e-4;
-/// Terms less than this share of an element's largest are left out.
-const NEGLIGIBLE: f64 = 1e-6;
 /// Level of the rules on spots, and on footprints where nothing is in the way.
 const LEVEL: usize = 1;
 
-/// The factors of the elements, cells of them cut in four until all A_j together change by less
-/// than 1e-3, or there are 1e8 pairs of cells with pixels and spots. With nothing in the way the
-/// error falls as the square of the cells' size h and is extrapolated, A ≈ (4 A(h) − A(2h))/3,
-/// until that changes by less than 1e-4.
+/// The factors of the elements, settled to a change of 1e-3; of 1e-4 with nothing in the way.
 ///
 /// # Errors
 /// [`ModelError::Linalg`].
@@ -88,6 +84,36 @@ pub(super) fn factors(
     obstacles: &[ShapeId],
     grids: &[ElementGrid],
 ) -> Result<(Factors, Shares), ModelError> {
+    let target = if obstacles.is_empty() {
+        SMOOTH_TARGET
+    } else {
+        TARGET
+    };
+    Ok(settled(scene, kernel, obstacles, grids, target)?.joined())
+}
+
+/// Elements in cells that are fine enough.
+pub(super) struct Settled<'a> {
+    pub past: Past<'a>,
+    /// Of each element.
+    pub cells: Vec<Vec<HiddenCell>>,
+    own: Vec<Own>,
+    change: f64,
+}
+
+/// The elements of a scene, cells of them cut in four until all A_j together change by less than
+/// `target`, or there are 1e8 pairs of cells with pixels and spots. With nothing in the way the
+/// error falls as the square of the cells' size h and is extrapolated, A ≈ (4 A(h) − A(2h))/3.
+///
+/// # Errors
+/// [`ModelError::Linalg`].
+pub(super) fn settled<'a>(
+    scene: &'a Scene,
+    kernel: Kernel,
+    obstacles: &[ShapeId],
+    grids: &[ElementGrid],
+    target: f64,
+) -> Result<Settled<'a>, ModelError> {
     let cut = Cut::new(scene, Extent::UNOBSTRUCTED);
     let lit = cut.lit(scene, LEVEL);
     let walls = scene.camera.pixels() + lit.iter().map(Vec::len).sum::<usize>();
@@ -99,7 +125,6 @@ pub(super) fn factors(
     };
     let hidden: Vec<(usize, &Surface)> = scene.hidden().collect();
     let is_smooth = obstacles.is_empty();
-    let target = if is_smooth { SMOOTH_TARGET } else { TARGET };
     let mut before: Option<Vec<Own>> = None;
     let mut halvings = 0;
     loop {
@@ -119,7 +144,12 @@ pub(super) fn factors(
         if let Some(change) = before.as_ref().map(|before| moved(before, &now))
             && (exhausted || halvings == MOST_HALVINGS || change < target)
         {
-            return Ok(joined(&now, change, cells));
+            return Ok(Settled {
+                past,
+                cells: of,
+                own: now,
+                change,
+            });
         }
         before = Some(now);
     }
@@ -152,12 +182,12 @@ struct Own {
 }
 
 /// The scene past what stands in the way.
-struct Past<'a> {
+pub(super) struct Past<'a> {
     scene: &'a Scene,
     kernel: Kernel,
     /// Of each pixel.
     footprints: Vec<Vec<WallPoint>>,
-    occlusion: Obstructed<'a>,
+    pub occlusion: Obstructed<'a>,
 }
 
 impl Past<'_> {
@@ -173,20 +203,8 @@ impl Past<'_> {
             each.fold([0.0; 2], add)
         };
         let lit = |l: usize| laser[l].iter().copied().fold([0.0; 2], add);
-        // Where nothing hides a footprint its rule holds, not its middle.
-        let middle = cells.len() / 2;
-        let by_rule = |p: usize| {
-            let towards = |w: &WallPoint| w.towards(self.scene, self.kernel, &cells[middle].point);
-            match camera[middle][p][0] {
-                0.0 => 1.0,
-                by_middle => self.footprints[p].iter().map(towards).sum::<f64>() / by_middle,
-            }
-        };
-        let ratio: Vec<f64> = if cells.is_empty() {
-            Vec::new()
-        } else {
-            (0..pixels).map(by_rule).collect()
-        };
+        let middle = camera.get(cells.len() / 2).map_or(&[][..], |seen| seen);
+        let ratio = self.by_rule(cells, middle);
         let c = Matrix::from_fn(pixels, cells.len(), |p, q| ratio[p] * camera[q][p][1]);
         let d = Matrix::from_fn(cells.len(), spots, |q, l| laser[l][q][1]);
         let (camera, laser) = compressed(&c, &d)?;
@@ -196,6 +214,20 @@ impl Past<'_> {
             seen: (0..pixels).map(seen).collect(),
             lit: (0..spots).map(lit).collect(),
         })
+    }
+
+    /// Of each pixel what its rule gives of the middle cell over what that sends to the middles of
+    /// its parts: where nothing hides a footprint its rule holds, not its middle.
+    pub(super) fn by_rule(&self, cells: &[HiddenCell], middle: &[Both]) -> Vec<f64> {
+        let ratio = |(p, [by_middle, _]): (usize, &Both)| {
+            let point = &cells[cells.len() / 2].point;
+            let towards = |w: &WallPoint| w.towards(self.scene, self.kernel, point);
+            match *by_middle {
+                0.0 => 1.0,
+                by_middle => self.footprints[p].iter().map(towards).sum::<f64>() / by_middle,
+            }
+        };
+        middle.iter().enumerate().map(ratio).collect()
     }
 }
 
@@ -215,36 +247,29 @@ fn moved(before: &[Own], now: &[Own]) -> f64 {
     (change.max(0.0) / whole.max(f64::MIN_POSITIVE)).sqrt()
 }
 
-fn joined(all: &[Own], change: f64, cells: usize) -> (Factors, Shares) {
-    let share = |[all, left]: Both| if all > 0.0 { left / all } else { 1.0 };
-    let (pixels, spots) = all
-        .first()
-        .map_or((0, 0), |own| (own.seen.len(), own.lit.len()));
-    let shares = [
-        Matrix::from_fn(pixels, all.len(), |p, j| share(all[j].seen[p])),
-        Matrix::from_fn(all.len(), spots, |j, l| share(all[j].lit[l])),
-    ];
-    let terms = |j: usize| all[j].laser.nrows();
-    let element: Vec<usize> = (0..all.len())
-        .flat_map(|j| std::iter::repeat_n(j, terms(j)))
-        .collect();
-    let mut camera = Matrix::zeros(pixels, element.len());
-    let mut laser = Matrix::zeros(element.len(), spots);
-    let mut at = 0;
-    for own in all {
-        let count = own.laser.nrows();
-        camera.columns_mut(at, count).copy_from(&own.camera);
-        laser.rows_mut(at, count).copy_from(&own.laser);
-        at += count;
+impl Settled<'_> {
+    /// All elements' terms one behind the other, and their visible shares.
+    pub(super) fn joined(&self) -> (Factors, Shares) {
+        let all = &self.own;
+        let share = |[all, left]: Both| if all > 0.0 { left / all } else { 1.0 };
+        let (pixels, spots) = all
+            .first()
+            .map_or((0, 0), |own| (own.seen.len(), own.lit.len()));
+        let shares = [
+            Matrix::from_fn(pixels, all.len(), |p, j| share(all[j].seen[p])),
+            Matrix::from_fn(all.len(), spots, |j, l| share(all[j].lit[l])),
+        ];
+        let each: Vec<_> = all.iter().map(|own| (&own.camera, &own.laser)).collect();
+        let (camera, laser, element) = stacked(&each, (pixels, spots));
+        let factors = Factors {
+            camera,
+            laser,
+            element,
+            change: self.change,
+            cells: self.cells.iter().map(Vec::len).sum(),
+        };
+        (factors, shares)
     }
-    let factors = Factors {
-        camera,
-        laser,
-        element,
-        change,
-        cells,
-    };
-    (factors, shares)
 }
 
 impl Factors {
@@ -253,28 +278,4 @@ impl Factors {
         let of_terms: Vec<f64> = self.element.iter().map(|j| albedo[*j]).collect();
         &self.camera * rows_times(self.laser.clone(), &of_terms)
     }
-}
-
-/// C D with as few terms as carry it: D = U Σ Vᵀ, C U Σ = U′ Σ′ V′ᵀ, C D = (U′ Σ′)(V′ᵀ Vᵀ).
-fn compressed(c: &Matrix, d: &Matrix) -> Result<(Matrix, Matrix), ModelError> {
-    let nothing = (Matrix::zeros(c.nrows(), 0), Matrix::zeros(0, d.ncols()));
-    if c.amax() == 0.0 || d.amax() == 0.0 {
-        return Ok(nothing);
-    }
-    let kept = |sigma: &[f64]| {
-        sigma
-            .iter()
-            .take_while(|s| **s > NEGLIGIBLE * sigma[0])
-            .count()
-    };
-    let right = svd(d)?;
-    let n = kept(right.sigma.as_slice());
-    let scaled = Matrix::from_fn(d.nrows(), n, |q, k| right.u[(q, k)] * right.sigma[k]);
-    let left = svd(&(c * scaled))?;
-    if left.sigma[0] == 0.0 {
-        return Ok(nothing);
-    }
-    let r = kept(left.sigma.as_slice());
-    let camera = Matrix::from_fn(c.nrows(), r, |p, k| left.u[(p, k)] * left.sigma[k]);
-    Ok((camera, left.vt.rows(0, r) * right.vt.rows(0, n)))
 }

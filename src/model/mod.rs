@@ -28,7 +28,10 @@ mod patch;
 mod place;
 mod published;
 mod series;
+mod sweep;
+mod swept;
 mod tangent;
+mod terms;
 mod visible;
 mod wall_point;
 
@@ -40,4 +43,5 @@ pub use factors::{ElementGrid, Factors};
 pub use kernel::Kernel;
 pub use matrix_model::{MatrixModel, is_obstructed};
 pub use published::{PixelGrid, Published, Stagger, flattened_k, table_distances};
+pub use swept::Swept;
 pub use visible::{Visible, visible};

@@ -23,8 +23,11 @@ use crate::scene::Scene;
 /// Light with nothing in the way, and past what is.
 pub(super) type Both = [f64; 2];
 
-/// Pixels of a rectangle of the photograph, with points whose convex hull holds their footprints.
+/// Pixels of a rectangle of the photograph, with the middle and half the sides of a box that holds
+/// their footprints, and its corners.
 struct Block {
+    middle: DVec3,
+    half: DVec3,
     hull: Vec<DVec3>,
     columns: std::ops::Range<usize>,
     rows: std::ops::Range<usize>,
@@ -36,13 +39,14 @@ struct Block {
 
 /// A scene ready to be asked.
 pub(super) struct Obstructed<'a> {
-    scene: &'a Scene,
+    pub scene: &'a Scene,
     kernel: Kernel,
-    opaque: Opaque,
-    pixels: Vec<Vec<Patch>>,
+    pub opaque: Opaque,
+    /// The parts of each pixel's footprint.
+    pub pixels: Vec<Vec<Patch>>,
     blocks: Vec<Block>,
     /// Of each spot, each with whether the laser reaches it.
-    lit: Vec<Vec<(WallPoint, bool)>>,
+    pub lit: Vec<Vec<(WallPoint, bool)>>,
 }
 
 impl<'a> Obstructed<'a> {
@@ -96,8 +100,13 @@ impl<'a> Obstructed<'a> {
             .collect();
         let points = |p: &&Patch| p.corners.clone().unwrap_or_else(|| vec![p.whole.position]);
         let at = self.blocks.len();
+        let hull = hull(patches.iter().flat_map(points));
+        let ends = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let ends = hull.iter().fold(ends, |(l, h), p| (l.min(*p), h.max(*p)));
         let block = Block {
-            hull: hull(patches.iter().flat_map(points)),
+            middle: 0.5 * (ends.0 + ends.1),
+            half: 0.5 * (ends.1 - ends.0),
+            hull,
             open: patches.iter().all(|p| p.open && p.corners.is_some()),
             columns: columns.clone(),
             rows: rows.clone(),
@@ -138,6 +147,12 @@ impl<'a> Obstructed<'a> {
         self.opaque.has_meshes() || patches.any(|p| p.corners.is_none())
     }
 
+    /// Whether wall and obstacles are flat, so that shadows can be followed as they move.
+    pub(super) fn is_flat(&self) -> bool {
+        let mut patches = self.pixels.iter().flatten();
+        self.opaque.is_flat() && patches.all(|p| p.corners.is_some())
+    }
+
     /// Pairs of a cell and a pixel, or a point of a spot, that are worth looking at.
     pub(super) fn most_pairs(&self) -> f64 {
         if self.by_rays() { 8e6 } else { 1e8 }
@@ -151,47 +166,69 @@ impl<'a> Obstructed<'a> {
             let all: f64 = patches.iter().map(light).sum();
             [all, all]
         };
-        let origin = cell.viewpoint;
-        let hidden = self
-            .opaque
-            .from(origin, Some(cell.surface), self.scene.bvh());
-        let mut visit = Visit {
-            cell,
-            met: (0..hidden.shadows.len()).collect(),
-            hidden,
-            found: self.pixels.iter().map(whole).collect(),
-            pieces: Pieces::default(),
-        };
-        self.visit(0, 0, &mut visit);
-        visit.found
+        let hidden = self.hidden_from(cell);
+        let mut found: Vec<Both> = self.pixels.iter().map(whole).collect();
+        let mut pieces = Pieces::default();
+        self.visit(&hidden, &mut |p, met| {
+            found[p][1] = match met {
+                None => 0.0,
+                Some(met) => {
+                    let each = self.pixels[p].iter();
+                    each.map(|patch| self.seen_past(patch, (cell, &hidden), met, &mut pieces))
+                        .sum()
+                }
+            }
+        });
+        found
+    }
+
+    /// What hides the wall from the viewpoint of a cell.
+    pub(super) fn hidden_from(&self, cell: &HiddenCell) -> Hidden {
+        let own = Some(cell.surface);
+        self.opaque.from(cell.viewpoint, own, self.scene.bvh())
+    }
+
+    /// Tells of each pixel of which something may be hidden the indices of the shadows that may
+    /// take it; none where all of it is hidden.
+    pub(super) fn visit(&self, hidden: &Hidden, each: &mut dyn FnMut(usize, Option<&[usize]>)) {
+        let met = (0..hidden.shadows.len()).collect();
+        self.visit_block((0, 0), &mut Visit { hidden, met }, each);
     }
 
     /// A block of pixels, of which the shadows `met[first..]` may take something.
-    fn visit(&self, block: usize, first: usize, visit: &mut Visit<'_>) {
+    fn visit_block(
+        &self,
+        (block, first): (usize, usize),
+        visit: &mut Visit<'_>,
+        each: &mut dyn FnMut(usize, Option<&[usize]>),
+    ) {
         let block = &self.blocks[block];
+        let shadows = &visit.hidden.shadows;
         let own = visit.met.len();
         for k in first..own {
             let shadow = visit.met[k];
-            if !visit.hidden.shadows[shadow].misses(&block.hull) {
+            if !shadows[shadow].misses_box(block.middle, block.half) {
                 visit.met.push(shadow);
             }
         }
         let met = &visit.met[own..];
-        let shadows = &visit.hidden.shadows;
-        if met.iter().any(|s| shadows[*s].covers(&block.hull)) {
+        let covers = |s: &usize| shadows[*s].covers_box(block.middle, block.half);
+        if met.iter().any(covers) {
             for row in block.rows.clone() {
                 let first = row * self.scene.camera.columns;
                 let own = first + block.columns.start..first + block.columns.end;
-                visit.found[own].iter_mut().for_each(|both| both[1] = 0.0);
+                own.for_each(|p| each(p, None));
             }
         } else if !met.is_empty() || !block.open || !visit.hidden.asked(&block.hull).none() {
             match block.halves {
-                Some(halves) => halves.iter().for_each(|half| self.visit(*half, own, visit)),
+                Some(halves) => {
+                    for half in halves {
+                        self.visit_block((half, own), visit, each);
+                    }
+                }
                 None => {
                     let p = block.columns.start + block.rows.start * self.scene.camera.columns;
-                    let patches = self.pixels[p].iter();
-                    let left = patches.map(|patch| self.seen_past(patch, own, visit)).sum();
-                    visit.found[p][1] = left;
+                    each(p, Some(met));
                 }
             }
         }
@@ -199,14 +236,13 @@ impl<'a> Obstructed<'a> {
     }
 
     /// What a patch of the wall sends past everything.
-    fn seen_past(&self, patch: &Patch, first: usize, visit: &mut Visit<'_>) -> f64 {
-        let Visit {
-            cell,
-            hidden,
-            met,
-            pieces,
-            ..
-        } = visit;
+    fn seen_past(
+        &self,
+        patch: &Patch,
+        (cell, hidden): (&HiddenCell, &Hidden),
+        met: &[usize],
+        pieces: &mut Pieces,
+    ) -> f64 {
         let towards = |w: &WallPoint| w.towards(self.scene, self.kernel, &cell.point);
         let whole = towards(&patch.whole);
         let (Some(wall), true) = (patch.whole.surface, whole != 0.0) else {
@@ -219,7 +255,7 @@ impl<'a> Obstructed<'a> {
         };
         let asked = hidden.asked(corners);
         let seen = patch.seen.iter().map(Vec::as_slice);
-        let shadows = met[first..].iter().map(|s| &hidden.shadows[*s]);
+        let shadows = met.iter().map(|s| &hidden.shadows[*s]);
         if !pieces.past(seen, corners, shadows) && patch.open && asked.none() {
             return whole;
         }
@@ -309,14 +345,11 @@ impl<'a> Obstructed<'a> {
     }
 }
 
-/// What is needed to find the light of all pixels on one cell.
+/// What is needed to find the pixels that shadows meet.
 struct Visit<'a> {
-    cell: &'a HiddenCell,
-    hidden: Hidden,
+    hidden: &'a Hidden,
     /// Indices of shadows: of each block on the way down those that its parent's may meet.
     met: Vec<usize>,
-    found: Vec<Both>,
-    pieces: Pieces,
 }
 
 /// The share of a piece's light that is in free sight, by its triangles, where something has to be

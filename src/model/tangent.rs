@@ -165,6 +165,23 @@ impl<'a> ViewRate<'a> {
     }
 }
 
+/// Of a piece of a flat wall at rest that the camera sees ([`super::wall_point::seen_piece`]), where
+/// its middle moves by `position` and its area grows by `grown`, relatively: E ∝ (n·l)(n′·l)/l⁴ · area,
+/// l from the camera. An albedo that varies over the wall moves with the middle.
+pub(super) fn piece(scene: &Scene, point: &WallPoint, position: DVec3, grown: f64) -> WallRate {
+    let camera = &scene.camera;
+    let line = point.position - camera.position;
+    let d2 = line.length_squared();
+    let of = |n: DVec3| n.dot(position) / n.dot(line);
+    let (unit, length) = (-line / d2.sqrt(), d2.sqrt());
+    WallRate {
+        position,
+        normal: DVec3::ZERO,
+        device: (unit * unit.dot(position) - position) / length,
+        weight: grown + of(camera.view.normal()) + of(point.normal) - 4.0 * line.dot(position) / d2,
+    }
+}
+
 /// Of a point that spot `spot` lights. Where its profile turns with the wall, it turns as little as
 /// it can, which is all that matters of a profile that is round.
 pub(super) fn lit(scene: &Scene, velocity: &Velocity, spot: usize, point: &WallPoint) -> WallRate {

@@ -41,7 +41,7 @@ pub fn unsupported_surface<'a>(scene: &'a Scene, plan: &Plan) -> Option<&'a str>
 /// Version of the bits that a plan leads to: raised whenever a change of the tracer, of the random
 /// streams or of the order of sums changes any of them. What was traced under different versions is
 /// never added.
-pub const NUMERICS: u32 = 3;
+pub const NUMERICS: u32 = 4;
 
 /// Traces the columns `spots` of Φcam. The same plan gives the same bits for every number of
 /// threads and every range that a spot is part of.

@@ -104,7 +104,7 @@ impl<'a> Problem<'a> {
         prior: Option<&Prior>,
     ) -> Result<State, LabError> {
         let seen = self.seen(factor);
-        let light = self.geometry.light(values, true)?;
+        let light = self.geometry.light(values, self.relative(factor), true)?;
         let normal = seen.normal(&light)?;
         let prior = match prior {
             Some(prior) => prior.clone(),
@@ -130,7 +130,7 @@ impl<'a> Problem<'a> {
         factor: f64,
         prior: &Prior,
     ) -> Result<Option<f64>, LabError> {
-        let light = match self.geometry.light(values, false) {
+        let light = match self.geometry.light(values, self.relative(factor), false) {
             Ok(light) => light,
             Err(LabError::Scene(_)) => return Ok(None),
             Err(other) => return Err(other),
@@ -148,6 +148,15 @@ impl<'a> Problem<'a> {
             all[(k, k)] += sigma.map_or(0.0, |s| 1.0 / (s * s));
         }
         all
+    }
+
+    /// The noise of a pixel in the middle of all that is `factor` times the stated one, over its
+    /// light; 0 at the stated one, for many pixels know together what none knows alone.
+    fn relative(&self, factor: f64) -> f64 {
+        match self.photographs.stderr {
+            Some(_) if factor == 1.0 => 0.0,
+            _ => FIRST * factor / self.first(),
+        }
     }
 
     /// The noise of the first stage, over the stated one.
@@ -169,6 +178,12 @@ impl<'a> Problem<'a> {
         relative.sort_by(f64::total_cmp);
         let middle = relative.get(relative.len() / 2).copied();
         middle.map_or(1.0, |noise| FIRST / noise)
+    }
+
+    /// −ln p(y|θ) p(θ) up to a constant, the noise being an unknown too.
+    pub(super) fn total(&self, state: &State) -> f64 {
+        let noise = state.value.count * libm::log(state.factor);
+        state.value.cost + self.penalty(&state.values) + noise
     }
 
     /// Down from `start` through all noises.

@@ -6,14 +6,18 @@
 use crate::lab::error::LabError;
 use crate::matrix::Matrix;
 use crate::model::{
-    Differential, Fineness, Kernel, MatrixModel, Occlusion, Terms, TermsRate, is_obstructed,
+    Differential, Fineness, Kernel, MatrixModel, Occlusion, Swept, Terms, TermsRate, is_obstructed,
 };
-use crate::scene::{Parameter, Scene};
+use crate::scene::{Parameter, Scene, Velocity};
 
 /// Step of a central difference where something stands in the way: part of the distance between the
 /// middles of view and hidden surface; and of angles and percents.
 const OF_DISTANCE: f64 = 1e-3;
 const OF_TURN: f64 = 0.05;
+
+/// Change of the light by the last halving of elements, in noises of the photographs, with which
+/// the cells are fine enough before the last stage: what is left is a half to a fourth of it.
+const OF_NOISE: f64 = 0.2;
 
 /// A scene with its unknowns.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +34,13 @@ pub(super) struct Geometry<'a> {
 /// How the terms change with a parameter.
 enum Rate {
     Exact(TermsRate),
-    Difference { more: Terms, less: Terms, over: f64 },
+    /// Of what hides light and moves alone.
+    Swept(Terms),
+    Difference {
+        more: Terms,
+        less: Terms,
+        over: f64,
+    },
 }
 
 /// The light of each element at some values of the unknowns.
@@ -67,38 +77,46 @@ impl Geometry<'_> {
         self.occlusion == Occlusion::Considered && is_obstructed(self.scene)
     }
 
-    /// The terms of `scene` past what stands in the way, and its number of elements.
-    fn past(&self, scene: &Scene) -> Result<(Terms, usize), LabError> {
-        let model = MatrixModel::with(scene, Kernel::Physical, self.elements, self.occlusion)?;
+    /// The light of `scene` past what stands in the way, with its rates by these velocities, as
+    /// fine as photographs of this relative noise ask for.
+    fn past(&self, scene: &Scene, velocities: &[Velocity], noise: f64) -> Result<Swept, LabError> {
+        let change = OF_NOISE * noise;
+        if let Some(swept) = Swept::new(scene, self.elements, velocities, change)? {
+            return Ok(swept);
+        }
+        // What stood in the way does no more.
+        let model = MatrixModel::with(scene, Kernel::Physical, self.elements, Occlusion::Ignored)?;
         let elements = model.albedo.len();
-        let terms = match model.factors {
-            Some(factors) => Terms {
-                camera: factors.camera,
-                laser: factors.laser,
-                element: factors.element,
-            },
-            // What stood in the way does no more.
-            None => Terms {
+        Ok(Swept {
+            terms: Terms {
                 element: (0..elements).collect(),
                 camera: model.camera_side,
                 laser: model.laser_side,
             },
-        };
-        Ok((terms, elements))
+            elements,
+            rates: velocities.iter().map(|_| None).collect(),
+        })
     }
 
-    /// The light at `values`, with its derivatives where `rates` says so.
-    pub(super) fn light(&self, values: &[f64], rates: bool) -> Result<Light, LabError> {
+    /// The light at `values` for photographs of this relative noise, with its derivatives where
+    /// `rates` says so.
+    pub(super) fn light(&self, values: &[f64], noise: f64, rates: bool) -> Result<Light, LabError> {
         let (own, gains) = values.split_at(self.parameters.len());
         let scene = self.scene_at(values)?;
         let parameters = if rates { 0..own.len() } else { 0..0 };
+        let velocity = |k| self.scene.velocity(self.parameters, own, k);
         let (terms, elements, rates) = if self.is_obstructed() {
-            let (terms, elements) = self.past(&scene)?;
-            let rates = parameters.map(|k| self.difference(own, k));
-            (terms, elements, rates.collect::<Result<_, LabError>>()?)
+            let velocities: Vec<Velocity> = parameters.map(velocity).collect();
+            let swept = self.past(&scene, &velocities, noise)?;
+            let rate = |(k, own_rate): (usize, Option<Terms>)| match own_rate {
+                Some(rate) => Ok(Rate::Swept(rate)),
+                None => self.difference(own, noise, k),
+            };
+            let rates = swept.rates.into_iter().enumerate().map(rate);
+            let rates = rates.collect::<Result<_, LabError>>()?;
+            (swept.terms, swept.elements, rates)
         } else {
             let model = Differential::new(&scene, self.elements, self.fineness)?;
-            let velocity = |k| self.scene.velocity(self.parameters, own, k);
             let rates = parameters.map(|k| Rate::Exact(model.rate(&velocity(k))));
             (model.terms(), model.elements(), rates.collect())
         };
@@ -111,7 +129,7 @@ impl Geometry<'_> {
     }
 
     /// The central difference by parameter `k` about the values `own`.
-    fn difference(&self, own: &[f64], k: usize) -> Result<Rate, LabError> {
+    fn difference(&self, own: &[f64], noise: f64, k: usize) -> Result<Rate, LabError> {
         let p = &self.parameters[k];
         let step = if p.is_angle() || p.is_percent() {
             OF_TURN
@@ -121,9 +139,8 @@ impl Geometry<'_> {
         let at = |sign: f64| -> Result<Terms, LabError> {
             let mut values = own.to_vec();
             values[k] += sign * step;
-            Ok(self
-                .past(&self.scene.displaced(self.parameters, &values)?)?
-                .0)
+            let scene = self.scene.displaced(self.parameters, &values)?;
+            Ok(self.past(&scene, &[], noise)?.terms)
         };
         Ok(Rate::Difference {
             more: at(1.0)?,
@@ -160,6 +177,7 @@ impl Light {
                 }
                 Some(self.terms.frame_rate(rate, l, n) * self.gain(l))
             }
+            Some(Rate::Swept(rate)) => Some(rate.frame(l, n) * self.gain(l)),
             Some(Rate::Difference { more, less, over }) => {
                 Some((more.frame(l, n) - less.frame(l, n)) * (self.gain(l) / over))
             }

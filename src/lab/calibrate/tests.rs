@@ -90,7 +90,7 @@ fn the_cost_is_that_of_a_dense_normal_distribution() {
     let (phi, stderr) = photographs(&scene, 2, 0.1, 3);
     let parameters = Parameter::named(&scene, "hidden.normal").unwrap();
     let problem = problem(&scene, &parameters, unexplained(&phi, &stderr), 0);
-    let light = problem.geometry.light(&[0.2], false).unwrap();
+    let light = problem.geometry.light(&[0.2], 0.0, false).unwrap();
     let frames: Vec<Matrix> = (0..2).map(|l| light.frame(l)).collect();
     let rows = |k: usize| [k / 12, k % 12];
     let white = |k: usize, j: usize| {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::geometry::{Disc, Parallelogram, Ray};
+use crate::geometry::{Disc, Parallelogram, Pieces, Ray, area_and_middle};
 
 /// The share of a unit square at z = 0 that stays in sight is that of rays.
 #[test]

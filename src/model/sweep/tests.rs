@@ -1,0 +1,103 @@
+//! Against finite differences of scenes whose occluders are displaced.
+
+use super::*;
+use crate::model::cells::cells_of_elements;
+use crate::model::cut::Cut;
+use crate::model::extent::Extent;
+use crate::model::obstacles::obstacles;
+use crate::scene::{Parameter, file::SceneFile};
+
+const NAMES: [&str; 4] = [
+    "occluders.x",
+    "occluders.z",
+    "occluders.yaw",
+    "occluders.pitch",
+];
+
+fn small(name: &str) -> Scene {
+    let mut file = SceneFile::builtin(name).unwrap();
+    file.camera.pixels = [7, 6];
+    if let Some(laser) = &mut file.laser {
+        laser.spots.per_side = laser.spots.per_side.map(|_| 2);
+    }
+    Scene::new(&file, None).unwrap()
+}
+
+fn cells(scene: &Scene) -> Vec<HiddenCell> {
+    let hidden = scene.hidden();
+    let of = hidden.flat_map(|surface| cells_of_elements(surface, [3, 3], 2));
+    of.flatten().collect()
+}
+
+fn past(scene: &Scene) -> Obstructed<'_> {
+    let lit = Cut::new(scene, Extent::UNOBSTRUCTED).lit(scene, 1);
+    Obstructed::new(scene, Kernel::Physical, &obstacles(scene), lit)
+}
+
+/// Light of all pairs, pixels and spots by cells.
+fn light(scene: &Scene, cells: &[HiddenCell]) -> Vec<f64> {
+    let past = past(scene);
+    let camera = cells.iter().flat_map(|cell| past.camera(cell));
+    let laser = (0..past.spots()).flat_map(|l| past.laser(l, cells));
+    let scale = [1.0 / camera_scale(scene), 1.0];
+    let of = |k: usize| move |both: [f64; 2]| both[1] * scale[k];
+    camera.map(of(0)).chain(laser.map(of(1))).collect()
+}
+
+/// So that both sides weigh alike in a comparison.
+fn camera_scale(scene: &Scene) -> f64 {
+    wall_point::seen(scene, 0, [0.5; 2], 1.0).weight
+}
+
+/// Every pair of a cell with a pixel or a spot that a shadow's edge meets, by shifts and turns of all
+/// occluders together.
+#[test]
+fn rates_are_those_of_displaced_occluders() {
+    for name in ["screen", "periscope"] {
+        let base = small(name);
+        let each = NAMES
+            .iter()
+            .flat_map(|n| Parameter::named(&base, n).unwrap());
+        let parameters: Vec<Parameter> = each.collect();
+        let extent = base.camera.view.u().length();
+        let values: Vec<f64> = (0..4).map(|k| 0.003 * extent * (k as f64 - 1.3)).collect();
+        let here = base.displaced(&parameters, &values).unwrap();
+        let cells = cells(&here);
+        let velocities: Vec<Velocity> = (0..4)
+            .map(|k| base.velocity(&parameters, &values, k))
+            .collect();
+        assert!(velocities.iter().all(|v| moves_figures_alone(&here, v)));
+        let moving: Vec<&Velocity> = velocities.iter().collect();
+        let past = past(&here);
+        assert!(past.is_flat());
+        let sweep = Sweep::new(&past, &moving);
+        let scale = 1.0 / camera_scale(&here);
+        let camera = cells.iter().flat_map(|cell| sweep.camera(cell));
+        let camera = camera.map(|rates| rates.map(|x| x * scale));
+        let laser = (0..past.spots()).flat_map(|l| sweep.laser(l, &cells));
+        let found: Vec<Rates> = camera.chain(laser).collect();
+        for (lane, parameter) in parameters.iter().enumerate() {
+            let at = |step: f64| {
+                let mut values = values.clone();
+                values[lane] += step;
+                light(&base.displaced(&parameters, &values).unwrap(), &cells)
+            };
+            let h = if parameter.is_angle() {
+                2e-3
+            } else {
+                1e-5 * extent
+            };
+            let [a, b, c, d] = [h, -h, 2.0 * h, -2.0 * h].map(at);
+            let want = |i: usize| (8.0 * (a[i] - b[i]) - (c[i] - d[i])) / (12.0 * h);
+            let largest = (0..a.len()).map(|i| want(i).abs()).fold(0.0, f64::max);
+            assert!(largest > 0.0, "{name} {}: nothing moves", parameter.name);
+            let mut off: Vec<f64> = (0..a.len())
+                .map(|i| (found[i][lane] - want(i)).abs() / largest)
+                .collect();
+            off.sort_by(f64::total_cmp);
+            // Where a shadow begins or ends to meet a footprint within the step.
+            let few = off.len() - off.len() / 1000 - 1;
+            assert!(off[few] < 1e-8, "{name} {}: {:e}", parameter.name, off[few]);
+        }
+    }
+}

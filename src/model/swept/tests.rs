@@ -1,0 +1,74 @@
+use super::*;
+use crate::scene::{Parameter, file::SceneFile};
+
+/// Rates of all elements, in the frames of the first and the last spot, against displaced scenes.
+fn compare(name: &str, names: &[&str], limit: f64) {
+    let mut file = SceneFile::builtin(name).unwrap();
+    file.camera.pixels = [9, 8];
+    if let Some(laser) = &mut file.laser {
+        laser.spots.per_side = laser.spots.per_side.map(|_| 2);
+    }
+    let base = Scene::new(&file, None).unwrap();
+    let each = names
+        .iter()
+        .flat_map(|n| Parameter::named(&base, n).unwrap());
+    let parameters: Vec<Parameter> = each.collect();
+    let values = vec![0.0; parameters.len()];
+    let velocity = |k| base.velocity(&parameters, &values, k);
+    let velocities: Vec<Velocity> = (0..parameters.len()).map(velocity).collect();
+    let elements = Some([4, 3]);
+    let swept = Swept::new(&base, elements, &velocities, 0.0)
+        .unwrap()
+        .unwrap();
+    let extent = base.camera.view.u().length();
+    for (k, parameter) in parameters.iter().enumerate() {
+        let rate = swept.rates[k].as_ref().expect("flat figures alone");
+        let h = 1e-3 * if parameter.is_angle() { 10.0 } else { extent };
+        let at = |step: f64| {
+            let mut values = values.clone();
+            values[k] += step;
+            let scene = base.displaced(&parameters, &values).unwrap();
+            Swept::new(&scene, elements, &[], 0.0)
+                .unwrap()
+                .unwrap()
+                .terms
+        };
+        let (more, less) = (at(h), at(-h));
+        for l in [0, base.laser.spots.len() - 1] {
+            let of = |terms: &Terms| terms.frame(l, swept.elements);
+            let want = (of(&more) - of(&less)) / (2.0 * h);
+            let off = (of(rate) - &want).norm() / want.norm();
+            assert!(off < limit, "{name} {} {l}: {off:e}", parameter.name);
+        }
+    }
+}
+
+#[test]
+fn rates_are_those_of_displaced_occluders() {
+    compare(
+        "screen",
+        &["occluders.x", "occluders.z", "occluders.yaw"],
+        0.01,
+    );
+    compare("periscope", &["occluders.x", "occluders.normal"], 0.01);
+    compare(
+        "shelf",
+        &["board.x", "rod.z", "occluders.y", "board.normal", "rod.yaw"],
+        0.03,
+    );
+}
+
+/// Of what moves more than flat figures there are none.
+#[test]
+fn other_parameters_have_no_rates_here() {
+    let base = Scene::load("screen").unwrap();
+    let parameters: Vec<Parameter> = ["occluders.x", "hidden.normal", "view.x"]
+        .iter()
+        .flat_map(|n| Parameter::named(&base, n).unwrap())
+        .collect();
+    let velocity = |k| base.velocity(&parameters, &[0.0; 3], k);
+    let moves: Vec<bool> = (0..3)
+        .map(|k| moves_figures_alone(&base, &velocity(k)))
+        .collect();
+    assert_eq!(moves, [true, false, false]);
+}
