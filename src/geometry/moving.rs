@@ -29,8 +29,8 @@ impl Moving {
         }
     }
 
-    /// [`area_and_middle`](super::area_and_middle) of a figure, and per unit of each parameter the rates of the area and
-    /// of the centroid.
+    /// [Area and centroid](super::area_and_middle) of a figure, the latter as it moves, and per
+    /// unit of each parameter the rate of the area.
     pub fn area_and_middle(figure: &[Self]) -> (f64, Self, [f64; AT_ONCE]) {
         let Some(first) = figure.first() else {
             return (0.0, Self::still(DVec3::ZERO), [0.0; AT_ONCE]);

@@ -12,7 +12,7 @@ use super::extent::Extent;
 use super::factors::ElementGrid;
 use super::kernel::Kernel;
 use super::matrix_model::element_grids;
-use super::tangent::{self, ViewRate, WallRate};
+use super::tangent::{self, HiddenRate, ViewRate, WallRate};
 use super::wall_point::{self, WallPoint};
 use crate::geometry::DVec3;
 use crate::matrix::Matrix;
@@ -230,10 +230,14 @@ impl<'a> Differential<'a> {
             || velocity.view_growth != 0.0
             || velocity.camera != DVec3::ZERO;
         let spots = velocity.spots.iter().any(|s| *s != [0.0; 2]) || velocity.laser != DVec3::ZERO;
-        let side = |walls: &[WallPoint], rates: &[WallRate], cell: &HiddenCell| {
-            let twist = &velocity.surfaces[cell.surface as usize];
+        let moves = |(cell, _): &(HiddenCell, usize)| {
+            HiddenRate::new(&cell.point, &velocity.surfaces[cell.surface as usize])
+        };
+        let moves: Vec<HiddenRate> = self.cells.iter().map(moves).collect();
+        let side = |walls: &[WallPoint], rates: &[WallRate], s: usize| {
+            let to = (&self.cells[s].0.point, &moves[s]);
             let each = walls.iter().zip(rates);
-            each.map(|(w, rate)| w.towards_rate(self.scene, rate, &cell.point, twist))
+            each.map(|(w, rate)| w.towards_rate(self.scene, rate, to))
                 .sum::<f64>()
         };
         let camera = (hidden || wall || view).then(|| {
@@ -245,7 +249,7 @@ impl<'a> Differential<'a> {
                 .map(|own| own.iter().map(rate).collect())
                 .collect();
             by_columns(self.seen.len(), self.cells.len(), |p, s| {
-                side(&self.seen[p], &rates[p], &self.cells[s].0)
+                side(&self.seen[p], &rates[p], s)
             })
         });
         let lasers = !self.scene.laser.is_shining() && (hidden || wall || spots);
@@ -256,8 +260,7 @@ impl<'a> Differential<'a> {
             };
             let rates: Vec<Vec<WallRate>> = self.lit.iter().enumerate().map(of).collect();
             by_columns(self.cells.len(), self.lit.len(), |s, l| {
-                let (cell, _) = &self.cells[s];
-                cell.area * side(&self.lit[l], &rates[l], cell)
+                self.cells[s].0.area * side(&self.lit[l], &rates[l], s)
             })
         });
         TermsRate { camera, laser }

@@ -11,7 +11,7 @@ use super::cells::HiddenCell;
 use super::kernel::{HiddenPoint, Kernel};
 use super::occlusion::Obstructed;
 use super::patch::Patch;
-use super::tangent::{self, WallRate};
+use super::tangent::{self, HiddenRate, WallRate};
 use super::wall_point::{self, WallPoint};
 use crate::geometry::{
     AT_ONCE, DVec3, Moving, Pieces, PlaneRate, Shadow, ShapeId, area_and_middle,
@@ -121,7 +121,7 @@ impl<'a> Sweep<'a> {
         let point = wall_point::seen_piece(scene, wall, middle.at, area);
         std::array::from_fn(|k| {
             let rate = tangent::piece(scene, &point, middle.rate[k], grown[k] / area);
-            point.towards_rate(scene, &rate, &cell.point, &Twist::default())
+            point.towards_rate(scene, &rate, (&cell.point, &HiddenRate::default()))
         })
     }
 
@@ -167,7 +167,11 @@ impl<'a> Sweep<'a> {
                 angular: DVec3::ZERO,
                 linear: middle.rate[k],
             };
-            let moved = wall.towards_rate(scene, &WallRate::default(), &point, &twist);
+            let moved = wall.towards_rate(
+                scene,
+                &WallRate::default(),
+                (&point, &HiddenRate::new(&point, &twist)),
+            );
             (moved * area + light * grown[k]) * cell.area / whole
         })
     }

@@ -27,6 +27,25 @@ pub(super) struct WallRate {
     weight: f64,
 }
 
+/// Velocities of a hidden point, and ω of its surface.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct HiddenRate {
+    position: DVec3,
+    normal: DVec3,
+    angular: DVec3,
+}
+
+impl HiddenRate {
+    /// Of a point of a surface that moves by `twist`.
+    pub(super) fn new(point: &HiddenPoint, twist: &Twist) -> Self {
+        Self {
+            position: twist.at(point.position),
+            normal: twist.angular.cross(point.normal),
+            angular: twist.angular,
+        }
+    }
+}
+
 /// ṅ at a point of a surface that moves by `twist` and on which the point moves by `rate`.
 fn normal_rate(shape: &Shape, twist: &Twist, normal: DVec3, rate: DVec3) -> DVec3 {
     match shape {
@@ -165,9 +184,9 @@ impl<'a> ViewRate<'a> {
     }
 }
 
-/// Of a piece of a flat wall at rest that the camera sees ([`super::wall_point::seen_piece`]), where
-/// its middle moves by `position` and its area grows by `grown`, relatively: E ∝ (n·l)(n′·l)/l⁴ · area,
-/// l from the camera. An albedo that varies over the wall moves with the middle.
+/// Of a piece of a flat wall at rest that the camera sees ([`super::wall_point::seen_piece`]),
+/// where its middle moves by `position` and its area grows by `grown`, relatively: E ∝
+/// (n·l)(n′·l)/l⁴ · area, l from the camera. An albedo that varies moves with the middle.
 pub(super) fn piece(scene: &Scene, point: &WallPoint, position: DVec3, grown: f64) -> WallRate {
     let camera = &scene.camera;
     let line = point.position - camera.position;
@@ -198,32 +217,39 @@ pub(super) fn lit(scene: &Scene, velocity: &Velocity, spot: usize, point: &WallP
 }
 
 impl WallPoint {
-    /// d/dθ of [`WallPoint::towards`] a hidden point that moves by `twist`, with the physical
-    /// kernel.
+    /// d/dθ of [`WallPoint::towards`] a hidden point that moves, with the physical kernel.
     pub(super) fn towards_rate(
         &self,
         scene: &Scene,
         rate: &WallRate,
-        hidden: &HiddenPoint,
-        twist: &Twist,
+        (hidden, moves): (&HiddenPoint, &HiddenRate),
     ) -> f64 {
+        let r = hidden.position - self.position;
+        let (a, b) = (r.dot(self.normal), -r.dot(hidden.normal));
+        if a <= 0.0 || b <= 0.0 {
+            return 0.0;
+        }
+        let r_rate = moves.position - rate.position;
+        let a_rate = r_rate.dot(self.normal) + r.dot(rate.normal);
+        let b_rate = -r_rate.dot(hidden.normal) - r.dot(moves.normal);
+        let (over, ab) = (1.0 / r.length_squared(), a * b);
+        let cosines = a_rate * b + a * b_rate - 4.0 * ab * over * r.dot(r_rate);
+        let moved = (cosines + ab * rate.weight) * over * over;
+        if let (None, Reflection::Constant(f)) = (&hidden.fall_off, &self.reflection) {
+            return self.weight * f * moved;
+        }
         let g = Kernel::Physical.between(self.position, self.normal, hidden);
         if g == 0.0 {
             return 0.0;
         }
         let f = self.reflected(scene, hidden.position);
-        let r = hidden.position - self.position;
-        let r_rate = twist.at(hidden.position) - rate.position;
-        let r2 = r.length_squared();
-        let (a, b) = (r.dot(self.normal), -r.dot(hidden.normal));
-        let normal_rate = twist.angular.cross(hidden.normal);
-        let a_rate = r_rate.dot(self.normal) + r.dot(rate.normal);
-        let b_rate = -r_rate.dot(hidden.normal) - r.dot(normal_rate);
-        let relative = a_rate / a + b_rate / b - 4.0 * r.dot(r_rate) / r2 + rate.weight;
-        let speed = r_rate.length() / r2.sqrt()
+        let fall = hidden
+            .fall_off
+            .map_or(1.0, |own| own.towards(hidden.normal, -r));
+        let speed = r_rate.length() * over.sqrt()
             + rate.normal.length()
             + rate.device.length()
-            + twist.angular.length();
+            + moves.angular.length();
         let step = STEP / speed;
         let difference = |of: &dyn Fn(f64) -> f64| {
             if speed == 0.0 {
@@ -251,15 +277,15 @@ impl WallPoint {
         };
         let fall_rate = hidden.fall_off.map_or(0.0, |fall_off| {
             let at = |h: f64| {
-                let turned = |v: DVec3| v + twist.angular.cross(v) * h;
+                let turned = |v: DVec3| v + moves.angular.cross(v) * h;
                 let moved = FallOff {
                     axes: fall_off.axes.map(turned),
                     ..fall_off
                 };
                 moved.towards(turned(hidden.normal), -(r + r_rate * h))
             };
-            difference(&at) / fall_off.towards(hidden.normal, -r)
+            difference(&at) / fall
         });
-        f * g * (relative + fall_rate) + f_rate * g
+        f * (moved * fall + g * fall_rate) + f_rate * g
     }
 }

@@ -49,8 +49,8 @@ fn camera_scale(scene: &Scene) -> f64 {
     wall_point::seen(scene, 0, [0.5; 2], 1.0).weight
 }
 
-/// Every pair of a cell with a pixel or a spot that a shadow's edge meets, by shifts and turns of all
-/// occluders together.
+/// Every pair of a cell with a pixel or a spot that a shadow's edge meets, by shifts and turns of
+/// all occluders together.
 #[test]
 fn rates_are_those_of_displaced_occluders() {
     for name in ["screen", "periscope"] {
