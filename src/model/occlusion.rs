@@ -10,10 +10,10 @@
 //! centroid. So is what a lit point sees of a flat cell of the hidden surface. Other walls, cells
 //! and large meshes are asked ray by ray.
 
+use super::blocks::Blocks;
 use super::cells::HiddenCell;
 use super::cut::exitance;
 use super::kernel::{HiddenPoint, Kernel};
-use super::obstacles::hull;
 use super::parts::footprint_parts;
 use super::patch::{Patch, triangles};
 use super::wall_point::{self, WallPoint};
@@ -23,20 +23,6 @@ use crate::scene::Scene;
 /// Light with nothing in the way, and past what is.
 pub(super) type Both = [f64; 2];
 
-/// Pixels of a rectangle of the photograph, with the middle and half the sides of a box that holds
-/// their footprints, and its corners.
-struct Block {
-    middle: DVec3,
-    half: DVec3,
-    hull: Vec<DVec3>,
-    columns: std::ops::Range<usize>,
-    rows: std::ops::Range<usize>,
-    /// The two halves, unless it is one pixel.
-    halves: Option<[usize; 2]>,
-    /// Whether the wall is flat and the camera sees all of it.
-    open: bool,
-}
-
 /// A scene ready to be asked.
 pub(super) struct Obstructed<'a> {
     pub scene: &'a Scene,
@@ -44,7 +30,7 @@ pub(super) struct Obstructed<'a> {
     pub opaque: Opaque,
     /// The parts of each pixel's footprint.
     pub pixels: Vec<Vec<Patch>>,
-    blocks: Vec<Block>,
+    pub blocks: Blocks,
     /// Of each spot, each with whether the laser reaches it.
     pub lit: Vec<Vec<(WallPoint, bool)>>,
 }
@@ -75,60 +61,14 @@ impl<'a> Obstructed<'a> {
         let lit = lit
             .into_iter()
             .map(|spot| spot.into_iter().map(laser).collect());
-        let mut found = Self {
+        Self {
             scene,
             kernel,
             opaque,
+            blocks: Blocks::new(&pixels, scene.camera.columns),
             pixels,
-            blocks: Vec::new(),
             lit: lit.collect(),
-        };
-        found.add_block(0..scene.camera.columns, 0..scene.camera.rows);
-        found
-    }
-
-    fn add_block(
-        &mut self,
-        columns: std::ops::Range<usize>,
-        rows: std::ops::Range<usize>,
-    ) -> usize {
-        let all = rows
-            .clone()
-            .flat_map(|row| columns.clone().map(move |c| (c, row)));
-        let patches: Vec<&Patch> = all
-            .flat_map(|(c, row)| &self.pixels[c + row * self.scene.camera.columns])
-            .collect();
-        let points = |p: &&Patch| p.corners.clone().unwrap_or_else(|| vec![p.whole.position]);
-        let at = self.blocks.len();
-        let hull = hull(patches.iter().flat_map(points));
-        let ends = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let ends = hull.iter().fold(ends, |(l, h), p| (l.min(*p), h.max(*p)));
-        let block = Block {
-            middle: 0.5 * (ends.0 + ends.1),
-            half: 0.5 * (ends.1 - ends.0),
-            hull,
-            open: patches.iter().all(|p| p.open && p.corners.is_some()),
-            columns: columns.clone(),
-            rows: rows.clone(),
-            halves: None,
-        };
-        self.blocks.push(block);
-        let middle = |r: &std::ops::Range<usize>| r.start + r.len() / 2;
-        if columns.len() * rows.len() > 1 {
-            let [first, second] = if columns.len() >= rows.len() {
-                let m = middle(&columns);
-                [(columns.start..m, rows.clone()), (m..columns.end, rows)]
-            } else {
-                let m = middle(&rows);
-                [(columns.clone(), rows.start..m), (columns, m..rows.end)]
-            };
-            let halves = [
-                self.add_block(first.0, first.1),
-                self.add_block(second.0, second.1),
-            ];
-            self.blocks[at].halves = Some(halves);
         }
-        at
     }
 
     /// Number of spots.
@@ -169,7 +109,7 @@ impl<'a> Obstructed<'a> {
         let hidden = self.hidden_from(cell);
         let mut found: Vec<Both> = self.pixels.iter().map(whole).collect();
         let mut pieces = Pieces::default();
-        self.visit(&hidden, &mut |p, met| {
+        self.blocks.visit(&hidden, &mut |p, met| {
             found[p][1] = match met {
                 None => 0.0,
                 Some(met) => {
@@ -186,53 +126,6 @@ impl<'a> Obstructed<'a> {
     pub(super) fn hidden_from(&self, cell: &HiddenCell) -> Hidden {
         let own = Some(cell.surface);
         self.opaque.from(cell.viewpoint, own, self.scene.bvh())
-    }
-
-    /// Tells of each pixel of which something may be hidden the indices of the shadows that may
-    /// take it; none where all of it is hidden.
-    pub(super) fn visit(&self, hidden: &Hidden, each: &mut dyn FnMut(usize, Option<&[usize]>)) {
-        let met = (0..hidden.shadows.len()).collect();
-        self.visit_block((0, 0), &mut Visit { hidden, met }, each);
-    }
-
-    /// A block of pixels, of which the shadows `met[first..]` may take something.
-    fn visit_block(
-        &self,
-        (block, first): (usize, usize),
-        visit: &mut Visit<'_>,
-        each: &mut dyn FnMut(usize, Option<&[usize]>),
-    ) {
-        let block = &self.blocks[block];
-        let shadows = &visit.hidden.shadows;
-        let own = visit.met.len();
-        for k in first..own {
-            let shadow = visit.met[k];
-            if !shadows[shadow].misses_box(block.middle, block.half) {
-                visit.met.push(shadow);
-            }
-        }
-        let met = &visit.met[own..];
-        let covers = |s: &usize| shadows[*s].covers_box(block.middle, block.half);
-        if met.iter().any(covers) {
-            for row in block.rows.clone() {
-                let first = row * self.scene.camera.columns;
-                let own = first + block.columns.start..first + block.columns.end;
-                own.for_each(|p| each(p, None));
-            }
-        } else if !met.is_empty() || !block.open || !visit.hidden.asked(&block.hull).none() {
-            match block.halves {
-                Some(halves) => {
-                    for half in halves {
-                        self.visit_block((half, own), visit, each);
-                    }
-                }
-                None => {
-                    let p = block.columns.start + block.rows.start * self.scene.camera.columns;
-                    each(p, Some(met));
-                }
-            }
-        }
-        visit.met.truncate(own);
     }
 
     /// What a patch of the wall sends past everything.
@@ -343,13 +236,6 @@ impl<'a> Obstructed<'a> {
         let over = |piece| light(area_and_middle(piece)) * free_share(piece, &asked, light, free);
         pieces.iter().map(over).sum()
     }
-}
-
-/// What is needed to find the pixels that shadows meet.
-struct Visit<'a> {
-    hidden: &'a Hidden,
-    /// Indices of shadows: of each block on the way down those that its parent's may meet.
-    met: Vec<usize>,
 }
 
 /// The share of a piece's light that is in free sight, by its triangles, where something has to be

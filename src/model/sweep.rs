@@ -93,7 +93,7 @@ impl<'a> Sweep<'a> {
         let shadows = self.shadows(cell.viewpoint, Some(cell.surface));
         let mut pieces = Pieces::default();
         let hidden = self.past.hidden_from(cell);
-        self.past.visit(&hidden, &mut |p, met| {
+        self.past.blocks.visit(&hidden, &mut |p, met| {
             let Some(met) = met else { return };
             for (patch, seen) in self.past.pixels[p].iter().zip(&self.seen[p]) {
                 let (Some(wall), Some(corners)) = (patch.whole.surface, &patch.corners) else {
