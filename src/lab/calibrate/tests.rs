@@ -220,6 +220,24 @@ fn photographs_of_no_geometry_come_with_that_verdict_first() {
     assert!(wrong.contains("these are no estimates"), "{wrong}");
 }
 
+/// Where no noise is stated, what the model lacks is not told from noise: the sentence says so.
+#[test]
+fn an_estimate_without_a_stated_noise_is_conditional() {
+    let scene = small("bench", 8);
+    let (phi, stderr) = photographs(&scene, 4, 1e-2, 5);
+    let told = |is_stated: bool| {
+        let photographs = Unexplained {
+            stderr: is_stated.then_some(&stderr),
+            ..unexplained(&phi, &stderr)
+        };
+        let plan = plan(&["hinge.angle"], 4);
+        let found = plan.calibrate(&scene, &photographs, Control::none());
+        found.unwrap().describe().sentence
+    };
+    assert!(told(true).starts_with("From what the scene says: hinge.angle"));
+    assert!(told(false).starts_with("If what is left over is noise, from what the scene says:"));
+}
+
 /// What moves together is refused with its names, and taken where one of it is known.
 #[test]
 fn what_light_does_not_tell_is_refused() {

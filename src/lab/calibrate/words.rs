@@ -87,6 +87,8 @@ impl Calibration {
         };
         let found = format!("rom what the scene says: {}.{ended}", listed(&few));
         match self.p.filter(|p| *p < SIGNIFICANCE) {
+            // Without a stated noise a misfit of the model is not told from it.
+            None if self.p.is_none() => format!("If what is left over is noise, f{found}"),
             None => format!("F{found}"),
             Some(p) => {
                 let much = if self.unexplained() > MUCH {
