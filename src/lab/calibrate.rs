@@ -40,7 +40,7 @@ use crate::num::statistics::chi_square_sf;
 use crate::scene::{Parameter, Scene};
 use crate::store::digest_of;
 use crate::transport::Control;
-use descent::{Problem, State};
+use descent::{Problem, State, first};
 use geometry::{Geometry, distance};
 use identified::identified;
 
@@ -210,6 +210,7 @@ impl CalibrationPlan {
             photographs: *photographs,
             pictures: picture::priors(&model.places, self.is_scale_free)?,
             is_scale_free: self.is_scale_free,
+            first: first(photographs),
             priors,
         };
         let sizes = sizes(scene, &parameters, gains);
@@ -217,7 +218,7 @@ impl CalibrationPlan {
         // Of a noise that is not stated nothing is known yet: that of the first stage.
         let assumed = match photographs.stderr {
             Some(_) => 1.0,
-            None => problem.first(),
+            None => problem.first,
         };
         let start = problem.state(&zero, assumed, None)?;
         let (told, untold) = identified(&problem, &start, &sizes);

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::obstacles::hull;
+use super::obstacles::{ends, hull};
 use super::patch::Patch;
 use crate::geometry::{DVec3, Hidden};
 
@@ -49,11 +49,10 @@ impl Blocks {
         let points = |p: &&Patch| p.corners.clone().unwrap_or_else(|| vec![p.whole.position]);
         let at = self.all.len();
         let hull = hull(patches.iter().flat_map(points));
-        let ends = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let ends = hull.iter().fold(ends, |(l, h), p| (l.min(*p), h.max(*p)));
+        let (low, high) = ends(hull.iter().copied());
         let block = Block {
-            middle: 0.5 * (ends.0 + ends.1),
-            half: 0.5 * (ends.1 - ends.0),
+            middle: 0.5 * (low + high),
+            half: 0.5 * (high - low),
             hull,
             open: patches.iter().all(|p| p.open && p.corners.is_some()),
             columns: columns.clone(),

@@ -13,64 +13,11 @@ use super::factors::ElementGrid;
 use super::kernel::Kernel;
 use super::matrix_model::element_grids;
 use super::tangent::{self, HiddenRate, ViewRate, WallRate};
+use super::terms::{Terms, TermsRate};
 use super::wall_point::{self, WallPoint};
 use crate::geometry::DVec3;
 use crate::matrix::Matrix;
 use crate::scene::{Scene, Surface, Velocity};
-
-/// The light of elements with albedo 1 as products.
-#[derive(Clone, Debug)]
-pub struct Terms {
-    /// Pixels × terms.
-    pub camera: Matrix,
-    /// Terms × spots; with `camera` W.
-    pub laser: Matrix,
-    /// The element of each term, ascending.
-    pub element: Vec<usize>,
-}
-
-/// ∂ of both sides of [`Terms`] by a parameter; none where it does not move a side.
-#[derive(Clone, Debug)]
-pub struct TermsRate {
-    /// Pixels × terms.
-    pub camera: Option<Matrix>,
-    /// Terms × spots.
-    pub laser: Option<Matrix>,
-}
-
-impl Terms {
-    /// What frame `spot` shows of each element at albedo 1, pixels × elements, W.
-    pub fn frame(&self, spot: usize, elements: usize) -> Matrix {
-        summed(&self.element, elements, (&self.camera, &self.laser, spot))
-    }
-
-    /// Its rate of change.
-    pub fn frame_rate(&self, rate: &TermsRate, spot: usize, elements: usize) -> Matrix {
-        let of = |camera, laser| summed(&self.element, elements, (camera, laser, spot));
-        match (&rate.camera, &rate.laser) {
-            (Some(camera), Some(laser)) => of(camera, &self.laser) + of(&self.camera, laser),
-            (Some(camera), None) => of(camera, &self.laser),
-            (None, Some(laser)) => of(&self.camera, laser),
-            (None, None) => Matrix::zeros(self.camera.nrows(), elements),
-        }
-    }
-}
-
-/// Σ_s camera\[·,s\] laser\[s,spot\], summed into the column of each term's element.
-fn summed(
-    element: &[usize],
-    elements: usize,
-    (camera, laser, spot): (&Matrix, &Matrix, usize),
-) -> Matrix {
-    let mut all = Matrix::zeros(camera.nrows(), elements);
-    for (s, j) in element.iter().enumerate() {
-        let lit = laser[(s, spot)];
-        if lit != 0.0 {
-            all.column_mut(*j).axpy(lit, &camera.column(s), 1.0);
-        }
-    }
-    all
-}
 
 /// What a model takes its light by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

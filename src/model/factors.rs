@@ -8,7 +8,7 @@ use super::error::ModelError;
 use super::extent::Extent;
 use super::kernel::Kernel;
 use super::occlusion::{Both, Obstructed};
-use super::terms::{compressed, stacked};
+use super::terms::{Terms, compressed};
 use super::wall_point::WallPoint;
 use crate::geometry::ShapeId;
 use crate::matrix::Matrix;
@@ -203,8 +203,7 @@ impl Past<'_> {
             each.fold([0.0; 2], add)
         };
         let lit = |l: usize| laser[l].iter().copied().fold([0.0; 2], add);
-        let middle = camera.get(cells.len() / 2).map_or(&[][..], |seen| seen);
-        let ratio = self.by_rule(cells, middle);
+        let ratio = self.by_rule(cells);
         let c = Matrix::from_fn(pixels, cells.len(), |p, q| ratio[p] * camera[q][p][1]);
         let d = Matrix::from_fn(cells.len(), spots, |q, l| laser[l][q][1]);
         let (camera, laser) = compressed(&c, &d)?;
@@ -218,16 +217,19 @@ impl Past<'_> {
 
     /// Of each pixel what its rule gives of the middle cell over what that sends to the middles of
     /// its parts: where nothing hides a footprint its rule holds, not its middle.
-    pub(super) fn by_rule(&self, cells: &[HiddenCell], middle: &[Both]) -> Vec<f64> {
-        let ratio = |(p, [by_middle, _]): (usize, &Both)| {
-            let point = &cells[cells.len() / 2].point;
-            let towards = |w: &WallPoint| w.towards(self.scene, self.kernel, point);
-            match *by_middle {
+    pub(super) fn by_rule(&self, cells: &[HiddenCell]) -> Vec<f64> {
+        let Some(middle) = cells.get(cells.len() / 2) else {
+            return Vec::new();
+        };
+        let ratio = |(p, by_middle): (usize, f64)| {
+            let towards = |w: &WallPoint| w.towards(self.scene, self.kernel, &middle.point);
+            match by_middle {
                 0.0 => 1.0,
                 by_middle => self.footprints[p].iter().map(towards).sum::<f64>() / by_middle,
             }
         };
-        middle.iter().enumerate().map(ratio).collect()
+        let by_middle = self.occlusion.unobstructed(middle);
+        by_middle.into_iter().enumerate().map(ratio).collect()
     }
 }
 
@@ -260,11 +262,11 @@ impl Settled<'_> {
             Matrix::from_fn(all.len(), spots, |j, l| share(all[j].lit[l])),
         ];
         let each: Vec<_> = all.iter().map(|own| (&own.camera, &own.laser)).collect();
-        let (camera, laser, element) = stacked(&each, (pixels, spots));
+        let terms = Terms::stacked(&each, (pixels, spots));
         let factors = Factors {
-            camera,
-            laser,
-            element,
+            camera: terms.camera,
+            laser: terms.laser,
+            element: terms.element,
             change: self.change,
             cells: self.cells.iter().map(Vec::len).sum(),
         };

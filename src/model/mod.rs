@@ -37,7 +37,7 @@ mod visible;
 mod wall_point;
 
 pub use converged::{Converged, Nodes, converged, integrated};
-pub use differential::{Differential, Fineness, Terms, TermsRate};
+pub use differential::{Differential, Fineness};
 pub use error::ModelError;
 pub use extent::{Extent, Occlusion, Take};
 pub use factors::{ElementGrid, Factors};
@@ -45,4 +45,5 @@ pub use kernel::Kernel;
 pub use matrix_model::{MatrixModel, is_obstructed};
 pub use published::{PixelGrid, Published, Stagger, flattened_k, table_distances};
 pub use swept::Swept;
+pub use terms::{Terms, TermsRate};
 pub use visible::{Visible, visible};

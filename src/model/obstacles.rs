@@ -87,8 +87,7 @@ fn is_convex(shape: &Shape) -> bool {
                 .unwrap_or(Ordering::Equal)
         });
         held.dedup();
-        let ends = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let (low, high) = held.iter().fold(ends, |(l, h), p| (l.min(*p), h.max(*p)));
+        let (low, high) = ends(held.iter().copied());
         (0.5 * (low + high), 0.5 * (high - low), held)
     });
     let boxes: Vec<(DVec3, DVec3, Vec<DVec3>)> = boxes.collect();
@@ -129,11 +128,16 @@ fn seen_walls(scene: &Scene) -> Option<Vec<End>> {
         .then(|| vec![(Some(id), Region::flat(rim.map(|w| w.position).to_vec()))])
 }
 
+/// Least and greatest coordinates of points.
+pub(super) fn ends(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
+    points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
+        (low.min(p), high.max(p))
+    })
+}
+
 /// Corners of the axis-aligned box around points: a hull of them.
 pub(super) fn hull(points: impl Iterator<Item = DVec3>) -> Vec<DVec3> {
-    let (low, high) = points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
-        (low.min(p), high.max(p))
-    });
+    let (low, high) = ends(points);
     let corner = |k: usize| {
         let pick = |d: usize| if k >> d & 1 == 0 { low[d] } else { high[d] };
         DVec3::new(pick(0), pick(1), pick(2))

@@ -101,13 +101,9 @@ impl<'a> Obstructed<'a> {
     /// What a cell sends to each pixel, by its middle, past what hides the wall from its viewpoint:
     /// c_p.
     pub(super) fn camera(&self, cell: &HiddenCell) -> Vec<Both> {
-        let whole = |patches: &Vec<Patch>| {
-            let light = |p: &Patch| p.whole.towards(self.scene, self.kernel, &cell.point);
-            let all: f64 = patches.iter().map(light).sum();
-            [all, all]
-        };
         let hidden = self.hidden_from(cell);
-        let mut found: Vec<Both> = self.pixels.iter().map(whole).collect();
+        let all = self.unobstructed(cell).into_iter();
+        let mut found: Vec<Both> = all.map(|all| [all, all]).collect();
         let mut pieces = Pieces::default();
         self.blocks.visit(&hidden, &mut |p, met| {
             found[p][1] = match met {
@@ -120,6 +116,13 @@ impl<'a> Obstructed<'a> {
             }
         });
         found
+    }
+
+    /// What a cell sends to each pixel with nothing in the way, to the middles of its parts.
+    pub(super) fn unobstructed(&self, cell: &HiddenCell) -> Vec<f64> {
+        let light = |p: &Patch| p.whole.towards(self.scene, self.kernel, &cell.point);
+        let whole = |patches: &Vec<Patch>| patches.iter().map(light).sum();
+        self.pixels.iter().map(whole).collect()
     }
 
     /// What hides the wall from the viewpoint of a cell.

@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 
 use super::cells::HiddenCell;
-use super::differential::Terms;
 use super::error::ModelError;
 use super::factors::{Past, TARGET, settled};
 use super::kernel::Kernel;
@@ -11,7 +10,7 @@ use super::matrix_model::element_grids;
 use super::obstacles::obstacles;
 use super::occlusion::Both;
 use super::sweep::{Rates, Sweep, moves_figures_alone};
-use super::terms::{compressed, stacked};
+use super::terms::{Terms, compressed};
 use crate::geometry::AT_ONCE;
 use crate::matrix::Matrix;
 use crate::scene::{Scene, Velocity};
@@ -24,7 +23,7 @@ pub struct Swept {
     /// Number of elements.
     pub elements: usize,
     /// ∂A_j by each parameter, as products too; none where it moves more than flat figures that
-    /// stand in the way, or a wall or an obstacle is not flat.
+    /// stand in the way, or a wall, an obstacle or a hidden surface is not flat.
     pub rates: Vec<Option<Terms>>,
 }
 
@@ -56,7 +55,8 @@ impl Swept {
         let (factors, _) = settled.joined();
         let mut rates: Vec<Option<Terms>> = velocities.iter().map(|_| None).collect();
         let past = &settled.past;
-        if past.occlusion.is_flat() {
+        let mut cells = settled.cells.iter().flatten();
+        if past.occlusion.is_flat() && cells.all(|cell| cell.corners.is_some()) {
             let all = (0..velocities.len()).filter(|k| moves_figures_alone(scene, &velocities[*k]));
             for lanes in all.collect::<Vec<_>>().chunks(AT_ONCE) {
                 let moving: Vec<&Velocity> = lanes.iter().map(|k| &velocities[*k]).collect();
@@ -67,12 +67,7 @@ impl Swept {
                 for (lane, k) in lanes.iter().enumerate() {
                     let each: Vec<_> = own.iter().map(|o| (&o[lane].0, &o[lane].1)).collect();
                     let sides = (past.occlusion.pixels(), past.occlusion.spots());
-                    let (camera, laser, element) = stacked(&each, sides);
-                    rates[*k] = Some(Terms {
-                        camera,
-                        laser,
-                        element,
-                    });
+                    rates[*k] = Some(Terms::stacked(&each, sides));
                 }
             }
         }
@@ -97,15 +92,13 @@ fn own_rates(
 ) -> Result<Vec<(Matrix, Matrix)>, ModelError> {
     let occlusion = &past.occlusion;
     let (pixels, spots) = (occlusion.pixels(), occlusion.spots());
-    let some = |cell: &HiddenCell| occlusion.camera(cell);
-    let middle = cells.get(cells.len() / 2).map_or_else(Vec::new, some);
-    let ratio = past.by_rule(cells, &middle);
+    let ratio = past.by_rule(cells);
     let laser: Vec<Vec<Both>> = (0..spots).map(|l| occlusion.laser(l, cells)).collect();
     // What shines is what it is wherever the figures are.
     let still: Vec<Vec<Both>> = if occlusion.scene.laser.is_shining() {
         Vec::new()
     } else {
-        cells.iter().map(some).collect()
+        cells.iter().map(|cell| occlusion.camera(cell)).collect()
     };
     let camera: Vec<Vec<Rates>> = cells.iter().map(|cell| sweep.camera(cell)).collect();
     let laser_rates: Vec<Vec<Rates>> = (0..spots).map(|l| sweep.laser(l, cells)).collect();

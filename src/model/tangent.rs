@@ -192,7 +192,8 @@ pub(super) fn piece(scene: &Scene, point: &WallPoint, position: DVec3, grown: f6
     let line = point.position - camera.position;
     let d2 = line.length_squared();
     let of = |n: DVec3| n.dot(position) / n.dot(line);
-    let (unit, length) = (-line / d2.sqrt(), d2.sqrt());
+    let length = d2.sqrt();
+    let unit = -line / length;
     WallRate {
         position,
         normal: DVec3::ZERO,

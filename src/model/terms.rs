@@ -1,4 +1,4 @@
-//! Matrices as products of few terms.
+//! Light as a sum of few products of a camera's and a laser's side.
 
 use super::error::ModelError;
 use crate::matrix::Matrix;
@@ -6,24 +6,79 @@ use crate::num::linalg::svd;
 
 /// Terms less than this share of an element's largest are left out.
 const NEGLIGIBLE: f64 = 1e-6;
-/// The terms of the elements one behind the other, and the element of each.
-pub(super) fn stacked(
-    all: &[(&Matrix, &Matrix)],
-    (pixels, spots): (usize, usize),
-) -> (Matrix, Matrix, Vec<usize>) {
-    let element: Vec<usize> = (0..all.len())
-        .flat_map(|j| std::iter::repeat_n(j, all[j].1.nrows()))
-        .collect();
-    let mut camera = Matrix::zeros(pixels, element.len());
-    let mut laser = Matrix::zeros(element.len(), spots);
-    let mut at = 0;
-    for (c, d) in all {
-        let count = d.nrows();
-        camera.columns_mut(at, count).copy_from(c);
-        laser.rows_mut(at, count).copy_from(d);
-        at += count;
+/// The light of elements with albedo 1 as products.
+#[derive(Clone, Debug)]
+pub struct Terms {
+    /// Pixels × terms.
+    pub camera: Matrix,
+    /// Terms × spots; with `camera` W.
+    pub laser: Matrix,
+    /// The element of each term, ascending.
+    pub element: Vec<usize>,
+}
+
+/// ∂ of both sides of [`Terms`] by a parameter; none where it does not move a side.
+#[derive(Clone, Debug)]
+pub struct TermsRate {
+    /// Pixels × terms.
+    pub camera: Option<Matrix>,
+    /// Terms × spots.
+    pub laser: Option<Matrix>,
+}
+
+impl Terms {
+    /// Those of the elements, each a product, one behind the other.
+    pub(super) fn stacked(all: &[(&Matrix, &Matrix)], (pixels, spots): (usize, usize)) -> Self {
+        let element: Vec<usize> = (0..all.len())
+            .flat_map(|j| std::iter::repeat_n(j, all[j].1.nrows()))
+            .collect();
+        let mut camera = Matrix::zeros(pixels, element.len());
+        let mut laser = Matrix::zeros(element.len(), spots);
+        let mut at = 0;
+        for (c, d) in all {
+            let count = d.nrows();
+            camera.columns_mut(at, count).copy_from(c);
+            laser.rows_mut(at, count).copy_from(d);
+            at += count;
+        }
+        Self {
+            camera,
+            laser,
+            element,
+        }
     }
-    (camera, laser, element)
+
+    /// What frame `spot` shows of each element at albedo 1, pixels × elements, W.
+    pub fn frame(&self, spot: usize, elements: usize) -> Matrix {
+        summed(&self.element, elements, (&self.camera, &self.laser, spot))
+    }
+
+    /// Its rate of change.
+    pub fn frame_rate(&self, rate: &TermsRate, spot: usize, elements: usize) -> Matrix {
+        let of = |camera, laser| summed(&self.element, elements, (camera, laser, spot));
+        match (&rate.camera, &rate.laser) {
+            (Some(camera), Some(laser)) => of(camera, &self.laser) + of(&self.camera, laser),
+            (Some(camera), None) => of(camera, &self.laser),
+            (None, Some(laser)) => of(&self.camera, laser),
+            (None, None) => Matrix::zeros(self.camera.nrows(), elements),
+        }
+    }
+}
+
+/// Σ_s camera\[·,s\] laser\[s,spot\], summed into the column of each term's element.
+fn summed(
+    element: &[usize],
+    elements: usize,
+    (camera, laser, spot): (&Matrix, &Matrix, usize),
+) -> Matrix {
+    let mut all = Matrix::zeros(camera.nrows(), elements);
+    for (s, j) in element.iter().enumerate() {
+        let lit = laser[(s, spot)];
+        if lit != 0.0 {
+            all.column_mut(*j).axpy(lit, &camera.column(s), 1.0);
+        }
+    }
+    all
 }
 
 /// C D with as few terms as carry it: D = U Σ Vᵀ, C U Σ = U′ Σ′ V′ᵀ, C D = (U′ Σ′)(V′ᵀ Vᵀ).

@@ -41,6 +41,8 @@ pub(super) struct Problem<'a> {
     pub priors: Vec<Option<f64>>,
     pub pictures: Vec<Prior>,
     pub is_scale_free: bool,
+    /// The noise of the first stage, over the stated one ([`first`]).
+    pub first: f64,
 }
 
 /// The unknowns at some noise.
@@ -155,29 +157,8 @@ impl<'a> Problem<'a> {
     fn relative(&self, factor: f64) -> f64 {
         match self.photographs.stderr {
             Some(_) if factor == 1.0 => 0.0,
-            _ => FIRST * factor / self.first(),
+            _ => FIRST * factor / self.first,
         }
-    }
-
-    /// The noise of the first stage, over the stated one.
-    pub(super) fn first(&self) -> f64 {
-        let Unexplained { phi, stderr, .. } = self.photographs;
-        let mut relative: Vec<f64> = match stderr {
-            Some(stderr) => phi
-                .iter()
-                .zip(stderr)
-                .filter(|(x, s)| **s > 0.0 && **x != 0.0)
-                .map(|(x, s)| s / x.abs())
-                .collect(),
-            None => phi
-                .iter()
-                .filter(|x| **x != 0.0)
-                .map(|x| 1.0 / x.abs())
-                .collect(),
-        };
-        relative.sort_by(f64::total_cmp);
-        let middle = relative.get(relative.len() / 2).copied();
-        middle.map_or(1.0, |noise| FIRST / noise)
     }
 
     /// −ln p(y|θ) p(θ) up to a constant, the noise being an unknown too.
@@ -194,9 +175,9 @@ impl<'a> Problem<'a> {
     ) -> Result<(State, Vec<Stage>), LabError> {
         let is_known = self.photographs.stderr.is_some();
         let mut factor = if is_known {
-            self.first().max(1.0)
+            self.first.max(1.0)
         } else {
-            self.first()
+            self.first
         };
         let mut stages = Vec::new();
         let mut values = start.to_vec();
@@ -293,6 +274,7 @@ impl<'a> Problem<'a> {
             priors: self.priors.clone(),
             pictures: Vec::new(),
             is_scale_free: self.is_scale_free,
+            first: self.first,
         };
         let state = finer.state(&best.values, best.factor, Some(&best.prior))?;
         let slopes = self.whole_slope(best) - self.whole_slope(&state);
@@ -307,6 +289,27 @@ impl<'a> Problem<'a> {
         }
         slope
     }
+}
+
+/// The noise of the first stage, over the stated one.
+pub(super) fn first(photographs: &Unexplained<'_>) -> f64 {
+    let Unexplained { phi, stderr, .. } = *photographs;
+    let mut relative: Vec<f64> = match stderr {
+        Some(stderr) => phi
+            .iter()
+            .zip(stderr)
+            .filter(|(x, s)| **s > 0.0 && **x != 0.0)
+            .map(|(x, s)| s / x.abs())
+            .collect(),
+        None => phi
+            .iter()
+            .filter(|x| **x != 0.0)
+            .map(|x| 1.0 / x.abs())
+            .collect(),
+    };
+    relative.sort_by(f64::total_cmp);
+    let middle = relative.get(relative.len() / 2).copied();
+    middle.map_or(1.0, |noise| FIRST / noise)
 }
 
 /// The step of Levenberg and Marquardt; none where nothing changes with an unknown.

@@ -75,6 +75,7 @@ fn problem<'a>(
         priors: vec![Some(0.3); parameters.len() + gains],
         pictures: priors(&model.unwrap().places, false).unwrap(),
         is_scale_free: false,
+        first: first(&photographs),
     }
 }
 

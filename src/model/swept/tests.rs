@@ -1,5 +1,7 @@
 use super::*;
-use crate::scene::{Parameter, file::SceneFile};
+use crate::geometry::Facing;
+use crate::scene::file::{RectangleTable, SceneFile, SphereTable};
+use crate::scene::{Parameter, Role};
 
 /// Rates of all elements, in the frames of the first and the last spot, against displaced scenes.
 fn compare(name: &str, names: &[&str], limit: f64) {
@@ -71,4 +73,42 @@ fn other_parameters_have_no_rates_here() {
         .map(|k| moves_figures_alone(&base, &velocity(k)))
         .collect();
     assert_eq!(moves, [true, false, false]);
+}
+
+/// What a spot lights of a surface that is not flat is asked ray by ray, and such light has no rate
+/// of its own: `calibrate` then takes differences.
+#[test]
+fn a_hidden_surface_that_is_not_flat_has_no_rates_here() {
+    let mut file = SceneFile::builtin("periscope").unwrap();
+    file.camera.pixels = [3, 3];
+    if let Some(laser) = &mut file.laser {
+        laser.spots.per_side = laser.spots.per_side.map(|_| 2);
+    }
+    let rates = |file: &SceneFile| {
+        let scene = Scene::new(file, None).unwrap();
+        let parameters = Parameter::named(&scene, "occluders.x").unwrap();
+        let velocity = scene.velocity(&parameters, &[0.0], 0);
+        let swept = Swept::new(&scene, Some([2, 2]), &[velocity], 0.5).unwrap();
+        swept.unwrap().rates[0].is_some()
+    };
+    assert!(rates(&file));
+    // A ball, and between it and the camera a second plate, for cameras must not see it.
+    let mut occluders = file.surface.iter().filter(|s| s.role == Role::Occluder);
+    let mut blind = occluders.next().unwrap().clone();
+    blind.name = "blind".to_owned();
+    blind.rectangle = Some(RectangleTable {
+        corner: [2.5, 7.0, 4.0],
+        u: [0.0, 6.0, 0.0],
+        v: [0.0, 0.0, 5.0],
+    });
+    let mut surfaces = file.surface.iter_mut();
+    let hidden = surfaces.find(|s| s.role == Role::Hidden).unwrap();
+    hidden.rectangle = None;
+    hidden.sphere = Some(SphereTable {
+        centre: [5.0, 10.0, 5.5],
+        radius: 1.0,
+        face: Facing::Outside,
+    });
+    file.surface.push(blind);
+    assert!(!rates(&file));
 }
