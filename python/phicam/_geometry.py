@@ -91,6 +91,7 @@ def calibrate(
     left_out: ArrayLike | None = None,
     frame_gain: float | None = None,
     free_scale: bool = False,
+    error_field: bool = False,
     elements: tuple[int, int] | int | None = None,
     occlusion: bool = True,
     integration: Integration = "quadrature",
@@ -118,6 +119,9 @@ def calibrate(
         Relative standard deviation of an unknown gain of each frame.
     free_scale : bool
         Whether the scale of all light is unknown.
+    error_field : bool
+        Whether what is left over is taken for noise of single pixels and a field of errors that neighbours share; for
+        photographs whose noise is not known.
     elements : (int, int)
         Elements in place of the scene's, or of 12 × 12 where those are more than 256.
     starts, spread, seed
@@ -158,6 +162,7 @@ def calibrate(
         free=given,
         frame_gain=setting(frame_gain, "frame_gain"),
         free_scale=bool(free_scale),
+        error_field=bool(error_field),
         replicates=phi.replicates,
         elements=pair(elements, "elements"),
         considered=bool(occlusion),

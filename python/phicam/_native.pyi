@@ -177,6 +177,7 @@ def calibrate(
     free: list[tuple[str, float | None]],
     frame_gain: float | None,
     free_scale: bool,
+    error_field: bool,
     replicates: int | None,
     elements: tuple[int, int] | None,
     considered: bool,

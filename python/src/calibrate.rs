@@ -81,7 +81,7 @@ fn thinned(asked: Option<(usize, usize)>, scene: &scene::Scene) -> Option<[usize
 
 /// The geometry, estimated; the text of the calibrated scene beside it.
 #[pyfunction]
-#[pyo3(signature = (scene, phi, stderr, left_out, *, free, frame_gain, free_scale, replicates, elements,
+#[pyo3(signature = (scene, phi, stderr, left_out, *, free, frame_gain, free_scale, error_field, replicates, elements,
                     considered, integration_name, frame_polynomial, starts, spread, seed, threads, progress))]
 #[expect(
     clippy::too_many_arguments,
@@ -96,6 +96,7 @@ pub fn calibrate<'py>(
     free: Vec<(String, Option<f64>)>,
     frame_gain: Option<f64>,
     free_scale: bool,
+    error_field: bool,
     replicates: Option<u32>,
     elements: Option<(usize, usize)>,
     considered: bool,
@@ -114,6 +115,7 @@ pub fn calibrate<'py>(
             .collect(),
         frame_gain,
         is_scale_free: free_scale,
+        error_field,
         replicates,
         elements: thinned(elements, &scene.inner),
         occlusion: occlusion(considered),

@@ -31,6 +31,7 @@ pub(super) fn execute(args: &CalibrateArgs, console: Console) -> Result<Outcome,
     let replicates = own
         .and_then(|r| r.origin.plan())
         .map(|plan| plan.budget.blocks);
+    let replicates = args.replicates.or(replicates);
     let plan = plan(args, (&scene, replicates), console);
     need::calibrate(&scene, plan.elements)?;
     let (left_out, polynomial) = (args.left_out.as_deref(), args.frame_polynomial);
@@ -102,11 +103,17 @@ fn recovering(args: &CalibrateArgs, calibrated: &Path) -> String {
             command += &format!(" {option} {}", file.display());
         }
     }
+    if let Some(replicates) = args.replicates {
+        command += &format!(" --replicates {replicates}");
+    }
     if let Some(degree) = args.frame_polynomial {
         command += &format!(" --frame-polynomial {degree}");
     }
     if args.free_scale {
         command += " --free-scale";
+    }
+    if args.error_field {
+        command += " --method joint-gp --error-field";
     }
     if let Some(gain) = args.frame_gain {
         command += &format!(" --frame-gain {gain}");
@@ -124,6 +131,7 @@ fn plan(
         free: free(&args.free, scene),
         frame_gain: args.frame_gain,
         is_scale_free: args.free_scale,
+        error_field: args.error_field,
         replicates,
         elements: elements(args.elements, scene, console),
         occlusion: args.occlusion.occlusion(),
@@ -181,8 +189,10 @@ fn invocation(args: &CalibrateArgs, free: &[Free], scene: &Scene) -> Invocation 
     let path = |p: &Option<PathBuf>| p.as_ref().map(|p| p.to_string_lossy().into_owned());
     given("--phi", path(&args.phi));
     given("--stderr", path(&args.stderr));
+    given("--replicates", args.replicates.map(|n| n.to_string()));
     given("--frame-gain", args.frame_gain.map(|x| x.to_string()));
     given("--free-scale", args.free_scale.then(String::new));
+    given("--error-field", args.error_field.then(String::new));
     given(
         "--elements",
         args.elements.map(|n| n.map(|x| x.to_string()).join("x")),

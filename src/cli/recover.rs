@@ -76,22 +76,7 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
         scene: &modelled,
         methods: &methods,
         options,
-        // Of the run's own errors more is known than of those that are given.
-        certainty: match &record {
-            Some(record) if has_own_errors(args, dir) => match record.origin.plan() {
-                Some(plan) => Certainty::of(plan),
-                // A background takes what all spots of a pixel share.
-                None => {
-                    let shared = record.origin.shares_by_pixel() && !args.joint.background;
-                    let errors = crate::lab::Errors::of_photographs(shared);
-                    Certainty {
-                        errors,
-                        ..Certainty::STATED
-                    }
-                }
-            },
-            _ => Certainty::STATED,
-        },
+        certainty: certainty(args, dir, record.as_ref()),
         is_imported: record.as_ref().is_some_and(Record::is_imported),
         phi: args.phi.clone().unwrap_or_else(|| dir.join(PHI)),
         console,
@@ -147,6 +132,28 @@ fn results(args: &RecoverArgs, dir: &Path, of_run: bool) -> Result<(PathBuf, Pla
         (None, Some(_)) => (usual, Place::Other),
         (None, None) => (usual, Place::Run),
     })
+}
+
+/// What is known of the errors: of the run's own more than of those that are given.
+fn certainty(args: &RecoverArgs, dir: &Path, record: Option<&Record>) -> Certainty {
+    let own = match record.filter(|_| has_own_errors(args, dir)) {
+        None => Certainty::STATED,
+        Some(record) => match record.origin.plan() {
+            Some(plan) => Certainty::of(plan),
+            // A background takes what all spots of a pixel share.
+            None => {
+                let shared = record.origin.shares_by_pixel() && !args.joint.background;
+                Certainty {
+                    errors: crate::lab::Errors::of_photographs(shared),
+                    ..Certainty::STATED
+                }
+            }
+        },
+    };
+    Certainty {
+        replicates: args.replicates.or(own.replicates),
+        ..own
+    }
 }
 
 /// Whether Φcam and its errors are those of the run, named or not.

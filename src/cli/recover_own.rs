@@ -74,7 +74,9 @@ pub(super) fn execute(
         (None, None) => None,
     };
     let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
-        Noise::StandardError(stderr, Certainty::STATED)
+        let replicates = args.replicates;
+        let errors = Certainty::STATED.errors;
+        Noise::StandardError(stderr, Certainty { errors, replicates })
     });
     let of = Photographs {
         name: phi_file.display().to_string(),

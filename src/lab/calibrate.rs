@@ -12,6 +12,7 @@
 //! picture's own covariance is P + (RX) cov θ (RX)ᵀ.
 
 mod descent;
+mod field;
 mod geometry;
 mod identified;
 mod picture;
@@ -37,10 +38,12 @@ use crate::metrics::{correlation, mtf_raw};
 use crate::model::{Fineness, Kernel, MatrixModel, Occlusion};
 use crate::num::linalg::Cholesky;
 use crate::num::statistics::chi_square_sf;
+use crate::recovery::ErrorField;
 use crate::scene::{Parameter, Scene};
 use crate::store::digest_of;
 use crate::transport::Control;
 use descent::{Problem, State, first};
+use field::End;
 use geometry::{Geometry, distance};
 use identified::identified;
 
@@ -69,6 +72,8 @@ pub struct CalibrationPlan {
     pub frame_gain: Option<f64>,
     /// Whether the scale of all light is unknown.
     pub is_scale_free: bool,
+    /// Whether errors that neighbouring pixels share are estimated beside noise of single pixels.
+    pub error_field: bool,
     /// Replicates from which the standard errors were estimated; none where they are known.
     pub replicates: Option<u32>,
     /// Elements in place of the scene's.
@@ -141,7 +146,11 @@ pub struct Calibration {
     pub dof: f64,
     /// Probability of so bad a fit by noise alone; absent where the noise is not stated.
     pub p: Option<f64>,
-    /// ‖what is not explained‖/‖what other light leaves‖, weighted.
+    /// The errors that what is left over is taken for, in place of noise of single pixels.
+    pub field: Option<ErrorField>,
+    /// ln of how much likelier the photographs are with these errors, each with its own geometry.
+    pub log_likelier: Option<f64>,
+    /// ‖what is not explained‖/‖what other light leaves‖, weighted by the stated noise.
     pub left: f64,
     /// Estimated scale of all light; 1 where it is known.
     pub scale: f64,
@@ -198,6 +207,7 @@ impl CalibrationPlan {
             Integration::Centres => Fineness::Centres,
             Integration::Quadrature => Fineness::Areas,
         };
+        let pictures = picture::priors(&model.places, self.is_scale_free)?;
         let problem = Problem {
             geometry: Geometry {
                 scene,
@@ -208,11 +218,16 @@ impl CalibrationPlan {
                 gains,
             },
             photographs: *photographs,
-            pictures: picture::priors(&model.places, self.is_scale_free)?,
+            pictures: &pictures,
             is_scale_free: self.is_scale_free,
             first: first(photographs),
+            cosines: None,
+            log_errors: 0.0,
             priors,
         };
+        if self.error_field {
+            problem.has_field()?;
+        }
         let sizes = sizes(scene, &parameters, gains);
         let zero = vec![0.0; problem.unknowns()];
         // Of a noise that is not stated nothing is known yet: that of the first stage.
@@ -227,9 +242,14 @@ impl CalibrationPlan {
             return Err(LabError::Untold(words::untold(&free, &parameters)));
         }
         (control.progress)(1);
-        let mut ends: Vec<(State, Vec<Stage>)> = Vec::new();
+        let mut ends: Vec<End> = Vec::new();
         for k in 0..self.starts.max(1) {
-            ends.push(problem.descend(&self.start(k, &problem, &sizes), control)?);
+            let (state, stages) = problem.descend(&self.start(k, &problem, &sizes), control)?;
+            ends.push(if self.error_field {
+                problem.with_shared_errors((state, stages), control)?
+            } else {
+                End::new(&problem, state, stages)
+            });
             (control.progress)(1);
         }
         self.finish(&problem, (&model, told, untold), ends)
@@ -280,13 +300,24 @@ impl CalibrationPlan {
         &self,
         problem: &Problem<'_>,
         (model, told, untold): (&MatrixModel, Vec<Identified>, Vec<Direction>),
-        mut ends: Vec<(State, Vec<Stage>)>,
+        mut ends: Vec<End>,
     ) -> Result<Calibration, LabError> {
-        ends.sort_by(|a, b| problem.total(&a.0).total_cmp(&problem.total(&b.0)));
-        let (best, stages) = &ends[0];
+        ends.sort_by(|a, b| a.total.total_cmp(&b.total));
+        let alone = ends.iter().map(|end| end.without);
+        let alone = alone.fold(f64::INFINITY, f64::min);
+        let End {
+            state: best,
+            stages,
+            field,
+            total,
+            ..
+        } = &ends[0];
+        let left = problem.left_over(best)?;
+        let with_field = field.as_ref().map(|field| problem.with_field(field));
+        let is_noise_known = problem.photographs.stderr.is_some();
+        let problem = with_field.as_ref().unwrap_or(problem);
         let information = problem.information(&best.slope);
         let covariance = Cholesky::new(&information).ok_or(LabError::DARK)?.inverse();
-        let is_noise_known = problem.photographs.stderr.is_some();
         let unknowns = problem.unknowns() as f64;
         let dof = (best.value.count - best.value.freedom - unknowns).max(1.0);
         let p = is_noise_known.then(|| self.by_noise(best.value.chi2, dof));
@@ -306,7 +337,8 @@ impl CalibrationPlan {
             let root = |m: &Matrix| m[(k, k)].max(0.0).sqrt();
             let by_curvature = root(&covariance);
             let by_frames = (more_than_noise && enough_frames).then(|| root(&by_frames));
-            let by_blocks = more_than_noise.then(|| root(&by_blocks));
+            // Along the cosines there are no blocks of pixels.
+            let by_blocks = (more_than_noise && field.is_none()).then(|| root(&by_blocks));
             let profile = profile::profile(problem, best, &covariance, k)?;
             let by_profile = profile.as_ref().map_or(0.0, Profile::stderr);
             let others = [by_frames, by_blocks].map(|x| x.unwrap_or(0.0));
@@ -341,7 +373,7 @@ impl CalibrationPlan {
             tried: ends.len(),
             agree: ends
                 .iter()
-                .filter(|end| agree(&end.0, best, &found))
+                .filter(|end| agree(&end.state, best, &found))
                 .count(),
         };
         let scale = best.prior.scale;
@@ -369,11 +401,13 @@ impl CalibrationPlan {
             scene: scene.name.clone(),
             scene_hash: scene.hash.clone(),
             untold,
-            noise: best.factor,
+            noise: field.as_ref().map_or(best.factor, |f| f.errors.pixel),
+            field: field.as_ref().map(|f| f.errors),
+            log_likelier: field.as_ref().map(|_| alone - total),
             misfit: best.value.chi2 / dof,
             dof,
             p,
-            left: (best.value.chi2 / best.normal.square).sqrt(),
+            left,
             scale,
             spread: best.prior.spread,
             length: best.prior.length,

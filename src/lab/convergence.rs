@@ -15,8 +15,8 @@ use crate::model::{Extent, Kernel, converged};
 use crate::num::stream::Sampling;
 use crate::scene::{Role, Scene};
 use crate::transport::{Budget, Control, Estimator, Plan, render};
-pub use curves::{Convergence, Curve, Step};
-use slope::{slope, slope_bound};
+pub use curves::{Bend, Convergence, Curve, Step};
+use slope::{bend, slope, slope_bound, slope_scatter};
 
 const REFLECTING: LabError = LabError::Unsuited(
     "the reference is a quadrature of what meets wall, hidden surface and wall, and an occluder reflects light too (make it black: `material = { lambertian = 0 }`)",
@@ -210,6 +210,8 @@ impl Study for ConvergenceTasks {
                 sampler: renders[0].sampling.name().to_owned(),
                 slope: slope(&steps).ok_or(TOO_FEW)?,
                 slope_bound: slope_bound(&steps, *bound),
+                slope_scatter: slope_scatter(&steps),
+                bend: bend(&steps),
                 steps,
             });
         }

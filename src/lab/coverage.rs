@@ -42,7 +42,7 @@ pub struct CoverageRow {
     /// Share of elements whose true albedo lies in its band, over all other seeds.
     pub covered: Option<f64>,
     /// Standard error of that share, from the spread over seeds: the elements of one recovery are
-    /// correlated.
+    /// correlated. At least 1/(n + 2) of n seeds, which agree by chance too (Laplace's rule).
     pub stderr: Option<f64>,
     /// The element that is covered least often.
     pub least: Option<f64>,
@@ -201,10 +201,7 @@ pub(super) const STUDY: Registered = Registered {
     scene: Some("bench"),
     files: "",
     options: &[
-        Opt::methods(
-            "Methods, separated by commas",
-            "pinv,tsvd,tikhonov,joint-unbounded,joint,nnls",
-        ),
+        Opt::methods("Methods, separated by commas", "joint,nnls,joint-gp"),
         Opt::whole("elements", "Elements a side, in place of the scene's").within(1, 1024),
         Opt::number("noise", "Noise of the photographs, relative to each entry")
             .or("0.01")
@@ -408,7 +405,10 @@ fn row(method: Method, truth: &[f64], trials: &[Result<Trial, String>]) -> Cover
     CoverageRow {
         bands: Some(words(first.bands.kind).to_owned()),
         covered: Some(mean),
-        stderr: (trials.len() > 1).then(|| (square / (n * (n - 1.0))).sqrt()),
+        stderr: (trials.len() > 1).then(|| {
+            let by_spread = (square / (n * (n - 1.0))).sqrt();
+            by_spread.max(1.0 / (n + 2.0))
+        }),
         least: (0..truth.len()).map(of_element).reduce(f64::min),
         together: Some(shares.iter().filter(|s| **s == 1.0).count() as f64 / n),
         bias: Some((squares.sum::<f64>() / r).sqrt()),

@@ -220,7 +220,7 @@ pub use calibrate::{
     Calibrated, Calibration, CalibrationPlan, Direction, Free, Identified, Profile, Stage, Starts,
 };
 pub use chosen::{Beside, Chosen, Ended, Probable};
-pub use convergence::{Convergence, ConvergenceTasks, Curve, Step};
+pub use convergence::{Bend, Convergence, ConvergenceTasks, Curve, Step};
 pub use coverage::{Coverage, CoveragePlan, CoverageRow, CoverageTasks};
 pub use ensemble::{Estimate, Spread};
 pub use error::{LabError, StudyError};

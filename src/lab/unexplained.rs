@@ -110,6 +110,17 @@ impl Whitening {
         }
     }
 
+    /// Orthonormal directions of the patterns, weighted, pixels × directions.
+    pub(super) fn directions(&self) -> &Matrix {
+        &self.directions
+    }
+
+    /// How much of each row the patterns take: the diagonal of their projector.
+    pub(super) fn leverage(&self) -> DVector<f64> {
+        let rows = self.directions.row_iter();
+        DVector::from_iterator(self.roots.len(), rows.map(|row| row.norm_squared()))
+    }
+
     /// Entries that count, less the directions of the patterns.
     pub(super) fn count(&self) -> f64 {
         let counted = self.roots.iter().filter(|q| **q > 0.0).count();

@@ -2,6 +2,7 @@
 //! linear algebra, arithmetic beyond double precision, wide arithmetic.
 
 pub mod control;
+pub(crate) mod cosines;
 #[doc(hidden)]
 pub mod decimal;
 #[doc(hidden)]

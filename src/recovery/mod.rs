@@ -95,6 +95,7 @@
 
 mod bands;
 mod error;
+mod field;
 mod gains;
 mod joint;
 mod method;
@@ -113,6 +114,7 @@ mod spectrum;
 
 pub use bands::{BandKind, Bands};
 pub use error::RecoveryError;
+pub use field::ErrorField;
 pub use gains::{Deviations, Gains};
 pub use joint::{
     CramerRao, Determined, Exponential, cramer_rao, determined, picard_joint, two_valued_bytes,
@@ -120,7 +122,7 @@ pub use joint::{
 pub use method::{Method, UnknownMethod};
 pub use nuisance::{Estimated, Nuisance};
 pub use options::{Options, Rule, Uncertainty, WeightRule};
-pub use outcome::{Choice, ErrorField, Parameter, Recovered, Solver, Weighting};
+pub use outcome::{Choice, Parameter, Recovered, Solver, Weighting};
 pub use patterns::{Patterns, Sum};
 pub use picard::{Directions, Picard, picard};
 pub use pixelwise::laser_side::{LaserSide, Parts};

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Bands, Estimated, Gains, Method, Patterns, Problem, RecoveryError, bands};
+use super::{Bands, ErrorField, Estimated, Gains, Method, Patterns, Problem, RecoveryError, bands};
 
 /// A regularisation parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -119,18 +119,6 @@ pub struct Solver {
     /// from a bound that no pattern of two values can undercut; zero says that the pattern is the
     /// best of all.
     pub gap: f64,
-}
-
-/// Errors of a photograph of which a part is shared by neighbouring pixels, as what is left over
-/// tells them.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ErrorField {
-    /// σ, of each pixel alone, W.
-    pub pixel: f64,
-    /// τ, of the field that neighbours share, W: its root mean square over the photograph.
-    pub shared: f64,
-    /// ℓ, over which the field varies, pixels.
-    pub range: f64,
 }
 
 /// Recovered reflectances and how they came about.

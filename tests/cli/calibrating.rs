@@ -117,3 +117,71 @@ fn uncertainties_stand_in_the_scene() {
         &["hinge.angle", "standard deviation"],
     );
 }
+
+/// Errors that neighbours share are refused where the noise is stated; where it is not, which errors
+/// are likelier is said, and the command that recovers takes the same.
+#[test]
+fn errors_that_neighbours_share_are_asked_for() {
+    let w = rendered();
+    let line = "--free hinge.angle --error-field --elements 2x2 --starts 1";
+    w.refuses(
+        &format!("calibrate run {line}"),
+        &["noise of the photographs is stated", "--error-field"],
+    );
+    let ended = w
+        .phicam(&format!("calibrate run --phi run/phi.npy {line} -o shared"))
+        .exits(0);
+    let words = told(&ended.stdout);
+    for expected in ["errors that neighbouring pixels share", "likelier"] {
+        assert!(words.contains(expected), "{}", ended.account());
+    }
+    assert!(
+        told(&ended.stderr).contains("--method joint-gp --error-field"),
+        "{}",
+        ended.account()
+    );
+    let found = w.json("shared/calibration.json");
+    assert!(found["field"]["range"].as_f64().unwrap() > 0.0);
+    assert!(found["log_likelier"].as_f64().unwrap() > -0.5);
+    assert!(found["p"].is_null());
+}
+
+/// Errors that come from few replicates refute less than errors that are known.
+#[test]
+fn errors_of_few_replicates_refute_less() {
+    let w = rendered();
+    // Not the run's own, of which it is known.
+    for file in ["phi.npy", "phi.stderr.npy"] {
+        std::fs::copy(w.path(&format!("run/{file}")), w.path(file)).unwrap();
+    }
+    let own = "--phi phi.npy --stderr phi.stderr.npy";
+    let fit = |more: &str| {
+        let line =
+            format!("recover run {own}{more} --elements 4x4 --method joint --json -o there -q");
+        let ended = w.phicam(&line);
+        let found: serde_json::Value = serde_json::from_str(&ended.stdout).unwrap();
+        found[0]["fit"]["chi2_per_dof"]
+            .as_f64()
+            .unwrap_or_else(|| panic!("{found:#}"))
+    };
+    // z of Student's t of 3 degrees of freedom is less than t.
+    assert!(fit(" --replicates 4") < 0.8 * fit(""));
+    w.refuses("recover run --replicates 4", &["--stderr"]);
+    w.refuses(
+        &format!("recover run {own} --replicates 1"),
+        &["--replicates"],
+    );
+    let line = format!(
+        "calibrate run {own} --replicates 8 --free hinge.angle --elements 4x4 --starts 1 --json -o c -q"
+    );
+    let few: serde_json::Value = serde_json::from_str(&w.phicam(&line).stdout).unwrap();
+    let all = w.phicam(&line.replace(" --replicates 8", ""));
+    let all: serde_json::Value = serde_json::from_str(&all.stdout).unwrap();
+    let p = |found: &serde_json::Value| found["p"].as_f64().unwrap();
+    assert!(
+        p(&few) > p(&all) || p(&all) > 0.999,
+        "{} {}",
+        p(&few),
+        p(&all)
+    );
+}

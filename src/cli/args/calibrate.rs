@@ -19,6 +19,9 @@ pub(in crate::cli) struct CalibrateArgs {
     /// Its standard errors; without them its noise is unknown
     #[arg(long, value_name = "FILE", requires = "phi")]
     pub stderr: Option<PathBuf>,
+    /// Replicates from which --stderr was estimated, at least 2; known errors unless given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..), requires = "stderr")]
+    pub replicates: Option<u32>,
     /// Folder for the results; DIR/calibrated unless given
     #[arg(long, short, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
@@ -34,6 +37,10 @@ pub(in crate::cli) struct CalibrateArgs {
     /// The scale of all light is unknown
     #[arg(long)]
     pub free_scale: bool,
+    /// Where the noise is not known: take what is left over for noise of single pixels and a field
+    /// of errors that neighbours share, and say how much likelier that is
+    #[arg(long)]
+    pub error_field: bool,
     /// Elements along u and v; the scene's unless given, or 12x12 where those are more than 256
     #[arg(long, value_name = "N", value_parser = elements)]
     pub elements: Option<[usize; 2]>,

@@ -11,7 +11,7 @@
 use nalgebra::DVector;
 
 use super::geometry::Geometry;
-use super::picture::{Normal, Prior};
+use super::picture::Prior;
 use super::posterior::{Seen, Slope, Value};
 use crate::lab::error::LabError;
 use crate::lab::unexplained::Unexplained;
@@ -39,10 +39,14 @@ pub(super) struct Problem<'a> {
     pub photographs: Unexplained<'a>,
     /// σ_k; none where nothing is known of an unknown.
     pub priors: Vec<Option<f64>>,
-    pub pictures: Vec<Prior>,
+    pub pictures: &'a [Prior],
     pub is_scale_free: bool,
     /// The noise of the first stage, over the stated one ([`first`]).
     pub first: f64,
+    /// Columns and rows of photographs that are along their cosines; none where they are as taken.
+    pub cosines: Option<[usize; 2]>,
+    /// ½ ln det of the covariance of the stated errors, what other light takes left out.
+    pub log_errors: f64,
 }
 
 /// The unknowns at some noise.
@@ -50,7 +54,6 @@ pub(super) struct State {
     pub values: Vec<f64>,
     /// Noise over the stated one.
     pub factor: f64,
-    pub normal: Normal,
     pub prior: Prior,
     pub value: Value,
     pub slope: Slope,
@@ -73,7 +76,7 @@ pub struct Stage {
 
 impl State {
     /// ν² = χ²/(N − directions), over the assumed noise.
-    fn left(&self) -> f64 {
+    pub(super) fn left(&self) -> f64 {
         self.value.chi2 / (self.value.count - self.value.freedom).max(1.0)
     }
 }
@@ -84,6 +87,7 @@ impl<'a> Problem<'a> {
             photographs: self.photographs,
             factor,
             columns: self.geometry.scene.camera.columns,
+            cosines: self.cosines,
         }
     }
 
@@ -110,14 +114,13 @@ impl<'a> Problem<'a> {
         let normal = seen.normal(&light)?;
         let prior = match prior {
             Some(prior) => prior.clone(),
-            None => Prior::likeliest(&self.pictures, &normal, self.is_scale_free)?,
+            None => Prior::likeliest(self.pictures, &normal, self.is_scale_free)?,
         };
         let value = seen.value(&light, &normal, &prior)?;
         let slope = seen.slope(&light, &prior, &value, self.unknowns())?;
         Ok(State {
             values: values.to_vec(),
             factor,
-            normal,
             prior,
             value,
             slope,
@@ -143,6 +146,14 @@ impl<'a> Problem<'a> {
         Ok(Some(value.cost + self.penalty(values)))
     }
 
+    /// ‖y − Aρ̂‖/‖y‖ at the stated weights.
+    pub(super) fn left_over(&self, state: &State) -> Result<f64, LabError> {
+        let seen = self.seen(1.0);
+        let light = self.geometry.light(&state.values, 0.0, false)?;
+        let whole = seen.normal(&light)?.square;
+        Ok((seen.residue(&light, &state.value.rho)? / whole).sqrt())
+    }
+
     /// F + Λ.
     pub(super) fn information(&self, slope: &Slope) -> Matrix {
         let mut all = slope.curvature.clone();
@@ -163,7 +174,7 @@ impl<'a> Problem<'a> {
 
     /// −ln p(y|θ) p(θ) up to a constant, the noise being an unknown too.
     pub(super) fn total(&self, state: &State) -> f64 {
-        let noise = state.value.count * libm::log(state.factor);
+        let noise = state.value.count * libm::log(state.factor) + self.log_errors;
         state.value.cost + self.penalty(&state.values) + noise
     }
 
@@ -203,7 +214,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Down at one noise.
-    fn stage(
+    pub(super) fn stage(
         &self,
         start: &[f64],
         factor: f64,
@@ -270,11 +281,8 @@ impl<'a> Problem<'a> {
                 fineness,
                 ..self.geometry
             },
-            photographs: self.photographs,
             priors: self.priors.clone(),
-            pictures: Vec::new(),
-            is_scale_free: self.is_scale_free,
-            first: self.first,
+            ..*self
         };
         let state = finer.state(&best.values, best.factor, Some(&best.prior))?;
         let slopes = self.whole_slope(best) - self.whole_slope(&state);

@@ -18,6 +18,7 @@ use super::picture::{Normal, Prior, white};
 use crate::lab::error::LabError;
 use crate::lab::unexplained::Unexplained;
 use crate::matrix::Matrix;
+use crate::num::cosines::along_cosines;
 use crate::num::linalg::{Cholesky, product, tr_product};
 
 /// Pixels are put in so many blocks a side, to see whether errors hang together.
@@ -30,6 +31,8 @@ pub(super) struct Seen<'a> {
     pub factor: f64,
     /// Columns of the picture's pixels.
     pub columns: usize,
+    /// Columns and rows of photographs that are along their cosines; none where they are as taken.
+    pub cosines: Option<[usize; 2]>,
 }
 
 /// What is left with the picture at its likeliest.
@@ -76,10 +79,19 @@ impl Seen<'_> {
         Ok(each.collect())
     }
 
+    /// Light as the photographs are.
+    fn along(&self, light: Matrix) -> Matrix {
+        match self.cosines {
+            Some(frame) => along_cosines(&light, frame),
+            None => light,
+        }
+    }
+
     /// Whitened photograph and light of the elements in frame l.
     fn frame(&self, light: &Light, l: usize) -> Result<[Matrix; 2], LabError> {
         let photograph = self.photographs.phi.columns(l, 1).into_owned();
-        let mut both = self.white(l, &[&photograph, &light.frame(l)])?.into_iter();
+        let light = self.along(light.frame(l));
+        let mut both = self.white(l, &[&photograph, &light])?.into_iter();
         match (both.next(), both.next()) {
             (Some(y), Some(a)) => Ok([y, a]),
             _ => Err(LabError::DARK),
@@ -115,6 +127,41 @@ impl Seen<'_> {
         }))
     }
 
+    /// ‖y − Aρ‖².
+    pub(super) fn residue(&self, light: &Light, rho: &DVector<f64>) -> Result<f64, LabError> {
+        let left = |l: usize| -> Result<f64, LabError> {
+            let [y, a] = self.frame(light, l)?;
+            Ok((y.column(0) - a * rho).norm_squared())
+        };
+        let left = (0..self.frames()).into_par_iter().map(left);
+        let left: Vec<f64> = left.collect::<Result<_, _>>()?;
+        Ok(left.iter().sum())
+    }
+
+    /// E r² of each row, over all frames: r what picture and other light leave of y, the
+    /// expectation over both. That is (y − Aρ̂)² + diag(A P Aᵀ) + what the patterns of other light
+    /// take of a row.
+    pub(super) fn squares(
+        &self,
+        light: &Light,
+        prior: &Prior,
+        value: &Value,
+    ) -> Result<DVector<f64>, LabError> {
+        let half = value.factor.forward(prior.root.transpose());
+        let of = |l: usize| -> Result<DVector<f64>, LabError> {
+            let [y, a] = self.frame(light, l)?;
+            let left = y.column(0) - &a * &value.rho;
+            let spread = product(&half, &a.transpose());
+            let taken = self.photographs.whitening(l)?.leverage();
+            Ok(DVector::from_fn(left.len(), |k, _| {
+                left[k] * left[k] + spread.column(k).norm_squared() + taken[k]
+            }))
+        };
+        let frames = (0..self.frames()).into_par_iter().map(of);
+        let frames: Vec<DVector<f64>> = frames.collect::<Result<_, _>>()?;
+        Ok(frames.iter().sum())
+    }
+
     /// With the picture at its likeliest.
     pub(super) fn value(
         &self,
@@ -127,15 +174,7 @@ impl Seen<'_> {
         let factor = white(&gram)?;
         let z = factor.solve(&prior.root.tr_mul(&(&normal.side - &normal.h * &mean)));
         let rho = mean + &prior.root * &z;
-        let left = |l: usize| -> Result<f64, LabError> {
-            let [y, a] = self.frame(light, l)?;
-            Ok((y.column(0) - a * &rho).norm_squared())
-        };
-        let left: Vec<f64> = (0..self.frames())
-            .into_par_iter()
-            .map(left)
-            .collect::<Result<_, _>>()?;
-        let chi2: f64 = left.iter().sum();
+        let chi2 = self.residue(light, &rho)?;
         let inverse = factor.forward(Matrix::identity(gram.nrows(), gram.nrows()));
         Ok(Value {
             cost: 0.5 * (chi2 + z.norm_squared() + factor.log_det()),
@@ -219,7 +258,7 @@ impl Seen<'_> {
             let Some(rate) = light.frame_rate(l, k) else {
                 continue;
             };
-            for rate in self.white(l, &[&rate])? {
+            for rate in self.white(l, &[&self.along(rate)])? {
                 b.set_column(k, &(&rate * rho));
                 occam[k] = spread.dot(&rate);
             }

@@ -6,6 +6,7 @@ use nalgebra::DVector;
 use super::picture::{Prior, priors};
 use super::*;
 use crate::lab::finding::Describe;
+use crate::num::cosines::from_cosines;
 use crate::scene::file::SceneFile;
 
 fn small(name: &str, pixels: u32) -> Scene {
@@ -36,6 +37,7 @@ fn plan(free: &[&str], n: usize) -> CalibrationPlan {
         free: free.collect(),
         frame_gain: None,
         is_scale_free: false,
+        error_field: false,
         replicates: None,
         elements: Some([n; 2]),
         occlusion: Occlusion::Considered,
@@ -55,13 +57,19 @@ fn unexplained<'a>(phi: &'a Matrix, stderr: &'a Matrix) -> Unexplained<'a> {
     }
 }
 
+/// Priors of 2 × 2 elements.
+fn pictures(scene: &Scene) -> Vec<Prior> {
+    let model = MatrixModel::with(scene, Kernel::Physical, Some([2; 2]), Occlusion::Ignored);
+    priors(&model.unwrap().places, false).unwrap()
+}
+
 fn problem<'a>(
     scene: &'a Scene,
     parameters: &'a [Parameter],
     photographs: Unexplained<'a>,
+    pictures: &'a [Prior],
     gains: usize,
 ) -> Problem<'a> {
-    let model = MatrixModel::with(scene, Kernel::Physical, Some([2; 2]), Occlusion::Ignored);
     Problem {
         geometry: Geometry {
             scene,
@@ -73,9 +81,11 @@ fn problem<'a>(
         },
         photographs,
         priors: vec![Some(0.3); parameters.len() + gains],
-        pictures: priors(&model.unwrap().places, false).unwrap(),
+        pictures,
         is_scale_free: false,
         first: first(&photographs),
+        cosines: None,
+        log_errors: 0.0,
     }
 }
 
@@ -90,7 +100,9 @@ fn the_cost_is_that_of_a_dense_normal_distribution() {
         .unwrap();
     let (phi, stderr) = photographs(&scene, 2, 0.1, 3);
     let parameters = Parameter::named(&scene, "hidden.normal").unwrap();
-    let problem = problem(&scene, &parameters, unexplained(&phi, &stderr), 0);
+    let pictures = pictures(&scene);
+    let photographs = unexplained(&phi, &stderr);
+    let problem = problem(&scene, &parameters, photographs, &pictures, 0);
     let light = problem.geometry.light(&[0.2], 0.0, false).unwrap();
     let frames: Vec<Matrix> = (0..2).map(|l| light.frame(l)).collect();
     let rows = |k: usize| [k / 12, k % 12];
@@ -133,6 +145,97 @@ fn the_cost_is_that_of_a_dense_normal_distribution() {
     assert!((state.value.cost - best).abs() < 1e-8 * best.abs().max(1.0));
 }
 
+/// y ~ N(0, A R Rᵀ Aᵀ + T V Tᵀ) beside a constant and a slope of each frame, as one dense matrix
+/// S: −ln p of what they leave is ½ yᵀPy + ½ ln det S + ½ ln det FᵀS⁻¹F, P = S⁻¹ − S⁻¹F(FᵀS⁻¹F)⁻¹
+/// FᵀS⁻¹, up to a constant; that of a field without what is shared is that of noise alone.
+#[test]
+fn likelihoods_of_different_errors_are_comparable() {
+    let mut file = SceneFile::builtin("bench").unwrap();
+    file.camera.pixels = [4, 3];
+    let scene = Scene::new(&file, None)
+        .unwrap()
+        .with_spots_at(&[[1.0, 2.0], [9.0, 4.0]])
+        .unwrap();
+    let (phi, _) = photographs(&scene, 2, 0.1, 3);
+    let level = phi.amax();
+    let patterns = Matrix::from_fn(12, 2, |p, k| if k == 0 { 1.0 } else { (p % 4) as f64 });
+    let parameters = Parameter::named(&scene, "hidden.normal").unwrap();
+    let pictures = pictures(&scene);
+    let photographs = Unexplained {
+        phi: &phi,
+        stderr: None,
+        left_out: None,
+        patterns: Some(&patterns),
+    };
+    let problem = problem(&scene, &parameters, photographs, &pictures, 0);
+    let light = problem.geometry.light(&[0.2], 0.0, false).unwrap();
+    let prior = &pictures[6];
+    let a = Matrix::from_fn(24, 4, |k, j| light.frame(k / 12)[(k % 12, j)]);
+    let y = Matrix::from_fn(24, 1, |k, _| phi[(k % 12, k / 12)])
+        - &a * Matrix::from_element(4, 1, prior.mean);
+    let f = Matrix::from_fn(24, 4, |k, j| {
+        f64::from(u8::from(k / 12 == j / 2)) * patterns[(k % 12, j % 2)]
+    });
+    let dense = |errors: &ErrorField| {
+        let v = DVector::from_vec(errors.variances([4, 3]));
+        let once = from_cosines(&Matrix::from_diagonal(&v), [4, 3]);
+        let own = from_cosines(&once.transpose(), [4, 3]);
+        let light = &a * &prior.root;
+        let mut s = &light * light.transpose();
+        for (k, j) in (0..24).flat_map(|k| (0..24).map(move |j| (k, j))) {
+            if k / 12 == j / 12 {
+                s[(k, j)] += own[(k % 12, j % 12)];
+            }
+        }
+        let s = nalgebra::Cholesky::new(s / (level * level)).unwrap();
+        let (y, f) = (&y / level, &f);
+        let gram = nalgebra::Cholesky::new(f.tr_mul(&s.solve(f))).unwrap();
+        let seen = f.tr_mul(&s.solve(&y));
+        let left = y.dot(&s.solve(&y)) - seen.dot(&gram.solve(&seen));
+        0.5 * (left + s.determinant().ln() + gram.determinant().ln())
+    };
+    let total = |errors: ErrorField| {
+        let field = field::Field::new(&problem, errors).unwrap();
+        let own = problem.with_field(&field);
+        let state = own.state(&[0.2], 1.0, Some(prior)).unwrap();
+        own.total(&state)
+    };
+    let errors = |pixel: f64, shared: f64, range: f64| ErrorField {
+        pixel: pixel * level,
+        shared: shared * level,
+        range,
+    };
+    let white = errors(0.1, 0.0, 1.0);
+    let state = problem.state(&[0.2], white.pixel, Some(prior)).unwrap();
+    let alone = problem.total(&state);
+    assert!((total(white) - alone).abs() < 1e-8 * alone.abs(), "{alone}");
+    for other in [errors(0.1, 0.3, 2.0), errors(0.01, 0.2, 5.0)] {
+        let [found, want] = [total(other) - total(white), dense(&other) - dense(&white)];
+        assert!((found - want).abs() < 1e-7 * want.abs(), "{found} {want}");
+    }
+    // Those that are found are the likeliest.
+    let mut field = field::Field::new(&problem, white).unwrap();
+    let found = problem.likeliest_errors(&mut field, &state, Control::none());
+    assert!(found.unwrap());
+    let best = total(field.errors);
+    for [pixel, shared] in [
+        [1.1, 1.0],
+        [0.9, 1.0],
+        [1.0, 1.1],
+        [1.0, 0.9],
+        [1.1, 1.1],
+        [0.9, 0.9],
+    ] {
+        let other = ErrorField {
+            pixel: field.errors.pixel * pixel,
+            shared: field.errors.shared * shared,
+            ..field.errors
+        };
+        let gained = best - total(other);
+        assert!(gained < 0.01, "{:?} {other:?}: {gained}", field.errors);
+    }
+}
+
 /// Slopes are those of the cost, gains among them; of an obstructed scene too.
 #[test]
 fn slopes_are_those_of_the_cost() {
@@ -144,7 +247,9 @@ fn slopes_are_those_of_the_cost() {
         .flat_map(|name| Parameter::named(&scene, name).unwrap())
         .collect();
     let frames = phi.ncols();
-    let problem = problem(&scene, &parameters, unexplained(&phi, &stderr), frames);
+    let pictures = pictures(&scene);
+    let photographs = unexplained(&phi, &stderr);
+    let problem = problem(&scene, &parameters, photographs, &pictures, frames);
     let mut values = vec![0.3, -0.05, 0.02, 0.04];
     values.extend((0..frames).map(|l| 0.01 * (l % 3) as f64));
     let state = problem.state(&values, 1.0, None).unwrap();
@@ -323,4 +428,91 @@ fn estimated_errors_are_expected_to_scatter() {
     assert!((25..=100).contains(&below), "{below}");
     let known = plan(&["hinge.angle"], 2);
     assert!(known.by_noise(1.4 * 400.0, 400.0) < 1e-6);
+}
+
+/// Photographs of a hinge that is wrong, with a drawn field of errors of a fifteenth of the light
+/// beside noise: over 24 draws the hinge lies within its stated errors as often as it should, where
+/// errors by noise of single pixels are too small; the field's numbers and that it is likelier are
+/// found. Of noise alone errors stay what they are, and nothing is much likelier.
+#[test]
+fn errors_allow_for_what_neighbours_share() {
+    let scene = small("bench", 12);
+    let parameters = Parameter::named(&scene, "hinge.angle").unwrap();
+    let there = scene.displaced(&parameters, &[1.0]).unwrap();
+    let clean = MatrixModel::new(&there, Kernel::Physical, Some([2; 2])).unwrap();
+    let clean = clean.phi();
+    let level = clean.norm() / (clean.len() as f64).sqrt();
+    let draw = |shared: f64, seed: u64, error_field: bool| {
+        let truth = ErrorField {
+            pixel: 0.02 * level,
+            shared: shared * level,
+            range: 4.0,
+        };
+        let v = truth.variances([12; 2]);
+        let mut random = normal(seed);
+        let errors = Matrix::from_fn(144, clean.ncols(), |k, _| v[k].sqrt() * random()[0]);
+        let phi = &clean + from_cosines(&errors, [12; 2]);
+        let photographs = Unexplained {
+            phi: &phi,
+            stderr: None,
+            left_out: None,
+            patterns: None,
+        };
+        let plan = CalibrationPlan {
+            error_field,
+            ..plan(&["hinge.angle"], 2)
+        };
+        let found = plan.calibrate(&scene, &photographs, Control::none());
+        (found.unwrap(), truth)
+    };
+    let off = |found: &Calibration| (found.found[0].value - 1.0) / found.found[0].stderr;
+    let (mut told, mut alone, mut sizes) = (0, 0.0, [0.0; 2]);
+    for seed in 0..24 {
+        let (found, truth) = draw(0.06, seed, true);
+        let z = off(&found);
+        told += usize::from(z.abs() < 1.96);
+        let field = found.field.unwrap();
+        sizes[0] += field.pixel / truth.pixel / 24.0;
+        sizes[1] += field.shared / truth.shared / 24.0;
+        assert!(found.log_likelier.unwrap() > 1000.0 && found.is_settled);
+        let (white, _) = draw(0.06, seed, false);
+        alone += (white.found[0].value - 1.0).powi(2) / white.found[0].by_curvature.powi(2) / 24.0;
+    }
+    assert!(sizes.iter().all(|x| (x - 1.0).abs() < 0.15), "{sizes:?}");
+    // Of 24 at 95 %: fewer than 20 in one of a thousand.
+    assert!(told >= 20, "{told}");
+    assert!(alone > 4.0, "{alone}");
+    let (found, _) = draw(0.0, 1, true);
+    let (white, _) = draw(0.0, 1, false);
+    assert!(
+        found.log_likelier.unwrap() < 6.0,
+        "{:?}",
+        found.log_likelier
+    );
+    let ratio = found.found[0].by_curvature / white.found[0].by_curvature;
+    assert!((ratio - 1.0).abs() < 0.1, "{ratio}");
+}
+
+/// Errors of neighbours are looked for where noise is unknown and all entries count.
+#[test]
+fn a_field_of_errors_is_refused_where_there_is_none() {
+    let scene = small("bench", 4);
+    let (phi, stderr) = photographs(&scene, 2, 0.1, 6);
+    let plan = CalibrationPlan {
+        error_field: true,
+        ..plan(&["hinge.angle"], 2)
+    };
+    let refused = |photographs: &Unexplained<'_>| {
+        let refused = plan.calibrate(&scene, photographs, Control::none());
+        refused.unwrap_err().to_string()
+    };
+    let known = unexplained(&phi, &stderr);
+    assert!(refused(&known).contains("is stated"));
+    let holed = Matrix::from_fn(phi.nrows(), phi.ncols(), |p, _| f64::from(u8::from(p == 0)));
+    let holed = Unexplained {
+        stderr: None,
+        left_out: Some(&holed),
+        ..known
+    };
+    assert!(refused(&holed).contains("entries are left out"));
 }

@@ -6,12 +6,16 @@ use crate::lab::finding::{
     Shades, Table, Tone, listed,
 };
 use crate::num::digits::{figure, perhaps};
+use crate::recovery::ErrorField;
 use crate::scene::Parameter;
 
 /// Below this probability of so bad a fit the model lacks something.
 const SIGNIFICANCE: f64 = super::LEVEL;
 /// An estimate farther from the scene than this, in what was known beforehand, is told.
 const FAR: f64 = 3.0;
+/// ln of a ratio of likelihoods above which the likelier errors are taken; three numbers more fit
+/// noise by e^1.5 better.
+const DECISIVE: f64 = 6.0;
 /// What a finer rule moves is told from this part of the error on.
 const NOTABLE: f64 = 0.5;
 /// Gains that are listed one by one.
@@ -88,6 +92,9 @@ impl Calibration {
         let found = format!("rom what the scene says: {}.{ended}", listed(&few));
         match self.p.filter(|p| *p < SIGNIFICANCE) {
             // Without a stated noise a misfit of the model is not told from it.
+            None if self.field.is_some() => format!(
+                "If what is left over is noise and errors that neighbouring pixels share, f{found}"
+            ),
             None if self.p.is_none() => format!("If what is left over is noise, f{found}"),
             None => format!("F{found}"),
             Some(p) => {
@@ -109,8 +116,39 @@ impl Calibration {
         }
     }
 
+    /// What is left over, taken for errors that neighbours share.
+    fn shared(&self, field: &ErrorField) -> String {
+        let likelier = self.log_likelier.unwrap_or(0.0);
+        let which = if likelier > DECISIVE {
+            format!(
+                "With these errors the photographs are e^{} times likelier than with noise of \
+                 single pixels alone.",
+                figure(likelier, 3)
+            )
+        } else {
+            format!(
+                "Noise of single pixels alone explains the photographs as well (these errors are \
+                 e^{} times likelier): leave out --error-field.",
+                figure(likelier, 2)
+            )
+        };
+        format!(
+            "No noise is stated. What is left over, {} of what other light leaves, is taken for \
+             errors of {} of each pixel alone and {} that neighbours share over {} pixels (the \
+             photographs' unit). {which} The errors of the geometry allow for that field, and for \
+             nothing that the model lacks in another way.",
+            figure(self.left, 3),
+            figure(field.pixel, 2),
+            figure(field.shared, 2),
+            figure(field.range, 2)
+        )
+    }
+
     /// Whether noise alone explains what is left.
     fn fit(&self) -> String {
+        if let Some(field) = &self.field {
+            return self.shared(field);
+        }
         match self.p {
             Some(p) if p >= SIGNIFICANCE => format!(
                 "With it the photographs fit: χ²/dof {} (p = {}). The errors are those of the noise.",
@@ -131,7 +169,9 @@ impl Calibration {
                     "No noise is stated: whether noise alone is left cannot be told. What is not \
                      explained is {} of what other light leaves.{much} Errors are the largest of \
                      three: by that remainder as if it were noise, by what single frames and by \
-                     what blocks of pixels say; none of them sees what is wrong in all alike.",
+                     what blocks of pixels say; none of them sees what is wrong in all alike. \
+                     `--error-field` takes it for errors that neighbours share, and says which is \
+                     likelier.",
                     figure(self.left, 3)
                 )
             }
@@ -167,7 +207,9 @@ impl Calibration {
         } else {
             format!("elements alike over {}", figure(self.length, 2))
         };
-        let taken = if self.is_more_than_noise() {
+        let taken = if self.field.is_some() {
+            ", if what is left over is such errors"
+        } else if self.is_more_than_noise() {
             ", if what is left over were independent noise: it need not be, and then the picture and its \
              errors claim too much (`phicam locate` draws one that the photographs bear out)"
         } else {

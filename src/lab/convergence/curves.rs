@@ -32,6 +32,19 @@ pub struct Curve {
     /// How far the bound of the quadrature may have moved it; `None` where an error is below that
     /// bound.
     pub slope_bound: Option<f64>,
+    /// Its standard error by how the errors lie about their line; `None` of fewer than three.
+    pub slope_scatter: Option<f64>,
+    /// Where the stated standard errors fall along no line.
+    pub bend: Option<Bend>,
+}
+
+/// A step between two numbers of paths at which the stated standard errors leave their line.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Bend {
+    /// From and to how many.
+    pub samples: [u64; 2],
+    /// By how many times they fall there.
+    pub by: f64,
 }
 
 /// The study of a scene.
@@ -96,9 +109,36 @@ impl Convergence {
         };
         format!(
             "The relative error of Φcam on {} falls with the number of samples: that {} \
-             (independent random numbers have a slope of −½).{least}{floor}",
+             (independent random numbers have a slope of −½).{}{least}{floor}",
             self.scene,
-            listed(&ranges)
+            listed(&ranges),
+            self.bent()
+        )
+    }
+}
+
+impl Convergence {
+    /// Whose errors fall along no line, and where they leave it.
+    fn bent(&self) -> String {
+        let bent = self.curves.iter().filter_map(|c| {
+            let Bend { samples, by } = c.bend?;
+            Some(format!(
+                "of {}, {} by {} from {} to {} samples",
+                c.estimator,
+                c.sampler,
+                figure(by, 2),
+                samples[0],
+                samples[1]
+            ))
+        });
+        let bent: Vec<String> = bent.collect();
+        if bent.is_empty() {
+            return String::new();
+        }
+        format!(
+            " Some fall along no line, and have no one slope: stated errors {}. Mostly such a step \
+             is where a block first has a point for each lit cell of a texture.",
+            listed(&bent)
         )
     }
 }
@@ -119,6 +159,7 @@ impl Describe for Convergence {
                 &heads[..],
                 &[
                     Column::number("slope", "", "", 3),
+                    Column::number("± by the scatter", "slope_scatter", "", 2),
                     Column::number("± by the quadrature", "slope_bound", "", 2),
                 ],
             ]
@@ -126,7 +167,10 @@ impl Describe for Convergence {
             rows: self
                 .curves
                 .iter()
-                .map(|c| with(c, vec![c.slope.into(), Cell::Number(c.slope_bound)]))
+                .map(|c| {
+                    let errors = [c.slope_scatter, c.slope_bound].map(Cell::Number);
+                    with(c, [&[c.slope.into()][..], &errors].concat())
+                })
                 .collect(),
             ..Table::default()
         };

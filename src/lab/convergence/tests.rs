@@ -24,6 +24,11 @@ fn slopes_are_told_by_sampler() {
         }],
         slope,
         slope_bound: (error > 0.05).then_some(0.25),
+        slope_scatter: Some(0.125),
+        bend: (error > 0.15).then_some(Bend {
+            samples: [64, 128],
+            by: 9.7,
+        }),
     };
     let found = Convergence {
         scene: "bench".to_owned(),
@@ -40,6 +45,7 @@ fn slopes_are_told_by_sampler() {
     for words in [
         "that of pcg by a slope of −0.510 to −0.490 and of sobol",
         "0.010, is that of shared, sobol with 64 samples",
+        "have no one slope: stated errors of shared, pcg by 9.7 from 64 to 128 samples.",
         "known to 0.050 only: errors of shared, sobol fall below that",
     ] {
         assert!(found.sentence.contains(words), "{}", found.sentence);
@@ -87,4 +93,30 @@ fn a_slope_is_known_as_well_as_its_reference() {
         );
     }
     assert_eq!(slope_bound(&steps([0.0; 2]), 0.01), None);
+}
+
+/// Errors 1, ½ ± δ, ¼ at 1, 4, 16: the slope is −½ and its error that of three points about a line,
+/// by hand: r = (−a, 2a, −a)/3 with a = ln(1 ± 2δ), Σ r² = ⅔ a², Σ (x − x̄)² = 2 ln²4. A step of ten
+/// is no line; a scatter of a tenth is one.
+#[test]
+fn a_slope_says_whether_there_is_a_line() {
+    let steps = |errors: &[f64]| -> Vec<Step> {
+        let each = errors.iter().enumerate();
+        each.map(|(k, e)| Step {
+            samples: 1 << (2 * k),
+            error: *e,
+            stated: *e,
+        })
+        .collect()
+    };
+    let three = steps(&[1.0, 0.55, 0.25]);
+    let a = 1.1f64.ln();
+    let want = (2.0 / 3.0 * a * a / (2.0 * 4f64.ln().powi(2))).sqrt();
+    assert!((slope(&three).unwrap() + 0.5).abs() < 1e-14);
+    assert!((slope_scatter(&three).unwrap() / want - 1.0).abs() < 1e-12);
+    assert_eq!(slope_scatter(&steps(&[1.0, 0.5])), None);
+    assert_eq!(bend(&steps(&[1.0, 0.55, 0.25, 0.12, 0.065])), None);
+    let found = bend(&steps(&[1.0, 0.5, 0.25, 0.025, 0.0125])).unwrap();
+    assert_eq!(found.samples, [16, 64]);
+    assert!((found.by - 10.0).abs() < 1e-12);
 }

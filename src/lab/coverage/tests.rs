@@ -55,3 +55,22 @@ fn it_divides() {
     assert_eq!(divides(&tasks).rows.len(), 2);
     refuses(&tasks, 1, &(0..3).map(|_| Err(String::new())).collect());
 }
+
+/// Of ten recoveries that all cover, the share is 1 and its error that of Laplace's rule, 1/12.
+#[test]
+fn draws_that_agree_are_not_certain() {
+    let trial = || -> Result<Trial, String> {
+        Ok(Trial {
+            bands: Bands {
+                confidence: 0.95,
+                intervals: vec![[0.0, 1.0]; 2],
+                kind: BandKind::Posterior,
+            },
+            reflectance: vec![0.5; 2],
+        })
+    };
+    let trials: Vec<_> = (0..10).map(|_| trial()).collect();
+    let found = row(Method::JointGp, &[0.2, 0.7], &trials);
+    assert_eq!(found.covered, Some(1.0));
+    assert!((found.stderr.unwrap() * 12.0 - 1.0).abs() < 1e-12);
+}

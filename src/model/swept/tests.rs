@@ -112,3 +112,29 @@ fn a_hidden_surface_that_is_not_flat_has_no_rates_here() {
     file.surface.push(blind);
     assert!(!rates(&file));
 }
+
+/// Nor one in cells without corners: a mesh by its texture, which stands in its own way nowhere.
+#[test]
+fn a_hidden_mesh_in_cells_has_no_rates_here() {
+    let own = "rectangle = { corner = [3, 11.350951966438567, 4.149048033561433], u = [4, 0, 0], v = [0, -2.82842712474619, 2.82842712474619] }";
+    let ball =
+        "mesh = { generate = \"sphere\", faces = 320, scale = 1.0, translate = [5, 10, 5.5] }";
+    // A second plate, for cameras must not see it.
+    let blind = "\n[[surface]]\nname = \"blind\"\nrole = \"occluder\"\nmaterial = { lambertian = 0.0 }\n\
+        rectangle = { corner = [2.5, 7, 4], u = [0, 6, 0], v = [0, 0, 5] }\n";
+    let text = Scene::load("periscope").unwrap().text;
+    let text = text
+        .replacen("pixels = [32, 32]", "pixels = [3, 3]", 1)
+        .replacen("per_side = 25", "per_side = 2", 1);
+    let rates = |text: &str| {
+        let scene = Scene::from_toml("mesh", text).unwrap();
+        let parameters = Parameter::named(&scene, "occluders.x").unwrap();
+        let velocity = scene.velocity(&parameters, &[0.0], 0);
+        let swept = Swept::new(&scene, Some([2, 2]), &[velocity], 0.5).unwrap();
+        swept.unwrap().rates[0].is_some()
+    };
+    assert!(rates(&text));
+    let with_ball = text.replacen(own, ball, 1) + blind;
+    assert!(with_ball.contains(ball));
+    assert!(!rates(&with_ball));
+}

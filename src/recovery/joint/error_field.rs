@@ -1,17 +1,10 @@
-//! Errors that neighbouring pixels share, as a field over the photograph.
+//! Errors that neighbouring pixels share, in place of noise.
 //!
 //! What stands a little beside its place, and light from elsewhere, leave errors with the edges of
-//! shadows. The error of each frame is noise of single pixels and a Matérn field of smoothness ½
-//! with reflecting borders (Lindgren, Rue and Lindström 2011, 2.3), which the cosines T of a
-//! photograph of columns × rows pixels diagonalise:
-//!
-//! > e_l ~ N(0, T diag(v) Tᵀ),   v_k = σ² + τ² w_k/w̄,
-//! > w_k = (1 + ℓ²|k|²)^(−3/2),   k = π (i/columns, j/rows)
-//!
-//! |k|⁻³ is the spectrum of pictures with edges. (A smoother field, or a free spectrum, can be
-//! likelier still: it takes most of the picture's own light for errors.) σ, τ and ℓ are the
-//! likeliest given the prior of the picture, N(½, K), by expectation and maximisation (Dempster,
-//! Laird and Rubin 1977) of
+//! shadows: an [`ErrorField`] in each frame. (A smoother field, or a free spectrum, can be likelier
+//! still: it takes most of the picture's own light for errors.) σ, τ and ℓ are the likeliest given
+//! the prior of the picture, N(½, K), by expectation and maximisation (Dempster, Laird and Rubin
+//! 1977) of
 //!
 //! > Σ_k n ln v_k + q_k/v_k,   q_k = E Σ_l r²\[k,l\],
 //!
@@ -19,19 +12,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use spectrum::{fitted, spectrum};
-
 use super::elimination::{directions, unit, without_left, without_right};
 use super::gaussian_process::MEAN;
 use super::khatri_rao::gathered;
+use crate::num::cosines::{along_cosines, from_cosines};
 use crate::num::linalg::{Cholesky, gram_product, product, rows_times, tr_product};
 use crate::recovery::{ErrorField, Estimated, Nuisance, Problem, Recovered, RecoveryError};
 
-/// Errors of less than this share of the photographs are rounding.
-const ROUNDING: f64 = 1e-5;
-/// A change of the ln v that makes no difference, and how often they are looked for.
-const SETTLED: f64 = 0.02;
-const MOST_STEPS: usize = 40;
 /// What is added to the diagonal of K, of its mean.
 const JITTER: f64 = 1e-10;
 /// Terms of elements up to which it is looked for: some matrices of terms × terms each step.
@@ -67,18 +54,11 @@ impl Along {
         let of_frames = nuisance.of_frames(pixels);
         Some(Self {
             frame,
-            phi: cosines(problem.phi, frame),
-            c: cosines(problem.sides().0, frame),
-            patterns: (of_frames.ncols() > 0).then(|| cosines(&of_frames, frame)),
+            phi: along_cosines(problem.phi, frame),
+            c: along_cosines(problem.sides().0, frame),
+            patterns: (of_frames.ncols() > 0).then(|| along_cosines(&of_frames, frame)),
             square: problem.phi.norm_squared() / problem.phi.len() as f64,
         })
-    }
-
-    /// v, one for each cosine.
-    pub(super) fn variances(&self, field: &ErrorField) -> Vec<f64> {
-        let shape = spectrum(self.frame, field.range);
-        let of = |w: f64| field.pixel * field.pixel + field.shared * field.shared * w;
-        shape.into_iter().map(of).collect()
     }
 
     /// The likeliest field for pictures of covariance K, `unit`² and `unit`/2 their mean, from
@@ -96,31 +76,15 @@ impl Along {
         let Some(root) = Cholesky::new(&k) else {
             return Ok(None);
         };
-        let mut field = start.unwrap_or(ErrorField {
+        let start = start.unwrap_or(ErrorField {
             pixel: 0.01 * self.square.sqrt(),
             shared: 0.0,
             range: 1.0,
         });
-        let mut v = self.variances(&field);
-        for _ in 0..MOST_STEPS {
+        ErrorField::maximised(start, self.frame, self.square, |_, v| {
             problem.control.check()?;
-            let Some(squares) = self.squares(problem, root.lower(), MEAN * unit, &v) else {
-                return Ok(None);
-            };
-            field = fitted(&squares, self.frame);
-            let next = self.variances(&field);
-            let moved = v.iter().zip(&next).map(|(a, b)| libm::log(b / a).abs());
-            let moved = moved.fold(0.0, f64::max);
-            v = next;
-            let mean = v.iter().sum::<f64>() / v.len() as f64;
-            if mean < ROUNDING * ROUNDING * self.square {
-                return Ok(None);
-            }
-            if moved < SETTLED {
-                break;
-            }
-        }
-        Ok(Some(field))
+            Ok(self.squares(problem, root.lower(), MEAN * unit, v))
+        })
     }
 
     /// q_k/n. With G = Σ_l A_lᵀ diag(v)⁻¹ A_l of the light of each element, what is beside it
@@ -204,7 +168,7 @@ impl Along {
 
     /// √v, pixels × spots.
     pub(super) fn stderr(&self, field: &ErrorField) -> DMatrix<f64> {
-        let v = self.variances(field);
+        let v = field.variances(self.frame);
         DMatrix::from_fn(v.len(), self.phi.ncols(), |k, _| v[k].sqrt())
     }
 
@@ -237,38 +201,6 @@ impl Along {
         });
     }
 }
-
-/// Tᵀ m: each column of m, a photograph, along its orthonormal cosines.
-fn cosines(m: &DMatrix<f64>, frame: [usize; 2]) -> DMatrix<f64> {
-    turned(m, frame.map(|n| one_sided(n).transpose()))
-}
-
-/// T m.
-pub(super) fn from_cosines(m: &DMatrix<f64>, frame: [usize; 2]) -> DMatrix<f64> {
-    turned(m, frame.map(one_sided))
-}
-
-/// A X Bᵀ of each column X (columns × rows) of m.
-fn turned(m: &DMatrix<f64>, [a, b]: [DMatrix<f64>; 2]) -> DMatrix<f64> {
-    let mut all = DMatrix::zeros(m.nrows(), m.ncols());
-    let b = b.transpose();
-    for (from, mut to) in m.column_iter().zip(all.column_iter_mut()) {
-        let picture = DMatrix::from_iterator(a.ncols(), b.nrows(), from.iter().copied());
-        to.copy_from_slice(product(&product(&a, &picture), &b).as_slice());
-    }
-    all
-}
-
-/// √((2 − δ_i0)/n) cos(π i (x + ½)/n), x down, i across: orthonormal.
-fn one_sided(n: usize) -> DMatrix<f64> {
-    DMatrix::from_fn(n, n, |x, i| {
-        let size = if i == 0 { 1.0 } else { 2.0 } / n as f64;
-        let turn = i as f64 * (x as f64 + 0.5) / n as f64;
-        size.sqrt() * libm::cos(std::f64::consts::PI * turn)
-    })
-}
-
-mod spectrum;
 
 #[cfg(test)]
 mod tests;

@@ -2,80 +2,6 @@ use super::*;
 use crate::recovery::bench::{Bench, normal_stream};
 use crate::recovery::{Method, Options, recover};
 
-const FRAME: [usize; 2] = [7, 5];
-
-/// T is orthogonal: a photograph comes back, its length stays, and a constant is the first cosine
-/// alone.
-#[test]
-fn cosines_turn_photographs() {
-    let mut normal = normal_stream(1);
-    let m = DMatrix::from_fn(35, 3, |_, _| normal());
-    let turned = cosines(&m, FRAME);
-    assert!((turned.norm() - m.norm()).abs() < 1e-12);
-    assert!((from_cosines(&turned, FRAME) - &m).amax() < 1e-13);
-    let constant = cosines(&DMatrix::from_element(35, 1, 1.0), FRAME);
-    assert!((constant[0] - 35f64.sqrt()).abs() < 1e-12);
-    assert!(constant.rows(1, 34).amax() < 1e-13);
-    // Down the columns first: pixel column + row·columns.
-    let slope = DMatrix::from_fn(35, 1, |p, _| (p % 7) as f64);
-    let turned = cosines(&slope, FRAME);
-    assert!(turned[1].abs() > 1.0 && turned[7].abs() < 1e-12);
-}
-
-/// Far apart on a large photograph the field is the exponential covariance of the plane, τ² e^(−
-/// d/ℓ): both sides of the border away, 1 % of τ².
-#[test]
-fn the_field_is_exponential() {
-    let frame = [120, 120];
-    let v = spectrum(frame, 6.0);
-    let t = one_sided(120);
-    let middle = 60;
-    let at = |x: usize, y: usize| -> f64 {
-        let of = |i: usize, j: usize| {
-            v[i + j * 120] * t[(middle, i)] * t[(middle, j)] * t[(x, i)] * t[(y, j)]
-        };
-        (0..120).flat_map(|i| (0..120).map(move |j| of(i, j))).sum()
-    };
-    let own = at(middle, middle);
-    for [x, y] in [[3, 0], [0, 6], [5, 5], [12, 0]] {
-        let distance = libm::hypot(x as f64, y as f64);
-        let found = at(middle + x, middle + y) / own;
-        // The corner of e^(−d/ℓ) is blurred by a pixel's reach.
-        assert!(
-            (found - libm::exp(-distance / 6.0)).abs() < 0.06,
-            "{x} {y}: {found}"
-        );
-    }
-}
-
-/// Squares of 60 frames drawn from a field of one of the ranges that are tried: its numbers come
-/// back, and of noise alone no field.
-#[test]
-fn a_field_is_told_from_its_squares() {
-    let frame = [24, 20];
-    let range = libm::exp(5.0 * 0.35);
-    let mut normal = normal_stream(5);
-    for (pixel, shared) in [(0.3, 2.0), (1.0, 0.3)] {
-        let shape = spectrum(frame, range);
-        let v = shape.iter().map(|w| pixel * pixel + shared * shared * w);
-        let squares: Vec<f64> = v
-            .map(|v| v * (0..60).map(|_| normal().powi(2)).sum::<f64>() / 60.0)
-            .collect();
-        let found = fitted(&squares, frame);
-        assert!((found.pixel / pixel - 1.0).abs() < 0.05, "{found:?}");
-        assert!((found.shared / shared - 1.0).abs() < 0.1, "{found:?}");
-        assert!((found.range / range - 1.0).abs() < 0.3, "{found:?}");
-    }
-    let white: Vec<f64> = (0..480)
-        .map(|_| (0..60).map(|_| normal().powi(2)).sum::<f64>() / 60.0)
-        .collect();
-    let found = fitted(&white, frame);
-    assert!(
-        (found.pixel - 1.0).abs() < 0.02 && found.shared < 0.1,
-        "{found:?}"
-    );
-}
-
 /// The likelihood of all entries, −½ (zᵀS⁻¹z + ln det S), S = A K Aᵀ + the covariance of noise and
 /// field + 10⁶ of each constant, as one dense matrix: nowhere around the field that was found is it
 /// larger.
@@ -87,7 +13,12 @@ fn the_field_is_the_likeliest() {
     let size = bench.phi(&DVector::from_element(9, 0.5)).mean();
     let mut normal = normal_stream(9);
     let truth = DVector::from_fn(9, |_, _| 0.5 + 0.2 * normal());
-    let v = spectrum(frame, 3.0);
+    let field = ErrorField {
+        pixel: 0.0,
+        shared: 1.0,
+        range: 3.0,
+    };
+    let v = field.variances(frame);
     let rough = from_cosines(
         &DMatrix::from_fn(36, 5, |k, _| (1e-4 + 4e-4 * v[k]).sqrt() * size * normal()),
         frame,
@@ -106,7 +37,7 @@ fn the_field_is_the_likeliest() {
     let z = DMatrix::from_fn(180, 1, |at, _| phi[(at % 36, at / 36)])
         - &light * DMatrix::from_element(9, 1, 0.5);
     let likelihood = |field: &ErrorField| {
-        let v = along.variances(field);
+        let v = field.variances(frame);
         let spread = from_cosines(&DMatrix::from_diagonal(&DVector::from_vec(v)), frame);
         let covariance = from_cosines(&spread.transpose(), frame);
         let mut s = &light * &k * light.transpose();

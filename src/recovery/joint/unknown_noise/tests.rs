@@ -1,7 +1,7 @@
 use nalgebra::{DMatrix, DVector};
 
-use super::super::error_field::from_cosines;
 use super::*;
+use crate::num::cosines::from_cosines;
 use crate::recovery::bench::{Bench, normal_stream};
 use crate::recovery::{ErrorField, Method, Nuisance, recover as recover_by};
 
@@ -51,15 +51,12 @@ fn squares(mut errors: impl FnMut() -> DMatrix<f64>) -> [f64; 2] {
 /// pixels that count each for itself make it several times as much.
 #[test]
 fn errors_that_neighbours_share_are_not_counted_as_many() {
-    let bench = Bench::new(6.0, 2, 16);
-    let phi = bench.phi(&DVector::from_element(4, 0.5));
-    let problem = Problem::new(&phi, &bench.c, &bench.d, None).unwrap();
-    let along = Along::new(&problem, [16, 16]).unwrap();
-    let v = along.variances(&ErrorField {
+    let field = ErrorField {
         pixel: 0.5,
         shared: 2.0,
         range: 4.0,
-    });
+    };
+    let v = field.variances([16, 16]);
     let mut normal = normal_stream(12);
     let [alone, told] = squares(|| {
         let along = DMatrix::from_fn(256, 8, |k, _| v[k].sqrt() * normal());
