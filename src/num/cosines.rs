@@ -45,8 +45,8 @@ mod tests {
 
     const FRAME: [usize; 2] = [7, 5];
 
-    /// T is orthogonal: a photograph comes back, its length stays, and a constant is the first cosine
-    /// alone.
+    /// T is orthogonal: a photograph comes back, its length stays, and a constant is the first
+    /// cosine alone.
     #[test]
     fn cosines_turn_photographs() {
         let m = DMatrix::from_fn(35, 3, |p, l| libm::sin((p * p + 7 * l) as f64));
