@@ -81,9 +81,9 @@ impl ErrorField {
     }
 
     /// From `start` to the likeliest by expectation and maximisation (Dempster, Laird and Rubin
-    /// 1977) of Σ_k n ln v_k + q_k/v_k. `squares` gives q_k/n, the expected squares of what is left
-    /// over, for errors of these v; none where rounding ends the search. None too where the errors
-    /// are no more than rounding of photographs whose mean square is `square`.
+    /// 1977) of Σ_k n ln v_k + q_k/v_k. `squares` gives q_k/n, the expected squares of what is
+    /// left over, for errors of these v; none where rounding ends the search. None too where the
+    /// errors are no more than rounding of photographs whose mean square is `square`.
     pub(crate) fn maximised<E>(
         start: Self,
         frame: [usize; 2],

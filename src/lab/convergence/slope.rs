@@ -7,8 +7,8 @@
 //!
 //! > ± Σ_i |x_i − x̄| · −ln(1 − β/e_i) / Σ_i (x_i − x̄)²
 //!
-//! of the one that is told; nothing can be said of it where an error is not above β. How the errors
-//! lie about their line says how far the slope is to be trusted,
+//! of the one that is told; nothing can be said of it where an error is not above β. How the
+//! errors lie about their line says how far the slope is to be trusted,
 //!
 //! > ± √(Σ r_i²/(n − 2) / Σ_i (x_i − x̄)²),
 //!

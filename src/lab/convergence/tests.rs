@@ -95,9 +95,9 @@ fn a_slope_is_known_as_well_as_its_reference() {
     assert_eq!(slope_bound(&steps([0.0; 2]), 0.01), None);
 }
 
-/// Errors 1, ½ ± δ, ¼ at 1, 4, 16: the slope is −½ and its error that of three points about a line,
-/// by hand: r = (−a, 2a, −a)/3 with a = ln(1 ± 2δ), Σ r² = ⅔ a², Σ (x − x̄)² = 2 ln²4. A step of ten
-/// is no line; a scatter of a tenth is one.
+/// Errors 1, ½ (1 + δ), ¼ at 1, 4, 16: the slope is −½ and its error that of three points about a
+/// line, by hand: r = (−a, 2a, −a)/3 with a = ln(1 + δ), Σ r² = ⅔ a², Σ (x − x̄)² = 2 ln²4. A step
+/// of ten is no line; a scatter of a tenth is one.
 #[test]
 fn a_slope_says_whether_there_is_a_line() {
     let steps = |errors: &[f64]| -> Vec<Step> {
