@@ -314,6 +314,7 @@ impl CalibrationPlan {
         } = &ends[0];
         let left = problem.left_over(best)?;
         let with_field = field.as_ref().map(|field| problem.with_field(field));
+        let with_field = with_field.transpose()?;
         let is_noise_known = problem.photographs.stderr.is_some();
         let problem = with_field.as_ref().unwrap_or(problem);
         let information = problem.information(&best.slope);

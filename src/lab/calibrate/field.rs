@@ -80,13 +80,16 @@ impl Field {
     }
 
     /// ½ ln det of the errors' covariance, the patterns left out.
-    fn log_errors(&self) -> f64 {
+    fn log_errors(&self) -> Result<f64, LabError> {
         let v: DVector<f64> = self.stderr.column(0).map(|s| s * s);
         let mut all: f64 = v.iter().map(|v| libm::log(*v)).sum();
         let u = &self.basis;
         let weighted = Matrix::from_fn(u.nrows(), u.ncols(), |k, j| u[(k, j)] / v[k]);
-        all += Cholesky::new(&tr_product(u, &weighted)).map_or(0.0, |factor| factor.log_det());
-        0.5 * self.phi.ncols() as f64 * all
+        if u.ncols() > 0 {
+            let gram = Cholesky::new(&tr_product(u, &weighted)).ok_or(LabError::DARK)?;
+            all += gram.log_det();
+        }
+        Ok(0.5 * self.phi.ncols() as f64 * all)
     }
 }
 
@@ -123,11 +126,14 @@ impl<'a> Problem<'a> {
     }
 
     /// The same along the cosines with the errors of `field`.
-    pub(super) fn with_field<'b>(&'b self, field: &'b Field) -> Problem<'b>
+    ///
+    /// # Errors
+    /// [`LabError::DARK`] where rounding loses the patterns of other light.
+    pub(super) fn with_field<'b>(&'b self, field: &'b Field) -> Result<Problem<'b>, LabError>
     where
         'a: 'b,
     {
-        Problem {
+        Ok(Problem {
             photographs: Unexplained {
                 phi: &field.phi,
                 stderr: Some(&field.stderr),
@@ -136,9 +142,9 @@ impl<'a> Problem<'a> {
             },
             priors: self.priors.clone(),
             cosines: Some(field.frame),
-            log_errors: field.log_errors(),
+            log_errors: field.log_errors()?,
             ..*self
-        }
+        })
     }
 
     /// On from where the descent by errors of single pixels ended; none where errors are no more
@@ -161,7 +167,7 @@ impl<'a> Problem<'a> {
             if !self.likeliest_errors(&mut field, now, control)? {
                 return Ok(End::new(self, state, stages));
             }
-            let own = self.with_field(&field);
+            let own = self.with_field(&field)?;
             let (next, steps) = own.stage(&now.values, 1.0, control)?;
             let covariance = Cholesky::new(&own.information(&next.slope));
             let errors = covariance.ok_or(LabError::DARK)?.inverse().diagonal();
@@ -182,7 +188,7 @@ impl<'a> Problem<'a> {
         }
         let state = last.unwrap_or(state);
         Ok(End {
-            total: self.with_field(&field).total(&state),
+            total: self.with_field(&field)?.total(&state),
             state,
             stages,
             field: Some(field),
@@ -204,7 +210,7 @@ impl<'a> Problem<'a> {
         let found = ErrorField::maximised(field.errors, frame, square, |errors, v| {
             control.check()?;
             field.set(*errors);
-            let own = self.with_field(field);
+            let own = self.with_field(field)?;
             let seen = own.seen(1.0);
             let normal = seen.normal(&light)?;
             let value = seen.value(&light, &normal, &state.prior)?;

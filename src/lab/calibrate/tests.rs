@@ -196,7 +196,7 @@ fn likelihoods_of_different_errors_are_comparable() {
     };
     let total = |errors: ErrorField| {
         let field = field::Field::new(&problem, errors).unwrap();
-        let own = problem.with_field(&field);
+        let own = problem.with_field(&field).unwrap();
         let state = own.state(&[0.2], 1.0, Some(prior)).unwrap();
         own.total(&state)
     };
