@@ -74,9 +74,11 @@ pub(super) fn execute(
         (None, None) => None,
     };
     let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
-        let replicates = args.replicates;
-        let errors = Certainty::STATED.errors;
-        Noise::StandardError(stderr, Certainty { errors, replicates })
+        let certainty = Certainty {
+            replicates: args.replicates,
+            ..Certainty::STATED
+        };
+        Noise::StandardError(stderr, certainty)
     });
     let of = Photographs {
         name: phi_file.display().to_string(),

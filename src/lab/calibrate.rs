@@ -312,7 +312,7 @@ impl CalibrationPlan {
             total,
             ..
         } = &ends[0];
-        let left = problem.left_over(best)?;
+        let left = ends[0].left_over(problem)?;
         let with_field = field.as_ref().map(|field| problem.with_field(field));
         let with_field = with_field.transpose()?;
         let is_noise_known = problem.photographs.stderr.is_some();

@@ -9,6 +9,7 @@
 //!
 //! |k|⁻³ is the spectrum of pictures with edges, and of shadows'.
 
+use nalgebra::DMatrix;
 use serde::Serialize;
 
 use crate::num::search::largest;
@@ -78,6 +79,12 @@ impl ErrorField {
         let shape = spectrum(frame, self.range);
         let of = |w: f64| self.pixel * self.pixel + self.shared * self.shared * w;
         shape.into_iter().map(of).collect()
+    }
+
+    /// √v in each of `frames` columns.
+    pub(crate) fn stderr(&self, frame: [usize; 2], frames: usize) -> DMatrix<f64> {
+        let v = self.variances(frame);
+        DMatrix::from_fn(v.len(), frames, |k, _| v[k].sqrt())
     }
 
     /// From `start` to the likeliest by expectation and maximisation (Dempster, Laird and Rubin

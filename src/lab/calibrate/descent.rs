@@ -146,14 +146,6 @@ impl<'a> Problem<'a> {
         Ok(Some(value.cost + self.penalty(values)))
     }
 
-    /// ‖y − Aρ̂‖/‖y‖ at the stated weights.
-    pub(super) fn left_over(&self, state: &State) -> Result<f64, LabError> {
-        let seen = self.seen(1.0);
-        let light = self.geometry.light(&state.values, 0.0, false)?;
-        let whole = seen.normal(&light)?.square;
-        Ok((seen.residue(&light, &state.value.rho)? / whole).sqrt())
-    }
-
     /// F + Λ.
     pub(super) fn information(&self, slope: &Slope) -> Matrix {
         let mut all = slope.curvature.clone();

@@ -74,9 +74,8 @@ impl Field {
     }
 
     fn set(&mut self, errors: ErrorField) {
-        let v = errors.variances(self.frame);
         self.errors = errors;
-        self.stderr = Matrix::from_fn(v.len(), self.phi.ncols(), |k, _| v[k].sqrt());
+        self.stderr = errors.stderr(self.frame, self.phi.ncols());
     }
 
     /// ½ ln det of the errors' covariance, the patterns left out.
@@ -86,7 +85,7 @@ impl Field {
         let u = &self.basis;
         let weighted = Matrix::from_fn(u.nrows(), u.ncols(), |k, j| u[(k, j)] / v[k]);
         if u.ncols() > 0 {
-            let gram = Cholesky::new(&tr_product(u, &weighted)).ok_or(LabError::DARK)?;
+            let gram = Cholesky::new(&tr_product(u, &weighted)).ok_or(LabError::TOO_FINE)?;
             all += gram.log_det();
         }
         Ok(0.5 * self.phi.ncols() as f64 * all)
@@ -104,6 +103,20 @@ impl End {
             total,
             without: total,
         }
+    }
+
+    /// ‖y − Aρ̂‖/‖y‖ at the weights of `problem`, in which errors are of single pixels.
+    pub(super) fn left_over(&self, problem: &Problem<'_>) -> Result<f64, LabError> {
+        let State { values, value, .. } = &self.state;
+        let seen = problem.seen(self.state.factor);
+        let left = match self.field {
+            None => value.chi2,
+            Some(_) => {
+                let light = problem.geometry.light(values, 0.0, false)?;
+                seen.residue(&light, &value.rho)?
+            }
+        };
+        Ok((left / seen.square()?).sqrt())
     }
 }
 
@@ -128,7 +141,7 @@ impl<'a> Problem<'a> {
     /// The same along the cosines with the errors of `field`.
     ///
     /// # Errors
-    /// [`LabError::DARK`] where rounding loses the patterns of other light.
+    /// [`LabError::TOO_FINE`] where rounding loses the patterns of other light.
     pub(super) fn with_field<'b>(&'b self, field: &'b Field) -> Result<Problem<'b>, LabError>
     where
         'a: 'b,

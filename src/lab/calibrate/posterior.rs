@@ -127,6 +127,16 @@ impl Seen<'_> {
         }))
     }
 
+    /// ‖y‖².
+    pub(super) fn square(&self) -> Result<f64, LabError> {
+        let of = |l: usize| -> Result<f64, LabError> {
+            let photograph = self.photographs.phi.columns(l, 1).into_owned();
+            let white = self.white(l, &[&photograph])?;
+            Ok(white.iter().map(Matrix::norm_squared).sum())
+        };
+        (0..self.frames()).map(of).sum()
+    }
+
     /// ‖y − Aρ‖².
     pub(super) fn residue(&self, light: &Light, rho: &DVector<f64>) -> Result<f64, LabError> {
         let left = |l: usize| -> Result<f64, LabError> {

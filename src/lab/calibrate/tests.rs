@@ -18,6 +18,16 @@ fn small(name: &str, pixels: u32) -> Scene {
     Scene::new(&file, None).unwrap()
 }
 
+/// The bench with two spots and 4 × 3 pixels.
+fn of_two_spots() -> Scene {
+    let mut file = SceneFile::builtin("bench").unwrap();
+    file.camera.pixels = [4, 3];
+    Scene::new(&file, None)
+        .unwrap()
+        .with_spots_at(&[[1.0, 2.0], [9.0, 4.0]])
+        .unwrap()
+}
+
 /// Photographs of `scene` with n × n elements and relative noise, and their standard errors.
 fn photographs(scene: &Scene, n: usize, level: f64, seed: u64) -> (Matrix, Matrix) {
     let model = MatrixModel::with(scene, Kernel::Physical, Some([n; 2]), Occlusion::Considered);
@@ -92,12 +102,7 @@ fn problem<'a>(
 /// y ~ N(½ A 1, 1 + A R Rᵀ Aᵀ), written out by an eigen-decomposition.
 #[test]
 fn the_cost_is_that_of_a_dense_normal_distribution() {
-    let mut file = SceneFile::builtin("bench").unwrap();
-    file.camera.pixels = [4, 3];
-    let scene = Scene::new(&file, None)
-        .unwrap()
-        .with_spots_at(&[[1.0, 2.0], [9.0, 4.0]])
-        .unwrap();
+    let scene = of_two_spots();
     let (phi, stderr) = photographs(&scene, 2, 0.1, 3);
     let parameters = Parameter::named(&scene, "hidden.normal").unwrap();
     let pictures = pictures(&scene);
@@ -150,12 +155,7 @@ fn the_cost_is_that_of_a_dense_normal_distribution() {
 /// FᵀS⁻¹, up to a constant; that of a field without what is shared is that of noise alone.
 #[test]
 fn likelihoods_of_different_errors_are_comparable() {
-    let mut file = SceneFile::builtin("bench").unwrap();
-    file.camera.pixels = [4, 3];
-    let scene = Scene::new(&file, None)
-        .unwrap()
-        .with_spots_at(&[[1.0, 2.0], [9.0, 4.0]])
-        .unwrap();
+    let scene = of_two_spots();
     let (phi, _) = photographs(&scene, 2, 0.1, 3);
     let level = phi.amax();
     let patterns = Matrix::from_fn(12, 2, |p, k| if k == 0 { 1.0 } else { (p % 4) as f64 });

@@ -168,8 +168,7 @@ impl Along {
 
     /// √v, pixels × spots.
     pub(super) fn stderr(&self, field: &ErrorField) -> DMatrix<f64> {
-        let v = field.variances(self.frame);
-        DMatrix::from_fn(v.len(), self.phi.ncols(), |k, _| v[k].sqrt())
+        field.stderr(self.frame, self.phi.ncols())
     }
 
     /// What was recovered along the cosines, of the photographs themselves.
