@@ -3,7 +3,7 @@
 //! Up to [`FLAT`] shapes are tested one by one; more stand behind a tree.
 
 use super::tree::CompressedTree;
-use super::{Contact, Interaction, Ray, Shape, ShapeId};
+use super::{Interaction, Intersection, Ray, Shape, ShapeId};
 
 /// Largest number of shapes tested one by one: from there on the tree is faster
 /// (`benches/rays.rs`).
@@ -90,7 +90,7 @@ impl Bvh {
                 length: limit,
                 ..*ray
             };
-            if let Some(Contact { t, triangle }) =
+            if let Some(Intersection { t, triangle }) =
                 self.shapes[id].intersect(&rest, from == Some(shape))
             {
                 let hit = Hit { shape, t, triangle };
@@ -112,7 +112,7 @@ impl Bvh {
     /// The point that the ray hits, exactly on its shape.
     pub fn point(&self, ray: &Ray, hit: Hit) -> Interaction {
         let Hit { shape, t, triangle } = hit;
-        self.shapes[shape as usize].at_contact(ray, Contact { t, triangle })
+        self.shapes[shape as usize].at_intersection(ray, Intersection { t, triangle })
     }
 
     /// Whether hit `a` comes before hit `b`.

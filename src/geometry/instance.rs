@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DAffine3;
 
-use super::{Contact, DVec3, Facet, Facets, Interaction, Mesh, Patch, Ray};
+use super::{DVec3, Facet, Facets, Interaction, Intersection, Mesh, Patch, Ray};
 
 /// A mesh, placed by a similarity (rotation, uniform scale, translation): several bodies may share
 /// one mesh. Rays are taken into the mesh's own space, so that a million triangles exist, and their
@@ -222,10 +222,11 @@ impl Instance {
 
     /// First triangle met, from either side, at 0 < t < length; a ray that starts in a triangle's
     /// plane does not meet that.
-    pub fn intersect(&self, ray: &Ray) -> Option<Contact> {
-        let Contact { t, triangle } = self.mesh.closest_beyond(&self.local(ray), self.reach())?;
+    pub fn intersect(&self, ray: &Ray) -> Option<Intersection> {
+        let Intersection { t, triangle } =
+            self.mesh.closest_beyond(&self.local(ray), self.reach())?;
         let t = t * self.scale;
-        (t < ray.length).then_some(Contact { t, triangle })
+        (t < ray.length).then_some(Intersection { t, triangle })
     }
 
     /// Whether a triangle stands between the two ends of the segment.
@@ -351,7 +352,7 @@ impl Instance {
         let below = low.z - 0.5 * (high.z - low.z) - 1.0;
         let mut ray = Ray::new(DVec3::new(x, y, below), DVec3::Z);
         let mut found = Vec::new();
-        while let Some(Contact { t, triangle }) = self.intersect(&ray) {
+        while let Some(Intersection { t, triangle }) = self.intersect(&ray) {
             let at = ray.origin + ray.direction * t;
             found.push(self.on_triangle(triangle, at));
             ray.origin = at;

@@ -8,7 +8,7 @@ mod patch;
 mod query;
 
 use super::tree::WideTree;
-use super::{Contact, DVec3, Interaction, Ray};
+use super::{DVec3, Interaction, Intersection, Ray};
 use crate::num::lanes::widest;
 use area_map::AreaMap;
 pub use facets::{Facet, Facets};
@@ -331,22 +331,22 @@ impl Mesh {
     /// First triangle met by the ray at 0 < t < length, from either side. A ray that starts in the
     /// plane of a triangle (to rounding) does not meet it. Where two are met at one distance, the
     /// first of the list counts.
-    pub fn closest(&self, ray: &Ray) -> Option<Contact> {
+    pub fn closest(&self, ray: &Ray) -> Option<Intersection> {
         self.closest_many(std::slice::from_ref(ray))[0]
     }
 
     /// [`Mesh::closest`] for many rays: much faster than one by one where the mesh is large.
-    pub fn closest_many(&self, rays: &[Ray]) -> Vec<Option<Contact>> {
+    pub fn closest_many(&self, rays: &[Ray]) -> Vec<Option<Intersection>> {
         self.closest_of(rays, 0.0)
     }
 
     /// [`Mesh::closest`] for a ray whose start was computed from numbers as large as `reach`, and
     /// has their rounding.
-    pub(super) fn closest_beyond(&self, ray: &Ray, reach: f64) -> Option<Contact> {
+    pub(super) fn closest_beyond(&self, ray: &Ray, reach: f64) -> Option<Intersection> {
         self.closest_of(std::slice::from_ref(ray), reach)[0]
     }
 
-    fn closest_of(&self, rays: &[Ray], reach: f64) -> Vec<Option<Contact>> {
+    fn closest_of(&self, rays: &[Ray], reach: f64) -> Vec<Option<Intersection>> {
         let mut found = vec![None; rays.len()];
         widest(
             #[inline(always)]

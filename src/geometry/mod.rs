@@ -36,7 +36,7 @@ pub use moving::{AT_ONCE, Moving, PlaneRate};
 pub use opaque::{Hidden, Opaque};
 pub use parallelogram::Parallelogram;
 pub use pieces::Pieces;
-pub use ray::{Contact, Interaction, Ray};
+pub use ray::{Interaction, Intersection, Ray};
 pub use shadow::Shadow;
 pub use shaft::{Blockers, Region};
 pub use shape::{Shape, ShapeId};

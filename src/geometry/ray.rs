@@ -45,9 +45,9 @@ pub struct Interaction {
     pub uv: [f64; 2],
 }
 
-/// Where a ray meets a shape.
+/// Where a ray meets one shape; [`Hit`](super::Hit) is the first of all shapes of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
+pub struct Intersection {
     /// Distance along the ray.
     pub t: f64,
     /// The triangle of a mesh; 0 for every other shape.

@@ -2,7 +2,7 @@
 
 use glam::DAffine3;
 
-use super::{Contact, DVec3, Disc, Facing, Instance, Interaction, Parallelogram, Ray, Sphere};
+use super::{DVec3, Disc, Facing, Instance, Interaction, Intersection, Parallelogram, Ray, Sphere};
 
 /// Index of a shape in its [`Bvh`](super::Bvh).
 pub type ShapeId = u32;
@@ -44,8 +44,8 @@ impl Shape {
 
     /// Smallest t in (0, `ray.length`) at which the ray meets the shape from either side.
     /// `leaving`: the ray starts on this very shape, so that the start itself is no hit.
-    pub fn intersect(&self, ray: &Ray, leaving: bool) -> Option<Contact> {
-        let plain = |t| Contact { t, triangle: 0 };
+    pub fn intersect(&self, ray: &Ray, leaving: bool) -> Option<Intersection> {
+        let plain = |t| Intersection { t, triangle: 0 };
         match self {
             Self::Parallelogram(p) => (!leaving).then(|| p.intersect(ray)).flatten().map(plain),
             Self::Sphere(s) => s.intersect(ray, leaving).map(plain),
@@ -55,10 +55,10 @@ impl Shape {
     }
 
     /// The point of the shape where the ray meets it: removes the rounding.
-    pub fn at_contact(&self, ray: &Ray, contact: Contact) -> Interaction {
-        let at = ray.origin + ray.direction * contact.t;
+    pub fn at_intersection(&self, ray: &Ray, met: Intersection) -> Interaction {
+        let at = ray.origin + ray.direction * met.t;
         match self {
-            Self::Instance(b) => b.on_triangle(contact.triangle, at),
+            Self::Instance(b) => b.on_triangle(met.triangle, at),
             _ => self.at_position(at),
         }
     }
@@ -75,7 +75,7 @@ impl Shape {
     }
 
     /// The point of the shape nearest to `p`, which must lie on it up to rounding: removes the
-    /// rounding. Of a mesh it takes a search; [`Shape::at_contact`] does not.
+    /// rounding. Of a mesh it takes a search; [`Shape::at_intersection`] does not.
     pub fn at_position(&self, p: DVec3) -> Interaction {
         match self {
             Self::Parallelogram(s) => s.at_position(p),

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_1_PI;
 
 use super::kernel::{HiddenPoint, HiddenPoints, Kernel};
-use crate::geometry::{Contact, DVec3, Interaction, Ray, ShapeId};
+use crate::geometry::{DVec3, Interaction, Intersection, Ray, ShapeId};
 use crate::scene::Scene;
 
 /// A point of the wall that a line of sight ends on, or that the laser lights.
@@ -110,8 +110,8 @@ pub(super) fn seen(scene: &Scene, pixel: usize, ab: [f64; 2], share: f64) -> Wal
         .filter_map(|(id, s)| s.shape.intersect(&ray, false).map(|met| (met, id)))
         .min_by(|a, b| {
             // Of the two sides of one wall the one that shows its front.
-            let back = |(met, id): &(Contact, usize)| {
-                let point = scene.surfaces[*id].shape.at_contact(&ray, *met);
+            let back = |(met, id): &(Intersection, usize)| {
+                let point = scene.surfaces[*id].shape.at_intersection(&ray, *met);
                 point.normal.dot(direction) >= 0.0
             };
             a.0.t.total_cmp(&b.0.t).then_with(|| back(a).cmp(&back(b)))
@@ -119,7 +119,7 @@ pub(super) fn seen(scene: &Scene, pixel: usize, ab: [f64; 2], share: f64) -> Wal
     match nearest {
         None => WallPoint::nowhere(target, camera.view.normal()),
         Some((met, id)) => {
-            let point = scene.surfaces[id].shape.at_contact(&ray, met);
+            let point = scene.surfaces[id].shape.at_intersection(&ray, met);
             reflecting(scene, id, &point, direction, etendue)
         }
     }
@@ -154,7 +154,7 @@ pub(super) fn lit(scene: &Scene, spot: usize, offset: DVec3, share: f64) -> Wall
     match shape.intersect(&ray, false) {
         None => WallPoint::nowhere(aim, target.normal),
         Some(met) => {
-            let point = shape.at_contact(&ray, met);
+            let point = shape.at_intersection(&ray, met);
             reflecting(scene, id, &point, direction, share * laser.power)
         }
     }

@@ -3,14 +3,14 @@
 use super::Mesh;
 use super::group::{GROUP, Sheared};
 use crate::geometry::tree::Query;
-use crate::geometry::{Contact, DVec3, Ray};
+use crate::geometry::{DVec3, Intersection, Ray};
 
 /// Which triangle is met first, by rays that start at points computed from numbers as large as the
 /// second field?
 pub(super) struct Closest<'a>(pub(super) &'a Mesh, pub(super) f64);
 
 impl Query for Closest<'_> {
-    type State = (Sheared, Option<Contact>);
+    type State = (Sheared, Option<Intersection>);
 
     #[inline(always)]
     fn begin(&self, ray: &Ray) -> Self::State {
@@ -41,7 +41,7 @@ impl Query for Closest<'_> {
                     None => t < ray.length,
                 };
                 if first && is_off_plane(group.corners(k), ray.origin, self.1) {
-                    *best = Some(Contact { triangle, t });
+                    *best = Some(Intersection { triangle, t });
                     limit = t;
                 }
             }
