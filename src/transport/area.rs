@@ -19,16 +19,16 @@ pub(super) struct AreaSampler {
     before: Vec<f64>,
 }
 
-/// A point of a surface.
+/// A point of a surface: which surface, the point, and where it lies in the surface's own map.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SurfacePoint {
+pub(super) struct SurfaceInteraction {
     pub shape: ShapeId,
     pub point: Interaction,
     /// The parameters for which the shape's equal-area map gives it.
     pub parameters: [f64; 2],
 }
 
-impl SurfacePoint {
+impl SurfaceInteraction {
     /// The point of `shape` with these parameters.
     pub(super) fn at(scene: &Scene, shape: ShapeId, parameters: [f64; 2]) -> Self {
         Self {
@@ -119,7 +119,7 @@ impl AreaSampler {
 
     /// A point for u ∈ [0, 1)², with its density per unit area: surfaces by the first number, then
     /// rows of parts by the second and parts by what is left of the first.
-    pub(super) fn sample(&self, scene: &Scene, [a, b]: [f64; 2]) -> (SurfacePoint, f64) {
+    pub(super) fn sample(&self, scene: &Scene, [a, b]: [f64; 2]) -> (SurfaceInteraction, f64) {
         let surfaces = &self.parts.surfaces;
         let end = |s: &Divided| self.before[s.first + s.parts()];
         let edge = |k: usize| if k == 0 { 0.0 } else { end(&surfaces[k - 1]) };
@@ -131,7 +131,7 @@ impl AreaSampler {
         let (column, a) = invert(nu, |i| self.before[first + i], a);
         let (uv, light) = s.place(row * nu + column, [a, b]);
         let density = self.share(first + column) * light;
-        (SurfacePoint::at(scene, s.shape, uv), density)
+        (SurfaceInteraction::at(scene, s.shape, uv), density)
     }
 
     /// The probability of a part.
@@ -140,7 +140,7 @@ impl AreaSampler {
     }
 
     /// Density of [`AreaSampler::sample`] at a point, per unit area.
-    pub(super) fn density(&self, at: &SurfacePoint) -> f64 {
+    pub(super) fn density(&self, at: &SurfaceInteraction) -> f64 {
         self.parts.of(at.shape).map_or(0.0, |s| {
             let (part, light) = s.locate(at.parameters);
             let share = self.share(part);

@@ -17,7 +17,7 @@
 use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
 
-use super::area::SurfacePoint;
+use super::area::SurfaceInteraction;
 use super::beam::Beams;
 use super::vertex::{Oriented, Vertex, geometry_term};
 use super::visibility::may_be_visible;
@@ -45,7 +45,7 @@ pub(super) struct LightPaths {
 /// The end of a light path.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LightEnd {
-    pub at: SurfacePoint,
+    pub at: SurfaceInteraction,
     /// p_s, per unit area.
     pub density: f64,
 }
@@ -117,7 +117,7 @@ pub(super) fn light_end(scene: &Scene, lit: &Vertex, u: [f64; 2]) -> Option<Ligh
     let direction = Basis::around(lit.normal).to_world(local).normalize();
     let ray = Ray::new(lit.position, direction);
     let hit = scene.bvh().closest(&ray, Some(lit.shape))?;
-    let at = SurfacePoint::hit(scene, &ray, hit);
+    let at = SurfaceInteraction::hit(scene, &ray, hit);
     let (term, _) = geometry_term(at.oriented(), lit.oriented())?;
     Some(LightEnd {
         at,

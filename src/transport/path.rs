@@ -8,7 +8,7 @@ use crate::num::warp;
 use crate::scene::Scene;
 use crate::scene::material::{Material, Part, mirrored};
 
-use super::area::{AreaSampler, SurfacePoint};
+use super::area::{AreaSampler, SurfaceInteraction};
 use super::light_path::LightEnd;
 use super::parts::FAR;
 use super::vertex::{Vertex, geometry_term};
@@ -188,7 +188,7 @@ impl<'a> PathSampler<'a> {
     fn arrive(
         &self,
         x: &Vertex,
-        at: &SurfacePoint,
+        at: &SurfaceInteraction,
         (term, ray): &(f64, Ray),
         (points, q): Points<'_>,
         density: f64,
@@ -205,20 +205,20 @@ impl<'a> PathSampler<'a> {
             .then_some(Vertex { density: own, ..y })
     }
 
-    fn by_area(&self, x: &Vertex, points: &AreaSampler, u: [f64; 2]) -> Option<SurfacePoint> {
+    fn by_area(&self, x: &Vertex, points: &AreaSampler, u: [f64; 2]) -> Option<SurfaceInteraction> {
         let (point, _) = points.sample(self.scene, u);
         let (_, ray) = geometry_term(x.oriented(), point.oriented())?;
         let ends = [Some(x.shape), Some(point.shape)];
         (!self.scene.bvh().blocked(&ray, ends)).then_some(point)
     }
 
-    fn by_lobe(&self, x: &Vertex, u: [f64; 2], choice: f64) -> Option<SurfacePoint> {
+    fn by_lobe(&self, x: &Vertex, u: [f64; 2], choice: f64) -> Option<SurfaceInteraction> {
         let basis = Basis::around(x.normal);
         let material = &self.scene.surfaces[x.shape as usize].material;
         let wi = sample_wi(material, x.albedo, basis.to_local(x.back), u, choice)?;
         let ray = Ray::new(x.position, basis.to_world(wi.to_array()).normalize());
         let hit = self.scene.bvh().closest(&ray, Some(x.shape))?;
-        Some(SurfacePoint::hit(self.scene, &ray, hit))
+        Some(SurfaceInteraction::hit(self.scene, &ray, hit))
     }
 
     /// Density of [`PathSampler::by_lobe`] per unit area at y, which `ray` reaches from x; `term`

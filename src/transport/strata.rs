@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_1_PI;
 
-use super::area::{AreaSampler, SurfacePoint};
+use super::area::{AreaSampler, SurfaceInteraction};
 use super::vertex::{Oriented, geometry_term};
 use crate::geometry::{Basis, Facets, Interaction, Ray, Shape, ShapeId};
 use crate::num::stream::{Key, Sampling, Stream};
@@ -130,12 +130,12 @@ impl Anchor {
     }
 
     /// What is seen along the direction of u; `None` where there is nothing.
-    fn sample(&self, scene: &Scene, u: [f64; 2]) -> Option<SurfacePoint> {
+    fn sample(&self, scene: &Scene, u: [f64; 2]) -> Option<SurfaceInteraction> {
         let (position, normal) = self.oriented;
         let local = warp::cosine_hemisphere(u);
         let ray = Ray::new(position, Basis::around(normal).to_world(local).normalize());
         let hit = scene.bvh().closest(&ray, Some(self.shape))?;
-        Some(SurfacePoint::hit(scene, &ray, hit))
+        Some(SurfaceInteraction::hit(scene, &ray, hit))
     }
 }
 
@@ -235,7 +235,7 @@ impl<'a> Strata<'a> {
     }
 
     /// Points per area that the cells, or their distribution, put at a point.
-    fn area_density(&self, at: &SurfacePoint) -> f64 {
+    fn area_density(&self, at: &SurfaceInteraction) -> f64 {
         match &self.division {
             Division::Distribution { area, points } => f64::from(*points) * area.density(at),
             Division::Cells { density, .. } => match &density[at.shape as usize] {
@@ -246,14 +246,14 @@ impl<'a> Strata<'a> {
     }
 
     /// Points per area at a point that others drew, all strata together.
-    pub(super) fn density(&self, at: &SurfacePoint) -> f64 {
+    pub(super) fn density(&self, at: &SurfaceInteraction) -> f64 {
         self.by_area(at, self.area_density(at)).density
     }
 
     /// The point drawn by area with `density`, and with what the anchor adds to it where it sees
     /// the point.
-    fn by_area(&self, at: &SurfacePoint, density: f64) -> Drawn {
-        let SurfacePoint { shape, point, .. } = *at;
+    fn by_area(&self, at: &SurfaceInteraction, density: f64) -> Drawn {
+        let SurfaceInteraction { shape, point, .. } = *at;
         let from_anchor = self.anchor.as_ref().and_then(|anchor| {
             let (density, ray) = anchor.density(&point)?;
             let ends = [Some(anchor.shape), Some(shape)];
@@ -312,7 +312,7 @@ impl<'a> Strata<'a> {
                     draw(stratum, cell.points, &|u| {
                         let uv = std::array::from_fn(|d| corner[d] + width[d] * u[d]);
                         self.by_area(
-                            &SurfacePoint::at(self.scene, cell.shape, uv),
+                            &SurfaceInteraction::at(self.scene, cell.shape, uv),
                             cell.density(),
                         )
                     });

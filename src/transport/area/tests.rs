@@ -54,7 +54,7 @@ fn points_follow_their_density() {
         for (k, count) in counts[shape as usize].iter().enumerate() {
             let centre = |i: usize| (i as f64 + 0.5) / SUB as f64;
             let p = area
-                * hidden.density(&SurfacePoint::at(
+                * hidden.density(&SurfaceInteraction::at(
                     &scene,
                     shape,
                     [centre(k % SUB), centre(k / SUB)],
@@ -86,7 +86,7 @@ fn points_return_to_their_place_in_the_square() {
     let share = |shape: ShapeId, i: usize, j: usize| {
         let n = if shape == 1 { 3 } else { 1 };
         let centre = [i, j].map(|i| (i as f64 + 0.5) / f64::from(n));
-        let at = SurfacePoint::at(&scene, shape, centre);
+        let at = SurfaceInteraction::at(&scene, shape, centre);
         hidden.density(&at) * scene.surfaces[shape as usize].shape.area() / f64::from(n * n)
     };
     let of_shape =
@@ -155,7 +155,7 @@ fn a_guided_sampler_knows_its_density() {
         let (p, normal) = drawn.oriented();
         let ray = Ray::new(p + normal * 1e-3, -normal);
         if let Some(hit) = scene.bvh().closest(&ray, None) {
-            let found = SurfacePoint::hit(&scene, &ray, hit);
+            let found = SurfaceInteraction::hit(&scene, &ray, hit);
             let same = found.shape == drawn.shape && sampler.density(&found) == density;
             apart += u32::from(!same);
         }
