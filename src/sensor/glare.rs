@@ -5,7 +5,7 @@ use crate::matrix::Matrix;
 use crate::scene::{Glare, Scene, Spread};
 
 /// A lit point: place, front normal, albedo, surface.
-type Lit = (DVec3, DVec3, f64, ShapeId);
+type LitPoint = (DVec3, DVec3, f64, ShapeId);
 
 /// Flux that enters the lens straight from each spot, W, whether the camera has the spot in view or
 /// not:
@@ -18,7 +18,7 @@ type Lit = (DVec3, DVec3, f64, ShapeId);
 /// looks away.
 pub fn entering_lens(scene: &Scene) -> Vec<f64> {
     (0..scene.laser.spots.len())
-        .map(|spot| lit(scene, spot).map_or(0.0, |lit| enters(scene, &lit)))
+        .map(|spot| lit_point(scene, spot).map_or(0.0, |lit| enters(scene, &lit)))
         .collect()
 }
 
@@ -34,7 +34,7 @@ pub fn glare(scene: &Scene, glare: Glare) -> Matrix {
     let pixels = scene.camera.pixels();
     let mut scattered = Matrix::zeros(pixels, scene.laser.spots.len());
     for (spot, mut column) in scattered.column_iter_mut().enumerate() {
-        let Some(lit) = lit(scene, spot) else {
+        let Some(lit) = lit_point(scene, spot) else {
             continue;
         };
         let all = glare.fraction * enters(scene, &lit);
@@ -75,7 +75,7 @@ fn weights(scene: &Scene, spot: DVec3, spread: Spread) -> Vec<f64> {
 }
 
 /// Where the beam of a spot lands: on its target, or on what stands in its way.
-fn lit(scene: &Scene, spot: usize) -> Option<Lit> {
+fn lit_point(scene: &Scene, spot: usize) -> Option<LitPoint> {
     let laser = &scene.laser;
     if laser.is_shining() {
         return None;
@@ -93,7 +93,7 @@ fn lit(scene: &Scene, spot: usize) -> Option<Lit> {
     (point.normal.dot(ray.direction) < 0.0).then_some((point.position, point.normal, albedo, id))
 }
 
-fn enters(scene: &Scene, (position, normal, albedo, surface): &Lit) -> f64 {
+fn enters(scene: &Scene, (position, normal, albedo, surface): &LitPoint) -> f64 {
     let camera = &scene.camera;
     let Some(ray) = Ray::between(*position, camera.position) else {
         return 0.0;

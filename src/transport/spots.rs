@@ -23,8 +23,8 @@ pub(super) struct LitSpots<'a> {
     /// Points drawn from the spots that surfaces come close to.
     pub light_paths: LightPaths,
     /// By column: where its light is expected to land.
-    landings: Vec<Option<Landing>>,
-    /// By column and shape, for the expected landing.
+    footprints: Vec<Option<SpotFootprint>>,
+    /// By column and shape, for the expected footprint.
     blockers: Vec<Vec<Blockers>>,
     /// By shape: whether nothing can stand between it and any spot.
     clear: Vec<bool>,
@@ -32,15 +32,15 @@ pub(super) struct LitSpots<'a> {
     glossy: bool,
 }
 
-/// A part of a flat shape.
+/// The part of a flat shape that a spot is expected to light.
 #[derive(Clone, Debug)]
-struct Landing {
+struct SpotFootprint {
     shape: ShapeId,
     /// The square around a wide spot; a spot without width has none.
     square: Option<Parallelogram>,
 }
 
-impl Landing {
+impl SpotFootprint {
     /// The target of a spot, where that is a flat shape on which the beam lands unhindered.
     fn new(scene: &Scene, beams: &Beams<'_>, spot: usize) -> Option<Self> {
         let (target, shape) = {
@@ -69,7 +69,7 @@ impl Landing {
         lit.shape == self.shape && self.square.as_ref().is_none_or(inside)
     }
 
-    /// By shape: what can stand between the landing and it.
+    /// By shape: what can stand between the footprint and it.
     fn blockers(&self, scene: &Scene, spot: usize, shapes: &[Region]) -> Vec<Blockers> {
         let from = match &self.square {
             Some(square) => Region::patch(square),
@@ -123,12 +123,14 @@ impl<'a> LitSpots<'a> {
         let beams = Beams::new(scene);
         let shapes = scene.surfaces.iter().map(|s| Region::around(&s.shape));
         let shapes: Vec<Region> = shapes.collect();
-        let landings = range.clone().map(|spot| Landing::new(scene, &beams, spot));
-        let landings: Vec<Option<Landing>> = landings.collect();
-        let blockers = landings.iter().zip(range.clone());
+        let footprints = range
+            .clone()
+            .map(|spot| SpotFootprint::new(scene, &beams, spot));
+        let footprints: Vec<Option<SpotFootprint>> = footprints.collect();
+        let blockers = footprints.iter().zip(range.clone());
         let blockers: Vec<Vec<Blockers>> = blockers
-            .map(|(landing, spot)| match landing {
-                Some(landing) => landing.blockers(scene, spot, &shapes),
+            .map(|(footprint, spot)| match footprint {
+                Some(footprint) => footprint.blockers(scene, spot, &shapes),
                 None => vec![Blockers::Any; shapes.len()],
             })
             .collect();
@@ -140,7 +142,7 @@ impl<'a> LitSpots<'a> {
             light_paths: LightPaths::new(scene, &beams, &range, (sampling, size)),
             beams,
             range,
-            landings,
+            footprints,
             blockers,
             clear,
             glossy: scene.surfaces.iter().any(|s| !s.is_lambertian()),
@@ -266,8 +268,8 @@ impl<'a> LitSpots<'a> {
 
     /// What can stand between shape `x` and the point that the beam of `column` lights.
     fn blockers(&self, column: usize, lit: &Vertex, x: ShapeId) -> &Blockers {
-        match &self.landings[column] {
-            Some(landing) if landing.holds(lit) => &self.blockers[column][x as usize],
+        match &self.footprints[column] {
+            Some(footprint) if footprint.holds(lit) => &self.blockers[column][x as usize],
             _ => &Blockers::Any,
         }
     }

@@ -14,8 +14,8 @@ const CUT: f64 = 3.0;
 /// A map of the unit square.
 type Warp = fn(warp::Point2) -> warp::Point2;
 
-/// Where a ray of the beam lands.
-struct Landing {
+/// The point that a ray of the beam lights.
+struct LitPoint {
     shape: ShapeId,
     position: DVec3,
     normal: DVec3,
@@ -24,14 +24,14 @@ struct Landing {
 }
 
 /// First surface that the ray from the laser through `aim` meets, if it meets its front.
-fn land(scene: &Scene, aim: DVec3) -> Option<Landing> {
+fn lit_point(scene: &Scene, aim: DVec3) -> Option<LitPoint> {
     let from = scene.laser.position;
     let direction = (aim - from).try_normalize()?;
     let ray = Ray::new(from, direction);
     let hit = scene.bvh().closest(&ray, None)?;
     let surface = &scene.surfaces[hit.shape as usize];
     let point = scene.bvh().point(&ray, hit);
-    (point.normal.dot(direction) < 0.0).then(|| Landing {
+    (point.normal.dot(direction) < 0.0).then(|| LitPoint {
         shape: hit.shape,
         position: point.position,
         normal: point.normal,
@@ -46,13 +46,13 @@ pub(super) fn literal(scene: &Scene, spot: &Spot) -> String {
     let target = spot.target;
     let frame = Basis::around(target.normal);
     let aim = |[x, y]: [f64; 2], scale: f64| {
-        land(
+        lit_point(
             scene,
             target.position + frame.to_world([x * scale, y * scale, 0.0]),
         )
     };
-    let lambertian = |at: &Landing| scene.surfaces[at.shape as usize].is_lambertian();
-    let entry = |kind: &str, at: &Landing, size: f64| {
+    let lambertian = |at: &LitPoint| scene.surfaces[at.shape as usize].is_lambertian();
+    let entry = |kind: &str, at: &LitPoint, size: f64| {
         let (position, normal) = (triple(at.position), triple(at.normal));
         if !lambertian(at) {
             let ([u, v], shape) = (at.uv, at.shape);
@@ -76,7 +76,7 @@ pub(super) fn literal(scene: &Scene, spot: &Spot) -> String {
         Profile::Gaussian { radius } => ("gaussian", radius, CUT * radius, warp::gaussian_spot),
     };
     let whole = centre.filter(lambertian).filter(|at| {
-        let same = |p: Landing| p.shape == spot.surface && p.albedo == at.albedo;
+        let same = |p: LitPoint| p.shape == spot.surface && p.albedo == at.albedo;
         // The concentric map takes the border of the square to the rim.
         let rim = (0..64).flat_map(|k| {
             let t = f64::from(k) / 64.0;
