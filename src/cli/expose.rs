@@ -52,7 +52,7 @@ struct ExposedWith {
 
 /// exposure.json.
 #[derive(Debug, Serialize)]
-struct Account {
+struct ExposureRecord {
     #[serde(flatten)]
     with: ExposedWith,
     /// What the sensor's calibration found, where it was used.
@@ -128,12 +128,12 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
     remark(&result, args.strict, console)?;
     remark_dark(&result, &exposed, console);
     remark_render(&result, plan.estimator, console);
-    let account = Account {
+    let exposure_record = ExposureRecord {
         with,
         photon_transfer,
         result,
     };
-    let json = output::json(&account)?;
+    let json = output::json(&exposure_record)?;
     let _own = args.output.as_deref().map(lock).transpose()?;
     let vouch = || match args.output {
         None => ExposedFolder::vouch(dir),
@@ -150,7 +150,10 @@ pub(super) fn execute(args: &ExposeArgs, console: Console) -> Result<Outcome, Fa
     output::print(&if args.json {
         json
     } else {
-        report::finding_text(&describe_exposure(&account.result, &account.with.times))
+        report::finding_text(&describe_exposure(
+            &exposure_record.result,
+            &exposure_record.with.times,
+        ))
     })?;
     Ok(Outcome::Done)
 }
