@@ -162,7 +162,7 @@ mod experiment;
 mod exposure;
 pub mod finding;
 mod fit;
-mod foot;
+mod foot_on_wall;
 mod gains;
 mod gallery;
 mod grey;

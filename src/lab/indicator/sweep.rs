@@ -1,6 +1,6 @@
 //! The benches that an indicator is tried on.
 
-use crate::lab::foot::foot;
+use crate::lab::foot_on_wall::foot_on_wall;
 use crate::model::Kernel;
 use crate::scene::{Scene, SceneError, spots};
 
@@ -88,7 +88,7 @@ impl Site {
     /// `None` if that normal misses the wall.
     pub(super) fn new(scene: &Scene, reach: f64) -> Result<Option<Self>, SceneError> {
         let scene = scene.with_extended_relay(reach)?;
-        Ok(foot(&scene).map(|centre| Self { scene, centre }))
+        Ok(foot_on_wall(&scene).map(|centre| Self { scene, centre }))
     }
 
     /// The scene with the spots of `arrangement`, less those that no hidden surface faces (on the

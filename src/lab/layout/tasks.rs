@@ -12,7 +12,7 @@ use super::plan::Plan;
 use super::search::searched;
 use crate::geometry::Shape;
 use crate::lab::error::LabError;
-use crate::lab::foot::foot;
+use crate::lab::foot_on_wall::foot_on_wall;
 use crate::lab::limit::Limit;
 use crate::lab::study::Study;
 use crate::lab::subject::Subject;
@@ -145,7 +145,7 @@ impl LayoutTasks {
                 } else {
                     "square"
                 };
-                let places = foot(&self.scene).map(square).unwrap_or_default();
+                let places = foot_on_wall(&self.scene).map(square).unwrap_or_default();
                 (format!("{word} of {half} in."), places)
             }
         };

@@ -5,7 +5,7 @@ use crate::scene::Scene;
 
 /// (x, y) of the foot on the wall of the first hidden surface's normal through its middle; `None`
 /// where nothing is hidden or that normal misses the wall.
-pub(super) fn foot(scene: &Scene) -> Option<[f64; 2]> {
+pub(super) fn foot_on_wall(scene: &Scene) -> Option<[f64; 2]> {
     let (_, hidden) = scene.hidden().next()?;
     let middle = hidden.shape.at([0.5, 0.5]);
     let normal = Ray::new(middle.position, middle.normal);
