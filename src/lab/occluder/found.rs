@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::kinds::{Kind, Place};
-use super::sight::Seen;
+use super::photographed::Photographed;
 use crate::lab::finding::{
     Axis, Cell, Column, Curve, Describe, Figure, Finding, Mark, Plot, Table, listed,
 };
@@ -29,7 +29,7 @@ pub(super) struct Row {
     /// Of each picture the most noise at which it is resolved.
     pub limits: Vec<Option<f64>>,
     /// Of each picture what traced photographs show.
-    pub seen: Vec<Seen>,
+    pub seen: Vec<Photographed>,
     pub misplaced: Vec<Misplaced>,
 }
 
@@ -135,7 +135,7 @@ impl Occluders {
             .rows
             .iter()
             .flat_map(|row| row.seen.iter().map(move |seen| (row, seen)));
-        let cells = |(row, seen): (&Row, &Seen)| {
+        let cells = |(row, seen): (&Row, &Photographed)| {
             let photographs = seen.frames as usize * row.spots;
             vec![
                 Cell::name(row.kind.name()),

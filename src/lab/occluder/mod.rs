@@ -12,8 +12,8 @@
 
 mod found;
 mod kinds;
+mod photographed;
 mod search;
-mod sight;
 mod tasks;
 
 use super::options::Opt;
@@ -23,7 +23,7 @@ use crate::lab::noise_law::NOISE_LAWS;
 use crate::lab::subject::{PICTURES, Subject};
 use crate::scene::SensorModel;
 use kinds::{KINDS, Kind, Place};
-use sight::Camera;
+use photographed::Camera;
 use tasks::{OccluderTasks, Plan};
 
 /// `phicam study occluder`.

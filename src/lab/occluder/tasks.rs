@@ -2,8 +2,8 @@
 
 use super::found::{Misplaced, Occluders, Row, SEARCHED};
 use super::kinds::{Cells, Kind, Place};
+use super::photographed::Camera;
 use super::search::search;
-use super::sight::Camera;
 use crate::lab::ensemble::Photographs;
 use crate::lab::error::LabError;
 use crate::lab::grey::Grey;
@@ -139,7 +139,7 @@ impl Study for OccluderTasks {
             limits.push(limit.of(&self.scene, model, *subject, control)?);
             if plan.camera.samples > 0 {
                 let scene = subject.in_scene(&scene);
-                seen.push(plan.camera.see(&scene, model, *subject, control)?);
+                seen.push(plan.camera.photograph(&scene, model, *subject, control)?);
             }
         }
         let shifts: &[f64] = if kind == Kind::None {

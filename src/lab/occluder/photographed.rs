@@ -26,7 +26,7 @@ pub(super) struct Camera {
 
 /// What such photographs show of a picture.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Seen {
+pub(super) struct Photographed {
     pub subject: Subject,
     /// Exposure of a frame, s.
     pub exposure: f64,
@@ -42,13 +42,13 @@ impl Camera {
     ///
     /// # Errors
     /// [`LabError`].
-    pub(super) fn see(
+    pub(super) fn photograph(
         &self,
         scene: &Scene,
         model: &MatrixModel,
         subject: Subject,
         control: Control<'_>,
-    ) -> Result<Seen, LabError> {
+    ) -> Result<Photographed, LabError> {
         let plan = Plan {
             estimator: Estimator::Factored,
             sampling: Sampling::Sobol,
@@ -70,7 +70,7 @@ impl Camera {
             let photographs = Photographs::told(taken.flux, taken.stderr);
             let recovery = recovered(model, subject, &truth, &photographs, control)?;
             if recovery.is_resolved() || 2 * frames > self.frames {
-                return Ok(Seen {
+                return Ok(Photographed {
                     subject,
                     exposure,
                     frames,
