@@ -12,8 +12,8 @@
 //!
 //! [`recover`]: crate::recovery::recover
 
-mod job;
 mod plan;
+mod recovery_task;
 
 use std::sync::atomic::Ordering;
 
@@ -28,9 +28,9 @@ use crate::recovery::{LaserSide, Method, Parameter, RecoveryError};
 use crate::scene::{Division, Scene};
 use crate::transport::Control;
 
-use job::{Chosen, Job, Outcome, laser_side};
 pub use plan::GalleryPlan;
 use plan::{Fitted, ladder, works_by_directions};
+use recovery_task::{Chosen, Outcome, RecoveryTask, laser_side};
 
 /// Pictures of a run's hidden surfaces.
 #[derive(Clone, Debug, PartialEq)]
@@ -137,7 +137,7 @@ impl<'a> GalleryTasks<'a> {
 
     /// Steps that `control` is told of.
     pub fn count(&self) -> u64 {
-        self.jobs().len() as u64
+        self.tasks().len() as u64
     }
 
     /// Makes them; none if stopped.
@@ -149,21 +149,21 @@ impl<'a> GalleryTasks<'a> {
         };
         let deviates = normal_deviates(self.plan.seed, pixels, spots);
         let side = laser_side(self.model, self.phi, self.stderr);
-        let jobs = self.jobs();
-        let done = jobs.par_iter().map(|job| {
+        let tasks = self.tasks();
+        let done = tasks.par_iter().map(|task| {
             if control.stop.load(Ordering::Relaxed) {
                 return None;
             }
-            let found = self.outcome(*job, &side, &deviates);
+            let found = self.outcome(*task, &side, &deviates);
             (control.progress)(1);
             Some(found)
         });
         let outcomes: Vec<Outcome<'_>> = done.collect::<Option<_>>()?;
         let sigma = side.as_ref().map_or(&[][..], LaserSide::sigma);
         let series = self.plan.methods.iter().filter_map(|&method| {
-            let all = jobs.iter().zip(&outcomes);
+            let all = tasks.iter().zip(&outcomes);
             let own: Vec<&Outcome<'_>> = all
-                .filter(|(job, _)| job.of(method))
+                .filter(|(task, _)| task.of(method))
                 .map(|(_, o)| o)
                 .collect();
             (!own.is_empty()).then(|| self.series(method, sigma, &own))
@@ -178,11 +178,11 @@ impl<'a> GalleryTasks<'a> {
     }
 
     /// Each noise by the directions of the laser side, and by each of the other methods.
-    fn jobs(&self) -> Vec<Job> {
+    fn tasks(&self) -> Vec<RecoveryTask> {
         let noises = 0..self.fitted.noises.len();
-        let mut jobs = Vec::new();
+        let mut tasks = Vec::new();
         if self.fitted.by_directions {
-            jobs.extend(noises.clone().map(Job::Directions));
+            tasks.extend(noises.clone().map(RecoveryTask::Directions));
         }
         for &method in self
             .plan
@@ -190,23 +190,27 @@ impl<'a> GalleryTasks<'a> {
             .iter()
             .filter(|m| !works_by_directions(**m))
         {
-            jobs.extend(noises.clone().map(|noise| Job::Whole(noise, method)));
+            tasks.extend(
+                noises
+                    .clone()
+                    .map(|noise| RecoveryTask::Whole(noise, method)),
+            );
         }
-        jobs
+        tasks
     }
 
     fn outcome<'s>(
         &self,
-        job: Job,
+        task: RecoveryTask,
         side: &'s Result<LaserSide, RecoveryError>,
         deviates: &Matrix,
     ) -> Outcome<'s> {
-        match job {
-            Job::Directions(noise) => {
+        match task {
+            RecoveryTask::Directions(noise) => {
                 let photographs = self.photographs(noise, deviates);
                 Outcome::by_directions(side, self.model, &photographs, &self.plan.methods)
             }
-            Job::Whole(noise, method) => match self.known(method) {
+            RecoveryTask::Whole(noise, method) => match self.known(method) {
                 Some(known) if noise == 0 => known,
                 _ if noise > 0 && self.fitted.traced_alone.contains(&method) => {
                     Outcome::Nothing("left out: too much work beside the run".to_owned())

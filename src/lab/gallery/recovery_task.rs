@@ -11,14 +11,14 @@ use crate::recovery::{
 
 /// What is done in one go, and the noise that it is done for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Job {
+pub(super) enum RecoveryTask {
     /// All methods that work by the directions of the laser side, with all their parameters.
     Directions(usize),
     /// One method that works on all pixels and spots at once.
     Whole(usize, Method),
 }
 
-impl Job {
+impl RecoveryTask {
     /// Whether it recovers by `method`.
     pub(super) fn of(self, method: Method) -> bool {
         match self {
@@ -31,7 +31,7 @@ impl Job {
 /// A parameter and why it is this one, in words; or why there is none.
 pub(super) type Chosen = Result<(Parameter, String), String>;
 
-/// What came of a job.
+/// What came of a task.
 pub(super) enum Outcome<'s> {
     /// What the directions add, and what each method takes of itself.
     Directions(Parts<'s>, Vec<(Method, Chosen)>),
