@@ -70,7 +70,7 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
     let methods = methods(recover_memory::elements(args, &modelled));
     recover_options::checked(args, &methods)?;
     let held = recover_memory::plan(args, &modelled, &methods, &options, console)?;
-    let job = Job {
+    let request = RecoveryRequest {
         args,
         dir,
         scene: &modelled,
@@ -82,8 +82,8 @@ pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, F
         console,
     };
     let (attempts, picards) = match held {
-        Held::Whole => job.whole()?,
-        Held::Strips(pixels) => (job.strips(pixels)?, Vec::new()),
+        Held::Whole => request.whole()?,
+        Held::Strips(pixels) => (request.strips(pixels)?, Vec::new()),
     };
     let mut objects = collect(attempts, methods.len() == 1, console)?;
     // Methods that are named keep their order.
@@ -173,7 +173,7 @@ fn is_same_file(a: &Path, b: &Path) -> bool {
 }
 
 /// A recovery that was asked for.
-struct Job<'a> {
+struct RecoveryRequest<'a> {
     args: &'a RecoverArgs,
     /// Folder of the run.
     dir: &'a Path,
@@ -188,7 +188,7 @@ struct Job<'a> {
     console: Console<'a>,
 }
 
-impl Job<'_> {
+impl RecoveryRequest<'_> {
     /// From all of Φcam at once, with Picard plots.
     fn whole(&self) -> Result<(Vec<Attempt>, Vec<Picard>), Failure> {
         let Self { args, scene, .. } = *self;

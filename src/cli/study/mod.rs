@@ -1,6 +1,6 @@
 //! `phicam study`: experiments around a scene.
 
-mod job;
+mod study_run;
 
 use super::Outcome;
 use super::args::StudyArgs;
@@ -9,13 +9,13 @@ use super::failure::Failure;
 use super::tasks::Tasks;
 use crate::jobs::need;
 use crate::scene::Scene;
-use job::Job;
+use study_run::StudyRun;
 
 pub(in crate::cli) fn execute(args: &StudyArgs, console: Console) -> Result<Outcome, Failure> {
     let scene = console.load_scene(&args.scene)?;
     refuse_shining(&scene)?;
     need::study(&scene)?;
-    Job::new(args, &scene)?.execute(console)
+    StudyRun::new(args, &scene)?.execute(console)
 }
 
 /// Studies vary the laser and what it lights.
@@ -36,5 +36,5 @@ fn refuse_shining(scene: &Scene) -> Result<(), Failure> {
 pub(in crate::cli) fn tasks(args: &StudyArgs, scene: &Scene) -> Result<Box<dyn Tasks>, Failure> {
     refuse_shining(scene)?;
     need::study(scene)?;
-    Ok(Box::new(Job::new(args, scene)?))
+    Ok(Box::new(StudyRun::new(args, scene)?))
 }

@@ -21,7 +21,7 @@ use crate::store::ensure_writable;
 use crate::transport::Control;
 
 /// A study, checked and ready.
-pub(super) struct Job {
+pub(super) struct StudyRun {
     study: Box<dyn AnyStudy>,
     name: &'static str,
     invocation: Invocation,
@@ -31,7 +31,7 @@ pub(super) struct Job {
     json: bool,
 }
 
-impl Job {
+impl StudyRun {
     /// The study of `scene` that the arguments describe.
     pub(super) fn new(args: &StudyArgs, scene: &Scene) -> Result<Self, Failure> {
         let study = (args.study.prepare)(scene, &args.values()?);
@@ -152,7 +152,7 @@ fn invocation(args: &StudyArgs, scene: &Scene) -> Invocation {
     }
 }
 
-impl Tasks for Job {
+impl Tasks for StudyRun {
     fn count(&self) -> usize {
         self.study.tasks()
     }
