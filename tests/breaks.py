@@ -252,7 +252,7 @@ BREAKS = [
     ),
     Break(
         "Photographs that fit no geometry are no estimate of one",
-        "src/lab/calibrate/words.rs",
+        "src/lab/calibrate/describe.rs",
         "self.left * (1.0 - by_noise)",
         "self.left * (by_noise - 1.0)",
         "lib",

@@ -12,6 +12,7 @@
 //! picture's own covariance is P + (RX) cov θ (RX)ᵀ.
 
 mod descent;
+mod describe;
 mod field;
 mod geometry;
 mod identified;
@@ -20,7 +21,6 @@ mod posterior;
 mod profile;
 #[cfg(test)]
 mod tests;
-mod words;
 
 use serde::Serialize;
 
@@ -239,7 +239,7 @@ impl CalibrationPlan {
         let (told, untold) = identified(&problem, &start, &sizes);
         let free: Vec<&Direction> = untold.iter().filter(|d| d.is_free()).collect();
         if !free.is_empty() {
-            return Err(LabError::Untold(words::untold(&free, &parameters)));
+            return Err(LabError::Untold(describe::untold(&free, &parameters)));
         }
         (control.progress)(1);
         let mut ends: Vec<End> = Vec::new();

@@ -12,12 +12,12 @@
 //! explained for independent noise. Where the model lacks something, neighbouring pixels err alike
 //! and it is far too small; the frames still err by themselves.
 
+mod describe;
 mod frames;
 mod likelihood;
 mod order;
 mod picture;
 mod place;
-mod words;
 
 #[cfg(test)]
 mod tests;
