@@ -4,8 +4,9 @@ use std::collections::HashMap;
 
 use nalgebra::DVector;
 
-use super::ground::{Ground, Moments, Summed, Weighed};
 use super::levels::{ALL, rule};
+use super::pattern_likelihood::{PatternLikelihood, Weighed};
+use super::pattern_sums::{Moments, Summed};
 use crate::recovery::Sum;
 
 /// Most elements whose patterns are all summed, with given levels and without.
@@ -14,16 +15,16 @@ const MOST: [usize; 2] = [18, 16];
 const NEGLIGIBLE: f64 = 40.0;
 
 /// Whether all patterns of so many elements are summed.
-pub(super) fn can(ground: &Ground<'_>) -> bool {
-    ground.r.ncols() <= MOST[usize::from(ground.given.is_none())]
+pub(super) fn can(likelihood: &PatternLikelihood<'_>) -> bool {
+    likelihood.r.ncols() <= MOST[usize::from(likelihood.given.is_none())]
 }
 
 /// The sum over all 2ⁿ patterns; the best is the likeliest: of given levels that of the least χ²,
 /// of others that of the largest weight over all levels.
-pub(super) fn sum(ground: &Ground<'_>) -> Summed {
-    let n = ground.r.ncols();
+pub(super) fn sum(likelihood: &PatternLikelihood<'_>) -> Summed {
+    let n = likelihood.r.ncols();
     // ln weights by pattern number, pattern after pattern by one element (Gray).
-    let mut lit = DVector::zeros(ground.d.len());
+    let mut lit = DVector::zeros(likelihood.d.len());
     let mut at = 0usize;
     let quadrature = rule();
     let mut weights: Vec<(usize, Weighed)> = Vec::new();
@@ -33,14 +34,14 @@ pub(super) fn sum(ground: &Ground<'_>) -> Summed {
             let j = step.trailing_zeros() as usize;
             at ^= 1 << j;
             let sign = if at >> j & 1 == 1 { 1.0 } else { -1.0 };
-            lit.axpy(sign, &ground.r.column(j), 1.0);
+            lit.axpy(sign, &likelihood.r.column(j), 1.0);
             if step % 256 == 0 {
                 let light: Vec<bool> = (0..n).map(|j| at >> j & 1 == 1).collect();
-                lit = ground.lit(&light);
+                lit = likelihood.lit(&light);
             }
         }
         let count = at.count_ones() as usize;
-        let found = ground.weigh_lit((&lit, count), &quadrature, ALL, top - NEGLIGIBLE);
+        let found = likelihood.weigh_lit((&lit, count), &quadrature, ALL, top - NEGLIGIBLE);
         if let Some(found) = found {
             top = top.max(found.log);
             weights.push((at, found));

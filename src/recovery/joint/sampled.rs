@@ -16,9 +16,10 @@ use std::collections::{BTreeMap, HashMap};
 
 use nalgebra::DVector;
 
-use super::ground::{Ground, Moments, Summed, Weighed};
 use super::levels::{ALL, LevelFit, possible, rule};
 use super::pattern_lattice::{Dark, PatternLattice};
+use super::pattern_likelihood::{PatternLikelihood, Weighed};
+use super::pattern_sums::{Moments, Summed};
 use super::sampler::{List, Met, Sampler, Side, counts, effective};
 use crate::num::stream::{Key, Sampling, Stream};
 use crate::recovery::{RecoveryError, Sum};
@@ -42,24 +43,24 @@ const TRIES: usize = 100;
 /// The sum over patterns by so many draws; `known` ones are listed. `None` where the lattices are
 /// beyond double precision.
 pub(super) fn sample(
-    ground: &Ground<'_>,
+    likelihood: &PatternLikelihood<'_>,
     known: &[Vec<bool>],
     draws: usize,
 ) -> Result<Option<Summed>, RecoveryError> {
     let lattice = PatternLattice {
-        r: ground.r,
-        d: ground.d,
-        dark: ground
+        r: likelihood.r,
+        d: likelihood.d,
+        dark: likelihood
             .given
             .map_or(Dark::Free, |[dark, _]| Dark::Given(dark)),
         alike: (&[], 0.0),
-        control: ground.control,
+        control: likelihood.control,
     };
-    let contrasts = match ground.given {
+    let contrasts = match likelihood.given {
         Some([dark, light]) => vec![light - dark],
         None => lattice.contrasts(1.0, COARSE),
     };
-    let share = ground.given.map_or(COARSE, |_| 0.0);
+    let share = likelihood.given.map_or(COARSE, |_| 0.0);
     let both = |contrasts: &[f64], share: f64, ends: [f64; 2]| {
         let side = |number: usize| -> Result<Option<Side>, RecoveryError> {
             let weight = WEIGHTS[number] * lattice.weight();
@@ -81,16 +82,16 @@ pub(super) fn sample(
     };
     let quadrature = rule();
     let mut sampler = Sampler {
-        ground,
+        likelihood,
         list: List::new(),
         quadrature: &quadrature,
     };
-    let n = ground.r.ncols();
+    let n = likelihood.r.ncols();
     sampler.list(known);
     sampler.list(&[vec![false; n], vec![true; n]]);
     let mut missed = sampler.list_near(&coarse);
     let mut fine = coarse;
-    if ground.given.is_none() {
+    if likelihood.given.is_none() {
         let [first, last] = sampler.likely(&fine)?;
         let cells = &fine[0].cells;
         let ends = [cells[first].contrasts[0], cells[last].contrasts[1]];
@@ -133,7 +134,7 @@ pub(super) fn sample(
         missed,
         draws,
     };
-    Ok(known.together(ground, &sampler.list))
+    Ok(known.together(likelihood, &sampler.list))
 }
 
 /// What is known beside the list.
@@ -149,8 +150,8 @@ struct Known {
 
 impl Known {
     /// List and draws as one; none where no pattern is possible.
-    fn together(self, ground: &Ground<'_>, list: &List) -> Option<Summed> {
-        let n = ground.r.ncols();
+    fn together(self, likelihood: &PatternLikelihood<'_>, list: &List) -> Option<Summed> {
+        let n = likelihood.r.ncols();
         let drawn = self.met.iter().flatten().map(|met| met.log);
         let logs = list.values().map(|weighed| weighed.log).chain(drawn);
         let top = logs.fold(f64::NEG_INFINITY, f64::max);
@@ -206,7 +207,7 @@ impl Known {
         let error = 2.0 * variance.max().sqrt();
         Some(Summed {
             log_evidence: top + libm::log(moments.weight) - n as f64 * std::f64::consts::LN_2,
-            drawn: resampled(ground, &weights, moments.weight),
+            drawn: resampled(likelihood, &weights, moments.weight),
             weights: weights.into_iter().collect::<HashMap<_, _>>(),
             moments,
             sum: Sum::Sampled {
@@ -221,7 +222,7 @@ impl Known {
 
 /// Patterns in proportion to their weights, with levels of each.
 fn resampled(
-    ground: &Ground<'_>,
+    likelihood: &PatternLikelihood<'_>,
     weights: &BTreeMap<Vec<bool>, f64>,
     all: f64,
 ) -> Vec<(f64, Vec<bool>, [f64; 2])> {
@@ -238,7 +239,7 @@ fn resampled(
     for (light, weight) in weights {
         next -= weight;
         while next < 0.0 {
-            if let Some(levels) = levels(ground, light, random) {
+            if let Some(levels) = levels(likelihood, light, random) {
                 drawn.push((1.0, light.clone(), levels));
             }
             next += step;
@@ -248,12 +249,16 @@ fn resampled(
 }
 
 /// Levels of a pattern, as likely as they are.
-fn levels(ground: &Ground<'_>, light: &[bool], random: &mut Stream) -> Option<[f64; 2]> {
-    if ground.given.is_some() {
-        return ground.given;
+fn levels(
+    likelihood: &PatternLikelihood<'_>,
+    light: &[bool],
+    random: &mut Stream,
+) -> Option<[f64; 2]> {
+    if likelihood.given.is_some() {
+        return likelihood.given;
     }
-    let lit = ground.lit(light);
-    let fit = LevelFit::new(ground.d, &(&ground.all - &lit), &lit)?;
+    let lit = likelihood.lit(light);
+    let fit = LevelFit::new(likelihood.d, &(&likelihood.all - &lit), &lit)?;
     let mut tries = (0..TRIES).map(|_| fit.draw([random.normal(), random.normal()]));
     tries.find(|levels| possible(*levels))
 }

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::ground::{Ground, Weighed};
 use super::levels::ALL;
 use super::pattern_lattice::{Cell, nearest, pattern};
+use super::pattern_likelihood::{PatternLikelihood, Weighed};
 use crate::num::quadrature::Rule;
 use crate::num::stream::{Key, Sampling, Stream};
 use crate::recovery::RecoveryError;
@@ -82,7 +82,7 @@ pub(super) fn counts(first: &[Met], cells: usize, draws: f64) -> Vec<usize> {
 
 /// The sums' two parts.
 pub(super) struct Sampler<'a> {
-    pub(super) ground: &'a Ground<'a>,
+    pub(super) likelihood: &'a PatternLikelihood<'a>,
     pub(super) list: List,
     pub(super) quadrature: &'a Rule,
 }
@@ -94,7 +94,7 @@ impl Sampler<'_> {
             .iter()
             .filter(|light| !self.list.contains_key(*light));
         let new: Vec<&Vec<bool>> = new.collect();
-        let weigh = |light: &&Vec<bool>| self.ground.weigh(light, self.quadrature, ALL);
+        let weigh = |light: &&Vec<bool>| self.likelihood.weigh(light, self.quadrature, ALL);
         let weighed: Vec<Option<Weighed>> = new.par_iter().map(weigh).collect();
         let both = new.into_iter().zip(weighed);
         let both = both.filter_map(|(light, weighed)| Some((light.clone(), weighed?)));
@@ -148,7 +148,7 @@ impl Sampler<'_> {
         let met: Result<Vec<Vec<Met>>, RecoveryError> = batches
             .into_par_iter()
             .map(|(cell, start, count)| {
-                self.ground.control.check()?;
+                self.likelihood.control.check()?;
                 let key = Key {
                     seed: u64::from(stage),
                     spot: side.number,
@@ -171,7 +171,7 @@ impl Sampler<'_> {
         // Patterns of one level are listed, or are not likely.
         let both = light.contains(&true) && light.contains(&false);
         let contrasts = cells[cell].contrasts;
-        let weighed = both.then(|| self.ground.weigh(&light, self.quadrature, contrasts))??;
+        let weighed = both.then(|| self.likelihood.weigh(&light, self.quadrature, contrasts))??;
         Some(Met {
             log: weighed.log - drawn.log_probability - share,
             light,

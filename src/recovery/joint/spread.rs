@@ -18,7 +18,8 @@
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-use super::ground::{Ground, Moments, Summed};
+use super::pattern_likelihood::PatternLikelihood;
+use super::pattern_sums::{Moments, Summed};
 use super::sampled;
 use crate::num::linalg::{Svd, rows_times, svd};
 use crate::recovery::Patterns;
@@ -75,14 +76,14 @@ struct Part {
 /// Of a picture of two levels that are not given, its pattern and its values; `exact` are the sums
 /// where the levels are exact.
 pub(super) fn sum(
-    ground: &Ground<'_>,
+    likelihood: &PatternLikelihood<'_>,
     exact: &Summed,
     (light, shown): (&[bool], &DVector<f64>),
 ) -> Result<Spread, RecoveryError> {
-    let axes = svd(ground.r)?;
+    let axes = svd(likelihood.r)?;
     let parts: Result<Vec<Option<Part>>, RecoveryError> = SPREADS
         .par_iter()
-        .map(|tau| part(ground, &axes, *tau, (light, shown)))
+        .map(|tau| part(likelihood, &axes, *tau, (light, shown)))
         .collect();
     let parts: Vec<(f64, f64, Part)> = SPREADS
         .into_iter()
@@ -118,21 +119,21 @@ pub(super) fn sum(
 /// The sums at one spread, along the singular vectors of R = U S Vᵀ: with e = 1 + τ² s² a row of
 /// L⁻¹R is s vᵀ/√e, and x of levels ℓ is ℓ + V (τ² s/e)(Uᵀd − S Vᵀℓ) on average.
 fn part(
-    ground: &Ground<'_>,
+    likelihood: &PatternLikelihood<'_>,
     axes: &Svd,
     tau: f64,
     (light, shown): (&[bool], &DVector<f64>),
 ) -> Result<Option<Part>, RecoveryError> {
     let s = &axes.sigma;
     let excess = s.map(|s| 1.0 + (tau * s).powi(2));
-    let along = axes.u.tr_mul(ground.d);
-    let beside = (ground.d - &axes.u * &along).norm_squared();
+    let along = axes.u.tr_mul(likelihood.d);
+    let beside = (likelihood.d - &axes.u * &along).norm_squared();
     let scale = s.zip_map(&excess, |s, e| s / e.sqrt());
     let r = rows_times(axes.vt.clone(), &scale);
     let d = along.zip_map(&excess, |d, e| d / e.sqrt());
-    let own = Ground {
-        control: ground.control,
-        ..Ground::new(&r, &d, None)
+    let own = PatternLikelihood {
+        control: likelihood.control,
+        ..PatternLikelihood::new(&r, &d, None)
     };
     let Some(summed) = sampled::sample(&own, &[light.to_vec()], DRAWS)? else {
         return Ok(None);

@@ -12,7 +12,7 @@
 //! be alike by an unknown degree ([`super::neighbours`]).
 
 use super::coordinates::Coordinates;
-use super::ground::Ground;
+use super::pattern_likelihood::PatternLikelihood;
 use super::pattern_search::{Found, Levels, Search};
 use super::{enumerated, neighbours, pattern_lattice, sampled, scale, spread};
 use crate::recovery::{
@@ -82,20 +82,20 @@ pub(in crate::recovery) fn recover(
     let grids = problem.grids.unwrap_or(&[]);
     // A scale that is free has no measure of what is likely.
     let n = problem.c.ncols();
-    let ground = Ground {
+    let likelihood = PatternLikelihood {
         control: problem.control,
-        ..Ground::new(&r, &d, given)
+        ..PatternLikelihood::new(&r, &d, given)
     };
     let summed = if free || n > MOST_SAMPLED || !options.probabilities {
         None
-    } else if enumerated::can(&ground) {
-        Some(enumerated::sum(&ground))
+    } else if enumerated::can(&likelihood) {
+        Some(enumerated::sum(&likelihood))
     } else {
         let draws = (DRAWS / (n * n) as f64).clamp(FEWEST, MOST) as usize;
         // Where little is told, rough patterns fit better than those that are likely beforehand.
         let mut known = search.alike(grids)?;
         known.push(best.light.clone());
-        sampled::sample(&ground, &known, draws)?
+        sampled::sample(&likelihood, &known, draws)?
     };
     if let Some(summed) = &summed {
         let found = search.descend(summed.best.clone(), &mut changes);
@@ -110,7 +110,7 @@ pub(in crate::recovery) fn recover(
     let shown = best.values();
     let spread = match &summed {
         Some(exact) if given.is_none() && options.spreads => {
-            Some(spread::sum(&ground, exact, (&best.light, &shown))?)
+            Some(spread::sum(&likelihood, exact, (&best.light, &shown))?)
         }
         _ => None,
     };

@@ -49,12 +49,12 @@ fn errors_are_those_of_all_patterns_levels_and_spreads() {
         let r = &mixing / noise;
         let d = &r * DVector::from_row_slice(&truth) + DVector::from_fn(4, |_, _| normal());
         let shown = DVector::from_row_slice(&SHOWN);
-        let ground = Ground::new(&r, &d, None);
+        let likelihood = PatternLikelihood::new(&r, &d, None);
         let light = [false, true, false, true];
-        let exact = sampled::sample(&ground, &[light.to_vec()], 4000)
+        let exact = sampled::sample(&likelihood, &[light.to_vec()], 4000)
             .unwrap()
             .unwrap();
-        let found = sum(&ground, &exact, (&light, &shown)).unwrap();
+        let found = sum(&likelihood, &exact, (&light, &shown)).unwrap();
         let parts = SPREADS.map(|tau| by_hand(&r, &d, tau));
         let own = by_hand(&r, &d, 0.0);
         let others: Vec<f64> = parts

@@ -96,10 +96,10 @@ fn sampled_marginals_are_those_of_all_patterns() {
                 Coordinates::new(Method::JointTwoValued, &problem, &options, 1.0, 1.0).unwrap();
             let (r, d) = coordinates.whitened();
             for given in [None, Some([0.2, 0.8])] {
-                let ground = Ground::new(&r, &d, given);
-                let all = enumerated::sum(&ground);
+                let likelihood = PatternLikelihood::new(&r, &d, given);
+                let all = enumerated::sum(&likelihood);
                 let start = [vec![false; 16]];
-                let sampled = sampled::sample(&ground, &start, MOST as usize)
+                let sampled = sampled::sample(&likelihood, &start, MOST as usize)
                     .unwrap()
                     .unwrap();
                 let [all, own] = [&all, &sampled].map(|sum| sum.moments.light());

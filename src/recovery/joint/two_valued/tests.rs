@@ -123,8 +123,8 @@ fn probabilities_are_those_of_all_patterns() {
     let coordinates =
         Coordinates::new(Method::JointTwoValued, &problem, &options, 1.0, 1.0).unwrap();
     let (r, d) = coordinates.whitened();
-    let ground = Ground::new(&r, &d, Some([0.3, 0.7]));
-    let sampled = sampled::sample(&ground, &[vec![false; 9]], 4000)
+    let likelihood = PatternLikelihood::new(&r, &d, Some([0.3, 0.7]));
+    let sampled = sampled::sample(&likelihood, &[vec![false; 9]], 4000)
         .unwrap()
         .unwrap()
         .finish(&[false; 9]);
@@ -156,12 +156,12 @@ fn sampled_levels_are_those_of_the_sum() {
         let coordinates =
             Coordinates::new(Method::JointTwoValued, &problem, &options, 1.0, 1.0).unwrap();
         let (r, d) = coordinates.whitened();
-        let ground = Ground::new(&r, &d, None);
-        let all = enumerated::sum(&ground);
+        let likelihood = PatternLikelihood::new(&r, &d, None);
+        let all = enumerated::sum(&likelihood);
         let best = all.best.clone();
         let [all, sampled] = [
             all,
-            sampled::sample(&ground, std::slice::from_ref(&best), 4000)
+            sampled::sample(&likelihood, std::slice::from_ref(&best), 4000)
                 .unwrap()
                 .unwrap(),
         ]
@@ -190,10 +190,12 @@ fn drawn_patterns_make_up_for_those_that_are_not_listed() {
         let coordinates =
             Coordinates::new(Method::JointTwoValued, &problem, &options, 1.0, 1.0).unwrap();
         let (r, d) = coordinates.whitened();
-        let ground = Ground::new(&r, &d, given);
-        let all = enumerated::sum(&ground);
+        let likelihood = PatternLikelihood::new(&r, &d, given);
+        let all = enumerated::sum(&likelihood);
         let known = [all.best.clone()];
-        let sampled = sampled::sample(&ground, &known, 20_000).unwrap().unwrap();
+        let sampled = sampled::sample(&likelihood, &known, 20_000)
+            .unwrap()
+            .unwrap();
         let Sum::Sampled {
             listed,
             disagreement,

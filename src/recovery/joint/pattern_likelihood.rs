@@ -1,16 +1,13 @@
-//! The sums over patterns of two levels: what they have in common.
-
-use std::collections::HashMap;
+//! The likelihood of a pattern of two levels, whatever its levels are.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::levels::{LevelFit, possible};
 use crate::num::control::Control;
 use crate::num::quadrature::Rule;
-use crate::recovery::{Patterns, Sum};
 
 /// χ² = ‖R x − d‖², x_j one of two levels, given or not.
-pub(super) struct Ground<'a> {
+pub(super) struct PatternLikelihood<'a> {
     pub(super) r: &'a DMatrix<f64>,
     pub(super) d: &'a DVector<f64>,
     /// The light of elements that are all 1.
@@ -19,7 +16,7 @@ pub(super) struct Ground<'a> {
     pub(super) control: Control<'a>,
 }
 
-impl<'a> Ground<'a> {
+impl<'a> PatternLikelihood<'a> {
     pub(super) fn new(r: &'a DMatrix<f64>, d: &'a DVector<f64>, given: Option<[f64; 2]>) -> Self {
         let all = r.column_sum();
         Self {
@@ -58,7 +55,7 @@ impl Weighed {
     }
 }
 
-impl Ground<'_> {
+impl PatternLikelihood<'_> {
     /// A pattern's weight over levels that differ by these contrasts, where they are not given;
     /// none where levels are not told apart or none can be.
     pub(super) fn weigh(
@@ -145,130 +142,5 @@ impl Ground<'_> {
             levels: moments.map(|m| m.map(|x| x / sum)),
             chi2: least,
         })
-    }
-}
-
-/// Of a mean square, what rounding leaves of a variance.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
-
-/// What was summed over patterns and levels.
-pub(super) struct Summed {
-    pub(super) moments: Moments,
-    /// Weights by pattern: all that count, or those that were met.
-    pub(super) weights: HashMap<Vec<bool>, f64>,
-    pub(super) log_evidence: f64,
-    pub(super) sum: Sum,
-    /// The best that was met.
-    pub(super) best: Vec<bool>,
-    /// Some that were met, with their weights and levels; none where all were summed.
-    pub(super) drawn: Vec<(f64, Vec<bool>, [f64; 2])>,
-}
-
-impl Summed {
-    /// The probabilities, with that of the pattern that is recovered.
-    pub(super) fn finish(&self, recovered: &[bool]) -> Patterns {
-        let own = self.weights.get(recovered).copied().unwrap_or(0.0);
-        let share = own / self.moments.weight;
-        self.moments.finish(share, self.log_evidence, self.sum)
-    }
-}
-
-/// Weighted sums over patterns and levels.
-#[derive(Clone)]
-pub(super) struct Moments {
-    pub(super) weight: f64,
-    light: DVector<f64>,
-    mean: DVector<f64>,
-    square: DVector<f64>,
-    levels: [[f64; 2]; 2],
-}
-
-impl Moments {
-    pub(super) fn new(n: usize) -> Self {
-        Self {
-            weight: 0.0,
-            light: DVector::zeros(n),
-            mean: DVector::zeros(n),
-            square: DVector::zeros(n),
-            levels: [[0.0; 2]; 2],
-        }
-    }
-
-    /// Adds a pattern; `levels` are the means of dark and light level and of their squares.
-    pub(super) fn add(&mut self, light: &[bool], weight: f64, levels: [[f64; 2]; 2]) {
-        self.weight += weight;
-        for (j, light) in light.iter().enumerate() {
-            let [first, second] = levels[usize::from(*light)];
-            self.light[j] += weight * f64::from(u8::from(*light));
-            self.mean[j] += weight * first;
-            self.square[j] += weight * second;
-        }
-        for (sum, level) in self.levels.iter_mut().zip(levels) {
-            sum[0] += weight * level[0];
-            sum[1] += weight * level[1];
-        }
-    }
-
-    /// The sum of several.
-    pub(super) fn together(all: &[Self]) -> Self {
-        let mut sum = Self::new(all[0].light.len());
-        for own in all {
-            sum.weight += own.weight;
-            sum.light += &own.light;
-            sum.mean += &own.mean;
-            sum.square += &own.square;
-            for (sum, own) in sum.levels.iter_mut().zip(own.levels) {
-                sum[0] += own[0];
-                sum[1] += own[1];
-            }
-        }
-        sum
-    }
-
-    /// All of it times a factor.
-    pub(super) fn scaled(&self, factor: f64) -> Self {
-        Self {
-            weight: factor * self.weight,
-            light: &self.light * factor,
-            mean: &self.mean * factor,
-            square: &self.square * factor,
-            levels: self.levels.map(|level| level.map(|x| x * factor)),
-        }
-    }
-
-    /// Probability of each element to be light.
-    pub(super) fn light(&self) -> DVector<f64> {
-        &self.light / self.weight
-    }
-
-    /// E (ℓ_j − x_j)² of the elements' levels ℓ.
-    pub(super) fn square_about(&self, x: &DVector<f64>) -> DVector<f64> {
-        let [mean, square] = [&self.mean, &self.square].map(|sum| sum / self.weight);
-        DVector::from_fn(x.len(), |j, _| {
-            let own = square[j] - 2.0 * x[j] * mean[j] + x[j] * x[j];
-            own.max(ROUNDING * square[j])
-        })
-    }
-
-    /// The whole, a pattern's share of it and the evidence known.
-    pub(super) fn finish(&self, pattern: f64, log_evidence: f64, sum: Sum) -> Patterns {
-        let mean = &self.mean / self.weight;
-        let square = &self.square / self.weight;
-        let spread =
-            |first: f64, second: f64| (second - first * first).max(ROUNDING * second).sqrt();
-        let of = |k: usize| self.levels[k].map(|x| x / self.weight);
-        let levels = [of(0), of(1)];
-        Patterns {
-            light: self.light(),
-            deviation: mean.zip_map(&square, spread),
-            mean,
-            levels: levels.map(|[first, _]| first),
-            level_errors: levels.map(|[first, second]| spread(first, second)),
-            pattern,
-            exact: 1.0,
-            spread: 0.0,
-            log_evidence,
-            sum,
-        }
     }
 }
