@@ -1,13 +1,20 @@
 //! What is to be inverted.
 
+mod known;
+mod lit_elements;
+mod scale;
+mod variants;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::soft::Soft;
 use super::{Nuisance, RecoveryError, Shared};
 use crate::num::control::Control;
 use crate::num::linalg::{
-    Range, Svd, Tolerance, columns_times, product, range, rows_times, subtract_product, svd_to,
+    Svd, Tolerance, columns_times, product, rows_times, subtract_product, svd_to,
 };
+pub(super) use lit_elements::LitElements;
+use scale::{finite, least, refuse_scale};
 
 /// The light of element j as a sum of products: A_j = Σ_s c\[p,s\] d\[s,l\] over its terms s, where
 /// C\[p,j\] D\[j,l\] alone is only near it.
@@ -119,225 +126,12 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// The same with the terms of each element: the joint methods take them in place of C and D.
-    ///
-    /// # Errors
-    /// [`RecoveryError::Shape`], [`RecoveryError::NotFinite`] or [`RecoveryError::OutOfScale`].
-    pub fn with_terms(self, terms: Terms<'a>) -> Result<Self, RecoveryError> {
-        let Terms { c, d, element } = terms;
-        let shape = |name, matrix: &DMatrix<f64>, rows, columns| {
-            let (found_rows, found_columns) = matrix.shape();
-            let fits = (found_rows, found_columns) == (rows, columns);
-            let wrong = RecoveryError::Shape {
-                name,
-                rows,
-                columns,
-                found_rows,
-                found_columns,
-            };
-            if fits {
-                finite(name, matrix)
-            } else {
-                Err(wrong)
-            }
-        };
-        let (pixels, spots) = self.phi.shape();
-        shape("the terms of c", c, pixels, element.len())?;
-        shape("the terms of d", d, element.len(), spots)?;
-        let elements = self.elements();
-        match element.iter().find(|j| **j >= elements) {
-            Some(j) => Err(RecoveryError::Grids {
-                covered: *j + 1,
-                elements,
-            }),
-            None => Ok(Problem {
-                terms: Some(terms),
-                shared: None,
-                ..self
-            }),
-        }
-    }
-
     /// The sides of the operator, and the element of each of their terms.
     pub(super) fn sides(&self) -> (&'a DMatrix<f64>, &'a DMatrix<f64>, Vec<usize>) {
         match self.terms {
             Some(Terms { c, d, element }) => (c, d, element.to_vec()),
             None => (self.c, self.d, (0..self.elements()).collect()),
         }
-    }
-
-    /// The same without factors that are known only roughly.
-    pub(super) fn without_gains(&self) -> Self {
-        let nuisance = Nuisance {
-            frame_gain: None,
-            scale_error: None,
-            ..self.nuisance
-        };
-        Problem {
-            nuisance,
-            shared: None,
-            ..*self
-        }
-    }
-
-    /// The same with a free scale of all light.
-    pub(super) fn with_free_scale(&self) -> Self {
-        let nuisance = Nuisance {
-            free_scale: true,
-            ..self.nuisance
-        };
-        Problem {
-            nuisance,
-            shared: None,
-            ..*self
-        }
-    }
-
-    /// The same with other photographs and another right side of the operator, and with factors
-    /// about estimates of them.
-    pub(super) fn about<'b>(
-        &self,
-        phi: &'b DMatrix<f64>,
-        d: &'b DMatrix<f64>,
-        soft: &'b Soft,
-    ) -> Problem<'b>
-    where
-        'a: 'b,
-    {
-        let own: Problem<'b> = *self;
-        Problem {
-            phi,
-            d: if own.terms.is_some() { own.d } else { d },
-            terms: own.terms.map(|terms| Terms { d, ..terms }),
-            soft: Some(soft),
-            shared: None,
-            ..own
-        }
-    }
-
-    /// The same along other directions of its photographs: `phi` and the camera side of its terms
-    /// turned by one orthogonal matrix, with the errors and the light beside it along them.
-    pub(super) fn along<'b>(
-        &self,
-        phi: &'b DMatrix<f64>,
-        c: &'b DMatrix<f64>,
-        stderr: &'b DMatrix<f64>,
-        nuisance: Nuisance<'b>,
-    ) -> Problem<'b>
-    where
-        'a: 'b,
-    {
-        let own: Problem<'b> = *self;
-        Problem {
-            phi,
-            c: if own.terms.is_some() { own.c } else { c },
-            terms: own.terms.map(|terms| Terms { c, ..terms }),
-            stderr: Some(stderr),
-            nuisance,
-            shared: None,
-            ..own
-        }
-    }
-
-    /// The same with the element grids known, \[nu, nv\] of each hidden surface in the order of the
-    /// elements; element iu + iv·nu within each. Methods that compare neighbouring elements need
-    /// them.
-    ///
-    /// # Errors
-    /// [`RecoveryError::Grids`] where the grids do not make up the elements.
-    pub fn with_grids(self, grids: &'a [[usize; 2]]) -> Result<Self, RecoveryError> {
-        let covered = grids.iter().fold(0usize, |sum, [nu, nv]| {
-            sum.saturating_add(nu.saturating_mul(*nv))
-        });
-        let elements = self.elements();
-        if covered != elements || grids.iter().any(|[nu, nv]| nu * nv == 0) {
-            return Err(RecoveryError::Grids { covered, elements });
-        }
-        Ok(Problem {
-            grids: Some(grids),
-            ..self
-        })
-    }
-
-    /// The same with the centre of each element known, in any unit of length: `joint-gp` compares
-    /// elements by their distance. Without them it takes the elements of a grid as squares.
-    ///
-    /// # Errors
-    /// [`RecoveryError::Shape`] where there are not as many as elements,
-    /// [`RecoveryError::NotFinite`].
-    pub fn with_places(self, places: &'a [[f64; 3]]) -> Result<Self, RecoveryError> {
-        if places.len() != self.elements() {
-            return Err(RecoveryError::Shape {
-                name: "the places of the elements",
-                rows: self.elements(),
-                columns: 3,
-                found_rows: places.len(),
-                found_columns: 3,
-            });
-        }
-        let places_only = DMatrix::from_fn(places.len(), 3, |j, k| places[j][k]);
-        finite("the places of the elements", &places_only)?;
-        Ok(Problem {
-            places: Some(places),
-            ..self
-        })
-    }
-
-    /// The same with terms of unknown size to be estimated together with the reflectances; the
-    /// joint methods can.
-    ///
-    /// # Errors
-    /// [`RecoveryError::Shape`], [`RecoveryError::NotFinite`] or [`RecoveryError::OutOfScale`] of a
-    /// glare pattern; [`RecoveryError::RelativeDeviation`] and [`RecoveryError::ScaleTwice`] of
-    /// factors that are known only roughly.
-    pub fn with_nuisance(self, nuisance: Nuisance<'a>) -> Result<Self, RecoveryError> {
-        let (pixels, spots) = self.phi.shape();
-        let fits = |name, matrix: Option<&DMatrix<f64>>, columns| match matrix {
-            Some(matrix) if matrix.shape() == (pixels, columns) => finite(name, matrix),
-            Some(matrix) => Err(RecoveryError::Shape {
-                name,
-                rows: pixels,
-                columns,
-                found_rows: matrix.nrows(),
-                found_columns: matrix.ncols(),
-            }),
-            None => Ok(()),
-        };
-        let patterns = nuisance.frame_patterns.map_or(0, DMatrix::ncols);
-        fits("the glare pattern (pixels × spots)", nuisance.glare, spots)?;
-        fits(
-            "the patterns of a frame (pixels × patterns)",
-            nuisance.frame_patterns,
-            patterns,
-        )?;
-        fits(
-            "what is left out (pixels × spots)",
-            nuisance.left_out,
-            spots,
-        )?;
-        if nuisance
-            .left_out
-            .is_some_and(|flags| flags.iter().all(|x| *x != 0.0))
-        {
-            return Err(RecoveryError::NothingCounts);
-        }
-        let roughly = [
-            ("the gain of a frame", nuisance.frame_gain),
-            ("the scale", nuisance.scale_error),
-        ];
-        for (name, known_to) in roughly {
-            if let Some(value) = known_to.filter(|x| !(*x > 0.0 && *x <= 1.0)) {
-                return Err(RecoveryError::RelativeDeviation { name, value });
-            }
-        }
-        if nuisance.free_scale && nuisance.scale_error.is_some() {
-            return Err(RecoveryError::ScaleTwice);
-        }
-        Ok(Problem {
-            nuisance,
-            shared: None,
-            ..self
-        })
     }
 
     /// Φ, pixels × spots, W.
@@ -421,14 +215,14 @@ impl<'a> Problem<'a> {
     pub(super) fn misfit(&self, reflectance: &DVector<f64>) -> Result<f64, RecoveryError> {
         Ok(match self.terms {
             None if self.nuisance.left_out.is_none() => {
-                self.residual(&Lit::new(self.d, reflectance)?)
+                self.residual(&LitElements::new(self.d, reflectance)?)
             }
             _ => self.counted(self.phi - self.light(reflectance)).norm(),
         })
     }
 
     /// ‖Φ − C diag(ρ) D‖, Frobenius, W.
-    pub(super) fn residual(&self, lit: &Lit) -> f64 {
+    pub(super) fn residual(&self, lit: &LitElements) -> f64 {
         let mut left = self.phi.clone();
         match &lit.along {
             Some(along) => subtract_product(&mut left, &product(self.c, &lit.elements), along),
@@ -436,58 +230,6 @@ impl<'a> Problem<'a> {
         }
         left.norm()
     }
-}
-
-/// diag(ρ) D, where D is large and of few directions as the product of two thin factors, which is D
-/// to rounding.
-pub(super) struct Lit {
-    /// diag(ρ) D or diag(ρ) Q, r rows.
-    elements: DMatrix<f64>,
-    /// B of D = Q B.
-    along: Option<DMatrix<f64>>,
-}
-
-impl Lit {
-    pub(super) fn new(d: &DMatrix<f64>, reflectance: &DVector<f64>) -> Result<Self, RecoveryError> {
-        let (elements, along) = match range(d)? {
-            Some(Range { q, b, .. }) => (q, Some(b)),
-            None => (d.clone(), None),
-        };
-        Ok(Lit {
-            elements: rows_times(elements, reflectance),
-            along,
-        })
-    }
-}
-
-/// Sizes whose squares, and products of squares of two matrices, stay well within f64.
-const SCALE: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
-
-/// Refuses entries that are not finite, or whose squares are not.
-fn finite(name: &'static str, matrix: &DMatrix<f64>) -> Result<(), RecoveryError> {
-    match matrix.iter().position(|x| !x.is_finite()) {
-        Some(at) => Err(RecoveryError::NotFinite {
-            name,
-            row: at % matrix.nrows(),
-            column: at / matrix.nrows(),
-            value: matrix[at],
-        }),
-        None => refuse_scale(name, matrix.amax()),
-    }
-}
-
-/// Refuses a matrix by the size of an entry that decides its scale; zero has none.
-fn refuse_scale(name: &'static str, value: f64) -> Result<(), RecoveryError> {
-    if value == 0.0 || SCALE.contains(&value) {
-        Ok(())
-    } else {
-        Err(RecoveryError::OutOfScale { name, value })
-    }
-}
-
-/// The lesser of two numbers, where 0 stands for none yet.
-fn least(least: f64, x: f64) -> f64 {
-    if least > 0.0 { least.min(x) } else { x }
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use super::{Inverse, inverse, refuse_unseen};
 use crate::num::linalg::{product, tr_product};
 use crate::recovery::bands;
-use crate::recovery::problem::Lit;
+use crate::recovery::problem::LitElements;
 use crate::recovery::{Method, Options, Problem, Recovered, RecoveryError, Uncertainty};
 
 /// Some rows (pixels) of a problem.
@@ -72,7 +72,7 @@ pub fn recover_strips<E: From<RecoveryError>>(
         return Err(RecoveryError::Dark.into());
     };
     let reflectance = sum / pixels as f64;
-    let lit = Lit::new(d, &reflectance)?;
+    let lit = LitElements::new(d, &reflectance)?;
     let (mut left, mut at) = (0.0, 0);
     while let Some(Strip { phi, c, .. }) = strip(at)? {
         let residual = Problem::new(&phi, &c, d, None)?.residual(&lit);
