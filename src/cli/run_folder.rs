@@ -2,21 +2,19 @@
 //! those of [`folder`](crate::folder), and `partial/`, what is finished of an unfinished run
 //! ([`super::partial`]).
 
-use std::fs;
+mod refusing;
+mod replacing;
+
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::cleanup::{remove_abandoned, remove_files, remove_named, remove_numbered};
+use super::cleanup::remove_abandoned;
 use super::console::Console;
-use super::exposed_folder::ExposedFolder;
 use super::failure::Failure;
-use super::output;
-use super::partial::{PARTIAL, Partial};
-use super::replacement::{move_in, remove_folder};
+use super::partial::Partial;
 use crate::film::{self, frame_name};
-use crate::folder::names::MODEL_FILES;
 pub(super) use crate::folder::names::{
     CALIBRATED, CALIBRATED_FILES, CALIBRATION, EXPOSED, IMPORT, IMPORT_PNG, LEFT_OUT, LOCATED,
     LOCATED_FILES, MODEL, PHI, RECOVERED, REPORT, SATURATED, SCENE, STDERR, SUMMARY, TAILS,
@@ -25,13 +23,9 @@ pub(super) use crate::folder::names::{
 use crate::folder::{Record, columns, finish, frame, frame_max, refuse_beyond_f32, write_scene};
 use crate::matrix::Matrix;
 use crate::scene::{COPIES, Scene};
-use crate::store::{FolderLock, ensure_writable, flush};
+use crate::store::{FolderLock, ensure_writable};
 use crate::transport::Traced;
-
-/// A run that takes the place of another, until it is whole.
-const REPLACEMENT: &str = ".replacement";
-/// The same while its files are moved to their places; nothing of the other is left.
-const INCOMING: &str = ".incoming";
+use refusing::other_run;
 
 /// What a process is going to do with a run folder.
 #[derive(Clone, Debug)]
@@ -85,7 +79,7 @@ impl RunFolder {
         claim: &Claim,
         console: Console,
     ) -> Result<Self, Failure> {
-        output::refuse_obstacles(path, &OWN_FOLDERS, &OWN_FILES)?;
+        Self::refuse_obstacles(path)?;
         ensure_writable(path)?;
         let differs = || -> Result<Option<Record>, Failure> {
             Ok(Record::read(path)?.filter(|there| !there.same_settings(record)))
@@ -112,32 +106,6 @@ impl RunFolder {
         let (lock, mut folder) = FolderLock::take(path, &parts, claim.what, begin)?;
         folder.lock = Some(lock);
         Ok(folder)
-    }
-
-    /// Where the run `record` is traced that is to replace `there`.
-    fn replacement(
-        self,
-        record: &Record,
-        there: &Record,
-        console: Console,
-    ) -> Result<Self, Failure> {
-        let path = self.path.join(REPLACEMENT);
-        console.say(format!(
-            "the run in {} ({}) stays until this one is whole",
-            self.path.display(),
-            there.origin
-        ));
-        // Begun with yet other settings: nobody will go on with it. One that cannot be read is
-        // none.
-        if !matches!(Record::read(&path), Ok(Some(begun)) if begun.same_settings(record)) {
-            remove_folder(&path)?;
-        }
-        ensure_writable(&path)?;
-        Ok(Self {
-            path,
-            replaces: Some(self.path),
-            lock: None,
-        })
     }
 
     /// Writes what a run has from its first moment on; what is there of it stays.
@@ -172,102 +140,6 @@ impl RunFolder {
         }
     }
 
-    /// What stands in the way of a run's files shows before anything is written.
-    pub(super) fn refuse_obstacles(path: &Path) -> Result<(), Failure> {
-        output::refuse_obstacles(path, &OWN_FOLDERS, &OWN_FILES)
-    }
-
-    /// Whether the import that `record` describes is in the folder, whole. Another import is
-    /// refused unless it is to be replaced; a render is not replaced by photographs.
-    pub(super) fn holds_import(&self, record: &Record, replace: bool) -> Result<bool, Failure> {
-        let Some(there) = Record::read(&self.path)? else {
-            return Ok(false);
-        };
-        let path = self.path.display();
-        if !there.is_imported() {
-            let cause = format!("{path} holds a rendered run, which photographs do not replace");
-            return Err(Failure::new(cause, "choose another folder (-o)"));
-        }
-        if there.same_settings(record) {
-            return Ok(there.check_all(&self.path, SCENE).is_ok());
-        }
-        if replace {
-            return Ok(false);
-        }
-        let cause = format!("{path} holds photographs that were imported with other settings");
-        let cure = "give the same, choose another folder (-o), or replace them (--replace)";
-        Err(Failure::new(cause, cure))
-    }
-
-    /// Puts an import that `fill` writes into the place of what the folder holds, once it is whole.
-    /// Another import gives way if `replace` says so; anything else that is not of `scene` is
-    /// refused.
-    pub(super) fn put(
-        &self,
-        scene: &Scene,
-        console: Console,
-        replace: bool,
-        fill: impl FnOnce(&Path) -> Result<(), Failure>,
-    ) -> Result<(), Failure> {
-        let is_import = Record::read(&self.path)?.is_some_and(|there| there.is_imported());
-        if !(replace && is_import) {
-            self.refuse_foreign(scene, console)?;
-        }
-        let staged = Self::at(&self.path.join(REPLACEMENT));
-        remove_folder(&staged.path)?;
-        ensure_writable(&staged.path)?;
-        write_scene(&staged.path, scene)?;
-        fill(&staged.path)?;
-        flush(&staged.path)?;
-        self.replace()
-    }
-
-    /// Puts the run that was traced beside another into its place, once it is complete.
-    pub(super) fn settle(&mut self) -> Result<(), Failure> {
-        if let Some(path) = self.replaces.take() {
-            self.path = path;
-            self.replace()?;
-        }
-        Ok(())
-    }
-
-    /// Removes the old run and moves the new one to its place. A process that ends midway leaves
-    /// what [`Self::finish_replacement`] goes on with.
-    fn replace(&self) -> Result<(), Failure> {
-        self.remove_run()?;
-        fs::rename(self.path.join(REPLACEMENT), self.path.join(INCOMING))?;
-        self.move_in()
-    }
-
-    /// Goes on where a process was ended while it put a new run in the place of the old one.
-    fn finish_replacement(&self) -> Result<(), Failure> {
-        if self.path.join(INCOMING).is_dir() {
-            return self.move_in();
-        }
-        let without = !self.path.join(Record::FILE).exists();
-        let staged = || Record::read(&self.path.join(REPLACEMENT));
-        if without && staged()?.is_some_and(|r| r.is_complete()) {
-            return self.replace();
-        }
-        Ok(())
-    }
-
-    /// Moves what is in [`INCOMING`] to its place, the record last.
-    fn move_in(&self) -> Result<(), Failure> {
-        let files = [
-            SCENE,
-            TAILS,
-            LEFT_OUT,
-            IMPORT_PNG,
-            IMPORT,
-            STDERR,
-            PHI,
-            Record::FILE,
-        ];
-        let incoming = self.path.join(INCOMING);
-        move_in(&incoming, &self.path, &["frames", COPIES], &files)
-    }
-
     /// Calls `change` while no other writer of the folder changes what all of them share.
     pub(super) fn alone<T>(
         &self,
@@ -277,45 +149,6 @@ impl RunFolder {
             Some(lock) => lock.alone(change),
             None => change(),
         }
-    }
-
-    /// A folder that holds another scene, or frames of unknown origin, or something else under the
-    /// name of an output, is not written to.
-    pub(super) fn refuse_foreign(&self, scene: &Scene, console: Console) -> Result<(), Failure> {
-        output::refuse_obstacles(&self.path, &OWN_FOLDERS, &OWN_FILES)?;
-        let path = self.path.display();
-        let cure = "choose another folder (-o), or remove this one";
-        if let Some(record) = Record::read(&self.path)? {
-            if record.scene_hash != scene.hash {
-                let cause = format!("{path} holds a run of another scene (`{}`)", record.scene);
-                return Err(Failure::new(cause, cure));
-            }
-            return Ok(());
-        }
-        let own = self.path.join(SCENE);
-        if own.exists() {
-            // What cannot be read as a scene is not this one either.
-            if !console
-                .of_folders()
-                .load_any_scene(&own.to_string_lossy())
-                .is_ok_and(|s| s.hash == scene.hash)
-            {
-                return Err(Failure::new(
-                    format!("{path} belongs to another scene ({SCENE})"),
-                    cure,
-                ));
-            }
-        }
-        let holds =
-            |dir: &str| fs::read_dir(self.path.join(dir)).is_ok_and(|mut d| d.next().is_some());
-        if holds("frames") || holds(PARTIAL) || self.path.join(PHI).exists() {
-            let cause = format!(
-                "{path} holds frames or a {PHI}, but no {} that says of which scene",
-                Record::FILE
-            );
-            return Err(Failure::new(cause, cure));
-        }
-        Ok(())
     }
 
     pub(super) fn frames(&self) -> PathBuf {
@@ -352,33 +185,6 @@ impl RunFolder {
     fn remove_abandoned(&self) -> Result<(), Failure> {
         remove_abandoned(&self.path)?;
         remove_abandoned(&self.frames())
-    }
-
-    /// Removes what was rendered, and what was found from it; the record first, so that nobody
-    /// takes what is left for a run.
-    fn remove_run(&self) -> Result<(), Failure> {
-        remove_named(&self.path, &[Record::FILE])?;
-        self.partial().remove()?;
-        remove_numbered(&self.frames(), "exr")?;
-        remove_recovered(&self.path.join(RECOVERED))?;
-        ExposedFolder::at(&self.path.join(EXPOSED)).remove()?;
-        let model = self.path.join(MODEL);
-        remove_named(&model, &MODEL_FILES)?;
-        // Anything else in it is not ours, and keeps it.
-        let _ = fs::remove_dir(model);
-        for (name, files) in [
-            (LOCATED, &LOCATED_FILES[..]),
-            (CALIBRATED, &CALIBRATED_FILES[..]),
-        ] {
-            let found = self.path.join(name);
-            remove_named(&found, files)?;
-            let _ = fs::remove_dir(found);
-        }
-        let validation = self.path.join(VALIDATION);
-        remove_named(&validation, &["p.exr", "p.png"])?;
-        let _ = fs::remove_dir(validation);
-        remove_named(&self.path, &[PHI, STDERR, TAILS, LEFT_OUT])?;
-        remove_named(&self.path, &[SUMMARY, REPORT, IMPORT, IMPORT_PNG])
     }
 
     /// Writes the frames of `spots` from the columns of `traced`, on the threads of the pool.
@@ -420,44 +226,6 @@ impl RunFolder {
         finish(&self.path, scene, record, [phi, stderr, tails])?;
         self.partial().remove()
     }
-}
-
-/// Names of a run's folders and files, under which nothing else may stand.
-const OWN_FOLDERS: [&str; 5] = ["frames", PARTIAL, MODEL, RECOVERED, COPIES];
-const OWN_FILES: [&str; 10] = [
-    SCENE,
-    PHI,
-    STDERR,
-    TAILS,
-    Record::FILE,
-    SUMMARY,
-    REPORT,
-    LEFT_OUT,
-    IMPORT,
-    IMPORT_PNG,
-];
-
-/// That a folder holds a run that is not to be replaced.
-fn other_run(path: &Path, there: &Record, scene: &Scene) -> Failure {
-    let path = path.display();
-    if there.is_imported() {
-        let cause = format!("{path} holds imported photographs, which nothing replaces");
-        return Failure::new(cause, "choose another folder (-o)");
-    }
-    let cause = if there.scene_hash == scene.hash {
-        format!("{path} holds a run with other settings ({})", there.origin)
-    } else {
-        format!("{path} holds a run of another scene (`{}`)", there.scene)
-    };
-    let cure = "give the same settings, choose another folder (-o), or replace it (--replace)";
-    Failure::new(cause, cure)
-}
-
-/// Removes what [`is_of_recovered`] from `dir`, and `dir` if that empties it.
-pub(super) fn remove_recovered(dir: &Path) -> Result<(), Failure> {
-    remove_files(dir, is_of_recovered)?;
-    let _ = fs::remove_dir(dir);
-    Ok(())
 }
 
 #[cfg(test)]

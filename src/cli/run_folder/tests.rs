@@ -1,4 +1,8 @@
+use std::fs;
+
+use super::replacing::{INCOMING, REPLACEMENT};
 use super::*;
+use crate::cli::output;
 use crate::folder::{Origin, Photographs};
 
 const QUIET: Console<'static> = Console {
