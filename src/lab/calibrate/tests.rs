@@ -6,7 +6,9 @@ use nalgebra::DVector;
 use super::picture::{Prior, priors};
 use super::*;
 use crate::lab::finding::Describe;
+use crate::matrix::Matrix;
 use crate::num::cosines::from_cosines;
+use crate::recovery::ErrorField;
 use crate::scene::file::SceneFile;
 
 fn small(name: &str, pixels: u32) -> Scene {

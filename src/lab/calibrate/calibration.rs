@@ -1,0 +1,98 @@
+//! What a calibration finds.
+
+use serde::Serialize;
+
+use super::{Direction, Identified, Profile, Stage};
+use crate::lab::located::Grid;
+use crate::recovery::ErrorField;
+
+/// An unknown, as it was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Calibrated {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Standard deviation known beforehand.
+    pub prior: Option<f64>,
+    /// The estimate, from what the scene says.
+    pub value: f64,
+    /// Its standard error.
+    pub stderr: f64,
+    /// By the curvature alone.
+    pub by_curvature: f64,
+    /// By the slopes of frames, where more than noise is left.
+    pub by_frames: Option<f64>,
+    /// By those of blocks of pixels.
+    pub by_blocks: Option<f64>,
+    /// How far a finer rule of integration would move it: a part of the error where light is
+    /// integrated, told where it is taken by centres; absent where something stands in the way.
+    pub by_rule: Option<f64>,
+    /// What the photographs tell of it at the start.
+    pub identified: Identified,
+    /// Its profile; absent of gains and of more than twelve parameters.
+    pub profile: Option<Profile>,
+}
+
+/// How far the starts led to one place.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Starts {
+    /// How many.
+    pub tried: usize,
+    /// Those that ended where the best one did.
+    pub agree: usize,
+}
+
+/// The calibrated scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct Calibration {
+    /// Name of the scene.
+    pub scene: String,
+    /// Its hash.
+    pub scene_hash: String,
+    /// Geometric parameters, then gains.
+    pub found: Vec<Calibrated>,
+    /// Combinations that the photographs alone do not tell.
+    pub untold: Vec<Direction>,
+    /// Estimated noise over the stated one (1 where it is stated), or W.
+    pub noise: f64,
+    /// χ² over degrees of freedom at that noise.
+    pub misfit: f64,
+    /// Degrees of freedom.
+    pub dof: f64,
+    /// Probability of so bad a fit by noise alone; absent where the noise is not stated.
+    pub p: Option<f64>,
+    /// The errors that what is left over is taken for, in place of noise of single pixels.
+    pub field: Option<ErrorField>,
+    /// ln of how much likelier the photographs are with these errors, each with its own geometry.
+    pub log_likelier: Option<f64>,
+    /// ‖what is not explained‖/‖what other light leaves‖, weighted by the stated noise.
+    pub left: f64,
+    /// Estimated scale of all light; 1 where it is known.
+    pub scale: f64,
+    /// τ of the prior of pictures.
+    pub spread: f64,
+    /// ℓ, in the scene's unit; 0 for elements that know nothing of each other.
+    pub length: f64,
+    /// The best start's way through the noises.
+    pub stages: Vec<Stage>,
+    /// Whether the last stage ended by itself.
+    pub is_settled: bool,
+    /// The starts.
+    pub starts: Starts,
+    /// The picture, errors of the geometry included.
+    pub grids: Vec<Grid>,
+    /// Its standard errors with the geometry given, in the order of the grids.
+    pub stderr_given: Vec<f64>,
+    /// Directions of the picture that the photographs determine.
+    pub directions: f64,
+    /// Correlation with the scene's own picture and MTF raw, where that is known.
+    pub correlation: Option<f64>,
+    /// The same.
+    pub mtf_raw: Option<f64>,
+    /// SHA-256 of the calibrated scene's file, so that it is told if that is changed.
+    pub scene_sha256: String,
+    /// The calibrated scene as a file.
+    #[serde(skip)]
+    pub toml: String,
+}

@@ -1,0 +1,181 @@
+//! From where the searches end to the estimate with its errors.
+
+use super::descent::State;
+use super::field::End;
+use super::{
+    Calibrated, Calibration, CalibrationPlan, Direction, Identified, LEVEL, Problem, Profile,
+    Starts, profile,
+};
+use crate::lab::error::LabError;
+use crate::lab::located::Grid;
+use crate::lab::validation::Integration;
+use crate::matrix::Matrix;
+use crate::metrics::{correlation, mtf_raw};
+use crate::model::MatrixModel;
+use crate::num::linalg::Cholesky;
+use crate::num::statistics::chi_square_sf;
+use crate::store::digest_of;
+
+/// Starts that end within so many standard errors of each other agree.
+const AGREE: f64 = 1.0;
+
+impl CalibrationPlan {
+    pub(super) fn finish(
+        &self,
+        problem: &Problem<'_>,
+        (model, told, untold): (&MatrixModel, Vec<Identified>, Vec<Direction>),
+        mut ends: Vec<End>,
+    ) -> Result<Calibration, LabError> {
+        ends.sort_by(|a, b| a.total.total_cmp(&b.total));
+        let alone = ends.iter().map(|end| end.without);
+        let alone = alone.fold(f64::INFINITY, f64::min);
+        let End {
+            state: best,
+            stages,
+            field,
+            total,
+            ..
+        } = &ends[0];
+        let left = ends[0].left_over(problem)?;
+        let with_field = field.as_ref().map(|field| problem.with_field(field));
+        let with_field = with_field.transpose()?;
+        let is_noise_known = problem.photographs.stderr.is_some();
+        let problem = with_field.as_ref().unwrap_or(problem);
+        let information = problem.information(&best.slope);
+        let covariance = Cholesky::new(&information).ok_or(LabError::DARK)?.inverse();
+        let unknowns = problem.unknowns() as f64;
+        let dof = (best.value.count - best.value.freedom - unknowns).max(1.0);
+        let p = is_noise_known.then(|| self.by_noise(best.value.chi2, dof));
+        let more_than_noise = p.is_none_or(|p| p < LEVEL);
+        let robust = |scores: &Matrix| {
+            let moved = &covariance * scores;
+            &moved * moved.transpose()
+        };
+        let [by_frames, by_blocks] = [&best.slope.by_frames, &best.slope.by_blocks].map(robust);
+        let enough_frames = problem.photographs.phi.ncols() > 2;
+        let scene = problem.geometry.scene;
+        let names = self.names(problem);
+        let finer = problem.finer(best, &covariance)?;
+        let mut found: Vec<Calibrated> = Vec::new();
+        let mut whole = covariance.clone();
+        for (k, identified) in told.into_iter().enumerate() {
+            let root = |m: &Matrix| m[(k, k)].max(0.0).sqrt();
+            let by_curvature = root(&covariance);
+            let by_frames = (more_than_noise && enough_frames).then(|| root(&by_frames));
+            // Along the cosines there are no blocks of pixels.
+            let by_blocks = (more_than_noise && field.is_none()).then(|| root(&by_blocks));
+            let profile = profile::profile(problem, best, &covariance, k)?;
+            let by_profile = profile.as_ref().map_or(0.0, Profile::stderr);
+            let others = [by_frames, by_blocks].map(|x| x.unwrap_or(0.0));
+            let by_rule = finer.as_ref().map(|moved| moved[k].abs());
+            let rule = by_rule.filter(|_| self.integration == Integration::Quadrature);
+            let noise = others
+                .into_iter()
+                .fold(by_curvature.max(by_profile), f64::max);
+            let rule = rule.unwrap_or(0.0);
+            let stderr = (noise * noise + rule * rule).sqrt();
+            let more = stderr / by_curvature;
+            (0..whole.nrows()).for_each(|j| {
+                whole[(k, j)] *= more;
+                whole[(j, k)] *= more;
+            });
+            let (name, unit) = names[k].clone();
+            found.push(Calibrated {
+                name,
+                unit,
+                prior: problem.priors[k],
+                value: best.values[k],
+                stderr,
+                by_curvature,
+                by_frames,
+                by_blocks,
+                by_rule,
+                identified,
+                profile,
+            });
+        }
+        let starts = Starts {
+            tried: ends.len(),
+            agree: ends
+                .iter()
+                .filter(|end| agree(&end.state, best, &found))
+                .count(),
+        };
+        let scale = best.prior.scale;
+        let rho = &best.value.rho / scale;
+        let given = best.slope.covariance.diagonal() / (scale * scale);
+        let moved = &best.slope.shift * &whole * best.slope.shift.transpose();
+        let both = &given + moved.diagonal() / (scale * scale);
+        let grids = model.grids.iter().map(|g| Grid {
+            surface: g.surface.clone(),
+            count: g.count,
+            values: rho.rows(g.first, g.len()).iter().copied().collect(),
+            stderr: both
+                .rows(g.first, g.len())
+                .map(f64::sqrt)
+                .iter()
+                .copied()
+                .collect(),
+        });
+        let truth = scene.unknown().is_none().then_some(&model.albedo);
+        let count = problem.geometry.parameters.len();
+        let mut file = scene.displaced_file(problem.geometry.parameters, &best.values[..count])?;
+        file.name = format!("{} calibrated", scene.name);
+        let toml = file.toml()?;
+        Ok(Calibration {
+            scene: scene.name.clone(),
+            scene_hash: scene.hash.clone(),
+            untold,
+            noise: field.as_ref().map_or(best.factor, |f| f.errors.pixel),
+            field: field.as_ref().map(|f| f.errors),
+            log_likelier: field.as_ref().map(|_| alone - total),
+            misfit: best.value.chi2 / dof,
+            dof,
+            p,
+            left,
+            scale,
+            spread: best.prior.spread,
+            length: best.prior.length,
+            stages: stages.clone(),
+            is_settled: best.is_settled,
+            starts,
+            grids: grids.collect(),
+            stderr_given: given.iter().map(|x| x.max(0.0).sqrt()).collect(),
+            directions: best.value.freedom,
+            correlation: truth.and_then(|t| correlation(rho.as_slice(), t)),
+            mtf_raw: truth.and_then(|t| mtf_raw(rho.as_slice(), t)),
+            scene_sha256: digest_of(toml.as_bytes()),
+            toml,
+            found,
+        })
+    }
+
+    /// Probability of as large a χ² by noise alone. Of errors estimated from K = ν + 1 replicates
+    /// each term is the square of Student's t, of mean ν/(ν − 2) and variance 2 (ν − 1)/(ν − 4)
+    /// times the square of that: χ² is compared as one of that mean and variance.
+    pub(super) fn by_noise(&self, chi2: f64, dof: f64) -> f64 {
+        match self.replicates.map(|k| f64::from(k) - 1.0) {
+            Some(nu) if nu > 4.0 => {
+                let fewer = dof * (nu - 4.0) / (nu - 1.0);
+                chi_square_sf(chi2 / dof * (nu - 2.0) / nu * fewer, fewer)
+            }
+            _ => chi_square_sf(chi2, dof),
+        }
+    }
+
+    /// Name and unit of each unknown.
+    fn names(&self, problem: &Problem<'_>) -> Vec<(String, String)> {
+        let own = problem.geometry.parameters.iter();
+        let own = own.map(|p| (p.name.clone(), p.unit.clone()));
+        let gains =
+            (0..problem.geometry.gains).map(|l| (format!("gain of frame {l}"), String::new()));
+        own.chain(gains).collect()
+    }
+}
+
+/// Whether an end is where the best one is.
+fn agree(end: &State, best: &State, found: &[Calibrated]) -> bool {
+    let each = end.values.iter().zip(&best.values).zip(found);
+    each.into_iter()
+        .all(|((a, b), own)| (a - b).abs() <= AGREE * own.stderr)
+}
