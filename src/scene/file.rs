@@ -3,6 +3,9 @@
 //!
 //! Unknown keys are errors. [`scene`](crate::scene) has the reference of the keys.
 
+mod mesh;
+mod spots;
+
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
@@ -11,12 +14,13 @@ use super::axes::AxesTable;
 use super::builtin::builtins;
 use super::error::SceneError;
 use super::material::MaterialTable;
-use super::mesh::Generator;
 use super::parse::{parse, write};
 use super::sensor::SensorSettings;
 use super::surface::Role;
 use super::unit::Unit;
 use crate::geometry::Facing;
+pub use mesh::{MeshTable, OnTable, RotationTable, ScaleTable};
+pub use spots::{Layout, LineTable, SpotsTable};
 
 impl SceneFile {
     /// A built-in scene to change, by name; `None` if there is none of that name.
@@ -118,75 +122,6 @@ pub enum ProfileShape {
     Gaussian,
 }
 
-/// A layout of spots; the table in [`crate::scene`] says which keys it takes.
-#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
-#[serde(rename_all = "lowercase")]
-pub enum Layout {
-    /// The four sides of a square.
-    #[default]
-    Square,
-    /// Straight lines.
-    Lines,
-    /// A square grid.
-    Grid,
-    /// A circle.
-    Ring,
-    /// Random places in a square.
-    Random,
-    /// Places as listed.
-    List,
-}
-
-/// The keys of every layout; which of them a layout takes is checked in `spots`.
-#[derive(Clone, Debug, Default, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct SpotsTable {
-    /// square, lines, grid, ring, random or list.
-    pub layout: Layout,
-    /// Centre on the wall (square, grid, ring, random).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub centre: Option<[f64; 2]>,
-    /// Half the side of the square (square, grid, random).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub half_width: Option<f64>,
-    /// Spots along each side (square, grid).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub per_side: Option<u32>,
-    /// Offsets cycled along each side (square, lines); [] or absent for none.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stagger: Option<Vec<f64>>,
-    /// Straight lines of spots (lines).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub lines: Option<Vec<LineTable>>,
-    /// Radius (ring).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub radius: Option<f64>,
-    /// Number of spots (ring, random).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub count: Option<u32>,
-    /// Angle of the first spot from +x, degrees (ring); default 0.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub start_angle: Option<f64>,
-    /// Seed of the places (random).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub seed: Option<u64>,
-    /// The spots themselves (list).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub points: Option<Vec<[f64; 2]>>,
-}
-
-/// A straight line of spots.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct LineTable {
-    /// Its first spot.
-    pub from: [f64; 2],
-    /// Its last spot.
-    pub to: [f64; 2],
-    /// Spots on the line, both ends included.
-    pub count: u32,
-}
-
 /// The `[camera]` table.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
@@ -283,77 +218,6 @@ pub struct DiscTable {
     pub normal: Triple,
     /// Radius, above 0.
     pub radius: f64,
-}
-
-/// Triangles from a file, or made by phicam.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct MeshTable {
-    /// PLY, OBJ, glTF or GLB file, relative to the scene file.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub file: Option<String>,
-    /// A mesh that phicam makes itself, in place of a file: bust, sphere, rectangle or box (the
-    /// unit cube).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub generate: Option<Generator>,
-    /// A flat mask on the unit square, in place of a file: rows of # (opaque) and . (open), the
-    /// first at y = 1.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub mask: Option<Vec<String>>,
-    /// At least so many triangles (generate).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub faces: Option<u64>,
-    /// Factor on all coordinates, or one for each axis; applied first.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub scale: Option<ScaleTable>,
-    /// Rotations about axes through the origin, in order, after the scale.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub rotate: Option<Vec<RotationTable>>,
-    /// Shift, after the rotations.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub translate: Option<Triple>,
-    /// Puts the mesh, as it is turned, down on another surface.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub on: Option<OnTable>,
-    /// true: the front is where the corners of a triangle run clockwise.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub flip: Option<bool>,
-    /// true: the mesh is meant to be closed, so that open edges are a defect.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub closed: Option<bool>,
-}
-
-/// A factor on coordinates.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
-#[serde(
-    untagged,
-    expecting = "a factor, or one for each axis: 2.5 or [1, 1, 2]"
-)]
-pub enum ScaleTable {
-    /// The same on every axis.
-    Uniform(f64),
-    /// One for each axis.
-    Axes(Triple),
-}
-
-/// A turn about an axis through the origin.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct RotationTable {
-    /// The axis, of any length but 0.
-    pub axis: Triple,
-    /// Degrees, counterclockwise seen from the tip of the axis.
-    pub angle: f64,
-}
-
-/// A place on another surface.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct OnTable {
-    /// Name of a surface that comes earlier in the file.
-    pub surface: String,
-    /// The place on it, in its parameters.
-    pub at: [f64; 2],
 }
 
 /// A `[[known]]` table: an entry of Φcam whose exact value is known.
