@@ -1,19 +1,20 @@
 //! Do the bands around recovered reflectances cover the truth as often as they say?
 
+mod describe;
+mod trial;
+
 use std::ops::Range;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
-use super::ensemble::{Draws, Photographs};
-use super::finding::{Cell, Column, Describe, Finding, Table, Tone, listed};
 use super::options::Opt;
 use super::registered::{Registered, prepared};
 use super::study::Study;
 use crate::matrix::Matrix;
 use crate::model::{Kernel, MatrixModel};
-use crate::num::digits::figure;
-use crate::recovery::{BandKind, Bands, Method, Options, RecoveryError};
+use crate::recovery::Method;
 use crate::transport::{Control, Stopped};
+use trial::{Trial, row, trial};
 
 /// How coverage is counted.
 #[derive(Clone, Debug)]
@@ -74,121 +75,6 @@ pub struct Coverage {
     pub elements: usize,
     /// One a method.
     pub rows: Vec<CoverageRow>,
-}
-
-/// What bands cover is short of what they state where it is more than so many standard errors
-/// below.
-const SHORT: f64 = 3.0;
-
-impl CoverageRow {
-    /// Whether its bands cover less than `confidence`; none where it has no bands.
-    fn falls_short(&self, confidence: f64) -> Option<bool> {
-        let covered = self.covered?;
-        Some(
-            self.stderr
-                .is_some_and(|s| covered < confidence - SHORT * s),
-        )
-    }
-
-    /// What its bands cover, in percent.
-    fn percent(&self) -> Option<Cell> {
-        Some(Cell::Estimate {
-            value: 100.0 * self.covered?,
-            stderr: self.stderr.map(|s| 100.0 * s),
-        })
-    }
-
-    /// The method and what its bands cover, in words.
-    fn words(&self) -> String {
-        let covered = 100.0 * self.covered.unwrap_or(f64::NAN);
-        let error = self
-            .stderr
-            .map_or(String::new(), |s| format!(" ± {:.1}", 100.0 * s));
-        format!("{} {covered:.1} %{error}", self.method)
-    }
-}
-
-impl Describe for Coverage {
-    fn describe(&self) -> Finding {
-        let named = |short: bool| -> Vec<String> {
-            let own = self
-                .rows
-                .iter()
-                .filter(|r| r.falls_short(self.confidence) == Some(short));
-            own.map(CoverageRow::words).collect()
-        };
-        let (fine, short) = (named(false), named(true));
-        let failing = match short.as_slice() {
-            [] => String::new(),
-            some => format!(
-                "; these fall short by more than three standard errors: {}",
-                listed(some)
-            ),
-        };
-        let silent = match self.rows.iter().filter(|r| r.covered.is_none()).count() {
-            0 => String::new(),
-            n => format!(" {n} of the methods gave no bands."),
-        };
-        let stated = format!("{} %", figure(100.0 * self.confidence, 3));
-        let noise = figure(self.noise, 2);
-        let row = |r: &CoverageRow| {
-            vec![
-                Cell::Name(r.method.clone()),
-                r.bands.as_deref().unwrap_or("–").into(),
-                r.percent().unwrap_or(Cell::Number(None)),
-                r.least.map(|x| 100.0 * x).into(),
-                r.together.map(|x| 100.0 * x).into(),
-                r.bias.into(),
-                r.width.into(),
-            ]
-        };
-        let reason = |r: &CoverageRow| {
-            let reason = r.reason.as_ref()?;
-            Some(format!(
-                "{}: {} of {} seeds gave nothing: {reason}.",
-                r.method, r.failed, self.seeds
-            ))
-        };
-        let table = Table {
-            caption: format!(
-                "What bands of {stated} cover: {} elements, noise {noise} of each entry, {} seeds",
-                self.elements, self.seeds
-            ),
-            columns: vec![
-                Column::text("method", ""),
-                Column::text("promise", ""),
-                Column::number("covered", "", "%", 3),
-                Column::number("the least covered element", "", "%", 3),
-                Column::number("all at once", "", "%", 3),
-                Column::number("rms bias", "", "", 2),
-                Column::number("mean width", "", "", 2),
-            ],
-            rows: self.rows.iter().map(row).collect(),
-            note: self
-                .rows
-                .iter()
-                .filter_map(reason)
-                .collect::<Vec<_>>()
-                .join(" "),
-            ..Table::default()
-        };
-        Finding {
-            title: format!("How often bands cover the truth: {}", self.scene),
-            tone: if short.is_empty() {
-                Tone::Good
-            } else {
-                Tone::Bad
-            },
-            sentence: format!(
-                "Bands of {stated} on {} at a noise of {noise} cover the true reflectance at \
-                 least as often as stated: {}{failing}.{silent}",
-                self.scene,
-                listed(&fine)
-            ),
-            tables: vec![table],
-            ..Finding::default()
-        }
-    }
 }
 
 /// Seeds of a task.
@@ -331,96 +217,6 @@ impl Study for CoverageTasks {
             seeds: self.plan.seeds,
             elements: self.model.albedo.len(),
         })
-    }
-}
-
-/// One recovery.
-#[derive(Debug, Serialize, Deserialize)]
-pub struct Trial {
-    bands: Bands,
-    reflectance: Vec<f64>,
-}
-
-fn trial(
-    model: &MatrixModel,
-    exact: &Matrix,
-    method: Method,
-    plan: &CoveragePlan,
-    seed: u64,
-) -> Result<Trial, RecoveryError> {
-    let options = Options {
-        bands: Some(plan.confidence),
-        ..Options::default()
-    };
-    let found = Photographs::relative(exact, plan.noise, seed).recover(model, method, &options)?;
-    let bands = found.bands.ok_or(RecoveryError::NotForMethod {
-        method,
-        what: found.no_bands.unwrap_or("gave no bands"),
-        cure: "ask for bands of another method",
-    })?;
-    Ok(Trial {
-        bands,
-        reflectance: found.reflectance.as_slice().to_vec(),
-    })
-}
-
-fn row(method: Method, truth: &[f64], trials: &[Result<Trial, String>]) -> CoverageRow {
-    let Draws {
-        found: trials,
-        failures,
-    } = Draws::of(trials);
-    let nothing = CoverageRow {
-        method: method.name().to_owned(),
-        failed: failures.len(),
-        reason: failures.last().map(|why| (*why).to_owned()),
-        ..CoverageRow::default()
-    };
-    let Some(first) = trials.first() else {
-        return nothing;
-    };
-    let (n, r) = (trials.len() as f64, truth.len() as f64);
-    let shares: Vec<f64> = trials
-        .iter()
-        .map(|t| t.bands.covered(truth) as f64 / r)
-        .collect();
-    let mean = shares.iter().sum::<f64>() / n;
-    let square: f64 = shares.iter().map(|s| (s - mean) * (s - mean)).sum();
-    let of_element = |j: usize| {
-        let within =
-            |t: &&&Trial| (t.bands.intervals[j][0]..=t.bands.intervals[j][1]).contains(&truth[j]);
-        trials.iter().filter(within).count() as f64 / n
-    };
-    let bias_of = |j: usize| {
-        trials
-            .iter()
-            .map(|t| t.reflectance[j] - truth[j])
-            .sum::<f64>()
-            / n
-    };
-    let squares = (0..truth.len()).map(|j| bias_of(j) * bias_of(j));
-    let widths = trials
-        .iter()
-        .flat_map(|t| &t.bands.intervals)
-        .map(|[a, b]| b - a);
-    CoverageRow {
-        bands: Some(words(first.bands.kind).to_owned()),
-        covered: Some(mean),
-        stderr: (trials.len() > 1).then(|| {
-            let by_spread = (square / (n * (n - 1.0))).sqrt();
-            by_spread.max(1.0 / (n + 2.0))
-        }),
-        least: (0..truth.len()).map(of_element).reduce(f64::min),
-        together: Some(shares.iter().filter(|s| **s == 1.0).count() as f64 / n),
-        bias: Some((squares.sum::<f64>() / r).sqrt()),
-        width: Some(widths.sum::<f64>() / (n * r)),
-        ..nothing
-    }
-}
-
-fn words(kind: BandKind) -> &'static str {
-    match kind {
-        BandKind::Gaussian | BandKind::Posterior => "each alone",
-        BandKind::Simultaneous => "all together",
     }
 }
 

@@ -1,6 +1,8 @@
 use super::*;
+use crate::lab::finding::{Describe, Tone};
 use crate::lab::study::tests::{divides, refuses, small};
 use crate::model::Kernel;
+use crate::recovery::{BandKind, Bands};
 
 #[test]
 fn bands_that_cover_too_little_are_named() {

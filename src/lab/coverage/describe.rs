@@ -1,0 +1,120 @@
+//! What is said of what bands cover.
+
+use super::{Coverage, CoverageRow};
+use crate::lab::finding::{Cell, Column, Describe, Finding, Table, Tone, listed};
+use crate::num::digits::figure;
+
+/// What bands cover is short of what they state where it is more than so many standard errors
+/// below.
+const SHORT: f64 = 3.0;
+
+impl CoverageRow {
+    /// Whether its bands cover less than `confidence`; none where it has no bands.
+    fn falls_short(&self, confidence: f64) -> Option<bool> {
+        let covered = self.covered?;
+        Some(
+            self.stderr
+                .is_some_and(|s| covered < confidence - SHORT * s),
+        )
+    }
+
+    /// What its bands cover, in percent.
+    fn percent(&self) -> Option<Cell> {
+        Some(Cell::Estimate {
+            value: 100.0 * self.covered?,
+            stderr: self.stderr.map(|s| 100.0 * s),
+        })
+    }
+
+    /// The method and what its bands cover, in words.
+    fn words(&self) -> String {
+        let covered = 100.0 * self.covered.unwrap_or(f64::NAN);
+        let error = self
+            .stderr
+            .map_or(String::new(), |s| format!(" ± {:.1}", 100.0 * s));
+        format!("{} {covered:.1} %{error}", self.method)
+    }
+}
+
+impl Describe for Coverage {
+    fn describe(&self) -> Finding {
+        let named = |short: bool| -> Vec<String> {
+            let own = self
+                .rows
+                .iter()
+                .filter(|r| r.falls_short(self.confidence) == Some(short));
+            own.map(CoverageRow::words).collect()
+        };
+        let (fine, short) = (named(false), named(true));
+        let failing = match short.as_slice() {
+            [] => String::new(),
+            some => format!(
+                "; these fall short by more than three standard errors: {}",
+                listed(some)
+            ),
+        };
+        let silent = match self.rows.iter().filter(|r| r.covered.is_none()).count() {
+            0 => String::new(),
+            n => format!(" {n} of the methods gave no bands."),
+        };
+        let stated = format!("{} %", figure(100.0 * self.confidence, 3));
+        let noise = figure(self.noise, 2);
+        let row = |r: &CoverageRow| {
+            vec![
+                Cell::Name(r.method.clone()),
+                r.bands.as_deref().unwrap_or("–").into(),
+                r.percent().unwrap_or(Cell::Number(None)),
+                r.least.map(|x| 100.0 * x).into(),
+                r.together.map(|x| 100.0 * x).into(),
+                r.bias.into(),
+                r.width.into(),
+            ]
+        };
+        let reason = |r: &CoverageRow| {
+            let reason = r.reason.as_ref()?;
+            Some(format!(
+                "{}: {} of {} seeds gave nothing: {reason}.",
+                r.method, r.failed, self.seeds
+            ))
+        };
+        let table = Table {
+            caption: format!(
+                "What bands of {stated} cover: {} elements, noise {noise} of each entry, {} seeds",
+                self.elements, self.seeds
+            ),
+            columns: vec![
+                Column::text("method", ""),
+                Column::text("promise", ""),
+                Column::number("covered", "", "%", 3),
+                Column::number("the least covered element", "", "%", 3),
+                Column::number("all at once", "", "%", 3),
+                Column::number("rms bias", "", "", 2),
+                Column::number("mean width", "", "", 2),
+            ],
+            rows: self.rows.iter().map(row).collect(),
+            note: self
+                .rows
+                .iter()
+                .filter_map(reason)
+                .collect::<Vec<_>>()
+                .join(" "),
+            ..Table::default()
+        };
+        Finding {
+            title: format!("How often bands cover the truth: {}", self.scene),
+            tone: if short.is_empty() {
+                Tone::Good
+            } else {
+                Tone::Bad
+            },
+            sentence: format!(
+                "Bands of {stated} on {} at a noise of {noise} cover the true reflectance at \
+                 least as often as stated: {}{failing}.{silent}",
+                self.scene,
+                listed(&fine)
+            ),
+            tables: vec![table],
+            ..Finding::default()
+        }
+    }
+}
