@@ -14,7 +14,8 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::Duration;
 
-use super::{PREFIX, StoreError, is_missing, machine, process_lives};
+use super::temporary::{PREFIX, machine, process_lives};
+use super::{StoreError, is_missing};
 
 /// What the name of a writer's file ends in.
 const SUFFIX: &str = ".lock";

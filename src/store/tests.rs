@@ -1,3 +1,4 @@
+use super::temporary::FORSAKEN;
 use super::*;
 
 fn names(dir: &Path) -> Vec<String> {
