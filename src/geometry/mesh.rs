@@ -1,70 +1,26 @@
 //! Triangle meshes.
 
 mod area_map;
+mod error;
 mod facets;
 mod group;
 mod nearest;
 mod patch;
 mod query;
+mod rays;
 
 use super::tree::WideTree;
-use super::{DVec3, Interaction, Intersection, Ray};
-use crate::num::lanes::widest;
+use super::{DVec3, Interaction};
 use area_map::AreaMap;
+pub use error::MeshError;
 pub use facets::{Facet, Facets};
 use group::{GROUP, Group};
 pub use patch::Patch;
-use query::{Any, Closest};
 
 /// Coordinates beyond this (in scene units) are refused.
 const LARGEST: f64 = 1e12;
 /// Most triangles of a mesh.
 const MOST: usize = 1 << 30;
-
-/// Why triangles make no mesh.
-#[derive(Debug, thiserror::Error, PartialEq)]
-pub enum MeshError {
-    /// A vertex is not finite or far outside any bench.
-    #[error(
-        "vertex {vertex} reaches to {reach:e}: coordinates must be finite and below 1e12 (choose a larger unit)"
-    )]
-    Unbounded {
-        /// Its place in the list.
-        vertex: usize,
-        /// Largest coordinate.
-        reach: f64,
-    },
-    /// A triangle names a vertex that is not there.
-    #[error("triangle {triangle} names vertex {vertex} of {count}: vertices are counted from 0")]
-    NoVertex {
-        /// The triangle's place in the list.
-        triangle: usize,
-        /// What it names.
-        vertex: u32,
-        /// Number of vertices.
-        count: usize,
-    },
-    /// No triangle has an area.
-    #[error("none of the {count} triangles has an area: give a mesh at least one proper triangle")]
-    Empty {
-        /// Number of triangles.
-        count: usize,
-    },
-    /// Texture coordinates for another number of triangles.
-    #[error("{given} triples of texture coordinates for {triangles} triangles: give one to each")]
-    Coordinates {
-        /// Triples given.
-        given: usize,
-        /// Number of triangles.
-        triangles: usize,
-    },
-    /// More triangles than can be numbered.
-    #[error("{count} triangles are more than 2³⁰: split the mesh")]
-    TooMany {
-        /// Number of triangles.
-        count: usize,
-    },
-}
 
 /// A surface of triangles, opaque from both sides, its front where the corners of a triangle run
 /// counterclockwise.
@@ -308,98 +264,6 @@ impl Mesh {
     pub fn place(&self, triangle: u32, [v, w]: [f64; 2]) -> DVec3 {
         let [a, b, c] = self.corners(triangle);
         a + (b - a) * v + (c - a) * w
-    }
-
-    /// The point of the mesh nearest to `p`, and its triangle; of triangles equally near the first.
-    pub fn at_position(&self, p: DVec3) -> (u32, Interaction) {
-        let mut best = (f64::INFINITY, u32::MAX, [0.0; 2]);
-        self.tree.around(p, |leaf| {
-            for group in self.leaf(leaf) {
-                for (triangle, corners) in group.members() {
-                    let (distance, uv) = nearest::on_triangle(corners, p);
-                    if distance < best.0 || (distance == best.0 && triangle < best.1) {
-                        best = (distance, triangle, uv);
-                    }
-                }
-            }
-            best.0
-        });
-        let (_, triangle, weights) = best;
-        (triangle, self.point(triangle, weights))
-    }
-
-    /// First triangle met by the ray at 0 < t < length, from either side. A ray that starts in the
-    /// plane of a triangle (to rounding) does not meet it. Where two are met at one distance, the
-    /// first of the list counts.
-    pub fn closest(&self, ray: &Ray) -> Option<Intersection> {
-        self.closest_many(std::slice::from_ref(ray))[0]
-    }
-
-    /// [`Mesh::closest`] for many rays: much faster than one by one where the mesh is large.
-    pub fn closest_many(&self, rays: &[Ray]) -> Vec<Option<Intersection>> {
-        self.closest_of(rays, 0.0)
-    }
-
-    /// [`Mesh::closest`] for a ray whose start was computed from numbers as large as `reach`, and
-    /// has their rounding.
-    pub(super) fn closest_beyond(&self, ray: &Ray, reach: f64) -> Option<Intersection> {
-        self.closest_of(std::slice::from_ref(ray), reach)[0]
-    }
-
-    fn closest_of(&self, rays: &[Ray], reach: f64) -> Vec<Option<Intersection>> {
-        let mut found = vec![None; rays.len()];
-        widest(
-            #[inline(always)]
-            || {
-                self.tree
-                    .traverse(rays, &Closest(self, reach), |i, (_, hit)| found[i] = hit);
-            },
-        );
-        found
-    }
-
-    /// Whether a triangle stands between the two ends of the segment. A segment that starts or ends
-    /// in the plane of a triangle (to rounding) is not cut by it.
-    pub fn blocks(&self, segment: &Ray) -> bool {
-        self.blocks_beyond(segment, 0.0)
-    }
-
-    /// [`Mesh::blocks`] for many segments: much faster than one by one where the mesh is large.
-    pub fn blocks_many(&self, segments: &[Ray]) -> Vec<bool> {
-        self.blocks_many_beyond(segments, 0.0)
-    }
-
-    /// [`Mesh::blocks_many`] for segments whose ends were computed from numbers as large as
-    /// `reach`, and have their rounding.
-    pub(super) fn blocks_many_beyond(&self, segments: &[Ray], reach: f64) -> Vec<bool> {
-        let mut found = vec![false; segments.len()];
-        self.ask(segments, reach, |i, hit| found[i] = hit);
-        found
-    }
-
-    /// The same for one segment, without a list.
-    pub(super) fn blocks_beyond(&self, segment: &Ray, reach: f64) -> bool {
-        let mut found = false;
-        self.ask(std::slice::from_ref(segment), reach, |_, hit| found = hit);
-        found
-    }
-
-    /// Tells of each segment whether a triangle stands in it.
-    fn ask(&self, segments: &[Ray], reach: f64, mut tell: impl FnMut(usize, bool)) {
-        widest(
-            #[inline(always)]
-            || {
-                self.tree
-                    .traverse(segments, &Any(self, reach), |i, (_, hit)| tell(i, hit));
-            },
-        );
-    }
-
-    /// The groups of a leaf.
-    fn leaf(&self, first: u32) -> impl Iterator<Item = &Group> {
-        let groups = &self.groups[first as usize..];
-        let more = groups.iter().take_while(|g| !g.last).count();
-        groups[..=more].iter()
     }
 }
 

@@ -1,6 +1,35 @@
-//! The point of a triangle nearest to another point.
+//! The point of a mesh, and that of a triangle, nearest to another point.
 
-use crate::geometry::DVec3;
+use super::Mesh;
+use super::group::Group;
+use crate::geometry::{DVec3, Interaction};
+
+impl Mesh {
+    /// The point of the mesh nearest to `p`, and its triangle; of triangles equally near the first.
+    pub fn at_position(&self, p: DVec3) -> (u32, Interaction) {
+        let mut best = (f64::INFINITY, u32::MAX, [0.0; 2]);
+        self.tree.around(p, |leaf| {
+            for group in self.leaf(leaf) {
+                for (triangle, corners) in group.members() {
+                    let (distance, uv) = on_triangle(corners, p);
+                    if distance < best.0 || (distance == best.0 && triangle < best.1) {
+                        best = (distance, triangle, uv);
+                    }
+                }
+            }
+            best.0
+        });
+        let (_, triangle, weights) = best;
+        (triangle, self.point(triangle, weights))
+    }
+
+    /// The groups of a leaf.
+    fn leaf(&self, first: u32) -> impl Iterator<Item = &Group> {
+        let groups = &self.groups[first as usize..];
+        let more = groups.iter().take_while(|g| !g.last).count();
+        groups[..=more].iter()
+    }
+}
 
 /// Distance of `p` from the triangle, and the weights of the second and the third corner at the
 /// nearest point: inside if p projects there, else the nearest of the three edges.

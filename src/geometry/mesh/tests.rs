@@ -1,4 +1,5 @@
 use super::*;
+use crate::geometry::Ray;
 use crate::num::stream::{Key, Sampling, Stream};
 
 fn numbers() -> impl FnMut() -> f64 {
