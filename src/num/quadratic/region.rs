@@ -1,10 +1,14 @@
 //! How far one variable can go in a box and an ellipsoid at once, of many variables: an
 //! interior-point method on dense matrices.
 
+mod equations;
+mod state;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::Bounds;
-use crate::num::linalg::{Cholesky, columns_over, gram_product};
+use equations::Equations;
+use state::{Direction, Products, State, over};
 
 /// Steps towards the centre and towards an end.
 const MOST_STEPS: u32 = 30;
@@ -64,44 +68,6 @@ pub(super) enum End {
     Bound,
     /// The multipliers of R x − d that prove where it is.
     Proved(DVector<f64>),
-}
-
-/// x within the region and the multipliers z of x ≥ l, w of u ≥ x (0 without one) and m of
-/// g = ½(radius² − ‖e‖²) ≥ 0, e = R x − d.
-#[derive(Clone)]
-struct State {
-    x: DVector<f64>,
-    y: DVector<f64>,
-    s: DVector<f64>,
-    e: DVector<f64>,
-    g: f64,
-    z: DVector<f64>,
-    w: DVector<f64>,
-    m: f64,
-}
-
-/// A step of them, and R Δx.
-struct Direction {
-    x: DVector<f64>,
-    e: DVector<f64>,
-    z: DVector<f64>,
-    w: DVector<f64>,
-    m: f64,
-}
-
-/// What the products y z, s w and g m are to change by.
-struct Products {
-    yz: DVector<f64>,
-    sw: DVector<f64>,
-    gm: f64,
-}
-
-fn over(a: f64, s: f64) -> f64 {
-    if s.is_finite() { a / s } else { 0.0 }
-}
-
-fn times(s: f64, w: f64) -> f64 {
-    if s.is_finite() { s * w } else { 0.0 }
 }
 
 /// How far along `by` all stay positive, at most 1.
@@ -316,76 +282,4 @@ fn reach(e: &DVector<f64>, v: &DVector<f64>, slack: f64) -> f64 {
         (root - b) / a
     };
     if t.is_nan() { f64::INFINITY } else { t }
-}
-
-/// The equations of a step at a point,
-///
-/// > (Θ + Rᵀ V R) Δx = b,   Θ = z/y + w/s,   V = m (1 + e eᵀ/g),
-///
-/// solved by k × k equations for u = V R Δx: k³/3 + k² n multiplications.
-struct Equations {
-    theta: DVector<f64>,
-    /// V⁻¹ + R Θ⁻¹ Rᵀ.
-    inner: Cholesky,
-}
-
-impl Equations {
-    fn new(region: &Region<'_>, state: &State) -> Option<Self> {
-        let State { y, s, z, w, e, .. } = state;
-        let theta = DVector::from_fn(y.len(), |j, _| z[j] / y[j] + over(w[j], s[j]));
-        let k = region.r.nrows();
-        let mut inner = DMatrix::from_diagonal_element(k, k, 1.0 / state.m);
-        inner.ger(-1.0 / (state.m * (state.g + e.norm_squared())), e, e, 1.0);
-        let scaled = columns_over(region.r.clone(), &theta.map(f64::sqrt));
-        gram_product(&mut inner, &scaled.transpose());
-        let inner = Cholesky::new(&inner)?;
-        Some(Self { theta, inner })
-    }
-
-    /// Δx.
-    fn solve(&self, r: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
-        let u = self.inner.solve(&(r * b.component_div(&self.theta)));
-        (b - r.tr_mul(&u)).component_div(&self.theta)
-    }
-}
-
-impl State {
-    /// How many products there are.
-    fn pairs(&self) -> f64 {
-        let closed = self.s.iter().filter(|s| s.is_finite()).count();
-        (self.y.len() + closed + 1) as f64
-    }
-
-    /// Their mean.
-    fn mean(&self) -> f64 {
-        let upper = self.s.zip_map(&self.w, times).sum();
-        (self.y.dot(&self.z) + upper + self.g * self.m) / self.pairs()
-    }
-
-    /// Their mean after a step.
-    fn ahead(&self, radius: f64, by: &Direction, (primal, dual): (f64, f64)) -> f64 {
-        let (y, s) = (&self.y + &by.x * primal, &self.s - &by.x * primal);
-        let (z, w) = (&self.z + &by.z * dual, &self.w + &by.w * dual);
-        let e = &self.e + &by.e * primal;
-        let g = 0.5 * (radius * radius - e.norm_squared());
-        let upper = s.zip_map(&w, times).sum();
-        (y.dot(&z) + upper + g * (self.m + by.m * dual)) / self.pairs()
-    }
-
-    /// What the products are to change by to become `aim`, less what those of a predicted step add.
-    fn aim(&self, aim: f64, guess: Option<&Direction>) -> Products {
-        let mut c = Products {
-            yz: self.y.zip_map(&self.z, |y, z| aim - y * z),
-            sw: self.s.zip_map(&self.w, |s, w| aim - times(s, w)),
-            gm: aim - self.g * self.m,
-        };
-        if let Some(by) = guess {
-            c.yz -= by.x.component_mul(&by.z);
-            c.sw += by.x.component_mul(&by.w);
-            // Δg = −eᵀR Δx − ½‖R Δx‖².
-            let bent = 0.5 * by.e.norm_squared();
-            c.gm += (self.e.dot(&by.e) + bent) * by.m + self.m * bent;
-        }
-        c
-    }
 }
