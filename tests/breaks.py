@@ -639,7 +639,7 @@ BREAKS = [
     ),
     Break(
         "A pattern of two values is found in any unit",
-        "src/recovery/joint/pattern_search.rs",
+        "src/recovery/joint/pattern_search/starts.rs",
         "Levels::Within(top) => (Dark::Free, top.min(BRIGHTEST)),",
         "Levels::Within(top) => (Dark::Free, top.min(BRIGHTEST / 10.0)),",
         "lib",
