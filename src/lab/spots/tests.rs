@@ -1,4 +1,5 @@
 use super::*;
+use crate::lab::finding::Describe;
 use crate::lab::study::run;
 use crate::lab::study::tests::{divides, refuses, small};
 
