@@ -450,7 +450,7 @@ BREAKS = [
     ),
     Break(
         "A changed file of a finished run is found",
-        "src/folder/record.rs",
+        "src/folder/record/vouching.rs",
         "if written.is_at(&path)? {",
         "if written.is_at(&path).is_ok() {",
         "cli",
