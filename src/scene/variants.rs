@@ -1,6 +1,8 @@
 //! Scenes that differ from a given one in a single respect, for studies. Their hash and text remain
 //! the original's, but for [`Scene::with_listed_spots`].
 
+mod camera;
+
 use glam::DAffine3;
 
 use super::error::{Fault, keys};
@@ -9,7 +11,7 @@ use super::laser;
 use super::parse;
 use super::surface::{self, Surface};
 use super::{Cells, Division, Material, Role, Scene, SceneError, Texture, content_hash};
-use crate::geometry::{DVec3, Facing, Parallelogram, Shape, Sphere};
+use crate::geometry::{Facing, Parallelogram, Shape, Sphere};
 
 impl Scene {
     /// The same scene with every spot moved by (dx, dy) on the wall.
@@ -207,31 +209,6 @@ impl Scene {
         scene.rebuilt()
     }
 
-    /// The same scene with the camera's view moved by (dx, dy) in its plane.
-    pub fn with_shifted_view(&self, [dx, dy]: [f64; 2]) -> Self {
-        let mut scene = self.clone();
-        let n = self.camera.view.normal();
-        let dz = -(n.x * dx + n.y * dy) / n.z;
-        let motion = DAffine3::from_translation(DVec3::new(dx, dy, dz));
-        if let Some(view) = self.camera.view.moved(&motion) {
-            scene.camera.view = view;
-        }
-        scene
-    }
-
-    /// The same scene with the camera's view scaled about its middle.
-    pub fn with_scaled_view(&self, factor: f64) -> Self {
-        let mut scene = self.clone();
-        let middle = self.camera.view.at([0.5; 2]).position;
-        let scaled = DAffine3::from_translation(middle)
-            * DAffine3::from_scale(DVec3::splat(factor))
-            * DAffine3::from_translation(-middle);
-        if let Some(view) = self.camera.view.moved(&scaled) {
-            scene.camera.view = view;
-        }
-        scene
-    }
-
     /// The same scene with the albedo of surface `index` (in file order) multiplied by `factor`,
     /// beyond 1 where it comes to that.
     pub fn with_scaled_albedo(&self, index: usize, factor: f64) -> Self {
@@ -239,13 +216,6 @@ impl Scene {
         if let Some(surface) = scene.surfaces.get_mut(index) {
             surface.albedo = surface.albedo.map(|rho| rho * factor);
         }
-        scene
-    }
-
-    /// The same scene with the pinhole moved by `by`; the view stays.
-    pub fn with_moved_camera(&self, by: DVec3) -> Self {
-        let mut scene = self.clone();
-        scene.camera.position += by;
         scene
     }
 
