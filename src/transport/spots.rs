@@ -1,17 +1,20 @@
 //! The lit spots: the light that goes from each of them to a vertex (next-event estimation).
 
+mod footprint;
+
 use std::borrow::Cow;
 use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::beam::{Beams, Reach};
+use super::beam::Beams;
 use super::light_path::LightPaths;
 use super::vertex::{Batch, Vertex, geometry_term};
 use super::visibility::{Place, hide};
-use crate::geometry::{Blockers, DVec3, Parallelogram, Region, Shape, ShapeId};
+use crate::geometry::{Blockers, DVec3, Region, ShapeId};
 use crate::num::stream::Sampling;
 use crate::scene::Scene;
+use footprint::SpotFootprint;
 
 /// A range of spots, and what can stand between each of them and the shapes around.
 #[derive(Debug)]
@@ -30,58 +33,6 @@ pub(super) struct LitSpots<'a> {
     clear: Vec<bool>,
     /// Whether any surface is not Lambertian.
     glossy: bool,
-}
-
-/// The part of a flat shape that a spot is expected to light.
-#[derive(Clone, Debug)]
-struct SpotFootprint {
-    shape: ShapeId,
-    /// The square around a wide spot; a spot without width has none.
-    square: Option<Parallelogram>,
-}
-
-impl SpotFootprint {
-    /// The target of a spot, where that is a flat shape on which the beam lands unhindered.
-    fn new(scene: &Scene, beams: &Beams<'_>, spot: usize) -> Option<Self> {
-        let (target, shape) = {
-            let spot = &scene.laser.spots[spot];
-            (&spot.target, spot.surface)
-        };
-        let flat = &scene.surfaces[shape as usize].shape;
-        if !matches!(flat, Shape::Parallelogram(_)) {
-            return None;
-        }
-        let square = if beams.has_width() {
-            Some(beams.square(spot, Reach::Expected)?)
-        } else {
-            let lit = beams.point(spot, [0.0; 2])?;
-            let there = lit.shape == shape && lit.position == target.position;
-            there.then_some(None)?
-        };
-        Some(Self { shape, square })
-    }
-
-    fn holds(&self, lit: &Vertex) -> bool {
-        let inside = |s: &Parallelogram| {
-            let place = s.coordinates(lit.position);
-            place.iter().all(|c| (0.0..=1.0).contains(c))
-        };
-        lit.shape == self.shape && self.square.as_ref().is_none_or(inside)
-    }
-
-    /// By shape: what can stand between the footprint and it.
-    fn blockers(&self, scene: &Scene, spot: usize, shapes: &[Region]) -> Vec<Blockers> {
-        let from = match &self.square {
-            Some(square) => Region::patch(square),
-            None => Region::point(scene.laser.spots[spot].target.position),
-        };
-        let to = shapes.iter().zip(0..);
-        to.map(|(region, id)| {
-            let ends = [Some(self.shape), Some(id)];
-            scene.bvh().blockers(&from, region, ends)
-        })
-        .collect()
-    }
 }
 
 /// Lit points of some columns of Φcam for a number of places in the beams: the same for all places
