@@ -13,6 +13,7 @@
 //! and it is far too small; the frames still err by themselves.
 
 mod describe;
+mod found;
 mod frames;
 mod likelihood;
 mod order;
@@ -23,8 +24,8 @@ mod place;
 mod tests;
 
 use rayon::prelude::*;
-use serde::Serialize;
 
+pub use found::{Bright, Grid, Likelihood, Located};
 pub(super) use frames::covariance_root;
 pub use order::Order;
 
@@ -36,6 +37,7 @@ use super::validation::Integration;
 use crate::model::{ElementGrid, Kernel, MatrixModel, Occlusion};
 use crate::scene::Scene;
 use crate::transport::Control;
+use found::Picture;
 use frames::TermsOf;
 use order::Fault;
 use picture::Pictured;
@@ -77,103 +79,6 @@ pub struct LocatedPlan {
     pub orders: u64,
     /// Their seed.
     pub seed: u64,
-}
-
-/// How likely one size is.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Likelihood {
-    /// The size.
-    pub size: f64,
-    /// ln p(Φ) less that of the likeliest size tried.
-    pub log_likelihood: f64,
-    /// ‖what is not explained‖/‖what other light leaves‖, weighted.
-    pub misfit: f64,
-}
-
-/// The middle of the bright part of a picture: of the elements above twice their standard error
-/// those of at least half the largest reflectance, weighted by it.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Bright {
-    /// Its place, in the scene's unit.
-    pub middle: [f64; 3],
-    /// Its standard error, by leaving frames out; which elements are above their errors is given.
-    pub stderr: Option<[f64; 3]>,
-    /// The elements.
-    pub elements: usize,
-}
-
-/// The reflectances of one surface, over the largest of all.
-#[derive(Clone, Debug, Serialize)]
-pub struct Grid {
-    /// Its name.
-    pub surface: String,
-    /// Elements along u and v.
-    pub count: [usize; 2],
-    /// Element iu + iv·nu.
-    pub values: Vec<f64>,
-    /// Their standard errors, by leaving frames out.
-    pub stderr: Vec<f64>,
-}
-
-/// The picture at the likeliest size tried, as smooth as it can be and still predict each frame
-/// from the others as well as any.
-#[derive(Clone, Debug, Serialize)]
-pub struct Picture {
-    /// The reflectances.
-    pub grids: Vec<Grid>,
-    /// Directions of them that are above what is not explained.
-    pub directions: usize,
-    /// ‖what is not explained‖/‖what other light leaves‖, weighted.
-    pub misfit: f64,
-    /// The same of each frame as the others predict it.
-    pub predicted: f64,
-    /// Its bright part.
-    pub bright: Option<Bright>,
-}
-
-/// What was found.
-#[derive(Clone, Debug, Serialize)]
-pub struct Located {
-    /// Name of the scene.
-    pub scene: String,
-    /// Its hash.
-    pub scene_hash: String,
-    /// What was looked for.
-    pub what: String,
-    /// Unit of its sizes.
-    pub unit: String,
-    /// The likeliest size; none where that is at an end of the range.
-    pub size: Option<f64>,
-    /// σ_L.
-    pub by_curvature: Option<f64>,
-    /// σ_J; none of fewer than 3 frames, or where an end was reached without one of them.
-    pub by_frames: Option<f64>,
-    /// The middle of the first hidden surface at the likeliest size tried.
-    pub middle: [f64; 3],
-    /// Sizes tried, growing.
-    pub curve: Vec<Likelihood>,
-    /// Standard deviation of what is not explained, in units of the stated errors (of Φcam's, W,
-    /// where none are stated).
-    pub noise: f64,
-    /// Elements.
-    pub elements: usize,
-    /// The picture there; none of fewer than 3 frames.
-    pub picture: Option<Picture>,
-    /// Whether the photographs belong to their spots.
-    pub order: Option<Order>,
-    /// Entries that count.
-    pub entries: usize,
-    /// Frames.
-    pub frames: usize,
-    /// Whether standard errors are stated.
-    pub is_noise_known: bool,
-}
-
-impl Located {
-    /// The larger of both errors, if both are known.
-    pub fn stderr(&self) -> Option<f64> {
-        Some(self.by_curvature?.max(self.by_frames?))
-    }
 }
 
 impl LocatedPlan {
