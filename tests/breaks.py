@@ -756,7 +756,7 @@ BREAKS = [
     ),
     Break(
         "A study of noise takes the frames that a scene gives its sensor",
-        "src/lab/noise/axis.rs",
+        "src/lab/noise/named_sensor.rs",
         "own.frames.unwrap_or(1)",
         "own.frames.map_or(1, |_| 1)",
         "lib",

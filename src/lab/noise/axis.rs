@@ -1,61 +1,13 @@
 //! What is varied: the axes of noise.
 
+mod label;
+
 use std::cmp::Ordering;
 
-use serde::{Serialize, Serializer};
-
+use super::named_sensor::NamedSensor;
 use crate::lab::finding::Axis;
-use crate::scene::{Scene, SensorModel, Spread as GlareSpread};
-use crate::sensor::{Sensor, SensorError};
-
-/// A sensor with its name, and how many frames it takes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NamedSensor {
-    /// Its name.
-    pub name: String,
-    /// The sensor.
-    pub sensor: Sensor,
-    /// Frames that are averaged.
-    pub frames: u32,
-    /// Frames without laser that are averaged and subtracted.
-    pub dark_frames: u32,
-}
-
-impl NamedSensor {
-    /// A built-in sensor that takes one frame, and one dark frame.
-    pub(crate) fn builtin(model: SensorModel) -> Self {
-        Self {
-            name: model.name().to_owned(),
-            sensor: Sensor::builtin(model),
-            frames: 1,
-            dark_frames: 1,
-        }
-    }
-
-    /// The built-in sensor of this kind, or else that of the scene with its frames, or else the
-    /// CCD.
-    ///
-    /// # Errors
-    /// [`SensorError`], where the scene's has no meaning.
-    pub fn studied(model: Option<SensorModel>, scene: &Scene) -> Result<Self, SensorError> {
-        if let (None, Some(own)) = (model, &scene.sensor) {
-            let (frames, dark_frames) = (own.frames.unwrap_or(1), own.dark_frames.unwrap_or(0));
-            return Ok(Self {
-                name: match (frames, dark_frames) {
-                    (1, 1) => format!("of {}", scene.name),
-                    _ => format!(
-                        "of {}, frames {frames}, dark frames {dark_frames}",
-                        scene.name
-                    ),
-                },
-                sensor: Sensor::from_settings(own)?,
-                frames,
-                dark_frames,
-            });
-        }
-        Ok(Self::builtin(model.unwrap_or(SensorModel::Ccd)))
-    }
-}
+use crate::scene::Spread as GlareSpread;
+pub use label::AxisLabel;
 
 /// What makes photographs noisy, and by how much it is varied. The recovery is always told the
 /// standard error that the law of the noise gives to the exact entry.
@@ -83,35 +35,6 @@ pub enum NoiseAxis {
     Scale,
 }
 
-/// What an axis is called, as the files of a study have it.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct AxisLabel<'a> {
-    /// Its name on the command line and in the files of a study.
-    #[serde(rename = "axis")]
-    pub name: &'static str,
-    /// What a level is, with its unit.
-    #[serde(rename = "axis_title")]
-    pub title: &'static str,
-    /// The header of a level in comma-separated values.
-    #[serde(rename = "axis_column")]
-    pub column: &'static str,
-    /// How levels are spaced: `linear` by differences, `logarithmic` by ratios.
-    #[serde(rename = "axis_spacing")]
-    pub spacing: &'static str,
-    /// What was done to the photographs, and what the recovery was told.
-    #[serde(rename = "axis_words")]
-    pub procedure: &'static str,
-    /// The sensor, if the axis has one.
-    pub sensor: Option<&'a str>,
-}
-
-/// As its label.
-impl Serialize for NoiseAxis {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.label().serialize(serializer)
-    }
-}
-
 /// Share of the converter's range that the brightest entry takes on the axis of bits.
 pub(super) const RANGE: f64 = 0.8;
 /// Converters of that axis, bits: with fewer the brightest entry and an offset of a count reach the
@@ -122,74 +45,6 @@ const BITS: std::ops::RangeInclusive<u32> = 4..=24;
 pub(super) const BESIDE_SCALE: f64 = 1e-3;
 
 impl NoiseAxis {
-    /// What it is called.
-    pub fn label(&self) -> AxisLabel<'_> {
-        let (name, title, column, procedure) = match self {
-            Self::Relative => (
-                "relative",
-                "relative noise of each entry of Φcam",
-                "relative_noise",
-                "Each entry of Φcam is multiplied by 1 + σ·N(0, 1); the recovery is told σ·|Φ|.",
-            ),
-            Self::Photons => (
-                "photons",
-                "photons per pixel and frame, mean",
-                "photons_per_pixel",
-                "Shot noise alone, one frame; the mean is over pixels and spots. The recovery is told the standard \
-                 error of each entry.",
-            ),
-            Self::Exposure(_) => (
-                "exposure",
-                "exposure of a frame / s",
-                "exposure_s",
-                "The sensor's frames for each spot are averaged, its dark frames subtracted (one and one where the sensor \
-                 is a built-in one), no glare. The recovery is told the sensor's standard errors.",
-            ),
-            Self::Glare(_, spread) => (
-                "glare",
-                match spread {
-                    GlareSpread::Uniform => "glare over signal, even",
-                    GlareSpread::Falloff(_) => "glare over signal, falling off",
-                },
-                "glare_over_signal",
-                "The sensor's frames and dark frames (one and one where it is a built-in one) fill the brightest pixel \
-                 to half. The glare is left in and the \
-                 recovery is told the sensor's standard errors alone: the glare is a bias, and the Cramér–Rao bound \
-                 is of the sensor's noise.",
-            ),
-            Self::Bits => (
-                "bits",
-                "bits of the converter",
-                "bits",
-                "Rounding alone, no shot or read noise; the brightest entry takes 80 % of the range. The recovery is \
-                 told count/√12. Draws differ in the offset, a part of a count.",
-            ),
-            Self::Scale => (
-                "scale",
-                "relative error of the absolute scale",
-                "scale_error",
-                "All photographs of a draw are multiplied by 1 + s·N(0, 1), one number, and each entry by \
-                 1 + 0.001·N(0, 1). The recovery is told the standard error of each entry, joint methods s as well; to the \
-                 others the error of the scale is a bias. The Cramér–Rao bound is of both.",
-            ),
-        };
-        AxisLabel {
-            name,
-            title,
-            column,
-            spacing: if self.is_linear() {
-                "linear"
-            } else {
-                "logarithmic"
-            },
-            procedure,
-            sensor: match self {
-                Self::Relative | Self::Photons | Self::Bits | Self::Scale => None,
-                Self::Exposure(camera) | Self::Glare(camera, _) => Some(&camera.name),
-            },
-        }
-    }
-
     /// How many frames, and how many dark frames, are averaged.
     pub(super) fn frames(&self) -> [u32; 2] {
         match self {

@@ -1,6 +1,7 @@
 //! What may be set in the study.
 
-use super::axis::{NamedSensor, NoiseAxis};
+use super::axis::NoiseAxis;
+use super::named_sensor::NamedSensor;
 use super::plan::NoisePlan;
 use super::tasks::NoiseTasks;
 use crate::lab::error::StudyError;

@@ -1,7 +1,7 @@
 //! Each axis of noise against what it says of itself.
 
 use super::*;
-use crate::lab::noise::axis::NamedSensor;
+use crate::lab::noise::named_sensor::NamedSensor;
 use crate::scene::{SensorModel, Spread};
 
 fn exact() -> Matrix {
