@@ -999,7 +999,7 @@ BREAKS = [
     ),
     Break(
         "A mesh blocks what passes through it (half-spaces of a tetrahedron)",
-        "src/geometry/instance.rs",
+        "src/geometry/instance/rays.rs",
         "high[axis] + by - o]",
         "0.5 * (low[axis] + high[axis]) + by - o]",
         "lib",

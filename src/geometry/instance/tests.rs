@@ -1,4 +1,5 @@
 use super::*;
+use crate::geometry::Ray;
 
 fn tetrahedron() -> Arc<Mesh> {
     let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
