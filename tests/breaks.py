@@ -684,7 +684,7 @@ BREAKS = [
     ),
     Break(
         "A calibrated scene is written along the axes of its file",
-        "src/scene/displaced.rs",
+        "src/scene/displaced/written.rs",
         "let motion = &(placed * *axes);",
         "let motion = &(*axes * placed);",
         "lib",

@@ -6,48 +6,18 @@
 //! turn and grow about their mean, then they shift. Spots and view stay at their (x, y) where the
 //! wall moves, as in a scene file.
 
+mod velocity;
+mod written;
+
 use glam::DAffine3;
 
 use super::body::rotation;
 use super::error::{Fault, keys};
-use super::file::{Layout, MeshTable, RotationTable, SceneFile, SpotsTable, SurfaceTable};
 use super::parameter::{Kind, Motion, Parameter};
-use super::surface::{Surface, bvh};
+use super::surface::bvh;
 use super::{Role, Scene, SceneError, laser, parse};
-use crate::geometry::{DQuat, DVec3, Shape};
-
-/// The velocity of a rigid body.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Twist {
-    /// ω, radians per unit of the parameter.
-    pub angular: DVec3,
-    /// v, that of the body's point at the origin.
-    pub linear: DVec3,
-}
-
-impl Twist {
-    /// ẋ = v + ω × x.
-    pub fn at(&self, x: DVec3) -> DVec3 {
-        self.linear + self.angular.cross(x)
-    }
-}
-
-/// How everything in a scene moves per unit of a parameter.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Velocity {
-    /// Of each surface, by its index.
-    pub surfaces: Vec<Twist>,
-    /// Of each spot along x and y; none move in a scene without a laser.
-    pub spots: Vec<[f64; 2]>,
-    /// Of the middle of the view along x and y.
-    pub view: [f64; 2],
-    /// Relative growth of the view's sides.
-    pub view_growth: f64,
-    /// Of the pinhole.
-    pub camera: DVec3,
-    /// Of where the beams start.
-    pub laser: DVec3,
-}
+use crate::geometry::DVec3;
+pub use velocity::{Twist, Velocity};
 
 /// What parameters do to a scene.
 struct Displacement {
@@ -174,41 +144,6 @@ impl Scene {
         moved().map_err(|fault| parse::locate(&self.name, &self.text, fault))
     }
 
-    /// The file of a scene whose geometry is that of [`Scene::displaced`]; known answers are gone.
-    ///
-    /// # Errors
-    /// [`SceneError`] where the text of the scene is not that of a file.
-    pub fn displaced_file(
-        &self,
-        parameters: &[Parameter],
-        values: &[f64],
-    ) -> Result<SceneFile, SceneError> {
-        let to = self.displacement(parameters, values);
-        let (mut file, _): (SceneFile, _) = parse::parse(&self.name, &self.text)?;
-        file.known.clear();
-        let each = file.surface.iter_mut().zip(&self.surfaces);
-        for ((table, surface), motion) in each.zip(&to.surfaces) {
-            if *motion != DAffine3::IDENTITY {
-                write_moved(table, surface, motion, &self.axes);
-            }
-        }
-        let in_file = |p| self.to_file().transform_point3(p).to_array();
-        let spots_move = parameters.iter().any(|p| p.kind.is_of_spots());
-        if let Some(laser) = &mut file.laser {
-            laser.position = in_file(to.laser);
-            if spots_move {
-                laser.spots = SpotsTable {
-                    layout: Layout::List,
-                    points: Some(to.spots),
-                    ..SpotsTable::default()
-                };
-            }
-        }
-        file.camera.position = in_file(to.camera);
-        [file.camera.view.x, file.camera.view.y] = to.view;
-        Ok(file)
-    }
-
     /// How everything moves per unit of parameter `k`, where the parameters have these values.
     pub fn velocity(&self, parameters: &[Parameter], values: &[f64], k: usize) -> Velocity {
         let spots = &self.laser.spots;
@@ -325,39 +260,6 @@ fn xy(p: DVec3) -> [f64; 2] {
 fn ends(scene: &Scene) -> [[f64; 2]; 2] {
     let corners = scene.camera.view.corners();
     [[corners[0].x, corners[2].x], [corners[0].y, corners[2].y]]
-}
-
-/// Moves the shape of a surface in its table, whose coordinates are those of the file.
-fn write_moved(table: &mut SurfaceTable, surface: &Surface, motion: &DAffine3, axes: &DAffine3) {
-    let placed = axes.inverse() * *motion;
-    let motion = &(placed * *axes);
-    let point = |p: [f64; 3]| motion.transform_point3(DVec3::from_array(p)).to_array();
-    let vector = |v: [f64; 3]| motion.transform_vector3(DVec3::from_array(v)).to_array();
-    if let Some(r) = &mut table.rectangle {
-        (r.corner, r.u, r.v) = (point(r.corner), vector(r.u), vector(r.v));
-    }
-    if let Some(s) = &mut table.sphere {
-        s.centre = point(s.centre);
-    }
-    if let Some(d) = &mut table.disc {
-        (d.centre, d.normal) = (point(d.centre), vector(d.normal));
-    }
-    if let (Some(m), Shape::Instance(body)) = (&mut table.mesh, &surface.shape) {
-        write_moved_mesh(m, &(placed * *body.placement()), motion);
-    }
-}
-
-/// A mesh that stood on a surface stands where it is then.
-fn write_moved_mesh(table: &mut MeshTable, placement: &DAffine3, motion: &DAffine3) {
-    let (axis, angle) = DQuat::from_mat3(&motion.matrix3).to_axis_angle();
-    if angle != 0.0 {
-        table.rotate.get_or_insert_default().push(RotationTable {
-            axis: axis.to_array(),
-            angle: angle.to_degrees(),
-        });
-    }
-    table.translate = Some(placement.translation.to_array());
-    table.on = None;
 }
 
 fn no_shape() -> Fault {

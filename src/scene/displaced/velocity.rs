@@ -1,0 +1,36 @@
+//! How things move per unit of a parameter.
+
+use crate::geometry::DVec3;
+
+/// The velocity of a rigid body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Twist {
+    /// ω, radians per unit of the parameter.
+    pub angular: DVec3,
+    /// v, that of the body's point at the origin.
+    pub linear: DVec3,
+}
+
+impl Twist {
+    /// ẋ = v + ω × x.
+    pub fn at(&self, x: DVec3) -> DVec3 {
+        self.linear + self.angular.cross(x)
+    }
+}
+
+/// How everything in a scene moves per unit of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Velocity {
+    /// Of each surface, by its index.
+    pub surfaces: Vec<Twist>,
+    /// Of each spot along x and y; none move in a scene without a laser.
+    pub spots: Vec<[f64; 2]>,
+    /// Of the middle of the view along x and y.
+    pub view: [f64; 2],
+    /// Relative growth of the view's sides.
+    pub view_growth: f64,
+    /// Of the pinhole.
+    pub camera: DVec3,
+    /// Of where the beams start.
+    pub laser: DVec3,
+}
