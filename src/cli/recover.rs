@@ -1,28 +1,23 @@
 //! `phicam recover`: the hidden reflectance from Φcam.
 
+mod request;
+
 use std::path::{Path, PathBuf};
 
 use super::args::RecoverArgs;
 use super::console::Console;
 use super::failure::Failure;
-use super::load_run::{read_bare_scene, read_matrix, read_run, read_stderr};
-use super::recover_beside::{Beside, Photographs, mask};
-use super::recover_memory::{self, Errors, Held, Strips};
-use super::recover_options::{self, uncertainty};
-use super::recovered::{collect, recovering, tell, write};
-use super::run_folder::{PHI, RECOVERED, RunFolder, SATURATED, STDERR, is_of_recovered};
+use super::load_run::{read_bare_scene, read_run};
+use super::recover_memory::{self, Held};
+use super::recover_options;
+use super::recovered::{collect, tell, write};
+use super::run_folder::{PHI, RECOVERED, RunFolder, STDERR, is_of_recovered};
 use super::{Outcome, recover_own};
 use crate::folder::Record;
-use crate::lab::{
-    Attempt, Certainty, Noise, RecoveredObject, by_trust, inverted, recover_with_picards,
-};
-use crate::model::MatrixModel;
-use crate::recovery::{Method, Options, Picard};
-use crate::scene::Scene;
+use crate::lab::{Certainty, RecoveredObject, by_trust};
+use crate::recovery::Method;
 use crate::store::digest;
-
-/// Pixels of a mask that are looked at together.
-const MASK_ROWS: usize = 256;
+use request::RecoveryRequest;
 
 pub(super) fn execute(args: &RecoverArgs, console: Console) -> Result<Outcome, Failure> {
     let named: Vec<Method> = args
@@ -170,158 +165,6 @@ fn is_own(given: Option<&Path>, dir: &Path, name: &str) -> bool {
 
 fn is_same_file(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
-}
-
-/// A recovery that was asked for.
-struct RecoveryRequest<'a> {
-    args: &'a RecoverArgs,
-    /// Folder of the run.
-    dir: &'a Path,
-    scene: &'a Scene,
-    methods: &'a [Method],
-    options: Options,
-    certainty: Certainty,
-    /// Whether the run's photographs were imported: their noise may be unknown.
-    is_imported: bool,
-    /// File of Φcam.
-    phi: PathBuf,
-    console: Console<'a>,
-}
-
-impl RecoveryRequest<'_> {
-    /// From all of Φcam at once, with Picard plots.
-    fn whole(&self) -> Result<(Vec<Attempt>, Vec<Picard>), Failure> {
-        let Self { args, scene, .. } = *self;
-        let phi = read_matrix(&self.phi, scene)?;
-        self.refuse_clipped()?;
-        let stderr = match self.errors() {
-            Errors::Relative(noise) => Some(phi.map(|x| x.abs() * noise)),
-            Errors::File(file) => Some(read_stderr(&file, scene)?),
-            Errors::Unknown => {
-                self.console.say(
-                    "no noise model is given (--noise or --stderr): joint weights all entries alike",
-                );
-                None
-            }
-        };
-        let occlusion = args.occlusion.occlusion();
-        let model = inverted(
-            scene,
-            args.kernel,
-            args.elements,
-            occlusion,
-            args.integration,
-        )?;
-        let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
-            Noise::StandardError(stderr, self.certainty)
-        });
-        let of = Photographs {
-            name: format!("scene `{}`", scene.name),
-            grid: Some([scene.camera.columns, scene.camera.rows]),
-            pixels: scene.camera.pixels(),
-            spots: scene.laser.spots.len(),
-        };
-        let beside = Beside::read(args, &self.phi, &of, self.console)?;
-        let nuisance = beside.nuisance(args);
-        let options = Options {
-            uncertainty: uncertainty(&model, self.console),
-            frame: of.grid,
-            ..self.options
-        };
-        let what = format!("recover {}", scene.name);
-        let (attempts, picards) = recovering(self.console, &what, self.methods, |control| {
-            recover_with_picards(
-                &model,
-                &phi,
-                noise,
-                nuisance,
-                self.methods,
-                &options,
-                control,
-            )
-        });
-        Ok((attempts, picards?))
-    }
-
-    /// From so many pixels of Φcam at a time.
-    fn strips(&self, pixels: usize) -> Result<Vec<Attempt>, Failure> {
-        let Self { args, scene, .. } = *self;
-        let phi = recover_memory::open(&self.phi, scene)?;
-        self.refuse_clipped()?;
-        if let Some(mask) = mask(args, &self.phi) {
-            let cause = format!(
-                "{} says which entries do not count, and no method that reads Φcam by rows can leave them out",
-                mask.display()
-            );
-            let cure = "use a joint method, with enough --memory for all of Φcam";
-            return Err(Failure::new(cause, cure));
-        }
-        let errors = match self.errors() {
-            Errors::Relative(noise) => Errors::Relative(noise),
-            Errors::File(file) => Errors::File(Box::new(recover_memory::open(&file, scene)?)),
-            Errors::Unknown => Errors::Unknown,
-        };
-        let occlusion = args.occlusion.occlusion();
-        let model = MatrixModel::without_photographs(scene, args.kernel, args.elements, occlusion)?;
-        self.console
-            .say("Φcam is read by rows: no covariance, no resolution, no Picard plot");
-        let mut strips = Strips {
-            model: &model,
-            phi,
-            errors,
-            certainty: self.certainty,
-            pixels,
-        };
-        strips.recover(self.methods, &self.options)
-    }
-
-    /// Of a foreign Φcam nothing is known but what is given.
-    fn errors(&self) -> Errors<PathBuf> {
-        match (&self.args.stderr, self.args.noise) {
-            (_, Some(noise)) => Errors::Relative(noise),
-            (Some(file), None) => Errors::File(file.clone()),
-            (None, None) if is_own(self.args.phi.as_deref(), self.dir, PHI) => {
-                let file = self.dir.join(STDERR);
-                if self.is_imported && !file.exists() {
-                    return Errors::Unknown;
-                }
-                Errors::File(file)
-            }
-            (None, None) => Errors::Unknown,
-        }
-    }
-
-    /// Refuses photographs of `phicam expose` whose values mean nothing in places: they are too low
-    /// or too high by an unknown amount, and no standard error says so.
-    fn refuse_clipped(&self) -> Result<(), Failure> {
-        let mask = self.phi.with_file_name(SATURATED);
-        let asked = self.args.keep_clipped || self.args.left_out.is_some();
-        if self.args.phi.is_none() || asked || !mask.exists() {
-            return Ok(());
-        }
-        let mut rows = recover_memory::open(&mask, self.scene)?;
-        let (pixels, spots) = rows.shape();
-        let mut marked = 0;
-        for first in (0..pixels).step_by(MASK_ROWS) {
-            let part = rows.read(first, MASK_ROWS)?;
-            marked += part.iter().filter(|x| x.abs() >= 1.0).count();
-        }
-        if marked == 0 {
-            return Ok(());
-        }
-        Err(Failure::new(
-            format!(
-                "{marked} of {} entries of {} are saturated or cut off, says {}: neither their values nor their standard errors mean anything",
-                pixels * spots,
-                self.phi.display(),
-                mask.display()
-            ),
-            format!(
-                "expose for a shorter time or in --brackets; --left-out {} leaves them out of the joint methods; --keep-clipped takes them as they are",
-                mask.display()
-            ),
-        ))
-    }
 }
 
 /// Refuses photographs in counts whose scale is taken for that of W.

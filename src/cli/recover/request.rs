@@ -1,0 +1,173 @@
+//! A recovery that is asked for, from all of Φcam or from its rows.
+
+use std::path::{Path, PathBuf};
+
+use super::is_own;
+use crate::cli::args::RecoverArgs;
+use crate::cli::console::Console;
+use crate::cli::failure::Failure;
+use crate::cli::load_run::{read_matrix, read_stderr};
+use crate::cli::recover_beside::{Beside, Photographs, mask};
+use crate::cli::recover_memory::{self, Errors, Strips};
+use crate::cli::recover_options::uncertainty;
+use crate::cli::recovered::recovering;
+use crate::cli::run_folder::{PHI, SATURATED, STDERR};
+use crate::lab::{Attempt, Certainty, Noise, inverted, recover_with_picards};
+use crate::model::MatrixModel;
+use crate::recovery::{Method, Options, Picard};
+use crate::scene::Scene;
+
+/// Pixels of a mask that are looked at together.
+const MASK_ROWS: usize = 256;
+
+/// A recovery that was asked for.
+pub(super) struct RecoveryRequest<'a> {
+    pub(super) args: &'a RecoverArgs,
+    /// Folder of the run.
+    pub(super) dir: &'a Path,
+    pub(super) scene: &'a Scene,
+    pub(super) methods: &'a [Method],
+    pub(super) options: Options,
+    pub(super) certainty: Certainty,
+    /// Whether the run's photographs were imported: their noise may be unknown.
+    pub(super) is_imported: bool,
+    /// File of Φcam.
+    pub(super) phi: PathBuf,
+    pub(super) console: Console<'a>,
+}
+
+impl RecoveryRequest<'_> {
+    /// From all of Φcam at once, with Picard plots.
+    pub(super) fn whole(&self) -> Result<(Vec<Attempt>, Vec<Picard>), Failure> {
+        let Self { args, scene, .. } = *self;
+        let phi = read_matrix(&self.phi, scene)?;
+        self.refuse_clipped()?;
+        let stderr = match self.errors() {
+            Errors::Relative(noise) => Some(phi.map(|x| x.abs() * noise)),
+            Errors::File(file) => Some(read_stderr(&file, scene)?),
+            Errors::Unknown => {
+                self.console.say(
+                    "no noise model is given (--noise or --stderr): joint weights all entries alike",
+                );
+                None
+            }
+        };
+        let occlusion = args.occlusion.occlusion();
+        let model = inverted(
+            scene,
+            args.kernel,
+            args.elements,
+            occlusion,
+            args.integration,
+        )?;
+        let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
+            Noise::StandardError(stderr, self.certainty)
+        });
+        let of = Photographs {
+            name: format!("scene `{}`", scene.name),
+            grid: Some([scene.camera.columns, scene.camera.rows]),
+            pixels: scene.camera.pixels(),
+            spots: scene.laser.spots.len(),
+        };
+        let beside = Beside::read(args, &self.phi, &of, self.console)?;
+        let nuisance = beside.nuisance(args);
+        let options = Options {
+            uncertainty: uncertainty(&model, self.console),
+            frame: of.grid,
+            ..self.options
+        };
+        let what = format!("recover {}", scene.name);
+        let (attempts, picards) = recovering(self.console, &what, self.methods, |control| {
+            recover_with_picards(
+                &model,
+                &phi,
+                noise,
+                nuisance,
+                self.methods,
+                &options,
+                control,
+            )
+        });
+        Ok((attempts, picards?))
+    }
+
+    /// From so many pixels of Φcam at a time.
+    pub(super) fn strips(&self, pixels: usize) -> Result<Vec<Attempt>, Failure> {
+        let Self { args, scene, .. } = *self;
+        let phi = recover_memory::open(&self.phi, scene)?;
+        self.refuse_clipped()?;
+        if let Some(mask) = mask(args, &self.phi) {
+            let cause = format!(
+                "{} says which entries do not count, and no method that reads Φcam by rows can leave them out",
+                mask.display()
+            );
+            let cure = "use a joint method, with enough --memory for all of Φcam";
+            return Err(Failure::new(cause, cure));
+        }
+        let errors = match self.errors() {
+            Errors::Relative(noise) => Errors::Relative(noise),
+            Errors::File(file) => Errors::File(Box::new(recover_memory::open(&file, scene)?)),
+            Errors::Unknown => Errors::Unknown,
+        };
+        let occlusion = args.occlusion.occlusion();
+        let model = MatrixModel::without_photographs(scene, args.kernel, args.elements, occlusion)?;
+        self.console
+            .say("Φcam is read by rows: no covariance, no resolution, no Picard plot");
+        let mut strips = Strips {
+            model: &model,
+            phi,
+            errors,
+            certainty: self.certainty,
+            pixels,
+        };
+        strips.recover(self.methods, &self.options)
+    }
+
+    /// Of a foreign Φcam nothing is known but what is given.
+    fn errors(&self) -> Errors<PathBuf> {
+        match (&self.args.stderr, self.args.noise) {
+            (_, Some(noise)) => Errors::Relative(noise),
+            (Some(file), None) => Errors::File(file.clone()),
+            (None, None) if is_own(self.args.phi.as_deref(), self.dir, PHI) => {
+                let file = self.dir.join(STDERR);
+                if self.is_imported && !file.exists() {
+                    return Errors::Unknown;
+                }
+                Errors::File(file)
+            }
+            (None, None) => Errors::Unknown,
+        }
+    }
+
+    /// Refuses photographs of `phicam expose` whose values mean nothing in places: they are too low
+    /// or too high by an unknown amount, and no standard error says so.
+    fn refuse_clipped(&self) -> Result<(), Failure> {
+        let mask = self.phi.with_file_name(SATURATED);
+        let asked = self.args.keep_clipped || self.args.left_out.is_some();
+        if self.args.phi.is_none() || asked || !mask.exists() {
+            return Ok(());
+        }
+        let mut rows = recover_memory::open(&mask, self.scene)?;
+        let (pixels, spots) = rows.shape();
+        let mut marked = 0;
+        for first in (0..pixels).step_by(MASK_ROWS) {
+            let part = rows.read(first, MASK_ROWS)?;
+            marked += part.iter().filter(|x| x.abs() >= 1.0).count();
+        }
+        if marked == 0 {
+            return Ok(());
+        }
+        Err(Failure::new(
+            format!(
+                "{marked} of {} entries of {} are saturated or cut off, says {}: neither their values nor their standard errors mean anything",
+                pixels * spots,
+                self.phi.display(),
+                mask.display()
+            ),
+            format!(
+                "expose for a shorter time or in --brackets; --left-out {} leaves them out of the joint methods; --keep-clipped takes them as they are",
+                mask.display()
+            ),
+        ))
+    }
+}
