@@ -3,6 +3,7 @@ use crate::lab::ensemble::Photographs;
 use crate::lab::problem::problem;
 use crate::lab::study::tests::small;
 use crate::model::{Kernel, MatrixModel};
+use crate::recovery::recover;
 
 /// One element, C = D = 1, σ = 0.5: ρ̂ is the mean 0.4 of 0.2, 0.3, 0.4, 0.7, so that χ² =
 /// (0.04 + 0.01 + 0 + 0.09)/0.25 = 0.56 with 3 degrees of freedom; a fifth entry has no error.
