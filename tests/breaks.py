@@ -846,7 +846,7 @@ BREAKS = [
     ),
     Break(
         "Colours of a mesh, which are not used, are told",
-        "src/scene/surface_tables.rs",
+        "src/scene/surface_tables/shape.rs",
         "if let Some(paint) = told.paint {",
         "if let Some(paint) = told.paint.filter(String::is_empty) {",
         "cli",
