@@ -1,5 +1,7 @@
 //! Materials as written in a scene file, and what they mean.
 
+mod kind;
+
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -10,6 +12,7 @@ use super::variants::{LEAST_ALPHA, MOST_ALPHA, MOST_INDEX, MOST_SIGMA};
 use super::{Coated, Conductor, Material, Measured, OrenNayar, Part, SecondFacet, Shining, Shown};
 use crate::scene::error::{Fault, keys};
 use crate::scene::texture::{AlbedoTable, Texture};
+use kind::{kind, refuse_foreign_keys};
 
 /// The keys of every material; which of them a material takes is checked. Keys that are absent are
 /// not serialised, so that the hash of a scene does not depend on materials it does not have.
@@ -93,7 +96,6 @@ pub struct PartTable {
 /// Reads a file that the scene names, by the path written there; an error says why not.
 pub(in crate::scene) type Files<'a> = &'a mut dyn FnMut(&str) -> Result<Vec<u8>, String>;
 
-const KINDS: &str = "`lambertian`, `oren_nayar`, `paint`, `coated`, `conductor`, `measured`, `mixture` and `shining`";
 /// Index of refraction where the coat's is not stated: acrylic and polyurethane paint.
 const COAT: f64 = 1.5;
 /// Parts of a mixture.
@@ -165,60 +167,6 @@ impl Material {
         let parts = table.mixture.as_deref().unwrap_or_default();
         Ok((mixture(parts, wavelength, files)?, Texture::Constant(1.0)))
     }
-}
-
-/// The one kind of material that is given.
-fn kind(table: &MaterialTable) -> Result<&'static str, Fault> {
-    let kinds = [
-        ("lambertian", table.lambertian.is_some()),
-        ("oren_nayar", table.oren_nayar.is_some()),
-        ("paint", table.paint.is_some()),
-        ("coated", table.coated.is_some()),
-        ("conductor", table.conductor.is_some()),
-        ("measured", table.measured.is_some()),
-        ("mixture", table.mixture.is_some()),
-        ("shining", table.shining.is_some()),
-    ];
-    let mut given = kinds
-        .into_iter()
-        .filter_map(|(name, is)| is.then_some(name));
-    match (given.next(), given.next()) {
-        (Some(name), None) => Ok(name),
-        (Some(a), Some(b)) => {
-            let cause = format!("a material that is both `{a}` and `{b}`");
-            let cure = "keep one; a sum of materials is a `mixture`";
-            Err(Fault::new(keys![b], cause, cure))
-        }
-        (None, _) => {
-            let cause = format!("a material needs exactly one of {KINDS}");
-            Err(Fault::new(keys![], cause, "add e.g. `lambertian = 0.8`"))
-        }
-    }
-}
-
-fn refuse_foreign_keys(table: &MaterialTable, kind: &'static str) -> Result<(), Fault> {
-    let keys: [(&'static str, bool, &[&str]); 9] = [
-        (
-            "roughness",
-            table.roughness.is_some(),
-            &["oren_nayar", "paint", "coated", "conductor"],
-        ),
-        ("ior", table.ior.is_some(), &["paint", "coated"]),
-        ("reflectance", table.reflectance.is_some(), &["conductor"]),
-        ("channel", table.channel.is_some(), &["measured"]),
-        ("scale", table.scale.is_some(), &["measured"]),
-        ("exitance", table.exitance.is_some(), &["shining"]),
-        ("falloff", table.falloff.is_some(), &["shining"]),
-        ("wavelength", table.wavelength.is_some(), &["shining"]),
-        ("light", table.light.is_some(), &["shining"]),
-    ];
-    for (key, given, owners) in keys {
-        if given && !owners.contains(&kind) {
-            let cause = format!("`{key}` does not belong to `{kind}`");
-            return Err(Fault::new(keys![key], cause, format!("remove `{key}`")));
-        }
-    }
-    Ok(())
 }
 
 fn roughness(table: &MaterialTable, least: f64, most: f64, what: &str) -> Result<f64, Fault> {
