@@ -5,7 +5,8 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::camera::{DirectLight, PixelView};
+use super::camera::PixelView;
+use super::direct_light::DirectLight;
 use super::guide::Guide;
 use super::path::PathSampler;
 use super::plan::Plan;

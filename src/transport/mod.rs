@@ -39,6 +39,7 @@ mod area;
 mod beam;
 mod camera;
 mod context;
+mod direct_light;
 mod factored;
 mod glossy;
 mod guide;

@@ -6,7 +6,8 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::beam::Beams;
-use super::camera::{DirectLight, PixelView, sees_nothing};
+use super::camera::{PixelView, sees_nothing};
+use super::direct_light::DirectLight;
 use super::visibility::{between, known_or_all, may_light_any};
 use crate::geometry::ShapeId;
 use crate::scene::Scene;
