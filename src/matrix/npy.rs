@@ -8,15 +8,17 @@
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 mod array;
 mod entries;
+mod error;
 mod header;
 mod rows;
 
 pub use array::read_array;
 pub use entries::Entries;
+pub use error::NpyError;
 use header::Header;
 pub use rows::Rows;
 
@@ -25,60 +27,6 @@ use crate::store::{self, ReadError, StoreError};
 
 /// Rows in C order that are held before they are put into their columns.
 const BAND: usize = 32;
-
-/// Why a `.npy` file cannot serve as a matrix.
-#[derive(Debug, thiserror::Error)]
-pub enum NpyError {
-    /// The file cannot be read.
-    #[error(transparent)]
-    Unreadable(#[from] ReadError),
-    /// The header is none, or not that of a plain array.
-    #[error("{} is not a .npy file of plain numbers: {reason}; write it with numpy.save", path.display())]
-    NotNpy {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: String,
-    },
-    /// Numbers of another type than f64 or f32.
-    #[error("{} holds numbers of type {dtype}, not f64 or f32; convert it with a.astype('<f8') before numpy.save", path.display())]
-    Type {
-        /// The file.
-        path: PathBuf,
-        /// NumPy's name of the type found.
-        dtype: String,
-    },
-    /// Not a vector and not a matrix, or without entries.
-    #[error("{} has the shape {shape:?}, not (pixels, spots); reshape the array before numpy.save", path.display())]
-    Shape {
-        /// The file.
-        path: PathBuf,
-        /// The shape found.
-        shape: Vec<u64>,
-    },
-    /// The header promises more or fewer numbers than the file holds.
-    #[error("{} holds {found} bytes of numbers where its header promises {promised}: it is cut short or damaged; write it again", path.display())]
-    Length {
-        /// The file.
-        path: PathBuf,
-        /// Bytes after the header.
-        found: u64,
-        /// Bytes the header asks for.
-        promised: u128,
-    },
-    /// NaN or infinity where only finite numbers make sense.
-    #[error("{} has the value {value} at row {row}, column {column}; remove or mend it: only finite numbers can be used", path.display())]
-    NotFinite {
-        /// The file.
-        path: PathBuf,
-        /// Row of the first such value, from 0.
-        row: usize,
-        /// Column of the first such value, from 0.
-        column: usize,
-        /// The value.
-        value: f64,
-    },
-}
 
 /// Writes `matrix` to `path` as f64, little-endian, C order, shape (rows, columns): Φcam as
 /// (pixels, spots) in W. The file appears whole or not at all.
