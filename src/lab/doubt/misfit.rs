@@ -1,0 +1,93 @@
+//! Photographs that a picture, or any picture, does not explain.
+
+use crate::lab::fit::{Attainable, Fit, Judged};
+use crate::num::digits::{figure, significant};
+use crate::recovery::{Method, Recovered};
+
+fn told(fit: &Fit) -> String {
+    format!(
+        "χ²/dof {}, P {}",
+        significant(fit.chi2_per_dof, 3),
+        figure(fit.p, 2)
+    )
+}
+
+/// Photographs and model that contradict each other, or a picture that does not explain them though
+/// another does.
+pub(super) fn misfit(found: &Recovered, judged: &Judged) -> Option<String> {
+    if let Some(best) = judged.best.as_ref().filter(|best| !best.possible.fits) {
+        return Some(contradiction(best));
+    }
+    let fit = judged.fit.as_ref().filter(|fit| !fit.fits)?;
+    if judged.left_over.is_some() {
+        return Some(format!(
+            "DOES NOT FIT: it leaves more of the photographs over than noise of one size could, of which \
+             any reflectances leave {} times less (P {}). {}",
+            significant(fit.chi2_per_dof, 3),
+            figure(fit.p, 2),
+            cure(found.method)
+        ));
+    }
+    let own = format!(
+        "DOES NOT FIT: what this picture would photograph differs from the photographs by more than \
+         their noise ({})",
+        told(fit)
+    );
+    let Some(best) = &judged.best else {
+        return Some(format!(
+            "{own}. Geometry, order of frames, unit or standard errors may be wrong, or the method; \
+             recover with joint to tell"
+        ));
+    };
+    Some(format!(
+        "{own}, and others explain them ({}): the method is at fault, not the photographs. {}",
+        told(&best.possible),
+        cure(found.method)
+    ))
+}
+
+/// What helps where another picture fits.
+fn cure(method: Method) -> &'static str {
+    match method {
+        Method::Tsvd | Method::Tikhonov | Method::TikhonovGradient => {
+            "Regularise less (--rank, --damping), or use joint"
+        }
+        Method::JointTv => "Lower --tv, or use joint",
+        Method::JointTwoValued => {
+            "There are more than two values, or the search has missed the pattern: use joint, or give \
+             the --levels"
+        }
+        Method::Joint | Method::Nnls | Method::JointUnbounded | Method::JointGp => {
+            "Leave --weighting and --tolerance to the noise"
+        }
+        _ => "It amplifies noise: use joint, or tsvd or tikhonov",
+    }
+}
+
+/// No reflectances between 0 and 1 explain the photographs.
+fn contradiction(best: &Attainable) -> String {
+    let told = told(&best.possible);
+    if best.brightness > 1.0 && best.any.as_ref().is_none_or(|any| any.fits) {
+        return format!(
+            "DOES NOT FIT, by any method: the photographs are {} times as bright as a surface of \
+             reflectance 1 would make them ({told}). Is Φcam in W, and are power, aperture and \
+             albedos of the scene right? Give it in W, or estimate one factor (--free-scale)",
+            significant(best.brightness, 3)
+        );
+    }
+    let any = match &best.any {
+        Some(any) if any.fits => {
+            "reflectances below 0 or above 1 could, which no surface has".to_owned()
+        }
+        Some(any) => format!("no numbers at all do ({})", self::told(any)),
+        None => "it is not known whether other numbers do".to_owned(),
+    };
+    format!(
+        "DOES NOT FIT, by any method: no reflectances between 0 and 1 explain the photographs \
+         ({told}); {any}. The scene is not what was photographed, or the standard errors are too \
+         small. Check geometry, order and orientation of the frames, unit and --stderr; more \
+         --elements where they are coarse; what stands in the way, in the scene; \
+         --frame-constant, --background or --occluder-light for other light; --integration centres \
+         where elements were taken at their centres, as `phicam model` does"
+    )
+}
