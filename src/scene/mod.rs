@@ -26,6 +26,7 @@ mod element;
 mod error;
 pub mod file;
 mod files;
+mod hash;
 mod known;
 mod laser;
 pub mod material;
@@ -51,8 +52,6 @@ mod walls;
 mod warning;
 
 use std::path::{Path, PathBuf};
-
-use sha2::{Digest, Sha256};
 
 pub use axes::AxesTable;
 pub use builtin::{Builtin, builtins};
@@ -81,6 +80,7 @@ use crate::geometry::{Bvh, DAffine3};
 use error::{Fault, keys};
 use file::SceneFile;
 use files::{Files, Folders};
+use hash::content_hash;
 
 /// Largest number of surfaces that a path may meet.
 pub const MOST_BOUNCES: u32 = 1000;
@@ -291,16 +291,4 @@ impl Scene {
     pub fn warnings(&self) -> Vec<Warning> {
         check::warnings(self)
     }
-}
-
-/// SHA-256 (hex) of what the light depends on: the tables, and the bytes of the files they name.
-fn content_hash(file: &SceneFile, files: &[Referenced]) -> Result<String, Fault> {
-    let unfinite =
-        |e: serde_json::Error| Fault::new(keys![], e.to_string(), "use finite numbers only");
-    let json = serde_json::to_vec(&file.of_the_light()).map_err(unfinite)?;
-    let mut digest = Sha256::new_with_prefix(json);
-    for file in files {
-        digest.update(&file.digest);
-    }
-    Ok(crate::store::hex(&digest.finalize()))
 }

@@ -7,10 +7,11 @@ use glam::DAffine3;
 
 use super::error::{Fault, keys};
 use super::file::{Layout, RectangleTable, SceneFile, SpotsTable};
+use super::hash::content_hash;
 use super::laser;
 use super::parse;
 use super::surface::{self, Surface};
-use super::{Cells, Division, Material, Role, Scene, SceneError, Texture, content_hash};
+use super::{Cells, Division, Material, Role, Scene, SceneError, Texture};
 use crate::geometry::{Facing, Parallelogram, Shape, Sphere};
 
 impl Scene {
