@@ -111,7 +111,7 @@
 //!
 //! // Within the error bars at a significance of 0.1 %?
 //! let test = Test { significance: 1e-3, replicates: plan.budget.blocks, errors: Errors::Independent };
-//! let measured = Measured { phi: &traced.flux, stderr: &traced.stderr, left_out: None };
+//! let measured = Measured::new(&traced.flux, &traced.stderr, None);
 //! let against = |kernel| {
 //!     let (integration, occlusion) = (Integration::Quadrature, Occlusion::Considered);
 //!     validate(&scene, measured, Against { kernel, integration, occlusion }, test)

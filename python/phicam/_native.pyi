@@ -125,6 +125,8 @@ def validate(
     significance: float,
     replicates: int | None,
     errors_name: str,
+    free_scale: bool,
+    frame_polynomial: int | None,
     threads: int | None,
 ) -> tuple[dict[str, Any], Floats, Floats]: ...
 def expose(

@@ -72,6 +72,8 @@ def validate(
     significance: float = 1e-3,
     errors: Errors | None = None,
     replicates: int | None = None,
+    free_scale: bool = False,
+    frame_polynomial: int | None = None,
     threads: int | None = None,
 ) -> Verdict:
     """Tests Φcam against the matrix model of a scene, as ``phicam validate`` does.
@@ -95,6 +97,10 @@ def validate(
         How errors hang together: ``independent``, ``pixel`` (those of one pixel), ``all``; that of `phi` unless given.
     replicates : int
         From how many replicates each standard error was estimated; that of `phi`, else as many as one likes.
+    free_scale : bool
+        The scale of all light is unknown, as of photographs in counts: it is fitted first, and a factor of all light is not seen.
+    frame_polynomial : int
+        Other light in each frame, a polynomial of this degree, 0 (a constant) to 8, is fitted first.
 
     >>> import phicam
     >>> scene = phicam.Scene("bench").replace({"laser.spots.per_side": 2, "camera.pixels": (4, 4)})
@@ -106,7 +112,8 @@ def validate(
     False
     """
     if isinstance(phi, Phi):
-        phi.refuse_unscaled("the model is in W:")
+        if not free_scale:
+            phi.refuse_unscaled("the model is in W: say free_scale=True, or")
         if left_out is None:
             phi.refuse_clipped()
         scene, flux = phi.scene, phi.flux
@@ -152,6 +159,8 @@ def validate(
         significance=number(significance, "significance", "between 0 and 1, e.g. 0.001", lambda x: 0 < x < 1),
         replicates=None if replicates is None else whole(replicates, "replicates", 2, 2**32 - 1),
         errors_name=errors or "independent",
+        free_scale=bool(free_scale),
+        frame_polynomial=None if frame_polynomial is None else whole(frame_polynomial, "frame_polynomial", 0, 8),
         threads=threads_of(threads),
     )
     return Verdict(found, z, modelled)

@@ -5,7 +5,9 @@ use std::sync::Arc;
 use numpy::PyArray2;
 use phicam::jobs::need;
 use phicam::lab::finding::Describe;
-use phicam::lab::{Against, Errors, Measured, Test, validate as validated};
+use phicam::lab::{
+    Against, Errors, Measured, OtherLight, Test, polynomials, validate as validated,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -37,7 +39,8 @@ type Verdict<'py> = (
 /// The verdict on Φcam.
 #[pyfunction]
 #[pyo3(signature = (scene, phi, stderr, left_out, *, kernel_name, integration_name, considered,
-                    significance, replicates, errors_name, threads))]
+                    significance, replicates, errors_name, free_scale, frame_polynomial,
+                    threads))]
 #[expect(
     clippy::too_many_arguments,
     reason = "one for each keyword of Python's function"
@@ -54,6 +57,8 @@ pub fn validate<'py>(
     significance: f64,
     replicates: Option<u32>,
     errors_name: &str,
+    free_scale: bool,
+    frame_polynomial: Option<usize>,
     threads: Option<usize>,
 ) -> PyResult<Verdict<'py>> {
     let against = Against {
@@ -72,10 +77,14 @@ pub fn validate<'py>(
     let left_out = maybe(left_out, "left_out")?;
     let scene = Arc::clone(&scene.inner);
     let verdict = run(py, threads, None, move |_| {
+        let size = [scene.camera.columns, scene.camera.rows];
+        let patterns = frame_polynomial.map(|degree| polynomials(size, degree));
         let measured = Measured {
-            phi: &phi,
-            stderr: &stderr,
-            left_out: left_out.as_ref(),
+            beside: OtherLight {
+                patterns: patterns.as_ref(),
+                is_scale_free: free_scale,
+            },
+            ..Measured::new(&phi, &stderr, left_out.as_ref())
         };
         validated(&scene, measured, against, test)
     })?;

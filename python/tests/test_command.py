@@ -92,6 +92,14 @@ def test_validate(command, run, phi):
     assert verdict.values == said
 
 
+def test_validate_counts(command, run, phi):
+    said = json.loads(command("validate", run, "--json", "--free-scale", "--frame-polynomial", 0))
+    assert phicam.validate(phi, free_scale=True, frame_polynomial=0).values == said
+    counts = phicam.Phi(phi.scene, 2e15 * phi.flux + 7.0, 2e15 * phi.stderr, account={"unit": "counts"})
+    verdict = phicam.validate(counts, free_scale=True, frame_polynomial=0)
+    assert verdict.agrees and abs(verdict.values["best_scale"] / 2e15 - 1) < 0.1
+
+
 def test_recover(command, run, phi):
     methods = ["pinv", "tsvd", "joint", "joint-gp"]
     command("recover", run, *(word for method in methods for word in ("--method", method)))

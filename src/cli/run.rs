@@ -133,11 +133,7 @@ fn compare_and_recover(
     let occlusion = args.occlusion.occlusion();
     let integration = args.test.integration;
     let matrices = lab::inverted(&results.scene, kernel, None, occlusion, integration)?;
-    let measured = Measured {
-        phi: &results.phi,
-        stderr: &results.stderr,
-        left_out: Some(&results.tails),
-    };
+    let measured = Measured::new(&results.phi, &results.stderr, Some(&results.tails));
     let against = Against {
         kernel,
         integration,

@@ -13,7 +13,7 @@ use crate::film::{self, Channel, Frame};
 use crate::folder::Record;
 use crate::jobs::need;
 use crate::lab::finding::Describe;
-use crate::lab::{Against, Agreement, Errors, Measured, Test, validate};
+use crate::lab::{Against, Agreement, Errors, Measured, OtherLight, Test, polynomials, validate};
 use crate::matrix::Matrix;
 use crate::num::statistics::normal_two_sided;
 use crate::report::{self, Panel, Scale};
@@ -27,10 +27,18 @@ pub(super) fn execute(args: &ValidateArgs, console: Console) -> Result<Outcome, 
         scene = scene.with_shifted_spots(by)?;
     }
     need::verdict(&scene)?;
+    let size = [scene.camera.columns, scene.camera.rows];
+    let patterns = args
+        .frame_polynomial
+        .map(|degree| polynomials(size, usize::from(degree)));
     let measured = Measured {
         phi: &given.phi,
         stderr: &given.stderr,
         left_out: given.left_out.as_ref(),
+        beside: OtherLight {
+            patterns: patterns.as_ref(),
+            is_scale_free: args.free_scale,
+        },
     };
     let against = Against {
         kernel: args.test.kernel,
@@ -89,7 +97,9 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
         }
         (_, _, Some((dir, (scene, record)))) => {
             let noise = known_noise(dir, &record)?;
-            refuse_unscaled(dir, &record)?;
+            if !args.free_scale {
+                refuse_unscaled(dir, &record)?;
+            }
             Ok(Given {
                 phi: read_matrix(&dir.join(PHI), &scene)?,
                 stderr: read_stderr(&noise, &scene)?,
@@ -125,7 +135,7 @@ fn refuse_unscaled(dir: &Path, record: &Record) -> Result<(), Failure> {
                 "the photographs of {} are in {unit}, and the model is in W",
                 dir.display()
             ),
-            "import them with `watts`, what one of these is in W",
+            "say --free-scale, or import them with `watts`, what one of these is in W",
         )),
     }
 }

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::eliminated::Eliminated;
 use super::evidence::{Errors, Evidence, Test};
 use super::score::{Derivatives, Residual, Score, Weights, score};
 use crate::matrix::Matrix;
@@ -56,7 +57,16 @@ pub struct Agreement {
     pub entries: usize,
     /// Entries left out, their error being untrusted.
     pub left_out: usize,
-    /// Mean of z² over the entries: 1 on average if the model is right.
+    /// Directions of the entries that other light and the scale took, fitted first.
+    #[serde(default)]
+    pub fitted: usize,
+    /// Other light that was fitted and taken out, over all light: relative Frobenius norm.
+    #[serde(default)]
+    pub other_light: f64,
+    /// Whether the scale was fitted first: it is `best_scale`.
+    #[serde(default)]
+    pub is_scale_free: bool,
+    /// Σ z² over the entries less `fitted`: 1 on average if the model is right.
     pub chi2_per_dof: f64,
     /// Independent degrees of freedom of that mean.
     pub dof: f64,
@@ -111,7 +121,8 @@ const WORST: usize = 10;
 ///   these, half for those of single spots, each against its Šidák limit.
 ///
 /// Entries whose standard error is 0 (light that never varies, or never arrives) are compared to
-/// rounding. Where every entry is left out, or dark in both, there is no evidence and no agreement.
+/// rounding. Where every entry is left out, or dark in both, there is no evidence and no agreement;
+/// nor where what was fitted first has as many unknowns as there are entries.
 pub fn agree(
     evidence: Evidence<'_>,
     test: Test,
@@ -130,13 +141,15 @@ pub fn agree(
     let counted: Vec<usize> = (0..z.len()).filter(|i| evidence.counts(*i)).collect();
     let entries = counted.len();
     let lit = |i: &usize| evidence.traced[*i] != 0.0 || evidence.model[*i] != 0.0;
-    let evident = counted.iter().any(lit);
+    let fitted = evidence.eliminated.map_or(0, Eliminated::freedom);
+    let evident = counted.iter().any(lit) && entries > fitted;
     let largest = z.amax();
     let squares = z.norm_squared();
-    let chi2_per_dof = squares / entries.max(1) as f64;
+    let free = entries.saturating_sub(fitted).max(1) as f64;
+    let chi2_per_dof = squares / free;
     let dof = match test.errors {
-        Errors::Independent => entries.max(1) as f64,
-        Errors::WithinRows => effective_freedom(&z, entries),
+        Errors::Independent => free,
+        Errors::WithinRows => effective_freedom(&z, entries) * free / entries.max(1) as f64,
         Errors::Everywhere => 1.0,
     };
     let chi2_p = chi_square_sf(chi2_per_dof * dof, dof);
@@ -149,7 +162,7 @@ pub fn agree(
             let after = deviate(i, evidence.model[i] + theta * d[i]);
             after * after - z[i] * z[i]
         });
-        (squares + change.sum::<f64>()) / entries.max(1) as f64
+        (squares + change.sum::<f64>()) / free
     };
     let score = derivatives
         .filter(|_| evident)
@@ -170,6 +183,9 @@ pub fn agree(
         significance: test.significance,
         entries,
         left_out: z.len() - entries,
+        fitted,
+        other_light: 0.0,
+        is_scale_free: evidence.eliminated.is_some_and(Eliminated::is_scale_free),
         chi2_per_dof,
         dof,
         chi2_p,

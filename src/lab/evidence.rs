@@ -1,5 +1,6 @@
 //! What a model is tested with, and how.
 
+use super::eliminated::Eliminated;
 use crate::matrix::Matrix;
 use crate::transport::Estimator;
 
@@ -79,6 +80,8 @@ pub struct Evidence<'a> {
     pub bound: Option<&'a Matrix>,
     /// Not 0 where an entry's error is not to be trusted: it is left out; absent if all are.
     pub left_out: Option<&'a Matrix>,
+    /// What was fitted to the entries and taken out of them; absent if nothing was.
+    pub eliminated: Option<&'a Eliminated>,
 }
 
 impl Evidence<'_> {

@@ -155,6 +155,7 @@ mod coverage;
 mod derivatives;
 mod deviate;
 mod doubt;
+mod eliminated;
 mod ensemble;
 mod error;
 mod evidence;
@@ -179,6 +180,7 @@ mod noise_law;
 mod objects;
 mod occluder;
 pub mod options;
+mod other_light;
 mod picard;
 #[cfg(test)]
 mod pictures;
@@ -222,6 +224,7 @@ pub use calibrate::{
 pub use chosen::{Beside, Chosen, Ended, Probable};
 pub use convergence::{Bend, Convergence, ConvergenceTasks, Curve, Step};
 pub use coverage::{Coverage, CoveragePlan, CoverageRow, CoverageTasks};
+pub use eliminated::Eliminated;
 pub use ensemble::{Estimate, Spread};
 pub use error::{LabError, StudyError};
 pub use evidence::{Errors, Evidence, Test};
@@ -245,6 +248,7 @@ pub use noise::{
 pub use objects::{
     Attempt, Noise, ObjectBands, RecoveredObject, measured, recover_objects, recover_with_picards,
 };
+pub use other_light::OtherLight;
 pub use pilot::{Foretold, PilotError, darkness, foretold};
 pub use power::{Detection, Power, PowerPlan, PowerRow, PowerTasks};
 pub use preview::{

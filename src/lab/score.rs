@@ -20,7 +20,11 @@
 //!
 //! θ̂ over its error is Student-distributed with the degrees of freedom of that variance
 //! (Satterthwaite). What the model itself may be off by, Σ |w d| b, is taken off |Σ w d r| first.
+//!
+//! Where other light or the scale was fitted first ([`Eliminated`](super::eliminated::Eliminated)),
+//! d is what that leaves of ∂model/∂θ.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
@@ -139,9 +143,9 @@ pub(super) fn score(
     };
     let of: Vec<Option<Matrix>> = (0..parameters.len()).map(|k| (derivatives.of)(k)).collect();
     for (parameter, d) in parameters.iter().zip(&of) {
-        let fit = |columns: Range<usize>, limit: f64, family: usize, name: &str| {
-            let d = d.as_ref()?;
-            let fit = residual.fit(d, &columns)?;
+        let fit = |spot: Option<usize>, limit: f64, family: usize, name: &str| {
+            let (d, columns) = left_of(&evidence, d.as_ref()?, spot)?;
+            let fit = residual.fit(&d, &columns)?;
             Some(Deviation {
                 name: name.to_owned(),
                 unit: parameter.unit.clone(),
@@ -151,19 +155,18 @@ pub(super) fn score(
                 z: fit.z(),
                 p: sidak_p(normal_two_sided(fit.z()), family as u64),
                 detectable: fit.detectable(limit),
-                chi2_per_dof: remaining(fit.value, d, &columns),
+                chi2_per_dof: remaining(fit.value, &d, &columns),
                 same: parameter.same.clone(),
-                spot: None,
+                spot,
             })
         };
-        match fit(0..spots, found.limits[0], parameters.len(), &parameter.name) {
+        match fit(None, found.limits[0], parameters.len(), &parameter.name) {
             Some(deviation) => found.deviations.push(deviation),
             None => found.untested.push(parameter.name.clone()),
         }
         for (spot, name) in (0..spots).filter_map(|l| Some((l, parameter.each_spot.as_ref()?))) {
-            let own = fit(spot..spot + 1, found.limits[1], single, name);
-            let spot = Some(spot);
-            found.spots.extend(own.map(|own| Deviation { spot, ..own }));
+            let own = fit(Some(spot), found.limits[1], single, name);
+            found.spots.extend(own);
         }
     }
     found.likely = likely(&found, &residual, parameters, &of);
@@ -189,7 +192,11 @@ fn likely(
             None => p.name == d.name,
             Some(_) => p.each_spot.as_ref() == Some(&d.name),
         })?;
-        Some(of_spot(derivatives[index].as_ref()?, d.spot))
+        let of = derivatives[index].as_ref()?;
+        match residual.evidence.eliminated {
+            None => Some(of_spot(of, d.spot)),
+            Some(terms) => terms.left_of(&of_spot(of, d.spot)),
+        }
     };
     let Some(first) = derivative(best) else {
         return vec![best.clone()];
@@ -203,6 +210,20 @@ fn likely(
     let mut rest: Vec<&Deviation> = all().filter(as_good).collect();
     rest.sort_by(least);
     std::iter::once(best).chain(rest).cloned().collect()
+}
+
+/// What is fitted of a derivative, and the spots where it is not 0; none if what was fitted first
+/// leaves nothing of it.
+fn left_of<'a>(
+    evidence: &Evidence<'_>,
+    d: &'a Matrix,
+    spot: Option<usize>,
+) -> Option<(Cow<'a, Matrix>, Range<usize>)> {
+    let all = 0..d.ncols();
+    match evidence.eliminated {
+        None => Some((Cow::Borrowed(d), spot.map_or(all, |l| l..l + 1))),
+        Some(terms) => Some((Cow::Owned(terms.left_of(&of_spot(d, spot))?), all)),
+    }
 }
 
 /// The derivative by a parameter of one spot.
@@ -274,6 +295,11 @@ impl<'a> Residual<'a> {
             weights,
             variance,
         }
+    }
+
+    /// √w, pixels × spots; 0 of an entry without weight.
+    pub(super) fn roots(&self) -> Matrix {
+        self.weights.map(f64::sqrt)
     }
 
     fn difference(&self, at: usize) -> f64 {
@@ -388,7 +414,8 @@ pub(super) struct Fit {
 }
 
 impl Fit {
-    fn z(&self) -> f64 {
+    /// Standard normal deviate of the value, the bias taken off.
+    pub(super) fn z(&self) -> f64 {
         let beyond = (self.value.abs() - self.bias).max(0.0);
         if beyond == 0.0 {
             return 0.0;

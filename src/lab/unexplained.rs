@@ -52,35 +52,9 @@ impl Unexplained<'_> {
         (0..self.phi.ncols()).map(of_frame).sum()
     }
 
-    /// Orthonormal directions of the weighted patterns, pixels × directions.
-    fn directions(&self, roots: &DVector<f64>) -> Result<Matrix, LinalgError> {
-        let none = Matrix::zeros(roots.len(), 0);
-        let Some(patterns) = self.patterns.filter(|f| f.ncols() > 0) else {
-            return Ok(none);
-        };
-        let lengths: Vec<f64> = patterns.column_iter().map(|f| f.amax()).collect();
-        let weighted = Matrix::from_fn(patterns.nrows(), patterns.ncols(), |p, k| {
-            roots[p] * patterns[(p, k)] / if lengths[k] > 0.0 { lengths[k] } else { 1.0 }
-        });
-        if weighted.amax() == 0.0 {
-            return Ok(none);
-        }
-        let found = svd(&weighted)?;
-        let strong = found
-            .sigma
-            .iter()
-            .take_while(|s| **s > DEPENDENT * found.sigma[0]);
-        let kept = strong.count();
-        Ok(found.u.columns(0, kept).into_owned())
-    }
-
     /// The frame's weights and other light.
     pub(super) fn whitening(&self, l: usize) -> Result<Whitening, LinalgError> {
-        let roots = self.roots(l);
-        Ok(Whitening {
-            directions: self.directions(&roots)?,
-            roots,
-        })
+        Whitening::new(self.roots(l), self.patterns)
     }
 }
 
@@ -94,6 +68,15 @@ pub(super) struct Whitening {
 }
 
 impl Whitening {
+    /// By √w of each pixel, 0 where its entry does not count, and patterns of other light.
+    pub(super) fn new(roots: DVector<f64>, patterns: Option<&Matrix>) -> Result<Self, LinalgError> {
+        let directions = match patterns.filter(|f| f.ncols() > 0) {
+            Some(patterns) => directions(patterns, &roots)?,
+            None => Matrix::zeros(roots.len(), 0),
+        };
+        Ok(Self { roots, directions })
+    }
+
     /// Of each column.
     pub(super) fn apply(&self, columns: &Matrix) -> Matrix {
         let once = |m: Matrix| {
@@ -126,4 +109,19 @@ impl Whitening {
         let counted = self.roots.iter().filter(|q| **q > 0.0).count();
         counted as f64 - self.directions.ncols() as f64
     }
+}
+
+/// Orthonormal directions of the weighted patterns, pixels × directions.
+fn directions(patterns: &Matrix, roots: &DVector<f64>) -> Result<Matrix, LinalgError> {
+    let lengths: Vec<f64> = patterns.column_iter().map(|f| f.amax()).collect();
+    let weighted = Matrix::from_fn(patterns.nrows(), patterns.ncols(), |p, k| {
+        roots[p] * patterns[(p, k)] / if lengths[k] > 0.0 { lengths[k] } else { 1.0 }
+    });
+    if weighted.amax() == 0.0 {
+        return Ok(Matrix::zeros(roots.len(), 0));
+    }
+    let found = svd(&weighted)?;
+    let least = DEPENDENT * found.sigma[0];
+    let kept = found.sigma.iter().take_while(|s| **s > least).count();
+    Ok(found.u.columns(0, kept).into_owned())
 }

@@ -2,11 +2,14 @@
 
 use crate::matrix::Matrix;
 use crate::model::{Extent, Kernel, MatrixModel, ModelError, Occlusion, converged};
+use crate::num::linalg::LinalgError;
+use crate::num::statistics::sidak_threshold;
 use crate::scene::Scene;
 
 use super::agreement::{Agreement, agree};
 use super::derivatives::SceneDerivatives;
 use super::evidence::{Evidence, Test};
+use super::other_light::{Left, OtherLight};
 use super::score::Derivatives;
 
 /// How the model integrates.
@@ -33,12 +36,26 @@ impl Integration {
 /// What is tested: Φcam as it was traced or measured, pixels × spots.
 #[derive(Clone, Copy, Debug)]
 pub struct Measured<'a> {
-    /// Φcam, W.
+    /// Φcam, W, or any unit where the scale is free.
     pub phi: &'a Matrix,
-    /// Its standard error, W.
+    /// Its standard error, the same unit.
     pub stderr: &'a Matrix,
     /// Not 0 where that error is not to be trusted.
     pub left_out: Option<&'a Matrix>,
+    /// What is fitted to it first.
+    pub beside: OtherLight<'a>,
+}
+
+impl<'a> Measured<'a> {
+    /// Light in W with nothing beside the model's.
+    pub fn new(phi: &'a Matrix, stderr: &'a Matrix, left_out: Option<&'a Matrix>) -> Self {
+        Self {
+            phi,
+            stderr,
+            left_out,
+            beside: OtherLight::default(),
+        }
+    }
 }
 
 /// What it is tested against.
@@ -73,6 +90,14 @@ pub enum ValidationError {
         /// Columns given.
         found_columns: usize,
     },
+    /// Patterns of other light could be all of the model's.
+    #[error(
+        "other light of this form could be all of the model's light, and nothing is left to test (use a polynomial          of a lower degree)"
+    )]
+    TakenUp,
+    /// Patterns of other light cannot be decomposed.
+    #[error(transparent)]
+    Linalg(#[from] LinalgError),
 }
 
 /// A verdict with what it rests on.
@@ -88,8 +113,13 @@ pub struct Validation {
 
 /// Tests Φcam with its standard error against the model of `scene`, its derivatives included.
 ///
+/// What is `beside` it is fitted to the entries whose standard error is not zero, and taken out
+/// ([`OtherLight`]). A free scale that is not above 0 at the significance level of `test` is no
+/// evidence: nothing of the model's light is seen.
+///
 /// # Errors
-/// [`ValidationError`] if nothing is hidden, or the shapes do not fit.
+/// [`ValidationError`] if nothing is hidden, the shapes do not fit, or other light could be all
+/// light.
 pub fn validate(
     scene: &Scene,
     measured: Measured<'_>,
@@ -135,6 +165,7 @@ pub fn validate(
         model: &phi,
         bound: Some(&bound),
         left_out: measured.left_out,
+        eliminated: None,
     };
     let share = visible.as_ref().map(|v| &v.share);
     let off = SceneDerivatives::new(scene, kernel, nodes, &base, share);
@@ -142,7 +173,11 @@ pub fn validate(
         parameters: &off.parameters,
         of: &|index| off.of(index),
     };
-    let (mut agreement, z) = agree(evidence, test, Some(&derivatives));
+    let (mut agreement, z) = if measured.beside.is_some() {
+        beside_other_light(evidence, test, measured.beside, &derivatives)?
+    } else {
+        agree(evidence, test, Some(&derivatives))
+    };
     kernel.name().clone_into(&mut agreement.kernel);
     integration.name().clone_into(&mut agreement.integration);
     agreement.occlusion = visible.map(|v| v.points);
@@ -151,4 +186,51 @@ pub fn validate(
         z,
         model: phi,
     })
+}
+
+/// Agreement of the model with what is left of light when what is beside it was fitted and taken
+/// out.
+fn beside_other_light(
+    evidence: Evidence<'_>,
+    test: Test,
+    beside: OtherLight<'_>,
+    derivatives: &Derivatives<'_>,
+) -> Result<(Agreement, Matrix), ValidationError> {
+    // An entry without a known error has no weight in a fit.
+    let counts = |at: usize| evidence.counts(at) && evidence.stderr[at] > 0.0;
+    let (rows, columns) = evidence.model.shape();
+    let flags = Matrix::from_fn(rows, columns, |p, l| {
+        f64::from(u8::from(!counts(p + l * rows)))
+    });
+    let evidence = Evidence {
+        left_out: Some(&flags),
+        ..evidence
+    };
+    if !flags.iter().any(|flag| *flag == 0.0) {
+        return Ok(agree(evidence, test, None));
+    }
+    let Left {
+        phi,
+        stderr,
+        scale,
+        other,
+        eliminated,
+    } = beside
+        .taken_out(&evidence, test)?
+        .ok_or(ValidationError::TakenUp)?;
+    let unseen = scale.is_some_and(|[_, _, z]| z <= sidak_threshold(test.significance, 1));
+    let nothing = Matrix::from_element(rows, columns, 1.0);
+    let left = Evidence {
+        traced: &phi,
+        stderr: &stderr,
+        left_out: Some(if unseen { &nothing } else { &flags }),
+        eliminated: Some(&eliminated),
+        ..evidence
+    };
+    let (mut agreement, z) = agree(left, test, Some(derivatives));
+    agreement.other_light = other;
+    if let Some([s, stderr, _]) = scale {
+        (agreement.best_scale, agreement.best_scale_stderr) = (s, stderr);
+    }
+    Ok((agreement, z))
 }

@@ -27,6 +27,15 @@ impl Agreement {
         } else {
             String::new()
         };
+        if !self.evidence && self.is_scale_free && self.best_scale_stderr > 0.0 {
+            return format!(
+                "no evidence on the {} model: nothing of its light is seen beside what was fitted, the scale being {} ± {} \
+                 (take more or longer photographs, or a polynomial of a lower degree)",
+                self.kernel,
+                figure(self.best_scale, 3),
+                figure(self.best_scale_stderr, 2)
+            );
+        }
         if !self.evidence {
             return format!(
                 "no evidence on the {} model: no entry that counts is lit, traced or modelled{left_out} \
@@ -64,11 +73,16 @@ impl Agreement {
             )
         };
         let difference = format!(
-            "{} of the model; {} expected from noise, at most {} from its discretisation{}; best scale {} ± {}",
+            "{} of the model; {} expected from noise, at most {} from its discretisation{}; {} {} ± {}",
             percent(self.relative_difference),
             percent(self.relative_noise),
             percent(self.relative_discretisation),
             self.worst_bound.map_or(String::new(), bound),
+            if self.is_scale_free {
+                "of a free scale,"
+            } else {
+                "best scale"
+            },
             figure(self.best_scale, 6),
             figure(self.best_scale_stderr, 2),
         );
@@ -83,7 +97,11 @@ impl Agreement {
             figure(self.chi2_p, 2),
             figure(self.largest_p, 2)
         );
-        let mut told = vec![("difference", difference), ("test", test)];
+        let mut told = vec![("difference", difference)];
+        if self.fitted > 0 {
+            told.push(("fitted first", self.fitted_first()));
+        }
+        told.push(("test", test));
         if !self.agrees {
             let largest = |all: &[Option<f64>]| {
                 let known = all.iter().enumerate().filter_map(|(i, x)| Some((i, (*x)?)));
@@ -100,6 +118,24 @@ impl Agreement {
             }
         }
         told
+    }
+
+    /// What was fitted before the test, and is not seen by it.
+    fn fitted_first(&self) -> String {
+        let of_scale = usize::from(self.is_scale_free);
+        let other = self.fitted - of_scale;
+        let scale = self
+            .is_scale_free
+            .then(|| "the scale: a factor of all light is not seen".to_owned());
+        let light = (other > 0).then(|| {
+            format!(
+                "other light in {other} directions of {} entries, {} of all light: what has its form is not seen",
+                self.entries,
+                percent(self.other_light)
+            )
+        });
+        let both: Vec<String> = scale.into_iter().chain(light).collect();
+        both.join("; ")
     }
 
     /// The most likely cause of a disagreement, and from which size deviations are seen.

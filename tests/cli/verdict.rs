@@ -191,6 +191,76 @@ fn a_matrix_of_ones_own_is_judged() {
     }
 }
 
+/// Photographs in counts, each frame with light of its own from elsewhere, agree with the scene that
+/// they are of, and with no other; a factor of all light is not seen, and told so.
+#[test]
+fn counts_beside_other_light_are_judged() {
+    let read = |name: &str| phicam::matrix::npy::read(&run().path(name)).unwrap();
+    let (phi, stderr) = (read("done/phi.npy"), read("done/phi.stderr.npy"));
+    let mean = phi.mean();
+    let elsewhere = |l: usize| mean * (5.0 + (l as f64).sin());
+    let (rows, spots) = phi.shape();
+    let counts = |p: usize, l: usize| 2e15 * (phi[(p, l)] + elsewhere(l));
+    let write = |name: &str, matrix| {
+        phicam::matrix::npy::write(&run().path(name), &matrix).unwrap();
+    };
+    write(
+        "counts.npy",
+        phicam::matrix::Matrix::from_fn(rows, spots, counts),
+    );
+    write("counts.stderr.npy", stderr * 2e15);
+    let given = "--phi counts.npy --stderr counts.stderr.npy --replicates 32";
+    let judged = |against: &str, code: i32| {
+        let beside = format!("{given} --free-scale --frame-polynomial 0 --against {against}");
+        let ended = run()
+            .phicam(&format!("validate --json {beside}"))
+            .exits(code);
+        let value: serde_json::Value = serde_json::from_str(&ended.stdout).unwrap();
+        assert_eq!(value["agrees"], code == 0, "{}", ended.account());
+        value
+    };
+    let value = judged("small.toml", 0);
+    let (scale, error) = (
+        number(&value, "best_scale"),
+        number(&value, "best_scale_stderr"),
+    );
+    assert!(
+        (scale - 2e15).abs() < 4.0 * error && error < 0.01 * scale,
+        "{value}"
+    );
+    assert_eq!(value["fitted"], 25, "{value}");
+    assert!(number(&value, "other_light") > 0.5, "{value}");
+    // A darker wall is one factor of all light.
+    let darker = number(&judged("grey.toml", 0), "best_scale");
+    assert!(
+        (darker / scale - (0.80f64 / 0.79).powi(2)).abs() < 2e-3,
+        "{darker}"
+    );
+    let moved = run()
+        .text("small.toml")
+        .replace("11.350951966438567", "11.2");
+    run().write("moved.toml", moved);
+    let _ = judged("moved.toml", 1);
+    // What is not fitted is not there.
+    for without in ["", "--free-scale", "--frame-polynomial 0"] {
+        let line = format!("validate {given} {without} --against small.toml");
+        let _ = run().phicam(&line).exits(1);
+    }
+    let line = format!("validate {given} --free-scale --frame-polynomial 0 --against small.toml");
+    let ended = run().phicam(&line).exits(0);
+    for word in [
+        "of a free scale",
+        "a factor of all light",
+        "what has its form",
+    ] {
+        assert!(
+            ended.stdout.contains(word),
+            "no `{word}` in {}",
+            ended.account()
+        );
+    }
+}
+
 /// Zero light from both, and entries that are all flagged, are no evidence.
 /// Entries that are wrong refute a right model, unless they do not count.
 #[test]

@@ -136,6 +136,7 @@ fn try_seeds(estimator: Estimator, seeds: u64) -> Tried {
             model: &truth,
             bound: None,
             left_out: None,
+            eliminated: None,
         };
         let (verdict, z) = agree(evidence, test, None);
         false_alarms += u32::from(!verdict.agrees);

@@ -4,6 +4,7 @@
 mod accuracy;
 mod brdf;
 mod closed_forms;
+mod counts;
 mod edges;
 mod indicator;
 mod known;
@@ -77,6 +78,7 @@ fn compare(traced: &Traced, truth: &Matrix, way: Way) -> Agreement {
         model: truth,
         bound: None,
         left_out: None,
+        eliminated: None,
     };
     agree(evidence, test, None).0
 }
@@ -95,6 +97,7 @@ fn assert_same_under(errors: Errors, a: &Traced, b: &Traced, what: &str) {
         model: &b.flux,
         bound: None,
         left_out: None,
+        eliminated: None,
     };
     // Two sets of 32 replicates: at least 31 degrees of freedom (Welch); rows may be correlated.
     let test = Test {

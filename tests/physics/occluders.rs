@@ -60,11 +60,7 @@ fn the_model_sees_past_what_the_tracer_sees_past() {
         let errors = [&truth.phi, &model.phi()].map(|phi| relative(phi, &traced.flux));
         println!("{name}: {errors:?}");
         assert!(errors.iter().all(|e| *e < most), "{name}: {errors:?}");
-        let measured = Measured {
-            phi: &traced.flux,
-            stderr: &traced.stderr,
-            left_out: Some(&traced.tails),
-        };
+        let measured = Measured::new(&traced.flux, &traced.stderr, Some(&traced.tails));
         let verdict = |occlusion| {
             let against = Against {
                 kernel: Kernel::Physical,

@@ -154,11 +154,7 @@ fn agrees(scene: &Scene, traced: &Traced, way: Way, occlusion: Occlusion) -> boo
         replicates: way.plan().budget.blocks,
         errors: Errors::of(way.0),
     };
-    let measured = Measured {
-        phi: &traced.flux,
-        stderr: &traced.stderr,
-        left_out: None,
-    };
+    let measured = Measured::new(&traced.flux, &traced.stderr, None);
     let (kernel, integration) = (Kernel::Physical, Integration::Quadrature);
     let against = Against {
         kernel,

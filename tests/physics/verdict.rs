@@ -15,19 +15,19 @@ use phicam::transport::Traced;
 use crate::builtin;
 
 /// 5 × 4 pixels and 8 spots of the bench.
-fn small() -> Scene {
+pub(super) fn small() -> Scene {
     let pixels = ("pixels = [16, 16]", "pixels = [5, 4]");
     builtin("bench", &[pixels, ("per_side = 30", "per_side = 2")])
 }
 
-const REPLICATES: u32 = 32;
+pub(super) const REPLICATES: u32 = 32;
 /// Error of an entry relative to it.
 const NOISE: f64 = 0.002;
 
 /// Normal replicates of Φcam, their mean and its standard error. Errors that hang together are
 /// those of factors that move a row, or everything, in a smooth pattern, beside a tenth of their
 /// own.
-fn traced(phi: &Matrix, errors: Errors, seed: u64) -> Traced {
+pub(super) fn traced(phi: &Matrix, errors: Errors, seed: u64) -> Traced {
     let (rows, columns) = phi.shape();
     let mut sums = [0; 2].map(|_| Matrix::zeros(rows, columns));
     for block in 0..REPLICATES {
@@ -72,11 +72,7 @@ fn traced(phi: &Matrix, errors: Errors, seed: u64) -> Traced {
 }
 
 fn tested(scene: &Scene, traced: &Traced, errors: Errors, significance: f64) -> Validation {
-    let measured = Measured {
-        phi: &traced.flux,
-        stderr: &traced.stderr,
-        left_out: None,
-    };
+    let measured = Measured::new(&traced.flux, &traced.stderr, None);
     let against = Against {
         kernel: Kernel::Physical,
         integration: Integration::Quadrature,
@@ -90,24 +86,24 @@ fn tested(scene: &Scene, traced: &Traced, errors: Errors, significance: f64) -> 
     validate(scene, measured, against, test).unwrap()
 }
 
-fn truth(scene: &Scene) -> Matrix {
+pub(super) fn truth(scene: &Scene) -> Matrix {
     converged(scene, Kernel::Physical, Extent::FULL)
         .unwrap()
         .phi
 }
 
-fn right() -> &'static Matrix {
+pub(super) fn right() -> &'static Matrix {
     static RIGHT: OnceLock<Matrix> = OnceLock::new();
     RIGHT.get_or_init(|| truth(&small()))
 }
 
-fn score(found: &Validation) -> &Score {
+pub(super) fn score(found: &Validation) -> &Score {
     found.agreement.score.as_ref().unwrap()
 }
 
 /// The scene with one parameter off, by what the light shows in turn: the name of the parameter, a
 /// scene, and the change.
-fn deviant(name: &str, size: f64) -> Option<Scene> {
+pub(super) fn deviant(name: &str, size: f64) -> Option<Scene> {
     use glam::{DAffine3, DQuat, DVec3};
     let scene = small();
     let h = 0.5f64.sqrt();
@@ -176,7 +172,7 @@ fn deviant(name: &str, size: f64) -> Option<Scene> {
     }
 }
 
-const ALL: [Errors; 3] = [Errors::Independent, Errors::WithinRows, Errors::Everywhere];
+pub(super) const ALL: [Errors; 3] = [Errors::Independent, Errors::WithinRows, Errors::Everywhere];
 const SEEDS: u64 = 20;
 
 /// Every deviation, injected alone at twice the size that the verdict says it detects, is rejected,
@@ -274,11 +270,7 @@ fn flagged_entries_do_not_count() {
     light.flux[(3, 5)] *= 1.5;
     let mut flags = Matrix::zeros(20, 8);
     let verdict = |left_out: Option<&Matrix>, light: &Traced| {
-        let measured = Measured {
-            phi: &light.flux,
-            stderr: &light.stderr,
-            left_out,
-        };
+        let measured = Measured::new(&light.flux, &light.stderr, left_out);
         let against = Against {
             kernel: Kernel::Physical,
             integration: Integration::Quadrature,

@@ -13,6 +13,7 @@ mod serve;
 mod study;
 mod target;
 mod terms;
+mod validate;
 mod value;
 mod view;
 
@@ -23,12 +24,12 @@ use std::path::PathBuf;
 use clap::{Args as Arguments, Parser, Subcommand};
 
 use super::failure::Codes;
-use crate::lab::{Errors, Integration};
+use crate::lab::Integration;
 use crate::model::Kernel;
 use crate::num::stream::Sampling;
 use crate::transport::Estimator;
 use terms::explained;
-use value::{count, definition, elements, shift, spot_range, whole};
+use value::{count, definition, elements, spot_range, whole};
 
 pub(in crate::cli) use calibrate::CalibrateArgs;
 pub(in crate::cli) use expose::{ExposeArgs, StatedBy};
@@ -41,6 +42,7 @@ pub(in crate::cli) use reproduce::ReproduceArgs;
 pub(in crate::cli) use serve::ServeArgs;
 pub(in crate::cli) use study::StudyArgs;
 pub(in crate::cli) use target::TargetArgs;
+pub(in crate::cli) use validate::ValidateArgs;
 pub(in crate::cli) use view::{PreviewArgs, Terminal, ViewArgs};
 
 /// phicam: a physically based renderer for indirect photography, and the laboratory around it.
@@ -322,42 +324,6 @@ pub(in crate::cli) struct TestArgs {
     /// Probability of rejecting a right model
     #[arg(long, default_value_t = 1e-3, allow_negative_numbers = true)]
     pub significance: f64,
-}
-
-#[derive(Debug, Arguments)]
-#[command(after_long_help = explained(&["traced", "modelled", "entry", "z", "χ²/dof", "degrees of freedom", "best scale", "by centres", "Šidák"]))]
-pub(in crate::cli) struct ValidateArgs {
-    /// Folder of a run; with --phi it may be left out, if --against says of which scene
-    #[arg(required_unless_present_all = ["phi", "against"])]
-    pub dir: Option<PathBuf>,
-    #[command(flatten)]
-    pub test: TestArgs,
-    #[command(flatten)]
-    pub occlusion: OcclusionArgs,
-    /// Test this matrix (.npy, pixels × spots, W) instead of the run's
-    #[arg(long, value_name = "FILE", requires = "stderr")]
-    pub phi: Option<PathBuf>,
-    /// Standard errors of --phi, of the same shape
-    #[arg(long, value_name = "FILE", requires = "phi")]
-    pub stderr: Option<PathBuf>,
-    /// Entries that do not count, of the same shape: those that are not 0
-    #[arg(long, value_name = "FILE")]
-    pub left_out: Option<PathBuf>,
-    /// Replicates from which --stderr was estimated, at least 2; known errors unless given
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..), requires = "phi")]
-    pub replicates: Option<u32>,
-    /// Which entries of --phi share their errors
-    #[arg(long, value_parser = choice::errors(), default_value = "independent", requires = "phi")]
-    pub errors: Errors,
-    /// Move the spots by DX,DY (scene's unit) in the model only
-    #[arg(long, value_name = "DX,DY", value_parser = shift, allow_hyphen_values = true)]
-    pub shift_spots: Option<[f64; 2]>,
-    /// Compute the model from this scene (built-in name or path) instead of DIR/scene.toml
-    #[arg(long, value_name = "SCENE")]
-    pub against: Option<String>,
-    /// Print the verdict as JSON
-    #[arg(long)]
-    pub json: bool,
 }
 
 #[derive(Debug, Arguments)]

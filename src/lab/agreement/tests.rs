@@ -53,6 +53,7 @@ fn verdict(
         model: &model,
         bound: bound.as_ref(),
         left_out: None,
+        eliminated: None,
     };
     agree(
         evidence,
@@ -128,6 +129,7 @@ fn entries_without_error_are_compared_to_rounding() {
             model: &model,
             bound: None,
             left_out: None,
+            eliminated: None,
         };
         let (verdict, z) = agree(evidence, test, None);
         assert_eq!(verdict.agrees, agrees, "{value}");
@@ -140,6 +142,7 @@ fn entries_without_error_are_compared_to_rounding() {
             model: &zero,
             bound: None,
             left_out: None,
+            eliminated: None,
         },
         test,
         None,

@@ -106,6 +106,7 @@ impl BrdfTasks {
             model: &(integral.phi * scale),
             bound: Some(&(integral.bound * scale)),
             left_out: None,
+            eliminated: None,
         };
         let how = self.tracing()?;
         let test = Test {

@@ -36,6 +36,7 @@ pub(super) fn verdicts(traced: &Traced, models: &Models, test: Test) -> Verdicts
             model,
             bound: None,
             left_out: None,
+            eliminated: None,
         };
         agree(evidence, test, None).0
     };

@@ -250,6 +250,7 @@ mod tests {
                 model: &want,
                 bound: None,
                 left_out: None,
+                eliminated: None,
             };
             let test = Test {
                 significance: 1e-3,

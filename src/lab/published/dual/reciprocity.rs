@@ -37,6 +37,7 @@ impl Reciprocity {
                 model: b,
                 bound: Some(bound),
                 left_out: None,
+                eliminated: None,
             };
             agree(evidence, test, None).0
         };

@@ -102,11 +102,7 @@ fn one(
             };
             let verdict = validate(
                 &view.photograph(scene, spot)?,
-                Measured {
-                    phi: &column.flux,
-                    stderr: &column.stderr,
-                    left_out: None,
-                },
+                Measured::new(&column.flux, &column.stderr, None),
                 Against {
                     kernel: Kernel::Physical,
                     integration: Integration::Quadrature,

@@ -1,0 +1,53 @@
+//! Arguments of `phicam validate`.
+
+use std::path::PathBuf;
+
+use clap::Args as Arguments;
+
+use super::terms::explained;
+use super::value::shift;
+use super::{OcclusionArgs, TestArgs, choice};
+use crate::lab::Errors;
+
+#[derive(Debug, Arguments)]
+#[command(after_long_help = explained(&["traced", "modelled", "entry", "z", "χ²/dof", "degrees of freedom", "best scale", "by centres", "Šidák"]))]
+pub(in crate::cli) struct ValidateArgs {
+    /// Folder of a run; with --phi it may be left out, if --against says of which scene
+    #[arg(required_unless_present_all = ["phi", "against"])]
+    pub dir: Option<PathBuf>,
+    #[command(flatten)]
+    pub test: TestArgs,
+    #[command(flatten)]
+    pub occlusion: OcclusionArgs,
+    /// Test this matrix (.npy, pixels × spots, W) instead of the run's
+    #[arg(long, value_name = "FILE", requires = "stderr")]
+    pub phi: Option<PathBuf>,
+    /// Standard errors of --phi, of the same shape
+    #[arg(long, value_name = "FILE", requires = "phi")]
+    pub stderr: Option<PathBuf>,
+    /// Entries that do not count, of the same shape: those that are not 0
+    #[arg(long, value_name = "FILE")]
+    pub left_out: Option<PathBuf>,
+    /// Replicates from which --stderr was estimated, at least 2; known errors unless given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..), requires = "phi")]
+    pub replicates: Option<u32>,
+    /// Which entries of --phi share their errors
+    #[arg(long, value_parser = choice::errors(), default_value = "independent", requires = "phi")]
+    pub errors: Errors,
+    /// The scale of all light is unknown, as of photographs in counts: it is fitted first, and a
+    /// factor of all light is not seen
+    #[arg(long)]
+    pub free_scale: bool,
+    /// Other light in each frame: a polynomial of this degree, 0 (a constant) to 8, is fitted first
+    #[arg(long, value_name = "DEGREE", value_parser = clap::value_parser!(u8).range(0..=8))]
+    pub frame_polynomial: Option<u8>,
+    /// Move the spots by DX,DY (scene's unit) in the model only
+    #[arg(long, value_name = "DX,DY", value_parser = shift, allow_hyphen_values = true)]
+    pub shift_spots: Option<[f64; 2]>,
+    /// Compute the model from this scene (built-in name or path) instead of DIR/scene.toml
+    #[arg(long, value_name = "SCENE")]
+    pub against: Option<String>,
+    /// Print the verdict as JSON
+    #[arg(long)]
+    pub json: bool,
+}
