@@ -122,6 +122,11 @@ impl Chosen {
             ]),
             None => measures.extend(found.alike.map(|pixels| ("pixels alike", pixels))),
         }
+        measures.extend(
+            found
+                .log_likelier
+                .map(|x| ("ln likelier than noise of pixels alone", x)),
+        );
         // The rank of the methods that only drop what is lost in rounding is no option of theirs.
         let option = match found.parameter {
             Parameter::Rank(_) => found.method == Method::Tsvd,

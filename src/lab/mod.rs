@@ -211,6 +211,7 @@ mod trust;
 mod unexplained;
 mod validation;
 mod verdict;
+mod which_errors;
 
 pub use agreement::{Agreement, Entry, EntryBound, agree};
 pub use aim::{SAMPLES, aimed};

@@ -88,6 +88,9 @@ pub struct Recovered {
     /// The errors that it takes what is left over for, where
     /// [`Options::error_field`](super::Options::error_field) asks for that.
     pub field: Option<ErrorField>,
+    /// ln of how much likelier the photographs are with these errors than with noise of single
+    /// pixels alone, each as large as is likeliest and with the prior that is the likeliest for it.
+    pub log_likelier: Option<f64>,
     /// What was left undone, where it was stopped and this is the best till then.
     pub unfinished: Option<&'static str>,
 }
@@ -252,6 +255,7 @@ impl Recovered {
             no_bands: None,
             alike: None,
             field: None,
+            log_likelier: None,
             unfinished: None,
         }
     }

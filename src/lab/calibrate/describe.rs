@@ -5,6 +5,7 @@ mod tables;
 
 use super::{Calibrated, Calibration};
 use crate::lab::finding::{Column, Describe, Finding, Place, Table, Tone, listed};
+use crate::lab::which_errors::which_errors;
 use crate::num::digits::{figure, perhaps};
 use crate::recovery::ErrorField;
 pub(super) use directions::untold;
@@ -13,9 +14,6 @@ pub(super) use directions::untold;
 const SIGNIFICANCE: f64 = super::LEVEL;
 /// An estimate farther from the scene than this, in what was known beforehand, is told.
 const FAR: f64 = 3.0;
-/// ln of a ratio of likelihoods above which the likelier errors are taken; three numbers more fit
-/// noise by e^1.5 better.
-const DECISIVE: f64 = 6.0;
 /// What a finer rule moves is told from this part of the error on.
 const NOTABLE: f64 = 0.5;
 /// Gains that are listed one by one.
@@ -96,24 +94,11 @@ impl Calibration {
 
     /// What is left over, taken for errors that neighbours share.
     fn shared(&self, field: &ErrorField) -> String {
-        let likelier = self.log_likelier.unwrap_or(0.0);
-        let which = if likelier > DECISIVE {
-            format!(
-                "With these errors the photographs are e^{} times likelier than with noise of \
-                 single pixels alone.",
-                figure(likelier, 3)
-            )
-        } else {
-            format!(
-                "Noise of single pixels alone explains the photographs as well (these errors are \
-                 e^{} times likelier): leave out --error-field.",
-                figure(likelier, 2)
-            )
-        };
+        let which = which_errors(self.log_likelier.unwrap_or(0.0));
         format!(
             "No noise is stated. What is left over, {} of what other light leaves, is taken for \
              errors of {} of each pixel alone and {} that neighbours share over {} pixels (the \
-             photographs' unit). {which} The errors of the geometry allow for that field, and for \
+             photographs' unit); {which}. The errors of the geometry allow for that field, and for \
              nothing that the model lacks in another way.",
             figure(self.left, 3),
             figure(field.pixel, 2),

@@ -1,6 +1,7 @@
 //! What a method chose, in words.
 
 use crate::lab::gains;
+use crate::lab::which_errors::which_errors;
 use crate::num::digits::significant;
 use crate::recovery::{Choice, Estimated, Parameter, Patterns, Recovered, Sum};
 
@@ -22,10 +23,14 @@ pub(in crate::lab) fn words(found: &Recovered, explains: bool) -> String {
     let alike = match (found.field, found.alike) {
         (Some(field), _) => format!(
             "; what is left over is taken for errors of {} of each pixel alone and {} that \
-             neighbours share over {:.0} pixels (the photographs' unit)",
+             neighbours share over {:.0} pixels (the photographs' unit){}",
             significant(field.pixel, 2),
             significant(field.shared, 2),
-            field.range
+            field.range,
+            found.log_likelier.map_or(String::new(), |likelier| format!(
+                "; {}",
+                which_errors(likelier)
+            ))
         ),
         (None, Some(pixels)) => {
             format!("; what is left over is taken for noise that {pixels:.0} pixels share")

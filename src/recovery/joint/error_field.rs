@@ -9,6 +9,7 @@
 //! > Σ_k n ln v_k + q_k/v_k,   q_k = E Σ_l r²\[k,l\],
 //!
 //! n frames, r what the picture and the light beside it leave over; the expectation is over both.
+//! Whether a field is likelier than noise of single pixels alone the likelihoods of both say.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -23,6 +24,19 @@ use crate::recovery::{ErrorField, Estimated, Nuisance, Problem, Recovered, Recov
 const JITTER: f64 = 1e-10;
 /// Terms of elements up to which it is looked for: some matrices of terms × terms each step.
 const MOST_TERMS: usize = 4096;
+
+/// A change of σ² that makes no difference where errors are of single pixels, and how often it is
+/// looked for.
+const SETTLED: f64 = 1e-3;
+const MOST_STEPS: usize = 100;
+
+/// What is left over for errors of given v, in expectation.
+struct Expected {
+    /// q_k/n.
+    squares: Vec<f64>,
+    /// ln p(Φ | v, K), other light eliminated; but for what is the same for all v.
+    log_likelihood: f64,
+}
 
 /// The photographs and the camera side along the cosines.
 pub(super) struct Along {
@@ -62,40 +76,79 @@ impl Along {
     }
 
     /// The likeliest field for pictures of covariance K, `unit`² and `unit`/2 their mean, from
-    /// `start`; none where the errors are no more than rounding, or rounding ends the search.
+    /// `start`, and the ln of its likelihood; none where the errors are no more than rounding, or
+    /// rounding ends the search.
     pub(super) fn likeliest(
         &self,
         problem: &Problem<'_>,
         k: &DMatrix<f64>,
         unit: f64,
         start: Option<ErrorField>,
-    ) -> Result<Option<ErrorField>, RecoveryError> {
-        let mut k = k * (unit * unit);
-        let jitter = JITTER * k.trace() / k.nrows() as f64;
-        (0..k.nrows()).for_each(|j| k[(j, j)] += jitter);
-        let Some(root) = Cholesky::new(&k) else {
+    ) -> Result<Option<(ErrorField, f64)>, RecoveryError> {
+        let Some(root) = root(k, unit) else {
             return Ok(None);
         };
+        let of = |v: &[f64]| self.expected(problem, root.lower(), MEAN * unit, v);
         let start = start.unwrap_or(ErrorField {
             pixel: 0.01 * self.square.sqrt(),
             shared: 0.0,
             range: 1.0,
         });
-        ErrorField::maximised(start, self.frame, self.square, |_, v| {
+        let found = ErrorField::maximised(start, self.frame, self.square, |_, v| {
             problem.control.check()?;
-            Ok(self.squares(problem, root.lower(), MEAN * unit, v))
-        })
+            Ok::<_, RecoveryError>(of(v).map(|found| found.squares))
+        })?;
+        Ok(found.and_then(|field| {
+            let own = of(&field.variances(self.frame))?;
+            Some((field, own.log_likelihood))
+        }))
     }
 
-    /// q_k/n. With G = Σ_l A_lᵀ diag(v)⁻¹ A_l of the light of each element, what is beside it
-    /// eliminated, and K = L Lᵀ the picture has the covariance L (1 + Lᵀ G L)⁻¹ Lᵀ.
-    fn squares(
+    /// ln of the likelihood of noise of single pixels alone, as large as is likeliest from `start`
+    /// on; none where rounding ends the search.
+    pub(super) fn alone(
+        &self,
+        problem: &Problem<'_>,
+        k: &DMatrix<f64>,
+        unit: f64,
+        start: f64,
+    ) -> Result<Option<f64>, RecoveryError> {
+        let Some(root) = root(k, unit) else {
+            return Ok(None);
+        };
+        let mut variance = start * start;
+        let mut likelihood = None;
+        for _ in 0..MOST_STEPS {
+            problem.control.check()?;
+            let v = vec![variance; self.phi.nrows()];
+            let Some(found) = self.expected(problem, root.lower(), MEAN * unit, &v) else {
+                return Ok(None);
+            };
+            likelihood = Some(found.log_likelihood);
+            let next = found.squares.iter().sum::<f64>() / v.len() as f64;
+            let moved = (next / variance - 1.0).abs();
+            variance = next;
+            if moved < SETTLED {
+                break;
+            }
+        }
+        Ok(likelihood)
+    }
+
+    /// With G = Σ_l A_lᵀ diag(v)⁻¹ A_l of the light of each element, what is beside it eliminated,
+    /// K = L Lᵀ, m the pictures' mean and t what of Φ − A m is towards each element, the picture
+    /// has the covariance P = L (1 + Lᵀ G L)⁻¹ Lᵀ, and
+    ///
+    /// > −2 ln p = n (ln det V + ln det UᵀV⁻¹U) + ln det(1 + LᵀGL) + ‖V^(−½)(Φ − A m)‖² − tᵀPt,
+    ///
+    /// U an orthonormal basis of the patterns (restricted likelihood: Harville 1977).
+    fn expected(
         &self,
         problem: &Problem<'_>,
         l: &DMatrix<f64>,
         mean: f64,
         v: &[f64],
-    ) -> Option<Vec<f64>> {
+    ) -> Option<Expected> {
         let (_, d, element) = problem.sides();
         let spots = self.phi.ncols();
         let roots: Vec<f64> = v.iter().map(|x| 1.0 / x.sqrt()).collect();
@@ -134,10 +187,19 @@ impl Along {
         let h = of_elements(&towards).column_sum();
         let mut inner = tr_product(l, &product(&g, l));
         (0..n).for_each(|j| inner[(j, j)] += 1.0);
-        let half = Cholesky::new(&inner)?.forward(l.transpose());
+        let factor = Cholesky::new(&inner)?;
+        let half = factor.forward(l.transpose());
         let covariance = tr_product(&half, &half);
         let grey = DVector::from_element(n, mean);
-        let x = &grey + &covariance * (h - &g * &grey);
+        let towards = &h - &g * &grey;
+        let told = &covariance * &towards;
+        // ‖Φ − A m‖² = ‖Φ‖² − 2 hᵀm + mᵀGm.
+        let of_grey = phi.norm_squared() - grey.dot(&(&towards + &h));
+        let chi2 = of_grey - towards.dot(&told);
+        let log_errors = frames as f64
+            * (v.iter().map(|v| libm::log(*v)).sum::<f64>() + self.log_patterns(v)?);
+        let log_likelihood = -0.5 * (log_errors + factor.log_det() + chi2);
+        let x = &grey + told;
         let of_terms: Vec<f64> = element.iter().map(|j| x[*j]).collect();
         let left = phi - product(&c, &rows_times(d, &of_terms));
         let mut spread = lasers;
@@ -149,7 +211,22 @@ impl Along {
         let spread = product(&c, &spread).component_mul(&c).column_sum();
         let of = |k: usize| left.row(k).norm_squared() + spread[k] + frames as f64 * leverage[k];
         let squares: Vec<f64> = (0..v.len()).map(|k| v[k] * of(k) / frames as f64).collect();
-        squares.iter().all(|x| x.is_finite()).then_some(squares)
+        let is_finite = log_likelihood.is_finite() && squares.iter().all(|x| x.is_finite());
+        is_finite.then_some(Expected {
+            squares,
+            log_likelihood,
+        })
+    }
+
+    /// ln det UᵀV⁻¹U.
+    fn log_patterns(&self, v: &[f64]) -> Option<f64> {
+        let Some(patterns) = &self.patterns else {
+            return Some(0.0);
+        };
+        let basis = DMatrix::from_columns(&directions(patterns, |_| 1.0));
+        let over: Vec<f64> = v.iter().map(|x| 1.0 / x).collect();
+        let gram = tr_product(&basis, &rows_times(basis.clone(), &over));
+        Some(Cholesky::new(&gram)?.log_det())
     }
 
     /// The problem along the cosines, of known errors `stderr`: √v in every frame.
@@ -199,6 +276,14 @@ impl Along {
             ..own
         });
     }
+}
+
+/// L of L Lᵀ = K in the photographs' unit; none where rounding makes it indefinite.
+fn root(k: &DMatrix<f64>, unit: f64) -> Option<Cholesky> {
+    let mut k = k * (unit * unit);
+    let jitter = JITTER * k.trace() / k.nrows() as f64;
+    (0..k.nrows()).for_each(|j| k[(j, j)] += jitter);
+    Cholesky::new(&k)
 }
 
 #[cfg(test)]

@@ -89,13 +89,13 @@ fn with_field(
         ..*options
     };
     let mut likeliest = Likeliest::usual(&prior);
-    let (mut start, mut last) = (None, None);
+    let (mut start, mut last, mut likelihood) = (None, None, f64::NAN);
     for _ in 0..MOST_AGAIN {
         let k = likeliest.covariance(&prior);
-        let Some(field) = along.likeliest(problem, &k, unit, start)? else {
+        let Some((field, own)) = along.likeliest(problem, &k, unit, start)? else {
             return Ok(None);
         };
-        start = Some(field);
+        (start, likelihood) = (Some(field), own);
         let stderr = along.stderr(&field);
         let (mut found, next) = with_alike(&along.problem(problem, &stderr), &by_noise, 1.0)?;
         along.back(problem, &mut found);
@@ -106,7 +106,14 @@ fn with_field(
         }
         likeliest = next;
     }
-    Ok(last)
+    // Noise of single pixels alone has a likeliest prior of its own.
+    let (plain, likeliest) = with_alike(problem, options, 1.0)?;
+    let size = plain.residual / (problem.entries() as f64).sqrt();
+    let alone = along.alone(problem, &likeliest.covariance(&prior), unit, size)?;
+    Ok(last.map(|found| Recovered {
+        log_likelier: alone.map(|alone| likelihood - alone),
+        ..found
+    }))
 }
 
 #[cfg(test)]

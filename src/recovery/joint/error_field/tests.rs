@@ -1,4 +1,5 @@
 use super::*;
+use crate::num::search::largest;
 use crate::recovery::bench::{Bench, normal_stream};
 use crate::recovery::{Method, Options, recover};
 
@@ -32,7 +33,7 @@ fn the_field_is_the_likeliest() {
     let problem = problem.with_nuisance(nuisance).unwrap();
     let k = DMatrix::from_fn(9, 9, |i, j| 0.25 + if i == j { 0.04 } else { 0.0 });
     let along = Along::new(&problem, frame).unwrap();
-    let found = along.likeliest(&problem, &k, 1.0, None).unwrap().unwrap();
+    let (found, own) = along.likeliest(&problem, &k, 1.0, None).unwrap().unwrap();
     let light = DMatrix::from_fn(180, 9, |at, j| bench.c[(at % 36, j)] * d[(j, at / 36)]);
     let z = DMatrix::from_fn(180, 1, |at, _| phi[(at % 36, at / 36)])
         - &light * DMatrix::from_element(9, 1, 0.5);
@@ -70,6 +71,21 @@ fn the_field_is_the_likeliest() {
         let gained = likelihood(&other) - best;
         assert!(gained < 0.02, "{found:?} {other:?}: {gained}");
     }
+    // Noise of single pixels alone: as much less likely, whatever size it is found to have.
+    let white = |pixel: f64| {
+        likelihood(&ErrorField {
+            pixel,
+            shared: 0.0,
+            range: 1.0,
+        })
+    };
+    let (_, alone) = largest(0.1 * found.shared, 10.0 * found.shared, white);
+    let likelier = own - along.alone(&problem, &k, 1.0, size).unwrap().unwrap();
+    assert!(likelier > 10.0, "{likelier}");
+    assert!(
+        (likelier - (best - alone)).abs() < 1e-3,
+        "{likelier} {best} {alone}"
+    );
 }
 
 /// Along the cosines, with noise alone, everything is what it is without them: picture, errors and

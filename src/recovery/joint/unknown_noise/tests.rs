@@ -20,13 +20,15 @@ fn sums_of_four(mut normal: impl FnMut() -> f64) -> DMatrix<f64> {
 }
 
 /// z² = ((ρ̂ − ρ)/σ)² of 4 elements, mean of 40 photographs of 16 × 16 pixels with 8 spots: pixels
-/// counted each for itself, and as what is left over tells.
-fn squares(mut errors: impl FnMut() -> DMatrix<f64>) -> [f64; 2] {
+/// counted each for itself, and as what is left over tells; and least and most of ln of how much
+/// likelier that is.
+fn squares(mut errors: impl FnMut() -> DMatrix<f64>) -> ([f64; 2], [f64; 2]) {
     let bench = Bench::new(6.0, 2, 16);
     let truth = DVector::from_row_slice(&[0.45, 0.5, 0.55, 0.5]);
     let d = bench.d.columns(0, 8).into_owned();
     let exact = bench.phi(&truth).columns(0, 8).into_owned();
     let mut squares = [Vec::new(), Vec::new()];
+    let mut likelier = [f64::INFINITY, f64::NEG_INFINITY];
     for _ in 0..40 {
         let phi = &exact + errors() * (1e-4 * exact.mean());
         let problem = Problem::new(&phi, &bench.c, &d, None).unwrap();
@@ -42,9 +44,14 @@ fn squares(mut errors: impl FnMut() -> DMatrix<f64>) -> [f64; 2] {
             squares.push(z.norm_squared() / 4.0);
             assert_eq!(found.field.is_some(), frame.is_some());
             assert_eq!(found.log_evidence.is_none(), frame.is_some());
+            let [least, most] = likelier;
+            likelier = found
+                .log_likelier
+                .map_or(likelier, |own| [least.min(own), most.max(own)]);
         }
     }
-    squares.map(|values| values.iter().sum::<f64>() / 40.0)
+    let mean = squares.map(|values| values.iter().sum::<f64>() / 40.0);
+    (mean, likelier)
 }
 
 /// Errors of the form that is supposed, neighbours sharing most of them: z² is 1 in the mean where
@@ -58,12 +65,13 @@ fn errors_that_neighbours_share_are_not_counted_as_many() {
     };
     let v = field.variances([16, 16]);
     let mut normal = normal_stream(12);
-    let [alone, told] = squares(|| {
+    let ([alone, told], [least, _]) = squares(|| {
         let along = DMatrix::from_fn(256, 8, |k, _| v[k].sqrt() * normal());
         from_cosines(&along, [16, 16])
     });
     assert!(alone > 3.0, "{alone}");
     assert!((told - 1.0).abs() < CHANCE, "{told}");
+    assert!(least > 100.0, "{least}");
 }
 
 /// Independent noise is told for what it is, and of sums of 2 × 2 independent pixels, which have no
@@ -71,11 +79,13 @@ fn errors_that_neighbours_share_are_not_counted_as_many() {
 #[test]
 fn errors_of_other_forms_are_not_taken_for_less() {
     let mut normal = normal_stream(13);
-    let [alone, told] = squares(|| DMatrix::from_fn(256, 8, |_, _| normal()));
+    let ([alone, told], [_, most]) = squares(|| DMatrix::from_fn(256, 8, |_, _| normal()));
+    // Two numbers more that fit noise: twice the gain is χ² of two, and of 40 one in 1e4 is above 6.
+    assert!(most < 6.0, "{most}");
     for mean in [alone, told] {
         assert!((mean - 1.0).abs() < CHANCE, "{alone} {told}");
     }
-    let [alone, told] = squares(|| sums_of_four(&mut normal));
+    let ([alone, told], _) = squares(|| sums_of_four(&mut normal));
     assert!(alone > 2.0, "{alone}");
     assert!(told < 1.0 + CHANCE, "{told}");
 }
