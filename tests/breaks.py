@@ -135,7 +135,7 @@ BREAKS = [
     ),
     Break(
         "A verdict names the parameter that is off, with its size",
-        "src/lab/score.rs",
+        "src/lab/residual.rs",
         "let value = total(0) / g;",
         "let value = 0.5 * total(0) / g;",
         "physics",

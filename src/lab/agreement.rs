@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::eliminated::Eliminated;
 use super::evidence::{Errors, Evidence, Test};
-use super::score::{Derivatives, Residual, Score, Weights, score};
+use super::residual::{Residual, Weights};
+use super::score::{Derivatives, Score, score};
 use crate::matrix::Matrix;
 use crate::num::statistics::{
     chi_square_sf, normal_two_sided, sidak_p, sidak_threshold, student_to_normal,

@@ -192,6 +192,7 @@ pub mod published;
 mod recoveries;
 mod registered;
 mod registry;
+mod residual;
 mod results;
 #[cfg(test)]
 #[path = "sample_tests.rs"]

@@ -6,7 +6,7 @@
 
 use super::eliminated::Eliminated;
 use super::evidence::{Evidence, Test};
-use super::score::{Residual, Weights};
+use super::residual::{Residual, Weights};
 use crate::matrix::Matrix;
 use crate::num::linalg::LinalgError;
 

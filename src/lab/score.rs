@@ -1,25 +1,7 @@
 //! Which deviation of the scene explains the difference? Rao's score test on the model's
 //! derivatives, a parameter at a time.
 //!
-//! With r = traced − model, d = ∂model/∂θ and fixed weights w the fitted deviation and its variance
-//! are
-//!
-//! > θ̂ = Σ w d r / G, G = Σ w d², Var θ̂ = Var(Σ w d r) / G².
-//!
-//! The weights are 1/σ² of a variance smoothed over pixels and spots (its logarithm a sum of a term
-//! by pixel and one by spot), so that an entry that is noisy by chance does not set its own weight;
-//! the variance of Σ w d r is then estimated from what each [`Errors`] leaves independent:
-//!
-//! * `Independent`: Σ (w d s)², s the stated standard errors;
-//! * `WithinRows`: from the scatter of the pixels' sums around their fit, each divided by what it
-//!   does not pull the fit by itself (the jackknife's sandwich); with fewer than 16 pixels of
-//!   weight Σ_p (Σ_l |w d| s)², which no correlation exceeds; of a single spot as if independent,
-//!   for it has one entry in each row;
-//! * `Everywhere`: (Σ |w d| s)², which no correlation exceeds. This is conservative by as much as
-//!   the errors are not all one.
-//!
-//! θ̂ over its error is Student-distributed with the degrees of freedom of that variance
-//! (Satterthwaite). What the model itself may be off by, Σ |w d| b, is taken off |Σ w d r| first.
+//! Each is fitted as a [`Residual`] says, and its θ̂ over its error tested.
 //!
 //! Where other light or the scale was fitted first ([`Eliminated`](super::eliminated::Eliminated)),
 //! d is what that leaves of ∂model/∂θ.
@@ -29,11 +11,10 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::evidence::{Errors, Evidence, Test};
+use super::evidence::{Evidence, Test};
+use super::residual::{Residual, Weights};
 use crate::matrix::Matrix;
-use crate::num::statistics::{
-    normal_two_sided, sidak_p, sidak_threshold, student_threshold, student_to_normal,
-};
+use crate::num::statistics::{normal_two_sided, sidak_p, sidak_threshold};
 
 /// A parameter of the scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,10 +94,6 @@ impl Score {
 const FAMILIES: f64 = 0.5;
 /// Level at which a cause is told from the most likely one.
 const TOLD_APART: f64 = 0.01;
-/// 95 % of a normal distribution lie below.
-const POWER: f64 = 1.644_853_626_951_472_2;
-/// Fewer independent rows than this do not tell their own scatter.
-const ENOUGH_ROWS: f64 = 16.0;
 
 /// χ²/dof of the entries after a deviation: of the model `model + θ·d` in the columns `columns`.
 pub(super) type Remaining<'a> = &'a (dyn Fn(f64, &Matrix, &Range<usize>) -> f64 + Sync);
@@ -235,201 +212,5 @@ fn of_spot(d: &Matrix, spot: Option<usize>) -> Matrix {
             own.set_column(l, &d.column(l));
             own
         }
-    }
-}
-
-/// Which weights a fit has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Weights {
-    /// Those of the least variance, as far as that is smooth.
-    Smoothed,
-    /// All alike.
-    Alike,
-}
-
-/// A difference, ready to be fitted.
-pub(super) struct Residual<'a> {
-    evidence: Evidence<'a>,
-    errors: Errors,
-    freedom: f64,
-    weights: Matrix,
-    /// Estimated variance of each entry, W².
-    variance: Matrix,
-}
-
-impl<'a> Residual<'a> {
-    /// Weighs every entry that counts. One that was never lit, "0 ± 0", has no known error and
-    /// no weight.
-    pub(super) fn new(evidence: Evidence<'a>, test: Test, how: Weights) -> Self {
-        let (rows, columns) = evidence.model.shape();
-        let freedom = test.freedom();
-        let known = |i: usize| {
-            evidence.counts(i) && (evidence.stderr[i] > 0.0 || evidence.traced[i] != 0.0)
-        };
-        let square = |i: usize| evidence.stderr[i].max(evidence.rounding(i)).powi(2);
-        let mut variance = Matrix::from_fn(rows, columns, |p, l| square(p + l * rows));
-        let weights = match how {
-            Weights::Alike => Matrix::from_fn(rows, columns, |p, l| {
-                f64::from(u8::from(evidence.counts(p + l * rows)))
-            }),
-            Weights::Smoothed => {
-                let smooth = smoothed(&variance, &known);
-                Matrix::from_fn(rows, columns, |p, l| {
-                    let (at, own) = (p + l * rows, variance[(p, l)]);
-                    if !known(at) || own == 0.0 {
-                        return 0.0;
-                    }
-                    if own < 2.0 * smooth[at] {
-                        return 1.0 / smooth[at];
-                    }
-                    // Weighed by its own variance: E[σ²/s⁴] is ν/(ν − 4) times E[1/s²].
-                    variance[(p, l)] *= freedom / (freedom - 4.0).max(1.0);
-                    2.0 / own
-                })
-            }
-        };
-        Self {
-            evidence,
-            errors: test.errors,
-            freedom,
-            weights,
-            variance,
-        }
-    }
-
-    /// √w, pixels × spots; 0 of an entry without weight.
-    pub(super) fn roots(&self) -> Matrix {
-        self.weights.map(f64::sqrt)
-    }
-
-    fn difference(&self, at: usize) -> f64 {
-        self.evidence.traced[at] - self.evidence.model[at]
-    }
-
-    /// Fits θ·d in the columns `columns`; `None` where that changes nothing.
-    pub(super) fn fit(&self, d: &Matrix, columns: &Range<usize>) -> Option<Fit> {
-        let rows = d.nrows();
-        // Of each row: Σ w d r, Σ w d², Σ (w d s)², Σ (w d s)⁴, Σ |w d| s.
-        let mut sums = vec![[0.0; 5]; rows];
-        let mut bias = 0.0;
-        for l in columns.clone() {
-            for (p, sum) in sums.iter_mut().enumerate() {
-                let at = p + l * rows;
-                let wd = self.weights[at] * d[at];
-                let square = wd * wd * self.variance[at];
-                let terms = [
-                    wd * self.difference(at),
-                    wd * d[at],
-                    square,
-                    square * square,
-                ];
-                sum.iter_mut().zip(terms).for_each(|(s, x)| *s += x);
-                sum[4] += square.sqrt();
-                bias += wd.abs() * self.evidence.bound(at);
-            }
-        }
-        let total = |k: usize| sums.iter().map(|s| s[k]).sum::<f64>();
-        let g = total(1);
-        if !(g > 0.0 && g.is_finite()) {
-            return None;
-        }
-        let value = total(0) / g;
-        // Rows that carry the fit: 1/Σ h², h the share of each.
-        let effective = g * g / sums.iter().map(|s| s[1] * s[1]).sum::<f64>();
-        let (variance, freedom) = match self.errors {
-            Errors::WithinRows if columns.len() > 1 && effective >= ENOUGH_ROWS => {
-                let left = |s: &[f64; 5]| (s[0] - value * s[1]) / (1.0 - s[1] / g);
-                let scatter = sums.iter().map(|s| left(s).powi(2)).sum::<f64>();
-                (scatter, effective - 1.0)
-            }
-            Errors::WithinRows if columns.len() > 1 => {
-                (sums.iter().map(|s| s[4] * s[4]).sum(), self.freedom)
-            }
-            Errors::Everywhere => (total(4).powi(2), self.freedom),
-            Errors::Independent | Errors::WithinRows => {
-                let freedom = self.freedom * total(2).powi(2) / total(3);
-                (
-                    total(2),
-                    if freedom.is_finite() {
-                        freedom
-                    } else {
-                        self.freedom
-                    },
-                )
-            }
-        };
-        Some(Fit {
-            value,
-            stderr: variance.sqrt() / g,
-            bias: bias / g,
-            freedom,
-        })
-    }
-
-    /// z of the deviation `d` after `other` was fitted: of its part that `other` does not have.
-    fn missed(&self, d: &Matrix, other: &Matrix) -> f64 {
-        let dot = |a: &Matrix, b: &Matrix| {
-            let terms = a.iter().zip(b).zip(&self.weights);
-            terms.map(|((a, b), w)| w * a * b).sum::<f64>()
-        };
-        let own = d - other * (dot(d, other) / dot(other, other));
-        // Below a millionth of it is rounding, and what derivatives are off by.
-        if dot(&own, &own) < 1e-6 * dot(d, d) {
-            return 0.0;
-        }
-        self.fit(&own, &(0..d.ncols())).map_or(0.0, |f| f.z())
-    }
-}
-
-/// exp of a sum of a term by row and one by column, fitted to the logarithm of the entries that are
-/// known and positive.
-fn smoothed(variance: &Matrix, known: &dyn Fn(usize) -> bool) -> Matrix {
-    let (rows, columns) = variance.shape();
-    let (mut by_row, mut by_column) = (vec![[0.0; 2]; rows], vec![[0.0; 2]; columns]);
-    let mut all = [0.0; 2];
-    for (at, v) in variance
-        .iter()
-        .enumerate()
-        .filter(|(i, v)| known(*i) && **v > 0.0)
-    {
-        for sum in [&mut by_row[at % rows], &mut by_column[at / rows], &mut all] {
-            sum[0] += libm::log(*v);
-            sum[1] += 1.0;
-        }
-    }
-    let whole = all[0] / all[1].max(1.0);
-    let mean = |[sum, n]: [f64; 2]| if n > 0.0 { sum / n } else { whole };
-    Matrix::from_fn(rows, columns, |p, l| {
-        libm::exp(mean(by_row[p]) + mean(by_column[l]) - whole)
-    })
-}
-
-/// A deviation with its error.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Fit {
-    pub value: f64,
-    pub stderr: f64,
-    bias: f64,
-    freedom: f64,
-}
-
-impl Fit {
-    /// Standard normal deviate of the value, the bias taken off.
-    pub(super) fn z(&self) -> f64 {
-        let beyond = (self.value.abs() - self.bias).max(0.0);
-        if beyond == 0.0 {
-            return 0.0;
-        }
-        student_to_normal(beyond / self.stderr, self.freedom).copysign(self.value)
-    }
-
-    /// The deviation that makes |z| > `limit` 95 times in 100, whatever the model's bound hides:
-    /// the noncentrality δ with P(t_ν(δ) > c) = 0.95 by c(1 − 1/4ν) − δ = −1.645·√(1 + c²/2ν)
-    /// (Johnson and Welch 1940).
-    fn detectable(&self, limit: f64) -> f64 {
-        let c = student_threshold(limit, self.freedom);
-        let nu = self.freedom;
-        let delta = c * (1.0 - 0.25 / nu) + POWER * (1.0 + 0.5 * c * c / nu).sqrt();
-        delta * self.stderr + 2.0 * self.bias
     }
 }

@@ -1,19 +1,16 @@
 //! A verdict in words and tables.
 
+mod causes;
+
 use super::agreement::{Agreement, Entry, EntryBound};
-use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone, listed};
-use super::score::{Deviation, Score};
+use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone};
+use super::score::Deviation;
 use super::summary::facts;
 use crate::num::digits::{figure, significant};
 
 fn percent(x: f64) -> String {
     format!("{}\u{a0}%", figure(100.0 * x, 3))
 }
-
-/// A parameter that leaves more than this part of the excess of χ² over its mean is no cause of it.
-const UNEXPLAINED: f64 = 0.1;
-/// Causes that are named beside the most likely one.
-const NAMED: usize = 3;
 
 impl Agreement {
     /// The verdict with its numbers; `DISAGREE` in capitals where a test fails.
@@ -227,141 +224,6 @@ impl Describe for Agreement {
                 .chain(self.parameters())
                 .collect(),
             ..Finding::default()
-        }
-    }
-}
-
-impl Score {
-    /// The most likely cause of a χ²/dof, and what explains the difference as well.
-    pub(super) fn cause(&self, chi2_per_dof: f64) -> String {
-        let Some((first, rest)) = self.likely.split_first() else {
-            return "no single parameter of the scene explains it".to_owned();
-        };
-        let left = first.chi2_per_dof - 1.0;
-        if left > 1.0 && left > UNEXPLAINED * (chi2_per_dof - 1.0) {
-            return format!(
-                "no single parameter of the scene explains it: the best, {}, leaves χ²/dof {}. Several at \
-                 once may, or another order, orientation or unit of the photographs (`phicam locate` \
-                 tests the order)",
-                first.label(),
-                significant(first.chi2_per_dof, 4)
-            );
-        }
-        let same: Vec<String> = first
-            .same
-            .iter()
-            .map(|(name, factor)| {
-                format!("{name} {}", signed(first.value * factor, 3, &first.unit))
-            })
-            .collect();
-        let same = if same.is_empty() {
-            String::new()
-        } else {
-            format!(" (or {})", same.join(", "))
-        };
-        let as_good = if rest.is_empty() {
-            String::new()
-        } else {
-            let named: Vec<String> = rest.iter().take(NAMED).map(Deviation::fitted).collect();
-            let more = match rest.len().saturating_sub(NAMED) {
-                0 => String::new(),
-                n => format!(" and {n} more"),
-            };
-            format!("; not told from {}{more}", named.join(", "))
-        };
-        format!(
-            "{}{same}{as_good}; χ²/dof {} with it fitted",
-            first.fitted(),
-            significant(first.chi2_per_dof, 4)
-        )
-    }
-
-    /// Sizes from which deviations are seen 95 times in 100, those of the scene and the least seen
-    /// of single spots.
-    pub(super) fn detectable(&self) -> String {
-        let told =
-            |d: &Deviation| format!("{} {}\u{a0}{}", d.name, figure(d.detectable, 2), d.unit);
-        let wanted = [
-            "overall scale",
-            "hinge angle",
-            "S2 along its normal",
-            "all spots, x",
-            "view, x",
-        ];
-        let of_scene = self
-            .deviations
-            .iter()
-            .filter(|d| wanted.contains(&d.name.as_str()));
-        let least_seen = self
-            .spots
-            .iter()
-            .reduce(|a, b| if b.detectable > a.detectable { b } else { a });
-        let all: Vec<String> = of_scene.chain(least_seen).map(told).collect();
-        listed(&all)
-    }
-}
-
-impl Deviation {
-    /// Its name, with its spot.
-    fn label(&self) -> String {
-        match self.spot {
-            None => self.name.clone(),
-            Some(l) => format!("{} (spot {l})", self.name),
-        }
-    }
-
-    /// Name, value and error.
-    fn fitted(&self) -> String {
-        format!(
-            "{} {} ± {}\u{a0}{}",
-            self.label(),
-            signed(self.value, 3, ""),
-            figure(self.stderr, 2),
-            self.unit
-        )
-    }
-}
-
-/// A number with its sign and unit.
-fn signed(x: f64, digits: usize, unit: &str) -> String {
-    let sign = if x < 0.0 { "−" } else { "+" };
-    let space = if unit.is_empty() { "" } else { "\u{a0}" };
-    format!("{sign}{}{space}{unit}", figure(x.abs(), digits))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A parameter that takes the excess of χ² is the cause; one that leaves it is none, however
-    /// large its fit is against its error.
-    #[test]
-    fn what_leaves_the_difference_is_no_cause() {
-        let deviation = |chi2_per_dof: f64| Deviation {
-            name: "hinge angle".to_owned(),
-            unit: "deg".to_owned(),
-            value: 6.4,
-            stderr: 3e-4,
-            bias: 0.0,
-            z: 2e4,
-            p: 0.0,
-            detectable: 1e-3,
-            chi2_per_dof,
-            same: Vec::new(),
-            spot: None,
-        };
-        let cause = |left: f64, whole: f64| {
-            let likely = vec![deviation(left)];
-            let score = Score {
-                likely,
-                ..Score::default()
-            };
-            score.cause(whole)
-        };
-        for (left, whole, named) in [(3e5, 4e5, false), (1.05, 40.0, true), (90.0, 1e4, true)] {
-            let told = cause(left, whole);
-            assert_eq!(!told.starts_with("no single parameter"), named, "{told}");
-            assert!(told.contains("hinge angle"), "{told}");
         }
     }
 }

@@ -9,6 +9,7 @@ mod many;
 mod new;
 mod recover;
 mod reproduce;
+mod scene;
 mod serve;
 mod study;
 mod target;
@@ -39,6 +40,7 @@ pub(in crate::cli) use many::{CleanArgs, MergeArgs, PlanArgs, ShardArgs, SlurmAr
 pub(in crate::cli) use new::{CompletionsArgs, ManArgs, NewArgs};
 pub(in crate::cli) use recover::RecoverArgs;
 pub(in crate::cli) use reproduce::ReproduceArgs;
+pub(in crate::cli) use scene::{SceneArgs, SceneCommand};
 pub(in crate::cli) use serve::ServeArgs;
 pub(in crate::cli) use study::StudyArgs;
 pub(in crate::cli) use target::TargetArgs;
@@ -326,91 +328,5 @@ pub(in crate::cli) struct TestArgs {
     pub significance: f64,
 }
 
-#[derive(Debug, Arguments)]
-pub(in crate::cli) struct SceneArgs {
-    #[command(subcommand)]
-    pub command: SceneCommand,
-}
-
-#[derive(Debug, Subcommand)]
-pub(in crate::cli) enum SceneCommand {
-    /// List the built-in scenes
-    List {
-        /// Print their names and summaries as JSON
-        #[arg(long)]
-        json: bool,
-    },
-    /// Say what is wrong (exit 2) or suspicious in a scene
-    Check {
-        /// Built-in scene or path of a scene file
-        scene: String,
-        /// Print what is in the scene, and what is suspicious or wrong, as JSON
-        #[arg(long)]
-        json: bool,
-    },
-    /// Draw the bench from the side and from above, as SVG
-    Show {
-        /// Built-in scene or path of a scene file
-        scene: String,
-        /// File to write; standard output unless given
-        #[arg(long, short)]
-        output: Option<PathBuf>,
-        /// Replace the file if it is there
-        #[arg(long)]
-        force: bool,
-    },
-    /// Look at a scene from any place, in ordinary light, as PNG
-    View(Box<PreviewArgs>),
-    /// Write the text of a scene, as a start for one's own
-    Export {
-        /// Built-in scene or path of a scene file
-        scene: String,
-        /// A Python program instead, that renders the same Φcam with Mitsuba 3
-        #[arg(long)]
-        mitsuba: bool,
-        /// File to write; standard output unless given
-        #[arg(long, short)]
-        output: Option<PathBuf>,
-        /// Replace the file if it is there
-        #[arg(long)]
-        force: bool,
-    },
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use clap::CommandFactory;
-
-    #[test]
-    fn the_arguments_are_consistent() {
-        Args::command().debug_assert();
-    }
-
-    /// Commands whose result is a picture, a program or a text to be kept as it is, or that speak
-    /// to Slurm or to a browser.
-    const NO_JSON: [&str; 10] = [
-        "view",
-        "target",
-        "slurm",
-        "serve",
-        "show",
-        "export",
-        "new",
-        "completions",
-        "man",
-        "notices",
-    ];
-
-    #[test]
-    fn every_result_that_a_program_would_read_can_be_had_as_json() {
-        fn walk(command: &clap::Command) {
-            let name = command.get_name();
-            let has = command.get_arguments().any(|a| a.get_id() == "json");
-            let leads_on = command.has_subcommands();
-            assert_eq!(has, !leads_on && !NO_JSON.contains(&name), "{name}");
-            command.get_subcommands().for_each(walk);
-        }
-        Args::command().get_subcommands().for_each(walk);
-    }
-}
+mod tests;

@@ -80,7 +80,7 @@ fn errors_that_neighbours_share_are_not_counted_as_many() {
 fn errors_of_other_forms_are_not_taken_for_less() {
     let mut normal = normal_stream(13);
     let ([alone, told], [_, most]) = squares(|| DMatrix::from_fn(256, 8, |_, _| normal()));
-    // Two numbers more that fit noise: twice the gain is χ² of two, and of 40 one in 1e4 is above 6.
+    // Of two numbers more that fit noise twice the gain is χ² of two: above 12 in 0.25 %.
     assert!(most < 6.0, "{most}");
     for mean in [alone, told] {
         assert!((mean - 1.0).abs() < CHANCE, "{alone} {told}");

@@ -1,0 +1,111 @@
+//! What explains a difference of traced and modelled light, in words.
+
+use crate::lab::finding::listed;
+use crate::lab::score::{Deviation, Score};
+use crate::num::digits::{figure, significant};
+
+/// A parameter that leaves more than this part of the excess of χ² over its mean is no cause of it.
+const UNEXPLAINED: f64 = 0.1;
+/// Causes that are named beside the most likely one.
+const NAMED: usize = 3;
+
+impl Score {
+    /// The most likely cause of a χ²/dof, and what explains the difference as well.
+    pub(in crate::lab) fn cause(&self, chi2_per_dof: f64) -> String {
+        let Some((first, rest)) = self.likely.split_first() else {
+            return "no single parameter of the scene explains it".to_owned();
+        };
+        let left = first.chi2_per_dof - 1.0;
+        if left > 1.0 && left > UNEXPLAINED * (chi2_per_dof - 1.0) {
+            return format!(
+                "no single parameter of the scene explains it: the best, {}, leaves χ²/dof {}. Several at \
+                 once may, or another order, orientation or unit of the photographs (`phicam locate` \
+                 tests the order)",
+                first.label(),
+                significant(first.chi2_per_dof, 4)
+            );
+        }
+        let same: Vec<String> = first
+            .same
+            .iter()
+            .map(|(name, factor)| {
+                format!("{name} {}", signed(first.value * factor, 3, &first.unit))
+            })
+            .collect();
+        let same = if same.is_empty() {
+            String::new()
+        } else {
+            format!(" (or {})", same.join(", "))
+        };
+        let as_good = if rest.is_empty() {
+            String::new()
+        } else {
+            let named: Vec<String> = rest.iter().take(NAMED).map(Deviation::fitted).collect();
+            let more = match rest.len().saturating_sub(NAMED) {
+                0 => String::new(),
+                n => format!(" and {n} more"),
+            };
+            format!("; not told from {}{more}", named.join(", "))
+        };
+        format!(
+            "{}{same}{as_good}; χ²/dof {} with it fitted",
+            first.fitted(),
+            significant(first.chi2_per_dof, 4)
+        )
+    }
+
+    /// Sizes from which deviations are seen 95 times in 100, those of the scene and the least seen
+    /// of single spots.
+    pub(in crate::lab) fn detectable(&self) -> String {
+        let told =
+            |d: &Deviation| format!("{} {}\u{a0}{}", d.name, figure(d.detectable, 2), d.unit);
+        let wanted = [
+            "overall scale",
+            "hinge angle",
+            "S2 along its normal",
+            "all spots, x",
+            "view, x",
+        ];
+        let of_scene = self
+            .deviations
+            .iter()
+            .filter(|d| wanted.contains(&d.name.as_str()));
+        let least_seen = self
+            .spots
+            .iter()
+            .reduce(|a, b| if b.detectable > a.detectable { b } else { a });
+        let all: Vec<String> = of_scene.chain(least_seen).map(told).collect();
+        listed(&all)
+    }
+}
+
+impl Deviation {
+    /// Its name, with its spot.
+    pub(super) fn label(&self) -> String {
+        match self.spot {
+            None => self.name.clone(),
+            Some(l) => format!("{} (spot {l})", self.name),
+        }
+    }
+
+    /// Name, value and error.
+    fn fitted(&self) -> String {
+        format!(
+            "{} {} ± {}\u{a0}{}",
+            self.label(),
+            signed(self.value, 3, ""),
+            figure(self.stderr, 2),
+            self.unit
+        )
+    }
+}
+
+/// A number with its sign and unit.
+fn signed(x: f64, digits: usize, unit: &str) -> String {
+    let sign = if x < 0.0 { "−" } else { "+" };
+    let space = if unit.is_empty() { "" } else { "\u{a0}" };
+    format!("{sign}{}{space}{unit}", figure(x.abs(), digits))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,33 @@
+use super::*;
+
+/// A parameter that takes the excess of χ² is the cause; one that leaves it is none, however
+/// large its fit is against its error.
+#[test]
+fn what_leaves_the_difference_is_no_cause() {
+    let deviation = |chi2_per_dof: f64| Deviation {
+        name: "hinge angle".to_owned(),
+        unit: "deg".to_owned(),
+        value: 6.4,
+        stderr: 3e-4,
+        bias: 0.0,
+        z: 2e4,
+        p: 0.0,
+        detectable: 1e-3,
+        chi2_per_dof,
+        same: Vec::new(),
+        spot: None,
+    };
+    let cause = |left: f64, whole: f64| {
+        let likely = vec![deviation(left)];
+        let score = Score {
+            likely,
+            ..Score::default()
+        };
+        score.cause(whole)
+    };
+    for (left, whole, named) in [(3e5, 4e5, false), (1.05, 40.0, true), (90.0, 1e4, true)] {
+        let told = cause(left, whole);
+        assert_eq!(!told.starts_with("no single parameter"), named, "{told}");
+        assert!(told.contains("hinge angle"), "{told}");
+    }
+}
