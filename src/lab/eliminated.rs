@@ -91,8 +91,11 @@ impl Eliminated {
     fn beside_patterns(&self, m: &Matrix) -> Matrix {
         let mut left = Matrix::zeros(m.nrows(), m.ncols());
         for (l, frame) in self.frames.iter().enumerate() {
-            let own = frame.apply(&m.columns(l, 1).into_owned());
-            left.set_column(l, &own.column(0));
+            let own = m.columns(l, 1).into_owned();
+            // Of a deviation of one spot all other frames are 0.
+            if own.amax() > 0.0 {
+                left.set_column(l, &frame.apply(&own).column(0));
+            }
         }
         left
     }
