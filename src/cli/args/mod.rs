@@ -11,6 +11,7 @@ mod recover;
 mod reproduce;
 mod scene;
 mod serve;
+mod shared;
 mod study;
 mod target;
 mod terms;
@@ -18,7 +19,6 @@ mod validate;
 mod value;
 mod view;
 
-use crate::model::Occlusion;
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -27,10 +27,8 @@ use clap::{Args as Arguments, Parser, Subcommand};
 use super::failure::Codes;
 use crate::lab::Integration;
 use crate::model::Kernel;
-use crate::num::stream::Sampling;
-use crate::transport::Estimator;
 use terms::explained;
-use value::{count, definition, elements, spot_range, whole};
+use value::{definition, elements, spot_range};
 
 pub(in crate::cli) use calibrate::CalibrateArgs;
 pub(in crate::cli) use expose::{ExposeArgs, StatedBy};
@@ -42,6 +40,7 @@ pub(in crate::cli) use recover::RecoverArgs;
 pub(in crate::cli) use reproduce::ReproduceArgs;
 pub(in crate::cli) use scene::{SceneArgs, SceneCommand};
 pub(in crate::cli) use serve::ServeArgs;
+pub(in crate::cli) use shared::{OcclusionArgs, PathArgs, TestArgs, TraceArgs};
 pub(in crate::cli) use study::StudyArgs;
 pub(in crate::cli) use target::TargetArgs;
 pub(in crate::cli) use validate::ValidateArgs;
@@ -181,36 +180,6 @@ impl Command {
     }
 }
 
-/// The paths that are traced.
-#[derive(Debug, Arguments)]
-pub(in crate::cli) struct PathArgs {
-    /// Which paths are shared. Given neither this nor --samples: factored or shared where other
-    /// surfaces than the hidden reflect between the walls, with as many samples as a pilot says
-    /// make the overall standard error 1 %; else independent
-    #[arg(long, value_parser = choice::estimator())]
-    pub estimator: Option<Estimator>,
-    /// Where random numbers come from
-    #[arg(long, value_parser = choice::sampler(), default_value = "sobol")]
-    pub sampler: Sampling,
-    /// Paths per pixel and spot (independent) or per pixel (shared), points between the walls
-    /// (factored); rounded up to whole blocks. 512 unless given or chosen as above
-    #[arg(long, allow_negative_numbers = true, value_parser = whole)]
-    pub samples: Option<u64>,
-    /// Seed: the same seed gives the same bytes
-    #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole)]
-    pub seed: u64,
-}
-
-/// What has to be traced, and how.
-#[derive(Debug, Arguments)]
-pub(in crate::cli) struct TraceArgs {
-    #[command(flatten)]
-    pub paths: PathArgs,
-    /// Threads; all cores unless given. Does not change a byte of the result
-    #[arg(long, allow_negative_numbers = true, value_parser = count)]
-    pub threads: Option<usize>,
-}
-
 #[derive(Debug, Arguments)]
 #[command(after_long_help = explained(&["traced", "modelled", "entry", "z", "χ²/dof", "degrees of freedom", "best scale", "determined", "MTF raw", "MTF normalized", "RMSE"]))]
 pub(in crate::cli) struct RunArgs {
@@ -291,41 +260,6 @@ pub(in crate::cli) struct ModelArgs {
     /// Print the shapes of the matrices as JSON
     #[arg(long)]
     pub json: bool,
-}
-
-/// Whether the model knows what stands in the way.
-#[derive(Debug, Arguments)]
-pub(in crate::cli) struct OcclusionArgs {
-    /// Leave out of the model what stands in the way, as the published one does
-    #[arg(long)]
-    no_occlusion: bool,
-    /// What stands in the way is considered without being asked
-    #[arg(long = "occlusion", hide = true, conflicts_with = "no_occlusion")]
-    _occlusion: bool,
-}
-
-impl OcclusionArgs {
-    pub(in crate::cli) fn occlusion(&self) -> Occlusion {
-        if self.no_occlusion {
-            Occlusion::Ignored
-        } else {
-            Occlusion::Considered
-        }
-    }
-}
-
-/// How traced and modelled are compared.
-#[derive(Debug, Arguments)]
-pub(in crate::cli) struct TestArgs {
-    /// Kernel of the model
-    #[arg(long, value_parser = choice::kernel(), default_value = "physical")]
-    pub kernel: Kernel,
-    /// How the model integrates
-    #[arg(long, value_parser = choice::integration(), default_value = "quadrature")]
-    pub integration: Integration,
-    /// Probability of rejecting a right model
-    #[arg(long, default_value_t = 1e-3, allow_negative_numbers = true)]
-    pub significance: f64,
 }
 
 #[cfg(test)]
