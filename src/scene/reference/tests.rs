@@ -123,6 +123,8 @@ fn every_strict_table_of_the_sources_is_looked_at() {
     let sources = [
         include_str!("../axes.rs"),
         include_str!("../file.rs"),
+        include_str!("../file/mesh.rs"),
+        include_str!("../file/spots.rs"),
         include_str!("../material/file.rs"),
         include_str!("../sensor.rs"),
         include_str!("../texture/file.rs"),
