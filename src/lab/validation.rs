@@ -92,7 +92,8 @@ pub enum ValidationError {
     },
     /// Patterns of other light could be all of the model's.
     #[error(
-        "other light of this form could be all of the model's light, and nothing is left to test (use a polynomial          of a lower degree)"
+        "other light of this form could be all of the model's light, and nothing is left to test (use a polynomial \
+         of a lower degree)"
     )]
     TakenUp,
     /// Patterns of other light cannot be decomposed.
