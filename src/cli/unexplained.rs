@@ -11,6 +11,12 @@ use crate::lab::{Unexplained, fewer, polynomials};
 use crate::matrix::Matrix;
 use crate::scene::Scene;
 
+/// Other light in a frame of the scene's camera, a polynomial of this degree.
+pub(super) fn patterns(scene: &Scene, degree: Option<u8>) -> Option<Matrix> {
+    let size = [scene.camera.columns, scene.camera.rows];
+    degree.map(|degree| polynomials(size, usize::from(degree)))
+}
+
 /// The elements in place of the scene's: those `asked` for, else fewer where it has many.
 pub(super) fn elements(
     asked: Option<[usize; 2]>,
@@ -80,13 +86,11 @@ impl Photographs {
         left_out: Option<Matrix>,
         (scene, polynomial): (&Scene, Option<u8>),
     ) -> Self {
-        let size = [scene.camera.columns, scene.camera.rows];
-        let patterns = polynomial.map(|degree| polynomials(size, usize::from(degree)));
         Self {
             phi,
             stderr,
             left_out,
-            patterns,
+            patterns: patterns(scene, polynomial),
         }
     }
 

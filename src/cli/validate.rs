@@ -8,12 +8,13 @@ use super::failure::Failure;
 use super::load_run::{read_left_out, read_matrix, read_run, read_stderr};
 use super::output;
 use super::run_folder::{PHI, STDERR, VALIDATION};
+use super::unexplained::patterns;
 use super::{Outcome, settings};
 use crate::film::{self, Channel, Frame};
 use crate::folder::Record;
 use crate::jobs::need;
 use crate::lab::finding::Describe;
-use crate::lab::{Against, Agreement, Errors, Measured, OtherLight, Test, polynomials, validate};
+use crate::lab::{Against, Agreement, Errors, Measured, OtherLight, Test, validate};
 use crate::matrix::Matrix;
 use crate::num::statistics::normal_two_sided;
 use crate::report::{self, Panel, Scale};
@@ -27,10 +28,7 @@ pub(super) fn execute(args: &ValidateArgs, console: Console) -> Result<Outcome, 
         scene = scene.with_shifted_spots(by)?;
     }
     need::verdict(&scene)?;
-    let size = [scene.camera.columns, scene.camera.rows];
-    let patterns = args
-        .frame_polynomial
-        .map(|degree| polynomials(size, usize::from(degree)));
+    let patterns = patterns(&scene, args.frame_polynomial);
     let measured = Measured {
         phi: &given.phi,
         stderr: &given.stderr,

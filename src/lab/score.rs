@@ -169,11 +169,7 @@ fn likely(
             None => p.name == d.name,
             Some(_) => p.each_spot.as_ref() == Some(&d.name),
         })?;
-        let of = derivatives[index].as_ref()?;
-        match residual.evidence.eliminated {
-            None => Some(of_spot(of, d.spot)),
-            Some(terms) => terms.left_of(&of_spot(of, d.spot)),
-        }
+        whole(&residual.evidence, derivatives[index].as_ref()?, d.spot)
     };
     let Some(first) = derivative(best) else {
         return vec![best.clone()];
@@ -199,7 +195,16 @@ fn left_of<'a>(
     let all = 0..d.ncols();
     match evidence.eliminated {
         None => Some((Cow::Borrowed(d), spot.map_or(all, |l| l..l + 1))),
-        Some(terms) => Some((Cow::Owned(terms.left_of(&of_spot(d, spot))?), all)),
+        Some(_) => Some((Cow::Owned(whole(evidence, d, spot)?), all)),
+    }
+}
+
+/// The same with all spots.
+fn whole(evidence: &Evidence<'_>, d: &Matrix, spot: Option<usize>) -> Option<Matrix> {
+    let own = of_spot(d, spot);
+    match evidence.eliminated {
+        None => Some(own),
+        Some(terms) => terms.left_of(&own),
     }
 }
 
