@@ -45,6 +45,8 @@ pub(super) struct Along {
     c: DMatrix<f64>,
     /// The frame's patterns, its constant the first of them; none where there are none.
     patterns: Option<DMatrix<f64>>,
+    /// U, an orthonormal basis of them.
+    basis: Option<DMatrix<f64>>,
     /// Mean square of an entry.
     square: f64,
 }
@@ -66,11 +68,14 @@ impl Along {
             return None;
         }
         let of_frames = nuisance.of_frames(pixels);
+        let patterns = (of_frames.ncols() > 0).then(|| along_cosines(&of_frames, frame));
+        let basis = patterns.as_ref().map(|p| directions(p, |_| 1.0));
         Some(Self {
             frame,
             phi: along_cosines(problem.phi, frame),
             c: along_cosines(problem.sides().0, frame),
-            patterns: (of_frames.ncols() > 0).then(|| along_cosines(&of_frames, frame)),
+            patterns,
+            basis: basis.map(|u| DMatrix::from_columns(&u)),
             square: problem.phi.norm_squared() / problem.phi.len() as f64,
         })
     }
@@ -136,7 +141,7 @@ impl Along {
     }
 
     /// With G = Σ_l A_lᵀ diag(v)⁻¹ A_l of the light of each element, what is beside it eliminated,
-    /// K = L Lᵀ, m the pictures' mean and t what of Φ − A m is towards each element, the picture
+    /// K = L Lᵀ, m the pictures' mean and t = AᵀV⁻¹(Φ − A m) the slope there, the picture
     /// has the covariance P = L (1 + Lᵀ G L)⁻¹ Lᵀ, and
     ///
     /// > −2 ln p = n (ln det V + ln det UᵀV⁻¹U) + ln det(1 + LᵀGL) + ‖V^(−½)(Φ − A m)‖² − tᵀPt,
@@ -191,11 +196,11 @@ impl Along {
         let half = factor.forward(l.transpose());
         let covariance = tr_product(&half, &half);
         let grey = DVector::from_element(n, mean);
-        let towards = &h - &g * &grey;
-        let told = &covariance * &towards;
+        let slope = &h - &g * &grey;
+        let told = &covariance * &slope;
         // ‖Φ − A m‖² = ‖Φ‖² − 2 hᵀm + mᵀGm.
-        let of_grey = phi.norm_squared() - grey.dot(&(&towards + &h));
-        let chi2 = of_grey - towards.dot(&told);
+        let of_grey = phi.norm_squared() - grey.dot(&(&slope + &h));
+        let chi2 = of_grey - slope.dot(&told);
         let log_errors = frames as f64
             * (v.iter().map(|v| libm::log(*v)).sum::<f64>() + self.log_patterns(v)?);
         let log_likelihood = -0.5 * (log_errors + factor.log_det() + chi2);
@@ -220,12 +225,11 @@ impl Along {
 
     /// ln det UᵀV⁻¹U.
     fn log_patterns(&self, v: &[f64]) -> Option<f64> {
-        let Some(patterns) = &self.patterns else {
+        let Some(basis) = &self.basis else {
             return Some(0.0);
         };
-        let basis = DMatrix::from_columns(&directions(patterns, |_| 1.0));
         let over: Vec<f64> = v.iter().map(|x| 1.0 / x).collect();
-        let gram = tr_product(&basis, &rows_times(basis.clone(), &over));
+        let gram = tr_product(basis, &rows_times(basis.clone(), &over));
         Some(Cholesky::new(&gram)?.log_det())
     }
 

@@ -89,18 +89,18 @@ fn with_field(
         ..*options
     };
     let mut likeliest = Likeliest::usual(&prior);
-    let (mut start, mut last, mut likelihood) = (None, None, f64::NAN);
+    let (mut start, mut last) = (None, None);
     for _ in 0..MOST_AGAIN {
         let k = likeliest.covariance(&prior);
-        let Some((field, own)) = along.likeliest(problem, &k, unit, start)? else {
+        let Some((field, likelihood)) = along.likeliest(problem, &k, unit, start)? else {
             return Ok(None);
         };
-        (start, likelihood) = (Some(field), own);
+        start = Some(field);
         let stderr = along.stderr(&field);
         let (mut found, next) = with_alike(&along.problem(problem, &stderr), &by_noise, 1.0)?;
         along.back(problem, &mut found);
         found.field = Some(field);
-        last = Some(found);
+        last = Some((found, likelihood));
         if next == likeliest {
             break;
         }
@@ -110,7 +110,7 @@ fn with_field(
     let (plain, likeliest) = with_alike(problem, options, 1.0)?;
     let size = plain.residual / (problem.entries() as f64).sqrt();
     let alone = along.alone(problem, &likeliest.covariance(&prior), unit, size)?;
-    Ok(last.map(|found| Recovered {
+    Ok(last.map(|(found, likelihood)| Recovered {
         log_likelier: alone.map(|alone| likelihood - alone),
         ..found
     }))
