@@ -1,16 +1,14 @@
 //! Photographs in counts, with light from elsewhere in them, against the model in W.
 
 use phicam::lab::{
-    Against, Deviation, Errors, Integration, Measured, OtherLight, Test, Validation,
-    ValidationError, polynomials, validate,
+    Deviation, Errors, Measured, OtherLight, Validation, ValidationError, polynomials,
 };
 use phicam::matrix::Matrix;
-use phicam::model::{Kernel, Occlusion};
 use phicam::num::statistics::binomial_interval;
 use phicam::scene::Scene;
 use phicam::transport::Traced;
 
-use crate::verdict::{ALL, REPLICATES, deviant, right, score, small, traced, truth};
+use crate::verdict::{ALL, deviant, judged, right, score, small, traced, truth};
 
 /// Counts of 1 W.
 const COUNTS: f64 = 3e15;
@@ -49,17 +47,7 @@ fn tested(
         },
         ..Measured::new(&light.flux, &light.stderr, None)
     };
-    let against = Against {
-        kernel: Kernel::Physical,
-        integration: Integration::Quadrature,
-        occlusion: Occlusion::Ignored,
-    };
-    let test = Test {
-        significance,
-        replicates: REPLICATES,
-        errors,
-    };
-    validate(scene, measured, against, test)
+    judged(scene, measured, errors, significance)
 }
 
 /// At 5 % no more verdicts reject the right model than 99 % of the binomial distribution allow; the

@@ -3,7 +3,8 @@
 use std::sync::OnceLock;
 
 use phicam::lab::{
-    Against, Deviation, Errors, Integration, Measured, Score, Test, Validation, validate,
+    Against, Deviation, Errors, Integration, Measured, Score, Test, Validation, ValidationError,
+    validate,
 };
 use phicam::matrix::Matrix;
 use phicam::model::{Extent, Kernel, Occlusion, converged};
@@ -20,7 +21,7 @@ pub(super) fn small() -> Scene {
     builtin("bench", &[pixels, ("per_side = 30", "per_side = 2")])
 }
 
-pub(super) const REPLICATES: u32 = 32;
+const REPLICATES: u32 = 32;
 /// Error of an entry relative to it.
 const NOISE: f64 = 0.002;
 
@@ -71,8 +72,13 @@ pub(super) fn traced(phi: &Matrix, errors: Errors, seed: u64) -> Traced {
     }
 }
 
-fn tested(scene: &Scene, traced: &Traced, errors: Errors, significance: f64) -> Validation {
-    let measured = Measured::new(&traced.flux, &traced.stderr, None);
+/// The verdict by quadrature on light with errors from [`REPLICATES`].
+pub(super) fn judged(
+    scene: &Scene,
+    measured: Measured<'_>,
+    errors: Errors,
+    significance: f64,
+) -> Result<Validation, ValidationError> {
     let against = Against {
         kernel: Kernel::Physical,
         integration: Integration::Quadrature,
@@ -83,7 +89,12 @@ fn tested(scene: &Scene, traced: &Traced, errors: Errors, significance: f64) -> 
         replicates: REPLICATES,
         errors,
     };
-    validate(scene, measured, against, test).unwrap()
+    validate(scene, measured, against, test)
+}
+
+fn tested(scene: &Scene, traced: &Traced, errors: Errors, significance: f64) -> Validation {
+    let measured = Measured::new(&traced.flux, &traced.stderr, None);
+    judged(scene, measured, errors, significance).unwrap()
 }
 
 pub(super) fn truth(scene: &Scene) -> Matrix {
@@ -271,17 +282,8 @@ fn flagged_entries_do_not_count() {
     let mut flags = Matrix::zeros(20, 8);
     let verdict = |left_out: Option<&Matrix>, light: &Traced| {
         let measured = Measured::new(&light.flux, &light.stderr, left_out);
-        let against = Against {
-            kernel: Kernel::Physical,
-            integration: Integration::Quadrature,
-            occlusion: Occlusion::Ignored,
-        };
-        let test = Test {
-            significance: 1e-3,
-            replicates: REPLICATES,
-            errors: Errors::Independent,
-        };
-        validate(&scene, measured, against, test).unwrap().agreement
+        let found = judged(&scene, measured, Errors::Independent, 1e-3);
+        found.unwrap().agreement
     };
     let all = verdict(Some(&flags), &light);
     assert!(!all.agrees && all.left_out == 0);
