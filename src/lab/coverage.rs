@@ -12,7 +12,7 @@ use super::registered::{Registered, prepared};
 use super::study::Study;
 use crate::matrix::Matrix;
 use crate::model::{Kernel, MatrixModel};
-use crate::recovery::Method;
+use crate::recovery::{Bands, Method};
 use crate::transport::{Control, Stopped};
 use trial::{Trial, row, trial};
 
@@ -40,6 +40,8 @@ pub struct CoverageRow {
     pub bands: Option<String>,
     /// Seeds for which the method gave nothing; they are left out.
     pub failed: usize,
+    /// Seeds whose photographs no reflectances explain: their bands are empty, and cover nothing.
+    pub refuted: usize,
     /// Share of elements whose true albedo lies in its band, over all other seeds.
     pub covered: Option<f64>,
     /// Standard error of that share, from the spread over seeds: the elements of one recovery are
@@ -52,7 +54,7 @@ pub struct CoverageRow {
     /// Root mean square, over elements, of the mean error over seeds: the bias, up to its own
     /// standard error.
     pub bias: Option<f64>,
-    /// Mean width of the bands.
+    /// Mean width of the bands of the others.
     pub width: Option<f64>,
     /// Why the last of the failed seeds gave nothing.
     pub reason: Option<String>,
@@ -197,7 +199,9 @@ impl Study for CoverageTasks {
 
     fn fits(&self, _: &Matrix, index: usize, part: &Self::Output) -> bool {
         let (elements, seeds) = (self.model.albedo.len(), self.at(index).1);
-        let whole = |t: &Trial| [t.bands.intervals.len(), t.reflectance.len()] == [elements; 2];
+        let intervals = |b: &Bands| b.intervals.len() == elements;
+        let whole =
+            |t: &Trial| t.bands.as_ref().is_none_or(intervals) && t.reflectance.len() == elements;
         part.len() as u64 == seeds.end - seeds.start && part.iter().flatten().all(whole)
     }
 

@@ -60,6 +60,9 @@ pub struct Bands {
 }
 
 impl Bands {
+    /// Why photographs that nothing explains have no bands: what the truth is not in.
+    pub const REFUTED: &str = "has no bands: no reflectances within its bounds explain the photographs at this confidence";
+
     /// How many elements' `truth` lies within its interval. Elements beyond either list are not
     /// counted.
     pub fn covered(&self, truth: &[f64]) -> usize {
@@ -140,9 +143,6 @@ pub(super) fn simultaneous_allowed<'a>(
     Ok(stderr)
 }
 
-/// Why photographs that nothing explains have no bands.
-const REFUTED: &str =
-    "has no bands: no reflectances within its bounds explain the photographs at this confidence";
 /// Why a computation that was stopped has none.
 const STOPPED: &str = "has no bands: it was stopped before they were found";
 /// Why a biased estimate has none.
@@ -173,7 +173,7 @@ pub(super) fn simultaneous(
         let best = box_least_squares(&rows, &data, bounds)?;
         let room = chi_square_quantile(confidence, seen.len() as f64) - 2.0 * best.objective;
         if room < 0.0 {
-            return Ok(Err(REFUTED));
+            return Ok(Err(Bands::REFUTED));
         }
         let extents = Extents::new(&rows, &data, bounds, &best.solution, room)?;
         let steps = Steps::new(control, 90, r.ncols());

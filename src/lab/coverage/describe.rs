@@ -77,6 +77,14 @@ impl Describe for Coverage {
                 r.method, r.failed, self.seeds
             ))
         };
+        let refuted = |r: &CoverageRow| {
+            (r.refuted > 0).then(|| {
+                format!(
+                    "{}: in {} of {} seeds no reflectances explain the photographs, so that its bands are empty and cover nothing.",
+                    r.method, r.refuted, self.seeds
+                )
+            })
+        };
         let table = Table {
             caption: format!(
                 "What bands of {stated} cover: {} elements, noise {noise} of each entry, {} seeds",
@@ -95,7 +103,7 @@ impl Describe for Coverage {
             note: self
                 .rows
                 .iter()
-                .filter_map(reason)
+                .flat_map(|r| reason(r).into_iter().chain(refuted(r)))
                 .collect::<Vec<_>>()
                 .join(" "),
             ..Table::default()

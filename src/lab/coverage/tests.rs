@@ -10,6 +10,7 @@ fn bands_that_cover_too_little_are_named() {
         method: method.to_owned(),
         bands: None,
         failed: 0,
+        refuted: 0,
         covered,
         stderr: Some(0.01),
         least: None,
@@ -63,16 +64,29 @@ fn it_divides() {
 fn draws_that_agree_are_not_certain() {
     let trial = || -> Result<Trial, String> {
         Ok(Trial {
-            bands: Bands {
+            bands: Some(Bands {
                 confidence: 0.95,
                 intervals: vec![[0.0, 1.0]; 2],
                 kind: BandKind::Posterior,
-            },
+            }),
             reflectance: vec![0.5; 2],
         })
     };
-    let trials: Vec<_> = (0..10).map(|_| trial()).collect();
+    let mut trials: Vec<_> = (0..10).map(|_| trial()).collect();
     let found = row(Method::JointGp, &[0.2, 0.7], &trials);
     assert_eq!(found.covered, Some(1.0));
     assert!((found.stderr.unwrap() * 12.0 - 1.0).abs() < 1e-12);
+    // Two of ten whose photographs nothing explains cover nothing.
+    for trial in trials.iter_mut().take(2).flatten() {
+        trial.bands = None;
+    }
+    let found = row(Method::Joint, &[0.2, 0.7], &trials);
+    assert_eq!(
+        (found.covered, found.least, found.together),
+        (Some(0.8), Some(0.8), Some(0.8))
+    );
+    assert_eq!(
+        (found.refuted, found.failed, found.width),
+        (2, 0, Some(1.0))
+    );
 }

@@ -11,7 +11,8 @@ use crate::recovery::{BandKind, Bands, Method, Options, RecoveryError};
 /// One recovery.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Trial {
-    pub(super) bands: Bands,
+    /// None where no reflectances explain the photographs: an empty region, which holds no truth.
+    pub(super) bands: Option<Bands>,
     pub(super) reflectance: Vec<f64>,
 }
 
@@ -27,13 +28,15 @@ pub(super) fn trial(
         ..Options::default()
     };
     let found = Photographs::relative(exact, plan.noise, seed).recover(model, method, &options)?;
-    let bands = found.bands.ok_or(RecoveryError::NotForMethod {
-        method,
-        what: found.no_bands.unwrap_or("gave no bands"),
-        cure: "ask for bands of another method",
-    })?;
+    if found.bands.is_none() && found.no_bands != Some(Bands::REFUTED) {
+        return Err(RecoveryError::NotForMethod {
+            method,
+            what: found.no_bands.unwrap_or("gave no bands"),
+            cure: "ask for bands of another method",
+        });
+    }
     Ok(Trial {
-        bands,
+        bands: found.bands,
         reflectance: found.reflectance.as_slice().to_vec(),
     })
 }
@@ -43,26 +46,31 @@ pub(super) fn row(method: Method, truth: &[f64], trials: &[Result<Trial, String>
         found: trials,
         failures,
     } = Draws::of(trials);
+    let refuted = trials.iter().filter(|t| t.bands.is_none()).count();
     let nothing = CoverageRow {
         method: method.name().to_owned(),
+        refuted,
         failed: failures.len(),
         reason: failures.last().map(|why| (*why).to_owned()),
         ..CoverageRow::default()
     };
-    let Some(first) = trials.first() else {
+    let Some(first) = trials.iter().find_map(|t| t.bands.as_ref()) else {
         return nothing;
     };
     let (n, r) = (trials.len() as f64, truth.len() as f64);
     let shares: Vec<f64> = trials
         .iter()
-        .map(|t| t.bands.covered(truth) as f64 / r)
+        .map(|t| t.bands.as_ref().map_or(0, |b| b.covered(truth)) as f64 / r)
         .collect();
     let mean = shares.iter().sum::<f64>() / n;
     let square: f64 = shares.iter().map(|s| (s - mean) * (s - mean)).sum();
     let of_element = |j: usize| {
-        let within =
-            |t: &&&Trial| (t.bands.intervals[j][0]..=t.bands.intervals[j][1]).contains(&truth[j]);
-        trials.iter().filter(within).count() as f64 / n
+        let within = |bands: &&Bands| {
+            let [lower, upper] = bands.intervals[j];
+            (lower..=upper).contains(&truth[j])
+        };
+        let all = trials.iter().filter_map(|t| t.bands.as_ref());
+        all.filter(within).count() as f64 / n
     };
     let bias_of = |j: usize| {
         trials
@@ -72,12 +80,10 @@ pub(super) fn row(method: Method, truth: &[f64], trials: &[Result<Trial, String>
             / n
     };
     let squares = (0..truth.len()).map(|j| bias_of(j) * bias_of(j));
-    let widths = trials
-        .iter()
-        .flat_map(|t| &t.bands.intervals)
-        .map(|[a, b]| b - a);
+    let bands = trials.iter().filter_map(|t| t.bands.as_ref());
+    let widths = bands.flat_map(|b| &b.intervals).map(|[a, b]| b - a);
     CoverageRow {
-        bands: Some(words(first.bands.kind).to_owned()),
+        bands: Some(words(first.kind).to_owned()),
         covered: Some(mean),
         stderr: (trials.len() > 1).then(|| {
             let by_spread = (square / (n * (n - 1.0))).sqrt();
@@ -86,7 +92,7 @@ pub(super) fn row(method: Method, truth: &[f64], trials: &[Result<Trial, String>
         least: (0..truth.len()).map(of_element).reduce(f64::min),
         together: Some(shares.iter().filter(|s| **s == 1.0).count() as f64 / n),
         bias: Some((squares.sum::<f64>() / r).sqrt()),
-        width: Some(widths.sum::<f64>() / (n * r)),
+        width: Some(widths.sum::<f64>() / ((n - refuted as f64) * r)),
         ..nothing
     }
 }

@@ -134,7 +134,7 @@ fn a_refuted_model_has_no_bands() {
         ..Options::default()
     };
     let found = recover(Method::Joint, &problem, &options).unwrap();
-    assert_eq!((found.bands, found.no_bands), (None, Some(REFUTED)));
+    assert_eq!((found.bands, found.no_bands), (None, Some(Bands::REFUTED)));
 }
 
 #[test]
