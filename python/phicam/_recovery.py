@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _html, _native
-from ._arrays import Floats, matrix, maybe, pair, setting, shaped, spread, threads_of, vector, whole, without
+from ._arrays import Floats, matrix, pair, setting, shaped, spread, threads_of, vector, whole, without
+from ._beside import beside
 from ._model import Integration, Kernel, Model, model, model_of
 from ._phi import Phi
 from ._scene import Scene
@@ -247,13 +248,6 @@ class _Settings(TypedDict):
     weighting: str | None
     bands: float | None
     error_field: bool
-    frame_constant: bool
-    frame_polynomial: int | None
-    background: bool
-    free_scale: bool
-    frame_gain: float | None
-    scale_error: float | None
-    pixels: tuple[int, int] | None
 
 
 def recover(
@@ -395,30 +389,32 @@ def recover(
         weighting=weighting,
         bands=setting(bands, "bands"),
         error_field=bool(error_field),
-        frame_constant=bool(frame_constant),
-        frame_polynomial=None if frame_polynomial is None else whole(frame_polynomial, "frame_polynomial", 0, 8),
-        background=bool(background),
-        free_scale=bool(free_scale),
-        frame_gain=setting(frame_gain, "frame_gain"),
-        scale_error=setting(scale_error, "scale_error"),
-        pixels=pixels,
     )
-    flags, patterns = maybe(left_out, "left_out"), maybe(frame_patterns, "frame_patterns")
+    others = beside(
+        flux.shape,
+        pixels,
+        frame_constant=frame_constant,
+        frame_polynomial=frame_polynomial,
+        frame_patterns=frame_patterns,
+        background=background,
+        glare_pattern=glare_pattern,
+        free_scale=free_scale,
+        frame_gain=frame_gain,
+        scale_error=scale_error,
+        left_out=left_out,
+    )
+    flags = others["left_out"]
     flux = without(flux, flags)
-    glare = maybe(glare_pattern, "glare_pattern")
-    given = {**settings, "left_out": flags, "frame_patterns": patterns, "glare_pattern": glare}
-    _used(given, named)
+    _used({**settings, **others}, named)
     recovered = partial(
         _native.recover,
         inverse._core,
         flux,
         None if stderr is None else without(spread(stderr, flux.shape, "stderr"), flags),
-        None if flags is None else shaped(flags, flux.shape, "left_out"),
-        None if glare is None else shaped(glare, flux.shape, "glare_pattern"),
-        patterns,
         methods=named,
         is_grid=is_grid,
         settings=settings,
+        beside=others,
         replicates=None if replicates is None else whole(replicates, "replicates", 2, 2**32 - 1),
         errors_name=errors or "independent",
         trusted=named is None,
@@ -434,8 +430,8 @@ def recover(
     groups: dict[str, list[Surface]] = {}
     for surface in map(Surface, found):
         groups.setdefault(surface.values["method"], []).append(surface)
-    first, *others = (Recovery(surfaces) for surfaces in groups.values())
-    first.others, first.failed = tuple(others), {name: in_python(reason) for name, reason in failed}
+    first, *rest = (Recovery(surfaces) for surfaces in groups.values())
+    first.others, first.failed = tuple(rest), {name: in_python(reason) for name, reason in failed}
     if first.fits is False and first.warnings:
         own = inverse.scene is not None and inverse.integration == "centres" and isinstance(model, Model)
         words = "; the model is by centres: phicam.model(scene, integration=\"quadrature\") integrates" if own else ""

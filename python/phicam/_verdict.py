@@ -7,7 +7,8 @@ from typing import Any, Literal
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._arrays import Floats, matrix, maybe, number, shaped, spread, threads_of, whole, without
+from ._arrays import Floats, matrix, number, shaped, spread, threads_of, whole, without
+from ._beside import beside
 from ._finding import Finding
 from ._model import Integration, Kernel, Model
 from ._phi import Phi
@@ -72,8 +73,14 @@ def validate(
     significance: float = 1e-3,
     errors: Errors | None = None,
     replicates: int | None = None,
-    free_scale: bool = False,
+    frame_constant: bool = False,
     frame_polynomial: int | None = None,
+    frame_patterns: ArrayLike | None = None,
+    background: bool = False,
+    glare_pattern: ArrayLike | None = None,
+    free_scale: bool = False,
+    frame_gain: float | None = None,
+    scale_error: float | None = None,
     threads: int | None = None,
 ) -> Verdict:
     """Tests Φcam against the matrix model of a scene, as ``phicam validate`` does.
@@ -97,10 +104,11 @@ def validate(
         How errors hang together: ``independent``, ``pixel`` (those of one pixel), ``all``; that of `phi` unless given.
     replicates : int
         From how many replicates each standard error was estimated; that of `phi`, else as many as one likes.
-    free_scale : bool
-        The scale of all light is unknown, as of photographs in counts: it is fitted first, and a factor of all light is not seen.
-    frame_polynomial : int
-        Other light in each frame, a polynomial of this degree, 0 (a constant) to 8, is fitted first.
+    frame_constant, frame_polynomial, frame_patterns, background, glare_pattern, free_scale, frame_gain, scale_error
+        What else the photographs hold, fitted first, and not seen by the test: a constant, a polynomial of that degree, 0 to
+        8, or patterns (pixels × patterns) in each frame; an image that is the same in all frames; strength of glare (pixels
+        × spots); a free scale of all light, as of photographs in counts; gains of the frames, or the scale, known to that
+        standard deviation, which counts as noise.
 
     >>> import phicam
     >>> scene = phicam.Scene("bench").replace({"laser.spots.per_side": 2, "camera.pixels": (4, 4)})
@@ -120,7 +128,9 @@ def validate(
         own = stderr is None
         stderr = phi.stderr if own else stderr
         left_out = phi.left_out if left_out is None else left_out
-        errors = errors or (phi.errors if own else "independent")  # type: ignore[assignment]
+        # A background takes what all spots of a pixel of photographs share.
+        absorbed = background and not phi.is_rendered
+        errors = errors or (phi.errors if own and not absorbed else "independent")  # type: ignore[assignment]
         replicates = phi.replicates if own and replicates is None else replicates
     elif model is None:
         raise InputError("nothing says of which scene the array is\n  cure: give model=, a Scene or a Model")
@@ -145,22 +155,33 @@ def validate(
     if stderr is None:
         cure = "give stderr=; of photographs import several of each spot, or state the camera's noise"
         raise InputError(f"nothing is known of the noise\n  cure: {cure}")
-    flags = maybe(left_out, "left_out")
+    others = beside(
+        against.shape,
+        against.pixels,
+        frame_constant=frame_constant,
+        frame_polynomial=frame_polynomial,
+        frame_patterns=frame_patterns,
+        background=background,
+        glare_pattern=glare_pattern,
+        free_scale=free_scale,
+        frame_gain=frame_gain,
+        scale_error=scale_error,
+        left_out=left_out,
+    )
+    flags = others["left_out"]
     flux = without(shaped(flux, against.shape, "phi"), flags)
     noise = without(spread(stderr, against.shape, "stderr"), flags)
     found, z, modelled = _native.validate(
         against._core,
         flux,
         noise,
-        None if flags is None else shaped(flags, against.shape, "left_out"),
         kernel_name=kernel or "physical",
         integration_name=integration,
         considered=occlusion is None or bool(occlusion),
         significance=number(significance, "significance", "between 0 and 1, e.g. 0.001", lambda x: 0 < x < 1),
         replicates=None if replicates is None else whole(replicates, "replicates", 2, 2**32 - 1),
         errors_name=errors or "independent",
-        free_scale=bool(free_scale),
-        frame_polynomial=None if frame_polynomial is None else whole(frame_polynomial, "frame_polynomial", 0, 8),
+        beside=others,
         threads=threads_of(threads),
     )
     return Verdict(found, z, modelled)

@@ -6,6 +6,7 @@
 //! that it has not.
 
 mod arrays;
+mod beside;
 mod calibrate;
 mod errors;
 mod expose;

@@ -3,18 +3,19 @@
 use std::sync::Arc;
 
 use phicam::lab::{
-    Certainty, Noise, RecoveredObject, by_trust, describe_recovery, polynomials, recover_objects,
+    Certainty, Noise, RecoveredObject, by_trust, describe_recovery, recover_objects,
 };
 use phicam::matrix::Matrix;
 use phicam::num::linalg::Tolerance;
-use phicam::recovery::{Method, Nuisance, Options, Rule, Setting, Uncertainty, WeightRule};
+use phicam::recovery::{Method, Options, Rule, Setting, Uncertainty, WeightRule};
 use phicam::report::finding_text;
 use phicam::store::memory;
 use phicam::transport::Control;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{array, errors, matrix, maybe, vector};
+use crate::arrays::{array, errors, matrix, vector};
+use crate::beside::Given;
 use crate::errors::{Raise, input, named};
 use crate::model::Model;
 use crate::validate::errors as ways;
@@ -76,24 +77,10 @@ pub struct Settings {
     bands: Option<f64>,
     #[pyo3(item)]
     error_field: bool,
-    #[pyo3(item)]
-    frame_constant: bool,
-    #[pyo3(item)]
-    frame_polynomial: Option<u8>,
-    #[pyo3(item)]
-    background: bool,
-    #[pyo3(item)]
-    free_scale: bool,
-    #[pyo3(item)]
-    frame_gain: Option<f64>,
-    #[pyo3(item)]
-    scale_error: Option<f64>,
-    #[pyo3(item)]
-    pixels: Option<(usize, usize)>,
 }
 
 impl Settings {
-    fn options(&self, elements: usize) -> PyResult<Options> {
+    fn options(&self, elements: usize, frame: Option<[usize; 2]>) -> PyResult<Options> {
         let rule = self.rule.as_deref();
         let rule = rule.map(|name| named(name, "rule", Rule::ALL, Rule::name));
         let weighting = self.weighting.as_deref();
@@ -109,7 +96,7 @@ impl Settings {
             levels: self.levels.map(Into::into),
             bands: self.bands,
             weighting: weighting.transpose()?.unwrap_or_default(),
-            frame: self.pixels.map(Into::into),
+            frame,
             error_field: self.error_field,
             uncertainty: Uncertainty::of(elements),
             ..usual
@@ -120,7 +107,7 @@ impl Settings {
 /// Recovers by each of the methods; without `is_grid` nothing says how the elements lie; `trusted`
 /// orders what was found by how far it can be trusted.
 #[pyfunction]
-#[pyo3(signature = (model, phi, stderr, left_out, glare, patterns, *, methods, is_grid, settings, replicates,
+#[pyo3(signature = (model, phi, stderr, *, methods, is_grid, settings, beside, replicates,
                     errors_name, trusted, threads))]
 #[expect(
     clippy::too_many_arguments,
@@ -131,12 +118,10 @@ pub fn recover<'py>(
     model: &Model,
     phi: &Bound<'py, PyAny>,
     stderr: Option<&Bound<'py, PyAny>>,
-    left_out: Option<&Bound<'py, PyAny>>,
-    glare: Option<&Bound<'py, PyAny>>,
-    patterns: Option<&Bound<'py, PyAny>>,
     methods: Option<Vec<String>>,
     is_grid: bool,
     settings: Settings,
+    beside: Given<'py>,
     replicates: Option<u32>,
     errors_name: &str,
     trusted: bool,
@@ -155,18 +140,13 @@ pub fn recover<'py>(
         let cause = format!("{method} compares neighbours, and nothing says how the elements lie");
         return Err(input(cause, "give elements=(nu, nv)"));
     }
-    let options = settings.options(elements)?;
+    let options = settings.options(elements, beside.frame())?;
     let (rows, columns) = (own.camera_side.nrows(), own.laser_side.ncols());
     let entries = (rows * columns + elements * (rows + columns)) as f64;
     let refuse = move |_: Control<'_>| memory::refuse("these matrices", HELD * 8.0 * entries, &[]);
     run(py, None, None, refuse)?.raise()?;
     let (phi, stderr) = (matrix(phi, "phi")?, errors(stderr, "stderr")?);
-    let (left_out, glare) = (maybe(left_out, "left_out")?, maybe(glare, "glare")?);
-    let patterns = joined(
-        settings.frame_polynomial,
-        settings.pixels,
-        maybe(patterns, "frame_patterns")?,
-    )?;
+    let beside = beside.read()?;
     let certainty = Certainty {
         errors: ways(errors_name)?,
         replicates,
@@ -175,16 +155,7 @@ pub fn recover<'py>(
         let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
             Noise::StandardError(stderr, certainty)
         });
-        let nuisance = Nuisance {
-            frame_constant: settings.frame_constant,
-            frame_patterns: patterns.as_ref(),
-            background: settings.background,
-            glare: glare.as_ref(),
-            free_scale: settings.free_scale,
-            frame_gain: settings.frame_gain,
-            scale_error: settings.scale_error,
-            left_out: left_out.as_ref(),
-        };
+        let nuisance = beside.nuisance();
         recover_objects(&own, &phi, noise, nuisance, &methods, &options, control)
     })?;
     let alone = attempts.len() == 1;
@@ -201,35 +172,6 @@ pub fn recover<'py>(
     }
     let objects: PyResult<Vec<_>> = objects.into_iter().map(|object| dict(py, object)).collect();
     Ok((objects?, failed))
-}
-
-/// The polynomials of a degree over the photograph, and what else is given of patterns.
-fn joined(
-    degree: Option<u8>,
-    pixels: Option<(usize, usize)>,
-    own: Option<Matrix>,
-) -> PyResult<Option<Matrix>> {
-    let smooth = match (degree, pixels) {
-        (None, _) => return Ok(own),
-        (Some(degree), Some((columns, rows))) => polynomials([columns, rows], usize::from(degree)),
-        (Some(_), None) => {
-            let cause = "nothing says how the pixels lie in the photograph";
-            return Err(input(cause, "give pixels=(columns, rows)"));
-        }
-    };
-    let Some(own) = own else {
-        return Ok(Some(smooth));
-    };
-    if own.nrows() != smooth.nrows() {
-        let cause = format!(
-            "frame_patterns has {} rows, and there are {} pixels",
-            own.nrows(),
-            smooth.nrows()
-        );
-        return Err(input(cause, "give pixels × patterns"));
-    }
-    let all: Vec<_> = smooth.column_iter().chain(own.column_iter()).collect();
-    Ok(Some(Matrix::from_columns(&all)))
 }
 
 /// What was found of a surface: its arrays, and all else as JSON.

@@ -5,13 +5,12 @@ use std::sync::Arc;
 use numpy::PyArray2;
 use phicam::jobs::need;
 use phicam::lab::finding::Describe;
-use phicam::lab::{
-    Against, Errors, Measured, OtherLight, Test, polynomials, validate as validated,
-};
+use phicam::lab::{Against, Errors, Measured, Test, validate as validated};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{array, matrix, maybe};
+use crate::arrays::{array, matrix};
+use crate::beside::Given;
 use crate::errors::{Raise, named};
 use crate::findings::found;
 use crate::model::{integration, kernel, occlusion};
@@ -38,9 +37,8 @@ type Verdict<'py> = (
 
 /// The verdict on Φcam.
 #[pyfunction]
-#[pyo3(signature = (scene, phi, stderr, left_out, *, kernel_name, integration_name, considered,
-                    significance, replicates, errors_name, free_scale, frame_polynomial,
-                    threads))]
+#[pyo3(signature = (scene, phi, stderr, *, kernel_name, integration_name, considered,
+                    significance, replicates, errors_name, beside, threads))]
 #[expect(
     clippy::too_many_arguments,
     reason = "one for each keyword of Python's function"
@@ -50,15 +48,13 @@ pub fn validate<'py>(
     scene: &Scene,
     phi: &Bound<'py, PyAny>,
     stderr: &Bound<'py, PyAny>,
-    left_out: Option<&Bound<'py, PyAny>>,
     kernel_name: &str,
     integration_name: &str,
     considered: bool,
     significance: f64,
     replicates: Option<u32>,
     errors_name: &str,
-    free_scale: bool,
-    frame_polynomial: Option<usize>,
+    beside: Given<'py>,
     threads: Option<usize>,
 ) -> PyResult<Verdict<'py>> {
     let against = Against {
@@ -74,17 +70,13 @@ pub fn validate<'py>(
     fits(py, &scene.inner, need::verdict)?;
     let phi = matrix(phi, "phi")?;
     let stderr = crate::arrays::errors(Some(stderr), "stderr")?.unwrap_or_default();
-    let left_out = maybe(left_out, "left_out")?;
+    let beside = beside.read()?;
     let scene = Arc::clone(&scene.inner);
     let verdict = run(py, threads, None, move |_| {
-        let size = [scene.camera.columns, scene.camera.rows];
-        let patterns = frame_polynomial.map(|degree| polynomials(size, degree));
         let measured = Measured {
-            beside: OtherLight {
-                patterns: patterns.as_ref(),
-                is_scale_free: free_scale,
-            },
-            ..Measured::new(&phi, &stderr, left_out.as_ref())
+            phi: &phi,
+            stderr: &stderr,
+            beside: beside.nuisance(),
         };
         validated(&scene, measured, against, test)
     })?;

@@ -98,6 +98,9 @@ def test_validate_counts(command, run, phi):
     counts = phicam.Phi(phi.scene, 2e15 * phi.flux + 7.0, 2e15 * phi.stderr, account={"unit": "counts"})
     verdict = phicam.validate(counts, free_scale=True, frame_polynomial=0)
     assert verdict.agrees and abs(verdict.values["best_scale"] / 2e15 - 1) < 0.1
+    said = json.loads(command("validate", run, "--json", "--background", "--frame-gain", 0.02))
+    verdict = phicam.validate(phi, background=True, frame_gain=0.02)
+    assert verdict.values == said and len(said["gains"]["frames"]["size"]) == phi.flux.shape[1]
 
 
 def test_recover(command, run, phi):

@@ -47,6 +47,7 @@
 
 mod args;
 mod batches;
+mod beside;
 mod calibrate;
 mod cleanup;
 mod completions;
@@ -75,7 +76,6 @@ mod preview;
 mod process;
 mod progress;
 mod recover;
-mod recover_beside;
 mod recover_memory;
 mod recover_options;
 mod recover_own;

@@ -137,7 +137,7 @@ fn certainty(args: &RecoverArgs, dir: &Path, record: Option<&Record>) -> Certain
             Some(plan) => Certainty::of(plan),
             // A background takes what all spots of a pixel share.
             None => {
-                let shared = record.origin.shares_by_pixel() && !args.joint.background;
+                let shared = record.origin.shares_by_pixel() && !args.beside.background;
                 Certainty {
                     errors: crate::lab::Errors::of_photographs(shared),
                     ..Certainty::STATED
@@ -175,11 +175,11 @@ fn refuse_unscaled(
     console: Console,
 ) -> Result<(), Failure> {
     let joint = methods.iter().any(|method| method.is_joint());
-    if !record.is_imported() || args.joint.free_scale || !joint {
+    if !record.is_imported() || args.beside.free_scale || !joint {
         return Ok(());
     }
     let Some(unit) = record.origin.unscaled() else {
-        if args.joint.scale_error.is_none() {
+        if args.beside.scale_error.is_none() {
             console.say(
                 "the scale of these photographs in W is taken as exact; --scale-error RELATIVE says how well it is known",
             );

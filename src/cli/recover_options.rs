@@ -1,8 +1,10 @@
 //! The settings of `phicam recover`, checked.
 
 use super::args::RecoverArgs;
+use super::beside::refuse_meaningless;
 use super::console::Console;
 use super::failure::Failure;
+use super::settings::within;
 use crate::model::MatrixModel;
 use crate::num::linalg::Tolerance;
 use crate::recovery::{Method, Options, Setting, Uncertainty, WeightRule};
@@ -17,8 +19,6 @@ pub(super) fn checked(args: &RecoverArgs, methods: &[Method]) -> Result<Options,
         (Setting::Rank, args.rank.map(|k| k as f64)),
         (Setting::Tv, joint.tv),
         (Setting::Bands, args.bands),
-        (Setting::FrameGain, joint.frame_gain),
-        (Setting::ScaleError, joint.scale_error),
     ] {
         let allows = |value: f64| setting.allows(value);
         within(
@@ -28,6 +28,7 @@ pub(super) fn checked(args: &RecoverArgs, methods: &[Method]) -> Result<Options,
             setting.range().unwrap_or_default(),
         )?;
     }
+    refuse_meaningless(&args.beside)?;
     let positive = |x: f64| x > 0.0 && x.is_finite();
     within("memory", args.memory, positive, "positive: GiB, e.g. 4")?;
     used(args, methods)?;
@@ -48,25 +49,9 @@ pub(super) fn checked(args: &RecoverArgs, methods: &[Method]) -> Result<Options,
     Ok(options)
 }
 
-/// Refuses a given value that is not `allowed`; `range` says in words what is.
-fn within(
-    name: &str,
-    given: Option<f64>,
-    allowed: impl Fn(f64) -> bool,
-    range: &str,
-) -> Result<(), Failure> {
-    match given {
-        Some(value) if !allowed(value) => Err(Failure::new(
-            format!("--{name} {value} has no meaning"),
-            format!("use a number that is {range}"),
-        )),
-        _ => Ok(()),
-    }
-}
-
 /// Refuses settings that none of the methods takes.
 fn used(args: &RecoverArgs, methods: &[Method]) -> Result<(), Failure> {
-    let joint = &args.joint;
+    let (joint, beside) = (&args.joint, &args.beside);
     let given = [
         (Setting::Rank, args.rank.is_some()),
         (Setting::Damping, args.damping.is_some()),
@@ -78,16 +63,16 @@ fn used(args: &RecoverArgs, methods: &[Method]) -> Result<(), Failure> {
             joint.weighting == WeightRule::Unweighted,
         ),
         (Setting::ErrorField, joint.error_field),
-        (Setting::FrameConstant, joint.frame_constant),
-        (Setting::FramePolynomial, joint.frame_polynomial.is_some()),
-        (Setting::FramePatterns, joint.frame_patterns.is_some()),
+        (Setting::FrameConstant, beside.frame_constant),
+        (Setting::FramePolynomial, beside.frame_polynomial.is_some()),
+        (Setting::FramePatterns, beside.frame_patterns.is_some()),
         (Setting::LeftOut, args.left_out.is_some()),
-        (Setting::Background, joint.background),
-        (Setting::FreeScale, joint.free_scale),
-        (Setting::FrameGain, joint.frame_gain.is_some()),
-        (Setting::ScaleError, joint.scale_error.is_some()),
+        (Setting::Background, beside.background),
+        (Setting::FreeScale, beside.free_scale),
+        (Setting::FrameGain, beside.frame_gain.is_some()),
+        (Setting::ScaleError, beside.scale_error.is_some()),
         (Setting::OccluderLight, joint.occluder_light),
-        (Setting::GlarePattern, joint.glare_pattern.is_some()),
+        (Setting::GlarePattern, beside.glare_pattern.is_some()),
     ];
     let idle = |setting: Setting| !methods.iter().any(|m| setting.means_something_to(*m));
     match given

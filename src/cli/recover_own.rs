@@ -4,10 +4,10 @@ use std::path::Path;
 
 use super::Outcome;
 use super::args::RecoverArgs;
+use super::beside::{Beside, PhotographSize, left_out, mask};
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_undamaged, refuse_negative};
-use super::recover_beside::{Beside, Photographs, mask};
 use super::recover_options::{self, uncertainty};
 use super::recovered::{collect, recovering, tell, write};
 use super::run_folder::{RunFolder, SATURATED};
@@ -80,7 +80,7 @@ pub(super) fn execute(
         };
         Noise::StandardError(stderr, certainty)
     });
-    let of = Photographs {
+    let of = PhotographSize {
         name: phi_file.display().to_string(),
         grid: args.pixels,
         pixels: phi.nrows(),
@@ -98,8 +98,9 @@ pub(super) fn execute(
             "give columns and rows of the photographs",
         ));
     }
+    let asked = args.left_out.as_deref();
     let clipped = phi_file.with_file_name(SATURATED);
-    if clipped.exists() && !args.keep_clipped && mask(args, phi_file).is_none() {
+    if clipped.exists() && !args.keep_clipped && mask(asked, phi_file).is_none() {
         let cause = format!("{} says which entries mean nothing", clipped.display());
         let cure = format!(
             "--left-out {} leaves them out; --keep-clipped takes them",
@@ -107,13 +108,14 @@ pub(super) fn execute(
         );
         return Err(Failure::new(cause, cure));
     }
-    let beside = Beside::read(args, phi_file, &of, console)?;
+    let left_out = left_out(asked, phi_file, &of, console)?;
+    let beside = Beside::read(&args.beside, left_out, &of)?;
     let options = Options {
         uncertainty: uncertainty(&model, console),
         frame: of.grid,
         ..options
     };
-    let nuisance = beside.nuisance(args);
+    let nuisance = beside.nuisance(&args.beside);
     let (attempts, picards) = recovering(console, "recover", &methods, |control| {
         recover_with_picards(&model, &phi, noise, nuisance, &methods, &options, control)
     });

@@ -9,6 +9,22 @@ use crate::lab::{self, Errors, PilotError, Test};
 use crate::scene::Scene;
 use crate::transport::{Budget, Estimator, Plan, RenderError, unsupported_surface};
 
+/// Refuses a given value that is not `allowed`; `range` says in words what is.
+pub(super) fn within(
+    name: &str,
+    given: Option<f64>,
+    allowed: impl Fn(f64) -> bool,
+    range: &str,
+) -> Result<(), Failure> {
+    match given {
+        Some(value) if !allowed(value) => Err(Failure::new(
+            format!("--{name} {value} has no meaning"),
+            format!("use a number that is {range}"),
+        )),
+        _ => Ok(()),
+    }
+}
+
 /// The plan that the arguments describe for the scene; says what was chosen where they leave both
 /// estimator and samples open, on so many threads.
 pub(super) fn plan(

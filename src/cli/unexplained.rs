@@ -12,7 +12,7 @@ use crate::matrix::Matrix;
 use crate::scene::Scene;
 
 /// Other light in a frame of the scene's camera, a polynomial of this degree.
-pub(super) fn patterns(scene: &Scene, degree: Option<u8>) -> Option<Matrix> {
+fn patterns(scene: &Scene, degree: Option<u8>) -> Option<Matrix> {
     let size = [scene.camera.columns, scene.camera.rows];
     degree.map(|degree| polynomials(size, usize::from(degree)))
 }

@@ -3,18 +3,18 @@
 use std::path::{Path, PathBuf};
 
 use super::args::ValidateArgs;
+use super::beside::{Beside, PhotographSize};
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_left_out, read_matrix, read_run, read_stderr};
 use super::output;
 use super::run_folder::{PHI, STDERR, VALIDATION};
-use super::unexplained::patterns;
 use super::{Outcome, settings};
 use crate::film::{self, Channel, Frame};
 use crate::folder::Record;
 use crate::jobs::need;
 use crate::lab::finding::Describe;
-use crate::lab::{Against, Agreement, Errors, Measured, OtherLight, Test, validate};
+use crate::lab::{Against, Agreement, Errors, Measured, Test, validate};
 use crate::matrix::Matrix;
 use crate::num::statistics::normal_two_sided;
 use crate::report::{self, Panel, Scale};
@@ -28,15 +28,12 @@ pub(super) fn execute(args: &ValidateArgs, console: Console) -> Result<Outcome, 
         scene = scene.with_shifted_spots(by)?;
     }
     need::verdict(&scene)?;
-    let patterns = patterns(&scene, args.frame_polynomial);
+    let size = PhotographSize::of_scene(&scene);
+    let beside = Beside::read(&args.beside, given.left_out, &size)?;
     let measured = Measured {
         phi: &given.phi,
         stderr: &given.stderr,
-        left_out: given.left_out.as_ref(),
-        beside: OtherLight {
-            patterns: patterns.as_ref(),
-            is_scale_free: args.free_scale,
-        },
+        beside: beside.nuisance(&args.beside),
     };
     let against = Against {
         kernel: args.test.kernel,
@@ -95,7 +92,7 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
         }
         (_, _, Some((dir, (scene, record)))) => {
             let noise = known_noise(dir, &record)?;
-            if !args.free_scale {
+            if !args.beside.free_scale {
                 refuse_unscaled(dir, &record)?;
             }
             Ok(Given {
@@ -104,11 +101,12 @@ fn given(args: &ValidateArgs, console: Console) -> Result<Given, Failure> {
                 left_out: left_out(args, read_left_out(dir, &scene)?, &scene)?,
                 test: match record.origin.plan() {
                     Some(plan) => settings::test(&args.test, plan, console)?,
-                    None => settings::test_of_matrix(
-                        &args.test,
-                        Errors::of_photographs(record.origin.shares_by_pixel()),
-                        None,
-                    )?,
+                    None => {
+                        // A background takes what all spots of a pixel share.
+                        let shared = record.origin.shares_by_pixel() && !args.beside.background;
+                        let errors = Errors::of_photographs(shared);
+                        settings::test_of_matrix(&args.test, errors, None)?
+                    }
                 },
                 scene: match other {
                     Some(other) => other,

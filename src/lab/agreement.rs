@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::eliminated::Eliminated;
 use super::evidence::{Errors, Evidence, Test};
+use super::gains::Gains;
 use super::residual::{Residual, Weights};
 use super::score::{Derivatives, Score, score};
 use crate::matrix::Matrix;
@@ -67,6 +68,10 @@ pub struct Agreement {
     /// Whether the scale was fitted first: it is `best_scale`.
     #[serde(default)]
     pub is_scale_free: bool,
+    /// Factors of the light that are known only roughly, as they were found; their prior is part of
+    /// the test. `None` where none were asked for.
+    #[serde(default)]
+    pub gains: Option<Gains>,
     /// Σ z² over the entries less `fitted`: 1 on average if the model is right.
     pub chi2_per_dof: f64,
     /// Independent degrees of freedom of that mean.
@@ -187,6 +192,7 @@ pub fn agree(
         fitted,
         other_light: 0.0,
         is_scale_free: evidence.eliminated.is_some_and(Eliminated::is_scale_free),
+        gains: None,
         chi2_per_dof,
         dof,
         chi2_p,

@@ -4,6 +4,9 @@ use super::eliminated::Eliminated;
 use crate::matrix::Matrix;
 use crate::transport::Estimator;
 
+/// A picture that explains the photographs is rejected with this probability.
+pub const FIT_LEVEL: f64 = 1e-3;
+
 /// How the errors of traced entries hang together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Errors {

@@ -23,16 +23,13 @@ mod attainable;
 use serde::Serialize;
 
 use super::agreement::freedom_of_rows;
-use super::evidence::{Errors, freedom};
+use super::evidence::{Errors, FIT_LEVEL, freedom};
 use crate::matrix::Matrix;
 use crate::num::statistics::{chi_square_sf, student_to_normal};
 use crate::recovery::{Determined, Method, Options, Problem, Recovered, determined};
 use crate::transport::Plan;
 pub use attainable::Attainable;
 use attainable::LeftOver;
-
-/// A picture that explains the photographs is rejected with this probability.
-pub const FIT_LEVEL: f64 = 1e-3;
 
 /// Elements up to which the best picture of all is looked for where no method that was asked for
 /// gives it.

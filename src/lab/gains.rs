@@ -1,9 +1,9 @@
 //! Factors of the light that are known only roughly: what a recovery found of them, in numbers and
 //! in words.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::fit::FIT_LEVEL;
+use super::evidence::FIT_LEVEL;
 use crate::num::digits::{figure, significant};
 use crate::recovery::{self, Recovered};
 
@@ -11,7 +11,7 @@ use crate::recovery::{self, Recovered};
 const BEYOND: f64 = 3.0;
 
 /// Factors 1 + ε of the light, as they were estimated.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gains {
     /// ε_l of each frame.
     pub frames: Option<Deviations>,
@@ -32,10 +32,18 @@ impl Gains {
             widened: found.widened,
         }
     }
+
+    /// What is said where they are larger than stated.
+    pub(super) fn larger(&self) -> String {
+        let p = self.frames.as_ref().and_then(|frames| frames.p);
+        p.filter(|p| *p < FIT_LEVEL).map_or(String::new(), |p| {
+            format!("; LARGER than stated (P {})", figure(p, 2))
+        })
+    }
 }
 
 /// Relative deviations ε of one kind.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Deviations {
     /// ε̂.
     pub size: Vec<f64>,
@@ -59,16 +67,23 @@ impl Deviations {
             p: found.probability(),
         }
     }
+
+    /// Largest |ε̂|.
+    fn largest(&self) -> f64 {
+        self.size
+            .iter()
+            .fold(0.0, |largest, size| largest.max(size.abs()))
+    }
 }
 
 /// What was estimated of factors that are known only roughly, and what the picture loses by them.
-pub(super) fn words(of: &recovery::Gains) -> String {
+pub(super) fn words(of: &Gains) -> String {
     let mut words = String::new();
     if let Some(frames) = &of.frames {
         words += &format!(
             "; gain of a frame off 1 by up to {} % ({} of the {} % stated)",
-            figure(100.0 * frames.size.amax(), 2),
-            significant(frames.largest(), 2),
+            figure(100.0 * frames.largest(), 2),
+            significant(frames.largest() / frames.known_to, 2),
             figure(100.0 * frames.known_to, 2),
         );
     }

@@ -229,10 +229,10 @@ pub use coverage::{Coverage, CoveragePlan, CoverageRow, CoverageTasks};
 pub use eliminated::Eliminated;
 pub use ensemble::{Estimate, Spread};
 pub use error::{LabError, StudyError};
-pub use evidence::{Errors, Evidence, Test};
+pub use evidence::{Errors, Evidence, FIT_LEVEL, Test};
 pub use experiment::{Experiment, ExperimentPlan, ExperimentTasks, Reading, Setting, Threshold};
 pub use exposure::describe_exposure;
-pub use fit::{Attainable, Certainty, FIT_LEVEL, Fit, Judged, Residuals};
+pub use fit::{Attainable, Certainty, Fit, Judged, Residuals};
 pub use gains::{Deviations, Gains};
 pub use gallery::{
     Automatic, GalleryPicture, GalleryPlan, GallerySurface, GalleryTasks, RunGallery, Series,
@@ -250,7 +250,6 @@ pub use noise::{
 pub use objects::{
     Attempt, Noise, ObjectBands, RecoveredObject, measured, recover_objects, recover_with_picards,
 };
-pub use other_light::OtherLight;
 pub use pilot::{Foretold, PilotError, darkness, foretold};
 pub use power::{Detection, Power, PowerPlan, PowerRow, PowerTasks};
 pub use preview::{

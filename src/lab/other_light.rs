@@ -1,24 +1,15 @@
 //! Photographs without other light and in the model's unit, ready to be tested.
 //!
-//! > Φ' = (Φ − Σ_k f_kl F)/s with the standard errors σ/s,
+//! > Φ' = M + T (Φ − s M)/s with the standard errors σ/s,
 //!
-//! s and f as of [`Eliminated`].
+//! T what the terms of [`Eliminated`] leave, and s its scale, 1 where it is known.
 
 use super::eliminated::Eliminated;
 use super::evidence::{Evidence, Test};
 use super::residual::{Residual, Weights};
 use crate::matrix::Matrix;
 use crate::num::linalg::LinalgError;
-
-/// What is fitted to the photographs before they are tested.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct OtherLight<'a> {
-    /// Patterns of other light, pixels × patterns, any unit, each with a strength of its own in
-    /// each frame.
-    pub patterns: Option<&'a Matrix>,
-    /// Whether the photographs' unit per W is not known.
-    pub is_scale_free: bool,
-}
+use crate::recovery::{Gains, Nuisance};
 
 /// Photographs as the terms leave them.
 #[derive(Debug)]
@@ -29,55 +20,58 @@ pub(super) struct Left {
     pub stderr: Matrix,
     /// s with its standard error and its deviate from 0; none where it is known to be 1.
     pub scale: Option<[f64; 3]>,
-    /// ‖Σ f F‖/‖Φ‖ over the entries that count.
+    /// ‖Σ f F + a‖/‖Φ‖ over the entries that count.
     pub other: f64,
+    /// What was found of factors that are known roughly.
+    pub gains: Option<Gains>,
     /// What was taken out.
     pub eliminated: Eliminated,
 }
 
-impl OtherLight<'_> {
-    /// Whether anything is fitted.
-    pub(super) fn is_some(&self) -> bool {
-        self.patterns.is_some() || self.is_scale_free
-    }
-
-    /// Takes it out of `evidence`, whose model is M. None if the patterns could be all of the
+impl Left {
+    /// Of `evidence`, whose model is M, with what is `beside` that. None if it could be all of the
     /// model's light.
-    pub(super) fn taken_out(
-        &self,
+    pub(super) fn of(
         evidence: &Evidence<'_>,
         test: Test,
-    ) -> Result<Option<Left>, LinalgError> {
+        beside: &Nuisance<'_>,
+    ) -> Result<Option<Self>, LinalgError> {
         let (phi, model) = (evidence.traced, evidence.model);
         let roots = Residual::new(*evidence, test, Weights::Smoothed).roots();
-        let found = Eliminated::new(roots, self.patterns, model, self.is_scale_free)?;
-        let Some(eliminated) = found else {
+        let Some(eliminated) = Eliminated::new(roots, beside, model)? else {
             return Ok(None);
         };
-        let scale = self
-            .is_scale_free
-            .then(|| scale(evidence, test, &eliminated));
+        let free = || scale(evidence, test, &eliminated, beside.frame_gain);
+        let scale = beside.free_scale.then(free);
         let s = scale.map_or(1.0, |[s, ..]| s);
-        let rest = eliminated.without(&(phi - model));
-        let other = phi - model * s - &rest;
+        let eliminated = eliminated.with_factors(beside, model, s)?;
+        let off = phi - model * s;
+        let other = &off - eliminated.without_free(&off);
         let norm = |m: &Matrix| {
             let counted = m.iter().enumerate().filter(|(i, _)| eliminated.counts(*i));
             counted.map(|(_, x)| x * x).sum::<f64>().sqrt()
         };
-        Ok(Some(Left {
+        Ok(Some(Self {
             other: norm(&other) / norm(phi),
-            phi: model + rest / s,
+            phi: model + eliminated.without(&off) / s,
             stderr: evidence.stderr / s,
             scale,
+            gains: eliminated.factors(&off),
             eliminated,
         }))
     }
 }
 
 /// s with its standard error and its deviate from 0: the fit of what the patterns leave of M to
-/// what they leave of Φ.
-fn scale(evidence: &Evidence<'_>, test: Test, eliminated: &Eliminated) -> [f64; 3] {
-    let [phi, model] = [evidence.traced, evidence.model].map(|m| eliminated.without_patterns(m));
+/// what they leave of Φ. Factors of the frames, known to σ_g, add s σ_g √Σ h², h the share of each
+/// frame in the fit, to its error.
+fn scale(
+    evidence: &Evidence<'_>,
+    test: Test,
+    eliminated: &Eliminated,
+    frame_gain: Option<f64>,
+) -> [f64; 3] {
+    let [phi, model] = [evidence.traced, evidence.model].map(|m| eliminated.without_others(m));
     let dark = &model * 0.0;
     let own = Evidence {
         traced: &phi,
@@ -85,8 +79,17 @@ fn scale(evidence: &Evidence<'_>, test: Test, eliminated: &Eliminated) -> [f64; 
         bound: None,
         ..*evidence
     };
-    let fit = Residual::new(own, test, Weights::Smoothed).fit(&model, &(0..phi.ncols()));
-    fit.map_or([0.0; 3], |fit| [fit.value, fit.stderr, fit.z()])
+    let residual = Residual::new(own, test, Weights::Smoothed);
+    let Some(fit) = residual.fit(&model, &(0..phi.ncols())) else {
+        return [0.0; 3];
+    };
+    let roots = residual.roots();
+    let [left, whole] = [&model, evidence.model].map(|m| roots.component_mul(m));
+    let shares = left.column_iter().zip(whole.column_iter());
+    let shares = shares.map(|(a, b)| a.dot(&b) / left.norm_squared());
+    let squares: f64 = shares.map(|h| h * h).sum();
+    let of_factors = fit.value * frame_gain.unwrap_or(0.0) * squares.sqrt();
+    [fit.value, fit.stderr.hypot(of_factors), fit.z()]
 }
 
 #[cfg(test)]

@@ -129,6 +129,11 @@ impl<'a> Residual<'a> {
         let value = total(0) / g;
         // Rows that carry the fit: 1/Σ h², h the share of each.
         let effective = g * g / sums.iter().map(|s| s[1] * s[1]).sum::<f64>();
+        let of_factors = match self.errors {
+            // In the variance of the weights.
+            Errors::Independent => 0.0,
+            Errors::WithinRows | Errors::Everywhere => self.of_factors(d),
+        };
         let (variance, freedom) = match self.errors {
             Errors::WithinRows if columns.len() > 1 && effective >= ENOUGH_ROWS => {
                 let left = |s: &[f64; 5]| (s[0] - value * s[1]) / (1.0 - s[1] / g);
@@ -153,9 +158,18 @@ impl<'a> Residual<'a> {
         };
         Some(Fit {
             value,
-            stderr: variance.sqrt() / g,
+            stderr: (variance + of_factors).sqrt() / g,
             bias: bias / g,
             freedom,
+        })
+    }
+
+    /// What factors that are known only roughly add to the variance of Σ w d r: they are common to a
+    /// frame's rows.
+    fn of_factors(&self, d: &Matrix) -> f64 {
+        let terms = self.evidence.eliminated;
+        terms.map_or(0.0, |terms| {
+            terms.variance_of_factors(&self.roots().component_mul(d))
         })
     }
 

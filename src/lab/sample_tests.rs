@@ -87,6 +87,7 @@ pub(crate) fn whole(mut run: RunResults) -> RunResults {
         left_out: 0,
         fitted: 0,
         other_light: 0.0,
+        gains: None,
         is_scale_free: false,
         chi2_per_dof: 1.003,
         dof: 30720.0,

@@ -79,13 +79,17 @@ impl Whitening {
 
     /// Of each column.
     pub(super) fn apply(&self, columns: &Matrix) -> Matrix {
+        self.beside(Matrix::from_fn(columns.nrows(), columns.ncols(), |p, s| {
+            self.roots[p] * columns[(p, s)]
+        }))
+    }
+
+    /// What the patterns leave of columns that are weighted.
+    pub(super) fn beside(&self, weighted: Matrix) -> Matrix {
         let once = |m: Matrix| {
             let patterns = tr_product(&self.directions, &m);
             m - product(&self.directions, &patterns)
         };
-        let weighted = Matrix::from_fn(columns.nrows(), columns.ncols(), |p, s| {
-            self.roots[p] * columns[(p, s)]
-        });
         if self.directions.ncols() == 0 {
             weighted
         } else {

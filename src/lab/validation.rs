@@ -4,12 +4,14 @@ use crate::matrix::Matrix;
 use crate::model::{Extent, Kernel, MatrixModel, ModelError, Occlusion, converged};
 use crate::num::linalg::LinalgError;
 use crate::num::statistics::sidak_threshold;
+use crate::recovery::{Nuisance, RecoveryError};
 use crate::scene::Scene;
 
 use super::agreement::{Agreement, agree};
 use super::derivatives::SceneDerivatives;
 use super::evidence::{Evidence, Test};
-use super::other_light::{Left, OtherLight};
+use super::gains::Gains;
+use super::other_light::Left;
 use super::score::Derivatives;
 
 /// How the model integrates.
@@ -40,10 +42,8 @@ pub struct Measured<'a> {
     pub phi: &'a Matrix,
     /// Its standard error, the same unit.
     pub stderr: &'a Matrix,
-    /// Not 0 where that error is not to be trusted.
-    pub left_out: Option<&'a Matrix>,
-    /// What is fitted to it first.
-    pub beside: OtherLight<'a>,
+    /// What is fitted to it first, and which entries do not count, their error not being trusted.
+    pub beside: Nuisance<'a>,
 }
 
 impl<'a> Measured<'a> {
@@ -52,8 +52,10 @@ impl<'a> Measured<'a> {
         Self {
             phi,
             stderr,
-            left_out,
-            beside: OtherLight::default(),
+            beside: Nuisance {
+                left_out,
+                ..Nuisance::default()
+            },
         }
     }
 }
@@ -90,10 +92,13 @@ pub enum ValidationError {
         /// Columns given.
         found_columns: usize,
     },
+    /// What is beside the model does not fit it.
+    #[error(transparent)]
+    Beside(#[from] RecoveryError),
     /// Patterns of other light could be all of the model's.
     #[error(
-        "other light of this form could be all of the model's light, and nothing is left to test (use a polynomial \
-         of a lower degree)"
+        "other light of this form could be all of the model's light, and nothing is left to test (fit less: a \
+         polynomial of a lower degree, fewer patterns, no background)"
     )]
     TakenUp,
     /// Patterns of other light cannot be decomposed.
@@ -115,12 +120,12 @@ pub struct Validation {
 /// Tests Φcam with its standard error against the model of `scene`, its derivatives included.
 ///
 /// What is `beside` it is fitted to the entries whose standard error is not zero, and taken out
-/// ([`OtherLight`]). A free scale that is not above 0 at the significance level of `test` is no
-/// evidence: nothing of the model's light is seen.
+/// ([`Eliminated`](super::Eliminated)). A free scale that is not above 0 at the significance level
+/// of `test` is no evidence: nothing of the model's light is seen.
 ///
 /// # Errors
-/// [`ValidationError`] if nothing is hidden, the shapes do not fit, or other light could be all
-/// light.
+/// [`ValidationError`] if nothing is hidden, shapes or numbers do not fit, or other light could be
+/// all light.
 pub fn validate(
     scene: &Scene,
     measured: Measured<'_>,
@@ -128,7 +133,8 @@ pub fn validate(
     test: Test,
 ) -> Result<Validation, ValidationError> {
     let (rows, columns) = (scene.camera.pixels(), scene.laser.spots.len());
-    let given = [Some(measured.phi), Some(measured.stderr), measured.left_out];
+    let beside = measured.beside;
+    let given = [Some(measured.phi), Some(measured.stderr), beside.left_out];
     for (found_rows, found_columns) in given.into_iter().flatten().map(Matrix::shape) {
         if (found_rows, found_columns) != (rows, columns) {
             return Err(ValidationError::Shape {
@@ -139,6 +145,7 @@ pub fn validate(
             });
         }
     }
+    beside.check((rows, columns))?;
     let Against {
         kernel,
         integration,
@@ -165,7 +172,7 @@ pub fn validate(
         stderr: measured.stderr,
         model: &phi,
         bound: Some(&bound),
-        left_out: measured.left_out,
+        left_out: beside.left_out,
         eliminated: None,
     };
     let share = visible.as_ref().map(|v| &v.share);
@@ -174,8 +181,8 @@ pub fn validate(
         parameters: &off.parameters,
         of: &|index| off.of(index),
     };
-    let (mut agreement, z) = if measured.beside.is_some() {
-        beside_other_light(evidence, test, measured.beside, &derivatives)?
+    let (mut agreement, z) = if beside.estimates() {
+        beside_other_light(evidence, test, &beside, &derivatives)?
     } else {
         agree(evidence, test, Some(&derivatives))
     };
@@ -194,7 +201,7 @@ pub fn validate(
 fn beside_other_light(
     evidence: Evidence<'_>,
     test: Test,
-    beside: OtherLight<'_>,
+    beside: &Nuisance<'_>,
     derivatives: &Derivatives<'_>,
 ) -> Result<(Agreement, Matrix), ValidationError> {
     // An entry without a known error has no weight in a fit.
@@ -215,10 +222,9 @@ fn beside_other_light(
         stderr,
         scale,
         other,
+        gains,
         eliminated,
-    } = beside
-        .taken_out(&evidence, test)?
-        .ok_or(ValidationError::TakenUp)?;
+    } = Left::of(&evidence, test, beside)?.ok_or(ValidationError::TakenUp)?;
     let unseen = scale.is_some_and(|[_, _, z]| z <= sidak_threshold(test.significance, 1));
     let nothing = Matrix::from_element(rows, columns, 1.0);
     let left = Evidence {
@@ -230,6 +236,7 @@ fn beside_other_light(
     };
     let (mut agreement, z) = agree(left, test, Some(derivatives));
     agreement.other_light = other;
+    agreement.gains = gains.as_ref().map(Gains::of);
     if let Some([s, stderr, _]) = scale {
         (agreement.best_scale, agreement.best_scale_stderr) = (s, stderr);
     }

@@ -4,6 +4,7 @@ mod causes;
 
 use super::agreement::{Agreement, Entry, EntryBound};
 use super::finding::{Cell, Column, Describe, Finding, Place, Table, Tone};
+use super::gains::words;
 use super::score::Deviation;
 use super::summary::facts;
 use crate::num::digits::{figure, significant};
@@ -95,7 +96,7 @@ impl Agreement {
             figure(self.largest_p, 2)
         );
         let mut told = vec![("difference", difference)];
-        if self.fitted > 0 {
+        if self.fitted > 0 || self.gains.is_some() {
             told.push(("fitted first", self.fitted_first()));
         }
         told.push(("test", test));
@@ -131,8 +132,16 @@ impl Agreement {
                 percent(self.other_light)
             )
         });
-        let both: Vec<String> = scale.into_iter().chain(light).collect();
-        both.join("; ")
+        let factors = self.gains.as_ref().map(|gains| {
+            let words = words(gains);
+            let words = words.trim_start_matches("; ");
+            format!(
+                "factors of the light, their spread counted as noise: {words}{}",
+                gains.larger()
+            )
+        });
+        let all: Vec<String> = scale.into_iter().chain(light).chain(factors).collect();
+        all.join("; ")
     }
 
     /// The most likely cause of a disagreement, and from which size deviations are seen.

@@ -42,6 +42,15 @@ impl Nuisance<'_> {
         *self != Nuisance::default()
     }
 
+    /// Whether anything is estimated.
+    pub fn estimates(&self) -> bool {
+        let of_all = Nuisance {
+            left_out: None,
+            ..*self
+        };
+        of_all.is_some()
+    }
+
     /// Whether an entry counts.
     pub(super) fn counts(&self, p: usize, l: usize) -> bool {
         self.left_out.is_none_or(|flags| flags[(p, l)] == 0.0)
@@ -54,7 +63,7 @@ impl Nuisance<'_> {
 
     /// The patterns whose strength in each frame is unknown, pixels × patterns: 1 for a constant,
     /// then the others.
-    pub(super) fn of_frames(&self, pixels: usize) -> DMatrix<f64> {
+    pub(crate) fn of_frames(&self, pixels: usize) -> DMatrix<f64> {
         let ones = usize::from(self.frame_constant);
         let others = self.frame_patterns.map_or(0, DMatrix::ncols);
         DMatrix::from_fn(pixels, ones + others, |p, k| match self.frame_patterns {
@@ -64,7 +73,7 @@ impl Nuisance<'_> {
     }
 
     /// The same of frame l with its glare last.
-    pub(super) fn of_frame(&self, of_frames: &DMatrix<f64>, l: usize) -> DMatrix<f64> {
+    pub(crate) fn of_frame(&self, of_frames: &DMatrix<f64>, l: usize) -> DMatrix<f64> {
         let Some(glare) = self.glare else {
             return of_frames.clone();
         };

@@ -261,6 +261,71 @@ fn counts_beside_other_light_are_judged() {
     }
 }
 
+/// A laser that drifts by 3 % and an image in all frames: told of them the verdict agrees, says which
+/// factors it found, and that they are larger where less was stated; told of one alone it does not.
+#[test]
+fn a_drifting_laser_is_told_of() {
+    let read = |name: &str| phicam::matrix::npy::read(&run().path(name)).unwrap();
+    let (phi, stderr) = (read("done/phi.npy"), read("done/phi.stderr.npy"));
+    let (rows, spots) = phi.shape();
+    let factor = |l: usize| 1.0 + 0.03 * (2.3 * l as f64).sin();
+    let image = |p: usize| phi.mean() * (2.0 + (p as f64).cos());
+    let write = |name: &str, of: &dyn Fn(usize, usize) -> f64| {
+        let matrix = phicam::matrix::Matrix::from_fn(rows, spots, of);
+        phicam::matrix::npy::write(&run().path(name), &matrix).unwrap();
+    };
+    write("drift.npy", &|p, l| factor(l) * phi[(p, l)] + image(p));
+    write("drift.stderr.npy", &|p, l| stderr[(p, l)]);
+    let judged = |beside: &str, code: i32| {
+        let given =
+            "--phi drift.npy --stderr drift.stderr.npy --replicates 32 --against small.toml";
+        run()
+            .phicam(&format!("validate --json {given} {beside}"))
+            .exits(code)
+    };
+    let ended = judged("--background --frame-gain 0.03", 0);
+    let value: serde_json::Value = serde_json::from_str(&ended.stdout).unwrap();
+    let frames = &value["gains"]["frames"];
+    for l in 0..spots {
+        let [size, error] = ["size", "standard_error"].map(|key| frames[key][l].as_f64().unwrap());
+        // Beside an image a factor that all frames share is seen by the spots' differences alone.
+        assert!(
+            (1.0 + size - factor(l)).abs() <= 3.0 * error && error <= 0.03,
+            "{value}"
+        );
+    }
+    assert!(frames["p"].as_f64().unwrap() > 1e-3, "{value}");
+    for alone in ["", "--background", "--frame-gain 0.03"] {
+        let _ = judged(alone, 1);
+    }
+    let given = "--phi drift.npy --stderr drift.stderr.npy --replicates 32 --against small.toml";
+    let words = |sigma: &str, code: i32| {
+        let line = format!("validate {given} --background --frame-gain {sigma}");
+        run().phicam(&line).exits(code).stdout
+    };
+    assert!(!words("0.03", 0).contains("LARGER"), "{}", words("0.03", 0));
+    assert!(
+        words("0.003", 1).contains("LARGER than stated"),
+        "{}",
+        words("0.003", 1)
+    );
+    for (bad, cause) in [
+        ("--frame-gain 0", "--frame-gain 0"),
+        ("--scale-error 2", "--scale-error 2"),
+        (
+            "--frame-patterns drift.npy --glare-pattern no.npy",
+            "no.npy",
+        ),
+        (
+            "--frame-polynomial 8 --background",
+            "could be all of the model's light",
+        ),
+    ] {
+        let ended = run().phicam(&format!("validate {given} {bad}")).exits(2);
+        assert!(ended.stderr.contains(cause), "{}", ended.account());
+    }
+}
+
 /// Zero light from both, and entries that are all flagged, are no evidence.
 /// Entries that are wrong refute a right model, unless they do not count.
 #[test]

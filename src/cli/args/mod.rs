@@ -1,5 +1,6 @@
 //! Raw arguments, as clap reads them.
 
+mod beside;
 mod calibrate;
 mod choice;
 mod expose;
@@ -30,6 +31,7 @@ use crate::model::Kernel;
 use terms::explained;
 use value::{definition, elements, spot_range};
 
+pub(in crate::cli) use beside::BesideArgs;
 pub(in crate::cli) use calibrate::CalibrateArgs;
 pub(in crate::cli) use expose::{ExposeArgs, StatedBy};
 pub(in crate::cli) use import::ImportArgs;

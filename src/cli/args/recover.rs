@@ -1,13 +1,12 @@
 //! Arguments of `phicam recover`.
 
-use super::OcclusionArgs;
 use std::path::PathBuf;
 
 use clap::Args as Arguments;
 
-use super::choice;
 use super::terms::explained;
 use super::value::{count, elements, levels};
+use super::{BesideArgs, OcclusionArgs, choice};
 use crate::lab::Integration;
 use crate::model::Kernel;
 use crate::recovery::{Method, Rule, WeightRule};
@@ -90,6 +89,8 @@ pub(in crate::cli) struct RecoverArgs {
     pub tolerance: Option<f64>,
     #[command(flatten)]
     pub joint: JointArgs,
+    #[command(flatten)]
+    pub beside: BesideArgs,
     /// Bands that cover with this probability, each element alone (linear methods without bias) or
     /// all together (joint, nnls): METHOD.lower.npy and METHOD.upper.npy
     #[arg(long, value_name = "LEVEL", allow_negative_numbers = true)]
@@ -120,45 +121,9 @@ pub(in crate::cli) struct JointArgs {
     /// and a field of errors that neighbours share, in place of noise that so many pixels share
     #[arg(long)]
     pub error_field: bool,
-    /// Estimate a constant of each frame with the reflectances
-    #[arg(long)]
-    pub frame_constant: bool,
-    /// Estimate a polynomial of this degree over each frame, 0 to 8: other light on the wall
-    #[arg(
-        long,
-        value_name = "DEGREE",
-        value_parser = clap::value_parser!(u8).range(0..=8),
-        conflicts_with = "frame_constant"
-    )]
-    pub frame_polynomial: Option<u8>,
-    /// Estimate the strengths of these patterns in each frame: pixels × patterns
-    #[arg(long, value_name = "FILE")]
-    pub frame_patterns: Option<PathBuf>,
-    /// Estimate an image that is the same in all frames
-    #[arg(long)]
-    pub background: bool,
-    /// Estimate one factor of all photographs; the brightest element is the unit then
-    #[arg(long)]
-    pub free_scale: bool,
-    /// Estimate one factor of each frame, 1 within this standard deviation (0 to 1): a laser whose
-    /// power drifts
-    #[arg(long, value_name = "DEVIATION", allow_negative_numbers = true)]
-    pub frame_gain: Option<f64>,
-    /// The scale of all photographs is known to this relative standard deviation alone (0 to 1):
-    /// the error of a calibration
-    #[arg(
-        long,
-        value_name = "DEVIATION",
-        allow_negative_numbers = true,
-        conflicts_with = "free_scale"
-    )]
-    pub scale_error: Option<f64>,
     /// Estimate the light that occluders reflect, with one albedo for each of their sides
     #[arg(long, conflicts_with_all = ["no_occlusion", "free_scale"])]
     pub occluder_light: bool,
-    /// Estimate the strength of this pattern in each frame: pixels × spots
-    #[arg(long, value_name = "FILE")]
-    pub glare_pattern: Option<PathBuf>,
 }
 
 /// The help of `--method`.

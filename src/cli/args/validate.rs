@@ -6,7 +6,7 @@ use clap::Args as Arguments;
 
 use super::terms::explained;
 use super::value::shift;
-use super::{OcclusionArgs, TestArgs, choice};
+use super::{BesideArgs, OcclusionArgs, TestArgs, choice};
 use crate::lab::Errors;
 
 #[derive(Debug, Arguments)]
@@ -34,13 +34,8 @@ pub(in crate::cli) struct ValidateArgs {
     /// Which entries of --phi share their errors
     #[arg(long, value_parser = choice::errors(), default_value = "independent", requires = "phi")]
     pub errors: Errors,
-    /// The scale of all light is unknown, as of photographs in counts: it is fitted first, and a
-    /// factor of all light is not seen
-    #[arg(long)]
-    pub free_scale: bool,
-    /// Other light in each frame: a polynomial of this degree, 0 (a constant) to 8, is fitted first
-    #[arg(long, value_name = "DEGREE", value_parser = clap::value_parser!(u8).range(0..=8))]
-    pub frame_polynomial: Option<u8>,
+    #[command(flatten)]
+    pub beside: BesideArgs,
     /// Move the spots by DX,DY (scene's unit) in the model only
     #[arg(long, value_name = "DX,DY", value_parser = shift, allow_hyphen_values = true)]
     pub shift_spots: Option<[f64; 2]>,

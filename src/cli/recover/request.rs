@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use super::is_own;
 use crate::cli::args::RecoverArgs;
+use crate::cli::beside::{Beside, PhotographSize, left_out, mask};
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::load_run::{read_matrix, read_stderr};
-use crate::cli::recover_beside::{Beside, Photographs, mask};
 use crate::cli::recover_memory::{self, Errors, Strips};
 use crate::cli::recover_options::uncertainty;
 use crate::cli::recovered::recovering;
@@ -63,14 +63,10 @@ impl RecoveryRequest<'_> {
         let noise = stderr.as_ref().map_or(Noise::Unknown, |stderr| {
             Noise::StandardError(stderr, self.certainty)
         });
-        let of = Photographs {
-            name: format!("scene `{}`", scene.name),
-            grid: Some([scene.camera.columns, scene.camera.rows]),
-            pixels: scene.camera.pixels(),
-            spots: scene.laser.spots.len(),
-        };
-        let beside = Beside::read(args, &self.phi, &of, self.console)?;
-        let nuisance = beside.nuisance(args);
+        let of = PhotographSize::of_scene(scene);
+        let left_out = left_out(args.left_out.as_deref(), &self.phi, &of, self.console)?;
+        let beside = Beside::read(&args.beside, left_out, &of)?;
+        let nuisance = beside.nuisance(&args.beside);
         let options = Options {
             uncertainty: uncertainty(&model, self.console),
             frame: of.grid,
@@ -96,7 +92,7 @@ impl RecoveryRequest<'_> {
         let Self { args, scene, .. } = *self;
         let phi = recover_memory::open(&self.phi, scene)?;
         self.refuse_clipped()?;
-        if let Some(mask) = mask(args, &self.phi) {
+        if let Some(mask) = mask(args.left_out.as_deref(), &self.phi) {
             let cause = format!(
                 "{} says which entries do not count, and no method that reads Φcam by rows can leave them out",
                 mask.display()

@@ -1,6 +1,6 @@
 //! What a method chose, in words.
 
-use crate::lab::gains;
+use crate::lab::gains::{self, Gains};
 use crate::lab::which_errors::which_errors;
 use crate::num::digits::significant;
 use crate::recovery::{Choice, Estimated, Parameter, Patterns, Recovered, Sum};
@@ -154,5 +154,9 @@ fn estimated(nuisance: &Estimated) -> String {
             sized(scale, 4)
         );
     }
-    words + &nuisance.gains.as_ref().map_or(String::new(), gains::words)
+    words
+        + &nuisance
+            .gains
+            .as_ref()
+            .map_or(String::new(), |found| gains::words(&Gains::of(found)))
 }

@@ -1,6 +1,7 @@
 //! What the best picture of all can do.
 
-use super::{Certainty, FIT_LEVEL, Fit, MOST_ELEMENTS, Residuals, fit};
+use super::{Certainty, Fit, MOST_ELEMENTS, Residuals, fit};
+use crate::lab::evidence::FIT_LEVEL;
 use crate::matrix::Matrix;
 use crate::num::statistics::fisher_sf;
 use crate::recovery::{Method, Options, Problem, Recovered, WeightRule, recover};

@@ -2,6 +2,7 @@ use super::*;
 use crate::lab::agreement::agree;
 use crate::lab::evidence::Errors;
 use crate::lab::score::{Derivatives, Parameter};
+use crate::num::linalg::{Tolerance, pinv};
 use crate::num::stream::{Key, Sampling, Stream};
 
 const ROWS: usize = 12;
@@ -11,6 +12,9 @@ const TEST: Test = Test {
     replicates: u32::MAX,
     errors: Errors::Independent,
 };
+
+/// Of singular values: what depends on others is below it.
+const TOLERANCE: Tolerance = Tolerance::Relative(1e-9);
 
 fn normal(seed: u64) -> Matrix {
     let mut stream = Stream::new(
@@ -25,54 +29,185 @@ fn normal(seed: u64) -> Matrix {
     Matrix::from_fn(ROWS, COLUMNS, |_, _| stream.normal())
 }
 
-/// The unknowns of the least Σ (y − X b)²/σ², and their errors, by the normal equations.
-fn least_squares(y: &Matrix, columns: &[Matrix], sigma: f64) -> Vec<[f64; 2]> {
+/// Least squares of y by columns with errors of covariance `v`: the unknowns, their errors and the
+/// least of rᵀ v⁻¹ r, by the normal equations. The last unknown is the one of interest: others may
+/// depend on each other.
+fn least_squares(y: &[f64], columns: &[Vec<f64>], v: &Matrix) -> ([f64; 2], f64) {
     let x = Matrix::from_fn(y.len(), columns.len(), |i, k| columns[k][i]);
-    let inverse = (x.transpose() * &x).try_inverse().unwrap();
-    let y = Matrix::from_column_slice(y.len(), 1, y.as_slice());
-    let b = &inverse * x.transpose() * y;
-    let pair = |k: usize| [b[k], sigma * inverse[(k, k)].sqrt()];
-    (0..columns.len()).map(pair).collect()
+    let y = Matrix::from_column_slice(y.len(), 1, y);
+    let weight = v.clone().try_inverse().unwrap();
+    let normal = x.transpose() * &weight * &x;
+    let inverse = pinv(&normal, TOLERANCE).unwrap().matrix;
+    let b = &inverse * x.transpose() * &weight * &y;
+    let rest = &y - x * &b;
+    let last = columns.len() - 1;
+    let least = (rest.transpose() * weight * rest)[(0, 0)];
+    ([b[last], inverse[(last, last)].sqrt()], least)
 }
 
-/// A scale, two patterns in each of three frames and one deviation: fitted after the others were
-/// taken out, the deviation and its error are those of all eight unknowns at once, and the scale is
-/// that of the seven without it. Also of a deviation of one spot alone.
+/// What is beside the model of a case.
+#[derive(Clone, Copy, Default)]
+struct Case {
+    patterns: bool,
+    background: bool,
+    glare: bool,
+    free_scale: bool,
+    frame_gain: Option<f64>,
+    scale_error: Option<f64>,
+    /// Whether some entries do not count.
+    holes: bool,
+}
+
+/// One deviation, of all spots or of one, is fitted after what is beside the model was taken out:
+/// value and error are those of all unknowns at once, factors being noise that a frame's entries
+/// share; so are the factors, the scale and its error, and χ².
 #[test]
 fn what_is_fitted_first_is_as_if_fitted_together() {
+    let cases = [
+        Case {
+            patterns: true,
+            free_scale: true,
+            ..Case::default()
+        },
+        Case {
+            background: true,
+            ..Case::default()
+        },
+        Case {
+            patterns: true,
+            background: true,
+            free_scale: true,
+            ..Case::default()
+        },
+        Case {
+            patterns: true,
+            background: true,
+            holes: true,
+            ..Case::default()
+        },
+        Case {
+            glare: true,
+            free_scale: true,
+            holes: true,
+            ..Case::default()
+        },
+        Case {
+            frame_gain: Some(0.02),
+            ..Case::default()
+        },
+        Case {
+            scale_error: Some(0.03),
+            holes: true,
+            ..Case::default()
+        },
+        Case {
+            frame_gain: Some(0.02),
+            scale_error: Some(0.03),
+            ..Case::default()
+        },
+        Case {
+            patterns: true,
+            frame_gain: Some(0.02),
+            free_scale: true,
+            ..Case::default()
+        },
+        Case {
+            patterns: true,
+            background: true,
+            holes: true,
+            frame_gain: Some(0.02),
+            scale_error: Some(0.03),
+            ..Case::default()
+        },
+    ];
+    cases.iter().for_each(is_as_if_fitted_together);
+}
+
+fn is_as_if_fitted_together(case: &Case) {
     let model = normal(1).map(|x| 5.0 + x);
     let d = normal(2);
     let patterns = Matrix::from_fn(ROWS, 2, |p, k| (p as f64 / 7.0).powi(k as i32));
-    let sigma = 20.0;
-    let phi = &model * 300.0 + &d * 9.0 + normal(3) * sigma;
+    let glare = normal(4);
+    let sigma = if case.free_scale { 20.0 } else { 0.1 };
+    let unit = if case.free_scale { 300.0 } else { 1.0 };
+    let phi = &model * unit + &d * (0.03 * unit) + normal(3) * sigma;
     let stderr = model.map(|_| sigma);
-    let in_frame = |of: &dyn Fn(usize) -> f64, l: usize| {
-        Matrix::from_fn(ROWS, COLUMNS, |p, c| if c == l { of(p) } else { 0.0 })
-    };
-    let mut columns = vec![model.clone()];
-    for l in 0..COLUMNS {
-        columns.extend((0..2).map(|k| in_frame(&|p| patterns[(p, k)], l)));
-    }
-    let own = in_frame(&|p| d[(p, 1)], 1);
-    let with = |d: &Matrix| [columns.clone(), vec![d.clone()]].concat();
-    // θ changes s θ d of the photographs.
-    let scale = least_squares(&phi, &columns, sigma)[0];
-    let of_all = least_squares(&phi, &with(&d), sigma)[7].map(|x| x / scale[0]);
-    let of_one = least_squares(&phi, &with(&own), sigma)[7].map(|x| x / scale[0]);
+    // Pixel 4 is never seen, and two entries are left out.
+    let is_hole =
+        |p: usize, l: usize| case.holes && (p == 4 || (p, l) == (2, 1) || (p, l) == (7, 0));
+    let holes = Matrix::from_fn(ROWS, COLUMNS, |p, l| f64::from(u8::from(is_hole(p, l))));
 
+    let kept: Vec<usize> = (0..phi.len()).filter(|i| holes[*i] == 0.0).collect();
+    let seen = |m: &Matrix| -> Vec<f64> { kept.iter().map(|i| m[*i]).collect() };
+    let only = |keep: &dyn Fn(usize, usize) -> f64| seen(&Matrix::from_fn(ROWS, COLUMNS, keep));
+    let in_frame =
+        |m: &dyn Fn(usize) -> f64, own: usize| only(&|p, l| if l == own { m(p) } else { 0.0 });
+    let mut others = Vec::new();
+    for l in 0..COLUMNS {
+        if case.patterns {
+            others.extend((0..2).map(|k| in_frame(&|p| patterns[(p, k)], l)));
+        }
+        if case.glare {
+            others.push(in_frame(&|p| glare[(p, l)], l));
+        }
+    }
+    if case.background {
+        let image = |own| only(&|p, _| f64::from(u8::from(p == own)));
+        others.extend((0..ROWS).map(image));
+    }
+    let beside = Nuisance {
+        frame_patterns: case.patterns.then_some(&patterns),
+        glare: case.glare.then_some(&glare),
+        background: case.background,
+        free_scale: case.free_scale,
+        frame_gain: case.frame_gain,
+        scale_error: case.scale_error,
+        ..Nuisance::default()
+    };
     let evidence = Evidence {
         traced: &phi,
         stderr: &stderr,
         model: &model,
         bound: None,
-        left_out: None,
+        left_out: Some(&holes),
         eliminated: None,
     };
-    let beside = OtherLight {
-        patterns: Some(&patterns),
-        is_scale_free: true,
+    let left = Left::of(&evidence, TEST, &beside).unwrap().unwrap();
+
+    let near = |what: &str, found: f64, expected: f64| {
+        let off = (found - expected).abs() / expected.abs();
+        assert!(off < 1e-8, "{what}: {found} in place of {expected}");
     };
-    let left = beside.taken_out(&evidence, TEST).unwrap().unwrap();
+    // The scale is fitted with factors of the frames as noise that has no part in its weights.
+    let mut noise = Matrix::identity(kept.len(), kept.len()) * (sigma * sigma);
+    let columns = [others.clone(), vec![seen(&model)]].concat();
+    let s = if case.free_scale {
+        let [s, error, _] = left.scale.unwrap();
+        let ([expected, own], _) = least_squares(&seen(&phi), &columns, &noise);
+        near("scale", s, expected);
+        let factors = (0..COLUMNS).map(|l| {
+            let light = in_frame(&|p| s * model[(p, l)], l);
+            let ([change, _], _) = least_squares(&light, &columns, &noise);
+            change * case.frame_gain.unwrap_or(0.0)
+        });
+        let of_factors: f64 = factors.map(|x| x * x).sum();
+        near("scale's error", error, (own * own + of_factors).sqrt());
+        s
+    } else {
+        1.0
+    };
+    let mut roots = Vec::new();
+    if let Some(sigma) = case.frame_gain {
+        roots.extend((0..COLUMNS).map(|l| in_frame(&|p| sigma * s * model[(p, l)], l)));
+    }
+    if let Some(sigma) = case.scale_error {
+        roots.push(only(&|p, l| sigma * s * model[(p, l)]));
+    }
+    for root in &roots {
+        let root = Matrix::from_column_slice(root.len(), 1, root);
+        noise += &root * root.transpose();
+    }
+
     let parameter = Parameter {
         name: "all".to_owned(),
         unit: String::new(),
@@ -91,20 +226,59 @@ fn what_is_fitted_first_is_as_if_fitted_together() {
     };
     let (found, _) = agree(adjusted, TEST, Some(&derivatives));
     let score = found.score.unwrap();
-    let near = |[a, b]: [f64; 2], [c, d]: [f64; 2]| {
-        let off = |x: f64, y: f64| (x - y).abs() / y.abs();
-        assert!(off(a, c) < 1e-9 && off(b, d) < 1e-9, "{a} ± {b}, {c} ± {d}");
+    let mut columns = others;
+    if case.free_scale {
+        columns.push(seen(&model));
+    }
+    let off = seen(&(&phi - &model * s));
+    // θ changes s θ d of the photographs.
+    let all = seen(&d);
+    let one = in_frame(&|p| d[(p, 1)], 1);
+    for (fitted, own) in [(&score.deviations[0], all), (&score.spots[1], one)] {
+        let with = [columns.clone(), vec![own]].concat();
+        let ([value, error], _) = least_squares(&off, &with, &noise);
+        near("value", fitted.value, value / s);
+        near("error", fitted.stderr, error / s);
+    }
+    let x = Matrix::from_fn(kept.len(), columns.len(), |i, k| columns[k][i]);
+    let rank = pinv(&x, TOLERANCE).map_or(0, |found| found.rank);
+    assert_eq!(found.fitted, rank);
+    // A column that is nothing leaves the least squares of the others.
+    columns.push(vec![0.0; kept.len()]);
+    let (_, least) = least_squares(&off, &columns, &noise);
+    let free = (kept.len() - rank) as f64;
+    near("χ²", found.chi2_per_dof, least / free);
+    let Some(gains) = left.gains else {
+        assert!(roots.is_empty());
+        return;
     };
-    let [s, error, _] = left.scale.unwrap();
-    near([s, error], scale);
-    let fitted = |d: &crate::lab::score::Deviation| [d.value, d.stderr];
-    near(fitted(&score.deviations[0]), of_all);
-    near(fitted(&score.spots[1]), of_one);
-    assert_eq!(found.fitted, 7);
-    // Σ z² of the seven unknowns' least squares, over 36 − 7.
-    let estimate = least_squares(&phi, &columns, sigma);
-    let explained = columns.iter().zip(&estimate);
-    let rest = explained.fold(phi.clone(), |rest, (c, [b, _])| rest - c * *b);
-    let squares = rest.norm_squared() / sigma / sigma / 29.0;
-    assert!((found.chi2_per_dof / squares - 1.0).abs() < 1e-9);
+    // Factors as unknowns of their own, each with the entry 0 ± 1 of its prior.
+    let count = roots.len();
+    let prior = |k: usize| (0..count).map(move |i| f64::from(u8::from(i == k)));
+    let columns: Vec<Vec<f64>> = columns.into_iter().map(|c| with_zeros(c, count)).collect();
+    let widened = Matrix::from_fn(kept.len() + count, kept.len() + count, |i, j| {
+        let own = if i < kept.len() { sigma * sigma } else { 1.0 };
+        if i == j { own } else { 0.0 }
+    });
+    let frames = gains.frames.iter().chain(&gains.whole);
+    let sizes = frames.flat_map(|of| {
+        let one = move |k: usize| [of.size[k], of.standard_error[k]].map(|x| x / of.known_to);
+        (0..of.size.len()).map(one)
+    });
+    for (k, [size, error]) in sizes.enumerate() {
+        let own = (0..count).map(|j| roots[j].iter().copied().chain(prior(j)).collect());
+        let mut all: Vec<Vec<f64>> = own.collect();
+        let last = all.remove(k);
+        let columns = [columns.clone(), all, vec![last]].concat();
+        let off = with_zeros(off.clone(), count);
+        let ([value, expected], _) = least_squares(&off, &columns, &widened);
+        near("factor", size, value);
+        near("factor's error", error, expected);
+    }
+}
+
+/// With entries 0 of the priors after it.
+fn with_zeros(mut of: Vec<f64>, count: usize) -> Vec<f64> {
+    of.extend(std::iter::repeat_n(0.0, count));
+    of
 }

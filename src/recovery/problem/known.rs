@@ -94,11 +94,31 @@ impl<'a> Problem<'a> {
     /// joint methods can.
     ///
     /// # Errors
-    /// [`RecoveryError::Shape`], [`RecoveryError::NotFinite`] or [`RecoveryError::OutOfScale`] of a
-    /// glare pattern; [`RecoveryError::RelativeDeviation`] and [`RecoveryError::ScaleTwice`] of
-    /// factors that are known only roughly.
+    /// Those of [`Nuisance::check`], and [`RecoveryError::NothingCounts`].
     pub fn with_nuisance(self, nuisance: Nuisance<'a>) -> Result<Self, RecoveryError> {
-        let (pixels, spots) = self.phi.shape();
+        nuisance.check(self.phi.shape())?;
+        if nuisance
+            .left_out
+            .is_some_and(|flags| flags.iter().all(|x| *x != 0.0))
+        {
+            return Err(RecoveryError::NothingCounts);
+        }
+        Ok(Problem {
+            nuisance,
+            shared: None,
+            ..self
+        })
+    }
+}
+
+impl Nuisance<'_> {
+    /// Whether it belongs to photographs of pixels × spots and its numbers have a meaning.
+    ///
+    /// # Errors
+    /// [`RecoveryError::Shape`], [`RecoveryError::NotFinite`] or [`RecoveryError::OutOfScale`] of a
+    /// pattern; [`RecoveryError::RelativeDeviation`] and [`RecoveryError::ScaleTwice`] of factors
+    /// that are known only roughly.
+    pub fn check(&self, (pixels, spots): (usize, usize)) -> Result<(), RecoveryError> {
         let fits = |name, matrix: Option<&DMatrix<f64>>, columns| match matrix {
             Some(matrix) if matrix.shape() == (pixels, columns) => finite(name, matrix),
             Some(matrix) => Err(RecoveryError::Shape {
@@ -110,40 +130,23 @@ impl<'a> Problem<'a> {
             }),
             None => Ok(()),
         };
-        let patterns = nuisance.frame_patterns.map_or(0, DMatrix::ncols);
-        fits("the glare pattern (pixels × spots)", nuisance.glare, spots)?;
-        fits(
-            "the patterns of a frame (pixels × patterns)",
-            nuisance.frame_patterns,
-            patterns,
-        )?;
-        fits(
-            "what is left out (pixels × spots)",
-            nuisance.left_out,
-            spots,
-        )?;
-        if nuisance
-            .left_out
-            .is_some_and(|flags| flags.iter().all(|x| *x != 0.0))
-        {
-            return Err(RecoveryError::NothingCounts);
-        }
+        let patterns = self.frame_patterns.map_or(0, DMatrix::ncols);
+        fits("the glare pattern (pixels × spots)", self.glare, spots)?;
+        let name = "the patterns of a frame (pixels × patterns)";
+        fits(name, self.frame_patterns, patterns)?;
+        fits("what is left out (pixels × spots)", self.left_out, spots)?;
         let roughly = [
-            ("the gain of a frame", nuisance.frame_gain),
-            ("the scale", nuisance.scale_error),
+            ("the gain of a frame", self.frame_gain),
+            ("the scale", self.scale_error),
         ];
         for (name, known_to) in roughly {
             if let Some(value) = known_to.filter(|x| !(*x > 0.0 && *x <= 1.0)) {
                 return Err(RecoveryError::RelativeDeviation { name, value });
             }
         }
-        if nuisance.free_scale && nuisance.scale_error.is_some() {
+        if self.free_scale && self.scale_error.is_some() {
             return Err(RecoveryError::ScaleTwice);
         }
-        Ok(Problem {
-            nuisance,
-            shared: None,
-            ..self
-        })
+        Ok(())
     }
 }

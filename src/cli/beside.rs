@@ -1,16 +1,17 @@
-//! What the photographs of a recovery hold beside the light of the hidden surface, and what of them
-//! does not count.
+//! What photographs hold beside the light of the hidden surface, and what of them does not count.
 
 use std::path::{Path, PathBuf};
 
-use super::args::RecoverArgs;
+use super::args::BesideArgs;
 use super::console::Console;
 use super::failure::Failure;
 use super::load_run::{read_undamaged, refuse_other_shape};
 use super::run_folder::LEFT_OUT;
+use super::settings::within;
 use crate::lab::polynomials;
 use crate::matrix::{Matrix, npy};
-use crate::recovery::Nuisance;
+use crate::recovery::{Nuisance, Setting};
+use crate::scene::Scene;
 
 /// Patterns that may be estimated in each frame.
 const MOST_PATTERNS: usize = 64;
@@ -19,7 +20,7 @@ const MOST_PATTERNS: usize = 64;
 const MOST_COUPLED: usize = 4096;
 
 /// The size of Φcam.
-pub(super) struct Photographs {
+pub(super) struct PhotographSize {
     /// What has it.
     pub name: String,
     /// Columns and rows of a photograph, where they are known.
@@ -28,7 +29,17 @@ pub(super) struct Photographs {
     pub spots: usize,
 }
 
-impl Photographs {
+impl PhotographSize {
+    /// Of photographs of a scene.
+    pub(super) fn of_scene(scene: &Scene) -> Self {
+        Self {
+            name: format!("scene `{}`", scene.name),
+            grid: Some([scene.camera.columns, scene.camera.rows]),
+            pixels: scene.camera.pixels(),
+            spots: scene.laser.spots.len(),
+        }
+    }
+
     /// A matrix of the same size.
     fn read(&self, path: &Path) -> Result<Matrix, Failure> {
         // By its header, before memory is taken for its numbers.
@@ -46,18 +57,18 @@ pub(super) struct Beside {
 }
 
 impl Beside {
-    /// Reads them.
+    /// Reads them; `left_out` says which entries do not count.
     pub(super) fn read(
-        args: &RecoverArgs,
-        phi: &Path,
-        of: &Photographs,
-        console: Console,
+        args: &BesideArgs,
+        left_out: Option<Matrix>,
+        of: &PhotographSize,
     ) -> Result<Self, Failure> {
-        let glare = args.joint.glare_pattern.as_ref();
+        refuse_meaningless(args)?;
+        let glare = args.glare_pattern.as_ref();
         let patterns = patterns(args, of)?;
         // A background ties the terms of all frames together.
         let of_frame = patterns.as_ref().map_or(0, Matrix::ncols);
-        if args.joint.background && of_frame.saturating_mul(of.spots) > MOST_COUPLED {
+        if args.background && of_frame.saturating_mul(of.spots) > MOST_COUPLED {
             let cause = format!(
                 "--background and {of_frame} patterns in each of {} frames are too many to estimate together",
                 of.spots
@@ -70,28 +81,28 @@ impl Beside {
         Ok(Self {
             glare: glare.map(|file| of.read(file)).transpose()?,
             patterns,
-            left_out: left_out(args, phi, of, console)?,
+            left_out,
         })
     }
 
     /// What is to be estimated.
-    pub(super) fn nuisance(&self, args: &RecoverArgs) -> Nuisance<'_> {
+    pub(super) fn nuisance(&self, args: &BesideArgs) -> Nuisance<'_> {
         Nuisance {
-            frame_constant: args.joint.frame_constant,
+            frame_constant: args.frame_constant,
             frame_patterns: self.patterns.as_ref(),
-            background: args.joint.background,
+            background: args.background,
             glare: self.glare.as_ref(),
-            free_scale: args.joint.free_scale,
-            frame_gain: args.joint.frame_gain,
-            scale_error: args.joint.scale_error,
+            free_scale: args.free_scale,
+            frame_gain: args.frame_gain,
+            scale_error: args.scale_error,
             left_out: self.left_out.as_ref(),
         }
     }
 }
 
 /// Patterns whose strength in each frame is estimated: those of a polynomial, then those of a file.
-fn patterns(args: &RecoverArgs, of: &Photographs) -> Result<Option<Matrix>, Failure> {
-    let smooth = match (args.joint.frame_polynomial, of.grid) {
+fn patterns(args: &BesideArgs, of: &PhotographSize) -> Result<Option<Matrix>, Failure> {
+    let smooth = match (args.frame_polynomial, of.grid) {
         (Some(degree), Some(grid)) => Some(polynomials(grid, usize::from(degree))),
         (Some(_), None) => {
             let cause = "nothing says how the pixels lie in the photograph";
@@ -100,7 +111,7 @@ fn patterns(args: &RecoverArgs, of: &Photographs) -> Result<Option<Matrix>, Fail
         }
         (None, _) => None,
     };
-    let Some(file) = &args.joint.frame_patterns else {
+    let Some(file) = &args.frame_patterns else {
         return Ok(smooth);
     };
     let (pixels, count) = npy::shape(file)?;
@@ -128,24 +139,36 @@ fn patterns(args: &RecoverArgs, of: &Photographs) -> Result<Option<Matrix>, Fail
     }))
 }
 
-/// The file that says which entries do not count: the one asked for, else the one beside Φcam.
-pub(super) fn mask(args: &RecoverArgs, phi: &Path) -> Option<PathBuf> {
-    let beside = phi.with_file_name(LEFT_OUT);
-    let beside = beside.exists().then_some(beside);
-    args.left_out.clone().or(beside)
+/// Refuses deviations without a meaning.
+pub(super) fn refuse_meaningless(args: &BesideArgs) -> Result<(), Failure> {
+    let given = [
+        (Setting::FrameGain, args.frame_gain),
+        (Setting::ScaleError, args.scale_error),
+    ];
+    for (setting, value) in given {
+        let range = setting.range().unwrap_or_default();
+        within(setting.name(), value, |value| setting.allows(value), range)?;
+    }
+    Ok(())
 }
 
-/// Entries that do not count.
-fn left_out(
-    args: &RecoverArgs,
+/// The file that says which entries do not count: the one asked for, else the one beside Φcam.
+pub(super) fn mask(asked: Option<&Path>, phi: &Path) -> Option<PathBuf> {
+    let beside = phi.with_file_name(LEFT_OUT);
+    let beside = beside.exists().then_some(beside);
+    asked.map(Path::to_path_buf).or(beside)
+}
+
+/// Entries that do not count, by [`mask`].
+pub(super) fn left_out(
+    asked: Option<&Path>,
     phi: &Path,
-    of: &Photographs,
+    of: &PhotographSize,
     console: Console,
 ) -> Result<Option<Matrix>, Failure> {
-    let Some(file) = mask(args, phi) else {
+    let Some(file) = &mask(asked, phi) else {
         return Ok(None);
     };
-    let file = &file;
     let flags = of.read(file)?;
     let count = flags.iter().filter(|x| **x != 0.0).count();
     if count == 0 {
