@@ -19,7 +19,7 @@ pub(in crate::cli) struct ValidateArgs {
     pub test: TestArgs,
     #[command(flatten)]
     pub occlusion: OcclusionArgs,
-    /// Test this matrix (.npy, pixels × spots, W) instead of the run's
+    /// Test this matrix (.npy, pixels × spots, W; any unit with --free-scale) instead of the run's
     #[arg(long, value_name = "FILE", requires = "stderr")]
     pub phi: Option<PathBuf>,
     /// Standard errors of --phi, of the same shape

@@ -68,8 +68,8 @@ fn patterns(of: &Patterns) -> String {
         "; if there are two reflectances and no more".to_owned()
     };
     format!(
-        "{exact}, and if the scale is right, this pattern has probability {:.3}, {} elements are \
-         undecided, levels {:.3} ± {:.3} and {:.3} ± {:.3} ({how})",
+        "{exact}, if the scale is right, and no pattern likelier beforehand than another, this pattern has \
+         probability {:.3}, {} elements are undecided, levels {:.3} ± {:.3} and {:.3} ± {:.3} ({how})",
         of.pattern,
         undecided.count(),
         of.levels[0],
