@@ -164,8 +164,8 @@ impl<'a> Residual<'a> {
         })
     }
 
-    /// What factors that are known only roughly add to the variance of Σ w d r: they are common to a
-    /// frame's rows.
+    /// What factors that are known only roughly add to the variance of Σ w d r: all rows of a frame
+    /// share them, so that no scatter of rows shows them.
     fn of_factors(&self, d: &Matrix) -> f64 {
         let terms = self.evidence.eliminated;
         terms.map_or(0.0, |terms| {
