@@ -43,9 +43,9 @@ pub struct Eliminated {
 }
 
 impl Eliminated {
-    /// By √w of each entry, 0 where it does not count, what is `beside` the model, and the model, W.
-    /// None if that could be all of the model's light. Without the factors:
-    /// [`Self::with_factors`].
+    /// By √w of each entry, 0 where it does not count, what is `beside` the model, and the model,
+    /// W; without factors ([`Self::with_factors`]). None if the terms could be all of the model's
+    /// light.
     pub(super) fn new(
         roots: Matrix,
         beside: &Nuisance<'_>,
