@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::gains::Gains;
-use crate::recovery::{Choice, Method, Parameter, Recovered, Sum};
+use crate::recovery::{Choice, IfAlike, Method, Parameter, Recovered, Sum};
 pub(super) use describe::{chosen_words, words};
 
 /// A parameter, why it is this one, and what a run needs to take the same again.
@@ -80,6 +80,10 @@ pub struct Probable {
     pub disagreement: Option<f64>,
     /// Whether the probabilities are to be believed.
     pub converged: bool,
+    /// What they are where neighbours may be alike, the levels exact; absent where that is not
+    /// known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub if_alike: Option<IfAlike>,
 }
 
 impl Probable {
@@ -96,6 +100,7 @@ impl Probable {
                 Sum::Sampled { disagreement, .. } => Some(disagreement),
             },
             converged: p.sum.converged(),
+            if_alike: p.if_alike,
         })
     }
 }

@@ -1,6 +1,7 @@
 //! How likely each element is to be light, where there are two levels.
 
 use nalgebra::DVector;
+use serde::Serialize;
 
 /// How the probabilities of patterns were found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,4 +61,19 @@ pub struct Patterns {
     pub log_evidence: f64,
     /// How it was found.
     pub sum: Sum,
+    /// What it is where neighbours may be alike: what hangs on every pattern being as likely. Where
+    /// the probabilities are to be believed and the patterns that were met have the weight.
+    pub if_alike: Option<IfAlike>,
+}
+
+/// Pattern and levels where neighbours are alike by an unknown degree beforehand, as those of a
+/// board or a letter are and those of a fair coin for each element are not; the levels exact.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct IfAlike {
+    /// Probability of the pattern that was recovered.
+    pub pattern: f64,
+    /// Means of the dark and of the light level.
+    pub levels: [f64; 2],
+    /// Their standard deviations; 0 where they were given.
+    pub level_errors: [f64; 2],
 }

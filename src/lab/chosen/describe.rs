@@ -3,7 +3,7 @@
 use crate::lab::gains::{self, Gains};
 use crate::lab::which_errors::which_errors;
 use crate::num::digits::significant;
-use crate::recovery::{Choice, Estimated, Parameter, Patterns, Recovered, Sum};
+use crate::recovery::{Choice, Estimated, IfAlike, Parameter, Patterns, Recovered, Sum};
 
 /// The regularisation used and why, in words. How likely a pattern is among patterns means nothing
 /// where it does not explain the photographs, so `explains` says whether that is told.
@@ -76,6 +76,15 @@ fn patterns(of: &Patterns) -> String {
         of.level_errors[0],
         of.levels[1],
         of.level_errors[1],
+    ) + &of.if_alike.map_or(String::new(), if_alike)
+}
+
+/// The same where neighbours may be alike.
+fn if_alike(of: IfAlike) -> String {
+    format!(
+        "; if neighbours may be alike, as of a board or a letter, it has probability {:.3}, and the \
+         levels are {:.3} ± {:.3} and {:.3} ± {:.3}",
+        of.pattern, of.levels[0], of.level_errors[0], of.levels[1], of.level_errors[1]
     )
 }
 

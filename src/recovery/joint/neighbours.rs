@@ -13,19 +13,87 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 
+use super::pattern_sums::Moments;
+use crate::recovery::IfAlike;
+
 /// Values of β, every tenth from 0 to 1.
 const COUPLINGS: u32 = 11;
 /// Elements across a grid, at most, whose Z is found: 2 to this numbers are held for each β.
 const MOST_ACROSS: usize = 20;
+/// Patterns whose levels are summed, at most, the likeliest first, and the share of the weight of
+/// all that they must have.
+const MOST_SUMMED: usize = 4096;
+const LEAST_SUMMED: f64 = 0.999;
+/// What of it is left to patterns that are not looked at.
+const ROUNDED: f64 = 1e-12;
 
 /// ln of Σ_s w_s P(s)/2⁻ⁿ over Σ_s w_s: with `weights` those of the patterns where every one is as
 /// likely beforehand, what their evidence gains where neighbours may be alike. 0 where there is no
 /// grid, or one too wide to tell; `None` where no pattern has both levels: one reflectance
 /// throughout is no pattern.
 pub(super) fn gained(grids: &[[usize; 2]], weights: &HashMap<Vec<bool>, f64>) -> Option<f64> {
-    if grids.is_empty() || grids.iter().any(|[nu, nv]| *nu.min(nv) > MOST_ACROSS) {
+    if !can_tell(grids) {
         return Some(0.0);
     }
+    let logs: Vec<f64> = logs(grids, weights).into_iter().flat_map(|p| p.1).collect();
+    let top = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    top.is_finite()
+        .then(|| top + libm::log(logs.iter().map(|log| libm::exp(log - top)).sum::<f64>()))
+}
+
+/// The `recovered` pattern and the levels where neighbours may be alike, by `levels` of a pattern,
+/// the means of dark and light level and of their squares. None where nothing tells, or where too
+/// few of the patterns have too little of the weight.
+pub(super) fn if_alike(
+    grids: &[[usize; 2]],
+    weights: &HashMap<Vec<bool>, f64>,
+    recovered: &[bool],
+    levels: impl Fn(&[bool]) -> Option<[[f64; 2]; 2]>,
+) -> Option<IfAlike> {
+    if !can_tell(grids) {
+        return None;
+    }
+    let logs = logs(grids, weights);
+    let of_all = logs.iter().flat_map(|p| &p.1);
+    let top = of_all.copied().fold(f64::NEG_INFINITY, f64::max);
+    let share = |of: &[f64]| of.iter().map(|log| libm::exp(log - top)).sum::<f64>();
+    let mut shares: Vec<(&Vec<bool>, f64)> = logs.iter().map(|p| (p.0, share(&p.1))).collect();
+    let whole: f64 = shares.iter().map(|p| p.1).sum();
+    let own = shares
+        .iter()
+        .find(|p| p.0 == recovered)
+        .map_or(0.0, |p| p.1);
+    shares.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut sums = Moments::new(recovered.len());
+    for (light, weight) in shares.into_iter().take(MOST_SUMMED) {
+        if sums.weight > (1.0 - ROUNDED) * whole {
+            break;
+        }
+        if let Some(levels) = levels(light) {
+            sums.add(light, weight, levels);
+        }
+    }
+    (sums.weight >= LEAST_SUMMED * whole).then(|| {
+        let [levels, level_errors] = sums.levels();
+        IfAlike {
+            pattern: own / whole,
+            levels,
+            level_errors,
+        }
+    })
+}
+
+/// Whether there is a grid, and none too wide.
+fn can_tell(grids: &[[usize; 2]]) -> bool {
+    !grids.is_empty() && grids.iter().all(|[nu, nv]| *nu.min(nv) <= MOST_ACROSS)
+}
+
+/// Of each pattern with both levels ln of w_s P(s | β)/2⁻ⁿ over the number of β and Σ_s w_s, for
+/// each β, in an order of their own, so that sums have the same bits.
+fn logs<'a>(
+    grids: &[[usize; 2]],
+    weights: &'a HashMap<Vec<bool>, f64>,
+) -> Vec<(&'a Vec<bool>, Vec<f64>)> {
     let n: usize = grids.iter().map(|[nu, nv]| nu * nv).sum();
     let neighbours = pairs(grids);
     let fair = n as f64 * std::f64::consts::LN_2;
@@ -38,20 +106,18 @@ pub(super) fn gained(grids: &[[usize; 2]], weights: &HashMap<Vec<bool>, f64>) ->
             (beta, fair - z - libm::log1p(-libm::exp(one - z)))
         })
         .collect();
-    // In an order of their own, so that the sum has the same bits.
     let mut patterns: Vec<(&Vec<bool>, f64)> = weights.iter().map(|(s, w)| (s, *w)).collect();
     patterns.sort_unstable_by(|a, b| a.0.cmp(b.0));
     let total: f64 = patterns.iter().map(|p| p.1).sum();
-    let mut logs = Vec::with_capacity(patterns.len() * sums.len());
     let both = |light: &[bool]| light.contains(&true) && light.contains(&false);
-    for (pattern, weight) in patterns.iter().filter(|p| p.1 > 0.0 && both(p.0)) {
+    let counted = patterns.into_iter().filter(|p| p.1 > 0.0 && both(p.0));
+    let of = |(pattern, weight): (&'a Vec<bool>, f64)| {
         let alike = alike(&neighbours, pattern) as f64;
         let share = libm::log(weight / total / f64::from(COUPLINGS));
-        logs.extend(sums.iter().map(|(beta, rest)| share + beta * alike + rest));
-    }
-    let top = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    top.is_finite()
-        .then(|| top + libm::log(logs.iter().map(|log| libm::exp(log - top)).sum::<f64>()))
+        let logs = sums.iter().map(|(beta, rest)| share + beta * alike + rest);
+        (pattern, logs.collect())
+    };
+    counted.map(of).collect()
 }
 
 /// Σ_⟨ij⟩ s_i s_j over the neighbours.
@@ -118,98 +184,4 @@ fn log_sum([nu, nv]: [usize; 2], beta: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Z of a chain is 2 (2 cosh β)^(n−1); of a 3 × 3 grid, and of two surfaces, by all patterns.
-    #[test]
-    fn sums_over_all_patterns() {
-        for beta in [0.0, 0.3, 1.0] {
-            let chain = libm::log(2.0) + 6.0 * libm::log(2.0 * libm::cosh(beta));
-            assert!((log_sum([7, 1], beta) - chain).abs() < 1e-12);
-            assert!((log_sum([1, 7], beta) - chain).abs() < 1e-12);
-            for grid in [[3, 3], [4, 2], [2, 5], [4, 4]] {
-                let n = grid[0] * grid[1];
-                let all = (0..1usize << n).map(|at| {
-                    let light: Vec<bool> = (0..n).map(|j| at >> j & 1 == 1).collect();
-                    libm::exp(beta * alike(&pairs(&[grid]), &light) as f64)
-                });
-                let brute = libm::log(all.sum());
-                assert!(
-                    (log_sum(grid, beta) - brute).abs() < 1e-12,
-                    "{grid:?} {beta}"
-                );
-            }
-        }
-    }
-
-    /// Of a wide grid by the expansion in v = tanh β with a free edge, per plaquette v⁴ and per
-    /// pair of neighbouring plaquettes v⁶ (v⁸ counts 4½ times per element at most):
-    ///
-    /// > ln Z = n ln 2 + bonds ln cosh β + plaquettes v⁴ + pairs v⁶ + …
-    #[test]
-    fn wide_grids_follow_the_expansion_of_high_temperatures() {
-        for [nu, nv] in [[16usize, 16], [14, 18]] {
-            let [n, bonds, plaquettes, pairs] = [
-                nu * nv,
-                (nu - 1) * nv + nu * (nv - 1),
-                (nu - 1) * (nv - 1),
-                (nu - 2) * (nv - 1) + (nu - 1) * (nv - 2),
-            ]
-            .map(|count| count as f64);
-            let v: f64 = libm::tanh(0.1);
-            let ordered = n * libm::log(2.0) + bonds * libm::log(libm::cosh(0.1));
-            let expected = ordered + plaquettes * v.powi(4) + pairs * v.powi(6);
-            let left = log_sum([nu, nv], 0.1) - expected;
-            assert!((0.0..4.5 * n * v.powi(8)).contains(&left), "{left:e}");
-        }
-    }
-
-    /// A wide grid dark on one side and light on the other, 14 of 364 pairs unlike. At β = 1 nearly
-    /// all of Z is that of elements all alike, so a share 1/11 of ½ e^(−28) is the least. At each β
-    /// the patterns with both levels have at least the weight of those with one element unlike, and
-    /// Z at least 2ⁿ cosh β to the number of pairs, the first term of a sum of positive ones.
-    #[test]
-    fn a_wide_grid_gains_as_well() {
-        let half: Vec<bool> = (0..196).map(|j| j % 14 < 7).collect();
-        let found = gained(&[[14, 14]], &HashMap::from([(half, 1.0)])).unwrap();
-        let coins = 196.0 * libm::log(2.0);
-        // One element unlike: so many in corners, at edges and inside, with 2, 3 and 4 neighbours.
-        let flips = |beta: f64| -> f64 {
-            let of = |(n, neighbours): (f64, f64)| n * libm::exp(-2.0 * neighbours * beta);
-            [(4.0, 2.0), (48.0, 3.0), (144.0, 4.0)].map(of).iter().sum()
-        };
-        let least = coins - 28.0 - libm::log(22.0) - 1.5 * flips(1.0);
-        let most = (0..11).map(|k| 0.1 * f64::from(k)).map(|beta| {
-            let one = libm::exp(-28.0 * beta) / (2.0 * flips(beta));
-            let pairs = 364.0 * (libm::log(libm::cosh(beta)) - beta) + coins;
-            let all = libm::exp(pairs) - 2.0;
-            let other = libm::exp(-28.0 * beta) / all;
-            if all > 0.0 { one.min(other) } else { one }
-        });
-        let most = coins + libm::log(most.sum::<f64>() / 11.0);
-        assert!((least..most).contains(&found), "{found} {least} {most}");
-    }
-
-    /// Over all patterns alike nothing is gained; one patch gains, one of chance loses at most the
-    /// share of the fair coin.
-    #[test]
-    fn patches_gain_and_chance_loses_little() {
-        let grids = [[3, 2], [2, 2]];
-        let pattern = |at: usize| -> Vec<bool> { (0..10).map(|j| at >> j & 1 == 1).collect() };
-        let all = (0..1 << 10).map(|at| (pattern(at), 0.7)).collect();
-        assert!(gained(&grids, &all).unwrap().abs() < 1e-12);
-        let known = |light: Vec<bool>| gained(&[[8, 8]], &HashMap::from([(light, 1.0)]));
-        assert_eq!(known(vec![true; 64]), None);
-        let one = |light: Vec<bool>| known(light).unwrap();
-        let board = |of: usize| -> Vec<bool> {
-            (0..64)
-                .map(|j| (j % 8 / of + j / 8 / of).is_multiple_of(2))
-                .collect()
-        };
-        assert!(one(board(4)) > 20.0);
-        assert!(one(board(1)) > -libm::log(f64::from(COUPLINGS)) - 1e-12);
-        assert!(one(board(1)) < -2.0);
-        assert_eq!(gained(&[[21, 21]], &HashMap::new()), Some(0.0));
-    }
-}
+mod tests;

@@ -108,25 +108,38 @@ impl Moments {
         })
     }
 
+    /// Means of dark and light level, and their standard deviations.
+    pub(super) fn levels(&self) -> [[f64; 2]; 2] {
+        let of = |k: usize| {
+            let [first, second] = self.levels[k].map(|x| x / self.weight);
+            [
+                first,
+                (second - first * first).max(ROUNDING * second).sqrt(),
+            ]
+        };
+        let [dark, light] = [of(0), of(1)];
+        [[dark[0], light[0]], [dark[1], light[1]]]
+    }
+
     /// The whole, a pattern's share of it and the evidence known.
     pub(super) fn finish(&self, pattern: f64, log_evidence: f64, sum: Sum) -> Patterns {
         let mean = &self.mean / self.weight;
         let square = &self.square / self.weight;
         let spread =
             |first: f64, second: f64| (second - first * first).max(ROUNDING * second).sqrt();
-        let of = |k: usize| self.levels[k].map(|x| x / self.weight);
-        let levels = [of(0), of(1)];
+        let [levels, level_errors] = self.levels();
         Patterns {
             light: self.light(),
             deviation: mean.zip_map(&square, spread),
             mean,
-            levels: levels.map(|[first, _]| first),
-            level_errors: levels.map(|[first, second]| spread(first, second)),
+            levels,
+            level_errors,
             pattern,
             exact: 1.0,
             spread: 0.0,
             log_evidence,
             sum,
+            if_alike: None,
         }
     }
 }

@@ -6,17 +6,19 @@
 //! levels above what branch and bound left open (zero: proved best), with estimated ones above the
 //! minimum over all 0 ≤ ρ ≤ 1. The probabilities are sums over all patterns of few elements
 //! ([`super::enumerated`]), of more over the likeliest and by sampling ([`super::sampled`]), every
-//! pattern as likely beforehand. Where the levels are not given, they and the standard errors allow
-//! for elements that differ from their level, as far as the photographs do ([`super::spread`]). How
-//! likely the photographs are by two levels, against what other methods assume, takes neighbours to
-//! be alike by an unknown degree ([`super::neighbours`]).
+//! pattern as likely beforehand; what pattern and levels are where neighbours may be alike
+//! ([`super::neighbours`]) stands beside them. Where the levels are not given, they and the
+//! standard errors allow for elements that differ from their level, as far as the photographs do
+//! ([`super::spread`]). How likely the photographs are by two levels, against what other methods
+//! assume, takes neighbours to be alike by an unknown degree ([`super::neighbours`]).
 
 use super::coordinates::Coordinates;
+use super::levels::ALL;
 use super::pattern_likelihood::PatternLikelihood;
 use super::pattern_search::{Found, Levels, Search};
-use super::{enumerated, neighbours, pattern_lattice, sampled, scale, spread};
+use super::{enumerated, levels, neighbours, pattern_lattice, sampled, scale, spread};
 use crate::recovery::{
-    Choice, Method, Options, Parameter, Problem, Recovered, RecoveryError, Solver, Sum,
+    Choice, Method, Options, Parameter, Patterns, Problem, Recovered, RecoveryError, Solver, Sum,
 };
 
 /// Above this many elements patterns are not sampled.
@@ -123,11 +125,20 @@ pub(in crate::recovery) fn recover(
         Some(spread) => spread.error.clone(),
         None => exact.moments.square_about(&shown).map(f64::sqrt),
     });
+    let quadrature = levels::rule();
+    let of_pattern = |light: &[bool]| Some(likelihood.weigh(light, &quadrature, ALL)?.levels);
     recovered.patterns = summed.map(|summed| {
+        let if_alike = summed
+            .sum
+            .converged()
+            .then(|| neighbours::if_alike(grids, &summed.weights, &best.light, of_pattern));
         let of = summed.finish(&best.light);
-        match spread {
-            Some(spread) => spread.finish(of),
-            None => of,
+        Patterns {
+            if_alike: if_alike.flatten(),
+            ..match spread {
+                Some(spread) => spread.finish(of),
+                None => of,
+            }
         }
     });
     let of_patterns = recovered.patterns.as_ref().map(|p| p.log_evidence);

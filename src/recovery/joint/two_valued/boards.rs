@@ -17,14 +17,17 @@ struct Count {
     reached: u64,
     /// Draws whose pattern is that one.
     same: u64,
-    /// Draws with stated probabilities, and those of them with both levels within three of their
-    /// standard errors.
+    /// Draws with stated probabilities, those of them with both levels within three of their
+    /// standard errors, and the same where neighbours may be alike.
     stated: u64,
     levels: u64,
+    if_alike: u64,
 }
 
 /// Boards of 2 × 2 and 4 × 4 fields on 8 × 8 elements, levels unknown: what is found fits at least
-/// as well as what made the photographs, and the levels are within three of their standard errors.
+/// as well as what made the photographs, and the levels where neighbours may be alike are within
+/// three of their standard errors. Where every pattern is as likely those of the board of 2 × 2
+/// fields of 0.1 and 0.6 at a noise of 5.5e-3 are so in 36 of 40 draws: it is none of chance.
 #[test]
 #[ignore = "slow"]
 fn the_search_reaches_what_made_the_photographs() {
@@ -43,6 +46,7 @@ fn the_search_reaches_what_made_the_photographs() {
                 let truth = light.map(|x| levels[0] + (levels[1] - levels[0]) * x);
                 let [phi, stderr] = noisy(&bench, &truth, noise, seed);
                 let problem = Problem::new(&phi, &bench.c, &bench.d, Some(&stderr)).unwrap();
+                let problem = problem.with_grids(&[[8, 8]]).unwrap();
                 let found = recover(Method::JointTwoValued, &problem, &Options::default()).unwrap();
                 let chi2 = |x: &DVector<f64>| {
                     let off = (&phi - bench.phi(x)).component_div(&stderr);
@@ -54,12 +58,15 @@ fn the_search_reaches_what_made_the_photographs() {
                 let same = found.reflectance.map(|x| f64::from(u8::from(x > middle))) == light;
                 count.same += u64::from(same);
                 let patterns = found.patterns.unwrap();
-                let within = |k: usize| {
-                    (patterns.levels[k] - levels[k]).abs() <= 3.0 * patterns.level_errors[k]
+                let within = |found: [f64; 2], errors: [f64; 2]| {
+                    let near = |k: usize| (found[k] - levels[k]).abs() <= 3.0 * errors[k];
+                    u64::from(near(0) && near(1))
                 };
                 if patterns.sum.converged() {
                     count.stated += 1;
-                    count.levels += u64::from(within(0) && within(1));
+                    count.levels += within(patterns.levels, patterns.level_errors);
+                    let alike = patterns.if_alike.unwrap();
+                    count.if_alike += within(alike.levels, alike.level_errors);
                 }
                 // Where little noise sets one pattern apart, it is that of the photographs.
                 if noise < 2e-3 {
@@ -69,7 +76,7 @@ fn the_search_reaches_what_made_the_photographs() {
                 }
             }
             let most = DRAWS / 40;
-            if count.reached + most < DRAWS || count.levels + most < count.stated {
+            if count.reached + most < DRAWS || count.if_alike + most < count.stated {
                 short.push((k, levels, noise, count));
             }
         }
