@@ -1052,6 +1052,15 @@ BREAKS = [
         8,
     ),
     Break(
+        "Levels where neighbours may be alike are those of all patterns and couplings",
+        "src/recovery/joint/neighbours.rs",
+        "sums.iter().map(|(beta, rest)| share + beta * alike + rest);",
+        "sums.iter().map(|(beta, rest)| share + 0.5 * beta * alike + rest);",
+        "lib",
+        "recovery::joint::neighbours::tests::levels_are_those_of_all_patterns_where_neighbours_may_be_alike",
+        8,
+    ),
+    Break(
         "A model whose light is not seen is no agreement",
         "src/lab/validation.rs",
         "z <= sidak_threshold(test.significance, 1)",

@@ -61,8 +61,8 @@ pub struct Patterns {
     pub log_evidence: f64,
     /// How it was found.
     pub sum: Sum,
-    /// What it is where neighbours may be alike: what hangs on every pattern being as likely. Where
-    /// the probabilities are to be believed and the patterns that were met have the weight.
+    /// What it is where neighbours may be alike: what hangs on every pattern being as likely. None
+    /// where not nearly all of the probability was summed pattern by pattern.
     pub if_alike: Option<IfAlike>,
 }
 

@@ -27,6 +27,8 @@ const MOST_SAMPLED: usize = 400;
 const DRAWS: f64 = 1.6e9;
 const FEWEST: f64 = 2000.0;
 const MOST: f64 = 400_000.0;
+/// Share of the probability that must be summed pattern by pattern for another prior.
+const LISTED: f64 = 0.99;
 
 /// Bytes that this method takes of so many elements beside what every joint method does, at most:
 /// two matrices of n × n numbers for each lattice that is held.
@@ -39,6 +41,15 @@ pub fn two_valued_bytes(elements: usize) -> f64 {
         0
     };
     16.0 * held as f64 * (elements as f64).powi(2)
+}
+
+/// Whether nearly all patterns that count were summed one by one: of those that were drawn the few
+/// that another prior prefers say nothing.
+fn is_listed(sum: Sum) -> bool {
+    match sum {
+        Sum::Exhaustive => true,
+        Sum::Sampled { listed, .. } => sum.converged() && listed >= LISTED,
+    }
 }
 
 pub(in crate::recovery) fn recover(
@@ -128,9 +139,7 @@ pub(in crate::recovery) fn recover(
     let quadrature = levels::rule();
     let of_pattern = |light: &[bool]| Some(likelihood.weigh(light, &quadrature, ALL)?.levels);
     recovered.patterns = summed.map(|summed| {
-        let if_alike = summed
-            .sum
-            .converged()
+        let if_alike = is_listed(summed.sum)
             .then(|| neighbours::if_alike(grids, &summed.weights, &best.light, of_pattern));
         let of = summed.finish(&best.light);
         Patterns {
