@@ -118,14 +118,13 @@ impl Eliminated {
         self.unweighted(&self.beside_others(&self.weighted(m)))
     }
 
-    /// What these and a free scale leave of it, likewise.
-    pub(super) fn without_free(&self, m: &Matrix) -> Matrix {
-        self.unweighted(&self.exactly(&self.weighted(m)))
-    }
-
-    /// What all terms leave of m, in units in which the factors are noise like the other.
-    pub(super) fn without(&self, m: &Matrix) -> Matrix {
-        self.unweighted(&self.left(&self.weighted(m)))
+    /// What these and a free scale leave of it, likewise; what all terms leave, in units in which
+    /// the factors are noise like the other; and the factors that it speaks for.
+    pub(super) fn split(&self, m: &Matrix) -> (Matrix, Matrix, Option<Gains>) {
+        let free = self.exactly(&self.weighted(m));
+        let gains = self.factors.as_ref().map(|factors| factors.found(&free));
+        let unweighted = self.unweighted(&free);
+        (unweighted, self.unweighted(&self.softened(free)), gains)
     }
 
     /// What they leave of a derivative, none if that is nothing.
@@ -134,14 +133,8 @@ impl Eliminated {
         self.is_left(&left, d).then(|| self.unweighted(&left))
     }
 
-    /// The factors that photographs less s M speak for.
-    pub(super) fn factors(&self, m: &Matrix) -> Option<Gains> {
-        let factors = self.factors.as_ref()?;
-        Some(factors.found(&self.exactly(&self.weighted(m))))
-    }
-
-    /// The variance of dᵀ r for weighted d and r of which [`Self::without`] is taken, as far as the
-    /// factors make it.
+    /// The variance of dᵀ r for weighted d and what all terms leave of r, as far as the factors
+    /// make it.
     pub(super) fn variance_of_factors(&self, weighted: &Matrix) -> f64 {
         let of = |factors: &Factors| factors.variance(&self.left(weighted));
         self.factors.as_ref().map_or(0.0, of)
@@ -186,7 +179,11 @@ impl Eliminated {
 
     /// What all terms leave of it.
     fn left(&self, weighted: &Matrix) -> Matrix {
-        let left = self.exactly(weighted);
+        self.softened(self.exactly(weighted))
+    }
+
+    /// What the free terms leave, with the factors as noise like the other.
+    fn softened(&self, left: Matrix) -> Matrix {
         match &self.factors {
             None => left,
             Some(factors) => factors.as_noise(left, &|m| self.exactly(m)),

@@ -78,33 +78,33 @@ impl Deviations {
 
 /// What was estimated of factors that are known only roughly, and what the picture loses by them.
 pub(super) fn words(of: &Gains) -> String {
-    let mut words = String::new();
+    let mut words = Vec::new();
     if let Some(frames) = &of.frames {
-        words += &format!(
-            "; gain of a frame off 1 by up to {} % ({} of the {} % stated)",
+        words.push(format!(
+            "gain of a frame off 1 by up to {} % ({} of the {} % stated)",
             figure(100.0 * frames.largest(), 2),
             significant(frames.largest() / frames.known_to, 2),
             figure(100.0 * frames.known_to, 2),
-        );
+        ));
     }
     if let Some(whole) = &of.whole {
-        words += &format!(
-            "; common factor {}{}",
+        words.push(format!(
+            "common factor {}{}",
             significant(1.0 + whole.size[0], 5),
             if of.settled {
                 format!(" ± {}", figure(whole.standard_error[0], 2))
             } else {
                 ", not settled".to_owned()
             }
-        );
+        ));
     }
     if let Some(widened) = of.widened {
-        words += &format!(
-            "; standard errors {} times those of known factors",
+        words.push(format!(
+            "standard errors {} times those of known factors",
             significant(widened, 3)
-        );
+        ));
     }
-    words
+    words.join("; ")
 }
 
 /// Factors that differ from 1 by more than they were said to, or that did not settle.

@@ -46,17 +46,18 @@ impl Left {
         let s = scale.map_or(1.0, |[s, ..]| s);
         let eliminated = eliminated.with_factors(beside, model, s)?;
         let off = phi - model * s;
-        let other = &off - eliminated.without_free(&off);
+        let (beside_free, rest, gains) = eliminated.split(&off);
+        let other = &off - beside_free;
         let norm = |m: &Matrix| {
             let counted = m.iter().enumerate().filter(|(i, _)| eliminated.counts(*i));
             counted.map(|(_, x)| x * x).sum::<f64>().sqrt()
         };
         Ok(Some(Self {
             other: norm(&other) / norm(phi),
-            phi: model + eliminated.without(&off) / s,
+            phi: model + rest / s,
             stderr: evidence.stderr / s,
             scale,
-            gains: eliminated.factors(&off),
+            gains,
             eliminated,
         }))
     }

@@ -134,7 +134,6 @@ impl Agreement {
         });
         let factors = self.gains.as_ref().map(|gains| {
             let words = words(gains);
-            let words = words.trim_start_matches("; ");
             format!(
                 "factors of the light, their spread counted as noise: {words}{}",
                 gains.larger()

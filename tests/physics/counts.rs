@@ -146,7 +146,7 @@ fn deviations_are_found_beside_other_light() {
 
 /// A laser whose power drifts from spot to spot, 2 % by chance, and an image that is in all frames:
 /// told of both, no more verdicts reject the right model at 5 % than 99 % of the binomial
-/// distribution allow, and what is stated of the factors is as wide as they are; not told of either, all
+/// distribution allow, and the factors are within their stated errors; told of one alone, all
 /// reject it. A wrong board is found beside them, in 19 of 20 seeds of twice the stated size.
 #[test]
 #[ignore = "slow"]
@@ -163,12 +163,7 @@ fn a_laser_that_drifts_is_no_wrong_model() {
         let flux = Matrix::from_fn(light.flux.nrows(), light.flux.ncols(), |p, l| {
             factors[l] * light.flux[(p, l)] + image * (3.0 + (0.7 * p as f64).sin())
         });
-        let light = Traced {
-            stderr: light.stderr.clone(),
-            flux,
-            ..light
-        };
-        (light, factors)
+        (Traced { flux, ..light }, factors)
     };
     let whole = Nuisance {
         background: true,

@@ -164,8 +164,7 @@ fn estimated(nuisance: &Estimated) -> String {
         );
     }
     words
-        + &nuisance
-            .gains
-            .as_ref()
-            .map_or(String::new(), |found| gains::words(&Gains::of(found)))
+        + &nuisance.gains.as_ref().map_or(String::new(), |found| {
+            format!("; {}", gains::words(&Gains::of(found)))
+        })
 }

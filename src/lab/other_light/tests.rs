@@ -45,96 +45,94 @@ fn least_squares(y: &[f64], columns: &[Vec<f64>], v: &Matrix) -> ([f64; 2], f64)
     ([b[last], inverse[(last, last)].sqrt()], least)
 }
 
-/// What is beside the model of a case.
-#[derive(Clone, Copy, Default)]
-struct Case {
-    patterns: bool,
-    background: bool,
-    glare: bool,
-    free_scale: bool,
-    frame_gain: Option<f64>,
-    scale_error: Option<f64>,
-    /// Whether some entries do not count.
-    holes: bool,
-}
-
 /// One deviation, of all spots or of one, is fitted after what is beside the model was taken out:
 /// value and error are those of all unknowns at once, factors being noise that a frame's entries
 /// share; so are the factors, the scale and its error, and χ².
 #[test]
 fn what_is_fitted_first_is_as_if_fitted_together() {
-    let cases = [
-        Case {
-            patterns: true,
-            free_scale: true,
-            ..Case::default()
-        },
-        Case {
-            background: true,
-            ..Case::default()
-        },
-        Case {
-            patterns: true,
-            background: true,
-            free_scale: true,
-            ..Case::default()
-        },
-        Case {
-            patterns: true,
-            background: true,
-            holes: true,
-            ..Case::default()
-        },
-        Case {
-            glare: true,
-            free_scale: true,
-            holes: true,
-            ..Case::default()
-        },
-        Case {
-            frame_gain: Some(0.02),
-            ..Case::default()
-        },
-        Case {
-            scale_error: Some(0.03),
-            holes: true,
-            ..Case::default()
-        },
-        Case {
-            frame_gain: Some(0.02),
-            scale_error: Some(0.03),
-            ..Case::default()
-        },
-        Case {
-            patterns: true,
-            frame_gain: Some(0.02),
-            free_scale: true,
-            ..Case::default()
-        },
-        Case {
-            patterns: true,
-            background: true,
-            holes: true,
-            frame_gain: Some(0.02),
-            scale_error: Some(0.03),
-            ..Case::default()
-        },
-    ];
-    cases.iter().for_each(is_as_if_fitted_together);
-}
-
-fn is_as_if_fitted_together(case: &Case) {
-    let model = normal(1).map(|x| 5.0 + x);
-    let d = normal(2);
     let patterns = Matrix::from_fn(ROWS, 2, |p, k| (p as f64 / 7.0).powi(k as i32));
     let glare = normal(4);
-    let sigma = if case.free_scale { 20.0 } else { 0.1 };
-    let unit = if case.free_scale { 300.0 } else { 1.0 };
+    let none = Nuisance::default();
+    let smooth = Nuisance {
+        frame_patterns: Some(&patterns),
+        ..none
+    };
+    let image = Nuisance {
+        background: true,
+        ..none
+    };
+    let both = Nuisance {
+        background: true,
+        ..smooth
+    };
+    let free_scale = true;
+    let (frame_gain, scale_error) = (Some(0.02), Some(0.03));
+    for (beside, is_holed) in [
+        (
+            Nuisance {
+                free_scale,
+                ..smooth
+            },
+            false,
+        ),
+        (image, false),
+        (Nuisance { free_scale, ..both }, false),
+        (both, true),
+        (
+            Nuisance {
+                glare: Some(&glare),
+                free_scale,
+                ..none
+            },
+            true,
+        ),
+        (Nuisance { frame_gain, ..none }, false),
+        (
+            Nuisance {
+                scale_error,
+                ..none
+            },
+            true,
+        ),
+        (
+            Nuisance {
+                frame_gain,
+                scale_error,
+                ..none
+            },
+            false,
+        ),
+        (
+            Nuisance {
+                frame_gain,
+                free_scale,
+                ..smooth
+            },
+            false,
+        ),
+        (
+            Nuisance {
+                frame_gain,
+                scale_error,
+                ..both
+            },
+            true,
+        ),
+    ] {
+        is_as_if_fitted_together(&beside, is_holed);
+    }
+}
+
+/// With so much beside the model, some entries not counting where `is_holed`.
+fn is_as_if_fitted_together(beside: &Nuisance<'_>, is_holed: bool) {
+    let model = normal(1).map(|x| 5.0 + x);
+    let d = normal(2);
+    let sigma = if beside.free_scale { 20.0 } else { 0.1 };
+    let unit = if beside.free_scale { 300.0 } else { 1.0 };
     let phi = &model * unit + &d * (0.03 * unit) + normal(3) * sigma;
     let stderr = model.map(|_| sigma);
     // Pixel 4 is never seen, and two entries are left out.
-    let is_hole =
-        |p: usize, l: usize| case.holes && (p == 4 || (p, l) == (2, 1) || (p, l) == (7, 0));
+    let is_hole = |p: usize, l: usize| is_holed && (p == 4 || (p, l) == (2, 1) || (p, l) == (7, 0));
     let holes = Matrix::from_fn(ROWS, COLUMNS, |p, l| f64::from(u8::from(is_hole(p, l))));
 
     let kept: Vec<usize> = (0..phi.len()).filter(|i| holes[*i] == 0.0).collect();
@@ -144,26 +142,17 @@ fn is_as_if_fitted_together(case: &Case) {
         |m: &dyn Fn(usize) -> f64, own: usize| only(&|p, l| if l == own { m(p) } else { 0.0 });
     let mut others = Vec::new();
     for l in 0..COLUMNS {
-        if case.patterns {
+        if let Some(patterns) = beside.frame_patterns {
             others.extend((0..2).map(|k| in_frame(&|p| patterns[(p, k)], l)));
         }
-        if case.glare {
+        if let Some(glare) = beside.glare {
             others.push(in_frame(&|p| glare[(p, l)], l));
         }
     }
-    if case.background {
+    if beside.background {
         let image = |own| only(&|p, _| f64::from(u8::from(p == own)));
         others.extend((0..ROWS).map(image));
     }
-    let beside = Nuisance {
-        frame_patterns: case.patterns.then_some(&patterns),
-        glare: case.glare.then_some(&glare),
-        background: case.background,
-        free_scale: case.free_scale,
-        frame_gain: case.frame_gain,
-        scale_error: case.scale_error,
-        ..Nuisance::default()
-    };
     let evidence = Evidence {
         traced: &phi,
         stderr: &stderr,
@@ -172,7 +161,7 @@ fn is_as_if_fitted_together(case: &Case) {
         left_out: Some(&holes),
         eliminated: None,
     };
-    let left = Left::of(&evidence, TEST, &beside).unwrap().unwrap();
+    let left = Left::of(&evidence, TEST, beside).unwrap().unwrap();
 
     let near = |what: &str, found: f64, expected: f64| {
         let off = (found - expected).abs() / expected.abs();
@@ -181,14 +170,14 @@ fn is_as_if_fitted_together(case: &Case) {
     // The scale is fitted with factors of the frames as noise that has no part in its weights.
     let mut noise = Matrix::identity(kept.len(), kept.len()) * (sigma * sigma);
     let columns = [others.clone(), vec![seen(&model)]].concat();
-    let s = if case.free_scale {
+    let s = if beside.free_scale {
         let [s, error, _] = left.scale.unwrap();
         let ([expected, own], _) = least_squares(&seen(&phi), &columns, &noise);
         near("scale", s, expected);
         let factors = (0..COLUMNS).map(|l| {
             let light = in_frame(&|p| s * model[(p, l)], l);
             let ([change, _], _) = least_squares(&light, &columns, &noise);
-            change * case.frame_gain.unwrap_or(0.0)
+            change * beside.frame_gain.unwrap_or(0.0)
         });
         let of_factors: f64 = factors.map(|x| x * x).sum();
         near("scale's error", error, (own * own + of_factors).sqrt());
@@ -197,10 +186,10 @@ fn is_as_if_fitted_together(case: &Case) {
         1.0
     };
     let mut roots = Vec::new();
-    if let Some(sigma) = case.frame_gain {
+    if let Some(sigma) = beside.frame_gain {
         roots.extend((0..COLUMNS).map(|l| in_frame(&|p| sigma * s * model[(p, l)], l)));
     }
-    if let Some(sigma) = case.scale_error {
+    if let Some(sigma) = beside.scale_error {
         roots.push(only(&|p, l| sigma * s * model[(p, l)]));
     }
     for root in &roots {
@@ -227,7 +216,7 @@ fn is_as_if_fitted_together(case: &Case) {
     let (found, _) = agree(adjusted, TEST, Some(&derivatives));
     let score = found.score.unwrap();
     let mut columns = others;
-    if case.free_scale {
+    if beside.free_scale {
         columns.push(seen(&model));
     }
     let off = seen(&(&phi - &model * s));

@@ -27,97 +27,107 @@ const LEAST_SUMMED: f64 = 0.999;
 /// What of it is left to patterns that are not looked at.
 const ROUNDED: f64 = 1e-12;
 
-/// ln of Σ_s w_s P(s)/2⁻ⁿ over Σ_s w_s: with `weights` those of the patterns where every one is as
-/// likely beforehand, what their evidence gains where neighbours may be alike. 0 where there is no
-/// grid, or one too wide to tell; `None` where no pattern has both levels: one reflectance
-/// throughout is no pattern.
-pub(super) fn gained(grids: &[[usize; 2]], weights: &HashMap<Vec<bool>, f64>) -> Option<f64> {
-    if !can_tell(grids) {
-        return Some(0.0);
-    }
-    let logs: Vec<f64> = logs(grids, weights).into_iter().flat_map(|p| p.1).collect();
-    let top = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    top.is_finite()
-        .then(|| top + libm::log(logs.iter().map(|log| libm::exp(log - top)).sum::<f64>()))
+/// Patterns weighed anew: of those with both levels, in an order of their own so that sums have the
+/// same bits, ln of w_s P(s | β)/2⁻ⁿ over the number of β and Σ_s w_s, for each β.
+pub(super) struct Reweighed<'a> {
+    /// Whether there is a grid, and none too wide; else nothing is weighed.
+    tells: bool,
+    patterns: Vec<&'a Vec<bool>>,
+    /// β by β of each pattern.
+    logs: Vec<f64>,
 }
 
-/// The `recovered` pattern and the levels where neighbours may be alike, by `levels` of a pattern,
-/// the means of dark and light level and of their squares. None where nothing tells, or where too
-/// few of the patterns have too little of the weight.
-pub(super) fn if_alike(
-    grids: &[[usize; 2]],
-    weights: &HashMap<Vec<bool>, f64>,
-    recovered: &[bool],
-    levels: impl Fn(&[bool]) -> Option<[[f64; 2]; 2]>,
-) -> Option<IfAlike> {
-    if !can_tell(grids) {
-        return None;
+impl<'a> Reweighed<'a> {
+    /// By `weights`, those of the patterns where every one is as likely beforehand.
+    pub(super) fn new(grids: &[[usize; 2]], weights: &'a HashMap<Vec<bool>, f64>) -> Self {
+        let tells = !grids.is_empty() && grids.iter().all(|[nu, nv]| *nu.min(nv) <= MOST_ACROSS);
+        let mut found = Self {
+            tells,
+            patterns: Vec::new(),
+            logs: Vec::new(),
+        };
+        if !tells {
+            return found;
+        }
+        let n: usize = grids.iter().map(|[nu, nv]| nu * nv).sum();
+        let neighbours = pairs(grids);
+        let fair = n as f64 * std::f64::consts::LN_2;
+        let sums: Vec<(f64, f64)> = (0..COUPLINGS)
+            .into_par_iter()
+            .map(|k| {
+                let beta = f64::from(k) / f64::from(COUPLINGS - 1);
+                let z: f64 = grids.iter().map(|grid| log_sum(*grid, beta)).sum();
+                let one = beta * neighbours.len() as f64 + std::f64::consts::LN_2;
+                (beta, fair - z - libm::log1p(-libm::exp(one - z)))
+            })
+            .collect();
+        let mut patterns: Vec<(&Vec<bool>, f64)> = weights.iter().map(|(s, w)| (s, *w)).collect();
+        patterns.sort_unstable_by(|a, b| a.0.cmp(b.0));
+        let total: f64 = patterns.iter().map(|p| p.1).sum();
+        let both = |light: &[bool]| light.contains(&true) && light.contains(&false);
+        for (pattern, weight) in patterns.into_iter().filter(|p| p.1 > 0.0 && both(p.0)) {
+            let alike = alike(&neighbours, pattern) as f64;
+            let share = libm::log(weight / total / f64::from(COUPLINGS));
+            let logs = sums.iter().map(|(beta, rest)| share + beta * alike + rest);
+            found.logs.extend(logs);
+            found.patterns.push(pattern);
+        }
+        found
     }
-    let logs = logs(grids, weights);
-    let of_all = logs.iter().flat_map(|p| &p.1);
-    let top = of_all.copied().fold(f64::NEG_INFINITY, f64::max);
-    let share = |of: &[f64]| of.iter().map(|log| libm::exp(log - top)).sum::<f64>();
-    let mut shares: Vec<(&Vec<bool>, f64)> = logs.iter().map(|p| (p.0, share(&p.1))).collect();
-    let whole: f64 = shares.iter().map(|p| p.1).sum();
-    let own = shares
-        .iter()
-        .find(|p| p.0 == recovered)
-        .map_or(0.0, |p| p.1);
-    shares.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let mut sums = Moments::new(recovered.len());
-    for (light, weight) in shares.into_iter().take(MOST_SUMMED) {
-        if sums.weight > (1.0 - ROUNDED) * whole {
-            break;
-        }
-        if let Some(levels) = levels(light) {
-            sums.add(light, weight, levels);
-        }
+
+    /// Largest of the logarithms.
+    fn top(&self) -> f64 {
+        self.logs.iter().copied().fold(f64::NEG_INFINITY, f64::max)
     }
-    (sums.weight >= LEAST_SUMMED * whole).then(|| {
-        let [levels, level_errors] = sums.levels();
-        IfAlike {
-            pattern: own / whole,
-            levels,
-            level_errors,
+
+    /// ln of Σ_s w_s P(s)/2⁻ⁿ over Σ_s w_s: what the patterns' evidence gains where neighbours may
+    /// be alike. 0 where nothing tells; `None` where no pattern has both levels: one reflectance
+    /// throughout is no pattern.
+    pub(super) fn gained(&self) -> Option<f64> {
+        if !self.tells {
+            return Some(0.0);
         }
-    })
-}
+        let top = self.top();
+        let shares = || self.logs.iter().map(|log| libm::exp(log - top));
+        top.is_finite()
+            .then(|| top + libm::log(shares().sum::<f64>()))
+    }
 
-/// Whether there is a grid, and none too wide.
-fn can_tell(grids: &[[usize; 2]]) -> bool {
-    !grids.is_empty() && grids.iter().all(|[nu, nv]| *nu.min(nv) <= MOST_ACROSS)
-}
-
-/// Of each pattern with both levels ln of w_s P(s | β)/2⁻ⁿ over the number of β and Σ_s w_s, for
-/// each β, in an order of their own, so that sums have the same bits.
-fn logs<'a>(
-    grids: &[[usize; 2]],
-    weights: &'a HashMap<Vec<bool>, f64>,
-) -> Vec<(&'a Vec<bool>, Vec<f64>)> {
-    let n: usize = grids.iter().map(|[nu, nv]| nu * nv).sum();
-    let neighbours = pairs(grids);
-    let fair = n as f64 * std::f64::consts::LN_2;
-    let sums: Vec<(f64, f64)> = (0..COUPLINGS)
-        .into_par_iter()
-        .map(|k| {
-            let beta = f64::from(k) / f64::from(COUPLINGS - 1);
-            let z: f64 = grids.iter().map(|grid| log_sum(*grid, beta)).sum();
-            let one = beta * neighbours.len() as f64 + std::f64::consts::LN_2;
-            (beta, fair - z - libm::log1p(-libm::exp(one - z)))
+    /// The `recovered` pattern and the levels where neighbours may be alike, by `levels` of a
+    /// pattern, the means of dark and light level and of their squares. None where nothing tells,
+    /// or where too few of the patterns have too little of the weight.
+    pub(super) fn if_alike(
+        &self,
+        recovered: &[bool],
+        levels: impl Fn(&[bool]) -> Option<[[f64; 2]; 2]>,
+    ) -> Option<IfAlike> {
+        let top = self.top();
+        let each = self.logs.chunks_exact(COUPLINGS as usize);
+        let each = each.map(|logs| logs.iter().map(|log| libm::exp(log - top)).sum::<f64>());
+        let patterns = self.patterns.iter().copied();
+        let mut shares: Vec<(&Vec<bool>, f64)> = patterns.zip(each).collect();
+        let whole: f64 = shares.iter().map(|p| p.1).sum();
+        let own = shares.iter().find(|p| p.0 == recovered);
+        let own = own.map_or(0.0, |p| p.1);
+        shares.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let mut sums = Moments::new(recovered.len());
+        for (light, weight) in shares.into_iter().take(MOST_SUMMED) {
+            if sums.weight > (1.0 - ROUNDED) * whole {
+                break;
+            }
+            if let Some(levels) = levels(light) {
+                sums.add(light, weight, levels);
+            }
+        }
+        (whole > 0.0 && sums.weight >= LEAST_SUMMED * whole).then(|| {
+            let [levels, level_errors] = sums.levels();
+            IfAlike {
+                pattern: own / whole,
+                levels,
+                level_errors,
+            }
         })
-        .collect();
-    let mut patterns: Vec<(&Vec<bool>, f64)> = weights.iter().map(|(s, w)| (s, *w)).collect();
-    patterns.sort_unstable_by(|a, b| a.0.cmp(b.0));
-    let total: f64 = patterns.iter().map(|p| p.1).sum();
-    let both = |light: &[bool]| light.contains(&true) && light.contains(&false);
-    let counted = patterns.into_iter().filter(|p| p.1 > 0.0 && both(p.0));
-    let of = |(pattern, weight): (&'a Vec<bool>, f64)| {
-        let alike = alike(&neighbours, pattern) as f64;
-        let share = libm::log(weight / total / f64::from(COUPLINGS));
-        let logs = sums.iter().map(|(beta, rest)| share + beta * alike + rest);
-        (pattern, logs.collect())
-    };
-    counted.map(of).collect()
+    }
 }
 
 /// Σ_⟨ij⟩ s_i s_j over the neighbours.

@@ -128,22 +128,22 @@ pub(in crate::recovery) fn recover(
         _ => None,
     };
     let mut recovered = coordinates.finish(method, problem, options, &shown * unit)?;
-    let gained = summed
-        .as_ref()
-        .and_then(|summed| neighbours::gained(grids, &summed.weights));
+    let quadrature = levels::rule();
+    let of_pattern = |light: &[bool]| Some(likelihood.weigh(light, &quadrature, ALL)?.levels);
+    let (gained, if_alike) = summed.as_ref().map_or((None, None), |summed| {
+        let reweighed = neighbours::Reweighed::new(grids, &summed.weights);
+        let if_alike = is_listed(summed.sum).then(|| reweighed.if_alike(&best.light, of_pattern));
+        (reweighed.gained(), if_alike.flatten())
+    });
     let converged = summed.as_ref().filter(|exact| exact.sum.converged());
     recovered.standard_error = converged.map(|exact| match &spread {
         Some(spread) => spread.error.clone(),
         None => exact.moments.square_about(&shown).map(f64::sqrt),
     });
-    let quadrature = levels::rule();
-    let of_pattern = |light: &[bool]| Some(likelihood.weigh(light, &quadrature, ALL)?.levels);
     recovered.patterns = summed.map(|summed| {
-        let if_alike = is_listed(summed.sum)
-            .then(|| neighbours::if_alike(grids, &summed.weights, &best.light, of_pattern));
         let of = summed.finish(&best.light);
         Patterns {
-            if_alike: if_alike.flatten(),
+            if_alike,
             ..match spread {
                 Some(spread) => spread.finish(of),
                 None => of,

@@ -2,6 +2,10 @@
 
 use super::*;
 
+fn gained(grids: &[[usize; 2]], weights: &HashMap<Vec<bool>, f64>) -> Option<f64> {
+    Reweighed::new(grids, weights).gained()
+}
+
 /// Z of a chain is 2 (2 cosh β)^(n−1); of a 3 × 3 grid, and of two surfaces, by all patterns.
 #[test]
 fn sums_over_all_patterns() {
@@ -86,7 +90,8 @@ fn levels_are_those_of_all_patterns_where_neighbours_may_be_alike() {
     };
     let weights: HashMap<Vec<bool>, f64> = (0..512).map(|at| (of(at), weight(at))).collect();
     let recovered = of(0b111);
-    let found = if_alike(&[[3, 3]], &weights, &recovered, |light| Some(levels(light)));
+    let found =
+        Reweighed::new(&[[3, 3]], &weights).if_alike(&recovered, |light| Some(levels(light)));
     let found = found.unwrap();
     let (mut whole, mut own, mut sums) = (0.0, 0.0, [[0.0; 2]; 2]);
     for k in 0..11 {
@@ -112,8 +117,14 @@ fn levels_are_those_of_all_patterns_where_neighbours_may_be_alike() {
     }
     // Levels of nothing that has the weight.
     let few = |light: &[bool]| (count(light) < 5.0).then(|| levels(light));
-    assert_eq!(if_alike(&[[3, 3]], &weights, &recovered, few), None);
-    assert_eq!(if_alike(&[], &weights, &recovered, few), None);
+    assert_eq!(
+        Reweighed::new(&[[3, 3]], &weights).if_alike(&recovered, few),
+        None
+    );
+    assert_eq!(
+        Reweighed::new(&[], &weights).if_alike(&recovered, few),
+        None
+    );
 }
 
 /// Over all patterns alike nothing is gained; one patch gains, one of chance loses at most the
