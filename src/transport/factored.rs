@@ -29,7 +29,7 @@ use super::context::Context;
 use super::glossy::GlossyPoint;
 use super::light_path::light_end;
 use super::light_points::LightPoints;
-use super::spots::LitPoints;
+use super::spots::{LitPoints, batch};
 use super::tally::{Moments, Tally};
 use super::vertex::{Batch, Vertex};
 use crate::geometry::{Blockers, DVec3};
@@ -270,7 +270,7 @@ impl<'a> Factored<'a> {
         let paths = &spots.light_paths;
         let places = if lit.is_fixed() { 1 } else { range.len() };
         let batches: Vec<Batch> = (0..places)
-            .map(|k| spots.batch(lit.at(k), self.width))
+            .map(|k| batch(scene, lit.at(k), self.width))
             .collect();
         let order = |n: usize| {
             let mut light = vec![0.0; range.len() * self.width];

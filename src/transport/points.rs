@@ -28,7 +28,6 @@ pub(super) struct PixelPoints<'a> {
     view: &'a PixelView,
     /// By shape: what may stand between the pixel and it.
     blockers: Vec<Blockers>,
-    buffers: Buffers,
 }
 
 /// Points that are evaluated together.
@@ -36,7 +35,7 @@ const CHUNK: usize = 1024;
 
 /// Numbers of one chunk, kept from chunk to chunk.
 #[derive(Debug, Default)]
-struct Buffers {
+pub(super) struct Buffers {
     /// What the pixel sees, weighted.
     x: Batch,
     /// The points between, weighted by (ρ/π)/density.
@@ -52,6 +51,18 @@ struct Buffers {
 }
 
 impl Buffers {
+    /// For blocks of `size` points.
+    pub(super) fn new(size: usize) -> Self {
+        let n = size.min(CHUNK);
+        Self {
+            x: Batch::zeros(n),
+            y: Batch::zeros(n),
+            camera: vec![0.0; n],
+            light: vec![0.0; n],
+            ..Self::default()
+        }
+    }
+
     fn clear(&mut self) {
         self.places.clear();
         self.beams.clear();
@@ -71,26 +82,23 @@ impl<'a> PixelPoints<'a> {
     /// `None` if the pixel's paths are not simple enough.
     pub(super) fn new(context: &'a Context<'a>, pixel: usize) -> Option<Self> {
         let view = &context.views[pixel];
-        let n = context.strata.block_size().min(CHUNK);
         Self::fits(context, pixel).then(|| Self {
             context,
             view,
             blockers: view.blockers(context.scene, &context.between),
-            buffers: Buffers {
-                x: Batch::zeros(n),
-                y: Batch::zeros(n),
-                camera: vec![0.0; n],
-                light: vec![0.0; n],
-                ..Buffers::default()
-            },
         })
     }
 
     /// The estimate of one block for `columns`, added to `sums`: \[order\]\[column\].
-    pub(super) fn estimate(&mut self, key: Key, columns: &Range<usize>, sums: &mut [f64]) {
+    pub(super) fn estimate(
+        &self,
+        b: &mut Buffers,
+        key: Key,
+        columns: &Range<usize>,
+        sums: &mut [f64],
+    ) {
         let Context { scene, spots, .. } = self.context;
         let wide = spots.beams.has_width();
-        let mut b = std::mem::take(&mut self.buffers);
         self.context.strata.visit(key, |drawn, place, stream| {
             let k = b.places.len();
             let albedo = &scene.surfaces[drawn.shape as usize].albedo;
@@ -103,19 +111,18 @@ impl<'a> PixelPoints<'a> {
                 b.beams.push([s, t]);
             }
             if b.places.len() == b.y.len() {
-                self.add_chunk(&mut b, columns, sums);
+                self.add_chunk(b, columns, sums);
             }
         });
         if !b.places.is_empty() {
-            self.add_chunk(&mut b, columns, sums);
+            self.add_chunk(b, columns, sums);
         }
         if let Some(three) = sums.get_mut(2 * columns.len()..) {
             for &column in spots.light_paths.columns(columns) {
                 let sum = &mut three[column - columns.start];
-                self.add_light_paths(&mut b, key, column, sum);
+                self.add_light_paths(b, key, column, sum);
             }
         }
-        self.buffers = b;
     }
 
     /// Adds the light from one spot that its light paths find.

@@ -17,7 +17,7 @@ use super::camera::first_vertex;
 use super::context::Context;
 use super::guide::PixelGuide;
 use super::light_path::{LightEnd, light_end};
-use super::points::PixelPoints;
+use super::points::{Buffers, PixelPoints};
 use super::spots::LitPoints;
 use super::vertex::Vertex;
 use crate::num::stream::{Key, Stream};
@@ -38,6 +38,7 @@ pub(super) struct PixelRow<'a> {
     pixel: usize,
     /// What takes the place of paths where the pixel is simple enough.
     points: Option<PixelPoints<'a>>,
+    buffers: Buffers,
     /// Where its paths go first.
     guide: Option<PixelGuide<'a>>,
     /// The light of one vertex, a number a column.
@@ -52,8 +53,10 @@ impl<'a> PixelRow<'a> {
             .as_ref()
             .filter(|_| points.is_none() && scene.max_bounces > 2);
         let ways = (&context.path, &context.views[pixel]);
+        let size = points.as_ref().map_or(0, |_| context.strata.block_size());
         Self {
             context,
+            buffers: Buffers::new(size),
             pixel,
             guide: guide.and_then(|guide| PixelGuide::new(guide, ways, scene)),
             points,
@@ -78,8 +81,8 @@ impl<'a> PixelRow<'a> {
             block,
         };
         sums.fill(0.0);
-        if let Some(points) = &mut self.points {
-            points.estimate(key, &columns, sums);
+        if let Some(points) = &self.points {
+            points.estimate(&mut self.buffers, key, &columns, sums);
             return;
         }
         self.trace_paths(key, &columns, sums);

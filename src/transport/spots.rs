@@ -33,6 +33,8 @@ pub(super) struct LitSpots<'a> {
     clear: Vec<bool>,
     /// Whether any surface is not Lambertian.
     glossy: bool,
+    /// The lit points of all columns, where beams have no width.
+    fixed: Option<Batch>,
 }
 
 /// Lit points of some columns of Φcam for a number of places in the beams: the same for all places
@@ -88,8 +90,11 @@ impl<'a> LitSpots<'a> {
         let clear = (0..shapes.len())
             .map(|t| !beams.has_width() && blockers.iter().all(|b| b[t].none()))
             .collect();
+        let fixed =
+            (!beams.has_width()).then(|| batch(scene, &beams.ideal[range.clone()], range.len()));
         Self {
             scene,
+            fixed,
             light_paths: LightPaths::new(scene, &beams, &range, (sampling, size)),
             beams,
             range,
@@ -123,17 +128,6 @@ impl<'a> LitSpots<'a> {
             columns: columns.clone(),
             points,
         }
-    }
-
-    /// Lit points as a batch of `width`, weighted by the factor c of their BRDF.
-    pub(super) fn batch(&self, points: &[Option<Vertex>], width: usize) -> Batch {
-        let mut batch = Batch::zeros(width);
-        for (i, point) in points.iter().enumerate() {
-            if let Some(p) = point {
-                batch.set(i, p.oriented(), p.constant_factor(self.scene), p.shape);
-            }
-        }
-        batch
     }
 
     /// Multiplies the entries, each a geometry term and what is known without directions, by the
@@ -239,14 +233,19 @@ impl<'a> LitSpots<'a> {
     ) {
         let paths = &self.light_paths;
         let mut row = vec![0.0; sums.len()];
-        let mut batch = self.batch(lit.at(0), sums.len());
+        let all = self.fixed.as_ref();
+        let all = all.filter(|batch| batch.len() == sums.len());
+        let mut batch = match all {
+            Some(batch) => Cow::Borrowed(batch),
+            None => Cow::Owned(batch(self.scene, lit.at(0), sums.len())),
+        };
         for (k, weight) in (0..x.len()).map(|k| (k, weight(k))) {
             if weight == 0.0 {
                 continue;
             }
             let points = lit.at(k);
             if !lit.is_fixed() {
-                batch = self.batch(points, sums.len());
+                batch = Cow::Owned(self::batch(self.scene, points, sums.len()));
             }
             batch.geometry_terms_from(x.oriented(k), weight, &batch.weight, &mut row);
             let first = lit.columns.start;
@@ -256,4 +255,15 @@ impl<'a> LitSpots<'a> {
             sums.iter_mut().zip(&row).for_each(|(s, r)| *s += r);
         }
     }
+}
+
+/// Lit points as a batch of `width`, weighted by the factor c of their BRDF.
+pub(super) fn batch(scene: &Scene, points: &[Option<Vertex>], width: usize) -> Batch {
+    let mut batch = Batch::zeros(width);
+    for (i, point) in points.iter().enumerate() {
+        if let Some(p) = point {
+            batch.set(i, p.oriented(), p.constant_factor(scene), p.shape);
+        }
+    }
+    batch
 }

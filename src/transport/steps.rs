@@ -1,5 +1,7 @@
 //! Distributions on [0, 1) that are constant on steps, by the sums of their weights.
 
+use std::hint::select_unpredictable;
+
 /// The edges of `count` equal cells.
 pub(super) fn even(count: usize) -> Vec<f64> {
     (0..=count).map(|i| i as f64 / count as f64).collect()
@@ -13,19 +15,18 @@ pub(super) fn cell_at(count: [usize; 2], uv: [f64; 2]) -> [usize; 2] {
 /// The step, and the place in [0, 1) within it, at which a distribution function of `steps` equal
 /// steps is x ∈ [0, 1) of the whole; `before(i)` is it before step i, unnormalised. Steps without
 /// weight are never chosen.
+#[inline(always)]
 pub(super) fn invert(steps: usize, before: impl Fn(usize) -> f64, x: f64) -> (usize, f64) {
     let (low, high) = (before(0), before(steps));
     let at = low + x * (high - low);
     // The last step before which there is no more than that; rounding may reach the end.
     let reached = |s: f64| s <= at && s < high;
-    let (mut i, mut end) = (0, steps);
-    while end - i > 1 {
-        let middle = (i + end) / 2;
-        if reached(before(middle)) {
-            i = middle;
-        } else {
-            end = middle;
-        }
+    let (mut i, mut left) = (0, steps);
+    while left > 1 {
+        // Without a branch: which half it is cannot be predicted.
+        let half = left / 2;
+        i += select_unpredictable(reached(before(i + half)), half, 0);
+        left -= half;
     }
     let rest = (at - before(i)) / (before(i + 1) - before(i));
     (i, rest.clamp(0.0, 1.0 - f64::EPSILON))

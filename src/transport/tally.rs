@@ -31,9 +31,12 @@ impl Moments {
     /// One block, whose estimates are `sums`.
     pub(super) fn of_block(sums: Vec<f64>, orders: usize) -> Self {
         let entries = sums.len() / orders;
-        let spreads = (0..entries)
-            .map(|at| Spread::of_block(total(&sums, entries, at)))
-            .collect();
+        let mut spreads = Vec::with_capacity(entries);
+        for from in (0..entries).step_by(HELD) {
+            let totals = totals(&sums, entries, from);
+            let here = totals.into_iter().take(entries - from);
+            spreads.extend(here.map(Spread::of_block));
+        }
         Self { sums, spreads }
     }
 
@@ -47,10 +50,13 @@ impl Moments {
             .zip(b.spreads.par_chunks(STRETCH))
             .enumerate()
             .for_each(|(stretch, (spreads, more))| {
-                for (i, (own, more)) in spreads.iter_mut().zip(more).enumerate() {
-                    let at = stretch * STRETCH + i;
-                    let mean = |sums: &[f64], n: usize| total(sums, entries, at) / counts[n];
-                    *own = own.join(*more, counts, mean(&b.sums, 1) - mean(&a.sums, 0));
+                let parts = spreads.chunks_mut(HELD).zip(more.chunks(HELD));
+                for (part, (spreads, more)) in parts.enumerate() {
+                    let from = stretch * STRETCH + part * HELD;
+                    let [t, u] = [&a.sums, &b.sums].map(|sums| totals(sums, entries, from));
+                    for (i, (own, more)) in spreads.iter_mut().zip(more).enumerate() {
+                        *own = own.join(*more, counts, u[i] / counts[1] - t[i] / counts[0]);
+                    }
                 }
             });
         a.sums
@@ -61,9 +67,17 @@ impl Moments {
     }
 }
 
-/// Σ over orders of entry `at`.
-fn total(sums: &[f64], entries: usize, at: usize) -> f64 {
-    sums.iter().skip(at).step_by(entries).sum()
+/// Entries whose totals are held at a time.
+const HELD: usize = 256;
+
+/// Σ over orders of the entries from `from` on; [`HELD`] of them, or as many as are left.
+fn totals(sums: &[f64], entries: usize, from: usize) -> [f64; HELD] {
+    let mut totals = [0.0; HELD];
+    for order in sums.chunks_exact(entries) {
+        let light = totals.iter_mut().zip(&order[from..]);
+        light.for_each(|(total, x)| *total += x);
+    }
+    totals
 }
 
 /// The blocks of some columns of Φcam that are finished, as the largest nodes of the fixed binary
@@ -206,16 +220,19 @@ impl Tally {
         }
         let entries = self.pixels * self.columns;
         let (mut scatter, mut square) = (0.0, 0.0);
-        let mut totals = vec![0.0; nodes.len()];
+        let mut held: Vec<[f64; HELD]> = Vec::new();
         for at in 0..entries {
-            for (total, (_, moments)) in totals.iter_mut().zip(nodes) {
-                *total = self::total(&moments.sums, entries, at);
+            if at % HELD == 0 {
+                let here = nodes.iter().map(|(_, m)| totals(&m.sums, entries, at));
+                held = here.collect();
+            }
+            for (_, moments) in nodes {
                 scatter += moments.spreads[at].scatter;
             }
-            let whole: f64 = totals.iter().sum();
+            let whole: f64 = held.iter().map(|totals| totals[at % HELD]).sum();
             square += whole * whole;
-            for (total, (range, _)) in totals.iter().zip(nodes) {
-                let apart = total / count(range) - whole / n;
+            for (totals, (range, _)) in held.iter().zip(nodes) {
+                let apart = totals[at % HELD] / count(range) - whole / n;
                 scatter += count(range) * apart * apart;
             }
         }

@@ -14,12 +14,18 @@ pub(in crate::transport) struct Divided {
     edges: [Vec<f64>; 2],
     /// Parts along u and v.
     pub grid: [usize; 2],
+    /// Along u and v: the first cell of each part, and the one behind the last.
+    bounds: [Vec<usize>; 2],
     /// Its first part.
     pub first: usize,
     /// By row of cells: ∫ρ du before each cell of it, and over all.
     along: Vec<f64>,
     /// By column of parts: ∫∫ρ du dv before each row of cells, and over all.
     down: Vec<f64>,
+    /// Albedo times area of each part.
+    weights: Vec<f64>,
+    /// By row of cells: the density of the light in each, ρ over ∫ρ dA of its part.
+    light: Vec<f64>,
 }
 
 impl Divided {
@@ -50,11 +56,17 @@ impl Divided {
         let mut own = Self {
             shape,
             area: surface.shape.area(),
+            bounds: [(nu, 0), (nv, 1)].map(|(count, d)| {
+                let bound = |i: usize| (i * count).div_ceil(grid[d]);
+                (0..=grid[d]).map(bound).collect()
+            }),
             edges,
             grid,
             first,
             along,
             down: Vec::new(),
+            weights: Vec::new(),
+            light: Vec::new(),
         };
         for i in 0..grid[0] {
             let mut before = 0.0;
@@ -65,6 +77,13 @@ impl Divided {
                 own.down.push(before);
             }
         }
+        own.weights = (0..own.parts()).map(|part| own.weight(part)).collect();
+        let light = |cell: usize| {
+            let (i, j) = (cell % nu, cell / nu);
+            let along = &own.along[j * (nu + 1)..];
+            (along[i + 1] - along[i]) / own.width(0, i) / own.weights[own.part_of([i, j])]
+        };
+        own.light = (0..nu * nv).map(light).collect();
         own
     }
 
@@ -85,7 +104,7 @@ impl Divided {
 
     /// The cells of part i: the first, and the one behind the last.
     fn cells(&self, d: usize, i: usize) -> [usize; 2] {
-        [i, i + 1].map(|i| (i * self.count(d)).div_ceil(self.grid[d]))
+        [self.bounds[d][i], self.bounds[d][i + 1]]
     }
 
     /// Albedo times area of a part.
@@ -102,7 +121,7 @@ impl Divided {
         Part {
             shape: self.shape,
             area: self.area * (high[0] - low[0]) * (high[1] - low[1]),
-            weight: self.weight(part),
+            weight: self.weights[part],
             centre,
             radius,
             points: self.points(scene, part),
@@ -117,11 +136,14 @@ impl Divided {
             inner.partition_point(|edge| *edge <= uv[d])
         };
         let [i, j] = [cell(0), cell(1)];
-        let part = |d: usize, cell: usize| cell * self.grid[d] / self.count(d);
-        let part = part(0, i) + part(1, j) * self.grid[0];
-        let along = &self.along[j * (self.count(0) + 1)..];
-        let light = (along[i + 1] - along[i]) / self.width(0, i);
-        (self.first + part, light / self.weight(part))
+        let part = self.first + self.part_of([i, j]);
+        (part, self.light[i + j * self.count(0)])
+    }
+
+    /// The part that holds a cell.
+    fn part_of(&self, cell: [usize; 2]) -> usize {
+        let [i, j] = std::array::from_fn(|d| cell[d] * self.grid[d] / self.count(d));
+        i + j * self.grid[0]
     }
 
     /// The parameters in a part for u ∈ [0, 1)², rows of cells by their weight, then cells by
@@ -137,8 +159,10 @@ impl Divided {
         let (i, j) = (left + column, top + row);
         let at =
             |d: usize, cell: usize, rest: f64| self.edges[d][cell] + rest * self.width(d, cell);
-        let light = (along[column + 1] - along[column]) / self.width(0, i);
-        ([at(0, i, u), at(1, j, v)], light / self.weight(part))
+        (
+            [at(0, i, u), at(1, j, v)],
+            self.light[i + j * self.count(0)],
+        )
     }
 
     /// Whether all edges of cells that are lit are multiples of 2⁻ᵐ along u and of 2⁻ⁿ along v, of
