@@ -1,10 +1,9 @@
 //! What blocks of samples add up to.
 
 mod error;
+mod moments;
 
 use std::ops::Range;
-
-use rayon::prelude::*;
 
 use super::plan::{Plan, Traced};
 use super::reach::MayBeLit;
@@ -14,71 +13,8 @@ use crate::matrix::Matrix;
 use crate::num::tree::Tree;
 use crate::scene::Scene;
 pub use error::TallyError;
-
-/// Numbers that one thread handles at a time.
-const STRETCH: usize = 1 << 14;
-
-/// Sums and spread of the estimates of n blocks, entry by entry.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Moments {
-    /// Σx of the light that met each number of surfaces: \[order\]\[pixel\]\[column\], W.
-    pub(super) sums: Vec<f64>,
-    /// Of the totals over orders: \[pixel\]\[column\].
-    pub(super) spreads: Vec<Spread>,
-}
-
-impl Moments {
-    /// One block, whose estimates are `sums`.
-    pub(super) fn of_block(sums: Vec<f64>, orders: usize) -> Self {
-        let entries = sums.len() / orders;
-        let mut spreads = Vec::with_capacity(entries);
-        for from in (0..entries).step_by(HELD) {
-            let totals = totals(&sums, entries, from);
-            let here = totals.into_iter().take(entries - from);
-            spreads.extend(here.map(Spread::of_block));
-        }
-        Self { sums, spreads }
-    }
-
-    /// Both numbers of blocks together: S = S₁ + S₂, and [`Spread::join`] with δ = T₂/n₂ − T₁/n₁, T
-    /// the totals over orders.
-    pub(super) fn join((left, mut a): (Range<u32>, Self), (right, b): (Range<u32>, Self)) -> Self {
-        let counts = [left, right].map(|r| f64::from(r.end - r.start));
-        let entries = a.spreads.len();
-        a.spreads
-            .par_chunks_mut(STRETCH)
-            .zip(b.spreads.par_chunks(STRETCH))
-            .enumerate()
-            .for_each(|(stretch, (spreads, more))| {
-                let parts = spreads.chunks_mut(HELD).zip(more.chunks(HELD));
-                for (part, (spreads, more)) in parts.enumerate() {
-                    let from = stretch * STRETCH + part * HELD;
-                    let [t, u] = [&a.sums, &b.sums].map(|sums| totals(sums, entries, from));
-                    for (i, (own, more)) in spreads.iter_mut().zip(more).enumerate() {
-                        *own = own.join(*more, counts, u[i] / counts[1] - t[i] / counts[0]);
-                    }
-                }
-            });
-        a.sums
-            .par_chunks_mut(STRETCH)
-            .zip(b.sums.par_chunks(STRETCH))
-            .for_each(|(sums, more)| sums.iter_mut().zip(more).for_each(|(s, x)| *s += x));
-        a
-    }
-}
-
-/// Entries whose totals are held at a time.
-const HELD: usize = 256;
-
-/// Σ over orders of the entries from `from` on; [`HELD`] of them, or as many as are left.
-fn totals(sums: &[f64], entries: usize, from: usize) -> [f64; HELD] {
-    let mut totals = [0.0; HELD];
-    for order in sums.chunks_exact(entries) {
-        let light = totals.iter_mut().zip(&order[from..]);
-        light.for_each(|(total, x)| *total += x);
-    }
-    totals
-}
+pub use moments::Moments;
+use moments::{HELD, add_orders};
 
 /// The blocks of some columns of Φcam that are finished, as the largest nodes of the fixed binary
 /// tree over all blocks of the plan.
@@ -220,11 +156,12 @@ impl Tally {
         }
         let entries = self.pixels * self.columns;
         let (mut scatter, mut square) = (0.0, 0.0);
-        let mut held: Vec<[f64; HELD]> = Vec::new();
+        let mut held = vec![[0.0; HELD]; nodes.len()];
         for at in 0..entries {
             if at % HELD == 0 {
-                let here = nodes.iter().map(|(_, m)| totals(&m.sums, entries, at));
-                held = here.collect();
+                for (held, (_, moments)) in held.iter_mut().zip(nodes) {
+                    add_orders(&moments.sums, entries, at, held);
+                }
             }
             for (_, moments) in nodes {
                 scatter += moments.spreads[at].scatter;
