@@ -1054,10 +1054,19 @@ BREAKS = [
     Break(
         "Levels where neighbours may be alike are those of all patterns and couplings",
         "src/recovery/joint/neighbours.rs",
-        "sums.iter().map(|(beta, rest)| share + beta * alike + rest);",
-        "sums.iter().map(|(beta, rest)| share + 0.5 * beta * alike + rest);",
+        "|(beta, rest)| beta * alike + rest);",
+        "|(beta, rest)| 0.5 * beta * alike + rest);",
         "lib",
         "recovery::joint::neighbours::tests::levels_are_those_of_all_patterns_where_neighbours_may_be_alike",
+        8,
+    ),
+    Break(
+        "Patterns drawn where neighbours may be alike have the weights of all patterns",
+        "src/recovery/joint/pattern_likelihood.rs",
+        "log: weighed.log + beforehand,",
+        "log: weighed.log + 0.5 * beforehand,",
+        "lib",
+        "recovery::joint::two_valued::boards::sampled_marginals_are_those_of_all_patterns",
         8,
     ),
     Break(

@@ -40,6 +40,9 @@ class Surface:
         What the method makes of the truth, less the truth, where it is linear and the truth known.
     light : ndarray
         Probability to be light (``joint-two-valued``).
+    alike, alike_stderr : ndarray
+        Mean over all patterns where neighbours may be alike, as those of a board or a letter are, and the standard
+        deviation about it (``joint-two-valued``, where it is known).
     determined : ndarray
         What the photographs determine of each element by any method, 0 to 1: 1 − (σ/0.5)², σ its standard error after
         them where 0.5 ± 0.5 is known before.
@@ -62,6 +65,8 @@ class Surface:
         self.upper: Floats | None = found["upper"]
         self.bias: Floats | None = found["bias"]
         self.light: Floats | None = found["light"]
+        self.alike: Floats | None = found["alike"]
+        self.alike_stderr: Floats | None = found["alike_stderr"]
         self.determined: Floats | None = found["determined"]
         self.truth: Floats | None = found["truth"]
         self.covariance: Floats | None = found["covariance"]
@@ -93,7 +98,7 @@ class Surface:
         """
         import xarray
 
-        named = ("reflectance", "stderr", "lower", "upper", "bias", "light", "determined", "truth")
+        named = ("reflectance", "stderr", "lower", "upper", "bias", "light", "alike", "alike_stderr", "determined", "truth")
         known = {name: values for name in named if (values := getattr(self, name)) is not None}
         data = {name: (("v", "u"), self.picture(values)) for name, values in known.items()}
         nu, nv = self.elements
@@ -154,6 +159,16 @@ class Recovery:
     def light(self) -> Floats | None:
         """Their probability to be light (``joint-two-valued``)."""
         return self._all("light")
+
+    @property
+    def alike(self) -> Floats | None:
+        """Their mean where neighbours may be alike (``joint-two-valued``)."""
+        return self._all("alike")
+
+    @property
+    def alike_stderr(self) -> Floats | None:
+        """Its standard deviations."""
+        return self._all("alike_stderr")
 
     @property
     def truth(self) -> Floats | None:

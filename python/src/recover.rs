@@ -185,12 +185,15 @@ fn dict(py: Python<'_>, mut object: RecoveredObject) -> PyResult<Bound<'_, PyDic
     found.set_item("json", serde_json::to_string(&object).raise()?)?;
     let numbers = |values: Option<Vec<f64>>| values.map(|values| vector(py, values));
     let (lower, upper) = object.bands.map(|b| (b.lower, b.upper)).unzip();
+    let (alike, alike_stderr) = object.alike.map(|[mean, error]| (mean, error)).unzip();
     for (name, values) in [
         ("reflectance", Some(object.reflectance)),
         ("truth", object.truth),
         ("stderr", object.standard_error),
         ("bias", object.bias),
         ("light", object.light),
+        ("alike", alike),
+        ("alike_stderr", alike_stderr),
         ("determined", object.determined_share),
         ("lower", lower),
         ("upper", upper),

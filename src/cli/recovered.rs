@@ -90,8 +90,9 @@ pub(super) fn tell(objects: &[RecoveredObject], json: bool) -> Result<Outcome, F
 /// overview.png with all of them side by side (no pictures of elements that are the triangles of a
 /// mesh); METHOD.texture.png, the reflectance as a texture for a scene, and METHOD.ply, the surface
 /// with it as colours; what is known of the uncertainty in METHOD.stderr.npy (nv × nu),
-/// METHOD.light.npy (nv × nu, probability to be light), METHOD.covariance.npy and
-/// METHOD.resolution.npy (own elements × elements of all surfaces), METHOD.bias.npy (nv × nu),
+/// METHOD.light.npy (nv × nu, probability to be light), METHOD.alike.npy and
+/// METHOD.alike.stderr.npy (nv × nu, the mean where neighbours may be alike), METHOD.covariance.npy
+/// and METHOD.resolution.npy (own elements × elements of all surfaces), METHOD.bias.npy (nv × nu),
 /// METHOD.lower.npy and METHOD.upper.npy where bands were asked for; what was chosen and found
 /// beside it in METHOD.choice.json, METHOD.frame_constant.npy and METHOD.glare.npy (1 × spots),
 /// METHOD.frame_gain.npy (2 × spots: ε, its standard errors) and METHOD.background.npy (pixels ×
@@ -158,17 +159,11 @@ pub(super) fn write(
                     panels.push(panel);
                 }
             }
-            let uncertain = [
-                ("standard error", &object.standard_error),
-                ("probability light", &object.light),
-            ];
-            for (what, values) in uncertain.into_iter().filter(|_| drawn) {
-                let of = |values: &Vec<f64>| {
-                    let name = format!("{method}, {what}");
-                    Panel::elements(&name, object.elements, values.clone())
-                };
-                panels.extend(values.as_ref().map(of));
-            }
+            let told = object.beside_it().into_iter().filter(|_| drawn);
+            panels.extend(told.map(|(what, values)| {
+                let name = format!("{method}, {what}");
+                Panel::elements(&name, object.elements, values.clone())
+            }));
             if let (Some(shape), Some(scene)) = (shape, scene) {
                 let (elements, values) = (object.elements, &object.reflectance);
                 if drawn {
@@ -202,13 +197,15 @@ pub(super) fn write(
 }
 
 /// What is known of the uncertainty of `object`, by the names of its files.
-fn uncertainties(object: &RecoveredObject) -> [(&'static str, Option<Matrix>); 7] {
+fn uncertainties(object: &RecoveredObject) -> [(&'static str, Option<Matrix>); 9] {
     let [nu, nv] = object.elements;
     let picture = |values: &Vec<f64>| Matrix::from_row_slice(nv, nu, values);
-    let bands = object.bands.as_ref();
+    let (bands, alike) = (object.bands.as_ref(), object.alike.as_ref());
     [
         ("stderr", object.standard_error.as_ref().map(picture)),
         ("light", object.light.as_ref().map(picture)),
+        ("alike", alike.map(|[mean, _]| picture(mean))),
+        ("alike.stderr", alike.map(|[_, error]| picture(error))),
         ("bias", object.bias.as_ref().map(picture)),
         ("lower", bands.map(|b| picture(&b.lower))),
         ("upper", bands.map(|b| picture(&b.upper))),

@@ -100,7 +100,7 @@ impl Probable {
                 Sum::Sampled { disagreement, .. } => Some(disagreement),
             },
             converged: p.sum.converged(),
-            if_alike: p.if_alike,
+            if_alike: p.if_alike.clone(),
         })
     }
 }

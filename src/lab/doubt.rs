@@ -5,7 +5,7 @@ mod misfit;
 use super::fit::Judged;
 use super::gains::drifting;
 use crate::num::digits::{figure, significant};
-use crate::recovery::{Method, Recovered, Sum, Weighting};
+use crate::recovery::{Method, Patterns, Recovered, Sum, Weighting};
 use misfit::misfit;
 
 /// More than this share of the elements is most of them.
@@ -175,17 +175,28 @@ fn without_bands(found: &Recovered) -> Option<String> {
 
 /// Probabilities of patterns that the sampling did not settle.
 fn unsampled(found: &Recovered) -> Option<String> {
-    let Sum::Sampled { disagreement, .. } = found.patterns.as_ref()?.sum else {
+    let of = found.patterns.as_ref()?;
+    let Sum::Sampled { disagreement, .. } = of.sum else {
         return None;
     };
     (disagreement > Sum::AGREEMENT).then(|| {
         format!(
             "the probabilities of its patterns are NOT to be believed: that of an element may be off by \
-             {}. Use fewer --elements, give the --levels, or believe \
-             joint-gp",
-            significant(disagreement, 2)
+             {}. Use fewer --elements, give the --levels, or believe joint-gp{}",
+            significant(disagreement, 2),
+            or_alike(of)
         )
     })
+}
+
+/// What else may be believed, where it is known.
+fn or_alike(of: &Patterns) -> &'static str {
+    match of.if_alike {
+        Some(_) => {
+            "; or, if neighbours may be alike, as of a board or a letter, the mean where they are"
+        }
+        None => "",
+    }
 }
 
 /// An inverse of the laser side that lacks directions of the picture.
@@ -208,9 +219,10 @@ fn spread(found: &Recovered) -> Option<String> {
     let of = found.patterns.as_ref().filter(|p| p.exact < UNLIKELY)?;
     Some(format!(
         "exactly two reflectances have probability {}: elements that differ from theirs by about {} \
-         explain the photographs better. Believe the standard errors, not the pattern, or joint-gp",
+         explain the photographs better. Believe the standard errors, not the pattern, or joint-gp{}",
         figure(of.exact, 2),
-        of.spread
+        of.spread,
+        or_alike(of)
     ))
 }
 

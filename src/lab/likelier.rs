@@ -1,7 +1,9 @@
 //! Under which assumption the photographs are likelier.
 
+use nalgebra::DVector;
+
 use crate::num::digits::figure;
-use crate::recovery::{Method, Recovered};
+use crate::recovery::{Method, Patterns, Recovered};
 
 /// Evidences that differ by less, ln, do not tell: a factor of 20.
 const TELLS: f64 = 3.0;
@@ -13,7 +15,8 @@ const TELLS: f64 = 3.0;
 /// patterns that is not to be believed does not. Every error of the model counts as evidence
 /// against both, the stiffer one more.
 pub(super) fn likelier(found: &[&Recovered]) -> Option<(Method, String)> {
-    let believed = |f: &&&Recovered| f.patterns.as_ref().is_none_or(|p| p.sum.converged());
+    let believed = |p: &Patterns| p.sum.converged() || p.if_alike.is_some();
+    let believed = |f: &&&Recovered| f.patterns.as_ref().is_none_or(believed);
     let known = found.iter().filter(believed);
     let mut known: Vec<(&Recovered, f64)> =
         known.filter_map(|f| Some((*f, f.log_evidence?))).collect();
@@ -45,10 +48,19 @@ pub(super) fn likelier(found: &[&Recovered]) -> Option<(Method, String)> {
 fn loss(shown: &Recovered, all: &[(&Recovered, f64)]) -> f64 {
     let best = all.iter().map(|(_, e)| *e).fold(f64::MIN, f64::max);
     let each = all.iter().map(|(by, evidence)| {
-        let mean = by.patterns.as_ref().map_or(&by.reflectance, |p| &p.mean);
+        let mean = by.patterns.as_ref().map_or(&by.reflectance, mean);
         libm::exp(evidence - best) * (&shown.reflectance - mean).norm_squared()
     });
     each.sum()
+}
+
+/// The mean by what the evidence takes for granted: neighbours may be alike, where what that says
+/// is known.
+fn mean(patterns: &Patterns) -> &DVector<f64> {
+    match &patterns.if_alike {
+        Some(alike) => &alike.mean,
+        None => &patterns.mean,
+    }
 }
 
 #[cfg(test)]
@@ -123,17 +135,23 @@ mod tests {
             assert!(method == expected && own.contains(words), "{ahead}: {own}");
         }
         let process = found[1].reflectance.clone();
-        found[0].patterns.as_mut().unwrap().mean = process;
-        let (method, words) = said(&found);
-        assert!(
-            method == Method::JointGp && words.ends_with("to be further off."),
-            "{words}"
-        );
-        found[0].patterns.as_mut().unwrap().sum = Sum::Sampled {
+        // The mean is that of what the evidence takes for granted.
+        let is_further = |found: &[Recovered; 2]| {
+            let (method, words) = said(found);
+            method == Method::JointGp && words.ends_with("to be further off.")
+        };
+        let known = found[0].patterns.as_mut().unwrap();
+        known.mean = process.clone();
+        assert!(!is_further(&found));
+        let known = found[0].patterns.as_mut().unwrap();
+        known.if_alike.as_mut().unwrap().mean = process;
+        known.sum = Sum::Sampled {
             draws: 1000,
             listed: 0.5,
             disagreement: 0.2,
         };
+        assert!(is_further(&found));
+        found[0].patterns.as_mut().unwrap().if_alike = None;
         assert_eq!(likelier(&found.each_ref()), None);
     }
 }

@@ -2,6 +2,8 @@
 
 mod object;
 
+use nalgebra::DVector;
+
 use std::ops::Range;
 
 use super::chosen::{Beside, Chosen, Ended, Probable, words};
@@ -215,6 +217,11 @@ pub fn measured(model: &MatrixModel, found: &Recovered, judged: &Judged) -> Vec<
                 .patterns
                 .as_ref()
                 .map(|p| p.light.as_slice()[range.clone()].to_vec()),
+            alike: found.patterns.as_ref().and_then(|p| {
+                let alike = p.if_alike.as_ref()?;
+                let own = |v: &DVector<f64>| v.as_slice()[range.clone()].to_vec();
+                Some([own(&alike.mean), own(&alike.deviation)])
+            }),
             patterns: Probable::of(found),
             bands: found
                 .bands

@@ -164,6 +164,7 @@ pub(crate) fn whole(mut run: RunResults) -> RunResults {
                 likelier: None,
                 log_evidence: None,
                 light: None,
+                alike: None,
                 patterns: None,
                 bands: None,
                 standard_error: None,

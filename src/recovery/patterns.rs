@@ -62,13 +62,13 @@ pub struct Patterns {
     /// How it was found.
     pub sum: Sum,
     /// What it is where neighbours may be alike: what hangs on every pattern being as likely. None
-    /// where not nearly all of the probability was summed pattern by pattern.
+    /// where that is not known.
     pub if_alike: Option<IfAlike>,
 }
 
 /// Pattern and levels where neighbours are alike by an unknown degree beforehand, as those of a
 /// board or a letter are and those of a fair coin for each element are not; the levels exact.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct IfAlike {
     /// Probability of the pattern that was recovered.
     pub pattern: f64,
@@ -76,4 +76,10 @@ pub struct IfAlike {
     pub levels: [f64; 2],
     /// Their standard deviations; 0 where they were given.
     pub level_errors: [f64; 2],
+    /// Mean of each element's level over all patterns and levels.
+    #[serde(skip)]
+    pub mean: DVector<f64>,
+    /// Standard deviation of each about it.
+    #[serde(skip)]
+    pub deviation: DVector<f64>,
 }

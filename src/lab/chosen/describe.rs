@@ -2,7 +2,7 @@
 
 use crate::lab::gains::{self, Gains};
 use crate::lab::which_errors::which_errors;
-use crate::num::digits::significant;
+use crate::num::digits::{figure, significant};
 use crate::recovery::{Choice, Estimated, IfAlike, Parameter, Patterns, Recovered, Sum};
 
 /// The regularisation used and why, in words. How likely a pattern is among patterns means nothing
@@ -76,15 +76,22 @@ fn patterns(of: &Patterns) -> String {
         of.level_errors[0],
         of.levels[1],
         of.level_errors[1],
-    ) + &of.if_alike.map_or(String::new(), if_alike)
+    ) + &of.if_alike.as_ref().map_or(String::new(), if_alike)
 }
 
 /// The same where neighbours may be alike.
-fn if_alike(of: IfAlike) -> String {
+fn if_alike(of: &IfAlike) -> String {
+    let error = (of.deviation.norm_squared() / of.deviation.len() as f64).sqrt();
     format!(
-        "; if neighbours may be alike, as of a board or a letter, it has probability {:.3}, and the \
-         levels are {:.3} ± {:.3} and {:.3} ± {:.3}",
-        of.pattern, of.levels[0], of.level_errors[0], of.levels[1], of.level_errors[1]
+        "; if neighbours may be alike, as of a board or a letter, it has probability {:.3}, the levels are {:.3} ± \
+         {:.3} and {:.3} ± {:.3}, and the mean of all patterns, beside it, has a standard error of {} an element \
+         (root mean square)",
+        of.pattern,
+        of.levels[0],
+        of.level_errors[0],
+        of.levels[1],
+        of.level_errors[1],
+        figure(error, 2)
     )
 }
 

@@ -47,6 +47,10 @@ pub struct RecoveredObject {
     /// Probability of each element to be light, of `joint-two-valued`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light: Option<Vec<f64>>,
+    /// Mean of each element over all patterns of `joint-two-valued`, where neighbours may be alike,
+    /// and the standard deviation about it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub alike: Option<[Vec<f64>; 2]>,
     /// What is known of its pattern and levels.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub patterns: Option<Probable>,
@@ -104,5 +108,20 @@ impl RecoveredObject {
     /// Whether the photographs refute the model: no reflectances between 0 and 1 explain them.
     pub fn contradicted(&self) -> bool {
         self.best_fit.as_ref().is_some_and(|best| !best.fits)
+    }
+
+    /// What is known of each element beside its reflectance, with its name.
+    pub(crate) fn beside_it(&self) -> Vec<(&'static str, &Vec<f64>)> {
+        let alike = self.alike.as_ref();
+        let [mean, error] = [0, 1].map(|k| alike.map(|alike| &alike[k]));
+        [
+            ("standard error", self.standard_error.as_ref()),
+            ("probability to be light", self.light.as_ref()),
+            ("mean where neighbours may be alike", mean),
+            ("standard error of that mean", error),
+        ]
+        .into_iter()
+        .filter_map(|(name, values)| Some((name, values?)))
+        .collect()
     }
 }

@@ -27,10 +27,74 @@ const LEAST_SUMMED: f64 = 0.999;
 /// What of it is left to patterns that are not looked at.
 const ROUNDED: f64 = 1e-12;
 
+/// P(s), against the 2⁻ⁿ of fair coins.
+pub(super) struct AlikePrior {
+    /// Neighbours on all grids.
+    pub(super) pairs: Vec<[usize; 2]>,
+    /// Each β, with ln of 2ⁿ/Z over the number of β.
+    couplings: Vec<(f64, f64)>,
+}
+
+impl AlikePrior {
+    /// None without grids, or where one is too wide.
+    pub(super) fn new(grids: &[[usize; 2]]) -> Option<Self> {
+        if grids.is_empty() || grids.iter().any(|[nu, nv]| *nu.min(nv) > MOST_ACROSS) {
+            return None;
+        }
+        let n: usize = grids.iter().map(|[nu, nv]| nu * nv).sum();
+        let pairs = pairs(grids);
+        let fair = n as f64 * std::f64::consts::LN_2 - libm::log(f64::from(COUPLINGS));
+        let couplings = (0..COUPLINGS)
+            .into_par_iter()
+            .map(|k| {
+                let beta = f64::from(k) / f64::from(COUPLINGS - 1);
+                let z: f64 = grids.iter().map(|grid| log_sum(*grid, beta)).sum();
+                let one = beta * pairs.len() as f64 + std::f64::consts::LN_2;
+                (beta, fair - z - libm::log1p(-libm::exp(one - z)))
+            })
+            .collect();
+        Some(Self { pairs, couplings })
+    }
+
+    /// ln of P(s | β)/2⁻ⁿ over the number of β, for each β; none of a pattern of one level.
+    fn logs(&self, light: &[bool]) -> Option<impl Iterator<Item = f64>> {
+        let both = light.contains(&true) && light.contains(&false);
+        let alike = alike(&self.pairs, light) as f64;
+        let logs = self
+            .couplings
+            .iter()
+            .map(move |(beta, rest)| beta * alike + rest);
+        both.then_some(logs)
+    }
+
+    /// ln of P(s)/2⁻ⁿ; none of a pattern of one level.
+    pub(super) fn log(&self, light: &[bool]) -> Option<f64> {
+        let logs: Vec<f64> = self.logs(light)?.collect();
+        let top = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        Some(top + libm::log(logs.iter().map(|log| libm::exp(log - top)).sum()))
+    }
+
+    /// E β of the likeliest of some patterns, ln of whose weights, P(s) in them, are `logs`.
+    pub(super) fn degree<'p>(&self, weighed: impl Iterator<Item = (&'p Vec<bool>, f64)>) -> f64 {
+        let likeliest = weighed.max_by(|a, b| a.1.total_cmp(&b.1));
+        let Some(logs) = likeliest.and_then(|(light, _)| self.logs(light)) else {
+            return 0.0;
+        };
+        let logs: Vec<f64> = logs.collect();
+        let top = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let shares = logs.iter().map(|log| libm::exp(log - top));
+        let each = self.couplings.iter().zip(shares);
+        let (sum, all) = each.fold((0.0, 0.0), |(sum, all), ((beta, _), share)| {
+            (sum + beta * share, all + share)
+        });
+        sum / all
+    }
+}
+
 /// Patterns weighed anew: of those with both levels, in an order of their own so that sums have the
 /// same bits, ln of w_s P(s | β)/2⁻ⁿ over the number of β and Σ_s w_s, for each β.
 pub(super) struct Reweighed<'a> {
-    /// Whether there is a grid, and none too wide; else nothing is weighed.
+    /// Whether there is a prior; else nothing is weighed.
     tells: bool,
     patterns: Vec<&'a Vec<bool>>,
     /// β by β of each pattern.
@@ -39,37 +103,24 @@ pub(super) struct Reweighed<'a> {
 
 impl<'a> Reweighed<'a> {
     /// By `weights`, those of the patterns where every one is as likely beforehand.
-    pub(super) fn new(grids: &[[usize; 2]], weights: &'a HashMap<Vec<bool>, f64>) -> Self {
-        let tells = !grids.is_empty() && grids.iter().all(|[nu, nv]| *nu.min(nv) <= MOST_ACROSS);
+    pub(super) fn new(prior: Option<&AlikePrior>, weights: &'a HashMap<Vec<bool>, f64>) -> Self {
         let mut found = Self {
-            tells,
+            tells: prior.is_some(),
             patterns: Vec::new(),
             logs: Vec::new(),
         };
-        if !tells {
+        let Some(prior) = prior else {
             return found;
-        }
-        let n: usize = grids.iter().map(|[nu, nv]| nu * nv).sum();
-        let neighbours = pairs(grids);
-        let fair = n as f64 * std::f64::consts::LN_2;
-        let sums: Vec<(f64, f64)> = (0..COUPLINGS)
-            .into_par_iter()
-            .map(|k| {
-                let beta = f64::from(k) / f64::from(COUPLINGS - 1);
-                let z: f64 = grids.iter().map(|grid| log_sum(*grid, beta)).sum();
-                let one = beta * neighbours.len() as f64 + std::f64::consts::LN_2;
-                (beta, fair - z - libm::log1p(-libm::exp(one - z)))
-            })
-            .collect();
+        };
         let mut patterns: Vec<(&Vec<bool>, f64)> = weights.iter().map(|(s, w)| (s, *w)).collect();
         patterns.sort_unstable_by(|a, b| a.0.cmp(b.0));
         let total: f64 = patterns.iter().map(|p| p.1).sum();
-        let both = |light: &[bool]| light.contains(&true) && light.contains(&false);
-        for (pattern, weight) in patterns.into_iter().filter(|p| p.1 > 0.0 && both(p.0)) {
-            let alike = alike(&neighbours, pattern) as f64;
-            let share = libm::log(weight / total / f64::from(COUPLINGS));
-            let logs = sums.iter().map(|(beta, rest)| share + beta * alike + rest);
-            found.logs.extend(logs);
+        for (pattern, weight) in patterns.into_iter().filter(|p| p.1 > 0.0) {
+            let Some(logs) = prior.logs(pattern) else {
+                continue;
+            };
+            let share = libm::log(weight / total);
+            found.logs.extend(logs.map(|log| share + log));
             found.patterns.push(pattern);
         }
         found
@@ -119,14 +170,8 @@ impl<'a> Reweighed<'a> {
                 sums.add(light, weight, levels);
             }
         }
-        (whole > 0.0 && sums.weight >= LEAST_SUMMED * whole).then(|| {
-            let [levels, level_errors] = sums.levels();
-            IfAlike {
-                pattern: own / whole,
-                levels,
-                level_errors,
-            }
-        })
+        let enough = whole > 0.0 && sums.weight >= LEAST_SUMMED * whole;
+        enough.then(|| sums.if_alike(own / whole))
     }
 }
 

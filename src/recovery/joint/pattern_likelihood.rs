@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::levels::{LevelFit, possible};
+use super::neighbours::AlikePrior;
 use crate::num::control::Control;
 use crate::num::quadrature::Rule;
 
@@ -13,6 +14,8 @@ pub(super) struct PatternLikelihood<'a> {
     /// The light of elements that are all 1.
     pub(super) all: DVector<f64>,
     pub(super) given: Option<[f64; 2]>,
+    /// What neighbours say beforehand; else every pattern is as likely.
+    pub(super) alike: Option<&'a AlikePrior>,
     pub(super) control: Control<'a>,
 }
 
@@ -24,6 +27,7 @@ impl<'a> PatternLikelihood<'a> {
             d,
             all,
             given,
+            alike: None,
             control: Control::none(),
         }
     }
@@ -38,7 +42,7 @@ impl<'a> PatternLikelihood<'a> {
     }
 }
 
-/// A pattern's weight, exp(−½ χ²) over all its levels.
+/// A pattern's weight, exp(−½ χ²) over all its levels, times what neighbours say beforehand.
 pub(super) struct Weighed {
     /// ln of it.
     pub(super) log: f64,
@@ -64,17 +68,18 @@ impl PatternLikelihood<'_> {
         rule: &Rule,
         contrasts: [f64; 2],
     ) -> Option<Weighed> {
+        let beforehand = self.alike.map_or(Some(0.0), |prior| prior.log(light))?;
         let count = light.iter().filter(|light| **light).count();
-        self.weigh_lit(
-            (&self.lit(light), count),
-            rule,
-            contrasts,
-            f64::NEG_INFINITY,
-        )
+        let lit = (&self.lit(light), count);
+        let weighed = self.weigh_lit(lit, rule, contrasts, f64::NEG_INFINITY)?;
+        Some(Weighed {
+            log: weighed.log + beforehand,
+            ..weighed
+        })
     }
 
-    /// The same of the light of so many light elements, unless ln of it is less than `least`
-    /// whatever its levels are.
+    /// The same of the light of so many light elements, whatever neighbours say, unless ln of it is
+    /// less than `least` whatever its levels are.
     pub(super) fn weigh_lit(
         &self,
         (lit, count): (&DVector<f64>, usize),

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use nalgebra::DVector;
 
-use crate::recovery::{Patterns, Sum};
+use crate::recovery::{IfAlike, Patterns, Sum};
 
 /// Of a mean square, what rounding leaves of a variance.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -23,6 +23,13 @@ pub(super) struct Summed {
 }
 
 impl Summed {
+    /// What these say, if neighbours were alike in them, of the pattern that is recovered and of the
+    /// levels.
+    pub(super) fn if_alike(&self, recovered: &[bool]) -> IfAlike {
+        let own = self.weights.get(recovered).copied().unwrap_or(0.0);
+        self.moments.if_alike(own / self.moments.weight)
+    }
+
     /// The probabilities, with that of the pattern that is recovered.
     pub(super) fn finish(&self, recovered: &[bool]) -> Patterns {
         let own = self.weights.get(recovered).copied().unwrap_or(0.0);
@@ -121,16 +128,36 @@ impl Moments {
         [[dark[0], light[0]], [dark[1], light[1]]]
     }
 
-    /// The whole, a pattern's share of it and the evidence known.
-    pub(super) fn finish(&self, pattern: f64, log_evidence: f64, sum: Sum) -> Patterns {
+    /// Mean of each element's level, and the standard deviation about it.
+    fn elements(&self) -> [DVector<f64>; 2] {
         let mean = &self.mean / self.weight;
         let square = &self.square / self.weight;
         let spread =
             |first: f64, second: f64| (second - first * first).max(ROUNDING * second).sqrt();
+        let deviation = mean.zip_map(&square, spread);
+        [mean, deviation]
+    }
+
+    /// The whole, of patterns whose neighbours may be alike, and a pattern's share of it.
+    pub(super) fn if_alike(&self, pattern: f64) -> IfAlike {
+        let [mean, deviation] = self.elements();
+        let [levels, level_errors] = self.levels();
+        IfAlike {
+            pattern,
+            levels,
+            level_errors,
+            mean,
+            deviation,
+        }
+    }
+
+    /// The whole, a pattern's share of it and the evidence known.
+    pub(super) fn finish(&self, pattern: f64, log_evidence: f64, sum: Sum) -> Patterns {
+        let [mean, deviation] = self.elements();
         let [levels, level_errors] = self.levels();
         Patterns {
             light: self.light(),
-            deviation: mean.zip_map(&square, spread),
+            deviation,
             mean,
             levels,
             level_errors,

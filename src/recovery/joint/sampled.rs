@@ -10,7 +10,8 @@
 //! without bias and with an error that is known. Where the levels are not given, contrasts are
 //! divided into cells, each with its own lattice, and w of a pattern that is drawn is the weight
 //! over the levels of the cell. Two sets of lattices are used: what they disagree in is not known,
-//! nor what the errors of both allow.
+//! nor what the errors of both allow. Where neighbours may be alike their prior is part of w, and
+//! the lattices take them to be so about as much as those of the likeliest pattern listed.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -26,6 +27,8 @@ use crate::recovery::{RecoveryError, Sum};
 
 /// Of the weight that lets a third of all draws be patterns, those of the two lattices.
 const WEIGHTS: [f64; 2] = [0.94, 1.06];
+/// Of the degree to which neighbours are alike, those of the two lattices.
+const DEGREES: [f64; 2] = [0.85, 1.15];
 /// Share ε of the contrast in a cell, to find where the likely ones are; and the parts of each of
 /// these that are drawn from.
 const COARSE: f64 = 0.1;
@@ -47,13 +50,14 @@ pub(super) fn sample(
     known: &[Vec<bool>],
     draws: usize,
 ) -> Result<Option<Summed>, RecoveryError> {
+    let pairs = likelihood.alike.map_or(&[][..], |prior| &prior.pairs);
     let lattice = PatternLattice {
         r: likelihood.r,
         d: likelihood.d,
         dark: likelihood
             .given
             .map_or(Dark::Free, |[dark, _]| Dark::Given(dark)),
-        alike: (&[], 0.0),
+        alike: (pairs, 0.0),
         control: likelihood.control,
     };
     let contrasts = match likelihood.given {
@@ -61,9 +65,13 @@ pub(super) fn sample(
         None => lattice.contrasts(1.0, COARSE),
     };
     let share = likelihood.given.map_or(COARSE, |_| 0.0);
-    let both = |contrasts: &[f64], share: f64, ends: [f64; 2]| {
+    let both = |contrasts: &[f64], share: f64, ends: [f64; 2], degree: f64| {
         let side = |number: usize| -> Result<Option<Side>, RecoveryError> {
             let weight = WEIGHTS[number] * lattice.weight();
+            let lattice = PatternLattice {
+                alike: (pairs, DEGREES[number] * degree),
+                ..lattice
+            };
             let mut cells = lattice.cells(contrasts, share, weight)?;
             let whole = cells.len() == contrasts.len();
             if let Some(first) = cells.first_mut() {
@@ -77,9 +85,6 @@ pub(super) fn sample(
         };
         Ok::<_, RecoveryError>(side(0)?.zip(side(1)?).map(|(a, b)| [a, b]))
     };
-    let Some(coarse) = both(&contrasts, share, ALL)? else {
-        return Ok(None);
-    };
     let quadrature = rule();
     let mut sampler = Sampler {
         likelihood,
@@ -89,6 +94,9 @@ pub(super) fn sample(
     let n = likelihood.r.ncols();
     sampler.list(known);
     sampler.list(&[vec![false; n], vec![true; n]]);
+    let Some(coarse) = both(&contrasts, share, ALL, sampler.degree())? else {
+        return Ok(None);
+    };
     let mut missed = sampler.list_near(&coarse);
     let mut fine = coarse;
     if likelihood.given.is_none() {
@@ -103,7 +111,7 @@ pub(super) fn sample(
         let part =
             |contrast: &f64| -> Vec<f64> { (0..parts).map(|k| contrast * step(k)).collect() };
         let likely: Vec<f64> = likely.iter().flat_map(part).collect();
-        let Some(own) = both(&likely, share, ends)? else {
+        let Some(own) = both(&likely, share, ends, sampler.degree())? else {
             return Ok(None);
         };
         fine = own;

@@ -103,6 +103,18 @@ impl Sampler<'_> {
         self.list.retain(|_, weighed| weighed.log > least);
     }
 
+    /// To which degree neighbours are alike in the likeliest pattern that is listed; 0 where every
+    /// pattern is as likely beforehand.
+    pub(super) fn degree(&self) -> f64 {
+        let listed = self
+            .list
+            .iter()
+            .map(|(light, weighed)| (light, weighed.log));
+        self.likelihood
+            .alike
+            .map_or(0.0, |prior| prior.degree(listed))
+    }
+
     /// ln of the largest weight that is listed.
     fn top(&self) -> f64 {
         let logs = self.list.values().map(|weighed| weighed.log);

@@ -6,8 +6,9 @@
 //! levels above what branch and bound left open (zero: proved best), with estimated ones above the
 //! minimum over all 0 ≤ ρ ≤ 1. The probabilities are sums over all patterns of few elements
 //! ([`super::enumerated`]), of more over the likeliest and by sampling ([`super::sampled`]), every
-//! pattern as likely beforehand; what pattern and levels are where neighbours may be alike
-//! ([`super::neighbours`]) stands beside them. Where the levels are not given, they and the
+//! pattern as likely beforehand. What they are where neighbours may be alike
+//! ([`super::neighbours`]) stands beside them: by the same patterns weighed anew, or, where these
+//! were drawn, by others, drawn by that. Where the levels are not given, they and the
 //! standard errors allow for elements that differ from their level, as far as the photographs do
 //! ([`super::spread`]). How likely the photographs are by two levels, against what other methods
 //! assume, takes neighbours to be alike by an unknown degree ([`super::neighbours`]).
@@ -50,6 +51,11 @@ fn is_listed(sum: Sum) -> bool {
         Sum::Exhaustive => true,
         Sum::Sampled { listed, .. } => sum.converged() && listed >= LISTED,
     }
+}
+
+/// Patterns of n elements that are drawn.
+fn draws(n: usize) -> usize {
+    (DRAWS / (n * n) as f64).clamp(FEWEST, MOST) as usize
 }
 
 pub(in crate::recovery) fn recover(
@@ -99,16 +105,16 @@ pub(in crate::recovery) fn recover(
         control: problem.control,
         ..PatternLikelihood::new(&r, &d, given)
     };
+    let mut known = Vec::new();
     let summed = if free || n > MOST_SAMPLED || !options.probabilities {
         None
     } else if enumerated::can(&likelihood) {
         Some(enumerated::sum(&likelihood))
     } else {
-        let draws = (DRAWS / (n * n) as f64).clamp(FEWEST, MOST) as usize;
         // Where little is told, rough patterns fit better than those that are likely beforehand.
-        let mut known = search.alike(grids)?;
+        known = search.alike(grids)?;
         known.push(best.light.clone());
-        sampled::sample(&likelihood, &known, draws)?
+        sampled::sample(&likelihood, &known, draws(n))?
     };
     if let Some(summed) = &summed {
         let found = search.descend(summed.best.clone(), &mut changes);
@@ -130,11 +136,27 @@ pub(in crate::recovery) fn recover(
     let mut recovered = coordinates.finish(method, problem, options, &shown * unit)?;
     let quadrature = levels::rule();
     let of_pattern = |light: &[bool]| Some(likelihood.weigh(light, &quadrature, ALL)?.levels);
-    let (gained, if_alike) = summed.as_ref().map_or((None, None), |summed| {
-        let reweighed = neighbours::Reweighed::new(grids, &summed.weights);
+    let prior = neighbours::AlikePrior::new(grids);
+    let (mut gained, mut if_alike) = summed.as_ref().map_or((None, None), |summed| {
+        let reweighed = neighbours::Reweighed::new(prior.as_ref(), &summed.weights);
         let if_alike = is_listed(summed.sum).then(|| reweighed.if_alike(&best.light, of_pattern));
         (reweighed.gained(), if_alike.flatten())
     });
+    // Of patterns that were drawn the few that neighbours prefer say nothing: draw these anew.
+    if let (Some(summed), Some(prior)) = (&summed, &prior)
+        && !is_listed(summed.sum)
+    {
+        let likelihood = PatternLikelihood {
+            alike: Some(prior),
+            ..likelihood
+        };
+        known.push(best.light.clone());
+        let alike = sampled::sample(&likelihood, &known, draws(n))?;
+        if let Some(alike) = alike.filter(|alike| alike.sum.converged()) {
+            gained = Some(alike.log_evidence - summed.log_evidence);
+            if_alike = Some(alike.if_alike(&best.light));
+        }
+    }
     let converged = summed.as_ref().filter(|exact| exact.sum.converged());
     recovered.standard_error = converged.map(|exact| match &spread {
         Some(spread) => spread.error.clone(),

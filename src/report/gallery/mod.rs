@@ -62,14 +62,9 @@ pub(super) fn recoveries(results: &RunResults) -> String {
             );
             figures.push_str(&figure(&panel, last, Entries::Square, &scale, &more));
             panels.push(panel);
-            for (what, values) in [
-                ("standard error", &r.standard_error),
-                ("probability to be light", &r.light),
-            ] {
-                if let Some(values) = values {
-                    let (panel, _) = picture(&format!("{}, {what}", r.method), values);
-                    figures.push_str(&figure(&panel, last, Entries::Square, &scale, ""));
-                }
+            for (what, values) in r.beside_it() {
+                let (panel, _) = picture(&format!("{}, {what}", r.method), values);
+                figures.push_str(&figure(&panel, last, Entries::Square, &scale, ""));
             }
         }
         let unseen = group.len().saturating_sub(left);

@@ -3,7 +3,7 @@
 use super::*;
 
 fn gained(grids: &[[usize; 2]], weights: &HashMap<Vec<bool>, f64>) -> Option<f64> {
-    Reweighed::new(grids, weights).gained()
+    Reweighed::new(AlikePrior::new(grids).as_ref(), weights).gained()
 }
 
 /// Z of a chain is 2 (2 cosh β)^(n−1); of a 3 × 3 grid, and of two surfaces, by all patterns.
@@ -89,9 +89,9 @@ fn levels_are_those_of_all_patterns_where_neighbours_may_be_alike() {
         [[dark, dark * dark], [bright, bright * bright + spread]]
     };
     let weights: HashMap<Vec<bool>, f64> = (0..512).map(|at| (of(at), weight(at))).collect();
-    let recovered = of(0b111);
+    let (prior, recovered) = (AlikePrior::new(&[[3, 3]]), of(0b111));
     let found =
-        Reweighed::new(&[[3, 3]], &weights).if_alike(&recovered, |light| Some(levels(light)));
+        Reweighed::new(prior.as_ref(), &weights).if_alike(&recovered, |light| Some(levels(light)));
     let found = found.unwrap();
     let (mut whole, mut own, mut sums) = (0.0, 0.0, [[0.0; 2]; 2]);
     for k in 0..11 {
@@ -118,11 +118,11 @@ fn levels_are_those_of_all_patterns_where_neighbours_may_be_alike() {
     // Levels of nothing that has the weight.
     let few = |light: &[bool]| (count(light) < 5.0).then(|| levels(light));
     assert_eq!(
-        Reweighed::new(&[[3, 3]], &weights).if_alike(&recovered, few),
+        Reweighed::new(prior.as_ref(), &weights).if_alike(&recovered, few),
         None
     );
     assert_eq!(
-        Reweighed::new(&[], &weights).if_alike(&recovered, few),
+        Reweighed::new(None, &weights).if_alike(&recovered, few),
         None
     );
 }

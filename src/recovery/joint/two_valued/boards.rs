@@ -67,7 +67,7 @@ fn the_search_reaches_what_made_the_photographs() {
                     count.stated += 1;
                     count.levels += within(patterns.levels, patterns.level_errors);
                 }
-                if let Some(found) = patterns.if_alike {
+                if let Some(found) = &patterns.if_alike {
                     count.alike += 1;
                     count.levels_if_alike += within(found.levels, found.level_errors);
                 }
@@ -89,13 +89,15 @@ fn the_search_reaches_what_made_the_photographs() {
 }
 
 /// Random pictures of 4 × 4 elements, levels known and not: the marginals of the sampler, called
-/// itself, are those of the sum over all patterns to 0.02.
+/// itself, are those of the sum over all patterns to 0.02. Where neighbours may be alike so are the
+/// levels, a pattern's probability and the evidence, against the same sum weighed anew.
 #[test]
 #[ignore = "slow"]
 fn sampled_marginals_are_those_of_all_patterns() {
     let bench = Bench::new(6.0, 4, 16);
     let mut normal = normal_stream(51);
-    let mut largest = 0.0f64;
+    let (mut largest, mut alike, mut compared) = (0.0f64, 0.0f64, 0);
+    let prior = neighbours::AlikePrior::new(&[[4, 4]]);
     for noise in [1.0, 0.3, 0.1, 0.03, 1e-2] {
         for seed in 0..4 {
             let light: Vec<bool> = (0..16).map(|_| normal() > 0.0).collect();
@@ -108,16 +110,41 @@ fn sampled_marginals_are_those_of_all_patterns() {
             let (r, d) = coordinates.whitened();
             for given in [None, Some([0.2, 0.8])] {
                 let likelihood = PatternLikelihood::new(&r, &d, given);
-                let all = enumerated::sum(&likelihood);
+                let exact = enumerated::sum(&likelihood);
                 let start = [vec![false; 16]];
                 let sampled = sampled::sample(&likelihood, &start, MOST as usize)
                     .unwrap()
                     .unwrap();
-                let [all, own] = [&all, &sampled].map(|sum| sum.moments.light());
+                let [all, own] = [&exact, &sampled].map(|sum| sum.moments.light());
                 let off = (own - &all).amax();
                 largest = largest.max(off);
+                let drawn = sampled::sample(
+                    &PatternLikelihood {
+                        alike: prior.as_ref(),
+                        ..PatternLikelihood::new(&r, &d, given)
+                    },
+                    std::slice::from_ref(&light),
+                    MOST as usize,
+                );
+                let drawn = drawn.unwrap().unwrap();
+                let anew = neighbours::Reweighed::new(prior.as_ref(), &exact.weights);
+                let rule = levels::rule();
+                let of = |light: &[bool]| Some(likelihood.weigh(light, &rule, ALL)?.levels);
+                let gained = drawn.log_evidence - exact.log_evidence;
+                alike = alike.max((gained - anew.gained().unwrap()).abs());
+                let found = drawn.if_alike(&light);
+                // Of none where too many patterns are likely.
+                let Some(expected) = anew.if_alike(&light, of) else {
+                    continue;
+                };
+                compared += 1;
+                let [x, y] = [&found, &expected].map(|of| (of.levels, of.level_errors));
+                let off = (0..2).flat_map(|k| [x.0[k] - y.0[k], x.1[k] - y.1[k]]);
+                let off = off.chain([found.pattern - expected.pattern]);
+                alike = off.fold(alike, |most, off| most.max(off.abs()));
             }
         }
     }
-    assert!(largest < 0.02, "{largest}");
+    assert!(largest < 0.02 && alike < 0.02, "{largest} {alike}");
+    assert!(compared > 20, "{compared}");
 }
