@@ -23,7 +23,7 @@ pub(super) struct Summed {
 }
 
 impl Summed {
-    /// What these say, if neighbours were alike in them, of the pattern that is recovered and of the
+    /// What these say, if neighbours were alike in them, of the recovered pattern and of the levels.
     /// levels.
     pub(super) fn if_alike(&self, recovered: &[bool]) -> IfAlike {
         let own = self.weights.get(recovered).copied().unwrap_or(0.0);

@@ -136,7 +136,9 @@ pub(in crate::recovery) fn recover(
     let mut recovered = coordinates.finish(method, problem, options, &shown * unit)?;
     let quadrature = levels::rule();
     let of_pattern = |light: &[bool]| Some(likelihood.weigh(light, &quadrature, ALL)?.levels);
-    let prior = neighbours::AlikePrior::new(grids);
+    let prior = summed
+        .as_ref()
+        .and_then(|_| neighbours::AlikePrior::new(grids));
     let (mut gained, mut if_alike) = summed.as_ref().map_or((None, None), |summed| {
         let reweighed = neighbours::Reweighed::new(prior.as_ref(), &summed.weights);
         let if_alike = is_listed(summed.sum).then(|| reweighed.if_alike(&best.light, of_pattern));
