@@ -13,8 +13,7 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 
-use super::pattern_sums::Moments;
-use crate::recovery::IfAlike;
+use super::pattern_sums::{Alike, Moments};
 
 /// Values of β, every tenth from 0 to 1.
 const COUPLINGS: u32 = 11;
@@ -144,34 +143,30 @@ impl<'a> Reweighed<'a> {
             .then(|| top + libm::log(shares().sum::<f64>()))
     }
 
-    /// The `recovered` pattern and the levels where neighbours may be alike, by `levels` of a
-    /// pattern, the means of dark and light level and of their squares. None where nothing tells,
-    /// or where too few of the patterns have too little of the weight.
-    pub(super) fn if_alike(
-        &self,
-        recovered: &[bool],
-        levels: impl Fn(&[bool]) -> Option<[[f64; 2]; 2]>,
-    ) -> Option<IfAlike> {
+    /// The patterns by these weights, with the `levels` of each, the means of dark and light level
+    /// and of their squares. None where nothing tells, or where too few of the patterns have too
+    /// little of the weight.
+    pub(super) fn sum(&self, levels: impl Fn(&[bool]) -> Option<[[f64; 2]; 2]>) -> Option<Alike> {
         let top = self.top();
         let each = self.logs.chunks_exact(COUPLINGS as usize);
         let each = each.map(|logs| logs.iter().map(|log| libm::exp(log - top)).sum::<f64>());
         let patterns = self.patterns.iter().copied();
         let mut shares: Vec<(&Vec<bool>, f64)> = patterns.zip(each).collect();
         let whole: f64 = shares.iter().map(|p| p.1).sum();
-        let own = shares.iter().find(|p| p.0 == recovered);
-        let own = own.map_or(0.0, |p| p.1);
         shares.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let mut sums = Moments::new(recovered.len());
+        let mut moments = Moments::new(shares.first()?.0.len());
+        let mut weights = HashMap::new();
         for (light, weight) in shares.into_iter().take(MOST_SUMMED) {
-            if sums.weight > (1.0 - ROUNDED) * whole {
+            if moments.weight > (1.0 - ROUNDED) * whole {
                 break;
             }
             if let Some(levels) = levels(light) {
-                sums.add(light, weight, levels);
+                moments.add(light, weight, levels);
+                weights.insert(light.clone(), weight);
             }
         }
-        let enough = whole > 0.0 && sums.weight >= LEAST_SUMMED * whole;
-        enough.then(|| sums.if_alike(own / whole))
+        let enough = whole > 0.0 && moments.weight >= LEAST_SUMMED * whole;
+        enough.then_some(Alike { moments, weights })
     }
 }
 

@@ -173,7 +173,7 @@ impl<'a> Search<'a> {
     }
 
     /// The pattern with its best levels, the lighter one as the light one.
-    fn fit(&self, mut light: Vec<bool>) -> Pattern {
+    pub(super) fn fit(&self, mut light: Vec<bool>) -> Pattern {
         let of = |which: bool| {
             let set = DVector::from_fn(light.len(), |j, _| f64::from(u8::from(light[j] == which)));
             self.r * set

@@ -22,14 +22,30 @@ pub(super) struct Summed {
     pub(super) drawn: Vec<(f64, Vec<bool>, [f64; 2])>,
 }
 
-impl Summed {
-    /// What these say, if neighbours were alike in them, of the recovered pattern and of the levels.
-    /// levels.
-    pub(super) fn if_alike(&self, recovered: &[bool]) -> IfAlike {
+/// Patterns where neighbours may be alike, by their weights.
+pub(super) struct Alike {
+    pub(super) moments: Moments,
+    pub(super) weights: HashMap<Vec<bool>, f64>,
+}
+
+impl Alike {
+    /// The likeliest pattern, and its probability.
+    pub(super) fn likeliest(&self) -> Option<(&Vec<bool>, f64)> {
+        let order = |a: &(&Vec<bool>, &f64), b: &(&Vec<bool>, &f64)| {
+            a.1.total_cmp(b.1).then_with(|| a.0.cmp(b.0))
+        };
+        let (light, weight) = self.weights.iter().max_by(order)?;
+        Some((light, weight / self.moments.weight))
+    }
+
+    /// What they say of the recovered pattern and of the levels.
+    pub(super) fn say_of(&self, recovered: &[bool]) -> IfAlike {
         let own = self.weights.get(recovered).copied().unwrap_or(0.0);
         self.moments.if_alike(own / self.moments.weight)
     }
+}
 
+impl Summed {
     /// The probabilities, with that of the pattern that is recovered.
     pub(super) fn finish(&self, recovered: &[bool]) -> Patterns {
         let own = self.weights.get(recovered).copied().unwrap_or(0.0);

@@ -2,13 +2,14 @@
 //! light}, and how likely each element is to be the light one.
 //!
 //! The pattern is one that no change of one or two elements improves, and not always the best of
-//! all ([`super::pattern_search`]). The reported gap says how far it can be above that: with given
-//! levels above what branch and bound left open (zero: proved best), with estimated ones above the
-//! minimum over all 0 ≤ ρ ≤ 1. The probabilities are sums over all patterns of few elements
-//! ([`super::enumerated`]), of more over the likeliest and by sampling ([`super::sampled`]), every
-//! pattern as likely beforehand. What they are where neighbours may be alike
-//! ([`super::neighbours`]) stands beside them: by the same patterns weighed anew, or, where these
-//! were drawn, by others, drawn by that. Where the levels are not given, they and the
+//! all ([`super::pattern_search`]); or the likeliest where neighbours may be alike, if that is
+//! settled and the photographs say that they are. The reported gap says how far it can be above the
+//! best: with given levels above what branch and bound left open (zero: proved best), with
+//! estimated ones above the minimum over all 0 ≤ ρ ≤ 1. The probabilities are sums over all
+//! patterns of few elements ([`super::enumerated`]), of more over the likeliest and by sampling
+//! ([`super::sampled`]), every pattern as likely beforehand. What they are where neighbours may be
+//! alike ([`super::neighbours`]) stands beside them: by the same patterns weighed anew, or, where
+//! these were drawn, by others, drawn by that. Where the levels are not given, they and the
 //! standard errors allow for elements that differ from their level, as far as the photographs do
 //! ([`super::spread`]). How likely the photographs are by two levels, against what other methods
 //! assume, takes neighbours to be alike by an unknown degree ([`super::neighbours`]).
@@ -17,6 +18,7 @@ use super::coordinates::Coordinates;
 use super::levels::ALL;
 use super::pattern_likelihood::PatternLikelihood;
 use super::pattern_search::{Found, Levels, Search};
+use super::pattern_sums::{Alike, Summed};
 use super::{enumerated, levels, neighbours, pattern_lattice, sampled, scale, spread};
 use crate::recovery::{
     Choice, Method, Options, Parameter, Patterns, Problem, Recovered, RecoveryError, Solver, Sum,
@@ -28,6 +30,10 @@ const MOST_SAMPLED: usize = 400;
 const DRAWS: f64 = 1.6e9;
 const FEWEST: f64 = 2000.0;
 const MOST: f64 = 400_000.0;
+/// The picture is the likeliest pattern where neighbours may be alike if it has at least this
+/// probability there, and the photographs are likelier by at least e to this if they are alike.
+const SETTLED: f64 = 0.5;
+const TELLS: f64 = 3.0;
 /// Share of the probability that must be summed pattern by pattern for another prior.
 const LISTED: f64 = 0.99;
 
@@ -56,6 +62,40 @@ fn is_listed(sum: Sum) -> bool {
 /// Patterns of n elements that are drawn.
 fn draws(n: usize) -> usize {
     (DRAWS / (n * n) as f64).clamp(FEWEST, MOST) as usize
+}
+
+/// Where neighbours may be alike: what the patterns' evidence gains, and the patterns, if known. If
+/// nearly all were summed one by one these are weighed anew. Of such as were drawn the few that
+/// neighbours prefer say nothing: others are drawn, those of `known` listed.
+fn where_alike(
+    likelihood: &PatternLikelihood<'_>,
+    (grids, known): (&[[usize; 2]], &[Vec<bool>]),
+    summed: &Summed,
+) -> Result<(Option<f64>, Option<Alike>), RecoveryError> {
+    let prior = neighbours::AlikePrior::new(grids);
+    let reweighed = neighbours::Reweighed::new(prior.as_ref(), &summed.weights);
+    if is_listed(summed.sum) {
+        let quadrature = levels::rule();
+        let of = |light: &[bool]| Some(likelihood.weigh(light, &quadrature, ALL)?.levels);
+        return Ok((reweighed.gained(), reweighed.sum(of)));
+    }
+    let own = PatternLikelihood {
+        alike: prior.as_ref(),
+        control: likelihood.control,
+        ..PatternLikelihood::new(likelihood.r, likelihood.d, likelihood.given)
+    };
+    let drawn = match prior {
+        Some(_) => sampled::sample(&own, known, draws(likelihood.r.ncols()))?,
+        None => None,
+    };
+    Ok(match drawn.filter(|drawn| drawn.sum.converged()) {
+        Some(drawn) => {
+            let gained = drawn.log_evidence - summed.log_evidence;
+            let (moments, weights) = (drawn.moments, drawn.weights);
+            (Some(gained), Some(Alike { moments, weights }))
+        }
+        None => (reweighed.gained(), None),
+    })
 }
 
 pub(in crate::recovery) fn recover(
@@ -122,10 +162,28 @@ pub(in crate::recovery) fn recover(
             best = found;
         }
     }
-    let objective = 0.5 * best.misfit;
     if given.is_some() && summed.as_ref().is_some_and(|s| s.sum == Sum::Exhaustive) {
-        bound = objective;
+        bound = 0.5 * best.misfit;
     }
+    let (gained, alike) = match &summed {
+        Some(summed) => {
+            known.push(best.light.clone());
+            where_alike(&likelihood, (grids, &known), summed)?
+        }
+        None => (None, None),
+    };
+    let mut status = "no change of one or two elements improves";
+    if let Some((light, share)) = alike.as_ref().and_then(Alike::likeliest)
+        && share >= SETTLED
+        && gained >= Some(TELLS)
+    {
+        let found = search.fit(light.clone());
+        if search.can(&found) && found.light != best.light {
+            status = "the likeliest pattern where neighbours are alike";
+            best = found;
+        }
+    }
+    let objective = 0.5 * best.misfit;
     let shown = best.values();
     let spread = match &summed {
         Some(exact) if given.is_none() && options.spreads => {
@@ -134,31 +192,6 @@ pub(in crate::recovery) fn recover(
         _ => None,
     };
     let mut recovered = coordinates.finish(method, problem, options, &shown * unit)?;
-    let quadrature = levels::rule();
-    let of_pattern = |light: &[bool]| Some(likelihood.weigh(light, &quadrature, ALL)?.levels);
-    let prior = summed
-        .as_ref()
-        .and_then(|_| neighbours::AlikePrior::new(grids));
-    let (mut gained, mut if_alike) = summed.as_ref().map_or((None, None), |summed| {
-        let reweighed = neighbours::Reweighed::new(prior.as_ref(), &summed.weights);
-        let if_alike = is_listed(summed.sum).then(|| reweighed.if_alike(&best.light, of_pattern));
-        (reweighed.gained(), if_alike.flatten())
-    });
-    // Of patterns that were drawn the few that neighbours prefer say nothing: draw these anew.
-    if let (Some(summed), Some(prior)) = (&summed, &prior)
-        && !is_listed(summed.sum)
-    {
-        let likelihood = PatternLikelihood {
-            alike: Some(prior),
-            ..likelihood
-        };
-        known.push(best.light.clone());
-        let alike = sampled::sample(&likelihood, &known, draws(n))?;
-        if let Some(alike) = alike.filter(|alike| alike.sum.converged()) {
-            gained = Some(alike.log_evidence - summed.log_evidence);
-            if_alike = Some(alike.if_alike(&best.light));
-        }
-    }
     let converged = summed.as_ref().filter(|exact| exact.sum.converged());
     recovered.standard_error = converged.map(|exact| match &spread {
         Some(spread) => spread.error.clone(),
@@ -167,7 +200,7 @@ pub(in crate::recovery) fn recover(
     recovered.patterns = summed.map(|summed| {
         let of = summed.finish(&best.light);
         Patterns {
-            if_alike,
+            if_alike: alike.map(|alike| alike.say_of(&best.light)),
             ..match spread {
                 Some(spread) => spread.finish(of),
                 None => of,
@@ -183,7 +216,7 @@ pub(in crate::recovery) fn recover(
         None => Choice::Estimated,
     };
     recovered.solver = Some(Solver {
-        status: "no change of one or two elements improves".to_owned(),
+        status: status.to_owned(),
         iterations,
         refinements: changes,
         objective,

@@ -90,9 +90,8 @@ fn levels_are_those_of_all_patterns_where_neighbours_may_be_alike() {
     };
     let weights: HashMap<Vec<bool>, f64> = (0..512).map(|at| (of(at), weight(at))).collect();
     let (prior, recovered) = (AlikePrior::new(&[[3, 3]]), of(0b111));
-    let found =
-        Reweighed::new(prior.as_ref(), &weights).if_alike(&recovered, |light| Some(levels(light)));
-    let found = found.unwrap();
+    let found = Reweighed::new(prior.as_ref(), &weights).sum(|light| Some(levels(light)));
+    let found = found.unwrap().say_of(&recovered);
     let (mut whole, mut own, mut sums) = (0.0, 0.0, [[0.0; 2]; 2]);
     for k in 0..11 {
         let beta = 0.1 * f64::from(k);
@@ -117,14 +116,9 @@ fn levels_are_those_of_all_patterns_where_neighbours_may_be_alike() {
     }
     // Levels of nothing that has the weight.
     let few = |light: &[bool]| (count(light) < 5.0).then(|| levels(light));
-    assert_eq!(
-        Reweighed::new(prior.as_ref(), &weights).if_alike(&recovered, few),
-        None
-    );
-    assert_eq!(
-        Reweighed::new(None, &weights).if_alike(&recovered, few),
-        None
-    );
+    for prior in [prior.as_ref(), None] {
+        assert!(Reweighed::new(prior, &weights).sum(few).is_none());
+    }
 }
 
 /// Over all patterns alike nothing is gained; one patch gains, one of chance loses at most the
