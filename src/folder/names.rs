@@ -94,6 +94,8 @@ pub fn is_of_recovered(name: &str) -> bool {
         "",
         "stderr",
         "light",
+        "alike",
+        "alike.stderr",
         "covariance",
         "resolution",
         "bias",
@@ -105,6 +107,7 @@ pub fn is_of_recovered(name: &str) -> bool {
         "frame_patterns",
         "background",
         "glare",
+        "frame_gain",
     ];
     let exts = ["npy", "png", "csv", "svg", "ply", "json"];
     known && whats.contains(&what) && exts.contains(&ext)

@@ -218,8 +218,9 @@ fn few_directions(found: &Recovered) -> Option<String> {
 fn spread(found: &Recovered) -> Option<String> {
     let of = found.patterns.as_ref().filter(|p| p.exact < UNLIKELY)?;
     Some(format!(
-        "exactly two reflectances have probability {}: elements that differ from theirs by about {} \
-         explain the photographs better. Believe the standard errors, not the pattern, or joint-gp{}",
+        "every pattern being as likely, exactly two reflectances have probability {}: elements that \
+         differ from theirs by about {} explain the photographs better. Believe the standard errors, not the \
+         pattern, or joint-gp{}",
         figure(of.exact, 2),
         of.spread,
         or_alike(of)

@@ -121,8 +121,8 @@ pub struct Options {
     /// The reflectances \[dark, light\] of `joint-two-valued`; estimated with the pattern where not
     /// given.
     pub levels: Option<[f64; 2]>,
-    /// Whether `joint-two-valued` sums over patterns, and searches widely for the best one; seconds
-    /// in place of tenths of them.
+    /// Whether `joint-two-valued` sums over patterns, searches widely for the best one, and takes
+    /// the likeliest where neighbours are alike if that is settled; seconds in place of tenths.
     pub probabilities: bool,
     /// Whether these sums allow for elements that differ from their level, where levels are not
     /// given.
