@@ -7,6 +7,7 @@ use super::recoveries::{by_surface, determined};
 use super::results::RunResults;
 use super::summary::facts;
 use crate::num::digits::{figure, significant};
+use crate::num::summation::root_mean_square;
 
 /// More hidden surfaces than this are counted, not named.
 const MOST_NAMED: usize = 4;
@@ -211,11 +212,10 @@ fn error(pictures: &[&RecoveredObject]) -> String {
     let light: Vec<f64> = light.flatten().copied().collect();
     let mut told = Vec::new();
     if !errors.is_empty() {
-        let mean = errors.iter().map(|s| s * s).sum::<f64>() / errors.len() as f64;
         let most = errors.iter().copied().fold(0.0, f64::max);
         told.push(format!(
             "standard error {} an element (root mean square), {} at most",
-            figure(mean.sqrt(), 2),
+            figure(root_mean_square(&errors), 2),
             figure(most, 2)
         ));
     }

@@ -26,9 +26,33 @@ pub fn mean_and_stderr(replicates: &[f64]) -> (f64, f64) {
     (mean, (tree_sum(&squares) / (n * (n - 1.0))).sqrt())
 }
 
+/// ln Σ exp of the terms; −∞ of none.
+pub fn log_sum_exp(logs: &[f64]) -> f64 {
+    let top = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if top == f64::NEG_INFINITY {
+        return top;
+    }
+    top + libm::log(logs.iter().map(|log| libm::exp(log - top)).sum())
+}
+
+/// √(Σx²/n); NaN of no values.
+pub fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|x| x * x).sum::<f64>() / values.len() as f64).sqrt()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Of terms that overflow by themselves, of none, and of zeros alone.
+    #[test]
+    fn logarithms_of_sums_by_hand() {
+        let three = log_sum_exp(&[1e4, 1e4, 1e4]) - 1e4;
+        assert!((three - libm::log(3.0)).abs() < 1e-11, "{three}");
+        assert_eq!(log_sum_exp(&[]), f64::NEG_INFINITY);
+        assert_eq!(log_sum_exp(&[f64::NEG_INFINITY; 2]), f64::NEG_INFINITY);
+        assert_eq!(root_mean_square(&[1.0, -7.0]), 5.0);
+    }
 
     #[test]
     fn aligned_parts_can_be_summed_elsewhere() {

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::lab::{RecoveredObject, RunResults, Tails};
+use crate::num::summation::root_mean_square;
 use crate::store::harmless_json;
 
 /// What a run found, without any matrix, as indented JSON. What is absent or not a finite number is
@@ -64,10 +65,6 @@ pub fn summary_json(results: &RunResults) -> String {
     });
     // A `Value` always has a JSON text.
     harmless_json(&format!("{value:#}\n"))
-}
-
-fn root_mean_square(values: &[f64]) -> f64 {
-    (values.iter().map(|x| x * x).sum::<f64>() / values.len() as f64).sqrt()
 }
 
 #[cfg(test)]

@@ -233,9 +233,8 @@ impl<'a> LitSpots<'a> {
     ) {
         let paths = &self.light_paths;
         let mut row = vec![0.0; sums.len()];
-        let all = self.fixed.as_ref();
-        let all = all.filter(|batch| batch.len() == sums.len());
-        let mut batch = match all {
+        let known = self.fixed.as_ref();
+        let mut batch = match known.filter(|all| all.len() == sums.len()) {
             Some(batch) => Cow::Borrowed(batch),
             None => Cow::Owned(batch(self.scene, lit.at(0), sums.len())),
         };

@@ -3,6 +3,7 @@
 use crate::lab::gains::{self, Gains};
 use crate::lab::which_errors::which_errors;
 use crate::num::digits::{figure, significant};
+use crate::num::summation::root_mean_square;
 use crate::recovery::{Choice, Estimated, IfAlike, Parameter, Patterns, Recovered, Sum};
 
 /// The regularisation used and why, in words. How likely a pattern is among patterns means nothing
@@ -81,7 +82,6 @@ fn patterns(of: &Patterns) -> String {
 
 /// The same where neighbours may be alike.
 fn if_alike(of: &IfAlike) -> String {
-    let error = (of.deviation.norm_squared() / of.deviation.len() as f64).sqrt();
     format!(
         "; if neighbours may be alike, as of a board or a letter, it has probability {:.3}, the levels are {:.3} ± \
          {:.3} and {:.3} ± {:.3}, and the mean of all patterns, beside it, has a standard error of {} an element \
@@ -91,7 +91,7 @@ fn if_alike(of: &IfAlike) -> String {
         of.level_errors[0],
         of.levels[1],
         of.level_errors[1],
-        figure(error, 2)
+        figure(root_mean_square(of.deviation.as_slice()), 2)
     )
 }
 

@@ -6,7 +6,7 @@ use nalgebra::DVector;
 
 use super::levels::{ALL, rule};
 use super::pattern_likelihood::{PatternLikelihood, Weighed};
-use super::pattern_sums::{Moments, Summed};
+use super::pattern_sums::{Moments, Summed, WeighedPatterns};
 use crate::recovery::Sum;
 
 /// Most elements whose patterns are all summed, with given levels and without.
@@ -63,8 +63,10 @@ pub(super) fn sum(likelihood: &PatternLikelihood<'_>) -> Summed {
     let all = n as f64 * std::f64::consts::LN_2;
     Summed {
         log_evidence: top + libm::log(moments.weight) - all,
-        moments,
-        weights: shares,
+        patterns: WeighedPatterns {
+            moments,
+            weights: shares,
+        },
         sum: Sum::Exhaustive,
         best: pattern(best.0),
         drawn: Vec::new(),

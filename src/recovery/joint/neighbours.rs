@@ -13,7 +13,8 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 
-use super::pattern_sums::{Alike, Moments};
+use super::pattern_sums::{Moments, WeighedPatterns};
+use crate::num::summation::log_sum_exp;
 
 /// Values of β, every tenth from 0 to 1.
 const COUPLINGS: u32 = 11;
@@ -69,11 +70,10 @@ impl AlikePrior {
     /// ln of P(s)/2⁻ⁿ; none of a pattern of one level.
     pub(super) fn log(&self, light: &[bool]) -> Option<f64> {
         let logs: Vec<f64> = self.logs(light)?.collect();
-        let top = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        Some(top + libm::log(logs.iter().map(|log| libm::exp(log - top)).sum()))
+        Some(log_sum_exp(&logs))
     }
 
-    /// E β of the likeliest of some patterns, ln of whose weights, P(s) in them, are `logs`.
+    /// E β of the likeliest of some patterns, each with ln of its weight, P(s) in it; 0 of none.
     pub(super) fn degree<'p>(&self, weighed: impl Iterator<Item = (&'p Vec<bool>, f64)>) -> f64 {
         let likeliest = weighed.max_by(|a, b| a.1.total_cmp(&b.1));
         let Some(logs) = likeliest.and_then(|(light, _)| self.logs(light)) else {
@@ -125,11 +125,6 @@ impl<'a> Reweighed<'a> {
         found
     }
 
-    /// Largest of the logarithms.
-    fn top(&self) -> f64 {
-        self.logs.iter().copied().fold(f64::NEG_INFINITY, f64::max)
-    }
-
     /// ln of Σ_s w_s P(s)/2⁻ⁿ over Σ_s w_s: what the patterns' evidence gains where neighbours may
     /// be alike. 0 where nothing tells; `None` where no pattern has both levels: one reflectance
     /// throughout is no pattern.
@@ -137,17 +132,18 @@ impl<'a> Reweighed<'a> {
         if !self.tells {
             return Some(0.0);
         }
-        let top = self.top();
-        let shares = || self.logs.iter().map(|log| libm::exp(log - top));
-        top.is_finite()
-            .then(|| top + libm::log(shares().sum::<f64>()))
+        let gained = log_sum_exp(&self.logs);
+        gained.is_finite().then_some(gained)
     }
 
     /// The patterns by these weights, with the `levels` of each, the means of dark and light level
     /// and of their squares. None where nothing tells, or where too few of the patterns have too
     /// little of the weight.
-    pub(super) fn sum(&self, levels: impl Fn(&[bool]) -> Option<[[f64; 2]; 2]>) -> Option<Alike> {
-        let top = self.top();
+    pub(super) fn sum(
+        &self,
+        levels: impl Fn(&[bool]) -> Option<[[f64; 2]; 2]>,
+    ) -> Option<WeighedPatterns> {
+        let top = self.logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let each = self.logs.chunks_exact(COUPLINGS as usize);
         let each = each.map(|logs| logs.iter().map(|log| libm::exp(log - top)).sum::<f64>());
         let patterns = self.patterns.iter().copied();
@@ -166,7 +162,7 @@ impl<'a> Reweighed<'a> {
             }
         }
         let enough = whole > 0.0 && moments.weight >= LEAST_SUMMED * whole;
-        enough.then_some(Alike { moments, weights })
+        enough.then_some(WeighedPatterns { moments, weights })
     }
 }
 

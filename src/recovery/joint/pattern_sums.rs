@@ -9,11 +9,45 @@ use crate::recovery::{IfAlike, Patterns, Sum};
 /// Of a mean square, what rounding leaves of a variance.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
+/// Patterns by their weights, and what they add up to.
+pub(super) struct WeighedPatterns {
+    pub(super) moments: Moments,
+    /// All that count, or those that were met.
+    pub(super) weights: HashMap<Vec<bool>, f64>,
+}
+
+impl WeighedPatterns {
+    /// Probability of a pattern.
+    fn share(&self, light: &[bool]) -> f64 {
+        self.weights.get(light).copied().unwrap_or(0.0) / self.moments.weight
+    }
+
+    /// The likeliest pattern, and its probability.
+    pub(super) fn likeliest(&self) -> Option<(&Vec<bool>, f64)> {
+        let order = |a: &(&Vec<bool>, &f64), b: &(&Vec<bool>, &f64)| {
+            a.1.total_cmp(b.1).then_with(|| a.0.cmp(b.0))
+        };
+        let (light, _) = self.weights.iter().max_by(order)?;
+        Some((light, self.share(light)))
+    }
+
+    /// What they say, neighbours being alike in them, of the recovered pattern and of the levels.
+    pub(super) fn if_alike(&self, recovered: &[bool]) -> IfAlike {
+        let [mean, deviation] = self.moments.elements();
+        let [levels, level_errors] = self.moments.levels();
+        IfAlike {
+            pattern: self.share(recovered),
+            levels,
+            level_errors,
+            mean,
+            deviation,
+        }
+    }
+}
+
 /// What was summed over patterns and levels.
 pub(super) struct Summed {
-    pub(super) moments: Moments,
-    /// Weights by pattern: all that count, or those that were met.
-    pub(super) weights: HashMap<Vec<bool>, f64>,
+    pub(super) patterns: WeighedPatterns,
     pub(super) log_evidence: f64,
     pub(super) sum: Sum,
     /// The best that was met.
@@ -22,35 +56,12 @@ pub(super) struct Summed {
     pub(super) drawn: Vec<(f64, Vec<bool>, [f64; 2])>,
 }
 
-/// Patterns where neighbours may be alike, by their weights.
-pub(super) struct Alike {
-    pub(super) moments: Moments,
-    pub(super) weights: HashMap<Vec<bool>, f64>,
-}
-
-impl Alike {
-    /// The likeliest pattern, and its probability.
-    pub(super) fn likeliest(&self) -> Option<(&Vec<bool>, f64)> {
-        let order = |a: &(&Vec<bool>, &f64), b: &(&Vec<bool>, &f64)| {
-            a.1.total_cmp(b.1).then_with(|| a.0.cmp(b.0))
-        };
-        let (light, weight) = self.weights.iter().max_by(order)?;
-        Some((light, weight / self.moments.weight))
-    }
-
-    /// What they say of the recovered pattern and of the levels.
-    pub(super) fn say_of(&self, recovered: &[bool]) -> IfAlike {
-        let own = self.weights.get(recovered).copied().unwrap_or(0.0);
-        self.moments.if_alike(own / self.moments.weight)
-    }
-}
-
 impl Summed {
     /// The probabilities, with that of the pattern that is recovered.
     pub(super) fn finish(&self, recovered: &[bool]) -> Patterns {
-        let own = self.weights.get(recovered).copied().unwrap_or(0.0);
-        let share = own / self.moments.weight;
-        self.moments.finish(share, self.log_evidence, self.sum)
+        let share = self.patterns.share(recovered);
+        let moments = &self.patterns.moments;
+        moments.finish(share, self.log_evidence, self.sum)
     }
 }
 
@@ -135,10 +146,7 @@ impl Moments {
     pub(super) fn levels(&self) -> [[f64; 2]; 2] {
         let of = |k: usize| {
             let [first, second] = self.levels[k].map(|x| x / self.weight);
-            [
-                first,
-                (second - first * first).max(ROUNDING * second).sqrt(),
-            ]
+            [first, deviation(first, second)]
         };
         let [dark, light] = [of(0), of(1)];
         [[dark[0], light[0]], [dark[1], light[1]]]
@@ -148,23 +156,8 @@ impl Moments {
     fn elements(&self) -> [DVector<f64>; 2] {
         let mean = &self.mean / self.weight;
         let square = &self.square / self.weight;
-        let spread =
-            |first: f64, second: f64| (second - first * first).max(ROUNDING * second).sqrt();
-        let deviation = mean.zip_map(&square, spread);
+        let deviation = mean.zip_map(&square, deviation);
         [mean, deviation]
-    }
-
-    /// The whole, of patterns whose neighbours may be alike, and a pattern's share of it.
-    pub(super) fn if_alike(&self, pattern: f64) -> IfAlike {
-        let [mean, deviation] = self.elements();
-        let [levels, level_errors] = self.levels();
-        IfAlike {
-            pattern,
-            levels,
-            level_errors,
-            mean,
-            deviation,
-        }
     }
 
     /// The whole, a pattern's share of it and the evidence known.
@@ -185,4 +178,9 @@ impl Moments {
             if_alike: None,
         }
     }
+}
+
+/// Standard deviation of what has this mean and mean square.
+fn deviation(mean: f64, square: f64) -> f64 {
+    (square - mean * mean).max(ROUNDING * square).sqrt()
 }

@@ -20,7 +20,7 @@ use nalgebra::DVector;
 use super::levels::{ALL, LevelFit, possible, rule};
 use super::pattern_lattice::{Dark, PatternLattice};
 use super::pattern_likelihood::{PatternLikelihood, Weighed};
-use super::pattern_sums::{Moments, Summed};
+use super::pattern_sums::{Moments, Summed, WeighedPatterns};
 use super::sampler::{List, Met, Sampler, Side, counts, effective};
 use crate::num::stream::{Key, Sampling, Stream};
 use crate::recovery::{RecoveryError, Sum};
@@ -216,8 +216,10 @@ impl Known {
         Some(Summed {
             log_evidence: top + libm::log(moments.weight) - n as f64 * std::f64::consts::LN_2,
             drawn: resampled(likelihood, &weights, moments.weight),
-            weights: weights.into_iter().collect::<HashMap<_, _>>(),
-            moments,
+            patterns: WeighedPatterns {
+                weights: weights.into_iter().collect::<HashMap<_, _>>(),
+                moments,
+            },
             sum: Sum::Sampled {
                 draws: self.draws,
                 listed,

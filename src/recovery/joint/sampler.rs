@@ -9,6 +9,7 @@ use super::pattern_lattice::{Cell, nearest, pattern};
 use super::pattern_likelihood::{PatternLikelihood, Weighed};
 use crate::num::quadrature::Rule;
 use crate::num::stream::{Key, Sampling, Stream};
+use crate::num::summation::log_sum_exp;
 use crate::recovery::RecoveryError;
 
 /// Draws from a coarse cell, to find the likely ones.
@@ -207,20 +208,11 @@ impl Sampler<'_> {
                 .position(|cell| weighed.contrast() < cell.contrasts[1]);
             logs[own.unwrap_or(0)].push(weighed.log);
         }
-        let sums: Vec<f64> = logs.iter().map(|logs| log_sum(logs)).collect();
+        let sums: Vec<f64> = logs.iter().map(|logs| log_sum_exp(logs)).collect();
         let top = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let likely = |sum: &f64| *sum >= top - UNLIKELY;
         let first = sums.iter().position(likely).unwrap_or(0);
         let last = sums.iter().rposition(likely).unwrap_or(cells.len() - 1);
         Ok([first, last])
     }
-}
-
-/// ln Σ exp.
-fn log_sum(logs: &[f64]) -> f64 {
-    let top = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if top == f64::NEG_INFINITY {
-        return top;
-    }
-    top + libm::log(logs.iter().map(|log| libm::exp(log - top)).sum())
 }

@@ -99,10 +99,15 @@ pub(super) fn sum(
     let weights: Vec<f64> = logs.map(|log| libm::exp(log - top)).collect();
     let own = libm::exp(exact.log_evidence - top);
     let all = own + weights.iter().sum::<f64>();
-    let mut sums = vec![exact.moments.scaled(own / all / exact.moments.weight)];
-    let mut square = exact.moments.square_about(shown) * (own / all);
+    let mut sums = vec![
+        exact
+            .patterns
+            .moments
+            .scaled(own / all / exact.patterns.moments.weight),
+    ];
+    let mut square = exact.patterns.moments.square_about(shown) * (own / all);
     for ((_, _, part), weight) in parts.iter().zip(&weights) {
-        let of = &part.summed.moments;
+        let of = &part.summed.patterns.moments;
         sums.push(of.scaled(weight / all / of.weight));
         square += &part.square * (weight / all);
     }

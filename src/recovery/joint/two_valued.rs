@@ -18,7 +18,7 @@ use super::coordinates::Coordinates;
 use super::levels::ALL;
 use super::pattern_likelihood::PatternLikelihood;
 use super::pattern_search::{Found, Levels, Search};
-use super::pattern_sums::{Alike, Summed};
+use super::pattern_sums::{Summed, WeighedPatterns};
 use super::{enumerated, levels, neighbours, pattern_lattice, sampled, scale, spread};
 use crate::recovery::{
     Choice, Method, Options, Parameter, Patterns, Problem, Recovered, RecoveryError, Solver, Sum,
@@ -71,31 +71,26 @@ fn where_alike(
     likelihood: &PatternLikelihood<'_>,
     (grids, known): (&[[usize; 2]], &[Vec<bool>]),
     summed: &Summed,
-) -> Result<(Option<f64>, Option<Alike>), RecoveryError> {
+) -> Result<(Option<f64>, Option<WeighedPatterns>), RecoveryError> {
     let prior = neighbours::AlikePrior::new(grids);
-    let reweighed = neighbours::Reweighed::new(prior.as_ref(), &summed.weights);
-    if is_listed(summed.sum) {
-        let quadrature = levels::rule();
-        let of = |light: &[bool]| Some(likelihood.weigh(light, &quadrature, ALL)?.levels);
-        return Ok((reweighed.gained(), reweighed.sum(of)));
-    }
-    let own = PatternLikelihood {
-        alike: prior.as_ref(),
-        control: likelihood.control,
-        ..PatternLikelihood::new(likelihood.r, likelihood.d, likelihood.given)
-    };
-    let drawn = match prior {
-        Some(_) => sampled::sample(&own, known, draws(likelihood.r.ncols()))?,
-        None => None,
-    };
-    Ok(match drawn.filter(|drawn| drawn.sum.converged()) {
-        Some(drawn) => {
+    let listed = is_listed(summed.sum);
+    if let Some(prior) = prior.as_ref().filter(|_| !listed) {
+        let own = PatternLikelihood {
+            alike: Some(prior),
+            control: likelihood.control,
+            ..PatternLikelihood::new(likelihood.r, likelihood.d, likelihood.given)
+        };
+        let drawn = sampled::sample(&own, known, draws(likelihood.r.ncols()))?;
+        if let Some(drawn) = drawn.filter(|drawn| drawn.sum.converged()) {
             let gained = drawn.log_evidence - summed.log_evidence;
-            let (moments, weights) = (drawn.moments, drawn.weights);
-            (Some(gained), Some(Alike { moments, weights }))
+            return Ok((Some(gained), Some(drawn.patterns)));
         }
-        None => (reweighed.gained(), None),
-    })
+    }
+    let reweighed = neighbours::Reweighed::new(prior.as_ref(), &summed.patterns.weights);
+    let quadrature = levels::rule();
+    let of = |light: &[bool]| Some(likelihood.weigh(light, &quadrature, ALL)?.levels);
+    let anew = listed.then(|| reweighed.sum(of));
+    Ok((reweighed.gained(), anew.flatten()))
 }
 
 pub(in crate::recovery) fn recover(
@@ -173,7 +168,7 @@ pub(in crate::recovery) fn recover(
         None => (None, None),
     };
     let mut status = "no change of one or two elements improves";
-    if let Some((light, share)) = alike.as_ref().and_then(Alike::likeliest)
+    if let Some((light, share)) = alike.as_ref().and_then(WeighedPatterns::likeliest)
         && share >= SETTLED
         && gained >= Some(TELLS)
     {
@@ -195,12 +190,12 @@ pub(in crate::recovery) fn recover(
     let converged = summed.as_ref().filter(|exact| exact.sum.converged());
     recovered.standard_error = converged.map(|exact| match &spread {
         Some(spread) => spread.error.clone(),
-        None => exact.moments.square_about(&shown).map(f64::sqrt),
+        None => exact.patterns.moments.square_about(&shown).map(f64::sqrt),
     });
     recovered.patterns = summed.map(|summed| {
         let of = summed.finish(&best.light);
         Patterns {
-            if_alike: alike.map(|alike| alike.say_of(&best.light)),
+            if_alike: alike.map(|alike| alike.if_alike(&best.light)),
             ..match spread {
                 Some(spread) => spread.finish(of),
                 None => of,

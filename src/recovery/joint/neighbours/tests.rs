@@ -91,7 +91,7 @@ fn levels_are_those_of_all_patterns_where_neighbours_may_be_alike() {
     let weights: HashMap<Vec<bool>, f64> = (0..512).map(|at| (of(at), weight(at))).collect();
     let (prior, recovered) = (AlikePrior::new(&[[3, 3]]), of(0b111));
     let found = Reweighed::new(prior.as_ref(), &weights).sum(|light| Some(levels(light)));
-    let found = found.unwrap().say_of(&recovered);
+    let found = found.unwrap().if_alike(&recovered);
     let (mut whole, mut own, mut sums) = (0.0, 0.0, [[0.0; 2]; 2]);
     for k in 0..11 {
         let beta = 0.1 * f64::from(k);

@@ -120,7 +120,7 @@ fn sampled_marginals_are_those_of_all_patterns() {
                 let sampled = sampled::sample(&likelihood, &start, MOST as usize)
                     .unwrap()
                     .unwrap();
-                let [all, own] = [&exact, &sampled].map(|sum| sum.moments.light());
+                let [all, own] = [&exact, &sampled].map(|sum| sum.patterns.moments.light());
                 let off = (own - &all).amax();
                 largest = largest.max(off);
                 let drawn = sampled::sample(
@@ -132,21 +132,17 @@ fn sampled_marginals_are_those_of_all_patterns() {
                     MOST as usize,
                 );
                 let drawn = drawn.unwrap().unwrap();
-                let anew = neighbours::Reweighed::new(prior.as_ref(), &exact.weights);
+                let anew = neighbours::Reweighed::new(prior.as_ref(), &exact.patterns.weights);
                 let rule = levels::rule();
                 let of = |light: &[bool]| Some(likelihood.weigh(light, &rule, ALL)?.levels);
                 let gained = drawn.log_evidence - exact.log_evidence;
                 alike = alike.max((gained - anew.gained().unwrap()).abs());
-                let found = Alike {
-                    moments: drawn.moments,
-                    weights: drawn.weights,
-                }
-                .say_of(&light);
+                let found = drawn.patterns.if_alike(&light);
                 // Of none where too many patterns are likely.
                 let Some(expected) = anew.sum(of) else {
                     continue;
                 };
-                let expected = expected.say_of(&light);
+                let expected = expected.if_alike(&light);
                 compared += 1;
                 let [x, y] = [&found, &expected].map(|of| (of.levels, of.level_errors));
                 let off = (0..2).flat_map(|k| [x.0[k] - y.0[k], x.1[k] - y.1[k]]);
